@@ -1,0 +1,35 @@
+# What all targets share: warnings, optimisation, include root.
+
+function(slipstick_configure target)
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion
+    $<$<BOOL:${SLIPSTICK_WERROR}>:-Werror> $<$<BOOL:${SLIPSTICK_NATIVE}>:-march=native>)
+endfunction()
+
+# slipstick_library(<folder> SOURCES ... PUBLIC <libraries> PRIVATE <libraries>)
+function(slipstick_library folder)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  set(target slipstick_${folder})
+  add_library(${target} STATIC ${ARG_SOURCES})
+  add_library(slipstick::${folder} ALIAS ${target})
+  set_target_properties(${target} PROPERTIES EXPORT_NAME ${folder} POSITION_INDEPENDENT_CODE ON)
+  target_compile_features(${target} PUBLIC cxx_std_20)
+  target_include_directories(${target} PUBLIC
+    $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}/slipstick>)
+  target_link_libraries(${target} PUBLIC ${ARG_PUBLIC} PRIVATE ${ARG_PRIVATE})
+  slipstick_configure(${target})
+endfunction()
+
+# slipstick_tests(<name> SOURCES ... LIBRARIES ...): one GoogleTest program, each case a test of its own in CTest.
+function(slipstick_tests name)
+  if(NOT SLIPSTICK_TESTS)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  slipstick_configure(${name})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
+  target_compile_definitions(${name} PRIVATE SLIPSTICK_TEST_DATA="${CMAKE_CURRENT_SOURCE_DIR}/tests")
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
+endfunction()
+include(GoogleTest)

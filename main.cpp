@@ -1,0 +1,77 @@
+// The program: registers each folder's commands, maps errors to exit codes, nothing else.
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iostream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "analytic/exact_command.hpp"
+#include "convergence/report_command.hpp"
+#include "convergence/solve_command.hpp"
+
+namespace {
+
+constexpr int kCouldNotJudge = 2;
+
+using Json = nlohmann::ordered_json;
+/// Writes what a person reads, fills the result, returns the exit code.
+using Command = std::function<int(std::ostream&, Json&)>;
+
+void write_json(const std::string& path, const Json& result) {
+  if (path == "-") {
+    std::cout << result.dump(2) << '\n';
+    return;
+  }
+  std::ofstream file(path);
+  file << result.dump(2) << '\n';
+  if (!file.flush()) throw std::invalid_argument(fmt::format("--json {}: cannot be written", path));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App app{"slipstick: the elastic torsional contact with slip and stick, exact and numerical, compared"};
+  app.set_version_flag("--version", std::string(SLIPSTICK_VERSION));
+  app.require_subcommand(1);
+
+  const std::vector<Command> commands{slipstick::analytic::add_exact_command(app),
+                                      slipstick::convergence::add_solve_command(app),
+                                      slipstick::convergence::add_report_command(app)};
+  const auto subcommands = app.get_subcommands([](const CLI::App*) { return true; });
+  std::string json_path;
+  bool quiet = false;
+  for (CLI::App* subcommand : subcommands) {
+    subcommand->add_option("--json", json_path, "write the result as JSON to this file (- is stdout)");
+    subcommand->add_flag("--quiet", quiet, "print no text");
+  }
+
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? 0 : kCouldNotJudge;
+  }
+
+  try {
+    for (std::size_t i = 0; i < commands.size(); ++i) {
+      if (!subcommands[i]->parsed()) continue;
+      std::ostringstream text;
+      Json result;
+      const int exit_code = commands[i](text, result);
+      if (!quiet && json_path != "-") std::cout << text.str();
+      if (!json_path.empty()) write_json(json_path, result);
+      return exit_code;
+    }
+  } catch (const std::exception& error) {
+    fmt::print(stderr, "slipstick: {}\n", error.what());
+    return kCouldNotJudge;
+  }
+  return kCouldNotJudge;
+}

@@ -1,0 +1,45 @@
+#include "solver/certificate.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace slipstick::solver {
+
+Eigen::ArrayXd dot_products(const Eigen::ArrayXd& v, const Eigen::ArrayXd& w) {
+  const Eigen::Index cells = v.size() / 2;
+  return v.head(cells) * w.head(cells) + v.tail(cells) * w.tail(cells);
+}
+
+Eigen::ArrayXd norms(const Eigen::ArrayXd& vectors) { return dot_products(vectors, vectors).sqrt(); }
+
+Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound,
+                    const Eigen::ArrayXd& rotation, double moment) {
+  const Eigen::Index cells = friction_bound.size();
+  const auto& q = field.traction;
+  const double total_friction = friction_bound.sum();
+  if (!(total_friction > 0.0)) return {};  // no friction: no traction, nothing to violate
+  const double energy = 0.5 * (q * field.elastic_displacement).sum();
+  const Eigen::ArrayXd gap = dot_products(q, field.slip) + friction_bound * norms(field.slip);
+  const double limit = (friction_bound * norms(rotation)).sum();
+
+  Certificate certificate{};
+  const double total_gap = gap.sum();
+  certificate.gap = total_gap == 0.0 ? 0.0 : total_gap / energy;
+  certificate.moment = std::abs((q * rotation).sum() - moment) / limit;
+  certificate.force = std::hypot(q.head(cells).sum(), q.tail(cells).sum()) / total_friction;
+  const Eigen::ArrayXd size = norms(q);
+  double worst = 0.0;
+  for (Eigen::Index i = 0; i < cells; ++i) {
+    // Outside the contact any traction at all is beyond every bound.
+    const double ratio = friction_bound[i] > 0.0 ? size[i] / friction_bound[i]
+                         : size[i] == 0.0        ? 0.0
+                                                 : std::numeric_limits<double>::infinity();
+    worst = ratio <= worst ? worst : ratio;  // keeps NaN
+    if (std::isnan(worst)) break;
+  }
+  certificate.friction_bound = worst - 1.0;
+  return certificate;
+}
+
+}  // namespace slipstick::solver

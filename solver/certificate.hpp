@@ -1,0 +1,36 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace slipstick::solver {
+
+/// Tractions q, the displacements K q that they cause, and the slip s. 2*cells values each.
+struct TractionField {
+  const Eigen::ArrayXd& traction;
+  const Eigen::ArrayXd& elastic_displacement;
+  const Eigen::ArrayXd& slip;
+};
+
+/// How far a result is from Coulomb's law and equilibrium; needs no reference solution. All relative; NaN where the
+/// fields hold NaN, so that no bound passes.
+struct Certificate {
+  /// sum(s.q + mu p |s|) / (q.Kq/2). Each term is non-negative where |q| <= mu p and zero only where Coulomb's law
+  /// holds. Coulomb's law minimises the convex energy q.Kq/2 over the friction discs and the given moment, hence
+  /// |q - q*|_K^2/2 <= energy(q) - energy(q*) <= gap.
+  double gap;
+  double moment;          ///< |t.q Delta - M| / M_lim
+  double force;           ///< |sum of q| / sum of mu p
+  double friction_bound;  ///< max |q|/(mu p) - 1
+};
+
+/// friction_bound: mu p of each cell; rotation: the field t = (-x2, x1); moment: M/Delta that was asked for.
+Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound,
+                    const Eigen::ArrayXd& rotation, double moment);
+
+/// sqrt(v1^2 + v2^2) in each cell.
+Eigen::ArrayXd norms(const Eigen::ArrayXd& vectors);
+
+/// v1 w1 + v2 w2 in each cell.
+Eigen::ArrayXd dot_products(const Eigen::ArrayXd& v, const Eigen::ArrayXd& w);
+
+}  // namespace slipstick::solver

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace slipstick::solver {
+
+using Eigen::Index;
+
+/// A rectangle of n1 x n2 equal cells, centred at the origin. A field over it is n1*n2 values, cell (i, j) at
+/// i*n2 + j: x2 runs fastest. A vector field is its first component's values, then its second's.
+struct Grid {
+  Index n1;
+  Index n2;
+  double h1;  ///< cell size along x1
+  double h2;  ///< cell size along x2
+
+  Index cells() const { return n1 * n2; }
+  double cell_area() const { return h1 * h2; }
+  /// Cell centres. Mirror images about the origin are exact negatives of each other.
+  double x1(Index i) const { return 0.5 * static_cast<double>(2 * i - (n1 - 1)) * h1; }
+  double x2(Index j) const { return 0.5 * static_cast<double>(2 * j - (n2 - 1)) * h2; }
+};
+
+/// x1 and x2 of all cell centres: n1*n2 values each.
+Eigen::ArrayXd cell_x1(const Grid& grid);
+Eigen::ArrayXd cell_x2(const Grid& grid);
+
+/// The displacement field t = (-x2, x1) of a unit rotation about the origin: 2*n1*n2 values.
+Eigen::ArrayXd rotation_field(const Grid& grid);
+
+}  // namespace slipstick::solver

@@ -1,0 +1,62 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "solver/grid.hpp"
+
+/// Influence coefficients: displacement at a cell's centre due to a unit traction on another cell, for
+/// half-spaces (Boussinesq, Cerruti; Love 1929; Johnson 1985, section 3.6). They depend on the offset only.
+namespace slipstick::solver {
+
+/// Elastic half-space. shear_modulus may be infinite: a rigid body.
+struct HalfSpace {
+  double shear_modulus;
+  double poisson_ratio;
+};
+
+/// What a pair of half-spaces looks like from the interface. u is the displacement of the lower surface less
+/// that of the upper, q the traction on the lower one, so compliances add in K11, K12, K22, K33 and subtract in
+/// K13, K23.
+struct ElasticPair {
+  double shear_compliance;    ///< 1/G = sum of 1/G_i
+  double poisson_compliance;  ///< sum of nu_i/G_i
+  double normal_compliance;   ///< sum of (1 - nu_i)/G_i = 2/E*
+  double mismatch;            ///< (1 - 2 nu)/G of the lower less that of the upper; 0 for similar materials
+
+  double effective_modulus() const { return 2.0 / normal_compliance; }
+  double shear_modulus() const { return 1.0 / shear_compliance; }
+};
+
+ElasticPair elastic_pair(const HalfSpace& lower, const HalfSpace& upper);
+
+/// Component ij: displacement along i by traction along j (1, 2 tangential, 3 normal; K21 = K12).
+enum class Component { k11, k12, k22, k13, k23, k33 };
+
+/// +1 if the component is even in x1 (or x2), -1 if it is odd.
+struct Parity {
+  int x1;
+  int x2;
+};
+Parity parity(Component component);
+
+/// Integrals over the cell h1 x h2 centred at offset (x, y), rho^2 = x^2 + y^2, from which every component is
+/// composed: of x^2/rho^3, y^2/rho^3, x y/rho^3, x/rho^2, y/rho^2.
+struct CellIntegrals {
+  double xx;
+  double yy;
+  double xy;
+  double x;
+  double y;
+};
+
+/// Relative error of each integral below 1e-13 for offsets up to 8,192 cells: closed form near by, Gauss-Legendre
+/// quadrature, whose terms are all of one sign, further off, where the closed form would cancel.
+CellIntegrals cell_integrals(double x, double y, double h1, double h2);
+
+/// One component at all offsets (k1 h1, k2 h2), 0 <= k1 < m1, 0 <= k2 < m2, row by row; the other quadrants
+/// follow by parity. Displacement per traction: units of length times compliance.
+std::vector<double> influence_coefficients(Component component, const ElasticPair& pair, double h1, double h2,
+                                           Index m1, Index m2);
+
+}  // namespace slipstick::solver

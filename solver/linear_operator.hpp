@@ -1,0 +1,84 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "solver/grid.hpp"
+#include "solver/influence.hpp"
+
+namespace slipstick::solver {
+
+/// Which components couple which fields: outputs x inputs of them, row by row.
+struct BlockKernel {
+  std::size_t outputs;
+  std::size_t inputs;
+  std::vector<Component> components;
+};
+
+/// u3 = K33 p; (u1, u2) = K (q1, q2); (u1, u2) = (K13, K23) p.
+BlockKernel normal_kernel();
+BlockKernel tangential_kernel();
+BlockKernel coupling_kernel();
+
+/// Fields of traction to fields of displacement on one grid. The methods know no more of elasticity than this, so
+/// that the three ways to evaluate it are interchangeable.
+class LinearOperator {
+ public:
+  virtual ~LinearOperator() = default;
+  LinearOperator(const LinearOperator&) = delete;
+  LinearOperator& operator=(const LinearOperator&) = delete;
+
+  /// displacement = K * traction: outputs()*cells and inputs()*cells values. They may not overlap. Allocates nothing.
+  /// Throws std::invalid_argument for other sizes.
+  void apply(std::span<const double> traction, std::span<double> displacement) {
+    const auto cells = static_cast<std::size_t>(grid_.cells());
+    if (traction.size() != inputs() * cells || displacement.size() != outputs() * cells) {
+      throw std::invalid_argument("operator applied to fields of another size");
+    }
+    do_apply(traction, displacement);
+    ++applications_;
+  }
+
+  const Grid& grid() const { return grid_; }
+  std::size_t inputs() const { return kernel_.inputs; }
+  std::size_t outputs() const { return kernel_.outputs; }
+  /// Applications so far.
+  long applications() const { return applications_; }
+  /// Memory held for coefficients and workspace.
+  virtual std::size_t bytes() const = 0;
+
+ protected:
+  LinearOperator(const Grid& grid, BlockKernel kernel) : grid_(grid), kernel_(std::move(kernel)) {}
+  const BlockKernel& kernel() const { return kernel_; }
+
+ private:
+  virtual void do_apply(std::span<const double> traction, std::span<double> displacement) = 0;
+
+  Grid grid_;
+  BlockKernel kernel_;
+  long applications_ = 0;
+};
+
+/// How the operator is evaluated: by discrete convolution and FFT (N^2 log N work for N x N cells), by direct
+/// summation without a matrix (N^4 work, N^2 memory), or by a dense matrix (N^4 of both).
+enum class OperatorKind { dcfft, direct, dense };
+
+struct OperatorOptions {
+  int threads = 1;
+  /// Let FFTW measure which plan is fastest: quicker applications, results that differ in their last bits from run
+  /// to run.
+  bool measure_plans = false;
+};
+
+std::unique_ptr<LinearOperator> make_operator(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
+                                              const ElasticPair& pair, const OperatorOptions& options = {});
+
+/// What bytes() of such an operator will be.
+double predicted_bytes(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
+                       const OperatorOptions& options = {});
+
+}  // namespace slipstick::solver

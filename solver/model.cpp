@@ -1,0 +1,150 @@
+#include "solver/model.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "solver/field_file.hpp"
+#include "solver/input_error.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+
+/// Fields of one value a cell that a solve holds at once beside its operators, temporaries included (counted in the
+/// normal and the slip-stick method).
+constexpr double kFieldsHeld = 32.0;
+/// Cells left free on each side of the expected contact where the scene does not give an extent.
+constexpr double kMarginCells = 2.0;
+
+HalfSpace half_space(const Material& material) {
+  return {0.5 * material.young_modulus / (1.0 + material.poisson_ratio), material.poisson_ratio};
+}
+
+/// Half the sides of the rectangle that the contact is expected to fill, in the scene's units.
+std::array<double, 2> expected_half_sides(const Surface& surface, double load, double effective_modulus) {
+  switch (surface.shape) {
+    case Shape::sphere:
+    case Shape::ellipsoid: {
+      const bool sphere = surface.shape == Shape::sphere;
+      const HertzContact contact = hertz_contact(load, sphere ? surface.radius : surface.radius_1,
+                                                 sphere ? surface.radius : surface.radius_2, effective_modulus);
+      return {contact.semi_axis_1, contact.semi_axis_2};
+    }
+    case Shape::cone: {  // Sneddon 1965: W = (pi/2) E* a^2 slope
+      const double radius = std::sqrt(2.0 * load / (std::numbers::pi * effective_modulus * surface.slope));
+      return {radius, radius};
+    }
+    case Shape::flat_punch:
+      return {surface.radius, surface.radius};
+    case Shape::height_map:
+      break;
+  }
+  throw std::logic_error("a height map brings its own extent");
+}
+
+Grid make_grid(const Scene& scene, double effective_modulus, const Eigen::ArrayXXd& heights) {
+  if (scene.surface.shape == Shape::height_map) {
+    const std::array<Index, 2> samples{heights.rows(), heights.cols()};
+    if (scene.cells != std::array<Index, 2>{} && scene.cells != samples) {
+      throw InputError(scene.source.string(), "grid.cells", fmt::format("[{}, {}]", scene.cells[0], scene.cells[1]),
+                       fmt::format("[{}, {}], the samples in {}, or left out", samples[0], samples[1],
+                                   scene.surface.file.string()));
+    }
+    return {samples[0], samples[1], scene.surface.spacing[0], scene.surface.spacing[1]};
+  }
+  const auto half_sides = scene.extent ? std::array<double, 2>{}
+                                       : expected_half_sides(scene.surface, *scene.normal_load, effective_modulus);
+  std::array<double, 2> h{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto cells = static_cast<double>(scene.cells[i]);
+    const double margin = std::min(kMarginCells, cells / 8.0);
+    h[i] = scene.extent ? (*scene.extent)[i] / cells : 2.0 * half_sides[i] / (cells - 2.0 * margin);
+  }
+  return {scene.cells[0], scene.cells[1], h[0], h[1]};
+}
+
+/// Undeformed gap in length units. Spheres and ellipsoids are paraboloids, as in Hertz's theory.
+ArrayXd make_gap(const Surface& surface, const Grid& grid, double unit, const Eigen::ArrayXXd& heights) {
+  const ArrayXd x1 = cell_x1(grid);
+  const ArrayXd x2 = cell_x2(grid);
+  const ArrayXd r = (x1.square() + x2.square()).sqrt();
+  switch (surface.shape) {
+    case Shape::sphere:
+      return r.square() / (2.0 * surface.radius / unit);
+    case Shape::ellipsoid:
+      return x1.square() / (2.0 * surface.radius_1 / unit) + x2.square() / (2.0 * surface.radius_2 / unit);
+    case Shape::cone:
+      return surface.slope * r;
+    case Shape::flat_punch:
+      return (r <= surface.radius / unit)
+          .select(ArrayXd::Zero(r.size()), ArrayXd::Constant(r.size(), std::numeric_limits<double>::infinity()));
+    case Shape::height_map: {
+      const Eigen::ArrayXXd by_x2 = heights.transpose();  // column-major: x2 runs fastest
+      return (by_x2.reshaped() - heights.minCoeff()) / unit;
+    }
+  }
+  throw std::logic_error("unknown shape");
+}
+
+double physical_memory() {
+  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
+}
+
+}  // namespace
+
+double predicted_bytes(const Scene& scene, const Grid& grid, bool pressure_coupling) {
+  const OperatorOptions options{.threads = scene.threads};
+  const auto bytes = [&](const BlockKernel& kernel) { return predicted_bytes(scene.op, grid, kernel, options); };
+  const double normal = scene.pressure == PressureModel::solved ? bytes(normal_kernel()) : 0.0;
+  const double coupling = pressure_coupling ? bytes(coupling_kernel()) : 0.0;
+  const double operators = std::max({normal, coupling, bytes(tangential_kernel())});  // one after the other
+  return operators + kFieldsHeld * sizeof(double) * static_cast<double>(grid.n1) * static_cast<double>(grid.n2);
+}
+
+Model make_model(const Scene& scene) {
+  const ElasticPair pair = elastic_pair(half_space(scene.lower), half_space(scene.upper));
+  const Eigen::ArrayXXd heights = scene.surface.shape == Shape::height_map ? read_height_map(scene.surface.file)
+                                                                           : Eigen::ArrayXXd();
+  const Grid grid = make_grid(scene, pair.effective_modulus(), heights);
+
+  Model model{};
+  model.pressure_coupling =
+      scene.coupling == Coupling::pressure || (scene.coupling == Coupling::automatic && pair.mismatch != 0.0);
+  const double bytes = predicted_bytes(scene, grid, model.pressure_coupling);
+  if (!(bytes < physical_memory())) {
+    throw InputError(scene.source.string(), "grid.cells", fmt::format("[{}, {}]", grid.n1, grid.n2),
+                     fmt::format("what fits in memory: this needs {:.3g} GiB with operator = \"{}\", the machine has {:.3g}",
+                                 bytes / 0x1p30, to_string(scene.op), physical_memory() / 0x1p30));
+  }
+
+  model.length_unit = grid.h1;
+  model.stress_unit = pair.shear_modulus();
+  model.grid = {grid.n1, grid.n2, 1.0, grid.h2 / grid.h1};
+  model.pair = {1.0, pair.poisson_compliance * model.stress_unit, pair.normal_compliance * model.stress_unit,
+                pair.mismatch * model.stress_unit};
+  model.friction = scene.friction;
+  if (scene.normal_load) model.normal_load = *scene.normal_load / model.force_unit();
+  model.gap = make_gap(scene.surface, model.grid, model.length_unit, heights);
+
+  const bool sphere = scene.surface.shape == Shape::sphere;
+  if (model.normal_load && (sphere || scene.surface.shape == Shape::ellipsoid)) {
+    model.hertz = hertz_contact(*model.normal_load,
+                                (sphere ? scene.surface.radius : scene.surface.radius_1) / model.length_unit,
+                                (sphere ? scene.surface.radius : scene.surface.radius_2) / model.length_unit,
+                                model.pair.effective_modulus());
+  }
+  if (!model.pressure_coupling) {
+    model.left_out.push_back({"K13, K23", pair.mismatch == 0.0 ? "similar materials: pressure moves both surfaces alike"
+                                                               : "contact.coupling = \"none\""});
+  }
+  model.left_out.push_back({"translations", "torsion about the origin of the grid"});
+  return model;
+}
+
+}  // namespace slipstick::solver

@@ -1,0 +1,74 @@
+#include "solver/pressure.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "solver/field_file.hpp"
+#include "solver/input_error.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+/// A cell's centre in a file may be off by this part of the cell's size.
+constexpr double kPositionTolerance = 1e-3;
+/// A pressure file's load may differ by this part from load.normal; more is taken for a mistake in units.
+constexpr double kLoadTolerance = 1e-2;
+
+Eigen::ArrayXd pressure_from_file(const Scene& scene, const Model& model) {
+  const std::string file = scene.pressure_file.string();
+  const auto columns = read_columns(scene.pressure_file, {"x1", "x2", "pressure"});
+  const Grid& grid = model.grid;
+  Eigen::ArrayXd pressure = Eigen::ArrayXd::Zero(grid.cells());
+  for (Index row = 0; row < columns[0].values.size(); ++row) {
+    const double i = columns[0].values[row] / model.length_unit / grid.h1 + 0.5 * static_cast<double>(grid.n1 - 1);
+    const double j = columns[1].values[row] / model.length_unit / grid.h2 + 0.5 * static_cast<double>(grid.n2 - 1);
+    const bool inside = std::round(i) >= 0.0 && std::round(i) < static_cast<double>(grid.n1) &&
+                        std::round(j) >= 0.0 && std::round(j) < static_cast<double>(grid.n2);
+    if (!inside || std::abs(i - std::round(i)) > kPositionTolerance || std::abs(j - std::round(j)) > kPositionTolerance) {
+      throw InputError(file, fmt::format("row {}: ({}, {}) is not a cell's centre; allowed: those of grid.cells over "
+                                         "grid.extent, centred at the origin",
+                                         row + 1, columns[0].values[row], columns[1].values[row]));
+    }
+    const double value = columns[2].values[row];
+    if (!(value >= 0.0)) {
+      throw InputError(file, fmt::format("row {}: pressure = {}: allowed: zero or positive", row + 1, value));
+    }
+    pressure[std::lround(i) * grid.n2 + std::lround(j)] = value / model.stress_unit;
+  }
+  if (!(pressure.sum() > 0.0)) throw InputError(file, "pressure is zero everywhere");
+  const double load = pressure.sum() * grid.cell_area();
+  if (model.normal_load && std::abs(load / *model.normal_load - 1.0) > kLoadTolerance) {
+    throw InputError(scene.source.string(), "load.normal", fmt::format("{} N", *scene.normal_load),
+                     fmt::format("left out, or {} N within 1 %, which the pressure in {} carries",
+                                 load * model.force_unit(), file));
+  }
+  return pressure;
+}
+
+NormalSolution given(const Eigen::ArrayXd& pressure) {
+  NormalSolution solution;
+  solution.status = Status::converged;
+  solution.pressure = pressure;
+  return solution;
+}
+
+}  // namespace
+
+NormalSolution find_pressure(const Scene& scene, const Model& model) {
+  switch (scene.pressure) {
+    case PressureModel::hertz:
+      return given(hertz_at_centres(*model.hertz, model.grid));
+    case PressureModel::hertz_averaged:
+      return given(hertz_cell_averages(*model.hertz, model.grid));
+    case PressureModel::file:
+      return given(pressure_from_file(scene, model));
+    case PressureModel::solved: {
+      const auto op = make_operator(scene.op, model.grid, normal_kernel(), model.pair, {.threads = scene.threads});
+      return solve_normal_contact(*op, {model.gap, *model.normal_load / model.grid.cell_area()});
+    }
+  }
+  throw std::logic_error("unknown pressure model");
+}
+
+}  // namespace slipstick::solver

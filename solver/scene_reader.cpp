@@ -1,0 +1,218 @@
+#include "solver/scene_reader.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <fstream>
+#include <sstream>
+
+#include "solver/input_error.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+/// Edits that make a key look like a misspelling of another.
+constexpr std::size_t kMisspelling = 3;
+
+std::string read_text(const std::filesystem::path& file) {
+  if (std::filesystem::is_directory(file)) throw InputError(file.string(), "is a folder; allowed: a scene file (TOML)");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw InputError(file.string(), "cannot be read; allowed: a scene file (TOML)");
+  std::ostringstream text;
+  text << stream.rdbuf();
+  if (text.str().find('\0') != std::string::npos) {
+    throw InputError(file.string(), "is a binary file; allowed: a scene file (TOML)");
+  }
+  return text.str();
+}
+
+toml::table parse(const std::string& text, const std::string& file) {
+  try {
+    return toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}:{}", file, error.source().begin.line), std::string(error.description()));
+  }
+}
+
+std::string print(const toml::node_view<toml::node>& node) {
+  std::ostringstream text;
+  text << node;
+  return text.str();
+}
+
+/// Levenshtein's distance.
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substitute = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitute});
+    }
+  }
+  return row.back();
+}
+
+std::string nearest(const std::string& key, const std::set<std::string>& known) {
+  return *std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
+    return edit_distance(key, a) < edit_distance(key, b);
+  });
+}
+
+/// Dotted paths of all leaves of a table.
+void collect_leaves(const toml::table& table, const std::string& prefix, std::vector<std::string>& leaves) {
+  for (const auto& [name, child] : table) {
+    const std::string key = prefix + std::string(name.str());
+    const toml::table* const inner = child.as_table();
+    if (inner != nullptr && !inner->empty()) {
+      collect_leaves(*inner, key + ".", leaves);
+    } else {
+      leaves.push_back(key);
+    }
+  }
+}
+
+}  // namespace
+
+SceneReader::SceneReader(const std::filesystem::path& file, const std::vector<std::string>& overrides)
+    : file_(file), root_(parse(read_text(file), file.string())) {
+  for (const std::string& assignment : overrides) apply_override(assignment);
+}
+
+void SceneReader::apply_override(const std::string& assignment) {
+  const std::string source = fmt::format("--set {}", assignment);
+  const auto equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0) throw InputError(source, "allowed: key=value");
+  const std::string key = assignment.substr(0, equals);
+  const std::string value = assignment.substr(equals + 1);
+  toml::table parsed;
+  try {
+    parsed = toml::parse(fmt::format("value = {}", value));
+  } catch (const toml::parse_error&) {  // a bare word is a string
+    parsed = toml::table{{"value", value}};
+  }
+  toml::table* table = &root_;
+  std::istringstream path(key);
+  std::string part;
+  std::vector<std::string> parts;
+  while (std::getline(path, part, '.')) parts.push_back(part);
+  for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
+    table = table->insert(parts[i], toml::table{}).first->second.as_table();
+    if (table == nullptr) throw InputError(source, fmt::format("{} is not a table", parts[i]));
+  }
+  table->insert_or_assign(parts.back(), *parsed.get("value"));
+  overridden_.insert(key);
+}
+
+std::string SceneReader::where(const std::string& key) const {
+  if (overridden_.contains(key)) return "--set";
+  const auto node = root_.at_path(key);
+  return node ? fmt::format("{}:{}", file_.string(), node.node()->source().begin.line) : file_.string();
+}
+
+void SceneReader::fail(const std::string& key, const std::string& value, const std::string& allowed) const {
+  throw InputError(where(key), key, value, allowed);
+}
+
+/// A key that is missing may be there under a misspelt name: then that is what to say.
+void SceneReader::fail_missing(const std::string& key, const std::string& allowed) const {
+  std::vector<std::string> leaves;
+  collect_leaves(root_, "", leaves);
+  for (const std::string& leaf : leaves) {
+    if (!known_.contains(leaf) && edit_distance(leaf, key) <= kMisspelling) fail_unknown(leaf);
+  }
+  fail(key, "(missing)", allowed);
+}
+
+void SceneReader::fail_unknown(const std::string& key) const {
+  std::ostringstream value;
+  value << root_.at_path(key);
+  throw InputError(where(key), fmt::format("{} = {}: unknown key; the nearest known one is {}", key, value.str(),
+                                           nearest(key, known_)));
+}
+
+void SceneReader::fail_choice(const std::string& key, const std::string& word,
+                              const std::vector<std::string>& allowed) const {
+  fail(key, fmt::format("\"{}\"", word), fmt::format("{}", fmt::join(allowed, ", ")));
+}
+
+toml::node_view<toml::node> SceneReader::node(const std::string& key) {
+  known_.insert(key);
+  return root_.at_path(key);
+}
+
+bool SceneReader::has(const std::string& key) { return static_cast<bool>(node(key)); }
+
+std::optional<double> SceneReader::find_number(const std::string& key, const Range& range) {
+  const auto found = node(key);
+  if (!found) return std::nullopt;
+  if (!found.is_number()) fail(key, print(found), fmt::format("a number, {}", range.words));
+  const double value = *found.value<double>();
+  if (!range.contains(value)) fail(key, print(found), range.words);
+  return value;
+}
+
+double SceneReader::number(const std::string& key, const Range& range) {
+  const auto value = find_number(key, range);
+  if (!value) fail_missing(key, fmt::format("a number, {}", range.words));
+  return *value;
+}
+
+double SceneReader::number_or(const std::string& key, double otherwise, const Range& range) {
+  return find_number(key, range).value_or(otherwise);
+}
+
+std::optional<std::array<double, 2>> SceneReader::find_pair(const std::string& key, const Range& range) {
+  const auto found = node(key);
+  if (!found) return std::nullopt;
+  const toml::array* const array = found.as_array();
+  const std::string allowed = fmt::format("[a, b], two numbers, each {}", range.words);
+  if (array == nullptr || array->size() != 2) fail(key, print(found), allowed);
+  std::array<double, 2> pair{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto value = (*array)[i].value<double>();
+    if (!value || !(*array)[i].is_number() || !range.contains(*value)) fail(key, print(found), allowed);
+    pair[i] = *value;
+  }
+  return pair;
+}
+
+std::array<double, 2> SceneReader::pair(const std::string& key, const Range& range) {
+  const auto value = find_pair(key, range);
+  if (!value) fail_missing(key, fmt::format("[a, b], two numbers, each {}", range.words));
+  return *value;
+}
+
+bool SceneReader::flag_or(const std::string& key, bool otherwise) {
+  const auto found = node(key);
+  if (!found) return otherwise;
+  if (!found.is_boolean()) fail(key, print(found), "true, false");
+  return *found.value<bool>();
+}
+
+std::string SceneReader::text(const std::string& key) {
+  const auto found = node(key);
+  if (!found) fail_missing(key, "a string");
+  if (!found.is_string()) fail(key, print(found), "a string");
+  return *found.value<std::string>();
+}
+
+std::string SceneReader::text_or(const std::string& key, const std::string& otherwise) {
+  return has(key) ? text(key) : otherwise;
+}
+
+std::filesystem::path SceneReader::path(const std::string& key) { return file_.parent_path() / text(key); }
+
+void SceneReader::reject_unknown() const {
+  std::vector<std::string> leaves;
+  collect_leaves(root_, "", leaves);
+  for (const std::string& leaf : leaves) {
+    if (!known_.contains(leaf)) fail_unknown(leaf);
+  }
+}
+
+}  // namespace slipstick::solver

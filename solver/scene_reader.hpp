@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <functional>
+#include <optional>
+#include <set>
+#include <string>
+#include <toml++/toml.h>
+#include <utility>
+#include <vector>
+
+namespace slipstick::solver {
+
+/// What a number may be, in words and as a test; the test is false for NaN.
+struct Range {
+  std::string words;
+  std::function<bool(double)> contains;
+};
+
+/// A TOML file whose keys are asked for one by one, by dotted path. Each question says what is allowed; reject_unknown() at the
+/// end finds the keys that nobody asked for. Throws InputError.
+class SceneReader {
+ public:
+  SceneReader(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+
+  bool has(const std::string& key);
+  std::optional<double> find_number(const std::string& key, const Range& range);
+  double number(const std::string& key, const Range& range);
+  double number_or(const std::string& key, double otherwise, const Range& range);
+  std::optional<std::array<double, 2>> find_pair(const std::string& key, const Range& range);
+  std::array<double, 2> pair(const std::string& key, const Range& range);
+  bool flag_or(const std::string& key, bool otherwise);
+  std::string text(const std::string& key);
+  std::string text_or(const std::string& key, const std::string& otherwise);
+  std::filesystem::path path(const std::string& key);
+
+  /// One of some words, each with its meaning.
+  template <typename Value>
+  Value choice(const std::string& key, const std::vector<std::pair<std::string, Value>>& words) {
+    const std::string word = text(key);
+    std::vector<std::string> allowed;
+    for (const auto& [name, value] : words) {
+      if (name == word) return value;
+      allowed.push_back(name);
+    }
+    fail_choice(key, word, allowed);
+  }
+  template <typename Value>
+  Value choice_or(const std::string& key, Value otherwise, const std::vector<std::pair<std::string, Value>>& words) {
+    return has(key) ? choice(key, words) : otherwise;
+  }
+
+  void reject_unknown() const;
+  [[noreturn]] void fail(const std::string& key, const std::string& value, const std::string& allowed) const;
+
+ private:
+  [[noreturn]] void fail_missing(const std::string& key, const std::string& allowed) const;
+  [[noreturn]] void fail_unknown(const std::string& key) const;
+  [[noreturn]] void fail_choice(const std::string& key, const std::string& word,
+                                const std::vector<std::string>& allowed) const;
+  toml::node_view<toml::node> node(const std::string& key);
+  void apply_override(const std::string& assignment);
+  std::string where(const std::string& key) const;
+
+  std::filesystem::path file_;
+  toml::table root_;
+  std::set<std::string> known_;
+  std::set<std::string> overridden_;
+};
+
+}  // namespace slipstick::solver
