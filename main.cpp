@@ -59,19 +59,22 @@ int main(int argc, char** argv) {
     return app.exit(error) == 0 ? 0 : kCouldNotJudge;
   }
 
+  std::ostringstream text;
+  Json result;
+  const auto write_out = [&] {
+    if (!quiet && json_path != "-") std::cout << text.str();
+    if (!json_path.empty() && !result.empty()) write_json(json_path, result);
+  };
   try {
     for (std::size_t i = 0; i < commands.size(); ++i) {
       if (!subcommands[i]->parsed()) continue;
-      std::ostringstream text;
-      Json result;
       const int exit_code = commands[i](text, result);
-      if (!quiet && json_path != "-") std::cout << text.str();
-      if (!json_path.empty()) write_json(json_path, result);
+      write_out();
       return exit_code;
     }
   } catch (const std::exception& error) {
     fmt::print(stderr, "slipstick: {}\n", error.what());
-    return kCouldNotJudge;
+    if (!result.empty()) write_out();  // what was computed before the error is not lost
   }
   return kCouldNotJudge;
 }

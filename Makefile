@@ -1,0 +1,38 @@
+# The front door: each target sets up, configures and builds what is out of date, then runs.
+
+BUILD := build
+PREFIX ?= /usr/local
+REPORT_OPTIONS ?=
+BENCH_OPTIONS ?=
+
+.DEFAULT_GOAL := help
+.PHONY: help setup build report test bench install clean
+
+help: ## show this list
+	@echo "slipstick: make TARGET"
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  %-9s %s\n", $$1, $$2 }' Makefile
+
+setup: ## install the missing Debian/Ubuntu packages (elsewhere: list them)
+	@cmake/setup
+
+$(BUILD)/build.ninja: | setup
+	cmake --preset release
+
+build: $(BUILD)/build.ninja ## build everything, the program is build/slipstick
+	@cmake --build $(BUILD)
+
+report: build ## run the validation and the studies, write the page (REPORT_OPTIONS="--quick")
+	@$(BUILD)/slipstick report --output $(BUILD)/report $(REPORT_OPTIONS)
+	@echo "The page: $(CURDIR)/$(BUILD)/report/index.html"
+
+test: build ## run every test
+	@ctest --test-dir $(BUILD) --output-on-failure -j$$(nproc)
+
+bench: build ## time the solver's parts (BENCH_OPTIONS="--benchmark_filter=...")
+	@$(BUILD)/bench/slipstick_bench $(BENCH_OPTIONS)
+
+install: build ## install under PREFIX (default /usr/local)
+	@cmake --install $(BUILD) --prefix "$(abspath $(PREFIX))"
+
+clean: ## remove what was built
+	@rm -rf $(BUILD)

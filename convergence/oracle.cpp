@@ -1,0 +1,77 @@
+#include "convergence/oracle.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "analytic/hertz.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+/// Why the theory does not hold for a scene; empty if it does.
+std::string obstacle(const solver::Scene& scene) {
+  using solver::Shape;
+  if (scene.surface.shape != Shape::sphere) {
+    return fmt::format("no exact solution is known here for shape = \"{}\"", to_string(scene.surface.shape));
+  }
+  if (scene.pressure == solver::PressureModel::file) return "the pressure comes from a file";
+  if (!(scene.friction > 0.0)) return "without friction there is no traction to compare";
+  const auto mismatch = [](const solver::Material& m) {
+    return (1.0 - 2.0 * m.poisson_ratio) * (1.0 + m.poisson_ratio) / m.young_modulus;
+  };
+  if (scene.coupling != solver::Coupling::none && mismatch(scene.upper) != mismatch(scene.lower)) {
+    return "the pressure's tangential displacement of dissimilar materials enters (contact.coupling)";
+  }
+  return "";
+}
+
+}  // namespace
+
+double Oracle::pressure(double radius) const {
+  const double ratio = radius / contact_radius;
+  return ratio < 1.0 ? peak_pressure * std::sqrt((1.0 - ratio) * (1.0 + ratio)) : 0.0;
+}
+
+double Oracle::traction(double radius) const {
+  const double ratio = radius / contact_radius;
+  return ratio < 1.0 ? friction * peak_pressure * analytic::traction(state, ratio) : 0.0;
+}
+
+OracleAnswer find_oracle(const solver::Scene& scene) {
+  const std::string reason = obstacle(scene);
+  if (!reason.empty()) return {std::nullopt, reason};
+
+  const auto sum_of = [&](auto numerator) {
+    return numerator(scene.upper.poisson_ratio) / scene.upper.young_modulus +
+           numerator(scene.lower.poisson_ratio) / scene.lower.young_modulus;
+  };
+  const double effective_modulus = 1.0 / sum_of([](double nu) { return 1.0 - nu * nu; });
+  const double shear_modulus = 1.0 / sum_of([](double nu) { return 2.0 * (1.0 + nu); });
+  const double load = *scene.normal_load;
+  const auto hertz = analytic::hertz_circle(load, scene.surface.radius, effective_modulus);
+  const double moment_unit = scene.friction * load * hertz.radius;
+  const double twist_unit = scene.friction * load / (shear_modulus * hertz.radius * hertz.radius);
+  const double limit = analytic::moment_limit() * moment_unit;
+
+  const solver::TorsionLoad& torsion = scene.torsion;
+  if (torsion.moment && !(*torsion.moment < limit)) {
+    return {std::nullopt, fmt::format("the moment is not below the exact limit {:.17g} N m", limit)};
+  }
+  const analytic::TorsionState state = torsion.twist          ? analytic::from_twist(*torsion.twist / twist_unit)
+                                       : torsion.moment_ratio ? analytic::from_moment_ratio(*torsion.moment_ratio)
+                                                              : analytic::from_moment_ratio(*torsion.moment / limit);
+  return {Oracle{.contact_radius = hertz.radius,
+                 .peak_pressure = hertz.peak_pressure,
+                 .approach = hertz.approach,
+                 .moment_limit = limit,
+                 .moment = state.moment * moment_unit,
+                 .twist_angle = state.twist * twist_unit,
+                 .stick_radius = state.stick_ratio * hertz.radius,
+                 .friction = scene.friction,
+                 .twist_unit = twist_unit,
+                 .state = state},
+          ""};
+}
+
+}  // namespace slipstick::convergence

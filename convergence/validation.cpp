@@ -1,0 +1,239 @@
+#include "convergence/validation.hpp"
+
+#include <fmt/core.h>
+
+#include <chrono>
+#include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "analytic/paper_equations.hpp"
+#include "analytic/torsion.hpp"
+#include "convergence/errors.hpp"
+#include "convergence/journal.hpp"
+#include "convergence/oracle.hpp"
+#include "convergence/provenance.hpp"
+#include "convergence/result.hpp"
+#include "solver/input_error.hpp"
+#include "solver/solve.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+namespace fs = std::filesystem;
+using solver::Index;
+
+constexpr double kProfileRatios[] = {0.5, 0.9};
+constexpr const char* kPressures[] = {"solved", "hertz", "hertz_averaged"};
+constexpr int kCurvePoints = 200;
+
+/// Runs the solves one after the other, says how far it is, and keeps what is finished.
+class Runner {
+ public:
+  Runner(fs::path scene_file, const fs::path& folder, int points)
+      : scene_file_(std::move(scene_file)), journal_(folder / "points"), points_(points) {
+    std::ifstream stream(scene_file_);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    scene_text_ = text.str();
+  }
+
+  const std::string& scene_text() const { return scene_text_; }
+
+  /// One solve of the scene with these keys changed. `look` sees scene and solution where they are computed.
+  Json solve(Index cells, const std::string& pressure, double moment_ratio,
+             const std::function<void(Json&, const solver::Solution&, const OracleAnswer&)>& look = {},
+             const std::string& suffix = "", const fs::path& also = {}) {
+    const std::vector<std::string> overrides{fmt::format("grid.cells=[{0},{0}]", cells),
+                                             fmt::format("contact.pressure=\"{}\"", pressure),
+                                             fmt::format("load.moment_ratio={}", moment_ratio)};
+    const std::string name = fmt::format("{}-{}-{}{}", pressure, cells, moment_ratio, suffix);
+    Json result = journal_.point(
+        name, fmt::format("{}\n{}\n{}\n{}", scene_text_, overrides[0], overrides[1], overrides[2]),
+        [&] {
+          const solver::Scene scene = solver::read_scene(scene_file_, overrides);
+          const OracleAnswer exact = find_oracle(scene);
+          const solver::Solution solution = solver::solve(scene);
+          Json computed = solve_result(scene, solution, exact);
+          if (look) look(computed, solution, exact);
+          return computed;
+        },
+        also);
+    say_progress(name);
+    return result;
+  }
+
+ private:
+  void say_progress(const std::string& name) {
+    ++done_;
+    computed_ += journal_.reused() ? 0 : 1;
+    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    const double left = computed_ == 0 ? 0.0 : elapsed / computed_ * (points_ - done_);
+    fmt::print(stderr, "[{}/{}] {}{}, about {:.0f} s left\n", done_, points_, name,
+               journal_.reused() ? " (already there)" : "", left);
+  }
+
+  fs::path scene_file_;
+  std::string scene_text_;
+  Journal journal_;
+  int points_;
+  int done_ = 0;
+  int computed_ = 0;
+  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+};
+
+/// The exact curve, denser towards both ends.
+Json exact_curve() {
+  Json rows = Json::array();
+  for (int i = 0; i <= kCurvePoints; ++i) {
+    const double angle = M_PI * i / kCurvePoints;
+    const double ratio = std::min(0.5 * (1.0 - std::cos(angle)), 0.99999);
+    const analytic::TorsionState state = analytic::from_moment_ratio(ratio);
+    const double equation_7 = analytic::paper::eq7_twist(state.moment);
+    Json row{{"moment_ratio", state.moment_ratio},
+             {"stick_ratio", state.stick_ratio},
+             {"stick_complement", state.stick_complement},
+             {"twist", state.twist},
+             {"equation_7", equation_7}};
+    if (state.twist > 0.0) {
+      row["equation_7_error"] = equation_7 / state.twist - 1.0;
+    } else {
+      row["equation_7_error"] = nullptr;
+      row["equation_7_error_reason"] = "no load, no twist";
+    }
+    rows.push_back(row);
+  }
+  return rows;
+}
+
+/// Radial profile: exact, Eq. (1) as printed, and both over radii that crowd at the stick edge.
+Json exact_profile(const analytic::TorsionState& state) {
+  Json rows = Json::array();
+  const double c = state.stick_ratio;
+  const auto add = [&](double radius) {
+    rows.push_back({{"radius", radius},
+                    {"value", analytic::traction(state, radius)},
+                    {"printed", analytic::paper::eq1_printed(c, radius)}});
+  };
+  constexpr int points = 120;
+  for (int i = 0; i < points; ++i) add(c * std::sin(0.5 * M_PI * i / points));
+  add(std::nextafter(c, 0.0));
+  for (int i = 0; i <= points; ++i) add(c + (1.0 - c) * std::sin(0.5 * M_PI * i / points));
+  return rows;
+}
+
+/// Traction over mu p0 in the cells beside the positive x1 axis and along the diagonal, with the exact values.
+Json computed_profile(const solver::Solution& solution, const Oracle& oracle) {
+  const solver::Model& model = solution.model;
+  const ExactFields exact = exact_fields(oracle, model);
+  const double unit = model.stress_unit / (oracle.friction * oracle.peak_pressure);
+  const Eigen::ArrayXd value = unit * solver::norms(solution.torsion.traction);
+  const Eigen::ArrayXd exact_value = unit * solver::norms(exact.traction);
+  const solver::Grid& grid = model.grid;
+  Json rows = Json::array();
+  const auto add = [&](Index i, Index j) {
+    const Index cell = i * grid.n2 + j;
+    const double radius = std::hypot(grid.x1(i), grid.x2(j)) * model.length_unit / oracle.contact_radius;
+    if (radius > 1.0) return;
+    rows.push_back({{"radius", radius},
+                    {"value", value[cell]},
+                    {"exact", exact_value[cell]},
+                    {"error", value[cell] - exact_value[cell]}});
+  };
+  for (Index i = grid.n1 / 2; i < grid.n1; ++i) add(i, grid.n2 / 2);
+  for (Index i = grid.n1 / 2 + 1; i < grid.n1; ++i) add(i, i);
+  return rows;
+}
+
+Json profile(Runner& runner, const fs::path& folder, Index cells, double moment_ratio) {
+  const std::string fields = fmt::format("fields-{}.h5", moment_ratio);
+  Json result = runner.solve(
+      cells, "solved", moment_ratio,
+      [&](Json& computed, const solver::Solution& solution, const OracleAnswer& exact) {
+        write_solution_fields(folder / fields, solution, exact);
+        computed["profile"] = computed_profile(solution, *exact.oracle);
+      },
+      "-profile", folder / fields);
+  Json computed = result["profile"];
+  result.erase("profile");
+  const analytic::TorsionState state = analytic::from_moment_ratio(moment_ratio);
+  return {{"moment_ratio", moment_ratio}, {"stick_ratio", state.stick_ratio}, {"exact", exact_profile(state)},
+          {"computed", computed},         {"fields", fields},                 {"result", result}};
+}
+
+/// Where Eq. (5) as printed loses its digits: against the stable form at the same stick ratio.
+Json equation_5_digits() {
+  Json rows = Json::array();
+  for (int i = 0; i <= 48; ++i) {
+    const double complement = std::pow(10.0, -0.25 - 0.15 * i);
+    const double c = 1.0 - complement;
+    const double exact = analytic::from_stick_ratio(c).moment;
+    rows.push_back({{"stick_complement", complement},
+                    {"relative_error", std::abs(analytic::paper::eq5_moment(c) / exact - 1.0)}});
+  }
+  return rows;
+}
+
+Json summary(const solver::Scene& scene, const Oracle& oracle) {
+  const auto row = [](const char* label, const std::string& value) { return Json::array({label, value}); };
+  return Json::array({
+      row("Sphere radius", fmt::format("{:g} mm", 1e3 * scene.surface.radius)),
+      row("Young's moduli", fmt::format("{:g} GPa (upper), {:g} GPa (lower)", 1e-9 * scene.upper.young_modulus,
+                                        1e-9 * scene.lower.young_modulus)),
+      row("Poisson's ratios", fmt::format("{:g}, {:g}", scene.upper.poisson_ratio, scene.lower.poisson_ratio)),
+      row("Normal load", fmt::format("{:g} N", *scene.normal_load)),
+      row("Friction coefficient", fmt::format("{:g}", scene.friction)),
+      row("Contact radius (Hertz)", fmt::format("{:.6g} mm", 1e3 * oracle.contact_radius)),
+      row("Peak pressure (Hertz)", fmt::format("{:.6g} MPa", 1e-6 * oracle.peak_pressure)),
+      row("Limit moment, Eq. (6)", fmt::format("{:.6g} N mm", 1e3 * oracle.moment_limit)),
+  });
+}
+
+}  // namespace
+
+ValidationSize full_validation() {
+  return {128, {32, 64, 128, 256}, {0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99}};
+}
+
+ValidationSize quick_validation() { return {48, {16, 32, 64}, {0.05, 0.2, 0.4, 0.6, 0.8, 0.95}}; }
+
+Json validate(const fs::path& scene_file, const ValidationSize& size, const fs::path& folder) {
+  const solver::Scene scene = solver::read_scene(scene_file);
+  const OracleAnswer exact = find_oracle(scene);
+  if (!exact.oracle) throw solver::InputError(scene_file.string(), "the page compares with exact values: " + exact.reason);
+  fs::create_directories(folder);
+  const auto solves = std::size(kProfileRatios) + size.moment_ratios.size() +
+                      size.mesh_cells.size() * std::size(kPressures) * std::size(kProfileRatios);
+  Runner runner(scene_file, folder, static_cast<int>(solves));
+
+  Json report;
+  report["provenance"] = provenance(scene.threads);
+  report["scene"] = {{"name", scene.name}, {"text", runner.scene_text()}, {"summary", summary(scene, *exact.oracle)}};
+  report["contact"] = {{"radius", exact.oracle->contact_radius},
+                       {"peak_pressure", exact.oracle->peak_pressure},
+                       {"approach", exact.oracle->approach},
+                       {"moment_limit", exact.oracle->moment_limit}};
+  report["loading_cells"] = size.loading_cells;
+  report["curve"] = exact_curve();
+  report["equation_5_digits"] = equation_5_digits();
+  report["errata"] = errata();
+  report["profiles"] = Json::array();
+  for (const double ratio : kProfileRatios) {
+    report["profiles"].push_back(profile(runner, folder, size.loading_cells, ratio));
+  }
+  report["loading"] = Json::array();
+  for (const double ratio : size.moment_ratios) {
+    report["loading"].push_back(runner.solve(size.loading_cells, "solved", ratio));
+  }
+  report["mesh"] = Json::array();
+  for (const char* pressure : kPressures) {
+    for (const double ratio : kProfileRatios) {
+      for (const Index cells : size.mesh_cells) report["mesh"].push_back(runner.solve(cells, pressure, ratio));
+    }
+  }
+  report["not_run"] = Json::array();
+  write_json_file(folder / "report.json", report);
+  return report;
+}
+
+}  // namespace slipstick::convergence

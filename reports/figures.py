@@ -1,0 +1,322 @@
+"""One function a figure: takes the report and the folder of its data, returns a Plate.
+
+Errors against the exact solution come with the data; here they are only drawn.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.colors import Normalize
+from matplotlib.figure import Figure
+
+import maps
+import studies
+import style
+from results import Fields, column, groups, number, rows, text, value
+from wording import percent, plain, sci, seconds
+
+LOAD_LABEL = "moment $M/M_\\mathrm{lim}$"
+LIMIT = "M/M<sub>lim</sub>&nbsp;=&nbsp;"
+METHODS = {"paper": ("the paper’s method", style.BLUE, "o"),
+           "coulomb": ("Coulomb’s law as a convex program", style.GREEN, "s")}
+
+
+@dataclass
+class Plate:
+    """A finished figure and what stands beside it. The texts are HTML, but for the plain `alt`."""
+    message: str
+    details: str
+    alt: str
+    figure: Figure
+
+
+def shear_components(report, data_dir):
+    profile = _highest_load(report)
+    fields, scale = _fields(report, profile, data_dir)
+    computed = [fields.grid(name) / scale for name in ("q1", "q2")]
+    errors = [np.abs(q - fields.grid(name) / scale) for q, name in zip(computed, ("q1_exact", "q2_exact"))]
+    stick_ratio = number(profile, "stick_ratio")
+    limit = np.nanmax(np.abs(computed))
+
+    figure, axes = style.panels(2, 2, 6.6, sharex=True, sharey=True)
+    for i in (0, 1):
+        top = maps.draw(axes[0, i], fields, computed[i], style.DIVERGING, Normalize(-limit, limit), stick_ratio)
+        bottom = maps.draw(axes[1, i], fields, errors[i], style.ERRORS, maps.error_scale(errors), stick_ratio)
+        axes[0, i].set_title(f"$q_{i + 1}$ computed")
+        axes[1, i].set_title(f"$q_{i + 1}$: |computed − exact|")
+    maps.label(axes)
+    figure.colorbar(top, ax=axes[0, :], label="$q_i/(\\mu p_0)$", pad=0.02)
+    figure.colorbar(bottom, ax=axes[1, :], label="error over $\\mu p_0$", extend="min", pad=0.02)
+    load, largest, turned = _load(profile), np.nanmax(errors), np.nanmax(np.abs(computed[1] + computed[0].T))
+    return Plate(
+        f"At {LIMIT}{load} each shear component is within {sci(largest)} μp₀ of the exact one in every "
+        f"cell; half of the cells are within {sci(np.nanmedian(errors))} μp₀.",
+        f"The circle is the exact edge of the stick area, a<sub>s</sub>/a = {stick_ratio:.4f}. The colours of the "
+        "errors are logarithmic. That one component is the other turned by 90°, as the paper observes, holds here to "
+        f"{sci(turned)} μp₀. The paper divides by p₀ alone; to compare, multiply by the friction coefficient "
+        f"μ&nbsp;=&nbsp;{plain(number(profile, 'result.friction'))}.",
+        f"Four maps over the contact circle at {load} of the limiting moment: the computed components q1 and q2, each "
+        "antisymmetric about one axis, and below them the absolute error of each.", figure)
+
+
+def traction_norm(report, data_dir):
+    profile = _highest_load(report)
+    fields, scale = _fields(report, profile, data_dir)
+    computed = np.hypot(fields.grid("q1"), fields.grid("q2")) / scale
+    error = np.abs(computed - np.hypot(fields.grid("q1_exact"), fields.grid("q2_exact")) / scale)
+    stick_ratio = number(profile, "stick_ratio")
+
+    figure, axes = style.panels(1, 2, 3.0, sharex=True, sharey=True, squeeze=False)
+    left = maps.draw(axes[0, 0], fields, computed, style.SEQUENTIAL, Normalize(0, np.nanmax(computed)), stick_ratio)
+    right = maps.draw(axes[0, 1], fields, error, style.ERRORS, maps.error_scale(error), stick_ratio)
+    axes[0, 0].set_title("norm of the traction, computed")
+    axes[0, 1].set_title("|computed − exact|")
+    maps.label(axes)
+    figure.colorbar(left, ax=axes[0, 0], label="$|q|/(\\mu p_0)$", shrink=0.85)
+    figure.colorbar(right, ax=axes[0, 1], label="error over $\\mu p_0$", extend="min", shrink=0.85)
+    load, worst = _load(profile), np.unravel_index(np.nanargmax(error), error.shape)
+    place = np.hypot(*(fields.extent[0] + (np.array(worst) + 0.5) * fields.cell))
+    return Plate(
+        f"The norm of the traction is off by at most {sci(error[worst])} μp₀, in a cell at r/a = {place:.3f}; "
+        f"half of the cells are within {sci(np.nanmedian(error))} μp₀.",
+        f"{LIMIT}{load}. Inside the circle r = a<sub>s</sub> = {stick_ratio:.4f} a the surfaces stick, "
+        "outside it they slip and |q| = μp.",
+        f"Two maps over the contact circle at {load} of the limiting moment: a ring of high traction around the stick "
+        "area, and the absolute error of the norm.", figure)
+
+
+def radial_profiles(report, data_dir):
+    profiles = rows(report, "profiles")
+    figure, axes = style.with_error_panel(len(profiles))
+    sentences = []
+    for (top, bottom), profile in zip(axes.T, profiles):
+        exact, cells = rows(profile, "exact"), rows(profile, "computed")
+        radius, stick_ratio = column(cells, "radius"), number(profile, "stick_ratio")
+        error = np.abs(column(cells, "error"))
+        inside = [row for row in exact if number(row, "radius") <= stick_ratio]
+        top.plot(column(inside, "radius"), column(inside, "printed"), "--", color=style.VERMILION, linewidth=0.9,
+                 label="Eq. (1) as printed")
+        top.plot(column(exact, "radius"), column(exact, "value"), color=style.BLACK, linewidth=0.9, label="exact",
+                 zorder=3)
+        top.plot(radius, column(cells, "value"), ".", color=style.SKY, markersize=6, rasterized=True,
+                 label="computed, one point a cell")
+        bottom.plot(radius, error, ".", color=style.SKY, markersize=3, rasterized=True)
+        for axis in (top, bottom):
+            axis.axvline(stick_ratio, color=style.GREY, linewidth=0.8, linestyle=":")
+        top.set_title(f"$M/M_\\mathrm{{lim}}$ = {_load(profile)}, $a_s/a$ = {stick_ratio:.4f}")
+        bottom.set_xlabel("radius $r/a$")
+        sentences.append(f"{sci(np.nanmedian(error))} at {LIMIT}{_load(profile)}")
+    axes[0, 0].set(ylabel="traction $q/(\\mu p_0)$", xlim=(0, 1), ylim=(0, None))
+    axes[1, 0].set_ylabel("|error| over $\\mu p_0$")
+    style.whole_decades(axes[1, 0])
+    style.legend_on_top(figure, axes[0, 0].get_legend_handles_labels()[0], 3)
+    factor = max(_printed_over_exact(profile) for profile in profiles)
+    return Plate(
+        f"The computed tractions lie on the exact curve (median error over μp₀: {', '.join(sentences)}); the stick "
+        f"branch of Eq. (1), taken as printed, is {factor:.4f} times too large.",
+        "π/2 = 1.5708: the printed branch lacks the factor 2/π and so jumps at the stick edge (dotted line), where the "
+        "traction is continuous. The exact curve meets that edge with a vertical tangent, which no grid of cells can "
+        "follow.",
+        "Traction against radius at two loads: computed points on the exact curve, and the printed Eq. (1) as a dashed "
+        "curve well above it in the stick area; below, the absolute error of each cell on a log scale.", figure)
+
+
+def stick_radius(report, data_dir):
+    curve = rows(report, "curve")
+    figure, axes = style.with_error_panel()
+    top, bottom = axes[:, 0]
+    top.plot(column(curve, "moment_ratio"), column(curve, "stick_ratio"), color=style.BLACK, label="exact")
+    sentences = []
+    for table, label, colour, marker in _by_method(report):
+        load, error = column(table, "moment_ratio"), np.abs(column(table, "stick_radius_error"))
+        top.plot(load, column(table, "stick_ratio"), marker, color=colour, label=f"computed, {label}")
+        bottom.plot(load, error, marker, color=colour)
+        sentences.append(f"{sci(np.nanmax(error))} (median {sci(np.nanmedian(error))}) by {label}")
+    top.set(ylabel="stick radius $a_s/a$", xlim=(0, 1), ylim=(0, 1.03))
+    bottom.set(ylabel="|computed/exact − 1|", xlabel=LOAD_LABEL)
+    style.whole_decades(bottom)
+    style.legend_on_top(figure, top.get_legend_handles_labels()[0], 3)
+    return Plate(
+        f"Largest relative error of the computed stick radius over all loads: {'; '.join(sentences)}.",
+        f"{_cells(report)} The error is relative to the stick radius itself, which vanishes at the right end.",
+        "Stick radius against moment: computed points on the exact falling curve, and their relative error below.",
+        figure)
+
+
+def twist(report, data_dir):
+    curve = rows(report, "curve")
+    load, formula_error = column(curve, "moment_ratio"), np.abs(column(curve, "equation_7_error"))
+    figure, axes = style.with_error_panel(height=5.8)
+    top, bottom = axes[:, 0]
+    top.plot(load, column(curve, "twist"), color=style.BLACK, label="exact, Eqs. (4) and (5)")
+    top.plot(load, column(curve, "equation_7"), "--", color=style.VERMILION, label="Eq. (7)")
+    bottom.plot(load, formula_error, "--", color=style.VERMILION)
+    loads = column(rows(report, "loading"), "moment_ratio")
+    high = loads[_nearest(loads, 0.9)]
+    sentences = []
+    for table, label, colour, marker in _by_method(report):
+        computed_load, error = column(table, "moment_ratio"), np.abs(column(table, "twist_error"))
+        top.plot(computed_load, column(table, "twist"), marker, color=colour, label=f"computed, {label}",
+                 zorder=3)
+        bottom.plot(computed_load, error, marker, color=colour)
+        sentences.append(f"{sci(error[_nearest(computed_load, high)])} by {label}")
+    top.set(ylabel="twist $G a^2\\phi/(\\mu W)$", xlim=(0, 1),
+            ylim=(0, 1.1 * max(np.nanmax(column(table, "twist")) for table, *_ in _by_method(report))))
+    bottom.set(ylabel="|value/exact − 1|", xlabel=LOAD_LABEL)
+    bottom.set_ylim(bottom=_floor(report), top=1)
+    style.whole_decades(bottom)
+    style.legend_on_top(figure, top.get_legend_handles_labels()[0], 3)
+    return Plate(
+        f"At {LIMIT}{plain(high)} the error of the computed twist is {'; '.join(sentences)}; that of Eq. (7), the curve "
+        f"that the paper compares with, is {percent(formula_error[_nearest(load, high)])}.",
+        "Eq. (7) is an approximation for small moments, printed as an equality. The “few percent” that the paper "
+        f"puts down to discretisation are Eq. (7) itself. {_cells(report)}",
+        "Twist against moment: computed points on the exact curve, with Eq. (7) falling below it at high moments; in "
+        "the error panel Eq. (7) lies orders of magnitude above the computed points.", figure)
+
+
+def convergence(report, data_dir):
+    quantities = [("twist_error", "twist"), ("traction_error.l1", "traction, L1"),
+                  ("stick_radius_error", "stick radius")]
+    runs = studies.read(report)
+    figure, axes = style.panels(1, 3, 3.7, sharex=True)
+    for axis, (path, title) in zip(axes, quantities):
+        axis.set(xscale="log", yscale="log", title=title, xlabel="cells across the grid")
+        for study in runs:
+            axis.plot(study.cells, np.abs(column(study.table, path)), **study.look)
+        style.whole_decades(axis)
+        guides = studies.slope_guides(axis)
+        studies.cell_ticks(axis, runs)
+    axes[0].set_ylabel("relative error")
+    style.legend_on_top(figure, studies.handles(runs) + guides, 3)
+    finest = [(study, study.table[-1]) for study in runs if study.pressure == "solved"] or [
+        (study, study.table[-1]) for study in runs]
+    sentences = [f"{LIMIT}{study.load}: twist {_sci_at(row, 'twist_error')}, traction "
+                 f"{_sci_at(row, 'traction_error.l1')} in L1, stick radius {_sci_at(row, 'stick_radius_error')}"
+                 for study, row in finest]
+    return Plate(
+        f"Errors left at the finest mesh with the {finest[0][0].name} "
+        f"({finest[0][0].cells[-1]:.0f} cells a side): {'; '.join(sentences)}.",
+        "Grey lines fall as the cell size (order 1) and as its square (order 2). Norms are relative to that of the "
+        "exact solution. The twist answers to the contact as a whole and so can converge faster than the traction "
+        "in its cells.",
+        "Three log-log panels of relative error against cells for twist, traction and stick radius, one line for each "
+        "pressure and load, with guides of slope one and two.", figure)
+
+
+def cost(report, data_dir):
+    quantities = [("twist_error", "twist"), ("traction_error.l1", "traction, L1")]
+    runs = studies.read(report)
+    figure, axes = style.panels(1, 2, 3.9, sharex=True)
+    for axis, (path, title) in zip(axes, quantities):
+        axis.set(xscale="log", yscale="log", title=title, xlabel="time of the whole solve, s")
+        for study in runs:
+            axis.plot(column(study.table, "seconds.total"), np.abs(column(study.table, path)), **study.look)
+        studies.label_cells(axis, runs[0], path)
+        axis.margins(0.12)
+    axes[0].set_ylabel("relative error")
+    style.legend_on_top(figure, studies.handles(runs), 2)
+    sentences = [f"{study.name}: {seconds(number(study.table[-1], 'seconds.total'))} s for "
+                 f"{_sci_at(study.table[-1], 'twist_error')}" for study in runs if study.load == runs[-1].load]
+    return Plate(
+        f"What the twist costs at {runs[0].cells[-1]:.0f} cells a side and {LIMIT}{runs[-1].load}: "
+        f"{'; '.join(sentences)}.",
+        "Down and left is better. The numbers beside one line are its cells a side; the other lines have the same "
+        "meshes in the same order. Times are of one run on the machine named at the foot of the page.",
+        "Two log-log panels of relative error against time, for twist and traction, one line for each pressure and "
+        "load, points from coarse to fine meshes.", figure)
+
+
+def equation_5_digits(report, data_dir):
+    table = rows(report, "equation_5_digits")
+    complement, error = column(table, "stick_complement"), np.abs(column(table, "relative_error"))
+    figure, axis = style.panels(1, 1, 3.6)
+    axis.loglog(complement, error, ".-", color=style.BLUE, linewidth=0.8, label="Eq. (5), double precision")
+    axis.axhline(np.finfo(float).eps, color=style.GREY, linestyle=":", label="rounding of one number, 2.2×10⁻¹⁶")
+    axis.invert_xaxis()
+    axis.set(xlabel="$1 - a_s/a$   (towards full stick →)", ylabel="relative error of the moment")
+    style.legend_on_top(figure, axis.get_legend_handles_labels()[0], 2)
+    samples = [_nearest(np.log(complement), np.log(wanted)) for wanted in (1e-2, 1e-4, 1e-6)]
+    sentences = [f"{sci(error[i])} at 1&nbsp;−&nbsp;c&nbsp;=&nbsp;{sci(complement[i])}" for i in samples]
+    return Plate(
+        f"Eq. (5) is right, but as c = a<sub>s</sub>/a tends to 1 its terms cancel: relative error "
+        f"{', '.join(sentences)}.",
+        "Its terms stay of the size of the limiting moment while their sum, the moment, goes to zero. The exact "
+        "solution used on this page is written as an integral of a positive function and keeps its digits.",
+        "Relative error of Eq. (5) against one minus the stick ratio on log-log axes, rising steadily to the right.",
+        figure)
+
+
+def certificate(report, data_dir):
+    figure, axis = style.panels(1, 1, 3.4)
+    sentences = []
+    for table, label, colour, marker in _by_method(report):
+        gap = column(table, "certificate.gap")
+        axis.semilogy(column(table, "moment_ratio"), gap, marker + "-", color=colour, linewidth=0.8,
+                      label=label)
+        sentences.append(f"{sci(np.nanmin(gap))} to {sci(np.nanmax(gap))} of the energy by {label}")
+    axis.set(xlabel=LOAD_LABEL, ylabel="gap / energy", xlim=(0, 1))
+    style.whole_decades(axis)
+    style.legend_on_top(figure, axis.get_legend_handles_labels()[0], 2)
+    return Plate(
+        f"The gap that is left in Coulomb’s law when the iteration stops: {'; '.join(sentences)}.",
+        "The gap adds up, over all cells, how far traction and slip are from Coulomb’s law; it is zero only where the "
+        "law holds in every cell, it bounds the error in energy, and it needs no exact solution. The paper’s test, "
+        f"Eq. (26), asks only whether the tractions still change. {_cells(report)}",
+        "Certificate gap over energy against moment on a log scale.", figure)
+
+
+FIGURES = [
+    ("figure-1", "The two shear components (the paper’s Fig. 1)", shear_components),
+    ("figure-2", "The norm of the shear tractions (the paper’s Fig. 2)", traction_norm),
+    ("figure-3", "Radial profiles (the paper’s Fig. 3)", radial_profiles),
+    ("figure-4", "Stick radius and load (the paper’s Fig. 4)", stick_radius),
+    ("figure-5", "Twist and load (the paper’s Fig. 5)", twist),
+    ("figure-6", "Convergence with the mesh", convergence),
+    ("figure-7", "What accuracy costs", cost),
+    ("figure-8", "Where Eq. (5) loses its digits", equation_5_digits),
+    ("figure-9", "What the stopping test leaves", certificate),
+]
+
+
+def _load(profile):
+    return plain(number(profile, "moment_ratio"))
+
+
+def _nearest(values, wanted):
+    return int(np.nanargmin(np.abs(values - wanted)))
+
+
+def _sci_at(row, path):
+    found = value(row, path)
+    return "not available" if found is None else sci(abs(found))
+
+
+def _cells(report):
+    return f"{number(report, 'loading_cells'):.0f} cells a side, pressure solved on the same grid."
+
+
+def _floor(report):
+    errors = np.abs(np.concatenate([column(table, "twist_error") for table, *_ in _by_method(report)]))
+    return min(1e-6, 0.3 * np.nanmin(errors[errors > 0], initial=1e-6))
+
+
+def _by_method(report):
+    """The loading study as (rows, label, colour, marker), one entry a method."""
+    return [(table, *METHODS.get(method, (method, style.PURPLE, "^")))
+            for (method,), table in groups(rows(report, "loading"), "method").items()]
+
+
+def _printed_over_exact(profile):
+    exact = [row for row in rows(profile, "exact") if number(row, "value") > 0]
+    return np.nanmax(column(exact, "printed") / column(exact, "value"))
+
+
+def _highest_load(report):
+    return max(rows(report, "profiles"), key=lambda profile: number(profile, "moment_ratio"))
+
+
+def _fields(report, profile, data_dir):
+    """The fields of a profile and mu p0, which scales its tractions."""
+    fields = Fields(data_dir / text(profile, "fields"), number(report, "contact.radius"))
+    return fields, number(profile, "result.friction") * number(report, "contact.peak_pressure")

@@ -1,0 +1,81 @@
+#!/usr/bin/env python3
+"""Draws the figures and writes the page from what `slipstick report` computed."""
+
+import argparse
+import os
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+PACKAGES = ("numpy", "matplotlib", "jinja2", "h5py")
+missing = [package for package in PACKAGES if find_spec(package) is None]
+if missing:
+    print(f"render.py: {sys.executable} cannot import {', '.join(missing)}. On Debian or Ubuntu: apt-get install "
+          + " ".join(f"python3-{package}" for package in missing), file=sys.stderr)
+    sys.exit(2)
+
+import jinja2  # noqa: E402
+
+import figures  # noqa: E402
+import results  # noqa: E402
+import style  # noqa: E402
+import tables  # noqa: E402
+
+HERE = Path(__file__).parent
+
+
+def draw_all(report, data_dir, output):
+    """Every figure as the page needs it: drawn, or with the reason why not."""
+    folder = output / "figures"
+    folder.mkdir(parents=True, exist_ok=True)
+    entries = []
+    for name, title, draw in figures.FIGURES:
+        entry = {"name": name, "title": title}
+        try:
+            plate = draw(report, data_dir)
+            style.save(plate.figure, folder / name)
+            entry.update(message=plate.message, details=plate.details, alt=plate.alt)
+        except results.Unavailable as reason:
+            entry["unavailable"] = str(reason)
+            print(f"render.py: {name} is not available: {reason}", file=sys.stderr)
+        entries.append(entry)
+    return entries
+
+
+def tabulate(report, name, columns):
+    try:
+        return {"table": tables.table(report, name, columns)}
+    except results.Unavailable as reason:
+        return {"unavailable": str(reason)}
+
+
+def render(data_dir, output):
+    """Writes output/index.html and output/figures/ from data_dir/report.json and the field files beside it."""
+    report = results.load(data_dir)
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True,
+                                     lstrip_blocks=True)
+    page = environment.get_template("page.html.j2").render(
+        report=report,
+        figures=draw_all(report, data_dir, output),
+        loading=tabulate(report, "loading", tables.LOADING),
+        mesh=tabulate(report, "mesh", tables.MESH),
+        nulls=results.nulls(report),
+        data=os.path.relpath(data_dir / "report.json", output) if data_dir.is_relative_to(output) else None)
+    (output / "index.html").write_text(page, encoding="utf-8")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("data_dir", type=Path, help="folder with report.json and its field files")
+    parser.add_argument("--output", type=Path, required=True, help="folder for index.html and figures/")
+    arguments = parser.parse_args()
+    try:
+        render(arguments.data_dir.resolve(), arguments.output.resolve())
+    except results.InputError as error:
+        print(f"render.py: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,158 @@
+"""Reads what `slipstick report` wrote: numbers by their path, fields on their grid.
+
+A file that cannot be read is an InputError. A number that is missing or null makes what needs it Unavailable;
+the rest of the page stands.
+"""
+
+import json
+import math
+import re
+from collections import Counter
+
+import h5py
+import numpy as np
+
+NO_REASON = "no reason given"
+
+
+class InputError(Exception):
+    """The data as a whole cannot be used; the message names the file."""
+
+
+class Unavailable(Exception):
+    """One figure or table cannot be made; the message says why."""
+
+
+def load(data_dir):
+    """The content of report.json. NaN and Infinity are not JSON and are refused."""
+    path = data_dir / "report.json"
+
+    def refuse(constant):
+        raise InputError(f"{path}: holds {constant}, which is not JSON (a missing number is null, with a reason)")
+
+    try:
+        report = json.loads(path.read_text(encoding="utf-8"), parse_constant=refuse)
+    except OSError as error:
+        raise InputError(f"{path}: {error.strerror}") from error
+    except ValueError as error:
+        raise InputError(f"{path}: {error}") from error
+    if not isinstance(report, dict):
+        raise InputError(f"{path}: holds no JSON object")
+    return report
+
+
+def value(tree, path):
+    """What stands at a dotted path; None where it is null."""
+    for key in path.split("."):
+        if tree is None:
+            return None
+        if not isinstance(tree, dict) or key not in tree:
+            raise Unavailable(f"“{path}” is missing from the data")
+        tree = tree[key]
+    return tree
+
+
+def number(tree, path):
+    """The finite number at a dotted path."""
+    found = value(tree, path)
+    if found is None:
+        raise Unavailable(f"“{path}” is null: {reason(tree, path)}")
+    if isinstance(found, bool) or not isinstance(found, (int, float)) or not math.isfinite(found):
+        raise Unavailable(f"“{path}” is not a number: {found!r}")
+    return float(found)
+
+
+def text(tree, path):
+    """The text at a dotted path."""
+    found = value(tree, path)
+    if not isinstance(found, str):
+        raise Unavailable(f"“{path}” is not a text: {found!r}")
+    return found
+
+
+def reason(tree, path):
+    """Why the value at a path is null: what stands beside the first null on the way."""
+    for key in path.split("."):
+        if tree[key] is None:
+            return tree.get(key + "_reason", NO_REASON)
+        tree = tree[key]
+    return NO_REASON
+
+
+def rows(tree, path):
+    """The non-empty list at a dotted path."""
+    found = value(tree, path)
+    if not found:
+        raise Unavailable(f"“{path}” holds no results")
+    return found
+
+
+def column(table, path):
+    """One number of every row, NaN where it is null; Unavailable where no row has it."""
+    values = np.array([np.nan if value(row, path) is None else number(row, path) for row in table])
+    if np.isnan(values).all():
+        raise Unavailable(f"“{path}” is null in every row: {reason(table[0], path)}")
+    return values
+
+
+def groups(table, *keys):
+    """The rows by the values of some keys, in order of first appearance."""
+    result = {}
+    for row in table:
+        result.setdefault(tuple(value(row, key) for key in keys), []).append(row)
+    return result
+
+
+def nulls(tree):
+    """Every number that is null, as {(path without indices, reason): how often}."""
+    found = Counter()
+
+    def walk(node, path):
+        if isinstance(node, list):
+            for item in node:
+                walk(item, path + "[]")
+        elif isinstance(node, dict):
+            for key, item in node.items():
+                inner = f"{path}.{key}".lstrip(".")
+                if item is None:
+                    found[inner, node.get(key + "_reason", NO_REASON)] += 1
+                walk(item, inner)
+
+    walk(tree, "")
+    return dict(found)
+
+
+class Fields:
+    """The contact cells of one solution, put back on their square grid (rows along x2), empty outside the contact."""
+
+    def __init__(self, path, radius):
+        try:
+            with h5py.File(path, "r") as file:
+                self.columns = {name: file[name][...] for name in file}
+        except OSError as error:
+            raise Unavailable(f"{path.name} cannot be read: {re.sub(r' *[(].*', '', str(error))}") from error
+        self.name = path.name
+        x1, x2 = self._column("x1") / radius, self._column("x2") / radius
+        positions = np.unique(np.round(np.concatenate([x1, x2]), 9))
+        self.cell = np.diff(positions).min() if positions.size > 1 else np.nan
+        low, high = positions[0] - self.cell / 2, positions[-1] + self.cell / 2
+        self.extent = (low, high, low, high)
+        steps = (positions - positions[0]) / self.cell
+        if not np.allclose(steps, np.round(steps), atol=1e-3):
+            raise Unavailable(f"{self.name}: the cells stand on no square grid")
+        self.size = int(round(steps[-1])) + 1
+        self.index = tuple(np.round((x - positions[0]) / self.cell).astype(int) for x in (x2, x1))
+
+    def _column(self, name):
+        if name not in self.columns:
+            raise Unavailable(f"{self.name} has no dataset “{name}”")
+        values = self.columns[name]
+        if values.size == 0 or not np.isfinite(values).all():
+            raise Unavailable(f"{self.name}: “{name}” is empty or has values that are not numbers")
+        return values
+
+    def grid(self, name):
+        """One dataset on the grid, NaN outside the contact."""
+        result = np.full((self.size, self.size), np.nan)
+        result[self.index] = self._column(name)
+        return result

@@ -1,0 +1,81 @@
+"""Mesh studies: the runs of each pressure at each load, and how they look in every figure."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.lines import Line2D
+from matplotlib.ticker import NullFormatter, ScalarFormatter
+
+import style
+from results import Unavailable, column, groups, number, rows
+from wording import plain
+
+PRESSURES = {"solved": ("pressure solved on the same grid", style.BLUE),
+             "hertz": ("Hertz pressure at cell centres", style.VERMILION),
+             "hertz_averaged": ("Hertz pressure averaged over cells", style.GREEN)}
+LOAD_STYLES = [("o", "-"), ("s", "--"), ("^", ":")]
+
+
+@dataclass
+class Study:
+    """The runs of one pressure at one load, coarse to fine."""
+    pressure: str
+    load: str
+    table: list
+    cells: np.ndarray
+    look: dict
+
+    @property
+    def name(self):
+        return PRESSURES[self.pressure][0]
+
+
+def read(report):
+    table = [dict(row, load=plain(number(row, "moment_ratio"))) for row in rows(report, "mesh")]
+    loads = list(groups(table, "load"))
+    studies = []
+    for (pressure, load), runs in groups(table, "pressure", "load").items():
+        if pressure not in PRESSURES:
+            raise Unavailable(f"unknown pressure “{pressure}”")
+        runs = sorted(runs, key=_across)
+        marker, line = LOAD_STYLES[loads.index((load,)) % len(LOAD_STYLES)]
+        studies.append(Study(pressure, load, runs, np.array([_across(row) for row in runs], float),
+                             dict(marker=marker, linestyle=line, color=PRESSURES[pressure][1])))
+    return studies
+
+
+def _across(row):
+    return rows(row, "cells")[0]
+
+
+def handles(studies):
+    pressures = [Line2D([], [], color=PRESSURES[name][1], label=PRESSURES[name][0])
+                 for name in dict.fromkeys(study.pressure for study in studies)]
+    looks = {study.load: study.look for study in studies}
+    loads = [Line2D([], [], color=style.BLACK, marker=look["marker"], linestyle=look["linestyle"],
+                    label=f"$M/M_\\mathrm{{lim}}$ = {load}") for load, look in looks.items()]
+    return pressures + loads
+
+
+def slope_guides(axis):
+    """Lines of order 1 and 2 from the upper left corner of the axes."""
+    (left, right), (bottom, top) = axis.get_xlim(), axis.get_ylim()
+    cells = np.array([left, right])
+    lines = [axis.plot(cells, top * (cells / left) ** -order, look, color=style.GREY, linewidth=0.8, zorder=1,
+                       label=f"order {order}")[0] for order, look in ((1, ":"), (2, "-."))]
+    axis.set(xlim=(left, right), ylim=(bottom, top))
+    return lines
+
+
+def cell_ticks(axis, studies):
+    axis.set_xticks(sorted(set(np.concatenate([study.cells for study in studies]))))
+    axis.xaxis.set_major_formatter(ScalarFormatter())
+    axis.xaxis.set_minor_formatter(NullFormatter())
+
+
+def label_cells(axis, study, path):
+    for cells, time, error in zip(study.cells, column(study.table, "seconds.total"),
+                                  np.abs(column(study.table, path))):
+        if np.isfinite(time) and np.isfinite(error):
+            axis.annotate(f"{cells:.0f}", (time, error), xytext=(-3, -5), textcoords="offset points", ha="right",
+                          va="top", fontsize=7.5, color=study.look["color"])

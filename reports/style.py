@@ -1,0 +1,68 @@
+"""One look for every figure, and the same bytes for the same numbers."""
+
+import matplotlib
+import numpy as np
+from matplotlib.figure import Figure
+
+# Okabe and Ito (2008): told apart with any colour vision.
+BLUE, SKY, VERMILION = "#0072B2", "#56B4E9", "#D55E00"
+GREEN, PURPLE = "#009E73", "#CC79A7"
+BLACK, GREY = "#000000", "#8a8a8a"
+
+DIVERGING, SEQUENTIAL, ERRORS = "RdBu_r", "viridis", "magma_r"
+
+WIDTH = 7.2  # inches
+
+matplotlib.rcParams.update({
+    "font.family": "DejaVu Sans",
+    "font.size": 9,
+    "axes.titlesize": 9,
+    "axes.labelsize": 9,
+    "legend.fontsize": 8.5,
+    "legend.frameon": False,
+    "lines.linewidth": 1.3,
+    "lines.markersize": 4.5,
+    "axes.linewidth": 0.7,
+    "axes.grid": True,
+    "axes.axisbelow": True,
+    "grid.color": "#e4e4e4",
+    "grid.linewidth": 0.6,
+    "savefig.dpi": 220,
+    "svg.hashsalt": "slipstick",
+})
+
+
+def panels(rows, columns, height, **options):
+    """A figure as wide as the page and its axes."""
+    figure = Figure(figsize=(WIDTH, height), layout="constrained")
+    return figure, figure.subplots(rows, columns, **options)
+
+
+def with_error_panel(columns=1, height=5.4):
+    """The quantity above, its error on a log scale below, over the same abscissa."""
+    figure, axes = panels(2, columns, height, sharex=True, sharey="row", height_ratios=[3, 2], squeeze=False)
+    for axis in axes[1]:
+        axis.set_yscale("log")
+    return figure, axes
+
+
+def legend_on_top(figure, handles, columns):
+    """Above all axes, where it covers no data; call it when the figure is otherwise complete."""
+    lines = -(-len(handles) // columns)
+    space = (0.19 * lines + 0.06) / figure.get_figheight()
+    figure.get_layout_engine().set(rect=(0, 0, 1, 1 - space))
+    figure.legend(handles=handles, loc="upper center", ncol=columns, handlelength=2.6, columnspacing=1.8,
+                  borderaxespad=0.1)
+
+
+def whole_decades(axis):
+    """Stretches a log scale that would show fewer than two powers of ten to the next ones outside."""
+    low, high = np.log10(axis.get_ylim())
+    if np.floor(high) - np.ceil(low) < 1:
+        axis.set_ylim(10 ** np.floor(low), 10 ** np.ceil(high))
+
+
+def save(figure, stem):
+    """Writes stem.svg and stem.pdf; no dates, so that equal numbers give equal files."""
+    figure.savefig(stem.with_suffix(".svg"), metadata={"Date": None})
+    figure.savefig(stem.with_suffix(".pdf"), metadata={"CreationDate": None})

@@ -1,0 +1,67 @@
+"""The page's tables: which number stands in which column, and how it is written."""
+
+from dataclasses import dataclass
+
+from results import Unavailable, rows, value
+from wording import plain, sci, seconds
+
+
+@dataclass
+class Table:
+    head: list
+    body: list
+
+
+def _text(written):
+    return str(written)
+
+
+def _cells(cells):
+    across, along = cells
+    return f"{across}²" if across == along else f"{across}×{along}"
+
+
+MESH = [
+    ("pressure", "pressure", _text),
+    ("M/M<sub>lim</sub>", "moment_ratio", plain),
+    ("cells", "cells", _cells),
+    ("twist error", "twist_error", sci),
+    ("stick radius error", "stick_radius_error", sci),
+    ("traction error L1", "traction_error.l1", sci),
+    ("traction error L2", "traction_error.l2", sci),
+    ("gap / energy", "certificate.gap", sci),
+    ("iter&shy;ations", "iterations", _text),
+    ("operator applica&shy;tions", "operator_applications", _text),
+    ("pressure, s", "seconds.pressure", seconds),
+    ("traction, s", "seconds.traction", seconds),
+    ("total, s", "seconds.total", seconds),
+]
+
+LOADING = [
+    ("M/M<sub>lim</sub>", "moment_ratio", plain),
+    ("method", "method", _text),
+    ("a<sub>s</sub>/a computed", "stick_ratio", plain),
+    ("a<sub>s</sub>/a exact", "exact.stick_ratio", plain),
+    ("error", "stick_radius_error", sci),
+    ("twist computed", "twist", plain),
+    ("twist exact", "exact.twist", plain),
+    ("error", "twist_error", sci),
+    ("gap / energy", "certificate.gap", sci),
+    ("iter&shy;ations", "iterations", _text),
+    ("operator applica&shy;tions", "operator_applications", _text),
+    ("time, s", "seconds.total", seconds),
+]
+
+
+def table(report, name, columns):
+    """A list of results as text; a number that is null or missing is a dash."""
+    return Table([head for head, _, _ in columns],
+                 [[_cell(row, path, write) for _, path, write in columns] for row in rows(report, name)])
+
+
+def _cell(row, path, write):
+    try:
+        found = value(row, path)
+    except Unavailable:
+        found = None
+    return "–" if found is None else write(found)

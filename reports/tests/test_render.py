@@ -1,0 +1,202 @@
+"""The page from a small made-up data set: complete, the same each time, and honest about what is missing."""
+
+import json
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+REPORTS = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(REPORTS))
+
+import figures  # noqa: E402
+import results  # noqa: E402
+
+RADIUS, PEAK, FRICTION = 2.0, 3.0, 0.5
+
+
+def solve_result(load, cells, pressure="solved"):
+    error = 1.0 / cells**2
+    return {
+        "method": "paper", "pressure": pressure, "moment_ratio": load, "cells": [cells, cells], "friction": FRICTION,
+        "stick_ratio": 1 - load, "twist": load, "twist_error": error, "stick_radius_error": -error,
+        "traction_error": {"l1": error, "l2": 2 * error, "max": 3 * error},
+        "exact": {"stick_ratio": 1 - load, "twist": load},
+        "iterations": 7, "operator_applications": 14, "certificate": {"gap": 1e-5 * (1 + load)},
+        "seconds": {"setup": 0.1, "pressure": 0.2, "traction": 0.3, "total": 1e-4 * cells**2},
+    }
+
+
+def profile(load):
+    points = [{"radius": r, "value": 1 + r, "printed": 2 * (1 + r)} for r in (0.0, 0.25, 0.5, 0.75, 1.0)]
+    cells = [{"radius": r, "value": 1.01 + r, "exact": 1 + r, "error": 0.01} for r in (0.2, 0.6, 0.9)]
+    return {"moment_ratio": load, "stick_ratio": 0.5, "exact": points, "computed": cells,
+            "fields": f"fields-{load}.h5", "result": solve_result(load, 4)}
+
+
+def small_report():
+    loads = (0.2, 0.5, 0.9)
+    return {
+        "provenance": {"version": "0.0.0", "commit": "none", "cpu": "made <up>", "threads": 1},
+        "scene": {"name": "made up", "text": "name = \"made up\"", "summary": [["Sphere radius", "18 mm"]]},
+        "contact": {"radius": RADIUS, "peak_pressure": PEAK, "approach": 1.0, "moment_limit": 1.0},
+        "loading_cells": 4,
+        "curve": [{"moment_ratio": x, "stick_ratio": 1 - x, "stick_complement": x, "twist": x, "equation_7": 0.9 * x,
+                   "equation_7_error": -0.1} for x in loads],
+        "profiles": [profile(0.5), profile(0.9)],
+        "loading": [solve_result(load, 4) for load in loads],
+        "mesh": [solve_result(load, cells, pressure) for pressure in ("solved", "hertz") for load in (0.5, 0.9)
+                 for cells in (4, 8, 16)],
+        "equation_5_digits": [{"stick_complement": 10.0**-i, "relative_error": 10.0**(2 * i - 16)} for i in range(7)],
+        "errata": [{"equation": "(0)", "printed": "a < b", "holds": "a > b", "shown": "by example"}],
+        "not_run": [{"name": "the long study", "reason": "a test has no time for it"}],
+    }
+
+
+def write_fields(path, q1_shift=0.02):
+    """The twelve cells of a 4 x 4 grid that lie in the unit circle."""
+    centre = RADIUS * np.array([-0.75, -0.25, 0.25, 0.75])
+    x1, x2 = (x.ravel() for x in np.meshgrid(centre, centre))
+    inside = np.hypot(x1, x2) < RADIUS
+    x1, x2 = x1[inside], x2[inside]
+    with h5py.File(path, "w") as file:
+        for name, values in {"x1": x1, "x2": x2, "q1": -x2 + q1_shift, "q2": x1, "q1_exact": -x2,
+                             "q2_exact": x1}.items():
+            file[name] = values
+
+
+def write_data(folder, report):
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "report.json").write_text(json.dumps(report))
+    for entry in report["profiles"]:
+        write_fields(folder / entry["fields"])
+
+
+def run_render(data_dir, output):
+    return subprocess.run([sys.executable, "-B", str(REPORTS / "render.py"), str(data_dir), "--output", str(output)],
+                          capture_output=True, text=True)
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+
+
+class WholePage(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        temporary = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(temporary.cleanup)
+        cls.output = Path(temporary.name)
+        cls.data = cls.output / "data"
+        write_data(cls.data, small_report())
+        cls.run_result = run_render(cls.data, cls.output)
+        cls.page = (cls.output / "index.html").read_text(encoding="utf-8")
+
+    def test_render_succeeds_in_silence(self):
+        self.assertEqual((self.run_result.returncode, self.run_result.stderr), (0, ""))
+
+    def test_every_figure_and_link_exists(self):
+        targets = re.findall(r'(?:src|href)="([^"]+)"', self.page)
+        anchors = set(re.findall(r'id="([^"]+)"', self.page))
+        for target in targets:
+            if target.startswith("#"):
+                self.assertIn(target[1:], anchors)
+            else:
+                self.assertGreater((self.output / target).stat().st_size, 0, target)
+        for name, _, _ in figures.FIGURES:
+            self.assertIn(f"figures/{name}.svg", targets)
+            self.assertIn(f"figures/{name}.pdf", targets)
+        self.assertIn("data/report.json", targets)
+        self.assertNotIn("Not available", self.page)
+
+    def test_text_of_the_data_is_escaped(self):
+        self.assertIn("made &lt;up&gt;", self.page)
+        self.assertIn("a &lt; b", self.page)
+
+    def test_what_was_not_run_is_said(self):
+        self.assertIn("Not run: the long study – a test has no time for it.", self.page)
+
+    def test_equal_data_give_equal_files(self):
+        with tempfile.TemporaryDirectory() as other:
+            run_render(self.data, other)
+            for path in (self.output / "figures").iterdir():
+                self.assertEqual((Path(other) / "figures" / path.name).read_bytes(), path.read_bytes(), path.name)
+
+
+class PageWithGaps(Folder):
+    def test_gaps_are_named_with_their_reasons(self):
+        report = small_report()
+        report["loading"][1].update(stick_radius_error=None, stick_radius_error_reason="the front did not move")
+        del report["mesh"]
+        write_data(self.folder, report)
+        run = run_render(self.folder, self.folder / "page")
+        page = (self.folder / "page" / "index.html").read_text(encoding="utf-8")
+        self.assertEqual(run.returncode, 0)
+        self.assertIn("figure-6 is not available: “mesh” is missing from the data", run.stderr)
+        self.assertIn("Not available: “mesh” is missing from the data.", page)
+        self.assertNotIn("figures/figure-6.svg", page)
+        self.assertIn("<code>loading[].stick_radius_error</code> – the front did not move", page)
+        self.assertIn("figures/figure-4.svg", page)
+
+    def test_data_that_cannot_be_read_are_refused(self):
+        output = self.folder / "page"
+        for content, words in ((json.dumps({"loading_cells": float("nan")}), "NaN"), ("{", "report.json"),
+                               ("[]", "no JSON object")):
+            (self.folder / "report.json").write_text(content)
+            run = run_render(self.folder, output)
+            self.assertEqual(run.returncode, 2)
+            self.assertIn(words, run.stderr)
+        run = run_render(self.folder / "nowhere", output)
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("No such file", run.stderr)
+
+
+class OneFigure(Folder):
+    def setUp(self):
+        super().setUp()
+        self.report = small_report()
+        write_data(self.folder, self.report)
+
+    def assert_unavailable(self, draw, words):
+        with self.assertRaisesRegex(results.Unavailable, words):
+            draw(self.report, self.folder)
+
+    def test_missing_key(self):
+        del self.report["loading"][2]["twist_error"]
+        self.assert_unavailable(figures.twist, "twist_error.*missing")
+
+    def test_only_nulls(self):
+        for row in self.report["loading"]:
+            row.update(certificate=None, certificate_reason="not asked for")
+        self.assert_unavailable(figures.certificate, "certificate.gap.*null in every row: not asked for")
+
+    def test_null_where_the_message_quotes_it(self):
+        self.report["loading"][2].update(twist_error=None, twist_error_reason="no exact answer")
+        self.assertIn("the computed twist is not available", figures.twist(self.report, self.folder).message)
+
+    def test_field_with_nan(self):
+        write_fields(self.folder / "fields-0.9.h5", q1_shift=np.nan)
+        self.assert_unavailable(figures.shear_components, "fields-0.9.h5: “q1”.*not numbers")
+
+    def test_field_file_missing_or_damaged(self):
+        (self.folder / "fields-0.9.h5").unlink()
+        self.assert_unavailable(figures.traction_norm, "fields-0.9.h5 cannot be read")
+        (self.folder / "fields-0.9.h5").write_text("no HDF5")
+        self.assert_unavailable(figures.traction_norm, "fields-0.9.h5 cannot be read")
+
+    def test_error_map_is_the_difference_from_exact(self):
+        plate = figures.shear_components(self.report, self.folder)
+        error = plate.figure.axes[2].images[0].get_array()
+        self.assertAlmostEqual(float(error.max()), 0.02 / (FRICTION * PEAK), places=12)
+
+
+if __name__ == "__main__":
+    unittest.main()
