@@ -1,5 +1,5 @@
-// One tangential application by each operator, beside the error against the dense matrix or, on grids too large for
-// one, against direct summation. A wrong operator is reported and not timed.
+// One tangential application by each operator, beside the error against the dense matrix or, on grids too
+// large for one, against direct summation. A wrong operator is reported and not timed.
 
 #include <benchmark/benchmark.h>
 #include <fftw3.h>
@@ -63,7 +63,8 @@ void tangential_application(benchmark::State& state, OperatorKind kind) {
 void four_bare_transforms(benchmark::State& state) {
   const int padded = static_cast<int>(slipstick::solver::fast_length(2 * state.range(0) - 1));
   slipstick::solver::FftwBuffer real(static_cast<std::size_t>(padded) * static_cast<std::size_t>(padded));
-  slipstick::solver::FftwBuffer spectrum(static_cast<std::size_t>(padded) * static_cast<std::size_t>(padded + 2));
+  slipstick::solver::FftwBuffer spectrum(static_cast<std::size_t>(padded) *
+                                         static_cast<std::size_t>(padded + 2));
   const slipstick::solver::FftwPlan forward(
       fftw_plan_dft_r2c_2d(padded, padded, real.data(), spectrum.complex(), FFTW_ESTIMATE));
   const slipstick::solver::FftwPlan backward(

@@ -41,7 +41,8 @@ Errors compare(const solver::Solution& solution, const Oracle& oracle) {
       .stick_radius = solution.stick_radius_counted / oracle.stick_radius - 1.0,
       .contact_radius = solution.contact_radius / oracle.contact_radius - 1.0,
       .peak_pressure = solution.peak_pressure / oracle.peak_pressure - 1.0,
-      .traction = field_error(solver::norms(solution.torsion.traction - exact.traction), solver::norms(exact.traction)),
+      .traction = field_error(solver::norms(solution.torsion.traction - exact.traction),
+                              solver::norms(exact.traction)),
       .pressure = field_error((pressure - exact.pressure).abs(), exact.pressure),
   };
 }

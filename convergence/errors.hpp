@@ -7,15 +7,16 @@
 
 namespace slipstick::convergence {
 
-/// Relative errors of a field: sum |f - exact| / sum |exact|, the same of squares under a root, and of maxima.
+/// Relative errors of a field: sum |f - exact| / sum |exact|, the same of squares under a root, and of
+/// maxima.
 struct FieldError {
   double l1;
   double l2;
   double max;
 };
 
-/// Signed relative errors computed/exact - 1, and errors of the fields at cell centres. Where the exact value is zero
-/// (no load), the twist and traction errors are NaN.
+/// Signed relative errors computed/exact - 1, and errors of the fields at cell centres. Where the exact value
+/// is zero (no load), the twist and traction errors are NaN.
 struct Errors {
   double twist;
   double moment_limit;

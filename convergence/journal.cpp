@@ -35,13 +35,13 @@ Journal::Journal(fs::path folder) : folder_(std::move(folder)), program_(identif
   fs::create_directories(folder_);
 }
 
-Json Journal::point(const std::string& name, const std::string& question, const std::function<Json()>& compute,
-                    const fs::path& also) {
+Json Journal::point(const std::string& name, const std::string& question,
+                    const std::function<Json()>& compute, const fs::path& also) {
   const fs::path file = folder_ / (name + ".json");
   std::ifstream stream(file);
   const Json found = stream ? Json::parse(stream, nullptr, false) : Json();
-  reused_ = found.is_object() && found.value("program", "") == program_ && found.value("question", "") == question &&
-            (also.empty() || fs::exists(also));
+  reused_ = found.is_object() && found.value("program", "") == program_ &&
+            found.value("question", "") == question && (also.empty() || fs::exists(also));
   if (reused_) return found["result"];
   Json result = compute();
   write_json_file(file, {{"program", program_}, {"question", question}, {"result", result}});

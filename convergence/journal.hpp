@@ -7,15 +7,17 @@
 
 namespace slipstick::convergence {
 
-/// Finished results on disk, one file a point, so that a point is computed once: a run that was interrupted goes on
-/// where it stopped. A point counts as finished if it was computed from the same question by the same program.
+/// Finished results on disk, one file a point, so that a point is computed once: a run that was interrupted
+/// goes on where it stopped. A point counts as finished if it was computed from the same question by the same
+/// program.
 class Journal {
  public:
   explicit Journal(std::filesystem::path folder);
 
-  /// The result of a point: from disk, or computed and then written. The question is everything the answer depends
-  /// on; name is the point's file name without ending; `also` is another file that the computation leaves behind and
-  /// without which it is not finished (empty: none). Throws std::runtime_error if the result cannot be written.
+  /// The result of a point: from disk, or computed and then written. The question is everything the answer
+  /// depends on; name is the point's file name without ending; `also` is another file that the computation
+  /// leaves behind and without which it is not finished (empty: none). Throws std::runtime_error if the
+  /// result cannot be written.
   nlohmann::ordered_json point(const std::string& name, const std::string& question,
                                const std::function<nlohmann::ordered_json()>& compute,
                                const std::filesystem::path& also = {});

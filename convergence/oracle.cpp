@@ -58,9 +58,10 @@ OracleAnswer find_oracle(const solver::Scene& scene) {
   if (torsion.moment && !(*torsion.moment < limit)) {
     return {std::nullopt, fmt::format("the moment is not below the exact limit {:.17g} N m", limit)};
   }
-  const analytic::TorsionState state = torsion.twist          ? analytic::from_twist(*torsion.twist / twist_unit)
-                                       : torsion.moment_ratio ? analytic::from_moment_ratio(*torsion.moment_ratio)
-                                                              : analytic::from_moment_ratio(*torsion.moment / limit);
+  const analytic::TorsionState state = torsion.twist ? analytic::from_twist(*torsion.twist / twist_unit)
+                                       : torsion.moment_ratio
+                                           ? analytic::from_moment_ratio(*torsion.moment_ratio)
+                                           : analytic::from_moment_ratio(*torsion.moment / limit);
   return {Oracle{.contact_radius = hertz.radius,
                  .peak_pressure = hertz.peak_pressure,
                  .approach = hertz.approach,

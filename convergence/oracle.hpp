@@ -8,7 +8,8 @@
 
 namespace slipstick::convergence {
 
-/// The exact answer for a scene, in the scene's units (SI): Hertz's contact of a sphere in torsion (Lubkin 1951).
+/// The exact answer for a scene, in the scene's units (SI): Hertz's contact of a sphere in torsion (Lubkin
+/// 1951).
 struct Oracle {
   double contact_radius;  ///< m
   double peak_pressure;   ///< Pa
@@ -18,7 +19,7 @@ struct Oracle {
   double twist_angle;     ///< rad
   double stick_radius;    ///< m
   double friction;
-  double twist_unit;      ///< rad: mu W/(G a^2), what the normalised twist is in units of
+  double twist_unit;  ///< rad: mu W/(G a^2), what the normalised twist is in units of
   analytic::TorsionState state;
 
   /// Hertz pressure and circumferential traction at a distance from the axis in m; zero outside the contact.

@@ -47,24 +47,30 @@ int run_program(const std::vector<std::string>& words) {
 void draw(const fs::path& data, const fs::path& output) {
   const std::string python = SLIPSTICK_PYTHON;
   if (python.empty()) {
-    throw std::runtime_error(fmt::format(
-        "the results are in {}, but no python3 with numpy, matplotlib, jinja2 and h5py was found when this program "
-        "was built. On Debian or Ubuntu: apt-get install python3-numpy python3-matplotlib python3-jinja2 python3-h5py; "
-        "elsewhere configure with -DSLIPSTICK_PYTHON=/path/to/python3",
-        data.string()));
+    throw std::runtime_error(
+        fmt::format("the results are in {}, but no python3 with numpy, matplotlib, jinja2 and h5py was found "
+                    "when this program "
+                    "was built. On Debian or Ubuntu: apt-get install python3-numpy python3-matplotlib "
+                    "python3-jinja2 python3-h5py; "
+                    "elsewhere configure with -DSLIPSTICK_PYTHON=/path/to/python3",
+                    data.string()));
   }
-  const int status = run_program({python, project_file("reports/render.py"), data.string(), "--output", output.string()});
+  const int status =
+      run_program({python, project_file("reports/render.py"), data.string(), "--output", output.string()});
   if (status != 0) {
     throw std::runtime_error(
-        fmt::format("the results are in {}, but drawing the page failed ({} ended with {})", data.string(), python, status));
+        fmt::format("the results are in {}, but drawing the page failed ({} ended with {})", data.string(),
+                    python, status));
   }
 }
 
 int run(const Options& options, std::ostream& text, nlohmann::ordered_json& result) {
-  const fs::path scene = options.scene.empty() ? project_file("convergence/scenes/paper.toml") : fs::path(options.scene);
+  const fs::path scenes = project_file("convergence/scenes");
+  const fs::path scene = options.scene.empty() ? scenes / "paper.toml" : fs::path(options.scene);
   const fs::path output = options.output;
   const fs::path data = output / "data";
-  result = validate(scene, options.quick ? quick_validation() : full_validation(), data);
+  result =
+      validate(scene, scenes / "ellipse.toml", options.quick ? quick_validation() : full_validation(), data);
   draw(data, output);
   text << "page: " << (output / "index.html").string() << '\n';
   return 0;
@@ -78,9 +84,12 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_report_command(CL
   command->add_option("scene", options->scene, "scene file; left out: the paper's own case");
   command->add_option("--output", options->output, "folder for the page")->capture_default_str();
   command->add_flag("--quick", options->quick, "small grids: seconds instead of a minute");
-  command->footer("Example:\n  slipstick report --output build/report\nFinished solves are kept: repeating an interrupted "
-                  "command goes on from there.");
-  return [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };
+  command->footer(
+      "Example:\n  slipstick report --output build/report\nFinished solves are kept: repeating an "
+      "interrupted "
+      "command goes on from there.");
+  return
+      [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };
 }
 
 }  // namespace slipstick::convergence

@@ -124,6 +124,8 @@ Json solve_result(const solver::Scene& scene, const Solution& solution, const Or
   set_number(json["certificate"], "moment", solution.certificate.moment, broken);
   set_number(json["certificate"], "force", solution.certificate.force, broken);
   set_number(json["certificate"], "friction_bound", solution.certificate.friction_bound, broken);
+  set_number(json["slip_direction"], "mean", solution.slip_direction.mean, broken);
+  set_number(json["slip_direction"], "max", solution.slip_direction.max, broken);
   add_errors(json, solution, exact);
   json["seconds"] = {{"setup", solution.seconds.setup},
                      {"pressure", solution.seconds.pressure},
@@ -136,26 +138,30 @@ Json solve_result(const solver::Scene& scene, const Solution& solution, const Or
 }
 
 std::string solve_text(const Json& r) {
-  const auto number = [](const Json& value) { return value.is_number() ? fmt::format("{:.6g}", value.get<double>()) : "-"; };
+  const auto number = [](const Json& value) {
+    return value.is_number() ? fmt::format("{:.6g}", value.get<double>()) : "-";
+  };
   const auto error_of = [](const Json& json, const char* key) {
     const auto found = json.find(key);
-    return found != json.end() && found->is_number() ? fmt::format("   (error {:+.1e})", found->get<double>()) : "";
+    return found != json.end() && found->is_number() ? fmt::format("   (error {:+.1e})", found->get<double>())
+                                                     : "";
   };
-  std::string text = fmt::format("{}: {} x {} cells, pressure {}, operator {}, method {}\n", r["name"].get<std::string>(),
-                                 r["cells"][0].get<int>(), r["cells"][1].get<int>(), r["pressure"].get<std::string>(),
-                                 r["operator"].get<std::string>(), r["method"].get<std::string>());
+  std::string text =
+      fmt::format("{}: {} x {} cells, pressure {}, operator {}, method {}\n", r["name"].get<std::string>(),
+                  r["cells"][0].get<int>(), r["cells"][1].get<int>(), r["pressure"].get<std::string>(),
+                  r["operator"].get<std::string>(), r["method"].get<std::string>());
   const auto line = [&](const char* label, const std::string& value) {
     text += fmt::format("  {:<16} {}\n", label, value);
   };
-  line("status", fmt::format("{} ({} iterations, {} operator applications, {} s)", r["status"].get<std::string>(),
-                             r["iterations"].get<int>(), r["operator_applications"].get<long>(),
-                             number(r["seconds"]["total"])));
+  line("status", fmt::format("{} ({} iterations, {} operator applications, {} s)",
+                             r["status"].get<std::string>(), r["iterations"].get<int>(),
+                             r["operator_applications"].get<long>(), number(r["seconds"]["total"])));
   if (r.contains("message")) line("why", r["message"].get<std::string>());
   line("normal load", number(r["normal_load"]) + " N");
   line("contact radius", number(r["contact_radius"]) + " m" + error_of(r, "contact_radius_error"));
   line("peak pressure", number(r["peak_pressure"]) + " Pa" + error_of(r, "peak_pressure_error"));
-  line("moment", fmt::format("{} N m = {} of the limit {} N m", number(r["moment"]), number(r["moment_ratio"]),
-                             number(r["moment_limit"])));
+  line("moment", fmt::format("{} N m = {} of the limit {} N m", number(r["moment"]),
+                             number(r["moment_ratio"]), number(r["moment_limit"])));
   line("twist", number(r["twist_angle"]) + " rad" + error_of(r, "twist_error"));
   line("stick radius", number(r["stick_radius"]) + " m" + error_of(r, "stick_radius_error"));
   if (r["traction_error"].is_object()) {
@@ -164,15 +170,21 @@ std::string solve_text(const Json& r) {
   } else {
     line("exact answer", fmt::format("none: {}", r["traction_error_reason"].get<std::string>()));
   }
-  line("certificate", fmt::format("gap/energy {}, moment off by {}, |q| above mu p by {}", number(r["certificate"]["gap"]),
-                                  number(r["certificate"]["moment"]), number(r["certificate"]["friction_bound"])));
+  line("certificate",
+       fmt::format("gap/energy {}, moment off by {}, |q| above mu p by {}", number(r["certificate"]["gap"]),
+                   number(r["certificate"]["moment"]), number(r["certificate"]["friction_bound"])));
+  line("slip direction",
+       fmt::format("{} degrees off in the mean, {} at most (Coulomb: 0)", number(r["slip_direction"]["mean"]),
+                   number(r["slip_direction"]["max"])));
   for (const Json& omission : r["model"]["left_out"]) {
-    line("left out", fmt::format("{} ({})", omission["what"].get<std::string>(), omission["why"].get<std::string>()));
+    line("left out",
+         fmt::format("{} ({})", omission["what"].get<std::string>(), omission["why"].get<std::string>()));
   }
   return text;
 }
 
-void write_solution_fields(const std::filesystem::path& file, const Solution& solution, const OracleAnswer& exact) {
+void write_solution_fields(const std::filesystem::path& file, const Solution& solution,
+                           const OracleAnswer& exact) {
   const solver::Model& model = solution.model;
   const solver::Index cells = model.grid.cells();
   const double metre = model.length_unit;

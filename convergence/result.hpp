@@ -11,14 +11,15 @@ namespace slipstick::convergence {
 
 using Json = nlohmann::ordered_json;
 
-/// A solution as the result file has it: SI units, radians, errors against the exact answer where there is one. A
-/// number that does not exist is null, with its reason beside it under the same name and "_reason".
+/// A solution as the result file has it: SI units, radians, errors against the exact answer where there is
+/// one. A number that does not exist is null, with its reason beside it under the same name and "_reason".
 Json solve_result(const solver::Scene& scene, const solver::Solution& solution, const OracleAnswer& exact);
 
 /// The same for a person: a few lines.
 std::string solve_text(const Json& result);
 
-/// Writes tractions, pressure, slip and stick of a solution (and the exact traction, where known) over its cells.
+/// Writes tractions, pressure, slip and stick of a solution (and the exact traction, where known) over its
+/// cells.
 void write_solution_fields(const std::filesystem::path& file, const solver::Solution& solution,
                            const OracleAnswer& exact);
 

@@ -24,7 +24,8 @@ struct Options {
 
 /// One line on a terminal, rewritten; nothing elsewhere.
 void show_progress(int iteration, double change) {
-  if (isatty(STDERR_FILENO) != 0) fmt::print(stderr, "\r\033[Kiteration {}, change {:.1e}\r", iteration, change);
+  if (isatty(STDERR_FILENO) != 0)
+    fmt::print(stderr, "\r\033[Kiteration {}, change {:.1e}\r", iteration, change);
 }
 
 int run(const Options& options, std::ostream& text, Json& result) {
@@ -44,14 +45,20 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_solve_command(CLI
   const auto options = std::make_shared<Options>();
   CLI::App* const command = app.add_subcommand("solve", "Solve a scene numerically");
   command->add_option("scene", options->scene, "scene file (TOML)")->required();
-  command->add_option("--set", options->overrides, "key=value: override a key of the scene, e.g. load.moment_ratio=0.5")
+  command
+      ->add_option("--set", options->overrides,
+                   "key=value: override a key of the scene, e.g. load.moment_ratio=0.5")
       ->take_all()
       ->allow_extra_args(false);
-  command->add_option("--fields", options->fields, "write tractions, pressure, slip and stick: .h5, .csv or .vti");
+  command->add_option("--fields", options->fields,
+                      "write tractions, pressure, slip and stick: .h5, .csv or .vti");
   command->footer(
-      "Example:\n  slipstick solve convergence/scenes/paper.toml --set load.moment_ratio=0.5 --json result.json --fields "
-      "fields.h5\nExit code 0: converged; 1: not, result written all the same; 2: bad input, or gross slip asked for.");
-  return [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };
+      "Example:\n  slipstick solve convergence/scenes/paper.toml --set load.moment_ratio=0.5 --json "
+      "result.json --fields "
+      "fields.h5\nExit code 0: converged; 1: not, result written all the same; 2: bad input, or gross slip "
+      "asked for.");
+  return
+      [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };
 }
 
 }  // namespace slipstick::convergence

@@ -1,6 +1,7 @@
 #include "convergence/validation.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <chrono>
 #include <cmath>
@@ -27,31 +28,28 @@ constexpr double kProfileRatios[] = {0.5, 0.9};
 constexpr const char* kPressures[] = {"solved", "hertz", "hertz_averaged"};
 constexpr int kCurvePoints = 200;
 
+std::string read_text(const fs::path& file) {
+  std::ifstream stream(file);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+/// What else is done with a solution where it is computed.
+using Look = std::function<void(Json&, const solver::Solution&, const OracleAnswer&)>;
+
 /// Runs the solves one after the other, says how far it is, and keeps what is finished.
 class Runner {
  public:
-  Runner(fs::path scene_file, const fs::path& folder, int points)
-      : scene_file_(std::move(scene_file)), journal_(folder / "points"), points_(points) {
-    std::ifstream stream(scene_file_);
-    std::ostringstream text;
-    text << stream.rdbuf();
-    scene_text_ = text.str();
-  }
+  Runner(const fs::path& folder, std::size_t points) : journal_(folder / "points"), points_(points) {}
 
-  const std::string& scene_text() const { return scene_text_; }
-
-  /// One solve of the scene with these keys changed. `look` sees scene and solution where they are computed.
-  Json solve(Index cells, const std::string& pressure, double moment_ratio,
-             const std::function<void(Json&, const solver::Solution&, const OracleAnswer&)>& look = {},
-             const std::string& suffix = "", const fs::path& also = {}) {
-    const std::vector<std::string> overrides{fmt::format("grid.cells=[{0},{0}]", cells),
-                                             fmt::format("contact.pressure=\"{}\"", pressure),
-                                             fmt::format("load.moment_ratio={}", moment_ratio)};
-    const std::string name = fmt::format("{}-{}-{}{}", pressure, cells, moment_ratio, suffix);
+  /// One solve of a scene with some keys changed; `also` is a file that `look` writes.
+  Json solve(const std::string& name, const fs::path& scene_file, const std::vector<std::string>& overrides,
+             const Look& look = {}, const fs::path& also = {}) {
     Json result = journal_.point(
-        name, fmt::format("{}\n{}\n{}\n{}", scene_text_, overrides[0], overrides[1], overrides[2]),
+        name, fmt::format("{}\n{}", read_text(scene_file), fmt::join(overrides, "\n")),
         [&] {
-          const solver::Scene scene = solver::read_scene(scene_file_, overrides);
+          const solver::Scene scene = solver::read_scene(scene_file, overrides);
           const OracleAnswer exact = find_oracle(scene);
           const solver::Solution solution = solver::solve(scene);
           Json computed = solve_result(scene, solution, exact);
@@ -68,16 +66,14 @@ class Runner {
     ++done_;
     computed_ += journal_.reused() ? 0 : 1;
     const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    const double left = computed_ == 0 ? 0.0 : elapsed / computed_ * (points_ - done_);
+    const double left = computed_ == 0 ? 0.0 : elapsed / computed_ * static_cast<double>(points_ - done_);
     fmt::print(stderr, "[{}/{}] {}{}, about {:.0f} s left\n", done_, points_, name,
                journal_.reused() ? " (already there)" : "", left);
   }
 
-  fs::path scene_file_;
-  std::string scene_text_;
   Journal journal_;
-  int points_;
-  int done_ = 0;
+  std::size_t points_;
+  std::size_t done_ = 0;
   int computed_ = 0;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
@@ -122,7 +118,8 @@ Json exact_profile(const analytic::TorsionState& state) {
   return rows;
 }
 
-/// Traction over mu p0 in the cells beside the positive x1 axis and along the diagonal, with the exact values.
+/// Traction over mu p0 in the cells beside the positive x1 axis and along the diagonal, with the exact
+/// values.
 Json computed_profile(const solver::Solution& solution, const Oracle& oracle) {
   const solver::Model& model = solution.model;
   const ExactFields exact = exact_fields(oracle, model);
@@ -145,20 +142,39 @@ Json computed_profile(const solver::Solution& solution, const Oracle& oracle) {
   return rows;
 }
 
-Json profile(Runner& runner, const fs::path& folder, Index cells, double moment_ratio) {
+/// The scene at one mesh, pressure model and load.
+struct Point {
+  Index cells;
+  std::string pressure;
+  double moment_ratio;
+
+  std::string name() const { return fmt::format("{}-{}-{}", pressure, cells, moment_ratio); }
+  std::vector<std::string> overrides() const {
+    return {fmt::format("grid.cells=[{0},{0}]", cells), fmt::format("contact.pressure=\"{}\"", pressure),
+            fmt::format("load.moment_ratio={}", moment_ratio)};
+  }
+};
+
+Json profile(Runner& runner, const fs::path& scene_file, const fs::path& folder, Index cells,
+             double moment_ratio) {
   const std::string fields = fmt::format("fields-{}.h5", moment_ratio);
+  const Point point{cells, "solved", moment_ratio};
   Json result = runner.solve(
-      cells, "solved", moment_ratio,
+      point.name() + "-profile", scene_file, point.overrides(),
       [&](Json& computed, const solver::Solution& solution, const OracleAnswer& exact) {
         write_solution_fields(folder / fields, solution, exact);
         computed["profile"] = computed_profile(solution, *exact.oracle);
       },
-      "-profile", folder / fields);
+      folder / fields);
   Json computed = result["profile"];
   result.erase("profile");
   const analytic::TorsionState state = analytic::from_moment_ratio(moment_ratio);
-  return {{"moment_ratio", moment_ratio}, {"stick_ratio", state.stick_ratio}, {"exact", exact_profile(state)},
-          {"computed", computed},         {"fields", fields},                 {"result", result}};
+  return {{"moment_ratio", moment_ratio},
+          {"stick_ratio", state.stick_ratio},
+          {"exact", exact_profile(state)},
+          {"computed", computed},
+          {"fields", fields},
+          {"result", result}};
 }
 
 /// Where Eq. (5) as printed loses its digits: against the stable form at the same stick ratio.
@@ -178,9 +194,10 @@ Json summary(const solver::Scene& scene, const Oracle& oracle) {
   const auto row = [](const char* label, const std::string& value) { return Json::array({label, value}); };
   return Json::array({
       row("Sphere radius", fmt::format("{:g} mm", 1e3 * scene.surface.radius)),
-      row("Young's moduli", fmt::format("{:g} GPa (upper), {:g} GPa (lower)", 1e-9 * scene.upper.young_modulus,
-                                        1e-9 * scene.lower.young_modulus)),
-      row("Poisson's ratios", fmt::format("{:g}, {:g}", scene.upper.poisson_ratio, scene.lower.poisson_ratio)),
+      row("Young's moduli", fmt::format("{:g} GPa (upper), {:g} GPa (lower)",
+                                        1e-9 * scene.upper.young_modulus, 1e-9 * scene.lower.young_modulus)),
+      row("Poisson's ratios",
+          fmt::format("{:g}, {:g}", scene.upper.poisson_ratio, scene.lower.poisson_ratio)),
       row("Normal load", fmt::format("{:g} N", *scene.normal_load)),
       row("Friction coefficient", fmt::format("{:g}", scene.friction)),
       row("Contact radius (Hertz)", fmt::format("{:.6g} mm", 1e3 * oracle.contact_radius)),
@@ -192,23 +209,38 @@ Json summary(const solver::Scene& scene, const Oracle& oracle) {
 }  // namespace
 
 ValidationSize full_validation() {
-  return {128, {32, 64, 128, 256}, {0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99}};
+  return {.loading_cells = 128,
+          .mesh_cells = {32, 64, 128, 256},
+          .ellipse_cells = {64, 128, 256},
+          .moment_ratios = {0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99}};
 }
 
-ValidationSize quick_validation() { return {48, {16, 32, 64}, {0.05, 0.2, 0.4, 0.6, 0.8, 0.95}}; }
+ValidationSize quick_validation() {
+  return {.loading_cells = 48,
+          .mesh_cells = {16, 32, 64},
+          .ellipse_cells = {32, 64},
+          .moment_ratios = {0.05, 0.2, 0.4, 0.6, 0.8, 0.95}};
+}
 
-Json validate(const fs::path& scene_file, const ValidationSize& size, const fs::path& folder) {
+Json validate(const fs::path& scene_file, const fs::path& ellipse_file, const ValidationSize& size,
+              const fs::path& folder) {
   const solver::Scene scene = solver::read_scene(scene_file);
   const OracleAnswer exact = find_oracle(scene);
-  if (!exact.oracle) throw solver::InputError(scene_file.string(), "the page compares with exact values: " + exact.reason);
+  if (!exact.oracle) {
+    throw solver::InputError(scene_file.string(), "the page compares with exact values: " + exact.reason);
+  }
   fs::create_directories(folder);
-  const auto solves = std::size(kProfileRatios) + size.moment_ratios.size() +
-                      size.mesh_cells.size() * std::size(kPressures) * std::size(kProfileRatios);
-  Runner runner(scene_file, folder, static_cast<int>(solves));
+  const auto solves = std::size(kProfileRatios) * (1 + size.mesh_cells.size() * std::size(kPressures)) +
+                      size.moment_ratios.size() + size.ellipse_cells.size();
+  Runner runner(folder, solves);
+  const auto solve = [&](const Point& point) {
+    return runner.solve(point.name(), scene_file, point.overrides());
+  };
 
   Json report;
   report["provenance"] = provenance(scene.threads);
-  report["scene"] = {{"name", scene.name}, {"text", runner.scene_text()}, {"summary", summary(scene, *exact.oracle)}};
+  report["scene"] = {
+      {"name", scene.name}, {"text", read_text(scene_file)}, {"summary", summary(scene, *exact.oracle)}};
   report["contact"] = {{"radius", exact.oracle->contact_radius},
                        {"peak_pressure", exact.oracle->peak_pressure},
                        {"approach", exact.oracle->approach},
@@ -216,21 +248,26 @@ Json validate(const fs::path& scene_file, const ValidationSize& size, const fs::
   report["loading_cells"] = size.loading_cells;
   report["curve"] = exact_curve();
   report["equation_5_digits"] = equation_5_digits();
-  report["errata"] = errata();
   report["profiles"] = Json::array();
   for (const double ratio : kProfileRatios) {
-    report["profiles"].push_back(profile(runner, folder, size.loading_cells, ratio));
+    report["profiles"].push_back(profile(runner, scene_file, folder, size.loading_cells, ratio));
   }
   report["loading"] = Json::array();
   for (const double ratio : size.moment_ratios) {
-    report["loading"].push_back(runner.solve(size.loading_cells, "solved", ratio));
+    report["loading"].push_back(solve({size.loading_cells, "solved", ratio}));
   }
   report["mesh"] = Json::array();
   for (const char* pressure : kPressures) {
     for (const double ratio : kProfileRatios) {
-      for (const Index cells : size.mesh_cells) report["mesh"].push_back(runner.solve(cells, pressure, ratio));
+      for (const Index cells : size.mesh_cells) report["mesh"].push_back(solve({cells, pressure, ratio}));
     }
   }
+  report["ellipse"] = Json::array();
+  for (const Index cells : size.ellipse_cells) {
+    report["ellipse"].push_back(runner.solve(fmt::format("ellipse-{}", cells), ellipse_file,
+                                             {fmt::format("grid.cells=[{},{}]", cells, cells / 2)}));
+  }
+  report["errata"] = errata(report["profiles"].back()["result"], report["ellipse"]);
   report["not_run"] = Json::array();
   write_json_file(folder / "report.json", report);
   return report;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 
 namespace slipstick::solver {
 
@@ -26,7 +27,8 @@ Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_b
   Certificate certificate{};
   const double total_gap = gap.sum();
   certificate.gap = total_gap == 0.0 ? 0.0 : total_gap / energy;
-  certificate.moment = std::abs((q * rotation).sum() - moment) / limit;
+  const double imbalance = std::abs((q * rotation).sum() - moment);
+  certificate.moment = imbalance == 0.0 ? 0.0 : imbalance / limit;  // one cell on the axis: the limit is 0 too
   certificate.force = std::hypot(q.head(cells).sum(), q.tail(cells).sum()) / total_friction;
   const Eigen::ArrayXd size = norms(q);
   double worst = 0.0;
@@ -40,6 +42,25 @@ Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_b
   }
   certificate.friction_bound = worst - 1.0;
   return certificate;
+}
+
+SlipDirection slip_direction(const Eigen::ArrayXd& traction, const Eigen::ArrayXd& slip) {
+  const Eigen::Index cells = traction.size() / 2;
+  const Eigen::ArrayXd size = norms(slip);
+  const double noticeable = kNoticeableSlip * size.maxCoeff<Eigen::PropagateNaN>();
+  const Eigen::ArrayXd along = -dot_products(traction, slip);
+  SlipDirection direction{};
+  double weight = 0.0;
+  for (Eigen::Index i = 0; i < cells; ++i) {
+    if (size[i] == 0.0) continue;
+    const double across = traction[i] * slip[i + cells] - traction[i + cells] * slip[i];
+    const double angle = std::atan2(std::abs(across), along[i]) * 180.0 / std::numbers::pi;
+    direction.mean += size[i] * angle;
+    weight += size[i];
+    if (size[i] >= noticeable) direction.max = std::max(direction.max, angle);
+  }
+  if (weight > 0.0) direction.mean /= weight;
+  return direction;
 }
 
 }  // namespace slipstick::solver

@@ -11,12 +11,12 @@ struct TractionField {
   const Eigen::ArrayXd& slip;
 };
 
-/// How far a result is from Coulomb's law and equilibrium; needs no reference solution. All relative; NaN where the
-/// fields hold NaN, so that no bound passes.
+/// How far a result is from Coulomb's law and equilibrium; needs no reference solution. All relative; NaN
+/// where the fields hold NaN, so that no bound passes.
 struct Certificate {
-  /// sum(s.q + mu p |s|) / (q.Kq/2). Each term is non-negative where |q| <= mu p and zero only where Coulomb's law
-  /// holds. Coulomb's law minimises the convex energy q.Kq/2 over the friction discs and the given moment, hence
-  /// |q - q*|_K^2/2 <= energy(q) - energy(q*) <= gap.
+  /// sum(s.q + mu p |s|) / (q.Kq/2). Each term is non-negative where |q| <= mu p and zero only where
+  /// Coulomb's law holds. Coulomb's law minimises the convex energy q.Kq/2 over the friction discs and the
+  /// given moment, hence |q - q*|_K^2/2 <= energy(q) - energy(q*) <= gap.
   double gap;
   double moment;          ///< |t.q Delta - M| / M_lim
   double force;           ///< |sum of q| / sum of mu p
@@ -26,6 +26,16 @@ struct Certificate {
 /// friction_bound: mu p of each cell; rotation: the field t = (-x2, x1); moment: M/Delta that was asked for.
 Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound,
                     const Eigen::ArrayXd& rotation, double moment);
+
+/// Angle between slip and the reverse of traction, in degrees; zero under Coulomb's law.
+struct SlipDirection {
+  double mean;  ///< weighted by slip
+  double max;   ///< among cells that slip at least kNoticeableSlip of the largest slip
+};
+inline constexpr double kNoticeableSlip = 1e-2;
+
+/// Zero where nothing slips.
+SlipDirection slip_direction(const Eigen::ArrayXd& traction, const Eigen::ArrayXd& slip);
 
 /// sqrt(v1^2 + v2^2) in each cell.
 Eigen::ArrayXd norms(const Eigen::ArrayXd& vectors);

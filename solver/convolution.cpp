@@ -78,8 +78,8 @@ void Convolution::make_plans(unsigned flags) {
   require_plan(column_backward_);
 }
 
-/// The transform of a kernel that is even (odd) along a coordinate is a cosine (-i times a sine) transform over half
-/// a period. The factors of -i are left out here and applied in multiply_columns.
+/// The transform of a kernel that is even (odd) along a coordinate is a cosine (-i times a sine) transform
+/// over half a period. The factors of -i are left out here and applied in multiply_columns.
 FftwBuffer Convolution::kernel_spectrum(Component component, const ElasticPair& pair) const {
   const Index m1 = p1_ / 2 + 1;
   const Index m2 = p2_ / 2 + 1;
@@ -95,16 +95,17 @@ FftwBuffer Convolution::kernel_spectrum(Component component, const ElasticPair& 
   const Parity sign = parity(component);
   const Index first1 = sign.x1 < 0 ? 1 : 0;  // a sine transform leaves out both ends, where the field is zero
   const Index first2 = sign.x2 < 0 ? 1 : 0;
-  const std::array<fftw_iodim, 1> along1{{{static_cast<int>(m1 - 2 * first1), static_cast<int>(row_stride_),
-                                           static_cast<int>(row_stride_)}}};
+  const std::array<fftw_iodim, 1> along1{
+      {{static_cast<int>(m1 - 2 * first1), static_cast<int>(row_stride_), static_cast<int>(row_stride_)}}};
   const std::array<fftw_iodim, 1> along2{{{static_cast<int>(m2 - 2 * first2), 1, 1}}};
   const std::array<fftw_r2r_kind, 1> kind1{sign.x1 < 0 ? FFTW_RODFT00 : FFTW_REDFT00};
   const std::array<fftw_r2r_kind, 1> kind2{sign.x2 < 0 ? FFTW_RODFT00 : FFTW_REDFT00};
   double* const start = buffer.data() + first1 * row_stride_ + first2;
   for (const bool columns : {true, false}) {
-    const FftwPlan plan(
-        columns ? fftw_plan_guru_r2r(1, along1.data(), 1, along2.data(), start, start, kind1.data(), FFTW_ESTIMATE)
-                : fftw_plan_guru_r2r(1, along2.data(), 1, along1.data(), start, start, kind2.data(), FFTW_ESTIMATE));
+    const FftwPlan plan(columns ? fftw_plan_guru_r2r(1, along1.data(), 1, along2.data(), start, start,
+                                                     kind1.data(), FFTW_ESTIMATE)
+                                : fftw_plan_guru_r2r(1, along2.data(), 1, along1.data(), start, start,
+                                                     kind2.data(), FFTW_ESTIMATE));
     require_plan(plan);
     fftw_execute(plan.get());
   }
@@ -140,7 +141,9 @@ void Convolution::do_apply(std::span<const double> traction, std::span<double> d
 #pragma omp parallel for num_threads(threads_) schedule(static)
   for (Index first = 0; first < row_stride_; first += kBlock) {
     double* const block = column_block_[count(omp_get_thread_num())].data();
-    const auto block_of = [&](std::size_t field) { return block + static_cast<Index>(field) * p1_ * kBlockReals; };
+    const auto block_of = [&](std::size_t field) {
+      return block + static_cast<Index>(field) * p1_ * kBlockReals;
+    };
     const auto spectrum_of = [&](std::size_t field, Index row) {
       return row_spectra_.data() + 2 * (static_cast<Index>(field) * field_size + row * row_stride_ + first);
     };

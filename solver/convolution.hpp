@@ -36,12 +36,13 @@ using FftwPlan = std::unique_ptr<std::remove_pointer_t<fftw_plan>, FftwPlanDestr
 Index fast_length(Index minimum);
 
 /// Discrete convolution by FFT (Liu, Wang and Liu 2000): fields are padded with zeros to p1 >= 2 n1 - 1 by
-/// p2 >= 2 n2 - 1, the kernel wraps around, so the cyclic convolution equals the linear one on the n1 x n2 cells.
+/// p2 >= 2 n2 - 1, the kernel wraps around, so the cyclic convolution equals the linear one on the n1 x n2
+/// cells.
 ///
 /// One forward transform per input field, one backward per output field. The kernel is even or odd in each
-/// coordinate, so its transform is real or imaginary and a quadrant of it is stored. Only the n1 rows that hold
-/// cells are transformed along x2; then blocks of columns go through forward transform, kernel product and
-/// backward transform while they are in cache, and the n1 wanted rows go back.
+/// coordinate, so its transform is real or imaginary and a quadrant of it is stored. Only the n1 rows that
+/// hold cells are transformed along x2; then blocks of columns go through forward transform, kernel product
+/// and backward transform while they are in cache, and the n1 wanted rows go back.
 class Convolution final : public LinearOperator {
  public:
   Convolution(const Grid& grid, BlockKernel kernel, const ElasticPair& pair, const OperatorOptions& options);

@@ -32,7 +32,8 @@ class Hdf5File {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     id_ = mode == Mode::read ? H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)
                              : H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-    if (id_ < 0) throw InputError(file.string(), mode == Mode::read ? "cannot be read as HDF5" : "cannot be written");
+    if (id_ < 0)
+      throw InputError(file.string(), mode == Mode::read ? "cannot be read as HDF5" : "cannot be written");
   }
   ~Hdf5File() { H5Fclose(id_); }
   Hdf5File(const Hdf5File&) = delete;
@@ -40,20 +41,25 @@ class Hdf5File {
 
   void write(const std::string& name, const ArrayXd& values) {
     const auto size = static_cast<hsize_t>(values.size());
-    require(H5LTmake_dataset_double(id_, name.c_str(), 1, &size, values.data()) >= 0, name, "cannot be written");
+    require(H5LTmake_dataset_double(id_, name.c_str(), 1, &size, values.data()) >= 0, name,
+            "cannot be written");
   }
 
   /// A dataset of one or two dimensions, as rows x columns with rows of one another in memory.
-  Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> read(const std::string& name, int rank) {
+  Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> read(const std::string& name,
+                                                                             int rank) {
     int found_rank = 0;
-    require(H5LTfind_dataset(id_, name.c_str()) == 1 && H5LTget_dataset_ndims(id_, name.c_str(), &found_rank) >= 0,
+    require(H5LTfind_dataset(id_, name.c_str()) == 1 &&
+                H5LTget_dataset_ndims(id_, name.c_str(), &found_rank) >= 0,
             name, "no such dataset");
     require(found_rank == rank, name, fmt::format("has {} dimensions; allowed: {}", found_rank, rank));
     std::array<hsize_t, 2> size{1, 1};
-    require(H5LTget_dataset_info(id_, name.c_str(), size.data(), nullptr, nullptr) >= 0, name, "cannot be read");
+    require(H5LTget_dataset_info(id_, name.c_str(), size.data(), nullptr, nullptr) >= 0, name,
+            "cannot be read");
     Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> values(static_cast<Index>(size[0]),
-                                                                                static_cast<Index>(size[1]));
-    require(H5LTread_dataset_double(id_, name.c_str(), values.data()) >= 0, name, "cannot be read as numbers");
+                                                                                 static_cast<Index>(size[1]));
+    require(H5LTread_dataset_double(id_, name.c_str(), values.data()) >= 0, name,
+            "cannot be read as numbers");
     return values;
   }
 
@@ -101,8 +107,9 @@ std::vector<std::vector<double>> read_rows(std::ifstream& stream, const path& fi
     std::vector<double> row;
     for (const std::string& part : split(line)) row.push_back(parse_number(part, file, line_number));
     if (!rows.empty() && row.size() != rows.front().size()) {
-      throw InputError(fmt::format("{}:{}", file.string(), line_number),
-                       fmt::format("{} values; allowed: {}, as in the rows before", row.size(), rows.front().size()));
+      throw InputError(
+          fmt::format("{}:{}", file.string(), line_number),
+          fmt::format("{} values; allowed: {}, as in the rows before", row.size(), rows.front().size()));
     }
     rows.push_back(std::move(row));
   }
@@ -119,14 +126,15 @@ std::vector<Column> read_csv_columns(const path& file, const std::vector<std::st
   for (const std::string& name : names) {
     const auto found = std::find(header.begin(), header.end(), name);
     if (found == header.end()) {
-      throw InputError(file.string(), fmt::format("has no column {}; its columns: {}", name, fmt::join(header, ", ")));
+      throw InputError(file.string(),
+                       fmt::format("has no column {}; its columns: {}", name, fmt::join(header, ", ")));
     }
     positions.push_back(static_cast<std::size_t>(found - header.begin()));
   }
   const auto rows = read_rows(stream, file, 2);
   if (rows.front().size() != header.size()) {
-    throw InputError(fmt::format("{}:2", file.string()), fmt::format("{} values; allowed: {}, one a column",
-                                                                     rows.front().size(), header.size()));
+    throw InputError(fmt::format("{}:2", file.string()),
+                     fmt::format("{} values; allowed: {}, one a column", rows.front().size(), header.size()));
   }
   std::vector<Column> columns;
   for (std::size_t c = 0; c < names.size(); ++c) {
@@ -144,13 +152,14 @@ std::vector<Column> read_hdf5_columns(const path& file, const std::vector<std::s
     columns.push_back({name, hdf5.read(name, 1).col(0)});
     const ArrayXd& values = columns.back().values;
     if (values.size() != columns.front().values.size()) {
-      throw InputError(file.string(), fmt::format("dataset {} has {} values; allowed: {}, as {}", name, values.size(),
-                                                  columns.front().values.size(), names.front()));
+      throw InputError(file.string(),
+                       fmt::format("dataset {} has {} values; allowed: {}, as {}", name, values.size(),
+                                   columns.front().values.size(), names.front()));
     }
     for (Index row = 0; row < values.size(); ++row) {
       if (!std::isfinite(values[row])) {
-        throw InputError(file.string(), fmt::format("dataset {}, row {}: {}; allowed: a finite number", name, row,
-                                                    values[row]));
+        throw InputError(file.string(), fmt::format("dataset {}, row {}: {}; allowed: a finite number", name,
+                                                    row, values[row]));
       }
     }
   }
@@ -175,10 +184,12 @@ void write_csv(const path& file, const std::vector<Column>& columns) {
 /// VTK's x runs fastest, this project's x2 does.
 void write_vti(const path& file, const Grid& grid, const std::vector<Column>& columns) {
   std::ofstream stream(file);
-  stream << "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
-         << fmt::format("<ImageData WholeExtent=\"0 {0} 0 {1} 0 0\" Origin=\"{2:.17g} {3:.17g} 0\" "
-                        "Spacing=\"{4:.17g} {5:.17g} 1\">\n<Piece Extent=\"0 {0} 0 {1} 0 0\">\n<CellData>\n",
-                        grid.n1, grid.n2, grid.x1(0) - 0.5 * grid.h1, grid.x2(0) - 0.5 * grid.h2, grid.h1, grid.h2);
+  stream
+      << "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
+      << fmt::format(
+             "<ImageData WholeExtent=\"0 {0} 0 {1} 0 0\" Origin=\"{2:.17g} {3:.17g} 0\" "
+             "Spacing=\"{4:.17g} {5:.17g} 1\">\n<Piece Extent=\"0 {0} 0 {1} 0 0\">\n<CellData>\n",
+             grid.n1, grid.n2, grid.x1(0) - 0.5 * grid.h1, grid.x2(0) - 0.5 * grid.h2, grid.h1, grid.h2);
   for (const Column& column : columns) {
     stream << fmt::format("<DataArray type=\"Float64\" Name=\"{}\" format=\"ascii\">\n", column.name);
     for (Index j = 0; j < grid.n2; ++j) {
@@ -230,7 +241,8 @@ void require_field_format(const path& file) {
   }
 }
 
-void write_fields(const path& file, const Grid& grid, const std::vector<Column>& columns, const ArrayXd& keep) {
+void write_fields(const path& file, const Grid& grid, const std::vector<Column>& columns,
+                  const ArrayXd& keep) {
   require_field_format(file);
   if (file.extension() == ".vti") {
     write_vti(file, grid, columns);

@@ -64,8 +64,9 @@ double cap_volume(double x, double y) {
 }  // namespace
 
 HertzContact hertz_contact(double load, double radius_1, double radius_2, double effective_modulus) {
-  // The displacement is p0/(2 E*) times the integral over theta of (C + B^2/A')/sqrt(A'), where the pressure squared
-  // along a line from (x1, x2) is p0^2 (C - 2 B r - A' r^2) and A' = A/a2^2. Its curvature along x1 is 1/R1.
+  // The displacement is p0/(2 E*) times the integral over theta of (C + B^2/A')/sqrt(A'), where the pressure
+  // squared along a line from (x1, x2) is p0^2 (C - 2 B r - A' r^2) and A' = A/a2^2. Its curvature along x1
+  // is 1/R1.
   const double axis_ratio = find_axis_ratio(radius_1 / radius_2);
   const double along_1 = direction_integrals(axis_ratio).along_1;
   // 1/R1 = p0 a2 along_1/(E* a1^2) with p0 = 3 W/(2 pi a1 a2):
@@ -75,8 +76,8 @@ HertzContact hertz_contact(double load, double radius_1, double radius_2, double
 }
 
 Eigen::ArrayXd hertz_at_centres(const HertzContact& contact, const Grid& grid) {
-  const Eigen::ArrayXd square = 1.0 - (cell_x1(grid) / contact.semi_axis_1).square() -
-                                (cell_x2(grid) / contact.semi_axis_2).square();
+  const Eigen::ArrayXd square =
+      1.0 - (cell_x1(grid) / contact.semi_axis_1).square() - (cell_x2(grid) / contact.semi_axis_2).square();
   return contact.peak_pressure * square.max(0.0).sqrt();
 }
 

@@ -25,7 +25,8 @@ struct GaussRule {
 
 GaussRule make_gauss_rule(int points) {
   const std::unique_ptr<gsl_integration_glfixed_table, decltype(&gsl_integration_glfixed_table_free)> table(
-      gsl_integration_glfixed_table_alloc(static_cast<std::size_t>(points)), gsl_integration_glfixed_table_free);
+      gsl_integration_glfixed_table_alloc(static_cast<std::size_t>(points)),
+      gsl_integration_glfixed_table_free);
   GaussRule rule;
   for (int i = 0; i < points; ++i) {
     double node = 0.0;
@@ -37,8 +38,9 @@ GaussRule make_gauss_rule(int points) {
   return rule;
 }
 
-/// On a cell `offset` cells away the integrand is analytic inside a Bernstein ellipse whose half-axes sum to about
-/// 4 offset - 2, so n points leave (4 offset - 2)^(-2n). (Trefethen, SIAM Review 50, 2008, theorem 4.5.)
+/// On a cell `offset` cells away the integrand is analytic inside a Bernstein ellipse whose half-axes sum to
+/// about 4 offset - 2, so n points leave (4 offset - 2)^(-2n). (Trefethen, SIAM Review 50, 2008,
+/// theorem 4.5.)
 const GaussRule& gauss_rule(double offset) {
   static const std::array<GaussRule, kMaxPoints + 1> rules = [] {
     std::array<GaussRule, kMaxPoints + 1> made;

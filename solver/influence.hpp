@@ -16,8 +16,8 @@ struct HalfSpace {
 };
 
 /// What a pair of half-spaces looks like from the interface. u is the displacement of the lower surface less
-/// that of the upper, q the traction on the lower one, so compliances add in K11, K12, K22, K33 and subtract in
-/// K13, K23.
+/// that of the upper, q the traction on the lower one, so compliances add in K11, K12, K22, K33 and subtract
+/// in K13, K23.
 struct ElasticPair {
   double shear_compliance;    ///< 1/G = sum of 1/G_i
   double poisson_compliance;  ///< sum of nu_i/G_i
@@ -50,8 +50,10 @@ struct CellIntegrals {
   double y;
 };
 
-/// Relative error of each integral below 1e-13 for offsets up to 8,192 cells: closed form near by, Gauss-Legendre
-/// quadrature, whose terms are all of one sign, further off, where the closed form would cancel.
+/// Relative error below 1e-13 for offsets up to 8,192 cells, of xx and yy relative to their sum (far off on
+/// an axis one of them is less than the other by the square of the distance in cells, and no component needs
+/// it alone): closed form near by, Gauss-Legendre quadrature, whose terms are all of one sign, further off,
+/// where the closed form would cancel.
 CellIntegrals cell_integrals(double x, double y, double h1, double h2);
 
 /// One component at all offsets (k1 h1, k2 h2), 0 <= k1 < m1, 0 <= k2 < m2, row by row; the other quadrants

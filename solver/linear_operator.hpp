@@ -24,16 +24,16 @@ BlockKernel normal_kernel();
 BlockKernel tangential_kernel();
 BlockKernel coupling_kernel();
 
-/// Fields of traction to fields of displacement on one grid. The methods know no more of elasticity than this, so
-/// that the three ways to evaluate it are interchangeable.
+/// Fields of traction to fields of displacement on one grid. The methods know no more of elasticity than
+/// this, so that the three ways to evaluate it are interchangeable.
 class LinearOperator {
  public:
   virtual ~LinearOperator() = default;
   LinearOperator(const LinearOperator&) = delete;
   LinearOperator& operator=(const LinearOperator&) = delete;
 
-  /// displacement = K * traction: outputs()*cells and inputs()*cells values. They may not overlap. Allocates nothing.
-  /// Throws std::invalid_argument for other sizes.
+  /// displacement = K * traction: outputs()*cells and inputs()*cells values. They may not overlap. Allocates
+  /// nothing. Throws std::invalid_argument for other sizes.
   void apply(std::span<const double> traction, std::span<double> displacement) {
     const auto cells = static_cast<std::size_t>(grid_.cells());
     if (traction.size() != inputs() * cells || displacement.size() != outputs() * cells) {
@@ -69,8 +69,8 @@ enum class OperatorKind { dcfft, direct, dense };
 
 struct OperatorOptions {
   int threads = 1;
-  /// Let FFTW measure which plan is fastest: quicker applications, results that differ in their last bits from run
-  /// to run.
+  /// Let FFTW measure which plan is fastest: quicker applications, results that differ in their last bits
+  /// from run to run.
   bool measure_plans = false;
 };
 

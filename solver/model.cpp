@@ -16,8 +16,8 @@ namespace {
 
 using Eigen::ArrayXd;
 
-/// Fields of one value a cell that a solve holds at once beside its operators, temporaries included (counted in the
-/// normal and the slip-stick method).
+/// Fields of one value a cell that a solve holds at once beside its operators, temporaries included (counted
+/// in the normal and the slip-stick method).
 constexpr double kFieldsHeld = 32.0;
 /// Cells left free on each side of the expected contact where the scene does not give an extent.
 constexpr double kMarginCells = 2.0;
@@ -32,8 +32,9 @@ std::array<double, 2> expected_half_sides(const Surface& surface, double load, d
     case Shape::sphere:
     case Shape::ellipsoid: {
       const bool sphere = surface.shape == Shape::sphere;
-      const HertzContact contact = hertz_contact(load, sphere ? surface.radius : surface.radius_1,
-                                                 sphere ? surface.radius : surface.radius_2, effective_modulus);
+      const HertzContact contact =
+          hertz_contact(load, sphere ? surface.radius : surface.radius_1,
+                        sphere ? surface.radius : surface.radius_2, effective_modulus);
       return {contact.semi_axis_1, contact.semi_axis_2};
     }
     case Shape::cone: {  // Sneddon 1965: W = (pi/2) E* a^2 slope
@@ -52,16 +53,24 @@ Grid make_grid(const Scene& scene, double effective_modulus, const Eigen::ArrayX
   if (scene.surface.shape == Shape::height_map) {
     const std::array<Index, 2> samples{heights.rows(), heights.cols()};
     if (scene.cells != std::array<Index, 2>{} && scene.cells != samples) {
-      throw InputError(scene.source.string(), "grid.cells", fmt::format("[{}, {}]", scene.cells[0], scene.cells[1]),
+      throw InputError(scene.source.string(), "grid.cells",
+                       fmt::format("[{}, {}]", scene.cells[0], scene.cells[1]),
                        fmt::format("[{}, {}], the samples in {}, or left out", samples[0], samples[1],
                                    scene.surface.file.string()));
     }
     return {samples[0], samples[1], scene.surface.spacing[0], scene.surface.spacing[1]};
   }
-  const auto half_sides = scene.extent ? std::array<double, 2>{}
-                                       : expected_half_sides(scene.surface, *scene.normal_load, effective_modulus);
+  const auto half_sides = scene.normal_load
+                              ? expected_half_sides(scene.surface, *scene.normal_load, effective_modulus)
+                              : std::array<double, 2>{};
   std::array<double, 2> h{};
   for (std::size_t i = 0; i < 2; ++i) {
+    if (scene.extent && !((*scene.extent)[i] > 2.0 * half_sides[i])) {
+      throw InputError(scene.source.string(), "grid.extent",
+                       fmt::format("[{}, {}]", (*scene.extent)[0], (*scene.extent)[1]),
+                       fmt::format("larger than the contact, about {:.4g} x {:.4g}, or left out",
+                                   2.0 * half_sides[0], 2.0 * half_sides[1]));
+    }
     const auto cells = static_cast<double>(scene.cells[i]);
     const double margin = std::min(kMarginCells, cells / 8.0);
     h[i] = scene.extent ? (*scene.extent)[i] / cells : 2.0 * half_sides[i] / (cells - 2.0 * margin);
@@ -83,7 +92,8 @@ ArrayXd make_gap(const Surface& surface, const Grid& grid, double unit, const Ei
       return surface.slope * r;
     case Shape::flat_punch:
       return (r <= surface.radius / unit)
-          .select(ArrayXd::Zero(r.size()), ArrayXd::Constant(r.size(), std::numeric_limits<double>::infinity()));
+          .select(ArrayXd::Zero(r.size()),
+                  ArrayXd::Constant(r.size(), std::numeric_limits<double>::infinity()));
     case Shape::height_map: {
       const Eigen::ArrayXXd by_x2 = heights.transpose();  // column-major: x2 runs fastest
       return (by_x2.reshaped() - heights.minCoeff()) / unit;
@@ -100,17 +110,20 @@ double physical_memory() {
 
 double predicted_bytes(const Scene& scene, const Grid& grid, bool pressure_coupling) {
   const OperatorOptions options{.threads = scene.threads};
-  const auto bytes = [&](const BlockKernel& kernel) { return predicted_bytes(scene.op, grid, kernel, options); };
+  const auto bytes = [&](const BlockKernel& kernel) {
+    return predicted_bytes(scene.op, grid, kernel, options);
+  };
   const double normal = scene.pressure == PressureModel::solved ? bytes(normal_kernel()) : 0.0;
   const double coupling = pressure_coupling ? bytes(coupling_kernel()) : 0.0;
   const double operators = std::max({normal, coupling, bytes(tangential_kernel())});  // one after the other
-  return operators + kFieldsHeld * sizeof(double) * static_cast<double>(grid.n1) * static_cast<double>(grid.n2);
+  return operators +
+         kFieldsHeld * sizeof(double) * static_cast<double>(grid.n1) * static_cast<double>(grid.n2);
 }
 
 Model make_model(const Scene& scene) {
   const ElasticPair pair = elastic_pair(half_space(scene.lower), half_space(scene.upper));
-  const Eigen::ArrayXXd heights = scene.surface.shape == Shape::height_map ? read_height_map(scene.surface.file)
-                                                                           : Eigen::ArrayXXd();
+  const Eigen::ArrayXXd heights =
+      scene.surface.shape == Shape::height_map ? read_height_map(scene.surface.file) : Eigen::ArrayXXd();
   const Grid grid = make_grid(scene, pair.effective_modulus(), heights);
 
   Model model{};
@@ -118,9 +131,11 @@ Model make_model(const Scene& scene) {
       scene.coupling == Coupling::pressure || (scene.coupling == Coupling::automatic && pair.mismatch != 0.0);
   const double bytes = predicted_bytes(scene, grid, model.pressure_coupling);
   if (!(bytes < physical_memory())) {
-    throw InputError(scene.source.string(), "grid.cells", fmt::format("[{}, {}]", grid.n1, grid.n2),
-                     fmt::format("what fits in memory: this needs {:.3g} GiB with operator = \"{}\", the machine has {:.3g}",
-                                 bytes / 0x1p30, to_string(scene.op), physical_memory() / 0x1p30));
+    throw InputError(
+        scene.source.string(), "grid.cells", fmt::format("[{}, {}]", grid.n1, grid.n2),
+        fmt::format(
+            "what fits in memory: this needs {:.3g} GiB with operator = \"{}\", the machine has {:.3g}",
+            bytes / 0x1p30, to_string(scene.op), physical_memory() / 0x1p30));
   }
 
   model.length_unit = grid.h1;
@@ -140,8 +155,9 @@ Model make_model(const Scene& scene) {
                                 model.pair.effective_modulus());
   }
   if (!model.pressure_coupling) {
-    model.left_out.push_back({"K13, K23", pair.mismatch == 0.0 ? "similar materials: pressure moves both surfaces alike"
-                                                               : "contact.coupling = \"none\""});
+    model.left_out.push_back({"K13, K23", pair.mismatch == 0.0
+                                              ? "similar materials: pressure moves both surfaces alike"
+                                              : "contact.coupling = \"none\""});
   }
   model.left_out.push_back({"translations", "torsion about the origin of the grid"});
   return model;

@@ -16,8 +16,8 @@ struct Omission {
   std::string why;
 };
 
-/// A scene made dimensionless: lengths over one cell's size along x1, stresses over the combined shear modulus G, so
-/// that the same scene in other units gives the same digits.
+/// A scene made dimensionless: lengths over one cell's size along x1, stresses over the combined shear
+/// modulus G, so that the same scene in other units gives the same digits.
 struct Model {
   double length_unit;  ///< m
   double stress_unit;  ///< Pa
@@ -25,7 +25,7 @@ struct Model {
   ElasticPair pair;
   double friction;
   std::optional<double> normal_load;
-  Eigen::ArrayXd gap;                 ///< undeformed, one value a cell; infinite where the bodies cannot touch
+  Eigen::ArrayXd gap;  ///< undeformed, one value a cell; infinite where the bodies cannot touch
   std::optional<HertzContact> hertz;  ///< of a sphere or an ellipsoid
   bool pressure_coupling;             ///< K13, K23 enter
   std::vector<Omission> left_out;

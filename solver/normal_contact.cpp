@@ -18,11 +18,12 @@ constexpr int kRefresh = 50;
 constexpr double kLoadTolerance = 1e-12;
 
 void apply(LinearOperator& op, const ArrayXd& in, ArrayXd& out) {
-  op.apply({in.data(), static_cast<std::size_t>(in.size())}, {out.data(), static_cast<std::size_t>(out.size())});
+  op.apply({in.data(), static_cast<std::size_t>(in.size())},
+           {out.data(), static_cast<std::size_t>(out.size())});
 }
 
-/// Duality gap of the convex program: the energy would fall by no more than this if the load moved to where the
-/// surfaces are closest.
+/// Duality gap of the convex program: the energy would fall by no more than this if the load moved to where
+/// the surfaces are closest.
 double complementarity_gap(const ArrayXd& p, const ArrayXd& u, const ArrayXd& opening) {
   const double lowest = opening.minCoeff();
   double sum = 0.0;
@@ -84,14 +85,13 @@ NormalSolution solve_normal_contact(LinearOperator& op, const NormalProblem& pro
     const double mean_response = (contact * response).sum() / contact_cells;
     const double curvature = (direction * (response - mean_response)).sum();
     if (square > 0.0 && !(curvature > 0.0)) {
-      solution.message =
-          fmt::format("curvature {} along the descent direction in iteration {}", curvature, solution.iterations);
+      solution.message = fmt::format("curvature {} along the descent direction in iteration {}", curvature,
+                                     solution.iterations);
       return solution;
     }
-    // With nothing to redistribute inside the contact (one cell, say), a step of the size of 1/compliance is what
-    // overlapping neighbours get.
-    const double step =
-        square > 0.0 ? (residual * direction).sum() / curvature : p.maxCoeff() / u.maxCoeff();
+    // With nothing to redistribute inside the contact (one cell, say), a step of the size of 1/compliance is
+    // what overlapping neighbours get.
+    const double step = square > 0.0 ? (residual * direction).sum() / curvature : p.maxCoeff() / u.maxCoeff();
 
     p -= step * direction;
     set_changed = (p < 0.0).any();

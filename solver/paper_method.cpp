@@ -17,7 +17,8 @@ constexpr int kRefresh = 50;
 constexpr int kProgressEvery = 20;
 
 void apply(LinearOperator& op, const ArrayXd& in, ArrayXd& out) {
-  op.apply({in.data(), static_cast<std::size_t>(in.size())}, {out.data(), static_cast<std::size_t>(out.size())});
+  op.apply({in.data(), static_cast<std::size_t>(in.size())},
+           {out.data(), static_cast<std::size_t>(out.size())});
 }
 
 /// A factor a cell, for both components.
@@ -102,12 +103,18 @@ TorsionSolution solve_by_paper_method(LinearOperator& op, const TorsionProblem& 
   const bool has_initial = problem.initial_displacement.size() > 0;
   const ArrayXd initial = has_initial ? problem.initial_displacement : ArrayXd::Zero(2 * cells);
   const double total_friction = problem.friction_bound.sum();
+  const bool unloaded = problem.moment.value_or(problem.twist.value_or(0.0)) == 0.0 && !has_initial;
 
   TorsionSolution out;
   out.traction = out.elastic_displacement = out.slip = ArrayXd::Zero(2 * cells);
   out.stick = (problem.friction_bound > 0.0).cast<double>();
-  Iteration it{.bound = problem.friction_bound, .t = t, .q = out.traction, .u = out.elastic_displacement,
-               .s = out.slip, .stick = out.stick, .contact = out.stick};
+  Iteration it{.bound = problem.friction_bound,
+               .t = t,
+               .q = out.traction,
+               .u = out.elastic_displacement,
+               .s = out.slip,
+               .stick = out.stick,
+               .contact = out.stick};
   it.d = it.Kd = it.q0 = ArrayXd::Zero(2 * cells);
 
   const auto stop = [&](Status status, const std::string& message) {
@@ -117,14 +124,13 @@ TorsionSolution solve_by_paper_method(LinearOperator& op, const TorsionProblem& 
     const ArrayXd u = it.u + initial;
     if (problem.twist) {
       out.twist = *problem.twist;
-    } else if (it.stick.any()) {
+    } else if (!unloaded && it.stick.any()) {
       out.twist = estimate_twist(it, u);
     }
     it.s = both(it.contact) * (u - out.twist * t);
     return out;
   };
 
-  const bool unloaded = problem.moment.value_or(problem.twist.value_or(0.0)) == 0.0 && !has_initial;
   if (unloaded || total_friction == 0.0) return stop(Status::converged, "");
 
   // The initial guess, Eq. (13): tractions like a rotation, scaled to the moment, all cells in stick.
@@ -178,18 +184,22 @@ TorsionSolution solve_by_paper_method(LinearOperator& op, const TorsionProblem& 
     fresh = changed;
     if (!changed) it.u -= it.alpha * it.Kd;
 
-    // 10. Static equilibrium, Eqs. (24), (25). Along d the moment does not change, so b is rounding without 9.
+    // 10. Static equilibrium, Eqs. (24), (25). Along d the moment does not change, so b is rounding
+    // without 9.
     if (problem.moment && it.stick.any()) balance_moment(it, *problem.moment);
 
     // 11. Convergence, Eq. (26).
     out.change = norms(it.q - it.q0).sum() / total_friction;
-    if (options.progress && out.iterations % kProgressEvery == 0) options.progress(out.iterations, out.change);
+    if (options.progress && out.iterations % kProgressEvery == 0)
+      options.progress(out.iterations, out.change);
     if (out.change <= options.tolerance) return stop(Status::converged, "");
   }
   out.iterations = options.max_iterations;
-  return stop(Status::not_converged,
-              fmt::format("too many iterations: change {:.3g} of the sum of mu p after {} iterations, asked for {:.3g}",
-                          out.change, out.iterations, options.tolerance));
+  return stop(
+      Status::not_converged,
+      fmt::format(
+          "too many iterations: change {:.3g} of the sum of mu p after {} iterations, asked for {:.3g}",
+          out.change, out.iterations, options.tolerance));
 }
 
 }  // namespace slipstick::solver

@@ -10,7 +10,8 @@
 
 namespace slipstick::solver {
 
-/// Torsion of a contact whose pressure is known. One consistent set of units; the operator is (u1, u2) = K (q1, q2).
+/// Torsion of a contact whose pressure is known. One consistent set of units; the operator is (u1, u2) = K
+/// (q1, q2).
 struct TorsionProblem {
   Eigen::ArrayXd friction_bound;        ///< mu p of each cell; zero outside the contact
   Eigen::ArrayXd initial_displacement;  ///< (u1, u2) by the pressure, Eq. (12); empty: none
@@ -18,7 +19,8 @@ struct TorsionProblem {
   std::optional<double> twist;          ///< phi_3 itself is imposed
 };
 
-/// The largest moment (over the cell area) that the friction bounds can carry about the origin: sum of mu p r.
+/// The largest moment (over the cell area) that the friction bounds can carry about the origin: sum of mu p
+/// r.
 double moment_limit(const Grid& grid, const Eigen::ArrayXd& friction_bound);
 
 struct PaperOptions {
@@ -40,13 +42,15 @@ struct TorsionSolution {
   int iterations = 0;
 };
 
-/// The algorithm of Gradinaru and Spinu, Section 4, step by step, with the rotation field (-x2, x1) and the sums in
-/// the denominators that the print lacks, and nothing else mended: a cell that begins to slip keeps the direction
-/// its traction had then (Eqs. (22), (23)), so on contacts that are not circular the certificate of the result
-/// stays bad. With the twist imposed, the steps that find the twist and balance the moment fall away.
+/// The algorithm of Gradinaru and Spinu, Section 4, step by step, with the rotation field (-x2, x1) and the
+/// sums in the denominators that the print lacks, and nothing else mended: a cell that begins to slip keeps
+/// the direction its traction had then (Eqs. (22), (23)), so on contacts that are not circular the
+/// certificate of the result stays bad. With the twist imposed, the steps that find the twist and balance the
+/// moment fall away.
 ///
-/// Throws std::invalid_argument if neither or both of moment and twist are given, if a bound is negative or NaN, or
-/// if the moment is not below moment_limit(). Everything that the numbers do is a status with its reason.
+/// Throws std::invalid_argument if neither or both of moment and twist are given, if a bound is negative or
+/// NaN, or if the moment is not below moment_limit(). Everything that the numbers do is a status with its
+/// reason.
 TorsionSolution solve_by_paper_method(LinearOperator& op, const TorsionProblem& problem,
                                       const PaperOptions& options = {});
 

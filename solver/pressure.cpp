@@ -21,14 +21,18 @@ Eigen::ArrayXd pressure_from_file(const Scene& scene, const Model& model) {
   const Grid& grid = model.grid;
   Eigen::ArrayXd pressure = Eigen::ArrayXd::Zero(grid.cells());
   for (Index row = 0; row < columns[0].values.size(); ++row) {
-    const double i = columns[0].values[row] / model.length_unit / grid.h1 + 0.5 * static_cast<double>(grid.n1 - 1);
-    const double j = columns[1].values[row] / model.length_unit / grid.h2 + 0.5 * static_cast<double>(grid.n2 - 1);
+    const double i =
+        columns[0].values[row] / model.length_unit / grid.h1 + 0.5 * static_cast<double>(grid.n1 - 1);
+    const double j =
+        columns[1].values[row] / model.length_unit / grid.h2 + 0.5 * static_cast<double>(grid.n2 - 1);
     const bool inside = std::round(i) >= 0.0 && std::round(i) < static_cast<double>(grid.n1) &&
                         std::round(j) >= 0.0 && std::round(j) < static_cast<double>(grid.n2);
-    if (!inside || std::abs(i - std::round(i)) > kPositionTolerance || std::abs(j - std::round(j)) > kPositionTolerance) {
-      throw InputError(file, fmt::format("row {}: ({}, {}) is not a cell's centre; allowed: those of grid.cells over "
-                                         "grid.extent, centred at the origin",
-                                         row + 1, columns[0].values[row], columns[1].values[row]));
+    if (!inside || std::abs(i - std::round(i)) > kPositionTolerance ||
+        std::abs(j - std::round(j)) > kPositionTolerance) {
+      throw InputError(
+          file, fmt::format("row {}: ({}, {}) is not a cell's centre; allowed: those of grid.cells over "
+                            "grid.extent, centred at the origin",
+                            row + 1, columns[0].values[row], columns[1].values[row]));
     }
     const double value = columns[2].values[row];
     if (!(value >= 0.0)) {
@@ -64,7 +68,8 @@ NormalSolution find_pressure(const Scene& scene, const Model& model) {
     case PressureModel::file:
       return given(pressure_from_file(scene, model));
     case PressureModel::solved: {
-      const auto op = make_operator(scene.op, model.grid, normal_kernel(), model.pair, {.threads = scene.threads});
+      const auto op =
+          make_operator(scene.op, model.grid, normal_kernel(), model.pair, {.threads = scene.threads});
       return solve_normal_contact(*op, {model.gap, *model.normal_load / model.grid.cell_area()});
     }
   }

@@ -74,11 +74,13 @@ Surface read_surface(SceneReader& reader) {
 Material read_material(SceneReader& reader, const std::string& body) {
   if (reader.flag_or(body + ".rigid", false)) {
     for (const char* key : {".young_modulus", ".poisson_ratio"}) {
-      if (reader.has(body + key)) reader.fail(body + ".rigid", "true", fmt::format("{}{} left out beside it", body, key));
+      if (reader.has(body + key))
+        reader.fail(body + ".rigid", "true", fmt::format("{}{} left out beside it", body, key));
     }
     return {std::numeric_limits<double>::infinity(), 0.0};
   }
-  return {reader.number(body + ".young_modulus", kPositive), reader.number(body + ".poisson_ratio", kPoisson)};
+  return {reader.number(body + ".young_modulus", kPositive),
+          reader.number(body + ".poisson_ratio", kPoisson)};
 }
 
 TorsionLoad read_torsion(SceneReader& reader) {

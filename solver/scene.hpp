@@ -15,12 +15,12 @@ enum class Shape { sphere, ellipsoid, cone, flat_punch, height_map };
 /// Surface of the indenter; the members that its shape uses are set.
 struct Surface {
   Shape shape = Shape::sphere;
-  double radius = 0.0;    ///< m: sphere; flat_punch
-  double radius_1 = 0.0;  ///< m: ellipsoid, radius of curvature along x1
-  double radius_2 = 0.0;  ///< m: along x2
-  double slope = 0.0;     ///< cone: gap over radius
-  std::filesystem::path file;            ///< height_map: heights in m, one a cell, larger where further away
-  std::array<double, 2> spacing{};       ///< height_map: m
+  double radius = 0.0;              ///< m: sphere; flat_punch
+  double radius_1 = 0.0;            ///< m: ellipsoid, radius of curvature along x1
+  double radius_2 = 0.0;            ///< m: along x2
+  double slope = 0.0;               ///< cone: gap over radius
+  std::filesystem::path file;       ///< height_map: heights in m, one a cell, larger where further away
+  std::array<double, 2> spacing{};  ///< height_map: m
 };
 
 struct Material {
@@ -28,12 +28,12 @@ struct Material {
   double poisson_ratio = 0.0;
 };
 
-/// Where the pressure comes from: solved on the same grid; Hertz's at cell centres; Hertz's averaged over each cell;
-/// a file.
+/// Where the pressure comes from: solved on the same grid; Hertz's at cell centres; Hertz's averaged over
+/// each cell; a file.
 enum class PressureModel { solved, hertz, hertz_averaged, file };
 
-/// Whether the pressure's tangential displacement of dissimilar materials enters: where they are dissimilar, never,
-/// always.
+/// Whether the pressure's tangential displacement of dissimilar materials enters: where they are dissimilar,
+/// never, always.
 enum class Coupling { automatic, none, pressure };
 
 /// One of the three is set.
@@ -64,9 +64,9 @@ struct Scene {
   int threads = 1;
 };
 
-/// Reads a scene file (TOML); each override is "key=value" with a dotted key, applied before anything is checked.
-/// Relative paths in the scene are relative to the scene file. Throws InputError naming file, key, value and what is
-/// allowed.
+/// Reads a scene file (TOML); each override is "key=value" with a dotted key, applied before anything is
+/// checked. Relative paths in the scene are relative to the scene file. Throws InputError naming file, key,
+/// value and what is allowed.
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
 /// Words of the enumerations, as scene files and results have them.

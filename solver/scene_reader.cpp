@@ -17,7 +17,8 @@ namespace {
 constexpr std::size_t kMisspelling = 3;
 
 std::string read_text(const std::filesystem::path& file) {
-  if (std::filesystem::is_directory(file)) throw InputError(file.string(), "is a folder; allowed: a scene file (TOML)");
+  if (std::filesystem::is_directory(file))
+    throw InputError(file.string(), "is a folder; allowed: a scene file (TOML)");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw InputError(file.string(), "cannot be read; allowed: a scene file (TOML)");
   std::ostringstream text;
@@ -131,8 +132,8 @@ void SceneReader::fail_missing(const std::string& key, const std::string& allowe
 void SceneReader::fail_unknown(const std::string& key) const {
   std::ostringstream value;
   value << root_.at_path(key);
-  throw InputError(where(key), fmt::format("{} = {}: unknown key; the nearest known one is {}", key, value.str(),
-                                           nearest(key, known_)));
+  throw InputError(where(key), fmt::format("{} = {}: unknown key; the nearest known one is {}", key,
+                                           value.str(), nearest(key, known_)));
 }
 
 void SceneReader::fail_choice(const std::string& key, const std::string& word,

@@ -1,12 +1,12 @@
 #pragma once
 
+#include <toml++/toml.h>
 #include <array>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <set>
 #include <string>
-#include <toml++/toml.h>
 #include <utility>
 #include <vector>
 
@@ -18,8 +18,8 @@ struct Range {
   std::function<bool(double)> contains;
 };
 
-/// A TOML file whose keys are asked for one by one, by dotted path. Each question says what is allowed; reject_unknown() at the
-/// end finds the keys that nobody asked for. Throws InputError.
+/// A TOML file whose keys are asked for one by one, by dotted path. Each question says what is allowed;
+/// reject_unknown() at the end finds the keys that nobody asked for. Throws InputError.
 class SceneReader {
  public:
   SceneReader(const std::filesystem::path& file, const std::vector<std::string>& overrides);
@@ -47,7 +47,8 @@ class SceneReader {
     fail_choice(key, word, allowed);
   }
   template <typename Value>
-  Value choice_or(const std::string& key, Value otherwise, const std::vector<std::pair<std::string, Value>>& words) {
+  Value choice_or(const std::string& key, Value otherwise,
+                  const std::vector<std::pair<std::string, Value>>& words) {
     return has(key) ? choice(key, words) : otherwise;
   }
 

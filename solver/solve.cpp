@@ -27,7 +27,8 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-std::unique_ptr<LinearOperator> scene_operator(const Scene& scene, const Model& model, const BlockKernel& kernel) {
+std::unique_ptr<LinearOperator> scene_operator(const Scene& scene, const Model& model,
+                                               const BlockKernel& kernel) {
   return make_operator(scene.op, model.grid, kernel, model.pair, {.threads = scene.threads});
 }
 
@@ -36,7 +37,8 @@ ArrayXd pressure_displacement(const Scene& scene, const Model& model, const Arra
   if (!model.pressure_coupling) return {};
   const auto op = scene_operator(scene, model, coupling_kernel());
   ArrayXd u(2 * pressure.size());
-  op->apply({pressure.data(), static_cast<std::size_t>(pressure.size())}, {u.data(), static_cast<std::size_t>(u.size())});
+  op->apply({pressure.data(), static_cast<std::size_t>(pressure.size())},
+            {u.data(), static_cast<std::size_t>(u.size())});
   return u;
 }
 
@@ -54,10 +56,11 @@ TorsionProblem torsion_problem(const Scene& scene, const Model& model, const Arr
     problem.moment = *scene.torsion.moment / (model.moment_unit() * model.grid.cell_area());
   }
   if (problem.moment && *problem.moment > 0.0 && !(*problem.moment < limit)) {
-    throw InputError(scene.source.string(), "load.moment", fmt::format("{} N m", *scene.torsion.moment),
-                     fmt::format("below {:.17g} N m, the limit moment of this pressure and mesh; at or above it the "
-                                 "contact slips everywhere",
-                                 limit * model.grid.cell_area() * model.moment_unit()));
+    throw InputError(
+        scene.source.string(), "load.moment", fmt::format("{} N m", *scene.torsion.moment),
+        fmt::format("below {:.17g} N m, the limit moment of this pressure and mesh; at or above it the "
+                    "contact slips everywhere",
+                    limit * model.grid.cell_area() * model.moment_unit()));
   }
   return problem;
 }
@@ -87,6 +90,7 @@ void describe(Solution& solution, const TorsionProblem& problem) {
   solution.certificate =
       certify({solution.torsion.traction, solution.torsion.elastic_displacement, solution.torsion.slip},
               problem.friction_bound, rotation, problem.moment.value_or(moment));
+  solution.slip_direction = slip_direction(solution.torsion.traction, solution.torsion.slip);
 }
 
 }  // namespace
@@ -120,7 +124,8 @@ Solution solve(const Scene& scene, const SolveOptions& options) {
   solution.operator_bytes = op->bytes();
   solution.seconds.traction = watch.lap();
 
-  const bool converged = solution.normal.status == Status::converged && solution.torsion.status == Status::converged;
+  const bool converged =
+      solution.normal.status == Status::converged && solution.torsion.status == Status::converged;
   solution.status = converged ? Status::converged : Status::not_converged;
   if (!solution.normal.message.empty()) solution.message = "pressure: " + solution.normal.message;
   if (!solution.torsion.message.empty()) {

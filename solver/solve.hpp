@@ -25,20 +25,21 @@ struct Solution {
   NormalSolution normal;
   TorsionSolution torsion;
   Certificate certificate;
+  SlipDirection slip_direction;
 
-  double normal_load = 0.0;            ///< W, N: what the pressure carries
-  double peak_pressure = 0.0;          ///< Pa
-  double contact_radius = 0.0;         ///< m, see measure_contact_radius
-  double contact_radius_counted = 0.0; ///< m, of a circle with the contact cells' area
-  double stick_radius_counted = 0.0;   ///< m, of a circle with the stick cells' area
-  double approach = 0.0;               ///< m
-  double twist_angle = 0.0;            ///< rad
-  double moment = 0.0;                 ///< N m, carried by the tractions
-  double moment_limit = 0.0;           ///< N m, of this pressure and mesh
+  double normal_load = 0.0;             ///< W, N: what the pressure carries
+  double peak_pressure = 0.0;           ///< Pa
+  double contact_radius = 0.0;          ///< m, see measure_contact_radius
+  double contact_radius_counted = 0.0;  ///< m, of a circle with the contact cells' area
+  double stick_radius_counted = 0.0;    ///< m, of a circle with the stick cells' area
+  double approach = 0.0;                ///< m
+  double twist_angle = 0.0;             ///< rad
+  double moment = 0.0;                  ///< N m, carried by the tractions
+  double moment_limit = 0.0;            ///< N m, of this pressure and mesh
   Index contact_cells = 0;
   Index stick_cells = 0;
-  long operator_applications = 0;      ///< tangential
-  std::size_t operator_bytes = 0;      ///< tangential
+  long operator_applications = 0;  ///< tangential
+  std::size_t operator_bytes = 0;  ///< tangential
   Seconds seconds;
 };
 
@@ -46,12 +47,13 @@ struct SolveOptions {
   std::function<void(int iteration, double change)> progress;
 };
 
-/// Solves a scene. Throws InputError for what the scene got wrong, gross slip among it; what the numbers do is in the
-/// status.
+/// Solves a scene. Throws InputError for what the scene got wrong, gross slip among it; what the numbers do
+/// is in the status.
 Solution solve(const Scene& scene, const SolveOptions& options = {});
 
-/// Contact radius of a pressure, in the grid's units: of a Hertzian contact from the second moments of the pressure
-/// (their mean is a_i^2/5), which knows the radius to far less than a cell; else from the area of the contact cells.
+/// Contact radius of a pressure, in the grid's units: of a Hertzian contact from the second moments of the
+/// pressure (their mean is a_i^2/5), which knows the radius to far less than a cell; else from the area of
+/// the contact cells.
 double measure_contact_radius(const Model& model, const Eigen::ArrayXd& pressure);
 
 }  // namespace slipstick::solver

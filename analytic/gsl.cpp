@@ -1,0 +1,102 @@
+#include "analytic/gsl.hpp"
+
+#include <fmt/core.h>
+#include <gsl/gsl_errno.h>
+#include <gsl/gsl_integration.h>
+#include <gsl/gsl_roots.h>
+
+#include <exception>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+
+namespace slipstick::analytic::gsl {
+
+namespace {
+
+/// A C++ function as GSL calls it. An exception must not cross GSL's C frames: it waits here until they are
+/// left.
+class Callback {
+ public:
+  explicit Callback(const std::function<double(double)>& f) : f_(f) {}
+  gsl_function handle() {
+    return {.function = [](double x, void* self) { return static_cast<Callback*>(self)->call(x); },
+            .params = this};
+  }
+  void rethrow() const {
+    if (thrown_) std::rethrow_exception(thrown_);
+  }
+
+ private:
+  double call(double x) {
+    try {
+      return f_(x);
+    } catch (...) {
+      thrown_ = std::current_exception();
+      return std::numeric_limits<double>::quiet_NaN();
+    }
+  }
+
+  const std::function<double(double)>& f_;
+  std::exception_ptr thrown_;
+};
+
+/// GSL's handle in a unique_ptr; GSL gives null when out of memory.
+template <class Handle>
+auto own(Handle* handle, void (*release)(Handle*)) {
+  if (!handle) throw std::bad_alloc();
+  return std::unique_ptr<Handle, void (*)(Handle*)>(handle, release);
+}
+
+}  // namespace
+
+void turn_abort_handler_off() { [[maybe_unused]] static const auto previous = gsl_set_error_handler_off(); }
+
+void check(int status) {
+  if (status == GSL_SUCCESS) return;
+  const auto message = fmt::format("GSL: {}", gsl_strerror(status));
+  if (status == GSL_EDOM) throw std::domain_error(message);
+  throw std::runtime_error(message);
+}
+
+double root(const std::function<double(double)>& f, double low, double high) {
+  constexpr int kMostIterations = 200;  // bisection alone would need about 60
+  constexpr double kRelative = 4 * std::numeric_limits<double>::epsilon();
+
+  turn_abort_handler_off();
+  Callback callback(f);
+  gsl_function function = callback.handle();
+  const auto solver = own(gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
+  int status = gsl_root_fsolver_set(solver.get(), &function, low, high);
+  callback.rethrow();
+  check(status);
+  for (int i = 0; i < kMostIterations; ++i) {
+    status = gsl_root_fsolver_iterate(solver.get());
+    callback.rethrow();
+    check(status);
+    status = gsl_root_test_interval(gsl_root_fsolver_x_lower(solver.get()),
+                                    gsl_root_fsolver_x_upper(solver.get()), 0, kRelative);
+    if (status != GSL_CONTINUE) break;
+  }
+  check(status);
+  return gsl_root_fsolver_root(solver.get());
+}
+
+double integral(const std::function<double(double)>& f, double low, double high) {
+  constexpr std::size_t kIntervals = 200;
+  constexpr double kRelative = 1e-14;  // an interval at the rounding of f is dropped before this is missed
+
+  turn_abort_handler_off();
+  Callback callback(f);
+  gsl_function function = callback.handle();
+  const auto workspace =
+      own(gsl_integration_cquad_workspace_alloc(kIntervals), gsl_integration_cquad_workspace_free);
+  double result = 0;
+  const int status =
+      gsl_integration_cquad(&function, low, high, 0, kRelative, workspace.get(), &result, nullptr, nullptr);
+  callback.rethrow();
+  check(status);
+  return result;
+}
+
+}  // namespace slipstick::analytic::gsl

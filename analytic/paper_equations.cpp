@@ -1,0 +1,114 @@
+#include "analytic/paper_equations.hpp"
+
+#include <fmt/core.h>
+#include <gsl/gsl_sf_ellint.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string_view>
+
+#include "analytic/gsl.hpp"
+
+namespace slipstick::analytic::paper {
+
+namespace {
+
+using std::numbers::pi;
+
+// GSL takes the amplitude first, the paper the modulus.
+double incomplete_f(double k, double phi) { return gsl::evaluate(gsl_sf_ellint_F_e, phi, k); }
+double incomplete_e(double k, double phi) { return gsl::evaluate(gsl_sf_ellint_E_e, phi, k); }
+double complete_k(double k) { return gsl::evaluate(gsl_sf_ellint_Kcomp_e, k); }
+double complete_e(double k) { return gsl::evaluate(gsl_sf_ellint_Ecomp_e, k); }
+
+void require(bool allowed, std::string_view name, double value, std::string_view range) {
+  if (!allowed) throw std::domain_error(fmt::format("{} = {}; allowed: {}", name, value, range));
+}
+
+void require_partial_slip(double stick_ratio) {
+  require(stick_ratio > 0 && stick_ratio < 1, "a_s/a", stick_ratio, "0 < a_s/a < 1");
+}
+
+/// k of Eq. (2).
+double modulus(double stick_ratio) { return std::sqrt(1 - stick_ratio * stick_ratio); }
+
+/// Eq. (1) with a factor on its stick branch.
+double eq1_with(double factor, double stick_ratio, double radius) {
+  require_partial_slip(stick_ratio);
+  require(radius >= 0 && radius <= 1, "r/a", radius, "0 <= r/a <= 1");
+  const double sliding = std::sqrt(1 - radius * radius);
+  if (radius > stick_ratio) return sliding;
+  const double k = modulus(stick_ratio);
+  const double phi = eq2_amplitude(stick_ratio, radius);
+  return factor * sliding *
+         (pi / 2 + k * k * eq3_d(k) * incomplete_f(stick_ratio, phi) -
+          complete_k(k) * incomplete_e(stick_ratio, phi));
+}
+
+}  // namespace
+
+double eq1_printed(double stick_ratio, double radius) { return eq1_with(1, stick_ratio, radius); }
+
+double eq1(double stick_ratio, double radius) { return eq1_with(2 / pi, stick_ratio, radius); }
+
+double eq2_amplitude(double stick_ratio, double radius) {
+  require_partial_slip(stick_ratio);
+  require(radius >= 0 && radius <= stick_ratio, "r/a", radius, "0 <= r/a <= a_s/a");
+  const double c2 = stick_ratio * stick_ratio;
+  const double r2 = radius * radius;
+  // At r = 0 the sine is 1, up to rounding.
+  return std::asin(std::min(1.0, std::sqrt((c2 - r2) / (1 - r2)) / stick_ratio));
+}
+
+double eq3_d(double modulus) {
+  require(modulus > 0 && modulus < 1, "k", modulus, "0 < k < 1");
+  return (complete_k(modulus) - complete_e(modulus)) / (modulus * modulus);
+}
+
+double eq4_twist(double stick_ratio) {
+  require_partial_slip(stick_ratio);
+  const double k = modulus(stick_ratio);
+  return 3 / (4 * pi) * k * k * eq3_d(k);
+}
+
+double eq5_moment(double stick_ratio) {
+  require_partial_slip(stick_ratio);
+  const double c = stick_ratio;
+  const double k = modulus(c);
+  const double k2 = k * k;
+  const double d = eq3_d(k);
+  const double big_k = complete_k(k);
+  const auto integral = [c](double power) {
+    return gsl::integral(
+        [c, power](double alpha) {
+          const double x = c * std::sin(alpha);
+          return std::asin(x) / std::pow(1 - x * x, power);
+        },
+        0, pi / 2);
+  };
+  return (3 * pi * pi / 4 + c * k2 * (6 * big_k + (4 * c * c - 3) * d) - 3 * k * big_k * std::asin(c) -
+          3 * k2 * (big_k * integral(1.5) - d * integral(0.5))) /
+         (4 * pi);
+}
+
+double eq6_moment_limit() { return 3 * pi / 16; }
+
+double eq7_twist(double moment) {
+  require(moment >= 0 && moment <= 2.0 / 3, "M/(mu W a)", moment, "0 <= M/(mu W a) <= 2/3");
+  const double root = std::sqrt(1 - 3 * moment / 2);
+  return (1 - root) * (3 - root) / 8;
+}
+
+double stick_ratio_from_eq5(double moment) {
+  // Outside, what is left of Eq. (5) in double precision after cancellation says nothing about c.
+  constexpr double kLeast = 1e-4;
+  constexpr double kMost = 1 - 1e-6;
+  const auto excess = [moment](double c) { return eq5_moment(c) - moment; };
+  require(moment > 0 && excess(kLeast) > 0 && excess(kMost) < 0, "M/(mu W a)", moment,
+          "0 < M/(mu W a) < 3 pi/16, as far as Eq. (5) keeps digits");
+  return gsl::root(excess, kLeast, kMost);
+}
+
+}  // namespace slipstick::analytic::paper

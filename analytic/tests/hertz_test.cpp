@@ -1,0 +1,118 @@
+#include "analytic/hertz.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+
+namespace slipstick::analytic {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double kLoad = 1000;        // N
+constexpr double kModulus = 115.4e9;  // Pa
+constexpr double kRadius = 0.018;     // m
+
+/// Surface displacement at (x1, x2) inside the contact under a semi-ellipsoidal pressure, from Boussinesq's
+/// point load integrated along chords: along each p is a half ellipse, over whose length its integral is
+/// elementary; over the directions the trapezoidal rule converges geometrically.
+double displacement(const HertzEllipse& contact, double modulus, double x1, double x2) {
+  constexpr int kDirections = 4000;
+  const double a2 = contact.semi_axis_1 * contact.semi_axis_1;
+  const double b2 = contact.semi_axis_2 * contact.semi_axis_2;
+  const double inside = 1 - x1 * x1 / a2 - x2 * x2 / b2;
+  double sum = 0;
+  for (int i = 0; i < kDirections; ++i) {
+    const double angle = pi * i / kDirections;
+    const double n1 = std::cos(angle);
+    const double n2 = std::sin(angle);
+    const double square = n1 * n1 / a2 + n2 * n2 / b2;
+    const double linear = n1 * x1 / a2 + n2 * x2 / b2;
+    // p/p0 = sqrt(inside - 2 linear t - square t^2): half an ellipse of this height over this half chord.
+    const double height = std::sqrt(inside + linear * linear / square);
+    const double half_chord = height / std::sqrt(square);
+    sum += pi / 2 * height * half_chord;
+  }
+  return contact.peak_pressure * sum * (pi / kDirections) / (pi * modulus);
+}
+
+TEST(HertzCircle, AgreesWithJohnson) {  // Johnson 1985, Eqs. (4.22)-(4.24), in terms of a
+  const auto contact = hertz_circle(kLoad, kRadius, kModulus);
+  EXPECT_NEAR(pi * contact.peak_pressure * kRadius / (2 * kModulus) / contact.radius, 1, 1e-15);
+  EXPECT_NEAR(2.0 / 3 * contact.peak_pressure * pi * contact.radius * contact.radius / kLoad, 1, 1e-15);
+  EXPECT_NEAR(contact.approach * kRadius / (contact.radius * contact.radius), 1, 1e-15);
+}
+
+TEST(HertzEllipse, OfEqualRadiiIsTheCircle) {
+  const auto circle = hertz_circle(kLoad, kRadius, kModulus);
+  const auto ellipse = hertz_ellipse(kLoad, kRadius, kRadius, kModulus);
+  EXPECT_NEAR(ellipse.semi_axis_1 / circle.radius, 1, 1e-15);
+  EXPECT_NEAR(ellipse.semi_axis_2 / circle.radius, 1, 1e-15);
+  EXPECT_NEAR(ellipse.peak_pressure / circle.peak_pressure, 1, 1e-15);
+  EXPECT_NEAR(ellipse.approach / circle.approach, 1, 1e-15);
+}
+
+TEST(HertzEllipse, DisplacesTheSurfaceByApproachLessGap) {
+  for (const double ratio : {1.0, 1.0 + 1e-9, 1.3, 4.0, 20.0, 1.0 / 20, 1e3, 1e-3}) {
+    const double radius_2 = kRadius / ratio;
+    const auto contact = hertz_ellipse(kLoad, kRadius, radius_2, kModulus);
+    for (const auto& [f1, f2] : {std::pair{0.0, 0.0}, {0.5, 0.0}, {0.0, 0.5}, {0.6, -0.7}, {0.95, 0.1}}) {
+      const double x1 = f1 * contact.semi_axis_1;
+      const double x2 = f2 * contact.semi_axis_2;
+      const double expected = contact.approach - x1 * x1 / (2 * kRadius) - x2 * x2 / (2 * radius_2);
+      EXPECT_NEAR(displacement(contact, kModulus, x1, x2) / contact.approach, expected / contact.approach,
+                  1e-13)
+          << ratio << " at " << f1 << ", " << f2;
+    }
+  }
+}
+
+TEST(HertzEllipse, CarriesTheLoad) {
+  for (const double ratio : {1.0, 3.0, 20.0, 1e3, 1e6}) {
+    const auto contact = hertz_ellipse(kLoad, kRadius, kRadius * ratio, kModulus);
+    EXPECT_NEAR(2.0 / 3 * contact.peak_pressure * pi * contact.semi_axis_1 * contact.semi_axis_2 / kLoad, 1,
+                1e-15);
+  }
+}
+
+TEST(HertzEllipse, TurnsWithItsAxes) {
+  for (const double ratio : {1.5, 20.0, 1e3}) {
+    const auto one = hertz_ellipse(kLoad, kRadius, kRadius * ratio, kModulus);
+    const auto other = hertz_ellipse(kLoad, kRadius * ratio, kRadius, kModulus);
+    EXPECT_LT(one.semi_axis_1, one.semi_axis_2) << "the longer axis lies where the curvature is smaller";
+    EXPECT_EQ(one.semi_axis_1, other.semi_axis_2);
+    EXPECT_EQ(one.semi_axis_2, other.semi_axis_1);
+    EXPECT_EQ(one.approach, other.approach);
+  }
+}
+
+TEST(HertzEllipse, ScalesWithLoadModulusAndSize) {
+  const auto base = hertz_ellipse(kLoad, kRadius, 5 * kRadius, kModulus);
+  const auto loaded = hertz_ellipse(8 * kLoad, kRadius, 5 * kRadius, kModulus);
+  EXPECT_NEAR(loaded.semi_axis_1 / base.semi_axis_1, 2, 1e-14);
+  EXPECT_NEAR(loaded.peak_pressure / base.peak_pressure, 2, 1e-14);
+  EXPECT_NEAR(loaded.approach / base.approach, 4, 1e-14);
+  const auto stiffer = hertz_ellipse(8 * kLoad, kRadius, 5 * kRadius, 8 * kModulus);
+  EXPECT_NEAR(stiffer.semi_axis_2 / base.semi_axis_2, 1, 1e-14);
+  const auto larger = hertz_ellipse(4 * kLoad, 2 * kRadius, 10 * kRadius, kModulus);
+  EXPECT_NEAR(larger.semi_axis_2 / base.semi_axis_2, 2, 1e-14);
+  EXPECT_NEAR(larger.peak_pressure / base.peak_pressure, 1, 1e-14);
+}
+
+TEST(Hertz, RefusesWhatIsNotPositive) {
+  for (const double bad : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
+    EXPECT_THROW(hertz_circle(bad, kRadius, kModulus), std::domain_error);
+    EXPECT_THROW(hertz_circle(kLoad, bad, kModulus), std::domain_error);
+    EXPECT_THROW(hertz_circle(kLoad, kRadius, bad), std::domain_error);
+    EXPECT_THROW(hertz_ellipse(bad, kRadius, kRadius, kModulus), std::domain_error);
+    EXPECT_THROW(hertz_ellipse(kLoad, bad, kRadius, kModulus), std::domain_error);
+    EXPECT_THROW(hertz_ellipse(kLoad, kRadius, bad, kModulus), std::domain_error);
+    EXPECT_THROW(hertz_ellipse(kLoad, kRadius, kRadius, bad), std::domain_error);
+  }
+}
+
+}  // namespace
+}  // namespace slipstick::analytic

@@ -1,0 +1,93 @@
+// Where the two wings meet: numerical answers against exact ones.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "analytic/hertz.hpp"
+#include "convergence/errors.hpp"
+#include "convergence/oracle.hpp"
+#include "solver/hertz_pressure.hpp"
+#include "solver/solve.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+solver::Scene scene(const char* name, const std::vector<std::string>& overrides) {
+  return solver::read_scene(std::string(SLIPSTICK_SCENES) + name, overrides);
+}
+
+struct Compared {
+  solver::Solution solution;
+  Errors errors;
+};
+
+Compared solve_paper(int cells, const std::string& pressure, const std::string& ratio) {
+  const solver::Scene paper =
+      scene("/paper.toml", {"grid.cells=[" + std::to_string(cells) + "," + std::to_string(cells) + "]",
+                            "contact.pressure=" + pressure, "load.moment_ratio=" + ratio});
+  const solver::Solution solution = solver::solve(paper);
+  EXPECT_EQ(solution.status, solver::Status::converged) << solution.message;
+  return {solution, compare(solution, *find_oracle(paper).oracle)};
+}
+
+// What the program promises at 128 cells with the pressure solved on the same grid.
+constexpr double kTwistAt128 = 2e-4;
+constexpr double kTractionAt128 = 1e-2;
+
+TEST(Comparison, PaperMethodAt128Cells) {
+  for (const char* ratio : {"0.5", "0.9"}) {
+    const Errors errors = solve_paper(128, "solved", ratio).errors;
+    EXPECT_LE(std::abs(errors.twist), kTwistAt128) << ratio;
+    EXPECT_LE(errors.traction.l1, kTractionAt128) << ratio;
+  }
+}
+
+TEST(Comparison, ErrorsFallWithTheMesh) {
+  for (const char* pressure : {"solved", "hertz", "hertz_averaged"}) {
+    const Compared coarse = solve_paper(32, pressure, "0.5");
+    const Compared fine = solve_paper(128, pressure, "0.5");
+    // Twist about h^2, traction about h^1.4 in L1 and h in L2, over a factor 4 in h; half an order is left
+    // for the staircase of the stick area.
+    EXPECT_LE(std::abs(fine.errors.twist), std::abs(coarse.errors.twist) * std::pow(4.0, -1.5)) << pressure;
+    EXPECT_LE(fine.errors.traction.l1, coarse.errors.traction.l1 * std::pow(4.0, -0.9)) << pressure;
+    EXPECT_LE(fine.errors.traction.l2, coarse.errors.traction.l2 * std::pow(4.0, -0.5)) << pressure;
+    EXPECT_LE(std::abs(fine.errors.stick_radius), 5e-3) << pressure;  // half a cell of 64 to the radius
+  }
+}
+
+TEST(Comparison, HertzSolvedEqualsHertzExact) {
+  const Compared at64 = solve_paper(64, "solved", "0.5");
+  const Compared at128 = solve_paper(128, "solved", "0.5");
+  EXPECT_LE(std::abs(at128.errors.peak_pressure), 0.5 * std::abs(at64.errors.peak_pressure));
+  EXPECT_LE(std::abs(at128.errors.contact_radius), 1e-4);
+  EXPECT_LE(std::abs(at128.errors.moment_limit), 1e-4);
+  const Oracle oracle = *find_oracle(scene("/paper.toml", {})).oracle;
+  EXPECT_NEAR(at128.solution.approach / oracle.approach, 1.0, 1e-4);
+}
+
+// Both wings find Hertz's ellipse, by different integrals and different root-finders.
+TEST(Comparison, HertzEllipseOfBothWings) {
+  constexpr double tolerance = 1e-13;
+  for (const double ratio : {1.0, 1.0001, 1.5, 0.2, 10.0, 400.0, 1.0 / 400.0}) {
+    const analytic::HertzEllipse exact = analytic::hertz_ellipse(3.0, ratio, 1.0, 7.0);
+    const solver::HertzContact numerical = solver::hertz_contact(3.0, ratio, 1.0, 7.0);
+    EXPECT_NEAR(numerical.semi_axis_1 / exact.semi_axis_1, 1.0, tolerance) << ratio;
+    EXPECT_NEAR(numerical.semi_axis_2 / exact.semi_axis_2, 1.0, tolerance) << ratio;
+    EXPECT_NEAR(numerical.peak_pressure / exact.peak_pressure, 1.0, tolerance) << ratio;
+  }
+}
+
+TEST(Comparison, EllipticPressureSolvedOnTheGrid) {
+  const solver::Scene ellipse = scene("/ellipse.toml", {});
+  const solver::Solution solution = solver::solve(ellipse);
+  const double effective_modulus = 210e9 / (1.0 - 0.3 * 0.3) / 2.0;
+  const analytic::HertzEllipse exact = analytic::hertz_ellipse(1000.0, 0.018, 0.0063, effective_modulus);
+  // Order 1.5 to 2 in cells: 62 x 32 across the ellipse.
+  EXPECT_NEAR(solution.peak_pressure / exact.peak_pressure, 1.0, 1e-3);
+  EXPECT_NEAR(solution.contact_radius / std::sqrt(exact.semi_axis_1 * exact.semi_axis_2), 1.0, 3e-4);
+  EXPECT_NEAR(solution.approach / exact.approach, 1.0, 3e-4);
+}
+
+}  // namespace
+}  // namespace slipstick::convergence

@@ -1,0 +1,207 @@
+// The program as users run it: what goes out, where, and with which exit code.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+namespace {
+
+using nlohmann::json;
+using testing::AllOf;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+const std::string kProgram = SLIPSTICK_PROGRAM;
+const std::string kScenes = SLIPSTICK_SCENES;
+const std::string kSmall = " --set grid.cells=[24,24]";
+
+struct ProgramRun {
+  int exit_code;
+  std::string output;  ///< standard output and error together
+};
+
+ProgramRun run(const std::string& arguments) {
+  FILE* const pipe = popen((kProgram + " " + arguments + " 2>&1").c_str(), "r");
+  ProgramRun result{-1, ""};
+  std::array<char, 4096> buffer{};
+  while (const std::size_t size = fread(buffer.data(), 1, buffer.size(), pipe))
+    result.output.append(buffer.data(), size);
+  const int status = pclose(pipe);
+  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return result;
+}
+
+std::string solve(const std::string& scene) { return "solve " + kScenes + "/" + scene + ".toml" + kSmall; }
+
+fs::path temporary(const std::string& name) {
+  const fs::path folder =
+      fs::path(testing::TempDir()) / ("slipstick-program-test-" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  return folder / name;
+}
+
+TEST(Program, EveryCommandHasHelpWithAnExample) {
+  for (const char* command : {"exact", "solve", "report"}) {
+    const ProgramRun help = run(std::string(command) + " --help");
+    EXPECT_EQ(help.exit_code, 0);
+    EXPECT_THAT(help.output, AllOf(HasSubstr("Example"), HasSubstr("slipstick " + std::string(command)),
+                                   HasSubstr("--json"), HasSubstr("--quiet")));
+  }
+}
+
+TEST(Program, BadCommandLineIsExitCode2) {
+  EXPECT_EQ(run("").exit_code, 2);
+  EXPECT_EQ(run("frobnicate").exit_code, 2);
+  EXPECT_EQ(run("solve").exit_code, 2);
+  EXPECT_EQ(run("solve --no-such-option").exit_code, 2);
+}
+
+TEST(Program, SolveWritesEveryKeyOfTheContract) {
+  const ProgramRun out = run(solve("paper") + " --json -");
+  ASSERT_EQ(out.exit_code, 0) << out.output;
+  const json result = json::parse(out.output);
+  for (const char* key : {"status",
+                          "method",
+                          "operator",
+                          "model",
+                          "cells",
+                          "cell_size",
+                          "contact_cells",
+                          "stick_cells",
+                          "contact_radius",
+                          "stick_radius",
+                          "stick_radius_counted",
+                          "stick_ratio",
+                          "twist_angle",
+                          "moment",
+                          "moment_limit",
+                          "moment_ratio",
+                          "twist",
+                          "displacement",
+                          "iterations",
+                          "operator_applications",
+                          "certificate",
+                          "seconds",
+                          "peak_bytes",
+                          "provenance",
+                          "twist_error",
+                          "stick_radius_error",
+                          "traction_error"}) {
+    EXPECT_TRUE(result.contains(key)) << key;
+  }
+  for (const char* key : {"gap", "moment", "force", "friction_bound"})
+    EXPECT_TRUE(result["certificate"][key].is_number());
+  for (const char* key : {"setup", "pressure", "traction", "total"})
+    EXPECT_TRUE(result["seconds"][key].is_number());
+  for (const char* key : {"version", "commit", "compiler", "flags", "libraries", "cpu", "threads"}) {
+    EXPECT_TRUE(result["provenance"].contains(key)) << key;
+  }
+  EXPECT_EQ(result["status"], "converged");
+  EXPECT_DOUBLE_EQ(result["moment_ratio"], 0.9);
+}
+
+TEST(Program, EverySceneInTheRepositorySolves) {
+  int scenes = 0;
+  for (const auto& entry : fs::directory_iterator(kScenes)) {
+    const ProgramRun out = run("solve " + entry.path().string() + kSmall);
+    EXPECT_EQ(out.exit_code, 0) << entry.path() << out.output;
+    ++scenes;
+  }
+  EXPECT_GE(scenes, 5);
+}
+
+TEST(Program, GrossSlipIsRefusedWithItsLimit) {
+  const ProgramRun ratio = run(solve("paper") + " --set load.moment_ratio=1.0");
+  EXPECT_EQ(ratio.exit_code, 2);
+  EXPECT_THAT(ratio.output, AllOf(HasSubstr("load.moment_ratio"), HasSubstr("gross slip")));
+
+  const fs::path scene = temporary("gross.toml");
+  std::ifstream paper(kScenes + "/paper.toml");
+  std::ofstream copy(scene);
+  for (std::string line; std::getline(paper, line);) {
+    copy << (line.starts_with("moment_ratio") ? "moment = 0.05" : line) << '\n';
+  }
+  copy.close();
+  const ProgramRun moment = run("solve " + scene.string() + kSmall);
+  EXPECT_EQ(moment.exit_code, 2);
+  EXPECT_THAT(moment.output, AllOf(HasSubstr("load.moment = 0.05 N m"), HasSubstr("below 0.0287"),
+                                   HasSubstr(scene.string())));
+}
+
+TEST(Program, ASolveThatMissesItsToleranceIsExitCode1AndStillWritten) {
+  const fs::path file = temporary("missed.json");
+  const ProgramRun out = run(solve("paper") + " --set solver.max_iterations=3 --json " + file.string());
+  EXPECT_EQ(out.exit_code, 1);
+  EXPECT_THAT(out.output, HasSubstr("too many iterations"));
+  const json result = json::parse(std::ifstream(file));
+  EXPECT_EQ(result["status"], "not_converged");
+  EXPECT_EQ(result["iterations"], 3);
+}
+
+TEST(Program, BadScenesAreExitCode2AndSayWhatIsAllowed) {
+  const ProgramRun unknown = run(solve("paper") + " --set contact.fricton=0.2");
+  EXPECT_EQ(unknown.exit_code, 2);
+  EXPECT_THAT(unknown.output, AllOf(HasSubstr("contact.fricton"), HasSubstr("contact.friction")));
+  const ProgramRun missing = run("solve no-such-scene.toml");
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_THAT(missing.output, HasSubstr("no-such-scene.toml"));
+  EXPECT_EQ(run("exact --moment-ratio 1.5").exit_code, 2);
+  EXPECT_EQ(run("exact --moment-ratio 0.5 --twist 0.1").exit_code, 2);
+}
+
+TEST(Program, ResultIsNotLostWhenTheFieldsCannotBeWritten) {
+  const fs::path file = temporary("kept.json");
+  const ProgramRun out = run(solve("paper") + " --fields /no/such/folder/f.h5 --json " + file.string());
+  EXPECT_EQ(out.exit_code, 2);
+  EXPECT_THAT(out.output, HasSubstr("/no/such/folder/f.h5"));
+  EXPECT_EQ(json::parse(std::ifstream(file))["status"], "converged");
+}
+
+TEST(Program, QuietPrintsNothing) { EXPECT_EQ(run(solve("paper") + " --quiet").output, ""); }
+
+TEST(Program, FieldsHoldTheColumnsOfTheContract) {
+  const fs::path file = temporary("fields.csv");
+  ASSERT_EQ(run(solve("paper") + " --fields " + file.string()).exit_code, 0);
+  std::ifstream stream(file);
+  std::string header;
+  std::getline(stream, header);
+  EXPECT_THAT(header, testing::StartsWith("x1,x2,pressure,q1,q2,slip1,slip2,stick"));
+}
+
+// A run that wrote its pressure can be given it back.
+TEST(Program, PressureFromAFileGivesTheSameAnswer) {
+  const fs::path fields = temporary("pressure.h5");
+  const std::string extent = " --set grid.extent=[1.1e-3,1.1e-3]";
+  const ProgramRun first = run(solve("paper") + extent + " --json - --fields " + fields.string());
+  ASSERT_EQ(first.exit_code, 0) << first.output;
+  const ProgramRun second =
+      run(solve("paper") + extent +
+          " --json - --set contact.pressure=file --set contact.pressure_file=" + fields.string());
+  ASSERT_EQ(second.exit_code, 0) << second.output;
+  const double twist = json::parse(first.output)["twist_angle"];
+  EXPECT_NEAR(json::parse(second.output)["twist_angle"].get<double>() / twist, 1.0, 1e-12);
+}
+
+TEST(Program, ExactWritesEveryKeyOfTheContract) {
+  const ProgramRun out = run("exact --stick-ratio 0.5 --radius 0.25,0.75 --json -");
+  ASSERT_EQ(out.exit_code, 0) << out.output;
+  const json result = json::parse(out.output);
+  for (const char* key : {"moment_ratio", "moment_deficit", "stick_ratio", "stick_complement", "twist",
+                          "moment", "tangent_stiffness", "traction", "printed"}) {
+    EXPECT_TRUE(result.contains(key)) << key;
+  }
+  ASSERT_EQ(result["traction"].size(), 2);
+  EXPECT_DOUBLE_EQ(result["traction"][1]["value"], std::sqrt(1.0 - 0.75 * 0.75));  // slip: mu p
+  EXPECT_DOUBLE_EQ(result["tangent_stiffness"], 16.0 / 3.0 * 0.125);
+}
+
+}  // namespace
