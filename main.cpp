@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <iostream>
@@ -35,9 +34,7 @@ void write_json(const std::string& path, const Json& result) {
   if (!file.flush()) throw std::invalid_argument(fmt::format("--json {}: cannot be written", path));
 }
 
-}  // namespace
-
-int main(int argc, char** argv) {
+int run(int argc, char** argv) {
   CLI::App app{"slipstick: the elastic torsional contact with slip and stick, exact and numerical, compared"};
   app.set_version_flag("--version", std::string(SLIPSTICK_VERSION));
   app.require_subcommand(1);
@@ -65,16 +62,28 @@ int main(int argc, char** argv) {
     if (!quiet && json_path != "-") std::cout << text.str();
     if (!json_path.empty() && !result.empty()) write_json(json_path, result);
   };
-  try {
-    for (std::size_t i = 0; i < commands.size(); ++i) {
-      if (!subcommands[i]->parsed()) continue;
-      const int exit_code = commands[i](text, result);
-      write_out();
-      return exit_code;
+  for (std::size_t i = 0; i < commands.size(); ++i) {
+    if (!subcommands[i]->parsed()) continue;
+    int exit_code = kCouldNotJudge;
+    try {
+      exit_code = commands[i](text, result);
+    } catch (const std::exception&) {
+      if (!result.empty()) write_out();  // what was computed before the error is not lost
+      throw;
     }
-  } catch (const std::exception& error) {
-    fmt::print(stderr, "slipstick: {}\n", error.what());
-    if (!result.empty()) write_out();  // what was computed before the error is not lost
+    write_out();
+    return exit_code;
   }
   return kCouldNotJudge;
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "slipstick: " << error.what() << '\n';
+    return kCouldNotJudge;
+  }
 }

@@ -37,6 +37,7 @@ Errors compare(const solver::Solution& solution, const Oracle& oracle) {
   const ArrayXd& pressure = solution.normal.pressure;
   return {
       .twist = solution.twist_angle / oracle.twist_angle - 1.0,
+      .moment = solution.moment / oracle.moment - 1.0,
       .moment_limit = solution.moment_limit / oracle.moment_limit - 1.0,
       .stick_radius = solution.stick_radius_counted / oracle.stick_radius - 1.0,
       .contact_radius = solution.contact_radius / oracle.contact_radius - 1.0,

@@ -19,6 +19,7 @@ struct FieldError {
 /// is zero (no load), the twist and traction errors are NaN.
 struct Errors {
   double twist;
+  double moment;
   double moment_limit;
   double stick_radius;
   double contact_radius;

@@ -48,7 +48,7 @@ Json field_error_json(const FieldError& error, const std::string& reason) {
 
 void add_errors(Json& json, const Solution& solution, const OracleAnswer& exact) {
   if (!exact.oracle) {
-    for (const char* key : {"twist_error", "stick_radius_error", "traction_error"}) {
+    for (const char* key : {"twist_error", "moment_error", "stick_radius_error", "traction_error"}) {
       set_number(json, key, NAN, exact.reason);
     }
     return;
@@ -57,6 +57,7 @@ void add_errors(Json& json, const Solution& solution, const OracleAnswer& exact)
   const Errors errors = compare(solution, oracle);
   const std::string reason = "the exact value is zero, or the result is not a number";
   set_number(json, "twist_error", errors.twist, reason);
+  set_number(json, "moment_error", errors.moment, reason);
   set_number(json, "moment_limit_error", errors.moment_limit, reason);
   set_number(json, "stick_radius_error", errors.stick_radius, reason);
   set_number(json, "contact_radius_error", errors.contact_radius, reason);
@@ -161,7 +162,8 @@ std::string solve_text(const Json& r) {
   line("contact radius", number(r["contact_radius"]) + " m" + error_of(r, "contact_radius_error"));
   line("peak pressure", number(r["peak_pressure"]) + " Pa" + error_of(r, "peak_pressure_error"));
   line("moment", fmt::format("{} N m = {} of the limit {} N m", number(r["moment"]),
-                             number(r["moment_ratio"]), number(r["moment_limit"])));
+                             number(r["moment_ratio"]), number(r["moment_limit"])) +
+                     error_of(r, "moment_error"));
   line("twist", number(r["twist_angle"]) + " rad" + error_of(r, "twist_error"));
   line("stick radius", number(r["stick_radius"]) + " m" + error_of(r, "stick_radius_error"));
   if (r["traction_error"].is_object()) {

@@ -231,7 +231,8 @@ def equation_5_digits(report, data_dir):
     table = rows(report, "equation_5_digits")
     complement, error = column(table, "stick_complement"), np.abs(column(table, "relative_error"))
     figure, axis = style.panels(1, 1, 3.6)
-    axis.loglog(complement, error, ".-", color=style.BLUE, linewidth=0.8, label="Eq. (5), double precision")
+    shown = np.where(error > 0, error, np.nan)  # right to the last bit: nothing to show on a log scale
+    axis.loglog(complement, shown, ".-", color=style.BLUE, linewidth=0.8, label="Eq. (5), double precision")
     axis.axhline(np.finfo(float).eps, color=style.GREY, linestyle=":", label="rounding of one number, 2.2×10⁻¹⁶")
     axis.invert_xaxis()
     axis.set(xlabel="$1 - a_s/a$   (towards full stick →)", ylabel="relative error of the moment")
@@ -253,8 +254,13 @@ def certificate(report, data_dir):
     for table, label, colour, marker in _by_method(report):
         gap = column(table, "certificate.gap")
         axis.semilogy(column(table, "moment_ratio"), gap, marker + "-", color=colour, linewidth=0.8,
-                      label=label)
+                      label=f"circular contact, {label}")
         sentences.append(f"{sci(np.nanmin(gap))} to {sci(np.nanmax(gap))} of the energy by {label}")
+    ellipse = rows(report, "ellipse")
+    gap, across = column(ellipse, "certificate.gap"), [rows(row, "cells")[0] for row in ellipse]
+    axis.semilogy(column(ellipse, "moment_ratio"), gap, "D", color=style.VERMILION, markerfacecolor="none",
+                  label=f"elliptic contact, {', '.join(f'{n}' for n in across)} cells along it")
+    sentences[-1] += (f", and {sci(np.nanmin(gap))} to {sci(np.nanmax(gap))} on an elliptic contact, whatever the mesh")
     axis.set(xlabel=LOAD_LABEL, ylabel="gap / energy", xlim=(0, 1))
     style.whole_decades(axis)
     style.legend_on_top(figure, axis.get_legend_handles_labels()[0], 2)

@@ -78,4 +78,4 @@ def label_cells(axis, study, path):
                                   np.abs(column(study.table, path))):
         if np.isfinite(time) and np.isfinite(error):
             axis.annotate(f"{cells:.0f}", (time, error), xytext=(-3, -5), textcoords="offset points", ha="right",
-                          va="top", fontsize=7.5, color=study.look["color"])
+                          va="top", fontsize=7.5, color=study.look["color"], path_effects=style.HALO)

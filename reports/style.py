@@ -3,6 +3,7 @@
 import matplotlib
 import numpy as np
 from matplotlib.figure import Figure
+from matplotlib.patheffects import withStroke
 
 # Okabe and Ito (2008): told apart with any colour vision.
 BLUE, SKY, VERMILION = "#0072B2", "#56B4E9", "#D55E00"
@@ -10,6 +11,8 @@ GREEN, PURPLE = "#009E73", "#CC79A7"
 BLACK, GREY = "#000000", "#8a8a8a"
 
 DIVERGING, SEQUENTIAL, ERRORS = "RdBu_r", "viridis", "magma_r"
+
+HALO = [withStroke(linewidth=2.5, foreground="white")]  # keeps text readable over lines
 
 WIDTH = 7.2  # inches
 

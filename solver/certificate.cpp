@@ -19,7 +19,7 @@ Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_b
   const Eigen::Index cells = friction_bound.size();
   const auto& q = field.traction;
   const double total_friction = friction_bound.sum();
-  if (!(total_friction > 0.0)) return {};  // no friction: no traction, nothing to violate
+  if (total_friction == 0.0 && (q == 0.0).all()) return {};  // no friction, no traction: nothing to violate
   const double energy = 0.5 * (q * field.elastic_displacement).sum();
   const Eigen::ArrayXd gap = dot_products(q, field.slip) + friction_bound * norms(field.slip);
   const double limit = (friction_bound * norms(rotation)).sum();
@@ -28,7 +28,8 @@ Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_b
   const double total_gap = gap.sum();
   certificate.gap = total_gap == 0.0 ? 0.0 : total_gap / energy;
   const double imbalance = std::abs((q * rotation).sum() - moment);
-  certificate.moment = imbalance == 0.0 ? 0.0 : imbalance / limit;  // one cell on the axis: the limit is 0 too
+  certificate.moment =
+      imbalance == 0.0 ? 0.0 : imbalance / limit;  // one cell on the axis: the limit is 0 too
   certificate.force = std::hypot(q.head(cells).sum(), q.tail(cells).sum()) / total_friction;
   const Eigen::ArrayXd size = norms(q);
   double worst = 0.0;

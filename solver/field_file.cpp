@@ -169,6 +169,7 @@ std::vector<Column> read_hdf5_columns(const path& file, const std::vector<std::s
 void write_csv(const path& file, const std::vector<Column>& columns) {
   std::ofstream stream(file);
   std::vector<std::string> names;
+  names.reserve(columns.size());
   for (const Column& column : columns) names.push_back(column.name);
   stream << fmt::format("{}\n", fmt::join(names, ","));
   for (Index row = 0; row < columns.front().values.size(); ++row) {
@@ -208,6 +209,7 @@ std::vector<Column> kept_rows(const std::vector<Column>& columns, const ArrayXd&
     if (keep[i] != 0.0) rows.push_back(i);
   }
   std::vector<Column> kept;
+  kept.reserve(columns.size());
   for (const Column& column : columns) kept.push_back({column.name, column.values(rows)});
   return kept;
 }
@@ -220,7 +222,7 @@ std::vector<Column> read_columns(const path& file, const std::vector<std::string
 
 Eigen::ArrayXXd read_height_map(const path& file) {
   if (is_hdf5(file)) {
-    const Eigen::ArrayXXd heights = Hdf5File(file, Hdf5File::Mode::read).read("height", 2);
+    Eigen::ArrayXXd heights = Hdf5File(file, Hdf5File::Mode::read).read("height", 2);
     if (!heights.isFinite().all()) throw InputError(file.string(), "height: allowed: finite numbers only");
     return heights;
   }

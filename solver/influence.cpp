@@ -133,15 +133,15 @@ Parity parity(Component component) {
 
 CellIntegrals cell_integrals(double x, double y, double h1, double h2) {
   // An elongated cell is cut into nearly square parts, so that "near" means the same along both sides.
-  const double parts1 = std::max(1.0, std::round(h1 / h2));
-  const double parts2 = std::max(1.0, std::round(h2 / h1));
+  const int parts1 = std::max(1, static_cast<int>(std::lround(h1 / h2)));
+  const int parts2 = std::max(1, static_cast<int>(std::lround(h2 / h1)));
   const double part_h1 = h1 / parts1;
   const double part_h2 = h2 / parts2;
   CellIntegrals sum{};
-  for (double i = 0.0; i < parts1; i += 1.0) {
-    for (double j = 0.0; j < parts2; j += 1.0) {
-      const double part_x = x + (i - 0.5 * (parts1 - 1.0)) * part_h1;
-      const double part_y = y + (j - 0.5 * (parts2 - 1.0)) * part_h2;
+  for (int i = 0; i < parts1; ++i) {
+    for (int j = 0; j < parts2; ++j) {
+      const double part_x = x + (i - 0.5 * (parts1 - 1)) * part_h1;
+      const double part_y = y + (j - 0.5 * (parts2 - 1)) * part_h2;
       const double offset = std::max(std::abs(part_x) / part_h1, std::abs(part_y) / part_h2);
       const CellIntegrals part = offset < kClosedFormOffset
                                      ? closed_form(part_x, part_y, part_h1, part_h2)

@@ -43,6 +43,11 @@ class LinearOperator {
     ++applications_;
   }
 
+  void apply(const Eigen::ArrayXd& traction, Eigen::ArrayXd& displacement) {
+    apply(std::span(traction.data(), static_cast<std::size_t>(traction.size())),
+          std::span(displacement.data(), static_cast<std::size_t>(displacement.size())));
+  }
+
   const Grid& grid() const { return grid_; }
   std::size_t inputs() const { return kernel_.inputs; }
   std::size_t outputs() const { return kernel_.outputs; }

@@ -85,18 +85,21 @@ ArrayXd make_gap(const Surface& surface, const Grid& grid, double unit, const Ei
   const ArrayXd r = (x1.square() + x2.square()).sqrt();
   switch (surface.shape) {
     case Shape::sphere:
-      return r.square() / (2.0 * surface.radius / unit);
+      return r.square() / (2.0 * over_unit(surface.radius, unit));
     case Shape::ellipsoid:
-      return x1.square() / (2.0 * surface.radius_1 / unit) + x2.square() / (2.0 * surface.radius_2 / unit);
+      return x1.square() / (2.0 * over_unit(surface.radius_1, unit)) +
+             x2.square() / (2.0 * over_unit(surface.radius_2, unit));
     case Shape::cone:
       return surface.slope * r;
     case Shape::flat_punch:
-      return (r <= surface.radius / unit)
+      return (r <= over_unit(surface.radius, unit))
           .select(ArrayXd::Zero(r.size()),
                   ArrayXd::Constant(r.size(), std::numeric_limits<double>::infinity()));
     case Shape::height_map: {
       const Eigen::ArrayXXd by_x2 = heights.transpose();  // column-major: x2 runs fastest
-      return (by_x2.reshaped() - heights.minCoeff()) / unit;
+      return (by_x2.reshaped() - heights.minCoeff()).unaryExpr([unit](double height) {
+        return over_unit(height, unit);
+      });
     }
   }
   throw std::logic_error("unknown shape");
@@ -107,6 +110,13 @@ double physical_memory() {
 }
 
 }  // namespace
+
+double over_unit(double value, double unit) {
+  constexpr int bits = 40;
+  int exponent = 0;
+  const double mantissa = std::frexp(value / unit, &exponent);
+  return std::ldexp(std::nearbyint(std::ldexp(mantissa, bits)), exponent - bits);
+}
 
 double predicted_bytes(const Scene& scene, const Grid& grid, bool pressure_coupling) {
   const OperatorOptions options{.threads = scene.threads};
@@ -140,19 +150,23 @@ Model make_model(const Scene& scene) {
 
   model.length_unit = grid.h1;
   model.stress_unit = pair.shear_modulus();
-  model.grid = {grid.n1, grid.n2, 1.0, grid.h2 / grid.h1};
-  model.pair = {1.0, pair.poisson_compliance * model.stress_unit, pair.normal_compliance * model.stress_unit,
-                pair.mismatch * model.stress_unit};
+  const double compliance_unit = pair.shear_compliance;
+  model.grid = {grid.n1, grid.n2, 1.0, over_unit(grid.h2, grid.h1)};
+  model.pair = {.shear_compliance = 1.0,
+                .poisson_compliance = over_unit(pair.poisson_compliance, compliance_unit),
+                .normal_compliance = over_unit(pair.normal_compliance, compliance_unit),
+                .mismatch = over_unit(pair.mismatch, compliance_unit)};
   model.friction = scene.friction;
-  if (scene.normal_load) model.normal_load = *scene.normal_load / model.force_unit();
+  if (scene.normal_load) model.normal_load = over_unit(*scene.normal_load, model.force_unit());
   model.gap = make_gap(scene.surface, model.grid, model.length_unit, heights);
 
   const bool sphere = scene.surface.shape == Shape::sphere;
   if (model.normal_load && (sphere || scene.surface.shape == Shape::ellipsoid)) {
-    model.hertz = hertz_contact(*model.normal_load,
-                                (sphere ? scene.surface.radius : scene.surface.radius_1) / model.length_unit,
-                                (sphere ? scene.surface.radius : scene.surface.radius_2) / model.length_unit,
-                                model.pair.effective_modulus());
+    model.hertz =
+        hertz_contact(*model.normal_load,
+                      over_unit(sphere ? scene.surface.radius : scene.surface.radius_1, model.length_unit),
+                      over_unit(sphere ? scene.surface.radius : scene.surface.radius_2, model.length_unit),
+                      model.pair.effective_modulus());
   }
   if (!model.pressure_coupling) {
     model.left_out.push_back({"K13, K23", pair.mismatch == 0.0

@@ -34,6 +34,11 @@ struct Model {
   double moment_unit() const { return force_unit() * length_unit; }
 };
 
+/// A value over its unit, as models hold it: rounded to 40 bits. Twelve digits are more than any scene's data
+/// have, and the roundings that came in with the scene's units, which conjugate gradients would amplify, are
+/// gone.
+double over_unit(double value, double unit);
+
 /// Throws InputError for a height map that cannot be used and for cells that do not fit in memory.
 Model make_model(const Scene& scene);
 

@@ -17,11 +17,6 @@ constexpr int kRefresh = 50;
 /// The load is imposed by scaling, so it can only be off by rounding.
 constexpr double kLoadTolerance = 1e-12;
 
-void apply(LinearOperator& op, const ArrayXd& in, ArrayXd& out) {
-  op.apply({in.data(), static_cast<std::size_t>(in.size())},
-           {out.data(), static_cast<std::size_t>(out.size())});
-}
-
 /// Duality gap of the convex program: the energy would fall by no more than this if the load moved to where
 /// the surfaces are closest.
 double complementarity_gap(const ArrayXd& p, const ArrayXd& u, const ArrayXd& opening) {
@@ -56,7 +51,7 @@ NormalSolution solve_normal_contact(LinearOperator& op, const NormalProblem& pro
 
   for (solution.iterations = 0; solution.iterations < options.max_iterations; ++solution.iterations) {
     const bool fresh = set_changed || solution.iterations % kRefresh == 0;
-    if (fresh) apply(op, p, u);
+    if (fresh) op.apply(p, u);
     opening = u + problem.gap;  // the gap as deformed, up to the rigid approach; infinite where unreachable
     contact = (p > 0.0).cast<double>();
     const double contact_cells = contact.sum();
@@ -81,7 +76,7 @@ NormalSolution solve_normal_contact(LinearOperator& op, const NormalProblem& pro
     const double beta = set_changed ? 0.0 : square / previous_square;
     previous_square = square;
     direction = residual + beta * contact * direction;
-    apply(op, direction, response);
+    op.apply(direction, response);
     const double mean_response = (contact * response).sum() / contact_cells;
     const double curvature = (direction * (response - mean_response)).sum();
     if (square > 0.0 && !(curvature > 0.0)) {

@@ -16,11 +16,6 @@ using Eigen::ArrayXd;
 constexpr int kRefresh = 50;
 constexpr int kProgressEvery = 20;
 
-void apply(LinearOperator& op, const ArrayXd& in, ArrayXd& out) {
-  op.apply({in.data(), static_cast<std::size_t>(in.size())},
-           {out.data(), static_cast<std::size_t>(out.size())});
-}
-
 /// A factor a cell, for both components.
 ArrayXd both(const ArrayXd& cell_values) { return cell_values.replicate(2, 1); }
 
@@ -39,54 +34,175 @@ void require_valid(const TorsionProblem& problem, double limit) {
   if (problem.twist && !std::isfinite(*problem.twist)) throw std::invalid_argument("twist: allowed: finite");
 }
 
-/// The state that Section 4 carries from step to step, under the paper's names.
-struct Iteration {
-  const ArrayXd& bound;  // mu p
-  const ArrayXd& t;      // (-x2, x1)
-  ArrayXd& q;
-  ArrayXd& u;  // K q
-  ArrayXd& s;
-  ArrayXd& stick;  // A_S
-  ArrayXd contact;
-  ArrayXd d = {}, Kd = {}, q0 = {};
-  double S = 0.0, S0 = 1.0, theta = 0.0, alpha = 0.0;
-};
+/// Section 4 of the paper, one member a step, under the paper's names.
+class PaperMethod {
+ public:
+  PaperMethod(LinearOperator& op, const TorsionProblem& problem, const PaperOptions& options)
+      : op_(op),
+        problem_(problem),
+        options_(options),
+        t_(rotation_field(op.grid())),
+        initial_(problem.initial_displacement.size() > 0 ? problem.initial_displacement
+                                                         : ArrayXd::Zero(2 * op.grid().cells())),
+        total_friction_(problem.friction_bound.sum()),
+        contact_((problem.friction_bound > 0.0).cast<double>()),
+        stick_(contact_),
+        q_(ArrayXd::Zero(t_.size())),
+        u_(q_),
+        s_(q_),
+        d_(q_),
+        Kd_(q_),
+        q0_(q_) {}
 
-/// Step 2, Eqs. (14)-(16): the twist that fits u best on A_S.
-double estimate_twist(const Iteration& it, const ArrayXd& u) {
-  const ArrayXd on_stick = both(it.stick) * it.t;
-  return (on_stick * u).sum() / on_stick.square().sum();
-}
+  TorsionSolution run() {
+    const bool unloaded = problem_.moment.value_or(problem_.twist.value_or(0.0)) == 0.0 &&
+                          problem_.initial_displacement.size() == 0;
+    if (unloaded || total_friction_ == 0.0) return finish(Status::converged, "");
+    // The initial guess, Eq. (13): tractions like a rotation, scaled to the moment, all cells in stick.
+    if (problem_.moment) balance_moment();
+    for (iteration_ = 1; iteration_ <= options_.max_iterations; ++iteration_) {
+      /*  1 */ compute_displacements();
+      if (!can_hold()) return empty_stick_area();
+      /*  2 */ estimate_twist();
+      /*  3 */ compute_slip();
+      if (!std::isfinite(S_)) return non_finite();
+      /*  4 */ choose_direction();
+      /*  5 */ S0_ = S_;
+      /*  6 */ find_step_length();
+      if (S_ > 0.0 && !(curvature_ > 0.0)) return indefinite();
+      /*  7 */ q0_ = q_;           // Eq. (20)
+      /*  8 */ q_ -= alpha_ * d_;  // Eq. (21)
+      /*  9 */ enforce_coulomb();
+      /* 10 */ if (problem_.moment)
+        balance_moment();
+      /* 11 */ if (converged())
+        return finish(Status::converged, "");
+    }
+    iteration_ = options_.max_iterations;
+    return finish(
+        Status::not_converged,
+        fmt::format("too many iterations: change {:.3g} of the sum of mu p after {}, asked for {:.3g}",
+                    change_, iteration_, options_.tolerance));
+  }
 
-/// Step 9, Eqs. (22), (23). Returns whether any cell changed its state.
-bool enforce_coulomb(Iteration& it) {
-  const Index cells = it.bound.size();
-  bool changed = false;
-  for (Index i = 0; i < cells; ++i) {
-    double& q1 = it.q[i];
-    double& q2 = it.q[i + cells];
-    if (it.stick[i] != 0.0) {
-      const double size = std::hypot(q1, q2);
-      if (size > it.bound[i]) {
-        q1 *= it.bound[i] / size;
-        q2 *= it.bound[i] / size;
-        it.stick[i] = 0.0;
-        changed = true;
-      }
-    } else if (it.contact[i] != 0.0 && q1 * it.s[i] + q2 * it.s[i + cells] > 0.0) {
-      it.stick[i] = 1.0;
-      changed = true;
+ private:
+  /// Step 1, Eq. (12); by recurrence where no cell changed its state.
+  void compute_displacements() {
+    const bool recur = !changed_ && iteration_ % kRefresh != 0;
+    if (recur) {
+      u_ -= alpha_ * Kd_;
+    } else {
+      op_.apply(q_, u_);
     }
   }
-  return changed;
-}
 
-/// Step 10, Eqs. (24), (25): a multiple of t on A_S restores the moment.
-void balance_moment(Iteration& it, double moment) {
-  const ArrayXd on_stick = both(it.stick) * it.t;
-  const double b = (moment - (it.q * it.t).sum()) / on_stick.square().sum();
-  it.q += b * on_stick;
-}
+  /// Whether A_S is empty; a cell on the axis alone holds no moment and fixes no twist.
+  bool can_hold() const { return problem_.twist ? stick_.any() : (both(stick_) * t_).square().sum() > 0.0; }
+
+  /// Step 2, Eqs. (14)-(16): the twist that fits the displacements best on A_S.
+  void estimate_twist() {
+    const ArrayXd on_stick = both(stick_) * t_;
+    phi_ = problem_.twist ? *problem_.twist : (on_stick * (u_ + initial_)).sum() / on_stick.square().sum();
+  }
+
+  /// Step 3: relative slip distances, Eq. (8), and their square sum on A_S, Eq. (17).
+  void compute_slip() {
+    s_ = both(contact_) * (u_ + initial_ - phi_ * t_);
+    S_ = (both(stick_) * s_.square()).sum();
+  }
+
+  /// Step 4, Eq. (18); after a change of A_S the conjugate directions start afresh.
+  void choose_direction() {
+    const double theta = changed_ ? 0.0 : 1.0;
+    d_ = both(stick_) * (s_ + (S_ * theta / S0_) * d_);
+  }
+
+  /// Step 6, Eq. (19).
+  void find_step_length() {
+    op_.apply(d_, Kd_);
+    curvature_ = (d_ * Kd_).sum();
+    alpha_ = S_ > 0.0 ? (s_ * d_).sum() / curvature_ : 0.0;
+  }
+
+  /// Step 9, Eqs. (22), (23).
+  void enforce_coulomb() {
+    const Index cells = contact_.size();
+    changed_ = false;
+    for (Index i = 0; i < cells; ++i) {
+      const double bound = problem_.friction_bound[i];
+      double& q1 = q_[i];
+      double& q2 = q_[i + cells];
+      if (stick_[i] != 0.0) {
+        const double size = std::hypot(q1, q2);
+        if (!(size > bound)) continue;
+        q1 *= bound / size;
+        q2 *= bound / size;
+        stick_[i] = 0.0;
+        changed_ = true;
+      } else if (contact_[i] != 0.0 && q1 * s_[i] + q2 * s_[i + cells] > 0.0) {
+        stick_[i] = 1.0;
+        changed_ = true;
+      }
+    }
+  }
+
+  /// Step 10, Eqs. (24), (25): a multiple of t on A_S restores the moment. The directions carry no moment, so
+  /// b is rounding unless step 9 changed something.
+  void balance_moment() {
+    const ArrayXd on_stick = both(stick_) * t_;
+    const double square = on_stick.square().sum();
+    if (square > 0.0) q_ += (*problem_.moment - (q_ * t_).sum()) / square * on_stick;
+  }
+
+  /// Step 11, Eq. (26).
+  bool converged() {
+    change_ = norms(q_ - q0_).sum() / total_friction_;
+    if (options_.progress && iteration_ % kProgressEvery == 0) options_.progress(iteration_, change_);
+    return change_ <= options_.tolerance;
+  }
+
+  TorsionSolution empty_stick_area() {
+    return finish(Status::not_converged,
+                  fmt::format("empty stick area in iteration {}: every cell slips", iteration_));
+  }
+  TorsionSolution non_finite() {
+    return finish(Status::not_converged,
+                  fmt::format("non-finite slip in iteration {}: S = {}", iteration_, S_));
+  }
+  TorsionSolution indefinite() {
+    return finish(Status::not_converged, fmt::format("indefinite operator in iteration {}: d.Kd = {}, S = {}",
+                                                     iteration_, curvature_, S_));
+  }
+
+  /// What is reported of a result is computed from its tractions afresh, not carried along.
+  TorsionSolution finish(Status status, const std::string& message) {
+    op_.apply(q_, u_);
+    if (problem_.twist || can_hold()) estimate_twist();
+    compute_slip();
+    return {.status = status,
+            .message = message,
+            .traction = q_,
+            .elastic_displacement = u_,
+            .slip = s_,
+            .stick = stick_,
+            .twist = phi_,
+            .change = change_,
+            .iterations = iteration_};
+  }
+
+  LinearOperator& op_;
+  const TorsionProblem& problem_;
+  const PaperOptions& options_;
+  const ArrayXd t_;        // (-x2, x1)
+  const ArrayXd initial_;  // (u1, u2) by the pressure
+  const double total_friction_;
+  const ArrayXd contact_;  // A_C
+  ArrayXd stick_;          // A_S
+  ArrayXd q_, u_, s_, d_, Kd_, q0_;
+  double phi_ = 0.0, S_ = 0.0, S0_ = 1.0, alpha_ = 0.0, curvature_ = 0.0, change_ = 0.0;
+  bool changed_ = true;  // whether A_S is new: displacements afresh, theta = 0
+  int iteration_ = 0;
+};
 
 }  // namespace
 
@@ -96,110 +212,8 @@ double moment_limit(const Grid& grid, const Eigen::ArrayXd& friction_bound) {
 
 TorsionSolution solve_by_paper_method(LinearOperator& op, const TorsionProblem& problem,
                                       const PaperOptions& options) {
-  const Index cells = op.grid().cells();
-  const ArrayXd t = rotation_field(op.grid());
   require_valid(problem, moment_limit(op.grid(), problem.friction_bound));
-
-  const bool has_initial = problem.initial_displacement.size() > 0;
-  const ArrayXd initial = has_initial ? problem.initial_displacement : ArrayXd::Zero(2 * cells);
-  const double total_friction = problem.friction_bound.sum();
-  const bool unloaded = problem.moment.value_or(problem.twist.value_or(0.0)) == 0.0 && !has_initial;
-
-  TorsionSolution out;
-  out.traction = out.elastic_displacement = out.slip = ArrayXd::Zero(2 * cells);
-  out.stick = (problem.friction_bound > 0.0).cast<double>();
-  Iteration it{.bound = problem.friction_bound,
-               .t = t,
-               .q = out.traction,
-               .u = out.elastic_displacement,
-               .s = out.slip,
-               .stick = out.stick,
-               .contact = out.stick};
-  it.d = it.Kd = it.q0 = ArrayXd::Zero(2 * cells);
-
-  const auto stop = [&](Status status, const std::string& message) {
-    out.status = status;
-    out.message = message;
-    apply(op, it.q, it.u);  // what is reported of a result is computed from it, not carried along
-    const ArrayXd u = it.u + initial;
-    if (problem.twist) {
-      out.twist = *problem.twist;
-    } else if (!unloaded && it.stick.any()) {
-      out.twist = estimate_twist(it, u);
-    }
-    it.s = both(it.contact) * (u - out.twist * t);
-    return out;
-  };
-
-  if (unloaded || total_friction == 0.0) return stop(Status::converged, "");
-
-  // The initial guess, Eq. (13): tractions like a rotation, scaled to the moment, all cells in stick.
-  if (problem.moment) balance_moment(it, *problem.moment);
-  bool fresh = true;
-
-  for (out.iterations = 1; out.iterations <= options.max_iterations; ++out.iterations) {
-    // 1. Displacements, Eq. (12); by recurrence where no cell changed its state.
-    if (fresh || out.iterations % kRefresh == 0) apply(op, it.q, it.u);
-    const ArrayXd u = it.u + initial;
-
-    // 2. The angle of torsion, Eq. (16).
-    if (!it.stick.any()) {
-      return stop(Status::not_converged,
-                  fmt::format("empty stick area in iteration {}: every cell slips", out.iterations));
-    }
-    out.twist = problem.twist ? *problem.twist : estimate_twist(it, u);
-
-    // 3. Relative slip distances, Eq. (8), and their square sum on A_S, Eq. (17).
-    it.s = both(it.contact) * (u - out.twist * t);
-    it.S = (both(it.stick) * it.s.square()).sum();
-    if (!std::isfinite(it.S)) {
-      return stop(Status::not_converged,
-                  fmt::format("non-finite slip in iteration {}: S = {}", out.iterations, it.S));
-    }
-
-    // 4. The descent direction, Eq. (18).
-    it.d = both(it.stick) * (it.s + (it.S * it.theta / it.S0) * it.d);
-
-    // 5. Memorise S.
-    it.S0 = it.S;
-
-    // 6. The step length, Eq. (19).
-    apply(op, it.d, it.Kd);
-    const double curvature = (it.d * it.Kd).sum();
-    if (it.S > 0.0 && !(curvature > 0.0)) {
-      return stop(Status::not_converged, fmt::format("indefinite operator in iteration {}: d.Kd = {}, S = {}",
-                                                     out.iterations, curvature, it.S));
-    }
-    it.alpha = it.S > 0.0 ? (it.s * it.d).sum() / curvature : 0.0;
-
-    // 7. Memorise the current tractions, Eq. (20).
-    it.q0 = it.q;
-
-    // 8. Make the step, Eq. (21).
-    it.q -= it.alpha * it.d;
-
-    // 9. Coulomb's law in each cell, Eqs. (22), (23); a change of A_S restarts the conjugate directions.
-    const bool changed = enforce_coulomb(it);
-    it.theta = changed ? 0.0 : 1.0;
-    fresh = changed;
-    if (!changed) it.u -= it.alpha * it.Kd;
-
-    // 10. Static equilibrium, Eqs. (24), (25). Along d the moment does not change, so b is rounding
-    // without 9.
-    if (problem.moment && it.stick.any()) balance_moment(it, *problem.moment);
-
-    // 11. Convergence, Eq. (26).
-    out.change = norms(it.q - it.q0).sum() / total_friction;
-    if (options.progress && out.iterations % kProgressEvery == 0)
-      options.progress(out.iterations, out.change);
-    if (out.change <= options.tolerance) return stop(Status::converged, "");
-  }
-  out.iterations = options.max_iterations;
-  return stop(
-      Status::not_converged,
-      fmt::format(
-          "too many iterations: change {:.3g} of the sum of mu p after {} iterations, asked for {:.3g}",
-          out.change, out.iterations, options.tolerance));
+  return PaperMethod(op, problem, options).run();
 }
 
 }  // namespace slipstick::solver

@@ -19,7 +19,8 @@ Eigen::ArrayXd pressure_from_file(const Scene& scene, const Model& model) {
   const std::string file = scene.pressure_file.string();
   const auto columns = read_columns(scene.pressure_file, {"x1", "x2", "pressure"});
   const Grid& grid = model.grid;
-  Eigen::ArrayXd pressure = Eigen::ArrayXd::Zero(grid.cells());
+  constexpr double kNotGiven = -1.0;
+  Eigen::ArrayXd pressure = Eigen::ArrayXd::Constant(grid.cells(), kNotGiven);
   for (Index row = 0; row < columns[0].values.size(); ++row) {
     const double i =
         columns[0].values[row] / model.length_unit / grid.h1 + 0.5 * static_cast<double>(grid.n1 - 1);
@@ -38,13 +39,19 @@ Eigen::ArrayXd pressure_from_file(const Scene& scene, const Model& model) {
     if (!(value >= 0.0)) {
       throw InputError(file, fmt::format("row {}: pressure = {}: allowed: zero or positive", row + 1, value));
     }
-    pressure[std::lround(i) * grid.n2 + std::lround(j)] = value / model.stress_unit;
+    double& cell = pressure[std::lround(i) * grid.n2 + std::lround(j)];
+    if (cell != kNotGiven) {
+      throw InputError(file, fmt::format("row {}: ({}, {}) is given a second time; allowed: one row a cell",
+                                         row + 1, columns[0].values[row], columns[1].values[row]));
+    }
+    cell = over_unit(value, model.stress_unit);
   }
+  pressure = pressure.max(0.0);
   if (!(pressure.sum() > 0.0)) throw InputError(file, "pressure is zero everywhere");
   const double load = pressure.sum() * grid.cell_area();
   if (model.normal_load && std::abs(load / *model.normal_load - 1.0) > kLoadTolerance) {
     throw InputError(scene.source.string(), "load.normal", fmt::format("{} N", *scene.normal_load),
-                     fmt::format("left out, or {} N within 1 %, which the pressure in {} carries",
+                     fmt::format("left out, or {:.6g} N within 1 %, which the pressure in {} carries",
                                  load * model.force_unit(), file));
   }
   return pressure;

@@ -84,6 +84,7 @@ Material read_material(SceneReader& reader, const std::string& body) {
 }
 
 TorsionLoad read_torsion(SceneReader& reader) {
+  reader.prefer_overridden({"load.moment_ratio", "load.moment", "load.twist"});
   const TorsionLoad load{reader.find_number("load.moment_ratio", kRatio),
                          reader.find_number("load.moment", kNotNegative),
                          reader.find_number("load.twist", kNotNegative)};

@@ -37,9 +37,16 @@ toml::table parse(const std::string& text, const std::string& file) {
   }
 }
 
-std::string print(const toml::node_view<toml::node>& node) {
+/// A value as a scene has it: numbers with the fewest digits that read back the same.
+std::string print(const toml::node& node) {
+  if (const auto* const number = node.as_floating_point()) return fmt::format("{}", number->get());
+  if (const auto* const array = node.as_array()) {
+    std::vector<std::string> parts;
+    for (const toml::node& part : *array) parts.push_back(print(part));
+    return fmt::format("[{}]", fmt::join(parts, ", "));
+  }
   std::ostringstream text;
-  text << node;
+  text << toml::node_view<const toml::node>(node);
   return text.str();
 }
 
@@ -109,6 +116,16 @@ void SceneReader::apply_override(const std::string& assignment) {
   overridden_.insert(key);
 }
 
+void SceneReader::prefer_overridden(const std::vector<std::string>& alternatives) {
+  const auto overridden = [&](const std::string& key) { return overridden_.contains(key); };
+  if (std::none_of(alternatives.begin(), alternatives.end(), overridden)) return;
+  for (const std::string& key : alternatives) {
+    if (overridden(key) || !root_.at_path(key)) continue;
+    const auto dot = key.rfind('.');
+    root_.at_path(key.substr(0, dot)).as_table()->erase(key.substr(dot + 1));
+  }
+}
+
 std::string SceneReader::where(const std::string& key) const {
   if (overridden_.contains(key)) return "--set";
   const auto node = root_.at_path(key);
@@ -130,10 +147,9 @@ void SceneReader::fail_missing(const std::string& key, const std::string& allowe
 }
 
 void SceneReader::fail_unknown(const std::string& key) const {
-  std::ostringstream value;
-  value << root_.at_path(key);
+  const auto found = root_.at_path(key);  // not found where a quoted key holds a dot or a bracket
   throw InputError(where(key), fmt::format("{} = {}: unknown key; the nearest known one is {}", key,
-                                           value.str(), nearest(key, known_)));
+                                           found ? print(*found.node()) : "...", nearest(key, known_)));
 }
 
 void SceneReader::fail_choice(const std::string& key, const std::string& word,
@@ -151,9 +167,9 @@ bool SceneReader::has(const std::string& key) { return static_cast<bool>(node(ke
 std::optional<double> SceneReader::find_number(const std::string& key, const Range& range) {
   const auto found = node(key);
   if (!found) return std::nullopt;
-  if (!found.is_number()) fail(key, print(found), fmt::format("a number, {}", range.words));
+  if (!found.is_number()) fail(key, print(*found.node()), fmt::format("a number, {}", range.words));
   const double value = *found.value<double>();
-  if (!range.contains(value)) fail(key, print(found), range.words);
+  if (!range.contains(value)) fail(key, print(*found.node()), range.words);
   return value;
 }
 
@@ -172,11 +188,12 @@ std::optional<std::array<double, 2>> SceneReader::find_pair(const std::string& k
   if (!found) return std::nullopt;
   const toml::array* const array = found.as_array();
   const std::string allowed = fmt::format("[a, b], two numbers, each {}", range.words);
-  if (array == nullptr || array->size() != 2) fail(key, print(found), allowed);
+  if (array == nullptr || array->size() != 2) fail(key, print(*found.node()), allowed);
   std::array<double, 2> pair{};
   for (std::size_t i = 0; i < 2; ++i) {
     const auto value = (*array)[i].value<double>();
-    if (!value || !(*array)[i].is_number() || !range.contains(*value)) fail(key, print(found), allowed);
+    if (!value || !(*array)[i].is_number() || !range.contains(*value))
+      fail(key, print(*found.node()), allowed);
     pair[i] = *value;
   }
   return pair;
@@ -191,14 +208,14 @@ std::array<double, 2> SceneReader::pair(const std::string& key, const Range& ran
 bool SceneReader::flag_or(const std::string& key, bool otherwise) {
   const auto found = node(key);
   if (!found) return otherwise;
-  if (!found.is_boolean()) fail(key, print(found), "true, false");
+  if (!found.is_boolean()) fail(key, print(*found.node()), "true, false");
   return *found.value<bool>();
 }
 
 std::string SceneReader::text(const std::string& key) {
   const auto found = node(key);
   if (!found) fail_missing(key, "a string");
-  if (!found.is_string()) fail(key, print(found), "a string");
+  if (!found.is_string()) fail(key, print(*found.node()), "a string");
   return *found.value<std::string>();
 }
 

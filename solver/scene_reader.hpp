@@ -24,6 +24,10 @@ class SceneReader {
  public:
   SceneReader(const std::filesystem::path& file, const std::vector<std::string>& overrides);
 
+  /// Where one of several keys that exclude each other is overridden, those that the file has instead are
+  /// dropped.
+  void prefer_overridden(const std::vector<std::string>& alternatives);
+
   bool has(const std::string& key);
   std::optional<double> find_number(const std::string& key, const Range& range);
   double number(const std::string& key, const Range& range);

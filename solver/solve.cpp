@@ -37,8 +37,7 @@ ArrayXd pressure_displacement(const Scene& scene, const Model& model, const Arra
   if (!model.pressure_coupling) return {};
   const auto op = scene_operator(scene, model, coupling_kernel());
   ArrayXd u(2 * pressure.size());
-  op->apply({pressure.data(), static_cast<std::size_t>(pressure.size())},
-            {u.data(), static_cast<std::size_t>(u.size())});
+  op->apply(pressure, u);
   return u;
 }
 
@@ -53,7 +52,7 @@ TorsionProblem torsion_problem(const Scene& scene, const Model& model, const Arr
   } else if (scene.torsion.moment_ratio) {
     problem.moment = *scene.torsion.moment_ratio * limit;
   } else {
-    problem.moment = *scene.torsion.moment / (model.moment_unit() * model.grid.cell_area());
+    problem.moment = over_unit(*scene.torsion.moment, model.moment_unit()) / model.grid.cell_area();
   }
   if (problem.moment && *problem.moment > 0.0 && !(*problem.moment < limit)) {
     throw InputError(
@@ -96,11 +95,12 @@ void describe(Solution& solution, const TorsionProblem& problem) {
 }  // namespace
 
 double measure_contact_radius(const Model& model, const ArrayXd& pressure) {
-  if (!model.hertz) return equal_area_radius(model.grid, (pressure > 0.0).count());
   const auto semi_axis = [&](const ArrayXd& x) {
     return std::sqrt(5.0 * (pressure * x.square()).sum() / pressure.sum());
   };
-  return std::sqrt(semi_axis(cell_x1(model.grid)) * semi_axis(cell_x2(model.grid)));
+  const double radius = std::sqrt(semi_axis(cell_x1(model.grid)) * semi_axis(cell_x2(model.grid)));
+  // A contact one cell wide has no second moment.
+  return model.hertz && radius > 0.0 ? radius : equal_area_radius(model.grid, (pressure > 0.0).count());
 }
 
 Solution solve(const Scene& scene, const SolveOptions& options) {

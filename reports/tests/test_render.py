@@ -52,6 +52,7 @@ def small_report():
         "loading": [solve_result(load, 4) for load in loads],
         "mesh": [solve_result(load, cells, pressure) for pressure in ("solved", "hertz") for load in (0.5, 0.9)
                  for cells in (4, 8, 16)],
+        "ellipse": [solve_result(loads[-1], cells) for cells in (4, 8)],
         "equation_5_digits": [{"stick_complement": 10.0**-i, "relative_error": 10.0**(2 * i - 16)} for i in range(7)],
         "errata": [{"equation": "(0)", "printed": "a < b", "holds": "a > b", "shown": "by example"}],
         "not_run": [{"name": "the long study", "reason": "a test has no time for it"}],

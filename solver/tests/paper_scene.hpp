@@ -1,0 +1,62 @@
+#pragma once
+
+#include <ostream>
+
+#include "solver/scene.hpp"
+
+namespace slipstick::solver {
+
+/// The case of Gradinaru and Spinu, Section 5, with its exact answers (Hertz; Jaeger's construction,
+/// evaluated to 30 digits): a sphere of 18 mm pressed by 1 kN on a half-space, both of steel.
+namespace paper {
+constexpr double kRadius = 0.018;
+constexpr double kYoungModulus = 210e9;
+constexpr double kPoissonRatio = 0.3;
+constexpr double kLoad = 1000.0;
+constexpr double kFriction = 0.1;
+
+constexpr double kContactRadius = 0.48909732465087485e-3;
+constexpr double kPeakPressure = 1995.9553043899548e6;
+constexpr double kMomentLimit = 28.810210537755196e-3;
+
+/// Relative twist of the bodies in rad at a part of the limit moment.
+struct ExactTwist {
+  double moment_ratio;
+  double twist;
+};
+inline void PrintTo(const ExactTwist& exact, std::ostream* stream) { *stream << exact.moment_ratio; }
+constexpr ExactTwist kTwists[] = {
+    {0.1, 1.197249389022587e-4}, {0.5, 7.629453516649457e-4}, {0.9, 2.361048651456917e-3}};
+}  // namespace paper
+
+inline Scene paper_scene(Index cells, double moment_ratio) {
+  const Material steel{paper::kYoungModulus, paper::kPoissonRatio};
+  Scene scene;
+  scene.source = "paper.toml";
+  scene.surface.radius = paper::kRadius;
+  scene.upper = scene.lower = steel;
+  scene.friction = paper::kFriction;
+  scene.normal_load = paper::kLoad;
+  scene.torsion.moment_ratio = moment_ratio;
+  scene.cells = {cells, cells};
+  return scene;
+}
+
+/// The same pressed by a body with two radii of curvature.
+inline Scene ellipsoid_scene(Index cells, double radius_1, double radius_2, double moment_ratio) {
+  Scene scene = paper_scene(cells, moment_ratio);
+  scene.surface.shape = Shape::ellipsoid;
+  scene.surface.radius_1 = radius_1;
+  scene.surface.radius_2 = radius_2;
+  return scene;
+}
+
+/// 1/E* = sum of (1 - nu^2)/E.
+inline double effective_modulus(const Scene& scene) {
+  const auto compliance = [](const Material& body) {
+    return (1.0 - body.poisson_ratio * body.poisson_ratio) / body.young_modulus;
+  };
+  return 1.0 / (compliance(scene.upper) + compliance(scene.lower));
+}
+
+}  // namespace slipstick::solver

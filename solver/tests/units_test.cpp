@@ -1,0 +1,136 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "solver/solve.hpp"
+#include "solver/tests/paper_scene.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+/// The scene with lengths and forces counted in other units than m and N.
+struct Units {
+  std::string name;
+  double metre;   ///< units of length in a metre
+  double newton;  ///< units of force in a newton
+};
+
+void PrintTo(const Units& units, std::ostream* stream) { *stream << units.name; }
+
+Scene in_units(Scene scene, const Units& units) {
+  const double pascal = units.newton / (units.metre * units.metre);
+  scene.surface.radius *= units.metre;
+  scene.surface.radius_1 *= units.metre;
+  scene.surface.radius_2 *= units.metre;
+  scene.upper.young_modulus *= pascal;
+  scene.lower.young_modulus *= pascal;
+  scene.normal_load = *scene.normal_load * units.newton;
+  if (scene.torsion.moment) scene.torsion.moment = *scene.torsion.moment * units.newton * units.metre;
+  if (scene.extent) scene.extent = {(*scene.extent)[0] * units.metre, (*scene.extent)[1] * units.metre};
+  return scene;
+}
+
+constexpr Index kCells = 48;
+
+Scene by_ratio() { return paper_scene(kCells, 0.5); }
+Scene by_moment() {
+  Scene scene = paper_scene(kCells, 0.0);
+  scene.torsion = {};
+  scene.torsion.moment = 0.9 * paper::kMomentLimit;
+  return scene;
+}
+Scene over_an_extent() {
+  Scene scene = ellipsoid_scene(kCells, 0.03, 0.01, 0.5);
+  scene.extent = {1.6e-3, 0.9e-3};
+  return scene;
+}
+
+double difference(double a, double b) { return std::abs(a / b - 1.0); }
+double difference(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) {
+  return (a - b).abs().maxCoeff() / b.abs().maxCoeff();
+}
+
+class OtherUnits : public testing::TestWithParam<Units> {};
+INSTANTIATE_TEST_SUITE_P(Systems, OtherUnits,
+                         testing::Values(Units{"mm_N_MPa", 1e3, 1.0}, Units{"nm_nN_GPa", 1e9, 1e9},
+                                         Units{"um_mN_GPa", 1e6, 1e3}, Units{"km_MN_Pa", 1e-3, 1e-6}),
+                         [](const auto& tested) { return tested.param.name; });
+
+/// What the solvers work on keeps nothing of the units, not even their roundings.
+TEST_P(OtherUnits, GiveTheSameModel) {
+  for (const Scene& scene : {by_ratio(), by_moment(), over_an_extent()}) {
+    const Model si = make_model(scene);
+    const Model other = make_model(in_units(scene, GetParam()));
+    EXPECT_TRUE((other.gap == si.gap).all());
+    EXPECT_EQ(*other.normal_load, *si.normal_load);
+    EXPECT_EQ(other.grid.h2, si.grid.h2);
+    EXPECT_EQ(other.pair.normal_compliance, si.pair.normal_compliance);
+    EXPECT_EQ(other.pair.poisson_compliance, si.pair.poisson_compliance);
+    EXPECT_EQ(other.hertz->semi_axis_1, si.hertz->semi_axis_1);
+  }
+}
+
+TEST_P(OtherUnits, GiveTheSameDigits) {
+  constexpr double kTolerance = 1e-12;
+  const Units& units = GetParam();
+  const double moment = units.newton * units.metre;
+  const double pascal = units.newton / (units.metre * units.metre);
+  for (const Scene& scene : {by_ratio(), by_moment(), over_an_extent()}) {
+    const Solution si = solve(scene);
+    const Solution other = solve(in_units(scene, units));
+    ASSERT_EQ(si.status, Status::converged) << si.message;
+    ASSERT_EQ(other.status, Status::converged) << other.message;
+    EXPECT_EQ(other.stick_cells, si.stick_cells);
+    EXPECT_EQ(other.contact_cells, si.contact_cells);
+    EXPECT_EQ(other.torsion.iterations, si.torsion.iterations);
+    EXPECT_LE(difference(other.normal.pressure, si.normal.pressure), kTolerance);
+    EXPECT_LE(difference(other.torsion.traction, si.torsion.traction), kTolerance);
+    EXPECT_LE(difference(other.torsion.slip, si.torsion.slip), kTolerance);
+    EXPECT_LE(difference(other.twist_angle, si.twist_angle), kTolerance);
+    EXPECT_LE(difference(other.moment, si.moment * moment), kTolerance);
+    EXPECT_LE(difference(other.moment_limit, si.moment_limit * moment), kTolerance);
+    EXPECT_LE(difference(other.normal_load, si.normal_load * units.newton), kTolerance);
+    EXPECT_LE(difference(other.peak_pressure, si.peak_pressure * pascal), kTolerance);
+    EXPECT_LE(difference(other.contact_radius, si.contact_radius * units.metre), kTolerance);
+    EXPECT_LE(difference(other.stick_radius_counted, si.stick_radius_counted * units.metre), kTolerance);
+    EXPECT_LE(difference(other.approach, si.approach * units.metre), kTolerance);
+  }
+}
+
+/// The price: a model's numbers are those of the scene to 12 digits.
+TEST(OverUnit, KeepsTwelveDigits) {
+  for (const double value : {1.0, 0.1, 1.0 / 3.0, 6.02e23, -1.6e-19}) {
+    EXPECT_LE(std::abs(over_unit(value, 1.0) / value - 1.0), 0x1p-40);
+    EXPECT_EQ(over_unit(std::nextafter(value, 2.0 * value), 1.0), over_unit(value, 1.0));
+  }
+  EXPECT_EQ(over_unit(0.0, 3.0), 0.0);
+  EXPECT_EQ(over_unit(0x1.8p10, 0x1p3), 0x1.8p7);
+}
+
+/// Units that are powers of two of each other round nothing, so the digits must be the same to the last bit.
+TEST(BinaryUnits, GiveTheSameBits) {
+  for (const Units& units : {Units{"small", 0x1p10, 0x1p-7}, Units{"large", 0x1p-20, 0x1p30}}) {
+    for (const Scene& scene : {by_ratio(), by_moment(), over_an_extent()}) {
+      const Solution si = solve(scene);
+      const Solution other = solve(in_units(scene, units));
+      ASSERT_EQ(other.status, Status::converged) << other.message;
+      EXPECT_TRUE((other.normal.pressure == si.normal.pressure).all());
+      EXPECT_TRUE((other.torsion.traction == si.torsion.traction).all());
+      EXPECT_TRUE((other.torsion.slip == si.torsion.slip).all());
+      EXPECT_TRUE((other.torsion.stick == si.torsion.stick).all());
+      EXPECT_EQ(other.torsion.iterations, si.torsion.iterations);
+      EXPECT_EQ(other.twist_angle, si.twist_angle);
+      EXPECT_EQ(other.certificate.gap, si.certificate.gap);
+      EXPECT_EQ(other.moment / other.moment_limit, si.moment / si.moment_limit);
+      EXPECT_EQ(other.contact_radius, si.contact_radius * units.metre);
+      EXPECT_EQ(other.moment, si.moment * units.newton * units.metre);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace slipstick::solver
