@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <fstream>
+#include <iterator>
 #include <stdexcept>
 #include <utility>
 
@@ -23,9 +24,12 @@ std::string identify_program() {
 }  // namespace
 
 void write_json_file(const fs::path& file, const Json& json) {
+  const std::string content = json.dump(1) + "\n";
+  std::ifstream old(file);
+  if (old && std::string(std::istreambuf_iterator<char>(old), {}) == content) return;  // keeps its time
   const fs::path draft = file.string() + ".part";
   std::ofstream stream(draft);
-  stream << json.dump(1) << '\n';
+  stream << content;
   if (!stream.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
   stream.close();
   fs::rename(draft, file);

@@ -44,7 +44,20 @@ int run_program(const std::vector<std::string>& words) {
   return waitpid(child, &status, 0) == child && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
 }
 
+/// Whether the page is newer than all that it is made from.
+bool is_current(const fs::path& page, const std::vector<fs::path>& sources) {
+  if (!fs::exists(page)) return false;
+  for (const fs::path& folder : sources) {
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      if (entry.is_regular_file() && entry.last_write_time() > fs::last_write_time(page)) return false;
+    }
+  }
+  return true;
+}
+
 void draw(const fs::path& data, const fs::path& output) {
+  const fs::path scripts = project_file("reports");
+  if (is_current(output / "index.html", {data, scripts})) return;
   const std::string python = SLIPSTICK_PYTHON;
   if (python.empty()) {
     throw std::runtime_error(
@@ -55,8 +68,7 @@ void draw(const fs::path& data, const fs::path& output) {
                     "elsewhere configure with -DSLIPSTICK_PYTHON=/path/to/python3",
                     data.string()));
   }
-  const int status =
-      run_program({python, project_file("reports/render.py"), data.string(), "--output", output.string()});
+  const int status = run_program({python, scripts / "render.py", data.string(), "--output", output.string()});
   if (status != 0) {
     throw std::runtime_error(
         fmt::format("the results are in {}, but drawing the page failed ({} ended with {})", data.string(),
