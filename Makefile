@@ -6,7 +6,7 @@ REPORT_OPTIONS ?=
 BENCH_OPTIONS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build report test bench install clean
+.PHONY: help setup build report test sanitize lint bench install clean
 
 help: ## show this list
 	@echo "slipstick: make TARGET"
@@ -28,6 +28,15 @@ report: build ## run the validation and the studies, write the page (REPORT_OPTI
 test: build ## run every test
 	@ctest --test-dir $(BUILD) --output-on-failure -j$$(nproc)
 
+sanitize: setup ## run every test under the address and undefined-behaviour sanitizers
+	@test -f build-asan-ubsan/build.ninja || cmake --preset asan-ubsan
+	@cmake --build build-asan-ubsan
+	@ctest --test-dir build-asan-ubsan --output-on-failure -j$$(nproc)
+
+lint: build ## check format and clang-tidy's rules (needs clang-format, clang-tidy 14 or later)
+	@git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run --Werror
+	@git ls-files '*.cpp' | xargs -n 4 -P $$(nproc) clang-tidy -p $(BUILD) --quiet
+
 bench: build ## time the solver's parts (BENCH_OPTIONS="--benchmark_filter=...")
 	@$(BUILD)/bench/slipstick_bench $(BENCH_OPTIONS)
 
@@ -35,4 +44,4 @@ install: build ## install under PREFIX (default /usr/local)
 	@cmake --install $(BUILD) --prefix "$(abspath $(PREFIX))"
 
 clean: ## remove what was built
-	@rm -rf $(BUILD)
+	@rm -rf $(BUILD) build-*

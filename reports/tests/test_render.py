@@ -55,7 +55,6 @@ def small_report():
         "ellipse": [solve_result(loads[-1], cells) for cells in (4, 8)],
         "equation_5_digits": [{"stick_complement": 10.0**-i, "relative_error": 10.0**(2 * i - 16)} for i in range(7)],
         "errata": [{"equation": "(0)", "printed": "a < b", "holds": "a > b", "shown": "by example"}],
-        "not_run": [{"name": "the long study", "reason": "a test has no time for it"}],
     }
 
 
@@ -121,9 +120,6 @@ class WholePage(unittest.TestCase):
     def test_text_of_the_data_is_escaped(self):
         self.assertIn("made &lt;up&gt;", self.page)
         self.assertIn("a &lt; b", self.page)
-
-    def test_what_was_not_run_is_said(self):
-        self.assertIn("Not run: the long study – a test has no time for it.", self.page)
 
     def test_equal_data_give_equal_files(self):
         with tempfile.TemporaryDirectory() as other:
