@@ -1,11 +1,11 @@
 #include "solver/convolution.hpp"
 
-#include <omp.h>
-
 #include <algorithm>
 #include <array>
 #include <new>
 #include <set>
+
+#include "solver/threads.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -135,64 +135,65 @@ std::size_t Convolution::bytes() const {
 }
 
 void Convolution::do_apply(std::span<const double> traction, std::span<double> displacement) {
-  rows_forward(traction);
+  // The rows of all fields lie one after the other.
+  const auto in_rows = static_cast<Index>(inputs()) * grid().n1;
+  const auto out_rows = static_cast<Index>(outputs()) * grid().n1;
+  in_parts(threads_, in_rows, [&](int thread, Index first, Index last) {
+    for (Index row = first; row < last; ++row) row_forward(thread, row, traction.data() + row * grid().n2);
+  });
+  in_parts(threads_, row_stride_ / kBlock, [&](int thread, Index first, Index last) {
+    for (Index block = first; block < last; ++block) convolve_columns(thread, block * kBlock);
+  });
+  in_parts(threads_, out_rows, [&](int thread, Index first, Index last) {
+    for (Index row = first; row < last; ++row)
+      row_backward(thread, row, displacement.data() + row * grid().n2);
+  });
+}
+
+void Convolution::row_forward(int thread, Index row, const double* values) {
+  const Index n2 = grid().n2;
+  if (std::all_of(values, values + n2, [](double value) { return value == 0.0; })) {
+    std::fill_n(row_spectra_.data() + 2 * row * row_stride_, 2 * row_stride_, 0.0);
+    return;
+  }
+  double* const padded = row_buffer_[count(thread)].data();
+  std::copy_n(values, n2, padded);
+  std::fill(padded + n2, padded + p2_, 0.0);
+  fftw_execute_dft_r2c(row_forward_.get(), padded, row_spectra_.complex() + row * row_stride_);
+}
+
+void Convolution::row_backward(int thread, Index row, double* values) {
+  double* const padded = row_buffer_[count(thread)].data();
+  fftw_execute_dft_c2r(row_backward_.get(), row_spectra_.complex() + row * row_stride_, padded);
+  std::copy_n(padded, grid().n2, values);
+}
+
+void Convolution::convolve_columns(int thread, Index first_column) {
   const Index n1 = grid().n1;
-  const Index field_size = n1 * row_stride_;
-#pragma omp parallel for num_threads(threads_) schedule(static)
-  for (Index first = 0; first < row_stride_; first += kBlock) {
-    double* const block = column_block_[count(omp_get_thread_num())].data();
-    const auto block_of = [&](std::size_t field) {
-      return block + static_cast<Index>(field) * p1_ * kBlockReals;
-    };
-    const auto spectrum_of = [&](std::size_t field, Index row) {
-      return row_spectra_.data() + 2 * (static_cast<Index>(field) * field_size + row * row_stride_ + first);
-    };
-    for (std::size_t field = 0; field < inputs(); ++field) {
-      for (Index i = 0; i < n1; ++i) {
-        std::copy_n(spectrum_of(field, i), kBlockReals, block_of(field) + i * kBlockReals);
-      }
-      std::fill(block_of(field) + n1 * kBlockReals, block_of(field) + p1_ * kBlockReals, 0.0);
-      auto* const columns = reinterpret_cast<fftw_complex*>(block_of(field));
-      fftw_execute_dft(column_forward_.get(), columns, columns);
+  double* const block = column_block_[count(thread)].data();
+  const auto field_of_block = [&](std::size_t field) {
+    return block + static_cast<Index>(field) * p1_ * kBlockReals;
+  };
+  const auto row_of_spectrum = [&](std::size_t field, Index row) {
+    return row_spectra_.data() + 2 * ((static_cast<Index>(field) * n1 + row) * row_stride_ + first_column);
+  };
+  for (std::size_t field = 0; field < inputs(); ++field) {
+    double* const columns = field_of_block(field);
+    for (Index i = 0; i < n1; ++i) {
+      std::copy_n(row_of_spectrum(field, i), kBlockReals, columns + i * kBlockReals);
     }
-    multiply_columns(block, first);
-    for (std::size_t field = 0; field < outputs(); ++field) {
-      auto* const columns = reinterpret_cast<fftw_complex*>(block_of(field));
-      fftw_execute_dft(column_backward_.get(), columns, columns);
-      for (Index i = 0; i < n1; ++i) {
-        std::copy_n(block_of(field) + i * kBlockReals, kBlockReals, spectrum_of(field, i));
-      }
-    }
+    std::fill(columns + n1 * kBlockReals, columns + p1_ * kBlockReals, 0.0);
+    auto* const complex = reinterpret_cast<fftw_complex*>(columns);
+    fftw_execute_dft(column_forward_.get(), complex, complex);
   }
-  rows_backward(displacement);
-}
-
-void Convolution::rows_forward(std::span<const double> traction) {
-  const Index rows = static_cast<Index>(inputs()) * grid().n1;  // the fields' rows lie one after the other
-  const Index n2 = grid().n2;
-#pragma omp parallel for num_threads(threads_) schedule(static)
-  for (Index row = 0; row < rows; ++row) {
-    double* const padded = row_buffer_[count(omp_get_thread_num())].data();
-    fftw_complex* const spectrum = row_spectra_.complex() + row * row_stride_;
-    const double* const values = traction.data() + row * n2;
-    if (std::all_of(values, values + n2, [](double value) { return value == 0.0; })) {
-      std::fill_n(row_spectra_.data() + 2 * row * row_stride_, 2 * row_stride_, 0.0);
-      continue;
+  multiply_columns(block, first_column);
+  for (std::size_t field = 0; field < outputs(); ++field) {
+    double* const columns = field_of_block(field);
+    auto* const complex = reinterpret_cast<fftw_complex*>(columns);
+    fftw_execute_dft(column_backward_.get(), complex, complex);
+    for (Index i = 0; i < n1; ++i) {
+      std::copy_n(columns + i * kBlockReals, kBlockReals, row_of_spectrum(field, i));
     }
-    std::copy_n(values, n2, padded);
-    std::fill(padded + n2, padded + p2_, 0.0);
-    fftw_execute_dft_r2c(row_forward_.get(), padded, spectrum);
-  }
-}
-
-void Convolution::rows_backward(std::span<double> displacement) {
-  const Index rows = static_cast<Index>(outputs()) * grid().n1;
-  const Index n2 = grid().n2;
-#pragma omp parallel for num_threads(threads_) schedule(static)
-  for (Index row = 0; row < rows; ++row) {
-    double* const padded = row_buffer_[count(omp_get_thread_num())].data();
-    fftw_execute_dft_c2r(row_backward_.get(), row_spectra_.complex() + row * row_stride_, padded);
-    std::copy_n(padded, n2, displacement.data() + row * n2);
   }
 }
 

@@ -55,9 +55,10 @@ class Convolution final : public LinearOperator {
   void do_apply(std::span<const double> traction, std::span<double> displacement) override;
   FftwBuffer kernel_spectrum(Component component, const ElasticPair& pair) const;
   void make_plans(unsigned flags);
-  void rows_forward(std::span<const double> traction);
+  void row_forward(int thread, Index row, const double* values);
+  void row_backward(int thread, Index row, double* values);
+  void convolve_columns(int thread, Index first_column);
   void multiply_columns(double* block, Index first_column) const;
-  void rows_backward(std::span<double> displacement);
 
   Index p1_;
   Index p2_;

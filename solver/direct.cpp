@@ -4,6 +4,8 @@
 #include <cstdlib>
 #include <set>
 
+#include "solver/threads.hpp"
+
 namespace slipstick::solver {
 namespace {
 
@@ -31,7 +33,7 @@ std::vector<double> all_offsets(Component component, const ElasticPair& pair, co
 
 DirectSum::DirectSum(const Grid& grid, BlockKernel kernel, const ElasticPair& pair,
                      const OperatorOptions& options)
-    : LinearOperator(grid, std::move(kernel)), threads_(options.threads) {
+    : LinearOperator(grid, std::move(kernel)), threads_(std::max(options.threads, 1)) {
   for (const Component component : distinct(this->kernel())) {
     coefficients_.emplace(component, all_offsets(component, pair, grid));
   }
@@ -49,25 +51,27 @@ void DirectSum::do_apply(std::span<const double> traction, std::span<double> dis
   const Index n2 = grid().n2;
   const Index cells = grid().cells();
   std::fill(displacement.begin(), displacement.end(), 0.0);
-#pragma omp parallel for num_threads(threads_) schedule(static)
-  for (Index i = 0; i < n1; ++i) {
-    for (std::size_t a = 0; a < outputs(); ++a) {
-      double* const out = displacement.data() + static_cast<Index>(a) * cells + i * n2;
-      for (std::size_t b = 0; b < inputs(); ++b) {
-        const double* const coefficient = coefficients_.at(kernel().components[a * inputs() + b]).data();
-        const double* const in = traction.data() + static_cast<Index>(b) * cells;
-        for (Index k = 0; k < n1; ++k) {
-          const double* const row = coefficient + (i - k + n1 - 1) * (2 * n2 - 1);
-          for (Index l = 0; l < n2; ++l) {
-            const double source = in[k * n2 + l];
-            if (source == 0.0) continue;
-            const double* const shifted = row + (n2 - 1 - l);
-            for (Index j = 0; j < n2; ++j) out[j] += source * shifted[j];
+  const auto rows = [&](int, Index first, Index last) {
+    for (Index i = first; i < last; ++i) {
+      for (std::size_t a = 0; a < outputs(); ++a) {
+        double* const out = displacement.data() + static_cast<Index>(a) * cells + i * n2;
+        for (std::size_t b = 0; b < inputs(); ++b) {
+          const double* const coefficient = coefficients_.at(kernel().components[a * inputs() + b]).data();
+          const double* const in = traction.data() + static_cast<Index>(b) * cells;
+          for (Index k = 0; k < n1; ++k) {
+            const double* const row = coefficient + (i - k + n1 - 1) * (2 * n2 - 1);
+            for (Index l = 0; l < n2; ++l) {
+              const double source = in[k * n2 + l];
+              if (source == 0.0) continue;
+              const double* const shifted = row + (n2 - 1 - l);
+              for (Index j = 0; j < n2; ++j) out[j] += source * shifted[j];
+            }
           }
         }
       }
     }
-  }
+  };
+  in_parts(threads_, n1, rows);
 }
 
 DenseMatrix::DenseMatrix(const Grid& grid, BlockKernel kernel, const ElasticPair& pair)

@@ -75,8 +75,7 @@ std::string nearest(const std::string& key, const std::set<std::string>& known) 
 void collect_leaves(const toml::table& table, const std::string& prefix, std::vector<std::string>& leaves) {
   for (const auto& [name, child] : table) {
     const std::string key = prefix + std::string(name.str());
-    const toml::table* const inner = child.as_table();
-    if (inner != nullptr && !inner->empty()) {
+    if (const toml::table* const inner = child.as_table()) {
       collect_leaves(*inner, key + ".", leaves);
     } else {
       leaves.push_back(key);
@@ -143,6 +142,10 @@ void SceneReader::fail_missing(const std::string& key, const std::string& allowe
   for (const std::string& leaf : leaves) {
     if (!known_.contains(leaf) && edit_distance(leaf, key) <= kMisspelling) fail_unknown(leaf);
   }
+  const std::string parent = key.substr(0, key.rfind('.'));
+  const auto found = root_.at_path(parent);
+  if (found && !found.is_table())
+    fail(parent, print(*found.node()), fmt::format("a table with the key {}", key));
   fail(key, "(missing)", allowed);
 }
 
