@@ -20,8 +20,7 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// Sums of some tens of numbers of size 1.
 constexpr double kRounding = 1e-14;
 
-// --- members
-// -------------------------------------------------------------------------------------------------------
+// --- members ---
 
 /// Coulomb's law to the letter on 4 x 4 cells: the inner four stick, the others slip against their traction
 /// at its bound. Everything is like a rotation, so the forces vanish.
@@ -142,8 +141,7 @@ TEST_F(CoulombState, WithoutEnergyButWithAGapPassesNoBound) {
   EXPECT_FALSE(certificate().gap <= 1e300);
 }
 
-// --- the gap as a bound
-// --------------------------------------------------------------------------------------------
+// --- the gap as a bound ---
 
 /// Minimises q.Kq/2 - phi t.q over the friction discs by accelerated projected gradients (Nesterov 1983): on
 /// 6 x 6 cells, slow and sure, and of nothing in common with the method under test.
@@ -270,8 +268,7 @@ TEST_F(SmallProblem, GapBoundsTheEnergyErrorOfThePapersMethod) {
   EXPECT_NEAR(solution.twist / kTwist, 1.0, 1e-2);
 }
 
-// --- slip direction
-// ------------------------------------------------------------------------------------------------
+// --- slip direction ---
 
 TEST(SlipDirection, IsTheAngleFromTheReverseOfTraction) {
   ArrayXd q = ArrayXd::Zero(8);

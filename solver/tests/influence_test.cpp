@@ -149,8 +149,7 @@ TEST_F(Influence, OfNearbyCellsEqualsAdaptiveQuadratureOfThePointLoads) {
   RecordProperty("worst_relative_error", std::to_string(worst * 1e15) + "e-15");
 }
 
-// --- quadruple precision
-// -------------------------------------------------------------------------------------------
+// --- quadruple precision ---
 
 __extension__ typedef __float128 Quad;  // NOLINT(modernize-use-using): __extension__ needs the declaration
 

@@ -72,8 +72,7 @@ Ellipse johnson_ellipse(double load, double large_radius, double small_radius, d
   return {a, a * b_over_a, p0, p0 / effective_modulus * a * b_over_a * K};  // Eq. (4.26c)
 }
 
-// --- spheres and ellipsoids on a grid
-// ------------------------------------------------------------------------------
+// --- spheres and ellipsoids on a grid ---
 
 /// Relative errors against Hertz.
 struct HertzErrors {
@@ -176,8 +175,7 @@ TEST(Ellipsoid, TurnedByARightAngleTurnsThePressure) {
   }
 }
 
-// --- Hertz's theory in closed form
-// ---------------------------------------------------------------------------------
+// --- Hertz's theory in closed form ---
 
 TEST(HertzContact, OfEqualRadiiIsTheSpheres) {
   for (const double radius : {1e-3, 0.018, 5.0}) {
@@ -308,8 +306,7 @@ TEST(HertzPressure, OfASceneIsThatOfItsContact) {
   EXPECT_NEAR(load(press(scene)) / paper::kLoad, 1.0, kRounding);
 }
 
-// --- other shapes
-// --------------------------------------------------------------------------------------------------
+// --- other shapes ---
 
 TEST(Cone, CarriesSneddonsLoad) {
   double previous = std::numeric_limits<double>::infinity();
@@ -408,8 +405,7 @@ TEST_F(HeightMap, OfASphereGivesTheSpheresPressure) {
   EXPECT_THROW(make_model(scene), std::invalid_argument);
 }
 
-// --- the discrete problem
-// ------------------------------------------------------------------------------------------
+// --- the discrete problem ---
 
 class Complementarity : public testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Tolerances, Complementarity, testing::Values(1e-6, 1e-10, 1e-13));
@@ -436,6 +432,30 @@ TEST_P(Complementarity, HoldsToTheToleranceAskedFor) {
   EXPECT_GE(opening.minCoeff() * total, -solution.complementarity * energy * 2.0 - 1e-12);
   EXPECT_GT((p > 0.0).count(), 500);
   EXPECT_LT((p > 0.0).count(), p.size());
+}
+
+/// On a wavy surface cells lose contact in one iteration and come back in another: those that overlap must be
+/// found.
+TEST(Complementarity, HoldsOnAWavySurface) {
+  const Grid grid{40, 40, 1.0, 1.0};
+  const auto op =
+      make_operator(OperatorKind::dcfft, grid, normal_kernel(), elastic_pair({1.0, 0.3}, {1.0, 0.3}));
+  const ArrayXd x1 = cell_x1(grid);
+  const ArrayXd x2 = cell_x2(grid);
+  const ArrayXd gap =
+      1e-3 * (x1.square() + x2.square()) + 0.2 * ((0.9 * x1 + 0.3 * x2).sin() * (1.1 * x2 - 0.2).cos() + 1.0);
+  for (const double total : {3.0, 30.0, 300.0}) {
+    const NormalSolution solution = solve_normal_contact(*op, {gap, total});
+    ASSERT_EQ(solution.status, Status::converged) << solution.message;
+    const ArrayXd& p = solution.pressure;
+    EXPECT_TRUE((p >= 0.0).all());
+    ArrayXd u(p.size());
+    op->apply(p, u);
+    const ArrayXd opening = u + gap - solution.approach;
+    const double energy = 0.5 * (p * u).sum();
+    EXPECT_GE(opening.minCoeff() * total, -2e-10 * energy);  // no overlap beyond the default tolerance
+    EXPECT_LE((p * opening).sum(), 2e-10 * energy);          // no pressure across an opening
+  }
 }
 
 /// A minimum, told by its energy alone: no other admissible pressure has less.

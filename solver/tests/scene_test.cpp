@@ -192,8 +192,7 @@ TEST_F(SceneFile, WordsAreThoseOfTheFile) {
   EXPECT_EQ(to_string(Shape::flat_punch), "flat_punch");
 }
 
-// --- bad scenes
-// ----------------------------------------------------------------------------------------------------
+// --- bad scenes ---
 
 struct BadScene {
   std::string name;
@@ -511,8 +510,7 @@ TEST_F(SceneFile, OfAnExtentSmallerThanTheContactIsRefused) {
       testing::AllOf(HasSubstr("grid.extent = [0.0009, 0.0011]"), HasSubstr("larger than the contact")));
 }
 
-// --- pressure files
-// ------------------------------------------------------------------------------------------------
+// --- pressure files ---
 
 class PressureFile : public SceneFile {
  protected:
@@ -566,8 +564,7 @@ TEST_F(PressureFile, HoldsACellOnce) {
   EXPECT_THAT(complaint_about(row + row), testing::AllOf(HasSubstr("p.csv"), HasSubstr("row 2")));
 }
 
-// --- height maps
-// ---------------------------------------------------------------------------------------------------
+// --- height maps ---
 
 class HeightMapFile : public SceneFile {
  protected:
@@ -609,8 +606,7 @@ TEST_F(HeightMapFile, MustBeARectangleOfNumbers) {
   EXPECT_EQ(complaint([&] { model("1,2\n3,4\n", {"grid.cells=[2, 2]"}); }), "(no InputError)");
 }
 
-// --- the model of a scene
-// ------------------------------------------------------------------------------------------
+// --- the model of a scene ---
 
 TEST(Model, IsDimensionless) {
   const Model model = make_model(paper_scene(40, 0.5));
