@@ -1,0 +1,146 @@
+#include "solver/model.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "solver/pressure.hpp"
+#include "solver/tests/paper_scene.hpp"
+#include "solver/tests/scene_file.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using testing::HasSubstr;
+
+/// Numbers enter a model rounded to 40 bits (over_unit).
+constexpr double kModelRounding = 0x1p-40;
+
+// --- pressure files ---
+
+class PressureFile : public SceneFile {
+ protected:
+  /// 4 x 4 cells of 0.25 mm; the file holds some rows of them.
+  std::string complaint_about(const std::string& rows, const std::vector<std::string>& overrides = {}) const {
+    write("p.csv", "x1,x2,pressure\n" + rows);
+    return complaint([&] { pressure(overrides); });
+  }
+  NormalSolution pressure(std::vector<std::string> overrides = {}) const {
+    overrides.insert(overrides.begin(), {"contact.pressure=file", "contact.pressure_file=p.csv",
+                                         "grid.cells=[4, 4]", "grid.extent=[0.001, 0.001]"});
+    std::string text = kShortScene;
+    text.erase(text.find("normal = 1000\n"), 14);
+    const Scene scene = read(text, overrides);
+    return find_pressure(scene, make_model(scene));
+  }
+};
+
+TEST_F(PressureFile, IsReadToItsCells) {
+  write("p.csv", "pressure,x1,x2\n2e9,-0.000125,0.000375\n1e9,0.000125,0.000125\n");
+  const Eigen::ArrayXd p = pressure().pressure;
+  const double unit = 210e9 / 2.6 / 2.0;
+  EXPECT_NEAR(p[1 * 4 + 3] * unit / 2e9, 1.0, kModelRounding);
+  EXPECT_NEAR(p[2 * 4 + 2] * unit / 1e9, 1.0, kModelRounding);
+  EXPECT_EQ((p > 0.0).count(), 2);
+}
+
+TEST_F(PressureFile, MustFitTheGridAndTheLoad) {
+  EXPECT_THAT(complaint([&] { pressure(); }),
+              testing::AllOf(HasSubstr("p.csv"), HasSubstr("cannot be read")));
+  const std::string good = "0.000125,0.000125,1e9\n";
+  EXPECT_EQ(complaint_about(good), "(no InputError)");
+  EXPECT_EQ(complaint_about(good, {"load.normal=62.5"}), "(no InputError)");  // 1e9 Pa on (0.25 mm)^2
+  EXPECT_THAT(complaint_about(good, {"load.normal=1000"}),
+              testing::AllOf(HasSubstr("load.normal = 1000 N"), HasSubstr("62.5"), HasSubstr("p.csv")));
+  EXPECT_THAT(complaint_about(good + "0.000125,-0.000125,nan\n"),
+              testing::AllOf(HasSubstr("p.csv:3"), HasSubstr("nan")));
+  EXPECT_THAT(
+      complaint_about(good + "0.000125,-0.000125,-1\n"),
+      testing::AllOf(HasSubstr("p.csv"), HasSubstr("row 2"), HasSubstr("-1"), HasSubstr("zero or positive")));
+  EXPECT_THAT(complaint_about("0.0002,0.000125,1e9\n"),
+              testing::AllOf(HasSubstr("p.csv"), HasSubstr("row 1"), HasSubstr("0.0002"),
+                             HasSubstr("not a cell's centre")));
+  EXPECT_THAT(complaint_about("0.000625,0.000125,1e9\n"), HasSubstr("not a cell's centre"));  // off the grid
+  EXPECT_THAT(complaint_about("0.000125,0.000125,0\n"), HasSubstr("zero everywhere"));
+  EXPECT_THAT(complaint_about("0.125,0.125,1e9\n"), HasSubstr("not a cell's centre"));  // mm for m
+}
+
+TEST_F(PressureFile, HoldsACellOnce) {
+  const std::string row = "0.000125,0.000125,1e9\n";
+  EXPECT_THAT(complaint_about(row + row), testing::AllOf(HasSubstr("p.csv"), HasSubstr("row 2")));
+}
+
+// --- height maps ---
+
+class HeightMapFile : public SceneFile {
+ protected:
+  Model model(const std::string& heights, const std::vector<std::string>& overrides = {}) const {
+    write("heights.csv", heights);
+    std::string text = kShortScene;
+    const std::string sphere = "shape = \"sphere\"\nradius = 0.018\n";
+    text.replace(text.find(sphere), sphere.size(),
+                 "shape = \"height_map\"\nfile = \"heights.csv\"\nspacing = [1e-5, 2e-5]\n");
+    text.erase(text.find("[grid]"));
+    return make_model(read(text, overrides));
+  }
+};
+
+TEST_F(HeightMapFile, BringsItsGridAndItsGap) {
+  const Model model = this->model("3e-6,2e-6,3e-6\n2e-6,1e-6,2e-6\n");
+  EXPECT_EQ(model.grid.n1, 2);
+  EXPECT_EQ(model.grid.n2, 3);
+  EXPECT_DOUBLE_EQ(model.length_unit, 1e-5);
+  EXPECT_DOUBLE_EQ(model.grid.h2, 2.0);
+  EXPECT_EQ(model.gap.minCoeff(), 0.0);
+  EXPECT_NEAR(model.gap[0], 0.2, 1e-12);
+  EXPECT_EQ(model.gap[1 * 3 + 1], 0.0);
+  EXPECT_NEAR(model.gap[1], 0.1, 1e-12);
+}
+
+TEST_F(HeightMapFile, MustBeARectangleOfNumbers) {
+  EXPECT_THAT(complaint([&] { model("1,2\n3\n"); }),
+              testing::AllOf(HasSubstr("heights.csv:2"), HasSubstr("1 values; allowed: 2")));
+  EXPECT_THAT(complaint([&] { model("1,2\n3,high\n"); }),
+              testing::AllOf(HasSubstr("heights.csv:2"), HasSubstr("high"), HasSubstr("a finite number")));
+  EXPECT_THAT(complaint([&] { model("1,2\n3,inf\n"); }), HasSubstr("a finite number"));
+  EXPECT_THAT(complaint([&] { model(""); }), HasSubstr("holds no rows"));
+  EXPECT_THAT(
+      complaint([&] { model("1,2\n3,4\n", {"grid.cells=[3, 2]"}); }),
+      testing::AllOf(HasSubstr("grid.cells = [3, 2]"), HasSubstr("[2, 2]"), HasSubstr("heights.csv")));
+  EXPECT_THAT(complaint([&] { model("1,2\n3,4\n", {"grid.extent=[1, 1]"}); }),
+              testing::AllOf(HasSubstr("grid.extent"), HasSubstr("upper.spacing")));
+  EXPECT_EQ(complaint([&] { model("1,2\n3,4\n", {"grid.cells=[2, 2]"}); }), "(no InputError)");
+}
+
+// --- the model of a scene ---
+
+TEST(Model, IsDimensionless) {
+  const Model model = make_model(paper_scene(40, 0.5));
+  EXPECT_EQ(model.grid.h1, 1.0);
+  EXPECT_EQ(model.pair.shear_compliance, 1.0);
+  EXPECT_DOUBLE_EQ(model.stress_unit, 210e9 / 2.6 / 2.0);
+  ASSERT_TRUE(model.hertz);
+  EXPECT_NEAR(model.hertz->semi_axis_1 * model.length_unit / paper::kContactRadius, 1.0, kModelRounding);
+  EXPECT_NEAR(model.hertz->peak_pressure * model.stress_unit / paper::kPeakPressure, 1.0, kModelRounding);
+  // The contact and a margin of two cells fill the grid.
+  EXPECT_NEAR(40.0 * model.length_unit, 2.0 * paper::kContactRadius + 4.0 * model.length_unit, 1e-15);
+}
+
+TEST(Model, SaysWhatItLeavesOut) {
+  Scene scene = paper_scene(16, 0.5);
+  const auto mentions_coupling = [](const Model& model) {
+    for (const Omission& omission : model.left_out) {
+      if (omission.what == "K13, K23") return !omission.why.empty();
+    }
+    return false;
+  };
+  EXPECT_TRUE(mentions_coupling(make_model(scene)));
+  scene.lower.young_modulus = 70e9;
+  EXPECT_TRUE(make_model(scene).pressure_coupling);
+  EXPECT_FALSE(mentions_coupling(make_model(scene)));
+  scene.coupling = Coupling::none;
+  EXPECT_FALSE(make_model(scene).pressure_coupling);
+  EXPECT_TRUE(mentions_coupling(make_model(scene)));
+}
+
+}  // namespace
+}  // namespace slipstick::solver

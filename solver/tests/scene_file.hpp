@@ -1,0 +1,90 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "solver/input_error.hpp"
+#include "solver/scene.hpp"
+
+namespace slipstick::solver {
+
+inline constexpr const char* kScene = R"(name = "paper"
+[upper]
+shape = "sphere"
+radius = 0.018
+young_modulus = 210e9
+poisson_ratio = 0.3
+[lower]
+young_modulus = 210e9
+poisson_ratio = 0.3
+[contact]
+friction = 0.1
+pressure = "solved"
+coupling = "auto"
+[load]
+normal = 1000.0
+moment_ratio = 0.9
+force = [0.0, 0.0]
+[grid]
+cells = [128, 96]
+extent = [0.0011, 0.0012]
+[solver]
+method = "paper"
+operator = "dcfft"
+tolerance = 1e-7
+max_iterations = 70
+threads = 2
+model = "auto"
+)";
+
+inline constexpr const char* kShortScene = R"([upper]
+shape = "sphere"
+radius = 0.018
+young_modulus = 210e9
+poisson_ratio = 0.3
+[lower]
+young_modulus = 210e9
+poisson_ratio = 0.3
+[contact]
+friction = 0.1
+[load]
+normal = 1000
+moment_ratio = 0.9
+[grid]
+cells = [32, 32]
+)";
+
+class SceneFile : public testing::Test {
+ protected:
+  SceneFile() { std::filesystem::create_directories(folder_); }
+  ~SceneFile() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return folder_ / name;
+  }
+  Scene read(const std::string& text, const std::vector<std::string>& overrides = {}) const {
+    return read_scene(write("scene.toml", text), overrides);
+  }
+
+  std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / ("scene_" + std::to_string(::getpid()));
+};
+
+/// What a call complains of.
+template <typename Call>
+std::string complaint(const Call& call) {
+  try {
+    call();
+  } catch (const InputError& error) {
+    return error.what();
+  }
+  return "(no InputError)";
+}
+
+}  // namespace slipstick::solver

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <memory>
+
+#include "solver/certificate.hpp"
+#include "solver/paper_method.hpp"
+#include "solver/pressure.hpp"
+#include "solver/tests/paper_scene.hpp"
+
+namespace slipstick::solver {
+
+/// Sums of some thousands of numbers round by less.
+inline constexpr double kRounding = 1e-12;
+/// Stops the iteration where only rounding is left.
+inline constexpr double kTight = 1e-11;
+
+inline double largest(const Eigen::ArrayXd& values) { return values.abs().maxCoeff<Eigen::PropagateNaN>(); }
+inline double relative_difference(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) {
+  return largest(a - b) / largest(b);
+}
+
+inline TorsionProblem under_moment(const Eigen::ArrayXd& bound, double moment) {
+  TorsionProblem problem;
+  problem.friction_bound = bound;
+  problem.moment = moment;
+  return problem;
+}
+
+inline TorsionProblem under_twist(const Eigen::ArrayXd& bound, double twist) {
+  TorsionProblem problem;
+  problem.friction_bound = bound;
+  problem.twist = twist;
+  return problem;
+}
+
+inline PaperOptions to_tolerance(double tolerance) {
+  PaperOptions options;
+  options.tolerance = tolerance;
+  return options;
+}
+
+/// The sphere's friction bounds on a grid, to pose problems that a scene cannot.
+struct Bench {
+  explicit Bench(Index cells, double friction = paper::kFriction, OperatorKind kind = OperatorKind::dcfft) {
+    const Scene scene = paper_scene(cells, 0.0);
+    model = make_model(scene);
+    bound = friction * find_pressure(scene, model).pressure;
+    op = make_operator(kind, model.grid, tangential_kernel(), model.pair);
+    limit = moment_limit(model.grid, bound);
+  }
+  TorsionSolution twist_by_moment(double moment_ratio, double tolerance = kTight) const {
+    return solve_by_paper_method(*op, under_moment(bound, moment_ratio * limit), to_tolerance(tolerance));
+  }
+  Certificate certify_solution(const TorsionSolution& solution, double moment) const {
+    return certify({solution.traction, solution.elastic_displacement, solution.slip}, bound,
+                   rotation_field(model.grid), moment);
+  }
+  double moment_of(const Eigen::ArrayXd& traction) const {
+    return (traction * rotation_field(model.grid)).sum();
+  }
+
+  Model model;
+  Eigen::ArrayXd bound;
+  std::unique_ptr<LinearOperator> op;
+  double limit = 0.0;
+};
+
+}  // namespace slipstick::solver
