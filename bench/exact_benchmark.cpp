@@ -15,7 +15,7 @@ void stick_ratio_from_moment(benchmark::State& state) {
   const analytic::TorsionState there = analytic::from_moment_ratio(ratio);
   state.counters["error"] =
       std::abs(analytic::from_stick_ratio(there.stick_ratio).moment_ratio / ratio - 1.0);
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(ratio);
     benchmark::DoNotOptimize(analytic::from_moment_ratio(ratio));
   }
@@ -25,7 +25,7 @@ void state_from_stick_ratio(benchmark::State& state) {
   double c = 0.5;
   state.counters["error"] =
       std::abs(analytic::from_twist(analytic::from_stick_ratio(c).twist).stick_ratio / c - 1.0);
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(c);
     benchmark::DoNotOptimize(analytic::from_stick_ratio(c));
   }
@@ -37,7 +37,7 @@ void one_traction(benchmark::State& state) {
   // Continuity at the stick edge is what the closed form of the stick zone must meet.
   state.counters["error"] = std::abs(
       analytic::traction(torsion, std::nextafter(0.5, 0.0)) / analytic::traction(torsion, 0.5) - 1.0);
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     benchmark::DoNotOptimize(radius);
     benchmark::DoNotOptimize(analytic::traction(torsion, radius));
   }

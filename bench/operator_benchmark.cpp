@@ -52,7 +52,7 @@ void tangential_application(benchmark::State& state, OperatorKind kind) {
   }
   const std::span<const double> in{q.data(), static_cast<std::size_t>(q.size())};
   const std::span<double> out{u.data(), static_cast<std::size_t>(u.size())};
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     op->apply(in, out);
     benchmark::DoNotOptimize(out.data());
   }
@@ -69,7 +69,7 @@ void four_bare_transforms(benchmark::State& state) {
       fftw_plan_dft_r2c_2d(padded, padded, real.data(), spectrum.complex(), FFTW_ESTIMATE));
   const slipstick::solver::FftwPlan backward(
       fftw_plan_dft_c2r_2d(padded, padded, spectrum.complex(), real.data(), FFTW_ESTIMATE));
-  for (auto _ : state) {
+  for ([[maybe_unused]] auto _ : state) {
     for (int i = 0; i < 2; ++i) {
       fftw_execute(forward.get());
       fftw_execute(backward.get());

@@ -36,6 +36,7 @@ fs::path project_file(const fs::path& relative) {
 /// Runs a program and waits; returns its exit code.
 int run_program(const std::vector<std::string>& words) {
   std::vector<char*> arguments;
+  arguments.reserve(words.size() + 1);
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
   pid_t child = 0;
@@ -60,13 +61,12 @@ void draw(const fs::path& data, const fs::path& output) {
   if (is_current(output / "index.html", {data, scripts})) return;
   const std::string python = SLIPSTICK_PYTHON;
   if (python.empty()) {
-    throw std::runtime_error(
-        fmt::format("the results are in {}, but no python3 with numpy, matplotlib, jinja2 and h5py was found "
-                    "when this program "
-                    "was built. On Debian or Ubuntu: apt-get install python3-numpy python3-matplotlib "
-                    "python3-jinja2 python3-h5py; "
-                    "elsewhere configure with -DSLIPSTICK_PYTHON=/path/to/python3",
-                    data.string()));
+    throw std::runtime_error(fmt::format(
+        "the results are in {}, but no python3 with numpy, matplotlib, jinja2 and h5py was found when "
+        "this program was built. On Debian or Ubuntu: apt-get install python3-numpy "
+        "python3-matplotlib python3-jinja2 python3-h5py; elsewhere configure with "
+        "-DSLIPSTICK_PYTHON=/path/to/python3",
+        data.string()));
   }
   const int status = run_program({python, scripts / "render.py", data.string(), "--output", output.string()});
   if (status != 0) {

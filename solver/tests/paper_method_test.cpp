@@ -142,14 +142,13 @@ TEST_P(Sphere, DoesNotDependOnTheOperator) {
 /// of squares only in the limit.
 TEST_P(Sphere, ForgetsPoissonsRatioWithTheMesh) {
   const auto difference = [&](Index cells) {
-    double twist[2];
-    for (const int i : {0, 1}) {
+    const auto normalised_twist = [&](double poisson_ratio) {
       Scene scene = paper_scene(cells, GetParam().moment_ratio);
-      scene.upper.poisson_ratio = scene.lower.poisson_ratio = 0.5 * i;
+      scene.upper.poisson_ratio = scene.lower.poisson_ratio = poisson_ratio;
       const Solution solution = solve(scene);
-      twist[i] = solution.twist_angle * solution.model.stress_unit * std::pow(solution.contact_radius, 2);
-    }
-    return std::abs(twist[1] / twist[0] - 1.0);
+      return solution.twist_angle * solution.model.stress_unit * std::pow(solution.contact_radius, 2);
+    };
+    return std::abs(normalised_twist(0.5) / normalised_twist(0.0) - 1.0);
   };
   const double coarse = difference(32);
   const double fine = difference(128);
