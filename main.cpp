@@ -47,7 +47,7 @@ int run(int argc, char** argv) {
   bool quiet = false;
   for (CLI::App* subcommand : subcommands) {
     subcommand->add_option("--json", json_path, "write the result as JSON to this file (- is stdout)");
-    subcommand->add_flag("--quiet", quiet, "print no text");
+    subcommand->add_flag("--quiet", quiet, "print no result text");
   }
 
   try {
