@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <cmath>
+#include <stdexcept>
 
 #include "analytic/hertz.hpp"
 
@@ -24,6 +25,11 @@ std::string obstacle(const solver::Scene& scene) {
     return "the pressure's tangential displacement of dissimilar materials enters (contact.coupling)";
   }
   return "";
+}
+
+analytic::TorsionState state_under(const solver::TorsionLoad& load, double moment_limit, double twist_unit) {
+  if (load.twist) return analytic::from_twist(*load.twist / twist_unit);
+  return analytic::from_moment_ratio(load.moment_ratio ? *load.moment_ratio : *load.moment / moment_limit);
 }
 
 }  // namespace
@@ -54,14 +60,12 @@ OracleAnswer find_oracle(const solver::Scene& scene) {
   const double twist_unit = scene.friction * load / (shear_modulus * hertz.radius * hertz.radius);
   const double limit = analytic::moment_limit() * moment_unit;
 
-  const solver::TorsionLoad& torsion = scene.torsion;
-  if (torsion.moment && !(*torsion.moment < limit)) {
-    return {std::nullopt, fmt::format("the moment is not below the exact limit {:.17g} N m", limit)};
+  analytic::TorsionState state{};
+  try {
+    state = state_under(scene.torsion, limit, twist_unit);
+  } catch (const std::domain_error& error) {
+    return {std::nullopt, fmt::format("beyond the range of the exact solution: {}", error.what())};
   }
-  const analytic::TorsionState state = torsion.twist ? analytic::from_twist(*torsion.twist / twist_unit)
-                                       : torsion.moment_ratio
-                                           ? analytic::from_moment_ratio(*torsion.moment_ratio)
-                                           : analytic::from_moment_ratio(*torsion.moment / limit);
   return {Oracle{.contact_radius = hertz.radius,
                  .peak_pressure = hertz.peak_pressure,
                  .approach = hertz.approach,
@@ -70,7 +74,6 @@ OracleAnswer find_oracle(const solver::Scene& scene) {
                  .twist_angle = state.twist * twist_unit,
                  .stick_radius = state.stick_ratio * hertz.radius,
                  .friction = scene.friction,
-                 .twist_unit = twist_unit,
                  .state = state},
           ""};
 }

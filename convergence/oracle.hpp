@@ -19,7 +19,6 @@ struct Oracle {
   double twist_angle;     ///< rad
   double stick_radius;    ///< m
   double friction;
-  double twist_unit;  ///< rad: mu W/(G a^2), what the normalised twist is in units of
   analytic::TorsionState state;
 
   /// Hertz pressure and circumferential traction at a distance from the axis in m; zero outside the contact.

@@ -1,11 +1,9 @@
 #include "convergence/result.hpp"
 
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 #include <sys/resource.h>
 
 #include <cmath>
-#include <numbers>
 
 #include "convergence/errors.hpp"
 #include "convergence/provenance.hpp"

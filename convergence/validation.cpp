@@ -6,6 +6,7 @@
 #include <chrono>
 #include <cmath>
 #include <fstream>
+#include <numbers>
 #include <sstream>
 
 #include "analytic/paper_equations.hpp"
@@ -82,7 +83,7 @@ class Runner {
 Json exact_curve() {
   Json rows = Json::array();
   for (int i = 0; i <= kCurvePoints; ++i) {
-    const double angle = M_PI * i / kCurvePoints;
+    const double angle = std::numbers::pi * i / kCurvePoints;
     const double ratio = std::min(0.5 * (1.0 - std::cos(angle)), 0.99999);
     const analytic::TorsionState state = analytic::from_moment_ratio(ratio);
     const double equation_7 = analytic::paper::eq7_twist(state.moment);
@@ -107,9 +108,9 @@ Json exact_profile(const analytic::TorsionState& state) {
                     {"printed", analytic::paper::eq1_printed(c, radius)}});
   };
   constexpr int points = 120;
-  for (int i = 0; i < points; ++i) add(c * std::sin(0.5 * M_PI * i / points));
+  for (int i = 0; i < points; ++i) add(c * std::sin(0.5 * std::numbers::pi * i / points));
   add(std::nextafter(c, 0.0));
-  for (int i = 0; i <= points; ++i) add(c + (1.0 - c) * std::sin(0.5 * M_PI * i / points));
+  for (int i = 0; i <= points; ++i) add(c + (1.0 - c) * std::sin(0.5 * std::numbers::pi * i / points));
   return rows;
 }
 

@@ -61,6 +61,7 @@ SlipDirection slip_direction(const Eigen::ArrayXd& traction, const Eigen::ArrayX
     if (size[i] >= noticeable) direction.max = std::max(direction.max, angle);
   }
   if (weight > 0.0) direction.mean /= weight;
+  if (std::isnan(weight) || std::isnan(direction.mean)) direction.mean = direction.max = std::nan("");
   return direction;
 }
 

@@ -52,14 +52,16 @@ class PaperMethod {
         s_(q_),
         d_(q_),
         Kd_(q_),
-        q0_(q_) {}
+        q0_(q_) {
+    measure_stick_area();
+  }
 
   TorsionSolution run() {
     const bool unloaded = problem_.moment.value_or(problem_.twist.value_or(0.0)) == 0.0 &&
                           problem_.initial_displacement.size() == 0;
     if (unloaded || total_friction_ == 0.0) return finish(Status::converged, "");
     // The initial guess, Eq. (13): tractions like a rotation, scaled to the moment, all cells in stick.
-    if (problem_.moment) balance_moment();
+    balance_moment();
     for (iteration_ = 1; iteration_ <= options_.max_iterations; ++iteration_) {
       /*  1 */ compute_displacements();
       if (!can_hold()) return empty_stick_area();
@@ -73,10 +75,9 @@ class PaperMethod {
       /*  7 */ q0_ = q_;           // Eq. (20)
       /*  8 */ q_ -= alpha_ * d_;  // Eq. (21)
       /*  9 */ enforce_coulomb();
-      /* 10 */ if (problem_.moment)
-        balance_moment();
-      /* 11 */ if (converged())
-        return finish(Status::converged, "");
+      /* 10 */ balance_moment();
+      /* 11 */ measure_change();
+      if (change_ <= options_.tolerance) return finish(Status::converged, "");
     }
     iteration_ = options_.max_iterations;
     return finish(
@@ -96,13 +97,18 @@ class PaperMethod {
     }
   }
 
-  /// Whether A_S is empty; a cell on the axis alone holds no moment and fixes no twist.
-  bool can_hold() const { return problem_.twist ? stick_.any() : (both(stick_) * t_).square().sum() > 0.0; }
+  /// t on A_S and its square sum, the denominator of Eqs. (16) and (25), whenever A_S is new.
+  void measure_stick_area() {
+    stick_t_ = both(stick_) * t_;
+    stick_t_square_ = stick_t_.square().sum();
+  }
+
+  /// Whether A_S holds against torsion; a cell on the axis alone carries no moment and fixes no twist.
+  bool can_hold() const { return problem_.twist ? stick_.any() : stick_t_square_ > 0.0; }
 
   /// Step 2, Eqs. (14)-(16): the twist that fits the displacements best on A_S.
   void estimate_twist() {
-    const ArrayXd on_stick = both(stick_) * t_;
-    phi_ = problem_.twist ? *problem_.twist : (on_stick * (u_ + initial_)).sum() / on_stick.square().sum();
+    phi_ = problem_.twist ? *problem_.twist : (stick_t_ * (u_ + initial_)).sum() / stick_t_square_;
   }
 
   /// Step 3: relative slip distances, Eq. (8), and their square sum on A_S, Eq. (17).
@@ -144,21 +150,21 @@ class PaperMethod {
         changed_ = true;
       }
     }
+    if (changed_) measure_stick_area();
   }
 
-  /// Step 10, Eqs. (24), (25): a multiple of t on A_S restores the moment. The directions carry no moment, so
-  /// b is rounding unless step 9 changed something.
+  /// Step 10, Eqs. (24), (25): a multiple of t on A_S restores the moment, where one is given. The directions
+  /// carry no moment, so b is rounding unless step 9 changed something.
   void balance_moment() {
-    const ArrayXd on_stick = both(stick_) * t_;
-    const double square = on_stick.square().sum();
-    if (square > 0.0) q_ += (*problem_.moment - (q_ * t_).sum()) / square * on_stick;
+    if (!problem_.moment || !can_hold()) return;
+    const double b = (*problem_.moment - (q_ * t_).sum()) / stick_t_square_;
+    q_ += b * stick_t_;
   }
 
-  /// Step 11, Eq. (26).
-  bool converged() {
+  /// Step 11, the left side of Eq. (26).
+  void measure_change() {
     change_ = norms(q_ - q0_).sum() / total_friction_;
     if (options_.progress && iteration_ % kProgressEvery == 0) options_.progress(iteration_, change_);
-    return change_ <= options_.tolerance;
   }
 
   TorsionSolution empty_stick_area() {
@@ -198,6 +204,8 @@ class PaperMethod {
   const double total_friction_;
   const ArrayXd contact_;  // A_C
   ArrayXd stick_;          // A_S
+  ArrayXd stick_t_;        // t on A_S
+  double stick_t_square_ = 0.0;
   ArrayXd q_, u_, s_, d_, Kd_, q0_;
   double phi_ = 0.0, S_ = 0.0, S0_ = 1.0, alpha_ = 0.0, curvature_ = 0.0, change_ = 0.0;
   bool changed_ = true;  // whether A_S is new: displacements afresh, theta = 0

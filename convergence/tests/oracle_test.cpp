@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
 
 #include "solver/scene.hpp"
 
@@ -68,11 +69,14 @@ TEST(Oracle, FieldsIntegrateToTheLoads) {
   const auto integrate = [&](auto radius, auto slope) {
     constexpr int n = 2000;
     for (int i = 0; i <= n; ++i) {
-      const double t = M_PI / 2 * i / n;
-      const double weight = (i == 0 || i == n ? 1.0 : i % 2 == 1 ? 4.0 : 2.0) * M_PI / 2 / n / 3.0;
+      const double t = std::numbers::pi / 2 * i / n;
+      const double weight = (i == 0 || i == n ? 1.0
+                             : i % 2 == 1     ? 4.0
+                                              : 2.0) *
+                            std::numbers::pi / 2 / n / 3.0;
       const double r = radius(t);
-      force += weight * slope(t) * 2.0 * M_PI * r * oracle.pressure(r);
-      moment += weight * slope(t) * 2.0 * M_PI * r * r * oracle.traction(r);
+      force += weight * slope(t) * 2.0 * std::numbers::pi * r * oracle.pressure(r);
+      moment += weight * slope(t) * 2.0 * std::numbers::pi * r * r * oracle.traction(r);
     }
   };
   integrate([&](double t) { return edge * std::sin(t); }, [&](double t) { return edge * std::cos(t); });
@@ -92,6 +96,8 @@ TEST(Oracle, SaysWhyThereIsNone) {
   EXPECT_NE(reason("/ellipse.toml", {}).find("ellipsoid"), std::string::npos);
   EXPECT_NE(reason("/dissimilar.toml", {}).find("coupling"), std::string::npos);
   EXPECT_EQ(reason("/dissimilar.toml", {"contact.coupling=none"}), "");
+  EXPECT_NE(reason("/paper.toml", {"load.moment=0.02882"}).find("gross slip"), std::string::npos);
+  EXPECT_NE(reason("/paper.toml", {"load.twist=1e3"}).find("range"), std::string::npos);
   EXPECT_NE(reason("/paper.toml", {"contact.friction=0"}).find("friction"), std::string::npos);
 }
 

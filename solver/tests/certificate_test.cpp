@@ -285,6 +285,7 @@ TEST(SlipDirection, IsTheAngleFromTheReverseOfTraction) {
   EXPECT_EQ(slip_direction(q, s).max, 0.0);
   s[1] = kNaN;
   EXPECT_FALSE(slip_direction(q, s).mean <= 180.0);
+  EXPECT_FALSE(slip_direction(q, s).max <= 180.0);
 }
 
 TEST(Norms, AreThoseOfEachCell) {
