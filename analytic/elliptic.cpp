@@ -4,27 +4,63 @@
 #include <gsl/gsl_sf_ellint.h>
 
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
+#include "analytic/elliptic_series.hpp"
 #include "analytic/gsl.hpp"
 
 namespace slipstick::analytic {
 
-CompleteElliptic complete_elliptic(double complementary_modulus) {
-  // Below this the next terms of the expansion at k' = 0, k'^2 ln(1/k') (DLMF 19.12.1), are less than one
-  // ulp.
-  constexpr double kLogarithmic = 1e-9;
+namespace {
 
+/// For k' up to 1/4, where so many powers of k'^2 leave less than 1e-17.
+constexpr double kLogarithmic = 0.25;
+constexpr std::size_t kTerms = 16;
+
+CompleteElliptic by_series(double kp) {
+  static constexpr auto kLogK = series::rounded(series::logarithmic_k().log);
+  static constexpr auto kConstantK = series::rounded(series::logarithmic_k().constant);
+  static constexpr auto kLogE = series::rounded(series::logarithmic_e().log);
+  static constexpr auto kConstantE = series::rounded(series::logarithmic_e().constant);
+  const double x = kp * kp;
+  const double log = -std::log(kp);
+  const double k = log * series::sum(kLogK, x, kTerms) + series::sum(kConstantK, x, kTerms);
+  const double e = log * series::sum(kLogE, x, kTerms) + series::sum(kConstantE, x, kTerms);
+  return {.k = k, .e = e, .d = (k - e) / ((1 - kp) * (1 + kp))};
+}
+
+/// K = pi/(2 agm(1, k')), and K - E is K/2 times the sum of 2^n c_n^2, where c_0 = k and
+/// c_(n+1) = c_n^2/(4 a_(n+1)): nothing cancels in D, and little in E for k' > 1/4.
+CompleteElliptic by_mean(double kp) {
+  constexpr double kConverged = 1e-8;  // the next c_n^2 is the square of this
+  const double k2 = (1 - kp) * (1 + kp);
+  double a = (1 + kp) / 2;
+  double g = std::sqrt(kp);
+  double term = (1 - kp) / (4 * (1 + kp));  // c_n^2/k^2
+  double power = 2;
+  double sum = 1 + power * term;
+  for (bool last = false; !last;) {
+    last = a - g <= kConverged * a;
+    const double mean = (a + g) / 2;
+    g = std::sqrt(a * g);
+    a = mean;
+    term *= term * k2 / (16 * a * a);
+    power *= 2;
+    sum += power * term;
+  }
+  const double k = std::numbers::pi / (2 * a);
+  const double d = k / 2 * sum;
+  return {.k = k, .e = k - k2 * d, .d = d};
+}
+
+}  // namespace
+
+CompleteElliptic complete_elliptic(double complementary_modulus) {
   const double kp = complementary_modulus;
   if (!(kp > 0 && kp <= 1))
     throw std::domain_error(fmt::format("complementary modulus k' = {}; allowed: 0 < k' <= 1", kp));
-  if (kp < kLogarithmic) {
-    const double k = 2 * std::log(2.0) - std::log(kp);
-    return {.k = k, .e = 1, .d = k - 1};
-  }
-  const double kp2 = kp * kp;
-  const double rd = carlson_rd(0, kp2, 1);
-  return {.k = carlson_rf(0, kp2, 1), .e = kp2 * (rd + carlson_rd(0, 1, kp2)) / 3, .d = rd / 3};
+  return kp <= kLogarithmic ? by_series(kp) : by_mean(kp);
 }
 
 double carlson_rf(double x, double y, double z) { return gsl::evaluate(gsl_sf_ellint_RF_e, x, y, z); }

@@ -9,8 +9,9 @@ struct CompleteElliptic {
   double d;
 };
 
-/// Complete elliptic integrals of modulus k = sqrt(1 - k'^2), given the complementary modulus k' in (0, 1].
-/// Carlson's forms (Carlson 1995; DLMF 19.25.1) keep full precision at both ends, where forms in k lose it.
+/// Complete elliptic integrals of modulus k = sqrt(1 - k'^2), given the complementary modulus k' in (0, 1]:
+/// by the arithmetic-geometric mean, near k' = 0 by logarithmic series (DLMF 19.8, 19.12). Relative error at
+/// most 5 eps, where forms in k lose everything at either end.
 /// Throws std::domain_error for k' outside (0, 1] or NaN.
 CompleteElliptic complete_elliptic(double complementary_modulus);
 

@@ -23,7 +23,7 @@ using Json = nlohmann::ordered_json;
 struct Given {
   const char* option;
   const char* help;
-  TorsionState (*state)(double);
+  TorsionState (*state)(double, const Profile&);
 };
 
 constexpr std::array kGiven{
@@ -82,7 +82,7 @@ auto naming(const std::string& option, Function function) {
 TorsionState given_state(const Options& options) {
   for (std::size_t i = 0; i < kGiven.size(); ++i)
     if (options.option[i]->count() > 0)
-      return naming(kGiven[i].option, [&] { return kGiven[i].state(options.value[i]); });
+      return naming(kGiven[i].option, [&] { return kGiven[i].state(options.value[i], hertz_profile()); });
   throw std::invalid_argument("exact: no state given");
 }
 

@@ -99,4 +99,18 @@ double integral(const std::function<double(double)>& f, double low, double high)
   return result;
 }
 
+double gauss_legendre(const std::function<double(double)>& f, double low, double high) {
+  constexpr std::size_t kPoints = 24;
+  static const auto table =
+      own(gsl_integration_glfixed_table_alloc(kPoints), gsl_integration_glfixed_table_free);
+  double sum = 0;
+  for (std::size_t i = 0; i < kPoints; ++i) {
+    double x = 0;
+    double weight = 0;
+    check(gsl_integration_glfixed_point(low, high, i, &x, &weight, table.get()));
+    sum += weight * f(x);
+  }
+  return sum;
+}
+
 }  // namespace slipstick::analytic::gsl

@@ -30,4 +30,7 @@ double root(const std::function<double(double)>& f, double low, double high);
 /// allows.
 double integral(const std::function<double(double)>& f, double low, double high);
 
+/// Gauss's rule of 24 points over [low, high]: exact to the last digits where f is analytic well beyond.
+double gauss_legendre(const std::function<double(double)>& f, double low, double high);
+
 }  // namespace slipstick::analytic::gsl

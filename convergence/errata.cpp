@@ -33,7 +33,7 @@ std::string equation_7_error() {
                         100.0 * (paper::eq7_twist(state.moment) / state.twist - 1.0), state.moment_ratio);
   }
   return text + fmt::format("; at Mₗᵢₘ it gives {:.4g} where the twist is infinite",
-                            paper::eq7_twist(analytic::moment_limit()));
+                            paper::eq7_twist(analytic::hertz_profile().moment_limit()));
 }
 
 std::string equation_5_cancellation() {

@@ -58,7 +58,7 @@ OracleAnswer find_oracle(const solver::Scene& scene) {
   const auto hertz = analytic::hertz_circle(load, scene.surface.radius, effective_modulus);
   const double moment_unit = scene.friction * load * hertz.radius;
   const double twist_unit = scene.friction * load / (shear_modulus * hertz.radius * hertz.radius);
-  const double limit = analytic::moment_limit() * moment_unit;
+  const double limit = analytic::hertz_profile().moment_limit() * moment_unit;
 
   analytic::TorsionState state{};
   try {

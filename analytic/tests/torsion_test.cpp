@@ -27,7 +27,7 @@ using ::testing::ThrowsMessage;
 constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
-const std::map<std::string, TorsionState (*)(double)> kFrom{{"moment_ratio", from_moment_ratio},
+const std::map<std::string, TorsionState (*)(double, const Profile&)> kFrom{{"moment_ratio", from_moment_ratio},
                                                             {"moment_deficit", from_moment_deficit},
                                                             {"stick_ratio", from_stick_ratio},
                                                             {"stick_complement", from_stick_complement},
@@ -58,7 +58,7 @@ double moment_of_traction(const TorsionState& state) {
 /// Every member from every argument: 1e-14 and what one ulp of the argument costs.
 TEST(Torsion, AgreesWithReferences) {
   for (const auto& row : testing::read_references("torsion_references.csv")) {
-    const TorsionState state = kFrom.at(row.text("given"))(row.argument("value"));
+    const TorsionState state = kFrom.at(row.text("given"))(row.argument("value"), hertz_profile());
     for (const auto& [name, member] : kMember) {
       const double cost = row.argument("cost_" + name);
       EXPECT_LE(relative_error(state.*member, row.number(name)), 1e-14 + cost * kEps)
@@ -114,7 +114,7 @@ TEST(Torsion, GoesRoundBetweenAllArguments) {
   for (const double c : {0.01, 0.2, 0.5, 0.7, 0.71, 0.9, 0.99}) {
     const auto start = from_stick_ratio(c);
     for (const auto& [name, from] : kFrom) {
-      const auto back = from(start.*kMember.at(name));
+      const auto back = from(start.*kMember.at(name), hertz_profile());
       // dc/c per relative change of what was handed over: at most that of 1 - deficit, or of 1 - c.
       const double slope = 64 / (3 * pi * pi) * c * c;  // of M/M_lim in c, from below
       const double cost = name == "moment_ratio"     ? start.moment_ratio / (slope * c)
@@ -157,12 +157,12 @@ TEST(Torsion, HasTheLimitOfSlipEverywhere) {
   // 3 integral_0^1 sqrt(1 - r^2) r^2 dr
   const double slip =
       3 * gsl::integral([](double t) { return std::pow(std::sin(t) * std::cos(t), 2); }, 0, pi / 2);
-  EXPECT_NEAR(moment_limit() / slip, 1, 1e-14);
+  EXPECT_NEAR(hertz_profile().moment_limit() / slip, 1, 1e-14);
 }
 
 TEST(Traction, AgreesWithReferences) {
   for (const auto& row : testing::read_references("traction_references.csv")) {
-    const TorsionState state = kFrom.at(row.text("given"))(row.argument("value"));
+    const TorsionState state = kFrom.at(row.text("given"))(row.argument("value"), hertz_profile());
     EXPECT_LE(relative_error(traction(state, row.argument("radius")), row.number("traction")), 1e-14)
         << row.line();
   }
@@ -209,7 +209,7 @@ TEST(TorsionRange, NamesGrossSlip) {
 
 TEST(TorsionRange, RefusesWhatLiesOutside) {
   for (const double bad : {-1e-300, -1.0, kNan, -HUGE_VAL}) {
-    for (const auto& [name, from] : kFrom) EXPECT_THROW(from(bad), std::domain_error) << name << ' ' << bad;
+    for (const auto& [name, from] : kFrom) EXPECT_THROW(from(bad, hertz_profile()), std::domain_error) << name << ' ' << bad;
     EXPECT_THROW(traction(from_stick_ratio(0.5), bad), std::domain_error) << bad;
   }
   EXPECT_THROW(from_moment_deficit(1.1), std::domain_error);
