@@ -48,7 +48,8 @@ class Profile {
   virtual double pressure(double radius) const = 0;
   /// H(c).
   virtual double twist_integral(StickRadius stick) const = 0;
-  /// -c H'(c): the slope of H in -ln c, and 3/8 c^-2 that of M in -c. For Newton steps: good to a few digits.
+  /// -c H'(c): the slope of H in -ln c, and 3/8 c^-2 that of M in -c. A few digits do, for Newton steps, but
+  /// all of them where there is an edge term: differences of H are then integrals of this.
   virtual double twist_slope(StickRadius stick) const = 0;
   /// Moment at the stick radius c.
   virtual MomentShare moment_share(StickRadius stick) const = 0;

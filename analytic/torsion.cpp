@@ -45,10 +45,15 @@ TorsionState state_at(StickRadius c, const Profile& profile) {
 }
 
 /// Full stick under a singular edge: the bonded punch.
-TorsionState fully_stuck(MomentShare share, const Profile& profile) {
-  TorsionState state = state_at({.ratio = 1, .complement = 0}, share, profile);
-  state.twist = state.moment / kBondedStiffness;
-  return state;
+TorsionState fully_stuck(double moment_ratio, double moment_deficit, const Profile& profile) {
+  const double moment = profile.moment_limit() * moment_ratio;
+  return {.moment_ratio = moment_ratio,
+          .moment_deficit = moment_deficit,
+          .stick_ratio = 1,
+          .stick_complement = 0,
+          .twist = moment / kBondedStiffness,
+          .moment = moment,
+          .tangent_stiffness = kBondedStiffness};
 }
 
 /// A function's value, and d ln f/d ln x there.
@@ -107,9 +112,9 @@ StickRadius stick_from_deficit(double deficit, const Profile& profile) {
   }));
 }
 
+/// Where there is slip, or no load.
 TorsionState state_under(MomentShare share, const Profile& profile) {
   constexpr double kNearLimit = 0.3;  // of what slip adds; 1 - c is there no small difference
-  if (profile.edge() > 0 && share.excess <= 0) return fully_stuck(share, profile);
   const StickRadius c = share.deficit > kNearLimit * profile.slip_share()
                             ? stick_from_excess(share.excess, profile)
                             : stick_from_deficit(share.deficit, profile);
@@ -123,8 +128,9 @@ TorsionState from_moment_ratio(double moment_ratio, const Profile& profile) {
     throw std::domain_error(
         fmt::format("M/M_lim = {} is gross slip; allowed: 0 <= M/M_lim < 1", moment_ratio));
   if (!(moment_ratio >= 0)) out_of_range("M/M_lim", moment_ratio, "0 <= M/M_lim < 1");
-  TorsionState state =
-      state_under({.excess = moment_ratio - profile.full_stick(), .deficit = 1 - moment_ratio}, profile);
+  const double excess = moment_ratio - profile.full_stick();
+  if (excess < 0) return fully_stuck(moment_ratio, 1 - moment_ratio, profile);
+  TorsionState state = state_under({.excess = excess, .deficit = 1 - moment_ratio}, profile);
   state.moment_ratio = moment_ratio;
   return state;
 }
@@ -134,7 +140,9 @@ TorsionState from_moment_deficit(double moment_deficit, const Profile& profile) 
     throw std::domain_error("1 - M/M_lim = 0 is gross slip; allowed: 0 < 1 - M/M_lim <= 1");
   if (!(moment_deficit >= kLeast && moment_deficit <= 1))
     out_of_range("1 - M/M_lim", moment_deficit, "2.3e-308 <= 1 - M/M_lim <= 1");
-  return state_under({.excess = profile.slip_share() - moment_deficit, .deficit = moment_deficit}, profile);
+  const double excess = profile.slip_share() - moment_deficit;
+  if (excess < 0) return fully_stuck(1 - moment_deficit, moment_deficit, profile);
+  return state_under({.excess = excess, .deficit = moment_deficit}, profile);
 }
 
 TorsionState from_stick_ratio(double stick_ratio, const Profile& profile) {
@@ -157,7 +165,7 @@ TorsionState from_twist(double twist, const Profile& profile) {
   const double stuck = twist_at(profile.edge(), profile);
   if (stuck > 0 && twist <= stuck) {
     const double ratio = kBondedStiffness * twist / profile.moment_limit();
-    TorsionState state = fully_stuck({.excess = ratio - profile.full_stick(), .deficit = 1 - ratio}, profile);
+    TorsionState state = fully_stuck(ratio, 1 - ratio, profile);
     state.twist = twist;
     return state;
   }

@@ -12,6 +12,7 @@
 #include "analytic/paper_equations.hpp"
 #include "analytic/torsion.hpp"
 #include "convergence/errors.hpp"
+#include "convergence/exact_curves.hpp"
 #include "convergence/journal.hpp"
 #include "convergence/oracle.hpp"
 #include "convergence/provenance.hpp"
@@ -27,7 +28,6 @@ using solver::Index;
 
 constexpr double kProfileRatios[] = {0.5, 0.9};
 constexpr const char* kPressures[] = {"solved", "hertz", "hertz_averaged"};
-constexpr int kCurvePoints = 200;
 
 std::string read_text(const fs::path& file) {
   std::ifstream stream(file);
@@ -78,25 +78,6 @@ class Runner {
   int computed_ = 0;
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
-
-/// The exact curve, denser towards both ends.
-Json exact_curve() {
-  Json rows = Json::array();
-  for (int i = 0; i <= kCurvePoints; ++i) {
-    const double angle = std::numbers::pi * i / kCurvePoints;
-    const double ratio = std::min(0.5 * (1.0 - std::cos(angle)), 0.99999);
-    const analytic::TorsionState state = analytic::from_moment_ratio(ratio);
-    const double equation_7 = analytic::paper::eq7_twist(state.moment);
-    rows.push_back({{"moment_ratio", state.moment_ratio},
-                    {"stick_ratio", state.stick_ratio},
-                    {"stick_complement", state.stick_complement},
-                    {"twist", state.twist},
-                    {"equation_7", equation_7},
-                    // Eq. (7) becomes exact as the load vanishes.
-                    {"equation_7_error", state.twist > 0.0 ? equation_7 / state.twist - 1.0 : 0.0}});
-  }
-  return rows;
-}
 
 /// Radial profile: exact, Eq. (1) as printed, and both over radii that crowd at the stick edge.
 Json exact_profile(const analytic::TorsionState& state) {
@@ -173,19 +154,6 @@ Json profile(Runner& runner, const fs::path& scene_file, const fs::path& folder,
           {"result", result}};
 }
 
-/// Where Eq. (5) as printed loses its digits: against the stable form at the same stick ratio.
-Json equation_5_digits() {
-  Json rows = Json::array();
-  for (int i = 0; i <= 48; ++i) {
-    const double complement = std::pow(10.0, -0.25 - 0.15 * i);
-    const double c = 1.0 - complement;
-    const double exact = analytic::from_stick_ratio(c).moment;
-    rows.push_back({{"stick_complement", complement},
-                    {"relative_error", std::abs(analytic::paper::eq5_moment(c) / exact - 1.0)}});
-  }
-  return rows;
-}
-
 Json summary(const solver::Scene& scene, const Oracle& oracle) {
   const auto row = [](const char* label, const std::string& value) { return Json::array({label, value}); };
   return Json::array({
@@ -242,8 +210,7 @@ Json validate(const fs::path& scene_file, const fs::path& ellipse_file, const Va
                        {"approach", exact.oracle->approach},
                        {"moment_limit", exact.oracle->moment_limit}};
   report["loading_cells"] = size.loading_cells;
-  report["curve"] = exact_curve();
-  report["equation_5_digits"] = equation_5_digits();
+  report.update(exact_curves());
   report["profiles"] = Json::array();
   for (const double ratio : kProfileRatios) {
     report["profiles"].push_back(profile(runner, scene_file, folder, size.loading_cells, ratio));

@@ -1,0 +1,59 @@
+#include "analytic/approximations.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <string_view>
+
+#include "analytic/paper_equations.hpp"
+
+namespace slipstick::analytic {
+
+namespace {
+
+constexpr double kNoSlipStiffness = 16.0 / 3;  // over G a^3
+constexpr double kCap = 2.0 / 3;               // over mu W a
+
+constexpr std::array kApproximations{
+    Approximation{.key = "equation_7", .name = "Eq. (7)", .twist = paper::eq7_twist},
+    Approximation{.key = "no_slip", .name = "no slip", .twist = no_slip_twist},
+    Approximation{.key = "small_moments", .name = "small moments", .twist = small_moment_twist},
+    Approximation{.key = "dem", .name = "DEM", .twist = dem_twist},
+};
+
+void require_up_to(double most, std::string_view range, double moment) {
+  if (!(moment >= 0 && moment <= most))
+    throw std::domain_error(fmt::format("M/(mu W a) = {}; allowed: 0 <= M/(mu W a) <= {}", moment, range));
+}
+
+void require_carried(double moment) { require_up_to(paper::eq6_moment_limit(), "3 pi/16", moment); }
+
+}  // namespace
+
+double no_slip_twist(double moment) {
+  require_carried(moment);
+  return moment / kNoSlipStiffness;
+}
+
+double small_moment_twist(double moment) {
+  require_carried(moment);
+  return moment / kNoSlipStiffness + 9.0 / 64 * moment * moment;
+}
+
+double dem_moment_limit() { return kCap; }
+
+double dem_moment(double twist) {
+  if (!(twist >= 0)) throw std::domain_error(fmt::format("G a^2 phi/(mu W) = {}; allowed: 0 or more", twist));
+  return std::min(kNoSlipStiffness * twist, kCap);
+}
+
+double dem_twist(double moment) {
+  require_up_to(kCap, "2/3", moment);
+  return moment / kNoSlipStiffness;
+}
+
+std::span<const Approximation> approximations() { return kApproximations; }
+
+}  // namespace slipstick::analytic

@@ -1,0 +1,492 @@
+#include "analytic/cycle.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+#include "analytic/gsl.hpp"
+
+namespace slipstick::analytic {
+namespace {
+
+using std::numbers::pi;
+using ::testing::AllOf;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using ::testing::IsEmpty;
+using ::testing::ThrowsMessage;
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+const std::vector<const Profile*> kProfiles{&hertz_profile(), &cone_profile(), &flat_punch_profile()};
+
+LoadingHistory loaded(const std::vector<double>& moments, const Profile& profile = hertz_profile()) {
+  LoadingHistory history(profile);
+  for (const double moment : moments) history.load_to(moment);
+  return history;
+}
+
+/// The same to the last bit, but for the energy that got lost on the way.
+void expect_same(const LoadingHistory& a, const LoadingHistory& b) {
+  EXPECT_EQ(a.turning_points(), b.turning_points());
+  EXPECT_EQ(a.state().moment_ratio, b.state().moment_ratio);
+  EXPECT_EQ(a.state().moment, b.state().moment);
+  EXPECT_EQ(a.state().twist, b.state().twist);
+  EXPECT_EQ(a.state().stick_ratio, b.state().stick_ratio);
+  EXPECT_EQ(a.state().tangent_stiffness, b.state().tangent_stiffness);
+  for (const double r : {0.0, 0.3, 0.7, 0.9, 0.99}) EXPECT_EQ(a.traction(r), b.traction(r)) << r;
+}
+
+/// Moments up and down at random, the same on every machine.
+class RandomMoments {
+ public:
+  explicit RandomMoments(double most) : most_(most) {}
+  double operator()() { return most_ * (2 * static_cast<double>(twister_()) / std::mt19937::max() - 1); }
+
+ private:
+  double most_;
+  std::mt19937 twister_{20240607};
+};
+
+/// A contact as many elements in series, a spring with a slider of some threshold each (Prandtl-Ishlinskii):
+/// each yields as far as the moment drives it beyond its threshold, either way. It obeys Masing's rule
+/// without knowing it, and has no memory but its elements' twists. The virgin curve is the chords' of phi(M).
+class SpringsAndSliders {
+ public:
+  SpringsAndSliders(const Profile& profile, int count, double most_ratio) {
+    const double step = most_ratio / count;
+    double twist = 0;
+    double slope = 0;
+    for (int i = 0; i < count; ++i) {
+      const TorsionState next = from_moment_ratio(step * (i + 1), profile);
+      const double chord = (next.twist - twist) / (step * profile.moment_limit());
+      elements_.push_back({.threshold = step * i * profile.moment_limit(), .compliance = chord - slope});
+      twist = next.twist;
+      slope = chord;
+    }
+  }
+
+  void load_to(double moment) {
+    for (auto& element : elements_) {
+      const double before = element.yielded;
+      element.yielded = std::clamp(before, moment - element.threshold, moment + element.threshold);
+      dissipated_ += element.compliance * element.threshold * std::abs(element.yielded - before);
+    }
+  }
+  double twist() const {
+    double sum = 0;
+    for (const auto& element : elements_) sum += element.compliance * element.yielded;
+    return sum;
+  }
+  double dissipated() const { return dissipated_; }
+
+ private:
+  struct Element {
+    double threshold;
+    double compliance;
+    double yielded = 0;
+  };
+  std::vector<Element> elements_;
+  double dissipated_ = 0;
+};
+
+/// Of f over [low, high], with square-root ends made smooth.
+double integral_between_roots(const std::function<double(double)>& f, double low, double high) {
+  return gsl::integral(
+      [&](double t) {
+        return f(low + (high - low) * std::pow(std::sin(t), 2)) * (high - low) * std::sin(2 * t);
+      },
+      0, pi / 2);
+}
+
+/// M/(mu W a) of the tractions, piecewise between the fronts of all branches.
+double moment_of_traction(const LoadingHistory& history, const Profile& profile) {
+  std::vector<double> ends{0, 1};
+  double start = 0;
+  auto moments = history.turning_points();
+  moments.push_back(history.moment_ratio());
+  for (const double end : moments) {
+    const double amplitude = ends.size() == 2 ? std::abs(end) : std::abs(end - start) / 2;
+    ends.push_back(from_moment_ratio(amplitude, profile).stick_ratio);
+    start = end;
+  }
+  std::sort(ends.begin(), ends.end());
+  double sum = 0;
+  for (std::size_t i = 1; i < ends.size(); ++i)
+    if (ends[i] > ends[i - 1])
+      sum +=
+          integral_between_roots([&](double r) { return history.traction(r) * r * r; }, ends[i - 1], ends[i]);
+  return 2 * pi / profile.load() * sum;
+}
+
+/// Energy lost on first loading, as the friction's work on the slip. The stick area's turn by dphi drags
+/// the surface at r >= s by (2/pi) (asin(s/r) - (s/r) sqrt(1 - (s/r)^2)) r dphi: the rest is slip.
+double work_of_friction(const TorsionState& state, const Profile& profile) {
+  const double c = state.stick_ratio;
+  const auto slip = [&](double r) {
+    return gsl::gauss_legendre(
+        [&](double u) {
+          const double t = r - (r - c) * u * u;
+          const double x = t / r;
+          const double turn = profile.twist_slope({.ratio = t, .complement = 1 - t}) / (2 * t);
+          const double rest = 2 / pi * (std::acos(x) + x * std::sqrt((1 - x) * (1 + x)));
+          return turn * rest * r * 2 * (r - c) * u;
+        },
+        0, 1);
+  };
+  // Short of the edge, where a flat punch's pressure is infinite: of its work this leaves out some sqrt(eps).
+  const double edge = 1 - kEps;
+  return 2 * pi / std::pow(profile.load(), 2) *
+         integral_between_roots([&](double r) { return profile.pressure(std::min(r, edge)) * slip(r) * r; },
+                                c, 1);
+}
+
+TEST(LoadingHistory, BeginsOnTheCurveOfFirstLoading) {
+  for (const Profile* profile : kProfiles)
+    for (const double m : {0.1, 0.5, 0.88, 0.99, 1 - 1e-12})
+      for (const double sign : {1.0, -1.0}) {
+        const auto history = loaded({sign * m}, *profile);
+        const auto first = from_moment_ratio(m, *profile);
+        const auto state = history.state();
+        EXPECT_EQ(state.moment_ratio, sign * m);
+        EXPECT_NEAR(state.moment / first.moment, sign, 2 * kEps);
+        EXPECT_NEAR(state.twist / first.twist, sign, 8 * kEps) << profile->name() << ' ' << m;
+        EXPECT_EQ(state.stick_ratio, first.stick_ratio);
+        EXPECT_EQ(state.tangent_stiffness, first.tangent_stiffness);
+        EXPECT_NEAR(state.dissipated, energy_lost_per_cycle(m, *profile) / 4, kEps * state.dissipated);
+        EXPECT_THAT(history.turning_points(), IsEmpty());
+        for (const double r : {0.0, 0.5, 0.95})
+          EXPECT_EQ(history.traction(r), sign * traction(first, r, *profile)) << profile->name() << ' ' << r;
+      }
+}
+
+TEST(LoadingHistory, KeepsTheDigitsOfSmallLoads) {
+  for (const double m : {1e-3, 1e-9, 1e-100}) {
+    for (const Profile* profile : {&hertz_profile(), &cone_profile()})
+      EXPECT_NEAR(loaded({m}, *profile).state().twist / from_moment_ratio(m, *profile).twist, 1, 8 * kEps)
+          << profile->name() << ' ' << m;
+    const auto punch = loaded({m}, flat_punch_profile()).state();
+    EXPECT_EQ(punch.twist, 3.0 / 16 * punch.moment) << m;
+  }
+}
+
+TEST(LoadingHistory, StartsUnloaded) {
+  const LoadingHistory history;
+  const auto state = history.state();
+  EXPECT_EQ(state.moment_ratio, 0);
+  EXPECT_EQ(state.twist, 0);
+  EXPECT_EQ(state.stick_ratio, 1);
+  EXPECT_EQ(state.tangent_stiffness, 16.0 / 3);
+  EXPECT_EQ(state.dissipated, 0);
+  EXPECT_EQ(history.traction(0.5), 0);
+}
+
+TEST(LoadingHistory, RemembersOpenReversals) {
+  EXPECT_THAT(loaded({0.6, -0.3, 0.2, 0.1}).turning_points(), ElementsAre(0.6, -0.3, 0.2));
+  EXPECT_THAT(loaded({0.6, -0.3, -0.2, -0.25, 0.1}).turning_points(), ElementsAre(0.6, -0.3));
+  EXPECT_THAT(loaded({0.6, -0.3, 0.2, -0.3}).turning_points(), ElementsAre(0.6));
+  EXPECT_THAT(loaded({0.6, -0.3, 0.6}).turning_points(), IsEmpty());
+  EXPECT_THAT(loaded({0.6, -0.6}).turning_points(), IsEmpty());
+  EXPECT_THAT(loaded({0.6, -0.7, 0.5}).turning_points(), ElementsAre(-0.7));
+  EXPECT_THAT(loaded({0.6, 0.6, 0.0, 0.0, 0.3}).turning_points(), ElementsAre(0.6, 0.0));
+}
+
+TEST(LoadingHistory, FollowsMasingsRuleOnABranch) {
+  for (const Profile* profile : kProfiles)
+    for (const double m : {0.5, 0.9, -0.4}) {
+      const auto at = [&](double moment) { return from_moment_ratio(moment, *profile); };
+      const auto history = loaded({0.95, m}, *profile);
+      const double half = (0.95 - m) / 2;
+      EXPECT_NEAR(history.state().twist, at(0.95).twist - 2 * at(half).twist, 4 * kEps) << profile->name();
+      EXPECT_EQ(history.state().stick_ratio, at(half).stick_ratio);
+      for (const double r : {0.1, 0.5, 0.8})
+        EXPECT_NEAR(history.traction(r),
+                    traction(at(0.95), r, *profile) - 2 * traction(at(half), r, *profile), 4 * kEps)
+            << profile->name() << ' ' << r;
+    }
+}
+
+TEST(LoadingHistory, ClosesItsLoopToTheLastBit) {
+  for (const Profile* profile : kProfiles)
+    for (const double m : {1e-3, 0.5, 0.95}) {
+      const auto start = loaded({m}, *profile);
+      for (const double turn : {-0.99 * m, -0.5 * m, 0.0, 0.7 * m})
+        expect_same(loaded({m, turn, m}, *profile), start);
+    }
+}
+
+TEST(LoadingHistory, ForgetsInnerLoops) {
+  for (const Profile* profile : kProfiles) {
+    expect_same(loaded({0.9, -0.2, 0.4, 0.1, 0.2, 0.0, 0.3, -0.5}, *profile), loaded({0.9, -0.5}, *profile));
+    expect_same(loaded({0.9, -0.5, 0.3, -0.1, 0.3, 0.6}, *profile), loaded({0.9, -0.5, 0.6}, *profile));
+    expect_same(loaded({0.5, -0.4, 0.3, -0.2, 0.8}, *profile), loaded({0.8}, *profile));
+    expect_same(loaded({0.5, -0.4, 0.3, -0.2, -0.8}, *profile), loaded({-0.8}, *profile));
+  }
+}
+
+TEST(LoadingHistory, DoesNotDependOnStopsOnTheWay) {
+  for (const Profile* profile : kProfiles) {
+    const auto direct = loaded({0.9, -0.7, 0.95}, *profile);
+    const auto slow = loaded({0.3, 0.9, 0.5, -0.1, -0.7, 0.0, 0.9, 0.92, 0.95}, *profile);
+    expect_same(slow, direct);
+    EXPECT_NEAR(slow.state().dissipated / direct.state().dissipated, 1, 8 * kEps) << profile->name();
+  }
+}
+
+TEST(LoadingHistory, StaysWhereItStands) {
+  for (const auto& moments : std::vector<std::vector<double>>{{0.9}, {0.9, -0.5}, {0.9, -0.5, 0.1}}) {
+    auto again = moments;
+    again.push_back(moments.back());
+    expect_same(loaded(again), loaded(moments));
+    EXPECT_EQ(loaded(again).state().dissipated, loaded(moments).state().dissipated);
+  }
+}
+
+TEST(LoadingHistory, MeetsTheFirstLoadingCurveOnTheOtherSide) {
+  for (const Profile* profile : kProfiles)
+    for (const double m : {1e-3, 0.5, 0.95}) {
+      const auto mirrored = loaded({m, -m}, *profile);
+      const auto start = loaded({m}, *profile);
+      EXPECT_EQ(mirrored.state().twist, -start.state().twist);
+      for (const double r : {0.1, 0.5, 0.9, 0.99}) EXPECT_EQ(mirrored.traction(r), -start.traction(r));
+      // Just before, the branch is on, and on its own formula.
+      const auto before = loaded({m, -m * (1 - 1e-12)}, *profile);
+      EXPECT_THAT(before.turning_points(), ElementsAre(m));
+      EXPECT_NEAR(before.state().twist / mirrored.state().twist, 1, 1e-10) << profile->name() << ' ' << m;
+      EXPECT_NEAR(before.state().dissipated, mirrored.state().dissipated,
+                  1e-10 * mirrored.state().dissipated);
+      EXPECT_NEAR(before.traction(0.5) / mirrored.traction(0.5), 1, 1e-10);
+    }
+}
+
+TEST(LoadingHistory, HasAnAntisymmetricLoop) {
+  for (const double m : {0.3, 0.9})
+    for (const double x : {-0.8, -0.3, 0.0, 0.5}) {
+      const auto down = loaded({m, x * m});
+      const auto up = loaded({m, -m, -x * m});
+      EXPECT_EQ(down.state().twist, -up.state().twist);
+      for (const double r : {0.1, 0.5, 0.9}) EXPECT_EQ(down.traction(r), -up.traction(r));
+    }
+}
+
+TEST(LoadingHistory, LeavesATwistBehindWithAllItsDigits) {
+  // (9/64) M^2 - 2 (9/64) (M/2)^2, the second order of the first-loading curve.
+  for (const double m : {1e-6, 1e-9, 1e-100}) {
+    const auto state = loaded({m, 0}).state();
+    const double moment = m * hertz_profile().moment_limit();
+    EXPECT_EQ(state.moment, 0);
+    EXPECT_NEAR(state.twist / (9.0 / 128 * moment * moment), 1, m + 8 * kEps) << m;
+  }
+}
+
+TEST(LoadingHistory, HasTheMomentOfItsTractions) {
+  for (const Profile* profile : {&hertz_profile(), &cone_profile()})
+    for (const auto& moments : std::vector<std::vector<double>>{
+             {0.9}, {0.9, 0.0}, {0.9, -0.3, 0.6}, {0.5, -0.4, 0.3, -0.2, 0.1}, {0.99, -0.98, 0.0}}) {
+      const auto history = loaded(moments, *profile);
+      EXPECT_NEAR(moment_of_traction(history, *profile), history.state().moment, 1e-13)
+          << profile->name() << ' ' << moments.size();
+    }
+}
+
+TEST(LoadingHistory, StaysWithinCoulombsBoundAndReachesItInItsSlipRing) {
+  for (const Profile* profile : kProfiles) {
+    LoadingHistory history(*profile);
+    RandomMoments next(0.99);
+    for (int i = 0; i < 100; ++i) {
+      const double before = history.moment_ratio();
+      history.load_to(next());
+      const double sign = history.moment_ratio() > before ? 1 : -1;
+      const double front = history.state().stick_ratio;
+      for (const double r : {0.01, 0.2, 0.4, 0.6, 0.8, 0.9, 0.99}) {
+        const double bound = profile->pressure(r);
+        EXPECT_LE(std::abs(history.traction(r)), bound * (1 + 8 * kEps)) << profile->name() << ' ' << r;
+        if (r > front) {
+          EXPECT_EQ(history.traction(r), sign * bound) << profile->name() << ' ' << r;
+        }
+      }
+    }
+  }
+}
+
+TEST(LoadingHistory, HasTheTangentStiffnessOfItsStickArea) {
+  for (const Profile* profile : kProfiles)
+    for (const auto& moments :
+         std::vector<std::vector<double>>{{0.93}, {0.95, -0.9}, {0.98, -0.8, 0.95}, {0.5, -0.95}}) {
+      constexpr double kStep = 1e-5;
+      auto history = loaded(moments, *profile);
+      const auto middle = history.state();
+      const double before = history.turning_points().empty() ? 0 : history.turning_points().back();
+      const double step = std::copysign(kStep, middle.moment_ratio - before);
+      auto ends = moments;
+      ends.back() -= step;
+      const auto low = loaded(ends, *profile).state();
+      history.load_to(moments.back() + step);
+      const auto high = history.state();
+      EXPECT_NEAR((high.moment - low.moment) / (high.twist - low.twist) / middle.tangent_stiffness, 1, 1e-6)
+          << profile->name();
+      EXPECT_NEAR(middle.tangent_stiffness, 16.0 / 3 * std::pow(middle.stick_ratio, 3), 8 * kEps);
+      history.load_to(high.moment_ratio - kStep * step);
+      EXPECT_NEAR(history.state().tangent_stiffness, 16.0 / 3, 1e-4) << "on turning back";
+    }
+}
+
+TEST(LoadingHistory, AgreesWithSpringsAndSlidersAlongRandomHistories) {
+  constexpr double kMost = 0.97;
+  for (const Profile* profile : kProfiles) {
+    SpringsAndSliders model(*profile, 2000, kMost);
+    LoadingHistory history(*profile);
+    RandomMoments next(kMost);
+    std::size_t deepest = 0;
+    for (int i = 0; i < 300; ++i) {
+      // Excursions of all sizes, about where it stands: they nest.
+      const double wanted = next();
+      const double ratio =
+          i % 10 == 0 ? wanted : history.moment_ratio() + (wanted - history.moment_ratio()) / 3;
+      history.load_to(ratio);
+      model.load_to(ratio * profile->moment_limit());
+      deepest = std::max(deepest, history.turning_points().size());
+      ASSERT_NEAR(history.state().twist, model.twist(), 1e-5) << profile->name() << ' ' << i;
+      ASSERT_NEAR(history.state().dissipated, model.dissipated(), 1e-4 * model.dissipated() + 1e-9)
+          << profile->name() << ' ' << i;
+    }
+    EXPECT_GE(deepest, 4u);
+  }
+}
+
+TEST(LoadingCurve, GoesThroughItsTurningPoints) {
+  const auto curve = loading_curve({0.8, -0.5, 0.8}, 10);
+  ASSERT_EQ(curve.size(), 31u);
+  EXPECT_EQ(curve[0].twist, 0);
+  EXPECT_EQ(curve[10].twist, loaded({0.8}).state().twist);
+  EXPECT_EQ(curve[20].twist, loaded({0.8, -0.5}).state().twist);
+  EXPECT_EQ(curve[30].twist, curve[10].twist);
+  // Where start + (end - start) is not the end.
+  EXPECT_EQ(loading_curve({0.1, -0.7, 0.3}, 7).back().moment_ratio, 0.3);
+  EXPECT_EQ(loading_curve({0.1, -0.7, 0.3}, 7)[14].moment_ratio, -0.7);
+  for (std::size_t i = 1; i < curve.size(); ++i) {
+    EXPECT_EQ(curve[i].moment_ratio > curve[i - 1].moment_ratio, i <= 10 || i > 20) << i;
+    EXPECT_EQ(curve[i].twist > curve[i - 1].twist, i <= 10 || i > 20) << i;
+    EXPECT_GT(curve[i].dissipated, curve[i - 1].dissipated) << i;
+  }
+}
+
+TEST(LoadingCurve, EnclosesTheEnergyLost) {
+  constexpr int kPoints = 1000;
+  for (const Profile* profile : kProfiles)
+    for (const double m : {0.5, 0.95}) {
+      const auto curve = loading_curve({m, -m, m}, kPoints, *profile);
+      double work = 0;
+      for (std::size_t i = kPoints + 1; i < curve.size(); ++i)
+        work += (curve[i].moment + curve[i - 1].moment) / 2 * (curve[i].twist - curve[i - 1].twist);
+      const double lost = energy_lost_per_cycle(m, *profile);
+      EXPECT_NEAR(work, lost, 1e-4 * lost + 8 * kEps) << profile->name() << ' ' << m;
+      EXPECT_NEAR(curve.back().dissipated - curve[kPoints].dissipated, lost, 8 * kEps) << profile->name();
+    }
+}
+
+/// The loop by Masing's rule alone: 8 integral M dphi - 4 M phi over the first loading.
+TEST(EnergyLost, IsTheAreaOfTheLoop) {
+  for (const Profile* profile : kProfiles)
+    for (const double m : {0.3, 0.6, 0.9, 0.99}) {
+      const auto twist = [&](double ratio) { return from_moment_ratio(ratio, *profile).twist; };
+      const double corner = std::min(m, profile->full_stick());
+      const double below =
+          (gsl::integral(twist, 0, corner) + gsl::integral(twist, corner, m)) * profile->moment_limit();
+      const double product = from_moment_ratio(m, *profile).moment * twist(m);
+      EXPECT_NEAR(energy_lost_per_cycle(m, *profile), 4 * product - 8 * below, 32 * kEps * product)
+          << profile->name() << ' ' << m;
+    }
+}
+
+TEST(EnergyLost, IsTheWorkOfFrictionOnTheSlip) {
+  for (const Profile* profile : kProfiles)
+    for (const double c : {0.1, 0.5, 0.9}) {
+      const auto state = from_stick_ratio(c, *profile);
+      const double accuracy = profile->edge() > 0 ? 1e-7 : 1e-9;
+      EXPECT_NEAR(4 * work_of_friction(state, *profile) / energy_lost_per_cycle(state, *profile), 1, accuracy)
+          << profile->name() << ' ' << c;
+    }
+}
+
+TEST(EnergyLost, GoesLikeTheCubeOfSmallMoments) {
+  for (const Profile* profile : {&hertz_profile(), &cone_profile()})
+    for (const double m : {1e-2, 1e-3, 1e-6, 1e-12, 1e-90}) {
+      const double ratio = energy_lost_per_cycle(m, *profile) / energy_lost_per_small_cycle(m, *profile);
+      EXPECT_NEAR(ratio, 1, 2 * m + 16 * kEps) << profile->name() << ' ' << m;
+      EXPECT_GT(ratio, 1 - 16 * kEps) << profile->name() << ' ' << m;
+    }
+  const double moment = 0.1 * hertz_profile().moment_limit();
+  EXPECT_NEAR(energy_lost_per_small_cycle(0.1), 3.0 / 16 * std::pow(moment, 3), 4 * kEps);
+  const double cone = 0.1 * cone_profile().moment_limit();
+  EXPECT_NEAR(energy_lost_per_small_cycle(0.1, cone_profile()), 9.0 / 32 * std::pow(cone, 3), 4 * kEps);
+}
+
+/// Then c is small, and the loop a parallelogram: M_lim up and down, phi to and fro.
+TEST(EnergyLost, GoesLikeTheTwistNearGrossSlip) {
+  for (const Profile* profile : kProfiles) {
+    const auto lost = [&](double c) {
+      return energy_lost_per_cycle(from_stick_ratio(c, *profile), *profile);
+    };
+    const auto twist = [&](double c) { return from_stick_ratio(c, *profile).twist; };
+    for (const double c : {1e-6, 1e-30, 1e-90})
+      EXPECT_NEAR((lost(c) - lost(1e-5)) / (twist(c) - twist(1e-5)), 4 * profile->moment_limit(), 1e-9)
+          << profile->name() << ' ' << c;
+  }
+}
+
+TEST(EnergyLost, IsNothingWhileAllSticks) {
+  const auto& punch = flat_punch_profile();
+  EXPECT_EQ(energy_lost_per_cycle(0.0), 0);
+  for (const double m : {0.0, 1e-3, 0.5, 0.84}) EXPECT_EQ(energy_lost_per_cycle(m, punch), 0) << m;
+  EXPECT_GT(energy_lost_per_cycle(0.86, punch), 0);
+}
+
+/// There H(c) is H(1) to many digits. With w = 1 - c, H = (pi/2) (1 + w/2 + 5 w^2/16), and the loss follows.
+TEST(EnergyLost, KeepsItsDigitsWhereAFlatPunchBeginsToSlip) {
+  const auto& punch = flat_punch_profile();
+  for (const double w : {1e-6, 1e-7, 1e-9, 1e-15, 1e-100}) {
+    const double expansion = w * w / 4 * (1 + w / 3);
+    EXPECT_NEAR(energy_lost_per_cycle(from_stick_complement(w, punch), punch) / expansion, 1,
+                w * w + 16 * kEps)
+        << w;
+  }
+}
+
+TEST(CycleRange, NamesGrossSlip) {
+  LoadingHistory history;
+  for (const double bad : {1.0, -1.0, 1.2, -HUGE_VAL})
+    EXPECT_THAT([&] { history.load_to(bad); }, ThrowsMessage<std::domain_error>(AllOf(
+                                                   HasSubstr("gross slip"), HasSubstr("-1 < M/M_lim < 1"))))
+        << bad;
+  EXPECT_THAT([&] { history.load_to(-1.2); }, ThrowsMessage<std::domain_error>(HasSubstr("-1.2")));
+}
+
+TEST(CycleRange, RefusesWhatLiesOutside) {
+  LoadingHistory history;
+  EXPECT_THROW(history.load_to(kNan), std::domain_error);
+  history.load_to(0.5);
+  EXPECT_THROW(history.load_to(1.0), std::domain_error);
+  expect_same(history, loaded({0.5}));
+  for (const double bad : {-0.1, 1.1, kNan}) EXPECT_THROW(history.traction(bad), std::domain_error) << bad;
+  EXPECT_THROW(loaded({0.5, 0.0}, flat_punch_profile()).traction(1), std::domain_error);
+  EXPECT_THROW(loading_curve({0.5}, 0), std::domain_error);
+  EXPECT_THROW(loading_curve({0.5, kNan}, 2), std::domain_error);
+  for (const double bad : {-0.1, 1.0, kNan}) {
+    EXPECT_THROW(energy_lost_per_cycle(bad), std::domain_error) << bad;
+    EXPECT_THROW(energy_lost_per_small_cycle(bad), std::domain_error) << bad;
+  }
+  EXPECT_THROW(energy_lost_per_small_cycle(0.1, flat_punch_profile()), std::domain_error);
+}
+
+}  // namespace
+}  // namespace slipstick::analytic
