@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <cstdlib>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -10,183 +11,192 @@
 #include <string>
 #include <vector>
 
-#include "analytic/paper_equations.hpp"
-#include "analytic/torsion.hpp"
+#include "analytic/exact_answer.hpp"
 
 namespace slipstick::analytic {
 
 namespace {
-
-using Json = nlohmann::ordered_json;
 
 /// One way to name a state.
 struct Given {
   const char* option;
   const char* help;
   TorsionState (*state)(double, const Profile&);
+  certified::Quantity quantity;
 };
 
 constexpr std::array kGiven{
-    Given{"--moment-ratio", "M/M_lim, in [0, 1)", from_moment_ratio},
-    Given{"--moment-deficit", "1 - M/M_lim, in (0, 1]", from_moment_deficit},
-    Given{"--stick-ratio", "a_s/a, in (0, 1]", from_stick_ratio},
-    Given{"--stick-complement", "1 - a_s/a, in [0, 1)", from_stick_complement},
-    Given{"--twist", "G a^2 phi/(mu W), from 0", from_twist},
+    Given{"--moment-ratio", "M/M_lim, in [0, 1)", from_moment_ratio, certified::Quantity::moment_ratio},
+    Given{"--moment-deficit", "1 - M/M_lim, in (0, 1]", from_moment_deficit,
+          certified::Quantity::moment_deficit},
+    Given{"--stick-ratio", "a_s/a, in (0, 1]", from_stick_ratio, certified::Quantity::stick_ratio},
+    Given{"--stick-complement", "1 - a_s/a, in [0, 1)", from_stick_complement,
+          certified::Quantity::stick_complement},
+    Given{"--twist", "G a^2 phi/(mu W), from 0", from_twist, certified::Quantity::twist},
 };
 
+constexpr const char* kProfiles =
+    "hertz | cone | flat_punch | power:N (gap ~ r^N) | rounded_punch:B (flat out to B = b/a) | "
+    "file:P.csv (columns radius, pressure)";
+
+/// As typed. Numbers stay text for certified digits, which take them to be exactly what is written.
 struct Options {
-  std::array<double, kGiven.size()> value{};
-  std::array<const CLI::Option*, kGiven.size()> option{};
-  std::vector<double> radii;
+  std::array<std::string, kGiven.size()> value;
+  std::array<const CLI::Option*, kGiven.size()> given{};
+  std::vector<std::string> radii;
   std::string profile = "hertz";
+  std::optional<int> certified;
+  std::optional<double> unload_to;
+  std::vector<double> history;
+  int points = 50;
+  std::optional<double> normal_load;
+  std::optional<double> effective_modulus;
+  std::vector<double> shape;
+  std::optional<double> friction;
+  std::optional<double> shear_modulus;
 };
 
-/// What an equation gives as printed, or why it gives nothing there.
-struct Printed {
-  std::optional<double> value;
-  std::string reason;
-};
-
-template <class Equation>
-Printed as_printed(Equation equation) {
-  try {
-    return {.value = equation(), .reason = {}};
-  } catch (const std::domain_error& error) {
-    return {.value = std::nullopt, .reason = error.what()};
-  }
-}
-
-struct TractionAt {
-  double radius;
-  double exact;
-  Printed equation_1;
-};
-
-struct Answer {
-  TorsionState state;
-  Printed equation_5;
-  Printed equation_7;
-  std::vector<TractionAt> tractions;
-};
-
-/// An error of range, with the option that brought the value.
+/// An error of range or form, with the option that brought the value.
 template <class Function>
 auto naming(const std::string& option, Function function) {
   try {
     return function();
-  } catch (const std::domain_error& error) {
+  } catch (const std::logic_error& error) {
     throw std::domain_error(fmt::format("{}: {}", option, error.what()));
   }
 }
 
-TorsionState given_state(const Options& options) {
+double number(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0') throw std::domain_error(fmt::format("\"{}\" is not a number", text));
+  return value;
+}
+
+std::vector<double> radii(const Options& options) {
+  return naming("--radius", [&] {
+    std::vector<double> radii;
+    for (const std::string& text : options.radii) {
+      const double r = number(text);
+      if (!(r >= 0 && r <= 1)) throw std::domain_error(fmt::format("r/a = {}; allowed: 0 <= r/a <= 1", r));
+      radii.push_back(r);
+    }
+    return radii;
+  });
+}
+
+ExactContact contact(const Options& options) {
+  if (!options.normal_load)
+    return {.profile = naming("--profile", [&] { return find_profile(options.profile); }), .units = {}};
+  PressedContact pressed = naming("--shape", [&] {
+    return press(options.profile, {.load = *options.normal_load,
+                                   .effective_modulus = *options.effective_modulus,
+                                   .shape = options.shape});
+  });
+  return {.profile = std::move(pressed.profile),
+          .units = Units{.indentation = pressed.indentation,
+                         .load = *options.normal_load,
+                         .friction = options.friction,
+                         .shear_modulus = options.shear_modulus}};
+}
+
+std::size_t given(const Options& options) {
   for (std::size_t i = 0; i < kGiven.size(); ++i)
-    if (options.option[i]->count() > 0)
-      return naming(kGiven[i].option, [&] { return kGiven[i].state(options.value[i], hertz_profile()); });
+    if (options.given[i]->count() > 0) return i;
   throw std::invalid_argument("exact: no state given");
 }
 
-Answer answer(const Options& options) {
-  Answer answer{.state = given_state(options), .equation_5 = {}, .equation_7 = {}, .tractions = {}};
-  const TorsionState& state = answer.state;
-  answer.equation_5 = as_printed([&] { return paper::eq5_moment(state.stick_ratio); });
-  answer.equation_7 = as_printed([&] { return paper::eq7_twist(state.moment); });
-  for (const double r : options.radii)
-    answer.tractions.push_back(
-        {.radius = r,
-         .exact = naming("--radius", [&] { return traction(state, r); }),
-         .equation_1 = as_printed([&] { return paper::eq1_printed(state.stick_ratio, r); })});
-  return answer;
-}
-
-void put(Json& object, const std::string& key, const Printed& printed) {
-  object[key] = printed.value ? Json(*printed.value) : Json(nullptr);
-  if (!printed.value) object[key + "_reason"] = printed.reason;
-}
-
-Json as_json(const Answer& answer) {
-  const TorsionState& state = answer.state;
-  Json tractions = Json::array();
-  Json equation_1 = Json::array();
-  for (const TractionAt& at : answer.tractions) {
-    tractions.push_back({{"radius", at.radius}, {"value", at.exact}});
-    Json& entry = equation_1.emplace_back(Json{{"radius", at.radius}});
-    put(entry, "value", at.equation_1);
+int run(const Options& options, std::ostream& out, Json& result) {
+  const ExactContact exact = contact(options);
+  if (!options.history.empty()) {
+    result = naming("--history", [&] {
+      return answer_history(
+          exact,
+          {.turning_points = options.history, .points_per_branch = options.points, .radii = radii(options)});
+    });
+    write_history(out, exact, result);
+    return 0;
   }
-  Json printed{{"equation_1", equation_1}};
-  put(printed, "equation_5", answer.equation_5);
-  put(printed, "equation_7", answer.equation_7);
-  return {{"moment_ratio", state.moment_ratio},
-          {"moment_deficit", state.moment_deficit},
-          {"stick_ratio", state.stick_ratio},
-          {"stick_complement", state.stick_complement},
-          {"twist", state.twist},
-          {"moment", state.moment},
-          {"tangent_stiffness", state.tangent_stiffness},
-          {"traction", tractions},
-          {"printed", printed}};
-}
-
-void write_row(std::ostream& out, const std::string& name, const std::string& symbol, double exact) {
-  out << fmt::format("{:<18}{:<20}{:>23.15g}", name, symbol, exact);
-}
-
-void write_printed(std::ostream& out, const char* equation, double exact, const Printed& printed) {
-  if (!printed.value)
-    out << fmt::format("  {}: none ({})", equation, printed.reason);
-  else if (exact == 0)
-    out << fmt::format("{:>23.15g}{:>12}  {}", *printed.value, "", equation);
-  else
-    out << fmt::format("{:>23.15g}{:>+12.1e}  {}", *printed.value, *printed.value / exact - 1, equation);
-  out << '\n';
-}
-
-void write_text(std::ostream& out, const Answer& answer) {
-  const TorsionState& state = answer.state;
-  out << "Sphere in torsion on a half-space: stick for r < a_s, slip for a_s < r < a (contact radius).\n"
-         "1/G = 1/G_1 + 1/G_2, mu friction, W normal load, p0 peak pressure, M_lim = 3 pi/16 mu W a.\n\n";
-  out << fmt::format("{:<38}{:>23}{:>23}{:>12}\n", "", "exact", "as printed", "difference");
-  write_row(out, "moment ratio", "M/M_lim", state.moment_ratio);
-  out << '\n';
-  write_row(out, "moment deficit", "1 - M/M_lim", state.moment_deficit);
-  out << '\n';
-  write_row(out, "stick ratio", "a_s/a", state.stick_ratio);
-  out << '\n';
-  write_row(out, "stick complement", "1 - a_s/a", state.stick_complement);
-  out << '\n';
-  write_row(out, "twist", "G a^2 phi/(mu W)", state.twist);
-  write_printed(out, "Eq. (7)", state.twist, answer.equation_7);
-  write_row(out, "moment", "M/(mu W a)", state.moment);
-  write_printed(out, "Eq. (5)", state.moment, answer.equation_5);
-  write_row(out, "tangent stiffness", "dM/dphi/(G a^3)", state.tangent_stiffness);
-  out << '\n';
-  for (const TractionAt& at : answer.tractions) {
-    write_row(out, "traction q/(mu p0)", fmt::format(" at r/a = {:.9g}", at.radius), at.exact);
-    write_printed(out, "Eq. (1)", at.exact, at.equation_1);
+  const Given& from = kGiven[given(options)];
+  const std::string& text = options.value[given(options)];
+  if (options.certified) {
+    result = naming("--certified", [&] {
+      return answer_certified(
+          exact,
+          {.given = from.quantity, .value = text, .radii = options.radii, .digits = *options.certified});
+    });
+    write_certified(out, exact, result);
+    return 0;
   }
+  const auto state = [&](const Profile& profile) {
+    return naming(from.option, [&] { return from.state(number(text), profile); });
+  };
+  result = answer_state(exact, {.state = state, .radii = radii(options), .unload_to = options.unload_to});
+  write_state(out, exact, result);
+  return 0;
+}
+
+void add_state_options(CLI::App& exact, Options& options) {
+  CLI::Option_group* given = exact.add_option_group("state", "exactly one of these");
+  for (std::size_t i = 0; i < kGiven.size(); ++i)
+    options.given[i] = given->add_option(kGiven[i].option, options.value[i], kGiven[i].help);
+  CLI::Option* history = given
+                             ->add_option("--history", options.history,
+                                          "M/M_lim at each turning point: m1,m2,...; gives the curve")
+                             ->delimiter(',');
+  given->require_option(1);
+  exact.add_option("--points", options.points, "points of the curve on each branch of the history")
+      ->check(CLI::Range(1, 1000000))
+      ->needs(history)
+      ->capture_default_str();
+  CLI::Option* unload = exact
+                            .add_option("--unload-to", options.unload_to,
+                                        "M/M_lim to unload to from the state, normal load constant")
+                            ->excludes(history);
+  exact.add_option("--certified", options.certified, "give each number with so many proven digits, 15..100")
+      ->check(CLI::Range(15, 100))
+      ->excludes(history)
+      ->excludes(unload);
+}
+
+void add_units_options(CLI::App& exact, Options& options) {
+  CLI::Option* load =
+      exact.add_option("--normal-load", options.normal_load, "W, N: gives results in SI units too");
+  CLI::Option* modulus = exact.add_option("--effective-modulus", options.effective_modulus,
+                                          "E*, Pa, 1/E* = sum of (1 - nu_i^2)/E_i");
+  CLI::Option* shape =
+      exact
+          .add_option(
+              "--shape", options.shape,
+              "hertz: sphere radius, m; cone: slope; flat_punch: radius, m; power:N: coefficient of r^N, "
+              "m^(1-N); rounded_punch: flat radius, corner radius, m")
+          ->delimiter(',');
+  load->needs(modulus)->needs(shape);
+  modulus->needs(load);
+  shape->needs(load);
+  exact.add_option("--friction", options.friction, "mu")->needs(load)->check(CLI::PositiveNumber);
+  exact.add_option("--shear-modulus", options.shear_modulus, "combined G, Pa, 1/G = 1/G_1 + 1/G_2")
+      ->needs(load)
+      ->check(CLI::PositiveNumber);
 }
 
 }  // namespace
 
 std::function<int(std::ostream&, Json&)> add_exact_command(CLI::App& app) {
-  CLI::App* exact =
-      app.add_subcommand("exact", "exact solution of the sphere in torsion, beside the paper's equations");
+  CLI::App* exact = app.add_subcommand("exact", "exact solution of an axisymmetric contact in torsion");
   const auto options = std::make_shared<Options>();
-  CLI::Option_group* given = exact->add_option_group("state", "exactly one of these");
-  for (std::size_t i = 0; i < kGiven.size(); ++i)
-    options->option[i] = given->add_option(kGiven[i].option, options->value[i], kGiven[i].help);
-  given->require_option(1);
-  exact->add_option("--radius", options->radii, "r/a, in [0, 1], where to give the traction: r1,r2,...")
+  add_state_options(*exact, *options);
+  exact
+      ->add_option("--radius", options->radii,
+                   "r/a, in [0, 1], where to give traction and pressure: r1,r2,...")
       ->delimiter(',');
-  exact->add_option("--profile", options->profile, "pressure profile: hertz")
-      ->check(CLI::IsMember({"hertz"}));
-  exact->footer("Example: slipstick exact --moment-ratio 0.9 --radius 0.2,0.5,0.8");
-  return [options](std::ostream& out, Json& result) {
-    const Answer found = answer(*options);
-    write_text(out, found);
-    result = as_json(found);
-    return 0;
-  };
+  exact->add_option("--profile", options->profile, kProfiles)->capture_default_str();
+  add_units_options(*exact, *options);
+  exact->footer(
+      "Examples: slipstick exact --moment-ratio 0.9 --radius 0.2,0.5,0.8\n"
+      "          slipstick exact --moment-ratio 0.5 --certified 50\n"
+      "          slipstick exact --profile cone --history 0.8,-0.8,0.8 --json loop.json");
+  return [options](std::ostream& out, Json& result) { return run(*options, out, result); };
 }
 
 }  // namespace slipstick::analytic

@@ -29,6 +29,14 @@ std::vector<double> loads() {
   return loads;
 }
 
+/// And the load at whose twist a discrete element code reaches its cap, where it is farthest off.
+std::vector<double> loads_and_cap() {
+  std::vector<double> all = loads();
+  const double cap = analytic::from_twist(analytic::dem_twist(analytic::dem_moment_limit())).moment_ratio;
+  all.insert(std::ranges::upper_bound(all, cap), cap);
+  return all;
+}
+
 /// value/exact - 1; every law becomes exact as the load vanishes.
 double error_of(double value, double exact) { return exact > 0.0 ? value / exact - 1.0 : 0.0; }
 
@@ -102,7 +110,7 @@ Json bodies() {
 
 /// A loop of the sphere with an inner loop on its way up, which leaves no trace.
 Json loop() {
-  const std::vector<double> turning_points{0.9, -0.9, 0.3, -0.3, 0.9};
+  const std::vector<double> turning_points{0.9, -0.9, 0.5, -0.5, 0.9};
   constexpr int kPointsPerBranch = 60;
   Json rows = Json::array();
   for (const analytic::CycleState& state : analytic::loading_curve(turning_points, kPointsPerBranch))
@@ -115,13 +123,14 @@ Json loop() {
 
 /// Energy lost per cycle against amplitude, and its limit for small amplitudes.
 Json cycle_energy() {
+  std::vector<double> amplitudes;
+  for (int i = 0; i < 59; ++i) amplitudes.push_back(std::pow(10.0, -3.0 + 0.05 * i));
+  for (const double load : {0.85, 0.9, 0.93, 0.96, 0.98, 0.99, 0.995, 0.999}) amplitudes.push_back(load);
   Json rows = Json::array();
-  for (int i = 0; i <= 60; ++i) {
-    const double load = i == 60 ? 0.999 : std::pow(10.0, -3.0 + 0.05 * i);
+  for (const double load : amplitudes)
     rows.push_back({{"moment_ratio", load},
                     {"energy", analytic::energy_lost_per_cycle(load)},
                     {"small_amplitude", analytic::energy_lost_per_small_cycle(load)}});
-  }
   return rows;
 }
 
@@ -130,7 +139,7 @@ Json cycle_energy() {
 Json exact_curves() {
   return {{"curve", curve()},
           {"equation_5_digits", equation_5_digits()},
-          {"approximations", approximation_rows(loads())},
+          {"approximations", approximation_rows(loads_and_cap())},
           {"approximation_table", approximation_rows({0.01, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 0.99})},
           {"bodies", bodies()},
           {"loop", loop()},

@@ -59,6 +59,7 @@ def render(data_dir, output):
         figures=draw_all(report, data_dir, output),
         loading=tabulate(report, "loading", tables.LOADING),
         mesh=tabulate(report, "mesh", tables.MESH),
+        approximations=tabulate(report, "approximation_table", tables.APPROXIMATIONS),
         nulls=results.nulls(report),
         data=os.path.relpath(data_dir / "report.json", output) if data_dir.is_relative_to(output) else None)
     (output / "index.html").write_text(page, encoding="utf-8")

@@ -3,7 +3,7 @@
 from dataclasses import dataclass
 
 from results import Unavailable, rows, value
-from wording import plain, sci, seconds
+from wording import plain, sci, seconds, signed_percent
 
 
 @dataclass
@@ -50,6 +50,16 @@ LOADING = [
     ("iter&shy;ations", "iterations", _text),
     ("operator applica&shy;tions", "operator_applications", _text),
     ("time, s", "seconds.total", seconds),
+]
+
+APPROXIMATIONS = [
+    ("M/M<sub>lim</sub>", "moment_ratio", plain),
+    ("exact twist", "twist", plain),
+    ("twist by Eq.&nbsp;(7)", "equation_7.error", signed_percent),
+    ("twist, small moments", "small_moments.error", signed_percent),
+    ("twist, no slip", "no_slip.error", signed_percent),
+    ("twist, DEM", "dem.error", signed_percent),
+    ("DEM moment at the exact twist", "dem_moment.error", signed_percent),
 ]
 
 

@@ -15,9 +15,23 @@ def sci(number):
     return f"{mantissa}×10{str(int(exponent)).translate(SUPERSCRIPTS)}".replace("-", "−")
 
 
-def percent(number):
-    """Two significant digits of a ratio, in per cent."""
-    return f"{100 * number:.2g}\N{NO-BREAK SPACE}%".replace("-", "−")
+def percent(number, sign="-"):
+    """Two significant digits of a ratio, in per cent; with sign="+" positive ones show theirs too."""
+    digits = float(f"{100 * number:.2g}")
+    return f"{digits:{sign}g}\N{NO-BREAK SPACE}%".replace("-", "−")
+
+
+def signed_percent(number):
+    return percent(number, "+")
+
+
+def rounded_down(number):
+    """Two significant digits of a positive number, downwards: up to where a bound surely holds."""
+    if not number > 0:
+        return plain(number)
+    digits = 1 - math.floor(math.log10(number))  # after the point; before it where negative
+    scaled = math.floor(number * 10.0**digits * (1 + 1e-12))
+    return f"{scaled / 10.0**digits:.{max(digits, 0)}f}"
 
 
 def plain(number):

@@ -39,6 +39,21 @@ def profile(load):
             "fields": f"fields-{load}.h5", "result": solve_result(load, 4)}
 
 
+def approximation(load):
+    """Errors that grow with the load, so that 1 % and 10 % are reached at known ones."""
+    def law(error):
+        return {"twist": load * (1 + error), "error": error}
+    return {"moment_ratio": load, "moment": 0.5 * load, "twist": load, "equation_7": law(-0.2 * load),
+            "small_moments": law(-0.25 * load), "no_slip": law(-0.5 * load), "dem": law(-0.5 * load),
+            "dem_moment": {"moment": min(load, 0.6), "error": min(load, 0.6) / (0.5 * load) - 1 if load else 0.0}}
+
+
+def body(profile, limit, full_stick):
+    loads = (0.0, 0.5, 0.9, 0.999)
+    return {"profile": profile, "moment_limit": limit, "full_stick": full_stick,
+            "rows": [{"moment_ratio": x, "moment": limit * x, "stick_ratio": 1 - x, "twist": x} for x in loads]}
+
+
 def small_report():
     loads = (0.2, 0.5, 0.9)
     return {
@@ -54,6 +69,14 @@ def small_report():
                  for cells in (4, 8, 16)],
         "ellipse": [solve_result(loads[-1], cells) for cells in (4, 8)],
         "equation_5_digits": [{"stick_complement": 10.0**-i, "relative_error": 10.0**(2 * i - 16)} for i in range(7)],
+        "approximations": [approximation(x) for x in (0.0, *loads)],
+        "approximation_table": [approximation(x) for x in loads],
+        "bodies": [body("hertz", 0.6, 0.0), body("cone", 0.5, 0.0), body("flat_punch", 0.8, 0.85)],
+        "loop": {"turning_points": [0.8, -0.8, 0.8],
+                 "rows": [{"moment_ratio": x, "moment": 0.6 * x, "twist": twist, "dissipated": 0.1} for x, twist in
+                          ((0.0, 0.0), (0.8, 0.4), (0.0, 0.1), (-0.8, -0.4), (0.0, -0.1), (0.8, 0.4))]},
+        "cycle_energy": [{"moment_ratio": x, "energy": x**3 / (1 - x), "small_amplitude": x**3}
+                         for x in (0.05, 0.1, 0.2, 0.5)],
         "errata": [{"equation": "(0)", "printed": "a < b", "holds": "a > b", "shown": "by example"}],
     }
 
@@ -121,6 +144,14 @@ class WholePage(unittest.TestCase):
         self.assertIn("made &lt;up&gt;", self.page)
         self.assertIn("a &lt; b", self.page)
 
+    def test_table_of_approximations(self):
+        table = self.page[self.page.index('id="approximations"'):self.page.index('id="loads"')]
+        cells = [re.findall("<td>(.*?)</td>", row) for row in re.findall("<tr>(.*?)</tr>", table)]
+        self.assertEqual(cells[1:], [
+            ["0.2", "0.2", "−4\u00a0%", "−5\u00a0%", "−10\u00a0%", "−10\u00a0%", "+100\u00a0%"],
+            ["0.5", "0.5", "−10\u00a0%", "−12\u00a0%", "−25\u00a0%", "−25\u00a0%", "+100\u00a0%"],
+            ["0.9", "0.9", "−18\u00a0%", "−22\u00a0%", "−45\u00a0%", "−45\u00a0%", "+33\u00a0%"]])
+
     def test_equal_data_give_equal_files(self):
         with tempfile.TemporaryDirectory() as other:
             run_render(self.data, other)
@@ -142,6 +173,19 @@ class PageWithGaps(Folder):
         self.assertNotIn("figures/figure-6.svg", page)
         self.assertIn("<code>loading[].stick_radius_error</code> – the front did not move", page)
         self.assertIn("figures/figure-4.svg", page)
+
+    def test_without_the_exact_curves_only_their_figures_are_missing(self):
+        report = small_report()
+        for key in ("approximations", "approximation_table", "bodies"):
+            del report[key]
+        write_data(self.folder, report)
+        run = run_render(self.folder, self.folder / "page")
+        page = (self.folder / "page" / "index.html").read_text(encoding="utf-8")
+        self.assertEqual(run.returncode, 0)
+        missing = [name for name, _, _ in figures.FIGURES if f"figures/{name}.svg" not in page]
+        self.assertEqual(missing, ["figure-10", "figure-11"])
+        for key in ("approximations", "approximation_table", "bodies"):
+            self.assertIn(f"Not available: “{key}” is missing from the data.", page)
 
     def test_data_that_cannot_be_read_are_refused(self):
         output = self.folder / "page"
@@ -188,6 +232,28 @@ class OneFigure(Folder):
         self.assert_unavailable(figures.traction_norm, "fields-0.9.h5 cannot be read")
         (self.folder / "fields-0.9.h5").write_text("no HDF5")
         self.assert_unavailable(figures.traction_norm, "fields-0.9.h5 cannot be read")
+
+    def test_missing_cycles(self):
+        for key in ("loop", "cycle_energy"):
+            self.report = small_report()
+            del self.report[key]
+            self.assert_unavailable(figures.bodies_and_cycles, f"{key}.*missing")
+
+    def test_how_far_each_law_holds(self):
+        message = figures.approximations(self.report, self.folder).message
+        self.assertIn("Eq. (7) 0.050 (0.50), small moments 0.040 (0.40), no slip 0.020 (0.20)", message)
+        self.assertIn("off by over 100&nbsp;%", message)
+
+    def test_law_that_holds_everywhere(self):
+        for row in self.report["approximations"]:
+            row["equation_7"]["error"] = 0.001 * row["moment_ratio"]
+        self.assertIn("Eq. (7) 0.90 (0.90)", figures.approximations(self.report, self.folder).message)
+
+    def test_bodies_and_cycles_in_numbers(self):
+        message = figures.bodies_and_cycles(self.report, self.folder).message
+        for words in ("0.600&nbsp;μWa under a sphere", "flat punch, which sticks everywhere up to 0.850 of that",
+                      "keeps 25\u00a0% of its twist", "amplitude of 0.10&nbsp;M", "2 times as large"):
+            self.assertIn(words, message)
 
     def test_error_map_is_the_difference_from_exact(self):
         plate = figures.shear_components(self.report, self.folder)

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analytic/axisymmetric.hpp"
+#include "analytic/certified.hpp"
+#include "analytic/indentation.hpp"
+
+namespace slipstick::analytic {
+
+/// A contact profile as a user names it: hertz | cone | flat_punch | power:N | rounded_punch:B | file:P.csv.
+struct NamedProfile {
+  std::shared_ptr<const Profile> profile;
+  /// A table's profile from every second point, for an error estimate.
+  std::shared_ptr<const Profile> coarse;
+  /// The same for certified digits, where there are any.
+  std::optional<certified::Profile> certified;
+};
+
+/// Throws std::invalid_argument for a name that is none of these, and what the profile itself throws.
+NamedProfile find_profile(const std::string& name);
+
+/// What the normal side needs: `shape` is, in SI units, hertz: radius; cone: slope; flat_punch: radius;
+/// power:N: the gap's coefficient (m^(1-N)); rounded_punch: flat radius, corner radius.
+struct NormalLoad {
+  double load;               ///< W, N
+  double effective_modulus;  ///< E*, Pa
+  std::vector<double> shape;
+};
+
+/// The contact that a load makes. A rounded punch named without its flat ratio gets it from here.
+struct PressedContact {
+  NamedProfile profile;
+  Indentation indentation;
+};
+PressedContact press(const std::string& profile_name, const NormalLoad& load);
+
+}  // namespace slipstick::analytic
