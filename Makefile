@@ -4,13 +4,14 @@ BUILD := build
 PREFIX ?= /usr/local
 REPORT_OPTIONS ?=
 BENCH_OPTIONS ?=
+SEARCH_OPTIONS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build report test sanitize lint bench install clean
+.PHONY: help setup build report test sanitize lint bench references hardest install clean
 
 help: ## show this list
 	@echo "slipstick: make TARGET"
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  %-9s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  %-10s %s\n", $$1, $$2 }' Makefile
 
 setup: ## install the missing Debian/Ubuntu packages (elsewhere: list them)
 	@cmake/setup
@@ -39,6 +40,12 @@ lint: build ## check format and clang-tidy's rules (needs clang-format, clang-ti
 
 bench: build ## time the solver's parts (BENCH_OPTIONS="--benchmark_filter=...")
 	@$(BUILD)/bench/slipstick_bench $(BENCH_OPTIONS)
+
+references: build ## make the table of proven values anew (2 minutes; needs FLINT with Arb)
+	@$(BUILD)/analytic/certified/slipstick_references table --output analytic/tests/certified_references.csv
+
+hardest: build ## look for harder inputs of the exact functions (SEARCH_OPTIONS="--seed 2 --samples 1000")
+	@$(BUILD)/analytic/certified/slipstick_references search --folder analytic/tests/hardest $(SEARCH_OPTIONS)
 
 install: build ## install under PREFIX (default /usr/local)
 	@cmake --install $(BUILD) --prefix "$(abspath $(PREFIX))"

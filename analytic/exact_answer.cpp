@@ -330,13 +330,8 @@ void write_certified_row(std::ostream& out, const std::string& name, const std::
 }  // namespace
 
 Json answer_certified(const ExactContact& contact, const CertifiedQuestion& question) {
-  const NamedProfile& profile = contact.profile;
-  if (!profile.certified)
-    throw std::domain_error(
-        fmt::format("profile {} has no certified digits; allowed: hertz, cone, flat_punch, power:N",
-                    profile.profile->name()));
-  const certified::State state =
-      certified::state(*profile.certified, question.given, question.value, question.radii, question.digits);
+  const certified::State state = certified::state(certified::profile_named(contact.name), question.given,
+                                                  question.value, question.radii, question.digits);
   Json answer;
   for (const CertifiedQuantity& quantity : kCertified)
     answer[quantity.key] = certified_json(state.*quantity.member);
@@ -344,7 +339,7 @@ Json answer_certified(const ExactContact& contact, const CertifiedQuestion& ques
   for (std::size_t i = 0; i < question.radii.size(); ++i)
     answer["traction"].push_back(
         {{"radius", question.radii[i]}, {"value", certified_json(state.traction[i])}});
-  answer["profile"] = profile_json(*profile.profile);
+  answer["profile"] = profile_json(*contact.profile.profile);
   return answer;
 }
 

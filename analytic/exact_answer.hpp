@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "analytic/certified/certified.hpp"
 #include "analytic/cycle.hpp"
 #include "analytic/named_profile.hpp"
 #include "analytic/torsion.hpp"
@@ -26,6 +27,7 @@ struct Units {
 
 /// The contact asked about.
 struct ExactContact {
+  std::string name;  ///< of the profile, as typed
   NamedProfile profile;
   std::optional<Units> units;
 };

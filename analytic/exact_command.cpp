@@ -87,13 +87,16 @@ std::vector<double> radii(const Options& options) {
 
 ExactContact contact(const Options& options) {
   if (!options.normal_load)
-    return {.profile = naming("--profile", [&] { return find_profile(options.profile); }), .units = {}};
+    return {.name = options.profile,
+            .profile = naming("--profile", [&] { return find_profile(options.profile); }),
+            .units = {}};
   PressedContact pressed = naming("--shape", [&] {
     return press(options.profile, {.load = *options.normal_load,
                                    .effective_modulus = *options.effective_modulus,
                                    .shape = options.shape});
   });
-  return {.profile = std::move(pressed.profile),
+  return {.name = options.profile,
+          .profile = std::move(pressed.profile),
           .units = Units{.indentation = pressed.indentation,
                          .load = *options.normal_load,
                          .friction = options.friction,

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_integration.h>
+#include <gsl/gsl_interp.h>
 #include <gsl/gsl_roots.h>
 
 #include <exception>
@@ -99,18 +100,27 @@ double integral(const std::function<double(double)>& f, double low, double high)
   return result;
 }
 
-double gauss_legendre(const std::function<double(double)>& f, double low, double high) {
-  constexpr std::size_t kPoints = 24;
-  static const auto table =
-      own(gsl_integration_glfixed_table_alloc(kPoints), gsl_integration_glfixed_table_free);
-  double sum = 0;
-  for (std::size_t i = 0; i < kPoints; ++i) {
-    double x = 0;
-    double weight = 0;
-    check(gsl_integration_glfixed_point(low, high, i, &x, &weight, table.get()));
-    sum += weight * f(x);
+GaussRule::GaussRule(std::size_t points) {
+  turn_abort_handler_off();
+  const auto table = own(gsl_integration_glfixed_table_alloc(points), gsl_integration_glfixed_table_free);
+  for (std::size_t i = 0; i < points; ++i) {
+    Node node{};
+    check(gsl_integration_glfixed_point(0, 1, i, &node.fraction, &node.weight, table.get()));
+    nodes_.push_back(node);
   }
-  return sum;
+}
+
+std::vector<double> steffen_slopes(const std::vector<double>& x, const std::vector<double>& y) {
+  turn_abort_handler_off();
+  const auto interpolation = own(gsl_interp_alloc(gsl_interp_steffen, x.size()), gsl_interp_free);
+  check(gsl_interp_init(interpolation.get(), x.data(), y.data(), x.size()));
+  std::vector<double> slopes;
+  for (const double knot : x) {
+    double slope = 0;
+    check(gsl_interp_eval_deriv_e(interpolation.get(), x.data(), y.data(), knot, nullptr, &slope));
+    slopes.push_back(slope);
+  }
+  return slopes;
 }
 
 }  // namespace slipstick::analytic::gsl

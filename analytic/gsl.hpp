@@ -3,7 +3,9 @@
 #include <gsl/gsl_mode.h>
 #include <gsl/gsl_sf_result.h>
 
+#include <cstddef>
 #include <functional>
+#include <vector>
 
 /// GSL behind C++ calls: its abort handler off, every status checked, every handle freed.
 namespace slipstick::analytic::gsl {
@@ -30,7 +32,36 @@ double root(const std::function<double(double)>& f, double low, double high);
 /// allows.
 double integral(const std::function<double(double)>& f, double low, double high);
 
-/// Gauss's rule of 24 points over [low, high]: exact to the last digits where f is analytic well beyond.
-double gauss_legendre(const std::function<double(double)>& f, double low, double high);
+/// Gauss's rule, exact for degree 2 points - 1.
+class GaussRule {
+ public:
+  /// Up to 20 points (or 32, 64) GSL has to all digits; others it makes itself, to fewer.
+  explicit GaussRule(std::size_t points);
+
+  template <class Function>
+  double operator()(const Function& f, double low, double high) const {
+    double sum = 0;
+    for (const auto& [fraction, weight] : nodes_) sum += weight * f(low + (high - low) * fraction);
+    return (high - low) * sum;
+  }
+
+ private:
+  struct Node {
+    double fraction;
+    double weight;
+  };
+  std::vector<Node> nodes_;
+};
+
+/// The integral over a panel beyond which f is analytic well enough for 20 points to give all digits.
+template <class Function>
+double gauss_legendre(const Function& f, double low, double high) {
+  static const GaussRule rule(20);
+  return rule(f, low, high);
+}
+
+/// Slopes at the knots of Steffen's interpolation (1990): piecewise cubic, monotone between any two knots.
+/// x must increase; at least three points.
+std::vector<double> steffen_slopes(const std::vector<double>& x, const std::vector<double>& y);
 
 }  // namespace slipstick::analytic::gsl

@@ -1,12 +1,10 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "analytic/axisymmetric.hpp"
-#include "analytic/certified.hpp"
 #include "analytic/indentation.hpp"
 
 namespace slipstick::analytic {
@@ -16,8 +14,6 @@ struct NamedProfile {
   std::shared_ptr<const Profile> profile;
   /// A table's profile from every second point, for an error estimate.
   std::shared_ptr<const Profile> coarse;
-  /// The same for certified digits, where there are any.
-  std::optional<certified::Profile> certified;
 };
 
 /// Throws std::invalid_argument for a name that is none of these, and what the profile itself throws.

@@ -1,50 +1,155 @@
-// The exact wing: stick ratio from a moment, twist and one traction, each beside its round-trip error.
+// The exact wing: stick ratio from a moment, twist and one traction, over inputs that span the range. Each
+// time stands beside the worst error over all proven references and, since machines differ, as a multiple of
+// one call of GSL's Carlson R_D. Rows: error_eps, the worst error where the input costs no digits;
+// of_allowed, the worst of all as a fraction of what is allowed (8 eps, or 4 times what an ulp of the input
+// costs); per_RD.
 
 #include <benchmark/benchmark.h>
+#include <gsl/gsl_sf_ellint.h>
 
+#include <algorithm>
+#include <array>
+#include <chrono>
 #include <cmath>
+#include <limits>
+#include <string>
 
-#include "analytic/torsion.hpp"
+#include "analytic/tests/replay.hpp"
 
 namespace {
 
 namespace analytic = slipstick::analytic;
+using Clock = std::chrono::steady_clock;
 
-void stick_ratio_from_moment(benchmark::State& state) {
-  double ratio = 0.5;
-  const analytic::TorsionState there = analytic::from_moment_ratio(ratio);
-  state.counters["error"] =
-      std::abs(analytic::from_stick_ratio(there.stick_ratio).moment_ratio / ratio - 1.0);
+constexpr std::size_t kInputs = 256;
+using Inputs = std::array<double, kInputs>;
+
+/// Half the inputs uniform in (0, 1), the other half logarithmic down to 1e-12, in an order that no branch
+/// predictor learns.
+Inputs spread() {
+  Inputs inputs{};
+  for (std::size_t i = 0; i < kInputs; ++i) {
+    const double place = (static_cast<double>((i * 97) % kInputs) + 0.5) / kInputs;
+    inputs[i] = i % 2 == 0 ? place : std::pow(10.0, -12 * place);
+  }
+  return inputs;
+}
+
+/// Seconds of one call of f(i), i running over the inputs: the least of several runs.
+template <class Function>
+double seconds_per_call(Function f) {
+  constexpr int kRuns = 20;
+  constexpr std::size_t kCalls = 40 * kInputs;
+  double least = std::numeric_limits<double>::infinity();
+  for (int run = 0; run < kRuns; ++run) {
+    const auto start = Clock::now();
+    for (std::size_t i = 0; i < kCalls; ++i) benchmark::DoNotOptimize(f(i % kInputs));
+    least = std::min(least, std::chrono::duration<double>(Clock::now() - start).count() / kCalls);
+  }
+  return least;
+}
+
+double seconds_per_carlson_rd() {
+  static const double seconds = [] {
+    const Inputs inputs = spread();
+    return seconds_per_call([&](std::size_t i) {
+      gsl_sf_result result;
+      gsl_sf_ellint_RD_e(0, inputs[i] * inputs[i], 1, GSL_PREC_DOUBLE, &result);
+      return result.val;
+    });
+  }();
+  return seconds;
+}
+
+/// The worst error of a quantity over the certified table and the hardest inputs known.
+void show_error(benchmark::State& state, const std::string& profile, const std::string& given,
+                const std::string& quantity) {
+  double plain = 0;
+  double of_allowed = 0;
+  for (const auto& row : analytic::testing::all_references()) {
+    if (row.text("profile") != profile || row.text("quantity") != quantity) continue;
+    if (!given.empty() && row.text("given") != given) continue;
+    const auto [error, allowed] = analytic::testing::replay(row);
+    of_allowed = std::max(of_allowed, error / allowed);
+    if (allowed <= analytic::testing::kAllowed) plain = std::max(plain, error);
+  }
+  state.counters["error_eps"] = plain;
+  state.counters["of_allowed"] = of_allowed;
+  if (!(of_allowed > 0 && of_allowed <= 1)) state.SkipWithError("disagrees with its references, or has none");
+}
+
+/// Times f(i) over the inputs.
+template <class Function>
+void time(benchmark::State& state, Function f) {
+  std::size_t i = 0;
+  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(f(i++ % kInputs));
+  state.counters["per_RD"] = seconds_per_call(f) / seconds_per_carlson_rd();
+}
+
+const analytic::Profile& profile(const std::string& name) {
+  return name == "hertz"  ? analytic::hertz_profile()
+         : name == "cone" ? analytic::cone_profile()
+                          : analytic::flat_punch_profile();
+}
+
+void stick_ratio_from_moment(benchmark::State& state, const std::string& name) {
+  show_error(state, name, "moment_ratio", "stick_ratio");
+  const Inputs moment_ratios = spread();
+  time(state, [&, &at = profile(name)](std::size_t i) {
+    return analytic::from_moment_ratio(moment_ratios[i], at).stick_ratio;
+  });
+}
+
+void twist_from_stick_ratio(benchmark::State& state, const std::string& name) {
+  show_error(state, name, "stick_ratio", "twist");
+  const Inputs ratios = spread();
+  time(state, [&, &at = profile(name)](std::size_t i) {
+    return at.twist_integral({.ratio = ratios[i], .complement = 1 - ratios[i]}) / (2 * at.load());
+  });
+}
+
+void state_from_stick_ratio(benchmark::State& state, const std::string& name) {
+  show_error(state, name, "stick_ratio", "moment_deficit");
+  const Inputs ratios = spread();
+  time(state, [&, &at = profile(name)](std::size_t i) {
+    return analytic::from_stick_ratio(ratios[i], at).moment_deficit;
+  });
+}
+
+void one_traction(benchmark::State& state, const std::string& name) {
+  show_error(state, name, "", "traction");
+  const Inputs fractions = spread();
+  std::array<analytic::TorsionState, kInputs> states{};
+  for (std::size_t i = 0; i < kInputs; ++i)
+    states[i] = analytic::from_stick_ratio(fractions[(i + 31) % kInputs], profile(name));
+  time(state, [&, &at = profile(name)](std::size_t i) {
+    return analytic::traction(states[i], fractions[i] * states[i].stick_ratio, at);
+  });
+}
+
+void carlson_rd(benchmark::State& state) {
+  const Inputs inputs = spread();
+  std::size_t i = 0;
   for ([[maybe_unused]] auto _ : state) {
-    benchmark::DoNotOptimize(ratio);
-    benchmark::DoNotOptimize(analytic::from_moment_ratio(ratio));
+    gsl_sf_result result;
+    gsl_sf_ellint_RD_e(0, inputs[i % kInputs] * inputs[i % kInputs], 1, GSL_PREC_DOUBLE, &result);
+    benchmark::DoNotOptimize(result.val);
+    ++i;
   }
 }
 
-void state_from_stick_ratio(benchmark::State& state) {
-  double c = 0.5;
-  state.counters["error"] =
-      std::abs(analytic::from_twist(analytic::from_stick_ratio(c).twist).stick_ratio / c - 1.0);
-  for ([[maybe_unused]] auto _ : state) {
-    benchmark::DoNotOptimize(c);
-    benchmark::DoNotOptimize(analytic::from_stick_ratio(c));
-  }
-}
-
-void one_traction(benchmark::State& state) {
-  const analytic::TorsionState torsion = analytic::from_stick_ratio(0.5);
-  double radius = 0.4;
-  // Continuity at the stick edge is what the closed form of the stick zone must meet.
-  state.counters["error"] = std::abs(
-      analytic::traction(torsion, std::nextafter(0.5, 0.0)) / analytic::traction(torsion, 0.5) - 1.0);
-  for ([[maybe_unused]] auto _ : state) {
-    benchmark::DoNotOptimize(radius);
-    benchmark::DoNotOptimize(analytic::traction(torsion, radius));
-  }
-}
-
-BENCHMARK(stick_ratio_from_moment);
-BENCHMARK(state_from_stick_ratio);
-BENCHMARK(one_traction);
+BENCHMARK_CAPTURE(stick_ratio_from_moment, hertz, "hertz");
+BENCHMARK_CAPTURE(stick_ratio_from_moment, cone, "cone");
+BENCHMARK_CAPTURE(stick_ratio_from_moment, flat_punch, "flat_punch");
+BENCHMARK_CAPTURE(twist_from_stick_ratio, hertz, "hertz");
+BENCHMARK_CAPTURE(twist_from_stick_ratio, cone, "cone");
+BENCHMARK_CAPTURE(twist_from_stick_ratio, flat_punch, "flat_punch");
+BENCHMARK_CAPTURE(state_from_stick_ratio, hertz, "hertz");
+BENCHMARK_CAPTURE(state_from_stick_ratio, cone, "cone");
+BENCHMARK_CAPTURE(state_from_stick_ratio, flat_punch, "flat_punch");
+BENCHMARK_CAPTURE(one_traction, hertz, "hertz");
+BENCHMARK_CAPTURE(one_traction, cone, "cone");
+BENCHMARK_CAPTURE(one_traction, flat_punch, "flat_punch");
+BENCHMARK(carlson_rd);
 
 }  // namespace

@@ -32,6 +32,13 @@ if(NOT FFTW_FOUND)
   message(FATAL_ERROR "FFTW 3 is missing. On Debian or Ubuntu: apt-get install libfftw3-dev.")
 endif()
 
+# Optional: proven digits.
+find_package(Arb QUIET)
+if(NOT Arb_FOUND)
+  message(STATUS "No FLINT with Arb: certified digits are left out. On Debian or Ubuntu: apt-get install libflint-dev "
+    "and, before FLINT 3, libflint-arb-dev.")
+endif()
+
 # The scripts need an interpreter that can import their packages; the first python3 on PATH often cannot.
 function(slipstick_find_python result)
   foreach(candidate "${SLIPSTICK_PYTHON}" /usr/bin/python3 python3)

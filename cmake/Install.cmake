@@ -4,7 +4,8 @@ install(TARGETS slipstick)
 install(TARGETS slipstick_analytic slipstick_solver slipstick_convergence EXPORT slipstick-targets)
 foreach(folder analytic solver convergence)
   install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/slipstick
-    FILES_MATCHING PATTERN "*.hpp" PATTERN "*_command.hpp" EXCLUDE PATTERN "gsl.hpp" EXCLUDE PATTERN "tests" EXCLUDE)
+    FILES_MATCHING PATTERN "*.hpp" PATTERN "*_command.hpp" EXCLUDE PATTERN "gsl.hpp" EXCLUDE PATTERN "exact_answer.hpp" EXCLUDE
+    PATTERN "elliptic_series.hpp" EXCLUDE PATTERN "certified/*" EXCLUDE PATTERN "tests" EXCLUDE)
 endforeach()
 install(EXPORT slipstick-targets NAMESPACE slipstick:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/slipstick)
 configure_package_config_file(cmake/slipstickConfig.cmake.in ${PROJECT_BINARY_DIR}/slipstickConfig.cmake

@@ -131,9 +131,10 @@ double moment_of_traction(const LoadingHistory& history, const Profile& profile)
 /// Energy lost on first loading, as the friction's work on the slip. The stick area's turn by dphi drags
 /// the surface at r >= s by (2/pi) (asin(s/r) - (s/r) sqrt(1 - (s/r)^2)) r dphi: the rest is slip.
 double work_of_friction(const TorsionState& state, const Profile& profile) {
+  static const gsl::GaussRule rule(64);
   const double c = state.stick_ratio;
   const auto slip = [&](double r) {
-    return gsl::gauss_legendre(
+    return rule(
         [&](double u) {
           const double t = r - (r - c) * u * u;
           const double x = t / r;

@@ -12,7 +12,7 @@
 #include <string>
 #include <utility>
 
-#include "analytic/certified.hpp"
+#include "analytic/certified/certified.hpp"
 
 namespace slipstick::analytic {
 namespace {

@@ -30,9 +30,9 @@ class Row {
   std::map<std::string, std::string> cells_;
 };
 
-/// A table that make_references.py wrote: a comment line, the column names, the rows.
-inline std::vector<Row> read_references(const std::string& name) {
-  std::ifstream file(std::string(SLIPSTICK_TEST_DATA) + "/" + name);
+/// The rows of a CSV file with a comment line and the column names above them.
+inline std::vector<Row> read_rows(const std::string& path) {
+  std::ifstream file(path);
   std::string line;
   std::getline(file, line);
   std::getline(file, line);
@@ -41,8 +41,13 @@ inline std::vector<Row> read_references(const std::string& name) {
   for (std::string column; std::getline(header, column, ',');) columns.push_back(column);
   std::vector<Row> rows;
   while (std::getline(file, line)) rows.emplace_back(columns, line);
-  if (rows.empty()) throw std::runtime_error("no reference rows in " + name);
+  if (rows.empty()) throw std::runtime_error("no reference rows in " + path);
   return rows;
+}
+
+/// A file of references beside the tests.
+inline std::vector<Row> read_references(const std::string& name) {
+  return read_rows(std::string(SLIPSTICK_TEST_DATA) + "/" + name);
 }
 
 /// |value / reference - 1|; a NaN stays one.

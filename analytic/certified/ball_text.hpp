@@ -1,0 +1,55 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "analytic/certified/ball.hpp"
+#include "analytic/certified/certified.hpp"
+
+#include <flint/fmpq.h>
+
+/// Between decimal strings and balls.
+namespace slipstick::analytic {
+
+/// A rational number, exactly.
+class Rational {
+ public:
+  Rational(slong numerator = 0, ulong denominator = 1) {
+    fmpq_init(q_);
+    fmpq_set_si(q_, numerator, denominator);
+  }
+  Rational(const Rational& other) : Rational() { fmpq_set(q_, other.q_); }
+  Rational& operator=(const Rational& other) {
+    fmpq_set(q_, other.q_);
+    return *this;
+  }
+  ~Rational() { fmpq_clear(q_); }
+  fmpq* get() { return q_; }
+  const fmpq* get() const { return q_; }
+
+  friend Rational operator-(const Rational& a, const Rational& b) {
+    Rational result;
+    fmpq_sub(result.q_, a.q_, b.q_);
+    return result;
+  }
+  friend auto operator<=>(const Rational& a, const Rational& b) { return fmpq_cmp(a.q_, b.q_) <=> 0; }
+  friend bool operator==(const Rational& a, const Rational& b) { return fmpq_equal(a.q_, b.q_) != 0; }
+  Ball ball() const {
+    Ball result;
+    arb_set_fmpq(result.get(), q_, Precision::bits());
+    return result;
+  }
+
+ private:
+  fmpq_t q_;
+};
+
+/// The number that the text writes in C's decimal or hexadecimal notation, exactly. Throws std::domain_error,
+/// which calls it `name`, for other text, and for numbers but 0 outside 1e-1000..1e1000.
+Rational read_exactly(const std::string& name, const std::string& text);
+
+/// The number in the ball to this many significant digits, with a radius that holds what the ball leaves open
+/// and what rounding took. Nothing where the ball is too wide for that to stay within 0.51 of the last digit.
+std::optional<certified::Number> print_proven(const Ball& ball, int digits);
+
+}  // namespace slipstick::analytic

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+/// The torsional contact with slip and stick to as many digits as are asked for, each of them proven: every
+/// number is computed as a ball that encloses it (Arb, Johansson 2017), integrals and roots included.
+namespace slipstick::analytic::certified {
+
+/// A number with its proof: |exact - value| <= radius, with `value` and `radius` as the decimals they are.
+struct Number {
+  std::string value;
+  std::string radius;
+};
+
+/// The pressure: of a sphere, a cone, a flat punch, or of a gap that grows like r^n.
+enum class Kind { hertz, cone, flat_punch, power };
+
+struct Profile {
+  Kind kind;
+  std::string exponent = {};  ///< n > 0 of a power law
+};
+
+/// hertz | cone | flat_punch | power:N. Throws std::domain_error for other names.
+Profile profile_named(const std::string& name);
+
+/// What a state is given by.
+enum class Quantity { moment_ratio, moment_deficit, stick_ratio, stick_complement, twist };
+
+/// Dimensionless as in torsion.hpp; each number has the digits asked for and a radius of at most 0.51 of the
+/// last one. Only 0 and 1, where they are exact, are written with one digit, and only exact numbers have
+/// radius 0.
+struct State {
+  Number moment_ratio;
+  Number moment_deficit;
+  Number stick_ratio;
+  Number stick_complement;
+  Number twist;
+  Number moment;
+  Number tangent_stiffness;
+  std::vector<Number> traction;  ///< q/(mu p0) at each radius
+};
+
+/// Whether this build has Arb. Without it `state` throws std::runtime_error, which says what to install.
+bool available();
+
+/// The state where `given` has `value`, with the tractions at `radii` (r/a in [0, 1]; a flat punch: below 1),
+/// to 15..100 significant digits. Numbers are taken as written, "0.1" is one tenth; C's hexadecimal floats
+/// are understood ("0x1.8p-3"), so that a double can be handed over exactly. Throws std::domain_error with
+/// the value and the range for what lies outside (as torsion.hpp; nothing but 0 may be below 1e-1000) or is
+/// not a number.
+State state(const Profile& profile, Quantity given, const std::string& value,
+            const std::vector<std::string>& radii, int digits);
+
+}  // namespace slipstick::analytic::certified

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analytic/certified/certified.hpp"
+
+/// Proven values at doubles, as the tests and studies of code in doubles compare with them.
+namespace slipstick::analytic::certified {
+
+/// One row of a table: a quantity of the state where `given` has `value`, both names as in TorsionState, or
+/// the traction at the radius `at`. Doubles stand for themselves exactly.
+struct ReferenceRow {
+  std::string profile;
+  std::string given;
+  double value;
+  std::string quantity;
+  std::optional<double> at;
+  Number reference;
+  double cost;  ///< |d ln quantity/d ln value|; of a traction its sum over value and at
+};
+
+/// The line of a CSV file, and what stands above such lines.
+std::string line(const ReferenceRow& row);
+std::string head(const std::string& made_by);
+
+/// Rows of all quantities but the one given; or of a traction. Throw as certified::state.
+std::vector<ReferenceRow> state_rows(const std::string& profile, const std::string& given, double value,
+                                     int digits);
+ReferenceRow traction_row(const std::string& profile, const std::string& given, double value, double radius,
+                          int digits);
+
+}  // namespace slipstick::analytic::certified

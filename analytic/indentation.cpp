@@ -1,0 +1,125 @@
+#include "analytic/indentation.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string_view>
+
+#include "analytic/gsl.hpp"
+#include "analytic/hertz.hpp"
+
+namespace slipstick::analytic {
+
+namespace {
+
+using std::numbers::pi;
+
+void require_positive(std::string_view name, double value) {
+  if (!(value > 0 && std::isfinite(value)))
+    throw std::domain_error(fmt::format("{} = {}; allowed: positive and finite", name, value));
+}
+
+double mean_pressure(double load, double radius) { return load / radius / radius / pi; }
+
+/// Gamma(n/2 + 1)/Gamma(n/2 + 1/2).
+double gamma_ratio(double n) {
+  constexpr double kLarge = 100;  // the asymptotic series' next term is below 1e-16
+  if (n < kLarge) return std::tgamma(n / 2 + 1) / std::tgamma(n / 2 + 0.5);
+  const double w = n / 2 + 0.25;
+  const double i = 1 / (w * w);
+  return std::sqrt(w) * (1 + i * (1.0 / 64 - i * (19.0 / 8192 - i * 631.0 / 524288)));
+}
+
+/// The a with a^(n + 1) = over_modulus/(kappa B).
+double power_radius(double over_modulus, double kappa, double coefficient, double n) {
+  const double power = over_modulus / kappa / coefficient;
+  if (!std::isnormal(power))
+    return std::exp((std::log(over_modulus) - std::log(kappa) - std::log(coefficient)) / (n + 1));
+  const double a = std::pow(power, 1 / (n + 1));
+  return a * (1 + (power / std::pow(a, n + 1) - 1) / (n + 1));  // 1/(n + 1) was rounded
+}
+
+/// ((1 + t^2) arctan t - t)/t^3 with t = s/b: 2/3 at t = 0, 0 as t -> infinity.
+double corner_share(double b_over_s) {
+  constexpr double kSeries = 2;  // from here on the powers of 1/4 converge, and the closed form would cancel
+  constexpr int kTerms = 27;
+  const double i = b_over_s;
+  if (i < kSeries) return i * ((1 + i * i) * std::atan2(1.0, i) - i);
+  double sum = 0;
+  for (int k = kTerms; k-- > 0;) sum = 2.0 / ((2 * k + 1) * (2 * k + 3)) - sum / i / i;
+  return sum;
+}
+
+/// With s^2 = a^2 - b^2, W = 4/3 E* s^3/R (1 - 3/4 corner_share(b/s)), so that s lies between the radius that
+/// a sphere of radius R would have and cbrt(2) of it. All lengths over that one.
+double corner_reach(double flat) {
+  constexpr double kMargin = 1e-9;
+  const auto excess = [flat](double s) { return s * s * s * (1 - 0.75 * corner_share(flat / s)) - 1; };
+  const double s = gsl::root(excess, 1 - kMargin, std::cbrt(2.0) + kMargin);
+  const double slope = 3 * s * (s - flat / 2 * std::atan2(s, flat));
+  return s - excess(s) / slope;
+}
+
+}  // namespace
+
+Indentation indent_sphere(double load, double radius, double effective_modulus) {
+  const HertzCircle circle = hertz_circle(load, radius, effective_modulus);
+  return {.contact_radius = circle.radius,
+          .approach = circle.approach,
+          .reference_pressure = circle.peak_pressure};
+}
+
+Indentation indent_cone(double load, double slope, double effective_modulus) {
+  require_positive("load", load);
+  require_positive("slope", slope);
+  require_positive("effective modulus", effective_modulus);
+  const double a = std::sqrt(load / effective_modulus * (2 / pi) / slope);
+  return {.contact_radius = a,
+          .approach = pi / 2 * slope * a,
+          .reference_pressure = effective_modulus / 2 * slope};
+}
+
+Indentation indent_flat_punch(double load, double radius, double effective_modulus) {
+  require_positive("load", load);
+  require_positive("radius", radius);
+  require_positive("effective modulus", effective_modulus);
+  return {.contact_radius = radius,
+          .approach = load / effective_modulus / radius / 2,
+          .reference_pressure = mean_pressure(load, radius) / 2};
+}
+
+Indentation indent_power(double load, double exponent, double coefficient, double effective_modulus) {
+  require_positive("load", load);
+  require_positive("exponent", exponent);
+  require_positive("coefficient", coefficient);
+  require_positive("effective modulus", effective_modulus);
+  const double n = exponent;
+  // Approach kappa B a^n, and W = 2 E* n/(n + 1) a times that.
+  const double kappa = std::sqrt(pi) * gamma_ratio(n);
+  const double over_modulus = load / effective_modulus * (n + 1) / (2 * n);
+  const double a = power_radius(over_modulus, kappa, coefficient, n);
+  return {.contact_radius = a,
+          .approach = over_modulus / a,
+          .reference_pressure = mean_pressure(load, a) * (n + 1) / 2};
+}
+
+RoundedPunchIndentation indent_rounded_punch(double load, double flat_radius, double corner_radius,
+                                             double effective_modulus) {
+  require_positive("load", load);
+  if (!(flat_radius >= 0 && std::isfinite(flat_radius)))
+    throw std::domain_error(fmt::format("flat radius = {}; allowed: >= 0 and finite", flat_radius));
+  require_positive("corner radius", corner_radius);
+  require_positive("effective modulus", effective_modulus);
+  const double sphere = hertz_circle(load, corner_radius, effective_modulus).radius;
+  const double s = sphere * corner_reach(flat_radius / sphere);
+  const double a = std::hypot(flat_radius, s);
+  // g(a) = a/R (s - b arctan(s/b)).
+  const double approach = s / corner_radius * (s / a) * s * (1 - corner_share(flat_radius / s));
+  return {
+      .contact = {.contact_radius = a, .approach = approach, .reference_pressure = mean_pressure(load, a)},
+      .flat_ratio = flat_radius / a};
+}
+
+}  // namespace slipstick::analytic

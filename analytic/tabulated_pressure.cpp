@@ -1,0 +1,370 @@
+#include "analytic/tabulated_pressure.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <cstddef>
+#include <fstream>
+#include <functional>
+#include <numbers>
+#include <stdexcept>
+#include <string_view>
+#include <utility>
+
+#include "analytic/gsl.hpp"
+
+namespace slipstick::analytic {
+
+namespace {
+
+using std::numbers::pi;
+
+/// Below this stick radius the squares of what is as small leave the range of a double; all functions have
+/// long become their leading terms in c, and c^3 has all but underflowed.
+constexpr double kSmallest = 1e-100;
+
+/// p between two knots, by the distance s from the outer one: there, at the edge, p may tend to zero.
+class Piece {
+ public:
+  Piece(PressurePoint inner, PressurePoint outer, double inner_slope, double outer_slope)
+      : low_(inner.radius), high_(outer.radius) {
+    const double h = high_ - low_;
+    const double mean = (inner.pressure - outer.pressure) / h;
+    p_ = {outer.pressure, -outer_slope, (3 * mean + 2 * outer_slope + inner_slope) / h,
+          -(outer_slope + inner_slope + 2 * mean) / (h * h)};
+  }
+
+  double low() const { return low_; }
+  double high() const { return high_; }
+  double pressure(double s) const { return p_[0] + s * (p_[1] + s * (p_[2] + s * p_[3])); }
+  /// dp/dr.
+  double slope(double s) const { return -(p_[1] + s * (2 * p_[2] + s * 3 * p_[3])); }
+  /// integral of p r^power dr up to a radius in the piece.
+  double moment(int power, double radius) const {
+    static const gsl::GaussRule rule(4);  // exact up to degree 7
+    return rule([&](double r) { return pressure(high_ - r) * std::pow(r, power); }, low_, radius);
+  }
+  double moment(int power) const { return moment(power, high_); }
+
+ private:
+  double low_;
+  double high_;
+  std::array<double, 4> p_;
+};
+
+std::vector<Piece> interpolate(const std::vector<PressurePoint>& points) {
+  std::vector<double> radii, pressures;
+  for (const auto& [radius, pressure] : points) {
+    radii.push_back(radius);
+    pressures.push_back(pressure);
+  }
+  const std::vector<double> slopes = gsl::steffen_slopes(radii, pressures);
+  std::vector<Piece> pieces;
+  for (std::size_t i = 0; i + 1 < points.size(); ++i)
+    pieces.emplace_back(points[i], points[i + 1], slopes[i], slopes[i + 1]);
+  return pieces;
+}
+
+/// integral_0^1 p r^power dr.
+double whole_moment(const std::vector<Piece>& pieces, int power) {
+  double sum = 0;
+  for (const Piece& piece : pieces) sum += piece.moment(power);
+  return sum;
+}
+
+/// asin(t)/2 - t sqrt(1 - t^2)/2 - t^3/(3 sqrt(1 - t^2)) with t = c/rho, times x/rho, x = sqrt(rho^2 - c^2):
+/// minus the share of a ring at rho in what the moment lacks. It is -1/3 integral_0^t s^4 (1 - s^2)^(-3/2)
+/// ds, whose series stands in where the terms cancel.
+double lacking(double x, double rho, double c) {
+  constexpr double kSeries = 0.5;
+  constexpr double kShortSeries = 0.1;
+  constexpr std::size_t kTerms = 28;
+  constexpr std::size_t kFewTerms = 9;
+  static constexpr auto kCoefficients = [] {
+    std::array<double, kTerms> table{};
+    double binomial = 1;
+    for (std::size_t k = 0; k < kTerms; ++k) {
+      const auto n = static_cast<double>(k);
+      table[k] = binomial / (3 * (2 * n + 5));
+      binomial *= (n + 1.5) / (n + 1);
+    }
+    return table;
+  }();
+  const double t = c / rho;
+  const double y = t * t;
+  if (t > kSeries) return (x * std::atan2(c, x) / 2 - t * x * x / rho / 2 - t * t * c / 3) / rho;
+  double sum = 0;
+  for (std::size_t k = t < kShortSeries ? kFewTerms : kTerms; k-- > 0;) sum = kCoefficients[k] + y * sum;
+  return -x / rho * t * y * y * sum;
+}
+
+class Tabulated final : public Profile {
+ public:
+  Tabulated(std::string name, std::vector<Piece> pieces)
+      : Profile({.name = std::move(name),
+                 .reference_pressure = "mean pressure",
+                 .load = 2 * pi * whole_moment(pieces, 1),
+                 .moment_limit = whole_moment(pieces, 2) / whole_moment(pieces, 1),
+                 .edge = 0}),
+        pieces_(std::move(pieces)) {
+    double sum = 0;
+    for (const Piece& piece : pieces_) {
+      inner_moment_.push_back(sum);
+      sum += piece.moment(2);
+    }
+    moment_ = sum;
+  }
+
+  double pressure(double radius) const override {
+    const Piece& piece = pieces_[piece_at(radius)];
+    return std::max(0.0, piece.pressure(piece.high() - radius));
+  }
+
+  double twist_integral(StickRadius c) const override {
+    if (c.ratio < kSmallest)
+      return twist_integral({.ratio = kSmallest, .complement = 1}) +
+             pressure(0) * (std::log(kSmallest) - std::log(c.ratio));
+    return beyond(c, c.ratio,
+                  [](double, double rho, const Piece& piece, double s) { return piece.pressure(s) / rho; });
+  }
+
+  /// d/dc of the integral, in u of rho = c cosh(u).
+  double twist_slope(StickRadius c) const override {
+    const StickRadius at = c.ratio < kSmallest ? StickRadius{.ratio = kSmallest, .complement = 1} : c;
+    const double edge_pressure = pieces_.back().pressure(0);
+    const double inner =
+        beyond(at, at.ratio, [](double, double, const Piece& piece, double s) { return -piece.slope(s); });
+    return edge_pressure > 0 ? edge_pressure / std::sqrt(at.complement * (1 + at.ratio)) + inner : inner;
+  }
+
+  MomentShare moment_share(StickRadius c) const override {
+    constexpr double kHalfway = 0.5;
+    if (c.ratio < kHalfway) {
+      const double deficit = moment_deficit(c);
+      return {.excess = 1 - deficit, .deficit = deficit};
+    }
+    const double ratio = moment_ratio(c);
+    return {.excess = ratio, .deficit = 1 - ratio};
+  }
+
+  /// (2/pi) integral (r/rho) p dtheta, rho^2 = c^2 + (c^2 - r^2) tan(theta)^2: a mean of the pressure.
+  double stick_traction(StickRadius c, double radius, double inward) const override {
+    if (c.ratio < kSmallest) {
+      const double scale = kSmallest / c.ratio;
+      return stick_traction({.ratio = kSmallest, .complement = 1}, radius * scale, inward * scale);
+    }
+    if (inward == 0) return pressure(c.ratio);
+    const double depth = std::sqrt(inward * (c.ratio + radius));
+    return 2 / pi * beyond(c, depth, [depth, radius](double x, double rho, const Piece& piece, double s) {
+             return piece.pressure(s) * (radius / rho) * (depth / (x * x + depth * depth));
+           });
+  }
+
+ private:
+  std::size_t piece_at(double radius) const {
+    const auto after = std::upper_bound(pieces_.begin(), pieces_.end() - 1, radius,
+                                        [](double r, const Piece& piece) { return r < piece.high(); });
+    return static_cast<std::size_t>(after - pieces_.begin());
+  }
+
+  /// integral over x = sqrt(rho^2 - c^2) of f(x, rho, piece, s) for rho from c to 1: rho drho = x dx takes
+  /// away the square root at c. f is analytic in x but for poles at +-i scale.
+  template <class Function>
+  double beyond(StickRadius c, double scale, const Function& f) const {
+    double sum = 0;
+    double from = 0;
+    for (std::size_t i = piece_at(c.ratio); i < pieces_.size(); ++i) {
+      const Piece& piece = pieces_[i];
+      const bool last = i + 1 == pieces_.size();
+      const double end = std::sqrt((last ? c.complement : piece.high() - c.ratio) * (piece.high() + c.ratio));
+      sum += over_panels(
+          [&](double x) {
+            const double rho = std::sqrt(c.ratio * c.ratio + x * x);
+            return f(x, rho, piece, (end - x) * (end + x) / (piece.high() + rho));
+          },
+          from, end, scale);
+      from = end;
+    }
+    return sum;
+  }
+
+  /// Panels no longer than their distance from the poles, each with as many points as its length over that
+  /// distance needs for the last digit.
+  template <class Function>
+  static double over_panels(const Function& f, double from, double end, double scale) {
+    static const gsl::GaussRule few(4), some(8), many(16);
+    constexpr double kFew = 0.04;
+    constexpr double kSome = 0.35;
+    double sum = 0;
+    while (from < end) {
+      const double distance = std::sqrt(from * from + scale * scale);
+      const double to = std::min(end, from + distance);
+      const double length = to - from;
+      const gsl::GaussRule& rule = length < kFew * distance ? few : length < kSome * distance ? some : many;
+      sum += rule(f, from, to);
+      from = to;
+    }
+    return sum;
+  }
+
+  /// M/M_lim.
+  double moment_ratio(StickRadius c) const {
+    const double a_s = c.ratio;
+    const double sum = beyond(c, a_s, [a_s](double x, double rho, const Piece& piece, double s) {
+      const double ring = a_s * a_s * a_s / 3 + x * (rho * rho * std::atan2(x, a_s) + a_s * x) / 2;
+      return piece.pressure(s) / rho * ring;
+    });
+    return 4 / pi * sum / moment_;
+  }
+
+  /// 1 - M/M_lim: all that the pressure within c could carry, less what it does.
+  double moment_deficit(StickRadius c) const {
+    if (c.ratio < kSmallest) return 0;
+    const double a_s = c.ratio;
+    const std::size_t i = piece_at(a_s);
+    const double inner = inner_moment_[i] + pieces_[i].moment(2, a_s);
+    const double outer = beyond(c, a_s, [a_s](double x, double rho, const Piece& piece, double s) {
+      return piece.pressure(s) * rho * rho * lacking(x, rho, a_s);
+    });
+    return (inner + 4 / pi * outer) / moment_;
+  }
+
+  std::vector<Piece> pieces_;
+  std::vector<double> inner_moment_;  ///< integral of p r^2 dr up to each piece
+  double moment_;
+};
+
+using Where = std::function<std::string(std::size_t)>;
+
+[[noreturn]] void refuse(const std::string& where, std::string_view what, double value,
+                         std::string_view allowed) {
+  throw std::invalid_argument(fmt::format("{}: {} = {}; allowed: {}", where, what, value, allowed));
+}
+
+void check_points(const std::string& name, const std::vector<PressurePoint>& points, const Where& where) {
+  constexpr std::size_t kFewest = 4;
+  if (points.size() < kFewest)
+    throw std::invalid_argument(
+        fmt::format("{}: {} points; allowed: at least {}", name, points.size(), kFewest));
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    const auto [radius, pressure] = points[i];
+    if (i == 0 && radius != 0) refuse(where(i), "radius", radius, "0 at the first point");
+    if (i > 0 && !(radius > points[i - 1].radius && std::isfinite(radius)))
+      refuse(where(i), "radius", radius,
+             fmt::format("finite and more than the one before, {}", points[i - 1].radius));
+    if (!(pressure >= 0 && std::isfinite(pressure)))
+      refuse(where(i), "pressure", pressure, "finite and not negative");
+    if (pressure == 0 && i + 1 < points.size())
+      refuse(where(i), "pressure", pressure, "> 0 except at the last point, where the contact ends");
+  }
+}
+
+/// Where H does not decrease the tractions of a circle that sticks would exceed friction within it.
+void check_that_a_circle_sticks(const Tabulated& profile, const std::vector<PressurePoint>& points,
+                                const Where& where) {
+  constexpr std::size_t kMost = 200;  // more checks would say little and cost more than the profile
+  const std::size_t step = 1 + points.size() / kMost;
+  for (std::size_t i = 1; i + 1 < points.size(); i += step) {
+    const double c = points[i].radius;
+    if (!(profile.twist_slope({.ratio = c, .complement = 1 - c}) > 0))
+      throw std::invalid_argument(fmt::format(
+          "{}: the pressure rises so much beyond this radius that slip would not begin at the edge and no "
+          "circle stick; allowed: pressures that fall outwards, or nearly",
+          where(i)));
+  }
+}
+
+/// From the edge inwards every second point, and the first: every interval becomes at least twice as long,
+/// but for that three points must be left.
+std::vector<PressurePoint> every_second(const std::vector<PressurePoint>& points) {
+  std::size_t next = points.size() % 2 == 1 ? 2 : 3;
+  if (points.size() == 4) next = 1;
+  std::vector<PressurePoint> coarse{points.front()};
+  for (; next < points.size(); next += 2) coarse.push_back(points[next]);
+  return coarse;
+}
+
+/// The profile over the mean pressure, which is the result beside it.
+std::pair<std::unique_ptr<const Tabulated>, double> over_mean(std::string name,
+                                                              std::vector<PressurePoint> points) {
+  const double mean = 2 * whole_moment(interpolate(points), 1);
+  for (auto& point : points) point.pressure /= mean;
+  return {std::make_unique<const Tabulated>(std::move(name), interpolate(points)), mean};
+}
+
+TabulatedProfile make_profile(const std::string& name, std::vector<PressurePoint> points,
+                              const Where& where) {
+  check_points(name, points, where);
+  const double a = points.back().radius;
+  const double peak =
+      std::max_element(points.begin(), points.end(), [](const PressurePoint& p, const PressurePoint& q) {
+        return p.pressure < q.pressure;
+      })->pressure;
+  for (auto& point : points) point = {.radius = point.radius / a, .pressure = point.pressure / peak};
+
+  auto [profile, mean] = over_mean("file:" + name, points);
+  check_that_a_circle_sticks(*profile, points, where);
+  auto [coarse, coarse_mean] = over_mean("every second point of file:" + name, every_second(points));
+  return {.profile = std::move(profile),
+          .coarse = std::move(coarse),
+          .radius = a,
+          .mean_pressure = peak * mean,
+          .coarse_mean_pressure = peak * coarse_mean};
+}
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kSpace = " \t\r";
+  const auto first = text.find_first_not_of(kSpace);
+  if (first == std::string_view::npos) return {};
+  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
+}
+
+double parse_number(std::string_view text, std::string_view what, const std::string& where) {
+  double value = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
+  if (error != std::errc() || end != text.data() + text.size())
+    throw std::invalid_argument(fmt::format("{}: {} = {}; allowed: a number", where, what, text));
+  return value;
+}
+
+PressurePoint parse_point(std::string_view line, const std::string& where) {
+  const auto comma = line.find(',');
+  if (comma == std::string_view::npos || line.find(',', comma + 1) != std::string_view::npos)
+    throw std::invalid_argument(fmt::format("{}: {}; allowed: radius,pressure", where, line));
+  return {.radius = parse_number(trimmed(line.substr(0, comma)), "radius", where),
+          .pressure = parse_number(trimmed(line.substr(comma + 1)), "pressure", where)};
+}
+
+bool is_header(std::string_view line) {
+  const auto comma = line.find(',');
+  return comma != std::string_view::npos && trimmed(line.substr(0, comma)) == "radius" &&
+         trimmed(line.substr(comma + 1)) == "pressure";
+}
+
+}  // namespace
+
+TabulatedProfile tabulated_profile(const std::string& name, const std::vector<PressurePoint>& points) {
+  return make_profile(name, points, [&](std::size_t i) { return fmt::format("{}, point {}", name, i + 1); });
+}
+
+TabulatedProfile read_tabulated_profile(const std::string& file) {
+  std::ifstream stream(file);
+  if (!stream) throw std::invalid_argument(fmt::format("{}: cannot be read", file));
+  std::vector<PressurePoint> points;
+  std::vector<std::size_t> lines;
+  std::size_t number = 0;
+  const auto at_line = [&](std::size_t line) { return fmt::format("{}:{}", file, line); };
+  for (std::string text; std::getline(stream, text);) {
+    ++number;
+    const std::string_view line = trimmed(text);
+    if (line.empty() || line.front() == '#' || (points.empty() && is_header(line))) continue;
+    points.push_back(parse_point(line, at_line(number)));
+    lines.push_back(number);
+  }
+  return make_profile(file, std::move(points), [&](std::size_t i) { return at_line(lines[i]); });
+}
+
+}  // namespace slipstick::analytic

@@ -1,0 +1,304 @@
+#include "analytic/punch_superposition.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "analytic/gsl.hpp"
+#include "analytic/tests/references.hpp"
+
+namespace slipstick::analytic {
+namespace {
+
+using std::numbers::pi;
+using ::testing::HasSubstr;
+using testing::relative_error;
+using ::testing::ThrowsMessage;
+
+constexpr double kEps = std::numeric_limits<double>::epsilon();
+constexpr double kTolerance = 1e-14;
+
+StickRadius at(double c) { return {.ratio = c, .complement = 1 - c}; }
+StickRadius before_edge(double complement) { return {.ratio = 1 - complement, .complement = complement}; }
+
+/// Everything from 1e-12 to 1 - 1e-12, where both c and 1 - c are exact enough.
+const std::vector<StickRadius> kSticks{at(1e-12), at(1e-6), at(0.01),          at(0.2),           at(0.5),
+                                       at(0.8),   at(0.99), before_edge(1e-6), before_edge(1e-12)};
+
+std::vector<std::unique_ptr<const Profile>> profiles() {
+  std::vector<std::unique_ptr<const Profile>> all;
+  for (const double n : {0.01, 0.5, 1.0, 1.5, 2.0, 4.0, 30.0, 1000.0}) all.push_back(power_profile(n));
+  for (const double b : {0.0, 0.001, 0.5, 0.95, 1 - 1e-9}) all.push_back(rounded_punch_profile(b));
+  return all;
+}
+
+/// Functions of H, M and q that agree between two profiles, one over a p0 `scale` times the other's.
+void expect_same(const Profile& profile, const Profile& expected, double scale, double tolerance) {
+  EXPECT_NEAR(profile.load() / expected.load() / scale, 1, tolerance);
+  EXPECT_NEAR(profile.moment_limit() / expected.moment_limit(), 1, tolerance);
+  EXPECT_EQ(profile.edge(), 0);
+  for (const auto& c : kSticks) {
+    const auto near = [&](double value, double reference, const char* name) {
+      EXPECT_NEAR(value / reference, 1, tolerance) << name << " at c = " << c.ratio;
+    };
+    near(profile.twist_integral(c), scale * expected.twist_integral(c), "H");
+    near(profile.twist_slope(c), scale * expected.twist_slope(c), "-c H'");
+    near(profile.moment_share(c).excess, expected.moment_share(c).excess, "M");
+    near(profile.moment_share(c).deficit, expected.moment_share(c).deficit, "M_lim - M");
+    near(profile.pressure(c.ratio), scale * expected.pressure(c.ratio), "p");
+    for (const double f : {1e-13, 1e-6, 0.1, 0.5, 0.99, 1 - 1e-12}) {
+      const double inward = c.ratio * f;
+      near(profile.stick_traction(c, c.ratio - inward, inward),
+           scale * expected.stick_traction(c, c.ratio - inward, inward), "q");
+    }
+  }
+}
+
+TEST(PowerProfile, OfTwoIsTheSphere) { expect_same(*power_profile(2), hertz_profile(), 1, kTolerance); }
+
+TEST(PowerProfile, OfOneIsTheCone) { expect_same(*power_profile(1), cone_profile(), 1, kTolerance); }
+
+TEST(RoundedPunchProfile, WithoutAFlatIsTheSphere) {
+  expect_same(*rounded_punch_profile(0), hertz_profile(), 1.5, kTolerance);
+}
+
+TEST(Superposition, AgreesWithReferences) {
+  for (const auto& row : testing::read_references("profile_references.csv")) {
+    const double parameter = row.argument("parameter");
+    const auto profile =
+        row.text("profile") == "power" ? power_profile(parameter) : rounded_punch_profile(parameter);
+    const double value = row.argument("value");
+    const StickRadius c = row.text("given") == "stick_ratio" ? at(value) : before_edge(value);
+    const auto near = [&](double computed, const char* name) {
+      EXPECT_LE(relative_error(computed, row.number(name)), kTolerance) << name << " of " << row.line();
+    };
+    near(profile->twist_integral(c), "twist_integral");
+    near(profile->twist_slope(c), "twist_slope");
+    near(profile->moment_share(c).excess, "moment_ratio");
+    near(profile->moment_share(c).deficit, "moment_deficit");
+    near(profile->pressure(c.ratio), "pressure");
+    const auto traction = [&](double share) {
+      const double inward = c.ratio * share;
+      return profile->stick_traction(c, c.ratio - inward, inward);
+    };
+    near(traction(0.99), "traction_centre");
+    near(traction(0.1), "traction_middle");
+    near(traction(1e-9), "traction_front");
+  }
+}
+
+TEST(PowerProfile, OfFourHasItsPolynomial) {
+  const auto profile = power_profile(4);
+  for (const double r : {0.0, 0.1, 0.5, 0.9, 0.9999}) {
+    const double v = std::sqrt((1 - r) * (1 + r));
+    EXPECT_NEAR(profile->pressure(r) / (v * (1 - 2 * v * v / 3)), 1, kTolerance) << r;
+  }
+}
+
+/// H = integral_r^1 p/sqrt: for n = 4 in closed form, by integral_0^inf of p(c cosh u).
+TEST(PowerProfile, HasTheTwistOfItsPressure) {
+  for (const double n : {0.5, 1.5, 4.0, 30.0})
+    for (const double c : {0.1, 0.5, 0.9}) {
+      const auto profile = power_profile(n);
+      const double h = gsl::integral(
+          [&](double u) { return profile->pressure(std::min(1.0, c * std::cosh(u))); }, 0, std::acosh(1 / c));
+      EXPECT_NEAR(profile->twist_integral(at(c)) / h, 1, 1e-9) << n << ", " << c;
+    }
+}
+
+TEST(PowerProfile, TellsItsPeakAndItsMean) {
+  for (const double n : {0.01, 0.7, 1.0})
+    EXPECT_EQ(power_profile(n)->pressure(0), std::numeric_limits<double>::infinity()) << n;
+  for (const double n : {1.01, 2.0, 4.0, 1000.0}) {
+    EXPECT_NEAR(power_profile(n)->pressure(0) * (n - 1), 1, kTolerance) << n;
+    EXPECT_NEAR(power_profile(n)->pressure(1e-300) * (n - 1), 1, n < 2 ? 2e-3 : kTolerance) << n;
+  }
+  for (const double n : {0.5, 2.0, 7.0}) {
+    EXPECT_NEAR(power_profile(n)->load() / pi, 2 / (n + 1), kTolerance) << n;
+    EXPECT_NEAR(power_profile(n)->moment_limit(), pi * (n + 1) / (4 * (n + 2)), kTolerance) << n;
+  }
+}
+
+TEST(RoundedPunchProfile, TendsToTheFlatPunch) {
+  double before = 1;
+  for (const double gap : {0.1, 1e-3, 1e-6, 1e-9, 1e-12}) {
+    const auto profile = rounded_punch_profile(1 - gap);
+    const auto off = [](double value, double limit) { return std::abs(value / limit - 1); };
+    const double error = off(profile->moment_limit(), pi / 4);
+    EXPECT_LT(error, 2 * gap) << gap;
+    EXPECT_LT(error, before) << gap;
+    before = error;
+    EXPECT_LT(off(profile->pressure(0.5), 0.5 / std::sqrt(0.75)), 2 * gap) << gap;
+    EXPECT_LT(off(profile->twist_integral(at(0.5)), flat_punch_profile().twist_integral(at(0.5)) / 2),
+              2 * gap)
+        << gap;
+    EXPECT_LT(off(profile->stick_traction(at(0.5), 0.3, 0.2),
+                  flat_punch_profile().stick_traction(at(0.5), 0.3, 0.2) / 2),
+              2 * gap)
+        << gap;
+    // At the flat's rim as much moment is reached as a flat punch carries without slip.
+    EXPECT_LT(off(profile->moment_share(before_edge(gap)).excess, flat_punch_profile().full_stick()),
+              2 * std::sqrt(gap))
+        << gap;
+    EXPECT_LT(profile->moment_share(before_edge(gap * 1e-6)).excess, 1e-3) << gap;
+  }
+}
+
+// Pressure, load, moments and tractions come from separate formulas: what statics asks of them follows.
+
+/// 2 pi integral p r^power dr; r = sin(t) makes the edge smooth, a power of t the centre of n < 1.
+double moment_of_pressure(const Profile& profile, double power) {
+  const auto integrand = [&](double v) {
+    const double t = pi / 2 * v * v * v;
+    const double r = std::sin(t);
+    return profile.pressure(r) * std::pow(r, power) * std::cos(t) * pi / 2 * 3 * v * v;
+  };
+  return 2 * pi * gsl::integral(integrand, 0, 1);
+}
+
+TEST(Superposition, HasTheLoadOfItsPressure) {
+  for (const auto& profile : profiles()) {
+    EXPECT_NEAR(moment_of_pressure(*profile, 1) / profile->load(), 1, 1e-9) << profile->name();
+    EXPECT_NEAR(moment_of_pressure(*profile, 2) / profile->load() / profile->moment_limit(), 1, 1e-9)
+        << profile->name();
+  }
+}
+
+TEST(Superposition, HasTheMomentOfItsTractions) {
+  for (const auto& profile : profiles())
+    for (const double c : {0.05, 0.5, 0.9}) {
+      const auto stick = [&](double t) {
+        const double r = c * std::sin(t);
+        const double inward = 2 * c * std::pow(std::sin((pi / 2 - t) / 2), 2);
+        return inward > 0 ? profile->stick_traction(at(c), r, inward) * r * r * c * std::cos(t) : 0;
+      };
+      const auto slip = [&](double t) {
+        const double r = std::sin(t);
+        return profile->pressure(r) * r * r * std::cos(t);
+      };
+      const double moment =
+          2 * pi * (gsl::integral(stick, 0, pi / 2) + gsl::integral(slip, std::asin(c), pi / 2));
+      EXPECT_NEAR(moment / (profile->moment_share(at(c)).excess * profile->moment_limit() * profile->load()),
+                  1, 1e-9)
+          << profile->name() << ", c = " << c;
+    }
+}
+
+/// dM/dphi = 16/3 G a_s^3, that of a bonded punch of radius a_s; and -c H' is the slope of H.
+TEST(Superposition, HasTheTangentStiffnessOfItsStickArea) {
+  for (const auto& profile : profiles())
+    for (const double c : {0.05, 0.3, 0.7, 0.9}) {
+      const double step = 1e-3 * c * (1 - c);
+      const auto difference = [&](auto f) {  // of fourth order
+        return (8 * (f(at(c + step)) - f(at(c - step))) - (f(at(c + 2 * step)) - f(at(c - 2 * step)))) /
+               (12 * step);
+      };
+      const double slope = difference([&](StickRadius s) { return profile->twist_integral(s); });
+      const double moment = difference([&](StickRadius s) {
+        return profile->moment_share(s).excess * profile->moment_limit() * profile->load();
+      });
+      EXPECT_NEAR(-c * slope / profile->twist_slope(at(c)), 1, 1e-7) << profile->name() << ", c = " << c;
+      EXPECT_NEAR(moment / slope / (8.0 / 3 * c * c * c), 1, 1e-6) << profile->name() << ", c = " << c;
+    }
+}
+
+TEST(Superposition, KeepsTractionsBelowFrictionAndContinuous) {
+  for (const auto& profile : profiles())
+    for (const double c : {1e-9, 0.01, 0.5, 0.9, 0.999}) {
+      EXPECT_EQ(profile->stick_traction(at(c), 0, c), 0) << profile->name();
+      double before = 0;
+      for (const double f : {0.999, 0.9, 0.6, 0.3, 0.1, 0.01, 1e-5, 1e-13}) {
+        const double r = c - c * f;
+        const double q = profile->stick_traction(at(c), r, c * f);
+        EXPECT_GT(q, 0) << profile->name() << ", c = " << c << ", r = " << r;
+        EXPECT_LE(q, profile->pressure(r) * (1 + 8 * kEps))
+            << profile->name() << ", c = " << c << ", r = " << r;
+        before = q;
+      }
+      EXPECT_NEAR(before / profile->pressure(c), 1, 2e-5) << profile->name() << ", c = " << c;
+    }
+}
+
+TEST(Superposition, TractionsBeginLinearlyAtTheCentre) {
+  for (const auto& profile : profiles())
+    for (const double c : {1e-6, 0.5, 0.99}) {
+      const double r = c * 1e-9;
+      EXPECT_NEAR(profile->stick_traction(at(c), 2 * r, c - 2 * r) / profile->stick_traction(at(c), r, c - r),
+                  2, 32 * kEps)
+          << profile->name();
+    }
+}
+
+/// 1 - M/M_lim ~ c^3 for a finite pressure p(0), by (8/3) integral_0^c s^3 (-H') ds with -s H' -> p(0); under
+/// a cone with a logarithm; c^(n+2) under a sharper point.
+TEST(Superposition, ReachesTheLimitByItsLaw) {
+  for (const auto& profile : profiles()) {
+    const double peak = profile->pressure(0);
+    if (std::isinf(peak)) continue;
+    const double c = 1e-40;
+    const double law = 8.0 / 9 * c * c * c * peak / (profile->moment_limit() * profile->load());
+    EXPECT_NEAR(profile->moment_share(at(c)).deficit / law, 1,
+                profile->name() == "power:1.5" ? 1e-11 : kTolerance)
+        << profile->name();
+  }
+  for (const double n : {0.01, 0.5}) {
+    const auto deficit = [&](double c) { return power_profile(n)->moment_share(at(c)).deficit; };
+    EXPECT_NEAR(deficit(2e-40) / deficit(1e-40) / std::pow(2, n + 2), 1, 1e-13) << n;
+  }
+}
+
+TEST(Superposition, LeavesFullStickLinearly) {
+  for (const auto& profile : profiles()) {
+    const auto ratio = [&](double w) { return profile->moment_share(before_edge(w)).excess; };
+    EXPECT_NEAR(ratio(2e-40) / ratio(1e-40), 2, 1e-13) << profile->name();
+    EXPECT_EQ(ratio(0), 0) << profile->name();
+    EXPECT_EQ(profile->twist_integral(before_edge(0)), 0) << profile->name();
+    EXPECT_EQ(profile->moment_share(before_edge(0)).deficit, 1) << profile->name();
+    EXPECT_EQ(profile->pressure(1), 0) << profile->name();
+  }
+}
+
+TEST(Superposition, IsMonotoneAndFiniteAtTheExtremes) {
+  for (const auto& profile : profiles()) {
+    double twist = std::numeric_limits<double>::infinity();
+    double deficit = 0;
+    std::vector<StickRadius> sticks{at(1e-100), at(1e-60), at(1e-20)};
+    sticks.insert(sticks.end(), kSticks.begin(), kSticks.end());
+    for (const double w : {1e-30, 1e-100}) sticks.push_back(before_edge(w));
+    for (const auto& c : sticks) {
+      const auto share = profile->moment_share(c);
+      EXPECT_LT(profile->twist_integral(c), twist) << profile->name() << ", c = " << c.ratio;
+      EXPECT_GE(share.deficit, deficit) << profile->name() << ", c = " << c.ratio;
+      EXPECT_GT(share.deficit, 0) << profile->name() << ", c = " << c.ratio;
+      EXPECT_GT(share.excess, 0) << profile->name() << ", c = " << c.ratio;
+      EXPECT_GT(profile->twist_slope(c), 0) << profile->name() << ", c = " << c.ratio;
+      for (const double f : {1e-13, 0.3, 1 - 1e-12}) {
+        const double q = profile->stick_traction(c, c.ratio - c.ratio * f, c.ratio * f);
+        EXPECT_TRUE(std::isfinite(q) && q > 0) << profile->name() << ", c = " << c.ratio << ", f = " << f;
+      }
+      twist = profile->twist_integral(c);
+      deficit = share.deficit;
+    }
+  }
+}
+
+TEST(Superposition, RefusesWhatLiesOutside) {
+  for (const double bad : {0.0, -1.0, 1e-3, 1001.0, HUGE_VAL, std::nan("")})
+    EXPECT_THROW(power_profile(bad), std::domain_error) << bad;
+  for (const double bad : {-1e-9, 1.0, 2.0, HUGE_VAL, std::nan("")})
+    EXPECT_THROW(rounded_punch_profile(bad), std::domain_error) << bad;
+  EXPECT_THAT([] { power_profile(-3); },
+              ThrowsMessage<std::domain_error>(AllOf(HasSubstr("-3"), HasSubstr("0.01 <= n <= 1000"))));
+  EXPECT_THAT([] { rounded_punch_profile(1.5); },
+              ThrowsMessage<std::domain_error>(AllOf(HasSubstr("1.5"), HasSubstr("0 <= b/a < 1"))));
+}
+
+}  // namespace
+}  // namespace slipstick::analytic

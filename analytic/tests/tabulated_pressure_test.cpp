@@ -1,0 +1,308 @@
+#include "analytic/tabulated_pressure.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <functional>
+#include <limits>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "analytic/gsl.hpp"
+
+namespace slipstick::analytic {
+namespace {
+
+using std::numbers::pi;
+using ::testing::AllOf;
+using ::testing::HasSubstr;
+using ::testing::ThrowsMessage;
+
+StickRadius at(double c) { return {.ratio = c, .complement = 1 - c}; }
+
+/// Sampled at equal steps, or (graded) closer and closer towards the edge.
+std::vector<PressurePoint> sample(const std::function<double(double)>& pressure, int intervals,
+                                  bool graded = false) {
+  std::vector<PressurePoint> points;
+  for (int i = 0; i < intervals; ++i) {
+    const double share = static_cast<double>(i) / intervals;
+    const double radius = graded ? std::sin(pi / 2 * share) : share;
+    points.push_back({.radius = radius, .pressure = pressure(radius)});
+  }
+  points.push_back({.radius = 1, .pressure = pressure(1)});
+  return points;
+}
+
+double linear(double r) { return 1 - r; }
+double hertz(double r) { return std::sqrt((1 - r) * (1 + r)); }
+
+// p = 3 (1 - r) over its mean: reproduced exactly, with everything in closed form.
+
+TEST(TabulatedProfile, ReproducesALinearPressure) {
+  for (const int intervals : {3, 5, 10, 101, 1000}) {
+    const auto table = tabulated_profile("linear", sample(linear, intervals));
+    const Profile& profile = *table.profile;
+    EXPECT_NEAR(table.mean_pressure * 3, 1, 1e-14);
+    EXPECT_NEAR(profile.load() / pi, 1, 1e-14);
+    EXPECT_NEAR(profile.moment_limit(), 0.5, 1e-14);  // integral p r^2 over integral p r: (1/12)/(1/6)
+    EXPECT_EQ(profile.edge(), 0);
+    for (const double r : {0.0, 0.123, 0.5, 0.999, 1.0})
+      EXPECT_NEAR(profile.pressure(r), 3 * (1 - r), 1e-14) << r;
+    for (const double c : {1e-200, 1e-100, 1e-12, 0.01, 0.1, 0.35, 0.5, 0.9}) {
+      const double x = std::sqrt((1 - c) * (1 + c));
+      const double h = 3 * (std::log1p(x) - std::log(c) - x);
+      EXPECT_NEAR(profile.twist_integral(at(c)) / h, 1, 1e-13) << c;
+      EXPECT_NEAR(table.coarse->twist_integral(at(c)) / h, 1, 1e-13) << c;
+      EXPECT_NEAR(profile.twist_slope(at(c)) / (3 * x), 1, 1e-13) << c;
+    }
+    // Close to the edge: H -> 3 x^3/3, as of p = 3 (1 - r).
+    for (const double w : {1e-8, 1e-30, 1e-100}) {
+      const StickRadius c{.ratio = 1 - w, .complement = w};
+      EXPECT_NEAR(profile.twist_integral(c) / std::pow(2 * w, 1.5), 1, 1e-7) << w;
+      EXPECT_NEAR(profile.twist_slope(c) / (3 * std::sqrt(2 * w)), 1, 1e-7) << w;
+      EXPECT_GT(profile.moment_share(c).excess, 0) << w;
+    }
+  }
+}
+
+/// M by H: dM = (8/3) c^3 dH, so that here, with -c H' = 3 sqrt(1 - c^2), what is lacking is an elementary
+/// integral: 8 integral_0^c s^2 sqrt(1 - s^2) ds = asin(c) - c sqrt(1 - c^2) (1 - 2 c^2).
+TEST(TabulatedProfile, HasTheMomentOfALinearPressure) {
+  const auto table = tabulated_profile("linear", sample(linear, 50));
+  const double limit = table.profile->moment_limit() * table.profile->load();
+  for (const double c : {0.1, 0.11, 0.3, 0.499999, 0.5, 0.7, 0.99}) {
+    const double lacking = std::asin(c) - c * std::sqrt((1 - c) * (1 + c)) * (1 - 2 * c * c);
+    EXPECT_NEAR(table.profile->moment_share(at(c)).deficit / (lacking / limit), 1, 2e-13) << c;
+    EXPECT_NEAR(table.profile->moment_share(at(c)).excess / (1 - lacking / limit), 1, 1e-11) << c;
+  }
+  for (const double c : {1e-90, 1e-30, 1e-9}) {  // (8/9) p(0) c^3
+    EXPECT_NEAR(table.profile->moment_share(at(c)).deficit / (8.0 / 9 * 3 * c * c * c / limit), 1, 1e-13)
+        << c;
+    EXPECT_NEAR(table.profile->moment_share(at(c)).excess, 1, 1e-13) << c;
+  }
+}
+
+TEST(TabulatedProfile, HasTheMomentOfItsTractions) {
+  for (const auto& points :
+       {sample(linear, 20), sample(hertz, 50, true), sample([](double r) { return 2 - r * r; }, 7)}) {
+    const auto table = tabulated_profile("a table", points);
+    const Profile& profile = *table.profile;
+    for (const double c : {0.05, 0.5, 0.9}) {
+      const auto stick = [&](double t) {
+        const double r = c * std::sin(t);
+        const double inward = 2 * c * std::pow(std::sin((pi / 2 - t) / 2), 2);
+        return inward > 0 ? profile.stick_traction(at(c), r, inward) * r * r * c * std::cos(t) : 0;
+      };
+      const auto slip = [&](double r) { return profile.pressure(r) * r * r; };
+      double moment = gsl::integral(stick, 0, pi / 2);
+      double from = c;
+      for (const auto& point : points) {  // the interpolant is smooth between points only
+        if (point.radius <= c) continue;
+        moment += gsl::integral(slip, from, point.radius);
+        from = point.radius;
+      }
+      EXPECT_NEAR(
+          2 * pi * moment / (profile.moment_share(at(c)).excess * profile.moment_limit() * profile.load()), 1,
+          1e-8)
+          << points.size() << " points, c = " << c;
+    }
+  }
+}
+
+TEST(TabulatedProfile, KeepsTractionsBelowFrictionAndContinuous) {
+  const auto table = tabulated_profile("Hertz", sample(hertz, 40));
+  for (const double c : {1e-200, 1e-100, 1e-9, 0.01, 0.5, 0.875, 0.9999}) {
+    EXPECT_EQ(table.profile->stick_traction(at(c), 0, c), 0) << c;
+    for (const double f : {0.999, 0.5, 0.1, 1e-3, 1e-9, 1e-13}) {
+      const double r = c - c * f;
+      const double q = table.profile->stick_traction(at(c), r, c * f);
+      EXPECT_GT(q, 0) << c << ", " << r;
+      EXPECT_LE(q, table.profile->pressure(r) * (1 + 1e-13)) << c << ", " << r;
+    }
+    EXPECT_NEAR(table.profile->stick_traction(at(c), c - c * 1e-13, c * 1e-13) / table.profile->pressure(c),
+                1, 1e-4)
+        << c;
+  }
+}
+
+TEST(TabulatedProfile, DoesNotFailAtTheExtremes) {
+  for (const auto& points :
+       {sample(linear, 3), sample(hertz, 1000, true), sample([](double) { return 1; }, 5)}) {
+    const auto table = tabulated_profile("a table", points);
+    double before = std::numeric_limits<double>::infinity();
+    std::vector<StickRadius> sticks;
+    for (const double c : {1e-300, 1e-100, 1e-50, 1e-8, 0.01, 0.3, 0.6, 0.95}) sticks.push_back(at(c));
+    for (const double w : {1e-5, 1e-12, 1e-30, 1e-100}) sticks.push_back({.ratio = 1 - w, .complement = w});
+    for (const auto& c : sticks) {
+      const double h = table.profile->twist_integral(c);
+      EXPECT_LT(h, before) << c.ratio << ' ' << c.complement;
+      EXPECT_GT(h, 0) << c.ratio << ' ' << c.complement;
+      EXPECT_GT(table.profile->twist_slope(c), 0) << c.ratio;
+      EXPECT_GT(table.profile->moment_share(c).excess, 0) << c.ratio;
+      EXPECT_GE(table.profile->moment_share(c).deficit, 0) << c.ratio;
+      before = h;
+    }
+    const StickRadius whole{.ratio = 1, .complement = 0};
+    EXPECT_EQ(table.profile->twist_integral(whole), 0);
+    EXPECT_EQ(table.profile->moment_share(whole).excess, 0);
+  }
+}
+
+/// dM/dphi = 16/3 G a_s^3, that of a bonded punch of radius a_s.
+TEST(TabulatedProfile, HasTheTangentStiffnessOfItsStickArea) {
+  const auto table = tabulated_profile("Hertz", sample(hertz, 16, true));
+  for (const double c : {0.05, 0.3, 0.49, 0.7, 0.93}) {
+    const double step = 1e-4 * (1 - c);
+    const auto moment = [&](double s) {
+      return table.profile->moment_share(at(s)).excess * table.profile->moment_limit() *
+             table.profile->load();
+    };
+    const double twist =
+        table.profile->twist_integral(at(c + step)) - table.profile->twist_integral(at(c - step));
+    EXPECT_NEAR((moment(c + step) - moment(c - step)) / twist / (8.0 / 3 * c * c * c), 1, 1e-5) << c;
+    EXPECT_NEAR(-c * twist / (2 * step) / table.profile->twist_slope(at(c)), 1, 1e-5) << c;
+  }
+}
+
+/// The error of a table of Hertz's pressure, and what the coarse profile tells of it, for everything over W
+/// or M_lim. A sign change of the difference lets it miss the error at one radius, not at the next.
+TEST(TabulatedProfile, BoundsItsErrorByRefinement) {
+  for (const bool graded : {false, true})
+    for (const int intervals : {8, 16, 33, 64, 128, 501, 1000}) {
+      const auto table = tabulated_profile("Hertz", sample(hertz, intervals, graded));
+      const auto check = [&](const char* name, const std::function<double(const Profile&, double)>& value) {
+        double error = 0;
+        double estimate = 0;
+        for (const double c : {1e-6, 0.01, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7}) {
+          const double exact = value(hertz_profile(), c);
+          const double fine = value(*table.profile, c);
+          error = std::max(error, std::abs(fine / exact - 1));
+          estimate = std::max(estimate, std::abs(value(*table.coarse, c) / fine - 1));
+        }
+        EXPECT_LE(error, estimate) << name << ", " << intervals << (graded ? " graded" : "");
+        if (intervals % 2 == 0) {
+          EXPECT_GE(error * 100, estimate) << name << ", " << intervals << (graded ? " graded" : "");
+        }
+      };
+      check("H", [](const Profile& p, double c) { return p.twist_integral(at(c)) / p.load(); });
+      check("M", [](const Profile& p, double c) { return p.moment_share(at(c)).excess; });
+      check("deficit", [](const Profile& p, double c) { return p.moment_share(at(c)).deficit; });
+      check("q",
+            [](const Profile& p, double c) { return p.stick_traction(at(c), 0.7 * c, 0.3 * c) / p.load(); });
+      const double mean = 2.0 / 3;
+      EXPECT_LE(std::abs(table.mean_pressure - mean),
+                std::abs(table.coarse_mean_pressure - table.mean_pressure));
+    }
+}
+
+TEST(TabulatedProfile, ConvergesWithTheThirdPower) {
+  const auto error = [](int intervals) {
+    const auto table = tabulated_profile("Hertz", sample(hertz, intervals, true));
+    return std::abs(
+        table.profile->moment_share(at(0.5)).deficit / hertz_profile().moment_share(at(0.5)).deficit - 1);
+  };
+  EXPECT_LT(error(200) / error(100), 0.2);
+  EXPECT_LT(error(1000), 1e-8);
+}
+
+TEST(TabulatedProfile, KnowsNoUnits) {
+  auto points = sample(hertz, 30, true);
+  const auto table = tabulated_profile("one", points);
+  for (auto& point : points)
+    point = {.radius = point.radius * 0x1p-200, .pressure = point.pressure * 0x1p900};
+  const auto scaled = tabulated_profile("other", points);
+  EXPECT_EQ(scaled.radius, 0x1p-200);
+  EXPECT_EQ(scaled.mean_pressure, table.mean_pressure * 0x1p900);
+  EXPECT_EQ(scaled.profile->twist_integral(at(0.4)), table.profile->twist_integral(at(0.4)));
+  EXPECT_EQ(scaled.profile->moment_share(at(0.4)).excess, table.profile->moment_share(at(0.4)).excess);
+}
+
+TEST(TabulatedProfile, RefusesWhatIsNoContactPressure) {
+  const auto refused = [](std::vector<PressurePoint> points, const std::string& value,
+                          const std::string& allowed) {
+    EXPECT_THAT(
+        [&] { tabulated_profile("T", points); },
+        ThrowsMessage<std::invalid_argument>(AllOf(HasSubstr("T"), HasSubstr(value), HasSubstr(allowed))));
+  };
+  const double nan = std::nan("");
+  refused({}, "0 points", "at least 4");
+  refused({{0, 3}, {1, 2}, {2, 0}}, "3 points", "at least 4");
+  refused({{0.1, 3}, {1, 2}, {2, 1}, {3, 0}}, "point 1: radius = 0.1", "0 at the first point");
+  refused({{nan, 3}, {1, 2}, {2, 1}, {3, 0}}, "point 1: radius = nan", "0 at the first point");
+  refused({{0, 3}, {1, 2}, {1, 1}, {3, 0}}, "point 3: radius = 1", "more than the one before, 1");
+  refused({{0, 3}, {1, 2}, {nan, 1}, {3, 0}}, "point 3: radius = nan", "more than the one before, 1");
+  refused({{0, 3}, {1, 2}, {2, 1}, {HUGE_VAL, 0}}, "point 4: radius = inf", "finite");
+  refused({{0, 3}, {1, -2}, {2, 1}, {3, 0}}, "point 2: pressure = -2", "not negative");
+  refused({{0, 3}, {1, nan}, {2, 1}, {3, 0}}, "point 2: pressure = nan", "finite");
+  refused({{0, 3}, {1, HUGE_VAL}, {2, 1}, {3, 0}}, "point 2: pressure = inf", "finite");
+  refused({{0, 3}, {1, 2}, {2, 0}, {3, 0}}, "point 3: pressure = 0", "> 0 except at the last point");
+  refused({{0, 0}, {1, 0}, {2, 0}, {3, 0}}, "point 1: pressure = 0", "> 0 except at the last point");
+  refused({{0, 1}, {1, 1}, {2, 8}, {3, 9}}, "point 2", "pressures that fall outwards");
+}
+
+/// A little more pressure towards the edge than in the middle is what a flat punch has.
+TEST(TabulatedProfile, TakesAPressureThatRisesALittle) {
+  const auto table =
+      tabulated_profile("rising", sample([](double r) { return 1 / std::sqrt(1.2 - r * r); }, 50));
+  EXPECT_GT(table.profile->twist_slope(at(0.01)), 0);
+  EXPECT_LT(table.profile->stick_traction(at(0.8), 0.7, 0.1), table.profile->pressure(0.7));
+}
+
+class TableFile : public ::testing::Test {
+ protected:
+  TableFile()
+      : name_(::testing::TempDir() + "slipstick_table_" +
+              ::testing::UnitTest::GetInstance()->current_test_info()->name() + ".csv") {}
+  ~TableFile() override { std::remove(name_.c_str()); }
+
+  const std::string& holding(const std::string& text) const {
+    std::ofstream(name_) << text;
+    return name_;
+  }
+  void expect_refused(const std::string& text, const std::string& where, const std::string& what) const {
+    holding(text);
+    EXPECT_THAT([&] { read_tabulated_profile(name_); },
+                ThrowsMessage<std::invalid_argument>(AllOf(HasSubstr(name_ + where), HasSubstr(what))));
+  }
+
+ private:
+  std::string name_;
+};
+
+TEST_F(TableFile, IsReadWithHeaderAndComments) {
+  const auto plain = read_tabulated_profile(holding("0,3\n1,2\n2,1\n3,0\n"));
+  EXPECT_EQ(plain.radius, 3);
+  EXPECT_NEAR(plain.mean_pressure, 1, 1e-15);
+  const auto full = read_tabulated_profile(
+      holding("# measured\n\n radius , pressure\r\n0, 3.0\r\n 1e0,2\n# here\n2,1\n\n3,0"));
+  EXPECT_EQ(full.radius, 3);
+  EXPECT_EQ(full.profile->twist_integral(at(0.3)), plain.profile->twist_integral(at(0.3)));
+  EXPECT_THAT(plain.profile->name(), HasSubstr("file:"));
+}
+
+TEST_F(TableFile, IsRefusedByLine) {
+  expect_refused("radius,pressure\n0,3\n1,x\n", ":3", "pressure = x; allowed: a number");
+  expect_refused("r,p\n0,3\n", ":1", "radius = r; allowed: a number");
+  expect_refused("0,3\n1,2,5\n", ":2", "1,2,5; allowed: radius,pressure");
+  expect_refused("0,3\n1\n", ":2", "1; allowed: radius,pressure");
+  expect_refused("0,3\n1,2 Pa\n", ":2", "2 Pa; allowed: a number");
+  expect_refused("# p\n0,3\n1,2\n\n0.5,1\n3,0\n", ":5",
+                 "radius = 0.5; allowed: finite and more than the one before, 1");
+  expect_refused("0,3\n1,-2\n2,1\n3,0\n", ":2", "pressure = -2; allowed: finite and not negative");
+  expect_refused("0,3\n1,nan\n2,1\n3,0\n", ":2", "pressure = nan");
+  expect_refused("", "", "0 points; allowed: at least 4");
+}
+
+TEST(TableFiles, ThatAreNotThereAreNamed) {
+  EXPECT_THAT([] { read_tabulated_profile("no/such/table.csv"); },
+              ThrowsMessage<std::invalid_argument>(HasSubstr("no/such/table.csv: cannot be read")));
+}
+
+}  // namespace
+}  // namespace slipstick::analytic
