@@ -159,24 +159,33 @@ class Cone final : public Profile {
     return kMoment(c);
   }
 
-  /// q = (2/pi) r integral_c^1 K/(s sqrt(s^2 - r^2)) ds. With s = r cosh(u) the integrand is analytic within
-  /// pi/2 of the real axis, and Gauss's rule converges at once.
+  /// q = (2/pi) r integral_c^1 K/(s sqrt(s^2 - r^2)) ds. With s = r cosh(u) the integrand is smooth and falls
+  /// like exp(-u); what is singular lies pi/2 off the axis, at s = 0.
   double stick_traction(StickRadius c, double r, double inward) const override {
-    constexpr double kPanel = 1.5;   // length in u that one rule resolves to the last digit
-    constexpr double kLongest = 42;  // the integrand falls like exp(-u)
+    constexpr double kNegligible = 40;  // beyond so much, exp(-u) leaves nothing
+    constexpr double kSteep = 12;       // one rule follows exp(-u) over so much
+    constexpr double kReach = 2;        // and reaches so many times the distance to what is singular
+    static const gsl::GaussRule rule(20);
+
     const double depth = std::sqrt(inward * (c.ratio + r));
     const double rim = std::sqrt((inward + c.complement) * (1 + r));
-    const double length = std::min(
-        kLongest, std::log1p((c.complement + squared_modulus(c) / (rim + depth)) / (c.ratio + depth)));
-    const double panels = std::ceil(length / kPanel);
+    const double rising = c.ratio + depth;  // s = (rising e^u + r^2/rising e^-u)/2 from u = 0 at s = c
+    const double falling = r * (r / rising);
+    const double end =
+        std::min(kNegligible, std::log1p((c.complement + squared_modulus(c) / (rim + depth)) / rising));
+    const double start = r > 0 ? std::log(rising / r) : kNegligible;
     double sum = 0;
-    for (double panel = 0; panel < panels; ++panel)
-      sum += gsl::gauss_legendre(
+    for (double from = 0; from < end;) {
+      const double to = std::min({end, from + kSteep, from + kReach * std::hypot(start + from, pi / 2)});
+      sum += rule(
           [&](double u) {
-            const double s = std::min(1.0, c.ratio * std::cosh(u) + depth * std::sinh(u));
-            return complete_elliptic(s).k / s;
+            const double growth = std::exp(u);
+            const double s = std::min(1.0, (rising * growth + falling / growth) / 2);
+            return complete_elliptic_k(s) / s;
           },
-          length * panel / panels, length * (panel + 1) / panels);
+          from, to);
+      from = to;
+    }
     return 2 / pi * r * sum;
   }
 };
