@@ -206,9 +206,8 @@ class FlatPunch final : public Profile {
 
   double twist_integral(StickRadius c) const override { return complete_elliptic(c.ratio).k; }
   double twist_slope(StickRadius c) const override {
-    const auto [k, e, d] = complete_elliptic(c.ratio);
-    return c.ratio < 0.5 ? (e - c.ratio * c.ratio * k) / squared_modulus(c)
-                         : k - d;  // B, where each keeps digits
+    const CompleteElliptic elliptic = complete_elliptic(c.ratio);
+    return elliptic.k - elliptic.d;  // B
   }
 
   MomentShare moment_share(StickRadius c) const override {

@@ -48,8 +48,8 @@ class Profile {
   virtual double pressure(double radius) const = 0;
   /// H(c).
   virtual double twist_integral(StickRadius stick) const = 0;
-  /// -c H'(c): the slope of H in -ln c, and 3/8 c^-2 that of M in -c. A few digits do, for Newton steps, but
-  /// all of them where there is an edge term: differences of H are then integrals of this.
+  /// -c H'(c): the slope of H in -ln c, and 3/8 c^-2 that of M in -c. A few digits do, for Newton steps; all
+  /// of them near c = 1 where there is an edge term, since differences of H are integrals of this there.
   virtual double twist_slope(StickRadius stick) const = 0;
   /// Moment at the stick radius c.
   virtual MomentShare moment_share(StickRadius stick) const = 0;

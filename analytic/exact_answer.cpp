@@ -134,7 +134,7 @@ void write_header(std::ostream& out, const ExactContact& contact) {
   out << fmt::format(
       "Axisymmetric contact in torsion, profile {}: stick for r < a_s, slip for a_s < r < a (contact "
       "radius).\n"
-      "1/G = 1/G_1 + 1/G_2, mu friction, W normal load, p0 {}: W = {:.9g} p0 a^2, M_lim = {:.9g} mu W a.\n",
+      "1/G = 1/G_1 + 1/G_2, mu friction, W normal load, p0 the {}: W = {:.9g} p0 a^2, M_lim = {:.9g} mu W a.\n",
       profile.name(), profile.reference_pressure(), profile.load(), profile.moment_limit());
   if (profile.edge() > 0)
     out << fmt::format("Everything sticks up to M/M_lim = {:.9g}.\n", profile.full_stick());

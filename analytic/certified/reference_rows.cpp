@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <map>
 #include <stdexcept>
@@ -43,8 +44,8 @@ Question question(const std::string& profile, const std::string& given, double v
 std::string exactly(double x) { return fmt::format("{:a}", x); }
 
 State evaluate(const Question& at, const std::vector<double>& radii, int digits) {
-  std::vector<std::string> text;
-  for (const double radius : radii) text.push_back(exactly(radius));
+  std::vector<std::string> text(radii.size());
+  std::ranges::transform(radii, text.begin(), exactly);
   return state(at.profile, at.given, exactly(at.value), text, digits);
 }
 

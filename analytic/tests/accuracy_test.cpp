@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <map>
+#include <numbers>
 #include <set>
 #include <string>
 
@@ -25,6 +27,28 @@ TEST(Accuracy, HoldsOverTheCertifiedTable) {
 }
 
 TEST(Accuracy, HoldsAtTheHardestInputs) { expect_accurate(testing::all_references()); }
+
+/// Moment and tangent stiffness are in no file: they are M_lim M/M_lim, and 16/3 c^3.
+TEST(Accuracy, HoldsForMomentAndStiffness) {
+  const std::map<std::string, long double> limit_over_pi{
+      {"hertz", 3.0L / 16}, {"cone", 1.0L / 6}, {"flat_punch", 1.0L / 4}};
+  for (const Row& row : testing::all_references()) {
+    const std::string& name = row.text("profile");
+    const std::string& quantity = row.text("quantity");
+    if (!limit_over_pi.contains(name) || (quantity != "moment_ratio" && quantity != "stick_ratio")) continue;
+    const TorsionState state =
+        testing::kFrom.at(row.text("given"))(row.argument("value"), *find_profile(name).profile);
+    const long double reference = row.number("reference");
+    const bool moment = quantity == "moment_ratio";
+    const double error =
+        moment
+            ? testing::relative_error(state.moment,
+                                      limit_over_pi.at(name) * std::numbers::pi_v<long double> * reference)
+            : testing::relative_error(state.tangent_stiffness, 16.0L / 3 * reference * reference * reference);
+    const double cost = row.argument("cost") * (moment ? 1 : 3);
+    EXPECT_LE(error / testing::kEps, std::max(testing::kAllowed, testing::kOfTheCost * cost)) << row.line();
+  }
+}
 
 /// A reference whose own bound were near what is tested would prove nothing.
 TEST(Accuracy, IsFarWiderThanTheReferences) {
