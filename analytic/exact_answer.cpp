@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <numbers>
 #include <ostream>
 #include <stdexcept>
 
@@ -129,15 +130,26 @@ Json units_json(const ExactContact& contact, double stick_ratio, double moment, 
   return json;
 }
 
+/// What makes a table's results numbers in its own units.
+Json table_json(const TableScale& table) {
+  return {{"contact_radius", table.contact_radius},
+          {"mean_pressure", table.mean_pressure},
+          {"load", std::numbers::pi * table.mean_pressure * table.contact_radius * table.contact_radius}};
+}
+
 void write_header(std::ostream& out, const ExactContact& contact) {
   const Profile& profile = *contact.profile.profile;
   out << fmt::format(
       "Axisymmetric contact in torsion, profile {}: stick for r < a_s, slip for a_s < r < a (contact "
       "radius).\n"
-      "1/G = 1/G_1 + 1/G_2, mu friction, W normal load, p0 the {}: W = {:.9g} p0 a^2, M_lim = {:.9g} mu W a.\n",
+      "1/G = 1/G_1 + 1/G_2, mu friction, W normal load, p0 the {}: W = {:.9g} p0 a^2, M_lim = {:.9g} mu W "
+      "a.\n",
       profile.name(), profile.reference_pressure(), profile.load(), profile.moment_limit());
   if (profile.edge() > 0)
     out << fmt::format("Everything sticks up to M/M_lim = {:.9g}.\n", profile.full_stick());
+  if (const auto& table = contact.profile.table)
+    out << fmt::format("In the table's units: a = {:.9g}, p0 = {:.9g}.\n", table->contact_radius,
+                       table->mean_pressure);
   out << '\n';
 }
 
@@ -207,6 +219,7 @@ Json answer_state(const ExactContact& contact, const StateQuestion& question) {
   answer["pressure"] = at_radii(question.radii, [&](double r) { return profile.pressure(r); });
   put(answer, "energy_lost_per_cycle", [&] { return energy_lost_per_cycle(state, profile); });
   answer["profile"] = profile_json(profile);
+  if (contact.profile.table) answer["table"] = table_json(*contact.profile.table);
   if (question.unload_to) {
     LoadingHistory history(profile);
     history.load_to(state.moment_ratio);
@@ -263,6 +276,7 @@ Json answer_history(const ExactContact& contact, const HistoryQuestion& question
   const Profile& profile = *contact.profile.profile;
   Json answer;
   answer["profile"] = profile_json(profile);
+  if (contact.profile.table) answer["table"] = table_json(*contact.profile.table);
   answer["history"] = Json::array();
   LoadingHistory history(profile);
   for (const double moment_ratio : question.turning_points) {

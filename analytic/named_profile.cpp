@@ -46,7 +46,9 @@ std::shared_ptr<const Profile> borrowed(const Profile& profile) {
 
 NamedProfile tabulated(const std::string& file) {
   TabulatedProfile table = read_tabulated_profile(file);
-  return {.profile = std::move(table.profile), .coarse = std::move(table.coarse)};
+  return {.profile = std::move(table.profile),
+          .coarse = std::move(table.coarse),
+          .table = TableScale{.contact_radius = table.radius, .mean_pressure = table.mean_pressure}};
 }
 
 /// The numbers of --shape, as many as the profile needs.
@@ -61,12 +63,11 @@ void require_shape(const std::string& name, const std::vector<double>& shape, st
 
 NamedProfile find_profile(const std::string& name) {
   const auto [kind, argument] = split(name);
-  if (name == "hertz") return {.profile = borrowed(hertz_profile()), .coarse = {}};
-  if (name == "cone") return {.profile = borrowed(cone_profile()), .coarse = {}};
-  if (name == "flat_punch") return {.profile = borrowed(flat_punch_profile()), .coarse = {}};
-  if (kind == "power") return {.profile = power_profile(number(name, argument)), .coarse = {}};
-  if (kind == "rounded_punch")
-    return {.profile = rounded_punch_profile(number(name, argument)), .coarse = {}};
+  if (name == "hertz") return {.profile = borrowed(hertz_profile())};
+  if (name == "cone") return {.profile = borrowed(cone_profile())};
+  if (name == "flat_punch") return {.profile = borrowed(flat_punch_profile())};
+  if (kind == "power") return {.profile = power_profile(number(name, argument))};
+  if (kind == "rounded_punch") return {.profile = rounded_punch_profile(number(name, argument))};
   if (kind == "file") return tabulated(argument);
   unknown(name);
 }
@@ -94,7 +95,7 @@ PressedContact press(const std::string& profile_name, const NormalLoad& load) {
   if (profile_name == "rounded_punch") {
     require_shape(profile_name, shape, 2, "flat radius, corner radius");
     const auto pressed = indent_rounded_punch(force, shape[0], shape[1], modulus);
-    return {{.profile = rounded_punch_profile(pressed.flat_ratio), .coarse = {}}, pressed.contact};
+    return {{.profile = rounded_punch_profile(pressed.flat_ratio)}, pressed.contact};
   }
   throw std::invalid_argument(fmt::format(
       "profile \"{}\" with a normal load; allowed: hertz, cone, flat_punch, power:N, rounded_punch "

@@ -151,6 +151,8 @@ TEST(ExactProfiles, ComeFromAFileWithAnErrorEstimate) {
     EXPECT_LE(error, table.at("error_estimate").at(key).get<double>()) << key;
     EXPECT_LE(error, 1e-4) << key;
   }
+  EXPECT_EQ(table.at("table").at("contact_radius"), 3e-3);
+  EXPECT_NEAR(table.at("table").at("mean_pressure").get<double>() / (5e8 * 2 / 3), 1, 1e-4);
   EXPECT_THAT([] { run("--twist 0.1 --profile file:nowhere.csv"); },
               ThrowsMessage<std::domain_error>(AllOf(HasSubstr("--profile"), HasSubstr("nowhere.csv"))));
 }
