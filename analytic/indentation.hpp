@@ -2,8 +2,8 @@
 
 namespace slipstick::analytic {
 
-/// Frictionless contact of a body of revolution with a half-space (Sneddon 1965), for half-spaces and bodies
-/// that both yield with 1/E* = sum of (1 - nu_i^2)/E_i. SI or any consistent units.
+/// Frictionless normal contact of a body of revolution with a half-space (Sneddon 1965), for half-spaces and
+/// bodies that both yield with 1/E* = sum of (1 - nu_i^2)/E_i. SI or any consistent units.
 struct Indentation {
   double contact_radius;
   double approach;
@@ -33,5 +33,17 @@ struct RoundedPunchIndentation {
 };
 RoundedPunchIndentation indent_rounded_punch(double load, double flat_radius, double corner_radius,
                                              double effective_modulus);
+
+/// Hertz's elliptic contact: semi-axis_1 along x1, where the relative radius of curvature is radius_1.
+struct HertzEllipse {
+  double semi_axis_1;
+  double semi_axis_2;
+  double peak_pressure;
+  double approach;
+};
+
+/// Gap x1^2/(2 R_1) + x2^2/(2 R_2) pressed by W. Exact (no approximation of the ellipticity): root of the
+/// transcendental equation for the axis ratio. Throws std::domain_error unless all are positive and finite.
+HertzEllipse hertz_ellipse(double load, double radius_1, double radius_2, double effective_modulus);
 
 }  // namespace slipstick::analytic

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "analytic/hertz.hpp"
+#include "analytic/indentation.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -55,9 +55,10 @@ OracleAnswer find_oracle(const solver::Scene& scene) {
   const double effective_modulus = 1.0 / sum_of([](double nu) { return 1.0 - nu * nu; });
   const double shear_modulus = 1.0 / sum_of([](double nu) { return 2.0 * (1.0 + nu); });
   const double load = *scene.normal_load;
-  const auto hertz = analytic::hertz_circle(load, scene.surface.radius, effective_modulus);
-  const double moment_unit = scene.friction * load * hertz.radius;
-  const double twist_unit = scene.friction * load / (shear_modulus * hertz.radius * hertz.radius);
+  const auto hertz = analytic::indent_sphere(load, scene.surface.radius, effective_modulus);
+  const double moment_unit = scene.friction * load * hertz.contact_radius;
+  const double twist_unit =
+      scene.friction * load / (shear_modulus * hertz.contact_radius * hertz.contact_radius);
   const double limit = analytic::hertz_profile().moment_limit() * moment_unit;
 
   analytic::TorsionState state{};
@@ -66,13 +67,13 @@ OracleAnswer find_oracle(const solver::Scene& scene) {
   } catch (const std::domain_error& error) {
     return {std::nullopt, fmt::format("beyond the range of the exact solution: {}", error.what())};
   }
-  return {Oracle{.contact_radius = hertz.radius,
-                 .peak_pressure = hertz.peak_pressure,
+  return {Oracle{.contact_radius = hertz.contact_radius,
+                 .peak_pressure = hertz.reference_pressure,
                  .approach = hertz.approach,
                  .moment_limit = limit,
                  .moment = state.moment * moment_unit,
                  .twist_angle = state.twist * twist_unit,
-                 .stick_radius = state.stick_ratio * hertz.radius,
+                 .stick_radius = state.stick_ratio * hertz.contact_radius,
                  .friction = scene.friction,
                  .state = state},
           ""};

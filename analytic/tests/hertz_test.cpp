@@ -1,4 +1,4 @@
-#include "analytic/hertz.hpp"
+#include "analytic/indentation.hpp"
 
 #include <gtest/gtest.h>
 
@@ -40,18 +40,20 @@ double displacement(const HertzEllipse& contact, double modulus, double x1, doub
 }
 
 TEST(HertzCircle, AgreesWithJohnson) {  // Johnson 1985, Eqs. (4.22)-(4.24), in terms of a
-  const auto contact = hertz_circle(kLoad, kRadius, kModulus);
-  EXPECT_NEAR(pi * contact.peak_pressure * kRadius / (2 * kModulus) / contact.radius, 1, 1e-15);
-  EXPECT_NEAR(2.0 / 3 * contact.peak_pressure * pi * contact.radius * contact.radius / kLoad, 1, 1e-15);
-  EXPECT_NEAR(contact.approach * kRadius / (contact.radius * contact.radius), 1, 1e-15);
+  const auto contact = indent_sphere(kLoad, kRadius, kModulus);
+  EXPECT_NEAR(pi * contact.reference_pressure * kRadius / (2 * kModulus) / contact.contact_radius, 1, 1e-15);
+  EXPECT_NEAR(
+      2.0 / 3 * contact.reference_pressure * pi * contact.contact_radius * contact.contact_radius / kLoad, 1,
+      1e-15);
+  EXPECT_NEAR(contact.approach * kRadius / (contact.contact_radius * contact.contact_radius), 1, 1e-15);
 }
 
 TEST(HertzEllipse, OfEqualRadiiIsTheCircle) {
-  const auto circle = hertz_circle(kLoad, kRadius, kModulus);
+  const auto circle = indent_sphere(kLoad, kRadius, kModulus);
   const auto ellipse = hertz_ellipse(kLoad, kRadius, kRadius, kModulus);
-  EXPECT_NEAR(ellipse.semi_axis_1 / circle.radius, 1, 1e-15);
-  EXPECT_NEAR(ellipse.semi_axis_2 / circle.radius, 1, 1e-15);
-  EXPECT_NEAR(ellipse.peak_pressure / circle.peak_pressure, 1, 1e-15);
+  EXPECT_NEAR(ellipse.semi_axis_1 / circle.contact_radius, 1, 1e-15);
+  EXPECT_NEAR(ellipse.semi_axis_2 / circle.contact_radius, 1, 1e-15);
+  EXPECT_NEAR(ellipse.peak_pressure / circle.reference_pressure, 1, 1e-15);
   EXPECT_NEAR(ellipse.approach / circle.approach, 1, 1e-15);
 }
 
@@ -104,9 +106,9 @@ TEST(HertzEllipse, ScalesWithLoadModulusAndSize) {
 
 TEST(Hertz, RefusesWhatIsNotPositive) {
   for (const double bad : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
-    EXPECT_THROW(hertz_circle(bad, kRadius, kModulus), std::domain_error);
-    EXPECT_THROW(hertz_circle(kLoad, bad, kModulus), std::domain_error);
-    EXPECT_THROW(hertz_circle(kLoad, kRadius, bad), std::domain_error);
+    EXPECT_THROW(indent_sphere(bad, kRadius, kModulus), std::domain_error);
+    EXPECT_THROW(indent_sphere(kLoad, bad, kModulus), std::domain_error);
+    EXPECT_THROW(indent_sphere(kLoad, kRadius, bad), std::domain_error);
     EXPECT_THROW(hertz_ellipse(bad, kRadius, kRadius, kModulus), std::domain_error);
     EXPECT_THROW(hertz_ellipse(kLoad, bad, kRadius, kModulus), std::domain_error);
     EXPECT_THROW(hertz_ellipse(kLoad, kRadius, bad, kModulus), std::domain_error);

@@ -12,7 +12,6 @@
 #include "analytic/axisymmetric.hpp"
 #include "analytic/elliptic.hpp"
 #include "analytic/gsl.hpp"
-#include "analytic/hertz.hpp"
 #include "analytic/punch_superposition.hpp"
 
 namespace slipstick::analytic {
@@ -84,13 +83,9 @@ void expect_same(const Indentation& contact, const Indentation& expected, double
   EXPECT_NEAR(contact.reference_pressure / expected.reference_pressure, 1, tolerance);
 }
 
-TEST(Indentation, AgreesWithHertz) {
+TEST(Indentation, OfASphereIsThatOfAPowerAndOfARoundedPunch) {
   for (const double load : {1e-30, 1e-3, kLoad, 1e30}) {
-    const auto circle = hertz_circle(load, kRadius, kModulus);
-    const Indentation expected{.contact_radius = circle.radius,
-                               .approach = circle.approach,
-                               .reference_pressure = circle.peak_pressure};
-    expect_same(indent_sphere(load, kRadius, kModulus), expected, 1e-15);
+    const Indentation expected = indent_sphere(load, kRadius, kModulus);
     expect_same(indent_power(load, 2, 1 / (2 * kRadius), kModulus), expected, kTolerance);
     auto rounded = indent_rounded_punch(load, 0, kRadius, kModulus);
     EXPECT_EQ(rounded.flat_ratio, 0);

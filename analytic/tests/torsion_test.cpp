@@ -14,31 +14,20 @@
 #include <vector>
 
 #include "analytic/gsl.hpp"
-#include "analytic/tests/references.hpp"
+#include "analytic/tests/replay.hpp"
 
 namespace slipstick::analytic {
 namespace {
 
 using std::numbers::pi;
 using ::testing::HasSubstr;
+using testing::kEps;
+using testing::kFrom;
+using testing::kMember;
 using testing::relative_error;
 using ::testing::ThrowsMessage;
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-
-const std::map<std::string, TorsionState (*)(double, const Profile&)> kFrom{{"moment_ratio", from_moment_ratio},
-                                                            {"moment_deficit", from_moment_deficit},
-                                                            {"stick_ratio", from_stick_ratio},
-                                                            {"stick_complement", from_stick_complement},
-                                                            {"twist", from_twist}};
-
-const std::map<std::string, double TorsionState::*> kMember{
-    {"moment_ratio", &TorsionState::moment_ratio},
-    {"moment_deficit", &TorsionState::moment_deficit},
-    {"stick_ratio", &TorsionState::stick_ratio},
-    {"stick_complement", &TorsionState::stick_complement},
-    {"twist", &TorsionState::twist}};
 
 /// M/(mu W a) of the tractions: 3 integral_0^1 q/(mu p0) r^2 dr, on either side of the front by the sine of
 /// an angle, which makes both square-root ends smooth.
@@ -209,7 +198,8 @@ TEST(TorsionRange, NamesGrossSlip) {
 
 TEST(TorsionRange, RefusesWhatLiesOutside) {
   for (const double bad : {-1e-300, -1.0, kNan, -HUGE_VAL}) {
-    for (const auto& [name, from] : kFrom) EXPECT_THROW(from(bad, hertz_profile()), std::domain_error) << name << ' ' << bad;
+    for (const auto& [name, from] : kFrom)
+      EXPECT_THROW(from(bad, hertz_profile()), std::domain_error) << name << ' ' << bad;
     EXPECT_THROW(traction(from_stick_ratio(0.5), bad), std::domain_error) << bad;
   }
   EXPECT_THROW(from_moment_deficit(1.1), std::domain_error);

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "analytic/hertz.hpp"
+#include "analytic/indentation.hpp"
 #include "convergence/errors.hpp"
 #include "convergence/oracle.hpp"
 #include "solver/hertz_pressure.hpp"
