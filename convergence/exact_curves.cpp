@@ -123,8 +123,10 @@ Json loop() {
 
 /// Energy lost per cycle against amplitude, and its limit for small amplitudes.
 Json cycle_energy() {
+  constexpr int kSmall = 59;
   std::vector<double> amplitudes;
-  for (int i = 0; i < 59; ++i) amplitudes.push_back(std::pow(10.0, -3.0 + 0.05 * i));
+  amplitudes.reserve(kSmall);
+  for (int i = 0; i < kSmall; ++i) amplitudes.push_back(std::pow(10.0, -3.0 + 0.05 * i));
   for (const double load : {0.85, 0.9, 0.93, 0.96, 0.98, 0.99, 0.995, 0.999}) amplitudes.push_back(load);
   Json rows = Json::array();
   for (const double load : amplitudes)

@@ -1,5 +1,6 @@
 // Every quantity of the double path against proven references.
 
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <map>
@@ -59,11 +60,11 @@ TEST(Accuracy, IsFarWiderThanTheReferences) {
 TEST(Accuracy, IsTestedForEveryQuantityOfEveryProfile) {
   std::set<std::string> seen;
   for (const Row& row : testing::read_references("certified_references.csv"))
-    seen.insert(row.text("profile") + ' ' + row.text("given") + ' ' + row.text("quantity"));
+    seen.insert(fmt::format("{} {} {}", row.text("profile"), row.text("given"), row.text("quantity")));
   for (const std::string profile : {"hertz", "cone", "flat_punch"}) {
     for (const auto& [given, from] : testing::kFrom)
       for (const auto& [quantity, member] : testing::kMember)
-        EXPECT_TRUE(given == quantity || seen.contains(profile + ' ' + given + ' ' + quantity))
+        EXPECT_TRUE(given == quantity || seen.contains(fmt::format("{} {} {}", profile, given, quantity)))
             << profile << ' ' << given << ' ' << quantity;
     EXPECT_TRUE(seen.contains(profile + " stick_ratio traction")) << profile;
   }
