@@ -95,6 +95,11 @@ def column(table, path):
     return values
 
 
+def nearest(values, wanted):
+    """Index of the value nearest to the one wanted."""
+    return int(np.nanargmin(np.abs(values - wanted)))
+
+
 def groups(table, *keys):
     """The rows by the values of some keys, in order of first appearance."""
     result = {}

@@ -14,6 +14,7 @@ import numpy as np
 REPORTS = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPORTS))
 
+import exact_figures  # noqa: E402
 import figures  # noqa: E402
 import results  # noqa: E402
 
@@ -237,20 +238,20 @@ class OneFigure(Folder):
         for key in ("loop", "cycle_energy"):
             self.report = small_report()
             del self.report[key]
-            self.assert_unavailable(figures.bodies_and_cycles, f"{key}.*missing")
+            self.assert_unavailable(exact_figures.bodies_and_cycles, f"{key}.*missing")
 
     def test_how_far_each_law_holds(self):
-        message = figures.approximations(self.report, self.folder).message
+        message = exact_figures.approximations(self.report, self.folder).message
         self.assertIn("Eq. (7) 0.050 (0.50), small moments 0.040 (0.40), no slip 0.020 (0.20)", message)
         self.assertIn("off by over 100&nbsp;%", message)
 
     def test_law_that_holds_everywhere(self):
         for row in self.report["approximations"]:
             row["equation_7"]["error"] = 0.001 * row["moment_ratio"]
-        self.assertIn("Eq. (7) 0.90 (0.90)", figures.approximations(self.report, self.folder).message)
+        self.assertIn("Eq. (7) 0.90 (0.90)", exact_figures.approximations(self.report, self.folder).message)
 
     def test_bodies_and_cycles_in_numbers(self):
-        message = figures.bodies_and_cycles(self.report, self.folder).message
+        message = exact_figures.bodies_and_cycles(self.report, self.folder).message
         for words in ("0.600&nbsp;μWa under a sphere", "flat punch, which sticks everywhere up to 0.850 of that",
                       "keeps 25\u00a0% of its twist", "amplitude of 0.10&nbsp;M", "2 times as large"):
             self.assertIn(words, message)

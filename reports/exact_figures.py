@@ -1,0 +1,140 @@
+"""Figures of the exact solutions alone: one function a figure, as in figures.py."""
+
+import numpy as np
+from matplotlib.ticker import LogLocator
+
+import style
+from plate import LIMIT, LOAD_LABEL, TWIST_LABEL, Plate
+from results import Unavailable, column, nearest, number, rows, text, value
+from wording import percent, plain, rounded_down
+
+LAWS = {"equation_7": ("Eq. (7)", dict(color=style.VERMILION, linestyle="--")),
+        "small_moments": ("small moments", dict(color=style.PURPLE, linestyle="-.")),
+        "no_slip": ("no slip", dict(color=style.BLUE, linestyle="--")),
+        "dem": ("discrete elements (DEM)", dict(color=style.SKY, linewidth=4, zorder=1.5))}
+BODIES = {"hertz": ("sphere", style.BLACK), "cone": ("cone", style.VERMILION),
+          "flat_punch": ("flat punch", style.BLUE)}
+
+
+def approximations(report, data_dir):
+    table = rows(report, "approximations")
+    load, exact = column(table, "moment_ratio"), column(table, "twist")
+    limit = number(table[-1], "moment") / number(table[-1], "moment_ratio")
+    dem_load, dem_error = column(table, "dem_moment.moment") / limit, column(table, "dem_moment.error")
+    cap, worst = np.nanmax(dem_load), int(np.nanargmax(np.abs(dem_error)))
+
+    figure, (left, right) = style.panels(1, 2, 4.0)
+    figure.get_layout_engine().set(wspace=0.06)
+    left.plot(exact, load, color=style.BLACK, label="exact", zorder=3)
+    sentences = []
+    for key, (label, look) in LAWS.items():
+        error = np.abs(column(table, f"{key}.error"))
+        if key == "dem":
+            left.plot(exact, dem_load, **look, label=label)
+        else:
+            left.plot(column(table, f"{key}.twist"), load, **look, label=label)
+        right.semilogy(load, np.where(error > 0, error, np.nan), **look)
+        bounds = [_load_within(load, error, bound) for bound in (0.01, 0.1)]
+        right.plot(bounds, (0.01, 0.1), "o", color=look["color"], markeredgecolor=style.BLACK, markersize=4, zorder=4,
+                   clip_on=False)
+        sentences.append("{} {} ({})".format(label, *map(rounded_down, bounds)))
+    left.axhline(1, color=style.GREY, linestyle=":", zorder=1)
+    left.annotate(f"DEM cap, {percent(cap - 1)} above all\nthat the sphere can carry", (0.98, cap), xytext=(0, 6),
+                  xycoords=left.get_yaxis_transform(), textcoords="offset points", ha="right", va="bottom")
+    left.set(xlabel=TWIST_LABEL, ylabel=LOAD_LABEL, xlim=(0, exact[nearest(load, 0.99)]), ylim=(0, cap + 0.2))
+    for bound in (0.01, 0.1):
+        right.axhline(bound, color=style.GREY, linestyle=":", zorder=1)
+        right.annotate(percent(bound), (1, bound), xycoords=right.get_yaxis_transform(), xytext=(4, 0),
+                       textcoords="offset points", va="center")
+    right.set(xlabel=LOAD_LABEL, ylabel="error of the twist, |law/exact − 1|", xlim=(0, 1), ylim=(1e-4, 1))
+    style.legend_on_top(figure, left.get_legend_handles_labels()[0], 3)
+    return Plate(
+        f"Up to this part of M<sub>lim</sub> the twist is right within 1&nbsp;% (10&nbsp;%): {', '.join(sentences)}. "
+        f"The moment of the DEM law is off by over {rounded_down(100 * abs(dem_error[worst]))}&nbsp;% at "
+        f"{LIMIT}{load[worst]:.2g}, and its cap lies {percent(cap - 1)} above M<sub>lim</sub>.",
+        "<em>Eq. (7)</em> is the paper’s. <em>Small moments</em>: the exact law to second order, "
+        "(3/16)&nbsp;M&nbsp;+&nbsp;(9/64)&nbsp;M² with M in μWa. <em>No slip</em>: the contact is bonded and the twist "
+        "grows in proportion, (3/16)&nbsp;M (Reissner and Sagoci, 1944). <em>DEM</em>: codes that follow many grains, "
+        "the discrete element method, give each contact a spring and let it spin freely beyond (2/3)&nbsp;μWa, as if "
+        "the pressure were uniform (e.g. Marshall, 2009); codes differ in the spring, here it is that of no slip, so "
+        "the two lines coincide up to the cap. The error of the DEM moment is taken at the exact twist. Dots: where an "
+        "error reaches 1&nbsp;% and 10&nbsp;%.",
+        "Left, moment against twist: the exact curve bends towards the limiting moment, three laws reach it at finite "
+        "twists, and that of discrete element codes goes straight up to a cap above it. Right, the error of the twist "
+        "by each law against moment, on a log scale.", figure)
+
+
+def bodies_and_cycles(report, data_dir):
+    figure, axes = style.panels(1, 3, 4.1)
+    limits = _draw_bodies(axes[0], rows(report, "bodies"))
+    peak, residual = _draw_loop(axes[1], value(report, "loop"))
+    within, far, ratio = _draw_cycle_energy(axes[2], rows(report, "cycle_energy"))
+    style.legend_on_top(figure, [handle for axis in axes for handle in axis.get_legend_handles_labels()[0]], 3)
+    return Plate(
+        f"The whole contact slips at {', '.join(limits)}. A sphere twisted up to {LIMIT}{plain(peak)} keeps "
+        f"{percent(residual)} of its twist when the moment is taken away. The cube law for the energy lost in a cycle "
+        f"is right within 10&nbsp;% up to an amplitude of {rounded_down(within)}&nbsp;M<sub>lim</sub>; at "
+        f"{far:.2g}&nbsp;M<sub>lim</sub> the loss is {ratio:.2g} times as large.",
+        "All of it is exact, under a constant W. After a reversal the twist follows the curve of first loading "
+        "enlarged twice (Masing’s rule); where the inner loop closes, the contact has forgotten it and goes on along "
+        "the outer one. For small amplitudes the energy lost grows with the cube of the moment (Deresiewicz, 1954).",
+        "Three panels. Twist against moment for sphere, cone and flat punch, each growing without bound at its own "
+        "limiting moment. A hysteresis loop of the sphere with a smaller loop in it. Energy lost in a cycle against "
+        "amplitude on log-log axes, rising above the dashed cube law at large amplitudes.", figure)
+
+
+def _draw_bodies(axis, bodies):
+    """Twist and load of each body; returns the limiting moments in words."""
+    limits, ends = [], []
+    for body in bodies:
+        name, table = text(body, "profile"), rows(body, "rows")
+        label, colour = BODIES.get(name, (name, style.PURPLE))
+        limit, full_stick = number(body, "moment_limit"), number(body, "full_stick")
+        moment, twist = column(table, "moment"), column(table, "twist")
+        axis.plot(moment, twist, color=colour, label=label)
+        axis.axvline(limit, color=colour, linestyle=":", linewidth=1)
+        limits.append(f"{limit:.3f}&nbsp;μWa under a {label}")
+        if full_stick > 0:
+            axis.plot(full_stick * limit, np.interp(full_stick * limit, moment, twist), "o", color=colour, zorder=3)
+            limits[-1] += f", which sticks everywhere up to {full_stick:.3f} of that"
+        ends.append(twist[-1])
+    axis.plot([], [], ":", color=style.GREY, label="limiting moment")
+    axis.plot([], [], "o", color=style.GREY, label="end of full stick")
+    axis.set(title="three bodies", xlabel="moment $M/(\\mu Wa)$", ylabel=TWIST_LABEL, xlim=(0, None),
+             ylim=(0, min(ends)))
+    return limits
+
+
+def _draw_loop(axis, loop):
+    """Twist and load along a history; returns its first turning point and what is left, unloaded, of the twist."""
+    table = rows(loop, "rows")
+    load, twist = column(table, "moment_ratio"), column(table, "twist")
+    turns = np.flatnonzero(np.diff(np.sign(np.diff(load)))) + 1
+    axis.plot(load, twist, color=style.BLACK)
+    axis.plot(load[turns], twist[turns], "D", color=style.PURPLE, label="turning point", zorder=3)
+    axis.set(title="up and down (sphere)", xlabel=LOAD_LABEL, ylabel=TWIST_LABEL, xlim=(-1, 1))
+    if turns.size < 2:
+        raise Unavailable("“loop” does not turn back twice")
+    back = slice(turns[1], turns[0] - 1, -1)  # from the first turning point to the second, by rising moment
+    return load[turns[0]], np.interp(0, load[back], twist[back]) / twist[turns[0]]
+
+
+def _draw_cycle_energy(axis, table):
+    """Energy lost and amplitude; returns how far the cube law holds to 10 %, and a large amplitude and its excess."""
+    load, energy, cube = (column(table, name) for name in ("moment_ratio", "energy", "small_amplitude"))
+    axis.loglog(load, energy, color=style.BLACK)
+    axis.loglog(load, cube, "--", color=style.GREEN, label="cube law, small amplitudes")
+    axis.xaxis.set_major_locator(LogLocator(numticks=9))
+    axis.set(title="a cycle’s loss (sphere)", xlabel="amplitude $M/M_\\mathrm{lim}$",
+             ylabel="energy $Ga/(\\mu W)^2$ per cycle")
+    high = nearest(load, 0.9)
+    return _load_within(load, np.abs(cube / energy - 1), 0.1), load[high], energy[high] / cube[high]
+
+
+def _load_within(load, error, bound):
+    """Up to which load the error, zero at first, stays within a bound."""
+    beyond = np.flatnonzero(error > bound)
+    if beyond.size == 0:
+        return load[-1]
+    upto = slice(max(beyond[0] - 1, 0), beyond[0] + 1)
+    return np.interp(bound, error[upto], load[upto])
