@@ -14,8 +14,6 @@ namespace slipstick::analytic::certified {
 namespace {
 
 using namespace known;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
 
 TEST(Certified, HasTheKnownStickRatios) {
   const std::vector<std::pair<std::string, std::string>> known{{"0.1", "0.9693964204953627"},
