@@ -177,9 +177,12 @@ void add_units_options(CLI::App& exact, Options& options) {
   load->needs(modulus)->needs(shape);
   modulus->needs(load);
   shape->needs(load);
-  exact.add_option("--friction", options.friction, "mu")->needs(load)->check(CLI::PositiveNumber);
-  exact.add_option("--shear-modulus", options.shear_modulus, "combined G, Pa, 1/G = 1/G_1 + 1/G_2")
-      ->needs(load)
+  CLI::Option* friction = exact.add_option("--friction", options.friction, "mu: gives moments in N m");
+  friction->needs(load)->check(CLI::PositiveNumber);
+  exact
+      .add_option("--shear-modulus", options.shear_modulus,
+                  "combined G, Pa, 1/G = 1/G_1 + 1/G_2: gives the twist in rad")
+      ->needs(friction)
       ->check(CLI::PositiveNumber);
 }
 

@@ -68,7 +68,7 @@ NamedProfile find_profile(const std::string& name) {
   if (name == "flat_punch") return {.profile = borrowed(flat_punch_profile())};
   if (kind == "power") return {.profile = power_profile(number(name, argument))};
   if (kind == "rounded_punch") return {.profile = rounded_punch_profile(number(name, argument))};
-  if (kind == "file") return tabulated(argument);
+  if (kind == "file" && !argument.empty()) return tabulated(argument);
   unknown(name);
 }
 

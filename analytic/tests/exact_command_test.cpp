@@ -102,6 +102,8 @@ TEST(ExactCommand, NamesOptionValueAndRange) {
               ThrowsMessage<std::domain_error>(AllOf(HasSubstr("--twist"), HasSubstr("0.1x"))));
   EXPECT_THAT([] { run("--history 0.5,-1.5"); },
               ThrowsMessage<std::domain_error>(AllOf(HasSubstr("--history"), HasSubstr("-1.5"))));
+  EXPECT_THAT([] { run("--twist 0.1 --profile file:"); },
+              ThrowsMessage<std::domain_error>(HasSubstr("file:P.csv")));
   EXPECT_THAT([] { run("--twist 0.1 --profile power:x"); },
               ThrowsMessage<std::domain_error>(AllOf(HasSubstr("--profile"), HasSubstr("\"x\""))));
 }
@@ -209,6 +211,8 @@ TEST(ExactUnits, FindTheFlatRatioOfARoundedPunch) {
   EXPECT_THAT([] { run("--twist 0.1 --normal-load 1 --effective-modulus 1 --shape 1,2"); },
               ThrowsMessage<std::domain_error>(AllOf(HasSubstr("--shape"), HasSubstr("sphere radius"))));
   EXPECT_THROW(run("--twist 0.1 --normal-load 1"), CLI::ParseError);
+  EXPECT_THROW(run("--twist 0.1 --normal-load 1 --effective-modulus 1 --shape 1 --shear-modulus 1"),
+               CLI::ParseError);
 }
 
 TEST(ExactCertified, GivesDecimalsOrSaysWhatToInstall) {
