@@ -5,14 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numbers>
 #include <random>
 #include <stdexcept>
 #include <vector>
 
-#include "analytic/gsl.hpp"
+#include "analytic/tests/quadrature.hpp"
 
 namespace slipstick::analytic {
 namespace {
@@ -99,15 +98,6 @@ class SpringsAndSliders {
   double dissipated_ = 0;
 };
 
-/// Of f over [low, high], with square-root ends made smooth.
-double integral_between_roots(const std::function<double(double)>& f, double low, double high) {
-  return gsl::integral(
-      [&](double t) {
-        return f(low + (high - low) * std::pow(std::sin(t), 2)) * (high - low) * std::sin(2 * t);
-      },
-      0, pi / 2);
-}
-
 /// M/(mu W a) of the tractions, piecewise between the fronts of all branches.
 double moment_of_traction(const LoadingHistory& history, const Profile& profile) {
   std::vector<double> ends{0, 1};
@@ -123,32 +113,9 @@ double moment_of_traction(const LoadingHistory& history, const Profile& profile)
   double sum = 0;
   for (std::size_t i = 1; i < ends.size(); ++i)
     if (ends[i] > ends[i - 1])
-      sum +=
-          integral_between_roots([&](double r) { return history.traction(r) * r * r; }, ends[i - 1], ends[i]);
+      sum += testing::integral_between_roots([&](double r) { return history.traction(r) * r * r; },
+                                             ends[i - 1], ends[i]);
   return 2 * pi / profile.load() * sum;
-}
-
-/// Energy lost on first loading, as the friction's work on the slip. The stick area's turn by dphi drags
-/// the surface at r >= s by (2/pi) (asin(s/r) - (s/r) sqrt(1 - (s/r)^2)) r dphi: the rest is slip.
-double work_of_friction(const TorsionState& state, const Profile& profile) {
-  static const gsl::GaussRule rule(64);
-  const double c = state.stick_ratio;
-  const auto slip = [&](double r) {
-    return rule(
-        [&](double u) {
-          const double t = r - (r - c) * u * u;
-          const double x = t / r;
-          const double turn = profile.twist_slope({.ratio = t, .complement = 1 - t}) / (2 * t);
-          const double rest = 2 / pi * (std::acos(x) + x * std::sqrt((1 - x) * (1 + x)));
-          return turn * rest * r * 2 * (r - c) * u;
-        },
-        0, 1);
-  };
-  // Short of the edge, where a flat punch's pressure is infinite: of its work this leaves out some sqrt(eps).
-  const double edge = 1 - kEps;
-  return 2 * pi / std::pow(profile.load(), 2) *
-         integral_between_roots([&](double r) { return profile.pressure(std::min(r, edge)) * slip(r) * r; },
-                                c, 1);
 }
 
 TEST(LoadingHistory, BeginsOnTheCurveOfFirstLoading) {
@@ -393,74 +360,6 @@ TEST(LoadingCurve, EnclosesTheEnergyLost) {
       EXPECT_NEAR(work, lost, 1e-4 * lost + 8 * kEps) << profile->name() << ' ' << m;
       EXPECT_NEAR(curve.back().dissipated - curve[kPoints].dissipated, lost, 8 * kEps) << profile->name();
     }
-}
-
-/// The loop by Masing's rule alone: 8 integral M dphi - 4 M phi over the first loading.
-TEST(EnergyLost, IsTheAreaOfTheLoop) {
-  for (const Profile* profile : kProfiles)
-    for (const double m : {0.3, 0.6, 0.9, 0.99}) {
-      const auto twist = [&](double ratio) { return from_moment_ratio(ratio, *profile).twist; };
-      const double corner = std::min(m, profile->full_stick());
-      const double below =
-          (gsl::integral(twist, 0, corner) + gsl::integral(twist, corner, m)) * profile->moment_limit();
-      const double product = from_moment_ratio(m, *profile).moment * twist(m);
-      EXPECT_NEAR(energy_lost_per_cycle(m, *profile), 4 * product - 8 * below, 32 * kEps * product)
-          << profile->name() << ' ' << m;
-    }
-}
-
-TEST(EnergyLost, IsTheWorkOfFrictionOnTheSlip) {
-  for (const Profile* profile : kProfiles)
-    for (const double c : {0.1, 0.5, 0.9}) {
-      const auto state = from_stick_ratio(c, *profile);
-      const double accuracy = profile->edge() > 0 ? 1e-7 : 1e-9;
-      EXPECT_NEAR(4 * work_of_friction(state, *profile) / energy_lost_per_cycle(state, *profile), 1, accuracy)
-          << profile->name() << ' ' << c;
-    }
-}
-
-TEST(EnergyLost, GoesLikeTheCubeOfSmallMoments) {
-  for (const Profile* profile : {&hertz_profile(), &cone_profile()})
-    for (const double m : {1e-2, 1e-3, 1e-6, 1e-12, 1e-90}) {
-      const double ratio = energy_lost_per_cycle(m, *profile) / energy_lost_per_small_cycle(m, *profile);
-      EXPECT_NEAR(ratio, 1, 2 * m + 16 * kEps) << profile->name() << ' ' << m;
-      EXPECT_GT(ratio, 1 - 16 * kEps) << profile->name() << ' ' << m;
-    }
-  const double moment = 0.1 * hertz_profile().moment_limit();
-  EXPECT_NEAR(energy_lost_per_small_cycle(0.1), 3.0 / 16 * std::pow(moment, 3), 4 * kEps);
-  const double cone = 0.1 * cone_profile().moment_limit();
-  EXPECT_NEAR(energy_lost_per_small_cycle(0.1, cone_profile()), 9.0 / 32 * std::pow(cone, 3), 4 * kEps);
-}
-
-/// Then c is small, and the loop a parallelogram: M_lim up and down, phi to and fro.
-TEST(EnergyLost, GoesLikeTheTwistNearGrossSlip) {
-  for (const Profile* profile : kProfiles) {
-    const auto lost = [&](double c) {
-      return energy_lost_per_cycle(from_stick_ratio(c, *profile), *profile);
-    };
-    const auto twist = [&](double c) { return from_stick_ratio(c, *profile).twist; };
-    for (const double c : {1e-6, 1e-30, 1e-90})
-      EXPECT_NEAR((lost(c) - lost(1e-5)) / (twist(c) - twist(1e-5)), 4 * profile->moment_limit(), 1e-9)
-          << profile->name() << ' ' << c;
-  }
-}
-
-TEST(EnergyLost, IsNothingWhileAllSticks) {
-  const auto& punch = flat_punch_profile();
-  EXPECT_EQ(energy_lost_per_cycle(0.0), 0);
-  for (const double m : {0.0, 1e-3, 0.5, 0.84}) EXPECT_EQ(energy_lost_per_cycle(m, punch), 0) << m;
-  EXPECT_GT(energy_lost_per_cycle(0.86, punch), 0);
-}
-
-/// There H(c) is H(1) to many digits. With w = 1 - c, H = (pi/2) (1 + w/2 + 5 w^2/16), and the loss follows.
-TEST(EnergyLost, KeepsItsDigitsWhereAFlatPunchBeginsToSlip) {
-  const auto& punch = flat_punch_profile();
-  for (const double w : {1e-6, 1e-7, 1e-9, 1e-15, 1e-100}) {
-    const double expansion = w * w / 4 * (1 + w / 3);
-    EXPECT_NEAR(energy_lost_per_cycle(from_stick_complement(w, punch), punch) / expansion, 1,
-                w * w + 16 * kEps)
-        << w;
-  }
 }
 
 TEST(CycleRange, NamesGrossSlip) {
