@@ -1,244 +1,185 @@
 #include "solver/convolution.hpp"
 
 #include <algorithm>
-#include <array>
-#include <new>
 #include <set>
-
-#include "solver/threads.hpp"
+#include <stdexcept>
+#include <type_traits>
 
 namespace slipstick::solver {
 namespace {
 
-/// Columns transformed together: 8 complex numbers are two cache lines.
-constexpr Index kBlock = 8;
-constexpr Index kBlockReals = 2 * kBlock;
-
-Index row_stride(Index p2) { return (p2 / 2 + 1 + kBlock - 1) / kBlock * kBlock; }
-
 std::size_t count(Index n) { return static_cast<std::size_t>(n); }
 
-void require_plan(const FftwPlan& plan) {
-  if (!plan) throw std::runtime_error("FFTW could not make a plan");
+std::vector<Component> distinct_components(const BlockKernel& kernel) {
+  const std::set<Component> distinct(kernel.components.begin(), kernel.components.end());
+  return {distinct.begin(), distinct.end()};
+}
+
+std::size_t fields(const BlockKernel& kernel) { return std::max(kernel.inputs, kernel.outputs); }
+
+unsigned planning(const OperatorOptions& options) {
+  return options.measure_plans ? FFTW_MEASURE : FFTW_ESTIMATE;
+}
+
+/// A kernel that is odd in one coordinate only has an imaginary spectrum.
+bool is_imaginary(Component component) { return parity(component).x1 != parity(component).x2; }
+
+/// How many of m frequencies 0, 1, ... differ in size from those before: the even ones of 2 m mirror about 0
+/// and m, the odd ones about 1/2 and m - 1/2.
+Index distinct_even(Index m) { return m / 2 + 1; }
+Index distinct_odd(Index m) { return (m + 1) / 2; }
+
+/// x_a[i] = sum over b of sign_ab factor_ab[step i] x_b[i], times the imaginary unit if the spectra are
+/// imaginary.
+template <std::size_t outputs, std::size_t inputs, bool imaginary, int step, typename Real>
+void multiply_run(std::array<Real*, 2> x, std::array<const Real*, 4> factor, std::array<Real, 4> sign,
+                  Index n) {
+  for (Index i = 0; i < n; ++i) {
+    std::array<Real, outputs> re{};
+    std::array<Real, outputs> im{};
+    for (std::size_t a = 0; a < outputs; ++a) {
+      for (std::size_t b = 0; b < inputs; ++b) {
+        const std::size_t ab = a * inputs + b;
+        const Real value = step > 0 ? factor[ab][i] : sign[ab] * factor[ab][-i];
+        re[a] += value * (imaginary ? -x[b][2 * i + 1] : x[b][2 * i]);
+        im[a] += value * (imaginary ? x[b][2 * i] : x[b][2 * i + 1]);
+      }
+    }
+    for (std::size_t a = 0; a < outputs; ++a) {
+      x[a][2 * i] = re[a];
+      x[a][2 * i + 1] = im[a];
+    }
+  }
+}
+
+/// The first `distinct` frequencies of m with the factors as stored, the rest with mirrored ones, the last of
+/// which is factor[last].
+template <std::size_t outputs, std::size_t inputs, bool imaginary, typename Real>
+void multiply_half(const std::array<std::complex<Real>*, 2>& half, std::array<const Real*, 4> factor,
+                   const std::array<Real, 4>& sign, Index m, Index distinct, Index last) {
+  std::array<Real*, 2> x{reinterpret_cast<Real*>(half[0]), reinterpret_cast<Real*>(half[1])};
+  multiply_run<outputs, inputs, imaginary, 1>(x, factor, sign, distinct);
+  for (std::size_t field = 0; field < std::max(outputs, inputs); ++field) x[field] += 2 * distinct;
+  for (std::size_t ab = 0; ab < outputs * inputs; ++ab) factor[ab] += last + m - distinct - 1;
+  multiply_run<outputs, inputs, imaginary, -1>(x, factor, sign, m - distinct);
 }
 
 }  // namespace
 
-FftwBuffer::FftwBuffer(std::size_t doubles) : data_(fftw_alloc_real(doubles)), doubles_(doubles) {
-  if (!data_) throw std::bad_alloc();
-  std::fill_n(data_.get(), doubles, 0.0);
-}
-
-Index fast_length(Index minimum) {
-  for (Index length = std::max<Index>(minimum + minimum % 2, 4);; length += 2) {
-    Index rest = length;
-    for (const Index factor : {2, 3, 5, 7}) {
-      while (rest % factor == 0) rest /= factor;
-    }
-    if (rest == 1) return length;
-  }
-}
-
-Convolution::Convolution(const Grid& grid, BlockKernel kernel, const ElasticPair& pair,
-                         const OperatorOptions& options)
-    : LinearOperator(grid, std::move(kernel)),
-      p1_(fast_length(2 * grid.n1 - 1)),
-      p2_(fast_length(2 * grid.n2 - 1)),
-      row_stride_(row_stride(p2_)),
-      threads_(std::max(options.threads, 1)),
-      row_spectra_(2 * count(grid.n1 * row_stride_) * std::max(inputs(), outputs())) {
-  for (int thread = 0; thread < threads_; ++thread) {
-    row_buffer_.emplace_back(count(p2_));
-    column_block_.emplace_back(count(p1_ * kBlockReals) * std::max(inputs(), outputs()));
-  }
-  make_plans(options.measure_plans ? FFTW_MEASURE : FFTW_ESTIMATE);
-  for (const Component component : this->kernel().components) {
-    if (!spectra_.contains(component)) spectra_.emplace(component, kernel_spectrum(component, pair));
-  }
-}
-
-void Convolution::make_plans(unsigned flags) {
-  const int p1 = static_cast<int>(p1_);
-  const int p2 = static_cast<int>(p2_);
-  constexpr int block = static_cast<int>(kBlock);
-  double* const row = row_buffer_.front().data();
-  fftw_complex* const spectrum = row_spectra_.complex();
-  fftw_complex* const columns = column_block_.front().complex();
-  row_forward_.reset(fftw_plan_dft_r2c_1d(p2, row, spectrum, flags));
-  row_backward_.reset(fftw_plan_dft_c2r_1d(p2, spectrum, row, flags));
-  const auto plan_columns = [&](int direction) {
-    return FftwPlan(fftw_plan_many_dft(1, &p1, block, columns, nullptr, block, 1, columns, nullptr, block, 1,
-                                       direction, flags));
+template <typename Real>
+auto Convolution<Real>::multiply_for(const BlockKernel& kernel) -> Multiply {
+  const bool imaginary = std::all_of(kernel.components.begin(), kernel.components.end(), is_imaginary);
+  const bool real = std::none_of(kernel.components.begin(), kernel.components.end(), is_imaginary);
+  const auto shaped = []<std::size_t outputs, std::size_t inputs, bool odd>() -> Multiply {
+    return [](const Spectrum& x, const Factors& factors, Index m) {
+      const Index evens = distinct_even(m);
+      multiply_half<outputs, inputs, odd>(x.even, factors.quadrant, factors.sign, m, evens, 1);
+      auto odd_factors = factors.quadrant;
+      for (std::size_t ab = 0; ab < outputs * inputs; ++ab) odd_factors[ab] += evens;
+      multiply_half<outputs, inputs, odd>(x.odd, odd_factors, factors.sign, m, distinct_odd(m), 0);
+    };
   };
-  column_forward_ = plan_columns(FFTW_FORWARD);
-  column_backward_ = plan_columns(FFTW_BACKWARD);
-  require_plan(row_forward_);
-  require_plan(row_backward_);
-  require_plan(column_forward_);
-  require_plan(column_backward_);
+  if (kernel.outputs == 1 && kernel.inputs == 1 && real) return shaped.template operator()<1, 1, false>();
+  if (kernel.outputs == 2 && kernel.inputs == 2 && real) return shaped.template operator()<2, 2, false>();
+  if (kernel.outputs == 2 && kernel.inputs == 1 && imaginary) return shaped.template operator()<2, 1, true>();
+  throw std::invalid_argument("no convolution with a kernel of this shape");
 }
 
-/// The transform of a kernel that is even (odd) along a coordinate is a cosine (-i times a sine) transform
-/// over half a period. The factors of -i are left out here and applied in multiply_columns.
-FftwBuffer Convolution::kernel_spectrum(Component component, const ElasticPair& pair) const {
-  const Index m1 = p1_ / 2 + 1;
-  const Index m2 = p2_ / 2 + 1;
-  FftwBuffer buffer(count(m1 * row_stride_));
-  const std::vector<double> coefficients =
-      influence_coefficients(component, pair, grid().h1, grid().h2, m1, m2);
-  const double scale = 1.0 / (static_cast<double>(p1_) * static_cast<double>(p2_));
-  for (Index k1 = 0; k1 < m1; ++k1) {
-    for (Index k2 = 0; k2 < m2; ++k2) {
-      buffer.data()[k1 * row_stride_ + k2] = scale * coefficients[count(k1 * m2 + k2)];
-    }
+template <typename Real>
+Convolution<Real>::Convolution(const Grid& grid, BlockKernel kernel, const ElasticPair& pair,
+                               const OperatorOptions& options)
+    : Operator<Real>(grid, std::move(kernel)),
+      transform_(grid, fields(this->kernel()), std::max(options.threads, 1), planning(options)),
+      components_(distinct_components(this->kernel())),
+      spectra_(components_.size() * count(transform_.columns() * (padded1() / 2 + 1))),
+      multiply_(multiply_for(this->kernel())) {
+  for (std::size_t c = 0; c < this->kernel().components.size(); ++c) {
+    const auto found = std::find(components_.begin(), components_.end(), this->kernel().components[c]);
+    slot_.at(c) = count(found - components_.begin());
   }
-  const Parity sign = parity(component);
-  const Index first1 = sign.x1 < 0 ? 1 : 0;  // a sine transform leaves out both ends, where the field is zero
-  const Index first2 = sign.x2 < 0 ? 1 : 0;
-  const std::array<fftw_iodim, 1> along1{
-      {{static_cast<int>(m1 - 2 * first1), static_cast<int>(row_stride_), static_cast<int>(row_stride_)}}};
-  const std::array<fftw_iodim, 1> along2{{{static_cast<int>(m2 - 2 * first2), 1, 1}}};
-  const std::array<fftw_r2r_kind, 1> kind1{sign.x1 < 0 ? FFTW_RODFT00 : FFTW_REDFT00};
-  const std::array<fftw_r2r_kind, 1> kind2{sign.x2 < 0 ? FFTW_RODFT00 : FFTW_REDFT00};
-  double* const start = buffer.data() + first1 * row_stride_ + first2;
-  for (const bool columns : {true, false}) {
-    const FftwPlan plan(columns ? fftw_plan_guru_r2r(1, along1.data(), 1, along2.data(), start, start,
-                                                     kind1.data(), FFTW_ESTIMATE)
-                                : fftw_plan_guru_r2r(1, along2.data(), 1, along1.data(), start, start,
-                                                     kind2.data(), FFTW_ESTIMATE));
-    require_plan(plan);
-    fftw_execute(plan.get());
+  if constexpr (std::is_same_v<Real, double>) {
+    set_spectra(pair, transform_);
+  } else {
+    PaddedTransform<double> transform(grid, 1, std::max(options.threads, 1), FFTW_ESTIMATE);
+    set_spectra(pair, transform);
   }
-  const auto clear = [&](Index k1, Index k2) { buffer.data()[k1 * row_stride_ + k2] = 0.0; };
-  for (Index k2 = 0; first1 != 0 && k2 < m2; ++k2) clear(0, k2), clear(m1 - 1, k2);
-  for (Index k1 = 0; first2 != 0 && k1 < m1; ++k1) clear(k1, 0), clear(k1, m2 - 1);
-  return buffer;
 }
 
-double Convolution::predicted_bytes(const Grid& grid, const BlockKernel& kernel, int threads) {
+/// The kernel is the sum of a quadrant of offsets and its three mirror images. With Q the quadrant's
+/// spectrum, found as any field's, the sum's is 2 Re or 2 i Im of Q(k1, k2) +- Q(-k1, k2).
+template <typename Real>
+void Convolution<Real>::set_spectra(const ElasticPair& pair, PaddedTransform<double>& transform) {
+  const Grid& grid = this->grid();
+  auto quadrants =
+      influence_tables(components_, pair, grid.h1, grid.h2, grid.n1, grid.n2, transform.threads());
+  for (std::size_t slot = 0; slot < components_.size(); ++slot) {
+    std::vector<double>& quadrant = quadrants[slot];
+    for (Index i = 0; i < grid.n1; ++i) quadrant[count(i * grid.n2)] *= 0.5;  // on the axes, images coincide
+    for (Index j = 0; j < grid.n2; ++j) quadrant[count(j)] *= 0.5;
+    transform.forward_rows(quadrant);
+    transform.through_columns(1, 0, [&](Index column, const PaddedTransform<double>::Spectrum& spectrum) {
+      set_factors(components_[slot], spectrum.even[0], spectrum.odd[0],
+                  spectra_.data() + start(column, slot));
+    });
+  }
+}
+
+/// From one column of Q.
+template <typename Real>
+void Convolution<Real>::set_factors(Component component, const std::complex<double>* even,
+                                    const std::complex<double>* odd, Real* factors) const {
+  const Index m1 = padded1() / 2;
+  const double scale = 2.0 / (static_cast<double>(padded1()) * static_cast<double>(padded2()));
+  const double sign = parity(component).x1;
+  const bool imaginary = is_imaginary(component);
+  const auto factor = [&](const std::complex<double>& at, const std::complex<double>& mirrored) {
+    const std::complex<double> sum = at + sign * mirrored;
+    return static_cast<Real>(scale * (imaginary ? sum.imag() : sum.real()));
+  };
+  *factors++ = factor(even[0], even[0]);
+  for (Index k = 1; k < distinct_even(m1); ++k) *factors++ = factor(even[k], even[m1 - k]);
+  for (Index k = 0; k < distinct_odd(m1); ++k) *factors++ = factor(odd[k], odd[m1 - 1 - k]);
+}
+
+template <typename Real>
+std::size_t Convolution<Real>::start(Index column, std::size_t slot) const {
+  return (count(column) * components_.size() + slot) * count(padded1() / 2 + 1);
+}
+
+template <typename Real>
+auto Convolution<Real>::factors(Index column) const -> Factors {
+  Factors result{};
+  for (std::size_t c = 0; c < this->kernel().components.size(); ++c) {
+    result.quadrant[c] = spectra_.data() + start(column, slot_[c]);
+    result.sign[c] = static_cast<Real>(parity(this->kernel().components[c]).x1);
+  }
+  return result;
+}
+
+template <typename Real>
+double Convolution<Real>::predicted_bytes(const Grid& grid, const BlockKernel& kernel, int threads) {
   const Index p1 = fast_length(2 * grid.n1 - 1);
   const Index p2 = fast_length(2 * grid.n2 - 1);
-  const auto fields = static_cast<Index>(std::max(kernel.inputs, kernel.outputs));
-  const std::set<Component> distinct(kernel.components.begin(), kernel.components.end());
-  const Index spectra = static_cast<Index>(distinct.size()) * (p1 / 2 + 1) * row_stride(p2);
-  const Index workspace = 2 * fields * grid.n1 * row_stride(p2);
-  const Index per_thread = p2 + fields * p1 * kBlockReals;
-  return 8.0 * static_cast<double>(spectra + workspace + std::max(threads, 1) * per_thread);
+  const std::size_t spectra = distinct_components(kernel).size() * count((p1 / 2 + 1) * (p2 / 2 + 1));
+  return static_cast<double>(sizeof(Real) * spectra + PaddedTransform<Real>::predicted_bytes(
+                                                          grid, fields(kernel), std::max(threads, 1)));
 }
 
-std::size_t Convolution::bytes() const {
-  std::size_t sum = row_spectra_.bytes();
-  for (const auto& [component, spectrum] : spectra_) sum += spectrum.bytes();
-  for (const FftwBuffer& buffer : row_buffer_) sum += buffer.bytes();
-  for (const FftwBuffer& buffer : column_block_) sum += buffer.bytes();
-  return sum;
+template <typename Real>
+std::size_t Convolution<Real>::bytes() const {
+  return spectra_.bytes() + transform_.bytes();
 }
 
-void Convolution::do_apply(std::span<const double> traction, std::span<double> displacement) {
-  // The rows of all fields lie one after the other.
-  const auto in_rows = static_cast<Index>(inputs()) * grid().n1;
-  const auto out_rows = static_cast<Index>(outputs()) * grid().n1;
-  in_parts(threads_, in_rows, [&](int thread, Index first, Index last) {
-    for (Index row = first; row < last; ++row) row_forward(thread, row, traction.data() + row * grid().n2);
+template <typename Real>
+void Convolution<Real>::do_apply(std::span<const Real> traction, std::span<Real> displacement) {
+  transform_.forward_rows(traction);
+  transform_.through_columns(this->inputs(), this->outputs(), [&](Index column, const Spectrum& spectrum) {
+    multiply_(spectrum, factors(column), padded1() / 2);
   });
-  in_parts(threads_, row_stride_ / kBlock, [&](int thread, Index first, Index last) {
-    for (Index block = first; block < last; ++block) convolve_columns(thread, block * kBlock);
-  });
-  in_parts(threads_, out_rows, [&](int thread, Index first, Index last) {
-    for (Index row = first; row < last; ++row)
-      row_backward(thread, row, displacement.data() + row * grid().n2);
-  });
+  transform_.backward_rows(displacement);
 }
 
-void Convolution::row_forward(int thread, Index row, const double* values) {
-  const Index n2 = grid().n2;
-  if (std::all_of(values, values + n2, [](double value) { return value == 0.0; })) {
-    std::fill_n(row_spectra_.data() + 2 * row * row_stride_, 2 * row_stride_, 0.0);
-    return;
-  }
-  double* const padded = row_buffer_[count(thread)].data();
-  std::copy_n(values, n2, padded);
-  std::fill(padded + n2, padded + p2_, 0.0);
-  fftw_execute_dft_r2c(row_forward_.get(), padded, row_spectra_.complex() + row * row_stride_);
-}
-
-void Convolution::row_backward(int thread, Index row, double* values) {
-  double* const padded = row_buffer_[count(thread)].data();
-  fftw_execute_dft_c2r(row_backward_.get(), row_spectra_.complex() + row * row_stride_, padded);
-  std::copy_n(padded, grid().n2, values);
-}
-
-void Convolution::convolve_columns(int thread, Index first_column) {
-  const Index n1 = grid().n1;
-  double* const block = column_block_[count(thread)].data();
-  const auto field_of_block = [&](std::size_t field) {
-    return block + static_cast<Index>(field) * p1_ * kBlockReals;
-  };
-  const auto row_of_spectrum = [&](std::size_t field, Index row) {
-    return row_spectra_.data() + 2 * ((static_cast<Index>(field) * n1 + row) * row_stride_ + first_column);
-  };
-  for (std::size_t field = 0; field < inputs(); ++field) {
-    double* const columns = field_of_block(field);
-    for (Index i = 0; i < n1; ++i) {
-      std::copy_n(row_of_spectrum(field, i), kBlockReals, columns + i * kBlockReals);
-    }
-    std::fill(columns + n1 * kBlockReals, columns + p1_ * kBlockReals, 0.0);
-    auto* const complex = reinterpret_cast<fftw_complex*>(columns);
-    fftw_execute_dft(column_forward_.get(), complex, complex);
-  }
-  multiply_columns(block, first_column);
-  for (std::size_t field = 0; field < outputs(); ++field) {
-    double* const columns = field_of_block(field);
-    auto* const complex = reinterpret_cast<fftw_complex*>(columns);
-    fftw_execute_dft(column_backward_.get(), complex, complex);
-    for (Index i = 0; i < n1; ++i) {
-      std::copy_n(columns + i * kBlockReals, kBlockReals, row_of_spectrum(field, i));
-    }
-  }
-}
-
-/// outputs = kernel spectrum * inputs, in place, for one block of columns.
-void Convolution::multiply_columns(double* block, Index first_column) const {
-  struct Factor {
-    const double* spectrum;
-    int sign_x1;     ///< sign of the spectrum at negative frequencies along x1
-    bool imaginary;  ///< odd in one coordinate only: times -i
-    double sign;     ///< odd in both coordinates: (-i)^2
-  };
-  std::array<Factor, 4> factors{};
-  for (std::size_t c = 0; c < kernel().components.size(); ++c) {
-    const Parity sign = parity(kernel().components[c]);
-    factors[c] = {spectra_.at(kernel().components[c]).data() + first_column, sign.x1, sign.x1 != sign.x2,
-                  sign.x1 < 0 && sign.x2 < 0 ? -1.0 : 1.0};
-  }
-  std::array<std::array<double, kBlockReals>, 2> in;
-  for (Index k1 = 0; k1 < p1_; ++k1) {
-    const bool negative = k1 > p1_ / 2;
-    const Index row = negative ? p1_ - k1 : k1;
-    const auto values = [&](std::size_t field) {
-      return block + (static_cast<Index>(field) * p1_ + k1) * kBlockReals;
-    };
-    for (std::size_t b = 0; b < inputs(); ++b) std::copy_n(values(b), kBlockReals, in[b].data());
-    for (std::size_t a = 0; a < outputs(); ++a) {
-      std::array<double, kBlockReals> sum{};
-      for (std::size_t b = 0; b < inputs(); ++b) {
-        const Factor& factor = factors[a * inputs() + b];
-        const double* const spectrum = factor.spectrum + row * row_stride_;
-        const double sign = negative ? factor.sign * factor.sign_x1 : factor.sign;
-        for (std::size_t c = 0; c < count(kBlock); ++c) {
-          const double value = sign * spectrum[c];
-          if (factor.imaginary) {  // (-i)(x + i y) = y - i x
-            sum[2 * c] += value * in[b][2 * c + 1];
-            sum[2 * c + 1] -= value * in[b][2 * c];
-          } else {
-            sum[2 * c] += value * in[b][2 * c];
-            sum[2 * c + 1] += value * in[b][2 * c + 1];
-          }
-        }
-      }
-      std::copy_n(sum.data(), kBlockReals, values(a));
-    }
-  }
-}
+template class Convolution<double>;
+template class Convolution<float>;
 
 }  // namespace slipstick::solver

@@ -15,8 +15,9 @@ std::set<Component> distinct(const BlockKernel& kernel) {
 
 /// A quadrant of coefficients unfolded by parity to offsets of both signs.
 std::vector<double> all_offsets(Component component, const ElasticPair& pair, const Grid& grid) {
-  const auto [n1, n2, h1, h2] = grid;
-  const std::vector<double> quadrant = influence_coefficients(component, pair, h1, h2, n1, n2);
+  const Index n1 = grid.n1;
+  const Index n2 = grid.n2;
+  const std::vector<double> quadrant = influence_coefficients(component, pair, grid.h1, grid.h2, n1, n2);
   const Parity sign = parity(component);
   std::vector<double> all;
   all.reserve(static_cast<std::size_t>((2 * n1 - 1) * (2 * n2 - 1)));

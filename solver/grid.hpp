@@ -6,19 +6,21 @@ namespace slipstick::solver {
 
 using Eigen::Index;
 
-/// A rectangle of n1 x n2 equal cells, centred at the origin. A field over it is n1*n2 values, cell (i, j) at
-/// i*n2 + j: x2 runs fastest. A vector field is its first component's values, then its second's.
+/// A rectangle of n1 x n2 equal cells, centred at the origin or, as the quadrant x1, x2 > 0 of one twice as
+/// long and wide, with a corner there. A field over it is n1*n2 values, cell (i, j) at i*n2 + j: x2 runs
+/// fastest. A vector field is its first component's values, then its second's.
 struct Grid {
   Index n1;
   Index n2;
   double h1;  ///< cell size along x1
   double h2;  ///< cell size along x2
+  bool quadrant = false;
 
   Index cells() const { return n1 * n2; }
   double cell_area() const { return h1 * h2; }
   /// Cell centres. Mirror images about the origin are exact negatives of each other.
-  double x1(Index i) const { return 0.5 * static_cast<double>(2 * i - (n1 - 1)) * h1; }
-  double x2(Index j) const { return 0.5 * static_cast<double>(2 * j - (n2 - 1)) * h2; }
+  double x1(Index i) const { return 0.5 * static_cast<double>(2 * i + 1 - (quadrant ? 0 : n1)) * h1; }
+  double x2(Index j) const { return 0.5 * static_cast<double>(2 * j + 1 - (quadrant ? 0 : n2)) * h2; }
 };
 
 /// x1 and x2 of all cell centres: n1*n2 values each.

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <span>
 #include <vector>
 
 #include "solver/grid.hpp"
@@ -56,8 +57,14 @@ struct CellIntegrals {
 /// where the closed form would cancel.
 CellIntegrals cell_integrals(double x, double y, double h1, double h2);
 
-/// One component at all offsets (k1 h1, k2 h2), 0 <= k1 < m1, 0 <= k2 < m2, row by row; the other quadrants
-/// follow by parity. Displacement per traction: units of length times compliance.
+/// Components at all offsets (k1 h1, k2 h2), 0 <= k1 < m1, 0 <= k2 < m2, row by row, a table for each; the
+/// other quadrants follow by parity. Displacement per traction: units of length times compliance. One pass
+/// over the offsets serves all components, and square cells need only offsets on one side of the diagonal.
+std::vector<std::vector<double>> influence_tables(std::span<const Component> components,
+                                                  const ElasticPair& pair, double h1, double h2, Index m1,
+                                                  Index m2, int threads = 1);
+
+/// The table of one component.
 std::vector<double> influence_coefficients(Component component, const ElasticPair& pair, double h1, double h2,
                                            Index m1, Index m2);
 

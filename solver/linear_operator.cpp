@@ -2,6 +2,7 @@
 
 #include "solver/convolution.hpp"
 #include "solver/direct.hpp"
+#include "solver/mirrored_convolution.hpp"
 
 namespace slipstick::solver {
 
@@ -13,11 +14,37 @@ BlockKernel tangential_kernel() {
 
 BlockKernel coupling_kernel() { return {2, 1, {Component::k13, Component::k23}}; }
 
+namespace {
+
+template <typename Real>
+std::unique_ptr<Operator<Real>> make_convolution(const Grid& grid, const BlockKernel& kernel,
+                                                 const ElasticPair& pair, const OperatorOptions& options) {
+  if (grid.quadrant) {
+    return std::make_unique<MirroredConvolution<Real>>(grid, kernel, pair, options, options.diagonal);
+  }
+  return std::make_unique<Convolution<Real>>(grid, kernel, pair, options);
+}
+
+template <typename Real>
+double predicted_convolution_bytes(const Grid& grid, const BlockKernel& kernel,
+                                   const OperatorOptions& options) {
+  return grid.quadrant
+             ? MirroredConvolution<Real>::predicted_bytes(grid, kernel, options.threads, options.diagonal)
+             : Convolution<Real>::predicted_bytes(grid, kernel, options.threads);
+}
+
+void require_whole(const Grid& grid) {
+  if (grid.quadrant) throw std::invalid_argument("only dcfft knows quadrants");
+}
+
+}  // namespace
+
 std::unique_ptr<LinearOperator> make_operator(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
                                               const ElasticPair& pair, const OperatorOptions& options) {
+  if (kind != OperatorKind::dcfft) require_whole(grid);
   switch (kind) {
     case OperatorKind::dcfft:
-      return std::make_unique<Convolution>(grid, kernel, pair, options);
+      return make_convolution<double>(grid, kernel, pair, options);
     case OperatorKind::direct:
       return std::make_unique<DirectSum>(grid, kernel, pair, options);
     case OperatorKind::dense:
@@ -26,17 +53,27 @@ std::unique_ptr<LinearOperator> make_operator(OperatorKind kind, const Grid& gri
   throw std::logic_error("unknown operator kind");
 }
 
+std::unique_ptr<Operator<float>> make_single_operator(const Grid& grid, const BlockKernel& kernel,
+                                                      const ElasticPair& pair,
+                                                      const OperatorOptions& options) {
+  return make_convolution<float>(grid, kernel, pair, options);
+}
+
 double predicted_bytes(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
                        const OperatorOptions& options) {
   switch (kind) {
     case OperatorKind::dcfft:
-      return Convolution::predicted_bytes(grid, kernel, options.threads);
+      return predicted_convolution_bytes<double>(grid, kernel, options);
     case OperatorKind::direct:
       return DirectSum::predicted_bytes(grid, kernel);
     case OperatorKind::dense:
       return DenseMatrix::predicted_bytes(grid, kernel);
   }
   throw std::logic_error("unknown operator kind");
+}
+
+double predicted_single_bytes(const Grid& grid, const BlockKernel& kernel, const OperatorOptions& options) {
+  return predicted_convolution_bytes<float>(grid, kernel, options);
 }
 
 }  // namespace slipstick::solver

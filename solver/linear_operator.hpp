@@ -26,15 +26,20 @@ BlockKernel coupling_kernel();
 
 /// Fields of traction to fields of displacement on one grid. The methods know no more of elasticity than
 /// this, so that the three ways to evaluate it are interchangeable.
-class LinearOperator {
+///
+/// Real is double, or float where an iteration is corrected by residuals in double precision.
+template <typename Real>
+class Operator {
  public:
-  virtual ~LinearOperator() = default;
-  LinearOperator(const LinearOperator&) = delete;
-  LinearOperator& operator=(const LinearOperator&) = delete;
+  using Field = Eigen::Array<Real, Eigen::Dynamic, 1>;
+
+  virtual ~Operator() = default;
+  Operator(const Operator&) = delete;
+  Operator& operator=(const Operator&) = delete;
 
   /// displacement = K * traction: outputs()*cells and inputs()*cells values. They may not overlap. Allocates
   /// nothing. Throws std::invalid_argument for other sizes.
-  void apply(std::span<const double> traction, std::span<double> displacement) {
+  void apply(std::span<const Real> traction, std::span<Real> displacement) {
     const auto cells = static_cast<std::size_t>(grid_.cells());
     if (traction.size() != inputs() * cells || displacement.size() != outputs() * cells) {
       throw std::invalid_argument("operator applied to fields of another size");
@@ -43,7 +48,7 @@ class LinearOperator {
     ++applications_;
   }
 
-  void apply(const Eigen::ArrayXd& traction, Eigen::ArrayXd& displacement) {
+  void apply(const Field& traction, Field& displacement) {
     apply(std::span(traction.data(), static_cast<std::size_t>(traction.size())),
           std::span(displacement.data(), static_cast<std::size_t>(displacement.size())));
   }
@@ -57,16 +62,18 @@ class LinearOperator {
   virtual std::size_t bytes() const = 0;
 
  protected:
-  LinearOperator(const Grid& grid, BlockKernel kernel) : grid_(grid), kernel_(std::move(kernel)) {}
+  Operator(const Grid& grid, BlockKernel kernel) : grid_(grid), kernel_(std::move(kernel)) {}
   const BlockKernel& kernel() const { return kernel_; }
 
  private:
-  virtual void do_apply(std::span<const double> traction, std::span<double> displacement) = 0;
+  virtual void do_apply(std::span<const Real> traction, std::span<Real> displacement) = 0;
 
   Grid grid_;
   BlockKernel kernel_;
   long applications_ = 0;
 };
+
+using LinearOperator = Operator<double>;
 
 /// How the operator is evaluated: by discrete convolution and FFT (N^2 log N work for N x N cells), by direct
 /// summation without a matrix (N^4 work, N^2 memory), or by a dense matrix (N^4 of both).
@@ -77,13 +84,24 @@ struct OperatorOptions {
   /// Let FFTW measure which plan is fastest: quicker applications, results that differ in their last bits
   /// from run to run.
   bool measure_plans = false;
+  /// On a square quadrant, tangential: the fields are mirror images about the diagonal too.
+  bool diagonal = false;
 };
 
+/// On a quadrant it is the operator of the fields' mirror images. Throws std::invalid_argument where the kind
+/// (other than dcfft) or the kernel (coupling) has no such form.
 std::unique_ptr<LinearOperator> make_operator(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
                                               const ElasticPair& pair, const OperatorOptions& options = {});
+
+/// By discrete convolution and FFT in single precision.
+std::unique_ptr<Operator<float>> make_single_operator(const Grid& grid, const BlockKernel& kernel,
+                                                      const ElasticPair& pair,
+                                                      const OperatorOptions& options = {});
 
 /// What bytes() of such an operator will be.
 double predicted_bytes(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
                        const OperatorOptions& options = {});
+double predicted_single_bytes(const Grid& grid, const BlockKernel& kernel,
+                              const OperatorOptions& options = {});
 
 }  // namespace slipstick::solver

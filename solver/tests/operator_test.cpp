@@ -13,30 +13,7 @@
 #include "solver/convolution.hpp"
 #include "solver/direct.hpp"
 #include "solver/linear_operator.hpp"
-
-// Every allocation of this program is counted: operator new here; malloc, which Eigen calls, and
-// fftw_alloc_real by the linker's --wrap (see CMakeLists.txt).
-namespace {
-long allocations = 0;
-}
-
-extern "C" {
-void* __real_malloc(std::size_t size);                // NOLINT(bugprone-reserved-identifier)
-double* __real_fftw_alloc_real(std::size_t doubles);  // NOLINT(bugprone-reserved-identifier)
-void* __wrap_malloc(std::size_t size) {               // NOLINT(bugprone-reserved-identifier)
-  ++allocations;
-  return __real_malloc(size);
-}
-void* __real__Znwm(std::size_t size);   // NOLINT(bugprone-reserved-identifier)
-void* __wrap__Znwm(std::size_t size) {  // NOLINT(bugprone-reserved-identifier): operator new
-  ++allocations;
-  return __real__Znwm(size);
-}
-double* __wrap_fftw_alloc_real(std::size_t doubles) {  // NOLINT(bugprone-reserved-identifier)
-  ++allocations;
-  return __real_fftw_alloc_real(doubles);
-}
-}
+#include "solver/tests/allocations.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -254,14 +231,14 @@ TEST_P(Operator, GivesTheSameBitsAgainAndWithTwoThreads) {
 TEST_P(Operator, AllocatesNothingInAnApplication) {
   const ArrayXd traction = random_traction(9);
   for (const OperatorKind kind : kKinds) {
-    const long before_setup = allocations;
+    const long before_setup = allocations();
     const auto op = make(kind);
-    EXPECT_GT(allocations, before_setup) << "the count itself must work";
+    EXPECT_GT(allocations(), before_setup) << "the count itself must work";
     ArrayXd displacement(static_cast<Index>(op->outputs()) * op->grid().cells());
-    const long before = allocations;
+    const long before = allocations();
     op->apply({traction.data(), static_cast<std::size_t>(traction.size())},
               {displacement.data(), static_cast<std::size_t>(displacement.size())});
-    EXPECT_EQ(allocations, before);
+    EXPECT_EQ(allocations(), before);
   }
 }
 
