@@ -45,11 +45,12 @@ double find_axis_ratio(double radius_ratio) {
   return radius_ratio == 1.0 ? 1.0 : std::exp(0.5 * (low + high));
 }
 
-/// Volume under the unit hemisphere over [0, x] x [0, y], odd in x and in y.
+/// Volume under the unit hemisphere over [0, x] x [0, y], odd in x and in y; to the last bit the same with x
+/// and y exchanged.
 double cap_volume(double x, double y) {
   const double sign = std::copysign(1.0, x) * std::copysign(1.0, y);
-  const double u = std::min(std::abs(x), 1.0);
-  const double v = std::min(std::abs(y), 1.0);
+  const double u = std::min({std::abs(x), std::abs(y), 1.0});
+  const double v = std::min(std::max(std::abs(x), std::abs(y)), 1.0);
   const double square = 1.0 - u * u - v * v;
   if (square > 0.0) {
     const double z = std::sqrt(square);
@@ -76,24 +77,27 @@ HertzContact hertz_contact(double load, double radius_1, double radius_2, double
 }
 
 Eigen::ArrayXd hertz_at_centres(const HertzContact& contact, const Grid& grid) {
+  // The sum first: at the edge the difference would show the order of its terms, and mirrors would be lost.
   const Eigen::ArrayXd square =
-      1.0 - (cell_x1(grid) / contact.semi_axis_1).square() - (cell_x2(grid) / contact.semi_axis_2).square();
+      1.0 - ((cell_x1(grid) / contact.semi_axis_1).square() + (cell_x2(grid) / contact.semi_axis_2).square());
   return contact.peak_pressure * square.max(0.0).sqrt();
 }
 
+/// Mirror images, of which each is a difference of large numbers, are the same to the last bit.
 Eigen::ArrayXd hertz_cell_averages(const HertzContact& contact, const Grid& grid) {
   const double h1 = grid.h1 / contact.semi_axis_1;
   const double h2 = grid.h2 / contact.semi_axis_2;
   Eigen::ArrayXd pressure(grid.cells());
   for (Index i = 0; i < grid.n1; ++i) {
-    const double x = grid.x1(i) / contact.semi_axis_1;
+    const double x = std::abs(grid.x1(i)) / contact.semi_axis_1;
     for (Index j = 0; j < grid.n2; ++j) {
-      const double y = grid.x2(j) / contact.semi_axis_2;
-      const double volume = cap_volume(x + 0.5 * h1, y + 0.5 * h2) - cap_volume(x - 0.5 * h1, y + 0.5 * h2) -
-                            cap_volume(x + 0.5 * h1, y - 0.5 * h2) + cap_volume(x - 0.5 * h1, y - 0.5 * h2);
+      const double y = std::abs(grid.x2(j)) / contact.semi_axis_2;
+      const double volume =
+          (cap_volume(x + 0.5 * h1, y + 0.5 * h2) + cap_volume(x - 0.5 * h1, y - 0.5 * h2)) -
+          (cap_volume(x - 0.5 * h1, y + 0.5 * h2) + cap_volume(x + 0.5 * h1, y - 0.5 * h2));
       // A cell outside the ellipse: what is left of the difference is rounding.
-      const double nearest1 = std::max(std::abs(x) - 0.5 * h1, 0.0);
-      const double nearest2 = std::max(std::abs(y) - 0.5 * h2, 0.0);
+      const double nearest1 = std::max(x - 0.5 * h1, 0.0);
+      const double nearest2 = std::max(y - 0.5 * h2, 0.0);
       const bool outside = nearest1 * nearest1 + nearest2 * nearest2 >= 1.0;
       pressure[i * grid.n2 + j] = outside ? 0.0 : contact.peak_pressure * std::max(volume, 0.0) / (h1 * h2);
     }

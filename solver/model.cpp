@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 
+#include "solver/coulomb_method.hpp"
 #include "solver/field_file.hpp"
 #include "solver/input_error.hpp"
 
@@ -17,9 +18,11 @@ namespace {
 
 using Eigen::ArrayXd;
 
-/// Fields of one value a cell that a solve holds at once beside its operators, temporaries included (measured
-/// at 1,024 x 1,024 cells: 28).
-constexpr double kFieldsHeld = 32.0;
+/// Fields of one value a cell that a solve holds at once on the whole grid, temporaries included: those of
+/// the solution and those that its results are worked out from.
+constexpr double kFieldsHeld = 24.0;
+/// Those that the paper's method holds besides.
+constexpr double kPaperFields = 20.0;
 /// Cells left free on each side of the expected contact where the scene does not give an extent.
 constexpr double kMarginCells = 2.0;
 
@@ -116,6 +119,14 @@ double physical_memory() {
   return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
 }
 
+void require_memory(const Scene& scene, const Grid& grid, double bytes) {
+  if (bytes < physical_memory()) return;
+  throw InputError(
+      scene.source.string(), "grid.cells", fmt::format("[{}, {}]", grid.n1, grid.n2),
+      fmt::format("what fits in memory: this needs {:.3g} GiB with operator = \"{}\", the machine has {:.3g}",
+                  bytes / 0x1p30, to_string(scene.op), physical_memory() / 0x1p30));
+}
+
 }  // namespace
 
 double over_unit(double value, double unit) {
@@ -125,16 +136,65 @@ double over_unit(double value, double unit) {
   return std::ldexp(std::nearbyint(std::ldexp(mantissa, bits)), exponent - bits);
 }
 
-double predicted_bytes(const Scene& scene, const Grid& grid, bool pressure_coupling) {
-  const OperatorOptions options{.threads = scene.threads};
-  const auto bytes = [&](const BlockKernel& kernel) {
-    return predicted_bytes(scene.op, grid, kernel, options);
-  };
-  const double normal = scene.pressure == PressureModel::solved ? bytes(normal_kernel()) : 0.0;
-  const double coupling = pressure_coupling ? bytes(coupling_kernel()) : 0.0;
-  const double operators = std::max({normal, coupling, bytes(tangential_kernel())});  // one after the other
-  return operators +
-         kFieldsHeld * sizeof(double) * static_cast<double>(grid.n1) * static_cast<double>(grid.n2);
+namespace {
+
+/// Direct and dense summation are there to be compared with: they sum over all cells.
+bool reducible(const Scene& scene) {
+  return scene.model != ModelChoice::full && scene.op == OperatorKind::dcfft;
+}
+
+}  // namespace
+
+Reduction traction_part(const Scene& scene, Model& model, const Eigen::ArrayXd& pressure) {
+  if (!reducible(scene)) return Reduction(model.grid);
+  const Reduction part =
+      model.pressure_coupling ? Reduction(model.grid, pressure) : Reduction(model.grid, pressure, pressure);
+  const Grid& grid = part.grid();
+  if (part.trimmed()) {
+    const Index mirrored = part.quadrant() ? 2 : 1;
+    model.left_out.push_back({fmt::format("all but {} x {} of {} x {} cells", mirrored * grid.n1,
+                                          mirrored * grid.n2, model.grid.n1, model.grid.n2),
+                              "the rest of the grid lies outside the contact's bounding rectangle"});
+  }
+  if (part.quadrant()) {
+    model.left_out.push_back(
+        {"three quarters of the contact", "two mirror axes: q1 is even in x1 and odd in x2, q2 the reverse"});
+  }
+  if (part.diagonal()) {
+    model.left_out.push_back(
+        {"one traction field", "the diagonal is a mirror too: q2(x1, x2) = -q1(x2, x1)"});
+  }
+  return part;
+}
+
+Elasticity elasticity(const Scene& scene, const Model& model, const Reduction& part) {
+  return {.pair = model.pair,
+          .kind = scene.op,
+          .threads = scene.threads,
+          .precision = scene.precision,
+          .diagonal = part.diagonal()};
+}
+
+Memory predicted_memory(const Scene& scene, const Model& model) {
+  const double fields = kFieldsHeld * sizeof(double) * static_cast<double>(model.grid.cells());
+  const Grid& part = model.pressure_part.grid();
+  const Elasticity on_part = elasticity(scene, model, model.pressure_part);
+  const double normal = scene.pressure == PressureModel::solved ? predicted_normal_bytes(on_part, part) : 0.0;
+  // The pressure has the gap's mirrors, unless a file brings it; its tangential displacement has not those of
+  // torsion.
+  const bool whole = model.pressure_coupling || scene.pressure == PressureModel::file;
+  const Grid& grid = whole ? model.grid : part;
+  const Elasticity elastic = whole ? elasticity(scene, model, Reduction(model.grid)) : on_part;
+  const double coupling = model.pressure_coupling
+                              ? predicted_bytes(scene.op, grid, coupling_kernel(), {.threads = scene.threads})
+                              : 0.0;
+  if (scene.method == Method::paper) {
+    const double op = predicted_bytes(scene.op, grid, tangential_kernel(),
+                                      {.threads = scene.threads, .diagonal = elastic.diagonal});
+    return {std::max({normal, op, coupling}),
+            fields + kPaperFields * sizeof(double) * static_cast<double>(grid.cells())};
+  }
+  return {std::max({normal, predicted_coulomb_bytes(elastic, grid), coupling}), fields};
 }
 
 Model make_model(const Scene& scene) {
@@ -144,17 +204,10 @@ Model make_model(const Scene& scene) {
   const Grid grid = make_grid(scene, pair.effective_modulus(), heights);
 
   Model model{};
-  model.pressure_coupling =
-      scene.coupling == Coupling::pressure || (scene.coupling == Coupling::automatic && pair.mismatch != 0.0);
-  const double bytes = predicted_bytes(scene, grid, model.pressure_coupling);
-  if (!(bytes < physical_memory())) {
-    throw InputError(
-        scene.source.string(), "grid.cells", fmt::format("[{}, {}]", grid.n1, grid.n2),
-        fmt::format(
-            "what fits in memory: this needs {:.3g} GiB with operator = \"{}\", the machine has {:.3g}",
-            bytes / 0x1p30, to_string(scene.op), physical_memory() / 0x1p30));
-  }
-
+  const bool full = scene.model == ModelChoice::full;
+  model.pressure_coupling = scene.coupling == Coupling::pressure ||
+                            (scene.coupling == Coupling::automatic && (full || pair.mismatch != 0.0));
+  require_memory(scene, grid, kFieldsHeld * sizeof(double) * static_cast<double>(grid.cells()));
   model.length_unit = grid.h1;
   model.stress_unit = pair.shear_modulus();
   const double compliance_unit = pair.shear_compliance;
@@ -166,6 +219,9 @@ Model make_model(const Scene& scene) {
   model.friction = scene.friction;
   if (scene.normal_load) model.normal_load = over_unit(*scene.normal_load, model.force_unit());
   model.gap = make_gap(scene.surface, model.grid, model.length_unit, heights);
+  model.pressure_part = reducible(scene)
+                            ? Reduction(model.grid, model.gap, model.gap.isFinite().cast<double>())
+                            : Reduction(model.grid);
 
   if (const auto radii = paraboloid_radii(scene.surface); radii && model.normal_load) {
     model.hertz = hertz_contact(*model.normal_load, over_unit((*radii)[0], model.length_unit),
@@ -177,6 +233,7 @@ Model make_model(const Scene& scene) {
                                               : "contact.coupling = \"none\""});
   }
   model.left_out.push_back({"translations", "torsion about the origin of the grid"});
+  require_memory(scene, grid, predicted_memory(scene, model).total());
   return model;
 }
 

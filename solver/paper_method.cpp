@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <stdexcept>
 
 #include "solver/certificate.hpp"
 
@@ -18,21 +17,6 @@ constexpr int kProgressEvery = 20;
 
 /// A factor a cell, for both components.
 ArrayXd both(const ArrayXd& cell_values) { return cell_values.replicate(2, 1); }
-
-void require_valid(const TorsionProblem& problem, double limit) {
-  const auto& bound = problem.friction_bound;
-  if (!(bound >= 0.0).all() || !bound.isFinite().all()) {
-    throw std::invalid_argument("friction bound mu p: allowed: finite, zero or positive in every cell");
-  }
-  if (problem.moment.has_value() == problem.twist.has_value()) {
-    throw std::invalid_argument("torsion: allowed: either a moment or a twist");
-  }
-  if (problem.moment && *problem.moment != 0.0 && !(std::abs(*problem.moment) < limit)) {
-    throw std::invalid_argument(
-        fmt::format("moment {} (over the cell area): gross slip; allowed: below {}", *problem.moment, limit));
-  }
-  if (problem.twist && !std::isfinite(*problem.twist)) throw std::invalid_argument("twist: allowed: finite");
-}
 
 /// Section 4 of the paper, one member a step, under the paper's names.
 class PaperMethod {
@@ -214,13 +198,9 @@ class PaperMethod {
 
 }  // namespace
 
-double moment_limit(const Grid& grid, const Eigen::ArrayXd& friction_bound) {
-  return (friction_bound * norms(rotation_field(grid))).sum();
-}
-
 TorsionSolution solve_by_paper_method(LinearOperator& op, const TorsionProblem& problem,
                                       const PaperOptions& options) {
-  require_valid(problem, moment_limit(op.grid(), problem.friction_bound));
+  require_valid(problem, op.grid());
   return PaperMethod(op, problem, options).run();
 }
 

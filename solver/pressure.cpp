@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "solver/field_file.hpp"
@@ -14,6 +15,9 @@ namespace {
 constexpr double kPositionTolerance = 1e-3;
 /// A pressure file's load may differ by this part from load.normal; more is taken for a mistake in units.
 constexpr double kLoadTolerance = 1e-2;
+/// Complementarity gap of the pressure, unless the scene asks for a better certificate of the tractions: then
+/// the pressure is as good.
+constexpr double kPressureTolerance = 1e-10;
 
 Eigen::ArrayXd pressure_from_file(const Scene& scene, const Model& model) {
   const std::string file = scene.pressure_file.string();
@@ -64,6 +68,19 @@ NormalSolution given(const Eigen::ArrayXd& pressure) {
   return solution;
 }
 
+/// On the part of the grid that the model leaves; the answer is on the whole one.
+NormalSolution solved_pressure(const Scene& scene, const Model& model) {
+  const Reduction& part = model.pressure_part;
+  const double images = part.quadrant() ? 4.0 : 1.0;
+  NormalSolution solution =
+      solve_normal_contact(elasticity(scene, model, part), part.grid(),
+                           {part.restricted(model.gap), *model.normal_load / model.grid.cell_area() / images},
+                           {.tolerance = std::min(kPressureTolerance, scene.tolerance)});
+  solution.pressure = part.expanded(solution.pressure, normal_symmetry());
+  if (part.diagonal()) solution.pressure = symmetrised(model.grid, solution.pressure);
+  return solution;
+}
+
 }  // namespace
 
 NormalSolution find_pressure(const Scene& scene, const Model& model) {
@@ -74,11 +91,8 @@ NormalSolution find_pressure(const Scene& scene, const Model& model) {
       return given(hertz_cell_averages(*model.hertz, model.grid));
     case PressureModel::file:
       return given(pressure_from_file(scene, model));
-    case PressureModel::solved: {
-      const auto op =
-          make_operator(scene.op, model.grid, normal_kernel(), model.pair, {.threads = scene.threads});
-      return solve_normal_contact(*op, {model.gap, *model.normal_load / model.grid.cell_area()});
-    }
+    case PressureModel::solved:
+      return solved_pressure(scene, model);
   }
   throw std::logic_error("unknown pressure model");
 }

@@ -27,6 +27,12 @@ const Words<Coupling> kCouplings{
     {"auto", Coupling::automatic}, {"none", Coupling::none}, {"pressure", Coupling::pressure}};
 const Words<OperatorKind> kOperators{
     {"dcfft", OperatorKind::dcfft}, {"direct", OperatorKind::direct}, {"dense", OperatorKind::dense}};
+const Words<Method> kMethods{{"coulomb", Method::coulomb},
+                             {"projected_gradient", Method::projected_gradient},
+                             {"paper", Method::paper}};
+const Words<ModelChoice> kModels{
+    {"auto", ModelChoice::automatic}, {"full", ModelChoice::full}, {"exact", ModelChoice::exact}};
+const Words<Precision> kPrecisions{{"double", Precision::double_precision}, {"mixed", Precision::mixed}};
 
 template <typename Value>
 std::string word_of(const Words<Value>& words, Value value) {
@@ -115,6 +121,11 @@ void require_consistent(SceneReader& reader, const Scene& scene) {
     reader.fail("contact.pressure", fmt::format("\"{}\"", to_string(scene.pressure)),
                 "solved, file (Hertz's pressure belongs to a sphere or an ellipsoid)");
   }
+  if (scene.precision == Precision::mixed &&
+      (scene.op != OperatorKind::dcfft || scene.method != Method::coulomb)) {
+    reader.fail("solver.precision", "\"mixed\"",
+                "double, or mixed with method = \"coulomb\" and operator = \"dcfft\"");
+  }
   if (scene.surface.shape == Shape::height_map && scene.extent) {
     reader.fail("grid.extent", "(given)", "left out for a height map: upper.spacing says it");
   }
@@ -128,6 +139,8 @@ void require_consistent(SceneReader& reader, const Scene& scene) {
 std::string to_string(Shape shape) { return word_of(kShapes, shape); }
 std::string to_string(PressureModel model) { return word_of(kPressureModels, model); }
 std::string to_string(OperatorKind kind) { return word_of(kOperators, kind); }
+std::string to_string(Method method) { return word_of(kMethods, method); }
+std::string to_string(Precision precision) { return word_of(kPrecisions, precision); }
 
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
   SceneReader reader(file, overrides);
@@ -151,8 +164,9 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
   scene.cells = read_cells(reader, scene.surface);
   scene.extent = reader.find_pair("grid.extent", kPositive);
 
-  reader.choice_or<int>("solver.method", 0, {{"paper", 0}});
-  reader.choice_or<int>("solver.model", 0, {{"auto", 0}, {"full", 1}});
+  scene.method = reader.choice_or("solver.method", scene.method, kMethods);
+  scene.model = reader.choice_or("solver.model", scene.model, kModels);
+  scene.precision = reader.choice_or("solver.precision", scene.precision, kPrecisions);
   scene.op = reader.choice_or("solver.operator", OperatorKind::dcfft, kOperators);
   scene.tolerance = reader.number_or("solver.tolerance", scene.tolerance, kTolerance);
   scene.max_iterations =

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/linear_operator.hpp"
+#include "solver/elasticity.hpp"
 
 namespace slipstick::solver {
 
@@ -36,6 +36,13 @@ enum class PressureModel { solved, hertz, hertz_averaged, file };
 /// never, always.
 enum class Coupling { automatic, none, pressure };
 
+/// Which method finds the tractions.
+enum class Method { coulomb, projected_gradient, paper };
+
+/// What may be left out of the model: what symmetry and the contact's size allow; nothing; the grid itself,
+/// where the scene has an exact answer.
+enum class ModelChoice { automatic, full, exact };
+
 /// One of the three is set.
 struct TorsionLoad {
   std::optional<double> moment_ratio;  ///< M over the limit of this pressure and mesh
@@ -58,7 +65,10 @@ struct Scene {
   TorsionLoad torsion;
   std::array<Index, 2> cells{};
   std::optional<std::array<double, 2>> extent;  ///< m
+  Method method = Method::coulomb;
+  ModelChoice model = ModelChoice::automatic;
   OperatorKind op = OperatorKind::dcfft;
+  Precision precision = Precision::double_precision;
   double tolerance = 1e-8;
   int max_iterations = 5000;
   int threads = 1;
@@ -73,5 +83,7 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
 std::string to_string(Shape shape);
 std::string to_string(PressureModel model);
 std::string to_string(OperatorKind kind);
+std::string to_string(Method method);
+std::string to_string(Precision precision);
 
 }  // namespace slipstick::solver

@@ -3,10 +3,12 @@
 #include <functional>
 
 #include "solver/certificate.hpp"
+#include "solver/coulomb_method.hpp"
 #include "solver/model.hpp"
 #include "solver/normal_contact.hpp"
 #include "solver/paper_method.hpp"
 #include "solver/scene.hpp"
+#include "solver/stick_front.hpp"
 
 namespace slipstick::solver {
 
@@ -31,6 +33,8 @@ struct Solution {
   double peak_pressure = 0.0;           ///< Pa
   double contact_radius = 0.0;          ///< m, see measure_contact_radius
   double contact_radius_counted = 0.0;  ///< m, of a circle with the contact cells' area
+  double stick_radius = 0.0;            ///< m, of a circle with the stick area, told within the cells
+  std::string stick_radius_note;        ///< why it is only counted, all or in part; empty if it is not
   double stick_radius_counted = 0.0;    ///< m, of a circle with the stick cells' area
   double approach = 0.0;                ///< m
   double twist_angle = 0.0;             ///< rad
@@ -38,17 +42,19 @@ struct Solution {
   double moment_limit = 0.0;            ///< N m, of this pressure and mesh
   Index contact_cells = 0;
   Index stick_cells = 0;
-  long operator_applications = 0;  ///< tangential
-  std::size_t operator_bytes = 0;  ///< tangential
+  double operator_applications = 0.0;  ///< tangential, of all grids in those of the finest one
+  double pressure_applications = 0.0;  ///< likewise of the normal operator
+  double bytes = 0.0;                  ///< operators and workspaces of the larger of the two problems
   Seconds seconds;
 };
 
 struct SolveOptions {
+  /// Called now and then with the iterations or applications so far and what the method's stopping test sees.
   std::function<void(int iteration, double change)> progress;
 };
 
-/// Solves a scene. Throws InputError for what the scene got wrong, gross slip among it; what the numbers do
-/// is in the status.
+/// Solves a scene. Throws InputError for what the scene got wrong, gross slip and a model that is not on a
+/// grid (ModelChoice::exact) among it; what the numbers do is in the status.
 Solution solve(const Scene& scene, const SolveOptions& options = {});
 
 /// Contact radius of a pressure, in the grid's units: of a Hertzian contact from the second moments of the

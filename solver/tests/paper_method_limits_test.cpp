@@ -36,8 +36,8 @@ TEST(Unloaded, HasNoTraction) {
   }
   Scene frictionless = paper_scene(16, 0.5);
   frictionless.friction = 0.0;
-  EXPECT_EQ(solve(frictionless).status, Status::converged);
-  EXPECT_EQ(solve(frictionless).moment, 0.0);
+  EXPECT_EQ(by_paper_method(frictionless).status, Status::converged);
+  EXPECT_EQ(by_paper_method(frictionless).moment, 0.0);
 }
 
 /// One cell of a grid off the axis: q = M/r at right angles to its arm, and it turns by K q/r.
@@ -59,7 +59,7 @@ TEST(OneCell, OffTheAxisCarriesTheMomentAlone) {
 
 /// A cell on the axis carries no moment about it, so there is nothing to turn it.
 TEST(OneCell, OnTheAxisCarriesNothing) {
-  const Solution solution = solve(paper_scene(1, 0.5));
+  const Solution solution = by_paper_method(paper_scene(1, 0.5));
   EXPECT_EQ(solution.status, Status::converged);
   EXPECT_EQ(solution.contact_cells, 1);
   EXPECT_EQ(solution.moment_limit, 0.0);
@@ -189,18 +189,18 @@ TEST(BadTorsionProblem, ThrowsForGrossSlipAndSaysTheLimit) {
 
 TEST(BadTorsionProblem, OfASceneSaysTheLimitInItsUnits) {
   Scene scene = paper_scene(32, 0.5);
-  const double limit = solve(scene).moment_limit;
+  const double limit = by_paper_method(scene).moment_limit;
   scene.torsion = {};
   scene.torsion.moment = limit * (1.0 + 1e-12);
   try {
-    solve(scene);
+    by_paper_method(scene);
     ADD_FAILURE() << "no exception";
   } catch (const InputError& error) {
     EXPECT_THAT(error.what(), HasSubstr("paper.toml: load.moment = "));
     EXPECT_THAT(error.what(), HasSubstr(fmt::format("below {:.10g}", limit).substr(0, 14)));
   }
   scene.torsion.moment = 0.5 * limit;
-  EXPECT_NEAR(solve(scene).moment / limit, 0.5, kRounding);
+  EXPECT_NEAR(by_paper_method(scene).moment / limit, 0.5, kRounding);
 }
 
 }  // namespace

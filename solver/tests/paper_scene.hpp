@@ -2,7 +2,7 @@
 
 #include <ostream>
 
-#include "solver/scene.hpp"
+#include "solver/solve.hpp"
 
 namespace slipstick::solver {
 
@@ -49,6 +49,12 @@ inline Scene ellipsoid_scene(Index cells, double radius_1, double radius_2, doub
   scene.surface.radius_1 = radius_1;
   scene.surface.radius_2 = radius_2;
   return scene;
+}
+
+/// The scene solved by the paper's method.
+inline Solution by_paper_method(Scene scene) {
+  scene.method = Method::paper;
+  return solve(scene);
 }
 
 /// 1/E* = sum of (1 - nu^2)/E.

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <algorithm>
+#include <span>
+
+#include "solver/grid_transfer.hpp"
+#include "solver/natural_map_newton.hpp"
+
+namespace slipstick::solver {
+
+/// What a nested solve ends with on its finest grid.
+struct NestedSummary {
+  NewtonSummary newton;
+  Eigen::ArrayXd field;         ///< q or p
+  Eigen::ArrayXd displacement;  ///< K q
+  std::vector<GridWork> grids;  ///< coarsest first
+  double bytes = 0.0;           ///< operators and workspaces on the finest grid
+};
+
+/// A coarse grid's answer need not be better than its mesh: gap over energy of the order of (h/a)^2.
+inline double coarse_tolerance(const Grid& grid) {
+  const double mirrored = grid.quadrant ? 4.0 : 1.0;
+  return 1.0 / (mirrored * static_cast<double>(grid.cells()));
+}
+
+/// What NestedSummary::bytes of such a solve will be.
+template <class Set>
+double predicted_nested_bytes(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel) {
+  const auto bytes = [&]<typename Real>(Real) {
+    return GridOperators<Real>::predicted_bytes(elasticity, grid, kernel) +
+           NaturalMapNewton<Set, Real>::bytes(static_cast<double>(grid.cells()));
+  };
+  return elasticity.precision == Precision::mixed ? bytes(0.0F) : bytes(0.0);
+}
+
+/// Solves from the coarsest grid up, inner iterations in the precision Real. Problem gives, for its grid,
+/// kernel(), parities(), admissible(), program() and coarsened(coarse grid).
+template <typename Real, class Problem>
+NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, const Problem& problem,
+                              const NewtonOptions& options) {
+  NestedSummary result;
+  double multiplier = 0.0;
+  if (can_coarsen(grid)) {
+    const Grid coarse = coarser(grid);
+    NewtonOptions coarse_options = options;
+    coarse_options.tolerance = std::max(options.tolerance, coarse_tolerance(coarse));
+    coarse_options.refine_multiplier = false;
+    coarse_options.progress = nullptr;
+    NestedSummary below =
+        solve_nested_in<Real>(elasticity, coarse, problem.coarsened(grid, coarse), coarse_options);
+    result.grids = std::move(below.grids);
+    result.field = prolong_to(grid, coarse, below.field, problem.parities());
+    multiplier = below.newton.multiplier;
+  } else {
+    result.field.setZero(static_cast<Index>(problem.parities().size()) * grid.cells());
+  }
+  if (!result.field.isFinite().all()) result.field.setZero();
+
+  GridOperators<Real> operators(elasticity, grid, problem.kernel());
+  const auto admissible = problem.admissible();
+  const ConvexProgram program = problem.program();
+  NaturalMapNewton<std::remove_const_t<decltype(admissible)>, Real> newton(
+      admissible, program, *operators.op, operators.inner(), *operators.symbol);
+  result.newton = newton.run(result.field, multiplier, options);
+  result.displacement = newton.displacement();
+  result.grids.push_back(
+      {grid.n1, grid.n2, newton.applications(), result.newton.iterations, result.newton.gap});
+  result.bytes = operators.bytes() + newton.bytes(static_cast<double>(grid.cells()));
+  return result;
+}
+
+/// In the precision that is asked for.
+template <class Problem>
+NestedSummary solve_nested(const Elasticity& elasticity, const Grid& grid, const Problem& problem,
+                           const NewtonOptions& options) {
+  return elasticity.precision == Precision::mixed
+             ? solve_nested_in<float>(elasticity, grid, problem, options)
+             : solve_nested_in<double>(elasticity, grid, problem, options);
+}
+
+}  // namespace slipstick::solver

@@ -1,0 +1,422 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <ostream>
+#include <sstream>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "solver/solve.hpp"
+#include "solver/tests/paper_scene.hpp"
+#include "solver/tests/scene_file.hpp"
+
+/// Whole scenes, solved on the part of the grid that the model leaves and on all of it: what is left out must
+/// not change the answer.
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+using testing::Contains;
+using testing::ElementsAre;
+using testing::Not;
+using testing::StartsWith;
+
+constexpr const char* kCoupling = "K13, K23";
+constexpr const char* kTranslations = "translations";
+constexpr const char* kQuadrant = "three quarters of the contact";
+constexpr const char* kDiagonal = "one traction field";
+
+double relative_difference(const ArrayXd& a, const ArrayXd& b) {
+  return (a - b).abs().maxCoeff<Eigen::PropagateNaN>() / b.abs().maxCoeff();
+}
+
+std::vector<std::string> left_out(const Solution& solution) {
+  std::vector<std::string> names;
+  for (const Omission& omission : solution.model.left_out) {
+    names.push_back(omission.what);
+    EXPECT_FALSE(omission.why.empty()) << omission.what;
+  }
+  return names;
+}
+
+Solution solve_full(Scene scene) {
+  scene.model = ModelChoice::full;
+  return solve(scene);
+}
+
+/// Counts of the smallest rectangle about the origin that holds the contact.
+std::array<Index, 2> contact_sides(const Solution& solution) {
+  const Grid& grid = solution.model.grid;
+  std::array<Index, 2> sides{};
+  for (Index i = 0; i < grid.n1; ++i) {
+    for (Index j = 0; j < grid.n2; ++j) {
+      if (!(solution.normal.pressure[i * grid.n2 + j] > 0.0)) continue;
+      sides[0] = std::max({sides[0], 2 * i + 2 - grid.n1, grid.n1 - 2 * i});
+      sides[1] = std::max({sides[1], 2 * j + 2 - grid.n2, grid.n2 - 2 * j});
+    }
+  }
+  return sides;
+}
+
+std::string trimming(const Solution& solution) {
+  const auto [n1, n2] = contact_sides(solution);
+  const Grid& grid = solution.model.grid;
+  std::ostringstream text;
+  text << "all but " << n1 << " x " << n2 << " of " << grid.n1 << " x " << grid.n2 << " cells";
+  return text.str();
+}
+
+/// From the tractions, the pressure and the twist alone, on the whole grid.
+Certificate recomputed(const Scene& scene, const Solution& solution, OperatorKind kind) {
+  const Model& model = solution.model;
+  const ArrayXd& pressure = solution.normal.pressure;
+  const ArrayXd& q = solution.torsion.traction;
+  const ArrayXd rotation = rotation_field(model.grid);
+  ArrayXd u(q.size());
+  make_operator(kind, model.grid, tangential_kernel(), model.pair)->apply(q, u);
+  ArrayXd slip = u - solution.torsion.twist * rotation;
+  if (model.pressure_coupling) {
+    ArrayXd by_pressure(q.size());
+    make_operator(kind, model.grid, coupling_kernel(), model.pair)->apply(pressure, by_pressure);
+    slip += by_pressure;
+  }
+  slip *= (pressure > 0.0).cast<double>().replicate(2, 1);
+  const ArrayXd bound = model.friction * pressure;
+  const double moment = scene.torsion.moment_ratio
+                            ? *scene.torsion.moment_ratio * moment_limit(model.grid, bound)
+                            : (q * rotation).sum();
+  return certify({q, u, slip}, bound, rotation, moment);
+}
+
+void expect_certificate(const Certificate& certificate, double tolerance) {
+  // The sums round by about 1e-15 of the energy.
+  EXPECT_LE(certificate.gap, tolerance * (1.0 + 1e-6) + 1e-14);
+  EXPECT_LE(certificate.moment, 1e-12);
+  EXPECT_LE(certificate.friction_bound, 1e-12);
+}
+
+struct Case {
+  std::string name;
+  Scene scene;
+  bool quadrant = false;
+  bool diagonal = false;
+  bool trimmed = true;
+};
+void PrintTo(const Case& tested, std::ostream* stream) { *stream << tested.name; }
+
+Scene with(Scene scene, const std::function<void(Scene&)>& change) {
+  change(scene);
+  return scene;
+}
+
+/// By default two cells on each side of the contact stay empty.
+std::vector<Case> cases() {
+  const Scene sphere = paper_scene(32, 0.5);
+  const Scene ellipsoid = ellipsoid_scene(32, 0.036, 0.018, 0.5);
+  const auto imposed_twist = [](Scene& scene) {
+    scene.torsion = {};
+    scene.torsion.twist = 1e-3;
+  };
+  const auto hertz_averaged = [](Scene& scene) { scene.pressure = PressureModel::hertz_averaged; };
+  const auto square_cells = [](Scene& scene) { scene.extent = {1.5e-3, 1.5e-3}; };
+  // Slips from its rim where the moment is above 0.85 of the limit.
+  Scene punch = paper_scene(32, 0.95);
+  punch.surface.shape = Shape::flat_punch;
+  punch.surface.radius = 1e-3;
+  std::vector<Case> list{
+      {"sphere", sphere, true, true},
+      {"sphere_nearly_slipping", paper_scene(24, 0.97), true, true},
+      {"sphere_under_twist", with(sphere, imposed_twist), true, true},
+      {"sphere_oblong_cells",
+       with(sphere,
+            [](Scene& scene) {
+              scene.cells = {32, 24};
+            }),
+       true, false},
+      {"sphere_wide",
+       with(sphere,
+            [](Scene& scene) {
+              scene.extent = {2e-3, 2e-3};
+            }),
+       true, true},
+      {"sphere_filling",
+       with(sphere,
+            [](Scene& scene) {
+              scene.extent = {0.99e-3, 0.99e-3};
+            }),
+       true, true, false},
+      {"sphere_odd", with(sphere,
+                          [](Scene& scene) {
+                            scene.cells = {31, 31};
+                          })},
+      {"sphere_odd_along_x2", with(sphere,
+                                   [](Scene& scene) {
+                                     scene.cells = {32, 27};
+                                   })},
+      {"sphere_dissimilar", with(sphere, [](Scene& scene) { scene.lower.young_modulus = 70e9; })},
+      {"sphere_dissimilar_uncoupled",
+       with(sphere,
+            [](Scene& scene) {
+              scene.lower.young_modulus = 70e9;
+              scene.coupling = Coupling::none;
+            }),
+       true, true},
+      {"ellipsoid_oblong_cells", ellipsoid, true, false},
+      {"ellipsoid_square_cells", with(ellipsoid, square_cells), true, false},
+      {"ellipsoid_under_twist", with(ellipsoid, imposed_twist), true, false},
+      {"hertz_averaged", with(sphere, hertz_averaged), true, true},
+      {"ellipsoid_hertz_averaged", with(ellipsoid, hertz_averaged), true, false},
+      {"hertz_at_centres", with(sphere, [](Scene& scene) { scene.pressure = PressureModel::hertz; }), true,
+       true},
+      {"mixed_precision", with(sphere, [](Scene& scene) { scene.precision = Precision::mixed; }), true, true},
+      {"punch", punch, true, true}};
+  for (Case& each : list) each.scene.tolerance = 1e-12;
+  return list;
+}
+
+class ReducedModel : public testing::TestWithParam<Case> {
+ protected:
+  static bool coupled() { return GetParam().name == "sphere_dissimilar"; }
+};
+INSTANTIATE_TEST_SUITE_P(Scenes, ReducedModel, testing::ValuesIn(cases()),
+                         [](const auto& tested) { return tested.param.name; });
+
+/// Newton's last step leaves less than the gap that it is stopped on: the fields agree far better than its
+/// root.
+TEST_P(ReducedModel, GivesTheFullModelsAnswer) {
+  const Scene& scene = GetParam().scene;
+  const Solution full = solve_full(scene);
+  const Solution reduced = solve(scene);
+  ASSERT_EQ(full.status, Status::converged) << full.message;
+  ASSERT_EQ(reduced.status, Status::converged) << reduced.message;
+  constexpr double same = 1e-10;
+  EXPECT_LE(relative_difference(reduced.normal.pressure, full.normal.pressure), same);
+  EXPECT_LE(relative_difference(reduced.torsion.traction, full.torsion.traction), same);
+  EXPECT_LE(relative_difference(reduced.torsion.slip, full.torsion.slip), same);
+  const ArrayXd contact = (full.normal.pressure > 0.0).cast<double>().replicate(2, 1);
+  EXPECT_LE(relative_difference(contact * reduced.torsion.elastic_displacement,
+                                contact * full.torsion.elastic_displacement),
+            same);
+  EXPECT_TRUE((reduced.torsion.stick == full.torsion.stick).all());
+  EXPECT_EQ(reduced.stick_cells, full.stick_cells);
+  EXPECT_EQ(reduced.contact_cells, full.contact_cells);
+  EXPECT_NEAR(reduced.twist_angle / full.twist_angle, 1.0, same);
+  EXPECT_NEAR(reduced.moment / full.moment, 1.0, same);
+  EXPECT_NEAR(reduced.moment_limit / full.moment_limit, 1.0, same);
+  EXPECT_NEAR(reduced.normal_load / full.normal_load, 1.0, same);
+  EXPECT_NEAR(reduced.approach, full.approach, same * std::abs(full.approach));
+  // By a few steps only, each of which brings it nearer.
+  EXPECT_NEAR(reduced.torsion.tangent_stiffness / full.torsion.tangent_stiffness, 1.0, 1e-4);
+  EXPECT_GT(full.stick_cells, 0);
+  EXPECT_LT(full.stick_cells, full.contact_cells) << "both states must occur";
+}
+
+TEST_P(ReducedModel, NamesWhatItLeavesOut) {
+  const Case& tested = GetParam();
+  const Solution reduced = solve(tested.scene);
+  std::vector<std::string> expected;
+  if (!coupled()) expected.emplace_back(kCoupling);
+  expected.emplace_back(kTranslations);
+  if (tested.trimmed) expected.push_back(trimming(reduced));
+  if (tested.quadrant) expected.emplace_back(kQuadrant);
+  if (tested.diagonal) expected.emplace_back(kDiagonal);
+  EXPECT_EQ(left_out(reduced), expected);
+  EXPECT_EQ(reduced.model.pressure_part.quadrant(),
+            tested.scene.cells[0] % 2 + tested.scene.cells[1] % 2 == 0);
+  // What is named is what was solved.
+  const auto [n1, n2] = contact_sides(reduced);
+  const Index images = tested.quadrant ? 2 : 1;
+  EXPECT_EQ(reduced.torsion.grids.back().n1, n1 / images);
+  EXPECT_EQ(reduced.torsion.grids.back().n2, n2 / images);
+}
+
+TEST_P(ReducedModel, FullLeavesOutTranslationsAlone) {
+  const Scene& scene = GetParam().scene;
+  const Solution full = solve_full(scene);
+  std::vector<std::string> expected{kTranslations};
+  if (scene.coupling == Coupling::none) expected.insert(expected.begin(), kCoupling);  // as the scene asks
+  EXPECT_EQ(left_out(full), expected);
+  EXPECT_EQ(full.torsion.grids.back().n1, scene.cells[0]);
+  EXPECT_EQ(full.torsion.grids.back().n2, scene.cells[1]);
+}
+
+TEST_P(ReducedModel, HoldsItsCertificateOnTheWholeGrid) {
+  const Scene& scene = GetParam().scene;
+  const Solution reduced = solve(scene);
+  expect_certificate(reduced.certificate, scene.tolerance);
+  expect_certificate(recomputed(scene, reduced, OperatorKind::dcfft), scene.tolerance);
+}
+
+/// Whatever the precision of the inner iteration and the part that was solved, the result is held to the same
+/// tolerance, by plain sums in double precision.
+TEST(MixedPrecision, HoldsTheSameCertificate) {
+  for (const bool full : {false, true}) {
+    Scene scene = ellipsoid_scene(28, 0.03, 0.015, 0.6);
+    scene.model = full ? ModelChoice::full : ModelChoice::automatic;
+    scene.precision = Precision::mixed;
+    scene.tolerance = 1e-10;
+    const Solution solution = solve(scene);
+    ASSERT_EQ(solution.status, Status::converged) << solution.message;
+    expect_certificate(recomputed(scene, solution, OperatorKind::direct), 1e-10);
+
+    const Model& model = solution.model;
+    const ArrayXd& p = solution.normal.pressure;
+    ArrayXd u(p.size());
+    make_operator(OperatorKind::direct, model.grid, normal_kernel(), model.pair)->apply(p, u);
+    const ArrayXd opening = u + model.gap;
+    EXPECT_LE((p * (opening - opening.minCoeff())).sum(), 1.0001e-10 * 0.5 * (p * u).sum());
+    EXPECT_NEAR(solution.normal_load / paper::kLoad, 1.0, 1e-11);
+  }
+}
+
+/// The paper's method stops on change, and a slipping cell keeps the direction of its first slip: the two
+/// runs may stop an iteration apart, and rounding enters the directions. They agree to some of their
+/// tolerances, and break Coulomb's law alike.
+TEST(PapersMethod, AgreesToItsTolerance) {
+  for (Scene scene : {paper_scene(32, 0.5), ellipsoid_scene(32, 0.036, 0.018, 0.5), paper_scene(27, 0.7)}) {
+    scene.method = Method::paper;
+    scene.tolerance = 1e-10;
+    const Solution full = solve_full(scene);
+    const Solution reduced = solve(scene);
+    ASSERT_TRUE(full.status == Status::converged && reduced.status == Status::converged);
+    EXPECT_LE(relative_difference(reduced.torsion.traction, full.torsion.traction), 100.0 * scene.tolerance);
+    EXPECT_NEAR(reduced.twist_angle / full.twist_angle, 1.0, 100.0 * scene.tolerance);
+    EXPECT_NEAR(reduced.certificate.gap / full.certificate.gap, 1.0, 1e-3);
+    EXPECT_TRUE((reduced.torsion.stick == full.torsion.stick).all());
+    EXPECT_THAT(left_out(full), ElementsAre(kTranslations));
+    EXPECT_THAT(left_out(reduced), Contains(trimming(reduced)));
+  }
+}
+
+/// Direct and dense sums are what the others are compared with.
+TEST(DirectAndDense, LeaveNoCellsOut) {
+  for (const OperatorKind kind : {OperatorKind::direct, OperatorKind::dense}) {
+    Scene scene = paper_scene(12, 0.5);
+    scene.op = kind;
+    const Solution solution = solve(scene);
+    EXPECT_THAT(left_out(solution), ElementsAre(kCoupling, kTranslations));
+    EXPECT_EQ(solution.torsion.grids.back().n1, 12);
+  }
+}
+
+// --- height maps ---
+
+class HeightMapSymmetry : public SceneFile {
+ protected:
+  /// A bowl with ripples, in mirror image about both axes; one height may be changed.
+  Solution solved(double change = 0.0) const {
+    constexpr Index n1 = 20;
+    constexpr Index n2 = 24;
+    std::ostringstream text;
+    text.precision(17);
+    for (Index i = 0; i < n1; ++i) {
+      for (Index j = 0; j < n2; ++j) {
+        const auto x1 = static_cast<double>(std::abs(2 * i + 1 - n1));
+        const auto x2 = static_cast<double>(std::abs(2 * j + 1 - n2));
+        double height = 3e-8 * (x1 * x1 + x2 * x2) + 1e-7 * std::cos(0.9 * x1) * std::cos(1.1 * x2);
+        if (i == 11 && j == 13) height += change;
+        text << (j == 0 ? "" : ",") << height;
+      }
+      text << '\n';
+    }
+    Scene scene = paper_scene(0, 0.5);
+    scene.cells = {n1, n2};
+    scene.surface = {
+        .shape = Shape::height_map, .file = write("heights.csv", text.str()), .spacing = {5e-5, 5e-5}};
+    scene.tolerance = 1e-12;
+    const Solution reduced = solve(scene);
+    const Solution full = solve_full(scene);
+    EXPECT_EQ(reduced.status, Status::converged) << reduced.message;
+    EXPECT_LE(relative_difference(reduced.normal.pressure, full.normal.pressure), 1e-10);
+    EXPECT_LE(relative_difference(reduced.torsion.traction, full.torsion.traction), 1e-10);
+    EXPECT_NEAR(reduced.twist_angle / full.twist_angle, 1.0, 1e-10);
+    return reduced;
+  }
+};
+
+TEST_F(HeightMapSymmetry, IsFoundInTheData) {
+  const Solution symmetric = solved();
+  EXPECT_TRUE(symmetric.model.pressure_part.quadrant());
+  EXPECT_THAT(left_out(symmetric), Contains(kQuadrant));
+}
+
+/// A nanometre in one cell: the pressure is no mirror image any more, and nor is the traction.
+TEST_F(HeightMapSymmetry, IsNotMadeUp) {
+  const Solution bumpy = solved(1e-9);
+  EXPECT_FALSE(bumpy.model.pressure_part.quadrant());
+  EXPECT_THAT(left_out(bumpy), Not(Contains(kQuadrant)));
+  EXPECT_THAT(left_out(bumpy), Not(Contains(kDiagonal)));
+}
+
+// --- memory ---
+
+class PressureFromAFile : public SceneFile {};
+
+TEST(PredictedMemory, IsWhatTheSolutionHolds) {
+  for (const ModelChoice choice : {ModelChoice::automatic, ModelChoice::full}) {
+    for (const Precision precision : {Precision::double_precision, Precision::mixed}) {
+      for (const auto& [method, pressure] : {std::pair{Method::coulomb, PressureModel::solved},
+                                             {Method::paper, PressureModel::solved},
+                                             {Method::paper, PressureModel::hertz_averaged}}) {
+        for (const std::array<Index, 2> cells : {std::array<Index, 2>{32, 32}, {32, 26}, {31, 32}}) {
+          Scene scene = paper_scene(32, 0.5);
+          scene.cells = cells;
+          scene.extent = {0.99e-3, 0.99e-3};  // the contact fills the grid: nothing is trimmed
+          scene.model = choice;
+          scene.precision = precision;
+          scene.method = method;
+          scene.pressure = pressure;
+          const Solution solution = solve(scene);
+          ASSERT_THAT(left_out(solution), Not(Contains(StartsWith("all but"))));
+          EXPECT_EQ(predicted_memory(scene, make_model(scene)).solver, solution.bytes)
+              << cells[0] << " x " << cells[1] << (choice == ModelChoice::full ? ", full" : ", reduced")
+              << (precision == Precision::mixed ? ", mixed" : ", double")
+              << (method == Method::paper ? ", paper" : ", coulomb");
+        }
+      }
+    }
+  }
+}
+
+/// How far the contact reaches is not known before: what is trimmed later is not needed either.
+TEST(PredictedMemory, IsEnoughWhereTheContactIsTrimmed) {
+  for (const Case& tested : cases()) {
+    const Solution solution = solve(tested.scene);
+    EXPECT_GE(predicted_memory(tested.scene, make_model(tested.scene)).solver, solution.bytes) << tested.name;
+  }
+}
+
+/// A file's pressure need not have the mirrors of the surface that is said to cause it.
+TEST_F(PressureFromAFile, NeedsTheWholeGrid) {
+  std::ostringstream text;
+  text << "x1,x2,pressure\n";
+  constexpr double h = 1e-3 / 16.0;
+  for (int i = 0; i < 16; ++i) {
+    for (int j = 0; j < 16; ++j)
+      text << (i - 7.5) * h << ',' << (j - 7.5) * h << ',' << 1e9 + 1e7 * i << '\n';
+  }
+  Scene scene = paper_scene(16, 0.5);
+  scene.extent = {1e-3, 1e-3};
+  scene.normal_load.reset();
+  scene.pressure = PressureModel::file;
+  scene.pressure_file = write("pressure.csv", text.str());
+  const Solution solution = solve(scene);
+  ASSERT_EQ(solution.status, Status::converged) << solution.message;
+  EXPECT_THAT(left_out(solution), ElementsAre(kCoupling, kTranslations));
+  EXPECT_EQ(predicted_memory(scene, make_model(scene)).solver, solution.bytes);
+}
+
+TEST(Memory, OfTheFullModelIsTenNumbersAPaddedCell) {
+  const Solution solution = solve_full(paper_scene(64, 0.5));
+  const double padded = 4.0 * 64.0 * 64.0;
+  EXPECT_LE(solution.bytes, 10.0 * sizeof(double) * padded);
+  EXPECT_LE(solve(paper_scene(64, 0.5)).bytes, 0.3 * solution.bytes) << "a quadrant of it";
+}
+
+}  // namespace
+}  // namespace slipstick::solver
