@@ -1,12 +1,17 @@
 #include "convergence/errors.hpp"
 
 #include <cmath>
+#include <limits>
 
 namespace slipstick::convergence {
 namespace {
 
 using Eigen::ArrayXd;
 using solver::Index;
+
+double relative_error(double value, double exact) {
+  return std::isfinite(exact) ? value / exact - 1.0 : std::numeric_limits<double>::quiet_NaN();
+}
 
 /// Both given as sizes in each cell: of the difference, and of the exact field.
 FieldError field_error(const ArrayXd& difference, const ArrayXd& exact) {
@@ -34,17 +39,19 @@ ExactFields exact_fields(const Oracle& oracle, const solver::Model& model) {
 
 Errors compare(const solver::Solution& solution, const Oracle& oracle) {
   const ExactFields exact = exact_fields(oracle, solution.model);
-  const ArrayXd& pressure = solution.normal.pressure;
+  const auto finite = exact.pressure.isFinite();
+  const ArrayXd pressure_difference = (solution.normal.pressure - exact.pressure).abs();
   return {
-      .twist = solution.twist_angle / oracle.twist_angle - 1.0,
-      .moment = solution.moment / oracle.moment - 1.0,
-      .moment_limit = solution.moment_limit / oracle.moment_limit - 1.0,
-      .stick_radius = solution.stick_radius_counted / oracle.stick_radius - 1.0,
-      .contact_radius = solution.contact_radius / oracle.contact_radius - 1.0,
-      .peak_pressure = solution.peak_pressure / oracle.peak_pressure - 1.0,
+      .twist = relative_error(solution.twist_angle, oracle.twist_angle),
+      .moment = relative_error(solution.moment, oracle.moment),
+      .moment_limit = relative_error(solution.moment_limit, oracle.moment_limit),
+      .stick_radius = relative_error(solution.stick_radius, oracle.stick_radius),
+      .stick_radius_counted = relative_error(solution.stick_radius_counted, oracle.stick_radius),
+      .contact_radius = relative_error(solution.contact_radius, oracle.contact_radius),
+      .peak_pressure = relative_error(solution.peak_pressure, oracle.peak_pressure),
       .traction = field_error(solver::norms(solution.torsion.traction - exact.traction),
                               solver::norms(exact.traction)),
-      .pressure = field_error((pressure - exact.pressure).abs(), exact.pressure),
+      .pressure = field_error(finite.select(pressure_difference, 0.0), finite.select(exact.pressure, 0.0)),
   };
 }
 

@@ -8,7 +8,7 @@
 namespace slipstick::convergence {
 
 /// Relative errors of a field: sum |f - exact| / sum |exact|, the same of squares under a root, and of
-/// maxima.
+/// maxima. A cell where the exact value is infinite (a cone's axis, with an odd number of cells) is left out.
 struct FieldError {
   double l1;
   double l2;
@@ -16,12 +16,14 @@ struct FieldError {
 };
 
 /// Signed relative errors computed/exact - 1, and errors of the fields at cell centres. Where the exact value
-/// is zero (no load), the twist and traction errors are NaN.
+/// is zero (no load: twist, moment, traction) or infinite (peak pressure of a cone and a flat punch), the
+/// error is NaN.
 struct Errors {
   double twist;
   double moment;
   double moment_limit;
   double stick_radius;
+  double stick_radius_counted;
   double contact_radius;
   double peak_pressure;
   FieldError traction;

@@ -1,12 +1,12 @@
 #include "convergence/result.hpp"
 
 #include <fmt/core.h>
-#include <sys/resource.h>
 
 #include <cmath>
 
 #include "convergence/errors.hpp"
 #include "convergence/provenance.hpp"
+#include "convergence/result_parts.hpp"
 #include "solver/field_file.hpp"
 
 namespace slipstick::convergence {
@@ -14,26 +14,14 @@ namespace {
 
 using solver::Solution;
 
-/// JSON has no NaN: such a number is null and its reason stands beside it.
-void set_number(Json& object, const std::string& key, double value, const std::string& reason) {
-  if (std::isfinite(value)) {
-    object[key] = value;
-  } else {
-    object[key] = nullptr;
-    object[key + "_reason"] = reason;
+/// The work on each grid, coarsest first.
+Json grids_json(const std::vector<solver::GridWork>& grids) {
+  Json rows = Json::array();
+  for (const auto& [n1, n2, applications, iterations, gap] : grids) {
+    rows.push_back({{"cells", {n1, n2}}, {"applications", applications}, {"iterations", iterations}});
+    set_number(rows.back(), "stopped_at", gap, "the solve broke down");
   }
-}
-
-std::size_t peak_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
-}
-
-Json model_json(const solver::Model& model) {
-  Json left_out = Json::array();
-  for (const auto& [what, why] : model.left_out) left_out.push_back({{"what", what}, {"why", why}});
-  return {{"left_out", left_out}};
+  return rows;
 }
 
 Json field_error_json(const FieldError& error, const std::string& reason) {
@@ -41,6 +29,21 @@ Json field_error_json(const FieldError& error, const std::string& reason) {
   set_number(json, "l1", error.l1, reason);
   set_number(json, "l2", error.l2, reason);
   set_number(json, "max", error.max, reason);
+  return json;
+}
+
+const std::string kNoPeak = "the exact pressure has no finite peak";
+
+Json exact_json(const Oracle& oracle) {
+  Json json{{"twist_angle", oracle.twist_angle},
+            {"twist", oracle.state.twist},
+            {"moment", oracle.moment},
+            {"moment_limit", oracle.moment_limit},
+            {"stick_radius", oracle.stick_radius},
+            {"stick_ratio", oracle.state.stick_ratio},
+            {"contact_radius", oracle.contact_radius}};
+  set_number(json, "peak_pressure", oracle.peak_pressure, kNoPeak);
+  json["approach"] = oracle.approach;
   return json;
 }
 
@@ -58,19 +61,13 @@ void add_errors(Json& json, const Solution& solution, const OracleAnswer& exact)
   set_number(json, "moment_error", errors.moment, reason);
   set_number(json, "moment_limit_error", errors.moment_limit, reason);
   set_number(json, "stick_radius_error", errors.stick_radius, reason);
+  set_number(json, "stick_radius_counted_error", errors.stick_radius_counted, reason);
   set_number(json, "contact_radius_error", errors.contact_radius, reason);
-  set_number(json, "peak_pressure_error", errors.peak_pressure, reason);
+  set_number(json, "peak_pressure_error", errors.peak_pressure,
+             std::isfinite(oracle.peak_pressure) ? reason : kNoPeak);
   json["traction_error"] = field_error_json(errors.traction, reason);
   json["pressure_error"] = field_error_json(errors.pressure, reason);
-  json["exact"] = {{"twist_angle", oracle.twist_angle},
-                   {"twist", oracle.state.twist},
-                   {"moment", oracle.moment},
-                   {"moment_limit", oracle.moment_limit},
-                   {"stick_radius", oracle.stick_radius},
-                   {"stick_ratio", oracle.state.stick_ratio},
-                   {"contact_radius", oracle.contact_radius},
-                   {"peak_pressure", oracle.peak_pressure},
-                   {"approach", oracle.approach}};
+  json["exact"] = exact_json(oracle);
 }
 
 }  // namespace
@@ -83,19 +80,21 @@ Json solve_result(const solver::Scene& scene, const Solution& solution, const Or
   json["name"] = scene.name;
   json["status"] = solution.status == solver::Status::converged ? "converged" : "not_converged";
   if (!solution.message.empty()) json["message"] = solution.message;
-  json["method"] = "paper";
+  json["method"] = to_string(scene.method);
   json["operator"] = to_string(scene.op);
+  json["precision"] = to_string(scene.precision);
   json["pressure"] = to_string(scene.pressure);
-  json["model"] = model_json(model);
+  json["model"] = model_json(model.left_out);
   json["cells"] = {model.grid.n1, model.grid.n2};
   json["cell_size"] = {model.grid.h1 * model.length_unit, model.grid.h2 * model.length_unit};
   json["contact_cells"] = solution.contact_cells;
   json["stick_cells"] = solution.stick_cells;
   json["contact_radius"] = a;
   json["contact_radius_counted"] = solution.contact_radius_counted;
-  json["stick_radius"] = solution.stick_radius_counted;
+  set_number(json, "stick_radius", solution.stick_radius, "the solve broke down");
+  if (!solution.stick_radius_note.empty()) json["stick_radius_note"] = solution.stick_radius_note;
   json["stick_radius_counted"] = solution.stick_radius_counted;
-  set_number(json, "stick_ratio", solution.stick_radius_counted / a, "no contact");
+  set_number(json, "stick_ratio", solution.stick_radius / a, "no contact");
   json["friction"] = scene.friction;
   json["normal_load"] = solution.normal_load;
   json["peak_pressure"] = solution.peak_pressure;
@@ -114,6 +113,8 @@ Json solve_result(const solver::Scene& scene, const Solution& solution, const Or
   json["displacement"] = {0.0, 0.0};
   json["iterations"] = solution.torsion.iterations;
   json["operator_applications"] = solution.operator_applications;
+  json["pressure_applications"] = solution.pressure_applications;
+  json["grids"] = grids_json(solution.torsion.grids);
   json["pressure_iterations"] = solution.normal.iterations;
   json["pressure_complementarity"] = solution.normal.complementarity;
   json["tolerance"] = scene.tolerance;
@@ -130,57 +131,33 @@ Json solve_result(const solver::Scene& scene, const Solution& solution, const Or
                      {"pressure", solution.seconds.pressure},
                      {"traction", solution.seconds.traction},
                      {"total", solution.seconds.total}};
-  json["operator_bytes"] = solution.operator_bytes;
+  json["solver_bytes"] = solution.bytes;
   json["peak_bytes"] = peak_bytes();
   json["provenance"] = provenance(scene.threads);
   return json;
 }
 
 std::string solve_text(const Json& r) {
-  const auto number = [](const Json& value) {
-    return value.is_number() ? fmt::format("{:.6g}", value.get<double>()) : "-";
-  };
-  const auto error_of = [](const Json& json, const char* key) {
-    const auto found = json.find(key);
-    return found != json.end() && found->is_number() ? fmt::format("   (error {:+.1e})", found->get<double>())
-                                                     : "";
-  };
   std::string text =
       fmt::format("{}: {} x {} cells, pressure {}, operator {}, method {}\n", r["name"].get<std::string>(),
                   r["cells"][0].get<int>(), r["cells"][1].get<int>(), r["pressure"].get<std::string>(),
                   r["operator"].get<std::string>(), r["method"].get<std::string>());
-  const auto line = [&](const char* label, const std::string& value) {
-    text += fmt::format("  {:<16} {}\n", label, value);
-  };
-  line("status", fmt::format("{} ({} iterations, {} operator applications, {} s)",
-                             r["status"].get<std::string>(), r["iterations"].get<int>(),
-                             r["operator_applications"].get<long>(), number(r["seconds"]["total"])));
-  if (r.contains("message")) line("why", r["message"].get<std::string>());
-  line("normal load", number(r["normal_load"]) + " N");
-  line("contact radius", number(r["contact_radius"]) + " m" + error_of(r, "contact_radius_error"));
-  line("peak pressure", number(r["peak_pressure"]) + " Pa" + error_of(r, "peak_pressure_error"));
-  line("moment", fmt::format("{} N m = {} of the limit {} N m", number(r["moment"]),
-                             number(r["moment_ratio"]), number(r["moment_limit"])) +
-                     error_of(r, "moment_error"));
-  line("twist", number(r["twist_angle"]) + " rad" + error_of(r, "twist_error"));
-  line("stick radius", number(r["stick_radius"]) + " m" + error_of(r, "stick_radius_error"));
+  text += status_text(r) + state_text(r);
   if (r["traction_error"].is_object()) {
-    line("traction error", fmt::format("{} in L1, {} in L2 (relative)", number(r["traction_error"]["l1"]),
-                                       number(r["traction_error"]["l2"])));
+    text += text_line("traction error",
+                      fmt::format("{} in L1, {} in L2 (relative)", number_text(r["traction_error"]["l1"]),
+                                  number_text(r["traction_error"]["l2"])));
   } else {
-    line("exact answer", fmt::format("none: {}", r["traction_error_reason"].get<std::string>()));
+    text += text_line("exact answer", "none: " + r["traction_error_reason"].get<std::string>());
   }
-  line("certificate",
-       fmt::format("gap/energy {}, moment off by {}, |q| above mu p by {}", number(r["certificate"]["gap"]),
-                   number(r["certificate"]["moment"]), number(r["certificate"]["friction_bound"])));
-  line("slip direction",
-       fmt::format("{} degrees off in the mean, {} at most (Coulomb: 0)", number(r["slip_direction"]["mean"]),
-                   number(r["slip_direction"]["max"])));
-  for (const Json& omission : r["model"]["left_out"]) {
-    line("left out",
-         fmt::format("{} ({})", omission["what"].get<std::string>(), omission["why"].get<std::string>()));
-  }
-  return text;
+  text += text_line("certificate",
+                    fmt::format("gap/energy {}, moment off by {}, |q| above mu p by {}",
+                                number_text(r["certificate"]["gap"]), number_text(r["certificate"]["moment"]),
+                                number_text(r["certificate"]["friction_bound"])));
+  text += text_line("slip direction", fmt::format("{} degrees off in the mean, {} at most (Coulomb: 0)",
+                                                  number_text(r["slip_direction"]["mean"]),
+                                                  number_text(r["slip_direction"]["max"])));
+  return text + model_text(r);
 }
 
 void write_solution_fields(const std::filesystem::path& file, const Solution& solution,

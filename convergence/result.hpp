@@ -1,15 +1,13 @@
 #pragma once
 
 #include <filesystem>
-#include <nlohmann/json.hpp>
 #include <string>
 
 #include "convergence/oracle.hpp"
+#include "convergence/result_parts.hpp"
 #include "solver/solve.hpp"
 
 namespace slipstick::convergence {
-
-using Json = nlohmann::ordered_json;
 
 /// A solution as the result file has it: SI units, radians, errors against the exact answer where there is
 /// one. A number that does not exist is null, with its reason beside it under the same name and "_reason".

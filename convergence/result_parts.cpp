@@ -1,0 +1,86 @@
+#include "convergence/result_parts.hpp"
+
+#include <fmt/core.h>
+#include <sys/resource.h>
+
+#include <cmath>
+
+namespace slipstick::convergence {
+namespace {
+
+std::string error_text(const Json& result, const std::string& key) {
+  const auto found = result.find(key);
+  return found != result.end() && found->is_number() ? fmt::format("   (error {:+.1e})", found->get<double>())
+                                                     : "";
+}
+
+}  // namespace
+
+void set_missing(Json& object, const std::string& key, const std::string& reason) {
+  object[key] = nullptr;
+  object[key + "_reason"] = reason;
+}
+
+void set_number(Json& object, const std::string& key, double value, const std::string& reason) {
+  if (std::isfinite(value)) {
+    object[key] = value;
+  } else {
+    set_missing(object, key, reason);
+  }
+}
+
+Json model_json(const std::vector<solver::Omission>& left_out) {
+  Json list = Json::array();
+  for (const auto& [what, why] : left_out) list.push_back({{"what", what}, {"why", why}});
+  return {{"left_out", list}};
+}
+
+std::size_t peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+std::string number_text(const Json& value) {
+  return value.is_number() ? fmt::format("{:.6g}", value.get<double>()) : "-";
+}
+
+std::string text_line(const std::string& label, const std::string& value) {
+  return fmt::format("  {:<16} {}\n", label, value);
+}
+
+std::string status_text(const Json& r) {
+  std::string text = text_line(
+      "status", fmt::format("{} ({} iterations, {} operator applications, {} s)",
+                            r["status"].get<std::string>(), r["iterations"].get<int>(),
+                            number_text(r["operator_applications"]), number_text(r["seconds"]["total"])));
+  if (r.contains("message")) text += text_line("why", r["message"].get<std::string>());
+  return text;
+}
+
+std::string state_text(const Json& r) {
+  const Json& peak = r["peak_pressure"];
+  return text_line("normal load", number_text(r["normal_load"]) + " N") +
+         text_line("contact radius",
+                   number_text(r["contact_radius"]) + " m" + error_text(r, "contact_radius_error")) +
+         text_line("peak pressure", peak.is_number()
+                                        ? number_text(peak) + " Pa" + error_text(r, "peak_pressure_error")
+                                        : r["peak_pressure_reason"].get<std::string>()) +
+         text_line("moment", fmt::format("{} N m = {} of the limit {} N m", number_text(r["moment"]),
+                                         number_text(r["moment_ratio"]), number_text(r["moment_limit"])) +
+                                 error_text(r, "moment_error")) +
+         text_line("twist", number_text(r["twist_angle"]) + " rad" + error_text(r, "twist_error")) +
+         text_line("stick radius",
+                   number_text(r["stick_radius"]) + " m" + error_text(r, "stick_radius_error"));
+}
+
+std::string model_text(const Json& r) {
+  std::string text;
+  for (const Json& omission : r["model"]["left_out"]) {
+    text += text_line("left out", fmt::format("{} ({})", omission["what"].get<std::string>(),
+                                              omission["why"].get<std::string>()));
+  }
+  return text;
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "solver/model.hpp"
+
+/// What all results have in common, on a grid or not.
+namespace slipstick::convergence {
+
+using Json = nlohmann::ordered_json;
+
+/// What does not exist is null, and its reason stands beside it.
+void set_missing(Json& object, const std::string& key, const std::string& reason);
+
+/// JSON has no NaN and no infinity: such a number is missing.
+void set_number(Json& object, const std::string& key, double value, const std::string& reason);
+
+/// What a model leaves out, as results have it.
+Json model_json(const std::vector<solver::Omission>& left_out);
+
+/// The most memory that this process has held, in bytes.
+std::size_t peak_bytes();
+
+/// A number for a person, "-" where there is none.
+std::string number_text(const Json& value);
+
+/// One line of a result's text.
+std::string text_line(const std::string& label, const std::string& value);
+
+/// The lines that say how the solve went, those of the contact's state with their errors where there are
+/// any, and those of what was left out.
+std::string status_text(const Json& result);
+std::string state_text(const Json& result);
+std::string model_text(const Json& result);
+
+}  // namespace slipstick::convergence
