@@ -38,7 +38,7 @@ lint: build ## check format and clang-tidy's rules (needs clang-format, clang-ti
 	@git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run --Werror
 	@git ls-files '*.cpp' | xargs -n 4 -P $$(nproc) clang-tidy -p $(BUILD) --quiet
 
-bench: build ## time the solver's parts (BENCH_OPTIONS="--benchmark_filter=...")
+bench: build ## time parts, whole solves and methods, 10 minutes (BENCH_OPTIONS="--benchmark_filter=...")
 	@$(BUILD)/bench/slipstick_bench $(BENCH_OPTIONS)
 
 references: build ## make the table of proven values anew (2 minutes; needs FLINT with Arb)
