@@ -8,14 +8,12 @@ from matplotlib.colors import Normalize
 
 import exact_figures
 import maps
+import method_figures
 import studies
 import style
 from plate import LIMIT, LOAD_LABEL, TWIST_LABEL, Plate
-from results import Fields, column, groups, nearest, number, rows, text, value
+from results import Fields, column, nearest, number, rows, text, value
 from wording import percent, plain, sci, seconds
-
-METHODS = {"paper": ("the paper’s method", style.BLUE, "o"),
-           "coulomb": ("Coulomb’s law as a convex program", style.GREEN, "s")}
 
 
 def shear_components(report, data_dir):
@@ -115,10 +113,10 @@ def stick_radius(report, data_dir):
     top, bottom = axes[:, 0]
     top.plot(column(curve, "moment_ratio"), column(curve, "stick_ratio"), color=style.BLACK, label="exact")
     sentences = []
-    for table, label, colour, marker in _by_method(report):
+    for table, label, look in _by_method(report):
         load, error = column(table, "moment_ratio"), np.abs(column(table, "stick_radius_error"))
-        top.plot(load, column(table, "stick_ratio"), marker, color=colour, label=f"computed, {label}")
-        bottom.plot(load, error, marker, color=colour)
+        top.plot(load, column(table, "stick_ratio"), linestyle="", label=f"computed, {label}", **look)
+        bottom.plot(load, error, linestyle="", **look)
         sentences.append(f"{sci(np.nanmax(error))} (median {sci(np.nanmedian(error))}) by {label}")
     top.set(ylabel="stick radius $a_s/a$", xlim=(0, 1), ylim=(0, 1.03))
     bottom.set(ylabel="|computed/exact − 1|", xlabel=LOAD_LABEL)
@@ -142,18 +140,17 @@ def twist(report, data_dir):
     loads = column(rows(report, "loading"), "moment_ratio")
     high = loads[nearest(loads, 0.9)]
     sentences = []
-    for table, label, colour, marker in _by_method(report):
+    for table, label, look in _by_method(report):
         computed_load, error = column(table, "moment_ratio"), np.abs(column(table, "twist_error"))
-        top.plot(computed_load, column(table, "twist"), marker, color=colour, label=f"computed, {label}",
-                 zorder=3)
-        bottom.plot(computed_load, error, marker, color=colour)
+        top.plot(computed_load, column(table, "twist"), linestyle="", label=f"computed, {label}", zorder=3, **look)
+        bottom.plot(computed_load, error, linestyle="", **look)
         sentences.append(f"{sci(error[nearest(computed_load, high)])} by {label}")
     top.set(ylabel=TWIST_LABEL, xlim=(0, 1),
             ylim=(0, 1.1 * max(np.nanmax(column(table, "twist")) for table, *_ in _by_method(report))))
     bottom.set(ylabel="|value/exact − 1|", xlabel=LOAD_LABEL)
     bottom.set_ylim(bottom=_floor(report), top=1)
     style.whole_decades(bottom)
-    style.legend_on_top(figure, top.get_legend_handles_labels()[0], 3)
+    style.legend_on_top(figure, top.get_legend_handles_labels()[0], 2)
     return Plate(
         f"At {LIMIT}{plain(high)} the error of the computed twist is {'; '.join(sentences)}; that of Eq. (7), the curve "
         f"that the paper compares with, is {percent(formula_error[nearest(load, high)])}.",
@@ -236,30 +233,6 @@ def equation_5_digits(report, data_dir):
         figure)
 
 
-def certificate(report, data_dir):
-    figure, axis = style.panels(1, 1, 3.4)
-    sentences = []
-    for table, label, colour, marker in _by_method(report):
-        gap = column(table, "certificate.gap")
-        axis.semilogy(column(table, "moment_ratio"), gap, marker + "-", color=colour, linewidth=0.8,
-                      label=f"circular contact, {label}")
-        sentences.append(f"{sci(np.nanmin(gap))} to {sci(np.nanmax(gap))} of the energy by {label}")
-    ellipse = rows(report, "ellipse")
-    gap, across = column(ellipse, "certificate.gap"), [rows(row, "cells")[0] for row in ellipse]
-    axis.semilogy(column(ellipse, "moment_ratio"), gap, "D", color=style.VERMILION, markerfacecolor="none",
-                  label=f"elliptic contact, {', '.join(f'{n}' for n in across)} cells along it")
-    sentences[-1] += (f", and {sci(np.nanmin(gap))} to {sci(np.nanmax(gap))} on an elliptic contact, whatever the mesh")
-    axis.set(xlabel=LOAD_LABEL, ylabel="gap / energy", xlim=(0, 1))
-    style.whole_decades(axis)
-    style.legend_on_top(figure, axis.get_legend_handles_labels()[0], 2)
-    return Plate(
-        f"The gap that is left in Coulomb’s law when the iteration stops: {'; '.join(sentences)}.",
-        "The gap adds up, over all cells, how far traction and slip are from Coulomb’s law; it is zero only where the "
-        "law holds in every cell, it bounds the error in energy, and it needs no exact solution. The paper’s test, "
-        f"Eq. (26), asks only whether the tractions still change. {_cells(report)}",
-        "Certificate gap over energy against moment on a log scale.", figure)
-
-
 FIGURES = [
     ("figure-1", "The two shear components (the paper’s Fig. 1)", shear_components),
     ("figure-2", "The norm of the shear tractions (the paper’s Fig. 2)", traction_norm),
@@ -269,9 +242,10 @@ FIGURES = [
     ("figure-6", "Convergence with the mesh", convergence),
     ("figure-7", "What accuracy costs", cost),
     ("figure-8", "Where Eq. (5) loses its digits", equation_5_digits),
-    ("figure-9", "What the stopping test leaves", certificate),
-    ("figure-10", "Which approximation may be used", exact_figures.approximations),
-    ("figure-11", "Other bodies, and cycles", exact_figures.bodies_and_cycles),
+    ("figure-9", "What the stopping test leaves", method_figures.certificate),
+    ("figure-10", "Methods compared", method_figures.methods),
+    ("figure-11", "Which approximation may be used", exact_figures.approximations),
+    ("figure-12", "Other bodies, and cycles", exact_figures.bodies_and_cycles),
 ]
 
 
@@ -294,9 +268,7 @@ def _floor(report):
 
 
 def _by_method(report):
-    """The loading study as (rows, label, colour, marker), one entry a method."""
-    return [(table, *METHODS.get(method, (method, style.PURPLE, "^")))
-            for (method,), table in groups(rows(report, "loading"), "method").items()]
+    return method_figures.by_method(rows(report, "loading"))
 
 
 def _printed_over_exact(profile):

@@ -68,7 +68,11 @@ def slope_guides(axis):
 
 
 def cell_ticks(axis, studies):
-    axis.set_xticks(sorted(set(np.concatenate([study.cells for study in studies]))))
+    cell_ticks_at(axis, np.concatenate([study.cells for study in studies]))
+
+
+def cell_ticks_at(axis, cells):
+    axis.set_xticks(sorted(set(cells)))
     axis.xaxis.set_major_formatter(ScalarFormatter())
     axis.xaxis.set_minor_formatter(NullFormatter())
 

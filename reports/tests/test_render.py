@@ -16,19 +16,21 @@ sys.path.insert(0, str(REPORTS))
 
 import exact_figures  # noqa: E402
 import figures  # noqa: E402
+import method_figures  # noqa: E402
 import results  # noqa: E402
 
 RADIUS, PEAK, FRICTION = 2.0, 3.0, 0.5
 
 
-def solve_result(load, cells, pressure="solved"):
+def solve_result(load, cells, pressure="solved", method="paper"):
     error = 1.0 / cells**2
     return {
-        "method": "paper", "pressure": pressure, "moment_ratio": load, "cells": [cells, cells], "friction": FRICTION,
+        "method": method, "pressure": pressure, "moment_ratio": load, "cells": [cells, cells], "friction": FRICTION,
         "stick_ratio": 1 - load, "twist": load, "twist_error": error, "stick_radius_error": -error,
         "traction_error": {"l1": error, "l2": 2 * error, "max": 3 * error},
         "exact": {"stick_ratio": 1 - load, "twist": load},
         "iterations": 7, "operator_applications": 14, "certificate": {"gap": 1e-5 * (1 + load)},
+        "slip_direction": {"mean": 2.4 if method == "paper" else 1e-7},
         "seconds": {"setup": 0.1, "pressure": 0.2, "traction": 0.3, "total": 1e-4 * cells**2},
     }
 
@@ -68,7 +70,10 @@ def small_report():
         "loading": [solve_result(load, 4) for load in loads],
         "mesh": [solve_result(load, cells, pressure) for pressure in ("solved", "hertz") for load in (0.5, 0.9)
                  for cells in (4, 8, 16)],
-        "ellipse": [solve_result(loads[-1], cells) for cells in (4, 8)],
+        "methods": [solve_result(loads[-1], cells, method=method) for method in ("coulomb", "paper")
+                    for cells in (4, 8)],
+        "ellipse": [solve_result(loads[-1], cells, method=method) for method in ("coulomb", "paper")
+                    for cells in (4, 8)],
         "equation_5_digits": [{"stick_complement": 10.0**-i, "relative_error": 10.0**(2 * i - 16)} for i in range(7)],
         "approximations": [approximation(x) for x in (0.0, *loads)],
         "approximation_table": [approximation(x) for x in loads],
@@ -184,9 +189,18 @@ class PageWithGaps(Folder):
         page = (self.folder / "page" / "index.html").read_text(encoding="utf-8")
         self.assertEqual(run.returncode, 0)
         missing = [name for name, _, _ in figures.FIGURES if f"figures/{name}.svg" not in page]
-        self.assertEqual(missing, ["figure-10", "figure-11"])
+        self.assertEqual(missing, ["figure-11", "figure-12"])
         for key in ("approximations", "approximation_table", "bodies"):
             self.assertIn(f"Not available: “{key}” is missing from the data.", page)
+
+    def test_the_methods_are_told_apart(self):
+        plate = method_figures.methods(small_report(), self.folder)
+        self.assertIn("2.4° by the paper’s method", plate.message)
+        self.assertIn("1.0×10⁻⁷ of a degree by Newton’s method", plate.message)
+        report = small_report()
+        del report["methods"][0]["operator_applications"]
+        with self.assertRaises(results.Unavailable):
+            method_figures.methods(report, self.folder)
 
     def test_data_that_cannot_be_read_are_refused(self):
         output = self.folder / "page"
@@ -218,7 +232,7 @@ class OneFigure(Folder):
     def test_only_nulls(self):
         for row in self.report["loading"]:
             row.update(certificate=None, certificate_reason="not asked for")
-        self.assert_unavailable(figures.certificate, "certificate.gap.*null in every row: not asked for")
+        self.assert_unavailable(method_figures.certificate, "certificate.gap.*null in every row: not asked for")
 
     def test_null_where_the_message_quotes_it(self):
         self.report["loading"][2].update(twist_error=None, twist_error_reason="no exact answer")
