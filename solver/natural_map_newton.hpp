@@ -91,7 +91,7 @@ class NaturalMapNewton {
         summary.converged = true;
         return summary;
       }
-      without_progress = summary.gap < best_gap ? 0 : without_progress + 1;
+      without_progress = summary.gap < best_gap || energy_fell_ ? 0 : without_progress + 1;
       best_gap = std::min(best_gap, summary.gap);
       if (without_progress > kPatience) return stop(q, options, summary, "rounding: no further progress");
       if (applications() >= options.max_applications) {
@@ -249,6 +249,7 @@ class NaturalMapNewton {
     const double before = energy(q, u_);
     const double after = energy(trial_, trial_u_);
     if (!(after <= before + kEnergyRounding * std::abs(before))) return false;
+    energy_fell_ = after < before - kEnergyRounding * std::abs(before);
     q.swap(trial_);
     u_.swap(trial_u_);
     return true;
@@ -344,6 +345,7 @@ class NaturalMapNewton {
   double multiplier_ = 0.0;
   Index changed_ = 0;
   bool has_tangent_ = false;
+  bool energy_fell_ = false;  ///< in the last step, by more than its rounding
 };
 
 }  // namespace slipstick::solver
