@@ -19,7 +19,8 @@ function(slipstick_library folder)
   slipstick_configure(${target})
 endfunction()
 
-# slipstick_tests(<name> SOURCES ... LIBRARIES ...): one GoogleTest program, each case a test of its own in CTest.
+# slipstick_tests(<name> SOURCES ... LIBRARIES ...): one GoogleTest program, each case a test of its own in CTest; or,
+# with SLIPSTICK_TEST_SHARDS, that many parts of the program, where starting it thousands of times would take minutes.
 function(slipstick_tests name)
   if(NOT SLIPSTICK_TESTS)
     return()
@@ -30,6 +31,15 @@ function(slipstick_tests name)
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} GTest::gmock GTest::gtest_main)
   target_compile_definitions(${name} PRIVATE SLIPSTICK_TEST_DATA="${CMAKE_CURRENT_SOURCE_DIR}/tests")
-  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
+  if(SLIPSTICK_TEST_SHARDS)
+    math(EXPR last "${SLIPSTICK_TEST_SHARDS} - 1")
+    foreach(shard RANGE ${last})
+      add_test(NAME ${name}.part${shard} COMMAND ${name})
+      set_tests_properties(${name}.part${shard} PROPERTIES TIMEOUT 900
+        ENVIRONMENT "GTEST_TOTAL_SHARDS=${SLIPSTICK_TEST_SHARDS};GTEST_SHARD_INDEX=${shard}")
+    endforeach()
+  else()
+    gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
+  endif()
 endfunction()
 include(GoogleTest)
