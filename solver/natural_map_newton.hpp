@@ -133,8 +133,9 @@ class NaturalMapNewton {
   /// Steps towards the tangent field at the end; each brings it nearer by about 5.
   static constexpr int kTangentIterations = 3;
   static constexpr int kPatience = 8;
-  static constexpr double kShortestStep = 1.0 / 64.0;
-  static constexpr double kShortestGradientStep = 1e-9;
+  /// Of a Newton step, and of a gradient step of length rho, before it is given up.
+  static constexpr int kMostHalvings = 6;
+  static constexpr int kMostGradientHalvings = 30;
   /// Energies are compared up to their rounding.
   static constexpr double kEnergyRounding = 1e-13;
   static constexpr double kLoadRounding = 1e-14;
@@ -256,7 +257,8 @@ class NaturalMapNewton {
   }
 
   bool take_newton_step(ArrayXd& q) {
-    for (double length = 1.0; length >= kShortestStep; length *= 0.5) {
+    for (int halvings = 0; halvings <= kMostHalvings; ++halvings) {
+      const double length = std::ldexp(1.0, -halvings);
       trial_ = cg_.solution().template cast<double>();
       set_.add_jump(y_, q, trial_);
       trial_ = q + length * trial_;
@@ -280,7 +282,8 @@ class NaturalMapNewton {
   }
 
   bool take_gradient_step(ArrayXd& q) {
-    for (double length = rho_; length >= kShortestGradientStep * rho_; length *= 0.25) {
+    for (int halvings = 0; halvings <= kMostGradientHalvings; halvings += 2) {
+      const double length = std::ldexp(rho_, -halvings);
       trial_ = q - length * u_;
       if (program_.g != nullptr) trial_ -= length * *program_.g;
       if (program_.load) {
