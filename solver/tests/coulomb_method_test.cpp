@@ -67,10 +67,6 @@ struct Shape {
 void PrintTo(const Shape& shape, std::ostream* stream) {
   *stream << shape.n1 << " x " << shape.n2 << ", h2 " << shape.h2;
 }
-struct CertificateCase {
-  Shape shape;
-  double moment_ratio;
-};
 class Certified : public testing::TestWithParam<std::tuple<Shape, double>> {};
 INSTANTIATE_TEST_SUITE_P(Contacts, Certified,
                          testing::Combine(testing::Values(Shape{40, 40, 1.0}, Shape{41, 37, 1.0},
@@ -267,22 +263,28 @@ TEST_P(Work, IsBoundedAtEveryMesh) {
 
 struct Accuracy {
   double moment_ratio;
-  double twist;
+  double twist;  ///< rad, exact
   double allowed;
+  double stick_ratio;  ///< exact
+  double allowed_stick;
 };
 void PrintTo(const Accuracy& accuracy, std::ostream* stream) { *stream << accuracy.moment_ratio; }
 class Accurate : public testing::TestWithParam<Accuracy> {};
 INSTANTIATE_TEST_SUITE_P(MomentRatios, Accurate,
-                         testing::Values(Accuracy{0.1, 1.197249389022587e-4, 2e-5},
-                                         Accuracy{0.5, 7.629453516649457e-4, 2e-5},
-                                         Accuracy{0.9, 2.361048651456917e-3, 2e-5},
-                                         Accuracy{0.99, 4.413921104595224e-3, 1e-4}));
+                         testing::Values(Accuracy{0.1, 1.197249389022587e-4, 2e-5, 0.9693964204953627, 2e-4},
+                                         Accuracy{0.5, 7.629453516649457e-4, 2e-5, 0.8135681261276496, 2e-4},
+                                         Accuracy{0.9, 2.361048651456917e-3, 2e-5, 0.4958950522157781, 2e-4},
+                                         Accuracy{0.99, 4.413921104595224e-3, 1e-4, 0.2369661925296642,
+                                                  1e-3}));
 
-TEST_P(Accurate, TwistAt256Cells) {
+TEST_P(Accurate, TwistAndStickRadiusAt256Cells) {
   const Solution solution = solve(paper_scene(256, GetParam().moment_ratio));
   const double error = solution.twist_angle / GetParam().twist - 1.0;
   RecordProperty("error", fmt::format("{:.2e}", error));
   EXPECT_LE(std::abs(error), GetParam().allowed);
+  const double stick_error = solution.stick_radius / (GetParam().stick_ratio * paper::kContactRadius) - 1.0;
+  RecordProperty("stick_error", fmt::format("{:.2e}", stick_error));
+  EXPECT_LE(std::abs(stick_error), GetParam().allowed_stick);
 }
 
 }  // namespace
