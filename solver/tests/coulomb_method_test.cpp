@@ -1,7 +1,6 @@
 #include "solver/coulomb_method.hpp"
 
 #include <fmt/core.h>
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -14,7 +13,6 @@ namespace slipstick::solver {
 namespace {
 
 using Eigen::ArrayXd;
-using testing::HasSubstr;
 
 /// An ellipse's friction bounds and whatever its torsion is compared with.
 struct EllipticBench {
