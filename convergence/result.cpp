@@ -132,6 +132,7 @@ Json solve_result(const solver::Scene& scene, const Solution& solution, const Or
                      {"traction", solution.seconds.traction},
                      {"total", solution.seconds.total}};
   json["solver_bytes"] = solution.bytes;
+  json["predicted_bytes"] = solver::predicted_memory(scene, model).total();
   json["peak_bytes"] = peak_bytes();
   json["provenance"] = provenance(scene.threads);
   return json;

@@ -145,7 +145,7 @@ class NaturalMapNewton {
 
   Index size() const { return Set::kComponents * set_.cells(); }
 
-  /// The load's scale for rounding: that of the largest admissible load, or the load itself.
+  /// What the load's rounding is relative to.
   double scale_of_load() const {
     if (!program_.load) return 1.0;
     return std::max(std::abs(*program_.load), std::numeric_limits<double>::min());

@@ -92,6 +92,7 @@ TEST(Program, SolveWritesEveryKeyOfTheContract) {
                           "certificate",
                           "seconds",
                           "peak_bytes",
+                          "predicted_bytes",
                           "provenance",
                           "twist_error",
                           "stick_radius_error",
