@@ -35,8 +35,16 @@ double integral(const std::function<double(double)>& f, double low, double high)
 /// Gauss's rule, exact for degree 2 points - 1.
 class GaussRule {
  public:
+  /// A point of [0, 1].
+  struct Node {
+    double fraction;
+    double weight;
+  };
+
   /// Up to 20 points (or 32, 64) GSL has to all digits; others it makes itself, to fewer.
   explicit GaussRule(std::size_t points);
+
+  const std::vector<Node>& nodes() const { return nodes_; }
 
   template <class Function>
   double operator()(const Function& f, double low, double high) const {
@@ -46,10 +54,6 @@ class GaussRule {
   }
 
  private:
-  struct Node {
-    double fraction;
-    double weight;
-  };
   std::vector<Node> nodes_;
 };
 

@@ -1,0 +1,97 @@
+#include "analytic/cattaneo_mindlin.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+
+#include "analytic/gsl.hpp"
+
+namespace slipstick::analytic::tangential {
+
+namespace {
+
+[[noreturn]] void out_of_range(std::string_view name, double value, std::string_view allowed) {
+  throw std::domain_error(fmt::format("{} = {}; allowed: {}", name, value, allowed));
+}
+
+/// From ln(1 - F/(mu W)), of which everything is a power.
+TangentialState state_at(double log_deficit, const SelfSimilarIndenter& indenter) {
+  const double power = indenter.radius_power();
+  const double stick = std::exp(power * log_deficit);
+  return {.force_ratio = -std::expm1(log_deficit),
+          .force_deficit = std::exp(log_deficit),
+          .stick_ratio = stick,
+          .stick_complement = -std::expm1(power * log_deficit),
+          .displacement = -std::expm1((1 - power) * log_deficit) / (4 * (1 - power)),
+          .tangent_stiffness = 4 * stick};
+}
+
+void require_slip_ring(const SelfSimilarIndenter& indenter) {
+  if (indenter.radius_power() == 0)
+    throw std::domain_error("a flat punch sticks everywhere at every force: its stick radius names no state");
+}
+
+}  // namespace
+
+TangentialState from_force_ratio(double force_ratio, const SelfSimilarIndenter& indenter) {
+  if (!(force_ratio >= 0 && force_ratio < 1)) out_of_range("F/(mu W)", force_ratio, "0 <= F/(mu W) < 1");
+  return state_at(std::log1p(-force_ratio), indenter);
+}
+
+TangentialState from_force_deficit(double force_deficit, const SelfSimilarIndenter& indenter) {
+  if (!(force_deficit > 0 && force_deficit <= 1))
+    out_of_range("1 - F/(mu W)", force_deficit, "0 < 1 - F/(mu W) <= 1");
+  TangentialState state = state_at(std::log(force_deficit), indenter);
+  state.force_deficit = force_deficit;
+  return state;
+}
+
+TangentialState from_stick_ratio(double stick_ratio, const SelfSimilarIndenter& indenter) {
+  require_slip_ring(indenter);
+  if (!(stick_ratio > 0 && stick_ratio <= 1)) out_of_range("c/a", stick_ratio, "0 < c/a <= 1");
+  return state_at(std::log(stick_ratio) / indenter.radius_power(), indenter);
+}
+
+TangentialState from_stick_complement(double stick_complement, const SelfSimilarIndenter& indenter) {
+  require_slip_ring(indenter);
+  if (!(stick_complement >= 0 && stick_complement < 1))
+    out_of_range("1 - c/a", stick_complement, "0 <= 1 - c/a < 1");
+  return state_at(std::log1p(-stick_complement) / indenter.radius_power(), indenter);
+}
+
+TangentialState from_displacement(double displacement, const SelfSimilarIndenter& indenter) {
+  const double power = 1 - indenter.radius_power();
+  const double share = 4 * power * displacement;
+  if (!(displacement >= 0 && share < 1))
+    out_of_range("G_t a delta/(mu W)", displacement,
+                 fmt::format("from 0 to below {:.6g}, where everything slips", 1 / (4 * power)));
+  return state_at(std::log1p(-share) / power, indenter);
+}
+
+double traction(const TangentialState& state, double radius, const SelfSimilarIndenter& indenter) {
+  if (!(radius >= 0 && radius <= 1)) out_of_range("r/a", radius, "0 <= r/a <= 1");
+  const double sum = indenter.pressure(1, radius) - indenter.pressure(state.force_deficit, radius);
+  if (!std::isfinite(sum)) out_of_range("r/a", radius, "where the pressure is finite");
+  return sum;
+}
+
+/// The loop's area by the slip that each punch of the superposition sees, (n + 1)^2/n^2 times
+/// integral_c^1 (1 - t^n)(t^n - c^n) dt: no term is negative.
+double energy_lost_per_cycle(const TangentialState& state, const SelfSimilarIndenter& indenter) {
+  const double slip = state.stick_complement;
+  if (slip == 0) return 0;
+  const double power = indenter.radius_power();
+  const double n = (1 - power) / power;
+  const double log_stick = std::log1p(-slip);
+  const double integral = gsl::integral(
+      [&](double share) {
+        const double log_t = std::log1p(-slip * share);
+        return std::expm1(n * log_t) * std::exp(n * log_t) * std::expm1(n * (log_stick - log_t));
+      },
+      0, 1);
+  return integral * slip / ((1 - power) * (1 - power));
+}
+
+}  // namespace slipstick::analytic::tangential

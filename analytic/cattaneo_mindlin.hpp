@@ -1,0 +1,48 @@
+#pragma once
+
+#include "analytic/self_similar_indenter.hpp"
+
+/// A tangential force F on an axisymmetric contact under a constant normal load W, with a slip ring c < r < a
+/// (sphere: Cattaneo 1938, Mindlin 1949; any profile: Jaeger 1998, Ciavarella 1998). The traction is mu times
+/// what the pressure would lose if the contact shrank to the stick radius, all of it along F:
+///   q = mu (p(r; a) - p(r; c)), F = mu (W(a) - W(c)), delta = mu (G_n/G_t) (d(a) - d(c)),
+/// with the combined moduli 1/G_t = sum (2 - nu_i)/(2 G_i) and 1/G_n = sum (1 - nu_i)/G_i of the two bodies
+/// and p, W, d those of the same indenter pressed to either radius. Exact for nu_i = 0, where G_t = G_n is
+/// torsion's G; otherwise what is left out is the slip across F in the ring, which is not zero, while
+/// q there has no such component. For similar bodies only (Dundurs' beta = 0).
+///
+/// Dimensionless: lengths over a, forces over mu W, displacement (of one body's far points against the
+/// other's, along F) as G_t a delta/(mu W), energies over (mu W)^2/(G_t a).
+namespace slipstick::analytic::tangential {
+
+/// Number and complement are both carried, so that neither end of the range loses digits.
+struct TangentialState {
+  double force_ratio;        ///< F/(mu W)
+  double force_deficit;      ///< 1 - F/(mu W)
+  double stick_ratio;        ///< c/a
+  double stick_complement;   ///< 1 - c/a
+  double displacement;       ///< G_t a delta/(mu W), (n + 1)/(4 n) (1 - (c/a)^n) for a gap like r^n
+  double tangent_stiffness;  ///< (dF/ddelta)/(G_t a) = 4 c/a, that of a bonded circle of radius c
+};
+
+/// The state at a given force, stick radius or displacement. Relative error of every member a few eps, plus
+/// what an ulp of the argument costs. Each throws std::domain_error, with the value and the range, outside
+/// force_ratio in [0, 1), force_deficit in (0, 1], stick_ratio in (0, 1], stick_complement in [0, 1) and
+/// displacement in [0, (n + 1)/(4 n)). A flat punch sticks everywhere until F = mu W; its stick ratio, always
+/// 1, names no state, and the two functions of it refuse it.
+TangentialState from_force_ratio(double force_ratio, const SelfSimilarIndenter& indenter);
+TangentialState from_force_deficit(double force_deficit, const SelfSimilarIndenter& indenter);
+TangentialState from_stick_ratio(double stick_ratio, const SelfSimilarIndenter& indenter);
+TangentialState from_stick_complement(double stick_complement, const SelfSimilarIndenter& indenter);
+TangentialState from_displacement(double displacement, const SelfSimilarIndenter& indenter);
+
+/// Traction q/(mu p0) along F at radius r/a; absolute error a few eps of the pressure. Throws
+/// std::domain_error outside [0, 1] and where the pressure is infinite.
+double traction(const TangentialState& state, double radius, const SelfSimilarIndenter& indenter);
+
+/// Energy lost in a cycle between F and -F, over (mu W)^2/(G_t a): four times that of the first loading to F.
+/// For the sphere 9/5 (1 - L^(5/3) - 5/6 (1 - L)(1 + L^(2/3))) with L = 1 - F/(mu W) (Mindlin, Mason, Osmer
+/// and Deresiewicz 1952). Relative error below 1e-13.
+double energy_lost_per_cycle(const TangentialState& state, const SelfSimilarIndenter& indenter);
+
+}  // namespace slipstick::analytic::tangential
