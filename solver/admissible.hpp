@@ -1,21 +1,17 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 
+#include "solver/load_balance.hpp"
 #include "solver/tangent_space.hpp"
 
 /// What tractions a cell may carry: the sets over which the contact's energy is minimised. Each knows its
 /// projection, and the tangent space of the natural map q = P(q - rho s).
 namespace slipstick::solver {
-
-/// c.P(y + x direction) and its derivative by x.
-struct LoadAlong {
-  double load = 0.0;
-  double slope = 0.0;
-};
 
 /// Pressures that do not pull: p_i >= 0 where the bodies can touch, p_i = 0 elsewhere.
 class PositivePressures {
@@ -29,23 +25,28 @@ class PositivePressures {
 
   void project(Eigen::ArrayXd& p) const { p = reachable_ * p.max(0.0); }
 
-  template <typename Direction>
-  LoadAlong load_along(const Eigen::ArrayXd& y, const Direction& direction, double x,
-                       const Eigen::ArrayXd& c) const {
-    LoadAlong sum;
+  /// Pressures are not bounded from above.
+  static double capacity(const Eigen::ArrayXd&) { return std::numeric_limits<double>::infinity(); }
+
+  template <int M, typename Direction>
+  LoadsAlong<M> loads_along(const Eigen::ArrayXd& y, const std::array<const Direction*, M>& w,
+                            const Eigen::Vector<double, M>& x,
+                            const std::array<const Eigen::ArrayXd*, M>& c) const {
+    static_assert(M == 1, "the approach is a pressure's only condition");
+    LoadsAlong<M> sum;
     for (Index i = 0; i < y.size(); ++i) {
-      const auto along = static_cast<double>(direction[i]);
-      const double p = y[i] + x * along;
+      const auto along = static_cast<double>((*w[0])[i]);
+      const double p = y[i] + x[0] * along;
       if (!(p > 0.0) || reachable_[i] == 0.0) continue;
-      sum.load += c[i] * p;
-      sum.slope += c[i] * along;
+      sum.load[0] += (*c[0])[i] * p;
+      sum.slope(0, 0) += (*c[0])[i] * along;
     }
     return sum;
   }
 
   /// Sum of p times the opening above its least value: how far the energy can fall by moving load to where
-  /// the surfaces are closest. opening: K p + h, without the approach.
-  double gap(const Eigen::ArrayXd& p, const Eigen::ArrayXd& opening, const Eigen::ArrayXd&, double) const {
+  /// the surfaces are closest. opening: K p + h, less any approach.
+  double gap(const Eigen::ArrayXd& p, const Eigen::ArrayXd& opening) const {
     double lowest = std::numeric_limits<double>::infinity();
     for (Index i = 0; i < p.size(); ++i) {
       if (reachable_[i] != 0.0 && !(opening[i] >= lowest)) lowest = opening[i];
@@ -99,42 +100,60 @@ class FrictionDiscs {
     }
   }
 
-  template <typename Direction>
-  LoadAlong load_along(const Eigen::ArrayXd& y, const Direction& direction, double x,
-                       const Eigen::ArrayXd& c) const {
+  /// The most that c.q can be, one condition alone.
+  double capacity(const Eigen::ArrayXd& c) const {
     const Index n = cells();
-    LoadAlong sum;
+    return (bound_ * (c.head(n).square() + c.tail(n).square()).sqrt()).sum();
+  }
+
+  template <int M, typename Direction>
+  LoadsAlong<M> loads_along(const Eigen::ArrayXd& y, const std::array<const Direction*, M>& w,
+                            const Eigen::Vector<double, M>& x,
+                            const std::array<const Eigen::ArrayXd*, M>& c) const {
+    const Index n = cells();
+    LoadsAlong<M> sum;
+    std::array<std::array<double, 2>, M> along{};
+    std::array<std::array<double, 2>, M> weight{};
     for (Index i = 0; i < n; ++i) {
-      if (bound_[i] == 0.0) continue;
-      const auto w1 = static_cast<double>(direction[i]);
-      const auto w2 = static_cast<double>(direction[i + n]);
-      const double z1 = y[i] + x * w1;
-      const double z2 = y[i + n] + x * w2;
-      const double c_z = c[i] * z1 + c[i + n] * z2;
-      const double c_w = c[i] * w1 + c[i + n] * w2;
-      const double square = z1 * z1 + z2 * z2;
-      if (square <= bound_[i] * bound_[i]) {
-        sum.load += c_z;
-        sum.slope += c_w;
-      } else {
-        const double factor = bound_[i] / std::sqrt(square);
-        sum.load += factor * c_z;
-        sum.slope += factor * (c_w - c_z * (z1 * w1 + z2 * w2) / square);
+      const double bound = bound_[i];
+      if (bound == 0.0) continue;
+      double z1 = y[i];
+      double z2 = y[i + n];
+      for (std::size_t k = 0; k < M; ++k) {
+        along[k] = {static_cast<double>((*w[k])[i]), static_cast<double>((*w[k])[i + n])};
+        weight[k] = {(*c[k])[i], (*c[k])[i + n]};
+        z1 += x[static_cast<int>(k)] * along[k][0];
+        z2 += x[static_cast<int>(k)] * along[k][1];
       }
+      // P(z) = factor z, and its derivative takes out what is along z where that is cut to the bound.
+      const double square = z1 * z1 + z2 * z2;
+      const bool cut = square > bound * bound;
+      const double size = cut ? std::sqrt(square) : bound;
+      const double factor = cut ? bound / size : 1.0;
+      for (std::size_t k = 0; k < M; ++k) {
+        const auto row = static_cast<int>(k);
+        const double c_z = weight[k][0] * z1 + weight[k][1] * z2;
+        sum.load[row] += factor * c_z;
+        for (std::size_t l = 0; l < M; ++l) {
+          double slope = weight[k][0] * along[l][0] + weight[k][1] * along[l][1];
+          if (cut) slope -= c_z * (along[l][0] * z1 + along[l][1] * z2) / square;
+          sum.slope(row, static_cast<int>(l)) += factor * slope;
+        }
+      }
+      sum.potential += cut ? bound * (size - 0.5 * bound) : 0.5 * square;
+      sum.square += std::max(square, bound * bound);
     }
     return sum;
   }
 
-  /// Sum of s.q + mu p |s| with s = displacement - twist * rotation; see Certificate.
-  double gap(const Eigen::ArrayXd& q, const Eigen::ArrayXd& displacement, const Eigen::ArrayXd& rotation,
-             double twist) const {
+  /// Sum of s.q + mu p |s|; see Certificate.
+  double gap(const Eigen::ArrayXd& q, const Eigen::ArrayXd& slip) const {
     const Index n = cells();
     double sum = 0.0;
     for (Index i = 0; i < n; ++i) {
       if (bound_[i] == 0.0) continue;
-      const double s1 = displacement[i] - twist * rotation[i];
-      const double s2 = displacement[i + n] - twist * rotation[i + n];
-      sum += s1 * q[i] + s2 * q[i + n] + bound_[i] * std::sqrt(s1 * s1 + s2 * s2);
+      sum += slip[i] * q[i] + slip[i + n] * q[i + n] +
+             bound_[i] * std::sqrt(slip[i] * slip[i] + slip[i + n] * slip[i + n]);
     }
     return sum;
   }

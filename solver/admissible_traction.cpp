@@ -25,7 +25,9 @@ struct MomentCurve {
   const ArrayXd& bound;
   const ArrayXd& t;
 
-  LoadAlong at(double alpha) const { return FrictionDiscs(bound).load_along(z, t, alpha, t); }
+  LoadsAlong<1> at(double alpha) const {
+    return FrictionDiscs(bound).loads_along<1, ArrayXd>(z, {&t}, Eigen::Vector<double, 1>(alpha), {&t});
+  }
 
   /// A step of this length turns every cell from wherever z has it, in the mean.
   double scale() const {
@@ -45,13 +47,13 @@ double solve_for_moment(const MomentCurve& curve, double moment, double toleranc
   double last = high;
   double alpha = std::isfinite(guess) ? guess : 0.0;
   for (int step = 0; step < kMaxSteps; ++step) {
-    const auto [value, slope] = curve.at(alpha);
-    const double missing = moment - value;
+    const LoadsAlong<1> at = curve.at(alpha);
+    const double missing = moment - at.load[0];
     if (std::isnan(missing)) return missing;
     if (std::abs(missing) <= tolerance) break;
     (missing > 0.0 ? low : high) = alpha;
     const bool bracketed = std::isfinite(low) && std::isfinite(high);
-    double next = alpha + std::clamp(missing / slope, -reach, reach);
+    double next = alpha + std::clamp(missing / at.slope(0, 0), -reach, reach);
     if (!bracketed) reach *= 2.0;
     if (bracketed && (std::abs(missing) > 0.5 * last || !(low < next && next < high))) {
       next = low + 0.5 * (high - low);

@@ -15,7 +15,7 @@ Eigen::ArrayXd dot_products(const Eigen::ArrayXd& v, const Eigen::ArrayXd& w) {
 Eigen::ArrayXd norms(const Eigen::ArrayXd& vectors) { return dot_products(vectors, vectors).sqrt(); }
 
 Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound,
-                    const Eigen::ArrayXd& rotation, double moment) {
+                    const Eigen::ArrayXd& rotation, double moment, const std::array<double, 2>& force) {
   const Eigen::Index cells = friction_bound.size();
   const auto& q = field.traction;
   const double total_friction = friction_bound.sum();
@@ -30,7 +30,8 @@ Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_b
   const double imbalance = std::abs((q * rotation).sum() - moment);
   certificate.moment =
       imbalance == 0.0 ? 0.0 : imbalance / limit;  // one cell on the axis: the limit is 0 too
-  certificate.force = std::hypot(q.head(cells).sum(), q.tail(cells).sum()) / total_friction;
+  certificate.force =
+      std::hypot(q.head(cells).sum() - force[0], q.tail(cells).sum() - force[1]) / total_friction;
   const Eigen::ArrayXd size = norms(q);
   double worst = 0.0;
   for (Eigen::Index i = 0; i < cells; ++i) {

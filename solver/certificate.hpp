@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
 namespace slipstick::solver {
 
@@ -19,13 +20,14 @@ struct Certificate {
   /// given moment, hence |q - q*|_K^2/2 <= energy(q) - energy(q*) <= gap.
   double gap;
   double moment;          ///< |t.q Delta - M| / M_lim
-  double force;           ///< |sum of q| / sum of mu p
+  double force;           ///< |sum of q - F/Delta| / sum of mu p
   double friction_bound;  ///< max |q|/(mu p) - 1
 };
 
-/// friction_bound: mu p of each cell; rotation: the field t = (-x2, x1); moment: M/Delta that was asked for.
+/// friction_bound: mu p of each cell; rotation: the field t = (-x2, x1); moment, force: M/Delta and F/Delta
+/// that were asked for.
 Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound,
-                    const Eigen::ArrayXd& rotation, double moment);
+                    const Eigen::ArrayXd& rotation, double moment, const std::array<double, 2>& force = {});
 
 /// Angle between slip and the reverse of traction, in degrees; zero under Coulomb's law.
 struct SlipDirection {

@@ -6,9 +6,11 @@
 #include <cmath>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "solver/inverse_symbol.hpp"
 #include "solver/linear_operator.hpp"
+#include "solver/load_balance.hpp"
 #include "solver/tangent_space.hpp"
 
 namespace slipstick::solver {
@@ -20,38 +22,56 @@ struct CgSummary {
   std::string breakdown;   ///< empty: none
 };
 
-/// Preconditioned conjugate gradients for (K + stiffness) x = r + multiplier c on a tangent space, with c.x =
-/// 0 kept throughout (projected by the preconditioned c; Gould, Hribar and Nocedal 2001), or without a
-/// condition. Owns its workspace; nothing is allocated in the iteration.
+/// Preconditioned conjugate gradients for (K + stiffness) x = r + sum of multiplier_k c_k on a tangent space,
+/// with c_k.x = 0 kept throughout (projected by the preconditioned c_k; Gould, Hribar and Nocedal 2001), or
+/// without conditions. Owns its workspace; nothing is allocated in the iteration.
 template <typename Real>
 class ConjugateGradients {
  public:
   using Field = typename Operator<Real>::Field;
+  using Fields = std::span<const Field* const>;
 
-  ConjugateGradients(Operator<Real>& op, InverseSymbol<Real>& symbol, Index size)
-      : op_(op), symbol_(symbol), x_(size), r_(size), d_(size), Kd_(size), y_(size), w_(size) {}
+  /// conditions: the most that a solve will have, or a call of solve_for_conditions().
+  ConjugateGradients(Operator<Real>& op, InverseSymbol<Real>& symbol, Index size, std::size_t conditions)
+      : op_(op),
+        symbol_(symbol),
+        x_(size),
+        r_(size),
+        d_(size),
+        Kd_(size),
+        y_(size),
+        tangents_(conditions, Field(size)) {
+    for (const Field& tangent : tangents_) tangent_pointers_.push_back(&tangent);
+  }
 
   /// Where the right-hand side is written before a solve; overwritten by it.
   Field& residual() { return r_; }
   const Field& solution() const { return x_; }
-  /// After precondition_condition(): the preconditioned c; after solve_for_condition(): (K + stiffness)^-1 c.
-  const Field& tangent() const { return w_; }
+  /// After precondition(conditions): each c preconditioned; after solve_for_conditions():
+  /// (K + stiffness)^-1 c.
+  Fields tangents() const { return tangent_pointers_; }
 
-  /// w = preconditioned c. False if c has no part in the tangent space.
-  bool precondition_condition(const TangentSpace<Real>& space, const Field& c) {
-    precondition(space, c);
-    w_ = y_;
-    c_w_ = dot(c, w_);
-    return c_w_ > 0.0;
+  /// False if the conditions are not independent on the tangent space.
+  bool precondition(const TangentSpace<Real>& space, Fields conditions) {
+    for (std::size_t k = 0; k < conditions.size(); ++k) {
+      precondition(space, *conditions[k]);
+      tangents_[k] = y_;
+    }
+    const CoefficientMatrix products = products_with(conditions);
+    factor_.compute(products);
+    if (conditions.empty()) return true;
+    if (factor_.info() != Eigen::Success) return false;
+    // What is left of each when those before are taken out.
+    const Coefficients own = factor_.matrixLLT().diagonal();
+    return ((own.array().square() / products.diagonal().array()) > kDependent).all();
   }
 
-  /// Until the residual has fallen by `reduction`, or max_iterations. condition: c, or null. With one,
-  /// precondition_condition() must have come before.
-  CgSummary solve(const TangentSpace<Real>& space, const Field* condition, double reduction,
-                  int max_iterations) {
+  /// Until the residual has fallen by `reduction`, or max_iterations. With conditions,
+  /// precondition(conditions) must have come before.
+  CgSummary solve(const TangentSpace<Real>& space, Fields conditions, double reduction, int max_iterations) {
     CgSummary summary;
     x_.setZero();
-    double square = next_direction(space, condition, 0.0);
+    double square = next_direction(space, conditions, 0.0);
     const double first = square;
     if (!(square > 0.0)) return finish(summary, square, first);
     for (summary.iterations = 1;; ++summary.iterations) {
@@ -65,26 +85,35 @@ class ConjugateGradients {
       const auto step = static_cast<Real>(square / curvature);
       x_ += step * d_;
       r_ -= step * Kd_;
-      square = next_direction(space, condition, square);
+      square = next_direction(space, conditions, square);
       if (!(square > reduction * reduction * first) || summary.iterations >= max_iterations) {
         return finish(summary, square, first);
       }
     }
   }
 
-  /// Some steps towards (K + stiffness) w = c; returns c.w, dM/dphi of the tangent problem. Its error is of
-  /// second order in that of w.
-  double solve_for_condition(const TangentSpace<Real>& space, const Field& c, int iterations) {
-    r_ = c;
-    solve(space, nullptr, 0.0, iterations);
-    w_ = x_;
-    return c_w_ = dot(c, w_);
+  /// Some steps towards (K + stiffness) w = c for each condition; returns c_k.w_l, d(load)/d(motion) of the
+  /// tangent problem. Its error is of second order in that of w.
+  CoefficientMatrix solve_for_conditions(const TangentSpace<Real>& space, Fields conditions, int iterations) {
+    for (std::size_t k = 0; k < conditions.size(); ++k) {
+      r_ = *conditions[k];
+      solve(space, {}, 0.0, iterations);
+      tangents_[k] = x_;
+    }
+    const CoefficientMatrix products = products_with(conditions);
+    return 0.5 * (products + products.transpose());
   }
 
   /// Memory of the workspace for fields of so many values.
-  static double bytes(double values) { return 6.0 * sizeof(Real) * values; }
+  static double bytes(double values, std::size_t conditions) {
+    return (5.0 + static_cast<double>(conditions)) * sizeof(Real) * values;
+  }
 
  private:
+  /// Conditions that depend on each other on the tangent space: one stick cell can be turned and pushed, but
+  /// not told which.
+  static constexpr double kDependent = 1e-12;
+
   static double dot(const Field& a, const Field& b) {
     return (a.template cast<double>() * b.template cast<double>()).sum();
   }
@@ -95,15 +124,34 @@ class ConjugateGradients {
     space.complete(r, y_);
   }
 
+  CoefficientMatrix products_with(Fields conditions) const {
+    const auto n = static_cast<Eigen::Index>(conditions.size());
+    CoefficientMatrix products(n, n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      for (Eigen::Index l = 0; l < n; ++l) {
+        products(k, l) =
+            dot(*conditions[static_cast<std::size_t>(k)], tangents_[static_cast<std::size_t>(l)]);
+      }
+    }
+    return products;
+  }
+
   /// d = preconditioned residual, conjugate to the last direction; its square in the preconditioner's norm.
-  double next_direction(const TangentSpace<Real>& space, const Field* condition, double previous_square) {
+  double next_direction(const TangentSpace<Real>& space, Fields conditions, double previous_square) {
     precondition(space, r_);
     double square = dot(r_, y_);
-    if (condition != nullptr) {
-      const double multiplier = dot(*condition, y_) / c_w_;
-      square -= multiplier * multiplier * c_w_;
-      y_ -= static_cast<Real>(multiplier) * w_;
-      r_ -= static_cast<Real>(multiplier) * *condition;
+    if (!conditions.empty()) {
+      Coefficients products(static_cast<Eigen::Index>(conditions.size()));
+      for (std::size_t k = 0; k < conditions.size(); ++k) {
+        products[static_cast<Eigen::Index>(k)] = dot(*conditions[k], y_);
+      }
+      const Coefficients multipliers = factor_.solve(products);
+      square -= multipliers.dot(products);
+      for (std::size_t k = 0; k < conditions.size(); ++k) {
+        const auto multiplier = static_cast<Real>(multipliers[static_cast<Eigen::Index>(k)]);
+        y_ -= multiplier * tangents_[k];
+        r_ -= multiplier * *conditions[k];
+      }
     }
     if (previous_square == 0.0) {
       d_ = y_;
@@ -124,8 +172,10 @@ class ConjugateGradients {
 
   Operator<Real>& op_;
   InverseSymbol<Real>& symbol_;
-  Field x_, r_, d_, Kd_, y_, w_;
-  double c_w_ = 0.0;
+  Field x_, r_, d_, Kd_, y_;
+  std::vector<Field> tangents_;
+  std::vector<const Field*> tangent_pointers_;
+  Eigen::LLT<CoefficientMatrix> factor_;
 };
 
 }  // namespace slipstick::solver

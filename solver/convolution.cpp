@@ -82,6 +82,7 @@ auto Convolution<Real>::multiply_for(const BlockKernel& kernel) -> Multiply {
   if (kernel.outputs == 1 && kernel.inputs == 1 && real) return shaped.template operator()<1, 1, false>();
   if (kernel.outputs == 2 && kernel.inputs == 2 && real) return shaped.template operator()<2, 2, false>();
   if (kernel.outputs == 2 && kernel.inputs == 1 && imaginary) return shaped.template operator()<2, 1, true>();
+  if (kernel.outputs == 1 && kernel.inputs == 2 && imaginary) return shaped.template operator()<1, 2, true>();
   throw std::invalid_argument("no convolution with a kernel of this shape");
 }
 

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "solver/elasticity.hpp"
-#include "solver/torsion_problem.hpp"
+#include "solver/tangential_problem.hpp"
 
 namespace slipstick::solver {
 
@@ -21,10 +21,11 @@ struct CoulombOptions {
 ///
 /// Throws std::invalid_argument for a problem that require_valid() refuses. Everything that the numbers do is
 /// a status with its reason.
-TorsionSolution solve_by_coulomb_method(const Elasticity& elasticity, const Grid& grid,
-                                        const TorsionProblem& problem, const CoulombOptions& options = {});
+TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const Grid& grid,
+                                           const TangentialProblem& problem,
+                                           const CoulombOptions& options = {});
 
-/// What TorsionSolution::bytes of it will be.
-double predicted_coulomb_bytes(const Elasticity& elasticity, const Grid& grid);
+/// What TangentialSolution::bytes of it will be.
+double predicted_coulomb_bytes(const Elasticity& elasticity, const Grid& grid, bool translations = false);
 
 }  // namespace slipstick::solver

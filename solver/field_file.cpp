@@ -11,6 +11,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
+#include <limits>
 #include <sstream>
 #include <utility>
 
@@ -98,14 +99,22 @@ double parse_number(const std::string& text, const path& file, std::size_t line)
   return value;
 }
 
+/// NaN for one that is missing.
+double parse_height(const std::string& text, const path& file, std::size_t line) {
+  const bool missing = text.empty() || text == "nan" || text == "NaN" || text == "NAN";
+  return missing ? std::numeric_limits<double>::quiet_NaN() : parse_number(text, file, line);
+}
+
 /// Rows of numbers, all of one length, from line `first_line` on; empty lines are skipped.
-std::vector<std::vector<double>> read_rows(std::ifstream& stream, const path& file, std::size_t first_line) {
+template <typename Parse>
+std::vector<std::vector<double>> read_rows(std::ifstream& stream, const path& file, std::size_t first_line,
+                                           const Parse& parse) {
   std::vector<std::vector<double>> rows;
   std::size_t line_number = first_line;
   for (std::string line; std::getline(stream, line); ++line_number) {
     if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
     std::vector<double> row;
-    for (const std::string& part : split(line)) row.push_back(parse_number(part, file, line_number));
+    for (const std::string& part : split(line)) row.push_back(parse(part, file, line_number));
     if (!rows.empty() && row.size() != rows.front().size()) {
       throw InputError(
           fmt::format("{}:{}", file.string(), line_number),
@@ -131,7 +140,7 @@ std::vector<Column> read_csv_columns(const path& file, const std::vector<std::st
     }
     positions.push_back(static_cast<std::size_t>(found - header.begin()));
   }
-  const auto rows = read_rows(stream, file, 2);
+  const auto rows = read_rows(stream, file, 2, parse_number);
   if (rows.front().size() != header.size()) {
     throw InputError(fmt::format("{}:2", file.string()),
                      fmt::format("{} values; allowed: {}, one a column", rows.front().size(), header.size()));
@@ -221,13 +230,9 @@ std::vector<Column> read_columns(const path& file, const std::vector<std::string
 }
 
 Eigen::ArrayXXd read_height_map(const path& file) {
-  if (is_hdf5(file)) {
-    Eigen::ArrayXXd heights = Hdf5File(file, Hdf5File::Mode::read).read("height", 2);
-    if (!heights.isFinite().all()) throw InputError(file.string(), "height: allowed: finite numbers only");
-    return heights;
-  }
+  if (is_hdf5(file)) return Hdf5File(file, Hdf5File::Mode::read).read("height", 2);
   std::ifstream stream = open_text(file);
-  const auto rows = read_rows(stream, file, 1);
+  const auto rows = read_rows(stream, file, 1, parse_height);
   Eigen::ArrayXXd heights(static_cast<Index>(rows.size()), static_cast<Index>(rows.front().size()));
   for (Index i = 0; i < heights.rows(); ++i) {
     for (Index j = 0; j < heights.cols(); ++j) {

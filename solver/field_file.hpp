@@ -20,7 +20,8 @@ struct Column {
 /// missing column, and a value that is not a finite number (with its row).
 std::vector<Column> read_columns(const std::filesystem::path& file, const std::vector<std::string>& names);
 
-/// A matrix of heights: CSV without header, one line for each x1; or the 2-D HDF5 dataset "height".
+/// A matrix of heights: CSV without header, one line for each x1; or the 2-D HDF5 dataset "height". A point
+/// that is missing, an empty or "nan" cell of a CSV file, is NaN.
 Eigen::ArrayXXd read_height_map(const std::filesystem::path& file);
 
 /// Throws InputError unless the ending is one that write_fields knows.

@@ -14,6 +14,8 @@ BlockKernel tangential_kernel() {
 
 BlockKernel coupling_kernel() { return {2, 1, {Component::k13, Component::k23}}; }
 
+BlockKernel shear_kernel() { return {1, 2, {Component::k13, Component::k23}}; }
+
 namespace {
 
 template <typename Real>

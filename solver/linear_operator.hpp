@@ -19,10 +19,11 @@ struct BlockKernel {
   std::vector<Component> components;
 };
 
-/// u3 = K33 p; (u1, u2) = K (q1, q2); (u1, u2) = (K13, K23) p.
+/// u3 = K33 p; (u1, u2) = K (q1, q2); (u1, u2) = (K13, K23) p; K13 q1 + K23 q2, which is -u3 by shear.
 BlockKernel normal_kernel();
 BlockKernel tangential_kernel();
 BlockKernel coupling_kernel();
+BlockKernel shear_kernel();
 
 /// Fields of traction to fields of displacement on one grid. The methods know no more of elasticity than
 /// this, so that the three ways to evaluate it are interchangeable.

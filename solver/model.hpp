@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solver/hertz_pressure.hpp"
+#include "solver/over_unit.hpp"
 #include "solver/reduction.hpp"
 #include "solver/scene.hpp"
 
@@ -25,29 +26,38 @@ struct Model {
   Grid grid;
   ElasticPair pair;
   double friction;
-  std::optional<double> normal_load;
+  std::optional<double> normal_load;  ///< the largest of the scene's steps
   Eigen::ArrayXd gap;  ///< undeformed, one value a cell; infinite where the bodies cannot touch
-  std::optional<HertzContact> hertz;  ///< of a sphere or an ellipsoid
-  bool pressure_coupling;             ///< K13, K23 enter
-  Reduction pressure_part;            ///< of the grid, on which the pressure is found
+  std::optional<HertzContact>
+      hertz;                ///< where Hertz's theory holds as it stands, hertzian_radii, under that load
+  bool hertzian;            ///< the pressure is Hertz's, wherever the body stands, up to the mesh
+  bool pressure_coupling;   ///< K13, K23 enter
+  bool shear_coupling;      ///< and K31, K32
+  bool forces;              ///< some step brings a tangential force or displacement
+  Reduction pressure_part;  ///< of the grid, on which the pressure is found
   std::vector<Omission> left_out;
 
   double force_unit() const { return stress_unit * length_unit * length_unit; }
   double moment_unit() const { return force_unit() * length_unit; }
 };
 
-/// A value over its unit, as models hold it: rounded to 40 bits. Twelve digits are more than any scene's data
-/// have, and the roundings that came in with the scene's units, which conjugate gradients would amplify, are
-/// gone.
-double over_unit(double value, double unit);
+/// Whether the contact's translations are unknowns: not where the contact is its own image under half a turn
+/// and carries no force.
+bool has_translations(const Scene& scene, const Model& model, const Eigen::ArrayXd& pressure);
 
-/// The part of the grid on which tractions are found under a pressure, and what that leaves out.
-Reduction traction_part(const Scene& scene, Model& model, const Eigen::ArrayXd& pressure);
+/// The part of the grid on which tractions are found under a pressure. before: a pressure whose tractions
+/// have to stay within it; empty: none.
+Reduction traction_part(const Scene& scene, const Model& model, const Eigen::ArrayXd& pressure,
+                        const Eigen::ArrayXd& before = {});
+
+/// Notes what that and has_translations() leave out.
+void note_omissions(Model& model, const Scene& scene, const Reduction& part, bool translations);
 
 /// How the model's displacements are computed on a part of its grid.
 Elasticity elasticity(const Scene& scene, const Model& model, const Reduction& part);
 
-/// Throws InputError for a height map that cannot be used and for cells that do not fit in memory.
+/// Throws InputError for a height map that cannot be used, a surface that cannot touch, an extent that is
+/// missing or too small, and for cells that do not fit in memory.
 Model make_model(const Scene& scene);
 
 /// Memory that solving the scene takes, in bytes: operators, workspaces, fields.

@@ -6,28 +6,35 @@
 #include <cmath>
 #include <functional>
 #include <limits>
-#include <optional>
+#include <span>
 #include <string>
+#include <type_traits>
+#include <vector>
 
 #include "solver/admissible.hpp"
 #include "solver/conjugate_gradients.hpp"
+#include "solver/load_balance.hpp"
 
 namespace slipstick::solver {
 
-/// minimise q.Kq/2 + g.q over the admissible q with c.q = load, or q.Kq/2 + g.q - multiplier c.q without
-/// condition where the multiplier is given. Fields of kComponents*cells values; not owned.
+/// minimise q.Kq/2 + g.q - sum of multiplier_k c_k.q over the admissible q: with c_k.q = load_k for each
+/// condition that is imposed, which finds its multiplier, and with a given multiplier for the others. Fields
+/// of kComponents*cells values; not owned.
 struct ConvexProgram {
   const Eigen::ArrayXd* g = nullptr;  ///< null: zero
-  const Eigen::ArrayXd& c;
-  std::optional<double> load;
-  std::optional<double> multiplier;
+  std::vector<Condition> imposed;     ///< at most kMostConditions, with those that follow
+  struct Given {
+    const Eigen::ArrayXd* c;
+    double multiplier;
+  };
+  std::vector<Given> given = {};
 };
 
 struct NewtonOptions {
   double tolerance = 1e-8;       ///< on gap / (q.Kq/2)
   long max_applications = 1000;  ///< of the operator
-  /// Whether the multiplier and the tangent stiffness are wanted to second order, at some applications more.
-  bool refine_multiplier = true;
+  /// Whether the multipliers and the tangent stiffness are wanted to second order, at some applications more.
+  bool refine_multipliers = true;
   std::function<void(long applications, double gap)> progress = {};
 };
 
@@ -35,19 +42,20 @@ struct NewtonSummary {
   bool converged = false;
   std::string message;                                    ///< why not
   double gap = std::numeric_limits<double>::quiet_NaN();  ///< over q.Kq/2
-  double multiplier = 0.0;
-  /// d(load)/d(multiplier) at the solution; 0 where nothing sticks.
-  double tangent_stiffness = 0.0;
+  Coefficients multipliers;                               ///< of the imposed conditions
+  /// d(load)/d(multiplier) at the solution, of the imposed conditions and after them the given ones; empty
+  /// where it is not known.
+  CoefficientMatrix tangent_stiffness;
   int iterations = 0;
 };
 
-/// Semismooth Newton method on the natural map q = P(q - rho (Kq + g - multiplier c)) of a convex program
+/// Semismooth Newton method on the natural map q = P(q - rho (Kq + g - multipliers c)) of a convex program
 /// over a product of small sets (Hintermueller, Ito and Kunisch 2003; for friction Alart and Curnier 1991).
 ///
 /// Each step fixes the state that the natural map gives to every cell and solves the linear problem in the
 /// tangent space by conjugate gradients, in the precision Real; the residual is always double. The step's end
-/// is projected onto the admissible set and the load restored along the tangent field (K + stiffness)^-1 c,
-/// which disturbs the multiplier alone. The step is halved until the energy falls; where even that fails,
+/// is projected onto the admissible set and the loads restored along the tangent fields (K + stiffness)^-1 c,
+/// which disturb the multipliers alone. The step is halved until the energy falls; where even that fails,
 /// steps of the projected gradient take over, which always descend.
 template <class Set, typename Real>
 class NaturalMapNewton {
@@ -63,19 +71,26 @@ class NaturalMapNewton {
         inner_(inner),
         mean_(symbol.diagonal()),
         rho_(kRho * 0.5 * (mean_[0] + mean_[1])),
-        cg_(inner, symbol, size()),
+        cg_(inner, symbol, size(), conditions(program)),
         space_(Set::kComponents, set.cells()),
-        c_(program.c.template cast<Real>()),
+        balance_(set, program.imposed),
         u_(size()),
         y_(size()),
         trial_(size()),
-        trial_u_(size()),
-        total_load_(scale_of_load()) {}
+        trial_u_(size()) {
+    for (const Condition& condition : program.imposed) add_condition(*condition.c);
+    for (const auto& given : program.given) add_condition(*given.c);
+    if constexpr (!std::is_same_v<Real, double>) {
+      for (const Field& field : rounded_) c_.push_back(&field);
+    }
+  }
 
   /// Improves q, any field of the right size, until its certificate holds.
-  NewtonSummary run(ArrayXd& q, double multiplier, const NewtonOptions& options) {
+  /// multipliers: guesses of those of the imposed conditions, or empty.
+  NewtonSummary run(ArrayXd& q, const Coefficients& multipliers, const NewtonOptions& options) {
     NewtonSummary summary;
-    multiplier_ = program_.multiplier.value_or(multiplier);
+    multipliers_ =
+        multipliers.size() == balance_.count() ? multipliers : Coefficients::Zero(balance_.count());
     enter_admissible_set(q);
     double best_gap = std::numeric_limits<double>::infinity();
     int without_progress = 0;
@@ -83,11 +98,11 @@ class NaturalMapNewton {
       if (!find_state(q))
         return fail(summary, "no multiplier restores the load: it is not finite, or at its limit");
       summary.gap = relative_gap(q);
-      summary.multiplier = multiplier_;
+      summary.multipliers = multipliers_;
       if (options.progress) options.progress(applications(), summary.gap);
       if (std::isnan(summary.gap)) return fail(summary, "an elastic energy that is not a positive number");
       if (summary.gap <= options.tolerance &&
-          (!options.refine_multiplier || refine(q, options.tolerance, summary))) {
+          (!options.refine_multipliers || refine(q, options.tolerance, summary))) {
         summary.converged = true;
         return summary;
       }
@@ -110,19 +125,35 @@ class NaturalMapNewton {
   /// K q of the last q.
   const ArrayXd& displacement() const { return u_; }
 
+  /// s = u + g - multipliers c of the last q.
+  void write_slip(ArrayXd& s) const {
+    s = u_;
+    if (program_.g != nullptr) s += *program_.g;
+    for (const auto& [c, multiplier] : program_.given) s -= multiplier * *c;
+    balance_.add(-multipliers_, s);
+  }
+
   long applications() const {
     const bool one = static_cast<const void*>(&op_) == static_cast<const void*>(&inner_);
     return op_.applications() + (one ? 0 : inner_.applications());
   }
 
-  /// Memory of the workspaces for so many cells.
-  static double bytes(double cells) {
+  /// Memory of the workspaces for so many cells and conditions.
+  static double bytes(double cells, std::size_t conditions) {
     const double values = static_cast<double>(Set::kComponents) * cells;
-    return kDoubleFields * sizeof(double) * values + sizeof(Real) * values +
-           ConjugateGradients<Real>::bytes(values) + TangentSpace<Real>::bytes(Set::kComponents, cells);
+    const double rounded = std::is_same_v<Real, double> ? 0.0 : static_cast<double>(conditions);
+    return kDoubleFields * sizeof(double) * values + rounded * sizeof(Real) * values +
+           ConjugateGradients<Real>::bytes(values, conditions) +
+           TangentSpace<Real>::bytes(Set::kComponents, cells);
+  }
+
+  static std::size_t conditions(const ConvexProgram& program) {
+    return program.imposed.size() + program.given.size();
   }
 
  private:
+  using Field = typename Operator<Real>::Field;
+
   /// rho over the mean of the inverse symbol. Smaller is more careful about changing cells' states; between
   /// 0.1 and 0.3 makes no difference, 1 overshoots.
   static constexpr double kRho = 0.2;
@@ -138,99 +169,73 @@ class NaturalMapNewton {
   static constexpr int kMostGradientHalvings = 30;
   /// Energies are compared up to their rounding.
   static constexpr double kEnergyRounding = 1e-13;
-  static constexpr double kLoadRounding = 1e-14;
-  static constexpr int kRootIterations = 60;
 
   static constexpr double kDoubleFields = 4.0;  ///< u_, y_, trial_, trial_u_
 
   Index size() const { return Set::kComponents * set_.cells(); }
 
-  /// What the load's rounding is relative to.
-  double scale_of_load() const {
-    if (!program_.load) return 1.0;
-    return std::max(std::abs(*program_.load), std::numeric_limits<double>::min());
+  /// A condition's field in the precision of the inner iteration.
+  void add_condition(const ArrayXd& c) {
+    if constexpr (std::is_same_v<Real, double>) {
+      c_.push_back(&c);
+    } else {
+      rounded_.push_back(c.template cast<Real>());
+    }
+  }
+  std::span<const Field* const> conditions() const { return c_; }
+  std::span<const Field* const> imposed() const {
+    return conditions().first(static_cast<std::size_t>(balance_.count()));
   }
 
   void enter_admissible_set(ArrayXd& q) {
-    if (program_.load) {
-      const auto x = find_load(q, program_.c, 0.0);
-      if (x) q += *x * program_.c;
-    }
+    Coefficients x = Coefficients::Zero(balance_.count());
+    if (balance_.solve(q, x)) balance_.add(x, q);
     set_.project(q);
     op_.apply(q, u_);
   }
 
-  /// x with c.P(y + x direction) = load, by Newton's method in a bracket. None if there is none within reach.
-  template <typename Direction>
-  std::optional<double> find_load(const ArrayXd& y, const Direction& direction, double start) const {
-    double low = -std::numeric_limits<double>::infinity();
-    double high = std::numeric_limits<double>::infinity();
-    double x = start;
-    double stride = 0.0;
-    for (int i = 0; i < kRootIterations; ++i) {
-      const LoadAlong at = set_.load_along(y, direction, x, program_.c);
-      const double excess = at.load - *program_.load;
-      if (std::abs(excess) <= kLoadRounding * total_load_) return x;
-      if (!std::isfinite(excess)) return std::nullopt;
-      (excess < 0.0 ? low : high) = x;
-      double next = x - excess / at.slope;
-      if (at.slope > 0.0) stride = std::max(stride, std::abs(next - x));
-      if (!(at.slope > 0.0) || !(next > low && next < high)) {
-        const bool bracketed = std::isfinite(low) && std::isfinite(high);
-        stride = stride > 0.0 ? 2.0 * stride : 1.0;
-        next = bracketed ? 0.5 * (low + high) : x + (excess < 0.0 ? stride : -stride);
-      }
-      if (next == x || !(high - low > std::numeric_limits<double>::epsilon() * std::abs(x))) return x;
-      x = next;
-    }
-    return std::nullopt;
-  }
-
-  /// The multiplier by the natural map, and y = q - rho s.
+  /// The multipliers by the natural map, and y = q - rho s.
   bool find_state(const ArrayXd& q) {
     y_ = q - rho_ * u_;
     if (program_.g != nullptr) y_ -= rho_ * *program_.g;
-    if (program_.load) {
-      const auto x = find_load(y_, program_.c, rho_ * multiplier_);
-      if (!x) return false;
-      multiplier_ = *x / rho_;
-    }
-    y_ += (rho_ * multiplier_) * program_.c;
+    for (const auto& [c, multiplier] : program_.given) y_ += (rho_ * multiplier) * *c;
+    Coefficients x = rho_ * multipliers_;
+    if (!balance_.solve(y_, x)) return false;
+    multipliers_ = x / rho_;
+    balance_.add(x, y_);
     return true;
   }
 
   double energy(const ArrayXd& q, const ArrayXd& u) const {
     double sum = 0.5 * (q * u).sum();
     if (program_.g != nullptr) sum += (q * *program_.g).sum();
-    if (program_.multiplier) sum -= *program_.multiplier * (q * program_.c).sum();
+    for (const auto& [c, multiplier] : program_.given) sum -= multiplier * (q * *c).sum();
     return sum;
   }
 
   double relative_gap(const ArrayXd& q) {
     const double elastic = 0.5 * (q * u_).sum();
-    if (program_.g != nullptr) trial_u_ = u_ + *program_.g;
-    const double gap = set_.gap(q, program_.g != nullptr ? trial_u_ : u_, program_.c, multiplier_);
+    write_slip(trial_u_);
+    const double gap = set_.gap(q, trial_u_);
     if (gap == 0.0) return 0.0;
     return elastic >= 0.0 ? gap / elastic : std::numeric_limits<double>::quiet_NaN();
   }
 
   void linearise() {
     changed_ = set_.linearise(y_, rho_, mean_, space_);
-    has_tangent_ = cg_.precondition_condition(space_, c_);
+    has_tangents_ = cg_.precondition(space_, imposed());
   }
 
   /// Right-hand side -(s + stiffness q), of which the tangent space sees the turning part of q.
   void write_residual(const ArrayXd& q) {
-    const Index n = set_.cells();
-    auto& r = cg_.residual();
-    for (Index component = 0; component < Set::kComponents; ++component) {
-      for (Index i = component * n; i < (component + 1) * n; ++i) {
-        double value = multiplier_ * program_.c[i] - u_[i];
-        if (program_.g != nullptr) value -= (*program_.g)[i];
-        if (Set::kComponents == 2) value -= static_cast<double>(space_.stiffness[i - component * n]) * q[i];
-        r[i] = static_cast<Real>(value);
-      }
+    write_slip(trial_u_);
+    if (Set::kComponents == 2) {
+      const Index n = set_.cells();
+      const auto& stiffness = space_.stiffness.template cast<double>();
+      trial_u_.head(n) += stiffness * q.head(n);
+      trial_u_.tail(n) += stiffness * q.tail(n);
     }
+    cg_.residual() = -trial_u_.template cast<Real>();
   }
 
   /// False where conjugate gradients broke down.
@@ -239,8 +244,8 @@ class NaturalMapNewton {
     const double reduction =
         changed_ == 0 ? std::clamp(0.3 * wanted, kTightReduction, kLooseReduction) : kLooseReduction;
     const auto most = static_cast<int>(std::clamp<long>(applications_left, 1, kInnerIterations));
-    const auto* const condition = program_.load && has_tangent_ ? &c_ : nullptr;
-    return cg_.solve(space_, condition, reduction, most).breakdown.empty();
+    const auto kept = has_tangents_ ? imposed() : std::span<const Field* const>();
+    return cg_.solve(space_, kept, reduction, most).breakdown.empty();
   }
 
   /// Whether the energy fell; then q and its displacement are the new ones.
@@ -262,23 +267,28 @@ class NaturalMapNewton {
       trial_ = cg_.solution().template cast<double>();
       set_.add_jump(y_, q, trial_);
       trial_ = q + length * trial_;
-      if (program_.load && !restore_load()) continue;
+      if (!restore_loads()) continue;
       if (accept_trial(q)) return true;
     }
     return false;
   }
 
-  /// The load of the projected trial, restored along the tangent field if it can be, else along c.
-  bool restore_load() {
-    if (has_tangent_) {
-      if (const auto x = find_load(trial_, cg_.tangent(), 0.0)) {
-        trial_ += *x * cg_.tangent().template cast<double>();
+  /// The loads of the projected trial, restored along the tangent fields if they can be, else along c.
+  bool restore_loads() {
+    Coefficients x = Coefficients::Zero(balance_.count());
+    if (has_tangents_) {
+      const auto tangents = cg_.tangents().first(imposed().size());
+      if (balance_.template solve_along<Field>(trial_, tangents, x)) {
+        for (std::size_t k = 0; k < tangents.size(); ++k) {
+          trial_ += x[static_cast<Eigen::Index>(k)] * tangents[k]->template cast<double>();
+        }
         return true;
       }
+      x.setZero();
     }
-    const auto x = find_load(trial_, program_.c, 0.0);
-    if (x) trial_ += *x * program_.c;
-    return x.has_value();
+    if (!balance_.solve(trial_, x)) return false;
+    balance_.add(x, trial_);
+    return true;
   }
 
   bool take_gradient_step(ArrayXd& q) {
@@ -286,47 +296,55 @@ class NaturalMapNewton {
       const double length = std::ldexp(rho_, -halvings);
       trial_ = q - length * u_;
       if (program_.g != nullptr) trial_ -= length * *program_.g;
-      if (program_.load) {
-        const auto x = find_load(trial_, program_.c, length * multiplier_);
-        if (!x) continue;
-        trial_ += *x * program_.c;
-      } else {
-        trial_ += (length * multiplier_) * program_.c;
-      }
+      for (const auto& [c, multiplier] : program_.given) trial_ += (length * multiplier) * *c;
+      Coefficients x = length * multipliers_;
+      if (!balance_.solve(trial_, x)) continue;
+      balance_.add(x, trial_);
       if (accept_trial(q)) return true;
     }
     return false;
   }
 
-  /// The multiplier to second order: that of a Newton step along the tangent field w, w.(s + stiffness
-  /// q)/(w.c). False if the gap at that multiplier is above the tolerance: then another step is due.
+  /// The multipliers to second order: those of a Newton step along the tangent fields w, from w.(s +
+  /// stiffness q) and w.c. False if the gap at those multipliers is above the tolerance: then another step is
+  /// due.
   bool refine(const ArrayXd& q, double tolerance, NewtonSummary& summary) {
     linearise();
-    summary.tangent_stiffness = 0.0;
-    if (has_tangent_) summary.tangent_stiffness = cg_.solve_for_condition(space_, c_, kTangentIterations);
-    if (!program_.load || !(summary.tangent_stiffness > 0.0)) return true;
+    summary.tangent_stiffness = CoefficientMatrix();
+    if (!has_tangents_) return true;
+    summary.tangent_stiffness = cg_.solve_for_conditions(space_, conditions(), kTangentIterations);
+    const Eigen::Index n = balance_.count();
+    if (n == 0) return true;
+    const Eigen::LLT<CoefficientMatrix> factor(
+        CoefficientMatrix(summary.tangent_stiffness.topLeftCorner(n, n)));
+    if (factor.info() != Eigen::Success) return true;
     write_residual(q);
-    const double correction =
-        -(cg_.residual().template cast<double>() * cg_.tangent().template cast<double>()).sum() /
-        summary.tangent_stiffness;
-    const double first_order = multiplier_;
-    multiplier_ += correction;
+    Coefficients products(n);
+    for (Eigen::Index k = 0; k < n; ++k) {
+      products[k] = (cg_.residual().template cast<double>() *
+                     cg_.tangents()[static_cast<std::size_t>(k)]->template cast<double>())
+                        .sum();
+    }
+    const Coefficients first_order = multipliers_;
+    multipliers_ -= factor.solve(products);
     const double gap = relative_gap(q);
     if (gap <= tolerance) {
       summary.gap = gap;
-      summary.multiplier = multiplier_;
+      summary.multipliers = multipliers_;
       return true;
     }
-    multiplier_ = first_order;
-    has_tangent_ = false;
+    multipliers_ = first_order;
+    has_tangents_ = false;
     return false;
   }
 
-  /// An admissible state short of its tolerance: described as well as it can be.
+  /// An admissible state from which no step leads on, described as well as it can be: short of its tolerance,
+  /// or within it where rounding keeps the multipliers of second order out.
   NewtonSummary stop(const ArrayXd& q, const NewtonOptions& options, NewtonSummary& summary,
                      const std::string& why) {
-    if (options.refine_multiplier) refine(q, summary.gap, summary);
-    return fail(summary, why);
+    if (options.refine_multipliers) refine(q, summary.gap, summary);
+    summary.converged = summary.gap <= options.tolerance;
+    return summary.converged ? summary : fail(summary, why);
   }
 
   static NewtonSummary fail(NewtonSummary& summary, const std::string& why) {
@@ -342,12 +360,13 @@ class NaturalMapNewton {
   double rho_;
   ConjugateGradients<Real> cg_;
   TangentSpace<Real> space_;
-  typename Operator<Real>::Field c_;
+  LoadBalance<Set> balance_;
+  std::vector<Field> rounded_;   ///< the conditions' fields, unless they are in this precision already
+  std::vector<const Field*> c_;  ///< those of the imposed conditions, then the given ones
   ArrayXd u_, y_, trial_, trial_u_;
-  double total_load_;
-  double multiplier_ = 0.0;
+  Coefficients multipliers_;  ///< of the imposed conditions
   Index changed_ = 0;
-  bool has_tangent_ = false;
+  bool has_tangents_ = false;
   bool energy_fell_ = false;  ///< in the last step, by more than its rounding
 };
 

@@ -13,6 +13,7 @@ struct NestedSummary {
   NewtonSummary newton;
   Eigen::ArrayXd field;         ///< q or p
   Eigen::ArrayXd displacement;  ///< K q
+  Eigen::ArrayXd slip;          ///< K q + g - multipliers c
   std::vector<GridWork> grids;  ///< coarsest first
   double bytes = 0.0;           ///< operators and workspaces on the finest grid
 };
@@ -23,49 +24,54 @@ inline double coarse_tolerance(const Grid& grid) {
   return 1.0 / (mirrored * static_cast<double>(grid.cells()));
 }
 
-/// What NestedSummary::bytes of such a solve will be.
+/// What NestedSummary::bytes of such a solve with so many conditions will be.
 template <class Set>
-double predicted_nested_bytes(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel) {
+double predicted_nested_bytes(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel,
+                              std::size_t conditions) {
   const auto bytes = [&]<typename Real>(Real) {
     return GridOperators<Real>::predicted_bytes(elasticity, grid, kernel) +
-           NaturalMapNewton<Set, Real>::bytes(static_cast<double>(grid.cells()));
+           NaturalMapNewton<Set, Real>::bytes(static_cast<double>(grid.cells()), conditions);
   };
   return elasticity.precision == Precision::mixed ? bytes(0.0F) : bytes(0.0);
 }
 
 /// Solves from the coarsest grid up, inner iterations in the precision Real. Problem gives, for its grid,
-/// kernel(), parities(), admissible(), program() and coarsened(coarse grid).
+/// kernel(), parities(), admissible(), start(), coarsened(coarse grid), and program(operator). From coarse
+/// grids only the change from start() is taken: start() itself is known in full.
 template <typename Real, class Problem>
-NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, const Problem& problem,
+NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Problem problem,
                               const NewtonOptions& options) {
   NestedSummary result;
-  double multiplier = 0.0;
+  Coefficients multipliers;
+  result.field = problem.start();
   if (can_coarsen(grid)) {
     const Grid coarse = coarser(grid);
     NewtonOptions coarse_options = options;
     coarse_options.tolerance = std::max(options.tolerance, coarse_tolerance(coarse));
-    coarse_options.refine_multiplier = false;
+    coarse_options.refine_multipliers = false;
     coarse_options.progress = nullptr;
-    NestedSummary below =
-        solve_nested_in<Real>(elasticity, coarse, problem.coarsened(grid, coarse), coarse_options);
+    const Problem on_coarse = problem.coarsened(grid, coarse);
+    const Eigen::ArrayXd start = on_coarse.start();
+    NestedSummary below = solve_nested_in<Real>(elasticity, coarse, on_coarse, coarse_options);
     result.grids = std::move(below.grids);
-    result.field = prolong_to(grid, coarse, below.field, problem.parities());
-    multiplier = below.newton.multiplier;
-  } else {
-    result.field.setZero(static_cast<Index>(problem.parities().size()) * grid.cells());
+    if (below.field.isFinite().all()) {
+      result.field += prolong_to(grid, coarse, below.field - start, problem.parities());
+    }
+    multipliers = below.newton.multipliers;
   }
-  if (!result.field.isFinite().all()) result.field.setZero();
 
   GridOperators<Real> operators(elasticity, grid, problem.kernel());
   const auto admissible = problem.admissible();
-  const ConvexProgram program = problem.program();
+  const ConvexProgram program = problem.program(*operators.op);
   NaturalMapNewton<std::remove_const_t<decltype(admissible)>, Real> newton(
       admissible, program, *operators.op, operators.inner(), *operators.symbol);
-  result.newton = newton.run(result.field, multiplier, options);
+  result.newton = newton.run(result.field, multipliers, options);
   result.displacement = newton.displacement();
+  newton.write_slip(result.slip);
   result.grids.push_back(
       {grid.n1, grid.n2, newton.applications(), result.newton.iterations, result.newton.gap});
-  result.bytes = operators.bytes() + newton.bytes(static_cast<double>(grid.cells()));
+  result.bytes =
+      operators.bytes() + newton.bytes(static_cast<double>(grid.cells()), newton.conditions(program));
   return result;
 }
 

@@ -26,8 +26,9 @@ class PressureOnGrid {
   static BlockKernel kernel() { return normal_kernel(); }
   static std::span<const Parity> parities() { return kPressureParities; }
   PositivePressures admissible() const { return PositivePressures(reachable_); }
-  ConvexProgram program() const {
-    return {.g = &height_, .c = reachable_, .load = total_pressure_, .multiplier = std::nullopt};
+  ArrayXd start() const { return ArrayXd::Zero(reachable_.size()); }
+  ConvexProgram program(LinearOperator&) const {
+    return {.g = &height_, .imposed = {{&reachable_, total_pressure_}}};
   }
 
   /// A coarse cell can touch where half of it can, at the mean height of that part.
@@ -58,7 +59,7 @@ void require_valid(const NormalProblem& problem, const Grid& grid) {
 }  // namespace
 
 double predicted_normal_bytes(const Elasticity& elasticity, const Grid& grid) {
-  return predicted_nested_bytes<PositivePressures>(elasticity, grid, normal_kernel());
+  return predicted_nested_bytes<PositivePressures>(elasticity, grid, normal_kernel(), 1);
 }
 
 NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& grid,
@@ -75,7 +76,7 @@ NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& gr
                                    nested.newton.gap, options.tolerance);
   }
   solution.pressure = std::move(nested.field);
-  solution.approach = nested.newton.multiplier;
+  solution.approach = nested.newton.multipliers.size() > 0 ? nested.newton.multipliers[0] : std::nan("");
   solution.complementarity = nested.newton.gap;
   solution.load_error = std::abs(solution.pressure.sum() / problem.total_pressure - 1.0);
   solution.iterations = nested.newton.iterations;

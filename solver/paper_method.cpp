@@ -21,7 +21,7 @@ ArrayXd both(const ArrayXd& cell_values) { return cell_values.replicate(2, 1); }
 /// Section 4 of the paper, one member a step, under the paper's names.
 class PaperMethod {
  public:
-  PaperMethod(LinearOperator& op, const TorsionProblem& problem, const PaperOptions& options)
+  PaperMethod(LinearOperator& op, const TangentialProblem& problem, const PaperOptions& options)
       : op_(op),
         problem_(problem),
         options_(options),
@@ -40,7 +40,7 @@ class PaperMethod {
     measure_stick_area();
   }
 
-  TorsionSolution run() {
+  TangentialSolution run() {
     const bool unloaded = problem_.moment.value_or(problem_.twist.value_or(0.0)) == 0.0 &&
                           problem_.initial_displacement.size() == 0;
     if (unloaded || total_friction_ == 0.0) return finish(Status::converged, "");
@@ -151,21 +151,21 @@ class PaperMethod {
     if (options_.progress && iteration_ % kProgressEvery == 0) options_.progress(iteration_, change_);
   }
 
-  TorsionSolution empty_stick_area() {
+  TangentialSolution empty_stick_area() {
     return finish(Status::not_converged,
                   fmt::format("empty stick area in iteration {}: every cell slips", iteration_));
   }
-  TorsionSolution non_finite() {
+  TangentialSolution non_finite() {
     return finish(Status::not_converged,
                   fmt::format("non-finite slip in iteration {}: S = {}", iteration_, S_));
   }
-  TorsionSolution indefinite() {
+  TangentialSolution indefinite() {
     return finish(Status::not_converged, fmt::format("indefinite operator in iteration {}: d.Kd = {}, S = {}",
                                                      iteration_, curvature_, S_));
   }
 
   /// What is reported of a result is computed from its tractions afresh, not carried along.
-  TorsionSolution finish(Status status, const std::string& message) {
+  TangentialSolution finish(Status status, const std::string& message) {
     op_.apply(q_, u_);
     if (problem_.twist || can_hold()) estimate_twist();
     compute_slip();
@@ -181,7 +181,7 @@ class PaperMethod {
   }
 
   LinearOperator& op_;
-  const TorsionProblem& problem_;
+  const TangentialProblem& problem_;
   const PaperOptions& options_;
   const ArrayXd t_;        // (-x2, x1)
   const ArrayXd initial_;  // (u1, u2) by the pressure
@@ -198,8 +198,8 @@ class PaperMethod {
 
 }  // namespace
 
-TorsionSolution solve_by_paper_method(LinearOperator& op, const TorsionProblem& problem,
-                                      const PaperOptions& options) {
+TangentialSolution solve_by_paper_method(LinearOperator& op, const TangentialProblem& problem,
+                                         const PaperOptions& options) {
   require_valid(problem, op.grid());
   return PaperMethod(op, problem, options).run();
 }

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "solver/linear_operator.hpp"
-#include "solver/torsion_problem.hpp"
+#include "solver/tangential_problem.hpp"
 
 namespace slipstick::solver {
 
@@ -22,7 +22,7 @@ struct PaperOptions {
 ///
 /// Throws std::invalid_argument for a problem that require_valid() refuses. Everything that the numbers do is
 /// a status with its reason.
-TorsionSolution solve_by_paper_method(LinearOperator& op, const TorsionProblem& problem,
-                                      const PaperOptions& options = {});
+TangentialSolution solve_by_paper_method(LinearOperator& op, const TangentialProblem& problem,
+                                         const PaperOptions& options = {});
 
 }  // namespace slipstick::solver

@@ -54,7 +54,7 @@ Eigen::ArrayXd pressure_from_file(const Scene& scene, const Model& model) {
   if (!(pressure.sum() > 0.0)) throw InputError(file, "pressure is zero everywhere");
   const double load = pressure.sum() * grid.cell_area();
   if (model.normal_load && std::abs(load / *model.normal_load - 1.0) > kLoadTolerance) {
-    throw InputError(scene.source.string(), "load.normal", fmt::format("{} N", *scene.normal_load),
+    throw InputError(scene.source.string(), "load.normal", fmt::format("{} N", *scene.steps[0].normal),
                      fmt::format("left out, or {:.6g} N within 1 %, which the pressure in {} carries",
                                  load * model.force_unit(), file));
   }
@@ -69,32 +69,40 @@ NormalSolution given(const Eigen::ArrayXd& pressure) {
 }
 
 /// On the part of the grid that the model leaves; the answer is on the whole one.
-NormalSolution solved_pressure(const Scene& scene, const Model& model) {
-  const Reduction& part = model.pressure_part;
+NormalSolution solved_pressure(const Scene& scene, const Model& model, double normal_load,
+                               const Eigen::ArrayXd& opening) {
+  // Shear opens the gap as it likes.
+  const Reduction part = opening.size() > 0 ? Reduction(model.grid) : model.pressure_part;
   const double images = part.quadrant() ? 4.0 : 1.0;
+  const Eigen::ArrayXd gap = opening.size() > 0 ? Eigen::ArrayXd(model.gap + opening) : model.gap;
   NormalSolution solution =
       solve_normal_contact(elasticity(scene, model, part), part.grid(),
-                           {part.restricted(model.gap), *model.normal_load / model.grid.cell_area() / images},
+                           {part.restricted(gap), normal_load / model.grid.cell_area() / images},
                            {.tolerance = std::min(kPressureTolerance, scene.tolerance)});
   solution.pressure = part.expanded(solution.pressure, normal_symmetry());
   if (part.diagonal()) solution.pressure = symmetrised(model.grid, solution.pressure);
+  if (scene.model != ModelChoice::full && !model.forces && is_half_turn_symmetric(model.gap)) {
+    solution.pressure = half_turn_symmetrised(solution.pressure);
+  }
   return solution;
+}
+
+/// Hertz's contact grows like the cube root of its load.
+HertzContact under_part_of_load(const HertzContact& contact, double part) {
+  const double scale = std::cbrt(part);
+  return {scale * contact.semi_axis_1, scale * contact.semi_axis_2, scale * contact.peak_pressure};
 }
 
 }  // namespace
 
-NormalSolution find_pressure(const Scene& scene, const Model& model) {
-  switch (scene.pressure) {
-    case PressureModel::hertz:
-      return given(hertz_at_centres(*model.hertz, model.grid));
-    case PressureModel::hertz_averaged:
-      return given(hertz_cell_averages(*model.hertz, model.grid));
-    case PressureModel::file:
-      return given(pressure_from_file(scene, model));
-    case PressureModel::solved:
-      return solved_pressure(scene, model);
-  }
-  throw std::logic_error("unknown pressure model");
+NormalSolution find_pressure(const Scene& scene, const Model& model, const Step& step,
+                             const Eigen::ArrayXd& opening) {
+  if (scene.pressure == PressureModel::file) return given(pressure_from_file(scene, model));
+  const double load = over_unit(*step.normal, model.force_unit());
+  if (scene.pressure == PressureModel::solved) return solved_pressure(scene, model, load, opening);
+  const HertzContact hertz = under_part_of_load(*model.hertz, load / *model.normal_load);
+  return given(scene.pressure == PressureModel::hertz ? hertz_at_centres(hertz, model.grid)
+                                                      : hertz_cell_averages(hertz, model.grid));
 }
 
 }  // namespace slipstick::solver

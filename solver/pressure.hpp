@@ -5,9 +5,11 @@
 
 namespace slipstick::solver {
 
-/// The contact's pressure in the model's units, by the scene's pressure model. Throws InputError for a
-/// pressure file that does not fit the grid, holds a negative value, or carries another load than the scene
-/// says.
-NormalSolution find_pressure(const Scene& scene, const Model& model);
+/// The contact's pressure in the model's units under a step's normal load, by the scene's pressure model.
+/// opening: what opens the gap besides its shape (the normal displacement by shear), on the model's grid;
+/// empty: nothing. Throws InputError for a pressure file that does not fit the grid, holds a negative value,
+/// or carries another load than the scene says.
+NormalSolution find_pressure(const Scene& scene, const Model& model, const Step& step,
+                             const Eigen::ArrayXd& opening = {});
 
 }  // namespace slipstick::solver

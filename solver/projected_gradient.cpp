@@ -25,7 +25,7 @@ constexpr double kNoise = 1e-13;
 
 class ProjectedGradient {
  public:
-  ProjectedGradient(LinearOperator& op, const TorsionProblem& problem,
+  ProjectedGradient(LinearOperator& op, const TangentialProblem& problem,
                     const ProjectedGradientOptions& options)
       : op_(op),
         problem_(problem),
@@ -40,7 +40,7 @@ class ProjectedGradient {
     if (q_.size() != t_.size()) throw std::invalid_argument("start: tractions of another size");
   }
 
-  TorsionSolution run() {
+  TangentialSolution run() {
     const bool unloaded = problem_.moment.value_or(problem_.twist.value_or(0.0)) == 0.0 &&
                           problem_.initial_displacement.size() == 0;
     if (unloaded || !contact_.any()) {
@@ -152,11 +152,11 @@ class ProjectedGradient {
     gap_ = certify({q_, Kq_, slip()}, problem_.friction_bound, t_, problem_.moment.value_or(0.0)).gap;
   }
 
-  TorsionSolution failure(const char* what, double value) {
+  TangentialSolution failure(const char* what, double value) {
     return finish(Status::not_converged, fmt::format("{} = {} in iteration {}", what, value, iteration_));
   }
 
-  TorsionSolution finish(Status status, const std::string& message) {
+  TangentialSolution finish(Status status, const std::string& message) {
     const ArrayXd s = slip();
     const ArrayXd size = norms(L_ > 0.0 ? ArrayXd(q_ - s / L_) : q_);
     const ArrayXd& bound = problem_.friction_bound;
@@ -172,7 +172,7 @@ class ProjectedGradient {
   }
 
   LinearOperator& op_;
-  const TorsionProblem& problem_;
+  const TangentialProblem& problem_;
   const ProjectedGradientOptions& options_;
   const ArrayXd t_;        // (-x2, x1)
   const ArrayXd load_;     // g
@@ -188,8 +188,8 @@ class ProjectedGradient {
 
 }  // namespace
 
-TorsionSolution solve_by_projected_gradient(LinearOperator& op, const TorsionProblem& problem,
-                                            const ProjectedGradientOptions& options) {
+TangentialSolution solve_by_projected_gradient(LinearOperator& op, const TangentialProblem& problem,
+                                               const ProjectedGradientOptions& options) {
   require_valid(problem, op.grid());
   return ProjectedGradient(op, problem, options).run();
 }

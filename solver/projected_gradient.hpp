@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "solver/linear_operator.hpp"
-#include "solver/torsion_problem.hpp"
+#include "solver/tangential_problem.hpp"
 
 namespace slipstick::solver {
 
@@ -26,7 +26,7 @@ struct ProjectedGradientOptions {
 ///
 /// Throws std::invalid_argument for a problem that require_valid() refuses and for a start of another size.
 /// Everything that the numbers do is a status with its reason.
-TorsionSolution solve_by_projected_gradient(LinearOperator& op, const TorsionProblem& problem,
-                                            const ProjectedGradientOptions& options = {});
+TangentialSolution solve_by_projected_gradient(LinearOperator& op, const TangentialProblem& problem,
+                                               const ProjectedGradientOptions& options = {});
 
 }  // namespace slipstick::solver

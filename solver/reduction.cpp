@@ -91,6 +91,13 @@ ArrayXd Reduction::expanded(const ArrayXd& field, const Symmetry& symmetry) cons
   return trimmed() ? padded(whole_, trimmed_, part) : part;
 }
 
+bool is_half_turn_symmetric(const ArrayXd& field) {
+  const ConstComponent values(field.data(), 1, field.size());
+  return same(values, values.reverse());
+}
+
+ArrayXd half_turn_symmetrised(const ArrayXd& pressure) { return 0.5 * (pressure + pressure.reverse()); }
+
 ArrayXd symmetrised(const Grid& grid, const ArrayXd& pressure) {
   const ConstComponent field(pressure.data(), grid.n1, grid.n2);
   ArrayXd result(pressure.size());

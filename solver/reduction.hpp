@@ -42,6 +42,12 @@ class Reduction {
   bool diagonal_ = false;
 };
 
+/// Whether a field is its own image under half a turn about the grid's middle, up to rounding.
+bool is_half_turn_symmetric(const Eigen::ArrayXd& field);
+
+/// p made its own image under half a turn, as it is up to the tolerance that it was solved to.
+Eigen::ArrayXd half_turn_symmetrised(const Eigen::ArrayXd& pressure);
+
 /// p made even about the diagonal of its square grid: conjugate gradients leave it so up to their tolerance.
 Eigen::ArrayXd symmetrised(const Grid& grid, const Eigen::ArrayXd& pressure);
 

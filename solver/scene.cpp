@@ -1,30 +1,26 @@
 #include "solver/scene.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <limits>
 
 #include "solver/input_error.hpp"
 #include "solver/scene_reader.hpp"
+#include "solver/surface_reader.hpp"
 
 namespace slipstick::solver {
 namespace {
 
-template <typename Value>
-using Words = std::vector<std::pair<std::string, Value>>;
-
-const Words<Shape> kShapes{{"sphere", Shape::sphere},
-                           {"ellipsoid", Shape::ellipsoid},
-                           {"cone", Shape::cone},
-                           {"flat_punch", Shape::flat_punch},
-                           {"height_map", Shape::height_map}};
 const Words<PressureModel> kPressureModels{{"solved", PressureModel::solved},
                                            {"hertz", PressureModel::hertz},
                                            {"hertz_averaged", PressureModel::hertz_averaged},
                                            {"file", PressureModel::file}};
-const Words<Coupling> kCouplings{
-    {"auto", Coupling::automatic}, {"none", Coupling::none}, {"pressure", Coupling::pressure}};
+const Words<Coupling> kCouplings{{"auto", Coupling::automatic},
+                                 {"none", Coupling::none},
+                                 {"pressure", Coupling::pressure},
+                                 {"full", Coupling::full}};
 const Words<OperatorKind> kOperators{
     {"dcfft", OperatorKind::dcfft}, {"direct", OperatorKind::direct}, {"dense", OperatorKind::dense}};
 const Words<Method> kMethods{{"coulomb", Method::coulomb},
@@ -34,48 +30,9 @@ const Words<ModelChoice> kModels{
     {"auto", ModelChoice::automatic}, {"full", ModelChoice::full}, {"exact", ModelChoice::exact}};
 const Words<Precision> kPrecisions{{"double", Precision::double_precision}, {"mixed", Precision::mixed}};
 
-template <typename Value>
-std::string word_of(const Words<Value>& words, Value value) {
-  for (const auto& [word, meaning] : words) {
-    if (meaning == value) return word;
-  }
-  throw std::logic_error("a value without a word");
-}
-
-const Range kPositive{"positive and finite", [](double x) { return x > 0.0 && std::isfinite(x); }};
-const Range kNotNegative{"zero or positive, finite", [](double x) { return x >= 0.0 && std::isfinite(x); }};
-const Range kRatio{"from 0 to below 1 (1 is gross slip)", [](double x) { return x >= 0.0 && x < 1.0; }};
+const Range kRatio{"above -1 and below 1 (1 is gross slip)", [](double x) { return x > -1.0 && x < 1.0; }};
 const Range kPoisson{"from 0 to 0.5", [](double x) { return x >= 0.0 && x <= 0.5; }};
-const Range kZero{"0 (tangential forces are not modelled)", [](double x) { return x == 0.0; }};
 const Range kTolerance{"from 1e-15 to below 1", [](double x) { return x >= 1e-15 && x < 1.0; }};
-
-Range whole(double low, double high) {
-  return {fmt::format("a whole number from {:g} to {:g}", low, high),
-          [low, high](double x) { return x >= low && x <= high && x == std::floor(x); }};
-}
-
-Surface read_surface(SceneReader& reader) {
-  Surface surface;
-  surface.shape = reader.choice("upper.shape", kShapes);
-  switch (surface.shape) {
-    case Shape::sphere:
-    case Shape::flat_punch:
-      surface.radius = reader.number("upper.radius", kPositive);
-      break;
-    case Shape::ellipsoid:
-      surface.radius_1 = reader.number("upper.radius_1", kPositive);
-      surface.radius_2 = reader.number("upper.radius_2", kPositive);
-      break;
-    case Shape::cone:
-      surface.slope = reader.number("upper.slope", kPositive);
-      break;
-    case Shape::height_map:
-      surface.file = reader.path("upper.file");
-      surface.spacing = reader.pair("upper.spacing", kPositive);
-      break;
-  }
-  return surface;
-}
 
 Material read_material(SceneReader& reader, const std::string& body) {
   if (reader.flag_or(body + ".rigid", false)) {
@@ -89,44 +46,110 @@ Material read_material(SceneReader& reader, const std::string& body) {
           reader.number(body + ".poisson_ratio", kPoisson)};
 }
 
-TorsionLoad read_torsion(SceneReader& reader) {
-  reader.prefer_overridden({"load.moment_ratio", "load.moment", "load.twist"});
-  const TorsionLoad load{reader.find_number("load.moment_ratio", kRatio),
-                         reader.find_number("load.moment", kNotNegative),
-                         reader.find_number("load.twist", kNotNegative)};
+/// What a table says of the torsion; what it does not say is as before.
+void read_torsion(SceneReader& reader, const std::string& table, TorsionLoad& torsion) {
+  const std::vector<std::string> keys{table + ".moment_ratio", table + ".moment", table + ".twist"};
+  reader.prefer_overridden(keys);
+  const TorsionLoad load{reader.find_number(keys[0], kRatio), reader.find_number(keys[1], kFinite),
+                         reader.find_number(keys[2], kFinite)};
   const int given = load.moment_ratio.has_value() + load.moment.has_value() + load.twist.has_value();
-  if (given != 1) {
-    const char* key = load.moment ? "load.moment" : load.twist ? "load.twist" : "load.moment_ratio";
-    reader.fail(key, given == 0 ? "(missing)" : "(with another torsion load beside it)",
-                "exactly one of load.moment_ratio, load.moment, load.twist");
+  if (given > 1) {
+    reader.fail(load.moment ? keys[1] : keys[2], "(with another torsion load beside it)",
+                fmt::format("exactly one of {}", fmt::join(keys, ", ")));
   }
-  return load;
+  if (given == 1) torsion = load;
 }
 
-std::array<Index, 2> read_cells(SceneReader& reader, const Surface& surface) {
+/// Likewise of forces, or displacements in their place.
+void read_translation(SceneReader& reader, const std::string& table, Step& step) {
+  reader.prefer_overridden({table + ".force", table + ".displacement"});
+  const auto force = reader.find_pair(table + ".force", kFinite);
+  const auto displacement = reader.find_pair(table + ".displacement", kFinite);
+  if (force && displacement) {
+    reader.fail(table + ".displacement", "(with a force beside it)", "one of force, displacement");
+  }
+  if (force) step.force = *force;
+  if (displacement) step.force = {};
+  if (force || displacement) step.displacement = displacement;
+}
+
+void read_loads(SceneReader& reader, const std::string& table, Step& step) {
+  step.key = table;
+  if (const auto normal = reader.find_number(table + ".normal", kPositive)) step.normal = normal;
+  read_torsion(reader, table, step.torsion);
+  read_translation(reader, table, step);
+}
+
+/// [load], or the [[step]] tables, each of which begins with the loads of the one before, the first with
+/// [load].
+std::vector<Step> read_steps(SceneReader& reader, bool needs_normal) {
+  Step load;
+  read_loads(reader, "load", load);
+  std::vector<Step> steps;
+  const std::size_t count = reader.count("step");
+  for (std::size_t i = 0; i < count; ++i) {
+    Step step = steps.empty() ? load : steps.back();
+    read_loads(reader, fmt::format("step[{}]", i), step);
+    step.name = reader.text_or(step.key + ".name", fmt::format("{}", i + 1));
+    steps.push_back(step);
+  }
+  if (steps.empty()) steps.push_back(load);
+  for (Step& step : steps) {
+    if (needs_normal && !step.normal) reader.number(step.key + ".normal", kPositive);  // says what is missing
+    TorsionLoad& torsion = step.torsion;
+    if (torsion.moment_ratio || torsion.moment || torsion.twist) continue;
+    const bool translated = step.displacement || step.force != std::array<double, 2>{};
+    if (count == 0 && !translated) {
+      reader.fail("load.moment_ratio", "(missing)",
+                  "exactly one of load.moment_ratio, load.moment, load.twist, or a load.force or "
+                  "load.displacement");
+    }
+    torsion.moment_ratio = 0.0;
+  }
+  return steps;
+}
+
+std::array<Index, 2> read_cells(SceneReader& reader, const std::vector<Surface>& surfaces) {
   const Range allowed = whole(1, 65536);
-  if (surface.shape == Shape::height_map && !reader.has("grid.cells")) return {0, 0};  // as many as samples
+  if (find_height_map(surfaces) != nullptr && !reader.has("grid.cells")) return {0, 0};  // as many as samples
   const auto cells = reader.pair("grid.cells", allowed);
   return {static_cast<Index>(cells[0]), static_cast<Index>(cells[1])};
 }
 
+/// The paper's method and projected gradients know torsion about the origin alone.
+void require_method_can(SceneReader& reader, const Scene& scene) {
+  if (scene.method == Method::coulomb) return;
+  const std::string method = fmt::format("\"{}\"", to_string(scene.method));
+  const std::string allowed = "coulomb (this method knows one step of torsion about the origin)";
+  if (scene.steps.size() > 1 || scene.cycles > 1) reader.fail("solver.method", method, allowed);
+  const Step& step = scene.steps.front();
+  if (step.displacement || step.force != std::array<double, 2>{})
+    reader.fail("solver.method", method, allowed);
+}
+
 void require_consistent(SceneReader& reader, const Scene& scene) {
+  require_method_can(reader, scene);
+  if (scene.coupling == Coupling::full && scene.pressure != PressureModel::solved) {
+    reader.fail("contact.coupling", "\"full\"",
+                "auto, none, pressure (shear changes a pressure only where that is solved: "
+                "contact.pressure = \"solved\")");
+  }
   if (std::isinf(scene.upper.young_modulus) && std::isinf(scene.lower.young_modulus)) {
     reader.fail("lower.rigid", "true", "false, since the upper body is rigid");
   }
-  const bool hertzian = scene.surface.shape == Shape::sphere || scene.surface.shape == Shape::ellipsoid;
   const bool asks_hertz =
       scene.pressure == PressureModel::hertz || scene.pressure == PressureModel::hertz_averaged;
-  if (asks_hertz && !hertzian) {
+  if (asks_hertz && !hertzian_radii(scene.surfaces)) {
     reader.fail("contact.pressure", fmt::format("\"{}\"", to_string(scene.pressure)),
-                "solved, file (Hertz's pressure belongs to a sphere or an ellipsoid)");
+                "solved, file (Hertz's pressure belongs to one sphere or ellipsoid at the origin, its axes "
+                "along the grid's)");
   }
   if (scene.precision == Precision::mixed &&
       (scene.op != OperatorKind::dcfft || scene.method != Method::coulomb)) {
     reader.fail("solver.precision", "\"mixed\"",
                 "double, or mixed with method = \"coulomb\" and operator = \"dcfft\"");
   }
-  if (scene.surface.shape == Shape::height_map && scene.extent) {
+  if (find_height_map(scene.surfaces) != nullptr && scene.extent) {
     reader.fail("grid.extent", "(given)", "left out for a height map: upper.spacing says it");
   }
   if (scene.pressure == PressureModel::file && !scene.extent) {
@@ -136,7 +159,6 @@ void require_consistent(SceneReader& reader, const Scene& scene) {
 
 }  // namespace
 
-std::string to_string(Shape shape) { return word_of(kShapes, shape); }
 std::string to_string(PressureModel model) { return word_of(kPressureModels, model); }
 std::string to_string(OperatorKind kind) { return word_of(kOperators, kind); }
 std::string to_string(Method method) { return word_of(kMethods, method); }
@@ -147,7 +169,8 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
   Scene scene;
   scene.source = file;
   scene.name = reader.text_or("name", file.stem().string());
-  scene.surface = read_surface(reader);
+  scene.surfaces = read_surfaces(reader);
+  if (scene.surfaces.size() > 1) scene.combine = read_combine(reader);
   scene.upper = read_material(reader, "upper");
   scene.lower = read_material(reader, "lower");
 
@@ -156,12 +179,12 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
   if (scene.pressure == PressureModel::file) scene.pressure_file = reader.path("contact.pressure_file");
   scene.coupling = reader.choice_or("contact.coupling", Coupling::automatic, kCouplings);
 
-  scene.normal_load = scene.pressure == PressureModel::file ? reader.find_number("load.normal", kPositive)
-                                                            : reader.number("load.normal", kPositive);
-  scene.torsion = read_torsion(reader);
-  reader.find_pair("load.force", kZero);
+  scene.steps = read_steps(reader, scene.pressure != PressureModel::file);
+  if (scene.steps.size() > 1 || reader.has("cycles")) {
+    scene.cycles = static_cast<int>(reader.number_or("cycles", 1, whole(1, 1e6)));
+  }
 
-  scene.cells = read_cells(reader, scene.surface);
+  scene.cells = read_cells(reader, scene.surfaces);
   scene.extent = reader.find_pair("grid.extent", kPositive);
 
   scene.method = reader.choice_or("solver.method", scene.method, kMethods);

@@ -7,21 +7,9 @@
 #include <vector>
 
 #include "solver/elasticity.hpp"
+#include "solver/surface.hpp"
 
 namespace slipstick::solver {
-
-enum class Shape { sphere, ellipsoid, cone, flat_punch, height_map };
-
-/// Surface of the indenter; the members that its shape uses are set.
-struct Surface {
-  Shape shape = Shape::sphere;
-  double radius = 0.0;              ///< m: sphere; flat_punch
-  double radius_1 = 0.0;            ///< m: ellipsoid, radius of curvature along x1
-  double radius_2 = 0.0;            ///< m: along x2
-  double slope = 0.0;               ///< cone: gap over radius
-  std::filesystem::path file;       ///< height_map: heights in m, one a cell, larger where further away
-  std::array<double, 2> spacing{};  ///< height_map: m
-};
 
 struct Material {
   double young_modulus = 0.0;  ///< Pa; infinite: rigid
@@ -32,9 +20,10 @@ struct Material {
 /// each cell; a file.
 enum class PressureModel { solved, hertz, hertz_averaged, file };
 
-/// Whether the pressure's tangential displacement of dissimilar materials enters: where they are dissimilar,
-/// never, always.
-enum class Coupling { automatic, none, pressure };
+/// What couples normal and tangential tractions of dissimilar materials: the pressure's tangential
+/// displacement where they are dissimilar, nothing, that displacement, and also the shear's normal
+/// displacement.
+enum class Coupling { automatic, none, pressure, full };
 
 /// Which method finds the tractions.
 enum class Method { coulomb, projected_gradient, paper };
@@ -43,26 +32,37 @@ enum class Method { coulomb, projected_gradient, paper };
 /// where the scene has an exact answer.
 enum class ModelChoice { automatic, full, exact };
 
-/// One of the three is set.
+/// One of the three is set. Signed: a history turns back.
 struct TorsionLoad {
   std::optional<double> moment_ratio;  ///< M over the limit of this pressure and mesh
   std::optional<double> moment;        ///< N m
-  std::optional<double> twist;         ///< rad
+  std::optional<double> twist;         ///< rad, since the first step
+};
+
+/// The loads at the end of a step, which brings the normal load first, then the tangential ones.
+struct Step {
+  std::string key = "load";  ///< of its table in the scene file
+  std::string name = {};
+  std::optional<double> normal;  ///< N; may be left out where the pressure comes from a file
+  TorsionLoad torsion;
+  std::array<double, 2> force{};                      ///< N, tangential, on the upper body; or else
+  std::optional<std::array<double, 2>> displacement;  ///< m, imposed instead, since the first step
 };
 
 /// What a scene file says, checked, with defaults filled in; SI units, or any other consistent set.
 struct Scene {
   std::filesystem::path source;  ///< the file it was read from
   std::string name;
-  Surface surface;
+  std::vector<Surface> surfaces{{}};  ///< of the indenter, at least one
+  Combine combine = Combine::sum;
   Material upper;
   Material lower;
   double friction = 0.0;
   PressureModel pressure = PressureModel::solved;
   std::filesystem::path pressure_file;
   Coupling coupling = Coupling::automatic;
-  std::optional<double> normal_load;  ///< N; may be left out where the pressure comes from a file
-  TorsionLoad torsion;
+  std::vector<Step> steps = std::vector<Step>(1);  ///< at least one
+  int cycles = 1;                                  ///< how often the steps are gone through
   std::array<Index, 2> cells{};
   std::optional<std::array<double, 2>> extent;  ///< m
   Method method = Method::coulomb;
@@ -80,7 +80,6 @@ struct Scene {
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
 /// Words of the enumerations, as scene files and results have them.
-std::string to_string(Shape shape);
 std::string to_string(PressureModel model);
 std::string to_string(OperatorKind kind);
 std::string to_string(Method method);

@@ -71,19 +71,40 @@ std::string nearest(const std::string& key, const std::set<std::string>& known) 
   });
 }
 
+bool is_array_of_tables(const toml::node& node) {
+  return node.is_array() && node.is_homogeneous<toml::table>();
+}
+
 /// Dotted paths of all leaves of a table.
 void collect_leaves(const toml::table& table, const std::string& prefix, std::vector<std::string>& leaves) {
   for (const auto& [name, child] : table) {
     const std::string key = prefix + std::string(name.str());
     if (const toml::table* const inner = child.as_table()) {
       collect_leaves(*inner, key + ".", leaves);
+    } else if (is_array_of_tables(child)) {
+      const toml::array& tables = *child.as_array();
+      for (std::size_t i = 0; i < tables.size(); ++i) {
+        collect_leaves(*tables[i].as_table(), fmt::format("{}[{}].", key, i), leaves);
+      }
     } else {
       leaves.push_back(key);
     }
   }
 }
 
+/// The table that one part of a dotted path names, "name" or "name[index]": one without an index is made
+/// where it is missing. Null where something else stands there, or nothing.
+toml::table* table_below(toml::table& table, const std::string& part) {
+  if (part.ends_with(']')) return table.at_path(part).as_table();
+  return table.insert(part, toml::table{}).first->second.as_table();
+}
+
 }  // namespace
+
+Range whole(double low, double high) {
+  return {fmt::format("a whole number from {:g} to {:g}", low, high),
+          [low, high](double x) { return x >= low && x <= high && x == std::floor(x); }};
+}
 
 SceneReader::SceneReader(const std::filesystem::path& file, const std::vector<std::string>& overrides)
     : file_(file), root_(parse(read_text(file), file.string())) {
@@ -108,8 +129,13 @@ void SceneReader::apply_override(const std::string& assignment) {
   std::vector<std::string> parts;
   while (std::getline(path, part, '.')) parts.push_back(part);
   for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
-    table = table->insert(parts[i], toml::table{}).first->second.as_table();
-    if (table == nullptr) throw InputError(source, fmt::format("{} is not a table", parts[i]));
+    table = table_below(*table, parts[i]);
+    if (table == nullptr) {
+      throw InputError(
+          source,
+          fmt::format("{} is not a table{}", parts[i],
+                      parts[i].ends_with(']') ? " of the scene file, where they are counted from 0" : ""));
+    }
   }
   table->insert_or_assign(parts.back(), *parsed.get("value"));
   overridden_.insert(key);
@@ -166,6 +192,17 @@ toml::node_view<toml::node> SceneReader::node(const std::string& key) {
 }
 
 bool SceneReader::has(const std::string& key) { return static_cast<bool>(node(key)); }
+
+bool SceneReader::is_array(const std::string& key) { return node(key).is_array(); }
+
+std::size_t SceneReader::count(const std::string& key) {
+  const auto found = node(key);
+  if (!found) return 0;
+  if (!is_array_of_tables(*found.node())) {
+    fail(key, print(*found.node()), fmt::format("tables, each headed [[{}]]", key));
+  }
+  return found.as_array()->size();
+}
 
 std::optional<double> SceneReader::find_number(const std::string& key, const Range& range) {
   const auto found = node(key);

@@ -2,15 +2,29 @@
 
 #include <toml++/toml.h>
 #include <array>
+#include <cmath>
 #include <filesystem>
 #include <functional>
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
 
 namespace slipstick::solver {
+
+/// Words as scene files have them, each with its meaning.
+template <typename Value>
+using Words = std::vector<std::pair<std::string, Value>>;
+
+template <typename Value>
+std::string word_of(const Words<Value>& words, Value value) {
+  for (const auto& [word, meaning] : words) {
+    if (meaning == value) return word;
+  }
+  throw std::logic_error("a value without a word");
+}
 
 /// What a number may be, in words and as a test; the test is false for NaN.
 struct Range {
@@ -18,8 +32,16 @@ struct Range {
   std::function<bool(double)> contains;
 };
 
-/// A TOML file whose keys are asked for one by one, by dotted path. Each question says what is allowed;
-/// reject_unknown() at the end finds the keys that nobody asked for. Throws InputError.
+inline const Range kPositive{"positive and finite", [](double x) { return x > 0.0 && std::isfinite(x); }};
+inline const Range kNotNegative{"zero or positive, finite",
+                                [](double x) { return x >= 0.0 && std::isfinite(x); }};
+inline const Range kFinite{"finite", [](double x) { return std::isfinite(x); }};
+/// Whole numbers from low to high.
+Range whole(double low, double high);
+
+/// A TOML file whose keys are asked for one by one, by dotted path; an index picks one of an array of tables,
+/// as in step[1].twist. Each question says what is allowed; reject_unknown() at the end finds the keys that
+/// nobody asked for. Throws InputError.
 class SceneReader {
  public:
   SceneReader(const std::filesystem::path& file, const std::vector<std::string>& overrides);
@@ -29,6 +51,9 @@ class SceneReader {
   void prefer_overridden(const std::vector<std::string>& alternatives);
 
   bool has(const std::string& key);
+  bool is_array(const std::string& key);
+  /// Tables in the array of tables under a key; none where the key is missing.
+  std::size_t count(const std::string& key);
   std::optional<double> find_number(const std::string& key, const Range& range);
   double number(const std::string& key, const Range& range);
   double number_or(const std::string& key, double otherwise, const Range& range);
@@ -41,7 +66,7 @@ class SceneReader {
 
   /// One of some words, each with its meaning.
   template <typename Value>
-  Value choice(const std::string& key, const std::vector<std::pair<std::string, Value>>& words) {
+  Value choice(const std::string& key, const Words<Value>& words) {
     const std::string word = text(key);
     std::vector<std::string> allowed;
     for (const auto& [name, value] : words) {
@@ -51,8 +76,7 @@ class SceneReader {
     fail_choice(key, word, allowed);
   }
   template <typename Value>
-  Value choice_or(const std::string& key, Value otherwise,
-                  const std::vector<std::pair<std::string, Value>>& words) {
+  Value choice_or(const std::string& key, Value otherwise, const Words<Value>& words) {
     return has(key) ? choice(key, words) : otherwise;
   }
 

@@ -86,6 +86,10 @@ double fitted_root(const std::vector<Sample>& samples, int degree) {
   return x;
 }
 
+/// Counting is never further off than this, in cells: an answer that differs by more rests on slip that began
+/// elsewhere, or is no root of the law.
+constexpr double kLargestCorrection = 0.5;
+
 class FrontFinder {
  public:
   FrontFinder(const Grid& grid, const ArrayXd& friction_bound, const ArrayXd& slip, const ArrayXd& stick)
@@ -144,6 +148,12 @@ class FrontFinder {
     if (fitted < rays_) {
       front.why_counted =
           fmt::format("slip ring too narrow, or no root near by, on {} of {} rays", rays_ - fitted, rays_);
+    }
+    const double cell = std::sqrt(grid_.cell_area());
+    if (!(std::abs(front.radius - front.counted_radius) <= kLargestCorrection * cell)) {
+      front.radius = front.counted_radius;
+      front.why_counted =
+          "outside the front the slip does not grow as where slip has begun there and gone on";
     }
   }
 

@@ -21,7 +21,8 @@ struct StickFront {
 /// least squares in slipping cells, further from the front than the mesh blurs it, and its root taken. The
 /// area is half the integral of r^2 over the angle. Degree and window depend on how wide the slip ring is on
 /// that ray; where it is too narrow, or the fit has no root near by, the counted front stands in, as it does
-/// everywhere if the stick area is none that rays from its centroid can describe.
+/// everywhere if the stick area is none that rays from its centroid can describe, or if the two differ by
+/// more than half a cell: the law holds where slip began at the front and has gone on since.
 ///
 /// friction_bound, stick: grid.cells() values; slip: twice as many. The radius is NaN where they are not
 /// finite (slip: in the contact). Throws std::invalid_argument for fields of another size and for a quadrant.

@@ -26,6 +26,63 @@ struct BadScene {
 
 void PrintTo(const BadScene& scene, std::ostream* stream) { *stream << scene.name; }
 
+/// One that has these keys in place of its sphere.
+BadScene bad_surface(const std::string& name, const std::string& keys, const std::vector<std::string>& says) {
+  return {name, "shape = \"sphere\"\nradius = 0.018", keys, {}, says};
+}
+
+const std::string kRough = "shape = \"roughness\"\nlongest = 1e-4\n";
+
+std::vector<BadScene> bad_surfaces() {
+  const std::string roughness = kRough + "seed = 1\nhurst = 0.8\nrms_slope = 0.1\n";
+  return {
+      bad_surface("inner_radius_too_large", "shape = \"flat_punch\"\nradius = 1e-3\ninner_radius = 1e-3",
+                  {"scene.toml:5", "upper.inner_radius = 0.001", "below the radius"}),
+      bad_surface("power_below_1", "shape = \"power\"\nexponent = 0.5\ncoefficient = 1",
+                  {"upper.exponent = 0.5", "from 1 to 20"}),
+      bad_surface("place_of_length_3", "shape = \"sphere\"\nradius = 1\nat = [0, 0, 0]",
+                  {"upper.at = [0, 0, 0]", "[a, b], two numbers"}),
+      bad_surface("place_nowhere", "shape = \"sphere\"\nradius = 1\nat = [0, inf]", {"upper.at", "finite"}),
+      bad_surface("angle_nan", "shape = \"sphere\"\nradius = 1\nangle = nan",
+                  {"upper.angle = nan", "finite"}),
+      bad_surface("place_of_a_map", "shape = \"height_map\"\nfile = \"h.csv\"\nspacing = [1, 1]\nat = [0, 0]",
+                  {"upper.at = [0, 0]", "unknown key"}),
+      bad_surface("unit_of_heights",
+                  "shape = \"height_map\"\nfile = \"h.csv\"\nspacing = [1, 1]\nunit = \"cm\"",
+                  {"upper.unit = \"cm\"", "m, mm, um, nm"}),
+      bad_surface("combining_one_shape", "shape = \"sphere\"\nradius = 1\ncombine = \"sum\"",
+                  {"upper.combine = ", "unknown key"}),
+      bad_surface("hurst_0", kRough + "hurst = 0\nseed = 1", {"upper.hurst = 0", "above 0, at most 1"}),
+      bad_surface("hurst_above_1", kRough + "hurst = 1.1\nseed = 1",
+                  {"upper.hurst = 1.1", "above 0, at most 1"}),
+      bad_surface("seed_not_whole", kRough + "seed = 1.5", {"upper.seed = 1.5", "a whole number from 0"}),
+      bad_surface("period_too_short", roughness + "shortest = 1e-5\nperiod = 9e-5",
+                  {"upper.period = 9e-05", "at least longest = 0.0001"}),
+      bad_surface("less_than_an_octave", roughness + "shortest = 6e-5",
+                  {"upper.shortest = 6e-05", "to half of longest, 5e-05"}),
+      bad_surface("too_many_waves", roughness + "shortest = 3e-7",
+                  {"upper.shortest = 3e-07", "from a 1024th of the period, 3.90625e-07"}),
+      bad_surface("no_shapes", "shape = []", {"scene.toml:3", "upper.shape = []", "[[upper.shape]]"}),
+      bad_surface("shapes_that_are_numbers", "shape = [1, 2]", {"upper.shape = [1, 2]", "[[upper.shape]]"}),
+      bad_surface("second_shape_without_radius",
+                  "shape = [{shape = \"sphere\", radius = 1}, {shape = \"sphere\"}]",
+                  {"upper.shape[1].radius", "(missing)"}),
+      bad_surface("misspelt_key_of_a_shape", "shape = [{shape = \"sphere\", radius = 1, angel = 2}]",
+                  {"upper.shape[0].angel = 2", "nearest known one is upper.shape[0].angle"}),
+      bad_surface("radius_beside_shapes", "radius = 1\nshape = [{shape = \"sphere\", radius = 1}]",
+                  {"upper.radius = 1", "unknown key"}),
+      bad_surface("unknown_combination",
+                  "combine = \"product\"\nshape = [{shape = \"sphere\", radius = 1}, "
+                  "{shape = \"sphere\", radius = 1}]",
+                  {"upper.combine = \"product\"", "sum, nearest"}),
+      {"hertz_of_a_body_that_stands_elsewhere",
+       "radius = 0.018",
+       "radius = 0.018\nat = [1e-4, 0]",
+       {"contact.pressure=hertz"},
+       {"contact.pressure = \"hertz\"", "solved, file", "at the origin"}},
+  };
+}
+
 std::vector<BadScene> bad_scenes() {
   const std::string file = "scene.toml";
   return {
@@ -105,17 +162,13 @@ std::vector<BadScene> bad_scenes() {
        "moment_ratio = 0.9",
        "moment_ratio = 1.0",
        {},
-       {file + ":16", "load.moment_ratio = 1:", "from 0 to below 1", "gross slip"}},
+       {file + ":16", "load.moment_ratio = 1:", "above -1 and below 1", "gross slip"}},
       {"moment_ratio_nan",
        "moment_ratio = 0.9",
        "moment_ratio = nan",
        {},
-       {"load.moment_ratio = nan", "from 0 to below 1"}},
-      {"negative_moment",
-       "moment_ratio = 0.9",
-       "moment = -1.0",
-       {},
-       {"load.moment = -1:", "zero or positive"}},
+       {"load.moment_ratio = nan", "above -1 and below 1"}},
+      {"infinite_moment", "moment_ratio = 0.9", "moment = inf", {}, {"load.moment = inf:", "finite"}},
       {"infinite_twist", "moment_ratio = 0.9", "twist = inf", {}, {"load.twist = inf", "finite"}},
       {"tolerance_0",
        "tolerance = 1e-7",
@@ -137,11 +190,16 @@ std::vector<BadScene> bad_scenes() {
        "",
        {},
        {file, "(missing)", "exactly one of load.moment_ratio, load.moment, load.twist"}},
-      {"tangential_force",
+      {"force_beside_displacement",
+       "force = [0.0, 0.0]",
+       "force = [0.0, 1.0]\ndisplacement = [0.0, 1e-6]",
+       {},
+       {"load.displacement", "one of force, displacement"}},
+      {"force_for_the_papers_method",
        "force = [0.0, 0.0]",
        "force = [0.0, 1.0]",
        {},
-       {"load.force = [0, 1]", "0 (tangential forces are not modelled)"}},
+       {"solver.method = \"paper\"", "coulomb"}},
       {"cells_not_whole",
        "cells = [128, 96]",
        "cells = [128.5, 96]",
@@ -177,7 +235,8 @@ std::vector<BadScene> bad_scenes() {
        "shape = \"sphere\"",
        "shape = \"cube\"",
        {},
-       {file + ":3", "upper.shape = \"cube\"", "sphere, ellipsoid, cone, flat_punch, height_map"}},
+       {file + ":3", "upper.shape = \"cube\"",
+        "sphere, ellipsoid, cone, flat_punch, rounded_punch, power, height_map, roughness"}},
       {"unknown_pressure",
        "pressure = \"solved\"",
        "pressure = \"Hertz\"",
@@ -185,9 +244,9 @@ std::vector<BadScene> bad_scenes() {
        {"contact.pressure = \"Hertz\"", "solved, hertz, hertz_averaged, file"}},
       {"unknown_coupling",
        "coupling = \"auto\"",
-       "coupling = \"full\"",
+       "coupling = \"both\"",
        {},
-       {"contact.coupling = \"full\"", "auto, none, pressure"}},
+       {"contact.coupling = \"both\"", "auto, none, pressure, full"}},
       {"unknown_operator",
        "operator = \"dcfft\"",
        "operator = \"fft\"",
@@ -260,13 +319,15 @@ std::vector<BadScene> bad_scenes() {
 }
 
 class Bad : public SceneFile, public testing::WithParamInterface<BadScene> {};
-INSTANTIATE_TEST_SUITE_P(Scenes, Bad, testing::ValuesIn(bad_scenes()), [](const auto& tested) {
+const auto kName = [](const auto& tested) {
   std::string name = tested.param.name;
   for (char& c : name) {
     if (std::isalnum(static_cast<unsigned char>(c)) == 0) c = '_';
   }
   return name;
-});
+};
+INSTANTIATE_TEST_SUITE_P(Scenes, Bad, testing::ValuesIn(bad_scenes()), kName);
+INSTANTIATE_TEST_SUITE_P(Surfaces, Bad, testing::ValuesIn(bad_surfaces()), kName);
 
 TEST_P(Bad, IsRefusedWithFileKeyValueAndWhatIsAllowed) {
   std::string text = kScene;
@@ -311,6 +372,16 @@ TEST_F(SceneFile, OfMoreCellsThanFitInMemoryIsRefused) {
   EXPECT_THAT(complaint([&] { make_model(scene); }),
               testing::AllOf(HasSubstr("scene.toml"), HasSubstr("grid.cells = [4096, 4096]"),
                              HasSubstr("fits in memory"), HasSubstr("operator = \"dense\"")));
+}
+
+TEST_F(SceneFile, OfASumWithoutAnExtentIsRefused) {
+  std::string text = kShortScene;
+  text.replace(text.find("shape = \"sphere\"\nradius = 0.018"), 31,
+               "shape = [{shape = \"sphere\", radius = 1}, {shape = \"sphere\", radius = 1}]");
+  const Scene scene = read(text);
+  EXPECT_THAT(
+      complaint([&] { make_model(scene); }),
+      testing::AllOf(HasSubstr("scene.toml"), HasSubstr("grid.extent = (missing)"), HasSubstr("[L1, L2]")));
 }
 
 TEST_F(SceneFile, OfAnExtentSmallerThanTheContactIsRefused) {

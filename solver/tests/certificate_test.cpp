@@ -251,12 +251,12 @@ TEST_F(SmallProblem, GapBoundsTheEnergyErrorOfAnyFeasibleTraction) {
 
 /// The paper's method judged by the same: its certificate tells how far it stays from the minimum.
 TEST_F(SmallProblem, GapBoundsTheEnergyErrorOfThePapersMethod) {
-  TorsionProblem problem;
+  TangentialProblem problem;
   problem.friction_bound = bound_;
   problem.moment = moment_;
   PaperOptions options;
   options.tolerance = 1e-12;
-  const TorsionSolution solution = solve_by_paper_method(op_, problem, options);
+  const TangentialSolution solution = solve_by_paper_method(op_, problem, options);
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   const Certificate c =
       certify({solution.traction, solution.elastic_displacement, solution.slip}, bound_, t_, moment_);

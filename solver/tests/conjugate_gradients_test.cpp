@@ -38,6 +38,11 @@ ArrayXd random_field(Index size, unsigned seed) {
   return ArrayXd::NullaryExpr(size, [&] { return uniform(generator); });
 }
 
+template <typename Field>
+std::array<const Field*, 1> one(const Field& condition) {
+  return {&condition};
+}
+
 /// Cells that stick, slip against various stiffnesses, or carry nothing.
 template <typename Real>
 TangentSpace<Real> random_states(Index cells, unsigned seed) {
@@ -88,7 +93,7 @@ struct Bench {
       : size((vectors ? 2 : 1) * grid.cells()),
         op(grid, vectors ? tangential_kernel() : normal_kernel(), kPair),
         symbol(make_inverse_symbol<double>(grid, vectors ? tangential_kernel() : normal_kernel(), kPair)),
-        cg(op, *symbol, size),
+        cg(op, *symbol, size, kMostConditions),
         space(random_states<double>(grid.cells(), seed)) {
     if (!vectors) {
       space = TangentSpace<double>(1, grid.cells());
@@ -103,14 +108,15 @@ struct Bench {
 
   /// (K + stiffness)^-1 c on the tangent space.
   VectorXd inverse(const VectorXd& c) const { return free * tangent.ldlt().solve(free.transpose() * c); }
-  /// The same with c.x = 0: the multiplier takes out what would violate it.
-  VectorXd constrained(const VectorXd& r, const VectorXd& c) const {
+  /// The same with c.x = 0 for each column c: the multipliers take out what would violate that.
+  VectorXd constrained(const VectorXd& r, const MatrixXd& conditions) const {
     const Index n = tangent.rows();
-    MatrixXd saddle = MatrixXd::Zero(n + 1, n + 1);
+    const Index m = conditions.cols();
+    MatrixXd saddle = MatrixXd::Zero(n + m, n + m);
     saddle.topLeftCorner(n, n) = tangent;
-    saddle.col(n).head(n) = -free.transpose() * c;
-    saddle.row(n).head(n) = c.transpose() * free;
-    VectorXd right = VectorXd::Zero(n + 1);
+    saddle.topRightCorner(n, m) = -free.transpose() * conditions;
+    saddle.bottomLeftCorner(m, n) = conditions.transpose() * free;
+    VectorXd right = VectorXd::Zero(n + m);
     right.head(n) = free.transpose() * r;
     return free * saddle.fullPivLu().solve(right).head(n);
   }
@@ -146,7 +152,7 @@ TEST_P(CgOn, SolvesWithoutACondition) {
     Bench b = bench(seed);
     const ArrayXd r = random_field(b.size, 10 + seed);
     b.cg.residual() = r;
-    const CgSummary summary = b.cg.solve(b.space, nullptr, kReduction, kMany);
+    const CgSummary summary = b.cg.solve(b.space, {}, kReduction, kMany);
     EXPECT_EQ(summary.breakdown, "");
     EXPECT_LE(summary.reduction, kReduction);
     const VectorXd exact = b.inverse(r.matrix());
@@ -159,13 +165,50 @@ TEST_P(CgOn, SolvesUnderACondition) {
     Bench b = bench(seed);
     const ArrayXd r = random_field(b.size, 20 + seed);
     const ArrayXd c = random_field(b.size, 30 + seed);
-    ASSERT_TRUE(b.cg.precondition_condition(b.space, c));
+    ASSERT_TRUE(b.cg.precondition(b.space, one(c)));
     b.cg.residual() = r;
-    const CgSummary summary = b.cg.solve(b.space, &c, kReduction, kMany);
+    const CgSummary summary = b.cg.solve(b.space, one(c), kReduction, kMany);
     EXPECT_EQ(summary.breakdown, "");
     const VectorXd exact = b.constrained(r.matrix(), c.matrix());
     EXPECT_LE((b.cg.solution().matrix() - exact).norm(), kSolved * exact.norm());
   }
+}
+
+TEST_P(CgOn, SolvesUnderThreeConditions) {
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    Bench b = bench(seed);
+    const ArrayXd r = random_field(b.size, 24 + seed);
+    const ArrayXd c = random_field(3 * b.size, 34 + seed);
+    const std::array<ArrayXd, 3> fields{c.head(b.size), c.segment(b.size, b.size), c.tail(b.size)};
+    const std::array<const ArrayXd*, 3> conditions{&fields[0], &fields[1], &fields[2]};
+    ASSERT_TRUE(b.cg.precondition(b.space, conditions));
+    b.cg.residual() = r;
+    EXPECT_EQ(b.cg.solve(b.space, conditions, kReduction, kMany).breakdown, "");
+    const MatrixXd columns = c.matrix().reshaped(b.size, 3);
+    const VectorXd exact = b.constrained(r.matrix(), columns);
+    EXPECT_LE((b.cg.solution().matrix() - exact).norm(), kSolved * exact.norm());
+    EXPECT_LE((columns.transpose() * b.cg.solution().matrix()).norm(), 1e-13 * columns.norm() * exact.norm());
+
+    const CoefficientMatrix stiffness = b.cg.solve_for_conditions(b.space, conditions, 40);
+    for (Index k = 0; k < 3; ++k) {
+      const VectorXd expected = columns.transpose() * b.inverse(columns.col(k));
+      EXPECT_LE((stiffness.col(k) - expected).norm(), kSolved * expected.norm());
+    }
+  }
+}
+
+/// On the tangent space, whatever they are outside it.
+TEST_P(CgOn, KnowsConditionsThatDependOnEachOther) {
+  Bench b = bench(9);
+  const ArrayXd c = random_field(2 * b.size, 52);
+  const VectorXd across = random_field(b.size, 53).matrix();
+  const std::array<ArrayXd, 3> fields{
+      c.head(b.size), c.tail(b.size),
+      c.head(b.size) - 2.0 * c.tail(b.size) + (across - b.free * (b.free.transpose() * across)).array()};
+  EXPECT_TRUE(b.cg.precondition(b.space, std::array{&fields[0], &fields[1]}));
+  EXPECT_FALSE(b.cg.precondition(b.space, std::array{&fields[0], &fields[1], &fields[2]}));
+  const ArrayXd nearly = fields[2] + 1e-3 * random_field(b.size, 54);
+  EXPECT_TRUE(b.cg.precondition(b.space, std::array{&fields[0], &fields[1], &nearly}));
 }
 
 /// Wherever the iteration is stopped.
@@ -173,9 +216,9 @@ TEST_P(CgOn, KeepsTheConditionThroughout) {
   Bench b = bench(5);
   const ArrayXd c = random_field(b.size, 41);
   for (const int iterations : {1, 2, 3, 5, 9}) {
-    b.cg.precondition_condition(b.space, c);
+    b.cg.precondition(b.space, one(c));
     b.cg.residual() = random_field(b.size, 42);
-    EXPECT_EQ(b.cg.solve(b.space, &c, 0.0, iterations).iterations, iterations);
+    EXPECT_EQ(b.cg.solve(b.space, one(c), 0.0, iterations).iterations, iterations);
     const VectorXd x = b.cg.solution().matrix();
     EXPECT_NEAR(c.matrix().dot(x), 0.0, 1e-13 * c.matrix().norm() * x.norm());
     EXPECT_LE((x - b.free * (b.free.transpose() * x)).norm(), 1e-13 * x.norm()) << "in the tangent space";
@@ -191,9 +234,9 @@ TEST_P(CgOn, FindsTheConditionsStiffnessToSecondOrder) {
   const double exact = c.matrix().dot(w);
   double last = std::numeric_limits<double>::infinity();
   for (int iterations = 1; iterations <= 12; ++iterations) {
-    const double found = b.cg.solve_for_condition(b.space, c, iterations);
+    const double found = b.cg.solve_for_conditions(b.space, one(c), iterations)(0, 0);
     const double error = exact - found;
-    EXPECT_NEAR(error, b.energy(w - b.cg.tangent().matrix()), 1e-12 * exact);
+    EXPECT_NEAR(error, b.energy(w - (*b.cg.tangents()[0]).matrix()), 1e-12 * exact);
     EXPECT_GE(error, -1e-12 * exact) << "from below";
     EXPECT_LT(error, std::max(last, 1e-12 * exact));
     last = error;
@@ -209,8 +252,8 @@ TEST_P(CgOn, PreconditionerIsSymmetricAndDefiniteOnTheTangentSpace) {
   for (Index i = 0; i < b.size; ++i) {
     ArrayXd unit = ArrayXd::Zero(b.size);
     unit[i] = 1.0;
-    b.cg.precondition_condition(b.space, unit);
-    preconditioner.col(i) = b.cg.tangent().matrix();
+    b.cg.precondition(b.space, one(unit));
+    preconditioner.col(i) = (*b.cg.tangents()[0]).matrix();
     b.symbol->apply(std::span(unit.data(), static_cast<std::size_t>(b.size)));
     symbol.col(i) = unit.matrix();
   }
@@ -236,15 +279,15 @@ TEST(Cg, KnowsAConditionOutsideTheTangentSpace) {
   for (Index i = 0; i < 16; ++i) b.space.set(i, i != 5);
   ArrayXd c = ArrayXd::Zero(32);
   c[5] = c[21] = 1.0;
-  EXPECT_FALSE(b.cg.precondition_condition(b.space, c));
+  EXPECT_FALSE(b.cg.precondition(b.space, one(c)));
   c[6] = 1e-3;
-  EXPECT_TRUE(b.cg.precondition_condition(b.space, c));
+  EXPECT_TRUE(b.cg.precondition(b.space, one(c)));
 }
 
 TEST(Cg, HasNothingToDoWithoutAResidual) {
   Bench b({4, 4, 1.0, 1.0}, true, 9);
   b.cg.residual() = ArrayXd::Zero(32);
-  const CgSummary summary = b.cg.solve(b.space, nullptr, 1e-10, kMany);
+  const CgSummary summary = b.cg.solve(b.space, {}, 1e-10, kMany);
   EXPECT_EQ(summary.iterations, 0);
   EXPECT_EQ(summary.breakdown, "");
   EXPECT_TRUE((b.cg.solution() == 0.0).all());
@@ -256,10 +299,10 @@ TEST(Cg, AllocatesNothing) {
   const ArrayXd c = random_field(72, 61);
   const ArrayXd r = random_field(72, 62);
   const long before = allocations();
-  b.cg.precondition_condition(b.space, c);
+  b.cg.precondition(b.space, one(c));
   b.cg.residual() = r;
-  b.cg.solve(b.space, &c, 1e-10, kMany);
-  b.cg.solve_for_condition(b.space, c, 5);
+  b.cg.solve(b.space, one(c), 1e-10, kMany);
+  b.cg.solve_for_conditions(b.space, one(c), 5);
   EXPECT_EQ(allocations(), before);
 }
 
@@ -282,12 +325,12 @@ CgSummary solve_with_multiple(double factor, double right) {
   const Grid grid{4, 4, 1.0, 1.0};
   Multiple op(grid, factor);
   const auto symbol = make_inverse_symbol<double>(grid, tangential_kernel(), kPair);
-  ConjugateGradients<double> cg(op, *symbol, 32);
+  ConjugateGradients<double> cg(op, *symbol, 32, 1);
   TangentSpace<double> space(2, 16);
   for (Index i = 0; i < 16; ++i) space.set(i, true);
   cg.residual() = random_field(32, 71);
   cg.residual()[3] *= right;
-  return cg.solve(space, nullptr, 1e-10, kMany);
+  return cg.solve(space, {}, 1e-10, kMany);
 }
 
 TEST(CgBreakdown, IsNamed) {
@@ -305,13 +348,13 @@ TEST(CgInSinglePrecision, SolvesToItsRounding) {
   Bench b(grid, true, 11);
   const auto op = make_single_operator(grid, tangential_kernel(), kPair);
   const auto symbol = make_inverse_symbol<float>(grid, tangential_kernel(), kPair);
-  ConjugateGradients<float> cg(*op, *symbol, b.size);
+  ConjugateGradients<float> cg(*op, *symbol, b.size, 1);
   const TangentSpace<float> space = random_states<float>(grid.cells(), 11);
   const ArrayXd r = random_field(b.size, 81);
   const ArrayXf c = random_field(b.size, 82).cast<float>();
-  ASSERT_TRUE(cg.precondition_condition(space, c));
+  ASSERT_TRUE(cg.precondition(space, one(c)));
   cg.residual() = r.cast<float>();
-  EXPECT_EQ(cg.solve(space, &c, 1e-6, kMany).breakdown, "");
+  EXPECT_EQ(cg.solve(space, one(c), 1e-6, kMany).breakdown, "");
   const VectorXd exact = b.constrained(r.matrix(), c.cast<double>().matrix());
   EXPECT_LE((cg.solution().cast<double>().matrix() - exact).norm(), 1e-5 * exact.norm());
 }
@@ -351,9 +394,9 @@ int iterations_needed(Index cells, bool two_terms) {
     space.scale[cell] = 1.0 / std::sqrt(1.0 + stiffness * mean);
     space.shift[cell] = 0.0;
   });
-  ConjugateGradients<double> cg(*op, *symbol, 2 * grid.cells());
+  ConjugateGradients<double> cg(*op, *symbol, 2 * grid.cells(), 0);
   cg.residual() = random_field(2 * grid.cells(), 91);
-  const CgSummary summary = cg.solve(space, nullptr, 1e-6, 1000);
+  const CgSummary summary = cg.solve(space, {}, 1e-6, 1000);
   EXPECT_EQ(summary.breakdown, "");
   return summary.iterations;
 }

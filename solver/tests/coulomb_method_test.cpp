@@ -24,17 +24,17 @@ struct EllipticBench {
                   .sqrt()),
         limit(moment_limit(grid, bound)) {}
 
-  TorsionSolution solve(double moment_ratio, double tolerance = 1e-8) const {
+  TangentialSolution solve(double moment_ratio, double tolerance = 1e-8) const {
     CoulombOptions options;
     options.tolerance = tolerance;
     return solve_by_coulomb_method(elasticity, grid, under_moment(bound, moment_ratio * limit), options);
   }
-  TorsionSolution solve_twist(double twist, double tolerance = 1e-8) const {
+  TangentialSolution solve_twist(double twist, double tolerance = 1e-8) const {
     CoulombOptions options;
     options.tolerance = tolerance;
     return solve_by_coulomb_method(elasticity, grid, under_twist(bound, twist), options);
   }
-  double moment_of(const TorsionSolution& solution) const {
+  double moment_of(const TangentialSolution& solution) const {
     return (solution.traction * rotation_field(grid)).sum();
   }
 
@@ -45,7 +45,7 @@ struct EllipticBench {
 };
 
 /// K q and the slip afresh, by direct summation.
-Certificate independent_certificate(const EllipticBench& bench, const TorsionSolution& solution,
+Certificate independent_certificate(const EllipticBench& bench, const TangentialSolution& solution,
                                     double moment) {
   const auto op = make_operator(OperatorKind::direct, bench.grid, tangential_kernel(), bench.elasticity.pair);
   ArrayXd u(solution.traction.size());
@@ -76,7 +76,7 @@ TEST_P(Certified, ToTheToleranceAskedForByDirectSummation) {
   const auto [shape, moment_ratio] = GetParam();
   const EllipticBench bench(shape.n1, shape.n2, shape.h2);
   for (const double tolerance : {1e-8, 1e-12}) {
-    const TorsionSolution solution = bench.solve(moment_ratio, tolerance);
+    const TangentialSolution solution = bench.solve(moment_ratio, tolerance);
     ASSERT_EQ(solution.status, Status::converged) << solution.message;
     const Certificate certificate = independent_certificate(bench, solution, moment_ratio * bench.limit);
     EXPECT_LE(certificate.gap, tolerance + 1e-13);
@@ -89,7 +89,7 @@ TEST_P(Certified, ToTheToleranceAskedForByDirectSummation) {
 /// What Coulomb's law says of each cell; certify() does not come into it.
 TEST(Coulomb, HoldsInEachCell) {
   const EllipticBench bench(48, 24);
-  const TorsionSolution solution = bench.solve(0.7, 1e-13);
+  const TangentialSolution solution = bench.solve(0.7, 1e-13);
   const ArrayXd slip = norms(solution.slip);
   const double largest_slip = slip.maxCoeff();
   for (Index i = 0; i < bench.grid.cells(); ++i) {
@@ -127,10 +127,10 @@ TEST_P(AgainstProjectedGradient, TheMinimumIsTheSame) {
   const auto op = bench.elasticity.make(bench.grid, tangential_kernel());
   ProjectedGradientOptions options;
   options.tolerance = 1e-10;
-  const TorsionSolution slow =
+  const TangentialSolution slow =
       solve_by_projected_gradient(*op, under_moment(bench.bound, GetParam() * bench.limit), options);
   ASSERT_EQ(slow.status, Status::converged) << slow.message;
-  const TorsionSolution fast = bench.solve(GetParam(), 1e-12);
+  const TangentialSolution fast = bench.solve(GetParam(), 1e-12);
   // |q - q*|_K^2 <= 2 gap: in the energy's norm 1e-5, in the largest traction somewhat more.
   EXPECT_LE(relative_difference(slow.traction, fast.traction), 1e-4);
   EXPECT_NEAR(slow.twist / fast.twist, 1.0, 1e-6);
@@ -141,8 +141,8 @@ TEST_P(AgainstProjectedGradient, TheMinimumIsTheSame) {
 TEST(CoulombLoads, AMomentAndItsTwistAreOneState) {
   const EllipticBench bench(32, 20);
   for (const double moment_ratio : {0.05, 0.5, 0.95}) {
-    const TorsionSolution by_moment = bench.solve(moment_ratio, 1e-12);
-    const TorsionSolution by_twist = bench.solve_twist(by_moment.twist, 1e-12);
+    const TangentialSolution by_moment = bench.solve(moment_ratio, 1e-12);
+    const TangentialSolution by_twist = bench.solve_twist(by_moment.twist, 1e-12);
     ASSERT_EQ(by_twist.status, Status::converged) << by_twist.message;
     EXPECT_EQ(by_twist.twist, by_moment.twist);
     EXPECT_NEAR(bench.moment_of(by_twist) / bench.limit, moment_ratio, 1e-9);
@@ -152,7 +152,7 @@ TEST(CoulombLoads, AMomentAndItsTwistAreOneState) {
 
 TEST(CoulombLoads, NoMomentNoTraction) {
   const EllipticBench bench(20, 20);
-  const TorsionSolution solution = bench.solve(0.0);
+  const TangentialSolution solution = bench.solve(0.0);
   EXPECT_EQ(solution.status, Status::converged) << solution.message;
   EXPECT_EQ(solution.traction.abs().maxCoeff(), 0.0);
   EXPECT_EQ(solution.twist, 0.0);
@@ -161,7 +161,7 @@ TEST(CoulombLoads, NoMomentNoTraction) {
 
 TEST(CoulombLoads, WithoutFrictionNothingIsCarried) {
   const EllipticBench bench(12, 12);
-  const TorsionSolution solution = solve_by_coulomb_method(
+  const TangentialSolution solution = solve_by_coulomb_method(
       bench.elasticity, bench.grid, under_twist(ArrayXd::Zero(bench.grid.cells()), 0.1));
   EXPECT_EQ(solution.status, Status::converged);
   EXPECT_EQ(solution.traction.abs().maxCoeff(), 0.0);
@@ -176,7 +176,7 @@ TEST(CoulombLoads, GrossSlipIsRefusedWithTheLimit) {
 /// A twist has no limit: all but the middle slips.
 TEST(CoulombLoads, AHugeTwistNearlyReachesTheLimit) {
   const EllipticBench bench(31, 31);
-  const TorsionSolution solution = bench.solve_twist(100.0);
+  const TangentialSolution solution = bench.solve_twist(100.0);
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   EXPECT_NEAR(bench.moment_of(solution) / bench.limit, 1.0, 1e-6);
   EXPECT_LE((solution.stick > 0.0).count(), 1);
@@ -185,10 +185,10 @@ TEST(CoulombLoads, AHugeTwistNearlyReachesTheLimit) {
 /// Friction and moment times a factor: tractions, displacements and twist times that factor.
 TEST(CoulombLoads, AreScaledByFriction) {
   EllipticBench bench(24, 24);
-  const TorsionSolution one = bench.solve(0.6, 1e-12);
+  const TangentialSolution one = bench.solve(0.6, 1e-12);
   bench.bound *= 1024.0;
   bench.limit *= 1024.0;
-  const TorsionSolution many = bench.solve(0.6, 1e-12);
+  const TangentialSolution many = bench.solve(0.6, 1e-12);
   EXPECT_LE(relative_difference(many.traction / 1024.0, one.traction), 1e-9);
   EXPECT_NEAR(many.twist / one.twist / 1024.0, 1.0, kRounding);
 }
@@ -196,12 +196,12 @@ TEST(CoulombLoads, AreScaledByFriction) {
 /// The pressure's displacement (dissimilar bodies) enters as in Eq. (12): a rigid rotation in it is a twist.
 TEST(CoulombLoads, AnInitialRotationShiftsTheTwist) {
   const EllipticBench bench(30, 22);
-  TorsionProblem problem = under_moment(bench.bound, 0.6 * bench.limit);
-  const TorsionSolution plain = bench.solve(0.6, 1e-12);
+  TangentialProblem problem = under_moment(bench.bound, 0.6 * bench.limit);
+  const TangentialSolution plain = bench.solve(0.6, 1e-12);
   problem.initial_displacement = 0.25 * rotation_field(bench.grid);
   CoulombOptions options;
   options.tolerance = 1e-12;
-  const TorsionSolution shifted = solve_by_coulomb_method(bench.elasticity, bench.grid, problem, options);
+  const TangentialSolution shifted = solve_by_coulomb_method(bench.elasticity, bench.grid, problem, options);
   ASSERT_EQ(shifted.status, Status::converged) << shifted.message;
   EXPECT_NEAR(shifted.twist - plain.twist, 0.25, 1e-10);
   EXPECT_LE(relative_difference(shifted.traction, plain.traction), 1e-6);
@@ -214,9 +214,9 @@ TEST(CoulombLoads, AnInitialRotationShiftsTheTwist) {
 TEST(Twist, IsOfSecondOrder) {
   const EllipticBench bench(48, 30);
   for (const double moment_ratio : {0.3, 0.8}) {
-    const TorsionSolution exact = bench.solve(moment_ratio, 1e-13);
+    const TangentialSolution exact = bench.solve(moment_ratio, 1e-13);
     for (const double tolerance : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
-      const TorsionSolution rough = bench.solve(moment_ratio, tolerance);
+      const TangentialSolution rough = bench.solve(moment_ratio, tolerance);
       const double twist_error = std::abs(rough.twist / exact.twist - 1.0);
       EXPECT_LE(twist_error, 0.01 * rough.change + 1e-13) << tolerance;
       RecordProperty(fmt::format("twist_{}_{}", moment_ratio, tolerance),
@@ -228,11 +228,11 @@ TEST(Twist, IsOfSecondOrder) {
 TEST(TangentStiffness, IsTheSlopeOfMomentOverTwist) {
   const EllipticBench bench(40, 28);
   for (const double moment_ratio : {0.2, 0.7}) {
-    const TorsionSolution at = bench.solve(moment_ratio, 1e-13);
+    const TangentialSolution at = bench.solve(moment_ratio, 1e-13);
     // So small a step changes no cell's state.
     const double step = 1e-7 * at.twist;
-    const TorsionSolution up = bench.solve_twist(at.twist + step, 1e-15);
-    const TorsionSolution down = bench.solve_twist(at.twist - step, 1e-15);
+    const TangentialSolution up = bench.solve_twist(at.twist + step, 1e-15);
+    const TangentialSolution down = bench.solve_twist(at.twist - step, 1e-15);
     const double slope = (bench.moment_of(up) - bench.moment_of(down)) / (2.0 * step);
     EXPECT_NEAR(at.tangent_stiffness / slope, 1.0, 2e-5);
   }

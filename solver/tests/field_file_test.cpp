@@ -183,6 +183,11 @@ TEST_F(FieldFile, HeightMapHasALineForEachX1) {
   ASSERT_EQ(heights.cols(), 3);
   EXPECT_EQ(heights(0, 2), 3.0);
   EXPECT_EQ(heights(1, 0), 4.0);
+  const Eigen::ArrayXXd holes = read_height_map(write("holes.csv", "1,,3\nnan,5,6\n"));
+  EXPECT_TRUE(std::isnan(holes(0, 1)));
+  EXPECT_TRUE(std::isnan(holes(1, 0)));
+  EXPECT_EQ(holes.isNaN().count(), 2);
+  EXPECT_EQ(holes(1, 2), 6.0);
   EXPECT_THAT(complaint([&] { read_height_map(write("ragged.csv", "1,2\n3\n")); }),
               HasSubstr("ragged.csv:2"));
   EXPECT_THAT(complaint([&] { read_height_map(write("words.csv", "1,2\n3,x\n")); }),

@@ -3,6 +3,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "solver/pressure.hpp"
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/scene_file.hpp"
@@ -30,7 +32,7 @@ class PressureFile : public SceneFile {
     std::string text = kShortScene;
     text.erase(text.find("normal = 1000\n"), 14);
     const Scene scene = read(text, overrides);
-    return find_pressure(scene, make_model(scene));
+    return find_pressure(scene, make_model(scene), scene.steps[0]);
   }
 };
 
@@ -111,6 +113,56 @@ TEST_F(HeightMapFile, MustBeARectangleOfNumbers) {
   EXPECT_EQ(complaint([&] { model("1,2\n3,4\n", {"grid.cells=[2, 2]"}); }), "(no InputError)");
 }
 
+TEST_F(HeightMapFile, IsRefusedWithThePlaceOfAMissingPoint) {
+  for (const char* hole : {"", " ", "nan", "NaN"}) {
+    EXPECT_THAT(complaint([&] { model(std::string("1,2,3\n4,") + hole + ",6\n"); }),
+                testing::AllOf(HasSubstr("heights.csv"), HasSubstr("row 2, column 2"), HasSubstr("no height"),
+                               HasSubstr("a finite number at every point")))
+        << hole;
+  }
+  // 4 x 3 points, 10 and 20 um apart, about the origin.
+  EXPECT_THAT(complaint([&] { model("1,2,3\n4,5,6\n,8,9\n10,11,12\n"); }),
+              HasSubstr("row 3, column 1 (x1 = 5e-06, x2 = -2e-05): no height"));
+}
+
+TEST_F(HeightMapFile, HasItsUnit) {
+  const Model in_metres = model("3e-6,2e-6,3e-6\n2e-6,1e-6,2e-6\n");
+  const Model in_micrometres = model("3,2,3\n2,1,2\n", {"upper.unit=um"});
+  EXPECT_TRUE((in_micrometres.gap - in_metres.gap).abs().maxCoeff() <= kModelRounding);
+}
+
+/// Maps add up cell by cell, to each other and to a body.
+TEST_F(HeightMapFile, AddsUpWithOtherShapes) {
+  write("tilt.csv", "1e-6,2e-6,3e-6\n2e-6,3e-6,4e-6\n");
+  write("wide.csv", "1e-6,2e-6\n2e-6,3e-6\n");
+  write("heights.csv", "3e-6,2e-6,3e-6\n2e-6,1e-6,2e-6\n");
+  const auto of = [&](const std::string& shapes) {
+    std::string text = kShortScene;
+    text.erase(text.find("[grid]"));
+    const std::string sphere = "shape = \"sphere\"\nradius = 0.018\n";
+    text.replace(text.find(sphere), sphere.size(), "shape = [" + shapes + "]\n");
+    return make_model(read(text)).gap;
+  };
+  const auto map = [](const std::string& file, const std::string& spacing = "[1e-5, 2e-5]") {
+    return "{shape = \"height_map\", file = \"" + file + "\", spacing = " + spacing + "}";
+  };
+  const Eigen::ArrayXd both = of(map("heights.csv") + ", " + map("tilt.csv"));
+  Eigen::ArrayXd sum(6);
+  sum << 4, 4, 6, 4, 4, 6;  // um
+  EXPECT_LE((both - (sum - 4.0) * 0.1).abs().maxCoeff(), kModelRounding);
+  const Eigen::ArrayXd on_a_cone = of("{shape = \"cone\", slope = 0.01}, " + map("heights.csv"));
+  // Six centres, 5 um off in x1, and 20 um or 0 off in x2.
+  const double off_axis = 0.01 * std::sqrt(0.25 + 4.0);
+  Eigen::ArrayXd expected(6);
+  expected << 0.3 + off_axis, 0.2 + 0.005, 0.3 + off_axis, 0.2 + off_axis, 0.1 + 0.005, 0.2 + off_axis;
+  EXPECT_LE((on_a_cone - (expected - expected.minCoeff())).abs().maxCoeff(), kModelRounding);
+  EXPECT_THAT(complaint([&] { of(map("heights.csv") + ", " + map("wide.csv")); }),
+              testing::AllOf(HasSubstr("wide.csv"), HasSubstr("2 x 2 heights"), HasSubstr("allowed: 2 x 3"),
+                             HasSubstr("heights.csv")));
+  EXPECT_THAT(complaint([&] { of(map("heights.csv") + ", " + map("tilt.csv", "[1e-5, 1e-5]")); }),
+              testing::AllOf(HasSubstr("tilt.csv"), HasSubstr("allowed: 2 x 3, 1e-05 x 2e-05 apart")));
+}
+
 // --- the model of a scene ---
 
 TEST(Model, IsDimensionless) {
@@ -127,19 +179,27 @@ TEST(Model, IsDimensionless) {
 
 TEST(Model, SaysWhatItLeavesOut) {
   Scene scene = paper_scene(16, 0.5);
-  const auto mentions_coupling = [](const Model& model) {
+  const auto mentions = [&](const std::string& what) {
+    Model model = make_model(scene);
+    note_omissions(model, scene, Reduction(model.grid), false);
     for (const Omission& omission : model.left_out) {
-      if (omission.what == "K13, K23") return !omission.why.empty();
+      if (omission.what == what) return !omission.why.empty();
     }
     return false;
   };
-  EXPECT_TRUE(mentions_coupling(make_model(scene)));
+  EXPECT_TRUE(mentions("K13, K23"));
+  EXPECT_FALSE(mentions("K31, K32"));
+  EXPECT_TRUE(mentions("translations"));
   scene.lower.young_modulus = 70e9;
   EXPECT_TRUE(make_model(scene).pressure_coupling);
-  EXPECT_FALSE(mentions_coupling(make_model(scene)));
+  EXPECT_FALSE(mentions("K13, K23"));
+  EXPECT_TRUE(mentions("K31, K32"));
+  scene.coupling = Coupling::full;
+  EXPECT_TRUE(make_model(scene).shear_coupling);
+  EXPECT_FALSE(mentions("K31, K32"));
   scene.coupling = Coupling::none;
   EXPECT_FALSE(make_model(scene).pressure_coupling);
-  EXPECT_TRUE(mentions_coupling(make_model(scene)));
+  EXPECT_TRUE(mentions("K13, K23"));
 }
 
 }  // namespace

@@ -51,7 +51,7 @@ class Newton : public testing::Test {
     return {discs_, program_, op, op, symbol};
   }
   NewtonSummary run(ArrayXd& q, const NewtonOptions& options = {}) {
-    return method(*bench_.op, *symbol_).run(q, 0.0, options);
+    return method(*bench_.op, *symbol_).run(q, {}, options);
   }
   double energy(const ArrayXd& q) {
     ArrayXd u(q.size());
@@ -65,8 +65,7 @@ class Newton : public testing::Test {
       make_inverse_symbol<double>(grid_, tangential_kernel(), bench_.model.pair);
   ArrayXd rotation_ = (bench_.bound > 0.0).cast<double>().replicate(2, 1) * rotation_field(grid_);
   FrictionDiscs discs_{bench_.bound};
-  ConvexProgram program_{
-      .g = nullptr, .c = rotation_, .load = 0.8 * bench_.limit, .multiplier = std::nullopt};
+  ConvexProgram program_{.g = nullptr, .imposed = {{&rotation_, 0.8 * bench_.limit}}};
   ArrayXd q_;
 };
 
@@ -94,7 +93,7 @@ TEST_F(Newton, AllocatesNothingInTheIteration) {
   Method method = this->method(*bench_.op, *symbol_);
   const NewtonOptions options{.tolerance = 1e-12};
   const long before = allocations();
-  const NewtonSummary summary = method.run(q_, 0.0, options);
+  const NewtonSummary summary = method.run(q_, {}, options);
   EXPECT_EQ(allocations(), before);
   EXPECT_TRUE(summary.converged);
   EXPECT_GE(summary.iterations, 3);
@@ -106,7 +105,7 @@ TEST_F(Newton, FallsBackOnTheGradientWhereTheLinearSolveFails) {
   Reversing reversing;
   ArrayXd q = ArrayXd::Zero(q_.size());
   Method method = this->method(*bench_.op, reversing);
-  const NewtonSummary summary = method.run(q, 0.0, {.tolerance = 1e-4, .max_applications = 20000});
+  const NewtonSummary summary = method.run(q, {}, {.tolerance = 1e-4, .max_applications = 20000});
   EXPECT_TRUE(summary.converged) << summary.message;
   EXPECT_LE(summary.gap, 1e-4);
   EXPECT_NEAR(energy(q) / energy(q_), 1.0, 1e-4);
@@ -134,7 +133,7 @@ TEST_F(Newton, IsNotConvergedOnWhatIsNoNumber) {
     Multiple broken(grid_, factor);
     ArrayXd q = ArrayXd::Zero(q_.size());
     const NewtonSummary summary =
-        method(broken, *symbol_).run(q, 0.0, {.tolerance = 1e-8, .max_applications = 2000});
+        method(broken, *symbol_).run(q, {}, {.tolerance = 1e-8, .max_applications = 2000});
     EXPECT_FALSE(summary.converged) << factor;
     EXPECT_NE(summary.message, "") << factor;
   }
@@ -145,9 +144,9 @@ TEST_F(Newton, IsNotConvergedOnWhatIsNoNumber) {
 /// Under the identity for an operator the answer is the projection of the rotation onto the discs.
 TEST_F(Newton, ProjectsUnderTheIdentity) {
   Multiple identity(grid_, 1.0);
-  const NewtonSummary summary = method(identity, *symbol_).run(q_, 0.0, {.tolerance = 1e-12});
+  const NewtonSummary summary = method(identity, *symbol_).run(q_, {}, {.tolerance = 1e-12});
   ASSERT_TRUE(summary.converged) << summary.message;
-  ArrayXd expected = summary.multiplier * rotation_;
+  ArrayXd expected = summary.multipliers[0] * rotation_;
   discs_.project(expected);
   EXPECT_LE((q_ - expected).abs().maxCoeff(), 1e-6 * bench_.bound.maxCoeff());
 }

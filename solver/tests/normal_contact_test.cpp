@@ -134,15 +134,16 @@ TEST(Cone, CarriesSneddonsLoad) {
   double previous = std::numeric_limits<double>::infinity();
   for (const Index cells : {32, 128}) {
     Scene scene = paper_scene(cells, 0.5);
-    scene.surface.shape = Shape::cone;
-    scene.surface.slope = 0.02;
+    scene.surfaces.front().shape = Shape::cone;
+    scene.surfaces.front().slope = 0.02;
     const Contact contact = press(scene);
     ASSERT_EQ(contact.solution.status, Status::converged);
     const double modulus = effective_modulus(scene);
     // W = (pi/2) E* a^2 slope, approach = (pi/2) a slope (Sneddon 1965).
-    const double a = std::sqrt(2.0 * paper::kLoad / (pi * modulus * scene.surface.slope));
-    const double approach_error = std::abs(
-        contact.solution.approach * contact.model.length_unit / (0.5 * pi * a * scene.surface.slope) - 1.0);
+    const double a = std::sqrt(2.0 * paper::kLoad / (pi * modulus * scene.surfaces.front().slope));
+    const double approach_error = std::abs(contact.solution.approach * contact.model.length_unit /
+                                               (0.5 * pi * a * scene.surfaces.front().slope) -
+                                           1.0);
     const double radius_error = std::abs(measure_contact_radius(contact.model, contact.solution.pressure) *
                                              contact.model.length_unit / a -
                                          1.0);
@@ -152,7 +153,7 @@ TEST(Cone, CarriesSneddonsLoad) {
     // p = E* slope/2 arcosh(a/r): at the first cell centres around the tip, and rising to it without bound.
     const ArrayXd r = (cell_x1(contact.model.grid).square() + cell_x2(contact.model.grid).square()).sqrt() *
                       contact.model.length_unit;
-    const ArrayXd exact = 0.5 * modulus * scene.surface.slope * (a / r).max(1.0).acosh();
+    const ArrayXd exact = 0.5 * modulus * scene.surfaces.front().slope * (a / r).max(1.0).acosh();
     const ArrayXd pressure = contact.solution.pressure * contact.model.stress_unit;
     EXPECT_LT((pressure - exact).abs().sum() / exact.sum(), 1.0 / static_cast<double>(cells));
     RecordProperty("approach_" + std::to_string(cells), std::to_string(approach_error));
@@ -165,8 +166,8 @@ TEST(FlatPunch, SinksInAsBoussinesqSays) {
   double previous = std::numeric_limits<double>::infinity();
   for (const Index cells : {32, 128}) {
     Scene scene = paper_scene(cells, 0.5);
-    scene.surface.shape = Shape::flat_punch;
-    scene.surface.radius = 1e-3;
+    scene.surfaces.front().shape = Shape::flat_punch;
+    scene.surfaces.front().radius = 1e-3;
     const Contact contact = press(scene);
     ASSERT_EQ(contact.solution.status, Status::converged);
     const double approach = paper::kLoad / (2.0 * 1e-3 * effective_modulus(scene));
@@ -215,9 +216,9 @@ TEST_F(HeightMap, OfASphereGivesTheSpheresPressure) {
     }
   }
   Scene scene = sphere;
-  scene.surface = {.shape = Shape::height_map,
-                   .file = file_,
-                   .spacing = {expected.model.length_unit, expected.model.length_unit * grid.h2}};
+  scene.surfaces.front() = {.shape = Shape::height_map,
+                            .file = file_,
+                            .spacing = {expected.model.length_unit, expected.model.length_unit * grid.h2}};
   const Contact contact = press(scene);
   // The heights have lost 7e-5/1e-5 eps, and the two solves stop at their own iterates within a gap of 1e-10.
   EXPECT_LT((contact.solution.pressure - expected.solution.pressure).abs().maxCoeff(),

@@ -45,18 +45,18 @@ TEST_P(Sphere, CarriesTheMomentWithinTheFrictionBounds) {
   EXPECT_LE(solution.certificate.force, 1e-8);  // by symmetry alone: nothing in the method balances forces
   EXPECT_NEAR(solution.moment_limit / paper::kMomentLimit, 1.0, 1e-4);
 
-  const ArrayXd& q = solution.torsion.traction;
+  const ArrayXd& q = solution.tangential.traction;
   const ArrayXd bound = solution.model.friction * solution.normal.pressure;
   const ArrayXd size = norms(q);
-  const ArrayXd slip = norms(solution.torsion.slip);
-  const ArrayXd work = dot_products(q, solution.torsion.slip);
+  const ArrayXd slip = norms(solution.tangential.slip);
+  const ArrayXd work = dot_products(q, solution.tangential.slip);
   const double largest_slip = slip.maxCoeff();
   Index slipping = 0;
   for (Index i = 0; i < bound.size(); ++i) {
     if (bound[i] == 0.0) {
       EXPECT_EQ(size[i], 0.0);
       EXPECT_EQ(slip[i], 0.0);
-    } else if (solution.torsion.stick[i] == 0.0) {
+    } else if (solution.tangential.stick[i] == 0.0) {
       EXPECT_NEAR(size[i] / bound[i], 1.0, kRounding);
       EXPECT_LE(work[i], 0.0);
       ++slipping;
@@ -99,8 +99,8 @@ TEST_P(Sphere, HasTheSymmetryOfItsGrid) {
 }
 
 TEST_P(Sphere, ScalesWithFriction) {
-  const TorsionSolution once = Bench(24, 0.1).twist_by_moment(GetParam().moment_ratio);
-  const TorsionSolution twice = Bench(24, 0.2).twist_by_moment(GetParam().moment_ratio);
+  const TangentialSolution once = Bench(24, 0.1).twist_by_moment(GetParam().moment_ratio);
+  const TangentialSolution twice = Bench(24, 0.2).twist_by_moment(GetParam().moment_ratio);
   EXPECT_LE(relative_difference(twice.traction, 2.0 * once.traction), 1e-10);
   EXPECT_NEAR(twice.twist / once.twist, 2.0, 1e-10);
   EXPECT_TRUE((twice.stick == once.stick).all());
@@ -108,8 +108,8 @@ TEST_P(Sphere, ScalesWithFriction) {
 
 TEST_P(Sphere, TurnsTheOtherWayUnderTheOppositeMoment) {
   const Bench bench(24);
-  const TorsionSolution forward = bench.twist_by_moment(GetParam().moment_ratio);
-  const TorsionSolution backward = bench.twist_by_moment(-GetParam().moment_ratio);
+  const TangentialSolution forward = bench.twist_by_moment(GetParam().moment_ratio);
+  const TangentialSolution backward = bench.twist_by_moment(-GetParam().moment_ratio);
   EXPECT_EQ(backward.status, Status::converged);
   EXPECT_LE(relative_difference(backward.traction, -forward.traction), kRounding);
   EXPECT_NEAR(backward.twist / forward.twist, -1.0, kRounding);
@@ -117,8 +117,8 @@ TEST_P(Sphere, TurnsTheOtherWayUnderTheOppositeMoment) {
 
 TEST_P(Sphere, AnswersItsTwistWithItsMoment) {
   const Bench bench(32);
-  const TorsionSolution by_moment = bench.twist_by_moment(GetParam().moment_ratio);
-  const TorsionSolution by_twist =
+  const TangentialSolution by_moment = bench.twist_by_moment(GetParam().moment_ratio);
+  const TangentialSolution by_twist =
       solve_by_paper_method(*bench.op, under_twist(bench.bound, by_moment.twist), to_tolerance(kTight));
   ASSERT_EQ(by_twist.status, Status::converged) << by_twist.message;
   EXPECT_EQ(by_twist.twist, by_moment.twist);
@@ -130,9 +130,10 @@ TEST_P(Sphere, AnswersItsTwistWithItsMoment) {
 }
 
 TEST_P(Sphere, DoesNotDependOnTheOperator) {
-  const TorsionSolution reference = Bench(24).twist_by_moment(GetParam().moment_ratio);
+  const TangentialSolution reference = Bench(24).twist_by_moment(GetParam().moment_ratio);
   for (const OperatorKind kind : {OperatorKind::direct, OperatorKind::dense}) {
-    const TorsionSolution other = Bench(24, paper::kFriction, kind).twist_by_moment(GetParam().moment_ratio);
+    const TangentialSolution other =
+        Bench(24, paper::kFriction, kind).twist_by_moment(GetParam().moment_ratio);
     EXPECT_LE(relative_difference(other.traction, reference.traction), 1e-9);
     EXPECT_NEAR(other.twist / reference.twist, 1.0, 1e-9);
   }
@@ -172,7 +173,7 @@ TEST(Restick, BringsBackTheCellsThatTheInitialGuessMadeSlip) {
 
   const auto op =
       make_operator(OperatorKind::dcfft, grid, tangential_kernel(), elastic_pair({1.0, 0.3}, {1.0, 0.3}));
-  const TorsionSolution solution = solve_by_paper_method(*op, under_moment(bound, kMomentRatio * limit));
+  const TangentialSolution solution = solve_by_paper_method(*op, under_moment(bound, kMomentRatio * limit));
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   const ArrayXd inside = (r < 0.8).cast<double>();  // the staircase of the edge is felt beyond
   EXPECT_EQ((solution.stick * inside).sum(), inside.sum());
@@ -194,7 +195,7 @@ TEST(FrozenSlipDirection, ShowsOnAnEllipseInTheCertificateAlone) {
     const Solution ellipse = by_paper_method(
         ellipsoid_scene(cells, paper::kRadius * elongation, paper::kRadius / elongation, 0.9));
     ASSERT_EQ(ellipse.status, Status::converged);
-    EXPECT_LE(ellipse.torsion.change, 1e-8);
+    EXPECT_LE(ellipse.tangential.change, 1e-8);
     EXPECT_NEAR(ellipse.model.hertz->semi_axis_2 / ellipse.model.hertz->semi_axis_1, 0.5, 0.01);
     EXPECT_GT(ellipse.certificate.gap, 1e-5);
     EXPECT_GT(ellipse.certificate.gap, 10.0 * sphere.certificate.gap);
@@ -232,8 +233,8 @@ TEST(DissimilarMaterials, CarryTheMomentWithinTheFrictionBounds) {
     const Grid& grid = of.model.grid;
     ArrayXd position(2 * grid.cells());
     position << cell_x1(grid), cell_x2(grid);
-    const ArrayXd radial = dot_products(of.torsion.traction, position);
-    const ArrayXd around = dot_products(of.torsion.traction, rotation_field(grid));
+    const ArrayXd radial = dot_products(of.tangential.traction, position);
+    const ArrayXd around = dot_products(of.tangential.traction, rotation_field(grid));
     return std::abs(radial.sum()) / around.sum();
   };
   EXPECT_GT(radial_part(solution), 1e-2);
@@ -252,7 +253,7 @@ TEST(DissimilarMaterials, WithoutMismatchNeedNoCoupling) {
   scene.coupling = Coupling::pressure;
   const Solution coupled = by_paper_method(scene);
   EXPECT_TRUE(coupled.model.pressure_coupling);
-  EXPECT_TRUE((coupled.torsion.traction == automatic.torsion.traction).all());
+  EXPECT_TRUE((coupled.tangential.traction == automatic.tangential.traction).all());
   EXPECT_EQ(coupled.twist_angle, automatic.twist_angle);
 }
 
@@ -277,7 +278,7 @@ TEST(Applications, AreOneAnIterationAndOneMoreWhereTheStickAreaChanged) {
   for (const double moment_ratio : {0.1, 0.5, 0.9}) {
     const Bench bench(64);
     const long before = bench.op->applications();
-    const TorsionSolution solution = bench.twist_by_moment(moment_ratio, 1e-8);
+    const TangentialSolution solution = bench.twist_by_moment(moment_ratio, 1e-8);
     const long count = bench.op->applications() - before;
     EXPECT_GE(count, solution.iterations + 2);  // the first guess and what is reported
     EXPECT_LT(count, 2 * solution.iterations);
@@ -286,7 +287,7 @@ TEST(Applications, AreOneAnIterationAndOneMoreWhereTheStickAreaChanged) {
   Bench bonded(32);
   bonded.bound = (bonded.bound > 0.0).select(ArrayXd::Constant(bonded.bound.size(), 1e6), 0.0);
   const long before = bonded.op->applications();
-  const TorsionSolution solution =
+  const TangentialSolution solution =
       solve_by_paper_method(*bonded.op, under_moment(bonded.bound, 1.0), to_tolerance(1e-12));
   ASSERT_EQ(solution.status, Status::converged);
   EXPECT_EQ((solution.stick > 0.0).count(), (bonded.bound > 0.0).count());
@@ -299,7 +300,7 @@ TEST(Progress, IsCalledWithFallingChanges) {
   std::vector<std::pair<int, double>> calls;
   PaperOptions options = to_tolerance(1e-10);
   options.progress = [&](int i, double change) { calls.emplace_back(i, change); };
-  const TorsionSolution solution =
+  const TangentialSolution solution =
       solve_by_paper_method(*bench.op, under_moment(bench.bound, 0.5 * bench.limit), options);
   ASSERT_GE(calls.size(), 1U);
   EXPECT_GT(calls.front().second, 1e-10);
@@ -308,7 +309,7 @@ TEST(Progress, IsCalledWithFallingChanges) {
 
 TEST(Result, ReportsWhatItsTractionsCauseNotWhatWasCarriedAlong) {
   const Bench bench(32);
-  const TorsionSolution solution = bench.twist_by_moment(0.5);
+  const TangentialSolution solution = bench.twist_by_moment(0.5);
   ArrayXd u(solution.traction.size());
   bench.op->apply({solution.traction.data(), static_cast<std::size_t>(u.size())},
                   {u.data(), static_cast<std::size_t>(u.size())});

@@ -33,11 +33,11 @@ inline Scene paper_scene(Index cells, double moment_ratio) {
   const Material steel{paper::kYoungModulus, paper::kPoissonRatio};
   Scene scene;
   scene.source = "paper.toml";
-  scene.surface.radius = paper::kRadius;
+  scene.surfaces.front().radius = paper::kRadius;
   scene.upper = scene.lower = steel;
   scene.friction = paper::kFriction;
-  scene.normal_load = paper::kLoad;
-  scene.torsion.moment_ratio = moment_ratio;
+  scene.steps[0].normal = paper::kLoad;
+  scene.steps[0].torsion.moment_ratio = moment_ratio;
   scene.cells = {cells, cells};
   return scene;
 }
@@ -45,9 +45,9 @@ inline Scene paper_scene(Index cells, double moment_ratio) {
 /// The same pressed by a body with two radii of curvature.
 inline Scene ellipsoid_scene(Index cells, double radius_1, double radius_2, double moment_ratio) {
   Scene scene = paper_scene(cells, moment_ratio);
-  scene.surface.shape = Shape::ellipsoid;
-  scene.surface.radius_1 = radius_1;
-  scene.surface.radius_2 = radius_2;
+  scene.surfaces.front().shape = Shape::ellipsoid;
+  scene.surfaces.front().radius_1 = radius_1;
+  scene.surfaces.front().radius_2 = radius_2;
   return scene;
 }
 

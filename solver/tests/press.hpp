@@ -12,7 +12,7 @@ struct Contact {
 
 inline Contact press(const Scene& scene) {
   Contact contact{make_model(scene), {}};
-  contact.solution = find_pressure(scene, contact.model);
+  contact.solution = find_pressure(scene, contact.model, scene.steps[0]);
   return contact;
 }
 

@@ -38,11 +38,11 @@ struct EllipticBench {
         op(make_operator(kind, grid, tangential_kernel(), elastic_pair({1.0, 0.3}, {1.0, 0.3}))),
         limit(moment_limit(grid, bound)) {}
 
-  TorsionSolution solve(const TorsionProblem& problem, double gap = kGap) const {
+  TangentialSolution solve(const TangentialProblem& problem, double gap = kGap) const {
     return solve_by_projected_gradient(*op, problem, to_gap(gap));
   }
   double moment_of(const ArrayXd& q) const { return (q * t).sum(); }
-  double gap_of(const TorsionSolution& solution) const {
+  double gap_of(const TangentialSolution& solution) const {
     return certify({solution.traction, solution.elastic_displacement, solution.slip}, bound, t, 0.0).gap;
   }
   double energy(const ArrayXd& q, const ArrayXd& load) const {
@@ -65,7 +65,7 @@ ArrayXd inward(const EllipticBench& bench, double size = 0.3) {
   return load;
 }
 
-void expect_coulombs_law(const TorsionSolution& solution, const ArrayXd& bound, double tolerance) {
+void expect_coulombs_law(const TangentialSolution& solution, const ArrayXd& bound, double tolerance) {
   const ArrayXd size = norms(solution.traction);
   const ArrayXd slip = norms(solution.slip);
   const ArrayXd along = dot_products(solution.traction, solution.slip);
@@ -92,9 +92,9 @@ INSTANTIATE_TEST_SUITE_P(MomentRatios, Ellipse, testing::Values(0.1, 0.5, -0.5, 
 TEST_P(Ellipse, ObeysCoulombsLawInEveryCell) {
   for (const bool loaded : {false, true}) {
     const EllipticBench bench(24);
-    TorsionProblem problem = under_moment(bench.bound, GetParam() * bench.limit);
+    TangentialProblem problem = under_moment(bench.bound, GetParam() * bench.limit);
     if (loaded) problem.initial_displacement = inward(bench);
-    const TorsionSolution solution = bench.solve(problem);
+    const TangentialSolution solution = bench.solve(problem);
     ASSERT_EQ(solution.status, Status::converged) << solution.message;
     EXPECT_THAT(solution.message, testing::IsEmpty());
     EXPECT_LE(bench.gap_of(solution), kGap);
@@ -108,9 +108,9 @@ TEST_P(Ellipse, ObeysCoulombsLawInEveryCell) {
 
 TEST_P(Ellipse, ReportsWhatItsTractionsCause) {
   const EllipticBench bench(16);
-  TorsionProblem problem = under_moment(bench.bound, GetParam() * bench.limit);
+  TangentialProblem problem = under_moment(bench.bound, GetParam() * bench.limit);
   problem.initial_displacement = inward(bench);
-  const TorsionSolution solution = bench.solve(problem);
+  const TangentialSolution solution = bench.solve(problem);
   ArrayXd u(solution.traction.size());
   bench.op->apply(solution.traction, u);
   EXPECT_TRUE((u == solution.elastic_displacement).all());
@@ -121,8 +121,8 @@ TEST_P(Ellipse, ReportsWhatItsTractionsCause) {
 
 TEST_P(Ellipse, AnswersItsTwistWithItsMoment) {
   const EllipticBench bench(24);
-  const TorsionSolution by_moment = bench.solve(under_moment(bench.bound, GetParam() * bench.limit));
-  const TorsionSolution by_twist = bench.solve(under_twist(bench.bound, by_moment.twist));
+  const TangentialSolution by_moment = bench.solve(under_moment(bench.bound, GetParam() * bench.limit));
+  const TangentialSolution by_twist = bench.solve(under_twist(bench.bound, by_moment.twist));
   ASSERT_EQ(by_twist.status, Status::converged) << by_twist.message;
   EXPECT_EQ(by_twist.twist, by_moment.twist);
   EXPECT_LE(bench.gap_of(by_twist), kGap);
@@ -136,10 +136,10 @@ TEST_P(Ellipse, AnswersItsTwistWithItsMoment) {
 /// The gap bounds the energy's excess over the minimum, so that no admissible traction may be lower by more.
 TEST_P(Ellipse, HasTheLeastEnergy) {
   const EllipticBench bench(16);
-  TorsionProblem problem = under_moment(bench.bound, GetParam() * bench.limit);
+  TangentialProblem problem = under_moment(bench.bound, GetParam() * bench.limit);
   for (const double size : {0.0, 0.3}) {
     problem.initial_displacement = inward(bench, size);
-    const TorsionSolution solution = bench.solve(problem);
+    const TangentialSolution solution = bench.solve(problem);
     const double least = bench.energy(solution.traction, problem.initial_displacement);
     const double slack = kGap * 0.5 * (solution.traction * solution.elastic_displacement).sum();
     std::mt19937 generator(7);
@@ -152,7 +152,7 @@ TEST_P(Ellipse, HasTheLeastEnergy) {
       EXPECT_GE(bench.energy(other, problem.initial_displacement), least - slack);
     }
     if (size != 0.0) continue;  // under a radial load the paper's method may lose all of its stick area
-    const TorsionSolution paper = solve_by_paper_method(*bench.op, problem, to_tolerance(1e-10));
+    const TangentialSolution paper = solve_by_paper_method(*bench.op, problem, to_tolerance(1e-10));
     ASSERT_EQ(paper.status, Status::converged) << paper.message;
     EXPECT_GE(bench.energy(paper.traction, problem.initial_displacement), least - slack);
   }
@@ -162,9 +162,9 @@ TEST_P(Ellipse, HasTheLeastEnergy) {
 TEST(EllipticContact, HasLessEnergyThanThePapersMethodLeaves) {
   const EllipticBench bench(24);
   const ArrayXd no_load = ArrayXd::Zero(bench.t.size());
-  const TorsionProblem problem = under_moment(bench.bound, 0.9 * bench.limit);
-  const TorsionSolution solution = bench.solve(problem);
-  const TorsionSolution paper = solve_by_paper_method(*bench.op, problem, to_tolerance(1e-11));
+  const TangentialProblem problem = under_moment(bench.bound, 0.9 * bench.limit);
+  const TangentialSolution solution = bench.solve(problem);
+  const TangentialSolution paper = solve_by_paper_method(*bench.op, problem, to_tolerance(1e-11));
   const double energy = 0.5 * (paper.traction * paper.elastic_displacement).sum();
   const double excess =
       (bench.energy(paper.traction, no_load) - bench.energy(solution.traction, no_load)) / energy;
@@ -175,12 +175,12 @@ TEST(EllipticContact, HasLessEnergyThanThePapersMethodLeaves) {
 /// |q - q*|_K^2/2 is at most the gap: a looser solution differs from a tight one by no more.
 TEST(EllipticContact, IsAsNearAsItsGapPromises) {
   const EllipticBench bench(24);
-  const TorsionProblem problem = under_moment(bench.bound, 0.5 * bench.limit);
-  const TorsionSolution tight = bench.solve(problem, 1e-12);
+  const TangentialProblem problem = under_moment(bench.bound, 0.5 * bench.limit);
+  const TangentialSolution tight = bench.solve(problem, 1e-12);
   ASSERT_EQ(tight.status, Status::converged) << tight.message;
   const double energy = 0.5 * (tight.traction * tight.elastic_displacement).sum();
   for (const double tolerance : {1e-2, 1e-4, 1e-6}) {
-    const TorsionSolution loose = bench.solve(problem, tolerance);
+    const TangentialSolution loose = bench.solve(problem, tolerance);
     EXPECT_LE(bench.gap_of(loose), tolerance);
     EXPECT_LT(loose.iterations, tight.iterations);
     const ArrayXd error = loose.traction - tight.traction;
@@ -191,10 +191,10 @@ TEST(EllipticContact, IsAsNearAsItsGapPromises) {
 TEST(Circle, TurnsAsThePapersMethodSays) {
   const Bench bench(24);
   for (const double ratio : {0.1, 0.5, 0.9}) {
-    const TorsionSolution solution =
+    const TangentialSolution solution =
         solve_by_projected_gradient(*bench.op, under_moment(bench.bound, ratio * bench.limit), to_gap(kGap));
     ASSERT_EQ(solution.status, Status::converged) << solution.message;
-    const TorsionSolution paper = bench.twist_by_moment(ratio);
+    const TangentialSolution paper = bench.twist_by_moment(ratio);
     EXPECT_NEAR(solution.twist / paper.twist, 1.0, 1e-4);  // the frozen directions, a gap of 1e-6 or so
     EXPECT_TRUE((solution.stick == paper.stick).all());
     EXPECT_LE(bench.certify_solution(solution, ratio * bench.limit).force, 1e-8);
@@ -203,19 +203,19 @@ TEST(Circle, TurnsAsThePapersMethodSays) {
 
 TEST(Circle, DoesNotDependOnTheOperatorNorOnTheStart) {
   const Bench bench(16);
-  const TorsionProblem problem = under_moment(bench.bound, 0.5 * bench.limit);
-  const TorsionSolution reference = solve_by_projected_gradient(*bench.op, problem, to_gap(1e-12));
+  const TangentialProblem problem = under_moment(bench.bound, 0.5 * bench.limit);
+  const TangentialSolution reference = solve_by_projected_gradient(*bench.op, problem, to_gap(1e-12));
   const Bench dense(16, paper::kFriction, OperatorKind::dense);
-  const TorsionSolution other = solve_by_projected_gradient(*dense.op, problem, to_gap(1e-12));
+  const TangentialSolution other = solve_by_projected_gradient(*dense.op, problem, to_gap(1e-12));
   EXPECT_LE(relative_difference(other.traction, reference.traction), 1e-6);
   EXPECT_NEAR(other.twist / reference.twist, 1.0, 1e-8);
 
   ProjectedGradientOptions options = to_gap(1e-12);
   options.start = -10.0 * rotation_field(bench.model.grid);
-  const TorsionSolution from_afar = solve_by_projected_gradient(*bench.op, problem, options);
+  const TangentialSolution from_afar = solve_by_projected_gradient(*bench.op, problem, options);
   EXPECT_LE(relative_difference(from_afar.traction, reference.traction), 1e-6);
   options.start = reference.traction;
-  const TorsionSolution from_there = solve_by_projected_gradient(*bench.op, problem, options);
+  const TangentialSolution from_there = solve_by_projected_gradient(*bench.op, problem, options);
   EXPECT_LT(from_there.iterations, reference.iterations / 2);
   options.start = ArrayXd::Zero(3);
   EXPECT_THROW(solve_by_projected_gradient(*bench.op, problem, options), std::invalid_argument);
@@ -225,15 +225,15 @@ TEST(FullStick, OfABondedContactIsLinearInTheMoment) {
   const Bench bench(16);
   const ArrayXd bonded = (bench.bound > 0.0).select(ArrayXd::Constant(bench.bound.size(), 20.0), 0.0);
   const auto solve = [&](double moment) {
-    TorsionSolution solution =
+    TangentialSolution solution =
         solve_by_projected_gradient(*bench.op, under_moment(bonded, moment), to_gap(1e-8));
     EXPECT_EQ(solution.status, Status::converged) << solution.message;
     EXPECT_EQ(solution.stick.sum(), static_cast<double>((bonded > 0.0).count()));
     EXPECT_NEAR(bench.moment_of(solution.traction) / moment, 1.0, 1e-6);
     return solution;
   };
-  const TorsionSolution once = solve(1.0);
-  const TorsionSolution twice = solve(2.0);
+  const TangentialSolution once = solve(1.0);
+  const TangentialSolution twice = solve(2.0);
   EXPECT_NEAR(twice.twist / once.twist, 2.0, 1e-6);
   EXPECT_GT(once.twist, 0.0);
 }
@@ -241,7 +241,7 @@ TEST(FullStick, OfABondedContactIsLinearInTheMoment) {
 /// On a circle any moment makes the edge slip, but on cells not a tiny one.
 TEST(FullStick, UnderATinyMoment) {
   const Bench bench(16);
-  const TorsionSolution solution =
+  const TangentialSolution solution =
       solve_by_projected_gradient(*bench.op, under_moment(bench.bound, 1e-3 * bench.limit), to_gap(1e-8));
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   EXPECT_EQ(solution.stick.sum(), static_cast<double>((bench.bound > 0.0).count()));
@@ -250,10 +250,10 @@ TEST(FullStick, UnderATinyMoment) {
 
 TEST(Unloaded, HasNoTractionByProjectedGradientEither) {
   const Bench bench(16);
-  for (const TorsionProblem& problem :
+  for (const TangentialProblem& problem :
        {under_moment(bench.bound, 0.0), under_twist(bench.bound, 0.0), under_moment(0.0 * bench.bound, 0.0),
         under_twist(0.0 * bench.bound, 1e-3)}) {
-    const TorsionSolution solution = solve_by_projected_gradient(*bench.op, problem);
+    const TangentialSolution solution = solve_by_projected_gradient(*bench.op, problem);
     EXPECT_EQ(solution.status, Status::converged) << solution.message;
     EXPECT_EQ(largest(solution.traction), 0.0);
     EXPECT_EQ(largest(solution.slip), 0.0);
@@ -271,7 +271,7 @@ TEST(ProjectedGradient, RefusesWhatNoTractionCanCarry) {
 TEST(ProjectedGradient, AppliesOnceAnIteration) {
   const Bench bench(24);
   const long before = bench.op->applications();
-  const TorsionSolution solution =
+  const TangentialSolution solution =
       solve_by_projected_gradient(*bench.op, under_moment(bench.bound, 0.5 * bench.limit));
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   EXPECT_LE(bench.op->applications() - before, solution.iterations + 8);  // curvatures and the start
@@ -286,7 +286,7 @@ TEST(ProjectedGradient, TellsItsProgress) {
     last = iteration;
     gaps.push_back(gap);
   };
-  const TorsionSolution solution =
+  const TangentialSolution solution =
       solve_by_projected_gradient(*bench.op, under_moment(bench.bound, 0.5 * bench.limit), options);
   ASSERT_GE(gaps.size(), 3U);
   EXPECT_EQ(gaps.back(), solution.change);
@@ -298,7 +298,7 @@ TEST(ProjectedGradientBreakdown, OfTooFewIterationsIsNamedWithItsNumbers) {
   const Bench bench(24);
   ProjectedGradientOptions options = to_gap(1e-9);
   options.max_iterations = 7;  // between two looks at the certificate
-  const TorsionSolution solution =
+  const TangentialSolution solution =
       solve_by_projected_gradient(*bench.op, under_moment(bench.bound, 0.5 * bench.limit), options);
   EXPECT_EQ(solution.status, Status::not_converged);
   EXPECT_EQ(solution.iterations, 7);
@@ -326,16 +326,16 @@ class MadeUp final : public LinearOperator {
 
 TEST(ProjectedGradientBreakdown, OfNumbersThatAreNotFiniteIsNamed) {
   const Bench bench(16);
-  const TorsionProblem problem = under_moment(bench.bound, 0.5 * bench.limit);
+  const TangentialProblem problem = under_moment(bench.bound, 0.5 * bench.limit);
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     MadeUp broken(bench.model.grid, [&](std::size_t, long) { return bad; });
-    const TorsionSolution solution = solve_by_projected_gradient(broken, problem);
+    const TangentialSolution solution = solve_by_projected_gradient(broken, problem);
     EXPECT_EQ(solution.status, Status::not_converged);
     EXPECT_THAT(solution.message, StartsWith("no step length: norm of K = "));
 
     MadeUp late(bench.model.grid, [&](std::size_t, long call) { return call < 12 ? 1.0 : bad; });
-    const TorsionSolution broke_later = solve_by_projected_gradient(late, problem, to_gap(1e300));
+    const TangentialSolution broke_later = solve_by_projected_gradient(late, problem, to_gap(1e300));
     EXPECT_EQ(broke_later.status, Status::not_converged);
     EXPECT_THAT(broke_later.message, StartsWith("not finite: gap = "));
     EXPECT_THAT(broke_later.message, HasSubstr("in iteration 10"));
@@ -346,7 +346,7 @@ TEST(ProjectedGradientBreakdown, OfNumbersThatAreNotFiniteIsNamed) {
 TEST(ProjectedGradientBreakdown, OfAnOperatorThatIsNotPositiveDefiniteIsNamed) {
   const Bench bench(16);
   MadeUp indefinite(bench.model.grid, [](std::size_t, long) { return -1.0; });
-  const TorsionSolution solution =
+  const TangentialSolution solution =
       solve_by_projected_gradient(indefinite, under_moment(bench.bound, 0.5 * bench.limit));
   EXPECT_EQ(solution.status, Status::not_converged);
   EXPECT_THAT(solution.message, StartsWith("indefinite operator: q.Kq/2 = -"));
@@ -359,8 +359,8 @@ TEST(Backtracking, MendsAStepThatIsTooLong) {
   const ArrayXd bound = ArrayXd::Ones(grid.cells());
   const std::size_t soft = 8 * 16 + 15;
   MadeUp op(grid, [&](std::size_t i, long) { return i == soft ? 10.0 : 1.0; });
-  const TorsionProblem problem = under_moment(bound, 0.5 * moment_limit(grid, bound));
-  const TorsionSolution solution = solve_by_projected_gradient(op, problem, to_gap(1e-12));
+  const TangentialProblem problem = under_moment(bound, 0.5 * moment_limit(grid, bound));
+  const TangentialSolution solution = solve_by_projected_gradient(op, problem, to_gap(1e-12));
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   // Each cell for itself: q = phi t, a tenth of it where it is soft, or the bound.
   const ArrayXd& q = solution.traction;
@@ -372,7 +372,7 @@ TEST(Backtracking, MendsAStepThatIsTooLong) {
 TEST(Momentum, KeepsIterationsFew) {
   const auto iterations = [](Index cells) {
     const Bench bench(cells);
-    const TorsionSolution solution =
+    const TangentialSolution solution =
         solve_by_projected_gradient(*bench.op, under_moment(bench.bound, 0.5 * bench.limit), to_gap(1e-8));
     EXPECT_EQ(solution.status, Status::converged) << solution.message;
     return solution.iterations;
@@ -410,7 +410,7 @@ TEST(Momentum, IsGivenUpWhereItOvershoots) {
   const Grid grid{16, 16, 1.0, 1.0};
   const ArrayXd bound = ArrayXd::Ones(grid.cells());
   SoftOnTheCheckerboard op(grid);
-  const TorsionSolution solution =
+  const TangentialSolution solution =
       solve_by_projected_gradient(op, under_moment(bound, 0.5 * moment_limit(grid, bound)), to_gap(1e-10));
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   EXPECT_LE(solution.iterations, 200);

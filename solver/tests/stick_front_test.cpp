@@ -290,7 +290,7 @@ TEST_P(CircularContact, SticksWithinLubkinsRadius) {
         make_operator(OperatorKind::dcfft, grid, tangential_kernel(), elastic_pair({1.0, 0.3}, {1.0, 0.3}));
     ProjectedGradientOptions options;
     options.tolerance = 1e-10;
-    const TorsionSolution solution = solve_by_projected_gradient(
+    const TangentialSolution solution = solve_by_projected_gradient(
         *op, under_moment(bound, moment_ratio * moment_limit(grid, bound)), options);
     EXPECT_EQ(solution.status, Status::converged) << solution.message;
     const StickFront front = find_stick_front(grid, bound, solution.slip, solution.stick);

@@ -19,15 +19,15 @@ inline double relative_difference(const Eigen::ArrayXd& a, const Eigen::ArrayXd&
   return largest(a - b) / largest(b);
 }
 
-inline TorsionProblem under_moment(const Eigen::ArrayXd& bound, double moment) {
-  TorsionProblem problem;
+inline TangentialProblem under_moment(const Eigen::ArrayXd& bound, double moment) {
+  TangentialProblem problem;
   problem.friction_bound = bound;
   problem.moment = moment;
   return problem;
 }
 
-inline TorsionProblem under_twist(const Eigen::ArrayXd& bound, double twist) {
-  TorsionProblem problem;
+inline TangentialProblem under_twist(const Eigen::ArrayXd& bound, double twist) {
+  TangentialProblem problem;
   problem.friction_bound = bound;
   problem.twist = twist;
   return problem;
@@ -44,14 +44,14 @@ struct Bench {
   explicit Bench(Index cells, double friction = paper::kFriction, OperatorKind kind = OperatorKind::dcfft) {
     const Scene scene = paper_scene(cells, 0.0);
     model = make_model(scene);
-    bound = friction * find_pressure(scene, model).pressure;
+    bound = friction * find_pressure(scene, model, scene.steps[0]).pressure;
     op = make_operator(kind, model.grid, tangential_kernel(), model.pair);
     limit = moment_limit(model.grid, bound);
   }
-  TorsionSolution twist_by_moment(double moment_ratio, double tolerance = kTight) const {
+  TangentialSolution twist_by_moment(double moment_ratio, double tolerance = kTight) const {
     return solve_by_paper_method(*op, under_moment(bound, moment_ratio * limit), to_tolerance(tolerance));
   }
-  Certificate certify_solution(const TorsionSolution& solution, double moment) const {
+  Certificate certify_solution(const TangentialSolution& solution, double moment) const {
     return certify({solution.traction, solution.elastic_displacement, solution.slip}, bound,
                    rotation_field(model.grid), moment);
   }

@@ -21,13 +21,20 @@ void PrintTo(const Units& units, std::ostream* stream) { *stream << units.name; 
 
 Scene in_units(Scene scene, const Units& units) {
   const double pascal = units.newton / (units.metre * units.metre);
-  scene.surface.radius *= units.metre;
-  scene.surface.radius_1 *= units.metre;
-  scene.surface.radius_2 *= units.metre;
+  for (Surface& surface : scene.surfaces) {
+    for (double* const length :
+         {&surface.radius, &surface.inner_radius, &surface.radius_1, &surface.radius_2, &surface.flat_radius,
+          &surface.corner_radius, &surface.at[0], &surface.at[1], &surface.roughness.longest,
+          &surface.roughness.shortest, &surface.roughness.period}) {
+      *length *= units.metre;
+    }
+    surface.coefficient *= std::pow(units.metre, 1.0 - surface.exponent);
+  }
   scene.upper.young_modulus *= pascal;
   scene.lower.young_modulus *= pascal;
-  scene.normal_load = *scene.normal_load * units.newton;
-  if (scene.torsion.moment) scene.torsion.moment = *scene.torsion.moment * units.newton * units.metre;
+  scene.steps[0].normal = *scene.steps[0].normal * units.newton;
+  if (scene.steps[0].torsion.moment)
+    scene.steps[0].torsion.moment = *scene.steps[0].torsion.moment * units.newton * units.metre;
   if (scene.extent) scene.extent = {(*scene.extent)[0] * units.metre, (*scene.extent)[1] * units.metre};
   return scene;
 }
@@ -37,13 +44,40 @@ constexpr Index kCells = 48;
 Scene by_ratio() { return paper_scene(kCells, 0.5); }
 Scene by_moment() {
   Scene scene = paper_scene(kCells, 0.0);
-  scene.torsion = {};
-  scene.torsion.moment = 0.9 * paper::kMomentLimit;
+  scene.steps[0].torsion = {};
+  scene.steps[0].torsion.moment = 0.9 * paper::kMomentLimit;
   return scene;
 }
 Scene over_an_extent() {
   Scene scene = ellipsoid_scene(kCells, 0.03, 0.01, 0.5);
   scene.extent = {1.6e-3, 0.9e-3};
+  return scene;
+}
+
+/// One of each shape that is no file, off the origin and turned.
+Scene of_all_shapes() {
+  Scene scene = over_an_extent();
+  Surface body{.at = {0.1e-3, -0.2e-3}, .angle = 0.4};
+  body.radius = 0.018;
+  body.radius_1 = 0.03;
+  body.radius_2 = 0.01;
+  body.slope = 0.01;
+  body.flat_radius = 0.3e-3;
+  body.corner_radius = 5e-3;
+  body.exponent = 3.5;
+  body.coefficient = 1e5;
+  body.roughness = {
+      .seed = 1, .hurst = 0.8, .longest = 4e-4, .shortest = 1e-4, .rms_slope = 0.01, .period = 1.6e-3};
+  scene.surfaces.clear();
+  for (const Shape shape :
+       {Shape::sphere, Shape::ellipsoid, Shape::cone, Shape::rounded_punch, Shape::power, Shape::roughness}) {
+    body.shape = shape;
+    scene.surfaces.push_back(body);
+  }
+  body.shape = Shape::flat_punch;
+  body.radius = 0.6e-3;
+  body.inner_radius = 0.1e-3;
+  scene.surfaces.push_back(body);
   return scene;
 }
 
@@ -72,6 +106,14 @@ TEST_P(OtherUnits, GiveTheSameModel) {
   }
 }
 
+TEST_P(OtherUnits, GiveTheSameGap) {
+  const Eigen::ArrayXd si = make_model(of_all_shapes()).gap;
+  const Eigen::ArrayXd other = make_model(in_units(of_all_shapes(), GetParam())).gap;
+  EXPECT_TRUE((other == si).all());
+  EXPECT_GT(si.isFinite().count(), 100);
+  EXPECT_LT(si.isFinite().count(), si.size());
+}
+
 TEST_P(OtherUnits, GiveTheSameDigits) {
   constexpr double kTolerance = 1e-12;
   const Units& units = GetParam();
@@ -84,10 +126,10 @@ TEST_P(OtherUnits, GiveTheSameDigits) {
     ASSERT_EQ(other.status, Status::converged) << other.message;
     EXPECT_EQ(other.stick_cells, si.stick_cells);
     EXPECT_EQ(other.contact_cells, si.contact_cells);
-    EXPECT_EQ(other.torsion.iterations, si.torsion.iterations);
+    EXPECT_EQ(other.tangential.iterations, si.tangential.iterations);
     EXPECT_LE(difference(other.normal.pressure, si.normal.pressure), kTolerance);
-    EXPECT_LE(difference(other.torsion.traction, si.torsion.traction), kTolerance);
-    EXPECT_LE(difference(other.torsion.slip, si.torsion.slip), kTolerance);
+    EXPECT_LE(difference(other.tangential.traction, si.tangential.traction), kTolerance);
+    EXPECT_LE(difference(other.tangential.slip, si.tangential.slip), kTolerance);
     EXPECT_LE(difference(other.twist_angle, si.twist_angle), kTolerance);
     EXPECT_LE(difference(other.moment, si.moment * moment), kTolerance);
     EXPECT_LE(difference(other.moment_limit, si.moment_limit * moment), kTolerance);
@@ -117,10 +159,10 @@ TEST(BinaryUnits, GiveTheSameBits) {
       const Solution other = solve(in_units(scene, units));
       ASSERT_EQ(other.status, Status::converged) << other.message;
       EXPECT_TRUE((other.normal.pressure == si.normal.pressure).all());
-      EXPECT_TRUE((other.torsion.traction == si.torsion.traction).all());
-      EXPECT_TRUE((other.torsion.slip == si.torsion.slip).all());
-      EXPECT_TRUE((other.torsion.stick == si.torsion.stick).all());
-      EXPECT_EQ(other.torsion.iterations, si.torsion.iterations);
+      EXPECT_TRUE((other.tangential.traction == si.tangential.traction).all());
+      EXPECT_TRUE((other.tangential.slip == si.tangential.slip).all());
+      EXPECT_TRUE((other.tangential.stick == si.tangential.stick).all());
+      EXPECT_EQ(other.tangential.iterations, si.tangential.iterations);
       EXPECT_EQ(other.twist_angle, si.twist_angle);
       EXPECT_EQ(other.certificate.gap, si.certificate.gap);
       EXPECT_EQ(other.moment / other.moment_limit, si.moment / si.moment_limit);

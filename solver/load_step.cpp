@@ -1,0 +1,94 @@
+#include "solver/load_step.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "solver/input_error.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+
+/// Tangential displacement by the change of pressure, Eq. (12).
+ArrayXd pressure_displacement(const Scene& scene, const Model& model, const ArrayXd& pressure,
+                              const ContactState& before) {
+  if (!model.pressure_coupling) return {};
+  const auto op = elasticity(scene, model, Reduction(model.grid)).make(model.grid, coupling_kernel());
+  ArrayXd u(2 * pressure.size());
+  op->apply(before.pressure.size() > 0 ? ArrayXd(pressure - before.pressure) : pressure, u);
+  return u;
+}
+
+/// How a body would slide, in words; lengths in the scene's unit.
+std::string sliding_text(const LimitLoad& limit, double length_unit) {
+  if (limit.centre) {
+    return fmt::format("turning about ({:.4g}, {:.4g}) m", (*limit.centre)[0] * length_unit,
+                       (*limit.centre)[1] * length_unit);
+  }
+  const double size = std::hypot(limit.sliding.delta1, limit.sliding.delta2);
+  return fmt::format("along ({:.4g}, {:.4g})", limit.sliding.delta1 / size, limit.sliding.delta2 / size);
+}
+
+[[noreturn]] void refuse(const Scene& scene, const Model& model, const Step& step, const LoadStep& loads) {
+  const std::string file = scene.source.string();
+  const std::string sliding = sliding_text(loads.limit, model.length_unit);
+  if (step.torsion.moment && step.force == std::array<double, 2>{}) {
+    throw InputError(
+        file, step.key + ".moment", fmt::format("{} N m", *step.torsion.moment),
+        fmt::format(
+            "below {:.17g} N m in size, the limit moment of this pressure and mesh; at or above it the "
+            "contact slips everywhere, {}",
+            loads.moment_limit * model.grid.cell_area() * model.moment_unit(), sliding));
+  }
+  throw InputError(
+      file, step.key + ".force", fmt::format("[{}, {}] N", step.force[0], step.force[1]),
+      fmt::format("loads below what this pressure and mesh can carry, which is {:.6g} times these; "
+                  "beyond that the contact slips everywhere, {}",
+                  loads.limit.factor, sliding));
+}
+
+void impose_turning(TangentialProblem& problem, const Model& model, const Step& step, double moment_limit,
+                    const RigidMotion& before) {
+  if (step.torsion.twist) {
+    problem.twist = *step.torsion.twist - before.twist;
+  } else if (step.torsion.moment_ratio) {
+    problem.moment = *step.torsion.moment_ratio * moment_limit;
+  } else {
+    problem.moment = over_unit(*step.torsion.moment, model.moment_unit()) / model.grid.cell_area();
+  }
+}
+
+void impose_translation(TangentialProblem& problem, const Model& model, const Step& step,
+                        const RigidMotion& before) {
+  if (step.displacement) {
+    problem.displacement = {over_unit((*step.displacement)[0], model.length_unit) - before.delta1,
+                            over_unit((*step.displacement)[1], model.length_unit) - before.delta2};
+  } else {
+    const double unit = model.force_unit();
+    const double area = model.grid.cell_area();
+    problem.force = {over_unit(step.force[0], unit) / area, over_unit(step.force[1], unit) / area};
+  }
+}
+
+}  // namespace
+
+LoadStep load_step(const Scene& scene, const Model& model, const Step& step, const ArrayXd& pressure,
+                   const ContactState& before) {
+  LoadStep loads{};
+  TangentialProblem& problem = loads.problem;
+  problem.friction_bound = model.friction * pressure;
+  problem.initial_displacement = pressure_displacement(scene, model, pressure, before);
+  problem.start = before.traction;
+  const bool translations = has_translations(scene, model, pressure);
+  loads.moment_limit = translations ? free_moment_limit(model.grid, problem.friction_bound)
+                                    : moment_limit(model.grid, problem.friction_bound);
+  impose_turning(problem, model, step, loads.moment_limit, before.motion);
+  if (translations) impose_translation(problem, model, step, before.motion);
+  loads.limit = limit_of(problem, model.grid);
+  if (!(loads.limit.factor > 1.0)) refuse(scene, model, step, loads);
+  return loads;
+}
+
+}  // namespace slipstick::solver

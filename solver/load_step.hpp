@@ -1,0 +1,32 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "solver/limit_load.hpp"
+#include "solver/model.hpp"
+#include "solver/tangential_problem.hpp"
+
+namespace slipstick::solver {
+
+/// What a step starts from and ends with, in the model's units.
+struct ContactState {
+  Eigen::ArrayXd pressure;  ///< empty: the bodies have not touched yet
+  Eigen::ArrayXd traction;  ///< 2*cells; empty likewise
+  /// 2*cells, of each cell since it last stuck or turned back; empty where the contact has just grown.
+  Eigen::ArrayXd slip;
+  RigidMotion motion;  ///< since the first step began
+};
+
+/// A step's tangential problem, and what its contact can carry.
+struct LoadStep {
+  TangentialProblem problem;
+  double moment_limit;  ///< over the cell area, without force
+  LimitLoad limit;      ///< of the loads that the step imposes
+};
+
+/// The change that a step of a scene brings to a contact under its pressure, on the model's grid. Throws
+/// InputError for gross slip, with what the contact carries and how it would slide.
+LoadStep load_step(const Scene& scene, const Model& model, const Step& step, const Eigen::ArrayXd& pressure,
+                   const ContactState& before);
+
+}  // namespace slipstick::solver

@@ -1,0 +1,415 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+
+#include "solver/certificate.hpp"
+#include "solver/solve.hpp"
+#include "solver/tests/press.hpp"
+#include "solver/tests/scene_file.hpp"
+#include "solver/tests/torsion_bench.hpp"
+
+/// Contacts that are pushed as well as turned, and those that turn about another point than the origin.
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+using testing::HasSubstr;
+using Pair = std::array<double, 2>;
+
+/// Of the certificate: gap over energy. The last Newton step, whose states stand, goes far below it.
+constexpr double kGap = 1e-13;
+/// Two answers of the same discrete problem, each with that gap, in the largest traction, in motions and in
+/// loads: the gap is of first order in the slip that is left in stick cells, so they agree to about its size
+/// times the contact's condition.
+constexpr double kSame = 1e-9;
+
+/// The paper's sphere over ten cells of contact radius, its axis where the test wants it.
+Scene sphere(const Pair& at_cells, Index cells = 40) {
+  const double h = paper::kContactRadius / 10.0;
+  Scene scene = paper_scene(cells, 0.6);
+  scene.extent = {h * static_cast<double>(cells), h * static_cast<double>(cells)};
+  scene.surfaces[0].at = {at_cells[0] * h, at_cells[1] * h};
+  scene.tolerance = kGap;
+  return scene;
+}
+
+double cell_size(const Scene& scene) { return (*scene.extent)[0] / static_cast<double>(scene.cells[0]); }
+
+Solution solved(const Scene& scene) {
+  Solution solution = solve(scene);
+  EXPECT_EQ(solution.status, Status::converged) << solution.message;
+  return solution;
+}
+
+/// q_k at the images of all cells: image(i, j) is where cell (i, j) goes on an n x n grid.
+template <typename Image>
+ArrayXd moved(const ArrayXd& field, Index n, const Image& image) {
+  ArrayXd result = ArrayXd::Zero(field.size());
+  for (Index i = 0; i < n; ++i) {
+    for (Index j = 0; j < n; ++j) {
+      const auto [k, l] = image(i, j);
+      if (k >= 0 && k < n && l >= 0 && l < n) result[k * n + l] = field[i * n + j];
+    }
+  }
+  return result;
+}
+template <typename Image>
+ArrayXd moved_vectors(const ArrayXd& field, Index n, const Image& image) {
+  ArrayXd result(field.size());
+  result << moved(field.head(n * n), n, image), moved(field.tail(n * n), n, image);
+  return result;
+}
+
+/// K q and the slip afresh, by direct summation.
+Certificate independent_certificate(const Solution& solution, const Pair& force, double moment) {
+  const Model& model = solution.model;
+  const auto op = make_operator(OperatorKind::direct, model.grid, tangential_kernel(), model.pair);
+  const TangentialSolution& found = solution.tangential;
+  ArrayXd u(found.traction.size());
+  op->apply(found.traction, u);
+  const ArrayXd contact = (solution.normal.pressure > 0.0).cast<double>();
+  const ArrayXd rotation = rotation_field(model.grid);
+  ArrayXd slip = u - found.twist * rotation;
+  slip.head(contact.size()) -= found.displacement[0];
+  slip.tail(contact.size()) -= found.displacement[1];
+  slip *= contact.replicate(2, 1);
+  const double area = model.grid.cell_area();
+  return certify({found.traction, u, slip}, model.friction * solution.normal.pressure, rotation,
+                 moment / (area * model.moment_unit()),
+                 {force[0] / (area * model.force_unit()), force[1] / (area * model.force_unit())});
+}
+
+// --- off-centre contacts ---
+
+/// A body free to move turns about where it touches.
+TEST(OffCentreSphere, TurnsAsTheCentredOneAboutItsOwnAxis) {
+  const Solution centred = solved(sphere({0.0, 0.0}));
+  const Index n = 40;
+  double worst_twist = 0.0;
+  double worst_traction = 0.0;
+  for (const std::array<Index, 2>& cells : {std::array<Index, 2>{5, -7}, {-8, 0}, {1, 9}}) {
+    const Scene scene = sphere({static_cast<double>(cells[0]), static_cast<double>(cells[1])});
+    const Solution off = solved(scene);
+    const ArrayXd expected = moved_vectors(centred.tangential.traction, n, [&](Index i, Index j) {
+      return std::array{i + cells[0], j + cells[1]};
+    });
+    const Pair& centre = scene.surfaces[0].at;
+    const double length = paper::kContactRadius;
+    EXPECT_NEAR(off.twist_angle / centred.twist_angle, 1.0, kSame);
+    EXPECT_NEAR(off.moment_limit / centred.moment_limit, 1.0, kSame);
+    EXPECT_LE(relative_difference(off.tangential.traction, expected), kSame);
+    EXPECT_NEAR(off.displacement[0], off.twist_angle * centre[1], kSame * off.twist_angle * length);
+    EXPECT_NEAR(off.displacement[1], -off.twist_angle * centre[0], kSame * off.twist_angle * length);
+    ASSERT_TRUE(off.limit.centre);
+    EXPECT_NEAR((*off.limit.centre)[0], centre[0], 1e-6 * length);
+    EXPECT_NEAR((*off.limit.centre)[1], centre[1], 1e-6 * length);
+    worst_twist = std::max(worst_twist, std::abs(off.twist_angle / centred.twist_angle - 1.0));
+    worst_traction = std::max(worst_traction, relative_difference(off.tangential.traction, expected));
+  }
+  RecordProperty("twist", std::to_string(worst_twist * 1e12) + "e-12");
+  RecordProperty("traction", std::to_string(worst_traction * 1e12) + "e-12");
+}
+
+/// Between the cells the mesh shows: its error in the twist is 1e-3 at ten cells a radius.
+TEST(OffCentreSphere, TurnsAboutItsOwnAxisBetweenTheCells) {
+  const Solution centred = solved(sphere({0.0, 0.0}));
+  double worst = 0.0;
+  for (const Pair& cells : {Pair{0.5, 0.5}, Pair{2.3, -4.1}, Pair{-6.7, 3.2}}) {
+    const Scene scene = sphere(cells);
+    const Solution off = solved(scene);
+    const Pair& centre = scene.surfaces[0].at;
+    const double length = paper::kContactRadius;
+    worst = std::max({worst, std::abs(off.twist_angle / centred.twist_angle - 1.0),
+                      std::abs(off.moment_limit / centred.moment_limit - 1.0),
+                      std::abs(off.displacement[0] / off.twist_angle - centre[1]) / length,
+                      std::abs(off.displacement[1] / off.twist_angle + centre[0]) / length,
+                      std::abs((*off.limit.centre)[0] - centre[0]) / length,
+                      std::abs((*off.limit.centre)[1] - centre[1]) / length});
+  }
+  EXPECT_LE(worst, 3e-3);
+  RecordProperty("worst", std::to_string(worst));
+}
+
+// --- symmetries ---
+
+/// Half of what friction can carry along the angle, with or without a moment.
+Scene pushed(double force_ratio, double angle, double moment_ratio, Index cells = 28) {
+  Scene scene = sphere({0.0, 0.0}, cells);
+  const double force = force_ratio * paper::kFriction * paper::kLoad;
+  scene.steps[0].force = {force * std::cos(angle), force * std::sin(angle)};
+  scene.steps[0].torsion.moment_ratio = moment_ratio;
+  return scene;
+}
+
+TEST(Force, AlongEitherAxisGivesTheSame) {
+  constexpr double kHalfPi = 0.5 * std::numbers::pi;
+  const Solution along_1 = solved(pushed(0.5, 0.0, 0.0));
+  const Solution along_2 = solved(pushed(0.5, kHalfPi, 0.0));
+  const Solution back = solved(pushed(0.5, 2.0 * kHalfPi, 0.0));
+  const Index cells = along_1.model.grid.cells();
+  ArrayXd exchanged(2 * cells);
+  const auto diagonal = [](Index i, Index j) { return std::array{j, i}; };
+  exchanged << moved(along_1.tangential.traction.tail(cells), 28, diagonal),
+      moved(along_1.tangential.traction.head(cells), 28, diagonal);
+  EXPECT_LE(relative_difference(along_2.tangential.traction, exchanged), kSame);
+  EXPECT_LE(relative_difference(back.tangential.traction, -along_1.tangential.traction), kSame);
+  EXPECT_NEAR(along_2.displacement[1] / along_1.displacement[0], 1.0, kSame);
+  EXPECT_NEAR(back.displacement[0] / along_1.displacement[0], -1.0, kSame);
+  EXPECT_LE(std::abs(along_1.displacement[1]), kSame * along_1.displacement[0]);
+  EXPECT_LE(std::abs(along_1.twist_angle * paper::kContactRadius), kSame * along_1.displacement[0]);
+}
+
+TEST(ForceAndMoment, TurnWithTheGrid) {
+  const double angle = 0.4;
+  const Solution one = solved(pushed(0.5, angle, 0.5));
+  const Solution turned = solved(pushed(0.5, angle + 0.5 * std::numbers::pi, 0.5));
+  const Index n = 28;
+  const auto quarter = [](Index i, Index j) { return std::array{n - 1 - j, i}; };
+  const ArrayXd& q = one.tangential.traction;
+  ArrayXd expected(q.size());
+  expected << -moved(q.tail(n * n), n, quarter), moved(q.head(n * n), n, quarter);
+  EXPECT_LE(relative_difference(turned.tangential.traction, expected), kSame);
+  EXPECT_NEAR(turned.twist_angle / one.twist_angle, 1.0, kSame);
+  const double size = std::hypot(one.displacement[0], one.displacement[1]);
+  EXPECT_NEAR(turned.displacement[0], -one.displacement[1], kSame * size);
+  EXPECT_NEAR(turned.displacement[1], one.displacement[0], kSame * size);
+}
+
+TEST(ForceAndMoment, AreCertifiedByDirectSummation) {
+  for (const double moment_ratio : {0.0, 0.3, 0.7}) {
+    for (const double tolerance : {1e-8, 1e-12}) {
+      Scene scene = pushed(0.6, 0.4, moment_ratio);
+      scene.tolerance = tolerance;
+      const Solution solution = solved(scene);
+      const double moment = moment_ratio * solution.moment_limit;
+      const Certificate fresh = independent_certificate(solution, scene.steps[0].force, moment);
+      for (const Certificate& certificate : {solution.certificate, fresh}) {
+        EXPECT_LE(certificate.gap, tolerance + 1e-13);
+        EXPECT_LE(certificate.moment, kRounding);
+        EXPECT_LE(certificate.force, kRounding);
+        EXPECT_LE(certificate.friction_bound, kRounding);
+      }
+      EXPECT_GT(solution.stick_cells, 20);
+      EXPECT_LT(solution.stick_cells, solution.contact_cells - 20);
+    }
+  }
+}
+
+/// Loads and motions are each other's answers, in every mixture.
+TEST(Motion, GivesTheLoadsThatItCameFrom) {
+  const Scene scene = pushed(0.5, 0.4, 0.5);
+  const Solution loaded = solved(scene);
+  for (const bool by_displacement : {false, true}) {
+    for (const bool by_twist : {false, true}) {
+      Scene imposed = scene;
+      Step& step = imposed.steps[0];
+      if (by_displacement) {
+        step.displacement = loaded.displacement;
+        step.force = {};
+      }
+      if (by_twist) step.torsion = {.moment_ratio = {}, .moment = {}, .twist = loaded.twist_angle};
+      const Solution moved = solved(imposed);
+      EXPECT_LE(relative_difference(moved.tangential.traction, loaded.tangential.traction), kSame);
+      EXPECT_NEAR(moved.moment / loaded.moment, 1.0, kSame);
+      for (std::size_t k = 0; k < 2; ++k) {
+        EXPECT_NEAR(moved.force[k] / loaded.force[k], 1.0, kSame);
+        EXPECT_NEAR(moved.displacement[k] / loaded.displacement[k], 1.0, kSame);
+      }
+      EXPECT_NEAR(moved.twist_angle / loaded.twist_angle, 1.0, kSame);
+    }
+  }
+}
+
+// --- Cattaneo, Mindlin, Ciavarella, Jaeger ---
+
+std::vector<Surface> smooth_sphere() { return sphere({0.0, 0.0}).surfaces; }
+std::vector<Surface> turned_ellipsoid() {
+  Surface surface;
+  surface.shape = Shape::ellipsoid;
+  surface.radius_1 = 2.0 * paper::kRadius;
+  surface.radius_2 = 0.6 * paper::kRadius;
+  surface.angle = 0.5;
+  return {surface};
+}
+std::vector<Surface> rough_sphere() {
+  std::vector<Surface> surfaces = smooth_sphere();
+  Surface& rough = surfaces.emplace_back();
+  rough.shape = Shape::roughness;
+  rough.roughness = {.seed = 3, .hurst = 0.8, .rms_slope = 0.01};
+  const double h = paper::kContactRadius / 10.0;
+  rough.roughness.longest = 16.0 * h;
+  rough.roughness.shortest = 4.0 * h;
+  rough.roughness.period = 32.0 * h;
+  return surfaces;
+}
+
+class Mindlin : public testing::TestWithParam<std::vector<Surface>> {};
+INSTANTIATE_TEST_SUITE_P(Surfaces, Mindlin,
+                         testing::Values(smooth_sphere(), turned_ellipsoid(), rough_sphere()),
+                         [](const auto& tested) { return to_string(tested.param.back().shape); });
+
+/// Of bodies with nu = 0, K11 = K22 = K33 and K12 = 0, on the mesh too: under a force f mu W that does not
+/// turn the body any contact carries q = mu (p(W) - p((1 - f) W)) along it, and moves by mu times what the
+/// approach is less (Ciavarella 1998, Jaeger 1998). Where p((1 - f) W) > 0 the difference of K p is that of
+/// the approaches; elsewhere K p + h exceeds the approach, and slip is opposed to q.
+TEST_P(Mindlin, IsTheDifferenceOfTwoPressures) {
+  const double part = 0.6;
+  const Pair along{0.6, 0.8};
+  Scene scene = sphere({0.0, 0.0}, 32);
+  scene.surfaces = GetParam();
+  scene.upper.poisson_ratio = scene.lower.poisson_ratio = 0.0;
+  const Contact whole = press(scene);
+  scene.steps[0].normal = (1.0 - part) * paper::kLoad;
+  const Contact less = press(scene);
+  scene.steps[0].normal = paper::kLoad;
+  const ArrayXd expected = paper::kFriction * (whole.solution.pressure - less.solution.pressure);
+  ASSERT_GE(expected.minCoeff(), 0.0) << "pressure grows with load everywhere";
+
+  const double force = paper::kFriction * part * paper::kLoad;
+  scene.steps[0].force = {force * along[0], force * along[1]};
+  scene.steps[0].torsion = {.moment_ratio = {}, .moment = {}, .twist = 0.0};
+  const Solution solution = solved(scene);
+  const Index cells = expected.size();
+  const ArrayXd& q = solution.tangential.traction;
+  const double largest_q = expected.maxCoeff();
+  const double error =
+      std::max(largest(q.head(cells) - along[0] * expected), largest(q.tail(cells) - along[1] * expected)) /
+      largest_q;
+  EXPECT_LE(error, kSame);
+  const double moved =
+      paper::kFriction * (whole.solution.approach - less.solution.approach) * solution.model.length_unit;
+  double worst_motion = 0.0;
+  for (std::size_t k = 0; k < 2; ++k) {
+    worst_motion = std::max(worst_motion, std::abs(solution.displacement[k] / (along[k] * moved) - 1.0));
+  }
+  EXPECT_LE(worst_motion, kSame);
+  EXPECT_EQ(solution.stick_cells, (less.solution.pressure > 0.0).count());
+  RecordProperty("traction", std::to_string(error * 1e9) + "e-9");
+  RecordProperty("displacement", std::to_string(worst_motion * 1e12) + "e-12");
+}
+
+// --- what may be left out ---
+
+TEST(FullModel, TurnsASymmetricContactAsTheReducedOne) {
+  Scene scene = ellipsoid_scene(32, 1.5 * paper::kRadius, paper::kRadius, 0.7);
+  scene.tolerance = kGap;
+  const Solution reduced = solved(scene);
+  scene.model = ModelChoice::full;
+  const Solution full = solved(scene);
+  EXPECT_TRUE(reduced.model.left_out.size() > full.model.left_out.size());
+  EXPECT_NEAR(full.twist_angle / reduced.twist_angle, 1.0, 1e-10);
+  EXPECT_NEAR(full.moment_limit / reduced.moment_limit, 1.0, 1e-10);
+  EXPECT_LE(std::hypot(full.displacement[0], full.displacement[1]),
+            1e-9 * full.twist_angle * full.contact_radius);
+  EXPECT_LE(relative_difference(full.tangential.traction, reduced.tangential.traction), kSame);
+}
+
+/// dM/dphi with the forces, or the translations, held.
+TEST(TangentStiffness, IsThatOfTheLoadsHeld) {
+  for (const bool by_displacement : {false, true}) {
+    Scene scene = sphere({4.0, 2.0}, 36);
+    scene.steps[0].force = {40.0, 10.0};
+    const Solution middle = solved(scene);
+    if (by_displacement) {
+      scene.steps[0].force = {};
+      scene.steps[0].displacement = middle.displacement;
+    }
+    const Solution found = solved(scene);
+    std::array<double, 2> moments{};
+    const double step = 1e-5 * middle.twist_angle;
+    for (const int side : {0, 1}) {
+      scene.steps[0].torsion = {
+          .moment_ratio = {}, .moment = {}, .twist = middle.twist_angle + (side == 0 ? -step : step)};
+      moments[static_cast<std::size_t>(side)] = solved(scene).moment;
+    }
+    const double expected = (moments[1] - moments[0]) / (2.0 * step);
+    const double unit = found.model.grid.cell_area() * found.model.moment_unit();
+    // Three steps of conjugate gradients find it to 1e-3 or so.
+    EXPECT_NEAR(found.tangential.tangent_stiffness * unit / expected, 1.0, 2e-3) << by_displacement;
+    RecordProperty(by_displacement ? "displacement_held" : "force_held",
+                   std::to_string(found.tangential.tangent_stiffness * unit / expected - 1.0));
+  }
+}
+
+// --- several patches ---
+
+TEST(TwoPatches, TurnAboutAPointBetweenThem) {
+  Scene scene = sphere({0.0, 0.0}, 48);
+  const double h = cell_size(scene);
+  scene.surfaces = {scene.surfaces[0], scene.surfaces[0]};
+  scene.surfaces[0].at = {-10.0 * h, 0.0};
+  scene.surfaces[1].at = {11.0 * h, 0.0};
+  scene.surfaces[1].radius *= 0.5;
+  scene.combine = Combine::nearest;
+  scene.steps[0].torsion.moment_ratio = 0.8;
+  const Solution solution = solved(scene);
+  EXPECT_LE(solution.certificate.moment, kRounding);
+  EXPECT_LE(solution.certificate.force, kRounding);
+  EXPECT_LE(solution.certificate.gap, kGap);
+  const Certificate fresh = independent_certificate(solution, {}, 0.8 * solution.moment_limit);
+  EXPECT_LE(fresh.gap, 2.0 * kGap);
+  EXPECT_LE(std::max(fresh.force, fresh.moment), kRounding);
+  ASSERT_TRUE(solution.limit.centre);
+  EXPECT_NEAR((*solution.limit.centre)[1], 0.0, 1e-6 * h);
+  EXPECT_GT((*solution.limit.centre)[0], -10.0 * h);
+  EXPECT_LT((*solution.limit.centre)[0], 11.0 * h);
+  // Its own mirror image: what moves along the line between the patches cancels.
+  EXPECT_NEAR(solution.displacement[0], 0.0, kSame * std::abs(solution.displacement[1]));
+}
+
+/// It is pushed along, and nothing turns it.
+TEST(OneCell, MovesByItsOwnCoefficient) {
+  Scene scene = paper_scene(3, 0.0);
+  scene.extent = {3.6e-3, 3.6e-3};
+  scene.steps[0].force = {30.0, -10.0};
+  const Solution solution = solved(scene);
+  EXPECT_EQ(solution.contact_cells, 1);
+  const HalfSpace steel{0.5 * paper::kYoungModulus / (1.0 + paper::kPoissonRatio), paper::kPoissonRatio};
+  const double area = cell_size(scene) * cell_size(scene);
+  const ElasticPair pair = elastic_pair(steel, steel);
+  const double compliance =
+      influence_coefficients(Component::k11, pair, cell_size(scene), cell_size(scene), 1, 1)[0] / area;
+  EXPECT_NEAR(solution.displacement[0] / (30.0 * compliance), 1.0, kSame);
+  EXPECT_NEAR(solution.displacement[1] / (-10.0 * compliance), 1.0, kSame);
+  EXPECT_EQ(solution.twist_angle, 0.0);
+}
+
+// --- limits ---
+
+TEST(MomentRatio, IsOfTheLimitWithoutForce) {
+  const Solution alone = solved(pushed(0.0, 0.0, 0.5));
+  const Solution with_force = solved(pushed(0.6, 0.4, 0.5));
+  EXPECT_NEAR(with_force.moment_limit / alone.moment_limit, 1.0, kSame);
+  EXPECT_NEAR(with_force.moment / (0.5 * with_force.moment_limit), 1.0, kRounding);
+  EXPECT_GT(with_force.limit.factor, 1.0);
+  EXPECT_LT(with_force.limit.factor, alone.limit.factor);
+}
+
+TEST(Limit, RefusesMoreThanTheContactCanCarry) {
+  const auto complaint_of = [](const Scene& scene) { return complaint([&] { solve(scene); }); };
+  const std::string slides = complaint_of(pushed(1.25, 0.0, 0.0));
+  EXPECT_THAT(slides, HasSubstr("load.force"));
+  EXPECT_THAT(slides, HasSubstr("[125, 0] N"));
+  EXPECT_THAT(slides, HasSubstr("0.8 times these"));
+  EXPECT_THAT(slides, HasSubstr("along (1, "));
+
+  const std::string both = complaint_of(pushed(0.9, 0.0, 0.9));
+  EXPECT_THAT(both, HasSubstr("load.force"));
+  EXPECT_THAT(both, HasSubstr("turning about ("));
+
+  Scene scene = sphere({5.0, -7.0});
+  scene.steps[0].torsion = {.moment_ratio = {}, .moment = 1.1 * paper::kMomentLimit, .twist = {}};
+  const std::string turns = complaint_of(scene);
+  EXPECT_THAT(turns, HasSubstr("load.moment = "));
+  EXPECT_THAT(turns, HasSubstr("turning about (0.0002445, -0.0003424) m"));
+
+  // No force in one direction is too large where the other motion is imposed.
+  scene = pushed(0.99, 0.0, 0.0);
+  scene.steps[0].torsion = {.moment_ratio = {}, .moment = {}, .twist = 1e-3};
+  EXPECT_NEAR(solved(scene).force[0], 0.99 * paper::kFriction * paper::kLoad, 1e-9);
+}
+
+}  // namespace
+}  // namespace slipstick::solver
