@@ -5,9 +5,8 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <stdexcept>
 
-#include "convergence/oracle.hpp"
+#include "convergence/exact_result.hpp"
 
 namespace slipstick::bench {
 namespace {
@@ -55,7 +54,7 @@ Scene shipped_scene(const std::string& name) {
 Scene paper_scene(solver::Index cells, double moment_ratio) {
   Scene scene = shipped_scene("paper");
   scene.cells = {cells, cells};
-  scene.torsion = {.moment_ratio = moment_ratio, .moment = {}, .twist = {}};
+  scene.steps[0].torsion = {.moment_ratio = moment_ratio, .moment = {}, .twist = {}};
   scene.method = solver::Method::coulomb;
   scene.model = solver::ModelChoice::full;
   scene.pressure = solver::PressureModel::solved;
@@ -65,10 +64,9 @@ Scene paper_scene(solver::Index cells, double moment_ratio) {
 }
 
 CheckedSolution solve_and_check(const Scene& scene) {
-  const auto exact = convergence::find_oracle(scene);
-  if (!exact.oracle) throw std::invalid_argument("nothing to check against: " + exact.reason);
+  const convergence::Oracle exact = convergence::require_oracle(scene);
   CheckedSolution checked{.solution = solver::solve(scene), .errors = {}, .objection = {}};
-  checked.errors = convergence::compare(checked.solution, *exact.oracle);
+  checked.errors = convergence::compare(checked.solution, exact);
   checked.objection = objection_to(scene, checked.solution);
   if (checked.objection.empty()) checked.objection = objection_to(scene, checked.errors);
   return checked;

@@ -22,7 +22,8 @@ solver::Scene paper_scene(solver::Index cells, double moment_ratio);
 solver::Scene shipped_scene(const std::string& name);
 
 /// Objects to a solution that has not converged, whose certificate (by Coulomb's method) is worse than the
-/// tolerance, or whose errors are above what its mesh explains.
+/// tolerance, or whose errors are above what its mesh explains; of a history, its last step. Throws
+/// InputError where there is no exact answer.
 CheckedSolution solve_and_check(const solver::Scene& scene);
 
 }  // namespace slipstick::bench

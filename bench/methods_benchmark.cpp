@@ -14,6 +14,7 @@
 #include "bench/side_by_side.hpp"
 #include "solver/certificate.hpp"
 #include "solver/coulomb_method.hpp"
+#include "solver/paper_method.hpp"
 #include "solver/pressure.hpp"
 #include "solver/projected_gradient.hpp"
 
@@ -40,33 +41,34 @@ void show_times(benchmark::State& state, const SideBySide& times, const std::str
 struct Torsion {
   solver::Elasticity elasticity;
   solver::Grid grid;
-  solver::TorsionProblem problem;
+  solver::TangentialProblem problem;
 };
 
 Torsion torsion_of(const Scene& scene) {
   const solver::Model model = solver::make_model(scene);
   Torsion torsion{.elasticity = {.pair = model.pair}, .grid = model.grid, .problem = {}};
-  torsion.problem.friction_bound = model.friction * solver::find_pressure(scene, model).pressure;
-  torsion.problem.moment =
-      *scene.torsion.moment_ratio * solver::moment_limit(torsion.grid, torsion.problem.friction_bound);
+  torsion.problem.friction_bound =
+      model.friction * solver::find_pressure(scene, model, scene.steps[0]).pressure;
+  torsion.problem.moment = *scene.steps[0].torsion.moment_ratio *
+                           solver::moment_limit(torsion.grid, torsion.problem.friction_bound);
   return torsion;
 }
 
-solver::TorsionSolution by_coulomb(const Torsion& torsion, double tolerance) {
+solver::TangentialSolution by_coulomb(const Torsion& torsion, double tolerance) {
   return solver::solve_by_coulomb_method(torsion.elasticity, torsion.grid, torsion.problem,
                                          {.tolerance = tolerance, .progress = {}});
 }
 
 /// The operator is set up each time, as Coulomb's method does.
-solver::TorsionSolution by_paper(const Torsion& torsion, double tolerance) {
+solver::TangentialSolution by_paper(const Torsion& torsion, double tolerance) {
   const auto op = torsion.elasticity.make(torsion.grid, solver::tangential_kernel());
   return solver::solve_by_paper_method(*op, torsion.problem, {.tolerance = tolerance, .progress = {}});
 }
 
 /// Likewise.
-solver::TorsionSolution by_projected_gradient(const Torsion& torsion, double tolerance) {
+solver::TangentialSolution by_projected_gradient(const Torsion& torsion, double tolerance) {
   const auto op = torsion.elasticity.make(torsion.grid, solver::tangential_kernel());
-  solver::TorsionSolution solution = solver::solve_by_projected_gradient(
+  solver::TangentialSolution solution = solver::solve_by_projected_gradient(
       *op, torsion.problem, {.tolerance = tolerance, .start = {}, .progress = {}});
   solution.grids = {{torsion.grid.n1, torsion.grid.n2, op->applications(), solution.iterations, 0.0}};
   return solution;
@@ -153,7 +155,7 @@ void against_paper_method(benchmark::State& state, const Contest& contest) {
   time_methods(state, coulomb.scene, paper.scene, contest.whole);
 }
 
-double gap(const Torsion& torsion, const solver::TorsionSolution& solution) {
+double gap(const Torsion& torsion, const solver::TangentialSolution& solution) {
   return solver::certify({solution.traction, solution.elastic_displacement, solution.slip},
                          torsion.problem.friction_bound, solver::rotation_field(torsion.grid),
                          *torsion.problem.moment)
@@ -162,8 +164,8 @@ double gap(const Torsion& torsion, const solver::TorsionSolution& solution) {
 
 /// Why a solution, or two of one problem, must not be timed. Each lies within its gap of the least energy,
 /// hence |q - q'|_K^2 <= (sqrt(gap) + sqrt(gap'))^2 |q|_K^2.
-std::string objection(const Torsion& torsion, const solver::TorsionSolution& one,
-                      const solver::TorsionSolution& other, double tolerance) {
+std::string objection(const Torsion& torsion, const solver::TangentialSolution& one,
+                      const solver::TangentialSolution& other, double tolerance) {
   for (const auto* solution : {&one, &other}) {
     if (solution->status != solver::Status::converged) return solution->message;
     if (const double own = gap(torsion, *solution); !(own <= tolerance)) {
@@ -203,7 +205,7 @@ void against_projected_gradient_on_sphere(benchmark::State& state) {
 void against_projected_gradient_on_ellipse(benchmark::State& state) {
   Scene scene = slipstick::bench::shipped_scene("ellipse");
   scene.cells = {state.range(0), state.range(0) / 2};
-  scene.torsion = {.moment_ratio = moment_ratio(state), .moment = {}, .twist = {}};
+  scene.steps[0].torsion = {.moment_ratio = moment_ratio(state), .moment = {}, .twist = {}};
   scene.model = solver::ModelChoice::full;
   against_projected_gradient(state, scene);
 }

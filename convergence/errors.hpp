@@ -23,6 +23,9 @@ struct Errors {
   double moment;
   double moment_limit;
   double stick_radius;
+  double stick_ratio;
+  double displacement;  ///< length of the difference, not signed
+  double dissipated;    ///< in the step
   double stick_radius_counted;
   double contact_radius;
   double peak_pressure;
@@ -32,6 +35,7 @@ struct Errors {
 
 /// Exact fields at the cell centres of a solution, in its model's units.
 struct ExactFields {
+  Eigen::ArrayXd radius;    ///< cells: distance from the axis
   Eigen::ArrayXd pressure;  ///< cells
   Eigen::ArrayXd traction;  ///< 2*cells
 };

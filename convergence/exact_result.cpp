@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
 #include <vector>
 
 #include "convergence/errors.hpp"
@@ -14,10 +15,14 @@ namespace slipstick::convergence {
 namespace {
 
 /// The load, as the scene names it.
-std::string load_text(const solver::TorsionLoad& load) {
-  if (load.moment) return fmt::format("load.moment = {} N m", *load.moment);
-  if (load.twist) return fmt::format("load.twist = {} rad", *load.twist);
-  return fmt::format("load.moment_ratio = {}", load.moment_ratio.value());
+std::string load_text(const solver::Step& step) {
+  const solver::TorsionLoad& load = step.torsion;
+  if (step.force != std::array<double, 2>{}) {
+    return fmt::format("{}.force = [{}, {}] N", step.key, step.force[0], step.force[1]);
+  }
+  if (load.moment) return fmt::format("{}.moment = {} N m", step.key, *load.moment);
+  if (load.twist) return fmt::format("{}.twist = {} rad", step.key, *load.twist);
+  return fmt::format("{}.moment_ratio = {}", step.key, load.moment_ratio.value());
 }
 
 /// The pressure's tangential displacement of dissimilar materials would change the answer; the scene may ask
@@ -39,13 +44,21 @@ void set_all_missing(Json& json, const std::vector<std::string>& keys, const std
 }  // namespace
 
 Oracle require_oracle(const solver::Scene& scene) {
-  const OracleAnswer exact = find_oracle(scene);
-  if (exact.oracle) return *exact.oracle;
+  const std::unique_ptr<ExactHistory> history = exact_history(scene);
   const std::string file = scene.source.string();
-  if (exact.out_of_range) {
-    throw solver::InputError(file, fmt::format("{}: {}", load_text(scene.torsion), exact.reason));
+  OracleAnswer exact;
+  for (int cycle = 0; cycle < scene.cycles; ++cycle) {
+    for (const solver::Step& step : scene.steps) {
+      exact = history->advance(step);
+      if (exact.oracle) continue;
+      if (exact.out_of_range) {
+        throw solver::InputError(file, fmt::format("{}: {}", load_text(step), exact.reason));
+      }
+      throw solver::InputError(file, "solver.model", "\"exact\"",
+                               fmt::format("auto, full ({})", exact.reason));
+    }
   }
-  throw solver::InputError(file, "solver.model", "\"exact\"", fmt::format("auto, full ({})", exact.reason));
+  return *exact.oracle;
 }
 
 Json exact_result(const solver::Scene& scene, const Oracle& oracle, double seconds) {
@@ -57,20 +70,23 @@ Json exact_result(const solver::Scene& scene, const Oracle& oracle, double secon
   json["model"] = model_json(omissions(scene));
   set_all_missing(json, {"operator", "cells", "cell_size", "contact_cells", "stick_cells"},
                   "the exact solution needs no grid");
-  json["contact_radius"] = oracle.contact_radius;
-  json["stick_radius"] = oracle.stick_radius;
+  const std::string unknown = "the exact solution does not say";
+  set_number(json, "contact_radius", oracle.contact_radius, unknown);
+  set_number(json, "stick_radius", oracle.stick_radius, unknown);
   set_all_missing(json, {"contact_radius_counted", "stick_radius_counted"}, "there are no cells to count");
   json["stick_ratio"] = oracle.state.stick_ratio;
   json["friction"] = oracle.friction;
-  json["normal_load"] = *scene.normal_load;
-  set_number(json, "peak_pressure", oracle.peak_pressure, "infinite");
-  json["approach"] = oracle.approach;
+  json["normal_load"] = *scene.steps.back().normal;
+  set_number(json, "peak_pressure", oracle.peak_pressure,
+             std::isinf(oracle.peak_pressure) ? "infinite" : unknown);
+  set_number(json, "approach", oracle.approach, unknown);
   json["twist_angle"] = oracle.twist_angle;
   json["moment"] = oracle.moment;
-  json["moment_limit"] = oracle.moment_limit;
+  set_number(json, "moment_limit", oracle.moment_limit, unknown);
   json["moment_ratio"] = oracle.state.moment_ratio;
   json["twist"] = oracle.state.twist;
-  json["displacement"] = {0.0, 0.0};
+  json["force"] = oracle.force;
+  json["displacement"] = oracle.displacement;
   json["iterations"] = 0;
   json["operator_applications"] = 0;
   set_all_missing(json, {"certificate", "slip_direction"},
@@ -90,6 +106,11 @@ std::string exact_text(const Json& r) {
 }
 
 void write_exact_fields(const std::filesystem::path& file, const solver::Scene& scene, const Oracle& oracle) {
+  if (!oracle.shear) {
+    throw solver::InputError(
+        scene.source.string(), "solver.model", "\"exact\"",
+        "auto, full where fields are asked for (the exact solution says the stick ratio alone)");
+  }
   solver::Scene sampled = scene;
   sampled.op =
       solver::OperatorKind::dcfft;  // no operator is made, so none of the larger ones need fit in memory
@@ -98,11 +119,13 @@ void write_exact_fields(const std::filesystem::path& file, const solver::Scene& 
   const double metre = model.length_unit;
   const double pascal = model.stress_unit;
   const ExactFields fields = exact_fields(oracle, model);
-  const Eigen::ArrayXd radius = metre * solver::norms(solver::rotation_field(model.grid));
   const std::vector<solver::Column> columns{
-      {"x1", solver::cell_x1(model.grid) * metre},  {"x2", solver::cell_x2(model.grid) * metre},
-      {"pressure", fields.pressure * pascal},       {"q1", fields.traction.head(cells) * pascal},
-      {"q2", fields.traction.tail(cells) * pascal}, {"stick", (radius < oracle.stick_radius).cast<double>()},
+      {"x1", solver::cell_x1(model.grid) * metre},
+      {"x2", solver::cell_x2(model.grid) * metre},
+      {"pressure", fields.pressure * pascal},
+      {"q1", fields.traction.head(cells) * pascal},
+      {"q2", fields.traction.tail(cells) * pascal},
+      {"stick", (fields.radius * metre < oracle.stick_radius).cast<double>()},
   };
   solver::Grid grid = model.grid;
   grid.h1 *= metre;

@@ -23,8 +23,8 @@ std::string exact_text(const Json& result);
 
 /// Writes pressure, tractions and stick at the cell centres of the scene's grid, with the columns of a solve
 /// on a grid but its slips, which have no closed form. A cone's pressure is infinite on the axis, where an
-/// odd number of cells has a centre. Throws InputError for a grid that does not fit in memory and for a file
-/// that cannot be written.
+/// odd number of cells has a centre. Throws InputError for an answer without tractions, a grid that does not
+/// fit in memory and a file that cannot be written.
 void write_exact_fields(const std::filesystem::path& file, const solver::Scene& scene, const Oracle& oracle);
 
 }  // namespace slipstick::convergence

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <array>
+#include <functional>
+#include <memory>
 #include <optional>
 #include <string>
 
@@ -10,22 +13,33 @@
 namespace slipstick::convergence {
 
 /// The exact answer for an axisymmetric scene, in the scene's units (SI): the normal contact of its indenter
-/// (Hertz, Love, Boussinesq) in torsion (Lubkin 1951; Jaeger 1995).
+/// (Hertz, Love, Boussinesq, Sneddon, Ciavarella), in torsion about its own axis (Lubkin 1951; Jaeger 1995)
+/// or under a tangential force (Cattaneo 1938, Mindlin 1949; exact where nu = 0), or pressed with friction
+/// against another material (Goodman 1962, Spence 1968: the stick ratio alone). What it does not say is NaN.
 struct Oracle {
-  const analytic::Profile* profile;  ///< one of the profiles that live as long as the program
-  double contact_radius;             ///< m
-  double reference_pressure;         ///< Pa, the profile's p0
-  double peak_pressure;              ///< Pa; infinite under a cone and a flat punch
-  double approach;                   ///< m
-  double moment_limit;               ///< N m
-  double moment;                     ///< N m
-  double twist_angle;                ///< rad
-  double stick_radius;               ///< m; the contact radius where everything sticks
+  std::shared_ptr<const analytic::Profile> profile;
+  std::array<double, 2> centre;          ///< m, of the axis
+  double contact_radius;                 ///< m
+  double reference_pressure;             ///< Pa, the profile's p0
+  double peak_pressure;                  ///< Pa; infinite under a cone and a flat punch
+  double approach;                       ///< m
+  double moment_limit;                   ///< N m
+  double moment;                         ///< N m
+  double twist_angle;                    ///< rad
+  std::array<double, 2> force{};         ///< N
+  std::array<double, 2> displacement{};  ///< m
+  double stick_radius;                   ///< m; the contact radius where everything sticks
+  double dissipated;                     ///< J, in this step
   double friction;
   analytic::TorsionState state;
 
-  /// Pressure and circumferential traction at a distance from the axis in m; zero outside the contact. A
-  /// cone's pressure is infinite on the axis; no traction is.
+  /// Shear traction in Pa at a distance from the axis in m: along `direction`, or around the axis where that
+  /// is zero. Empty: not known.
+  std::function<double(double radius)> shear;
+  std::array<double, 2> direction{};
+
+  /// Pressure and shear traction at a distance from the axis in m; zero outside the contact. A cone's
+  /// pressure is infinite on the axis; no traction is.
   double pressure(double radius) const;
   double traction(double radius) const;
 };
@@ -36,6 +50,30 @@ struct OracleAnswer {
   std::string reason;
   bool out_of_range = false;  ///< there is an exact solution, but not at this load: gross slip, or nearly
 };
+
+/// An exact theory, followed through the steps of a scene.
+class ExactHistory {
+ public:
+  virtual ~ExactHistory() = default;
+  ExactHistory(const ExactHistory&) = delete;
+  ExactHistory& operator=(const ExactHistory&) = delete;
+
+  /// The answer at the end of the next step. None after one that left the range of the theory.
+  OracleAnswer advance(const solver::Step& step);
+
+ protected:
+  ExactHistory() = default;
+
+ private:
+  virtual OracleAnswer follow(const solver::Step& step) = 0;
+
+  bool left_ = false;
+};
+
+/// The theory that holds for a scene; one that always answers with a reason where none does.
+std::unique_ptr<ExactHistory> exact_history(const solver::Scene& scene);
+
+/// The answer at the end of a scene's first step.
 OracleAnswer find_oracle(const solver::Scene& scene);
 
 }  // namespace slipstick::convergence

@@ -13,11 +13,17 @@ namespace slipstick::convergence {
 /// one. A number that does not exist is null, with its reason beside it under the same name and "_reason".
 Json solve_result(const solver::Scene& scene, const solver::Solution& solution, const OracleAnswer& exact);
 
+/// The end of one step of a history: its state, certificate, errors and cost.
+Json step_result(const solver::Scene& scene, const solver::Solution& solution, const OracleAnswer& exact);
+
+/// Adds the steps of a history to the result of its last one, with their sums.
+void add_steps(Json& result, Json steps);
+
 /// The same for a person: a few lines.
 std::string solve_text(const Json& result);
 
-/// Writes tractions, pressure, slip and stick of a solution (and the exact traction, where known) over its
-/// cells.
+/// Writes tractions, pressure, slip, stick and the energy dissipated (J/m^2) of a solution (and the exact
+/// traction, where known) over its cells; slip and dissipated of its step.
 void write_solution_fields(const std::filesystem::path& file, const solver::Solution& solution,
                            const OracleAnswer& exact);
 

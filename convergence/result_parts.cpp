@@ -14,6 +14,34 @@ std::string error_text(const Json& result, const std::string& key) {
                                                      : "";
 }
 
+/// Forces and translations, where there are any.
+std::string translation_text(const Json& r) {
+  const auto pair = [](const Json& value) {
+    return fmt::format("[{}, {}]", number_text(value[0]), number_text(value[1]));
+  };
+  const auto size = [](const Json& value) {
+    return std::hypot(value[0].get<double>(), value[1].get<double>());
+  };
+  constexpr double rounding = 1e-12;
+  const double friction = r["friction"].get<double>() * r["normal_load"].get<double>();
+  std::string text;
+  if (size(r["force"]) > rounding * friction) text += text_line("force", pair(r["force"]) + " N");
+  if (size(r["displacement"]) > 0.0) {
+    text += text_line("displacement", pair(r["displacement"]) + " m" + error_text(r, "displacement_error"));
+  }
+  return text;
+}
+
+/// Without a radius to compare, the ratio, which an exact solution may say alone.
+std::string stick_text(const Json& r) {
+  const std::string error = error_text(r, "stick_radius_error");
+  std::string text = text_line("stick radius", number_text(r["stick_radius"]) + " m" + error);
+  if (error.empty()) {
+    text += text_line("stick ratio", number_text(r["stick_ratio"]) + error_text(r, "stick_ratio_error"));
+  }
+  return text;
+}
+
 }  // namespace
 
 void set_missing(Json& object, const std::string& key, const std::string& reason) {
@@ -45,6 +73,10 @@ std::string number_text(const Json& value) {
   return value.is_number() ? fmt::format("{:.6g}", value.get<double>()) : "-";
 }
 
+std::string short_text(const Json& value) {
+  return value.is_number() ? fmt::format("{:.4g}", value.get<double>()) : "-";
+}
+
 std::string text_line(const std::string& label, const std::string& value) {
   return fmt::format("  {:<16} {}\n", label, value);
 }
@@ -70,8 +102,7 @@ std::string state_text(const Json& r) {
                                          number_text(r["moment_ratio"]), number_text(r["moment_limit"])) +
                                  error_text(r, "moment_error")) +
          text_line("twist", number_text(r["twist_angle"]) + " rad" + error_text(r, "twist_error")) +
-         text_line("stick radius",
-                   number_text(r["stick_radius"]) + " m" + error_text(r, "stick_radius_error"));
+         translation_text(r) + stick_text(r);
 }
 
 std::string model_text(const Json& r) {

@@ -27,6 +27,9 @@ std::size_t peak_bytes();
 /// A number for a person, "-" where there is none.
 std::string number_text(const Json& value);
 
+/// The same with four digits.
+std::string short_text(const Json& value);
+
 /// One line of a result's text.
 std::string text_line(const std::string& label, const std::string& value);
 

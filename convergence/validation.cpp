@@ -1,24 +1,21 @@
 #include "convergence/validation.hpp"
 
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 
-#include <chrono>
 #include <cmath>
-#include <fstream>
 #include <numbers>
-#include <sstream>
 
 #include "analytic/paper_equations.hpp"
 #include "analytic/torsion.hpp"
 #include "convergence/errors.hpp"
 #include "convergence/exact_curves.hpp"
+#include "convergence/gallery.hpp"
 #include "convergence/journal.hpp"
 #include "convergence/oracle.hpp"
 #include "convergence/provenance.hpp"
 #include "convergence/result.hpp"
+#include "convergence/runner.hpp"
 #include "solver/input_error.hpp"
-#include "solver/solve.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -31,56 +28,6 @@ constexpr double kMethodsRatio =
     0.9;  ///< load at which methods are compared, and that of the ellipse's scene
 constexpr const char* kPressures[] = {"solved", "hertz", "hertz_averaged"};
 constexpr const char* kMethods[] = {"coulomb", "projected_gradient", "paper"};
-
-std::string read_text(const fs::path& file) {
-  std::ifstream stream(file);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
-/// What else is done with a solution where it is computed.
-using Look = std::function<void(Json&, const solver::Solution&, const OracleAnswer&)>;
-
-/// Runs the solves one after the other, says how far it is, and keeps what is finished.
-class Runner {
- public:
-  Runner(const fs::path& folder, std::size_t points) : journal_(folder / "points"), points_(points) {}
-
-  /// One solve of a scene with some keys changed; `also` is a file that `look` writes.
-  Json solve(const std::string& name, const fs::path& scene_file, const std::vector<std::string>& overrides,
-             const Look& look = {}, const fs::path& also = {}) {
-    Json result = journal_.point(
-        name, fmt::format("{}\n{}", read_text(scene_file), fmt::join(overrides, "\n")),
-        [&] {
-          const solver::Scene scene = solver::read_scene(scene_file, overrides);
-          const OracleAnswer exact = find_oracle(scene);
-          const solver::Solution solution = solver::solve(scene);
-          Json computed = solve_result(scene, solution, exact);
-          if (look) look(computed, solution, exact);
-          return computed;
-        },
-        also);
-    say_progress(name);
-    return result;
-  }
-
- private:
-  void say_progress(const std::string& name) {
-    ++done_;
-    computed_ += journal_.reused() ? 0 : 1;
-    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
-    const double left = computed_ == 0 ? 0.0 : elapsed / computed_ * static_cast<double>(points_ - done_);
-    fmt::print(stderr, "[{}/{}] {}{}, about {:.0f} s left\n", done_, points_, name,
-               journal_.reused() ? " (already there)" : "", left);
-  }
-
-  Journal journal_;
-  std::size_t points_;
-  std::size_t done_ = 0;
-  int computed_ = 0;
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// Radial profile: exact, Eq. (1) as printed, and both over radii that crowd at the stick edge.
 Json exact_profile(const analytic::TorsionState& state) {
@@ -104,7 +51,7 @@ Json computed_profile(const solver::Solution& solution, const Oracle& oracle) {
   const solver::Model& model = solution.model;
   const ExactFields exact = exact_fields(oracle, model);
   const double unit = model.stress_unit / (oracle.friction * oracle.reference_pressure);
-  const Eigen::ArrayXd value = unit * solver::norms(solution.torsion.traction);
+  const Eigen::ArrayXd value = unit * solver::norms(solution.tangential.traction);
   const Eigen::ArrayXd exact_value = unit * solver::norms(exact.traction);
   const solver::Grid& grid = model.grid;
   Json rows = Json::array();
@@ -173,12 +120,12 @@ Json by_method(const Json& rows, const std::string& method) {
 Json summary(const solver::Scene& scene, const Oracle& oracle) {
   const auto row = [](const char* label, const std::string& value) { return Json::array({label, value}); };
   return Json::array({
-      row("Sphere radius", fmt::format("{:g} mm", 1e3 * scene.surface.radius)),
+      row("Sphere radius", fmt::format("{:g} mm", 1e3 * scene.surfaces.front().radius)),
       row("Young's moduli", fmt::format("{:g} GPa (upper), {:g} GPa (lower)",
                                         1e-9 * scene.upper.young_modulus, 1e-9 * scene.lower.young_modulus)),
       row("Poisson's ratios",
           fmt::format("{:g}, {:g}", scene.upper.poisson_ratio, scene.lower.poisson_ratio)),
-      row("Normal load", fmt::format("{:g} N", *scene.normal_load)),
+      row("Normal load", fmt::format("{:g} N", *scene.steps[0].normal)),
       row("Friction coefficient", fmt::format("{:g}", scene.friction)),
       row("Contact radius (Hertz)", fmt::format("{:.6g} mm", 1e3 * oracle.contact_radius)),
       row("Peak pressure (Hertz)", fmt::format("{:.6g} MPa", 1e-6 * oracle.peak_pressure)),
@@ -192,6 +139,7 @@ ValidationSize full_validation() {
   return {.loading_cells = 128,
           .mesh_cells = {32, 64, 128, 256},
           .ellipse_cells = {64, 128, 256},
+          .gallery_cells = {64, 128, 256},
           .moment_ratios = {0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99}};
 }
 
@@ -199,15 +147,16 @@ ValidationSize quick_validation() {
   return {.loading_cells = 48,
           .mesh_cells = {16, 32, 64},
           .ellipse_cells = {32, 64},
+          .gallery_cells = {16, 32, 64},
           .moment_ratios = {0.05, 0.2, 0.4, 0.6, 0.8, 0.95}};
 }
 
-Json validate(const fs::path& scene_file, const fs::path& ellipse_file, const ValidationSize& size,
+Json validate(const fs::path& scene_file, const fs::path& scenes, const ValidationSize& size,
               const fs::path& folder) {
   const solver::Scene scene = solver::read_scene(scene_file);
-  if (scene.surface.shape != solver::Shape::sphere) {  // whose equations the paper's are
+  if (scene.surfaces.front().shape != solver::Shape::sphere) {  // whose equations the paper's are
     throw solver::InputError(scene_file.string(), "upper.shape",
-                             fmt::format("\"{}\"", to_string(scene.surface.shape)), "sphere");
+                             fmt::format("\"{}\"", to_string(scene.surfaces.front().shape)), "sphere");
   }
   const OracleAnswer exact = find_oracle(scene);
   if (!exact.oracle) {
@@ -216,7 +165,8 @@ Json validate(const fs::path& scene_file, const fs::path& ellipse_file, const Va
   fs::create_directories(folder);
   const auto solves = std::size(kProfileRatios) * (1 + size.mesh_cells.size() * std::size(kPressures)) +
                       2 * size.moment_ratios.size() +
-                      std::size(kMethods) * (size.mesh_cells.size() + size.ellipse_cells.size()) + 1;
+                      std::size(kMethods) * (size.mesh_cells.size() + size.ellipse_cells.size()) + 1 +
+                      gallery_solves();
   Runner runner(folder, solves);
   const auto solve = [&](const Point& point) {
     return runner.solve(point.name(), scene_file, point.overrides());
@@ -256,7 +206,7 @@ Json validate(const fs::path& scene_file, const fs::path& ellipse_file, const Va
     }
     for (const Index cells : size.ellipse_cells) {
       const Json result =
-          runner.solve(fmt::format("{}-ellipse-{}", method, cells), ellipse_file,
+          runner.solve(fmt::format("{}-ellipse-{}", method, cells), scenes / "ellipse.toml",
                        {fmt::format("grid.cells=[{},{}]", cells, cells / 2), Point::method_override(method)});
       Json row;  // what there is without an exact answer
       for (const char* key : {"method", "moment_ratio", "cells", "certificate", "slip_direction",
@@ -268,6 +218,8 @@ Json validate(const fs::path& scene_file, const fs::path& ellipse_file, const Va
   }
   report["errata"] = errata(solve({size.loading_cells, "solved", kMethodsRatio, "paper"}),
                             by_method(report["ellipse"], "paper"));
+  fs::copy(scenes, folder / "scenes", fs::copy_options::recursive | fs::copy_options::update_existing);
+  report["gallery"] = gallery(runner, scenes, size.gallery_cells, folder);
   write_json_file(folder / "report.json", report);
   return report;
 }

@@ -43,6 +43,52 @@ TEST(Comparison, PaperMethodAt128Cells) {
   }
 }
 
+/// Bodies between a sphere and a flat punch. Twist about h^2, pressure about h^1.5 in L1 for its steep edge,
+/// over a factor 4 in h; half an order is left for the staircase of contact and stick area.
+TEST(Comparison, RoundedPunchAndPower) {
+  const solver::Scene rounded = scene("/rounded_punch.toml", {});
+  solver::Scene power = rounded;
+  power.surfaces = {{.shape = solver::Shape::power, .exponent = 4.0, .coefficient = 1e8}};
+  for (solver::Scene body : {rounded, power}) {
+    const Oracle oracle = *find_oracle(body).oracle;
+    const auto errors_at = [&](solver::Index cells) {
+      body.cells = {cells, cells};
+      const solver::Solution solution = solver::solve(body);
+      EXPECT_EQ(solution.status, solver::Status::converged) << solution.message;
+      return compare(solution, oracle);
+    };
+    const Errors coarse = errors_at(32);
+    const Errors fine = errors_at(128);
+    EXPECT_LE(std::abs(fine.twist), std::abs(coarse.twist) * std::pow(4.0, -1.5));
+    EXPECT_LE(fine.pressure.l1, coarse.pressure.l1 * std::pow(4.0, -1.0));
+    EXPECT_LE(std::abs(fine.twist), kTwistAt128);
+    EXPECT_LE(fine.traction.l1, kTractionAt128);
+    EXPECT_LE(std::abs(fine.stick_radius), 5e-3);   // half a cell of 60 to the radius
+    EXPECT_LE(std::abs(fine.peak_pressure), 1e-3);  // h^2, at a peak that a cell may miss by half of it
+  }
+}
+
+/// Exact fields stand where the body stands.
+TEST(Comparison, OfABodyOffTheOrigin) {
+  const solver::Scene shifted =
+      scene("/paper.toml", {"grid.cells=[40, 40]", "grid.extent=[2e-3, 2e-3]", "upper.at=[1e-4, -2e-4]"});
+  solver::Scene centred = shifted;
+  centred.surfaces.front().at = {0.0, 0.0};
+  const ExactFields there = exact_fields(*find_oracle(shifted).oracle, solver::make_model(shifted));
+  const ExactFields here = exact_fields(*find_oracle(centred).oracle, solver::make_model(centred));
+  for (int i = 0; i < 38; ++i) {  // cells of 0.05 mm: shifted by two and by four
+    for (int j = 4; j < 40; ++j) {
+      const int from = i * 40 + j;
+      const int to = (i + 2) * 40 + j - 4;
+      EXPECT_NEAR(there.pressure[to], here.pressure[from], 1e-11 * here.pressure.maxCoeff());
+      for (const int component : {0, 1600}) {
+        EXPECT_NEAR(there.traction[component + to], here.traction[component + from],
+                    1e-11 * here.traction.maxCoeff());
+      }
+    }
+  }
+}
+
 TEST(Comparison, ErrorsFallWithTheMesh) {
   for (const char* pressure : {"solved", "hertz", "hertz_averaged"}) {
     const Compared coarse = solve_paper(32, pressure, "0.5");

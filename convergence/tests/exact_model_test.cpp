@@ -68,8 +68,9 @@ TEST(ExactModel, AnswersForTheMomentAndForTheTwist) {
     for (const auto& [key, value] : {std::pair("load.moment", number(by_ratio, "moment")),
                                      std::pair("load.twist", number(by_ratio, "twist_angle"))}) {
       solver::Scene other = scene(name);
-      other.torsion = {};
-      (key == std::string("load.moment") ? other.torsion.moment : other.torsion.twist) = value;
+      other.steps[0].torsion = {};
+      (key == std::string("load.moment") ? other.steps[0].torsion.moment : other.steps[0].torsion.twist) =
+          value;
       const Json result = answer(other);
       for (const char* number_key : {"moment_ratio", "moment", "twist_angle", "stick_radius", "twist"}) {
         EXPECT_NEAR(number(result, number_key) / number(by_ratio, number_key), 1.0, kTolerance)
@@ -81,10 +82,10 @@ TEST(ExactModel, AnswersForTheMomentAndForTheTwist) {
 
 solver::Scene in_units(solver::Scene scene, double metre, double newton) {
   const double pascal = newton / (metre * metre);
-  scene.surface.radius *= metre;
+  scene.surfaces.front().radius *= metre;
   scene.upper.young_modulus *= pascal;
   scene.lower.young_modulus *= pascal;
-  scene.normal_load = *scene.normal_load * newton;
+  scene.steps[0].normal = *scene.steps[0].normal * newton;
   return scene;
 }
 
@@ -142,7 +143,7 @@ TEST(ExactModel, IsRefusedWhereNoExactSolutionIsKnown) {
   refused(scene("dissimilar"), "coupling");
   refused(scene("paper", {"contact.friction=0"}), "friction");
   solver::Scene height_map = scene("paper");
-  height_map.surface.shape = solver::Shape::height_map;
+  height_map.surfaces.front().shape = solver::Shape::height_map;
   refused(height_map, "height_map");
 }
 
