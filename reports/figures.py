@@ -7,6 +7,7 @@ import numpy as np
 from matplotlib.colors import Normalize
 
 import exact_figures
+import gallery_figure
 import maps
 import method_figures
 import studies
@@ -246,6 +247,7 @@ FIGURES = [
     ("figure-10", "Methods compared", method_figures.methods),
     ("figure-11", "Which approximation may be used", exact_figures.approximations),
     ("figure-12", "Other bodies, and cycles", exact_figures.bodies_and_cycles),
+    ("figure-13", "The gallery", gallery_figure.gallery),
 ]
 
 

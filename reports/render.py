@@ -4,15 +4,11 @@
 import argparse
 import os
 import sys
-from importlib.util import find_spec
 from pathlib import Path
 
-PACKAGES = ("numpy", "matplotlib", "jinja2", "h5py")
-missing = [package for package in PACKAGES if find_spec(package) is None]
-if missing:
-    print(f"render.py: {sys.executable} cannot import {', '.join(missing)}. On Debian or Ubuntu: apt-get install "
-          + " ".join(f"python3-{package}" for package in missing), file=sys.stderr)
-    sys.exit(2)
+import packages
+
+packages.require("numpy", "matplotlib", "jinja2", "h5py")
 
 import jinja2  # noqa: E402
 
@@ -49,14 +45,28 @@ def tabulate(report, name, columns):
         return {"unavailable": str(reason)}
 
 
+def tabulate_gallery(report, data_dir, output):
+    """The gallery's table, its scenes linked to their files where those lie on the page's side of the disc."""
+
+    def link(stem):
+        file = data_dir / "scenes" / f"{stem}.toml"
+        return os.path.relpath(file, output) if file.is_relative_to(output) and file.exists() else None
+
+    try:
+        return {"table": tables.gallery(report, link)}
+    except results.Unavailable as reason:
+        return {"unavailable": str(reason)}
+
+
 def render(data_dir, output):
     """Writes output/index.html and output/figures/ from data_dir/report.json and the field files beside it."""
-    report = results.load(data_dir)
+    report = results.load(data_dir / "report.json")
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True)
     page = environment.get_template("page.html.j2").render(
         report=report,
         figures=draw_all(report, data_dir, output),
+        gallery=tabulate_gallery(report, data_dir, output),
         loading=tabulate(report, "loading", tables.LOADING),
         mesh=tabulate(report, "mesh", tables.MESH),
         approximations=tabulate(report, "approximation_table", tables.APPROXIMATIONS),

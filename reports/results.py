@@ -23,22 +23,21 @@ class Unavailable(Exception):
     """One figure or table cannot be made; the message says why."""
 
 
-def load(data_dir):
-    """The content of report.json. NaN and Infinity are not JSON and are refused."""
-    path = data_dir / "report.json"
+def load(path):
+    """The object in a JSON file. NaN and Infinity are not JSON and are refused."""
 
     def refuse(constant):
         raise InputError(f"{path}: holds {constant}, which is not JSON (a missing number is null, with a reason)")
 
     try:
-        report = json.loads(path.read_text(encoding="utf-8"), parse_constant=refuse)
+        content = json.loads(path.read_text(encoding="utf-8"), parse_constant=refuse)
     except OSError as error:
         raise InputError(f"{path}: {error.strerror}") from error
     except ValueError as error:
         raise InputError(f"{path}: {error}") from error
-    if not isinstance(report, dict):
+    if not isinstance(content, dict):
         raise InputError(f"{path}: holds no JSON object")
-    return report
+    return content
 
 
 def value(tree, path):
@@ -127,28 +126,21 @@ def nulls(tree):
     return dict(found)
 
 
-class Fields:
-    """The contact cells of one solution, put back on their square grid (rows along x2), empty outside the contact."""
+class Columns:
+    """The datasets of a field file, one value for each contact cell."""
 
-    def __init__(self, path, radius):
+    def __init__(self, path):
         try:
             with h5py.File(path, "r") as file:
                 self.columns = {name: file[name][...] for name in file}
         except OSError as error:
             raise Unavailable(f"{path.name} cannot be read: {re.sub(r' *[(].*', '', str(error))}") from error
         self.name = path.name
-        x1, x2 = self._column("x1") / radius, self._column("x2") / radius
-        positions = np.unique(np.round(np.concatenate([x1, x2]), 9))
-        self.cell = np.diff(positions).min() if positions.size > 1 else np.nan
-        low, high = positions[0] - self.cell / 2, positions[-1] + self.cell / 2
-        self.extent = (low, high, low, high)
-        steps = (positions - positions[0]) / self.cell
-        if not np.allclose(steps, np.round(steps), atol=1e-3):
-            raise Unavailable(f"{self.name}: the cells stand on no square grid")
-        self.size = int(round(steps[-1])) + 1
-        self.index = tuple(np.round((x - positions[0]) / self.cell).astype(int) for x in (x2, x1))
 
-    def _column(self, name):
+    def __contains__(self, name):
+        return name in self.columns
+
+    def __getitem__(self, name):
         if name not in self.columns:
             raise Unavailable(f"{self.name} has no dataset “{name}”")
         values = self.columns[name]
@@ -156,8 +148,25 @@ class Fields:
             raise Unavailable(f"{self.name}: “{name}” is empty or has values that are not numbers")
         return values
 
+
+class Fields:
+    """The contact cells of one solution, put back on their square grid (rows along x2), empty outside the contact."""
+
+    def __init__(self, path, radius):
+        self.columns = Columns(path)
+        x1, x2 = self.columns["x1"] / radius, self.columns["x2"] / radius
+        positions = np.unique(np.round(np.concatenate([x1, x2]), 9))
+        self.cell = np.diff(positions).min() if positions.size > 1 else np.nan
+        low, high = positions[0] - self.cell / 2, positions[-1] + self.cell / 2
+        self.extent = (low, high, low, high)
+        steps = (positions - positions[0]) / self.cell
+        if not np.allclose(steps, np.round(steps), atol=1e-3):
+            raise Unavailable(f"{path.name}: the cells stand on no square grid")
+        self.size = int(round(steps[-1])) + 1
+        self.index = tuple(np.round((x - positions[0]) / self.cell).astype(int) for x in (x2, x1))
+
     def grid(self, name):
         """One dataset on the grid, NaN outside the contact."""
         result = np.full((self.size, self.size), np.nan)
-        result[self.index] = self._column(name)
+        result[self.index] = self.columns[name]
         return result

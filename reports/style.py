@@ -2,6 +2,7 @@
 
 import matplotlib
 import numpy as np
+from matplotlib.colors import LinearSegmentedColormap, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
@@ -11,6 +12,8 @@ GREEN, PURPLE = "#009E73", "#CC79A7"
 BLACK, GREY = "#000000", "#8a8a8a"
 
 DIVERGING, SEQUENTIAL, ERRORS = "RdBu_r", "viridis", "magma_r"
+SLIP = LinearSegmentedColormap.from_list("slip", ["#fdf0e7", VERMILION])
+STICK = ListedColormap([SKY])
 
 HALO = [withStroke(linewidth=2.5, foreground="white")]  # keeps text readable over lines
 
@@ -65,7 +68,16 @@ def whole_decades(axis):
         axis.set_ylim(10 ** np.floor(low), 10 ** np.ceil(high))
 
 
+# What to leave out of each kind of file so that equal numbers give equal files: the date.
+FORMATS = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {}}
+
+
+def write(figure, path):
+    """Writes one file, of the kind that its ending says: one of FORMATS."""
+    figure.savefig(path, metadata=FORMATS[path.suffix])
+
+
 def save(figure, stem):
-    """Writes stem.svg and stem.pdf; no dates, so that equal numbers give equal files."""
-    figure.savefig(stem.with_suffix(".svg"), metadata={"Date": None})
-    figure.savefig(stem.with_suffix(".pdf"), metadata={"CreationDate": None})
+    """Writes stem.svg and stem.pdf."""
+    for suffix in (".svg", ".pdf"):
+        write(figure, stem.with_suffix(suffix))

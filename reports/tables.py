@@ -2,8 +2,10 @@
 
 from dataclasses import dataclass
 
+from markupsafe import Markup
+
 from results import Unavailable, rows, value
-from wording import plain, sci, seconds, signed_percent
+from wording import ANGLES, ENERGIES, LENGTHS, MOMENTS, plain, quantity, sci, seconds, signed_percent
 
 
 @dataclass
@@ -61,6 +63,30 @@ APPROXIMATIONS = [
     ("twist, DEM", "dem.error", signed_percent),
     ("DEM moment at the exact twist", "dem_moment.error", signed_percent),
 ]
+
+UNITS = {"rad": ANGLES, "m": LENGTHS, "N m": MOMENTS, "J": ENERGIES}
+
+GALLERY_HEAD = ["scene", "what it shows", "judged by", "computed", "reference", "error", "gap / energy",
+                "applica&shy;tions", "steps", "cells along", "time, s"]
+
+
+def gallery(report, link):
+    """A row for each scene; link(stem) is the address of its file, or None."""
+    return Table(GALLERY_HEAD, [_gallery_row(row, link(value(row, "scene"))) for row in rows(report, "gallery")])
+
+
+def _gallery_row(row, address):
+    def in_units(number):
+        written = quantity(number, UNITS[row["unit"]], 6) if row["unit"] else plain(number)
+        return written.replace(" ", "\N{NO-BREAK SPACE}")
+
+    title = Markup('<a href="{}">{}</a>').format(address, row["title"]) if address else row["title"]
+    reference = "–" if value(row, "reference") is None else f"{in_units(row['reference'])} {row['basis']}"
+    error = _cell(row, "error", sci) if value(row, "error") is not None else _cell(
+        row, "uncertainty", lambda number: "±" + sci(number))
+    return [title, row["shows"], row["quantity"], _cell(row, "value", in_units), reference, error,
+            _cell(row, "gap", sci), _cell(row, "operator_applications", "{:.0f}".format), _text(row["steps"]),
+            _cell(row, "cells", max), _cell(row, "seconds", seconds)]
 
 
 def table(report, name, columns):

@@ -2,6 +2,12 @@
 
 import math
 
+LENGTHS = (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9), ("pm", 1e-12))
+STRESSES = (("MPa", 1e6), ("kPa", 1e3), ("Pa", 1.0))
+ANGLES = (("rad", 1.0), ("mrad", 1e-3), ("µrad", 1e-6), ("nrad", 1e-9))
+MOMENTS = (("N m", 1.0), ("mN m", 1e-3), ("µN m", 1e-6))
+ENERGIES = (("J", 1.0), ("mJ", 1e-3), ("µJ", 1e-6), ("nJ", 1e-9))
+
 SUPERSCRIPTS = str.maketrans("-0123456789", "⁻⁰¹²³⁴⁵⁶⁷⁸⁹")
 
 
@@ -42,3 +48,16 @@ def plain(number):
 def seconds(number):
     """Three digits of a time in seconds."""
     return f"{number:.3g}"
+
+
+def unit_for(largest, units):
+    """The largest unit that is not much above the value."""
+    for name, size in units:
+        if largest >= 0.5 * size:
+            return name, size
+    return units[-1]
+
+
+def quantity(number, units, digits=3):
+    name, size = unit_for(abs(number), units) if number else units[0]
+    return f"{number / size:.{digits}g} {name}".replace("-", "−")

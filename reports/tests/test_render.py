@@ -16,6 +16,7 @@ sys.path.insert(0, str(REPORTS))
 
 import exact_figures  # noqa: E402
 import figures  # noqa: E402
+import gallery_figure  # noqa: E402
 import method_figures  # noqa: E402
 import results  # noqa: E402
 
@@ -57,6 +58,23 @@ def body(profile, limit, full_stick):
             "rows": [{"moment_ratio": x, "moment": limit * x, "stick_ratio": 1 - x, "twist": x} for x in loads]}
 
 
+def gallery_row(scene, basis, reference, error, status="converged"):
+    row = {"scene": scene, "title": f"<{scene}>", "shows": "so & so", "quantity": "twist", "unit": "rad",
+           "value": 1.25e-3, "reference": reference, "basis": basis, "error": error, "status": status,
+           "gap": 2e-9, "operator_applications": 20.4, "seconds": 0.25, "steps": 2, "cells": [256, 128],
+           "cell_size": [RADIUS / 2, RADIUS / 2], "fields": f"gallery-{scene}.h5"}
+    for key in ("reference", "error"):
+        if row[key] is None:
+            row[f"{key}_reason"] = "not known"
+    return row
+
+
+def gallery():
+    return [gallery_row("sphere", "exact", 1.2e-3, -0.04), gallery_row("tube", "extrapolated", 1.26e-3, 2e-3),
+            gallery_row("odd", "finest mesh", 1.25e-3, None) | {"uncertainty": 3e-4},
+            gallery_row("rough", "none", None, None)]
+
+
 def small_report():
     loads = (0.2, 0.5, 0.9)
     return {
@@ -83,6 +101,7 @@ def small_report():
                           ((0.0, 0.0), (0.8, 0.4), (0.0, 0.1), (-0.8, -0.4), (0.0, -0.1), (0.8, 0.4))]},
         "cycle_energy": [{"moment_ratio": x, "energy": x**3 / (1 - x), "small_amplitude": x**3}
                          for x in (0.05, 0.1, 0.2, 0.5)],
+        "gallery": gallery(),
         "errata": [{"equation": "(0)", "printed": "a < b", "holds": "a > b", "shown": "by example"}],
     }
 
@@ -99,11 +118,23 @@ def write_fields(path, q1_shift=0.02):
             file[name] = values
 
 
+def write_contact(path):
+    """Two cells that stick beside one that slips."""
+    with h5py.File(path, "w") as file:
+        for name, values in {"x1": [0.0, 1.0, 2.0], "x2": [0.0, 0.0, 0.0], "stick": [1.0, 1.0, 0.0],
+                             "slip1": [1e-9, 0.0, 3.0], "slip2": [0.0, 0.0, 4.0]}.items():
+            file[name] = values
+
+
 def write_data(folder, report):
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "report.json").write_text(json.dumps(report))
     for entry in report["profiles"]:
         write_fields(folder / entry["fields"])
+    for scene in report["gallery"]:
+        write_contact(folder / scene["fields"])
+    (folder / "scenes").mkdir(exist_ok=True)
+    (folder / "scenes" / "sphere.toml").write_text("name = 'sphere'")
 
 
 def run_render(data_dir, output):
@@ -157,6 +188,16 @@ class WholePage(unittest.TestCase):
             ["0.2", "0.2", "−4\u00a0%", "−5\u00a0%", "−10\u00a0%", "−10\u00a0%", "+100\u00a0%"],
             ["0.5", "0.5", "−10\u00a0%", "−12\u00a0%", "−25\u00a0%", "−25\u00a0%", "+100\u00a0%"],
             ["0.9", "0.9", "−18\u00a0%", "−22\u00a0%", "−45\u00a0%", "−45\u00a0%", "+33\u00a0%"]])
+
+    def test_table_of_the_gallery(self):
+        table = self.page[self.page.index('id="gallery"'):self.page.index('id="errata"')]
+        cells = [re.findall("<td>(.*?)</td>", row) for row in re.findall("<tr>(.*?)</tr>", table)]
+        self.assertEqual(cells[1], ["<a href=\"data/scenes/sphere.toml\">&lt;sphere&gt;</a>", "so &amp; so", "twist",
+                                    "1.25\u00a0mrad", "1.2\u00a0mrad exact", "−4.0×10⁻²", "2.0×10⁻⁹", "20", "2",
+                                    "256", "0.25"])
+        self.assertEqual([row[0] for row in cells[2:]], ["&lt;tube&gt;", "&lt;odd&gt;", "&lt;rough&gt;"])
+        self.assertEqual([row[4:6] for row in cells[2:]], [
+            ["1.26\u00a0mrad extrapolated", "2.0×10⁻³"], ["1.25\u00a0mrad finest mesh", "±3.0×10⁻⁴"], ["–", "–"]])
 
     def test_equal_data_give_equal_files(self):
         with tempfile.TemporaryDirectory() as other:
@@ -269,6 +310,25 @@ class OneFigure(Folder):
         for words in ("0.600&nbsp;μWa under a sphere", "flat punch, which sticks everywhere up to 0.850 of that",
                       "keeps 25\u00a0% of its twist", "amplitude of 0.10&nbsp;M", "2 times as large"):
             self.assertIn(words, message)
+
+    def test_what_the_gallery_says(self):
+        plate = gallery_figure.gallery(self.report, self.folder)
+        self.assertIn("4 scenes, in all of which Coulomb’s law holds to gap / energy = 2.0×10⁻⁹.", plate.message)
+        self.assertIn("Of the 1 with an exact answer, half are within 4.0×10⁻² of it", plate.message)
+        panel = plate.figure.axes[0]
+        self.assertEqual([text.get_text() for text in panel.texts], ["67\u00a0% sticks"])
+        slip, sticks = (image.get_array() for image in panel.images)
+        self.assertEqual(slip.filled(-1).tolist(), [[-1, -1, 1]])  # of its largest value
+        self.assertEqual(sticks.filled(0).tolist(), [[1, 1, 0]])
+
+    def test_gallery_owns_up_to_what_did_not_converge(self):
+        self.report["gallery"][1]["status"] = "not_converged"
+        self.assertIn("3 scenes, in all of which", gallery_figure.gallery(self.report, self.folder).message)
+        self.assertIn("1 more did not converge", gallery_figure.gallery(self.report, self.folder).message)
+
+    def test_gallery_without_its_fields(self):
+        (self.folder / "gallery-tube.h5").unlink()
+        self.assert_unavailable(gallery_figure.gallery, "gallery-tube.h5 cannot be read")
 
     def test_error_map_is_the_difference_from_exact(self):
         plate = figures.shear_components(self.report, self.folder)

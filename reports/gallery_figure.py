@@ -1,0 +1,65 @@
+"""The gallery: a small map of each scene, and what its table says."""
+
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.collections import LineCollection
+from matplotlib.colors import Normalize
+
+import style
+from cells import Cells
+from plate import Plate
+from results import number, rows, text, value
+from wording import percent, sci
+
+ACROSS = 6  # panels in a row
+PANEL_HEIGHT = 1.42  # inches, with its two lines of text
+MARGIN = 0.06  # around the contact, of its longer side
+
+
+def gallery(report, data_dir):
+    scenes = rows(report, "gallery")
+    down = -(-len(scenes) // ACROSS)
+    figure, axes = style.panels(down, ACROSS, PANEL_HEIGHT * down + 0.5, squeeze=False)
+    for axis in axes.flat:
+        axis.axis("off")
+    for axis, scene in zip(axes.flat, scenes):
+        draw_scene(axis, scene, data_dir)
+    figure.colorbar(ScalarMappable(Normalize(0, 1), style.SLIP), ax=axes, location="bottom", shrink=0.4, aspect=40,
+                    pad=0.01, label="slip in the last step, over its largest value; blue: sticks")
+    return Plate(message(scenes),
+                 "Each panel shows the contact at the end of the scene’s last step, with the share of it that sticks; "
+                 "panels are not to one scale. Numbers are in the <a href=\"#gallery\">table</a>.",
+                 f"{len(scenes)} small maps of contacts, one a scene: what sticks in blue, slip in shades of orange.", figure)
+
+
+def draw_scene(axis, scene, data_dir):
+    cells = Cells(data_dir / text(scene, "fields"), value(scene, "cell_size"))
+    sticks = cells.columns["stick"] != 0
+    slip = np.where(sticks, 0, np.hypot(cells.columns["slip1"], cells.columns["slip2"]))
+    largest = slip.max() or 1
+    where = dict(origin="lower", extent=cells.extent, interpolation="nearest")
+    axis.imshow(cells.grid(np.where(sticks, np.nan, slip / largest)), cmap=style.SLIP, norm=Normalize(0, 1), **where)
+    axis.imshow(cells.grid(np.where(sticks, 1.0, np.nan)), cmap=style.STICK, **where)
+    axis.add_collection(LineCollection(cells.outline(), colors=style.BLACK, linewidths=0.4, capstyle="projecting",
+                                       rasterized=True))
+    low, high = cells.extent[[0, 2]], cells.extent[[1, 3]]
+    middle, half = 0.5 * (low + high), (0.5 + MARGIN) * max(high - low)
+    axis.set(xlim=middle[0] + half * np.array([-1, 1]), ylim=middle[1] + half * np.array([-1, 1]), aspect="equal")
+    axis.set_title(text(scene, "title"), fontsize=7, pad=2)
+    axis.text(0.5, 0, f"{percent(np.mean(sticks))} sticks", transform=axis.transAxes, ha="center", va="top", fontsize=6,
+              color=style.GREY)
+
+
+def message(scenes):
+    judged = [scene for scene in scenes if value(scene, "basis") == "exact"]
+    errors = np.array([abs(number(scene, "error")) for scene in judged])
+    done = [scene for scene in scenes if text(scene, "status") == "converged"]
+    undone = len(scenes) - len(done)
+    gap = max((number(scene, "gap") for scene in done), default=np.nan)
+    sentence = (f"{len(done)} scenes, in all of which Coulomb’s law holds to gap / energy = {sci(gap)}"
+                + (f"; {undone} more did not converge" if undone else ""))
+    if not judged:
+        return sentence + "."
+    worst = judged[int(np.argmax(errors))]
+    return (f"{sentence}. Of the {len(judged)} with an exact answer, half are within {sci(np.median(errors))} of it; "
+            f"{text(worst, 'title')} is furthest off, by {percent(errors.max())}.")

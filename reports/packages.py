@@ -1,0 +1,14 @@
+"""Says which Python packages a script lacks, and how to install them."""
+
+import sys
+from importlib.util import find_spec
+from pathlib import Path
+
+
+def require(*names):
+    """Ends the script with exit code 2 unless all packages can be imported."""
+    missing = [name for name in names if find_spec(name) is None]
+    if missing:
+        print(f"{Path(sys.argv[0]).name}: {sys.executable} cannot import {', '.join(missing)}. On Debian or Ubuntu: "
+              "apt-get install " + " ".join(f"python3-{name}" for name in missing), file=sys.stderr)
+        sys.exit(2)

@@ -1,0 +1,205 @@
+"""The figure of one solve, from made-up contacts of every shape: right where one can count, and complete."""
+
+import io
+import json
+import subprocess
+import sys
+import tempfile
+import unittest
+from contextlib import redirect_stderr
+from pathlib import Path
+
+import h5py
+import numpy as np
+
+REPORTS = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(REPORTS))
+
+import solve_figure  # noqa: E402
+from cells import ARROWS_ALONG, Cells  # noqa: E402
+from results import Unavailable, load  # noqa: E402
+
+CELL = (2e-6, 1e-6)
+
+
+def result(**changes):
+    return {"name": "made up", "status": "converged", "method": "coulomb", "cells": [8, 8], "cell_size": list(CELL),
+            "normal_load": 3.0, "friction": 0.1, "moment": 2e-6, "moment_ratio": 0.4, "twist_angle": 1.5e-3,
+            "certificate": {"gap": 4e-9}} | changes
+
+
+def disc(n1, n2, x1=0.0, x2=0.0):
+    """Cells (i, j) of the ellipse that fills a rectangle of cells, and their centres, off the origin."""
+    i, j = (index.ravel() for index in np.meshgrid(np.arange(n1), np.arange(n2)))
+    inside = np.hypot((2 * i + 1) / n1 - 1, (2 * j + 1) / n2 - 1) < 1
+    return x1 + CELL[0] * i[inside], x2 + CELL[1] * j[inside]
+
+
+class Figure(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+        self.fields = self.folder / "fields.h5"
+
+    def write(self, x1, x2, changes=None, **columns):
+        """Slips where x1 is above its mean: (0, 1) nm, against a traction of 2 MPa under 50 MPa."""
+        slips = x1 > x1.mean()
+        values = {"x1": x1, "x2": x2, "pressure": np.full(x1.size, 5e7), "q1": np.zeros(x1.size),
+                  "q2": np.full(x1.size, -2e6), "slip1": np.zeros(x1.size), "slip2": 1e-9 * slips,
+                  "stick": 1.0 - slips} | columns
+        with h5py.File(self.fields, "w") as file:
+            for name, column in values.items():
+                if column is not None:
+                    file[name] = column
+        (self.folder / "result.json").write_text(json.dumps(result(**(changes or {}))))
+
+    def solved(self):
+        content = load(self.folder / "result.json")
+        return solve_figure.Solved(content, Cells(self.fields, content["cell_size"]))
+
+    def arguments(self, name):
+        return [str(self.folder / "result.json"), str(self.fields), "--output", str(self.folder / name)]
+
+    def run_script(self, name="figure.svg"):
+        """Exit code, and what it says."""
+        with redirect_stderr(io.StringIO()) as errors:
+            exit_code = solve_figure.main(self.arguments(name))
+        return exit_code, errors.getvalue()
+
+
+class WhatItShows(Figure):
+    def test_cells_stand_where_they_are(self):
+        self.write(*disc(9, 5, x1=1e-3, x2=-4e-3), pressure=1e6 * (1.0 + np.arange(disc(9, 5)[0].size)))
+        image = solve_figure.draw(self.solved()).axes[2].images[0]
+        self.assertEqual(image.origin, "lower")
+        values, (left, right, low, high) = image.get_array(), image.get_extent()
+        self.assertEqual(values.shape, (5, 9))
+        np.testing.assert_allclose([left, right, low, high], [999, 1017, -4000.5, -3995.5])  # micrometres
+        x1, x2 = disc(9, 5)
+        for k in range(x1.size):
+            self.assertAlmostEqual(values[round(x2[k] / CELL[1]), round(x1[k] / CELL[0])], 1.0 + k)  # MPa
+        self.assertEqual(np.count_nonzero(~np.ma.getmaskarray(values)), x1.size)
+
+    def test_outline_encloses_the_contact_with_its_holes(self):
+        x1, x2 = disc(7, 7)
+        hole = (np.round(x1 / CELL[0]) == 3) & (np.round(x2 / CELL[1]) == 3)
+        self.write(x1[~hole], x2[~hole])
+        segments = self.solved().cells.outline()
+        begin, end = segments[:, 0], segments[:, 1]
+        cells = {(round(a / CELL[0]), round(b / CELL[1])) for a, b in zip(x1[~hole], x2[~hole])}
+        sides = sum((i + di, j + dj) not in cells for i, j in cells for di, dj in ((1, 0), (-1, 0), (0, 1), (0, -1)))
+        self.assertEqual(len(segments), sides)
+        lengths = np.abs(end - begin)
+        self.assertTrue(np.all(np.isclose(lengths, (CELL[0], 0), atol=1e-12).all(axis=1)
+                               | np.isclose(lengths, (0, CELL[1]), atol=1e-12).all(axis=1)))
+        middles = {tuple(np.round(2 * (m - segments.min(axis=(0, 1))) / CELL).astype(int)) for m in (begin + end) / 2}
+        self.assertTrue({(6, 7), (8, 7), (7, 6), (7, 8)} <= middles)  # the hole's own sides, in half cells
+
+    def test_arrows_point_along_the_slip_and_its_key_is_no_longer_than_the_longest(self):
+        self.write(*disc(64, 64))
+        arrows = solve_figure.draw(self.solved()).axes[0].collections[0]
+        self.assertTrue(np.all(arrows.U == 0) and np.all(arrows.V == 1e-9))
+        self.assertTrue(np.all(arrows.X > np.mean(disc(64, 64)[0]) * 1e6))
+        self.assertLessEqual(len(arrows.U), ARROWS_ALONG**2)
+        self.assertEqual([solve_figure.round_down(x) for x in (1e-9, 1.9, 3.0, 0.07)], [1e-9, 1.0, 2.0, 0.05])
+
+    def test_message_and_details(self):
+        self.write(*disc(8, 8))
+        self.assertEqual(solve_figure.message(self.solved()),
+                         "50\N{NO-BREAK SPACE}% of the contact sticks, the rest slips by up to 1 nm")
+        details = solve_figure.details(self.solved()).replace("\N{NO-BREAK SPACE}", " ")
+        for words in ("made up", "8 × 8 cells", "normal load 3 N", "2e−06 N m = 0.4 of the limit", "twist 1.5 mrad",
+                      "gap/energy = 4.0×10⁻⁹"):
+            self.assertIn(words, details)
+
+    def test_message_of_the_extremes(self):
+        x1, x2 = disc(8, 8)
+        all_of, none = np.ones(x1.size), np.zeros(x1.size)
+        for changes, columns, words in (
+                ({}, {"stick": all_of}, "All of the contact sticks"),
+                ({}, {"stick": none, "slip2": 3e-6 * all_of}, "All of the contact slips by up to 3 µm"),
+                ({"friction": 0.0}, {"q2": none, "stick": none}, "No friction"),
+                ({"moment": 0.0}, {"q2": none, "stick": all_of}, "No tangential traction"),
+                ({"status": "not_converged"}, {"stick": all_of}, "NOT CONVERGED: All of the contact sticks")):
+            self.write(x1, x2, changes, **columns)
+            self.assertEqual(solve_figure.message(self.solved()), words)
+            self.assertEqual(self.run_script(), (0, ""))
+
+
+class AnyContact(Figure):
+    def assert_drawn(self, name="figure.svg"):
+        self.assertEqual(self.run_script(name), (0, ""))
+        self.assertLess((self.folder / name).stat().st_size, 3_000_000)
+
+    def test_as_a_program(self):
+        self.write(*disc(9, 9))
+        run = subprocess.run([sys.executable, "-B", str(REPORTS / "solve_figure.py"), *self.arguments("figure.svg")],
+                             capture_output=True, text=True)
+        self.assertEqual((run.returncode, run.stdout, run.stderr), (0, "", ""))
+
+    def test_every_format(self):
+        self.write(*disc(9, 9))
+        for name, magic in (("figure.pdf", b"%PDF"), ("figure.png", b"\x89PNG"), ("figure.svg", b"<?xml")):
+            self.assert_drawn(name)
+            self.assertTrue((self.folder / name).read_bytes().startswith(magic))
+
+    def test_shapes(self):
+        for n1, n2 in ((1, 1), (2, 1), (3, 90), (200, 4)):
+            with self.subTest(cells=(n1, n2)):
+                self.write(*disc(n1, n2, x1=5e-4))
+                self.assert_drawn()
+
+    def test_many_spots(self):
+        spots = np.random.default_rng(1).random((512, 512)) < 0.3
+        j, i = np.nonzero(spots)
+        self.write(CELL[0] * i, CELL[1] * j)
+        self.assert_drawn()
+
+    def test_exact_solution_has_no_slip_and_no_grid(self):
+        self.write(*disc(9, 9), {"method": "exact", "certificate": None, "cells": None, "cell_size": None}, slip1=None,
+                   slip2=None)
+        np.testing.assert_allclose(self.solved().cells.size, CELL)
+        self.assertEqual(solve_figure.message(self.solved()).split()[-1], "slips")
+        self.assert_drawn()
+
+    def test_equal_results_give_equal_files(self):
+        self.write(*disc(9, 9))
+        self.run_script("one.svg")
+        self.run_script("two.svg")
+        self.assertEqual((self.folder / "one.svg").read_bytes(), (self.folder / "two.svg").read_bytes())
+
+
+class Refusals(Figure):
+    def assert_refused(self, words, name="figure.svg"):
+        exit_code, errors = self.run_script(name)
+        self.assertEqual(exit_code, 2)
+        self.assertIn(words, errors)
+
+    def test_what_cannot_be_drawn(self):
+        self.write(*disc(9, 9))
+        self.assert_refused("allowed endings: .svg, .pdf, .png", "figure.jpg")
+        self.assert_refused("No such file", "nowhere/figure.svg")
+        self.write(*disc(9, 9), {"cell_size": [3e-6, 1e-6]})
+        self.assert_refused("no grid of cells")
+        self.write(*disc(9, 9), pressure=None)
+        self.assert_refused("no dataset “pressure”")
+        self.write(*disc(9, 9), pressure=np.full(disc(9, 9)[0].size, np.nan))
+        self.assert_refused("not numbers")
+        self.fields.unlink()
+        self.assert_refused("fields.h5 cannot be read")
+        (self.folder / "result.json").write_text("{")
+        self.assert_refused("result.json")
+
+    def test_one_cell_of_unknown_size(self):
+        self.write(*disc(1, 1), {"cell_size": None})
+        self.assert_refused("unknown size")
+
+    def test_unknown_grid(self):
+        self.write(np.array([0.0, 1.0, 2.5]), np.zeros(3), {"cell_size": [1.0, 1.0]})
+        with self.assertRaises(Unavailable):
+            self.solved()
+
+
+if __name__ == "__main__":
+    unittest.main()
