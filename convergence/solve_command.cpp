@@ -44,7 +44,7 @@ solver::Scene read_scene(const Options& options) {
   return solver::read_scene(options.scene, overrides);
 }
 
-/// The placeholder in the name of a file that is written for each step of a history.
+/// Stands for the number of the step in the name of a file that is written for each step of a history.
 constexpr std::string_view kStep = "{step}";
 
 bool one_file_a_step(const std::string& file) { return file.find(kStep) != std::string::npos; }
