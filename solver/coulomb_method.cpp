@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <Eigen/Cholesky>
 #include <array>
 #include <cmath>
 #include <limits>

@@ -36,7 +36,7 @@ constexpr double kReduction = 0.1;
 constexpr double kSettled = 0.01;
 constexpr double kRounding = 1e-15;
 
-constexpr int kMostSteps = 200;  // four times what has been seen; `carried` says what they have come to
+constexpr int kMostSteps = 200;    // four times what has been seen; `carried` says what they have come to
 constexpr int kMostHalvings = 33;  // of a Newton step, which a flat stretch makes long
 constexpr double kArmijo = 1e-4;
 

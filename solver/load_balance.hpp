@@ -1,6 +1,6 @@
 #pragma once
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <limits>
@@ -20,6 +20,10 @@ inline constexpr int kMostConditions = 3;
 using Coefficients = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMostConditions, 1>;
 using CoefficientMatrix =
     Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMostConditions, kMostConditions>;
+
+/// The x of least length among those that solve matrix x = right, or come closest: of motions that do the
+/// same to the contact, as of a single cell, the least.
+Coefficients least_solution(const CoefficientMatrix& matrix, const Coefficients& right);
 
 /// c_k.P(y + sum of x_l w_l), its derivatives by x_l, and the potential whose gradient it is where w = c.
 template <int M>
@@ -71,7 +75,7 @@ class LoadBalance {
     if (solve_along(y, c, x, true)) return true;
     Coefficients missing = load_;
     for (Eigen::Index k = 0; k < load_.size(); ++k) missing[k] -= (field(k) * y).sum();
-    x = majorant_.completeOrthogonalDecomposition().solve(missing);
+    x = least_solution(majorant_, missing);
     return solve_along(y, c, x, true);
   }
 
@@ -183,8 +187,7 @@ class LoadBalance {
       const Vector r = load - at.load;
       bool accepted = false;
       for (; !accepted && damping <= 1.0; damping *= kMoreDamping) {
-        // Of motions that do the same to the contact, as of a single cell, the least.
-        Vector step = Matrix(at.slope + damping * majorant).completeOrthogonalDecomposition().solve(r);
+        Vector step = least_solution(at.slope + damping * majorant, r);
         const double stride = step.dot(majorant * step) / (kMostStride * kMostStride * at.square);
         if (stride > 1.0) step /= std::sqrt(stride);
         const LoadsAlong<M> next = evaluate<M>(y, w, Vector(x + step));

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "solver/input_error.hpp"
+#include "solver/misspelling.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -18,13 +19,13 @@ constexpr std::size_t kMisspelling = 3;
 
 std::string read_text(const std::filesystem::path& file) {
   if (std::filesystem::is_directory(file))
-    throw InputError(file.string(), "is a folder; allowed: a scene file (TOML)");
+    throw InputError(file.string(), "is a folder; allowed: a TOML file");
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(file.string(), "cannot be read; allowed: a scene file (TOML)");
+  if (!stream) throw InputError(file.string(), "cannot be read; allowed: a TOML file");
   std::ostringstream text;
   text << stream.rdbuf();
   if (text.str().find('\0') != std::string::npos) {
-    throw InputError(file.string(), "is a binary file; allowed: a scene file (TOML)");
+    throw InputError(file.string(), "is a binary file; allowed: a TOML file");
   }
   return text.str();
 }
@@ -50,27 +51,6 @@ std::string print(const toml::node& node) {
   return text.str();
 }
 
-/// Levenshtein's distance.
-std::size_t edit_distance(const std::string& a, const std::string& b) {
-  std::vector<std::size_t> row(b.size() + 1);
-  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
-  for (std::size_t i = 1; i <= a.size(); ++i) {
-    std::size_t diagonal = std::exchange(row[0], i);
-    for (std::size_t j = 1; j <= b.size(); ++j) {
-      const std::size_t substitute = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
-      diagonal = row[j];
-      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitute});
-    }
-  }
-  return row.back();
-}
-
-std::string nearest(const std::string& key, const std::set<std::string>& known) {
-  return *std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
-    return edit_distance(key, a) < edit_distance(key, b);
-  });
-}
-
 bool is_array_of_tables(const toml::node& node) {
   return node.is_array() && node.is_homogeneous<toml::table>();
 }
@@ -88,6 +68,19 @@ void collect_leaves(const toml::table& table, const std::string& prefix, std::ve
       }
     } else {
       leaves.push_back(key);
+    }
+  }
+}
+
+/// "key=value" for all leaves of a table, keys dotted, values as TOML has them.
+void collect_assignments(const toml::table& table, const std::string& prefix,
+                         std::vector<std::string>& assignments) {
+  for (const auto& [name, child] : table) {
+    const std::string key = prefix + std::string(name.str());
+    if (const toml::table* const inner = child.as_table()) {
+      collect_assignments(*inner, key + ".", assignments);
+    } else {
+      assignments.push_back(fmt::format("{}={}", key, print(child)));
     }
   }
 }
@@ -178,7 +171,8 @@ void SceneReader::fail_missing(const std::string& key, const std::string& allowe
 void SceneReader::fail_unknown(const std::string& key) const {
   const auto found = root_.at_path(key);  // not found where a quoted key holds a dot or a bracket
   throw InputError(where(key), fmt::format("{} = {}: unknown key; the nearest known one is {}", key,
-                                           found ? print(*found.node()) : "...", nearest(key, known_)));
+                                           found ? print(*found.node()) : "...",
+                                           nearest_word(key, {known_.begin(), known_.end()})));
 }
 
 void SceneReader::fail_choice(const std::string& key, const std::string& word,
@@ -194,6 +188,13 @@ toml::node_view<toml::node> SceneReader::node(const std::string& key) {
 bool SceneReader::has(const std::string& key) { return static_cast<bool>(node(key)); }
 
 bool SceneReader::is_array(const std::string& key) { return node(key).is_array(); }
+
+bool SceneReader::is_text(const std::string& key) { return node(key).is_string(); }
+
+std::size_t SceneReader::line(const std::string& key) const {
+  const auto found = root_.at_path(key);
+  return found ? found.node()->source().begin.line : 0;
+}
 
 std::size_t SceneReader::count(const std::string& key) {
   const auto found = node(key);
@@ -245,11 +246,41 @@ std::array<double, 2> SceneReader::pair(const std::string& key, const Range& ran
   return *value;
 }
 
+std::vector<double> SceneReader::numbers(const std::string& key, const Range& range) {
+  std::vector<double> values;
+  const std::size_t count = list(key).size();
+  for (std::size_t i = 0; i < count; ++i) values.push_back(number(fmt::format("{}[{}]", key, i), range));
+  return values;
+}
+
+std::vector<std::string> SceneReader::list(const std::string& key) {
+  const auto found = node(key);
+  if (!found) return {};
+  const toml::array* const array = found.as_array();
+  if (array == nullptr || array->empty())
+    fail(key, print(*found.node()), "a list, [a, b, ...], of at least one");
+  std::vector<std::string> elements;
+  for (const toml::node& element : *array) elements.push_back(print(element));
+  return elements;
+}
+
 bool SceneReader::flag_or(const std::string& key, bool otherwise) {
   const auto found = node(key);
   if (!found) return otherwise;
   if (!found.is_boolean()) fail(key, print(*found.node()), "true, false");
   return *found.value<bool>();
+}
+
+std::vector<std::string> SceneReader::assignments(const std::string& key) {
+  const auto found = node(key);
+  if (!found) return {};
+  if (!found.is_table()) fail(key, print(*found.node()), "a table, { \"key\" = value }");
+  std::vector<std::string> leaves;
+  collect_leaves(*found.as_table(), key + ".", leaves);
+  known_.insert(leaves.begin(), leaves.end());
+  std::vector<std::string> assignments;
+  collect_assignments(*found.as_table(), "", assignments);
+  return assignments;
 }
 
 std::string SceneReader::text(const std::string& key) {

@@ -52,6 +52,9 @@ class SceneReader {
 
   bool has(const std::string& key);
   bool is_array(const std::string& key);
+  bool is_text(const std::string& key);
+  /// The line on which a key or a table stands; 0 where it is missing.
+  std::size_t line(const std::string& key) const;
   /// Tables in the array of tables under a key; none where the key is missing.
   std::size_t count(const std::string& key);
   std::optional<double> find_number(const std::string& key, const Range& range);
@@ -59,7 +62,14 @@ class SceneReader {
   double number_or(const std::string& key, double otherwise, const Range& range);
   std::optional<std::array<double, 2>> find_pair(const std::string& key, const Range& range);
   std::array<double, 2> pair(const std::string& key, const Range& range);
+  /// All numbers of a list, at least one; none where the key is missing.
+  std::vector<double> numbers(const std::string& key, const Range& range);
+  /// The elements of a list, at least one, as TOML writes them; none where the key is missing.
+  std::vector<std::string> list(const std::string& key);
   bool flag_or(const std::string& key, bool otherwise);
+  /// What a table holds, as overrides: "key=value" with dotted keys, whatever they are; none where the table
+  /// is missing.
+  std::vector<std::string> assignments(const std::string& key);
   std::string text(const std::string& key);
   std::string text_or(const std::string& key, const std::string& otherwise);
   std::filesystem::path path(const std::string& key);

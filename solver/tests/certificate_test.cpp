@@ -3,13 +3,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <cmath>
 #include <limits>
 #include <random>
 
 #include "solver/direct.hpp"
 #include "solver/paper_method.hpp"
+#include "solver/tests/dense_algebra.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -171,7 +172,7 @@ class SmallProblem : public testing::Test {
   }
 
   ArrayXd minimise() const {
-    const double lipschitz = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(K_).eigenvalues().maxCoeff();
+    const double lipschitz = dense_eigenvalues(K_).maxCoeff();
     ArrayXd q = ArrayXd::Zero(72);
     ArrayXd ahead = q;
     double momentum = 1.0;

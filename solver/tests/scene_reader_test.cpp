@@ -51,6 +51,23 @@ TEST_F(Tables, AreCountedAndReadByIndex) {
   steps.reject_unknown();
 }
 
+TEST_F(Tables, AreReadAsOverridesOfAnotherFile) {
+  SceneReader steps = reader(
+      "[[step]]\n[[step]]\nword = 1\n  set = { \"load.force\" = [1e-8, 2.0], load.name = \"a b\", on = true "
+      "}\n");
+  EXPECT_THAT(steps.assignments("step[1].set"),
+              testing::UnorderedElementsAre("load.force=[1e-08, 2]", "load.name='a b'", "on=true"));
+  EXPECT_THAT(steps.assignments("step[0].set"), testing::IsEmpty());
+  EXPECT_EQ(steps.line("step[1]"), 2);
+  EXPECT_EQ(steps.line("step[1].set"), 4);
+  EXPECT_EQ(steps.line("step[2]"), 0);
+  EXPECT_FALSE(steps.is_text("step[1].word"));
+  steps.reject_unknown();  // what an assignment holds is known
+  EXPECT_THAT(complaint([&] { steps.assignments("step[1].word"); }),
+              AllOf(HasSubstr("step[1].word = 1"), HasSubstr("allowed: a table")));
+  const SceneReader other(write("other.toml", ""), {"load.force=[1e-08, 2]", "load.name='a b'", "on=true"});
+}
+
 TEST_F(Tables, AreToldFromOtherValues) {
   for (const char* value : {"3", "\"text\"", "[1, 2]", "[]", "[{}, 1]"}) {
     SceneReader other = reader(std::string("step = ") + value);
