@@ -40,6 +40,8 @@ struct HertzEllipse {
   double semi_axis_2;
   double peak_pressure;
   double approach;
+  double friction_arm;  ///< mean distance of the pressure from the axis: gross slip in torsion takes mu W
+                        ///< times it
 };
 
 /// Gap x1^2/(2 R_1) + x2^2/(2 R_2) pressed by W. Exact (no approximation of the ellipticity): root of the
