@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "convergence/extrapolation.hpp"
+#include "convergence/limit.hpp"
 #include "convergence/result.hpp"
 #include "solver/scene.hpp"
 
@@ -15,11 +15,11 @@ namespace {
 namespace fs = std::filesystem;
 using solver::Index;
 
-const Quantity kTwist{"twist", "twist_angle", "rad"};
-const Quantity kDisplacement{"displacement", "displacement", "m"};
-const Quantity kMoment{"moment", "moment", "N m"};
-const Quantity kStickRatio{"stick ratio", "stick_ratio", ""};
-const Quantity kLost{"lost in the last step", "dissipated", "J"};
+const GalleryQuantity kTwist{"twist", "twist_angle", "rad"};
+const GalleryQuantity kDisplacement{"displacement", "displacement", "m"};
+const GalleryQuantity kMoment{"moment", "moment", "N m"};
+const GalleryQuantity kStickRatio{"stick ratio", "stick_ratio", ""};
+const GalleryQuantity kLost{"lost in the last step", "dissipated", "J"};
 
 const GalleryScene kScenes[] = {
     {"paper", "Sphere in torsion", "the paper’s case: a ring slips, the middle sticks", kTwist},
@@ -49,12 +49,13 @@ const GalleryScene kScenes[] = {
 
 bool has_height_map(const solver::Scene& scene) { return solver::find_height_map(scene.surfaces) != nullptr; }
 
-/// The grid whose longer side has so many cells, in the shape of the scene's own; a height map has its own.
-std::vector<std::string> cells_override(const solver::Scene& scene, Index across) {
+/// Of what answers to a smooth contact as a whole.
+constexpr double kSmoothOrder = 2.0;
+
+/// A height map has its own grid.
+std::vector<std::string> grid_overrides(const solver::Scene& scene, Index across) {
   if (has_height_map(scene)) return {};
-  const Index longer = std::max(scene.cells[0], scene.cells[1]);
-  return {
-      fmt::format("grid.cells=[{},{}]", across * scene.cells[0] / longer, across * scene.cells[1] / longer)};
+  return {cells_override(scene, across)};
 }
 
 /// A number of a result, or the length of a pair; NaN where there is none.
@@ -83,19 +84,16 @@ void add_judgement(Json& row, const GalleryScene& scene, const std::vector<Json>
     set_missing(row, "error", reason);
     return;
   }
-  std::array<double, 3> values{};
-  std::array<double, 3> sizes{};
-  for (std::size_t i = 0; i < 3; ++i) {
-    values[i] = read(meshes[i], key);
-    sizes[i] = meshes[i]["cell_size"][0].get<double>();
-  }
-  const Extrapolation limit = extrapolate(values, sizes);
-  set_number(row, "reference", limit.limit, "the solve broke down");
-  row["basis"] = limit.order ? "extrapolated" : "finest mesh";
-  set_number(row, "uncertainty", limit.uncertainty / std::abs(limit.limit), "the solve broke down");
+  std::vector<MeshSample> samples;
+  for (const Json& mesh : meshes) samples.push_back({mesh["cell_size"][0].get<double>(), read(mesh, key)});
+  const Limit limit = richardson_limit(samples, kSmoothOrder);
+  const bool extrapolated = limit.value != value;
+  set_number(row, "reference", limit.value, "the solve broke down");
+  row["basis"] = extrapolated ? "extrapolated" : "finest mesh";
+  set_number(row, "uncertainty", limit.uncertainty / std::abs(limit.value), "the solve broke down");
   const std::string unfitted = "the meshes give no order between 0.5 and 3: the finest value stands";
-  set_number(row, "order", limit.order.value_or(NAN), unfitted);
-  set_number(row, "error", limit.order ? value / limit.limit - 1.0 : NAN, unfitted);
+  set_number(row, "order", extrapolated ? limit.order.value : NAN, unfitted);
+  set_number(row, "error", extrapolated ? value / limit.value - 1.0 : NAN, unfitted);
 }
 
 Json mesh_json(const GalleryScene& scene, const Json& result) {
@@ -132,7 +130,7 @@ Json gallery_row(Runner& runner, const GalleryScene& scene, const fs::path& scen
   for (std::size_t i = has_height_map(own) ? 2 : 0; i < 3; ++i) {
     const bool finest = i == 2;
     meshes.push_back(runner.solve(fmt::format("gallery-{}-{}", scene.stem, across[i]), file,
-                                  cells_override(own, across[i]), finest ? keep_fields : Look{},
+                                  grid_overrides(own, across[i]), finest ? keep_fields : Look{},
                                   finest ? fields / picture : fs::path{}));
   }
   Json row{{"scene", scene.stem},

@@ -12,7 +12,7 @@
 namespace slipstick::convergence {
 
 /// The number that a scene is judged by, at the end of its last step; in results under `key`.
-struct Quantity {
+struct GalleryQuantity {
   std::string name;
   std::string key;
   std::string unit;  ///< empty: a ratio
@@ -22,7 +22,7 @@ struct GalleryScene {
   std::string stem;  ///< of its scene file
   std::string title;
   std::string shows;  ///< one sentence
-  Quantity quantity;
+  GalleryQuantity quantity;
   /// Of a height map, or of a random surface: finer meshes see more of it, so their values follow no power of
   /// the cell size and nothing is extrapolated.
   bool rough = false;

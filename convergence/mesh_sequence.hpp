@@ -1,0 +1,54 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace slipstick::convergence {
+
+/// A quantity on one mesh, or on several grids of about the same cell size that lie differently under the
+/// contact.
+struct MeshSample {
+  double size;          ///< cell size; only ratios matter
+  double value;         ///< the quantity itself, or its signed error; mean over the grids
+  double spread = 0.0;  ///< standard deviation from grid to grid, of one grid
+  int grids = 1;
+  double noise = 0.0;  ///< bound of what iteration and rounding leave undetermined
+};
+
+/// What a sequence of meshes shows.
+enum class OrderVerdict { asymptotic, preasymptotic, superconvergent, oscillatory, floor, too_few };
+std::string to_string(OrderVerdict verdict);
+
+/// The samples that are numbers, of at least one grid, coarsest first.
+struct MeshSequence {
+  std::vector<MeshSample> meshes;
+  std::string left_out;  ///< which samples are none; empty where all are
+};
+
+/// Throws std::invalid_argument for a size that is not positive and for one given twice.
+MeshSequence coarsest_first(const std::vector<MeshSample>& samples);
+
+/// Three values are the fewest that a limit, a factor and an order can be told from.
+inline constexpr std::size_t kFewestMeshes = 3;
+
+/// An error, or the distance of two values, is told from its noise where it is so many times as large: a
+/// tenth of it then moves an order between meshes of twice the size by 0.15.
+inline constexpr double kAboveNoise = 10.0;
+
+/// Standard errors that a mean is believed to: 95 % of a normal distribution.
+inline constexpr double kBelievedScatter = 2.0;
+
+/// Of the mean over the grids.
+double standard_error(const MeshSample& sample);
+
+/// How far a value may be from that of its mesh: noise, and scatter of the mean.
+double uncertainty(const MeshSample& sample);
+
+/// Up to here an error of the sample cannot be told from zero.
+double resolution(const MeshSample& sample);
+
+/// Whether the numbers, in the order of the meshes, go up and then down or down and then up by more than the
+/// meshes' resolution.
+bool turns(const std::vector<MeshSample>& meshes);
+
+}  // namespace slipstick::convergence
