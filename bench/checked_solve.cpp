@@ -36,8 +36,8 @@ std::string objection_to(const Scene& scene, const convergence::Errors& errors) 
   const double traction = kTractionErrorTimesCells / cells + root;
   const double twist = kTwistErrorTimesCellsSquared / (cells * cells) +
                        (scene.method == solver::Method::coulomb ? scene.tolerance : root);
-  if (!(errors.traction.l2 <= traction)) {
-    return fmt::format("traction error {:.3g} above {:.3g}", errors.traction.l2, traction);
+  if (!(errors.traction.at_centres.l2 <= traction)) {
+    return fmt::format("traction error {:.3g} above {:.3g}", errors.traction.at_centres.l2, traction);
   }
   if (!(std::abs(errors.twist) <= twist)) {
     return fmt::format("twist error {:.3g} above {:.3g}", errors.twist, twist);

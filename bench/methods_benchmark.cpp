@@ -94,17 +94,17 @@ Loosest loosest(Scene scene, double wanted_error) {
     scene.tolerance = tolerance_of_digits(digits);
     CheckedSolution checked = slipstick::bench::solve_and_check(scene);
     const bool right = checked.objection.empty();
-    const double error = checked.errors.traction.l2;
-    const bool better =
-        !best || !best->checked.objection.empty() || (right && error < best->checked.errors.traction.l2);
+    const double error = checked.errors.traction.at_centres.l2;
+    const bool better = !best || !best->checked.objection.empty() ||
+                        (right && error < best->checked.errors.traction.at_centres.l2);
     if (better) best = {scene, std::move(checked), right && error <= 1.1 * wanted_error};
   }
   return *best;
 }
 
 void show_methods(benchmark::State& state, const Loosest& coulomb, const Loosest& paper) {
-  state.counters["traction_error"] = coulomb.checked.errors.traction.l2;
-  state.counters["paper_traction_error"] = paper.checked.errors.traction.l2;
+  state.counters["traction_error"] = coulomb.checked.errors.traction.at_centres.l2;
+  state.counters["paper_traction_error"] = paper.checked.errors.traction.at_centres.l2;
   state.counters["twist_error"] = coulomb.checked.errors.twist;
   state.counters["paper_twist_error"] = paper.checked.errors.twist;
   state.counters["applications"] = coulomb.checked.solution.operator_applications;
@@ -143,7 +143,7 @@ void against_paper_method(benchmark::State& state, const Contest& contest) {
   Scene by_the_paper = scene;
   by_the_paper.method = solver::Method::paper;
   Loosest coulomb{scene, slipstick::bench::solve_and_check(scene), true};
-  const double wanted_error = coulomb.checked.errors.traction.l2;
+  const double wanted_error = coulomb.checked.errors.traction.at_centres.l2;
   if (contest.both_loosest) coulomb = loosest(scene, wanted_error);
   const Loosest paper = loosest(by_the_paper, wanted_error);
   const std::string objection = coulomb.checked.objection + paper.checked.objection;

@@ -34,7 +34,7 @@ bool accept(benchmark::State& state, const CheckedSolution& checked) {
 
 void show_errors(benchmark::State& state, const CheckedSolution& checked) {
   state.counters["twist_error"] = checked.errors.twist;
-  state.counters["traction_error"] = checked.errors.traction.l2;
+  state.counters["traction_error"] = checked.errors.traction.at_centres.l2;
   state.counters["gap"] = checked.solution.certificate.gap;
 }
 

@@ -50,12 +50,13 @@ Oracle require_oracle(const solver::Scene& scene) {
   for (int cycle = 0; cycle < scene.cycles; ++cycle) {
     for (const solver::Step& step : scene.steps) {
       exact = history->advance(step);
-      if (exact.oracle) continue;
+      if (exact.oracle && exact.oracle->only_normal.empty()) continue;
       if (exact.out_of_range) {
         throw solver::InputError(file, fmt::format("{}: {}", load_text(step), exact.reason));
       }
-      throw solver::InputError(file, "solver.model", "\"exact\"",
-                               fmt::format("auto, full ({})", exact.reason));
+      throw solver::InputError(
+          file, "solver.model", "\"exact\"",
+          fmt::format("auto, full ({})", exact.oracle ? exact.oracle->only_normal : exact.reason));
     }
   }
   return *exact.oracle;

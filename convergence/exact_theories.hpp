@@ -23,6 +23,9 @@ std::unique_ptr<ExactHistory> force_history(const solver::Scene& scene, double g
 /// Dissimilar bodies pressed together, more and more. Throws what Goodman's and Spence's solutions throw.
 std::unique_ptr<ExactHistory> frictional_indentation(const solver::Scene& scene);
 
+/// Normal contact and limit moment of an ellipsoid, under any loads.
+std::unique_ptr<ExactHistory> pressed_ellipse(const solver::Scene& scene);
+
 /// No answer, for this reason.
 std::unique_ptr<ExactHistory> no_theory(const std::string& reason);
 

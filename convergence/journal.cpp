@@ -1,6 +1,7 @@
 #include "convergence/journal.hpp"
 
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <iterator>
@@ -21,13 +22,19 @@ std::string identify_program() {
                      fs::last_write_time(program).time_since_epoch().count());
 }
 
+/// The executable that runs, whatever becomes of its file meanwhile.
+const std::string& program() {
+  static const std::string identity = identify_program();
+  return identity;
+}
+
 }  // namespace
 
 void write_json_file(const fs::path& file, const Json& json) {
   const std::string content = json.dump(1) + "\n";
   std::ifstream old(file);
   if (old && std::string(std::istreambuf_iterator<char>(old), {}) == content) return;  // keeps its time
-  const fs::path draft = file.string() + ".part";
+  const fs::path draft = fmt::format("{}.part{}", file.string(), getpid());
   std::ofstream stream(draft);
   stream << content;
   if (!stream.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
@@ -35,20 +42,29 @@ void write_json_file(const fs::path& file, const Json& json) {
   fs::rename(draft, file);
 }
 
-Journal::Journal(fs::path folder) : folder_(std::move(folder)), program_(identify_program()) {
+Journal::Journal(fs::path folder) : folder_(std::move(folder)), program_(program()) {
   fs::create_directories(folder_);
+}
+
+std::optional<Json> Journal::find(const std::string& name, const std::string& question) const {
+  std::ifstream stream(file(name));
+  const Json found = stream ? Json::parse(stream, nullptr, false) : Json();
+  const bool finished = found.is_object() && found.value("program", "") == program_ &&
+                        found.value("question", "") == question && found.contains("result");
+  return finished ? std::optional(found["result"]) : std::nullopt;
+}
+
+void Journal::keep(const std::string& name, const std::string& question, const Json& result) const {
+  write_json_file(file(name), {{"program", program_}, {"question", question}, {"result", result}});
 }
 
 Json Journal::point(const std::string& name, const std::string& question,
                     const std::function<Json()>& compute, const fs::path& also) {
-  const fs::path file = folder_ / (name + ".json");
-  std::ifstream stream(file);
-  const Json found = stream ? Json::parse(stream, nullptr, false) : Json();
-  reused_ = found.is_object() && found.value("program", "") == program_ &&
-            found.value("question", "") == question && (also.empty() || fs::exists(also));
-  if (reused_) return found["result"];
+  std::optional<Json> found = find(name, question);
+  reused_ = found && (also.empty() || fs::exists(also));
+  if (reused_) return *std::move(found);
   Json result = compute();
-  write_json_file(file, {{"program", program_}, {"question", question}, {"result", result}});
+  keep(name, question, result);
   return result;
 }
 

@@ -13,6 +13,10 @@
 namespace slipstick::convergence {
 namespace {
 
+bool is_elliptic(const solver::Surface& surface) {
+  return surface.shape == solver::Shape::ellipsoid && surface.radius_1 != surface.radius_2;
+}
+
 /// Why a surface has no exact solution here; empty if it has one.
 std::string obstacle(const std::vector<solver::Surface>& surfaces) {
   using solver::Shape;
@@ -20,9 +24,6 @@ std::string obstacle(const std::vector<solver::Surface>& surfaces) {
   const solver::Surface& surface = surfaces.front();
   const char* detail = nullptr;
   if (surface.shape == Shape::height_map || surface.shape == Shape::roughness) detail = "";
-  if (surface.shape == Shape::ellipsoid && surface.radius_1 != surface.radius_2) {
-    detail = " with two different radii";
-  }
   if (surface.shape == Shape::flat_punch && surface.inner_radius > 0.0) detail = " with an inner radius";
   if (detail == nullptr) return "";
   return fmt::format("no exact solution is known here for shape = \"{}\"{}", to_string(surface.shape),
@@ -57,8 +58,9 @@ std::optional<double> gap_exponent(const solver::Surface& surface) {
   using solver::Shape;
   switch (surface.shape) {
     case Shape::sphere:
-    case Shape::ellipsoid:
       return 2.0;
+    case Shape::ellipsoid:
+      return is_elliptic(surface) ? std::nullopt : std::optional(2.0);
     case Shape::cone:
       return 1.0;
     case Shape::flat_punch:
@@ -125,6 +127,20 @@ std::unique_ptr<ExactHistory> history_of_dissimilar(const solver::Scene& scene) 
 
 }  // namespace
 
+double Oracle::radius(double y1, double y2) const {
+  const double along = std::cos(angle) * y1 + std::sin(angle) * y2;
+  const double across = std::cos(angle) * y2 - std::sin(angle) * y1;
+  return std::sqrt(along * along / axis_ratio + across * across * axis_ratio);
+}
+
+double Oracle::longer_semi_axis() const {
+  return contact_radius * std::sqrt(std::max(axis_ratio, 1.0 / axis_ratio));
+}
+
+double Oracle::shorter_semi_axis() const {
+  return contact_radius * std::sqrt(std::min(axis_ratio, 1.0 / axis_ratio));
+}
+
 double Oracle::pressure(double radius) const {
   const double ratio = radius / contact_radius;
   if (std::isnan(ratio)) return ratio;
@@ -147,6 +163,7 @@ std::unique_ptr<ExactHistory> exact_history(const solver::Scene& scene) {
   const std::string reason = obstacle(scene);
   if (!reason.empty()) return no_theory(reason);
   if (is_coupled(scene)) return history_of_dissimilar(scene);
+  if (is_elliptic(scene.surfaces.front())) return pressed_ellipse(scene);
   const auto& steps = scene.steps;
   if (!std::all_of(steps.begin(), steps.end(), without_force)) {
     if (std::all_of(steps.begin(), steps.end(), without_torsion)) return history_under_force(scene);

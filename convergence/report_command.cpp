@@ -43,7 +43,8 @@ int run(const Options& options, std::ostream& text, nlohmann::ordered_json& resu
   const fs::path scene = options.scene.empty() ? scenes / "paper.toml" : fs::path(options.scene);
   const fs::path output = options.output;
   const fs::path data = output / "data";
-  result = validate(scene, scenes, options.quick ? quick_validation() : full_validation(), data);
+  result = validate(scene, scenes, project_file("convergence/studies"),
+                    options.quick ? quick_validation() : full_validation(), data);
   draw(data, output);
   text << "page: " << (output / "index.html").string() << '\n';
   return 0;

@@ -26,31 +26,34 @@ Json grids_json(const std::vector<solver::GridWork>& grids) {
   return rows;
 }
 
-Json field_error_json(const FieldError& error, const std::string& reason) {
-  Json json;
-  set_number(json, "l1", error.l1, reason);
-  set_number(json, "l2", error.l2, reason);
-  set_number(json, "max", error.max, reason);
-  return json;
-}
-
 const std::string kNoPeak = "the exact pressure has no finite peak";
+
+void set_pair(Json& json, const std::string& key, const std::array<double, 2>& pair,
+              const std::string& reason) {
+  if (std::isfinite(pair[0]) && std::isfinite(pair[1])) {
+    json[key] = pair;
+  } else {
+    set_missing(json, key, reason);
+  }
+}
 
 Json exact_json(const Oracle& oracle) {
   Json json;
-  const std::string unknown = "the exact solution does not say";
+  const std::string unknown =
+      oracle.only_normal.empty() ? "the exact solution does not say" : oracle.only_normal;
   set_number(json, "twist_angle", oracle.twist_angle, unknown);
   set_number(json, "twist", oracle.state.twist, unknown);
   set_number(json, "moment", oracle.moment, unknown);
   set_number(json, "moment_limit", oracle.moment_limit, unknown);
-  json["force"] = oracle.force;
-  json["displacement"] = oracle.displacement;
+  set_pair(json, "force", oracle.force, unknown);
+  set_pair(json, "displacement", oracle.displacement, unknown);
   set_number(json, "stick_radius", oracle.stick_radius, unknown);
   set_number(json, "stick_ratio", oracle.state.stick_ratio, unknown);
   set_number(json, "contact_radius", oracle.contact_radius, unknown);
   set_number(json, "peak_pressure", oracle.peak_pressure, kNoPeak);
   set_number(json, "approach", oracle.approach, unknown);
   set_number(json, "dissipated", oracle.dissipated, unknown);
+  json["relative_uncertainty"] = oracle.relative_uncertainty;
   return json;
 }
 
@@ -64,32 +67,24 @@ void add_errors(Json& json, const Solution& solution, const OracleAnswer& exact)
   const Oracle& oracle = *exact.oracle;
   const Errors errors = compare(solution, oracle);
   const std::string reason = "the exact value is zero or not known, or the result is not a number";
-  set_number(json, "twist_error", errors.twist, reason);
+  const std::string& of_friction = oracle.only_normal.empty() ? reason : oracle.only_normal;
+  set_number(json, "twist_error", errors.twist, of_friction);
   set_number(json, "moment_error", errors.moment, reason);
   set_number(json, "moment_limit_error", errors.moment_limit, reason);
-  set_number(json, "displacement_error", errors.displacement, reason);
-  set_number(json, "stick_radius_error", errors.stick_radius, reason);
-  set_number(json, "stick_ratio_error", errors.stick_ratio, reason);
-  set_number(json, "stick_radius_counted_error", errors.stick_radius_counted, reason);
+  set_number(json, "displacement_error", errors.displacement, of_friction);
+  set_number(json, "stick_radius_error", errors.stick_radius, of_friction);
+  set_number(json, "stick_ratio_error", errors.stick_ratio, of_friction);
+  set_number(json, "stick_radius_counted_error", errors.stick_radius_counted, of_friction);
   set_number(json, "contact_radius_error", errors.contact_radius, reason);
   set_number(json, "peak_pressure_error", errors.peak_pressure,
              std::isfinite(oracle.peak_pressure) ? reason : kNoPeak);
-  set_number(json, "dissipated_error", errors.dissipated, reason);
-  json["traction_error"] = field_error_json(errors.traction, reason);
+  set_number(json, "dissipated_error", errors.dissipated, of_friction);
+  json["traction_error"] = traction_error_json(errors.traction, of_friction);
   json["pressure_error"] = field_error_json(errors.pressure, reason);
   json["exact"] = exact_json(oracle);
 }
 
 const std::string kBroken = "the solve broke down, or there is no friction";
-
-Json certificate_json(const solver::Certificate& certificate) {
-  Json json;
-  set_number(json, "gap", certificate.gap, kBroken);
-  set_number(json, "moment", certificate.moment, kBroken);
-  set_number(json, "force", certificate.force, kBroken);
-  set_number(json, "friction_bound", certificate.friction_bound, kBroken);
-  return json;
-}
 
 /// How far the loads are from what the contact can carry, and how it would slide.
 Json limit_json(const solver::LimitLoad& limit) {
@@ -184,7 +179,7 @@ Json step_result(const solver::Scene& scene, const Solution& solution, const Ora
   add_status(json, solution);
   add_state(json, scene, solution);
   add_counts(json, scene, solution);
-  json["certificate"] = certificate_json(solution.certificate);
+  json["certificate"] = certificate_json(solution.certificate, kBroken);
   add_errors(json, solution, exact);
   add_seconds(json, solution.seconds);
   return json;
@@ -210,7 +205,7 @@ Json solve_result(const solver::Scene& scene, const Solution& solution, const Or
   json["pressure_complementarity"] = solution.normal.complementarity;
   json["tolerance"] = scene.tolerance;
   set_number(json, "change", solution.tangential.change, "the solve broke down");
-  json["certificate"] = certificate_json(solution.certificate);
+  json["certificate"] = certificate_json(solution.certificate, kBroken);
   set_number(json["slip_direction"], "mean", solution.slip_direction.mean, kBroken);
   set_number(json["slip_direction"], "max", solution.slip_direction.max, kBroken);
   add_errors(json, solution, exact);
@@ -281,6 +276,23 @@ std::string limit_text(const Json& r) {
                                         short_text(pair[0]), short_text(pair[1]), turns ? " m" : ""));
 }
 
+/// What fields are off by, or why that is not known.
+std::string exact_answer_text(const Json& r) {
+  const Json& error = r["traction_error"];
+  if (!error.is_object()) {
+    return text_line("exact answer", "none: " + r["traction_error_reason"].get<std::string>());
+  }
+  if (error["l1"].is_number()) {
+    return text_line("traction error", fmt::format("{} in L1, {} in L2 (relative)", number_text(error["l1"]),
+                                                   number_text(error["l2"])));
+  }
+  if (r["exact"]["stick_ratio"].is_number()) return "";
+  return text_line("exact answer", r["exact"]["stick_ratio_reason"].get<std::string>()) +
+         text_line("pressure error",
+                   fmt::format("{} in L1, {} in L2 (relative)", number_text(r["pressure_error"]["l1"]),
+                               number_text(r["pressure_error"]["l2"])));
+}
+
 /// How pressure and shear were brought together.
 std::string coupling_text(const Json& r) {
   if (!r.contains("turns")) return "";
@@ -297,13 +309,7 @@ std::string solve_text(const Json& r) {
                   r["cells"][0].get<int>(), r["cells"][1].get<int>(), r["pressure"].get<std::string>(),
                   r["operator"].get<std::string>(), r["method"].get<std::string>());
   text += status_text(r) + state_text(r) + limit_text(r) + coupling_text(r);
-  const Json& error = r["traction_error"];
-  if (!error.is_object()) {
-    text += text_line("exact answer", "none: " + r["traction_error_reason"].get<std::string>());
-  } else if (error["l1"].is_number()) {
-    text += text_line("traction error", fmt::format("{} in L1, {} in L2 (relative)", number_text(error["l1"]),
-                                                    number_text(error["l2"])));
-  }
+  text += exact_answer_text(r);
   text += text_line("certificate",
                     fmt::format("gap/energy {}, moment off by {}, |q| above mu p by {}",
                                 number_text(r["certificate"]["gap"]), number_text(r["certificate"]["moment"]),

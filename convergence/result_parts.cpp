@@ -57,6 +57,33 @@ void set_number(Json& object, const std::string& key, double value, const std::s
   }
 }
 
+Json field_error_json(const FieldError& error, const std::string& reason) {
+  Json json;
+  set_number(json, "l1", error.l1, reason);
+  set_number(json, "l2", error.l2, reason);
+  set_number(json, "max", error.max, reason);
+  return json;
+}
+
+Json traction_error_json(const TractionError& error, const std::string& reason) {
+  Json json = field_error_json(error.at_centres, reason);
+  json["averaged"] = field_error_json(error.averaged, reason);
+  json["stick_edge"] = field_error_json(error.stick_edge, reason);
+  json["contact_edge"] = field_error_json(error.contact_edge, reason);
+  json["inside"] = field_error_json(error.inside, reason);
+  json["outside"] = field_error_json(error.outside, reason);
+  return json;
+}
+
+Json certificate_json(const solver::Certificate& certificate, const std::string& reason) {
+  Json json;
+  set_number(json, "gap", certificate.gap, reason);
+  set_number(json, "moment", certificate.moment, reason);
+  set_number(json, "force", certificate.force, reason);
+  set_number(json, "friction_bound", certificate.friction_bound, reason);
+  return json;
+}
+
 Json model_json(const std::vector<solver::Omission>& left_out) {
   Json list = Json::array();
   for (const auto& [what, why] : left_out) list.push_back({{"what", what}, {"why", why}});

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "convergence/errors.hpp"
+#include "solver/certificate.hpp"
 #include "solver/model.hpp"
 
 /// What all results have in common, on a grid or not.
@@ -17,6 +19,12 @@ void set_missing(Json& object, const std::string& key, const std::string& reason
 
 /// JSON has no NaN and no infinity: such a number is missing.
 void set_number(Json& object, const std::string& key, double value, const std::string& reason);
+
+/// Errors of fields: of tractions at cell centres, beside it against cell averages, by region.
+Json field_error_json(const FieldError& error, const std::string& reason);
+Json traction_error_json(const TractionError& error, const std::string& reason);
+
+Json certificate_json(const solver::Certificate& certificate, const std::string& reason);
 
 /// What a model leaves out, as results have it.
 Json model_json(const std::vector<solver::Omission>& left_out);

@@ -3,22 +3,13 @@
 #include <chrono>
 #include <cstddef>
 #include <filesystem>
-#include <functional>
 #include <string>
 #include <vector>
 
 #include "convergence/journal.hpp"
-#include "convergence/oracle.hpp"
-#include "convergence/result_parts.hpp"
-#include "solver/solve.hpp"
+#include "convergence/point.hpp"
 
 namespace slipstick::convergence {
-
-/// A whole file.
-std::string read_text(const std::filesystem::path& file);
-
-/// What else is done with the solution of the last step where it is computed.
-using Look = std::function<void(Json&, const solver::Solution&, const OracleAnswer&)>;
 
 /// Runs solves one after the other, says on standard error how far it is, and keeps what is finished.
 class Runner {

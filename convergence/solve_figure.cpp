@@ -1,43 +1,16 @@
 #include "convergence/solve_figure.hpp"
 
-#include <stdlib.h>
-
 #include <algorithm>
 #include <array>
 #include <fstream>
-#include <stdexcept>
 #include <string>
 
 #include "convergence/python_script.hpp"
+#include "convergence/temporary_folder.hpp"
 #include "solver/input_error.hpp"
 
 namespace slipstick::convergence {
-namespace {
-
 namespace fs = std::filesystem;
-
-/// A folder that goes when this goes.
-class TemporaryFolder {
- public:
-  TemporaryFolder() {
-    std::string name = fs::temp_directory_path() / "slipstick-XXXXXX";
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
-    path_ = name;
-  }
-  ~TemporaryFolder() {
-    std::error_code ignored;
-    fs::remove_all(path_, ignored);
-  }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
-
-  fs::path operator/(const char* file) const { return path_ / file; }
-
- private:
-  fs::path path_;
-};
-
-}  // namespace
 
 void require_figure_format(const fs::path& figure) {
   constexpr std::array kEndings{".svg", ".pdf", ".png"};

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -15,6 +16,7 @@
 #include "convergence/provenance.hpp"
 #include "convergence/result.hpp"
 #include "convergence/runner.hpp"
+#include "convergence/study.hpp"
 #include "solver/input_error.hpp"
 
 namespace slipstick::convergence {
@@ -70,7 +72,7 @@ Json computed_profile(const solver::Solution& solution, const Oracle& oracle) {
 }
 
 /// The scene at one mesh, pressure model and load, by one method.
-struct Point {
+struct MeshPoint {
   Index cells;
   std::string pressure;
   double moment_ratio;
@@ -89,7 +91,7 @@ struct Point {
 Json profile(Runner& runner, const fs::path& scene_file, const fs::path& folder, Index cells,
              double moment_ratio) {
   const std::string fields = fmt::format("fields-{}.h5", moment_ratio);
-  const Point point{cells, "solved", moment_ratio};
+  const MeshPoint point{cells, "solved", moment_ratio};
   Json result = runner.solve(
       point.name() + "-profile", scene_file, point.overrides(),
       [&](Json& computed, const solver::Solution& solution, const OracleAnswer& exact) {
@@ -135,12 +137,31 @@ Json summary(const solver::Scene& scene, const Oracle& oracle) {
 
 }  // namespace
 
+namespace {
+
+/// The studies of meshes and tolerances, of the scene at hand, up to so many cells.
+Json study_results(const fs::path& scene_file, const fs::path& studies, Index most, const fs::path& folder) {
+  PointRunner runner(folder / "points");
+  Json results = Json::array();
+  for (const char* file : {"paper_mesh.toml", "paper_tolerance.toml"}) {
+    Study study = read_study(studies / file);
+    study.scene = scene_file;
+    for (Index& cells : study.cells) cells = std::min(cells, most);
+    study.cells.erase(std::unique(study.cells.begin(), study.cells.end()), study.cells.end());
+    results.push_back(run_study(study, runner));
+  }
+  return results;
+}
+
+}  // namespace
+
 ValidationSize full_validation() {
   return {.loading_cells = 128,
           .mesh_cells = {32, 64, 128, 256},
           .ellipse_cells = {64, 128, 256},
           .gallery_cells = {64, 128, 256},
-          .moment_ratios = {0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99}};
+          .moment_ratios = {0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99},
+          .study_cells = 512};
 }
 
 ValidationSize quick_validation() {
@@ -148,11 +169,12 @@ ValidationSize quick_validation() {
           .mesh_cells = {16, 32, 64},
           .ellipse_cells = {32, 64},
           .gallery_cells = {16, 32, 64},
-          .moment_ratios = {0.05, 0.2, 0.4, 0.6, 0.8, 0.95}};
+          .moment_ratios = {0.05, 0.2, 0.4, 0.6, 0.8, 0.95},
+          .study_cells = 64};
 }
 
-Json validate(const fs::path& scene_file, const fs::path& scenes, const ValidationSize& size,
-              const fs::path& folder) {
+Json validate(const fs::path& scene_file, const fs::path& scenes, const fs::path& studies,
+              const ValidationSize& size, const fs::path& folder) {
   const solver::Scene scene = solver::read_scene(scene_file);
   if (scene.surfaces.front().shape != solver::Shape::sphere) {  // whose equations the paper's are
     throw solver::InputError(scene_file.string(), "upper.shape",
@@ -168,7 +190,7 @@ Json validate(const fs::path& scene_file, const fs::path& scenes, const Validati
                       std::size(kMethods) * (size.mesh_cells.size() + size.ellipse_cells.size()) + 1 +
                       gallery_solves();
   Runner runner(folder, solves);
-  const auto solve = [&](const Point& point) {
+  const auto solve = [&](const MeshPoint& point) {
     return runner.solve(point.name(), scene_file, point.overrides());
   };
 
@@ -205,9 +227,9 @@ Json validate(const fs::path& scene_file, const fs::path& scenes, const Validati
       report["methods"].push_back(solve({cells, "solved", kMethodsRatio, method}));
     }
     for (const Index cells : size.ellipse_cells) {
-      const Json result =
-          runner.solve(fmt::format("{}-ellipse-{}", method, cells), scenes / "ellipse.toml",
-                       {fmt::format("grid.cells=[{},{}]", cells, cells / 2), Point::method_override(method)});
+      const Json result = runner.solve(
+          fmt::format("{}-ellipse-{}", method, cells), scenes / "ellipse.toml",
+          {fmt::format("grid.cells=[{},{}]", cells, cells / 2), MeshPoint::method_override(method)});
       Json row;  // what there is without an exact answer
       for (const char* key : {"method", "moment_ratio", "cells", "certificate", "slip_direction",
                               "operator_applications", "iterations", "seconds", "twist"}) {
@@ -220,6 +242,7 @@ Json validate(const fs::path& scene_file, const fs::path& scenes, const Validati
                             by_method(report["ellipse"], "paper"));
   fs::copy(scenes, folder / "scenes", fs::copy_options::recursive | fs::copy_options::update_existing);
   report["gallery"] = gallery(runner, scenes, size.gallery_cells, folder);
+  report["studies"] = study_results(scene_file, studies, size.study_cells, folder);
   write_json_file(folder / "report.json", report);
   return report;
 }

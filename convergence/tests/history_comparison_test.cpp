@@ -85,16 +85,16 @@ void expect_every_reversal_as_good_as_the_first(const Scene& cycle) {
       EXPECT_NEAR(motion_error(errors), motion_error(first), kMotionToGap);
       EXPECT_NEAR(errors.dissipated, first.dissipated, 10.0 * kMotionToGap);  // a tenth of the energy
       EXPECT_NEAR(errors.stick_radius, first.stick_radius, kTractionToGap);
-      EXPECT_NEAR(errors.traction.l2, first.traction.l2, kTractionToGap);
+      EXPECT_NEAR(errors.traction.at_centres.l2, first.traction.at_centres.l2, kTractionToGap);
     }
   }
   const Errors& at128 = fine.front().errors;
   EXPECT_LE(motion_error(at128), kMotionAt128);
-  EXPECT_LE(at128.traction.l1, kTractionAt128);
+  EXPECT_LE(at128.traction.at_centres.l1, kTractionAt128);
   EXPECT_LE(std::abs(at128.dissipated), kMotionAt128);
   EXPECT_LE(std::abs(at128.stick_radius), 1e-3);
   EXPECT_LE(motion_error(at128), motion_error(coarse.front().errors) * std::pow(2.0, -1.5));
-  EXPECT_LE(at128.traction.l2, coarse.front().errors.traction.l2 * std::pow(2.0, -0.9));
+  EXPECT_LE(at128.traction.at_centres.l2, coarse.front().errors.traction.at_centres.l2 * std::pow(2.0, -0.9));
 }
 
 TEST(HistoryComparison, TorsionTurnsBackAndForth) {
@@ -116,7 +116,7 @@ void expect_errors_of_first_loading(const Scene& scene, double cells_to_the_radi
     // Two or three branches of first loading, enlarged twice.
     EXPECT_LE(motion_error(errors) * motion(exact), 5.0 * kMotionAt128 * largest);
     EXPECT_LE(std::abs(errors.dissipated) * exact.dissipated, 5.0 * kMotionAt128 * first_lost);
-    EXPECT_LE(errors.traction.l1, kTractionAt128);
+    EXPECT_LE(errors.traction.at_centres.l1, kTractionAt128);
     EXPECT_LE(std::abs(errors.stick_radius) * exact.stick_radius,
               0.5 * exact.contact_radius / cells_to_the_radius);
   }
@@ -315,7 +315,7 @@ TEST(HistoryComparison, ASphereOffTheOriginTurnsAboutItsAxis) {
     EXPECT_NEAR(b.twist, a.twist, kMotionToGap);
     EXPECT_NEAR(b.dissipated, a.dissipated, 10.0 * kMotionToGap);
     EXPECT_NEAR(b.moment_limit, a.moment_limit, 1e-9);
-    EXPECT_NEAR(b.traction.l2, a.traction.l2, kTractionToGap);
+    EXPECT_NEAR(b.traction.at_centres.l2, a.traction.at_centres.l2, kTractionToGap);
     EXPECT_NEAR(b.stick_radius, a.stick_radius, kTractionToGap);
     // A turn about c moves what is at the origin by (c2, -c1) times the twist.
     const double twist = there[i].solution.twist_angle;

@@ -76,6 +76,23 @@ TEST(OracleHistory, TractionsOfTorsionCarryTheMoments) {
   }
 }
 
+/// Hertz's laws, step by step, whatever the history: lengths go with the cube root of the load.
+TEST(OracleHistory, AnEllipseFollowsTheNormalLoadAlone) {
+  Scene scene = scene_of("ellipse");
+  scene.steps.resize(3, scene.steps.front());
+  scene.steps[1].normal = 8.0 * *scene.steps[0].normal;
+  scene.steps[1].force = {10.0, 20.0};
+  scene.steps[2].torsion = {.moment_ratio = {}, .moment = {}, .twist = -1e-4};
+  const std::vector<Oracle> exact = oracles(scene);
+  EXPECT_NEAR(exact[1].contact_radius / exact[0].contact_radius, 2.0, kTolerance);
+  EXPECT_NEAR(exact[1].peak_pressure / exact[0].peak_pressure, 2.0, kTolerance);
+  EXPECT_NEAR(exact[1].approach / exact[0].approach, 4.0, kTolerance);
+  EXPECT_NEAR(exact[1].moment_limit / exact[0].moment_limit, 16.0, kTolerance);
+  EXPECT_NEAR(exact[1].axis_ratio / exact[0].axis_ratio, 1.0, kTolerance);
+  EXPECT_EQ(exact[2].contact_radius, exact[0].contact_radius);
+  EXPECT_EQ(exact[2].twist_angle, -1e-4);
+}
+
 TEST(OracleHistory, TractionsOfAForceCarryIt) {
   for (const char* body : {"paper", "cone", "flat_punch"}) {
     Scene scene = without_contraction(scene_of(body));
