@@ -50,7 +50,7 @@ fs::path temporary(const std::string& name) {
 }
 
 TEST(Program, EveryCommandHasHelpWithAnExample) {
-  for (const char* command : {"exact", "solve", "report"}) {
+  for (const char* command : {"check", "exact", "gate", "solve", "study", "report"}) {
     const ProgramRun help = run(std::string(command) + " --help");
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_THAT(help.output, AllOf(HasSubstr("Example"), HasSubstr("slipstick " + std::string(command)),
@@ -278,6 +278,50 @@ TEST(Program, PressureFromAFileGivesTheSameAnswer) {
   ASSERT_EQ(second.exit_code, 0) << second.output;
   const double twist = json::parse(first.output)["twist_angle"];
   EXPECT_NEAR(json::parse(second.output)["twist_angle"].get<double>() / twist, 1.0, 1e-12);
+}
+
+std::string check(const std::string& field) {
+  return "check " + kScenes + "/paper.toml " + SLIPSTICK_FIELDS + "/" + field;
+}
+
+TEST(Program, CheckTellsAGoodFieldFromABadOne) {
+  const ProgramRun good = run(check("contact-64-0.9.csv --twist 2.361048651456917e-3"));
+  EXPECT_EQ(good.exit_code, 0) << good.output;
+  EXPECT_THAT(good.output, testing::StartsWith("good: the moment is right"));
+  const ProgramRun bad = run(check("cgcontact-64-0.9.csv --twist 2.21775472e-3"));
+  EXPECT_EQ(bad.exit_code, 1) << bad.output;
+  EXPECT_THAT(bad.output, AllOf(testing::StartsWith("bad: the moment is right"), HasSubstr("6.1 % too low"),
+                                HasSubstr("FAILS")));
+}
+
+TEST(Program, CheckWritesEveryKeyOfTheContract) {
+  const ProgramRun out = run(check("cgcontact-64-0.9.csv --json -"));
+  ASSERT_EQ(out.exit_code, 1) << out.output;
+  const json result = json::parse(out.output);
+  for (const char* key : {"twist_error", "moment_error", "stick_radius_error"}) {
+    EXPECT_TRUE(result[key].is_number()) << key;
+  }
+  for (const char* key : {"l1", "l2", "max"}) EXPECT_TRUE(result["traction_error"][key].is_number()) << key;
+  for (const char* key : {"gap", "moment", "force", "friction_bound"}) {
+    EXPECT_TRUE(result["certificate"][key].is_number()) << key;
+  }
+  for (const char* key : {"mean", "max"}) EXPECT_TRUE(result["slip_direction"][key].is_number()) << key;
+  EXPECT_EQ(result["verdict"], "bad");
+  EXPECT_FALSE(result["why"].get<std::string>().empty());
+}
+
+TEST(Program, CheckOfWhatCannotBeJudgedIsExitCode2) {
+  const ProgramRun missing = run(check("no-such-field.csv"));
+  EXPECT_EQ(missing.exit_code, 2);
+  EXPECT_THAT(missing.output, HasSubstr("no-such-field.csv"));
+  const fs::path file = temporary("nan.csv");
+  std::ofstream(file) << "x1,x2,pressure,q1,q2\n0,0,1,nan,0\n";
+  const ProgramRun nan = run("check " + kScenes + "/paper.toml " + file.string());
+  EXPECT_EQ(nan.exit_code, 2);
+  EXPECT_THAT(nan.output, AllOf(HasSubstr("nan.csv:2"), HasSubstr("a finite number")));
+  std::ofstream(file) << "x1,x2,p,q1,q2\n0,0,1,0,0\n";
+  EXPECT_THAT(run("check " + kScenes + "/paper.toml " + file.string()).output,
+              HasSubstr("no column pressure; its columns: x1, x2, p, q1, q2"));
 }
 
 TEST(Program, ExactWritesEveryKeyOfTheContract) {

@@ -1,0 +1,229 @@
+#include "convergence/check/check.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+
+#include "convergence/check/examination.hpp"
+#include "convergence/check/verdict.hpp"
+#include "convergence/errors.hpp"
+#include "convergence/provenance.hpp"
+#include "solver/solution.hpp"
+#include "solver/stick_front.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+const std::string kNoNumber = "the exact value is zero or not known";
+const std::string kBroken = "not a number";
+
+Json judged_json(const std::vector<Judged>& judged) {
+  Json list = Json::array();
+  for (const Judged& item : judged) {
+    Json& json = list.emplace_back(Json{{"quantity", item.quantity}});
+    set_number(json, "value", item.value, kBroken);
+    set_number(json, "allowed", item.allowed, kBroken);
+    json["holds"] = item.holds();
+  }
+  return list;
+}
+
+Json hypothesis_json(const Hypothesis& hypothesis) {
+  Json json{{"name", hypothesis.name}};
+  set_number(json, "gap", hypothesis.gap, kBroken);
+  set_number(json, "stick_gap", hypothesis.stick_gap, kBroken);
+  set_number(json, "twist_angle", hypothesis.twist, kBroken);
+  return json;
+}
+
+Json diagnosis_json(const Diagnosis& diagnosis) {
+  Json json;
+  json["as_it_should_be"] = hypothesis_json(diagnosis.as_it_should_be);
+  for (const Hypothesis& hypothesis : diagnosis.tried) json["tried"].push_back(hypothesis_json(hypothesis));
+  const auto set_found = [&](const char* key, const std::optional<Hypothesis>& found) {
+    if (found) {
+      json[key] = found->name;
+    } else {
+      set_missing(json, key, "none that was tried explains the gap");
+    }
+  };
+  set_found("kernel", diagnosis.kernel);
+  set_found("friction", diagnosis.friction);
+  json["stick_area_explained"] = diagnosis.stick_area_explained;
+  return json;
+}
+
+void add_field(Json& json, const Examination& e) {
+  const solver::Grid& grid = e.field.grid;
+  json["cells"] = {grid.n1, grid.n2};
+  json["cell_size"] = {grid.h1, grid.h2};
+  json["centre"] = e.field.centre;
+  json["contact_cells"] = (e.contact.pressure > 0.0).count();
+  json["stick_cells"] = (e.stick > 0.0).count();
+  json["conventions"] = e.field.notes;
+}
+
+struct StickArea {
+  double radius;  ///< m
+  double counted;
+  std::string note;
+};
+
+StickArea stick_area(const Examination& e) {
+  const solver::Model& model = e.contact.model;
+  const solver::StickFront front = find_stick_front(model.grid, e.contact.friction_bound, e.slip, e.stick);
+  return {front.radius * model.length_unit, front.counted_radius * model.length_unit, front.why_counted};
+}
+
+void add_state(Json& json, const Examination& e, const StickArea& stick) {
+  const solver::Model& model = e.contact.model;
+  json["normal_load"] = e.contact.pressure.sum() * e.newtons();
+  json["contact_radius"] = measure_contact_radius(model, e.contact.pressure) * model.length_unit;
+  set_number(json, "stick_radius", stick.radius, kBroken);
+  if (!stick.note.empty()) json["stick_radius_note"] = stick.note;
+  json["stick_radius_counted"] = stick.counted;
+  json["moment"] = e.contact.moment() * e.newton_metres();
+  json["moment_limit"] = e.moment_limit * e.newton_metres();
+  const auto [f1, f2] = e.contact.force();
+  json["force"] = {f1 * e.newtons(), f2 * e.newtons()};
+  set_number(json, "twist_angle", e.twist, kBroken);
+  json["twist_inferred"] = !e.twist_given;
+  set_number(json, "twist_that_fits", e.inferred_twist, kBroken);
+  json["displacement"] = {e.displacement[0] * model.length_unit, e.displacement[1] * model.length_unit};
+}
+
+void add_errors(Json& json, const Examination& e, const StickArea& stick) {
+  if (!e.exact.oracle) {
+    for (const char* key : {"twist_error", "moment_error", "stick_radius_error", "contact_radius_error",
+                            "pressure_error", "traction_error"}) {
+      set_missing(json, key, e.exact.reason);
+    }
+    return;
+  }
+  const Oracle& oracle = *e.exact.oracle;
+  const std::string& unknown = oracle.only_normal.empty() ? kNoNumber : oracle.only_normal;
+  const auto set_error = [&](const char* key, double value, double exact) {
+    set_number(json, key, relative_error(value, exact), std::isnan(exact) ? unknown : kNoNumber);
+  };
+  set_error("twist_error", e.twist, oracle.twist_angle);
+  set_error("moment_error", e.contact.moment() * e.newton_metres(), oracle.moment);
+  set_error("stick_radius_error", stick.radius, oracle.stick_radius);
+  set_error("stick_radius_counted_error", stick.counted, oracle.stick_radius);
+  set_error("contact_radius_error", json["contact_radius"], oracle.contact_radius);
+  json["pressure_error"] =
+      field_error_json(pressure_error(e.contact.pressure, oracle, e.contact.model), kNoNumber);
+  json["traction_error"] =
+      traction_error_json(traction_error(e.contact.traction, oracle, e.contact.model), unknown);
+}
+
+/// What the right answer on this mesh has.
+Json yardstick_json(const Examination& e) {
+  const Yardstick& yardstick = e.yardstick;
+  Json json;
+  json["mesh_error"] = yardstick.mesh_error;
+  json["gap"] = yardstick.gap;
+  json["slip_direction"] = yardstick.direction.mean;
+  json["twist_angle"] = yardstick.twist;
+  json["loads_scaled_down"] = yardstick.scaled;
+  json["distance"] = relative_distance(e.contact.traction, yardstick.traction);
+  if (e.exact.oracle && e.exact.oracle->shear) {
+    json["traction_error"] =
+        traction_error_json(traction_error(yardstick.traction, *e.exact.oracle, e.contact.model), kNoNumber);
+  }
+  return json;
+}
+
+}  // namespace
+
+Json check_field(const solver::Scene& scene, const std::filesystem::path& file, std::optional<double> twist) {
+  const Examination e = examine(scene, file, twist);
+  const Verdict verdict = reach_verdict(e);
+  const StickArea stick = stick_area(e);
+  Json json;
+  json["name"] = scene.name;
+  json["field"] = file.string();
+  json["verdict"] = verdict.good ? "good" : "bad";
+  json["why"] = verdict.why;
+  add_field(json, e);
+  add_state(json, e, stick);
+  add_errors(json, e, stick);
+  json["certificate"] = certificate_json(e.certificate, kBroken);
+  set_number(json["slip_direction"], "mean", e.direction.mean, kBroken);
+  set_number(json["slip_direction"], "max", e.direction.max, kBroken);
+  json["yardstick"] = yardstick_json(e);
+  json["judged"] = judged_json(verdict.judged);
+  if (verdict.diagnosis) json["diagnosis"] = diagnosis_json(*verdict.diagnosis);
+  json["provenance"] = provenance(scene.threads);
+  return json;
+}
+
+namespace {
+
+/// Sizes of errors need no more digits.
+std::string judged_text(const Json& value) {
+  return value.is_number() ? fmt::format("{:.1e}", value.get<double>()) : "-";
+}
+
+std::string field_text(const Json& r) {
+  std::string text = text_line("field", r["field"].get<std::string>());
+  text += text_line("grid", fmt::format("{} x {} cells of {} x {} m, {} in contact, {} stick",
+                                        r["cells"][0].get<int>(), r["cells"][1].get<int>(),
+                                        number_text(r["cell_size"][0]), number_text(r["cell_size"][1]),
+                                        r["contact_cells"].get<int>(), r["stick_cells"].get<int>()));
+  for (const Json& note : r["conventions"]) text += text_line("note", note.get<std::string>());
+  return text;
+}
+
+std::string state_and_errors_text(const Json& r) {
+  const auto error = [&](const char* key) {
+    return r[key].is_number() ? fmt::format("   (error {:+.1e})", r[key].get<double>()) : "";
+  };
+  const std::string inferred = r["twist_inferred"].get<bool>() ? ", inferred" : "";
+  return text_line("normal load", number_text(r["normal_load"]) + " N") +
+         text_line("contact radius",
+                   number_text(r["contact_radius"]) + " m" + error("contact_radius_error")) +
+         text_line("moment", fmt::format("{} N m, at most {}{}", number_text(r["moment"]),
+                                         number_text(r["moment_limit"]), error("moment_error"))) +
+         text_line("twist", number_text(r["twist_angle"]) + " rad" + inferred + error("twist_error")) +
+         text_line("stick radius", number_text(r["stick_radius"]) + " m" + error("stick_radius_error"));
+}
+
+std::string traction_text(const Json& r) {
+  const Json& traction = r["traction_error"];
+  if (!traction.is_object()) {
+    return text_line("exact answer", "none: " + r["traction_error_reason"].get<std::string>());
+  }
+  if (!traction["l1"].is_number()) return text_line("exact answer", traction["l1_reason"].get<std::string>());
+  const Json& right = r["yardstick"]["traction_error"];
+  return text_line("traction error", fmt::format("{} in L1, {} in L2; the right answer on this grid: {}, {}",
+                                                 number_text(traction["l1"]), number_text(traction["l2"]),
+                                                 number_text(right["l1"]), number_text(right["l2"])));
+}
+
+std::string certificate_text(const Json& r) {
+  const Json& certificate = r["certificate"];
+  const Json& direction = r["slip_direction"];
+  return text_line("certificate",
+                   fmt::format("gap/energy {}, moment off by {}, |q| above mu p by {}",
+                               number_text(certificate["gap"]), number_text(certificate["moment"]),
+                               number_text(certificate["friction_bound"]))) +
+         text_line("slip direction",
+                   fmt::format("{} degrees off in the mean, {} at most (Coulomb: 0)",
+                               number_text(direction["mean"]), number_text(direction["max"])));
+}
+
+}  // namespace
+
+std::string check_text(const Json& r) {
+  std::string text = fmt::format("{}: {}\n", r["verdict"].get<std::string>(), r["why"].get<std::string>());
+  text += field_text(r) + state_and_errors_text(r) + traction_text(r) + certificate_text(r);
+  for (const Json& item : r["judged"]) {
+    text +=
+        text_line(item["holds"].get<bool>() ? "holds" : "FAILS",
+                  fmt::format("{:<20} {:>8}   allowed on this grid {}", item["quantity"].get<std::string>(),
+                              judged_text(item["value"]), judged_text(item["allowed"])));
+  }
+  return text;
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,244 @@
+#include "convergence/check/diagnosis.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "convergence/check/fitted_motion.hpp"
+#include "solver/certificate.hpp"
+#include "solver/influence.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using Eigen::ArrayXd;
+using solver::Index;
+
+/// Pairs of cells that are summed over: about a second's work.
+constexpr double kMostPairs = 1e8;
+/// An assumption explains a gap that it lowers to this part.
+constexpr double kExplains = 0.1;
+/// A part of mu p by which a slipping cell may miss it where a solver stops at a tolerance.
+constexpr double kOnCircle = 1e-4;
+/// Of the contact: so many cells at the same |q|/p are slipping.
+constexpr double kSlippingPart = 0.1;
+
+/// The contact's cells as sources, and those at which displacements are summed.
+struct Cells {
+  std::vector<Index> sources;
+  std::vector<Index> points;
+};
+
+Cells choose_cells(const GivenContact& contact) {
+  Cells cells;
+  for (Index cell = 0; cell < contact.pressure.size(); ++cell) {
+    if (contact.pressure[cell] > 0.0) cells.sources.push_back(cell);
+  }
+  const std::size_t count = cells.sources.size();
+  const auto every =
+      static_cast<std::size_t>(std::ceil(std::pow(static_cast<double>(count), 2) / kMostPairs));
+  for (std::size_t k = 0; k < count; k += every) cells.points.push_back(cells.sources[k]);
+  return cells;
+}
+
+/// The values of a field of any number of components at some of its cells.
+ArrayXd at(const std::vector<Index>& points, const ArrayXd& field, Index cells) {
+  const auto count = static_cast<Index>(points.size());
+  const Index components = field.size() / cells;
+  ArrayXd values(components * count);
+  for (Index c = 0; c < components; ++c) {
+    for (Index k = 0; k < count; ++k) {
+      values[c * count + k] = field[c * cells + points[static_cast<std::size_t>(k)]];
+    }
+  }
+  return values;
+}
+
+/// Displacements by tractions, part by part: u = S shear + N (poisson + cross), S and N the pair's shear and
+/// Poisson compliances. `mirrored` has |K12| in place of K12.
+struct Displacements {
+  ArrayXd shear, poisson, cross, mirrored;
+};
+
+Displacements sum_displacements(const GivenContact& contact, const Cells& cells) {
+  const solver::Grid& grid = contact.model.grid;
+  const auto tables = [&](double shear, double poisson) {
+    const std::array components{solver::Component::k11, solver::Component::k22, solver::Component::k12};
+    return solver::influence_tables(components, {shear, poisson, 0.0, 0.0}, grid.h1, grid.h2, grid.n1,
+                                    grid.n2);
+  };
+  const auto shear = tables(1.0, 0.0);
+  const auto poisson = tables(0.0, 1.0);
+  const auto count = static_cast<Index>(cells.points.size());
+  Displacements u;
+  for (ArrayXd* part : {&u.shear, &u.poisson, &u.cross, &u.mirrored}) part->setZero(2 * count);
+  for (Index k = 0; k < count; ++k) {
+    const Index point = cells.points[static_cast<std::size_t>(k)];
+    const Index i = point / grid.n2;
+    const Index j = point % grid.n2;
+    for (const Index source : cells.sources) {
+      const Index k1 = i - source / grid.n2;
+      const Index k2 = j - source % grid.n2;
+      const auto offset = static_cast<std::size_t>(std::abs(k1) * grid.n2 + std::abs(k2));
+      const double q1 = contact.traction[source];
+      const double q2 = contact.traction[source + grid.cells()];
+      const double k12 = poisson[2][offset];
+      const double signed_k12 = (k1 < 0) == (k2 < 0) ? k12 : -k12;
+      u.shear[k] += shear[0][offset] * q1;
+      u.shear[k + count] += shear[1][offset] * q2;
+      u.poisson[k] += poisson[0][offset] * q1;
+      u.poisson[k + count] += poisson[1][offset] * q2;
+      u.cross[k] += signed_k12 * q2;
+      u.cross[k + count] += signed_k12 * q1;
+      u.mirrored[k] += std::abs(k12) * q2;
+      u.mirrored[k + count] += std::abs(k12) * q1;
+    }
+  }
+  return u;
+}
+
+/// Parts of the law, each times what it is assumed to be of what it should be.
+struct Assumption {
+  std::string name;
+  double poisson = 1.0;      ///< Poisson compliance in K11 and K22
+  double cross = 1.0;        ///< K12
+  double mirrored = 0.0;     ///< |K12|
+  double by_pressure = 1.0;  ///< K13 and K23
+  double friction = 1.0;
+};
+
+/// Evaluates assumptions on the chosen cells.
+class Trial {
+ public:
+  Trial(const GivenContact& contact, const solver::Step& load)
+      : cells_(choose_cells(contact)),
+        u_(sum_displacements(contact, cells_)),
+        pair_(contact.model.pair),
+        coupled_(contact.model.pressure_coupling && contact.model.pair.mismatch != 0.0) {
+    const Index count = contact.pressure.size();
+    const auto here = [&](const ArrayXd& field) { return at(cells_.points, field, count); };
+    const RigidMotions motions = rigid_motions(contact, load, std::nullopt);
+    for (const ArrayXd& motion : motions.free) motions_.push_back(here(motion));
+    imposed_ = here(motions.imposed);
+    by_pressure_ = here(contact.displacement - contact.elastic_displacement);
+    traction_ = here(contact.traction);
+    bound_ = here(contact.friction_bound);
+    stick_ = here(stick_cells(contact));
+  }
+
+  bool coupled() const { return coupled_; }
+
+  Hypothesis of(const Assumption& assumption) const {
+    const ArrayXd elastic =
+        pair_.shear_compliance * u_.shear +
+        pair_.poisson_compliance * (assumption.poisson * u_.poisson + assumption.cross * u_.cross +
+                                    assumption.mirrored * u_.mirrored);
+    const FittedMotion fitted = fit_motion(elastic + assumption.by_pressure * by_pressure_ - imposed_,
+                                           traction_, at_least(assumption.friction * bound_), motions_);
+    const double energy = 0.5 * (traction_ * elastic).sum();
+    return {assumption.name, fitted.gap.sum() / energy, (fitted.gap * stick_).sum() / energy,
+            fitted.coefficients[fitted.coefficients.size() - 1]};
+  }
+
+  /// The Poisson's ratio that fits best, over the right one: one more coefficient in which slip is linear.
+  /// None: no body has it.
+  std::optional<Assumption> best_poisson_ratio() const {
+    std::vector<ArrayXd> motions = motions_;
+    motions.push_back(-(u_.poisson + u_.cross));
+    const ArrayXd without = pair_.shear_compliance * u_.shear + by_pressure_ - imposed_;
+    const FittedMotion fitted = fit_motion(without, traction_, at_least(bound_), motions);
+    const double compliance = fitted.coefficients[fitted.coefficients.size() - 1];
+    const double ratio = compliance / pair_.shear_compliance;
+    if (!(ratio > 0.0 && ratio <= 0.5 && pair_.poisson_compliance > 0.0)) return std::nullopt;
+    const double change = compliance / pair_.poisson_compliance;
+    return Assumption{
+        .name = fmt::format("a Poisson's ratio of {:.3g} in place of {:.3g}", ratio, ratio / change),
+        .poisson = change,
+        .cross = change};
+  }
+
+ private:
+  /// Where |q| exceeds its bound the gap would not be one.
+  ArrayXd at_least(const ArrayXd& bound) const { return bound.max(solver::norms(traction_)); }
+
+  Cells cells_;
+  Displacements u_;
+  solver::ElasticPair pair_;
+  bool coupled_;
+  std::vector<ArrayXd> motions_;  ///< the rotation last
+  ArrayXd imposed_;
+  ArrayXd by_pressure_;
+  ArrayXd traction_;
+  ArrayXd bound_;
+  ArrayXd stick_;
+};
+
+std::vector<Hypothesis> try_kernels(const Trial& trial) {
+  const std::string even = "the cross kernel K12, odd in x1 and in x2, mirrored as an even function";
+  std::vector<Assumption> assumptions{
+      {.name = even, .cross = 0.0, .mirrored = -1.0},
+      {.name = even, .cross = 0.0, .mirrored = 1.0},
+      {.name = "the cross kernel K12 missing", .cross = 0.0},
+      {.name = "the cross kernel K12 of the wrong sign, or the rotation field (x2, x1) in place of (-x2, x1)",
+       .cross = -1.0},
+      {.name = "a Poisson's ratio of zero", .poisson = 0.0, .cross = 0.0}};
+  if (const auto ratio = trial.best_poisson_ratio()) assumptions.push_back(*ratio);
+  if (trial.coupled()) {
+    assumptions.push_back({.name = "the kernels K13 and K23 missing", .by_pressure = 0.0});
+    assumptions.push_back({.name = "the kernels K13 and K23 of the wrong sign", .by_pressure = -1.0});
+  }
+  std::vector<Hypothesis> tried;
+  tried.reserve(assumptions.size());
+  for (const Assumption& assumption : assumptions) tried.push_back(trial.of(assumption));
+  return tried;
+}
+
+/// |q|/p of slipping cells, if a good part of the contact is at one value other than mu.
+std::optional<double> shown_friction(const GivenContact& contact) {
+  std::vector<double> ratios;
+  const double least = kNextToNothing * contact.pressure.maxCoeff();
+  for (Index cell = 0; cell < contact.pressure.size(); ++cell) {
+    if (!(contact.pressure[cell] > least)) continue;
+    ratios.push_back(std::hypot(contact.traction[cell], contact.traction[cell + contact.pressure.size()]) /
+                     contact.pressure[cell]);
+  }
+  std::ranges::sort(ratios);
+  const auto from_top = static_cast<std::size_t>(kSlippingPart * static_cast<double>(ratios.size()));
+  const double shown = ratios[ratios.size() - 1 - from_top];
+  const bool plateau = ratios.back() - shown <= kOnCircle * shown;
+  if (!plateau || std::abs(shown / contact.model.friction - 1.0) <= kOnCircle) return std::nullopt;
+  return shown;
+}
+
+}  // namespace
+
+ArrayXd stick_cells(const GivenContact& contact) {
+  const ArrayXd size = solver::norms(contact.traction);
+  const ArrayXd margin =
+      kOnCircle * contact.friction_bound + contact.traction_rounding + contact.bound_rounding;
+  return ((contact.friction_bound > 0.0) && (size + margin < contact.friction_bound)).cast<double>();
+}
+
+Diagnosis diagnose(const GivenContact& contact, const solver::Step& load, double allowed) {
+  const Trial trial(contact, load);
+  Diagnosis diagnosis{trial.of({.name = "as it should be"}), try_kernels(trial), {}, {}};
+  const Hypothesis& right = diagnosis.as_it_should_be;
+  for (const Hypothesis& kernel : diagnosis.tried) {
+    const bool explains = right.stick_gap > allowed && kernel.stick_gap <= allowed &&
+                          kernel.stick_gap <= kExplains * right.stick_gap;
+    if (!explains) continue;
+    if (!diagnosis.kernel || kernel.stick_gap < diagnosis.kernel->stick_gap) diagnosis.kernel = kernel;
+  }
+  if (const auto friction = shown_friction(contact)) {
+    const std::string name =
+        fmt::format("a friction coefficient of {:.4g} in place of {:.4g}", *friction, contact.model.friction);
+    diagnosis.tried.push_back(trial.of({.name = name, .friction = *friction / contact.model.friction}));
+    if (diagnosis.tried.back().gap <= allowed) diagnosis.friction = diagnosis.tried.back();
+  }
+  const Hypothesis& best = diagnosis.kernel ? *diagnosis.kernel : right;
+  diagnosis.stick_area_explained = best.stick_gap <= std::min(allowed, kExplains * best.gap);
+  return diagnosis;
+}
+
+}  // namespace slipstick::convergence

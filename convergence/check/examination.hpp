@@ -1,0 +1,49 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+
+#include "convergence/check/foreign_field.hpp"
+#include "convergence/check/given_contact.hpp"
+#include "convergence/check/yardstick.hpp"
+#include "convergence/oracle.hpp"
+#include "solver/certificate.hpp"
+
+namespace slipstick::convergence {
+
+/// A field that some program computed for a scene, with all that is worked out about it. Dimensionless, as
+/// its contact is; moments over the cell area.
+struct Examination {
+  solver::Scene scene;
+  ForeignField field;
+  OracleAnswer exact;  ///< its centre is that of the field's grid
+  GivenContact contact;
+  Yardstick yardstick;
+  bool twist_given;
+  double twist;                          ///< rad
+  double inferred_twist;                 ///< rad, which Coulomb's law fits best
+  std::array<double, 2> displacement{};  ///< of the contact, dimensionless
+  Eigen::ArrayXd slip;                   ///< 2*cells
+  Eigen::ArrayXd gap;                    ///< cells
+  Eigen::ArrayXd stick;                  ///< cells
+  std::optional<double> moment;          ///< asked for, over the cell area; none: any
+  double moment_limit;                   ///< of the field's pressure, over the cell area
+  solver::Certificate certificate{};
+  solver::SlipDirection direction{};  ///< of noticeable slip
+
+  double newton_metres() const { return contact.model.grid.cell_area() * contact.model.moment_unit(); }
+  double newtons() const { return contact.model.grid.cell_area() * contact.model.force_unit(); }
+};
+
+/// twist: the one that the program reported, in rad; none: the scene's, if it imposes one, or the one that
+/// Coulomb's law fits best. Throws InputError for what cannot be judged: a history, a scene without friction,
+/// and what read_foreign_field() and in_own_conventions() refuse; std::runtime_error where the yardstick's
+/// solve does not converge.
+Examination examine(const solver::Scene& scene, const std::filesystem::path& file,
+                    std::optional<double> twist);
+
+/// computed/exact - 1.
+double relative_error(double value, double exact);
+
+}  // namespace slipstick::convergence
