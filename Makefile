@@ -4,10 +4,11 @@ BUILD := build
 PREFIX ?= /usr/local
 REPORT_OPTIONS ?=
 BENCH_OPTIONS ?=
+GATE_OPTIONS ?=
 SEARCH_OPTIONS ?=
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build report test sanitize lint bench references hardest install clean
+.PHONY: help setup build report test gate sanitize lint bench references hardest install clean
 
 help: ## show this list
 	@echo "slipstick: make TARGET"
@@ -28,6 +29,9 @@ report: build ## run the validation and the studies, write the page (REPORT_OPTI
 
 test: build ## run every test
 	@ctest --test-dir $(BUILD) --output-on-failure -j$$(nproc)
+
+gate: build ## check the numbers that README.md promises (GATE_OPTIONS="--junit FILE --summary FILE.md")
+	@$(BUILD)/slipstick gate convergence/gates/quick.toml --output $(BUILD)/gates $(GATE_OPTIONS)
 
 sanitize: setup ## run every test under the address and undefined-behaviour sanitizers
 	@test -f build-asan-ubsan/build.ninja || cmake --preset asan-ubsan

@@ -13,8 +13,11 @@
 #include <vector>
 
 #include "analytic/exact_command.hpp"
+#include "convergence/check/check_command.hpp"
+#include "convergence/gate_command.hpp"
 #include "convergence/report_command.hpp"
 #include "convergence/solve_command.hpp"
+#include "convergence/study_command.hpp"
 
 namespace {
 
@@ -39,9 +42,10 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", std::string(SLIPSTICK_VERSION));
   app.require_subcommand(1);
 
-  const std::vector<Command> commands{slipstick::analytic::add_exact_command(app),
-                                      slipstick::convergence::add_solve_command(app),
-                                      slipstick::convergence::add_report_command(app)};
+  const std::vector<Command> commands{
+      slipstick::analytic::add_exact_command(app),    slipstick::convergence::add_solve_command(app),
+      slipstick::convergence::add_check_command(app), slipstick::convergence::add_study_command(app),
+      slipstick::convergence::add_gate_command(app),  slipstick::convergence::add_report_command(app)};
   const auto subcommands = app.get_subcommands([](const CLI::App*) { return true; });
   std::string json_path;
   bool quiet = false;

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "convergence/gate.hpp"
+#include "convergence/point_runner.hpp"
+
+namespace slipstick::convergence {
+
+/// Computes what gates ask for, all scenes side by side and equal ones once, and judges it. A gate whose
+/// scene or study cannot be read is refused; the others are judged all the same.
+std::vector<Judgement> run_gates(const std::vector<Gate>& gates, PointRunner& runner);
+
+}  // namespace slipstick::convergence

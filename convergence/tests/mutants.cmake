@@ -1,0 +1,84 @@
+# Mistakes that such programs are known to make, one substitution each, and the gates that must fail for them. What is
+# replaced must stand in the file exactly once.
+
+# mutant(<name> FILE <source> FIND <text> REPLACE <text> GATES <ids...>)
+function(mutant name)
+  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "FILE;FIND;REPLACE" "GATES")
+  set(names ${mutants} ${name})
+  set(mutants "${names}" PARENT_SCOPE)
+  foreach(key FILE FIND REPLACE GATES)
+    set(mutant_${name}_${key} "${ARG_${key}}" PARENT_SCOPE)
+  endforeach()
+endfunction()
+
+# A convolution whose transforms are as long as the grid: offsets beyond half of it come round from the other side.
+mutant(no_zero_padding
+  FILE solver/convolution.cpp
+  FIND [[std::vector<double>& quadrant = quadrants[slot];]]
+  REPLACE [[std::vector<double>& quadrant = quadrants[slot];
+    const std::vector<double> open = quadrant;
+    const Parity odd = parity(components_[slot]);
+    for (Index i = 0; i < grid.n1; ++i) {
+      for (Index j = 0; j < grid.n2; ++j) {
+        const Index i0 = std::min(i, grid.n1 - i);
+        const Index j0 = std::min(j, grid.n2 - j);
+        quadrant[count(i * grid.n2 + j)] =
+            (i0 == i ? 1 : odd.x1) * (j0 == j ? 1 : odd.x2) * open[count(i0 * grid.n2 + j0)];
+      }
+    }]]
+  GATES full-64-twist full-64-contact-radius)
+
+# The cross kernel, odd in both coordinates, taken to be even.
+mutant(k12_even
+  FILE solver/influence.cpp
+  FIND [[      return {-1, -1};]]
+  REPLACE [[      return {1, 1};]]
+  GATES full-64-twist full-64-traction-averaged-l2)
+
+# The cross kernel's sign, where symmetry leaves a quadrant and one traction field.
+mutant(k12_sign_in_a_quadrant
+  FILE solver/mirrored_convolution.cpp
+  FIND [[P::load(k11 + at + line) * P::load(plain + at + line) +]]
+  REPLACE [[P::load(k11 + at + line) * P::load(plain + at + line) -]]
+  GATES hertz-64-traction-l1)
+
+# A shear in place of a rotation, Eqs. (8), (9) as printed.
+mutant(rotation_as_printed
+  FILE solver/grid.cpp
+  FIND [[t.head(grid.cells()) = -cell_x2(grid);]]
+  REPLACE [[t.head(grid.cells()) = cell_x2(grid);]]
+  GATES full-64-twist full-64-traction-averaged-l2)
+
+# Slip in the direction that the traction had when a cell began to slip, Eqs. (22), (23).
+mutant(frozen_slip_directions
+  FILE solver/solve.cpp
+  FIND [[if (scene.method == Method::coulomb) {]]
+  REPLACE [[if (scene.method == Method::coulomb) {
+    return solve_by_paper_method(*elastic.make(part.grid(), tangential_kernel()), problem,
+                                 {.tolerance = scene.tolerance,
+                                  .max_iterations = scene.max_iterations,
+                                  .progress = options.progress});
+  }
+  if (scene.method == Method::coulomb) {]]
+  GATES ellipse-64-slip-direction ellipse-64-gap ellipse-64-twist)
+
+mutant(tolerance_times_ten
+  FILE solver/scene.cpp
+  FIND [[scene.tolerance = reader.number_or(]]
+  REPLACE [[scene.tolerance = 10.0 * reader.number_or(]]
+  GATES gradient-64-gap)
+
+# Without the factor 2/pi in the stick area.
+mutant(equation_1_as_printed
+  FILE analytic/torsion.cpp
+  FIND [[return profile.stick_traction(c, r, inward);]]
+  REPLACE [[return pi / 2 * profile.stick_traction(c, r, inward);]]
+  GATES full-64-traction-averaged-l2)
+
+# Hertz's pressure at the corners of cells in place of their centres: the order of convergence falls.
+mutant(pressure_at_corners
+  FILE solver/hertz_pressure.cpp
+  FIND [[((cell_x1(grid) / contact.semi_axis_1).square() + (cell_x2(grid) / contact.semi_axis_2).square());]]
+  REPLACE [[(((cell_x1(grid) + 0.5 * grid.h1) / contact.semi_axis_1).square() +
+             ((cell_x2(grid) + 0.5 * grid.h2) / contact.semi_axis_2).square());]]
+  GATES hertz-64-traction-l1 hertz-order-traction-l1 hertz-order-traction-l1-verdict)
