@@ -3,6 +3,7 @@
 
 import argparse
 import os
+import re
 import sys
 from pathlib import Path
 
@@ -14,26 +15,41 @@ import jinja2  # noqa: E402
 
 import figures  # noqa: E402
 import results  # noqa: E402
+import study_figure  # noqa: E402
 import style  # noqa: E402
 import tables  # noqa: E402
 
 HERE = Path(__file__).parent
 
 
-def draw_all(report, data_dir, output):
-    """Every figure as the page needs it: drawn, or with the reason why not."""
-    folder = output / "figures"
-    folder.mkdir(parents=True, exist_ok=True)
+def draw_entry(name, title, draw, folder):
+    """A figure as the page needs it: drawn, or with the reason why not."""
+    entry = {"name": name, "title": title}
+    try:
+        plate = draw()
+        style.save(plate.figure, folder / name)
+        entry.update(message=plate.message, details=plate.details, alt=plate.alt)
+    except results.Unavailable as reason:
+        entry["unavailable"] = str(reason)
+        print(f"render.py: {name} is not available: {reason}", file=sys.stderr)
+    return entry
+
+
+def draw_all(report, data_dir, folder):
+    return [draw_entry(name, title, lambda: draw(report, data_dir), folder) for name, title, draw in figures.FIGURES]
+
+
+def show_studies(report, folder):
+    """Each study with its figure and tables."""
     entries = []
-    for name, title, draw in figures.FIGURES:
-        entry = {"name": name, "title": title}
-        try:
-            plate = draw(report, data_dir)
-            style.save(plate.figure, folder / name)
-            entry.update(message=plate.message, details=plate.details, alt=plate.alt)
-        except results.Unavailable as reason:
-            entry["unavailable"] = str(reason)
-            print(f"render.py: {name} is not available: {reason}", file=sys.stderr)
+    for study in report.get("studies", []):
+        name = results.text(study, "name")
+        entry = draw_entry("study-" + re.sub(r"\W+", "_", name), name.replace("_", " "),
+                           lambda: study_figure.draw(study), folder)
+        if "unavailable" not in entry:
+            series, budget = tables.study_budget(study)
+            entry.update(orders={"table": tables.study_orders(study)}, expectations=tables.study_expectations(study),
+                         budget={"table": budget}, budget_series=series)
         entries.append(entry)
     return entries
 
@@ -61,16 +77,19 @@ def tabulate_gallery(report, data_dir, output):
 def render(data_dir, output):
     """Writes output/index.html and output/figures/ from data_dir/report.json and the field files beside it."""
     report = results.load(data_dir / "report.json")
+    folder = output / "figures"
+    folder.mkdir(parents=True, exist_ok=True)
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True)
     page = environment.get_template("page.html.j2").render(
         report=report,
-        figures=draw_all(report, data_dir, output),
+        figures=draw_all(report, data_dir, folder),
+        studies=show_studies(report, folder),
         gallery=tabulate_gallery(report, data_dir, output),
         loading=tabulate(report, "loading", tables.LOADING),
         mesh=tabulate(report, "mesh", tables.MESH),
         approximations=tabulate(report, "approximation_table", tables.APPROXIMATIONS),
-        nulls=results.nulls(report),
+        nulls=results.nulls({key: part for key, part in report.items() if key != "studies"}),
         data=os.path.relpath(data_dir / "report.json", output) if data_dir.is_relative_to(output) else None)
     (output / "index.html").write_text(page, encoding="utf-8")
 

@@ -4,8 +4,9 @@ from dataclasses import dataclass
 
 from markupsafe import Markup
 
+import study_result
 from results import Unavailable, rows, value
-from wording import ANGLES, ENERGIES, LENGTHS, MOMENTS, plain, quantity, sci, seconds, signed_percent
+from wording import ANGLES, ENERGIES, LENGTHS, MOMENTS, plain, quantity, sci, seconds, signed_percent, typeset
 
 
 @dataclass
@@ -87,6 +88,78 @@ def _gallery_row(row, address):
     return [title, row["shows"], row["quantity"], _cell(row, "value", in_units), reference, error,
             _cell(row, "gap", sci), _cell(row, "operator_applications", "{:.0f}".format), _text(row["steps"]),
             _cell(row, "cells", max), _cell(row, "seconds", seconds)]
+
+
+def _short(key):
+    return key.rsplit(".", 1)[-1].replace("_", " ")
+
+
+def _or_dash(found, write):
+    return "–" if found is None else write(found)
+
+
+def _two_digits(number):
+    return f"{number:.2f}".replace("-", "−")
+
+
+def study_orders(study):
+    """The fitted orders of the main quantities, one row a series; None where there is one mesh."""
+    series = study_result.read(study)
+    if not study_result.has_meshes(series):
+        return None
+    body = []
+    for words, path in study_result.main_quantities(series):
+        for one in series:
+            order = one.order(path)
+            fitted = ["–", "–"] if order["value"] is None else [
+                _two_digits(order["value"]), f"{_two_digits(order['low'])} to {_two_digits(order['high'])}"]
+            body.append([words if one is series[0] else "", *map(str, one.varied.values()), *fitted,
+                         _or_dash(order["expected"], "{:g}".format), order["verdict"].replace("_", " "),
+                         typeset(order["why"])])
+    return Table(["quantity", *map(_short, series[0].varied), "order", "95 % interval", "ex&shy;pected", "verdict", "why"],
+                 body)
+
+
+def study_expectations(study):
+    """Which order theory gives, and why: a row for each reason."""
+    series = study_result.read(study)
+    reasons = {}
+    for words, path in study_result.main_quantities(series):
+        for one in series:
+            order = one.order(path)
+            reasons.setdefault((_or_dash(order["expected"], "{:g}".format), order["expected_why"]), []).append(
+                (words, *(str(one.varied[key]) for key in (study_result.PRESSURE,) if key in one.varied)))
+    return [("; ".join(", ".join(names) for names in dict.fromkeys(found)), expected, typeset(why))
+            for (expected, why), found in reasons.items()]
+
+
+BUDGET = [
+    ("error", "observed", sci),
+    ("discreti&shy;sation", "discretisation", sci),
+    ("of which trend", "trend", sci),
+    ("of which staircase", "staircase", sci),
+    ("iteration", "iteration", sci),
+    ("rounding ±", "rounding", sci),
+    ("reference ±", "reference", sci),
+]
+
+
+def study_budget(study):
+    """One series: its first main quantity on every mesh, the others on the finest; and the series’ name."""
+    series = study_result.read(study)
+    quantities = study_result.main_quantities(series)
+    one = study_result.budget_series(series, quantities[0][1])
+    body = []
+    for words, path in quantities:
+        shown = one.budget(path) if path == quantities[0][1] else one.budget(path)[-1:]
+        body += [[words, _cells(row["cells"]), *(_cell(row, key, write) for _, key, write in BUDGET)] for row in shown]
+    return one.label, _without_empty(Table(["error of the", "cells", *(head for head, _, _ in BUDGET)], body))
+
+
+def _without_empty(table):
+    """Without columns that have dashes only."""
+    kept = [k for k in range(len(table.head)) if any(row[k] != "–" for row in table.body)]
+    return Table([table.head[k] for k in kept], [[row[k] for k in kept] for row in table.body])
 
 
 def table(report, name, columns):

@@ -1,6 +1,7 @@
 """How numbers are written on the page."""
 
 import math
+import re
 
 LENGTHS = (("m", 1.0), ("mm", 1e-3), ("µm", 1e-6), ("nm", 1e-9), ("pm", 1e-12))
 STRESSES = (("MPa", 1e6), ("kPa", 1e3), ("Pa", 1.0))
@@ -61,3 +62,11 @@ def unit_for(largest, units):
 def quantity(number, units, digits=3):
     name, size = unit_for(abs(number), units) if number else units[0]
     return f"{number / size:.{digits}g} {name}".replace("-", "−")
+
+
+def typeset(plain_text):
+    """A sentence of the program as it is printed: powers, roots, numbers and apostrophes."""
+    for written, printed in ((r"\b(\w)\^\(1/2\)", r"√\1"), (r"\b(\w)\^\(-1/2\)", r"1/√\1"), ("'", "’")):
+        plain_text = re.sub(written, printed, plain_text)
+    plain_text = re.sub(r"\^(-?\d+)", lambda power: power[1].translate(SUPERSCRIPTS), plain_text)
+    return re.sub(r"\d(\.\d+)?e[-+]\d+", lambda number: sci(float(number[0])), plain_text)

@@ -19,6 +19,7 @@ import figures  # noqa: E402
 import gallery_figure  # noqa: E402
 import method_figures  # noqa: E402
 import results  # noqa: E402
+from test_study_figure import study, tolerance_study  # noqa: E402
 
 RADIUS, PEAK, FRICTION = 2.0, 3.0, 0.5
 
@@ -177,6 +178,9 @@ class WholePage(unittest.TestCase):
         self.assertIn("data/report.json", targets)
         self.assertNotIn("Not available", self.page)
 
+    def test_without_studies_nothing_speaks_of_them(self):
+        self.assertNotIn("studies", self.page)
+
     def test_text_of_the_data_is_escaped(self):
         self.assertIn("made &lt;up&gt;", self.page)
         self.assertIn("a &lt; b", self.page)
@@ -233,6 +237,21 @@ class PageWithGaps(Folder):
         self.assertEqual(missing, ["figure-11", "figure-12"])
         for key in ("approximations", "approximation_table", "bodies"):
             self.assertIn(f"Not available: “{key}” is missing from the data.", page)
+
+    def test_studies_are_shown_where_there_are_some(self):
+        report = small_report()
+        report["studies"] = [study(), dict(tolerance_study(), name="made up: tolerance"), {"name": "broken"}]
+        write_data(self.folder, report)
+        run = run_render(self.folder, self.folder / "page")
+        page = (self.folder / "page" / "index.html").read_text(encoding="utf-8")
+        self.assertEqual(run.returncode, 0)
+        for words in ('<h2 id="studies">', "figures/study-made_up.svg", "figures/study-made_up_tolerance.svg",
+                      "<td>1.90 to 2.12</td>", "cells err by h².", "−9.0×10⁻⁴",
+                      "Study “broken”</a>:\nnot available: “series” is missing from the data"):
+            self.assertIn(words, page)
+        self.assertEqual(page.count("<h4>Orders</h4>"), 1)
+        self.assertTrue((self.folder / "page" / "figures" / "study-made_up.pdf").exists())
+        self.assertNotIn("<code>studies", page)
 
     def test_the_methods_are_told_apart(self):
         plate = method_figures.methods(small_report(), self.folder)
