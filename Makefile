@@ -6,6 +6,7 @@ REPORT_OPTIONS ?=
 BENCH_OPTIONS ?=
 GATE_OPTIONS ?=
 SEARCH_OPTIONS ?=
+SANITIZE ?=
 
 .DEFAULT_GOAL := help
 .PHONY: help setup build report test gate sanitize lint bench references hardest install clean
@@ -33,10 +34,11 @@ test: build ## run every test
 gate: build ## check the numbers that README.md promises (GATE_OPTIONS="--junit FILE --summary FILE.md")
 	@$(BUILD)/slipstick gate convergence/gates/quick.toml --output $(BUILD)/gates $(GATE_OPTIONS)
 
-sanitize: setup ## run every test under the address and undefined-behaviour sanitizers
+sanitize: setup ## run every test under the address and undefined-behaviour sanitizers (a part: SANITIZE="solver analytic")
 	@test -f build-asan-ubsan/build.ninja || cmake --preset asan-ubsan
-	@cmake --build build-asan-ubsan
-	@ctest --test-dir build-asan-ubsan --output-on-failure -j$$(nproc) -E '^reports'  # Python, nothing to sanitize
+	@cmake --build build-asan-ubsan $(if $(SANITIZE),--target $(SANITIZE:%=%_tests))
+	@ctest --test-dir build-asan-ubsan --output-on-failure -j$$(nproc) \
+	  $(if $(SANITIZE),-R "^($$(echo $(SANITIZE) | tr ' ' '|'))_tests",-E '^reports')
 
 lint: build ## check format and clang-tidy's rules (needs clang-format, clang-tidy 14 or later)
 	@git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run --Werror

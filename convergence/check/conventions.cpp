@@ -236,23 +236,27 @@ class LoadMismatch {
   ArrayXd rotation_;
 };
 
-/// Loads wrong by less than half stay what they are, an error of the field.
+/// Loads wrong by less than half stay what they are, an error of the field; else the orientation counts under
+/// which they come closest.
 void mend_orientation(ForeignField& field, const solver::Scene& scene, const OracleAnswer& exact) {
   const LoadMismatch mismatch(field, scene, exact);
-  const double enough = 0.5 * mismatch.size();
-  if (!(mismatch(field.traction) > enough)) return;
+  double least = 0.5 * mismatch.size();
+  if (!(mismatch(field.traction) > least)) return;
+  std::optional<Orientation> best;
   for (const bool exchanged : {false, true}) {
     for (const double sign1 : {1.0, -1.0}) {
       for (const double sign2 : {1.0, -1.0}) {
         const Orientation orientation{exchanged, sign1, sign2};
-        const ArrayXd traction = orientation.of(field.traction);
-        if (!(mismatch(traction) < enough)) continue;
-        field.traction = traction;
-        field.notes.push_back(orientation.text() + ": only so do they carry the scene's loads");
-        return;
+        const double off = mismatch(orientation.of(field.traction));
+        if (!(off < least)) continue;
+        least = off;
+        best = orientation;
       }
     }
   }
+  if (!best) return;
+  field.traction = best->of(field.traction);
+  field.notes.push_back(best->text() + ": only so do they carry the scene's loads");
 }
 
 /// Cells without pressure between cells that have some: rows that the file lacks, perhaps.

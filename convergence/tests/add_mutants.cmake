@@ -25,4 +25,4 @@ add_test(NAME mutants
   COMMAND ${CMAKE_COMMAND} -D BUILD_DIR=${PROJECT_BINARY_DIR} -D MUTANTS=${CMAKE_CURRENT_BINARY_DIR}/mutants
     -D PROGRAM=$<TARGET_FILE:slipstick> -D GATES=${CMAKE_CURRENT_SOURCE_DIR}/gates/quick.toml
     -D WORK_DIR=${CMAKE_CURRENT_BINARY_DIR}/mutants/results -P ${CMAKE_CURRENT_LIST_DIR}/mutants_test.cmake)
-set_tests_properties(mutants PROPERTIES LABELS mutants TIMEOUT 900 PROCESSORS 2)
+set_tests_properties(mutants PROPERTIES LABELS mutants TIMEOUT 900 PROCESSORS 2 COST 200)

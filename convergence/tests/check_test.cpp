@@ -132,14 +132,21 @@ TEST(Check, FindsOwnSolutionsOfAnEllipseGoodUnderAnyLoad) {
   }
 }
 
-TEST(Check, FindsAReversedComponentOnAnEllipseUnderAnImposedTwist) {
+TEST(Check, FindsReversedComponentsOnAnEllipseUnderAnImposedTwist) {
   const solver::Scene scene = scene_of("ellipse", 32, {"load.twist=1e-3"});
-  FieldRows rows = rows_of(solver::solve(scene));
-  for (auto& [x1, x2, pressure, q1, q2] : rows) q2 = -q2;  // which carries most of the moment
-  const Json result = check_rows(rows, scene);
-  EXPECT_EQ(result["verdict"], "good") << why(result);
-  ASSERT_EQ(result["conventions"].size(), 1);
-  EXPECT_THAT(result["conventions"][0].get<std::string>(), HasSubstr("q2 looks reversed"));
+  const FieldRows right = rows_of(solver::solve(scene));
+  for (const bool both : {false, true}) {
+    FieldRows rows = right;
+    for (auto& [x1, x2, pressure, q1, q2] : rows) {
+      q2 = -q2;  // which carries most of the moment
+      if (both) q1 = -q1;
+    }
+    const Json result = check_rows(rows, scene);
+    EXPECT_EQ(result["verdict"], "good") << why(result);
+    ASSERT_EQ(result["conventions"].size(), 1);
+    EXPECT_THAT(result["conventions"][0].get<std::string>(),
+                HasSubstr(both ? "tractions look reversed" : "q2 looks reversed"));
+  }
 }
 
 // From full stick (a flat punch up to 0.849 of its limit), where what slip there is has any direction, to
