@@ -9,14 +9,6 @@
 #include "convergence/quantity.hpp"
 
 namespace slipstick::convergence {
-namespace {
-
-double number_at(const Json& result, const std::string& path) {
-  const FoundQuantity found = find_quantity(result, path);
-  return found.value != nullptr && found.value->is_number() ? found.value->get<double>() : NAN;
-}
-
-}  // namespace
 
 BudgetPoints budget_points(const Point& point) {
   const double tolerance = solver::read_scene(point.scene, point.overrides).tolerance;

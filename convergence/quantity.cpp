@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <charconv>
+#include <cmath>
 #include <string_view>
 
 namespace slipstick::convergence {
@@ -62,6 +63,11 @@ FoundQuantity find_quantity(const Json& result, const std::string& path) {
   FoundQuantity found;
   if (!path.empty()) follow(result, path, found);
   return found;
+}
+
+double number_at(const Json& result, const std::string& path) {
+  const FoundQuantity found = find_quantity(result, path);
+  return found.value != nullptr && found.value->is_number() ? found.value->get<double>() : NAN;
 }
 
 std::vector<std::string> quantity_paths(const Json& result) {

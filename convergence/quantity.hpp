@@ -19,6 +19,9 @@ struct FoundQuantity {
 /// what is returned.
 FoundQuantity find_quantity(const Json& result, const std::string& path);
 
+/// The number at a path; NaN where there is none.
+double number_at(const Json& result, const std::string& path);
+
 /// Paths of all numbers, words and nulls of a result.
 std::vector<std::string> quantity_paths(const Json& result);
 

@@ -62,11 +62,6 @@ struct MeshResults {
   std::vector<Json> rounded;  ///< likewise
 };
 
-double number_at(const Json& result, const std::string& path) {
-  const FoundQuantity found = find_quantity(result, path);
-  return found.value != nullptr && found.value->is_number() ? found.value->get<double>() : NAN;
-}
-
 bool is_converged(const Json& result) { return result.value("status", "") == "converged"; }
 
 /// The grids of a mesh with so many cells along its longer side, in the shape of the scene's own.
