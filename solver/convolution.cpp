@@ -17,10 +17,6 @@ std::vector<Component> distinct_components(const BlockKernel& kernel) {
 
 std::size_t fields(const BlockKernel& kernel) { return std::max(kernel.inputs, kernel.outputs); }
 
-unsigned planning(const OperatorOptions& options) {
-  return options.measure_plans ? FFTW_MEASURE : FFTW_ESTIMATE;
-}
-
 /// A kernel that is odd in one coordinate only has an imaginary spectrum.
 bool is_imaginary(Component component) { return parity(component).x1 != parity(component).x2; }
 
@@ -90,7 +86,7 @@ template <typename Real>
 Convolution<Real>::Convolution(const Grid& grid, BlockKernel kernel, const ElasticPair& pair,
                                const OperatorOptions& options)
     : Operator<Real>(grid, std::move(kernel)),
-      transform_(grid, fields(this->kernel()), std::max(options.threads, 1), planning(options)),
+      transform_(grid, fields(this->kernel()), std::max(options.threads, 1), planning(options.measure_plans)),
       components_(distinct_components(this->kernel())),
       spectra_(components_.size() * count(transform_.columns() * (padded1() / 2 + 1))),
       multiply_(multiply_for(this->kernel())) {

@@ -8,14 +8,17 @@ namespace {
 
 /// The diagonal's mirror is of use to the tangential kernel alone.
 OperatorOptions options_of(const Elasticity& elasticity, const BlockKernel& kernel) {
-  return {.threads = elasticity.threads, .diagonal = elasticity.diagonal && kernel.inputs == 2};
+  return {.threads = elasticity.threads,
+          .measure_plans = elasticity.measure_plans,
+          .diagonal = elasticity.diagonal && kernel.inputs == 2};
 }
 
 template <typename Real>
 std::unique_ptr<InverseSymbol<Real>> symbol_of(const Elasticity& elasticity, const Grid& grid,
                                                const BlockKernel& kernel) {
   return make_inverse_symbol<Real>(grid, kernel, elasticity.pair,
-                                   options_of(elasticity, kernel).diagonal ? Diagonal::yes : Diagonal::no);
+                                   options_of(elasticity, kernel).diagonal ? Diagonal::yes : Diagonal::no,
+                                   elasticity.measure_plans);
 }
 
 }  // namespace

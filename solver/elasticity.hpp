@@ -18,7 +18,8 @@ struct Elasticity {
   OperatorKind kind = OperatorKind::dcfft;
   int threads = 1;
   Precision precision = Precision::double_precision;
-  bool diagonal = false;  ///< see OperatorOptions; of the tangential operator
+  bool diagonal = false;       ///< see OperatorOptions; of the tangential operator
+  bool measure_plans = false;  ///< see OperatorOptions; of the preconditioner too
 
   std::unique_ptr<LinearOperator> make(const Grid& grid, const BlockKernel& kernel) const;
 };

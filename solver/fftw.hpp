@@ -134,6 +134,9 @@ class FftwPlan {
   std::unique_ptr<std::remove_pointer_t<Plan>, Destroy> plan_;
 };
 
+/// FFTW's flag for how it plans.
+inline unsigned planning(bool measured) { return measured ? FFTW_MEASURE : FFTW_ESTIMATE; }
+
 /// The smallest even 2^a 3^b 5^c 7^d >= max(minimum, 4): lengths that FFTW transforms quickly.
 Index fast_length(Index minimum);
 

@@ -41,22 +41,6 @@ struct Parity {
 };
 Parity parity(Component component);
 
-/// Integrals over the cell h1 x h2 centred at offset (x, y), rho^2 = x^2 + y^2, from which every component is
-/// composed: of x^2/rho^3, y^2/rho^3, x y/rho^3, x/rho^2, y/rho^2.
-struct CellIntegrals {
-  double xx;
-  double yy;
-  double xy;
-  double x;
-  double y;
-};
-
-/// Relative error below 1e-13 for offsets up to 8,192 cells, of xx and yy relative to their sum (far off on
-/// an axis one of them is less than the other by the square of the distance in cells, and no component needs
-/// it alone): closed form near by, Gauss-Legendre quadrature, whose terms are all of one sign, further off,
-/// where the closed form would cancel.
-CellIntegrals cell_integrals(double x, double y, double h1, double h2);
-
 /// Components at all offsets (k1 h1, k2 h2), 0 <= k1 < m1, 0 <= k2 < m2, row by row, a table for each; the
 /// other quadrants follow by parity. Displacement per traction: units of length times compliance. One pass
 /// over the offsets serves all components, and square cells need only offsets on one side of the diagonal.

@@ -57,14 +57,14 @@ void mix(Index count, Real sign, const Real* __restrict p11, const Real* __restr
 template <typename Real>
 class PeriodicInverseSymbol final : public InverseSymbol<Real> {
  public:
-  PeriodicInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair)
+  PeriodicInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair, bool measure_plans)
       : grid_(grid),
         periodic_(padded(grid)),
         fields_(tangential ? 2 : 1),
         diagonal_(mean_inverse_symbol(periodic_, pair, tangential)),
         table_(periodic_, pair, entries(tangential), columns(periodic_),
                1.0 / (static_cast<double>(periodic_.length1) * static_cast<double>(periodic_.length2))),
-        transform_(periodic_.length1, periodic_.length2, fields_) {}
+        transform_(periodic_.length1, periodic_.length2, fields_, planning(measure_plans)) {}
 
   void apply(std::span<Real> field) override {
     if (static_cast<Index>(field.size()) != fields_ * grid_.cells()) {
@@ -149,13 +149,14 @@ void check_diagonal(const Grid& grid, bool tangential, Diagonal diagonal) {
 
 template <typename Real>
 std::unique_ptr<InverseSymbol<Real>> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel,
-                                                         const ElasticPair& pair, Diagonal diagonal) {
+                                                         const ElasticPair& pair, Diagonal diagonal,
+                                                         bool measure_plans) {
   const bool tangential = is_tangential(kernel);
   check_diagonal(grid, tangential, diagonal);
   if (grid.quadrant) {
-    return std::make_unique<MirroredInverseSymbol<Real>>(grid, tangential, pair, diagonal);
+    return std::make_unique<MirroredInverseSymbol<Real>>(grid, tangential, pair, diagonal, measure_plans);
   }
-  return std::make_unique<PeriodicInverseSymbol<Real>>(grid, tangential, pair);
+  return std::make_unique<PeriodicInverseSymbol<Real>>(grid, tangential, pair, measure_plans);
 }
 
 template <typename Real>
@@ -168,9 +169,10 @@ double predicted_inverse_symbol_bytes(const Grid& grid, const BlockKernel& kerne
 }
 
 template std::unique_ptr<InverseSymbol<double>> make_inverse_symbol<double>(const Grid&, const BlockKernel&,
-                                                                            const ElasticPair&, Diagonal);
+                                                                            const ElasticPair&, Diagonal,
+                                                                            bool);
 template std::unique_ptr<InverseSymbol<float>> make_inverse_symbol<float>(const Grid&, const BlockKernel&,
-                                                                          const ElasticPair&, Diagonal);
+                                                                          const ElasticPair&, Diagonal, bool);
 template double predicted_inverse_symbol_bytes<double>(const Grid&, const BlockKernel&, Diagonal);
 template double predicted_inverse_symbol_bytes<float>(const Grid&, const BlockKernel&, Diagonal);
 

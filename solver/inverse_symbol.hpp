@@ -38,11 +38,13 @@ class InverseSymbol {
 };
 
 /// The kernel is the normal or the tangential one; others throw std::invalid_argument, as does Diagonal::yes
-/// where the grid is no quadrant that its diagonal halves or the kernel not tangential.
+/// where the grid is no quadrant that its diagonal halves or the kernel not tangential. measure_plans: see
+/// OperatorOptions.
 template <typename Real>
 std::unique_ptr<InverseSymbol<Real>> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel,
                                                          const ElasticPair& pair,
-                                                         Diagonal diagonal = Diagonal::no);
+                                                         Diagonal diagonal = Diagonal::no,
+                                                         bool measure_plans = false);
 
 /// What bytes() of it will be.
 template <typename Real>

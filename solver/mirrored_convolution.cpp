@@ -66,8 +66,8 @@ MirroredConvolution<Real>::MirroredConvolution(const Grid& quadrant, BlockKernel
     : Operator<Real>(quadrant, checked(std::move(kernel), quadrant, diagonal)),
       diagonal_(diagonal),
       threads_(std::max(options.threads, 1)),
-      along1_(quadrant.n1, options.measure_plans ? FFTW_MEASURE : FFTW_ESTIMATE),
-      along2_(quadrant.n2, options.measure_plans ? FFTW_MEASURE : FFTW_ESTIMATE),
+      along1_(quadrant.n1, planning(options.measure_plans)),
+      along2_(quadrant.n2, planning(options.measure_plans)),
       row_groups_(groups(quadrant.n1, kLines)),
       column_groups_(groups(along2_.frequencies(), kLines)),
       half_transformed_(count(fields() * row_groups_ * row_group_stride())) {

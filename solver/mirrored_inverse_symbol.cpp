@@ -138,7 +138,7 @@ void mix_with_other_half(Index count, const Real* __restrict p11, const Real* __
 
 template <typename Real>
 MirroredInverseSymbol<Real>::MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair,
-                                                   Diagonal diagonal)
+                                                   Diagonal diagonal, bool measure_plans)
     : grid_(grid),
       tangential_(tangential),
       symmetric_(diagonal == Diagonal::yes),
@@ -148,7 +148,7 @@ MirroredInverseSymbol<Real>::MirroredInverseSymbol(const Grid& grid, bool tangen
       diagonal_(mean_inverse_symbol(mirrored(grid), pair, tangential)),
       table_(mirrored(grid), pair, entries(tangential, diagonal == Diagonal::yes), columns(t2_),
              0.5 / (static_cast<double>(t1_) * static_cast<double>(t2_))),
-      transform_(t1_, t2_, tangential ? 2 : 1),
+      transform_(t1_, t2_, tangential ? 2 : 1, planning(measure_plans)),
       coefficients_(static_cast<std::size_t>(coefficient_size(half_, tangential_ && !symmetric_))),
       twiddles_(static_cast<std::size_t>(twiddle_size(t1_, half_))) {
   fill_twiddles();

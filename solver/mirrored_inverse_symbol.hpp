@@ -24,7 +24,8 @@ template <typename Real>
 class MirroredInverseSymbol final : public InverseSymbol<Real> {
  public:
   /// With Diagonal::yes only the first component is transformed, of which the second is minus the transpose.
-  MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair, Diagonal diagonal);
+  MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair, Diagonal diagonal,
+                        bool measure_plans);
 
   void apply(std::span<Real> field) override;
   std::array<double, 2> diagonal() const override { return diagonal_; }

@@ -153,7 +153,8 @@ Elasticity elasticity(const Scene& scene, const Model& model, const Reduction& p
           .kind = scene.op,
           .threads = scene.threads,
           .precision = scene.precision,
-          .diagonal = part.diagonal()};
+          .diagonal = part.diagonal(),
+          .measure_plans = !scene.wisdom.empty()};
 }
 
 namespace {

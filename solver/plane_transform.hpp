@@ -8,15 +8,16 @@ namespace slipstick::solver {
 template <typename Real>
 class PlaneTransform {
  public:
-  PlaneTransform(Index n1, Index n2, Index fields)
+  /// planner_flags: FFTW's.
+  PlaneTransform(Index n1, Index n2, Index fields, unsigned planner_flags)
       : n1_(n1), row_stride_(padded_row(n2)), buffer_(static_cast<std::size_t>(size(n1, n2, fields))) {
     const int rows = static_cast<int>(n1);
     const int numbers = static_cast<int>(row_stride_ / 2);
     const FftwPlane plane{{rows, static_cast<int>(n2)}, {rows, 2 * numbers}, {rows, numbers}};
     auto* const spectrum = buffer_.complex();
-    forward_ = FftwPlan<Real>(Fftw<Real>::plan_plane_forward(plane, buffer_.data(), spectrum, FFTW_ESTIMATE));
+    forward_ = FftwPlan<Real>(Fftw<Real>::plan_plane_forward(plane, buffer_.data(), spectrum, planner_flags));
     backward_ =
-        FftwPlan<Real>(Fftw<Real>::plan_plane_backward(plane, spectrum, buffer_.data(), FFTW_ESTIMATE));
+        FftwPlan<Real>(Fftw<Real>::plan_plane_backward(plane, spectrum, buffer_.data(), planner_flags));
   }
 
   /// Row i of a field's n2 values, or of its n2/2 + 1 complex numbers: each its real, then its imaginary

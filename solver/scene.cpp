@@ -195,6 +195,7 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
   scene.max_iterations =
       static_cast<int>(reader.number_or("solver.max_iterations", scene.max_iterations, whole(1, 1e9)));
   scene.threads = static_cast<int>(reader.number_or("solver.threads", scene.threads, whole(1, 1024)));
+  if (reader.has("solver.wisdom")) scene.wisdom = reader.path("solver.wisdom");
   reader.reject_unknown();
   require_consistent(reader, scene);
   return scene;

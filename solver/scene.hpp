@@ -72,6 +72,9 @@ struct Scene {
   double tolerance = 1e-8;
   int max_iterations = 5000;
   int threads = 1;
+  /// Transforms are planned by measurement and the plans kept in this file; empty: by estimate, which gives
+  /// the same digits again.
+  std::filesystem::path wisdom;
 };
 
 /// Reads a scene file (TOML); each override is "key=value" with a dotted key, applied before anything is

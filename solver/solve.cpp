@@ -1,5 +1,7 @@
 #include "solver/solve.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <chrono>
 #include <utility>
@@ -12,6 +14,7 @@
 #include "solver/paper_method.hpp"
 #include "solver/pressure.hpp"
 #include "solver/projected_gradient.hpp"
+#include "solver/wisdom.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -182,12 +185,7 @@ void solve_step(Solution& solution, const Scene& scene, const Step& step, const 
   solution.seconds.total = solution.seconds.setup + watch.lap();
 }
 
-}  // namespace
-
-Solution solve(const Scene& scene, const SolveOptions& options) {
-  if (scene.model == ModelChoice::exact) {
-    throw InputError(scene.source.string(), "solver.model", "\"exact\"", "auto, full for a solve on a grid");
-  }
+Solution solve_steps(const Scene& scene, const SolveOptions& options) {
   Stopwatch watch;
   Solution solution;
   solution.model = make_model(scene);
@@ -206,6 +204,22 @@ Solution solve(const Scene& scene, const SolveOptions& options) {
       if (solution.status != Status::converged) return solution;
       previous = &step;
     }
+  }
+  return solution;
+}
+
+}  // namespace
+
+Solution solve(const Scene& scene, const SolveOptions& options) {
+  if (scene.model == ModelChoice::exact) {
+    throw InputError(scene.source.string(), "solver.model", "\"exact\"", "auto, full for a solve on a grid");
+  }
+  if (scene.wisdom.empty()) return solve_steps(scene, options);
+  const Wisdom wisdom(scene.wisdom);
+  Solution solution = solve_steps(scene, options);
+  if (!wisdom.save()) {
+    solution.message += fmt::format("{}solver.wisdom: {} could not be written",
+                                    solution.message.empty() ? "" : "; ", scene.wisdom.string());
   }
   return solution;
 }

@@ -5,6 +5,7 @@
 #include <numbers>
 #include <utility>
 
+#include "solver/cell_integrals.hpp"
 #include "solver/influence.hpp"
 
 namespace slipstick::solver {

@@ -13,6 +13,8 @@
 #include <numbers>
 #include <utility>
 
+#include "solver/cell_integrals.hpp"
+
 namespace slipstick::solver {
 namespace {
 
