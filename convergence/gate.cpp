@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstring>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "convergence/quantity.hpp"
@@ -58,7 +59,8 @@ bool holds(const Gate& gate, const Json& value) {
 /// Why a gate is tighter than what it is judged by allows; empty where it is not.
 std::string too_tight(const Gate& gate, const Json& result) {
   if (!gate.below) return "";
-  const double reference = reference_error(result, gate.quantity);
+  double reference = reference_error(result, gate.quantity);
+  if (std::isnan(reference) && gate.kind == GateSource::result) reference = 0.0;
   if (std::isnan(reference)) {
     return "the result does not say how uncertain the exact answer is, so nothing says whether the gate is "
            "wide enough";
@@ -79,6 +81,19 @@ std::string word(const Json& result, const char* key) {
              : "";
 }
 
+/// What came to a result.
+std::string maker(GateSource kind) {
+  switch (kind) {
+    case GateSource::scene:
+      return "solve";
+    case GateSource::study:
+      return "study";
+    case GateSource::result:
+      return "run";
+  }
+  throw std::logic_error("unknown source of a gate");
+}
+
 bool is_value(const FoundQuantity& found) {
   return found.value != nullptr && !found.value->is_null() && !found.value->is_structured();
 }
@@ -90,7 +105,7 @@ bool is_unknown(const FoundQuantity& found) { return found.value == nullptr && f
 std::string missing_text(const Gate& gate, const Json& result, const FoundQuantity& found) {
   if (!is_unknown(found)) return fmt::format("{} is not a number{}", gate.quantity, because(found.reason));
   if (const std::string status = word(result, "status"); status == "failed" || status == "refused") {
-    return fmt::format("there is no {}: the {} {}{}", gate.quantity, gate.is_study ? "study" : "solve",
+    return fmt::format("there is no {}: the {} {}{}", gate.quantity, maker(gate.kind),
                        status == "failed" ? "failed" : "was refused", because(word(result, "message")));
   }
   return fmt::format("the result has no {}; the nearest is {}", gate.quantity,
@@ -195,14 +210,18 @@ int exit_code(const std::vector<Judgement>& judgements) {
 }
 
 std::string bound_text(const Gate& gate) {
+  if (gate.equals.is_number()) return fmt::format("equal to {}", gate.equals.get<double>());
   if (!gate.equals.is_null()) return "equal to " + gate.equals.dump();
-  if (gate.below && gate.above) return fmt::format("between {:g} and {:g}", *gate.above, *gate.below);
-  if (gate.below) return fmt::format("below {:g} in size", *gate.below);
-  return fmt::format("above {:g}", *gate.above);
+  if (gate.below && gate.above) return fmt::format("between {} and {}", *gate.above, *gate.below);
+  if (gate.below) return fmt::format("below {} in size", *gate.below);
+  return fmt::format("above {}", *gate.above);
 }
 
 std::string rerun_command(const Gate& gate) {
-  return fmt::format("slipstick gate {} --only {}", shell_word(gate.file.string()), shell_word(gate.id));
+  return fmt::format(
+      "slipstick gate {}{} --only {}", shell_word(gate.file.string()),
+      gate.results_folder.empty() ? "" : " --results " + shell_word(gate.results_folder.string()),
+      shell_word(gate.id));
 }
 
 }  // namespace slipstick::convergence

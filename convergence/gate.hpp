@@ -14,21 +14,26 @@ namespace slipstick::convergence {
 /// when the defect goes), of a reported one nothing follows.
 enum class GateStatus { active, expected_failure, report_only };
 
+/// Whose number it is: of a solve, of a study, of a file that any program wrote.
+enum class GateSource { scene, study, result };
+
 /// A number of a result with the bounds that it must keep, as a gate file says it.
 struct Gate {
   std::filesystem::path file;  ///< where it stands
   std::size_t line = 0;
   std::string id;
-  std::filesystem::path source;  ///< scene or study
-  bool is_study = false;
-  std::vector<std::string> overrides;  ///< "key=value", as --set takes them
-  std::string quantity;                ///< path into the result, as in steps[3].traction_error.l2
-  std::optional<double> below;         ///< alone: a bound on the size; with `above`: on the signed value
-  std::optional<double> above;         ///< a bound on the signed value
-  Json equals;                         ///< a word or a number; null: not asked
-  double platform_spread = 0.0;        ///< by how much machines and compilers differ, in the quantity's unit
-  std::string basis;                   ///< where the bound comes from
-  std::string reason;                  ///< why the number matters
+  GateSource kind = GateSource::scene;
+  std::filesystem::path source;          ///< scene, study (TOML) or result (JSON)
+  std::filesystem::path results_folder;  ///< in which results were said to lie; empty: beside the gate file
+  std::string made_by;                   ///< the command that writes the result; empty: not known
+  std::vector<std::string> overrides;    ///< "key=value", as --set takes them
+  std::string quantity;                  ///< path into the result, as in steps[3].traction_error.l2
+  std::optional<double> below;           ///< alone: a bound on the size; with `above`: on the signed value
+  std::optional<double> above;           ///< a bound on the signed value
+  Json equals;                           ///< a word or a number; null: not asked
+  double platform_spread = 0.0;  ///< by how much machines and compilers differ, in the quantity's unit
+  std::string basis;             ///< where the bound comes from
+  std::string reason;            ///< why the number matters
   GateStatus status = GateStatus::active;
 };
 
@@ -60,8 +65,10 @@ bool is_error(const std::string& quantity);
 /// what is no error; NaN for an error whose reference does not say.
 double reference_error(const Json& result, const std::string& quantity);
 
-/// Judges a gate by the result of its scene or study. A number that is missing, NaN or comes from a solve
-/// that did not reach its tolerance fails; a gate that is tighter than kMargin allows is refused.
+/// Judges a gate by the result of its scene or study, or by what its result file holds. A number that is
+/// missing, NaN or comes from a solve that did not reach its tolerance fails; a gate that is tighter than
+/// kMargin allows is refused. Of a result file the reference's error counts where the file states one: it may
+/// call anything an error, of benchmarks that failed as well as of a twist.
 Judgement judge(const Gate& gate, const Json& result);
 
 /// A gate that cannot be judged, and why.

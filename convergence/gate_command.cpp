@@ -1,9 +1,6 @@
 #include "convergence/gate_command.hpp"
 
-#include <fmt/core.h>
-
 #include <filesystem>
-#include <fstream>
 #include <memory>
 #include <ostream>
 #include <string>
@@ -23,19 +20,13 @@ struct Options {
   std::string junit;
   std::string summary;
   std::string output = "build/gates";
+  std::string results;
   int jobs = 0;
   bool github = false;
 };
 
-void write_text(const std::string& option, const std::string& path, const std::string& text) {
-  if (path.empty()) return;
-  std::ofstream file(path);
-  file << text;
-  if (!file.flush()) throw solver::InputError(fmt::format("{} {}", option, path), "cannot be written");
-}
-
 int run(const Options& options, std::ostream& text, nlohmann::ordered_json& result) {
-  const GateFiles files = read_gate_files(options.files);
+  const GateFiles files = read_gate_files(options.files, options.results);
   std::vector<Judgement> judgements = files.unreadable;
   PointRunner runner(options.output, options.jobs);
   const std::vector<Judgement> judged = run_gates(select_gates(files.gates, options.only), runner);
@@ -44,8 +35,8 @@ int run(const Options& options, std::ostream& text, nlohmann::ordered_json& resu
   result = gates_json(judgements);
   text << gates_text(judgements);
   if (options.github) text << gates_annotations(judgements);
-  write_text("--junit", options.junit, gates_junit(judgements));
-  write_text("--summary", options.summary, gates_markdown(judgements));
+  write_option_file("--junit", options.junit, gates_junit(judgements));
+  write_option_file("--summary", options.summary, gates_markdown(judgements));
   if (judgements.empty()) {
     throw solver::InputError(options.files.front(), "no gate ran; allowed: tables headed [[gate]]");
   }
@@ -65,6 +56,8 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_gate_command(CLI:
   command->add_flag("--github", options->github, "print GitHub's annotations, at each failing gate's line");
   command->add_option("--output", options->output, "folder where finished solves are kept")
       ->capture_default_str();
+  command->add_option("--results", options->results,
+                      "folder of the result files that gates name, in place of the gate file's own");
   command->add_option("--jobs", options->jobs, "solves at a time; 0: one a processor")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();

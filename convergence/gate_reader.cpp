@@ -22,14 +22,33 @@ const solver::Words<GateStatus> kStatuses{{"active", GateStatus::active},
                                           {"expected_failure", GateStatus::expected_failure},
                                           {"report_only", GateStatus::report_only}};
 
+const solver::Words<GateSource> kSources{
+    {"scene", GateSource::scene}, {"study", GateSource::study}, {"result", GateSource::result}};
+
 void read_source(SceneReader& reader, const std::string& at, Gate& gate) {
-  const bool scene = reader.has(at + "scene");
-  gate.is_study = reader.has(at + "study");
-  if (scene == gate.is_study) {
-    reader.fail(at + "scene", scene ? "beside study" : "(missing)", "one of scene and study, a file (TOML)");
+  std::vector<std::string> given;
+  for (const auto& [key, kind] : kSources) {
+    if (!reader.has(at + key)) continue;
+    given.push_back(key);
+    gate.kind = kind;
   }
-  gate.source = reader.path(at + (scene ? "scene" : "study"));
+  if (given.size() != 1) {
+    reader.fail(at + "scene", given.empty() ? "(missing)" : "beside " + given.back(),
+                "one of scene and study, a file (TOML), and result, a file (JSON)");
+  }
+  gate.source = reader.path(at + given.front());
   gate.overrides = reader.assignments(at + "set");
+}
+
+/// Any program's, so that only the gate file can say which.
+void read_result_source(SceneReader& reader, const std::string& at, const std::filesystem::path& folder,
+                        Gate& gate) {
+  if (!gate.overrides.empty()) {
+    reader.fail(at + "set", "(given)", "left out beside result: a file is taken as it is");
+  }
+  gate.results_folder = folder;
+  if (!folder.empty()) gate.source = folder / reader.text(at + "result");
+  gate.made_by = reader.text_or("made_by", "");
 }
 
 void read_bounds(SceneReader& reader, const std::string& at, Gate& gate) {
@@ -57,7 +76,8 @@ std::string required_text(SceneReader& reader, const std::string& key) {
   return text;
 }
 
-Gate read_gate(SceneReader& reader, const std::filesystem::path& file, std::size_t index) {
+Gate read_gate(SceneReader& reader, const std::filesystem::path& file,
+               const std::filesystem::path& results_folder, std::size_t index) {
   const std::string table = fmt::format("gate[{}]", index);
   const std::string at = table + ".";
   Gate gate;
@@ -66,6 +86,7 @@ Gate read_gate(SceneReader& reader, const std::filesystem::path& file, std::size
   gate.id = required_text(reader, at + "id");
   gate.status = reader.choice_or(at + "status", GateStatus::active, kStatuses);
   read_source(reader, at, gate);
+  if (gate.kind == GateSource::result) read_result_source(reader, at, results_folder, gate);
   gate.quantity = required_text(reader, at + "quantity");
   read_bounds(reader, at, gate);
   gate.platform_spread = reader.number_or(at + "platform_spread", 0.0, solver::kNotNegative);
@@ -91,21 +112,22 @@ void claim_ids(const std::vector<Gate>& gates, std::map<std::string, std::string
 
 }  // namespace
 
-std::vector<Gate> read_gates(const std::filesystem::path& file) {
+std::vector<Gate> read_gates(const std::filesystem::path& file, const std::filesystem::path& results_folder) {
   SceneReader reader(file, {});
   std::vector<Gate> gates;
   const std::size_t count = reader.count("gate");
-  for (std::size_t i = 0; i < count; ++i) gates.push_back(read_gate(reader, file, i));
+  for (std::size_t i = 0; i < count; ++i) gates.push_back(read_gate(reader, file, results_folder, i));
   reader.reject_unknown();
   return gates;
 }
 
-GateFiles read_gate_files(const std::vector<std::string>& files) {
+GateFiles read_gate_files(const std::vector<std::string>& files,
+                          const std::filesystem::path& results_folder) {
   GateFiles result;
   std::map<std::string, std::string> places;
   for (const std::string& file : files) {
     try {
-      const std::vector<Gate> gates = read_gates(file);
+      const std::vector<Gate> gates = read_gates(file, results_folder);
       claim_ids(gates, places);
       result.gates.insert(result.gates.end(), gates.begin(), gates.end());
     } catch (const InputError& error) {

@@ -15,12 +15,15 @@ struct GateFiles {
   std::vector<Judgement> unreadable;  ///< refused; the id is the file's name
 };
 
-/// The gates of a file (TOML: tables headed [[gate]]); paths in it are relative to its folder. Throws
-/// InputError naming file, key, value and what is allowed.
-std::vector<Gate> read_gates(const std::filesystem::path& file);
+/// The gates of a file (TOML: tables headed [[gate]]); paths in it are relative to its folder, those of
+/// results to `results_folder`, unless that is empty. Throws InputError naming file, key, value and what is
+/// allowed.
+std::vector<Gate> read_gates(const std::filesystem::path& file,
+                             const std::filesystem::path& results_folder = {});
 
 /// The gates of several files, in their order. A file that uses an id a second time counts as unreadable.
-GateFiles read_gate_files(const std::vector<std::string>& files);
+GateFiles read_gate_files(const std::vector<std::string>& files,
+                          const std::filesystem::path& results_folder = {});
 
 /// Those whose id is among `ids`; all where that is empty. Throws InputError for an id that no gate has,
 /// naming the nearest.

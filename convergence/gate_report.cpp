@@ -84,51 +84,22 @@ std::vector<std::string> explanation(const Judgement& judgement) {
   return lines;
 }
 
-/// Text in XML, between tags or in an attribute: what is markup is escaped, control characters, which XML
-/// cannot hold, are left out.
-std::string xml(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        escaped += "&amp;";
-        break;
-      case '<':
-        escaped += "&lt;";
-        break;
-      case '>':
-        escaped += "&gt;";
-        break;
-      case '"':
-        escaped += "&quot;";
-        break;
-      case '\n':
-      case '\t':
-        escaped += fmt::format("&#{};", static_cast<int>(c));
-        break;
-      default:
-        if (static_cast<unsigned char>(c) >= 0x20) escaped += c;
-    }
-  }
-  return escaped;
-}
-
 /// What a case holds beside its name.
 std::string junit_verdict(const Judgement& judgement) {
   const std::string shown = was_read(judgement)
                                 ? fmt::format("{} = {}, must be {}", judgement.gate.quantity,
                                               value_text(judgement.value), bound_text(judgement.gate))
                                 : "";
-  const std::string out = fmt::format("<system-out>{}</system-out>", xml(shown));
+  const std::string out = fmt::format("<system-out>{}</system-out>", xml_text(shown));
   if (judgement.outcome == Outcome::passed) return out;
   if (is_skipped(judgement.outcome)) {
     return fmt::format("<skipped message=\"{}: {}\"/>{}", to_string(judgement.outcome),
-                       xml(judgement.why.empty() ? shown : judgement.why), out);
+                       xml_text(judgement.why.empty() ? shown : judgement.why), out);
   }
   const char* const tag = judgement.outcome == Outcome::refused ? "error" : "failure";
-  return fmt::format("<{0} message=\"{1}\" type=\"{2}\">{3}</{0}>{4}", tag, xml(judgement.why),
+  return fmt::format("<{0} message=\"{1}\" type=\"{2}\">{3}</{0}>{4}", tag, xml_text(judgement.why),
                      to_string(judgement.outcome),
-                     xml(fmt::format("{}", fmt::join(explanation(judgement), "\n"))), out);
+                     xml_text(fmt::format("{}", fmt::join(explanation(judgement), "\n"))), out);
 }
 
 std::string junit_counts(const std::vector<Judgement>& judgements) {
@@ -142,38 +113,24 @@ std::string junit_counts(const std::vector<Judgement>& judgements) {
 }
 
 std::string junit_suite(const std::string& file, const std::vector<Judgement>& judgements) {
-  std::string text = fmt::format("  <testsuite name=\"{}\" {}>\n", xml(file), junit_counts(judgements));
+  std::string text = fmt::format("  <testsuite name=\"{}\" {}>\n", xml_text(file), junit_counts(judgements));
   const std::string classname = std::filesystem::path(file).stem().string();
   for (const Judgement& judgement : judgements) {
     text += fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\">{}</testcase>\n",
-                        xml(classname), xml(judgement.gate.id), judgement.seconds, junit_verdict(judgement));
+                        xml_text(classname), xml_text(judgement.gate.id), judgement.seconds,
+                        junit_verdict(judgement));
   }
   return text + "  </testsuite>\n";
-}
-
-/// Text in a cell of a Markdown table.
-std::string cell(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    if (c == '\n') {
-      escaped += "<br>";
-    } else if (c == '<') {
-      escaped += "&lt;";
-    } else {
-      if (c == '|' || c == '\\') escaped += '\\';
-      escaped += c;
-    }
-  }
-  return escaped;
 }
 
 std::string markdown_row(const Judgement& judgement) {
   const std::string remarks =
       judgement.outcome == Outcome::passed ? "" : fmt::format("{}", fmt::join(explanation(judgement), "\n"));
-  return fmt::format(
-      "| {} | {} | {} | {} | {} | {} | {} |\n", to_string(judgement.outcome), cell(judgement.gate.id),
-      cell(judgement.gate.quantity), cell(value_text(judgement.value)),
-      was_read(judgement) ? cell(bound_text(judgement.gate)) : "-", factor_text(judgement), cell(remarks));
+  return fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", to_string(judgement.outcome),
+                     markdown_cell(judgement.gate.id), markdown_cell(judgement.gate.quantity),
+                     markdown_cell(value_text(judgement.value)),
+                     was_read(judgement) ? markdown_cell(bound_text(judgement.gate)) : "-",
+                     factor_text(judgement), markdown_cell(remarks));
 }
 
 /// What stands in a workflow command: properties end at commas and colons too.

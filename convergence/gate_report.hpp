@@ -1,16 +1,13 @@
 #pragma once
 
-#include <cstddef>
 #include <string>
 #include <vector>
 
 #include "convergence/gate.hpp"
+#include "convergence/markup.hpp"
 
 /// What became of gates, for those who read it: a person, a CI server, a script.
 namespace slipstick::convergence {
-
-/// GitHub cuts a comment off above 64 kB.
-inline constexpr std::size_t kMostMarkdown = 64000;
 
 /// For a person: a line a gate, then what there is to know of each that does not pass, and the count.
 std::string gates_text(const std::vector<Judgement>& judgements);

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
@@ -43,7 +44,7 @@ void judge_scenes(const std::vector<Gate>& gates, PointRunner& runner, Judgement
   std::vector<Point> points;
   std::vector<std::string> questions;
   for (std::size_t i = 0; i < gates.size(); ++i) {
-    if (gates[i].is_study) continue;
+    if (gates[i].kind != GateSource::scene) continue;
     try {
       questions.push_back(question(point_of(gates[i])));
       points.push_back(point_of(gates[i]));
@@ -79,11 +80,39 @@ void judge_studies(const std::vector<Gate>& gates, PointRunner& runner, Judgemen
   std::map<std::pair<std::filesystem::path, std::vector<std::string>>, Json> results;
   for (std::size_t i = 0; i < gates.size(); ++i) {
     const Gate& gate = gates[i];
-    if (!gate.is_study) continue;
+    if (gate.kind != GateSource::study) continue;
     try {
       auto [found, is_new] = results.try_emplace({gate.source, gate.overrides});
       if (is_new) found->second = study_result(gate, runner);
       judgements[i] = judge(gate, found->second);
+    } catch (const InputError& error) {
+      judgements[i] = refuse(gate, error.what());
+    }
+  }
+}
+
+Json read_result(const Gate& gate) {
+  const std::string made_by = gate.made_by.empty() ? "" : "; it is made by: " + gate.made_by;
+  std::ifstream stream(gate.source);
+  if (!stream) {
+    throw InputError(gate.source.string(), "cannot be read; allowed: a result file (JSON)" + made_by);
+  }
+  try {
+    return Json::parse(stream);
+  } catch (const Json::parse_error& error) {
+    throw InputError(gate.source.string(), fmt::format("is not JSON ({}){}", error.what(), made_by));
+  }
+}
+
+/// Each file is read once.
+void judge_results(const std::vector<Gate>& gates, Judgements& judgements) {
+  std::map<std::filesystem::path, Json> results;
+  for (std::size_t i = 0; i < gates.size(); ++i) {
+    const Gate& gate = gates[i];
+    if (gate.kind != GateSource::result) continue;
+    try {
+      if (!results.contains(gate.source)) results[gate.source] = read_result(gate);
+      judgements[i] = judge(gate, results.at(gate.source));
     } catch (const InputError& error) {
       judgements[i] = refuse(gate, error.what());
     }
@@ -96,6 +125,7 @@ std::vector<Judgement> run_gates(const std::vector<Gate>& gates, PointRunner& ru
   Judgements judgements(gates.size());
   judge_scenes(gates, runner, judgements);
   judge_studies(gates, runner, judgements);
+  judge_results(gates, judgements);
   std::vector<Judgement> result;
   for (std::optional<Judgement>& judgement : judgements) result.push_back(*std::move(judgement));
   return result;

@@ -7,8 +7,8 @@
 
 namespace slipstick::convergence {
 
-/// Computes what gates ask for, all scenes side by side and equal ones once, and judges it. A gate whose
-/// scene or study cannot be read is refused; the others are judged all the same.
+/// Computes what gates ask for, all scenes side by side and equal ones once, or reads it, and judges it. A
+/// gate whose scene, study or result cannot be read is refused; the others are judged all the same.
 std::vector<Judgement> run_gates(const std::vector<Gate>& gates, PointRunner& runner);
 
 }  // namespace slipstick::convergence

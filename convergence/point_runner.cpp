@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <chrono>
 #include <csignal>
 #include <cstdint>
 #include <cstring>
@@ -19,13 +18,13 @@
 #include <utility>
 
 #include "convergence/journal.hpp"
+#include "convergence/progress.hpp"
 #include "solver/input_error.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
 namespace fs = std::filesystem;
-using Clock = std::chrono::steady_clock;
 
 /// Part of the memory now available that points may take: predictions are good to a few percent, and other
 /// programs live here too.
@@ -132,37 +131,11 @@ std::string how_it_ended(int status) {
   return fmt::format("its process ended with code {}", WEXITSTATUS(status));
 }
 
-/// Says on standard error how far it is: one line on a terminal, rewritten; elsewhere a line now and then.
-class Progress {
- public:
-  explicit Progress(const std::vector<Task>& tasks) : total_(tasks.size()) {
-    for (const Task& task : tasks) left_ += task.bytes;
-  }
-
-  void finished(const Task& task) {
-    ++done_;
-    left_ -= task.bytes;
-    solved_ += task.bytes;
-    const auto now = Clock::now();
-    const bool last = done_ == total_;
-    if (!terminal_ && !last && now - said_ < std::chrono::seconds(10)) return;
-    said_ = now;
-    const double seconds = std::chrono::duration<double>(now - start_).count();
-    fmt::print(stderr, "{}[{}/{}] {}, about {:.0f} s left{}", terminal_ ? "\r\033[K" : "", done_, total_,
-               task.label, solved_ > 0.0 ? seconds / solved_ * left_ : 0.0, terminal_ && !last ? "" : "\n");
-  }
-
-  std::string text() const { return fmt::format("{} of {} points", done_, total_); }
-
- private:
-  std::size_t total_;
-  std::size_t done_ = 0;
-  double left_ = 0.0;
-  double solved_ = 0.0;
-  bool terminal_ = isatty(STDERR_FILENO) != 0;
-  Clock::time_point start_ = Clock::now();
-  Clock::time_point said_ = start_;
-};
+double total_bytes(const std::vector<Task>& tasks) {
+  double bytes = 0.0;
+  for (const Task& task : tasks) bytes += task.bytes;
+  return bytes;
+}
 
 /// The tasks' processes, largest first.
 class Crew {
@@ -176,7 +149,7 @@ class Crew {
   /// Why points are missing, by their names.
   std::map<std::string, std::string> work(const fs::path& folder) {
     const InterruptScope scope;
-    Progress progress(tasks_);
+    Progress progress(tasks_.size(), total_bytes(tasks_));
     std::map<std::string, std::string> failures;
     while (next_ < tasks_.size() || !running_.empty()) {
       while (may_start()) start_next();
@@ -184,7 +157,7 @@ class Crew {
       const pid_t child = waitpid(-1, &status, 0);
       if (interrupted != 0)
         stop(
-            fmt::format("interrupted: {} are done and kept in {}; the same command goes on "
+            fmt::format("interrupted: {} points are done and kept in {}; the same command goes on "
                         "from there",
                         progress.text(), folder.string()));
       const auto found = running_.find(child);
@@ -193,7 +166,7 @@ class Crew {
       if (status != 0) failures[task.name] = how_it_ended(status);
       bytes_ -= task.bytes;
       running_.erase(found);
-      progress.finished(task);
+      progress.finished(task.label, task.bytes);
     }
     return failures;
   }

@@ -1,30 +1,14 @@
 #include "convergence/python_script.hpp"
 
 #include <fmt/core.h>
-#include <spawn.h>
-#include <sys/wait.h>
-#include <unistd.h>
 
 #include <stdexcept>
 
+#include "convergence/run_program.hpp"
+
 namespace slipstick::convergence {
-namespace {
 
 namespace fs = std::filesystem;
-
-/// Runs a program and waits; returns its exit code.
-int run_program(const std::vector<std::string>& words) {
-  std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-  pid_t child = 0;
-  if (posix_spawnp(&child, arguments[0], nullptr, nullptr, arguments.data(), environ) != 0) return -1;
-  int status = 0;
-  return waitpid(child, &status, 0) == child && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-}
-
-}  // namespace
 
 fs::path project_file(const fs::path& relative) {
   std::error_code error;

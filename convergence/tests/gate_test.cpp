@@ -18,6 +18,7 @@
 #include "convergence/gate_reader.hpp"
 #include "convergence/gate_report.hpp"
 #include "convergence/quantity.hpp"
+#include "convergence/tests/program_run.hpp"
 #include "solver/input_error.hpp"
 
 namespace slipstick::convergence {
@@ -196,6 +197,26 @@ TEST(Gate, NearestReferenceIsTheOneThatCounts) {
   EXPECT_EQ(reference_error(result, "iterations"), 0.0);
 }
 
+TEST(Gate, OfAResultFileTheReferenceCountsWhereItIsStated) {
+  Gate gate = below("counts.errors", 10.0);
+  gate.kind = GateSource::result;
+  Json result{{"counts", {{"errors", 3}}}};
+  EXPECT_EQ(judge(gate, result).outcome, Outcome::passed) << "the file says nothing of a reference";
+  result["counts"]["reference_uncertainty"] = 0.9;
+  EXPECT_EQ(judge(gate, result).outcome, Outcome::passed);
+  result["counts"]["reference_uncertainty"] = 1.1;
+  EXPECT_EQ(judge(gate, result).outcome, Outcome::refused);
+  gate.kind = GateSource::scene;
+  EXPECT_EQ(judge(gate, {{"counts", {{"errors", 3}}}}).outcome, Outcome::refused);
+}
+
+TEST(Gate, BoundsAreSaidInFull) {
+  EXPECT_EQ(bound_text(equals("x", 1535605.0)), "equal to 1535605");
+  EXPECT_EQ(bound_text(equals("x", "asymptotic")), "equal to \"asymptotic\"");
+  EXPECT_EQ(bound_text(between("x", 1535605.0, 1535607.0)), "between 1535605 and 1535607");
+  EXPECT_EQ(bound_text(below("x", 2e-5)), "below 2e-05 in size");
+}
+
 TEST(Gate, ExpectedFailureMustFail) {
   const Gate gate = with_status(below("x", 1.0), GateStatus::expected_failure);
   EXPECT_EQ(outcome(gate, 2.0), Outcome::failed_as_expected);
@@ -314,7 +335,7 @@ status = "expected_failure"
   EXPECT_EQ(gates[0].id, "first");
   EXPECT_EQ(gates[0].line, 2);
   EXPECT_EQ(gates[0].source, folder_ / "scenes/paper.toml");
-  EXPECT_FALSE(gates[0].is_study);
+  EXPECT_EQ(gates[0].kind, GateSource::scene);
   EXPECT_THAT(gates[0].overrides,
               testing::UnorderedElementsAre("load.moment_ratio=0.9", "grid.cells=[256, 256]",
                                             "contact.pressure='hertz'"));
@@ -322,7 +343,7 @@ status = "expected_failure"
   EXPECT_EQ(gates[0].above, std::nullopt);
   EXPECT_EQ(gates[0].status, GateStatus::active);
   EXPECT_EQ(gates[1].line, 10);
-  EXPECT_TRUE(gates[1].is_study);
+  EXPECT_EQ(gates[1].kind, GateSource::study);
   EXPECT_EQ(gates[1].equals, "asymptotic");
   EXPECT_EQ(gates[1].status, GateStatus::report_only);
   EXPECT_EQ(gates[1].reason, "to know");
@@ -358,6 +379,36 @@ TEST_F(GateFile, BadEntriesAreNamedWithTheirLine) {
   EXPECT_THAT(complaint("[[gate]\n"), HasSubstr("bad.toml:1"));
   EXPECT_EQ(complaint(with("status = 'report_only'")), "");
   EXPECT_EQ(complaint(without("basis") + "status = 'report_only'\n"), "");
+}
+
+constexpr const char* kResultGate = R"([[gate]]
+id = "counted"
+result = "work.json"
+quantity = "counts.some-case.applications"
+above = 17
+below = 21
+basis = "counted 19"
+)";
+
+TEST_F(GateFile, NamesResultsBesideItOrInAFolder) {
+  const std::string file = write("gates.toml", std::string("made_by = 'make gate'\n") + kResultGate);
+  const Gate gate = read_gates(file).at(0);
+  EXPECT_EQ(gate.kind, GateSource::result);
+  EXPECT_EQ(gate.source, folder_ / "work.json");
+  EXPECT_EQ(gate.made_by, "make gate");
+  EXPECT_THAT(rerun_command(gate), Not(HasSubstr("--results")));
+  const Gate elsewhere = read_gates(file, "some where").at(0);
+  EXPECT_EQ(elsewhere.source, "some where/work.json");
+  EXPECT_THAT(rerun_command(elsewhere), HasSubstr("--results 'some where' --only counted"));
+}
+
+TEST_F(GateFile, ResultStandsAlone) {
+  const std::string good = kResultGate;
+  EXPECT_EQ(complaint(good), "");
+  EXPECT_THAT(complaint(good + "scene = 'a.toml'\n"), HasSubstr("one of scene and study"));
+  EXPECT_THAT(complaint(good + "study = 'a.toml'\n"), HasSubstr("one of scene and study"));
+  EXPECT_THAT(complaint(good + "set = { 'grid.cells' = [8, 8] }\n"),
+              AllOf(HasSubstr("gate[0].set"), HasSubstr("left out beside result")));
 }
 
 TEST_F(GateFile, BadOneSparesTheOthers) {
@@ -535,26 +586,11 @@ TEST(GateReport, JsonHasEveryNumberOrAReason) {
   EXPECT_THAT(json["gates"][5]["value_reason"].get<std::string>(), HasSubstr("scene"));
 }
 
-struct ProgramRun {
-  int exit_code;
-  std::string output;
-};
-
 /// The program with gates on a coarse grid.
 class GateProgram : public GateFolder {
  protected:
   ProgramRun run(const std::string& arguments) const {
-    const std::string command = std::string(SLIPSTICK_PROGRAM) + " gate --output " +
-                                (folder_ / "points").string() + " " + arguments + " 2>&1";
-    FILE* const pipe = popen(command.c_str(), "r");
-    ProgramRun result{-1, ""};
-    std::array<char, 4096> buffer{};
-    while (const std::size_t size = fread(buffer.data(), 1, buffer.size(), pipe)) {
-      result.output.append(buffer.data(), size);
-    }
-    const int status = pclose(pipe);
-    result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-    return result;
+    return run_program_with("gate --output " + (folder_ / "points").string() + " " + arguments);
   }
 
   std::string gate(const std::string& id, const std::string& bound, const std::string& more = "") const {
@@ -631,6 +667,31 @@ TEST_F(GateProgram, JudgesStudies) {
   const ProgramRun lost = run(write("lost.toml", study("lost", "nowhere.toml", "16")));
   EXPECT_EQ(lost.exit_code, 2);
   EXPECT_THAT(lost.output, HasSubstr("nowhere.toml"));
+}
+
+TEST_F(GateProgram, JudgesResultFilesOfAnyProgram) {
+  const std::string file = write("gates.toml", std::string("made_by = 'make counts'\n") + kResultGate);
+  const auto counted = [](const std::string& number) {
+    return R"({"counts": {"some-case": {"applications": )" + number + "}}}";
+  };
+  const ProgramRun lost = run(file);
+  EXPECT_EQ(lost.exit_code, 2);
+  EXPECT_THAT(lost.output, AllOf(HasSubstr("work.json"), HasSubstr("make counts")));
+  write("work.json", counted("19"));
+  EXPECT_EQ(run(file).exit_code, 0);
+  for (const char* wrong : {"16", "22", "null", "\"19\""}) {
+    write("work.json", counted(wrong));
+    EXPECT_EQ(run(file).exit_code, 1) << wrong;
+  }
+  fs::create_directory(folder_ / "results");
+  write("results/work.json", counted("18"));
+  EXPECT_EQ(run(file + " --results " + (folder_ / "results").string()).exit_code, 0);
+  for (const char* broken : {"{", "", "{\"counts\": NaN}"}) {
+    write("work.json", broken);
+    const ProgramRun out = run(file);
+    EXPECT_EQ(out.exit_code, 2) << broken;
+    EXPECT_THAT(out.output, AllOf(HasSubstr("work.json"), HasSubstr("is not JSON")));
+  }
 }
 
 TEST_F(GateProgram, ComputesEqualScenesOnce) {

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <array>
@@ -13,6 +12,8 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "convergence/tests/program_run.hpp"
+
 namespace {
 
 using nlohmann::json;
@@ -20,25 +21,12 @@ using testing::AllOf;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-const std::string kProgram = SLIPSTICK_PROGRAM;
 const std::string kScenes = SLIPSTICK_SCENES;
 const std::string kSmall = " --set grid.cells=[24,24]";
 
-struct ProgramRun {
-  int exit_code;
-  std::string output;  ///< standard output and error together
-};
+using slipstick::ProgramRun;
 
-ProgramRun run(const std::string& arguments) {
-  FILE* const pipe = popen((kProgram + " " + arguments + " 2>&1").c_str(), "r");
-  ProgramRun result{-1, ""};
-  std::array<char, 4096> buffer{};
-  while (const std::size_t size = fread(buffer.data(), 1, buffer.size(), pipe))
-    result.output.append(buffer.data(), size);
-  const int status = pclose(pipe);
-  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return result;
-}
+ProgramRun run(const std::string& arguments) { return slipstick::run_program_with(arguments); }
 
 std::string solve(const std::string& scene) { return "solve " + kScenes + "/" + scene + ".toml" + kSmall; }
 
@@ -50,7 +38,7 @@ fs::path temporary(const std::string& name) {
 }
 
 TEST(Program, EveryCommandHasHelpWithAnExample) {
-  for (const char* command : {"check", "exact", "gate", "solve", "study", "report"}) {
+  for (const char* command : {"bench", "check", "compare", "exact", "gate", "report", "solve", "study"}) {
     const ProgramRun help = run(std::string(command) + " --help");
     EXPECT_EQ(help.exit_code, 0);
     EXPECT_THAT(help.output, AllOf(HasSubstr("Example"), HasSubstr("slipstick " + std::string(command)),

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+
+/// Text in files that others read.
+namespace slipstick::convergence {
+
+/// GitHub cuts a comment off above 64 kB.
+inline constexpr std::size_t kMostMarkdown = 64000;
+
+/// Text in XML, between tags or in an attribute: what is markup is escaped, control characters, which XML
+/// cannot hold, are left out.
+std::string xml_text(std::string_view text);
+
+/// Text in a cell of a Markdown table.
+std::string markdown_cell(std::string_view text);
+
+/// Writes the file that an option names; without a path does nothing. Throws InputError naming option and
+/// path where it cannot be written.
+void write_option_file(const std::string& option, const std::string& path, const std::string& text);
+
+}  // namespace slipstick::convergence
