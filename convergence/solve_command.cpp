@@ -8,17 +8,20 @@
 #include <filesystem>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "convergence/accuracy/accurate_solve.hpp"
 #include "convergence/exact_result.hpp"
 #include "convergence/oracle.hpp"
 #include "convergence/result.hpp"
 #include "convergence/solve_figure.hpp"
 #include "solver/field_file.hpp"
 #include "solver/input_error.hpp"
+#include "solver/scene_reader.hpp"
 #include "solver/solve.hpp"
 
 namespace slipstick::convergence {
@@ -30,6 +33,9 @@ struct Options {
   std::string fields;
   std::string figure;
   std::string model;
+  std::optional<double> accuracy;
+  std::string accuracy_of = "twist";
+  bool plan = false;
 };
 
 /// One line on a terminal, rewritten; nothing elsewhere.
@@ -70,21 +76,22 @@ int answer_exactly(const solver::Scene& scene, const Options& options, std::ostr
   return 0;
 }
 
-int solve_on_grid(const solver::Scene& scene, const Options& options, std::ostream& text, Json& result) {
+/// Solves, and writes the fields of each step where they go to a file of its own.
+GridAnswer find_on_grid(const solver::Scene& scene, const Options& options, Json& result) {
   const std::unique_ptr<ExactHistory> history = exact_history(scene);
-  OracleAnswer exact;
+  GridAnswer answer;
   const bool has_history = scene.steps.size() > 1 || scene.cycles > 1;
   Json steps = Json::array();
   const auto on_step = [&](const solver::Solution& at) {
-    exact = history->advance(at.loads);
-    if (has_history) steps.push_back(step_result(scene, at, exact));
+    answer.exact = history->advance(at.loads);
+    if (has_history) steps.push_back(step_result(scene, at, answer.exact));
     if (one_file_a_step(options.fields)) {
-      write_solution_fields(file_of_step(options.fields, std::max<std::size_t>(steps.size(), 1)), at, exact);
+      write_solution_fields(file_of_step(options.fields, std::max<std::size_t>(steps.size(), 1)), at,
+                            answer.exact);
     }
   };
-  solver::Solution solution;
   try {
-    solution = solver::solve(scene, {.progress = show_progress, .on_step = on_step});
+    answer.solution = solver::solve(scene, {.progress = show_progress, .on_step = on_step});
   } catch (const solver::InputError& error) {  // the steps before are not lost
     if (!steps.empty()) {
       result = {{"name", scene.name}, {"status", "not_converged"}, {"message", error.what()}};
@@ -92,17 +99,88 @@ int solve_on_grid(const solver::Scene& scene, const Options& options, std::ostre
     }
     throw;
   }
-  result = solve_result(scene, solution, exact);
-  if (has_history) add_steps(result, std::move(steps));
-  text << solve_text(result);
-  write_files(options, result, [&](const auto& file) { write_solution_fields(file, solution, exact); });
-  return solution.status == solver::Status::converged ? 0 : 1;
+  answer.result = solve_result(scene, answer.solution, answer.exact);
+  if (has_history) add_steps(answer.result, std::move(steps));
+  return answer;
+}
+
+void write_answer(const GridAnswer& answer, const Options& options, std::ostream& text) {
+  text << solve_text(answer.result);
+  write_files(options, answer.result,
+              [&](const auto& file) { write_solution_fields(file, answer.solution, answer.exact); });
+}
+
+int solve_on_grid(const solver::Scene& scene, const Options& options, std::ostream& text, Json& result) {
+  const GridAnswer answer = find_on_grid(scene, options, result);
+  result = answer.result;
+  write_answer(answer, options, text);
+  return answer.solution.status == solver::Status::converged ? 0 : 1;
+}
+
+AccuracyWish wish_of(const Options& options) {
+  AccuracyWish wish{.error = *options.accuracy};
+  for (const auto& [word, of] : accuracy_words()) {
+    if (word == options.accuracy_of) wish.of = of;
+  }
+  return wish;
+}
+
+/// The accuracy chooses these: both cannot hold.
+void require_not_set(const std::vector<std::string>& overrides) {
+  for (const std::string& assignment : overrides) {
+    for (const std::string_view key : {"grid.cells", "solver.tolerance"}) {
+      if (!assignment.starts_with(key)) continue;
+      throw solver::InputError(
+          fmt::format("--set {}", assignment),
+          "allowed: left out beside --accuracy, which chooses the cells and the tolerance");
+    }
+  }
+}
+
+/// The exact wing, where it answers and the user does not say otherwise.
+solver::Scene model_chosen(solver::Scene scene, const Options& options, AccuracyOf of) {
+  const bool said =
+      !options.model.empty() || solver::SceneReader(options.scene, options.overrides).has("solver.model");
+  if (!said && answers_exactly(scene, of)) scene.model = solver::ModelChoice::exact;
+  return scene;
+}
+
+int solve_accurately(solver::Scene scene, const Options& options, std::ostream& text, Json& result) {
+  const AccuracyWish wish = wish_of(options);
+  require_not_set(options.overrides);
+  scene = model_chosen(std::move(scene), options, wish.of);
+  require_can_wish(scene, wish);
+  if (options.plan) {
+    result["plan"] = plan_json(scene_for(scene, wish));
+    text << plan_text(result);
+    return 0;
+  }
+  if (scene.model == solver::ModelChoice::exact) {
+    const Json accuracy = exact_accuracy(scene, wish);
+    answer_exactly(scene, options, text, result);
+    result["accuracy"] = accuracy;
+    text << accuracy_text(result);
+    return 0;
+  }
+  const AccurateAnswer answer = solve_to_accuracy(
+      scene, wish, [&](const solver::Scene& chosen) { return find_on_grid(chosen, options, result); });
+  result = answer.answer.result;
+  result["accuracy"] = answer.accuracy;
+  write_answer(answer.answer, options, text);
+  text << accuracy_text(result);
+  return answer.reached ? 0 : 1;
 }
 
 int run(const Options& options, std::ostream& text, Json& result) {
   if (!options.fields.empty()) solver::require_field_format(options.fields);
   if (!options.figure.empty()) require_figure_format(options.figure);
   const solver::Scene scene = read_scene(options);
+  if (options.accuracy) return solve_accurately(scene, options, text, result);
+  if (options.plan) {
+    result["plan"] = plan_json(scene);
+    text << plan_text(result);
+    return 0;
+  }
   const bool exact = scene.model == solver::ModelChoice::exact;
   return (exact ? answer_exactly : solve_on_grid)(scene, options, text, result);
 }
@@ -123,6 +201,18 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_solve_command(CLI
       "auto (leaves out what the scene allows) | full | exact (no grid: the exact solution of an "
       "axisymmetric scene); as --set solver.model=...");
   command->add_option(
+      "--accuracy", options->accuracy,
+      "relative error to reach, e.g. 1e-4: chooses cells, tolerance and, unless said, the model; "
+      "says what was reached");
+  std::vector<std::string> words;
+  for (const auto& [word, of] : accuracy_words()) words.push_back(word);
+  command
+      ->add_option("--accuracy-of", options->accuracy_of,
+                   "what --accuracy is asked of; where the twist is imposed, twist means the moment")
+      ->check(CLI::IsMember(words))
+      ->capture_default_str();
+  command->add_flag("--plan", options->plan, "predict memory and time of what would be solved, and stop");
+  command->add_option(
       "--fields", options->fields,
       "write tractions, pressure, stick and, from a grid, slip: .h5, .csv or .vti; of a history the "
       "last step, or each to a file of its own where the name holds {step}");
@@ -131,9 +221,10 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_solve_command(CLI
   command->footer(
       "Example:\n  slipstick solve convergence/scenes/paper.toml --set load.moment_ratio=0.5 --json "
       "result.json --fields "
-      "fields.h5 --figure figure.svg\n  slipstick solve convergence/scenes/cone.toml --model exact\nExit "
+      "fields.h5 --figure figure.svg\n  slipstick solve convergence/scenes/cone.toml --model exact\n  "
+      "slipstick solve convergence/scenes/ellipse.toml --accuracy 1e-3\nExit "
       "code 0: converged; 1: "
-      "not, result written all the same; 2: bad input, or gross slip "
+      "not, or the accuracy not reached, result written all the same; 2: bad input, or gross slip "
       "asked for, or --model exact where no exact answer is known.");
   return
       [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };

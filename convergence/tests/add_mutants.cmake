@@ -3,21 +3,8 @@
 include(${CMAKE_CURRENT_LIST_DIR}/mutants.cmake)
 
 foreach(name IN LISTS mutants)
-  set(source "${CMAKE_CURRENT_BINARY_DIR}/mutants/${name}.cpp")
-  set(original "${mutant_${name}_FILE}")
-  add_custom_command(OUTPUT "${source}"
-    COMMAND ${CMAKE_COMMAND} -D NAME=${name} -D SOURCE_DIR=${PROJECT_SOURCE_DIR} -D OUTPUT=${source}
-      -P ${CMAKE_CURRENT_LIST_DIR}/mutate.cmake
-    DEPENDS "${PROJECT_SOURCE_DIR}/${original}" ${CMAKE_CURRENT_LIST_DIR}/mutants.cmake
-      ${CMAKE_CURRENT_LIST_DIR}/mutate.cmake)
-  cmake_path(GET original PARENT_PATH folder)
-  set(target slipstick_mutant_${name})
-  add_executable(${target} EXCLUDE_FROM_ALL "${source}" $<TARGET_OBJECTS:slipstick>)
-  slipstick_configure(${target})
-  target_include_directories(${target} PRIVATE $<TARGET_PROPERTY:slipstick_${folder},INCLUDE_DIRECTORIES>)
-  target_link_libraries(${target} PRIVATE $<TARGET_PROPERTY:slipstick,LINK_LIBRARIES>)
-  set_target_properties(${target} PROPERTIES RUNTIME_OUTPUT_DIRECTORY "${CMAKE_CURRENT_BINARY_DIR}/mutants")
-  list(APPEND mutant_targets ${target})
+  add_mutant(${name} MUTANTS ${CMAKE_CURRENT_LIST_DIR}/mutants.cmake ORIGINAL slipstick)
+  list(APPEND mutant_targets slipstick_mutant_${name})
 endforeach()
 add_custom_target(slipstick_mutants DEPENDS ${mutant_targets})
 

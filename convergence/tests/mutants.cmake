@@ -1,15 +1,6 @@
 # Mistakes that such programs are known to make, one substitution each, and the gates that must fail for them. What is
 # replaced must stand in the file exactly once.
-
-# mutant(<name> FILE <source> FIND <text> REPLACE <text> GATES <ids...>)
-function(mutant name)
-  cmake_parse_arguments(PARSE_ARGV 1 ARG "" "FILE;FIND;REPLACE" "GATES")
-  set(names ${mutants} ${name})
-  set(mutants "${names}" PARENT_SCOPE)
-  foreach(key FILE FIND REPLACE GATES)
-    set(mutant_${name}_${key} "${ARG_${key}}" PARENT_SCOPE)
-  endforeach()
-endfunction()
+include("${CMAKE_CURRENT_LIST_DIR}/../../cmake/mutant.cmake")
 
 # A convolution whose transforms are as long as the grid: offsets beyond half of it come round from the other side.
 mutant(no_zero_padding
