@@ -13,6 +13,8 @@
 #include <vector>
 
 #include "analytic/exact_command.hpp"
+#include "bench/bench_command.hpp"
+#include "bench/compare_command.hpp"
 #include "convergence/check/check_command.hpp"
 #include "convergence/gate_command.hpp"
 #include "convergence/report_command.hpp"
@@ -45,7 +47,8 @@ int run(int argc, char** argv) {
   const std::vector<Command> commands{
       slipstick::analytic::add_exact_command(app),    slipstick::convergence::add_solve_command(app),
       slipstick::convergence::add_check_command(app), slipstick::convergence::add_study_command(app),
-      slipstick::convergence::add_gate_command(app),  slipstick::convergence::add_report_command(app)};
+      slipstick::convergence::add_gate_command(app),  slipstick::convergence::add_report_command(app),
+      slipstick::bench::add_bench_command(app),       slipstick::bench::add_compare_command(app)};
   const auto subcommands = app.get_subcommands([](const CLI::App*) { return true; });
   std::string json_path;
   bool quiet = false;

@@ -1,51 +1,13 @@
 #include "bench/checked_solve.hpp"
 
-#include <fmt/core.h>
-
-#include <algorithm>
-#include <cmath>
 #include <filesystem>
 
+#include "bench/objection.hpp"
 #include "convergence/exact_result.hpp"
 
 namespace slipstick::bench {
-namespace {
 
 using solver::Scene;
-using solver::Solution;
-
-/// On 64 to 1,024 cells along a side and to a tight tolerance, the tractions' error is at most 1.1 over the
-/// cells, the twist's 2.4 over their square (it is of second order): twice that is right. A looser tolerance
-/// adds its root to the tractions, as the gap bounds their error's square, and itself to the twist, or its
-/// root too by the paper's method, which has no such bound.
-constexpr double kTractionErrorTimesCells = 2.2;
-constexpr double kTwistErrorTimesCellsSquared = 5.0;
-
-std::string objection_to(const Scene& scene, const Solution& solution) {
-  if (solution.status != solver::Status::converged) return solution.message;
-  const double gap = solution.certificate.gap;
-  if (scene.method == solver::Method::coulomb && !(gap <= scene.tolerance)) {
-    return fmt::format("certificate {:.3g} above the tolerance {:.3g}", gap, scene.tolerance);
-  }
-  return "";
-}
-
-std::string objection_to(const Scene& scene, const convergence::Errors& errors) {
-  const auto cells = static_cast<double>(std::min(scene.cells[0], scene.cells[1]));
-  const double root = std::sqrt(scene.tolerance);
-  const double traction = kTractionErrorTimesCells / cells + root;
-  const double twist = kTwistErrorTimesCellsSquared / (cells * cells) +
-                       (scene.method == solver::Method::coulomb ? scene.tolerance : root);
-  if (!(errors.traction.at_centres.l2 <= traction)) {
-    return fmt::format("traction error {:.3g} above {:.3g}", errors.traction.at_centres.l2, traction);
-  }
-  if (!(std::abs(errors.twist) <= twist)) {
-    return fmt::format("twist error {:.3g} above {:.3g}", errors.twist, twist);
-  }
-  return "";
-}
-
-}  // namespace
 
 Scene shipped_scene(const std::string& name) {
   return solver::read_scene(std::filesystem::path(SLIPSTICK_SCENES) / (name + ".toml"));
@@ -67,9 +29,30 @@ CheckedSolution solve_and_check(const Scene& scene) {
   const convergence::Oracle exact = convergence::require_oracle(scene);
   CheckedSolution checked{.solution = solver::solve(scene), .errors = {}, .objection = {}};
   checked.errors = convergence::compare(checked.solution, exact);
-  checked.objection = objection_to(scene, checked.solution);
-  if (checked.objection.empty()) checked.objection = objection_to(scene, checked.errors);
+  checked.objection = objection(scene, checked.solution, checked.errors);
   return checked;
+}
+
+std::map<std::string, benchmark::Counter> counters(const CheckedSolution& checked) {
+  const auto& [solution, errors, objection] = checked;
+  const std::map<std::string, double> values{{"twist_error", errors.twist},
+                                             {"traction_error", errors.traction.at_centres.l2},
+                                             {"stick_radius_error", errors.stick_radius},
+                                             {"gap", solution.certificate.gap},
+                                             {"applications", solution.operator_applications},
+                                             {"pressure_applications", solution.pressure_applications},
+                                             {"iterations", solution.tangential.iterations},
+                                             {"bytes", solution.bytes}};
+  std::map<std::string, benchmark::Counter> result;
+  for (const auto& [name, value] : values) {
+    if (std::isfinite(value)) result[name] = value;  // JSON has no NaN
+  }
+  return result;
+}
+
+void show_ratio(Prepared& prepared, const SideBySide& times) {
+  prepared.counters["ratio"] = times.ratio;
+  prepared.counters["ratio_cpu"] = times.cpu_ratio;
 }
 
 }  // namespace slipstick::bench

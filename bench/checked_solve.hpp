@@ -2,6 +2,8 @@
 
 #include <string>
 
+#include "bench/side_by_side.hpp"
+#include "bench/suite.hpp"
 #include "convergence/errors.hpp"
 #include "solver/solve.hpp"
 
@@ -21,9 +23,15 @@ solver::Scene paper_scene(solver::Index cells, double moment_ratio);
 /// A scene that comes with the program.
 solver::Scene shipped_scene(const std::string& name);
 
-/// Objects to a solution that has not converged, whose certificate (by Coulomb's method) is worse than the
-/// tolerance, or whose errors are above what its mesh explains; of a history, its last step. Throws
-/// InputError where there is no exact answer.
+/// Objects to a solution that has not converged, whose certificate (by Coulomb's method and by projected
+/// gradients) is worse than the tolerance, or whose errors are above what its mesh explains; of a history,
+/// its last step. Throws InputError where there is no exact answer.
 CheckedSolution solve_and_check(const solver::Scene& scene);
+
+/// Errors, certificate, work and memory.
+std::map<std::string, benchmark::Counter> counters(const CheckedSolution& checked);
+
+/// First over second, by the clock ("ratio") and by the processor's time ("ratio_cpu").
+void show_ratio(Prepared& prepared, const SideBySide& times);
 
 }  // namespace slipstick::bench

@@ -3,7 +3,7 @@
 // allowed there: 8, or 4 times what an ulp of the input costs) and, since machines differ, as a multiple of
 // one call of GSL's Carlson R_D (per_RD).
 
-#include <benchmark/benchmark.h>
+#include <fmt/core.h>
 #include <gsl/gsl_sf_ellint.h>
 
 #include <algorithm>
@@ -14,10 +14,11 @@
 #include <string>
 
 #include "analytic/tests/replay.hpp"
+#include "bench/suite.hpp"
 
+namespace slipstick::bench {
 namespace {
 
-namespace analytic = slipstick::analytic;
 using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kInputs = 256;
@@ -61,8 +62,7 @@ double seconds_per_carlson_rd() {
 }
 
 /// The worst error of a quantity over the certified table and the hardest inputs known, by what is allowed.
-void show_error(benchmark::State& state, const std::string& profile, const std::string& given,
-                const std::string& quantity) {
+Prepared judged(const std::string& profile, const std::string& given, const std::string& quantity) {
   analytic::testing::Replay worst{.error = 0, .allowed = analytic::testing::kAllowed};
   for (const auto& row : analytic::testing::all_references()) {
     if (row.text("profile") != profile || row.text("quantity") != quantity) continue;
@@ -70,18 +70,19 @@ void show_error(benchmark::State& state, const std::string& profile, const std::
     const auto replay = analytic::testing::replay(row);
     if (!(replay.error / replay.allowed <= worst.error / worst.allowed)) worst = replay;
   }
-  state.counters["error_eps"] = worst.error;
-  state.counters["allowed_eps"] = worst.allowed;
-  if (!(worst.error > 0 && worst.error <= worst.allowed))
-    state.SkipWithError("disagrees with its references, or has none");
+  const bool right = worst.error > 0 && worst.error <= worst.allowed;
+  return {.counters = {{"error_eps", worst.error}, {"allowed_eps", worst.allowed}},
+          .objection = right ? "" : "disagrees with its references, or has none",
+          .timing = {}};
 }
 
-/// Times f(i) over the inputs.
+/// Times f(i), i running over the inputs, one call an iteration.
 template <class Function>
-void time(benchmark::State& state, Function f) {
-  std::size_t i = 0;
-  for ([[maybe_unused]] auto _ : state) benchmark::DoNotOptimize(f(i++ % kInputs));
-  state.counters["per_RD"] = seconds_per_call(f) / seconds_per_carlson_rd();
+Prepared timed(Prepared prepared, Function f) {
+  prepared.counters["per_RD"] = seconds_per_call(f) / seconds_per_carlson_rd();
+  prepared.timing =
+      repeated([f, i = std::size_t{0}]() mutable { benchmark::DoNotOptimize(f(i++ % kInputs)); });
+  return prepared;
 }
 
 const analytic::Profile& profile(const std::string& name) {
@@ -90,64 +91,61 @@ const analytic::Profile& profile(const std::string& name) {
                           : analytic::flat_punch_profile();
 }
 
-void stick_ratio_from_moment(benchmark::State& state, const std::string& name) {
-  show_error(state, name, "moment_ratio", "stick_ratio");
-  const Inputs moment_ratios = spread();
-  time(state, [&, &at = profile(name)](std::size_t i) {
-    return analytic::from_moment_ratio(moment_ratios[i], at).stick_ratio;
-  });
+Prepared stick_ratio_from_moment(const std::string& name) {
+  return timed(judged(name, "moment_ratio", "stick_ratio"),
+               [moment_ratios = spread(), &at = profile(name)](std::size_t i) {
+                 return analytic::from_moment_ratio(moment_ratios[i], at).stick_ratio;
+               });
 }
 
-void twist_from_stick_ratio(benchmark::State& state, const std::string& name) {
-  show_error(state, name, "stick_ratio", "twist");
-  const Inputs ratios = spread();
-  time(state, [&, &at = profile(name)](std::size_t i) {
+Prepared twist_from_stick_ratio(const std::string& name) {
+  return timed(judged(name, "stick_ratio", "twist"), [ratios = spread(), &at = profile(name)](std::size_t i) {
     return at.twist_integral({.ratio = ratios[i], .complement = 1 - ratios[i]}) / (2 * at.load());
   });
 }
 
-void state_from_stick_ratio(benchmark::State& state, const std::string& name) {
-  show_error(state, name, "stick_ratio", "moment_deficit");
-  const Inputs ratios = spread();
-  time(state, [&, &at = profile(name)](std::size_t i) {
-    return analytic::from_stick_ratio(ratios[i], at).moment_deficit;
-  });
+Prepared state_from_stick_ratio(const std::string& name) {
+  return timed(judged(name, "stick_ratio", "moment_deficit"),
+               [ratios = spread(), &at = profile(name)](std::size_t i) {
+                 return analytic::from_stick_ratio(ratios[i], at).moment_deficit;
+               });
 }
 
-void one_traction(benchmark::State& state, const std::string& name) {
-  show_error(state, name, "", "traction");
+Prepared one_traction(const std::string& name) {
   const Inputs fractions = spread();
   std::array<analytic::TorsionState, kInputs> states{};
   for (std::size_t i = 0; i < kInputs; ++i)
     states[i] = analytic::from_stick_ratio(fractions[(i + 31) % kInputs], profile(name));
-  time(state, [&, &at = profile(name)](std::size_t i) {
+  return timed(judged(name, "", "traction"), [fractions, states, &at = profile(name)](std::size_t i) {
     return analytic::traction(states[i], fractions[i] * states[i].stick_ratio, at);
   });
 }
 
-void carlson_rd(benchmark::State& state) {
-  const Inputs inputs = spread();
-  std::size_t i = 0;
-  for ([[maybe_unused]] auto _ : state) {
-    gsl_sf_result result;
-    gsl_sf_ellint_RD_e(0, inputs[i % kInputs] * inputs[i % kInputs], 1, GSL_PREC_DOUBLE, &result);
-    benchmark::DoNotOptimize(result.val);
-    ++i;
-  }
+Prepared carlson_rd() {
+  return {.counters = {},
+          .objection = "",
+          .timing = repeated([inputs = spread(), i = std::size_t{0}]() mutable {
+            gsl_sf_result result;
+            gsl_sf_ellint_RD_e(0, inputs[i % kInputs] * inputs[i % kInputs], 1, GSL_PREC_DOUBLE, &result);
+            benchmark::DoNotOptimize(result.val);
+            ++i;
+          })};
 }
 
-BENCHMARK_CAPTURE(stick_ratio_from_moment, hertz, "hertz");
-BENCHMARK_CAPTURE(stick_ratio_from_moment, cone, "cone");
-BENCHMARK_CAPTURE(stick_ratio_from_moment, flat_punch, "flat_punch");
-BENCHMARK_CAPTURE(twist_from_stick_ratio, hertz, "hertz");
-BENCHMARK_CAPTURE(twist_from_stick_ratio, cone, "cone");
-BENCHMARK_CAPTURE(twist_from_stick_ratio, flat_punch, "flat_punch");
-BENCHMARK_CAPTURE(state_from_stick_ratio, hertz, "hertz");
-BENCHMARK_CAPTURE(state_from_stick_ratio, cone, "cone");
-BENCHMARK_CAPTURE(state_from_stick_ratio, flat_punch, "flat_punch");
-BENCHMARK_CAPTURE(one_traction, hertz, "hertz");
-BENCHMARK_CAPTURE(one_traction, cone, "cone");
-BENCHMARK_CAPTURE(one_traction, flat_punch, "flat_punch");
-BENCHMARK(carlson_rd);
-
 }  // namespace
+
+void add_exact_benchmarks(Suite& suite) {
+  const auto add = [&suite](const std::string& what, Prepared (*prepare)(const std::string&)) {
+    for (const std::string profile : {"hertz", "cone", "flat_punch"}) {
+      suite.add(fmt::format("exact/{}/{}", what, profile), [prepare, profile] { return prepare(profile); })
+          ->Unit(benchmark::kNanosecond);
+    }
+  };
+  add("stick_ratio_from_moment", stick_ratio_from_moment);
+  add("twist_from_stick_ratio", twist_from_stick_ratio);
+  add("state_from_stick_ratio", state_from_stick_ratio);
+  add("traction", one_traction);
+  suite.add("exact/carlson_rd", carlson_rd)->Unit(benchmark::kNanosecond);
+}
+
+}  // namespace slipstick::bench

@@ -1,80 +1,91 @@
 // What a history costs beside one step of it, and a force beside torsion alone: times, work and the errors
 // that they buy. A solution that is wrong is reported and not timed.
 
-#include <benchmark/benchmark.h>
+#include <fmt/core.h>
 
 #include <algorithm>
+#include <cmath>
+#include <string>
 
 #include "bench/checked_solve.hpp"
 #include "bench/side_by_side.hpp"
+#include "bench/suite.hpp"
 
+namespace slipstick::bench {
 namespace {
 
-using slipstick::bench::CheckedSolution;
-using slipstick::bench::SideBySide;
-using slipstick::solver::ModelChoice;
-using slipstick::solver::Scene;
-using slipstick::solver::Solution;
+using solver::Index;
+using solver::ModelChoice;
+using solver::Scene;
+using solver::Solution;
 
-/// range(0): cells along a side; model: what symmetry leaves out, or nothing.
-Scene scene_of(const benchmark::State& state, double moment_ratio, ModelChoice model) {
-  Scene scene = slipstick::bench::paper_scene(state.range(0), moment_ratio);
+/// model: what symmetry leaves out, or nothing.
+Scene scene_of(Index cells, double moment_ratio, ModelChoice model) {
+  Scene scene = paper_scene(cells, moment_ratio);
   scene.model = model;
   return scene;
 }
 
-void solve_all(const Scene& scene) { benchmark::DoNotOptimize(slipstick::solver::solve(scene)); }
+void solve_all(const Scene& scene) { benchmark::DoNotOptimize(solver::solve(scene)); }
 
-/// The benchmark's own time is the first scene's; `name` is first over second.
-void time_against(benchmark::State& state, const Scene& first, const Scene& second, const char* name) {
-  using slipstick::bench::seconds;
-  const SideBySide times =
-      slipstick::bench::side_by_side([&] { return seconds([&] { solve_all(first); }); },
-                                     [&] { return seconds([&] { solve_all(second); }); });
-  for ([[maybe_unused]] auto _ : state) state.SetIterationTime(times.first);
-  state.counters[name] = times.ratio;
+/// The benchmark's own time is the first scene's.
+void time_against(Prepared& prepared, const Scene& first, const Scene& second) {
+  show_ratio(prepared, side_by_side([&] { return seconds([&] { solve_all(first); }); },
+                                    [&] { return seconds([&] { solve_all(second); }); }));
+  prepared.timing = repeated([first] { solve_all(first); });
 }
 
-/// range(1): reversals between 0.8 and -0.8 of the limit moment. The last one's errors.
-void torsion_cycles(benchmark::State& state) {
-  const Scene first_loading = scene_of(state, 0.8, ModelChoice::automatic);
+/// Reversals between 0.8 and -0.8 of the limit moment. The last one's errors.
+Prepared torsion_cycles(Index cells, std::size_t reversals) {
+  const Scene first_loading = scene_of(cells, 0.8, ModelChoice::automatic);
   Scene scene = first_loading;
-  scene.steps.resize(static_cast<std::size_t>(state.range(1)) + 1, scene.steps.front());
+  scene.steps.resize(reversals + 1, scene.steps.front());
   for (std::size_t i = 1; i < scene.steps.size(); i += 2) scene.steps[i].torsion.moment_ratio = -0.8;
-  const CheckedSolution checked = slipstick::bench::solve_and_check(scene);
-  if (!checked.objection.empty()) return state.SkipWithError(checked.objection.c_str());
-  state.counters["twist_error"] = checked.errors.twist;
-  state.counters["dissipated_error"] = checked.errors.dissipated;
-  state.counters["gap"] = checked.solution.certificate.gap;
-  state.counters["applications_of_last"] = checked.solution.operator_applications;
-  time_against(state, scene, first_loading, "over_first_loading");
+  const CheckedSolution checked = solve_and_check(scene);
+  Prepared prepared{.counters = counters(checked), .objection = checked.objection, .timing = {}};
+  prepared.counters["dissipated_error"] = checked.errors.dissipated;
+  if (prepared.objection.empty()) time_against(prepared, scene, first_loading);
+  return prepared;
 }
 
-/// range(1): whether symmetry is left unused in torsion alone too, as the force leaves none. No exact answer:
-/// the certificate.
-void torsion_with_force(benchmark::State& state) {
-  const Scene torsion =
-      scene_of(state, 0.5, state.range(1) != 0 ? ModelChoice::full : ModelChoice::automatic);
+/// How far the certificate lets a load be off: rounding of sums over the contact.
+constexpr double kAllowedLoadError = 1e-9;
+
+/// A force leaves no symmetry to use; `torsion` says whether torsion alone uses it. No exact answer: the
+/// certificate.
+Prepared torsion_with_force(Index cells, ModelChoice torsion_model) {
+  const Scene torsion = scene_of(cells, 0.5, torsion_model);
   Scene scene = torsion;
   auto& step = scene.steps.front();
   step.force = {0.3 * scene.friction * *step.normal, 0.0};
-  const Solution solution = slipstick::solver::solve(scene);
-  if (solution.status != slipstick::solver::Status::converged) {
-    return state.SkipWithError(solution.message.c_str());
+  const Solution solution = solver::solve(scene);
+  const double load_error = std::max(solution.certificate.moment, solution.certificate.force);
+  Prepared prepared{.counters = {{"gap", solution.certificate.gap},
+                                 {"load_error", load_error},
+                                 {"limit_factor", solution.limit.factor},
+                                 {"applications", solution.operator_applications}},
+                    .objection = solution.message,
+                    .timing = {}};
+  if (prepared.objection.empty() &&
+      !(solution.certificate.gap <= scene.tolerance && load_error <= kAllowedLoadError)) {
+    prepared.objection = "the certificate does not hold";
   }
-  state.counters["gap"] = solution.certificate.gap;
-  state.counters["load_error"] = std::max(solution.certificate.moment, solution.certificate.force);
-  state.counters["limit_factor"] = solution.limit.factor;
-  state.counters["applications"] = solution.operator_applications;
-  time_against(state, scene, torsion, "over_torsion");
+  if (prepared.objection.empty()) time_against(prepared, scene, torsion);
+  return prepared;
 }
-
-/// The rounds are within one iteration.
-void once(benchmark::internal::Benchmark* benchmark) {
-  benchmark->UseManualTime()->Iterations(1)->Unit(benchmark::kMillisecond);
-}
-
-BENCHMARK(torsion_cycles)->Apply(once)->ArgNames({"cells", "reversals"})->ArgsProduct({{128}, {20}});
-BENCHMARK(torsion_with_force)->Apply(once)->ArgNames({"cells", "full"})->ArgsProduct({{256, 512}, {0, 1}});
 
 }  // namespace
+
+void add_history_benchmarks(Suite& suite) {
+  suite.add("paired/cycles_over_first_loading/cells:128/reversals:20",
+            [] { return torsion_cycles(128, 20); });
+  for (const Index cells : {256, 512}) {
+    const auto name = [cells](const std::string& other) {
+      return fmt::format("{}paired/with_force_over_{}/cells:{}", cells == 256 ? "" : "long/", other, cells);
+    };
+    suite.add(name("torsion"), [cells] { return torsion_with_force(cells, ModelChoice::automatic); });
+    suite.add(name("full_torsion"), [cells] { return torsion_with_force(cells, ModelChoice::full); });
+  }
+}
+
+}  // namespace slipstick::bench

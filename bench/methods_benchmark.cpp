@@ -1,41 +1,31 @@
 // Coulomb's method beside others: the paper's at the same error of the tractions, and accelerated projected
 // gradients at the same gap of the certificate. A solution that is wrong is reported and not timed.
 
-#include <benchmark/benchmark.h>
 #include <fmt/core.h>
 
 #include <cmath>
-#include <cstdint>
+#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "bench/checked_solve.hpp"
 #include "bench/side_by_side.hpp"
+#include "bench/suite.hpp"
 #include "solver/certificate.hpp"
 #include "solver/coulomb_method.hpp"
 #include "solver/paper_method.hpp"
 #include "solver/pressure.hpp"
 #include "solver/projected_gradient.hpp"
 
+namespace slipstick::bench {
 namespace {
 
-namespace solver = slipstick::solver;
-using slipstick::bench::CheckedSolution;
-using slipstick::bench::SideBySide;
+using solver::Index;
 using solver::Scene;
 
-double tolerance_of_digits(std::int64_t digits) { return std::pow(10.0, -static_cast<double>(digits)); }
-
-double moment_ratio(const benchmark::State& state) { return 1e-3 * static_cast<double>(state.range(1)); }
-
-/// The benchmark's own time is that of Coulomb's method.
-void show_times(benchmark::State& state, const SideBySide& times, const std::string& other) {
-  for ([[maybe_unused]] auto _ : state) state.SetIterationTime(times.first);
-  state.counters["over_" + other] = times.ratio;
-  state.counters["over_" + other + "_cpu"] = times.cpu_ratio;
-  state.counters[other + "_seconds"] = times.second;
-}
+double tolerance_of_digits(int digits) { return std::pow(10.0, -digits); }
 
 /// A torsional problem on the whole grid of a scene, as the methods take it.
 struct Torsion {
@@ -74,11 +64,11 @@ solver::TangentialSolution by_projected_gradient(const Torsion& torsion, double 
   return solution;
 }
 
-/// Both timed to return their seconds.
+/// The benchmark's own time is the first one's.
 template <typename First, typename Second>
-SideBySide time_both(const First& first, const Second& second) {
-  return slipstick::bench::side_by_side([&] { return slipstick::bench::seconds(first); },
-                                        [&] { return slipstick::bench::seconds(second); });
+void time_both(Prepared& prepared, const First& first, const Second& second) {
+  show_ratio(prepared, side_by_side([&] { return seconds(first); }, [&] { return seconds(second); }));
+  prepared.timing = repeated(first);
 }
 
 /// A method with the loosest tolerance that gets the tractions as right as they can be.
@@ -92,7 +82,7 @@ Loosest loosest(Scene scene, double wanted_error) {
   std::optional<Loosest> best;
   for (int digits = 2; digits <= 8 && !(best && best->as_good); ++digits) {
     scene.tolerance = tolerance_of_digits(digits);
-    CheckedSolution checked = slipstick::bench::solve_and_check(scene);
+    CheckedSolution checked = solve_and_check(scene);
     const bool right = checked.objection.empty();
     const double error = checked.errors.traction.at_centres.l2;
     const bool better = !best || !best->checked.objection.empty() ||
@@ -102,31 +92,24 @@ Loosest loosest(Scene scene, double wanted_error) {
   return *best;
 }
 
-void show_methods(benchmark::State& state, const Loosest& coulomb, const Loosest& paper) {
-  state.counters["traction_error"] = coulomb.checked.errors.traction.at_centres.l2;
-  state.counters["paper_traction_error"] = paper.checked.errors.traction.at_centres.l2;
-  state.counters["twist_error"] = coulomb.checked.errors.twist;
-  state.counters["paper_twist_error"] = paper.checked.errors.twist;
-  state.counters["applications"] = coulomb.checked.solution.operator_applications;
-  state.counters["paper_applications"] = paper.checked.solution.operator_applications;
-  state.counters["tolerance"] = coulomb.scene.tolerance;
-  state.counters["paper_tolerance"] = paper.scene.tolerance;
-  state.SetLabel(paper.as_good ? "the paper's method gets as near" : "the paper's method never gets as near");
+std::map<std::string, benchmark::Counter> counters(const Loosest& coulomb, const Loosest& paper) {
+  auto both = counters(coulomb.checked);
+  for (const auto& [name, value] : counters(paper.checked)) both["paper_" + name] = value;
+  both["tolerance"] = coulomb.scene.tolerance;
+  both["paper_tolerance"] = paper.scene.tolerance;
+  both["paper_gets_as_near"] = paper.as_good ? 1.0 : 0.0;
+  return both;
 }
 
-void time_methods(benchmark::State& state, const Scene& coulomb, const Scene& paper, bool whole) {
+void time_methods(Prepared& prepared, const Scene& coulomb, const Scene& paper, bool whole) {
   if (whole) {
-    const auto total = [](const Scene& scene) { return solver::solve(scene).seconds.total; };
-    show_times(state,
-               slipstick::bench::side_by_side([&] { return total(coulomb); }, [&] { return total(paper); }),
-               "paper");
-    return;
+    return time_both(
+        prepared, [coulomb] { solver::solve(coulomb); }, [&] { solver::solve(paper); });
   }
-  const Torsion torsion = torsion_of(coulomb);
-  show_times(
-      state,
-      time_both([&] { by_coulomb(torsion, coulomb.tolerance); }, [&] { by_paper(torsion, paper.tolerance); }),
-      "paper");
+  time_both(
+      prepared,
+      [torsion = torsion_of(coulomb), tolerance = coulomb.tolerance] { by_coulomb(torsion, tolerance); },
+      [torsion = torsion_of(coulomb), tolerance = paper.tolerance] { by_paper(torsion, tolerance); });
 }
 
 /// What is timed: the tractions alone, or the whole solve; Coulomb's method to 1e-8, or to the loosest
@@ -138,21 +121,19 @@ struct Contest {
 
 /// The paper's method is to get the tractions that Coulomb's method has at 1e-8; its path, and with that its
 /// applications, hang on the last bits of the pressure.
-void against_paper_method(benchmark::State& state, const Contest& contest) {
-  const Scene scene = slipstick::bench::paper_scene(state.range(0), moment_ratio(state));
+Prepared against_paper_method(Index cells, double moment_ratio, const Contest& contest) {
+  const Scene scene = paper_scene(cells, moment_ratio);
   Scene by_the_paper = scene;
   by_the_paper.method = solver::Method::paper;
-  Loosest coulomb{scene, slipstick::bench::solve_and_check(scene), true};
+  Loosest coulomb{scene, solve_and_check(scene), true};
   const double wanted_error = coulomb.checked.errors.traction.at_centres.l2;
   if (contest.both_loosest) coulomb = loosest(scene, wanted_error);
   const Loosest paper = loosest(by_the_paper, wanted_error);
-  const std::string objection = coulomb.checked.objection + paper.checked.objection;
-  if (!objection.empty()) {
-    state.SkipWithError(objection.c_str());
-    return;
-  }
-  show_methods(state, coulomb, paper);
-  time_methods(state, coulomb.scene, paper.scene, contest.whole);
+  Prepared prepared{.counters = counters(coulomb, paper),
+                    .objection = coulomb.checked.objection + paper.checked.objection,
+                    .timing = {}};
+  if (prepared.objection.empty()) time_methods(prepared, coulomb.scene, paper.scene, contest.whole);
+  return prepared;
 }
 
 double gap(const Torsion& torsion, const solver::TangentialSolution& solution) {
@@ -178,65 +159,68 @@ std::string objection(const Torsion& torsion, const solver::TangentialSolution& 
   return distance <= 4.0 * tolerance * size ? "" : "the two methods' tractions differ";
 }
 
-void against_projected_gradient(benchmark::State& state, const Scene& scene) {
-  const double tolerance = tolerance_of_digits(state.range(2));
-  const Torsion torsion = torsion_of(scene);
-  const auto coulomb = by_coulomb(torsion, tolerance);
-  const auto gradient = by_projected_gradient(torsion, tolerance);
-  if (const std::string why_not = objection(torsion, coulomb, gradient, tolerance); !why_not.empty()) {
-    state.SkipWithError(why_not.c_str());
-    return;
-  }
-  state.counters["applications"] = solver::finest_grid_applications(coulomb.grids);
-  state.counters["gradient_applications"] = solver::finest_grid_applications(gradient.grids);
-  state.counters["gap"] = gap(torsion, coulomb);
-  state.counters["gradient_gap"] = gap(torsion, gradient);
-  show_times(
-      state,
-      time_both([&] { by_coulomb(torsion, tolerance); }, [&] { by_projected_gradient(torsion, tolerance); }),
-      "gradient");
-}
-
-void against_projected_gradient_on_sphere(benchmark::State& state) {
-  against_projected_gradient(state, slipstick::bench::paper_scene(state.range(0), moment_ratio(state)));
+Prepared against_projected_gradient(const Scene& scene, int digits) {
+  const double tolerance = tolerance_of_digits(digits);
+  const auto torsion = std::make_shared<Torsion>(torsion_of(scene));
+  const auto coulomb = by_coulomb(*torsion, tolerance);
+  const auto gradient = by_projected_gradient(*torsion, tolerance);
+  Prepared prepared{.counters = {{"applications", solver::finest_grid_applications(coulomb.grids)},
+                                 {"gradient_applications", solver::finest_grid_applications(gradient.grids)},
+                                 {"gap", gap(*torsion, coulomb)},
+                                 {"gradient_gap", gap(*torsion, gradient)}},
+                    .objection = objection(*torsion, coulomb, gradient, tolerance),
+                    .timing = {}};
+  if (!prepared.objection.empty()) return prepared;
+  time_both(
+      prepared, [torsion, tolerance] { by_coulomb(*torsion, tolerance); },
+      [torsion, tolerance] { by_projected_gradient(*torsion, tolerance); });
+  return prepared;
 }
 
 /// An ellipse of nearly 2 : 1, cells nearly square.
-void against_projected_gradient_on_ellipse(benchmark::State& state) {
-  Scene scene = slipstick::bench::shipped_scene("ellipse");
-  scene.cells = {state.range(0), state.range(0) / 2};
-  scene.steps[0].torsion = {.moment_ratio = moment_ratio(state), .moment = {}, .twist = {}};
+Scene ellipse_scene(Index cells, double moment_ratio) {
+  Scene scene = shipped_scene("ellipse");
+  scene.cells = {cells, cells / 2};
+  scene.steps[0].torsion = {.moment_ratio = moment_ratio, .moment = {}, .twist = {}};
   scene.model = solver::ModelChoice::full;
-  against_projected_gradient(state, scene);
+  return scene;
 }
 
-/// The rounds are within one iteration.
-void once(benchmark::internal::Benchmark* benchmark) {
-  benchmark->UseManualTime()->Iterations(1)->Unit(benchmark::kMillisecond);
-}
-void load(benchmark::internal::Benchmark* benchmark) {
-  once(benchmark);
-  benchmark->ArgNames({"cells", "permille"});
-}
-void load_and_tolerance(benchmark::internal::Benchmark* benchmark) {
-  once(benchmark);
-  benchmark->ArgNames({"cells", "permille", "digits"});
+std::string load_name(Index cells, int permille) {
+  return fmt::format("/cells:{}/permille:{}", cells, permille);
 }
 
-BENCHMARK_CAPTURE(against_paper_method, traction, Contest{.whole = false, .both_loosest = false})
-    ->Apply(load)
-    ->ArgsProduct({{128, 256, 512}, {500, 900, 990}});
-BENCHMARK_CAPTURE(against_paper_method, whole, Contest{.whole = true, .both_loosest = false})
-    ->Apply(load)
-    ->ArgsProduct({{128, 256, 512}, {500, 900, 990}});
-BENCHMARK_CAPTURE(against_paper_method, both_loosest, Contest{.whole = false, .both_loosest = true})
-    ->Apply(load)
-    ->ArgsProduct({{128, 256, 512}, {500, 900, 990}});
-BENCHMARK(against_projected_gradient_on_sphere)
-    ->Apply(load_and_tolerance)
-    ->ArgsProduct({{64, 128, 256}, {500, 900, 990}, {4, 6, 8}});
-BENCHMARK(against_projected_gradient_on_ellipse)
-    ->Apply(load_and_tolerance)
-    ->ArgsProduct({{64, 128, 256}, {500, 900, 990}, {4, 6, 8}});
+void add_paper_contests(Suite& suite, Index cells, int permille) {
+  const auto add = [&](const std::string& what, const Contest& contest) {
+    const std::string prefix = cells == 256 && permille != 990 && !contest.whole ? "" : "long/";
+    suite.add(prefix + "paired/coulomb_over_paper/" + what + load_name(cells, permille),
+              [=] { return against_paper_method(cells, 1e-3 * permille, contest); });
+  };
+  add("traction", {.whole = false, .both_loosest = false});
+  add("whole", {.whole = true, .both_loosest = false});
+  add("both_loosest", {.whole = false, .both_loosest = true});
+}
+
+void add_gradient_contests(Suite& suite, Index cells, int permille, int digits) {
+  const std::string name = load_name(cells, permille) + fmt::format("/digits:{}", digits);
+  const std::string prefix = cells == 128 && permille == 900 && digits != 6 ? "" : "long/";
+  const std::string contest = "paired/coulomb_over_projected_gradient/";
+  const double moment_ratio = 1e-3 * permille;
+  suite.add(prefix + contest + "sphere" + name,
+            [=] { return against_projected_gradient(paper_scene(cells, moment_ratio), digits); });
+  suite.add(prefix + contest + "ellipse" + name,
+            [=] { return against_projected_gradient(ellipse_scene(cells, moment_ratio), digits); });
+}
 
 }  // namespace
+
+void add_methods_benchmarks(Suite& suite) {
+  for (const int permille : {500, 900, 990}) {
+    for (const Index cells : {128, 256, 512}) add_paper_contests(suite, cells, permille);
+    for (const Index cells : {64, 128, 256}) {
+      for (const int digits : {4, 6, 8}) add_gradient_contests(suite, cells, permille, digits);
+    }
+  }
+}
+
+}  // namespace slipstick::bench

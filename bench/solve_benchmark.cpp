@@ -1,127 +1,136 @@
-// Whole solves of the paper's scene, beside the errors that they buy: over four bare padded transforms, with
-// what symmetry leaves out over the full model, mixed over double precision, at one tolerance over another. A
-// solution that is wrong is reported and not timed.
-
-#include <benchmark/benchmark.h>
+// Whole solves of the paper's scene, beside the errors that they buy: by each method; and in turn with
+// another way to the same answer, time over time (nothing left out of the model, double precision, another
+// tolerance, four bare padded transforms).
 
 #include <cmath>
+#include <memory>
 #include <string>
 
 #include "bench/checked_solve.hpp"
 #include "bench/four_transforms.hpp"
 #include "bench/side_by_side.hpp"
+#include "bench/suite.hpp"
 
+namespace slipstick::bench {
 namespace {
 
-using slipstick::bench::CheckedSolution;
-using slipstick::bench::FourTransforms;
-using slipstick::bench::SideBySide;
-using slipstick::solver::Index;
-using slipstick::solver::Scene;
+using solver::Index;
+using solver::Method;
+using solver::Scene;
 
-/// range(0): cells along a side; range(1): the moment in thousandths of its limit.
-Scene scene_of(const benchmark::State& state) {
-  return slipstick::bench::paper_scene(state.range(0), 1e-3 * static_cast<double>(state.range(1)));
+/// Cells along a side, and the moment in thousandths of its limit.
+struct Load {
+  Index cells;
+  int permille;
+
+  Scene scene() const { return paper_scene(cells, 1e-3 * permille); }
+  std::string name() const {
+    return "/cells:" + std::to_string(cells) + "/permille:" + std::to_string(permille);
+  }
+};
+
+Scene with_symmetry(Scene scene) {
+  scene.model = solver::ModelChoice::automatic;
+  return scene;
 }
 
-double seconds_of(const Scene& scene) { return slipstick::solver::solve(scene).seconds.total; }
-
-/// False if it must not be timed.
-bool accept(benchmark::State& state, const CheckedSolution& checked) {
-  if (!checked.objection.empty()) state.SkipWithError(checked.objection.c_str());
-  return checked.objection.empty();
+Scene with_method(Scene scene, Method method, double tolerance) {
+  scene.method = method;
+  scene.tolerance = tolerance;
+  return scene;
 }
 
-void show_errors(benchmark::State& state, const CheckedSolution& checked) {
-  state.counters["twist_error"] = checked.errors.twist;
-  state.counters["traction_error"] = checked.errors.traction.at_centres.l2;
-  state.counters["gap"] = checked.solution.certificate.gap;
+double seconds_of(const Scene& scene) {
+  return seconds([&] { benchmark::DoNotOptimize(solver::solve(scene)); });
 }
 
-void show_work(benchmark::State& state, const CheckedSolution& checked) {
-  const auto& cells = checked.solution.model.grid;
-  const double padded_cells = 4.0 * static_cast<double>(cells.n1 * cells.n2);
-  state.counters["applications"] = checked.solution.operator_applications;
-  state.counters["pressure_applications"] = checked.solution.pressure_applications;
-  state.counters["doubles_per_padded_cell"] =
-      static_cast<double>(checked.solution.bytes) / sizeof(double) / padded_cells;
+Prepared whole_solve(const Scene& scene) {
+  const CheckedSolution checked = solve_and_check(scene);
+  return {.counters = counters(checked),
+          .objection = checked.objection,
+          .timing = repeated([scene] { benchmark::DoNotOptimize(solver::solve(scene)); })};
 }
 
-/// The benchmark's own time is the first one's; `name` is first over second.
-void show_times(benchmark::State& state, const SideBySide& times, const std::string& name) {
-  for ([[maybe_unused]] auto _ : state) state.SetIterationTime(times.first);
-  state.counters[name] = times.ratio;
-  state.counters[name + "_cpu"] = times.cpu_ratio;
+Prepared over_transforms(const Load& load) {
+  Prepared prepared = whole_solve(load.scene());
+  if (!prepared.objection.empty()) return prepared;
+  FourTransforms<double> transforms(load.cells);
+  const SideBySide times =
+      side_by_side([&] { return seconds_of(load.scene()); }, [&] { return seconds(transforms); });
+  prepared.counters["over_four_transforms"] = times.ratio;
+  return prepared;
 }
 
-void whole_solve(benchmark::State& state) {
-  const Scene scene = scene_of(state);
-  const CheckedSolution checked = slipstick::bench::solve_and_check(scene);
-  if (!accept(state, checked)) return;
-  show_errors(state, checked);
-  show_work(state, checked);
-  FourTransforms<double> transforms(state.range(0));
-  show_times(state,
-             slipstick::bench::side_by_side([&] { return seconds_of(scene); },
-                                            [&] { return slipstick::bench::seconds(transforms); },
-                                            {.seconds = 2.0, .most_seconds = 20.0}),
-             "over_four_transforms");
+/// The errors and the work shown are those of the scene; `other` is checked as well.
+Prepared over(const Scene& scene, const Scene& other) {
+  Prepared prepared = whole_solve(scene);
+  const CheckedSolution standard = solve_and_check(other);
+  if (prepared.objection.empty()) prepared.objection = standard.objection;
+  if (!prepared.objection.empty()) return prepared;
+  show_ratio(prepared, side_by_side([&] { return seconds_of(scene); }, [&] { return seconds_of(other); }));
+  prepared.counters["ratio_of_bytes"] = prepared.counters["bytes"] / standard.solution.bytes;
+  return prepared;
 }
 
-/// The errors and the work shown are those of the scene; `standard` is checked as well.
-void time_against(benchmark::State& state, const Scene& scene, const Scene& standard,
-                  const std::string& name) {
-  const CheckedSolution checked = slipstick::bench::solve_and_check(scene);
-  const CheckedSolution other = slipstick::bench::solve_and_check(standard);
-  if (!accept(state, checked) || !accept(state, other)) return;
-  show_errors(state, checked);
-  show_work(state, checked);
-  state.counters[name + "_in_memory"] =
-      static_cast<double>(checked.solution.bytes) / static_cast<double>(other.solution.bytes);
-  show_times(
-      state,
-      slipstick::bench::side_by_side([&] { return seconds_of(scene); }, [&] { return seconds_of(standard); }),
-      name);
+Prepared symmetric_over_full(const Load& load) { return over(with_symmetry(load.scene()), load.scene()); }
+
+Prepared mixed_over_double(const Load& load) {
+  Scene mixed = load.scene();
+  mixed.precision = solver::Precision::mixed;
+  return over(mixed, load.scene());
 }
 
-void symmetric_model(benchmark::State& state) {
-  const Scene full = scene_of(state);
-  Scene automatic = full;
-  automatic.model = slipstick::solver::ModelChoice::automatic;
-  time_against(state, automatic, full, "over_full");
+Prepared tolerance_over_8_digits(const Load& load, int digits) {
+  Scene scene = with_symmetry(load.scene());
+  scene.tolerance = std::pow(10.0, -digits);
+  return over(scene, with_symmetry(load.scene()));
 }
 
-void mixed_precision(benchmark::State& state) {
-  const Scene in_double = scene_of(state);
-  Scene mixed = in_double;
-  mixed.precision = slipstick::solver::Precision::mixed;
-  time_against(state, mixed, in_double, "over_double");
+/// Each method to the tolerance that scenes commonly ask of it: a gap, or the change of Eq. (26).
+void add_methods(Suite& suite) {
+  constexpr double kPaperTolerance = 1e-5;
+  constexpr double kGap = 1e-8;
+  for (const Index cells : {64, 128, 256, 512, 1024}) {
+    for (const int permille : {500, 900, 990}) {
+      const Load load{cells, permille};
+      const auto add = [&](const std::string& method, const Scene& scene) {
+        suite.add("solve/" + method + load.name(), [scene] { return whole_solve(scene); });
+      };
+      add("coulomb", with_symmetry(load.scene()));
+      if (permille == 990 || cells > 256) continue;
+      add("paper", with_method(with_symmetry(load.scene()), Method::paper, kPaperTolerance));
+      add("projected_gradient", with_method(with_symmetry(load.scene()), Method::projected_gradient, kGap));
+    }
+  }
+  for (const Index cells : {64, 128, 256, 512}) {
+    const Load load{cells, 900};
+    suite.add("solve/coulomb_full" + load.name(), [load] { return over_transforms(load); });
+  }
 }
 
-/// range(2): digits of the tolerance. Over the same solve at 1e-8.
-void tolerance(benchmark::State& state) {
-  const Scene standard = scene_of(state);
-  Scene scene = standard;
-  scene.tolerance = std::pow(10.0, -static_cast<double>(state.range(2)));
-  time_against(state, scene, standard, "over_8_digits");
+/// What is telling runs by default.
+std::string prefix(const Load& load, Index telling_cells) {
+  return load.cells == telling_cells && load.permille == 900 ? "" : "long/";
 }
-
-/// The rounds are within one iteration.
-void once(benchmark::internal::Benchmark* benchmark) {
-  benchmark->UseManualTime()->Iterations(1)->Unit(benchmark::kMillisecond);
-}
-void load(benchmark::internal::Benchmark* benchmark) {
-  once(benchmark);
-  benchmark->ArgNames({"cells", "permille"});
-}
-void load_and_tolerance(benchmark::internal::Benchmark* benchmark) {
-  once(benchmark);
-  benchmark->ArgNames({"cells", "permille", "digits"});
-}
-
-BENCHMARK(whole_solve)->Apply(load)->ArgsProduct({{64, 128, 256, 512, 1024}, {500, 900, 990}});
-BENCHMARK(symmetric_model)->Apply(load)->ArgsProduct({{128, 256, 512}, {500, 900, 990}});
-BENCHMARK(mixed_precision)->Apply(load)->ArgsProduct({{128, 256, 512}, {500, 900, 990}});
-BENCHMARK(tolerance)->Apply(load_and_tolerance)->ArgsProduct({{256}, {900}, {4, 6, 8, 10, 12}});
 
 }  // namespace
+
+void add_solve_benchmarks(Suite& suite) {
+  add_methods(suite);
+  for (const Index cells : {128, 256, 512}) {
+    for (const int permille : {500, 900, 990}) {
+      const Load load{cells, permille};
+      suite.add(prefix(load, 256) + "paired/symmetric_over_full" + load.name(),
+                [load] { return symmetric_over_full(load); });
+      suite.add(prefix(load, 512) + "paired/mixed_over_double" + load.name(),
+                [load] { return mixed_over_double(load); });
+    }
+  }
+  for (const int digits : {4, 6, 10, 12}) {
+    const Load load{256, 900};
+    suite.add("paired/tolerance_over_8_digits" + load.name() + "/digits:" + std::to_string(digits),
+              [load, digits] { return tolerance_over_8_digits(load, digits); });
+  }
+}
+
+}  // namespace slipstick::bench

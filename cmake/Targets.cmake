@@ -5,7 +5,7 @@ function(slipstick_configure target)
     $<$<BOOL:${SLIPSTICK_WERROR}>:-Werror> $<$<BOOL:${SLIPSTICK_NATIVE}>:-march=native>)
 endfunction()
 
-# For tests and commands, whose work is done in the libraries: -O3 takes them half as long again to compile.
+# For tests, commands and what compares, whose work is done in the two wings: -O3 takes them half as long again to compile.
 function(slipstick_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()

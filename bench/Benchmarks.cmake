@@ -1,0 +1,45 @@
+# The programs that measure.
+
+add_executable(slipstick_benchmarks
+  checked_solve.cpp exact_benchmark.cpp history_benchmark.cpp influence_benchmark.cpp memory_benchmark.cpp
+  methods_benchmark.cpp normal_benchmark.cpp operator_benchmark.cpp planning_benchmark.cpp slipstick_benchmarks.cpp
+  solve_benchmark.cpp suite.cpp)
+slipstick_configure(slipstick_benchmarks)
+target_link_libraries(slipstick_benchmarks PRIVATE slipstick::analytic slipstick::bench
+  PkgConfig::FFTW GSL::gsl fmt::fmt benchmark::benchmark)
+# Times stand beside errors: the exact wing's against the references that the tests use, the solver's in the scenes that
+# come with the program.
+target_compile_definitions(slipstick_benchmarks PRIVATE SLIPSTICK_TEST_DATA="${PROJECT_SOURCE_DIR}/analytic/tests"
+  SLIPSTICK_SCENES="${PROJECT_SOURCE_DIR}/convergence/scenes")
+
+# Counts the work that solves take: the linker puts the functions of work_counts.cpp in the place of those counted.
+add_library(slipstick_work_counts STATIC work_counts.cpp work_counts_cases.cpp work_counts_instructions.cpp)
+slipstick_configure(slipstick_work_counts)
+target_link_libraries(slipstick_work_counts PUBLIC slipstick::convergence slipstick::solver PkgConfig::FFTW
+  PRIVATE fmt::fmt)
+target_compile_definitions(slipstick_work_counts PRIVATE SLIPSTICK_SCENES="${PROJECT_SOURCE_DIR}/convergence/scenes")
+foreach(function
+    malloc calloc realloc _Znwm _Znam _ZnwmSt11align_val_t fftw_alloc_real fftwf_alloc_real
+    fftw_plan_dft_1d fftwf_plan_dft_1d fftw_plan_many_dft fftwf_plan_many_dft
+    fftw_plan_many_dft_r2c fftwf_plan_many_dft_r2c fftw_plan_many_dft_c2r fftwf_plan_many_dft_c2r
+    fftw_plan_guru_r2r
+    fftw_execute fftw_execute_dft fftwf_execute_dft fftw_execute_dft_r2c fftwf_execute_dft_r2c
+    fftw_execute_dft_c2r fftwf_execute_dft_c2r
+    _ZN9slipstick6solver13integrate_rowERNS0_7CellRowEldddd)
+  target_link_options(slipstick_work_counts INTERFACE -Wl,--wrap=${function})
+endforeach()
+add_executable(slipstick_work work_counts_program.cpp)
+slipstick_configure(slipstick_work)
+target_link_libraries(slipstick_work PRIVATE slipstick_work_counts CLI11::CLI11 fmt::fmt)
+slipstick_tests(work_counts_tests SOURCES tests/work_counts_test.cpp LIBRARIES slipstick_work_counts)
+
+# Takes a quarter of an hour and an idle machine: run by `make bench-trust` alone.
+include(tests/sleeping_operator.cmake)
+add_mutant(sleeping_operator MUTANTS ${CMAKE_CURRENT_SOURCE_DIR}/tests/sleeping_operator.cmake
+  ORIGINAL slipstick_benchmarks)
+set(SLIPSTICK_TRIES 40 CACHE STRING "Tries of the comparison of timings that bench-trust makes")
+add_custom_target(bench-trust
+  COMMAND ${CMAKE_COMMAND} -D PROGRAM=$<TARGET_FILE:slipstick> -D BENCHMARKS=$<TARGET_FILE:slipstick_benchmarks>
+    -D SLOWER=$<TARGET_FILE:slipstick_mutant_sleeping_operator> -D WORK_DIR=${CMAKE_CURRENT_BINARY_DIR}/trust
+    -D TRIES=${SLIPSTICK_TRIES} -P ${CMAKE_CURRENT_SOURCE_DIR}/tests/trust_test.cmake
+  DEPENDS slipstick slipstick_benchmarks slipstick_mutant_sleeping_operator USES_TERMINAL)

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+/// How times grow with the cells along a side, and where one way to compute overtakes another.
+namespace slipstick::bench {
+
+/// The repetitions of a benchmark at one size. Those that are no positive number take no part in anything.
+struct SizedSeconds {
+  double cells;
+  std::vector<double> seconds;
+};
+
+bool counts(double seconds);
+
+/// One benchmark at several sizes, smallest first.
+using Family = std::vector<SizedSeconds>;
+
+/// The median of repetitions with its 95 % interval: Student's, of their logarithms, widened as a median is
+/// less certain than a mean. NaN: no repetition, or one alone.
+struct TypicalSeconds {
+  double seconds;
+  double low;
+  double high;
+};
+TypicalSeconds typical(const std::vector<double>& seconds);
+
+/// What a law can be fitted to.
+inline constexpr std::size_t kFewestSizes = 3;
+
+/// t = constant cells^exponent, with the exponent's 95 % interval (Student's, from the residuals).
+struct PowerLaw {
+  double exponent;  ///< NaN where none was fitted
+  double low;
+  double high;
+  double constant;
+  std::vector<double> cells;  ///< the sizes that it was fitted to
+  std::string why_not;        ///< empty: it was fitted
+};
+
+/// By least squares of logarithms over the asymptotic part: from an eighth of the largest size up, three
+/// doublings, at least three sizes. Below, what each call costs whatever its size takes a part of the time.
+PowerLaw fit_power_law(const Family& family);
+
+/// N: cells along a side. The logarithm is that of 2 N, the length that N is padded to.
+enum class Growth { n2, n2_log_n, n3, n4 };
+std::string to_string(Growth growth);
+double grown(Growth growth, double cells);
+
+/// t = overhead + factor * grown(cells), neither below zero, the squares of relative residuals the least,
+/// over all sizes.
+struct GrowthFit {
+  Growth growth;
+  double overhead;  ///< s, of one call
+  double factor;    ///< s
+  double rms;       ///< of the relative residuals
+  double largest;
+  bool as_good;  ///< as the best one: its squares are not significantly more (F test, 95 %)
+};
+
+/// One for each Growth, the one that fits best first; none for fewer than three sizes.
+///
+/// A convolution's time is a staircase, as padded lengths are rounded up to products of small primes; nothing
+/// here knows that. Sizes 2^k and 3 2^k are the steps' ends, where nothing is rounded, and lie on a smooth
+/// curve; of other sizes the steps show in the residuals.
+std::vector<GrowthFit> fit_growths(const Family& family);
+
+/// The cells from which on the quick family stays the quicker one, over the sizes that both have; between two
+/// of them the ratio of times is a power of the cells.
+struct Crossover {
+  double cells;        ///< NaN where there is none within the sizes
+  double low;          ///< of its 95 % interval; -infinity: below the smallest size too; NaN: unknown
+  double high;         ///< infinity: above the largest size too
+  std::string remark;  ///< why something of this is missing; empty: nothing is
+};
+
+/// The interval follows from draws of each size's time about its median, as the repetitions' scatter allows
+/// (see TypicalSeconds), from a fixed seed.
+Crossover find_crossover(const Family& slow, const Family& quick);
+
+}  // namespace slipstick::bench

@@ -1,0 +1,65 @@
+#pragma once
+
+#include <benchmark/benchmark.h>
+
+#include <deque>
+#include <functional>
+#include <map>
+#include <string>
+
+namespace slipstick::bench {
+
+/// A benchmark, set up and checked.
+struct Prepared {
+  std::map<std::string, benchmark::Counter> counters;
+  std::string objection;                          ///< why its result must not be timed; empty: nothing
+  std::function<void(benchmark::State&)> timing;  ///< the loop over iterations
+};
+
+template <typename Work>
+std::function<void(benchmark::State&)> repeated(Work work) {
+  return [work](benchmark::State& state) mutable {
+    for ([[maybe_unused]] auto _ : state) work();
+  };
+}
+
+/// What each iteration does once, so many times a second.
+inline benchmark::Counter rate(double of_one_iteration) {
+  return {of_one_iteration, benchmark::Counter::kIsIterationInvariantRate};
+}
+
+/// Google Benchmark calls a benchmark's function for each repetition, and before that until it knows how many
+/// iterations fill the time. Setting up and checking is for the first call only, and of all benchmarks the
+/// latest one's result is kept, as a dense matrix is large. Must outlive the runs.
+class Suite {
+ public:
+  using Prepare = std::function<Prepared()>;
+
+  /// An exception in `prepare` is an objection.
+  benchmark::internal::Benchmark* add(const std::string& name, Prepare prepare);
+
+ private:
+  struct Entry {
+    std::string name;
+    Prepare prepare;
+  };
+
+  void run(benchmark::State& state, const Entry& entry);
+
+  std::deque<Entry> entries_;  ///< stay where they are
+  const Entry* latest_ = nullptr;
+  Prepared prepared_;
+};
+
+/// The program's benchmarks, file by file.
+void add_influence_benchmarks(Suite& suite);
+void add_operator_benchmarks(Suite& suite);
+void add_memory_benchmarks(Suite& suite);
+void add_planning_benchmarks(Suite& suite);
+void add_normal_benchmarks(Suite& suite);
+void add_solve_benchmarks(Suite& suite);
+void add_methods_benchmarks(Suite& suite);
+void add_history_benchmarks(Suite& suite);
+void add_exact_benchmarks(Suite& suite);
+
+}  // namespace slipstick::bench

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+/// What Google Benchmark's programs write (--benchmark_format=json), anyone's.
+namespace slipstick::bench {
+
+/// One repetition: seconds of one iteration, by the clock and of the processor.
+struct Timing {
+  double real = 0.0;
+  double cpu = 0.0;
+};
+
+/// One benchmark of a file: its repetitions in their order; of files that hold aggregates alone none.
+struct TimedBenchmark {
+  std::string name;  ///< run_name: with its arguments, without the aggregate; the second of a name has " #2"
+  int threads = 1;   ///< that Google Benchmark ran it in
+  std::vector<Timing> timings;
+  std::map<std::string, double> counters;  ///< of the last repetition; those that are not finite are left out
+  std::string error;                       ///< why it failed, or which time is none; empty: it did not
+  std::string skipped;                     ///< why it left itself out, which is no failure; empty: it did not
+};
+
+/// Where, when and how a file's benchmarks were run.
+struct TimingContext {
+  std::string date;
+  std::string host_name;
+  int cpus = 0;
+  double mhz = 0.0;
+  std::vector<std::string> caches;   ///< "L2 Unified 2097152 shared by 1"
+  std::optional<bool> scaling;       ///< of the processor's frequency
+  std::vector<double> load_average;  ///< over 1, 5 and 15 minutes, when the program began; may be empty
+  std::string library_build_type;    ///< of Google Benchmark itself; Debian's says debug always
+  std::string build_type;            ///< of the benchmarks: custom context "build_type"; empty: not said
+  std::string machine;               ///< custom context "machine", see machine_key(); empty: not said
+  std::string sitting;               ///< custom context "sitting": files that have the same one were run in
+                                     ///< turn, repetition by repetition; empty: not said
+};
+
+struct Timings {
+  std::filesystem::path file;
+  TimingContext context;
+  std::vector<TimedBenchmark> benchmarks;  ///< in the order of the file
+};
+
+/// The benchmark of a name; null where there is none.
+const TimedBenchmark* find(const Timings& timings, const std::string& name);
+
+/// Whether a benchmark has times that can be judged: repetitions, each of them finite and above zero.
+bool has_times(const TimedBenchmark& benchmark);
+
+/// Reads what versions 1.5 to 1.9 write, and older ones, whose rows do not say what they are. Throws
+/// InputError naming the file, and the key where there is one, for what is no such file or holds no
+/// benchmark.
+Timings read_timings(const std::filesystem::path& file);
+
+/// The JSON that a program of Google Benchmark wrote, numbers that are not finite null. Throws InputError
+/// naming the source for what is none.
+nlohmann::ordered_json parse_benchmark_json(const std::string& text, const std::string& source);
+
+/// The same of a text; `source` stands for the file in messages.
+Timings parse_timings(const std::string& text, const std::string& source);
+
+}  // namespace slipstick::bench
