@@ -7,13 +7,15 @@ BENCH_OPTIONS ?=
 GATE_OPTIONS ?=
 SEARCH_OPTIONS ?=
 SANITIZE ?=
+# How many instructions a solve takes is gated where it is known of this compiler.
+INSTRUCTION_GATES = $(wildcard bench/gates/instructions-gcc-$(firstword $(subst ., ,$(shell c++ -dumpversion))).toml)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build report test gate sanitize lint bench references hardest install clean
+.PHONY: help setup build report test gate sanitize lint bench bench-baseline bench-trust references hardest install clean
 
 help: ## show this list
 	@echo "slipstick: make TARGET"
-	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  %-10s %s\n", $$1, $$2 }' Makefile
+	@awk -F ':.*## ' '/^[a-z-]+:.*## / { printf "  %-14s %s\n", $$1, $$2 }' Makefile
 
 setup: ## install the missing Debian/Ubuntu packages (elsewhere: list them)
 	@cmake/setup
@@ -31,8 +33,10 @@ report: build ## run the validation and the studies, write the page (REPORT_OPTI
 test: build ## run every test
 	@ctest --test-dir $(BUILD) --output-on-failure -j$$(nproc)
 
-gate: build ## check the numbers that README.md promises (GATE_OPTIONS="--junit FILE --summary FILE.md")
-	@$(BUILD)/slipstick gate convergence/gates/quick.toml --output $(BUILD)/gates $(GATE_OPTIONS)
+gate: build ## check the numbers that README.md promises, and counts of work (GATE_OPTIONS="--junit FILE --summary FILE.md")
+	@$(BUILD)/bench/slipstick_work --instructions --json $(BUILD)/gates/work.json
+	@$(BUILD)/slipstick gate convergence/gates/quick.toml bench/gates/work.toml $(INSTRUCTION_GATES) --results $(BUILD)/gates \
+	  --output $(BUILD)/gates $(GATE_OPTIONS)
 
 sanitize: setup ## run every test under the address and undefined-behaviour sanitizers (a part: SANITIZE="solver analytic")
 	@test -f build-asan-ubsan/build.ninja || cmake --preset asan-ubsan
@@ -44,8 +48,19 @@ lint: build ## check format and clang-tidy's rules (needs clang-format, clang-ti
 	@git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run --Werror
 	@git ls-files '*.cpp' | xargs -n 4 -P $$(nproc) clang-tidy -p $(BUILD) --quiet
 
-bench: build ## time parts, whole solves and methods, 10 minutes (BENCH_OPTIONS="--benchmark_filter=...")
-	@$(BUILD)/bench/slipstick_bench $(BENCH_OPTIONS)
+bench: build ## time everything beside the error that it buys, draw it, compare with what is remembered
+	@$(BUILD)/slipstick bench $(BENCH_OPTIONS)
+	@if [ -f "bench/baselines/$$($(BUILD)/slipstick bench --machine).json" ]; then \
+	  $(BUILD)/slipstick bench --baselines bench/baselines; \
+	else \
+	  echo "No times of this kind of machine are remembered: make bench-baseline REASON='the first on this machine'"; \
+	fi
+
+bench-baseline: build ## remember this build's times on this kind of machine (REASON="what changed them")
+	@$(BUILD)/slipstick bench --baselines bench/baselines --renew "$(REASON)"
+
+bench-trust: build ## is a build never slower than itself, and 15 % always found? (a quarter of an hour)
+	@cmake --build $(BUILD) --target bench-trust
 
 references: build ## make the table of proven values anew (2 minutes; needs FLINT with Arb)
 	@$(BUILD)/analytic/certified/slipstick_references table --output analytic/tests/certified_references.csv

@@ -12,6 +12,7 @@ import packages
 packages.require("numpy", "matplotlib", "jinja2", "h5py")
 
 import jinja2  # noqa: E402
+from markupsafe import escape  # noqa: E402
 
 import figures  # noqa: E402
 import results  # noqa: E402
@@ -47,6 +48,7 @@ def show_studies(report, folder):
         entry = draw_entry("study-" + re.sub(r"\W+", "_", name), name.replace("_", " "),
                            lambda: study_figure.draw(study), folder)
         if "unavailable" not in entry:
+            entry.update(message=escape(entry["message"]), details=escape(entry["details"]))
             series, budget = tables.study_budget(study)
             entry.update(orders={"table": tables.study_orders(study)}, expectations=tables.study_expectations(study),
                          budget={"table": budget}, budget_series=series)

@@ -1,0 +1,72 @@
+#!/usr/bin/env python3
+"""Draws the figures and writes the page of times and errors from what `slipstick bench` measured."""
+
+import argparse
+import sys
+from pathlib import Path
+
+import packages
+
+packages.require("numpy", "matplotlib", "jinja2", "h5py")
+
+import jinja2  # noqa: E402
+
+import plane_figure  # noqa: E402
+import results  # noqa: E402
+import scaling_figure  # noqa: E402
+import speed_tables  # noqa: E402
+from render import HERE, draw_entry  # noqa: E402
+from wording import plain  # noqa: E402
+
+NAME = "figure-{}"
+
+
+def draw_all(scaling, plane, folder):
+    """Every figure of the page, drawn or with the reason why not."""
+    drawings = [(title, lambda draw=draw: draw(scaling)) for title, draw in scaling_figure.FIGURES]
+    for scene in results.rows(plane, "scenes"):
+        title = f"Speed against error at M/M_lim = {plain(results.number(scene, 'moment_ratio'))}"
+        drawings.append((title, lambda scene=scene: plane_figure.draw(scene)))
+    return [draw_entry(NAME.format(k), title, draw, folder) for k, (title, draw) in enumerate(drawings, 1)]
+
+
+def tabulate(make, *arguments):
+    try:
+        return {"table": make(*arguments)}
+    except results.Unavailable as reason:
+        return {"unavailable": str(reason)}
+
+
+def render(data, output):
+    """Writes output/index.html and output/figures/ from data/scaling.json and data/plane.json."""
+    scaling, plane = (results.load(data / f"{name}.json") for name in ("scaling", "plane"))
+    folder = output / "figures"
+    folder.mkdir(parents=True, exist_ok=True)
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True,
+                                     lstrip_blocks=True)
+    page = environment.get_template("speed.html.j2").render(
+        figures=draw_all(scaling, plane, folder),
+        times=tabulate(speed_tables.times_to_errors, plane),
+        dominated=tabulate(speed_tables.dominated, plane),
+        laws=tabulate(speed_tables.laws, scaling),
+        crossovers=tabulate(speed_tables.crossovers, scaling),
+        not_timed=plane.get("not_timed", []),
+        provenance=plane.get("provenance", {}))
+    (output / "index.html").write_text(page, encoding="utf-8")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("data", type=Path, help="folder with scaling.json and plane.json")
+    parser.add_argument("--output", type=Path, required=True, help="folder for index.html and figures/")
+    arguments = parser.parse_args()
+    try:
+        render(arguments.data.resolve(), arguments.output.resolve())
+    except results.InputError as error:
+        print(f"speed_page.py: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

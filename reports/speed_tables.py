@@ -1,0 +1,90 @@
+"""Tables of times and errors, from what `slipstick bench` measured."""
+
+from plane_figure import milliseconds, power_of_ten, short
+from results import Unavailable, groups, rows, value
+from tables import Table
+from scaling_figure import IN_WORDS
+from wording import percent, plain, sci
+
+QUANTITIES = {"twist": "twist", "traction_l2": "tractions, root mean square", "stick_radius": "stick radius"}
+
+
+def times_to_errors(plane):
+    """A row for each load, quantity and method: the least time to each error, and what takes it."""
+    errors = sorted({row["error"] for scene in rows(plane, "scenes") for row in rows(scene, "time_to")}, reverse=True)
+    body = []
+    for scene in rows(plane, "scenes"):
+        load = plain(value(scene, "moment_ratio"))
+        for (quantity, method), found in groups(rows(scene, "time_to"), "quantity", "method").items():
+            if quantity not in QUANTITIES or method in ("any", "exact"):
+                continue
+            by_error = {row["error"]: row for row in found}
+            body.append([load, QUANTITIES[quantity], method.replace("_", " "),
+                         *(_time(by_error.get(error), scene) for error in errors)])
+        if value(scene, "exact") is not None:
+            time = milliseconds(value(scene, "exact.seconds.median"))
+            body.append([load, "all", "exact, no grid", *[time] * len(errors)])
+    return Table(["M/M<sub>lim</sub>", "error of", "method", *(f"to {power_of_ten(error)}" for error in errors)], body)
+
+
+def _time(row, scene):
+    if row is None or row["point"] is None:
+        return "–"
+    point = scene["points"][row["point"]]
+    return f"{milliseconds(row['seconds'])}: {short(point, method=False)}".replace(" ms", "\N{NO-BREAK SPACE}ms")
+
+
+def dominated(plane):
+    """Choices that are never worth their time, in sentences."""
+    found = [row for row in rows(plane, "dominated") if row["quantity"] in QUANTITIES]
+    if not found:
+        raise Unavailable("no choice is dominated")
+    body = []
+    for row in found:
+        low, high = row["times_slower"]["low"], row["times_slower"]["high"]
+        body.append([plain(_load(plane, row["scene"])), QUANTITIES[row["quantity"]],
+                     f"{row['key']} = {_word(row['value'])}", _word(row["by"]),
+                     "all" if row["everywhere"] else f"from {row['from_cells']:.0f}² cells",
+                     f"{row['times_slower']['median']:.2g} ({low:.2g} to {high:.2g})"])
+    return Table(["M/M<sub>lim</sub>", "error of", "choice", "beaten by", "meshes", "times slower at the same error"], body)
+
+
+def _load(plane, name):
+    return next(scene["moment_ratio"] for scene in plane["scenes"] if scene["name"] == name)
+
+
+def _word(chosen):
+    try:
+        return power_of_ten(float(chosen))
+    except ValueError:
+        return chosen.replace("_", " ")
+
+
+def laws(scaling):
+    """What was fitted to each family, beside what theory says."""
+    body = []
+    for found in rows(scaling, "families"):
+        law, growth = found["power_law"], found["growth"]
+        if law["exponent"] is None or not growth["models"]:
+            continue
+        fit = next((model for model in growth["models"] if model["growth"] == growth["theory"]), growth["models"][0])
+        body.append([found["name"].replace("_", " "), f"{law['exponent']:.2f}",
+                     _interval(law, "{:.2f}".format), IN_WORDS.get(growth["theory"], "–"), IN_WORDS[growth["best"]],
+                     sci(fit["factor"]), sci(fit["overhead"]), percent(fit["rms_residual"])])
+    if not body:
+        raise Unavailable("nothing was measured at three sizes or more")
+    return Table(["what", "exponent", "95 % interval", "theory", "fits best", "s per unit of it", "s per call",
+                  "rms residual"], body)
+
+
+def _interval(found, write):
+    return "–" if found["low"] is None or found["high"] is None else f"{write(found['low'])} to {write(found['high'])}"
+
+
+def crossovers(scaling):
+    body = []
+    for row in rows(scaling, "crossovers"):
+        cells = "–" if row["cells"] is None else f"{row['cells']:.3g}"
+        body.append([row["quick"].replace("_", " "), row["slow"].replace("_", " "), cells,
+                     _interval(row, "{:.3g}".format), row["remark"]])
+    return Table(["is quicker than", "", "from cells a side", "95 % interval", "remark"], body)

@@ -1,0 +1,131 @@
+"""The page of times and errors, from made-up timings: right where one can count, and complete."""
+
+import io
+import json
+import sys
+import tempfile
+import unittest
+from contextlib import redirect_stderr
+from pathlib import Path
+
+REPORTS = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(REPORTS))
+
+import plane_figure  # noqa: E402
+import scaling_figure  # noqa: E402
+import speed_page  # noqa: E402
+import speed_tables  # noqa: E402
+from results import Unavailable  # noqa: E402
+
+DENSE, DCFFT = "application/dense", "application/dcfft"
+
+
+def family(name, law, theory, exponent):
+    """Ten nanoseconds times the law at 4 to 64 cells."""
+    return {"name": name,
+            "rows": [{"cells": n, "seconds": 1e-8 * law(n), "low": 0.9e-8 * law(n), "high": 1.1e-8 * law(n),
+                      "error": 1e-15, "counters": {}} for n in (4, 8, 16, 32, 64)],
+            "power_law": {"exponent": exponent, "low": exponent - 0.1, "high": exponent + 0.1, "constant": 1e-8,
+                          "cells": [16, 32, 64]},
+            "growth": {"theory": theory, "best": theory, "models": [
+                {"growth": theory, "overhead": 0.0, "factor": 1e-8, "rms_residual": 0.01, "largest_residual": 0.02}]}}
+
+
+def scaling(**changes):
+    return {"families": [family(DENSE, lambda n: n**4, "N^4", 4.0), family(DCFFT, lambda n: 64 * n**2, "N^2", 2.0),
+                         family("setup/dense", lambda n: 10 * n**4, "N^4", 4.0)],
+            "crossovers": [{"slow": DENSE, "quick": DCFFT, "cells": 8.0, "low": 7.5, "high": 8.5, "remark": ""}]} | changes
+
+
+def point(seconds, error, **choice):
+    choice = {"method": "coulomb", "operator": "dcfft", "model": "auto", "pressure": "solved", "precision": "double",
+              "cells": 64, "tolerance": 1e-4} | choice
+    time = None if seconds is None else {"median": seconds, "low": seconds, "high": seconds, "repetitions": 9}
+    return choice | {"seconds": time, "error": {"twist": error, "traction_l2": 10 * error, "stick_radius": error}}
+
+
+POINTS = [point(1e-3, 1e-2, cells=16), point(1e-2, 1e-4), point(0.1, 1e-4, model="full"), point(None, 0.5, method="paper")]
+
+
+def scene(**changes):
+    def reached(error, place):
+        return {"quantity": "twist", "error": error, "method": "any", "point": place,
+                "seconds": None if place is None else POINTS[place]["seconds"]["median"]}
+
+    times = [reached(1e-2, 0), reached(1e-4, 1), reached(1e-5, None)]
+    return {"name": "paper-0.9", "moment_ratio": 0.9, "points": POINTS,
+            "exact": {"seconds": {"median": 5e-4}, "error": 2e-14, "cells": 128},
+            "envelope": {name: [0, 1] for name in ("twist", "traction_l2", "stick_radius")},
+            "time_to": times + [row | {"method": "coulomb"} for row in times]} | changes
+
+
+def plane(**changes):
+    return {"scenes": [scene()], "dominated": [
+        {"scene": "paper-0.9", "quantity": "twist", "key": "model", "value": "full", "by": "auto", "everywhere": True,
+         "from_cells": 64.0, "times_slower": {"median": 10.0, "low": 10.0, "high": 10.0}, "points": 1, "text": ""}],
+        "not_timed": [{"scene": "paper-0.9", "choice": {"method": "paper"}, "reason": "twist error 0.5 above 0.1"}],
+        "provenance": {"cpu": "made up"}} | changes
+
+
+class Figures(unittest.TestCase):
+    def test_crossover_is_told_with_its_interval(self):
+        self.assertIn("from 8 (7.5 to 8.5) cells", scaling_figure.growth(scaling()).message)
+
+    def test_no_crossover_says_why(self):
+        missing = [{"slow": DENSE, "quick": DCFFT, "cells": None, "low": None, "high": None, "remark": "not within 4 to 64"}]
+        self.assertIn("not within 4 to 64", scaling_figure.growth(scaling(crossovers=missing)).message)
+
+    def test_setup_is_told_in_applications(self):
+        self.assertIn("10 by dense matrix, 64² cells", scaling_figure.setting_up(scaling()).message)
+
+    def test_plane_says_what_reaches_an_error(self):
+        message = plane_figure.draw(scene()).message
+        self.assertIn("10⁻² takes 1 ms (Newton, 16² cells, tolerance 10⁻⁴)", message)
+        self.assertNotIn("10⁻⁵", message)
+
+    def test_wrong_points_are_counted_and_not_drawn(self):
+        self.assertIn("their results are wrong: 1.", plane_figure.draw(scene()).details)
+        with self.assertRaises(Unavailable):
+            plane_figure.draw(scene(points=[POINTS[3]]))
+
+
+class Tables(unittest.TestCase):
+    def test_least_times(self):
+        table = speed_tables.times_to_errors(plane())
+        self.assertEqual(table.head[3:], ["to 10⁻²", "to 10⁻⁴", "to 10⁻⁵"])
+        self.assertEqual(table.body[0][3:], ["1\N{NO-BREAK SPACE}ms: 16² cells, tolerance 10⁻⁴", "10\N{NO-BREAK SPACE}ms: 64² cells, tolerance 10⁻⁴", "–"])
+        self.assertEqual(table.body[-1][2:], ["exact, no grid", "0.5 ms", "0.5 ms", "0.5 ms"])
+
+    def test_dominated_choices(self):
+        self.assertEqual(speed_tables.dominated(plane()).body,
+                         [["0.9", "twist", "model = full", "auto", "all", "10 (10 to 10)"]])
+
+    def test_laws(self):
+        first = speed_tables.laws(scaling()).body[0]
+        self.assertEqual(first[:5], [DENSE, "4.00", "3.90 to 4.10", "N⁴", "N⁴"])
+
+
+class Page(unittest.TestCase):
+    def render(self, **parts):
+        with tempfile.TemporaryDirectory() as folder, redirect_stderr(io.StringIO()):
+            data = Path(folder) / "data"
+            data.mkdir()
+            for name, content in parts.items():
+                (data / f"{name}.json").write_text(json.dumps(content))
+            speed_page.render(data, Path(folder))
+            return (Path(folder) / "index.html").read_text(encoding="utf-8")
+
+    def test_is_whole(self):
+        page = self.render(scaling=scaling(), plane=plane())
+        for words in ("Convolution overtakes", "10\N{NO-BREAK SPACE}ms: 64² cells", "twist error 0.5 above 0.1", "made up", "figure-3.svg"):
+            self.assertIn(words, page)
+        self.assertNotIn("Not available", page)
+
+    def test_stands_where_a_part_is_missing(self):
+        page = self.render(scaling=scaling(families=[], crossovers=[]), plane=plane())
+        self.assertIn("Not available", page)
+        self.assertIn("10\N{NO-BREAK SPACE}ms: 64² cells", page)
+
+
+if __name__ == "__main__":
+    unittest.main()
