@@ -38,7 +38,7 @@ gate: build ## check the numbers that README.md promises, and counts of work (GA
 	@$(BUILD)/slipstick gate convergence/gates/quick.toml bench/gates/work.toml $(INSTRUCTION_GATES) --results $(BUILD)/gates \
 	  --output $(BUILD)/gates $(GATE_OPTIONS)
 
-sanitize: setup ## run every test under the address and undefined-behaviour sanitizers (a part: SANITIZE="solver analytic")
+sanitize: setup ## run every test under the address and undefined-behaviour sanitizers (a part: SANITIZE="operators analytic")
 	@test -f build-asan-ubsan/build.ninja || cmake --preset asan-ubsan
 	@cmake --build build-asan-ubsan $(if $(SANITIZE),--target $(SANITIZE:%=%_tests))
 	@ctest --test-dir build-asan-ubsan --output-on-failure -j$$(nproc) \
