@@ -2,13 +2,13 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <map>
 #include <string_view>
 #include <vector>
 
+#include "bench/median.hpp"
 #include "solver/input_error.hpp"
 
 namespace slipstick::bench {
@@ -27,12 +27,6 @@ double rounded(double value) { return std::strtod(fmt::format("{:.4g}", value).c
 double unit(const Json& row) {
   const auto name = row.value("time_unit", "ns");
   return name == "s" ? 1.0 : name == "ms" ? 1e-3 : name == "us" ? 1e-6 : 1e-9;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t half = values.size() / 2;
-  return values.size() % 2 == 1 ? values[half] : 0.5 * (values[half - 1] + values[half]);
 }
 
 Json medians(const Json& rows) {

@@ -2,6 +2,7 @@
 
 #include <fmt/chrono.h>
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <ctime>
 #include <filesystem>
@@ -176,6 +177,12 @@ std::vector<std::string> obstacles(const Sitting& sitting, const Pace& pace) {
   return found;
 }
 
+/// Throws InputError for a second run that proves nothing.
+void require_full_pace(const Sitting& sitting, const Pace& pace) {
+  const std::vector<std::string> found = obstacles(sitting, pace);
+  if (!found.empty()) throw InputError("second run", fmt::format("{}", fmt::join(found, "; ")));
+}
+
 int compare_with_baseline(const Options& options, std::ostream& text, Json& result) {
   const fs::path file = baseline_file(options.baselines, machine_key());
   if (!fs::exists(file)) {
@@ -196,7 +203,9 @@ int compare_with_baseline(const Options& options, std::ostream& text, Json& resu
   rules.obstacles = obstacles(sitting, pace);
   ComparisonReport report =
       compare_twice({base, timings(sitting)}, rules, [&](const std::vector<std::string>& suspects) {
-        return TwoTimings{select(base, suspects), timings(sitting_to_remember(options, suspects, pace))};
+        const Sitting second = sitting_to_remember(options, suspects, pace);
+        require_full_pace(second, pace);
+        return TwoTimings{select(base, suspects), timings(second)};
       });
   report.base = file.string();
   report.now = options.program;
@@ -220,7 +229,7 @@ constexpr const char* kFooter = R"(Example:
   slipstick bench                                    everything, and the page build/benchmarks/index.html
   slipstick bench --against ../before/build/bench/slipstick_benchmarks
                                                      is this build slower than that one?
-  slipstick bench --pair solve/paper/cells:256 solve/coulomb/cells:256
+  slipstick bench --pair application/direct/cells:64 application/dcfft/cells:64
                                                      two methods, one over the other
   slipstick bench --baselines bench/baselines        is it slower than what is remembered of this machine?
 Two builds or methods are timed in turn, in one sitting; what is at least 10 % slower is timed once more before it

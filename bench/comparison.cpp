@@ -9,9 +9,9 @@
 #include <stdexcept>
 #include <utility>
 
+#include "bench/median.hpp"
 #include "bench/obstacles.hpp"
 #include "bench/rank_tests.hpp"
-#include "bench/side_by_side.hpp"
 #include "solver/misspelling.hpp"
 
 namespace slipstick::bench {

@@ -56,6 +56,7 @@ std::vector<Heat> two_builds(const std::filesystem::path& base, const std::files
 
 std::vector<Heat> two_methods(const std::filesystem::path& program, const std::string& base,
                               const std::string& now) {
+  for (const std::string& name : {base, now}) list_benchmarks(program, benchmark_filter({name}));
   const std::string both = fmt::format("{} over {}", now, base);
   return {{{program, base, both}, {program, now, both}}};
 }

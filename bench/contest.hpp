@@ -24,7 +24,8 @@ struct Contest {
 std::vector<Heat> two_builds(const std::filesystem::path& base, const std::filesystem::path& now,
                              const std::string& filter);
 
-/// Two benchmarks of one program; they are compared under both names.
+/// Two benchmarks of one program; they are compared under both names. Throws InputError for one that it does
+/// not have.
 std::vector<Heat> two_methods(const std::filesystem::path& program, const std::string& base,
                               const std::string& now);
 

@@ -5,7 +5,7 @@
 #include <limits>
 #include <set>
 
-#include "bench/side_by_side.hpp"
+#include "bench/median.hpp"
 
 namespace slipstick::bench {
 namespace {

@@ -7,7 +7,7 @@
 #include <cctype>
 #include <cmath>
 
-#include "bench/side_by_side.hpp"
+#include "bench/median.hpp"
 
 namespace slipstick::bench {
 namespace {

@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "bench/median.hpp"
+
 namespace slipstick::bench {
 namespace {
 
@@ -25,8 +27,7 @@ Repetitions summarise(std::vector<double> seconds) {
   while (gsl_cdf_binomial_P(static_cast<unsigned>(left_out + 1), 0.5, static_cast<unsigned>(n)) <= kTail) {
     ++left_out;
   }
-  const double median = 0.5 * (seconds[(n - 1) / 2] + seconds[n / 2]);
-  return {median, seconds[left_out], seconds[n - 1 - left_out], static_cast<int>(n)};
+  return {median(seconds), seconds[left_out], seconds[n - 1 - left_out], static_cast<int>(n)};
 }
 
 Repetitions repeat(const std::function<double()>& work) {

@@ -14,6 +14,8 @@
 #include <optional>
 #include <utility>
 
+#include "bench/median.hpp"
+
 namespace slipstick::bench {
 namespace {
 
@@ -21,12 +23,6 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kBothSides = 0.975;  // of 95 %
 constexpr double kAsymptoticSpan = 8.0;
-
-double median(std::vector<double> values) {
-  std::ranges::sort(values);
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
 
 /// The logarithm of a time, its standard error and the degrees of freedom that this rests on.
 struct LogTime {

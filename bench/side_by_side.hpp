@@ -1,10 +1,11 @@
 #pragma once
 
-#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <ctime>
 #include <vector>
+
+#include "bench/median.hpp"
 
 /// Times that can be compared on a machine that does other things as well.
 namespace slipstick::bench {
@@ -15,12 +16,6 @@ double seconds(Work&& work) {
   const auto start = std::chrono::steady_clock::now();
   work();
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-inline double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Two times in seconds, and first over second: by the clock, and by what the processor spent on them, which

@@ -2,7 +2,7 @@
 # can the comparison be trusted? A build against itself must be green in every try, and one whose operator sleeps for 15 %
 # of its time must be called slower in every try. Takes a quarter of an hour of an otherwise idle machine.
 cmake_minimum_required(VERSION 3.25)
-set(FILTER "^application/dcfft/cells:128$")
+set(FILTER "^application/dcfft/cells:256$")
 
 function(try number now result)
   set(folder "${WORK_DIR}/${number}")
