@@ -105,7 +105,7 @@ bool reducible(const Scene& scene) {
 
 bool has_translations(const Scene& scene, const Model& model, const Eigen::ArrayXd& pressure) {
   if (scene.method != Method::coulomb) return false;
-  return scene.model == ModelChoice::full || model.forces || !is_half_turn_symmetric(pressure);
+  return scene.model == ModelChoice::full || model.forces || !is_half_turn_symmetric(model.grid, pressure);
 }
 
 Reduction traction_part(const Scene& scene, const Model& model, const Eigen::ArrayXd& pressure,
@@ -161,7 +161,8 @@ namespace {
 
 /// Before the pressure is known.
 bool may_have_translations(const Scene& scene, const Model& model) {
-  const bool symmetric = scene.pressure != PressureModel::file && is_half_turn_symmetric(model.gap);
+  const bool symmetric =
+      scene.pressure != PressureModel::file && is_half_turn_symmetric(model.grid, model.gap);
   return scene.model == ModelChoice::full || model.forces || !symmetric;
 }
 

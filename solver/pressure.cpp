@@ -81,7 +81,7 @@ NormalSolution solved_pressure(const Scene& scene, const Model& model, double no
                            {.tolerance = std::min(kPressureTolerance, scene.tolerance)});
   solution.pressure = part.expanded(solution.pressure, normal_symmetry());
   if (part.diagonal()) solution.pressure = symmetrised(model.grid, solution.pressure);
-  if (scene.model != ModelChoice::full && !model.forces && is_half_turn_symmetric(model.gap)) {
+  if (scene.model != ModelChoice::full && !model.forces && is_half_turn_symmetric(model.grid, model.gap)) {
     solution.pressure = half_turn_symmetrised(solution.pressure);
   }
   return solution;

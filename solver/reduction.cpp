@@ -27,6 +27,12 @@ bool same(const A& a, const B& b) {
   return true;
 }
 
+/// Whether a field is even in x1 and in x2, up to rounding.
+bool is_mirrored(const Grid& grid, const ArrayXd& field) {
+  const ConstComponent values(field.data(), grid.n1, grid.n2);
+  return same(values, values.rowwise().reverse()) && same(values, values.colwise().reverse());
+}
+
 /// Empty rows on each side, the smaller of the two counts; all but one if the field is empty.
 template <typename Occupied>
 Index empty_margin(Index count, const Occupied& occupied) {
@@ -74,8 +80,8 @@ Reduction::Reduction(const Grid& grid, const ArrayXd& shape, const ArrayXd& cont
     : Reduction(grid, contact) {
   if (trimmed_.n1 % 2 != 0 || trimmed_.n2 % 2 != 0) return;  // an axis would cut cells in two
   const ArrayXd part = middle(whole_, trimmed_, shape);
+  if (!is_mirrored(trimmed_, part)) return;
   const ConstComponent field(part.data(), trimmed_.n1, trimmed_.n2);
-  if (!same(field, field.rowwise().reverse()) || !same(field, field.colwise().reverse())) return;
   grid_ = quadrant_of(trimmed_);
   diagonal_ = grid_.n1 == grid_.n2 && grid_.h1 == grid_.h2 && same(field, field.transpose());
 }
@@ -91,9 +97,9 @@ ArrayXd Reduction::expanded(const ArrayXd& field, const Symmetry& symmetry) cons
   return trimmed() ? padded(whole_, trimmed_, part) : part;
 }
 
-bool is_half_turn_symmetric(const ArrayXd& field) {
+bool is_half_turn_symmetric(const Grid& grid, const ArrayXd& field) {
   const ConstComponent values(field.data(), 1, field.size());
-  return same(values, values.reverse());
+  return is_mirrored(grid, field) || same(values, values.reverse());
 }
 
 ArrayXd half_turn_symmetrised(const ArrayXd& pressure) { return 0.5 * (pressure + pressure.reverse()); }

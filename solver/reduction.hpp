@@ -42,8 +42,10 @@ class Reduction {
   bool diagonal_ = false;
 };
 
-/// Whether a field is its own image under half a turn about the grid's middle, up to rounding.
-bool is_half_turn_symmetric(const Eigen::ArrayXd& field);
+/// Whether a field of one value a cell is its own image under half a turn about the grid's middle, up to
+/// rounding. What has two mirror axes is so: rounding that each of them may show is no reason to take half a
+/// turn, which is both, for another answer. So whatever Reduction takes for a quadrant turns onto itself.
+bool is_half_turn_symmetric(const Grid& grid, const Eigen::ArrayXd& field);
 
 /// p made its own image under half a turn, as it is up to the tolerance that it was solved to.
 Eigen::ArrayXd half_turn_symmetrised(const Eigen::ArrayXd& pressure);

@@ -46,6 +46,31 @@ void expect_grid(const Grid& grid, const Grid& expected) {
 constexpr Grid kSquare{16, 16, 0.5, 0.5};
 constexpr Grid kOblong{16, 12, 0.5, 0.7};
 
+/// Images about each axis that differ by a little less than counts as rounding: half a turn, which is both
+/// mirrors, shows nearly twice as much.
+ArrayXd mirrored_to_rounding(const Grid& grid) {
+  constexpr double kNearlyTooMuch = 0.9e-13;
+  const ArrayXd left = (cell_x1(grid) < 0.0).cast<double>();
+  const ArrayXd below = (cell_x2(grid) < 0.0).cast<double>();
+  return patch(grid, 2.6) * (1.0 + kNearlyTooMuch * left) * (1.0 + kNearlyTooMuch * below);
+}
+
+/// What is solved on a quadrant is solved without translations: the two must never be of different minds.
+TEST(HalfTurn, BringsWhateverIsAQuadrantOntoItself) {
+  const ArrayXd field = mirrored_to_rounding(kSquare);
+  ASSERT_TRUE(of(kSquare, field).quadrant());
+  EXPECT_TRUE(is_half_turn_symmetric(kSquare, field));
+}
+
+TEST(HalfTurn, NeedsNoMirrors) {
+  const ArrayXd turned = patch(kOblong, 2.6) * (1.0 + 0.1 * cell_x1(kOblong) * cell_x2(kOblong));
+  EXPECT_FALSE(of(kOblong, turned).quadrant());
+  EXPECT_TRUE(is_half_turn_symmetric(kOblong, turned));
+  ArrayXd other = turned;
+  other[cell(kOblong, 8, 6)] *= 1.0 + 1e-12;
+  EXPECT_FALSE(is_half_turn_symmetric(kOblong, other));
+}
+
 // --- what is found ---
 
 TEST(Reduction, OfACircleIsHalfAQuadrant) {
