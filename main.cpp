@@ -3,12 +3,10 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <fstream>
 #include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <sstream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -17,6 +15,7 @@
 #include "bench/compare_command.hpp"
 #include "convergence/check/check_command.hpp"
 #include "convergence/gate_command.hpp"
+#include "convergence/markup.hpp"
 #include "convergence/report_command.hpp"
 #include "convergence/solve_command.hpp"
 #include "convergence/study_command.hpp"
@@ -34,9 +33,7 @@ void write_json(const std::string& path, const Json& result) {
     std::cout << result.dump(2) << '\n';
     return;
   }
-  std::ofstream file(path);
-  file << result.dump(2) << '\n';
-  if (!file.flush()) throw std::invalid_argument(fmt::format("--json {}: cannot be written", path));
+  slipstick::convergence::write_option_file("--json", path, result.dump(2) + "\n");
 }
 
 int run(int argc, char** argv) {

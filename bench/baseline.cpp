@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "bench/median.hpp"
+#include "convergence/whole_file.hpp"
 #include "solver/input_error.hpp"
 
 namespace slipstick::bench {
@@ -86,9 +87,7 @@ void write_baseline(const std::filesystem::path& file, const Json& baseline) {
     }
     text += key == std::string_view("history") ? "\n  ],\n" : "\n  ]\n}\n";
   }
-  std::ofstream stream(file);
-  stream << text;
-  if (!stream.flush()) throw solver::InputError(file.string(), "cannot be written");
+  convergence::write_whole_file(file, text);
 }
 
 }  // namespace slipstick::bench

@@ -24,7 +24,7 @@ std::filesystem::path baseline_file(const std::filesystem::path& folder, const s
 nlohmann::ordered_json make_baseline(const nlohmann::ordered_json& timings,
                                      const nlohmann::ordered_json& before, const BaselineOrigin& origin);
 
-/// A repetition a line, so that changes can be read. Throws InputError where it cannot be written.
+/// A repetition a line, so that changes can be read. Throws std::runtime_error where it cannot be written.
 void write_baseline(const std::filesystem::path& file, const nlohmann::ordered_json& baseline);
 
 }  // namespace slipstick::bench

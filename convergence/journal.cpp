@@ -1,12 +1,12 @@
 #include "convergence/journal.hpp"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <iterator>
-#include <stdexcept>
 #include <utility>
+
+#include "convergence/whole_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -33,13 +33,9 @@ const std::string& program() {
 void write_json_file(const fs::path& file, const Json& json) {
   const std::string content = json.dump(1) + "\n";
   std::ifstream old(file);
-  if (old && std::string(std::istreambuf_iterator<char>(old), {}) == content) return;  // keeps its time
-  const fs::path draft = fmt::format("{}.part{}", file.string(), getpid());
-  std::ofstream stream(draft);
-  stream << content;
-  if (!stream.flush()) throw std::runtime_error(fmt::format("{}: cannot be written", file.string()));
-  stream.close();
-  fs::rename(draft, file);
+  if (old && fs::is_regular_file(file) && std::string(std::istreambuf_iterator<char>(old), {}) == content)
+    return;
+  write_whole_file(file, content);
 }
 
 Journal::Journal(fs::path folder) : folder_(std::move(folder)), program_(program()) {
@@ -48,7 +44,7 @@ Journal::Journal(fs::path folder) : folder_(std::move(folder)), program_(program
 
 std::optional<Json> Journal::find(const std::string& name, const std::string& question) const {
   std::ifstream stream(file(name));
-  const Json found = stream ? Json::parse(stream, nullptr, false) : Json();
+  const Json found = stream && fs::is_regular_file(file(name)) ? Json::parse(stream, nullptr, false) : Json();
   const bool finished = found.is_object() && found.value("program", "") == program_ &&
                         found.value("question", "") == question && found.contains("result");
   return finished ? std::optional(found["result"]) : std::nullopt;
@@ -63,6 +59,8 @@ Json Journal::point(const std::string& name, const std::string& question,
   std::optional<Json> found = find(name, question);
   reused_ = found && (also.empty() || fs::exists(also));
   if (reused_) return *std::move(found);
+  fs::remove(
+      file(name));  // so that a kill while the other file is written leaves nothing that looks finished
   Json result = compute();
   keep(name, question, result);
   return result;

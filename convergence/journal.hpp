@@ -40,7 +40,7 @@ class Journal {
   bool reused_ = false;
 };
 
-/// Writes JSON so that the file is either the old one or the whole new one.
+/// Writes JSON as write_whole_file() does; a file that has this content already keeps its time.
 void write_json_file(const std::filesystem::path& file, const nlohmann::ordered_json& json);
 
 }  // namespace slipstick::convergence

@@ -2,8 +2,9 @@
 
 #include <fmt/core.h>
 
-#include <fstream>
+#include <stdexcept>
 
+#include "convergence/whole_file.hpp"
 #include "solver/input_error.hpp"
 
 namespace slipstick::convergence {
@@ -52,9 +53,11 @@ std::string markdown_cell(std::string_view text) {
 
 void write_option_file(const std::string& option, const std::string& path, const std::string& text) {
   if (path.empty()) return;
-  std::ofstream file(path);
-  file << text;
-  if (!file.flush()) throw solver::InputError(fmt::format("{} {}", option, path), "cannot be written");
+  try {
+    write_whole_file(path, text);
+  } catch (const std::runtime_error&) {
+    throw solver::InputError(fmt::format("{} {}", option, path), "cannot be written");
+  }
 }
 
 }  // namespace slipstick::convergence

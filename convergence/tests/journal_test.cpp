@@ -54,5 +54,20 @@ TEST_F(JournalTest, APointWithoutItsOtherFileIsComputedAgain) {
   EXPECT_EQ(computed_, 2);
 }
 
+/// A kill while the other file is written anew must not leave its half beside a result that says finished.
+TEST_F(JournalTest, WhatIsComputedAgainIsNotFinishedMeanwhile) {
+  const auto also = folder_ / "fields.h5";
+  ask("a", also);
+  bool finished = true;
+  Journal(folder_).point(
+      "point", "a",
+      [&] {
+        finished = Journal(folder_).find("point", "a").has_value();
+        return compute();
+      },
+      also);
+  EXPECT_FALSE(finished);
+}
+
 }  // namespace
 }  // namespace slipstick::convergence
