@@ -83,7 +83,7 @@ Json solve_point(const Point& point, const Look& look) {
   };
   const solver::Solution solution = solve_rounded(point, scene, on_step);
   Json result = solve_result(scene, solution, exact);
-  if (steps.size() > 1) add_steps(result, std::move(steps));
+  if (has_history(scene)) add_steps(result, std::move(steps));
   if (look) look(result, solution, exact);
   return result;
 }

@@ -217,6 +217,8 @@ Json solve_result(const solver::Scene& scene, const Solution& solution, const Or
   return json;
 }
 
+bool has_history(const solver::Scene& scene) { return scene.steps.size() > 1 || scene.cycles > 1; }
+
 void add_steps(Json& result, Json steps) {
   double dissipated = 0.0;
   double applications = 0.0;

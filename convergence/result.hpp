@@ -16,6 +16,9 @@ Json solve_result(const solver::Scene& scene, const solver::Solution& solution, 
 /// The end of one step of a history: its state, certificate, errors and cost.
 Json step_result(const solver::Scene& scene, const solver::Solution& solution, const OracleAnswer& exact);
 
+/// Whether the result of a scene has steps: what it asks for decides, not how far a solve came.
+bool has_history(const solver::Scene& scene);
+
 /// Adds the steps of a history to the result of its last one, with their sums.
 void add_steps(Json& result, Json steps);
 

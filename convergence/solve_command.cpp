@@ -80,11 +80,10 @@ int answer_exactly(const solver::Scene& scene, const Options& options, std::ostr
 GridAnswer find_on_grid(const solver::Scene& scene, const Options& options, Json& result) {
   const std::unique_ptr<ExactHistory> history = exact_history(scene);
   GridAnswer answer;
-  const bool has_history = scene.steps.size() > 1 || scene.cycles > 1;
   Json steps = Json::array();
   const auto on_step = [&](const solver::Solution& at) {
     answer.exact = history->advance(at.loads);
-    if (has_history) steps.push_back(step_result(scene, at, answer.exact));
+    if (has_history(scene)) steps.push_back(step_result(scene, at, answer.exact));
     if (one_file_a_step(options.fields)) {
       write_solution_fields(file_of_step(options.fields, std::max<std::size_t>(steps.size(), 1)), at,
                             answer.exact);
@@ -100,7 +99,7 @@ GridAnswer find_on_grid(const solver::Scene& scene, const Options& options, Json
     throw;
   }
   answer.result = solve_result(scene, answer.solution, answer.exact);
-  if (has_history) add_steps(answer.result, std::move(steps));
+  if (has_history(scene)) add_steps(answer.result, std::move(steps));
   return answer;
 }
 
