@@ -1,12 +1,9 @@
 #include "bench/work_counts_instructions.hpp"
 
 #include <fmt/core.h>
-#include <spawn.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <cctype>
-#include <cerrno>
 #include <fstream>
 #include <numeric>
 #include <sstream>
@@ -14,6 +11,8 @@
 #include <string_view>
 #include <thread>
 
+#include "convergence/child_process.hpp"
+#include "convergence/run_program.hpp"
 #include "convergence/temporary_folder.hpp"
 
 namespace slipstick::bench {
@@ -48,29 +47,19 @@ std::optional<long> own_count(const std::string& line) {
   return count;
 }
 
-pid_t spawn(const std::vector<std::string>& words) {
-  std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
-  arguments.push_back(nullptr);
-  pid_t child = 0;
-  const int error = posix_spawnp(&child, arguments[0], nullptr, nullptr, arguments.data(), environ);
-  if (error == ENOENT) return 0;
-  if (error != 0) throw std::runtime_error(fmt::format("{} cannot be run (error {})", words[0], error));
-  return child;
-}
-
-/// valgrind on one case; 0 where there is none.
+/// valgrind on one case.
 pid_t start(const fs::path& program, const std::string& name, const fs::path& output) {
-  return spawn({"valgrind", "--tool=callgrind", "--quiet", "--callgrind-out-file=" + output.string(),
-                std::string("--toggle-collect=") + kCounted, program.string(), "--do", name});
+  return convergence::start_program(
+      {"valgrind", "--tool=callgrind", "--quiet", "--callgrind-out-file=" + output.string(),
+       std::string("--toggle-collect=") + kCounted, program.string(), "--do", name});
 }
 
-void wait_for(pid_t child, const std::string& name) {
-  int status = 0;
-  if (waitpid(child, &status, 0) != child || !WIFEXITED(status) || WEXITSTATUS(status) != 0) {
-    throw std::runtime_error(fmt::format("{} under valgrind failed (status {})", name, status));
-  }
+/// Whether there is a valgrind.
+bool wait_for(pid_t child, const std::string& name) {
+  const int status = convergence::wait_for_child(child);
+  if (WIFEXITED(status) && WEXITSTATUS(status) == convergence::kNotStarted) return false;
+  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return true;
+  throw std::runtime_error(fmt::format("{} under valgrind failed (status {})", name, status));
 }
 
 }  // namespace
@@ -116,9 +105,10 @@ std::optional<std::map<std::string, Instructions>> run_callgrind(const fs::path&
     std::vector<pid_t> children;
     for (std::size_t i = first; i < last; ++i) {
       children.push_back(start(program, cases[i].name, output(cases[i])));
-      if (children.back() == 0) return std::nullopt;
     }
-    for (std::size_t i = first; i < last; ++i) wait_for(children[i - first], cases[i].name);
+    bool installed = true;
+    for (std::size_t i = first; i < last; ++i) installed &= wait_for(children[i - first], cases[i].name);
+    if (!installed) return std::nullopt;
     for (std::size_t i = first; i < last; ++i) {
       found[cases[i].name] = read_callgrind(output(cases[i]));
     }

@@ -71,6 +71,14 @@ std::string question(const Point& point) {
   return text;
 }
 
+std::string run_text(const Point& point) {
+  std::string text = point.scene.stem().string();
+  for (const std::string& assignment : point.overrides) text += ", " + assignment;
+  if (point.rounding == Rounding::upward) text += ", rounded upward";
+  if (point.rounding == Rounding::downward) text += ", rounded downward";
+  return text;
+}
+
 Json solve_point(const Point& point, const Look& look) {
   const solver::Scene scene = solver::read_scene(point.scene, point.overrides);
   const std::unique_ptr<ExactHistory> history = exact_history(scene);

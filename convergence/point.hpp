@@ -35,6 +35,9 @@ std::string cells_override(const solver::Scene& scene, solver::Index across);
 /// overrides, rounding. Throws InputError for a scene that cannot be read.
 std::string question(const Point& point);
 
+/// A point for a person: "paper, grid.cells=[96,96], rounded downward".
+std::string run_text(const Point& point);
+
 /// Solves a point and compares it with the exact answer; of a history the last step, with the steps beside
 /// it. What the scene asks for and cannot have, gross slip for one, is no exception but a result with status
 /// = "refused" and a message. Throws InputError for a scene that cannot be read.

@@ -1,48 +1,41 @@
 #include "convergence/run_program.hpp"
 
 #include <fcntl.h>
-#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
+
+#include "convergence/child_process.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
-/// Where a new program's output goes.
-class Redirection {
- public:
-  Redirection() { posix_spawn_file_actions_init(&actions_); }
-  void send(int descriptor, const std::filesystem::path& file) {
-    if (file.empty()) return;
-    posix_spawn_file_actions_addopen(&actions_, descriptor, file.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0666);
-  }
-  ~Redirection() { posix_spawn_file_actions_destroy(&actions_); }
-  Redirection(const Redirection&) = delete;
-  Redirection& operator=(const Redirection&) = delete;
-
-  const posix_spawn_file_actions_t* actions() const { return &actions_; }
-
- private:
-  posix_spawn_file_actions_t actions_{};
-};
+/// Whether what is written on a descriptor now goes to the file; empty: where it went before.
+bool redirect(int descriptor, const std::filesystem::path& file) {
+  if (file.empty()) return true;
+  const int opened = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  return opened >= 0 && dup2(opened, descriptor) >= 0;
+}
 
 }  // namespace
 
-int run_program(const std::vector<std::string>& words, const std::filesystem::path& output,
-                const std::filesystem::path& complaints) {
+pid_t start_program(const std::vector<std::string>& words, const std::filesystem::path& output,
+                    const std::filesystem::path& complaints) {
   std::vector<char*> arguments;
   arguments.reserve(words.size() + 1);
   for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
   arguments.push_back(nullptr);
-  Redirection redirection;
-  redirection.send(STDOUT_FILENO, output);
-  redirection.send(STDERR_FILENO, complaints);
-  pid_t child = 0;
-  if (posix_spawnp(&child, arguments[0], redirection.actions(), nullptr, arguments.data(), environ) != 0) {
-    return -1;
+  const pid_t child = fork_child();
+  if (child > 0) return child;
+  if (redirect(STDOUT_FILENO, output) && redirect(STDERR_FILENO, complaints)) {
+    execvp(arguments[0], arguments.data());
   }
-  int status = 0;
-  return waitpid(child, &status, 0) == child && WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  _exit(kNotStarted);
+}
+
+int run_program(const std::vector<std::string>& words, const std::filesystem::path& output,
+                const std::filesystem::path& complaints) {
+  const int status = wait_for_child(start_program(words, output, complaints));
+  return WIFEXITED(status) && WEXITSTATUS(status) != kNotStarted ? WEXITSTATUS(status) : -1;
 }
 
 }  // namespace slipstick::convergence
