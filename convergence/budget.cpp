@@ -27,9 +27,11 @@ Budget split_error(const std::string& quantity, const Json& observed, const Json
   budget.observed = number_at(observed, quantity);
   budget.discretisation = number_at(tightened, quantity);
   budget.iteration = budget.observed - budget.discretisation;
+  budget.rounding = rounded.empty() ? NAN : 0.0;
   for (const Json& result : rounded) {
     const double change = std::abs(number_at(result, quantity) - budget.discretisation);
-    budget.rounding = budget.rounding >= change ? budget.rounding : change;  // keeps NaN
+    const bool keep = std::isnan(budget.rounding) || change <= budget.rounding;
+    budget.rounding = keep ? budget.rounding : change;
   }
   budget.reference = number_at(observed, "exact.relative_uncertainty");
   return budget;

@@ -32,7 +32,8 @@ inline constexpr double kTightening = 1e-2;
 
 BudgetPoints budget_points(const Point& point);
 
-/// The parts of an error, a path into the results; NaN where a result does not have it.
+/// The parts of an error, a path into the results; NaN where a result does not have it, and the rounding
+/// where any of the rounded results has none, or there is no such result.
 Budget split_error(const std::string& quantity, const Json& observed, const Json& tightened,
                    const std::vector<Json>& rounded);
 

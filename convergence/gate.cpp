@@ -10,6 +10,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "convergence/failed_runs.hpp"
 #include "convergence/quantity.hpp"
 #include "solver/misspelling.hpp"
 
@@ -120,6 +121,15 @@ std::string out_of_bounds_text(const Gate& gate, const Json& value) {
                      has_factor ? fmt::format(": {:.3g} times the bound", factor) : "");
 }
 
+/// Why runs are missing that the value rests on, the one of a solve or some of a study's; empty: none is. It
+/// says nothing of what the gate asks for, so that nothing else is judged.
+std::string died(const Gate& gate, const Json& result) {
+  if (gate.kind != GateSource::result && word(result, "status") == "failed") {
+    return fmt::format("the {} failed{}", maker(gate.kind), because(word(result, "message")));
+  }
+  return result.is_object() ? failed_runs_text(result) : "";
+}
+
 /// Why a gate does not hold; empty where it does.
 std::string fault(const Gate& gate, const Json& result, const FoundQuantity& found) {
   if (!is_value(found)) return missing_text(gate, result, found);
@@ -172,8 +182,13 @@ double reference_error(const Json& result, const std::string& quantity) {
 }
 
 Judgement judge(const Gate& gate, const Json& result) {
-  Judgement judgement = refuse(gate, "");
+  Judgement judgement = refuse(gate, died(gate, result));
   const FoundQuantity found = find_quantity(result, gate.quantity);
+  if (!judgement.why.empty()) {
+    if (is_value(found)) judgement.value = *found.value;
+    judgement.outcome = Outcome::failed;
+    return judgement;
+  }
   if (is_value(found)) {
     judgement.value = *found.value;
     judgement.factor = factor_of(gate, judgement.value);

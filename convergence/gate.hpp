@@ -67,8 +67,10 @@ double reference_error(const Json& result, const std::string& quantity);
 
 /// Judges a gate by the result of its scene or study, or by what its result file holds. A number that is
 /// missing, NaN or comes from a solve that did not reach its tolerance fails; a gate that is tighter than
-/// kMargin allows is refused. Of a result file the reference's error counts where the file states one: it may
-/// call anything an error, of benchmarks that failed as well as of a twist.
+/// kMargin allows is refused. A solve that died, or a study some of whose runs failed, fails a gate of any
+/// status: that is neither the failure that was expected nor a number to report. Of a result file the
+/// reference's error counts where the file states one: it may call anything an error, of benchmarks that
+/// failed as well as of a twist.
 Judgement judge(const Gate& gate, const Json& result);
 
 /// A gate that cannot be judged, and why.

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
 #include <fstream>
 #include <map>
 #include <optional>
@@ -33,6 +34,8 @@ std::string find_blame(const Judgement& judgement, PointRunner& runner) {
   if (judgement.outcome != Outcome::failed || !judgement.value.is_number() || !is_error(gate.quantity))
     return "";
   const Budget budget = error_budget(point_of(gate), gate.quantity, runner);
+  const double parts = budget.discretisation + budget.iteration + budget.rounding + budget.reference;
+  if (!std::isfinite(parts)) return "not known: solves that would tell have no such number";
   return fmt::format(
       "{} (of {:.2g}: discretisation {:.2g}, iteration {:.2g}, rounding {:.1g}, reference {:.1g})",
       largest_part(budget), budget.observed, budget.discretisation, budget.iteration, budget.rounding,

@@ -11,9 +11,9 @@ namespace {
 
 /// Why a sample is no number; empty if it is one.
 std::string flaw(const MeshSample& sample) {
-  const bool number = sample.grids > 0 && std::isfinite(sample.value) && std::isfinite(sample.spread) &&
-                      std::isfinite(sample.noise);
-  return number ? "" : fmt::format("no number at size {:.4g}", sample.size);
+  const bool number = sample.grids > 0 && std::isfinite(sample.value) && std::isfinite(sample.spread);
+  if (!number) return fmt::format("no number at size {:.4g}", sample.size);
+  return std::isfinite(sample.noise) ? "" : fmt::format("no noise is known at size {:.4g}", sample.size);
 }
 
 }  // namespace

@@ -19,7 +19,7 @@ struct MeshSample {
 enum class OrderVerdict { asymptotic, preasymptotic, superconvergent, oscillatory, floor, too_few };
 std::string to_string(OrderVerdict verdict);
 
-/// The samples that are numbers, of at least one grid, coarsest first.
+/// The samples that are numbers with a noise that is one, of at least one grid, coarsest first.
 struct MeshSequence {
   std::vector<MeshSample> meshes;
   std::string left_out;  ///< which samples are none; empty where all are

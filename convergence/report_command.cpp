@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "convergence/failed_runs.hpp"
 #include "convergence/python_script.hpp"
 #include "convergence/validation.hpp"
 
@@ -47,7 +48,14 @@ int run(const Options& options, std::ostream& text, nlohmann::ordered_json& resu
                     options.quick ? quick_validation() : full_validation(), data);
   draw(data, output);
   text << "page: " << (output / "index.html").string() << '\n';
-  return 0;
+  int exit_code = 0;
+  for (const auto& study : result["studies"]) {
+    const std::string failures = failed_runs_text(study);
+    if (failures.empty()) continue;
+    text << fmt::format("study {}: {}\n", study["name"].get<std::string>(), failures);
+    exit_code = 1;
+  }
+  return exit_code;
 }
 
 }  // namespace
@@ -61,7 +69,9 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_report_command(CL
   command->footer(
       "Example:\n  slipstick report --output build/report\nFinished solves are kept: repeating an "
       "interrupted "
-      "command goes on from there.");
+      "command goes on from there.\nExit code 0: done; 1: a run of a study failed, and the page says so; 2: "
+      "it "
+      "could not be made.");
   return
       [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };
 }

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "convergence/budget.hpp"
+#include "convergence/failed_runs.hpp"
 #include "convergence/provenance.hpp"
 #include "convergence/study_judgement.hpp"
 #include "convergence/study_plan.hpp"
@@ -17,13 +18,17 @@ constexpr int kMostTightenings = 2;
 /// Collects points, then hands out their results in the same order.
 class Batch {
  public:
-  explicit Batch(PointRunner& runner) : runner_(runner) {}
+  Batch(PointRunner& runner, FailedRuns& failed) : runner_(runner), failed_(failed) {}
   void add(Point point) { points_.push_back(std::move(point)); }
-  void run() { results_ = runner_.run(points_); }
+  void run() {
+    results_ = runner_.run(points_);
+    for (std::size_t i = 0; i < points_.size(); ++i) failed_.add(run_text(points_[i]), results_[i]);
+  }
   Json next() { return std::move(results_[taken_++]); }
 
  private:
   PointRunner& runner_;
+  FailedRuns& failed_;
   std::vector<Point> points_;
   std::vector<Json> results_;
   std::size_t taken_ = 0;
@@ -53,11 +58,11 @@ std::vector<MeshResults> take_results(const Series& series, Batch& batch) {
 
 /// Solves the series, again and to tighter tolerances where the iteration shows.
 std::vector<std::vector<MeshResults>> solve_series(const Study& study, std::vector<Series>& all,
-                                                   PointRunner& runner) {
+                                                   PointRunner& runner, FailedRuns& failed) {
   std::vector<std::vector<MeshResults>> results(all.size());
   std::vector<bool> open(all.size(), true);
   for (int pass = 0; pass <= kMostTightenings; ++pass) {
-    Batch batch(runner);
+    Batch batch(runner, failed);
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (open[i]) add_points(study, all[i], batch);
     }
@@ -101,7 +106,8 @@ std::vector<std::vector<Json>> take_tolerance_results(const Study& study, const 
 
 Json run_study(const Study& study, PointRunner& runner) {
   std::vector<Series> all = make_series(study);
-  const auto results = solve_series(study, all, runner);
+  FailedRuns failed;
+  const auto results = solve_series(study, all, runner, failed);
   Json json;
   json["name"] = study.name;
   json["scene"] = study.scene.string();
@@ -111,7 +117,7 @@ Json run_study(const Study& study, PointRunner& runner) {
     json["series"][all[i].name] = judge_series(study, all[i], results[i]);
   }
   if (study.tolerances.size() > 1) {
-    Batch batch(runner);
+    Batch batch(runner, failed);
     for (const Series& series : all) add_tolerance_points(study, series, batch);
     batch.run();
     for (std::size_t i = 0; i < all.size(); ++i) {
@@ -119,6 +125,7 @@ Json run_study(const Study& study, PointRunner& runner) {
       json["series"][all[i].name]["tolerances"] = tolerance_rows(study, all[i], by_mesh, results[i]);
     }
   }
+  json["failed_runs"] = failed.json();
   json["provenance"] = provenance(1);
   return json;
 }

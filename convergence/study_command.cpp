@@ -29,6 +29,7 @@ void draw(const std::string& figure, const Json& result) {
 }
 
 bool all_converged(const Json& result) {
+  if (result["failed_runs"]["count"] != 0) return false;
   for (const auto& [name, series] : result["series"].items()) {
     for (const Json& row : series["rows"]) {
       if (row["status"] != "converged") return false;
@@ -67,7 +68,7 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_study_command(CLI
       "Example:\n  slipstick study convergence/studies/paper_mesh.toml --figure study.svg --json study.json\n"
       "Finished solves are kept: repeating an interrupted command goes on from there.\nExit code 0: done; 1: "
       "some "
-      "solve did not converge, and is marked; 2: bad input.");
+      "solve did not converge or failed, and is marked; 2: bad input.");
   return
       [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };
 }

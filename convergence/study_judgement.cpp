@@ -1,5 +1,7 @@
 #include "convergence/study_judgement.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -7,6 +9,7 @@
 
 #include "convergence/budget.hpp"
 #include "convergence/expected_order.hpp"
+#include "convergence/failed_runs.hpp"
 #include "convergence/limit.hpp"
 #include "convergence/quantity.hpp"
 #include "solver/input_error.hpp"
@@ -35,9 +38,9 @@ double mean_size(const Mesh& mesh) {
   return sum / static_cast<double>(mesh.grids.size());
 }
 
-/// Mean and standard deviation of the grids that converged.
+/// Mean and standard deviation of the grids that converged; noise is not known yet.
 MeshSample sample_of(const Mesh& mesh, const std::vector<Json>& results, const std::string& quantity) {
-  MeshSample sample{0.0, 0.0, 0.0, 0, 0.0};
+  MeshSample sample{0.0, 0.0, 0.0, 0, NAN};
   double squares = 0.0;
   for (std::size_t k = 0; k < results.size(); ++k) {
     const double value = is_converged(results[k]) ? number_at(results[k], quantity) : NAN;
@@ -48,7 +51,7 @@ MeshSample sample_of(const Mesh& mesh, const std::vector<Json>& results, const s
     squares += from_mean * (value - sample.value);
     sample.size += (mesh.grids[k].size - sample.size) / sample.grids;
   }
-  if (sample.grids == 0) return {mesh.grids.front().size, NAN, 0.0, 1, 0.0};
+  if (sample.grids == 0) return {mesh.grids.front().size, NAN, NAN, 0, NAN};
   if (sample.grids > 1) sample.spread = std::sqrt(squares / (sample.grids - 1));
   return sample;
 }
@@ -72,18 +75,21 @@ Curve make_curve(const Series& series, const std::vector<MeshResults>& results, 
   const double rounding = rounding_of(curve.budgets, series.meshes);
   for (std::size_t i = 0; i < results.size(); ++i) {
     curve.budgets[i].rounding = rounding;
-    const double noise = std::abs(curve.budgets[i].iteration) + rounding;
-    curve.samples[i].noise = std::isfinite(noise) ? noise : 0.0;
+    curve.samples[i].noise = std::abs(curve.budgets[i].iteration) + rounding;
   }
   return curve;
 }
 
-/// The first result that converged, of the finest mesh if any; where none did, the first.
+/// A result that converged, of the finest mesh that has one; where none did, one that there is, if any.
 const Json& sample_result(const std::vector<MeshResults>& results) {
+  const Json* sample = &results.front().grids.front();
   for (auto at = results.rbegin(); at != results.rend(); ++at) {
-    if (is_converged(at->grids.front())) return at->grids.front();
+    for (const Json& grid : at->grids) {
+      if (is_converged(grid)) return grid;
+      if (is_failed(*sample)) sample = &grid;
+    }
   }
-  return results.front().grids.front();
+  return *sample;
 }
 
 /// The quantities of a series: those asked for, or all errors that there are; values of what the exact answer
@@ -93,7 +99,7 @@ std::vector<std::pair<std::string, bool>> choose_quantities(const Study& study, 
   const auto is_error = [](const std::string& path) { return path.find("_error") != std::string::npos; };
   if (!study.quantities.empty()) {
     for (const std::string& path : study.quantities) {
-      if (find_quantity(result, path).value == nullptr) {
+      if (!is_failed(result) && find_quantity(result, path).value == nullptr) {
         throw solver::InputError(study.source.string(), "quantities", path,
                                  "paths into a result, as slipstick solve --json writes it");
       }
@@ -160,31 +166,93 @@ Json order_json(const Order& order, const ExpectedOrder& expected) {
   return json;
 }
 
+/// Why parts of a mesh's budget are missing; empty: they are not.
+struct Missing {
+  std::string observed;
+  std::string discretisation;
+  std::string iteration;
+  std::string rounding;
+  std::string noise;
+};
+
+const std::string& first_of(const std::string& one, const std::string& other) {
+  return one.empty() ? other : one;
+}
+
+Missing missing_parts(const Series& series, const std::vector<MeshResults>& results, std::size_t mesh,
+                      const std::string& quantity) {
+  Missing missing;
+  missing.observed = why_missing(results[mesh].grids.front(), quantity);
+  missing.discretisation = why_missing(results[mesh].tightened, quantity);
+  missing.iteration = first_of(missing.observed, missing.discretisation);
+  for (std::size_t i = 0; i < results.size(); ++i) {
+    if (!series.meshes[i].rounded) continue;
+    missing.rounding = why_missing(results[i].tightened, quantity);
+    for (const Json& rounded : results[i].rounded) {
+      missing.rounding = first_of(missing.rounding, why_missing(rounded, quantity));
+    }
+  }
+  missing.noise = first_of(missing.iteration, missing.rounding);
+  return missing;
+}
+
 /// One line of the budget. The trend is what the fitted order says for the mesh, the staircase what is left
 /// of the discretisation: how this grid happens to lie.
-Json budget_json(const Curve& curve, const Order& order, std::size_t mesh, const Mesh& grids) {
+Json budget_json(const Curve& curve, const Order& order, std::size_t mesh, const Mesh& grids,
+                 const Missing& missing) {
   const Budget& budget = curve.budgets[mesh];
-  const std::string unsolved = "the solve did not converge";
   Json json;
   json["quantity"] = curve.quantity;
   json["cells"] = grids.grids.front().cells;
   json["h"] = grids.grids.front().size;
-  set_number(json, "observed", budget.observed, unsolved);
-  set_number(json, "discretisation", budget.discretisation, unsolved);
-  set_number(json, "iteration", budget.iteration, unsolved);
-  set_number(json, "rounding", budget.rounding, unsolved);
+  set_number(json, "observed", budget.observed, first_of(missing.observed, order.why));
+  set_number(json, "discretisation", budget.discretisation, first_of(missing.discretisation, order.why));
+  set_number(json, "iteration", budget.iteration, first_of(missing.iteration, order.why));
+  set_number(json, "rounding", budget.rounding, first_of(missing.rounding, order.why));
   set_number(json, "reference", budget.reference, "the reference does not say");
   const double trend = order.constant * std::pow(grids.grids.front().size, order.value);
   const double staircase = budget.discretisation - trend;
-  set_number(json, "trend", trend, "no order was fitted");
-  set_number(json, "staircase", staircase, "no order was fitted");
+  const std::string unfitted = "no order was fitted";
+  set_number(json, "trend", trend, unfitted);
+  set_number(json, "staircase", staircase, first_of(missing.discretisation, unfitted));
   const MeshSample& sample = curve.samples[mesh];
-  if (sample.grids > 1 && std::isfinite(staircase)) {
-    json["adds_up"] = std::abs(staircase) <= kSpreads * sample.spread + budget.rounding + budget.reference;
+  const double explained = kSpreads * sample.spread + budget.rounding + budget.reference;
+  if (sample.grids > 1 && std::isfinite(staircase) && std::isfinite(explained)) {
+    json["adds_up"] = std::abs(staircase) <= explained;
   } else {
-    set_missing(json, "adds_up", "one grid has no spread, or no order was fitted");
+    set_missing(json, "adds_up", "one grid has no spread, or a part is not known");
   }
   return json;
+}
+
+/// A quantity on a mesh: what is there of its grids.
+Json mesh_json(const Curve& curve, const Order& order, std::size_t mesh, const Mesh& grids,
+               const Missing& missing) {
+  const MeshSample& sample = curve.samples[mesh];
+  const std::string none = sample.grids == 0 ? "no grid of this mesh converged" : order.why;
+  Json json;
+  json["grids"] = sample.grids;
+  set_number(json, "mean", sample.value, none);
+  if (sample.grids == 1 && grids.grids.size() > 1) {
+    set_missing(json, "spread", "one grid of this mesh converged, and has no spread");
+  } else {
+    set_number(json, "spread", sample.spread, none);
+  }
+  set_number(json, "noise", sample.noise, first_of(missing.noise, none));
+  return json;
+}
+
+/// Those that a series is judged by.
+FailedRuns failed_runs(const std::vector<MeshResults>& results) {
+  FailedRuns failed;
+  int runs = 0;
+  const auto add = [&](const Json& result) { failed.add(fmt::format("run {}", ++runs), result); };
+  for (const MeshResults& at : results) {
+    for (const Json& result : at.grids) add(result);
+    add(at.tightened);
+    for (const Json& result : at.rounded) add(result);
+  }
+  return failed;
 }
 
 Json row_json(const Json& result, const GridChoice& grid, double tolerance, std::size_t shift,
@@ -196,16 +264,14 @@ Json row_json(const Json& result, const GridChoice& grid, double tolerance, std:
   row["requested"] = tolerance;
   row["status"] = result["status"];
   if (result.contains("message")) row["message"] = result["message"];
-  const std::string unsolved = result.value("message", "the result does not have it");
   for (const char* path : {"certificate.gap", "certificate.friction_bound", "slip_direction.mean", "change",
                            "operator_applications", "iterations"}) {
-    set_number(row, path, number_at(result, path), unsolved);
+    set_number(row, path, number_at(result, path), why_missing(result, path));
   }
   for (const std::string& path : quantities) {
-    const FoundQuantity found = find_quantity(result, path);
-    set_number(row, path, number_at(result, path), found.reason.empty() ? unsolved : found.reason);
+    set_number(row, path, number_at(result, path), why_missing(result, path));
   }
-  set_number(row, "seconds", number_at(result, "seconds.total"), unsolved);
+  set_number(row, "seconds", number_at(result, "seconds.total"), why_missing(result, "seconds.total"));
   return row;
 }
 
@@ -225,7 +291,9 @@ Json judge_series(const Study& study, const Series& series, const std::vector<Me
                       ? "exact"
                       : "extrapolated";
   set_number(json, "reference_uncertainty", number_at(sample, "exact.relative_uncertainty"),
-             "there is no exact answer");
+             is_failed(sample) ? sample.value("message", "") : "there is no exact answer");
+  json["failed_runs"] = failed_runs(results).json();
+  const std::string failures = failed_runs_text(json);
   json["rows"] = Json::array();
   json["meshes"] = Json::array();
   for (std::size_t i = 0; i < results.size(); ++i) {
@@ -254,15 +322,13 @@ Json judge_series(const Study& study, const Series& series, const std::vector<Me
       set_number(found, "uncertainty", limit.uncertainty, order.why);
       found["method"] = limit.method;
     }
+    if (!failures.empty()) order.why += "; " + failures;
     json["order"][path] = order_json(order, expected);
     json["order"][path]["basis"] = exact ? "exact" : "extrapolated";
     for (std::size_t i = 0; i < results.size(); ++i) {
-      const MeshSample& at = curve.samples[i];
-      Json& mesh = json["meshes"][i][path];
-      set_number(mesh, "mean", at.value, "no grid of this mesh converged");
-      mesh["spread"] = at.spread;
-      mesh["noise"] = at.noise;
-      json["budget"].push_back(budget_json(curve, order, i, series.meshes[i]));
+      const Missing missing = missing_parts(series, results, i, path);
+      json["meshes"][i][path] = mesh_json(curve, order, i, series.meshes[i], missing);
+      json["budget"].push_back(budget_json(curve, order, i, series.meshes[i], missing));
     }
   }
   return json;
@@ -292,7 +358,7 @@ Json tolerance_rows(const Study& study, const Series& series, const std::vector<
       Json row = row_json(at[k], series.meshes[i].grids.front(), study.tolerances[k], 0, quantities);
       for (const std::string& path : quantities) {
         set_number(row["iteration"], path, number_at(at[k], path) - number_at(at.back(), path),
-                   "one of the solves did not converge");
+                   first_of(why_missing(at[k], path), why_missing(at.back(), path)));
       }
       rows.push_back(std::move(row));
     }

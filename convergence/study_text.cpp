@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "convergence/failed_runs.hpp"
 #include "convergence/study.hpp"
 
 namespace slipstick::convergence {
@@ -107,6 +108,12 @@ std::string budget_text(const Json& series) {
   return text;
 }
 
+/// Behind the numbers of a run; empty where it converged.
+std::string status_note(std::string status) {
+  std::ranges::replace(status, '_', ' ');
+  return status == "converged" ? "" : "   " + status;
+}
+
 std::string tolerances_text(const Json& series) {
   const Json& rows = series["tolerances"];
   if (series["order"].empty()) return "  no quantity of this scene can be followed\n";
@@ -118,8 +125,7 @@ std::string tolerances_text(const Json& series) {
     text += fmt::format("  {:>13} {:>9.0e} {:>12} {:>10} {:>12} {:>12}  {}{}\n", cells_text(row["cells"]),
                         row["requested"].get<double>(), size(row["certificate.gap"]), size(row["change"]),
                         number_text(row["operator_applications"]), error(row[quantity]),
-                        error(row["iteration"][quantity]),
-                        row["status"] == "converged" ? "" : "   not converged");
+                        error(row["iteration"][quantity]), status_note(row["status"].get<std::string>()));
   }
   return text;
 }
@@ -141,6 +147,10 @@ std::string rows_text(const Json& series) {
 std::string study_text(const Json& result) {
   std::string text =
       fmt::format("{}: {} series\n", result["name"].get<std::string>(), result["series"].size());
+  if (const std::string failures = failed_runs_text(result); !failures.empty()) {
+    text += fmt::format("{}; what they were to tell is missing (-), and the same command tries them again\n",
+                        failures);
+  }
   for (const auto& [name, series] : result["series"].items()) {
     text += fmt::format(
         "\n{} ({}; tolerance {:g}{})\n", name, basis_text(series), series["tolerance"].get<double>(),

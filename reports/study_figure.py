@@ -55,7 +55,7 @@ def draw_errors(axis, series, quantity):
     handles = []
     for one in series:
         size, mean = numbers(one.meshes, "h"), one.mean(quantity)
-        spread, order = numbers(one.meshes, quantity, "spread"), one.order(quantity)
+        spread, order = np.nan_to_num(numbers(one.meshes, quantity, "spread")), one.order(quantity)
         used, given = used_meshes(size, order), np.isfinite(mean)
         look = dict(one.look, linestyle="")
         low = np.where(spread < mean, spread, (1 - 1e-9) * mean)  # a bar that would reach zero leaves the axes
@@ -187,7 +187,7 @@ def draw(study, head=0.0):
     if handles:
         figure.legend(handles=handles, loc="upper center", ncol=2, handlelength=2.0, columnspacing=1.8,
                       borderaxespad=0.1, bbox_to_anchor=(0.5, 1 - head / height))
-    return Plate(message(series, quantities), details(series, quantities),
+    return Plate(failures(study) + message(series, quantities), details(series, quantities),
                  "Log-log panels of errors against cell size with fitted orders, bars of what an error is made of, or "
                  "errors against tolerances.", figure)
 
@@ -225,6 +225,15 @@ def _draw_tolerance_section(part, series, quantities):
                              Line2D([], [], linestyle="--", color=style.BLACK, linewidth=0.9,
                                     label="part due to stopping there")], loc="lower left", fontsize=7)
     part.supxlabel("tolerance asked for", fontsize=9)
+
+
+def failures(study):
+    """Before all else: which runs are missing from the figure."""
+    runs = study.get("failed_runs", {"count": 0})
+    if not runs["count"]:
+        return ""
+    first = runs["first"]
+    return f"{runs['count']} of {runs['of']} runs failed; the first ({first['run']}): {first['message']}. "
 
 
 def message(series, quantities):

@@ -227,6 +227,29 @@ TEST(Gate, ExpectedFailureMustFail) {
   EXPECT_EQ(judge(gate, solve_with("y", 2.0)).outcome, Outcome::failed) << "a misspelt quantity";
 }
 
+/// A run that died is no answer of any kind: whatever was expected, it fails.
+TEST(Gate, RunsThatDiedFailAGateOfAnyStatus) {
+  const Json died{{"status", "failed"}, {"message", "killed by signal 9"}};
+  Json study = {{"failed_runs",
+                 {{"count", 1}, {"of", 35}, {"first", {{"run", "paper"}, {"message", "memory ran out"}}}}},
+                {"x", 0.5}};
+  for (const GateStatus status :
+       {GateStatus::active, GateStatus::expected_failure, GateStatus::report_only}) {
+    Gate gate = with_status(below("x", 1.0), status);
+    const Judgement solve = judge(gate, died);
+    EXPECT_EQ(solve.outcome, Outcome::failed);
+    EXPECT_THAT(solve.why, HasSubstr("killed by signal 9"));
+    EXPECT_EQ(exit_code({solve}), 1);
+    gate.kind = GateSource::study;
+    const Judgement some = judge(gate, study);
+    EXPECT_EQ(some.outcome, Outcome::failed);
+    EXPECT_THAT(some.why, HasSubstr("1 of 35 runs failed; the first (paper): memory ran out"));
+    EXPECT_EQ(some.value, 0.5);
+  }
+  study["failed_runs"]["count"] = 0;
+  EXPECT_EQ(judge(below("x", 1.0), study).outcome, Outcome::passed);
+}
+
 TEST(Gate, ExitCodeIsThatOfTheWorst) {
   const auto judged = [](GateStatus status, double value) {
     return judge(with_status(below("x", 1.0), status), solve_with("x", value));

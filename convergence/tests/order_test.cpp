@@ -60,6 +60,17 @@ TEST(Order, KnownSpreadGivesTheInterval) {
   EXPECT_EQ(found.verdict, asymptotic);
 }
 
+/// What is not known is not zero: such a mesh says nothing of the order.
+TEST(Order, AMeshWithoutANoiseTakesNoPart) {
+  Meshes errors = power(1.0);
+  errors[1].value *= 3.0;
+  errors[1].noise = std::nan("");
+  const Order found = fit_order(errors, 1.0);
+  EXPECT_EQ(found.sizes.size(), errors.size() - 1);
+  EXPECT_NEAR(found.value, 1.0, kRounding);
+  EXPECT_NE(found.why.find("no noise is known"), std::string::npos) << found.why;
+}
+
 /// A mesh with a wide spread counts less: the order is that of the others.
 TEST(Order, WideSpreadWeighsLess) {
   Meshes errors = power(1.0);

@@ -2,10 +2,12 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cfenv>
 #include <cmath>
+#include <csignal>
 #include <fstream>
 #include <set>
 
@@ -91,6 +93,65 @@ TEST_F(StudyTest, DirectedRoundingIsSeenAndIsSmall) {
   EXPECT_DOUBLE_EQ(budget.observed, results[0]["twist_error"].get<double>());
   EXPECT_DOUBLE_EQ(budget.discretisation + budget.iteration, budget.observed);
   EXPECT_EQ(largest_part(budget), "discretisation");
+}
+
+/// Rounded downward this pressure's mirrors hold to rounding and half a turn, which is both of them, nearly
+/// to twice as much: one test decides for the quadrant and for the limit load.
+TEST_F(StudyTest, APressureThatIsMirroredToRoundingIsSolved) {
+  const BudgetPoints points =
+      budget_points({kPaper, {cells(96), "contact.pressure=\"hertz\"", "load.moment_ratio=0.5"}});
+  const std::vector<Json> results = runner_.run({points.tightened, points.rounded[0], points.rounded[1]});
+  for (const Json& result : results) EXPECT_EQ(result["status"], "converged") << result.dump();
+}
+
+/// A result that cannot be kept, for a folder lies where its file belongs, is a run that died: its exception
+/// is the reason, and what the study cannot know is missing and not zero.
+TEST_F(StudyTest, ARunThatDiedIsSaid) {
+  const Study meshes = study("cells = [8, 12, 16, 24]\nquantities = [\"twist_error\"]\n");
+  const Json whole = run_study(meshes, runner_);
+  EXPECT_EQ(whole["failed_runs"]["count"], 0);
+  EXPECT_THAT(study_text(whole), testing::Not(HasSubstr("failed")));
+  const auto total = whole["failed_runs"]["of"].get<std::size_t>();
+  ASSERT_EQ(total, files(folder_ / "points"));
+  std::vector<fs::path> points;
+  for (const auto& entry : fs::directory_iterator(folder_ / "points")) points.push_back(entry.path());
+  for (const fs::path& point : points) {
+    fs::rename(point, folder_ / "kept");
+    fs::create_directories(point / "in the way");
+    const Json result = run_study(meshes, runner_);
+    EXPECT_EQ(result["failed_runs"]["count"], 1);
+    EXPECT_EQ(result["failed_runs"]["of"], total);
+    EXPECT_THAT(result["failed_runs"]["first"]["message"].get<std::string>(), HasSubstr("cannot be written"));
+    EXPECT_THAT(study_text(result), HasSubstr("1 of " + std::to_string(total) + " runs failed"));
+    const Json& series = result["series"]["paper"];
+    EXPECT_THAT(series["order"]["twist_error"]["why"].get<std::string>(), HasSubstr("runs failed"));
+    bool missing = false;
+    for (const Json& mesh : series["meshes"]) {
+      const Json& noise = mesh["twist_error"]["noise"];
+      missing |= noise.is_null();
+      EXPECT_TRUE(noise.is_null() || noise.get<double>() > 0.0) << mesh.dump();
+    }
+    EXPECT_TRUE(missing);
+    fs::remove_all(point);
+    fs::rename(folder_ / "kept", point);
+  }
+}
+
+/// A program whose parent does not want to know of children's ends finds its results all the same.
+TEST_F(StudyTest, PointsAreFoundWhereNobodyIsToldHowTheyEnd) {
+  const auto before = std::signal(SIGCHLD, SIG_IGN);
+  EXPECT_EQ(runner_.run(Point{kPaper, {cells(16)}})["status"], "converged");
+  std::signal(SIGCHLD, before);
+}
+
+/// Solves run beside other children of this process, and leave those alone.
+TEST_F(StudyTest, OtherChildrenAreLeftAlone) {
+  const pid_t other = fork();
+  if (other == 0) _exit(3);
+  EXPECT_EQ(runner_.run(Point{kPaper, {cells(16)}})["status"], "converged");
+  int status = 0;
+  EXPECT_EQ(waitpid(other, &status, 0), other);
+  EXPECT_EQ(WEXITSTATUS(status), 3);
 }
 
 /// What a scene asks for decides whether its result has steps, not how far the solve came.

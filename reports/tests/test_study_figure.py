@@ -132,6 +132,22 @@ class Errors(unittest.TestCase):
         with_bar, without = self.panel(content).get_ylim(), self.panel().get_ylim()
         self.assertEqual(with_bar, without)
 
+    def test_a_spread_that_is_not_known_has_no_bar(self):
+        content = study()
+        for one in content["series"].values():
+            for mesh in one["meshes"]:
+                mesh["twist_error"]["spread"] = None
+        for container in self.panel(content).containers:
+            for bar in container.lines[2]:
+                for low, high in (segment[:, 1] for segment in bar.get_segments()):
+                    self.assertEqual(low, high)
+
+    def test_failed_runs_are_named_first(self):
+        failed = {"count": 2, "of": 40, "first": {"run": "paper, rounded upward", "message": "killed by signal 9"}}
+        text = study_figure.draw(study(failed_runs=failed)).message
+        self.assertTrue(text.startswith("2 of 40 runs failed; the first (paper, rounded upward): killed by signal 9. Of "))
+        self.assertTrue(study_figure.draw(study(failed_runs={"count": 0, "of": 40})).message.startswith("Of "))
+
     def test_values_that_are_null_have_no_point(self):
         content = study()
         content["series"]["coulomb-solved"]["meshes"][0]["twist_error"]["mean"] = None
