@@ -40,6 +40,7 @@ std::string obstacle(const solver::Scene& scene) {
   std::string of_surface = obstacle(scene.surfaces);
   if (!of_surface.empty()) return of_surface;
   if (scene.pressure == solver::PressureModel::file) return "the pressure comes from a file";
+  if (scene.ends_at_grid_edge) return "the body may end at the grid's edge (upper.ends_at_grid_edge)";
   if (!(scene.friction > 0.0)) return "without friction there is no traction";
   return "";
 }

@@ -1,5 +1,7 @@
 #include "solver/certificate.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -44,6 +46,21 @@ Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_b
   }
   certificate.friction_bound = worst - 1.0;
   return certificate;
+}
+
+std::string beyond(const Certificate& certificate, const CertificateBounds& bounds) {
+  const struct {
+    const char* name;
+    double value;
+    double bound;
+  } members[] = {{"gap / energy", certificate.gap, bounds.gap},
+                 {"the moment's error", certificate.moment, bounds.moment},
+                 {"the force's error", certificate.force, bounds.force},
+                 {"|q| above mu p", certificate.friction_bound, bounds.friction_bound}};
+  for (const auto& [name, value, bound] : members) {
+    if (!(value <= bound)) return fmt::format("{} is {:.3g}, allowed: {:.3g}", name, value, bound);
+  }
+  return "";
 }
 
 SlipDirection slip_direction(const Eigen::ArrayXd& traction, const Eigen::ArrayXd& slip) {

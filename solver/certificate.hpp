@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <array>
+#include <string>
 
 namespace slipstick::solver {
 
@@ -28,6 +29,18 @@ struct Certificate {
 /// that were asked for.
 Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound,
                     const Eigen::ArrayXd& rotation, double moment, const std::array<double, 2>& force = {});
+
+/// What the members of a certificate may be. Infinite: anything but NaN.
+struct CertificateBounds {
+  double gap;
+  double moment;
+  double force;
+  double friction_bound;
+};
+
+/// The first member that is beyond its bound, or NaN, with its value and the bound in words; empty where the
+/// certificate holds.
+std::string beyond(const Certificate& certificate, const CertificateBounds& bounds);
 
 /// Angle between slip and the reverse of traction, in degrees; zero under Coulomb's law.
 struct SlipDirection {

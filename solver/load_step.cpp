@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "solver/input_error.hpp"
@@ -10,6 +11,9 @@ namespace slipstick::solver {
 namespace {
 
 using Eigen::ArrayXd;
+
+/// Pressures of mirror images that are equal but for the rounding of their solve.
+constexpr double kRounding = 1e-12;
 
 /// Tangential displacement by the change of pressure, Eq. (12).
 ArrayXd pressure_displacement(const Scene& scene, const Model& model, const ArrayXd& pressure,
@@ -49,6 +53,19 @@ std::string sliding_text(const LimitLoad& limit, double length_unit) {
                   loads.limit.factor, sliding));
 }
 
+/// The other methods know torsion about the grid's origin alone: what half a turn does not bring onto itself
+/// would be left with a force. So much of the load may be out of place as they leave of the tractions anyway.
+void require_centred(const Scene& scene, const ArrayXd& pressure) {
+  const double out_of_place = 0.5 * (pressure - pressure.reverse()).abs().sum() / pressure.sum();
+  const double allowed = std::max(scene.tolerance, kRounding);
+  if (out_of_place <= allowed) return;
+  throw InputError(
+      scene.source.string(), "solver.method", fmt::format("\"{}\"", to_string(scene.method)),
+      fmt::format("coulomb, or a contact centred at the origin: this method knows torsion about the origin "
+                  "alone, and half a turn leaves {:.3g} of the pressure out of place (allowed: {:.3g})",
+                  out_of_place, allowed));
+}
+
 void impose_turning(TangentialProblem& problem, const Model& model, const Step& step, double moment_limit,
                     const RigidMotion& before) {
   if (step.torsion.twist) {
@@ -76,6 +93,7 @@ void impose_translation(TangentialProblem& problem, const Model& model, const St
 
 LoadStep load_step(const Scene& scene, const Model& model, const Step& step, const ArrayXd& pressure,
                    const ContactState& before) {
+  if (scene.method != Method::coulomb) require_centred(scene, pressure);
   LoadStep loads{};
   TangentialProblem& problem = loads.problem;
   problem.friction_bound = model.friction * pressure;

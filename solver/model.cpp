@@ -36,6 +36,31 @@ std::optional<double> largest_normal(const Scene& scene) {
   return largest;
 }
 
+/// Half the sides of what is known before the solve to lie in the contact: that of one shape, and where the
+/// nearest of several shapes is lowest.
+std::array<double, 2> least_half_sides(const Scene& scene, const std::vector<Surface>& surfaces,
+                                       const std::optional<std::array<double, 2>>& expected) {
+  const bool hertz =
+      scene.pressure == PressureModel::hertz || scene.pressure == PressureModel::hertz_averaged;
+  if (scene.ends_at_grid_edge && !hertz) return {};
+  if (surfaces.size() == 1) return expected.value_or(std::array<double, 2>{});
+  const bool pressed = scene.combine == Combine::nearest && scene.pressure == PressureModel::solved;
+  return pressed && expected ? half_sides_below(surfaces, Combine::nearest, 0.0) : std::array<double, 2>{};
+}
+
+/// Looks for what needs no solve; see require_contact_within_grid().
+void require_extent(const Scene& scene, const std::vector<Surface>& surfaces,
+                    const std::optional<std::array<double, 2>>& expected) {
+  const auto least = least_half_sides(scene, surfaces, expected);
+  const auto& extent = *scene.extent;
+  if (extent[0] > 2.0 * least[0] && extent[1] > 2.0 * least[1]) return;
+  const bool one = surfaces.size() == 1;
+  throw InputError(scene.source.string(), "grid.extent", fmt::format("[{}, {}]", extent[0], extent[1]),
+                   fmt::format("larger than {}, about {:.4g} x {:.4g}, or left out",
+                               one ? "the contact" : "the rectangle that the contacts of all shapes may fill",
+                               2.0 * (*expected)[0], 2.0 * (*expected)[1]));
+}
+
 Grid make_grid(const Scene& scene, const std::vector<Surface>& surfaces, double effective_modulus) {
   if (const auto grid = height_map_grid(surfaces)) {
     const std::array<Index, 2> samples{grid->n1, grid->n2};
@@ -54,15 +79,9 @@ Grid make_grid(const Scene& scene, const std::vector<Surface>& surfaces, double 
     throw InputError(scene.source.string(), "grid.extent", "(missing)",
                      "[L1, L2] in m, since how far the contact reaches is not known before it is solved");
   }
+  if (scene.extent) require_extent(scene, surfaces, expected);
   std::array<double, 2> h{};
   for (std::size_t i = 0; i < 2; ++i) {
-    // Of several shapes each is expected to carry the whole load, which is more than it will.
-    if (scene.extent && expected && surfaces.size() == 1 && !((*scene.extent)[i] > 2.0 * (*expected)[i])) {
-      throw InputError(scene.source.string(), "grid.extent",
-                       fmt::format("[{}, {}]", (*scene.extent)[0], (*scene.extent)[1]),
-                       fmt::format("larger than the contact, about {:.4g} x {:.4g}, or left out",
-                                   2.0 * (*expected)[0], 2.0 * (*expected)[1]));
-    }
     const auto cells = static_cast<double>(scene.cells[i]);
     const double margin = std::min(kMarginCells, cells / 8.0);
     h[i] = scene.extent ? (*scene.extent)[i] / cells : 2.0 * (*expected)[i] / (cells - 2.0 * margin);
@@ -203,7 +222,8 @@ Model make_model(const Scene& scene) {
   model.pressure_coupling = scene.coupling == Coupling::pressure || model.shear_coupling ||
                             (scene.coupling == Coupling::automatic && (full || pair.mismatch != 0.0));
   const bool shear_presses = model.shear_coupling && pair.mismatch != 0.0;
-  model.hertzian = is_hertzian(surfaces) && scene.pressure != PressureModel::file && !shear_presses;
+  model.hertzian = is_hertzian(surfaces) && scene.pressure != PressureModel::file && !shear_presses &&
+                   !scene.ends_at_grid_edge;
   model.forces = std::any_of(scene.steps.begin(), scene.steps.end(), brings_translation);
   require_memory(scene, grid, kFieldsHeld * sizeof(double) * static_cast<double>(grid.cells()));
   model.length_unit = grid.h1;

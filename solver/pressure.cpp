@@ -79,8 +79,8 @@ NormalSolution solved_pressure(const Scene& scene, const Model& model, double no
       solve_normal_contact(elasticity(scene, model, part), part.grid(),
                            {part.restricted(gap), normal_load / model.grid.cell_area() / images},
                            {.tolerance = std::min(kPressureTolerance, scene.tolerance)});
+  if (part.diagonal()) solution.pressure = symmetrised(part.grid(), solution.pressure);
   solution.pressure = part.expanded(solution.pressure, normal_symmetry());
-  if (part.diagonal()) solution.pressure = symmetrised(model.grid, solution.pressure);
   if (scene.model != ModelChoice::full && !model.forces && is_half_turn_symmetric(model.grid, model.gap)) {
     solution.pressure = half_turn_symmetrised(solution.pressure);
   }

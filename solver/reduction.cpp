@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 namespace slipstick::solver {
 namespace {
@@ -105,6 +106,7 @@ bool is_half_turn_symmetric(const Grid& grid, const ArrayXd& field) {
 ArrayXd half_turn_symmetrised(const ArrayXd& pressure) { return 0.5 * (pressure + pressure.reverse()); }
 
 ArrayXd symmetrised(const Grid& grid, const ArrayXd& pressure) {
+  if (grid.n1 != grid.n2) throw std::invalid_argument("the diagonal of a grid that is not square");
   const ConstComponent field(pressure.data(), grid.n1, grid.n2);
   ArrayXd result(pressure.size());
   MutableComponent(result.data(), grid.n1, grid.n2) = 0.5 * (field + field.transpose());

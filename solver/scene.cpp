@@ -171,6 +171,7 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
   scene.name = reader.text_or("name", file.stem().string());
   scene.surfaces = read_surfaces(reader);
   if (scene.surfaces.size() > 1) scene.combine = read_combine(reader);
+  scene.ends_at_grid_edge = reader.flag_or("upper.ends_at_grid_edge", false);
   scene.upper = read_material(reader, "upper");
   scene.lower = read_material(reader, "lower");
 

@@ -55,6 +55,8 @@ struct Scene {
   std::string name;
   std::vector<Surface> surfaces{{}};  ///< of the indenter, at least one
   Combine combine = Combine::sum;
+  /// Nothing of the indenter lies beyond the grid, so that its contact may reach the grid's edge.
+  bool ends_at_grid_edge = false;
   Material upper;
   Material lower;
   double friction = 0.0;

@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <utility>
 
 #include "solver/coulomb_method.hpp"
 #include "solver/full_coupling.hpp"
+#include "solver/grid_edge.hpp"
 #include "solver/input_error.hpp"
 #include "solver/load_step.hpp"
 #include "solver/mirror.hpp"
@@ -20,6 +22,9 @@ namespace slipstick::solver {
 namespace {
 
 using Eigen::ArrayXd;
+
+/// Sums over a million cells lose so much of their sum of sizes.
+constexpr double kLoadRounding = 1e-12;
 
 class Stopwatch {
  public:
@@ -92,6 +97,16 @@ TangentialSolution find_tractions(Model& model, const Scene& scene, const LoadSt
   return solution;
 }
 
+/// What a result's certificate has to keep. The paper's method stops on change, Eq. (26), and freezes slip
+/// directions: it promises no gap. Loads and friction bounds are met as well as the tolerance says, or to
+/// rounding.
+CertificateBounds promised(const Scene& scene) {
+  const double loads = std::max(scene.tolerance, kLoadRounding);
+  const double gap =
+      scene.method == Method::paper ? std::numeric_limits<double>::infinity() : scene.tolerance;
+  return {.gap = gap, .moment = loads, .force = loads, .friction_bound = loads};
+}
+
 RigidMotion moved(const RigidMotion& before, const TangentialSolution& tangential) {
   return {before.delta1 + tangential.displacement[0], before.delta2 + tangential.displacement[1],
           before.twist + tangential.twist};
@@ -132,6 +147,7 @@ LoadStep solve_coupled(Solution& solution, const Scene& scene, const Step& step,
             return found;
           }};
   CoupledSolution coupled = solve_fully_coupled(elasticity(scene, model, whole), model.grid, problem);
+  require_contact_within_grid(scene, model, step, coupled.normal, coupled.tangential.traction);
   solution.normal = std::move(coupled.normal);
   solution.tangential = std::move(coupled.tangential);
   solution.turns = coupled.turns;
@@ -145,6 +161,7 @@ LoadStep solve_in_sequence(Solution& solution, const Scene& scene, const Step& s
   if (previous == nullptr || previous->normal != step.normal) {
     solution.normal = find_pressure(scene, solution.model, step);
     solution.pressure_applications = finest_grid_applications(solution.normal.grids);
+    require_contact_within_grid(scene, solution.model, step, solution.normal);
   }
   solution.seconds.pressure = watch.lap();
   LoadStep loads = load_step(scene, solution.model, step, solution.normal.pressure, state);
@@ -181,6 +198,10 @@ void solve_step(Solution& solution, const Scene& scene, const Step& step, const 
       previous != nullptr ? slip_onwards(before, solution.normal.pressure, tangential) : ArrayXd();
   const ArrayXd& slip = previous != nullptr ? onwards : tangential.slip;
   describe(solution, loads, slip);
+  if (solution.status == Status::converged) {
+    solution.message = beyond(solution.certificate, promised(scene));
+    if (!solution.message.empty()) solution.status = Status::not_converged;
+  }
   if (after != nullptr) *after = {solution.normal.pressure, tangential.traction, slip, motion};
   solution.seconds.total = solution.seconds.setup + watch.lap();
 }

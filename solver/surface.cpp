@@ -72,6 +72,13 @@ double rounded_punch_contact_radius(const Surface& surface, double load, double 
   return high;
 }
 
+/// Half the sides of the rectangle about an ellipse that is turned.
+std::array<double, 2> box_of_ellipse(double semi_axis_1, double semi_axis_2, double angle) {
+  const double c = std::cos(angle);
+  const double s = std::sin(angle);
+  return {std::hypot(c * semi_axis_1, s * semi_axis_2), std::hypot(s * semi_axis_1, c * semi_axis_2)};
+}
+
 /// Half the sides of the rectangle, along x1 and x2, about the shape's own axis.
 std::optional<std::array<double, 2>> half_sides_about_axis(const Surface& surface, double load,
                                                            double effective_modulus) {
@@ -81,10 +88,7 @@ std::optional<std::array<double, 2>> half_sides_about_axis(const Surface& surfac
     case Shape::ellipsoid: {
       const auto radii = paraboloid_radii(surface);
       const HertzContact contact = hertz_contact(load, radii[0], radii[1], effective_modulus);
-      const double c = std::cos(surface.angle);
-      const double s = std::sin(surface.angle);
-      return std::array{std::hypot(c * contact.semi_axis_1, s * contact.semi_axis_2),
-                        std::hypot(s * contact.semi_axis_1, c * contact.semi_axis_2)};
+      return box_of_ellipse(contact.semi_axis_1, contact.semi_axis_2, surface.angle);
     }
     case Shape::cone:  // Sneddon 1965: W = (pi/2) E* a^2 slope
       return square(std::sqrt(2.0 * load / (pi * effective_modulus * surface.slope)));
@@ -101,9 +105,29 @@ std::optional<std::array<double, 2>> half_sides_about_axis(const Surface& surfac
   throw std::logic_error("unknown shape");
 }
 
-/// Whether the heights have no level of their own.
-bool is_measured(const Surface& surface) {
-  return surface.shape == Shape::height_map || surface.shape == Shape::roughness;
+/// Half the sides of the rectangle about the shape's own axis within which its gap is below a depth.
+std::array<double, 2> half_sides_below(const Surface& surface, double depth) {
+  const auto square = [](double radius) { return std::array{radius, radius}; };
+  switch (surface.shape) {
+    case Shape::sphere:
+    case Shape::ellipsoid: {
+      const auto radii = paraboloid_radii(surface);
+      return box_of_ellipse(std::sqrt(2.0 * radii[0] * depth), std::sqrt(2.0 * radii[1] * depth),
+                            surface.angle);
+    }
+    case Shape::cone:
+      return square(depth / surface.slope);
+    case Shape::flat_punch:
+      return square(surface.radius);
+    case Shape::rounded_punch:
+      return square(surface.flat_radius + std::sqrt(2.0 * surface.corner_radius * depth));
+    case Shape::power:
+      return square(std::pow(depth / surface.coefficient, 1.0 / surface.exponent));
+    case Shape::height_map:
+    case Shape::roughness:
+      return square(std::numeric_limits<double>::infinity());
+  }
+  throw std::logic_error("unknown shape");
 }
 
 ArrayXd gap_field(const Surface& surface, const Grid& grid) {
@@ -139,6 +163,10 @@ ArrayXd gap_field(const Surface& surface, const Grid& grid) {
 }
 
 }  // namespace
+
+bool is_measured(const Surface& surface) {
+  return surface.shape == Shape::height_map || surface.shape == Shape::roughness;
+}
 
 const Surface* find_height_map(const std::vector<Surface>& surfaces) {
   const auto found = std::find_if(surfaces.begin(), surfaces.end(),
@@ -182,6 +210,20 @@ std::optional<std::array<double, 2>> expected_half_sides(const std::vector<Surfa
     if (!about_axis) return std::nullopt;
     for (std::size_t i = 0; i < 2; ++i) {
       half_sides[i] = std::max(half_sides[i], std::abs(surface.at[i]) + (*about_axis)[i]);
+    }
+  }
+  return half_sides;
+}
+
+std::array<double, 2> half_sides_below(const std::vector<Surface>& surfaces, Combine combine, double depth) {
+  const bool nearest = combine == Combine::nearest;
+  std::array<double, 2> half_sides{};
+  if (!nearest) half_sides.fill(std::numeric_limits<double>::infinity());
+  for (const Surface& surface : surfaces) {
+    const auto about_axis = half_sides_below(surface, depth);
+    for (std::size_t i = 0; i < 2; ++i) {
+      const double half_side = std::abs(surface.at[i]) + about_axis[i];
+      half_sides[i] = nearest ? std::max(half_sides[i], half_side) : std::min(half_sides[i], half_side);
     }
   }
   return half_sides;

@@ -42,6 +42,9 @@ struct Surface {
 
 std::string to_string(Shape shape);
 
+/// Whether the heights have no level of their own: of height maps and of roughness.
+bool is_measured(const Surface& surface);
+
 /// The first height map among them; null if there is none.
 const Surface* find_height_map(const std::vector<Surface>& surfaces);
 
@@ -57,6 +60,10 @@ std::optional<Grid> height_map_grid(const std::vector<Surface>& surfaces);
 std::optional<std::array<double, 2>> expected_half_sides(const std::vector<Surface>& surfaces,
                                                          Combine combine, double load,
                                                          double effective_modulus);
+
+/// Half the sides of a rectangle about the origin beyond which the gap, its least value taken as 0, is
+/// nowhere below a depth; infinite where that is not known: of roughness, of height maps.
+std::array<double, 2> half_sides_below(const std::vector<Surface>& surfaces, Combine combine, double depth);
 
 /// Whether Hertz's theory holds, up to where the contact stands and how it is turned: of one sphere or
 /// ellipsoid.

@@ -9,6 +9,7 @@
 #include "convergence/accuracy/cost.hpp"
 #include "convergence/accuracy/reached.hpp"
 #include "convergence/exact_result.hpp"
+#include "solver/grid_edge.hpp"
 #include "solver/input_error.hpp"
 #include "solver/pressure.hpp"
 
@@ -119,7 +120,9 @@ ContactOnGrid contact_on_grid(const Scene& scene) {
   Scene coarse = with_cells(scene, kReferenceCells);
   coarse.op = solver::OperatorKind::dcfft;
   const solver::Model model = solver::make_model(coarse);
-  const solver::NormalSolution normal = solver::find_pressure(coarse, model, coarse.steps.back());
+  const solver::Step& step = coarse.steps.back();
+  const solver::NormalSolution normal = solver::find_pressure(coarse, model, step);
+  solver::require_contact_within_grid(coarse, model, step, normal);
   const auto pressed = static_cast<double>((normal.pressure > 0.0).count());
   return {.longer = static_cast<double>(kReferenceCells),
           .margin = scene.extent ? 0.0 : kMarginCells,

@@ -1,0 +1,317 @@
+// Contacts that the grid's edge cuts off are refused; those that it does not are the same on every larger
+// grid of the same cells.
+
+#include "solver/grid_edge.hpp"
+
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <optional>
+#include <regex>
+
+#include "solver/tests/paper_scene.hpp"
+#include "solver/tests/scene_file.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+Surface sphere(double radius, std::array<double, 2> at = {}) {
+  return {.shape = Shape::sphere, .radius = radius, .at = at};
+}
+Surface flat_punch(double radius, double inner_radius = 0.0, std::array<double, 2> at = {}) {
+  return {.shape = Shape::flat_punch, .radius = radius, .inner_radius = inner_radius, .at = at};
+}
+Surface roughness() {
+  return {.shape = Shape::roughness,
+          .roughness = {
+              .seed = 1, .hurst = 0.8, .longest = 2e-4, .shortest = 5e-5, .rms_slope = 0.03, .period = 8e-4}};
+}
+
+Scene scene_of(const std::vector<Surface>& surfaces, std::array<Index, 2> cells, double cell_size,
+               Combine combine = Combine::sum) {
+  Scene scene = paper_scene(0, 0.5);
+  scene.surfaces = surfaces;
+  scene.combine = combine;
+  scene.cells = cells;
+  scene.extent = {cell_size * static_cast<double>(cells[0]), cell_size * static_cast<double>(cells[1])};
+  return scene;
+}
+
+std::string refusal(const Scene& scene) {
+  return complaint([&] { solve(scene); });
+}
+
+/// The extent that a refusal tells to be enough.
+std::array<double, 2> extent_told(const std::string& message) {
+  std::smatch match;
+  const std::regex told(R"(allowed: \[([0-9.e+-]+), ([0-9.e+-]+)\])");
+  if (!std::regex_search(message, match, told)) {
+    ADD_FAILURE() << "no extent in: " << message;
+    return {1.0, 1.0};
+  }
+  return {std::stod(match[1]), std::stod(match[2])};
+}
+
+// --- the two cases that were found ---
+
+Scene two_spheres_side_by_side(double extent) {
+  return scene_of({sphere(0.018, {-4e-4, 0.0}), sphere(0.018, {4e-4, 0.0})}, {64, 64}, extent / 64.0,
+                  Combine::nearest);
+}
+Scene two_spheres_summed(double extent) {
+  return scene_of({sphere(0.036), sphere(0.036)}, {64, 64}, extent / 64.0);
+}
+
+TEST(CutOffContact, OfTwoSpheresSideBySideIsRefused) {
+  EXPECT_THAT(refusal(two_spheres_side_by_side(1.1e-3)),
+              AllOf(HasSubstr("grid.extent = [0.0011, 0.0011]"), HasSubstr("beyond the grid's edge"),
+                    HasSubstr("1000 N"), HasSubstr("upper.ends_at_grid_edge")));
+}
+
+/// Two spheres of 36 mm are one of 18 mm, whose contact is 0.978 mm wide.
+TEST(CutOffContact, OfTwoSpheresSummedIsRefused) {
+  EXPECT_THAT(refusal(two_spheres_summed(0.8e-3)), HasSubstr("grid.extent = [0.0008, 0.0008]"));
+  const Solution solution = solve(two_spheres_summed(1.1e-3));
+  EXPECT_NEAR(solution.peak_pressure / paper::kPeakPressure, 1.0, 1e-3);
+}
+
+TEST(CutOffContact, IsRefusedWithAnExtentThatIsEnough) {
+  for (const auto& scene_with : {two_spheres_side_by_side, two_spheres_summed}) {
+    for (const double extent : {0.81e-3, 0.9e-3}) {
+      const auto told = extent_told(refusal(scene_with(extent)));
+      Scene enough = scene_with(extent);
+      enough.extent = told;
+      EXPECT_EQ(refusal(enough), "(no InputError)") << told[0] << " x " << told[1];
+      enough.extent = {0.85 * told[0], 0.85 * told[1]};
+      EXPECT_NE(refusal(enough), "(no InputError)") << "more is told than is needed";
+    }
+  }
+}
+
+// --- every extent from generous to far too small ---
+
+struct Body {
+  std::string name;
+  std::vector<Surface> surfaces;
+  Combine combine;
+  double cell_size;  // m
+};
+void PrintTo(const Body& body, std::ostream* stream) { *stream << body.name; }
+
+std::vector<Body> bodies() {
+  const Combine sum = Combine::sum;
+  const Combine nearest = Combine::nearest;
+  return {
+      {"sphere", {sphere(0.018)}, sum, 3e-5},
+      {"off_centre", {sphere(0.018, {1.3e-4, 2.1e-4})}, sum, 3e-5},
+      {"turned_ellipse",
+       {{.shape = Shape::ellipsoid, .radius_1 = 0.018, .radius_2 = 0.0063, .angle = 0.5}},
+       sum,
+       3e-5},
+      {"cone", {{.shape = Shape::cone, .slope = 0.02}}, sum, 3e-5},
+      {"power", {{.shape = Shape::power, .exponent = 4.0, .coefficient = 3e7}}, sum, 4e-5},
+      {"rounded_punch",
+       {{.shape = Shape::rounded_punch, .flat_radius = 4e-4, .corner_radius = 5e-3}},
+       sum,
+       3e-5},
+      {"flat_punch", {flat_punch(5e-4)}, sum, 3e-5},
+      {"annulus", {flat_punch(5e-4, 3e-4, {1e-4, 0.0})}, sum, 3e-5},
+      {"summed_spheres", {sphere(0.036), sphere(0.036, {2e-4, 1e-4})}, sum, 3e-5},
+      {"sphere_and_punch", {sphere(0.036), flat_punch(5e-4)}, sum, 3e-5},
+      {"patches", {sphere(0.018, {-5e-4, 0.0}), sphere(0.018, {5e-4, 0.0})}, nearest, 4e-5},
+      {"unequal_patches", {sphere(0.018, {-4e-4, 0.0}), sphere(0.006, {4e-4, 2e-4})}, nearest, 3e-5},
+      {"patch_and_punch", {sphere(0.018, {-6e-4, 0.0}), flat_punch(2e-4, 1e-4, {5e-4, 2e-4})}, nearest, 4e-5},
+      {"rough_sphere", {sphere(0.018), roughness()}, sum, 2.5e-5},
+  };
+}
+
+class ShrinkingGrid : public testing::TestWithParam<Body> {};
+
+/// The cells stay where they are: an answer that is not refused is the generous one's, up to the tolerance.
+/// Refusals begin where the contact's own cells are left out, not earlier. The grids are square or not.
+TEST_P(ShrinkingGrid, HoldsTheContactOrIsRefused) {
+  const Body& body = GetParam();
+  constexpr Index kGenerous = 80;
+  const auto on = [&](Index n1, Index n2) {
+    return scene_of(body.surfaces, {n1, n2}, body.cell_size, body.combine);
+  };
+  const Solution generous = solve(on(kGenerous, kGenerous));
+  ASSERT_EQ(generous.status, Status::converged) << generous.message;
+  const Grid& grid = generous.model.grid;
+  const Eigen::ArrayXd pressed = (generous.normal.pressure > 0.0).cast<double>();
+  const std::array needed{2.0 * (pressed * cell_x1(grid).abs()).maxCoeff() + 1.0,
+                          2.0 * (pressed * cell_x2(grid).abs()).maxCoeff() + 1.0};
+  int held = 0;
+  int refused = 0;
+  for (const bool both : {true, false}) {
+    for (Index n = kGenerous - 8; n >= 6; n -= n > 24 ? 4 : 6) {
+      const Scene scene = both ? on(n, n) : on(kGenerous, n);
+      // Before the solve the contact is known by theory: within a cell of where it is on this mesh.
+      const auto fits = [&](double spare) {
+        const double side = static_cast<double>(n) - spare;
+        return needed[1] <= side && (!both || needed[0] <= side);
+      };
+      const std::string message = refusal(scene);
+      if (message != "(no InputError)") {
+        EXPECT_THAT(message, HasSubstr("grid.extent"));
+        EXPECT_FALSE(fits(1.0)) << n << " cells are enough: " << message;
+        ++refused;
+        continue;
+      }
+      EXPECT_TRUE(fits(0.0)) << n << " cells are not enough";
+      const Solution solution = solve(scene);
+      EXPECT_EQ(solution.status, Status::converged) << solution.message;
+      EXPECT_NEAR(solution.twist_angle / generous.twist_angle, 1.0, 1e-6) << n;
+      EXPECT_NEAR(solution.peak_pressure / generous.peak_pressure, 1.0, 1e-5) << n;
+      ++held;
+    }
+  }
+  EXPECT_GE(held, 4);
+  EXPECT_GE(refused, 4);
+}
+
+INSTANTIATE_TEST_SUITE_P(OfManyShapes, ShrinkingGrid, testing::ValuesIn(bodies()),
+                         [](const auto& info) { return info.param.name; });
+
+// --- bodies that end, and those of which nothing is known ---
+
+TEST(GridEdge, MayBeAPunchsOwn) {
+  // 20 cells across: the outermost cells are pressed, and beyond them there is no body.
+  const Solution filled = solve(scene_of({flat_punch(5.01e-4)}, {20, 20}, 5.02e-5));
+  const Solution roomy = solve(scene_of({flat_punch(5.01e-4)}, {30, 30}, 5.02e-5));
+  EXPECT_EQ(filled.contact_cells, roomy.contact_cells);
+  EXPECT_NEAR(filled.twist_angle / roomy.twist_angle, 1.0, 1e-6);
+}
+
+TEST(GridEdge, MustHoldAllBodiesSideBySide) {
+  const std::vector<Surface> apart{sphere(0.018), sphere(0.018, {5e-3, 0.0})};
+  EXPECT_THAT(refusal(scene_of(apart, {32, 32}, 5e-5, Combine::nearest)),
+              AllOf(HasSubstr("grid.extent"), HasSubstr("all shapes")));
+  const std::vector<Surface> punches{sphere(0.018), flat_punch(3e-4, 0.0, {1e-3, 0.0})};
+  EXPECT_THAT(refusal(scene_of(punches, {48, 24}, 5e-5, Combine::nearest)), HasSubstr("grid.extent"));
+}
+
+/// A rough plane has no end: none of its contacts is whole, unless the scene says where it ends.
+TEST(GridEdge, OfARoughPlaneHasToBeTheBodys) {
+  Scene scene = scene_of({roughness()}, {32, 32}, 2.5e-5);
+  EXPECT_THAT(refusal(scene), AllOf(HasSubstr("grid.extent = [0.0008, 0.0008]"),
+                                    HasSubstr("upper.ends_at_grid_edge = true")));
+  scene.ends_at_grid_edge = true;
+  EXPECT_EQ(solve(scene).status, Status::converged);
+}
+
+TEST(GridEdge, MayBeTheBodysWhereTheSceneSaysSo) {
+  Scene scene = two_spheres_side_by_side(1.1e-3);
+  scene.ends_at_grid_edge = true;
+  EXPECT_EQ(solve(scene).status, Status::converged);
+  Scene one = scene_of({sphere(0.018)}, {32, 32}, 2e-5);
+  EXPECT_THAT(refusal(one), HasSubstr("larger than the contact"));
+  one.ends_at_grid_edge = true;
+  EXPECT_EQ(solve(one).status, Status::converged);
+  for (const PressureModel hertz : {PressureModel::hertz, PressureModel::hertz_averaged}) {
+    one.pressure = hertz;
+    EXPECT_THAT(refusal(one), HasSubstr("larger than the contact")) << "Hertz's bodies do not end";
+  }
+}
+
+TEST(GridEdge, HoldsAHistorysLargestLoad) {
+  Scene scene = two_spheres_summed(1.1e-3);
+  scene.steps.assign(3, scene.steps.front());
+  scene.steps[0].normal = 200.0;
+  scene.steps[1].normal = 4000.0;
+  int steps = 0;
+  EXPECT_THAT(
+      complaint([&] { solve(scene, {.progress = {}, .on_step = [&](const Solution&) { ++steps; }}); }),
+      AllOf(HasSubstr("grid.extent"), HasSubstr("under 4000 N")));
+  EXPECT_EQ(steps, 1) << "the first step fits";
+}
+
+TEST(GridEdge, IsLookedAtUnderFullCoupling) {
+  const auto scene_with = [](double extent) {
+    Scene scene = two_spheres_summed(extent);
+    scene.cells = {24, 24};
+    scene.lower = {3e9, 0.0};
+    scene.upper.young_modulus = HUGE_VAL;
+    scene.coupling = Coupling::full;
+    scene.friction = 0.3;
+    scene.steps[0].normal = 20.0;
+    return scene;
+  };
+  const std::string message = refusal(scene_with(0.7e-3));
+  EXPECT_THAT(message, HasSubstr("grid.extent"));
+  Scene enough = scene_with(0.7e-3);
+  enough.extent = extent_told(message);
+  EXPECT_EQ(refusal(enough), "(no InputError)");
+}
+
+/// The contact is a sphere's, read from a file.
+class MappedSphere : public SceneFile {
+ protected:
+  Scene mapped(Index cells, const std::vector<std::string>& overrides = {}) const {
+    const double h = 3e-5;
+    std::string heights;
+    for (Index i = 0; i < cells; ++i) {
+      for (Index j = 0; j < cells; ++j) {
+        const double x1 = h * (static_cast<double>(i) - 0.5 * static_cast<double>(cells - 1));
+        const double x2 = h * (static_cast<double>(j) - 0.5 * static_cast<double>(cells - 1));
+        heights += fmt::format("{}{:.9e}", j > 0 ? "," : "", (x1 * x1 + x2 * x2) / 0.036);
+      }
+      heights += "\n";
+    }
+    write("heights.csv", heights);
+    std::string text = kShortScene;
+    const std::string shape = "shape = \"sphere\"\nradius = 0.018\n";
+    text.replace(text.find(shape), shape.size(),
+                 "shape = \"height_map\"\nfile = \"heights.csv\"\nspacing = [3e-5, 3e-5]\n");
+    text.erase(text.find("[grid]"));
+    return read(text, overrides);
+  }
+};
+
+TEST_F(MappedSphere, HoldsTheContactOrIsRefused) {
+  const Solution generous = solve(mapped(48));
+  for (Index cells = 46; cells >= 8; cells -= 2) {
+    const std::string message = refusal(mapped(cells));
+    if (cells <= 32) {  // 0.978 mm of contact over 30 um a cell
+      EXPECT_THAT(message, AllOf(HasSubstr("grid.extent"), HasSubstr("heights.csv"), HasSubstr("outermost")))
+          << cells;
+      continue;
+    }
+    EXPECT_EQ(message, "(no InputError)") << cells;
+    EXPECT_NEAR(solve(mapped(cells)).twist_angle / generous.twist_angle, 1.0, 1e-6);
+  }
+  EXPECT_EQ(solve(mapped(16, {"upper.ends_at_grid_edge=true"})).status, Status::converged);
+}
+
+class PressedEdge : public SceneFile {
+ protected:
+  Scene pressed(const std::string& rows, const std::vector<std::string>& more = {}) const {
+    write("p.csv", "x1,x2,pressure\n" + rows);
+    std::string text = kShortScene;
+    text.erase(text.find("normal = 1000\n"), 14);
+    std::vector<std::string> overrides{"contact.pressure=file", "contact.pressure_file=p.csv",
+                                       "grid.cells=[4, 4]", "grid.extent=[0.001, 0.001]"};
+    overrides.insert(overrides.end(), more.begin(), more.end());
+    return read(text, overrides);
+  }
+};
+
+TEST_F(PressedEdge, OfAPressureFileHasToBeTheBodys) {
+  const std::string inside =
+      "0.000125,0.000125,1e9\n-0.000125,-0.000125,1e9\n0.000125,-0.000125,1e9\n-0.000125,0.000125,1e9\n";
+  const std::string at_edge = inside + "0.000375,0.000125,1e9\n-0.000375,-0.000125,1e9\n";
+  EXPECT_EQ(refusal(pressed(inside)), "(no InputError)");
+  EXPECT_THAT(refusal(pressed(at_edge)),
+              AllOf(HasSubstr("grid.extent = [0.001, 0.001]"), HasSubstr("p.csv"), HasSubstr("outermost")));
+  EXPECT_EQ(refusal(pressed(at_edge, {"upper.ends_at_grid_edge=true"})), "(no InputError)");
+}
+
+}  // namespace
+}  // namespace slipstick::solver
