@@ -54,16 +54,19 @@ std::string sliding_text(const LimitLoad& limit, double length_unit) {
 }
 
 /// The other methods know torsion about the grid's origin alone: what half a turn does not bring onto itself
-/// would be left with a force. So much of the load may be out of place as they leave of the tractions anyway.
+/// leaves a force that nothing balances. Where all slips, the part of the pressure that is odd under half a
+/// turn bounds that force over mu times the load; it may be as large as what the tolerance leaves of the
+/// tractions anyway.
 void require_centred(const Scene& scene, const ArrayXd& pressure) {
-  const double out_of_place = 0.5 * (pressure - pressure.reverse()).abs().sum() / pressure.sum();
+  const double odd = 0.5 * (pressure - pressure.reverse()).abs().sum() / pressure.sum();
   const double allowed = std::max(scene.tolerance, kRounding);
-  if (out_of_place <= allowed) return;
+  if (odd <= allowed) return;
   throw InputError(
       scene.source.string(), "solver.method", fmt::format("\"{}\"", to_string(scene.method)),
-      fmt::format("coulomb, or a contact centred at the origin: this method knows torsion about the origin "
-                  "alone, and half a turn leaves {:.3g} of the pressure out of place (allowed: {:.3g})",
-                  out_of_place, allowed));
+      fmt::format(
+          "coulomb, or a contact that half a turn about the origin brings onto itself: this method knows "
+          "torsion about the origin alone, and {:.3g} of this pressure is odd (allowed: {:.3g})",
+          odd, allowed));
 }
 
 void impose_turning(TangentialProblem& problem, const Model& model, const Step& step, double moment_limit,

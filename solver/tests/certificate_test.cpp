@@ -1,5 +1,6 @@
 #include "solver/certificate.hpp"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -287,6 +288,31 @@ TEST(SlipDirection, IsTheAngleFromTheReverseOfTraction) {
   s[1] = kNaN;
   EXPECT_FALSE(slip_direction(q, s).mean <= 180.0);
   EXPECT_FALSE(slip_direction(q, s).max <= 180.0);
+}
+
+TEST(Beyond, NamesTheMemberItsValueAndItsBound) {
+  const CertificateBounds bounds{.gap = 1e-8, .moment = 1e-9, .force = 1e-10, .friction_bound = 1e-11};
+  const Certificate holds{.gap = 1e-8, .moment = 1e-9, .force = 1e-10, .friction_bound = -0.1};
+  EXPECT_EQ(beyond(holds, bounds), "");
+  const struct {
+    double Certificate::*member;
+    const char* name;
+  } members[] = {{&Certificate::gap, "gap / energy"},
+                 {&Certificate::moment, "the moment's error"},
+                 {&Certificate::force, "the force's error"},
+                 {&Certificate::friction_bound, "|q| above mu p"}};
+  for (const auto& [member, name] : members) {
+    for (const double value : {2e-8, kNaN, HUGE_VAL}) {
+      Certificate fails = holds;
+      fails.*member = value;
+      EXPECT_THAT(beyond(fails, bounds), testing::HasSubstr(name));
+      EXPECT_THAT(beyond(fails, bounds), testing::HasSubstr("allowed: 1e-"));
+      EXPECT_THAT(beyond(fails, bounds), testing::HasSubstr(fmt::format("{:.3g}", value)));
+    }
+  }
+  Certificate nothing_asked = holds;
+  nothing_asked.gap = kNaN;
+  EXPECT_NE(beyond(nothing_asked, {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL}), "") << "NaN never holds";
 }
 
 TEST(Norms, AreThoseOfEachCell) {

@@ -10,6 +10,7 @@
 
 #include "solver/input_error.hpp"
 #include "solver/solve.hpp"
+#include "solver/tests/scene_file.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
 namespace slipstick::solver {
@@ -188,6 +189,95 @@ TEST(BadTangentialProblem, ThrowsForGrossSlipAndSaysTheLimit) {
   }
   const double just_below = std::nextafter(bench.limit, 0.0);
   EXPECT_NO_THROW(solve_by_paper_method(*bench.op, under_moment(bench.bound, just_below)));
+}
+
+// --- contacts that are not centred on the grid's origin ---
+
+Scene off_centre(Method method, std::array<double, 2> at) {
+  Scene scene = paper_scene(17, 0.5);
+  scene.cells = {17, 13};
+  scene.extent = {1.2e-3, 1.2e-3};
+  scene.surfaces.front().at = at;
+  scene.method = method;
+  return scene;
+}
+
+/// The pressure of a sphere at the origin, with a part of the load moved from one cell to its image.
+class LopsidedPressure : public SceneFile {
+ protected:
+  Scene lopsided(Method method, double part, double tolerance) const {
+    constexpr Index cells = 16;
+    const double h = 1e-4;
+    double load = 0.0;
+    std::string rows = "x1,x2,pressure\n";
+    for (const bool known : {false, true}) {
+      for (Index i = 0; i < cells; ++i) {
+        for (Index j = 0; j < cells; ++j) {
+          const double x1 = h * (static_cast<double>(i) - 7.5);
+          const double x2 = h * (static_cast<double>(j) - 7.5);
+          double p = 1e9 * std::sqrt(std::max(0.0, 1.0 - (x1 * x1 + x2 * x2) / (6e-4 * 6e-4)));
+          if (!known) load += p;
+          if (i == 10 && j == 9) p += part * load;
+          if (i == 5 && j == 6) p -= part * load;
+          if (known) rows += fmt::format("{},{},{:.17g}\n", x1, x2, p);
+        }
+      }
+    }
+    write("p.csv", rows);
+    std::string text = kShortScene;
+    text.erase(text.find("normal = 1000\n"), 14);
+    Scene scene = read(text, {"contact.pressure=file", "contact.pressure_file=p.csv", "grid.cells=[16, 16]",
+                              "grid.extent=[0.0016, 0.0016]", "load.moment_ratio=0.7"});
+    scene.method = method;
+    scene.tolerance = tolerance;
+    return scene;
+  }
+};
+
+constexpr Method kAboutTheOrigin[] = {Method::paper, Method::projected_gradient};
+
+TEST(ContactOffTheOrigin, IsRefusedByMethodsThatTurnAboutIt) {
+  for (const std::array<double, 2> at : {std::array{0.0, 1e-5}, std::array{-3e-5, 0.0}}) {
+    for (const Method method : kAboutTheOrigin) {
+      EXPECT_THAT(complaint([&] { solve(off_centre(method, at)); }),
+                  testing::AllOf(HasSubstr("solver.method = \"" + to_string(method) + "\""),
+                                 HasSubstr("allowed: coulomb"), HasSubstr("about the origin")));
+      EXPECT_EQ(solve(off_centre(method, {0.0, 0.0})).status, Status::converged);
+    }
+    const Solution solution = solve(off_centre(Method::coulomb, at));
+    EXPECT_EQ(solution.status, Status::converged);
+    EXPECT_LE(solution.certificate.force, kRounding);
+  }
+}
+
+/// What is odd of it may be as large as what the tolerance leaves of the tractions, and the force is no
+/// larger. A part of the load in its image's place is odd twice.
+TEST_F(LopsidedPressure, IsTakenUpToTheTolerance) {
+  for (const Method method : kAboutTheOrigin) {
+    for (const double tolerance : {1e-3, 1e-6}) {
+      const Solution solution = solve(lopsided(method, 0.45 * tolerance, tolerance));
+      EXPECT_EQ(solution.status, Status::converged) << solution.message;
+      EXPECT_LE(solution.certificate.force, tolerance);
+      EXPECT_THAT(complaint([&] { solve(lopsided(method, 0.55 * tolerance, tolerance)); }),
+                  testing::AllOf(HasSubstr("solver.method"), HasSubstr("odd")));
+    }
+  }
+}
+
+// --- what "converged" says ---
+
+/// Eq. (26) is met in iterations whose last step has lifted a few tractions far above mu p.
+TEST(LooseTolerance, HoldsTheFrictionBoundAsWell) {
+  for (const double tolerance : {1e-1, 1e-2, 1e-3}) {
+    for (const double ratio : {0.5, 0.9, 0.99}) {
+      for (Scene scene : {paper_scene(64, ratio), ellipsoid_scene(64, 0.018, 0.0063, ratio)}) {
+        scene.tolerance = tolerance;
+        const Solution solution = by_paper_method(scene);
+        EXPECT_EQ(solution.status, Status::converged) << solution.message;
+        EXPECT_LE(solution.certificate.friction_bound, tolerance) << ratio;
+      }
+    }
+  }
 }
 
 TEST(BadTangentialProblem, OfASceneSaysTheLimitInItsUnits) {

@@ -268,6 +268,7 @@ TEST(Symmetrised, IsEvenAboutTheDiagonalAndKeepsTheLoad) {
     }
   }
   EXPECT_NEAR(even.sum(), field.sum(), 1e-14);
+  EXPECT_THROW(symmetrised({5, 4, 1.0, 1.0}, field.head(20)), std::invalid_argument);
 }
 
 }  // namespace
