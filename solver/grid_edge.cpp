@@ -23,6 +23,9 @@ constexpr double kOpen = 1e-5;
 /// Of a trial solve for an extent that is enough, along the longer side: the contact is known to a few
 /// hundredths of it.
 constexpr Index kTrialCells = 64;
+/// Trials know no shear: where they find the extent enough, as under full coupling, it is to be so much
+/// larger.
+constexpr double kShearReaches = 1.25;
 /// Each trial doubles the extent: beyond the last one the surface has no end.
 constexpr int kTrials = 8;
 
@@ -168,8 +171,9 @@ std::string allowed(const Scene& scene, const Model& model, const Step& step) {
   const auto extent = extent_of(model);
   const std::string cut = fmt::format("the contact goes on beyond the grid's edge under {} N", *step.normal);
   if (const auto enough = sufficient_extent(scene, model, step)) {
-    return fmt::format("[{:.3g}, {:.3g}] m or more, since {}; {}", std::max((*enough)[0], extent[0]),
-                       std::max((*enough)[1], extent[1]), cut, ends);
+    std::array<double, 2> sides{std::max((*enough)[0], extent[0]), std::max((*enough)[1], extent[1])};
+    if (sides == extent) sides = {kShearReaches * sides[0], kShearReaches * sides[1]};
+    return fmt::format("[{:.3g}, {:.3g}] m or more, since {}; {}", sides[0], sides[1], cut, ends);
   }
   return fmt::format("one that holds the contact, which {} times this does not, since {}; {}",
                      std::exp2(kTrials), cut, ends);

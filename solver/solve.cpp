@@ -150,7 +150,9 @@ LoadStep solve_coupled(Solution& solution, const Scene& scene, const Step& step,
             return found;
           }};
   CoupledSolution coupled = solve_fully_coupled(elasticity(scene, model, whole), model.grid, problem);
-  require_contact_within_grid(scene, model, step, coupled.normal, coupled.tangential.traction);
+  if (coupled.tangential.status == Status::converged) {
+    require_contact_within_grid(scene, model, step, coupled.normal, coupled.tangential.traction);
+  }
   solution.normal = std::move(coupled.normal);
   solution.tangential = std::move(coupled.tangential);
   solution.turns = coupled.turns;

@@ -408,6 +408,7 @@ TEST_F(PressureFromAFile, NeedsTheWholeGrid) {
   }
   Scene scene = paper_scene(16, 0.5);
   scene.extent = {1e-3, 1e-3};
+  scene.ends_at_grid_edge = true;  // every cell is pressed
   scene.steps[0].normal.reset();
   scene.pressure = PressureModel::file;
   scene.pressure_file = write("pressure.csv", text.str());
