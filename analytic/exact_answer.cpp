@@ -101,16 +101,36 @@ Json approximations_json(const TorsionState& state) {
   return laws;
 }
 
-/// Error estimates of a table's interpolation: what changes when every second point is left out.
-Json error_estimates(const NamedProfile& profile, const TorsionState& state, const StateQuestion& question) {
-  const TorsionState coarse = question.state(*profile.coarse);
-  Json json;
-  for (const Quantity& quantity : kQuantities)
-    json[quantity.key] = std::abs(state.*quantity.member - coarse.*quantity.member);
-  json["traction"] = at_radii(question.radii, [&](double r) {
-    return std::abs(traction(state, r, *profile.profile) - traction(coarse, r, *profile.coarse));
-  });
-  return json;
+/// What the interpolation of a table costs each number of its state, by the key of the number; null with a
+/// reason where another reading of the points has no such state. Energies and what unloading leaves have
+/// none.
+void put_error_estimate(Json& answer, const TabulatedProfile& table, const StateQuestion& question) {
+  const std::vector<double>& radii = question.radii;
+  const auto numbers = [&](const Profile& profile, double mean_pressure) {
+    const TorsionState state = question.state(profile);
+    std::vector<double> list;
+    for (const Quantity& quantity : kQuantities) list.push_back(state.*quantity.member);
+    for (const double r : radii) list.push_back(traction(state, r, profile));
+    for (const double r : radii) list.push_back(profile.pressure(r));
+    list.push_back(profile.moment_limit());
+    list.push_back(mean_pressure);
+    return list;
+  };
+  try {
+    const std::vector<double> errors = interpolation_errors(table, numbers);
+    auto error = errors.begin();
+    Json json;
+    for (const Quantity& quantity : kQuantities) json[quantity.key] = *error++;
+    json["traction"] = at_radii(radii, [&](double) { return *error++; });
+    json["pressure"] = at_radii(radii, [&](double) { return *error++; });
+    json["moment_limit"] = *error++;
+    json["mean_pressure"] = *error++;
+    answer["error_estimate"] = json;
+  } catch (const std::exception& failure) {
+    answer["error_estimate"] = nullptr;
+    answer["error_estimate_reason"] =
+        fmt::format("a pressure that fits the points as well has no such state: {}", failure.what());
+  }
 }
 
 /// In SI units, as far as what was given reaches.
@@ -131,10 +151,10 @@ Json units_json(const ExactContact& contact, double stick_ratio, double moment, 
 }
 
 /// What makes a table's results numbers in its own units.
-Json table_json(const TableScale& table) {
-  return {{"contact_radius", table.contact_radius},
+Json table_json(const TabulatedProfile& table) {
+  return {{"contact_radius", table.radius},
           {"mean_pressure", table.mean_pressure},
-          {"load", std::numbers::pi * table.mean_pressure * table.contact_radius * table.contact_radius}};
+          {"load", std::numbers::pi * table.mean_pressure * table.radius * table.radius}};
 }
 
 void write_header(std::ostream& out, const ExactContact& contact) {
@@ -148,7 +168,7 @@ void write_header(std::ostream& out, const ExactContact& contact) {
   if (profile.edge() > 0)
     out << fmt::format("Everything sticks up to M/M_lim = {:.9g}.\n", profile.full_stick());
   if (const auto& table = contact.profile.table)
-    out << fmt::format("In the table's units: a = {:.9g}, p0 = {:.9g}.\n", table->contact_radius,
+    out << fmt::format("In the table's units: a = {:.9g}, p0 = {:.9g}.\n", table->radius,
                        table->mean_pressure);
   out << '\n';
 }
@@ -177,6 +197,32 @@ void write_beside(std::ostream& out, const std::string& law, const Json& exact, 
   out << fmt::format("{:>23.15g}{:>12}{}{}", value, difference, law.empty() ? "" : "  ", law);
 }
 
+bool has_error_estimate(const Json& answer) {
+  return answer.contains("error_estimate") && !answer.at("error_estimate").is_null();
+}
+
+void write_error(std::ostream& out, const Json& error) {
+  out << fmt::format("   +/- {:.1e}", error.get<double>());
+}
+
+/// What is known of a table's errors.
+void write_table_errors(std::ostream& out, const Json& answer) {
+  if (!answer.contains("table")) return;
+  if (has_error_estimate(answer)) {
+    const Json& errors = answer.at("error_estimate");
+    out << fmt::format("p0 +/- {:.1e}, M_lim +/- {:.1e} mu W a.\n", errors.at("mean_pressure").get<double>(),
+                       errors.at("moment_limit").get<double>());
+    out << "Each +/- is an estimate, no proof, of what interpolation between the points and noise of their "
+           "values cost:\nother pressures that fit the points are tried. Energies and what unloading leaves "
+           "have none.\n\n";
+  } else {
+    out << fmt::format("No number has an estimate of its error: {}.\n\n",
+                       answer.contains("error_estimate_reason")
+                           ? answer.at("error_estimate_reason").get<std::string>()
+                           : "for the histories of a table there is none");
+  }
+}
+
 void write_units(std::ostream& out, const Json& answer) {
   if (!answer.contains("units")) return;
   const std::array<std::array<const char*, 3>, 7> rows{{{"contact_radius", "contact radius", "m"},
@@ -202,9 +248,8 @@ void write_tractions(std::ostream& out, const Json& answer) {
     if (at.contains("value_reason")) out << fmt::format("  ({})", at.at("value_reason").get<std::string>());
     if (answer.contains("printed"))
       write_beside(out, "Eq. (1)", at.at("value"), answer.at("printed").at("equation_1")[i], "value");
-    if (answer.contains("error_estimate"))
-      out << fmt::format("   +/- {:.1e}",
-                         answer.at("error_estimate").at("traction")[i].at("value").get<double>());
+    if (has_error_estimate(answer))
+      write_error(out, answer.at("error_estimate").at("traction")[i].at("value"));
     out << '\n';
   }
 }
@@ -227,7 +272,7 @@ Json answer_state(const ExactContact& contact, const StateQuestion& question) {
     answer["unloaded"] = cycle_json(history.state());
     answer["unloaded"]["traction"] = at_radii(question.radii, [&](double r) { return history.traction(r); });
   }
-  if (contact.profile.coarse) answer["error_estimate"] = error_estimates(contact.profile, state, question);
+  if (contact.profile.table) put_error_estimate(answer, *contact.profile.table, question);
   if (is_sphere(contact)) {
     answer["printed"] = printed_json(state, question.radii);
     answer["approximations"] = approximations_json(state);
@@ -238,6 +283,7 @@ Json answer_state(const ExactContact& contact, const StateQuestion& question) {
 
 void write_state(std::ostream& out, const ExactContact& contact, const Json& answer) {
   write_header(out, contact);
+  write_table_errors(out, answer);
   if (answer.contains("printed"))
     out << fmt::format("{:<40}{:>23}{:>23}{:>12}\n", "", "exact", "as printed", "difference");
   for (const Quantity& quantity : kQuantities) {
@@ -247,8 +293,7 @@ void write_state(std::ostream& out, const ExactContact& contact, const Json& ans
       write_beside(out, "Eq. (7)", answer.at(key), answer.at("printed"), "equation_7");
     if (answer.contains("printed") && key == "moment")
       write_beside(out, "Eq. (5)", answer.at(key), answer.at("printed"), "equation_5");
-    if (answer.contains("error_estimate"))
-      out << fmt::format("   +/- {:.1e} (interpolation)", answer.at("error_estimate").at(key).get<double>());
+    if (has_error_estimate(answer)) write_error(out, answer.at("error_estimate").at(key));
     out << '\n';
   }
   write_line(out, "loss per cycle", "of (mu W)^2/(G a)", answer.at("energy_lost_per_cycle"));
@@ -296,6 +341,7 @@ Json answer_history(const ExactContact& contact, const HistoryQuestion& question
 
 void write_history(std::ostream& out, const ExactContact& contact, const Json& answer) {
   write_header(out, contact);
+  write_table_errors(out, answer);
   out << fmt::format("{:>12}{:>26}{:>23}{:>27}\n", "M/M_lim", "twist G a^2 phi/(mu W)", "front a_s/a",
                      "lost, of (mu W)^2/(G a)");
   for (const Json& state : answer.at("history"))

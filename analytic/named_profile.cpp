@@ -8,7 +8,6 @@
 #include <stdexcept>
 
 #include "analytic/punch_superposition.hpp"
-#include "analytic/tabulated_pressure.hpp"
 
 namespace slipstick::analytic {
 
@@ -45,10 +44,8 @@ std::shared_ptr<const Profile> borrowed(const Profile& profile) {
 }
 
 NamedProfile tabulated(const std::string& file) {
-  TabulatedProfile table = read_tabulated_profile(file);
-  return {.profile = std::move(table.profile),
-          .coarse = std::move(table.coarse),
-          .table = TableScale{.contact_radius = table.radius, .mean_pressure = table.mean_pressure}};
+  const auto table = std::make_shared<const TabulatedProfile>(read_tabulated_profile(file));
+  return {.profile = {table, table->profile.get()}, .table = table};
 }
 
 /// The numbers of --shape, as many as the profile needs.

@@ -1,27 +1,20 @@
 #pragma once
 
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "analytic/axisymmetric.hpp"
 #include "analytic/indentation.hpp"
+#include "analytic/tabulated_pressure.hpp"
 
 namespace slipstick::analytic {
-
-/// What a table of pressures is made of, in its own units: `mean_pressure` is the profile's p0.
-struct TableScale {
-  double contact_radius;
-  double mean_pressure;
-};
 
 /// A contact profile as a user names it: hertz | cone | flat_punch | power:N | rounded_punch:B | file:P.csv.
 struct NamedProfile {
   std::shared_ptr<const Profile> profile;
-  /// A table's profile from every second point, for an error estimate.
-  std::shared_ptr<const Profile> coarse = {};
-  std::optional<TableScale> table = {};
+  /// Where the profile is a table's: its scale, and what else its points allow.
+  std::shared_ptr<const TabulatedProfile> table = {};
 };
 
 /// Throws std::invalid_argument for a name that is none of these, and what the profile itself throws.

@@ -26,6 +26,8 @@ using std::numbers::pi;
 /// long become their leading terms in c, and c^3 has all but underflowed.
 constexpr double kSmallest = 1e-100;
 
+using Points = std::vector<PressurePoint>;
+
 /// p between two knots, by the distance s from the outer one: there, at the edge, p may tend to zero.
 class Piece {
  public:
@@ -55,7 +57,7 @@ class Piece {
   std::array<double, 4> p_;
 };
 
-std::vector<Piece> interpolate(const std::vector<PressurePoint>& points) {
+std::vector<Piece> interpolate(const Points& points) {
   std::vector<double> radii, pressures;
   for (const auto& [radius, pressure] : points) {
     radii.push_back(radius);
@@ -178,8 +180,9 @@ class Tabulated final : public Profile {
     double from = 0;
     for (std::size_t i = piece_at(c.ratio); i < pieces_.size(); ++i) {
       const Piece& piece = pieces_[i];
-      const bool last = i + 1 == pieces_.size();
-      const double end = std::sqrt((last ? c.complement : piece.high() - c.ratio) * (piece.high() + c.ratio));
+      // From whichever of c and 1 - c holds the digits.
+      const double beyond_c = c.ratio < 0.5 ? piece.high() - c.ratio : c.complement - (1 - piece.high());
+      const double end = std::sqrt(beyond_c * (piece.high() + c.ratio));
       sum += over_panels(
           [&](double x) {
             const double rho = std::sqrt(c.ratio * c.ratio + x * x);
@@ -244,11 +247,7 @@ using Where = std::function<std::string(std::size_t)>;
   throw std::invalid_argument(fmt::format("{}: {} = {}; allowed: {}", where, what, value, allowed));
 }
 
-void check_points(const std::string& name, const std::vector<PressurePoint>& points, const Where& where) {
-  constexpr std::size_t kFewest = 4;
-  if (points.size() < kFewest)
-    throw std::invalid_argument(
-        fmt::format("{}: {} points; allowed: at least {}", name, points.size(), kFewest));
+void check_points(const std::string& name, const Points& points, const Where& where) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto [radius, pressure] = points[i];
     if (i == 0 && radius != 0) refuse(where(i), "radius", radius, "0 at the first point");
@@ -260,11 +259,16 @@ void check_points(const std::string& name, const std::vector<PressurePoint>& poi
     if (pressure == 0 && i + 1 < points.size())
       refuse(where(i), "pressure", pressure, "> 0 except at the last point, where the contact ends");
   }
+  constexpr std::size_t kFewest = 16;  // every second of fewer tells too little of the error
+  if (points.size() < kFewest)
+    throw std::invalid_argument(fmt::format(
+        "{}: {} points; allowed: at least {}, since the error of fewer cannot be estimated; best are points "
+        "that crowd towards the edge",
+        name, points.size(), kFewest));
 }
 
 /// Where H does not decrease the tractions of a circle that sticks would exceed friction within it.
-void check_that_a_circle_sticks(const Tabulated& profile, const std::vector<PressurePoint>& points,
-                                const Where& where) {
+void check_that_a_circle_sticks(const Tabulated& profile, const Points& points, const Where& where) {
   constexpr std::size_t kMost = 200;  // more checks would say little and cost more than the profile
   const std::size_t step = 1 + points.size() / kMost;
   for (std::size_t i = 1; i + 1 < points.size(); i += step) {
@@ -277,26 +281,114 @@ void check_that_a_circle_sticks(const Tabulated& profile, const std::vector<Pres
   }
 }
 
-/// From the edge inwards every second point, and the first: every interval becomes at least twice as long,
-/// but for that three points must be left.
-std::vector<PressurePoint> every_second(const std::vector<PressurePoint>& points) {
-  std::size_t next = points.size() % 2 == 1 ? 2 : 3;
-  if (points.size() == 4) next = 1;
-  std::vector<PressurePoint> coarse{points.front()};
-  for (; next < points.size(); next += 2) coarse.push_back(points[next]);
-  return coarse;
-}
-
-/// The profile over the mean pressure, which is the result beside it.
-std::pair<std::unique_ptr<const Tabulated>, double> over_mean(std::string name,
-                                                              std::vector<PressurePoint> points) {
+/// The profile over the mean pressure.
+std::pair<std::unique_ptr<const Tabulated>, double> over_mean(const std::string& name, Points points) {
   const double mean = 2 * whole_moment(interpolate(points), 1);
   for (auto& point : points) point.pressure /= mean;
-  return {std::make_unique<const Tabulated>(std::move(name), interpolate(points)), mean};
+  return {std::make_unique<const Tabulated>(name, interpolate(points)), mean};
 }
 
-TabulatedProfile make_profile(const std::string& name, std::vector<PressurePoint> points,
-                              const Where& where) {
+/// How far the interpolant without a point is off there; it must not be the first nor the last.
+double misfit(const Points& points, std::size_t left_out) {
+  constexpr std::size_t kReach =
+      3;  // two neighbours on either side shape a piece; the third, ends of its own
+  const std::size_t from = left_out - std::min(left_out, kReach);
+  const std::size_t to = std::min(points.size(), left_out + kReach + 1);
+  Points rest;
+  for (std::size_t i = from; i < to; ++i)
+    if (i != left_out) rest.push_back(points[i]);
+  const Piece piece = interpolate(rest)[left_out - from - 1];
+  return std::abs(piece.pressure(piece.high() - points[left_out].radius) - points[left_out].pressure);
+}
+
+/// Of each point the largest misfit of it and its neighbours: one alone may vanish by chance.
+std::vector<double> misfits_nearby(const Points& points) {
+  constexpr std::size_t kNeighbours = 2;
+  std::vector<double> misfits(points.size());
+  for (std::size_t i = 1; i + 1 < points.size(); ++i) misfits[i] = misfit(points, i);
+  std::vector<double> largest(points.size());
+  for (std::size_t i = 0; i < points.size(); ++i)
+    for (std::size_t k = i - std::min(i, kNeighbours); k <= std::min(i + kNeighbours, points.size() - 1); ++k)
+      largest[i] = std::max(largest[i], misfits[k]);
+  return largest;
+}
+
+/// Between two points, the first included: every second left out.
+Points thinned(const Points& points, std::size_t from, std::size_t to, std::size_t parity) {
+  Points rest;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (i < from || i >= to || i % 2 == parity) rest.push_back(points[i]);
+  return rest;
+}
+
+/// Between two points, the first included: each pressure more by `by`, or less by up to half of it.
+Points moved(Points points, std::size_t from, std::size_t to, const std::vector<double>& by, double factor) {
+  for (std::size_t i = from; i < to; ++i)
+    points[i].pressure = std::max(points[i].pressure + factor * by[i], points[i].pressure / 2);
+  return points;
+}
+
+/// With a pressure like this power of the distance from the edge between the last two points.
+Points ending_like(double power, Points points) {
+  constexpr double kNearest = 1e-10;  // nearer, the radius leaves the distance few digits
+  const PressurePoint edge = points.back();
+  points.pop_back();
+  const auto [radius, pressure] = points.back();
+  for (double share = 0.5; (1 - radius) * share > kNearest; share /= 2)
+    points.push_back({.radius = 1 - (1 - radius) * share, .pressure = pressure * std::pow(share, power)});
+  points.push_back(edge);
+  return points;
+}
+
+/// The power of the distance from the edge that the pressure follows between a point and the one before.
+double power_at(const Points& points, std::size_t i) {
+  return std::log(points[i].pressure / points[i - 1].pressure) /
+         std::log((1 - points[i].radius) / (1 - points[i - 1].radius));
+}
+
+/// As the pressure may end where it is 0 at the edge: like the power that the last points follow, like that
+/// to which this tends, and like the square root by which smooth bodies part.
+std::vector<Points> other_endings(const Points& points) {
+  constexpr double kLeast = 0.1;  // nearly a step
+  constexpr double kMost = 8;
+  const std::size_t last = points.size() - 2;
+  const double power = power_at(points, last);
+  std::vector<Points> endings;
+  for (const double p : {power, 2 * power - power_at(points, last - 1), 0.5})
+    endings.push_back(ending_like(std::clamp(p, kLeast, kMost), points));
+  return endings;
+}
+
+/// Groups of other points, each for a stretch of the radius.
+std::vector<std::vector<Points>> other_points(const Points& points) {
+  // Enough that what cancels within one is a small part, and that random errors, which add like the root of
+  // their number, are not overrated much when sizes are added.
+  constexpr std::size_t kStretches = 16;
+  // Over the misfits nearby, and half of what they stand for, since interpolation_errors() doubles it.
+  constexpr double kNoise = 0.75;
+  constexpr double kAtEdge = 2;  // beyond the last misfit known
+  constexpr double kOnAxis = 6;  // a cone's pressure is infinite there, whatever the table says
+  const std::vector<double> misfits = misfits_nearby(points);
+  const std::size_t inner = points.size() - 2;
+  const std::size_t stretches = std::min(kStretches, inner / 2);
+  std::vector<std::vector<Points>> groups;
+  for (std::size_t i = 0; i < stretches; ++i) {
+    const std::size_t from = 1 + inner * i / stretches;
+    const std::size_t to = 1 + inner * (i + 1) / stretches;
+    groups.push_back({thinned(points, from, to, 0), thinned(points, from, to, 1),
+                      moved(points, from, to, misfits, kNoise)});
+  }
+  const auto moved_end = [&](std::size_t end, double factor) {
+    return std::vector{moved(points, end, end + 1, misfits, factor),
+                       moved(points, end, end + 1, misfits, -factor)};
+  };
+  groups.push_back(moved_end(0, kOnAxis));
+  groups.push_back(points.back().pressure > 0 ? moved_end(points.size() - 1, kAtEdge)
+                                              : other_endings(points));
+  return groups;
+}
+
+TabulatedProfile make_profile(const std::string& name, Points points, const Where& where) {
   check_points(name, points, where);
   const double a = points.back().radius;
   const double peak =
@@ -307,12 +399,16 @@ TabulatedProfile make_profile(const std::string& name, std::vector<PressurePoint
 
   auto [profile, mean] = over_mean("file:" + name, points);
   check_that_a_circle_sticks(*profile, points, where);
-  auto [coarse, coarse_mean] = over_mean("every second point of file:" + name, every_second(points));
-  return {.profile = std::move(profile),
-          .coarse = std::move(coarse),
-          .radius = a,
-          .mean_pressure = peak * mean,
-          .coarse_mean_pressure = peak * coarse_mean};
+  TabulatedProfile table{
+      .profile = std::move(profile), .radius = a, .mean_pressure = peak * mean, .alternatives = {}};
+  for (const auto& group : other_points(points)) {
+    auto& alternatives = table.alternatives.emplace_back();
+    for (const Points& others : group) {
+      auto [other, other_mean] = over_mean("another reading of file:" + name, others);
+      alternatives.push_back({.profile = std::move(other), .mean_pressure = peak * other_mean});
+    }
+  }
+  return table;
 }
 
 std::string_view trimmed(std::string_view text) {
@@ -350,10 +446,33 @@ TabulatedProfile tabulated_profile(const std::string& name, const std::vector<Pr
   return make_profile(name, points, [&](std::size_t i) { return fmt::format("{}, point {}", name, i + 1); });
 }
 
+std::vector<double> interpolation_errors(
+    const TabulatedProfile& table,
+    const std::function<std::vector<double>(const Profile&, double mean_pressure)>& numbers) {
+  constexpr double kSafety = 2;
+  constexpr double kComputation = 1e-12;  // of the interpolant's own numbers
+  const std::vector<double> values = numbers(*table.profile, table.mean_pressure);
+  std::vector<double> errors;
+  for (const double value : values) errors.push_back(kComputation * std::abs(value));
+  for (const auto& group : table.alternatives) {
+    std::vector<double> largest(values.size());
+    for (const Alternative& other : group) {
+      const std::vector<double> others = numbers(*other.profile, other.mean_pressure);
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const double change = std::abs(others[i] - values[i]);
+        if (!std::isfinite(change)) throw std::domain_error(fmt::format("{} is no number", others[i]));
+        largest[i] = std::max(largest[i], change);
+      }
+    }
+    for (std::size_t i = 0; i < values.size(); ++i) errors[i] += kSafety * largest[i];
+  }
+  return errors;
+}
+
 TabulatedProfile read_tabulated_profile(const std::string& file) {
   std::ifstream stream(file);
   if (!stream) throw std::invalid_argument(fmt::format("{}: cannot be read", file));
-  std::vector<PressurePoint> points;
+  Points points;
   std::vector<std::size_t> lines;
   std::size_t number = 0;
   const auto at_line = [&](std::size_t line) { return fmt::format("{}:{}", file, line); };

@@ -20,6 +20,7 @@ namespace {
 using std::numbers::pi;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::ThrowsMessage;
 
 std::pair<std::string, nlohmann::ordered_json> run(const std::string& arguments) {
@@ -135,28 +136,52 @@ TEST(ExactProfiles, AgreeWhereOneIsAnother) {
   }
 }
 
-TEST(ExactProfiles, ComeFromAFileWithAnErrorEstimate) {
-  const std::string file = ::testing::TempDir() + "hertz_pressure.csv";
-  {
-    std::ofstream table(file);
-    table << "radius,pressure\n";
-    constexpr int kPoints = 200;
-    for (int i = 0; i <= kPoints; ++i) {
-      const double angle = pi / 2 * i / kPoints;
-      table << fmt::format("{},{}\n", 3e-3 * std::sin(angle), i == kPoints ? 0.0 : 5e8 * std::cos(angle));
-    }
+/// Hertz's pressure in a file, closer and closer towards the edge.
+std::string hertz_table(int points) {
+  const std::string file = ::testing::TempDir() + fmt::format("hertz_pressure_{}.csv", points);
+  std::ofstream table(file);
+  table << "radius,pressure\n";
+  for (int i = 0; i < points; ++i) {
+    const double angle = pi / 2 * i / (points - 1);
+    table << fmt::format("{},{}\n", 3e-3 * std::sin(angle), i == points - 1 ? 0.0 : 5e8 * std::cos(angle));
   }
+  return file;
+}
+
+TEST(ExactProfiles, ComeFromAFileWithAnErrorEstimate) {
+  const std::string file = hertz_table(201);
   const auto exact = run("--moment-ratio 0.6 --radius 0.3").second;
-  const auto table = run("--moment-ratio 0.6 --radius 0.3 --profile file:" + file).second;
+  const auto [text, table] = run("--moment-ratio 0.6 --radius 0.3 --profile file:" + file);
+  const auto& estimate = table.at("error_estimate");
   for (const std::string key : {"stick_ratio", "twist", "moment"}) {
     const double error = std::abs(table.at(key).get<double>() - exact.at(key).get<double>());
-    EXPECT_LE(error, table.at("error_estimate").at(key).get<double>()) << key;
-    EXPECT_LE(error, 1e-4) << key;
+    EXPECT_LE(error, estimate.at(key).get<double>()) << key;
+    EXPECT_LE(estimate.at(key).get<double>(), 1e-4) << key;
   }
+  EXPECT_LE(std::abs(table.at("profile").at("moment_limit").get<double>() - 3 * pi / 16),
+            estimate.at("moment_limit").get<double>());
+  EXPECT_LE(std::abs(table.at("table").at("mean_pressure").get<double>() - 5e8 * 2 / 3),
+            estimate.at("mean_pressure").get<double>());
+  EXPECT_EQ(estimate.at("traction")[0].at("radius"), 0.3);
+  EXPECT_LE(std::abs(table.at("pressure")[0].at("value").get<double>() - 1.5 * std::sqrt(1 - 0.09)),
+            estimate.at("pressure")[0].at("value").get<double>());
   EXPECT_EQ(table.at("table").at("contact_radius"), 3e-3);
-  EXPECT_NEAR(table.at("table").at("mean_pressure").get<double>() / (5e8 * 2 / 3), 1, 1e-4);
+  EXPECT_THAT(text, AllOf(HasSubstr("+/-"), HasSubstr("an estimate, no proof")));
   EXPECT_THAT([] { run("--twist 0.1 --profile file:nowhere.csv"); },
               ThrowsMessage<std::domain_error>(AllOf(HasSubstr("--profile"), HasSubstr("nowhere.csv"))));
+}
+
+TEST(ExactProfiles, AreRefusedFromTooFewPoints) {
+  const std::string file = hertz_table(9);
+  EXPECT_THAT([&] { run("--moment-ratio 0.1 --profile file:" + file); },
+              ThrowsMessage<std::domain_error>(AllOf(HasSubstr("--profile"), HasSubstr(file),
+                                                     HasSubstr("9 points; allowed: at least 16"))));
+}
+
+TEST(ExactProfiles, SayWhereATableHasNoErrorEstimate) {
+  const auto [text, history] = run("--history 0.6,-0.6 --profile file:" + hertz_table(17));
+  EXPECT_FALSE(history.contains("error_estimate"));
+  EXPECT_THAT(text, AllOf(HasSubstr("No number has an estimate of its error"), Not(HasSubstr("+/-"))));
 }
 
 TEST(ExactCycles, UnloadByMasing) {
