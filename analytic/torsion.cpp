@@ -128,7 +128,8 @@ TorsionState from_moment_ratio(double moment_ratio, const Profile& profile) {
     throw std::domain_error(
         fmt::format("M/M_lim = {} is gross slip; allowed: 0 <= M/M_lim < 1", moment_ratio));
   if (!(moment_ratio >= 0)) out_of_range("M/M_lim", moment_ratio, "0 <= M/M_lim < 1");
-  const double excess = moment_ratio - profile.full_stick();
+  // Beyond full stick 1 - M/M_lim is exact, and the share of slip has more digits than full stick's rest.
+  const double excess = profile.full_stick() > 0 ? profile.slip_share() - (1 - moment_ratio) : moment_ratio;
   if (excess < 0) return fully_stuck(moment_ratio, 1 - moment_ratio, profile);
   TorsionState state = state_under({.excess = excess, .deficit = 1 - moment_ratio}, profile);
   state.moment_ratio = moment_ratio;
