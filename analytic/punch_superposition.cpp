@@ -48,7 +48,7 @@ class Quadrature {
     anchor_ = punches.low - above;
     const double apart = std::abs(punches.beyond_radius - punches.beyond_flat);
     const double other = std::max(0.0, anchor_ - apart);
-    low_root_ = std::sqrt(above * (punches.low + anchor_));
+    low_root_ = std::sqrt(above) * std::sqrt(punches.low + anchor_);  // a product could underflow
     const double high = punches.low + punches.length;
     high_root_ = std::sqrt((punches.length + above) * (high + anchor_));
     length_ = along(punches.length);
@@ -80,8 +80,8 @@ class Quadrature {
   double along(double beyond) const {
     const double x = punches_.low + beyond;
     const double above = std::min(punches_.beyond_radius, punches_.beyond_flat);
-    const double root = std::sqrt((beyond + above) * (x + anchor_));
-    return std::log1p((beyond + beyond * (x + punches_.low) / (root + low_root_)) /
+    const double root = std::sqrt(beyond + above) * std::sqrt(x + anchor_);
+    return std::log1p((beyond + beyond * ((x + punches_.low) / (root + low_root_))) /
                       (punches_.low + low_root_));
   }
 

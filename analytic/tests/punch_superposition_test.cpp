@@ -13,6 +13,7 @@
 
 #include "analytic/gsl.hpp"
 #include "analytic/tests/references.hpp"
+#include "analytic/torsion.hpp"
 
 namespace slipstick::analytic {
 namespace {
@@ -286,6 +287,16 @@ TEST(Superposition, IsMonotoneAndFiniteAtTheExtremes) {
       twist = profile->twist_integral(c);
       deficit = share.deficit;
     }
+  }
+}
+
+/// H goes on growing down to the smallest stick radius, like ln(1/c) or faster, and a twist finds its state.
+TEST(PowerProfile, AnswersATwistForEveryExponent) {
+  for (int i = 0; i <= 1000; ++i) {
+    const double n = 0.01 * std::pow(1e5, i / 1000.0);
+    const auto profile = power_profile(n);
+    EXPECT_GT(profile->twist_integral(at(1e-307)), profile->twist_integral(at(1e-100))) << n;
+    EXPECT_GT(from_twist(0.1, *profile).stick_ratio, 0.5) << n;
   }
 }
 
