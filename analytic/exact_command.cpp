@@ -37,7 +37,7 @@ constexpr std::array kGiven{
 
 constexpr const char* kProfiles =
     "hertz | cone | flat_punch | power:N (gap ~ r^N) | rounded_punch:B (flat out to B = b/a) | "
-    "file:P.csv (columns radius, pressure)";
+    "file:P.csv (columns radius, pressure; 16 points or more)";
 
 /// As typed. Numbers stay text for certified digits, which take them to be exactly what is written.
 struct Options {

@@ -303,7 +303,7 @@ double misfit(const Points& points, std::size_t left_out) {
 
 /// Of each point the largest misfit of it and its neighbours: one alone may vanish by chance.
 std::vector<double> misfits_nearby(const Points& points) {
-  constexpr std::size_t kNeighbours = 2;
+  constexpr std::size_t kNeighbours = 4;  // radii rounded to few digits err alike over a few points
   std::vector<double> misfits(points.size());
   for (std::size_t i = 1; i + 1 < points.size(); ++i) misfits[i] = misfit(points, i);
   std::vector<double> largest(points.size());
@@ -364,8 +364,8 @@ std::vector<std::vector<Points>> other_points(const Points& points) {
   // Enough that what cancels within one is a small part, and that random errors, which add like the root of
   // their number, are not overrated much when sizes are added.
   constexpr std::size_t kStretches = 16;
-  // Over the misfits nearby, and half of what they stand for, since interpolation_errors() doubles it.
-  constexpr double kNoise = 0.75;
+  // Times the largest misfit nearby. interpolation_errors() doubles what comes of it.
+  constexpr double kNoise = 0.6;
   constexpr double kAtEdge = 2;  // beyond the last misfit known
   constexpr double kOnAxis = 6;  // a cone's pressure is infinite there, whatever the table says
   const std::vector<double> misfits = misfits_nearby(points);
