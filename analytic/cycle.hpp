@@ -29,8 +29,8 @@ struct CycleState {
 ///
 /// The twist is that of a contact without slip, which knows no history, and what slip adds to it, an integral
 /// of a positive function for each branch. So a residual twist keeps its digits however small the load: the
-/// error is some 1e-15 of the largest branch's slip part. Tractions do cancel: error some 1e-15 of the
-/// largest branch's.
+/// error is its own rounding and some 1e-15 of the largest branch's slip part. Tractions do cancel: error
+/// some 1e-15 of the largest branch's.
 class LoadingHistory {
  public:
   /// Unloaded and never loaded. The profile must outlive the history.
