@@ -1,4 +1,4 @@
-# The front door: each target sets up, configures and builds what is out of date, then runs.
+# The front door: each target sets up, configures and builds what it needs and is out of date, then runs.
 
 BUILD := build
 PREFIX ?= /usr/local
@@ -11,7 +11,8 @@ SANITIZE ?=
 INSTRUCTION_GATES = $(wildcard bench/gates/instructions-gcc-$(firstword $(subst ., ,$(shell c++ -dumpversion))).toml)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup build report test gate sanitize lint bench bench-baseline bench-trust references hardest install clean
+.PHONY: help setup configure build report test gate sanitize lint bench bench-baseline bench-trust references hardest \
+  install clean
 
 help: ## show this list
 	@echo "slipstick: make TARGET"
@@ -20,35 +21,47 @@ help: ## show this list
 setup: ## install the missing Debian/Ubuntu packages (elsewhere: list them)
 	@cmake/setup
 
-$(BUILD)/build.ninja: | setup
-	cmake --preset release
+# What was left out the last time is looked for again.
+configure: setup
+	@if [ ! -f $(BUILD)/build.ninja ] || [ -s $(BUILD)/left_out.txt ]; then cmake --preset release; fi
 
-build: $(BUILD)/build.ninja ## build everything, the program is build/slipstick
-	@cmake --build $(BUILD)
+# $(call build,targets): builds them, and says at the end what had to be left out.
+define build
+@cmake --build $(BUILD) --target $(1)
+@if [ -s $(BUILD)/left_out.txt ]; then echo; cat $(BUILD)/left_out.txt; echo; fi >&2
+endef
 
-report: build ## run the validation and the studies, write the page (REPORT_OPTIONS="--quick")
+build: configure ## build everything, the program is build/slipstick
+	$(call build,all)
+
+report: configure ## run the validation and the studies, write the page (REPORT_OPTIONS="--quick")
+	$(call build,slipstick)
 	@$(BUILD)/slipstick report --output $(BUILD)/report $(REPORT_OPTIONS)
 	@echo "The page: $(CURDIR)/$(BUILD)/report/index.html"
 
-test: build ## run every test
+test: configure ## run every test
+	$(call build,tests)
 	@ctest --test-dir $(BUILD) --output-on-failure -j$$(nproc)
 
-gate: build ## check the numbers that README.md promises, and counts of work (GATE_OPTIONS="--junit FILE --summary FILE.md")
+gate: configure ## check the numbers that README.md promises, and counts of work (GATE_OPTIONS="--junit FILE --summary FILE.md")
+	$(call build,slipstick slipstick_work)
 	@$(BUILD)/bench/slipstick_work --instructions --json $(BUILD)/gates/work.json
 	@$(BUILD)/slipstick gate convergence/gates/quick.toml bench/gates/work.toml $(INSTRUCTION_GATES) --results $(BUILD)/gates \
 	  --output $(BUILD)/gates $(GATE_OPTIONS)
 
 sanitize: setup ## run every test under the address and undefined-behaviour sanitizers (a part: SANITIZE="operators analytic")
 	@test -f build-asan-ubsan/build.ninja || cmake --preset asan-ubsan
-	@cmake --build build-asan-ubsan $(if $(SANITIZE),--target $(SANITIZE:%=%_tests))
+	@cmake --build build-asan-ubsan --target $(if $(SANITIZE),$(SANITIZE:%=%_tests),tests)
 	@ctest --test-dir build-asan-ubsan --output-on-failure -j$$(nproc) \
 	  $(if $(SANITIZE),-R "^($$(echo $(SANITIZE) | tr ' ' '|'))_tests",-E '^reports')
 
-lint: build ## check format and clang-tidy's rules (needs clang-format, clang-tidy 14 or later)
+lint: configure ## check format and clang-tidy's rules (needs clang-format, clang-tidy 14 or later)
+	@cmake --build $(BUILD) --target slipstick_commit
 	@git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run --Werror
 	@git ls-files '*.cpp' | xargs -n 4 -P $$(nproc) clang-tidy -p $(BUILD) --quiet
 
-bench: build ## time everything beside the error that it buys, draw it, compare with what is remembered
+bench: configure ## time everything beside the error that it buys, draw it, compare with what is remembered
+	$(call build,slipstick slipstick_benchmarks)
 	@$(BUILD)/slipstick bench $(BENCH_OPTIONS)
 	@if [ -f "bench/baselines/$$($(BUILD)/slipstick bench --machine).json" ]; then \
 	  $(BUILD)/slipstick bench --baselines bench/baselines; \
@@ -56,19 +69,23 @@ bench: build ## time everything beside the error that it buys, draw it, compare 
 	  echo "No times of this kind of machine are remembered: make bench-baseline REASON='the first on this machine'"; \
 	fi
 
-bench-baseline: build ## remember this build's times on this kind of machine (REASON="what changed them")
+bench-baseline: configure ## remember this build's times on this kind of machine (REASON="what changed them")
+	$(call build,slipstick slipstick_benchmarks)
 	@$(BUILD)/slipstick bench --baselines bench/baselines --renew "$(REASON)"
 
-bench-trust: build ## is a build never slower than itself, and 15 % always found? (a quarter of an hour)
+bench-trust: configure ## is a build never slower than itself, and 15 % always found? (a quarter of an hour)
 	@cmake --build $(BUILD) --target bench-trust
 
-references: build ## make the table of proven values anew (2 minutes; needs FLINT with Arb)
+references: configure ## make the table of proven values anew (2 minutes; needs FLINT with Arb)
+	$(call build,slipstick_references)
 	@$(BUILD)/analytic/certified/slipstick_references table --output analytic/tests/certified_references.csv
 
-hardest: build ## look for harder inputs of the exact functions (SEARCH_OPTIONS="--seed 2 --samples 1000")
+hardest: configure ## look for harder inputs of the exact functions (SEARCH_OPTIONS="--seed 2 --samples 1000")
+	$(call build,slipstick_references)
 	@$(BUILD)/analytic/certified/slipstick_references search --folder analytic/tests/hardest $(SEARCH_OPTIONS)
 
-install: build ## install under PREFIX (default /usr/local)
+install: configure ## install under PREFIX (default /usr/local)
+	$(call build,slipstick)
 	@cmake --install $(BUILD) --prefix "$(abspath $(PREFIX))"
 
 clean: ## remove what was built

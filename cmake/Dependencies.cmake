@@ -1,5 +1,19 @@
 # Every dependency comes from the distribution; a missing one is named with its Debian/Ubuntu package.
 
+# slipstick_leave_out(<what> <why, and what to install>): said at the end of configuring, and by make after every build.
+function(slipstick_leave_out what why)
+  set_property(GLOBAL APPEND_STRING PROPERTY SLIPSTICK_LEFT_OUT "LEFT OUT: ${what}, because ${why}\n")
+endfunction()
+
+# slipstick_say_what_is_left_out(): writes left_out.txt, empty where nothing is, and warns.
+function(slipstick_say_what_is_left_out)
+  get_property(left_out GLOBAL PROPERTY SLIPSTICK_LEFT_OUT)
+  file(WRITE "${PROJECT_BINARY_DIR}/left_out.txt" "${left_out}")
+  if(left_out)
+    message(WARNING "${left_out}")
+  endif()
+endfunction()
+
 # slipstick_require(<package> <debian package> [find_package arguments...])
 macro(slipstick_require package debian_package)
   find_package(${package} QUIET ${ARGN})
@@ -35,8 +49,8 @@ endif()
 # Optional: proven digits.
 find_package(Arb QUIET)
 if(NOT Arb_FOUND)
-  message(STATUS "No FLINT with Arb: certified digits are left out. On Debian or Ubuntu: apt-get install libflint-dev "
-    "and, before FLINT 3, libflint-arb-dev.")
+  slipstick_leave_out("certified digits (slipstick exact --certified) and their tests"
+    "FLINT with Arb was not found: install libflint-dev and, before FLINT 3, libflint-arb-dev (or run `make setup`)")
 endif()
 
 # The scripts need an interpreter that can import their packages; the first python3 on PATH often cannot.
@@ -58,7 +72,14 @@ slipstick_find_python(found_python)
 if(found_python)
   set(SLIPSTICK_PYTHON "${found_python}" CACHE STRING "Python 3 with numpy, matplotlib, jinja2 and h5py" FORCE)
 else()
-  message(WARNING
-    "No python3 can import numpy, matplotlib, jinja2 and h5py: the page cannot be drawn. On Debian or Ubuntu: "
-    "apt-get install python3-numpy python3-matplotlib python3-jinja2 python3-h5py; elsewhere set SLIPSTICK_PYTHON.")
+  slipstick_leave_out("the page, all figures and their tests"
+    "no python3 can import numpy, matplotlib, jinja2 and h5py: install python3-numpy python3-matplotlib python3-jinja2 \
+python3-h5py (or run `make setup`), or set SLIPSTICK_PYTHON")
+endif()
+
+# Optional: the gates on instructions count with it.
+find_program(SLIPSTICK_VALGRIND valgrind)
+mark_as_advanced(SLIPSTICK_VALGRIND)
+if(SLIPSTICK_BENCHMARKS AND NOT SLIPSTICK_VALGRIND)
+  slipstick_leave_out("gates on instructions" "valgrind was not found: install valgrind (or run `make setup`)")
 endif()

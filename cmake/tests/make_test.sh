@@ -1,0 +1,67 @@
+#!/usr/bin/env bash
+# make_test.sh <source folder>: each target of the Makefile builds what it runs and no more, and says after building what
+# had to be left out. cmake, ctest and the programs are made up.
+set -uo pipefail
+cd "$1" || exit 1
+folder="$(mktemp -d)"
+trap 'rm -rf "$folder"' EXIT
+export CALLS="$folder/calls" SLIPSTICK_SKIP_SETUP=1
+unset MAKEFLAGS MAKELEVEL MFLAGS
+build="$folder/build"
+failures=0
+
+mkdir -p "$folder/programs" "$build/bench" "$build/analytic/certified"
+for program in "$folder"/programs/{cmake,ctest} "$build"/{slipstick,bench/slipstick_work} \
+  "$build/analytic/certified/slipstick_references"; do
+  printf '#!/usr/bin/env bash\necho "%s $*" >> "$CALLS"\necho "%s was run"\n' "${program##*/}" "${program##*/}" > "$program"
+  chmod +x "$program"
+done
+
+# check <target> <targets that it builds>
+check() {
+  : > "$CALLS"
+  PATH="$folder/programs:$PATH" make BUILD="$build" "$1" > "$folder/output" 2>&1
+  local status=$?
+  local built
+  built="$(sed --quiet "s|^cmake --build $build --target ||p" "$CALLS")"
+  if [[ "$status" != 0 || "$built" != "$2" ]]; then
+    echo "FAILED: make $1 (exit code $status) builds “$built”, not “$2”"
+    sed 's/^/    /' "$folder/output"
+    failures=$((failures + 1))
+  fi
+}
+expect() {  # <what> <command...>
+  local what="$1"
+  shift
+  if ! "$@"; then
+    echo "FAILED: $what"
+    sed 's/^/    /' "$folder/output" "$CALLS"
+    failures=$((failures + 1))
+  fi
+}
+says() { [[ "$(cat "$folder/output")" == *"$1"* ]]; }
+configured() { [[ "$(cat "$CALLS")" == *"cmake --preset release"* ]]; }
+not() { ! "$@"; }
+
+check report slipstick
+expect "make report configures what was never configured" configured
+touch "$build/build.ninja" "$build/left_out.txt"
+check report slipstick
+expect "make report does not configure again" not configured
+expect "nothing is left out" not says "LEFT OUT"
+echo "LEFT OUT: certified digits, because of this test" > "$build/left_out.txt"
+check report slipstick
+expect "what is left out is said after building" says "cmake was run
+
+LEFT OUT: certified digits, because of this test"
+expect "what was left out is looked for again" configured
+check test tests
+expect "make test ends with the test runner's words" test "$(tail -n 1 "$folder/output")" = "ctest was run"
+check gate "slipstick slipstick_work"
+check bench "slipstick slipstick_benchmarks"
+check references slipstick_references
+check install slipstick
+check build all
+
+((failures == 0)) && echo "all as expected"
+exit $((failures > 0))

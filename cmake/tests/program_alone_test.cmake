@@ -1,0 +1,16 @@
+# cmake -D BUILD_DIR=... -D NINJA=... -P program_alone_test.cmake: the program is built without tests and benchmarks.
+execute_process(COMMAND ${NINJA} -C ${BUILD_DIR} -t commands slipstick
+  RESULT_VARIABLE status OUTPUT_VARIABLE commands ERROR_VARIABLE complaint)
+if(NOT status EQUAL 0 OR NOT commands MATCHES "main.cpp")
+  message(FATAL_ERROR "the commands that build the program are not known (${status}): ${complaint}")
+endif()
+string(REPLACE ";" " " commands "${commands}")
+string(REPLACE "\n" ";" commands "${commands}")
+foreach(command IN LISTS commands)
+  if(command MATCHES "_tests.dir|/tests/|slipstick_benchmarks.dir|slipstick_work|slipstick_references.dir|libgtest|libbenchmark")
+    string(APPEND foreign "${command}\n")
+  endif()
+endforeach()
+if(foreign)
+  message(FATAL_ERROR "the program is built with what it does not need:\n${foreign}")
+endif()
