@@ -96,11 +96,11 @@ def render(data_dir, output):
     (output / "index.html").write_text(page, encoding="utf-8")
 
 
-def main():
+def main(words=None):
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("data_dir", type=Path, help="folder with report.json and its field files")
     parser.add_argument("--output", type=Path, required=True, help="folder for index.html and figures/")
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(words)
     try:
         render(arguments.data_dir.resolve(), arguments.output.resolve())
     except results.InputError as error:
