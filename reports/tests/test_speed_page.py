@@ -7,6 +7,7 @@ import tempfile
 import unittest
 from contextlib import redirect_stderr
 from pathlib import Path
+from unittest.mock import patch
 
 REPORTS = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPORTS))
@@ -15,7 +16,9 @@ import plane_figure  # noqa: E402
 import scaling_figure  # noqa: E402
 import speed_page  # noqa: E402
 import speed_tables  # noqa: E402
+import style  # noqa: E402
 from results import Unavailable  # noqa: E402
+from test_render import save_nothing, save_quickly  # noqa: E402
 
 DENSE, DCFFT = "application/dense", "application/dcfft"
 
@@ -106,8 +109,9 @@ class Tables(unittest.TestCase):
 
 
 class Page(unittest.TestCase):
-    def render(self, **parts):
-        with tempfile.TemporaryDirectory() as folder, redirect_stderr(io.StringIO()):
+    def render(self, save, **parts):
+        with (tempfile.TemporaryDirectory() as folder, redirect_stderr(io.StringIO()),
+              patch.object(style, "save", save)):
             data = Path(folder) / "data"
             data.mkdir()
             for name, content in parts.items():
@@ -116,13 +120,13 @@ class Page(unittest.TestCase):
             return (Path(folder) / "index.html").read_text(encoding="utf-8")
 
     def test_is_whole(self):
-        page = self.render(scaling=scaling(), plane=plane())
+        page = self.render(save_quickly, scaling=scaling(), plane=plane())
         for words in ("Convolution overtakes", "10\N{NO-BREAK SPACE}ms: 64² cells", "twist error 0.5 above 0.1", "made up", "figure-3.svg"):
             self.assertIn(words, page)
         self.assertNotIn("Not available", page)
 
     def test_stands_where_a_part_is_missing(self):
-        page = self.render(scaling=scaling(families=[], crossovers=[]), plane=plane())
+        page = self.render(save_nothing, scaling=scaling(families=[], crossovers=[]), plane=plane())
         self.assertIn("Not available", page)
         self.assertIn("10\N{NO-BREAK SPACE}ms: 64² cells", page)
 
