@@ -24,6 +24,10 @@ function(slipstick_library folder)
   slipstick_configure(${target})
 endfunction()
 
+# Seconds after which a test hangs: a machine may have other work, so at least twenty times what the slowest, that of the
+# mutants, takes alone.
+set(SLIPSTICK_TEST_HANGS 3600)
+
 # slipstick_tests(<name> SOURCES ... LIBRARIES ...): one GoogleTest program, each case a test of its own in CTest; or,
 # with SLIPSTICK_TEST_SHARDS, that many parts of the program, where starting it thousands of times would take minutes.
 function(slipstick_tests name)
@@ -42,11 +46,11 @@ function(slipstick_tests name)
     math(EXPR last "${SLIPSTICK_TEST_SHARDS} - 1")
     foreach(shard RANGE ${last})
       add_test(NAME ${name}.part${shard} COMMAND ${name})
-      set_tests_properties(${name}.part${shard} PROPERTIES TIMEOUT 900
+      set_tests_properties(${name}.part${shard} PROPERTIES TIMEOUT ${SLIPSTICK_TEST_HANGS}
         ENVIRONMENT "GTEST_TOTAL_SHARDS=${SLIPSTICK_TEST_SHARDS};GTEST_SHARD_INDEX=${shard}")
     endforeach()
   else()
-    gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT 300)
+    gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES TIMEOUT ${SLIPSTICK_TEST_HANGS})
   endif()
 endfunction()
 include(GoogleTest)

@@ -1,0 +1,14 @@
+"""time_limits_test.py BUILD_FOLDER SECONDS: every test may take so long; limits are for hangs, not for busy machines."""
+
+import json
+import subprocess
+import sys
+
+build, least = sys.argv[1], float(sys.argv[2])
+listing = subprocess.run(["ctest", "--test-dir", build, "--show-only=json-v1"], capture_output=True, text=True, check=True)
+tests = [test for test in json.loads(listing.stdout)["tests"] if not test["name"].endswith("_NOT_BUILT")]
+limits = {test["name"]: next((each["value"] for each in test["properties"] if each["name"] == "TIMEOUT"), 0)
+          for test in tests}
+short = [f"{name}: {limit:g} s" for name, limit in limits.items() if not limit >= least]
+print(f"{len(tests)} tests, {len(short)} of which may take less than {least:g} s", *short[:20], sep="\n")
+sys.exit(1 if short or not tests else 0)
