@@ -148,7 +148,8 @@ def write_data(folder, report):
 def run_render(data_dir, output, save=style.save):
     """Exit code, and what it says; `save` writes the figures. A warning is an error."""
     with redirect_stderr(io.StringIO()) as errors, patch.object(style, "save", save), warnings.catch_warnings():
-        warnings.simplefilter("error")
+        for kind in (UserWarning, RuntimeWarning):
+            warnings.simplefilter("error", kind)
         exit_code = render.main([str(data_dir), "--output", str(output)])
     return exit_code, errors.getvalue()
 
