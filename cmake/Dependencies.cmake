@@ -77,9 +77,10 @@ else()
 python3-h5py (or run `make setup`), or set SLIPSTICK_PYTHON")
 endif()
 
-# Optional: the gates on instructions count with it.
+# Optional: counts instructions.
 find_program(SLIPSTICK_VALGRIND valgrind)
 mark_as_advanced(SLIPSTICK_VALGRIND)
 if(SLIPSTICK_BENCHMARKS AND NOT SLIPSTICK_VALGRIND)
-  slipstick_leave_out("gates on instructions" "valgrind was not found: install valgrind (or run `make setup`)")
+  slipstick_leave_out("counts of instructions, without which gates on them fail"
+    "valgrind was not found: install valgrind (or run `make setup`)")
 endif()
