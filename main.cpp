@@ -29,11 +29,13 @@ using Json = nlohmann::ordered_json;
 using Command = std::function<int(std::ostream&, Json&)>;
 
 void write_json(const std::string& path, const Json& result) {
+  // Names of files need not be UTF-8; JSON is.
+  const std::string text = result.dump(2, ' ', false, Json::error_handler_t::replace);
   if (path == "-") {
-    std::cout << result.dump(2) << '\n';
+    std::cout << text << '\n';
     return;
   }
-  slipstick::convergence::write_option_file("--json", path, result.dump(2) + "\n");
+  slipstick::convergence::write_option_file("--json", path, text + "\n");
 }
 
 int run(int argc, char** argv) {

@@ -7,11 +7,14 @@
 #include <charconv>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
+#include <filesystem>
 #include <fstream>
 #include <functional>
 #include <numbers>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
 #include <utility>
 
 #include "analytic/gsl.hpp"
@@ -25,6 +28,12 @@ using std::numbers::pi;
 /// Below this stick radius the squares of what is as small leave the range of a double; all functions have
 /// long become their leading terms in c, and c^3 has all but underflowed.
 constexpr double kSmallest = 1e-100;
+/// Bytes of a table: a hundred times what resolves any pressure.
+constexpr std::uintmax_t kLargestTable = std::uintmax_t{1} << 20;
+/// Characters of a line that a message shows.
+constexpr std::size_t kMostShown = 200;
+/// Written by some programs at the beginning of a text.
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
 using Points = std::vector<PressurePoint>;
 
@@ -422,14 +431,16 @@ double parse_number(std::string_view text, std::string_view what, const std::str
   double value = 0;
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size())
-    throw std::invalid_argument(fmt::format("{}: {} = {}; allowed: a number", where, what, text));
+    throw std::invalid_argument(
+        fmt::format("{}: {} = {}; allowed: a number", where, what, text.substr(0, kMostShown)));
   return value;
 }
 
 PressurePoint parse_point(std::string_view line, const std::string& where) {
   const auto comma = line.find(',');
   if (comma == std::string_view::npos || line.find(',', comma + 1) != std::string_view::npos)
-    throw std::invalid_argument(fmt::format("{}: {}; allowed: radius,pressure", where, line));
+    throw std::invalid_argument(
+        fmt::format("{}: {}; allowed: radius,pressure", where, line.substr(0, kMostShown)));
   return {.radius = parse_number(trimmed(line.substr(0, comma)), "radius", where),
           .pressure = parse_number(trimmed(line.substr(comma + 1)), "pressure", where)};
 }
@@ -438,6 +449,22 @@ bool is_header(std::string_view line) {
   const auto comma = line.find(',');
   return comma != std::string_view::npos && trimmed(line.substr(0, comma)) == "radius" &&
          trimmed(line.substr(comma + 1)) == "pressure";
+}
+
+/// Folders, devices and pipes have no size.
+std::ifstream open_table(const std::string& file) {
+  std::error_code error;
+  const std::uintmax_t size = std::filesystem::file_size(file, error);
+  std::ifstream stream;
+  if (!error && size <= kLargestTable) stream.open(file);
+  if (!stream.is_open()) {
+    const std::string reason = size > kLargestTable && !error ? "it is larger"
+                               : error                        ? error.message()
+                                                              : "permission denied";
+    throw std::invalid_argument(fmt::format("{}: cannot be read ({}); allowed: a CSV file of at most {} MiB",
+                                            file, reason, kLargestTable >> 20));
+  }
+  return stream;
 }
 
 }  // namespace
@@ -470,14 +497,14 @@ std::vector<double> interpolation_errors(
 }
 
 TabulatedProfile read_tabulated_profile(const std::string& file) {
-  std::ifstream stream(file);
-  if (!stream) throw std::invalid_argument(fmt::format("{}: cannot be read", file));
+  std::ifstream stream = open_table(file);
   Points points;
   std::vector<std::size_t> lines;
   std::size_t number = 0;
   const auto at_line = [&](std::size_t line) { return fmt::format("{}:{}", file, line); };
   for (std::string text; std::getline(stream, text);) {
     ++number;
+    if (number == 1 && text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
     const std::string_view line = trimmed(text);
     if (line.empty() || line.front() == '#' || (points.empty() && is_header(line))) continue;
     points.push_back(parse_point(line, at_line(number)));

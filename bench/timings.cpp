@@ -6,16 +6,15 @@
 #include <array>
 #include <cctype>
 #include <cmath>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
-#include <sstream>
 #include <string_view>
 #include <tuple>
 #include <utility>
 
 #include "solver/input_error.hpp"
+#include "solver/input_file.hpp"
 
 namespace slipstick::bench {
 namespace {
@@ -252,17 +251,6 @@ std::vector<TimedBenchmark> read_benchmarks(const Json& rows, const std::string&
   return std::move(gathering).take();
 }
 
-std::string read_text(const std::filesystem::path& file) {
-  if (std::filesystem::is_directory(file)) {
-    throw InputError(file.string(), fmt::format("is a folder; allowed: {}", kAllowed));
-  }
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(file.string(), fmt::format("cannot be read; allowed: {}", kAllowed));
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
 }  // namespace
 
 const TimedBenchmark* find(const Timings& timings, const std::string& name) {
@@ -283,6 +271,8 @@ Json parse_benchmark_json(const std::string& text, const std::string& source) {
     json = Json::parse(without_bare_nans(text));
   } catch (const Json::parse_error& error) {
     throw InputError(source, fmt::format("is no whole JSON (at byte {}); allowed: {}", error.byte, kAllowed));
+  } catch (const Json::exception& error) {  // a number out of range
+    throw InputError(source, fmt::format("is no JSON ({}); allowed: {}", error.what(), kAllowed));
   }
   const auto is = [&](const char* key, Json::value_t type) {
     return json.is_object() && json.contains(key) && json[key].type() == type;
@@ -303,7 +293,7 @@ Timings parse_timings(const std::string& text, const std::string& source) {
 }
 
 Timings read_timings(const std::filesystem::path& file) {
-  return parse_timings(read_text(file), file.string());
+  return parse_timings(solver::read_input_file(file, solver::kLargestJson, kAllowed), file.string());
 }
 
 }  // namespace slipstick::bench

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <fstream>
 #include <map>
 #include <optional>
 #include <set>
@@ -14,6 +13,7 @@
 #include "convergence/budget.hpp"
 #include "convergence/study.hpp"
 #include "solver/input_error.hpp"
+#include "solver/input_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -96,13 +96,10 @@ void judge_studies(const std::vector<Gate>& gates, PointRunner& runner, Judgemen
 
 Json read_result(const Gate& gate) {
   const std::string made_by = gate.made_by.empty() ? "" : "; it is made by: " + gate.made_by;
-  std::ifstream stream(gate.source);
-  if (!stream) {
-    throw InputError(gate.source.string(), "cannot be read; allowed: a result file (JSON)" + made_by);
-  }
   try {
-    return Json::parse(stream);
-  } catch (const Json::parse_error& error) {
+    return Json::parse(
+        solver::read_input_file(gate.source, solver::kLargestJson, "a result file (JSON)" + made_by));
+  } catch (const Json::exception& error) {
     throw InputError(gate.source.string(), fmt::format("is not JSON ({}){}", error.what(), made_by));
   }
 }

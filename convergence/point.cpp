@@ -5,13 +5,12 @@
 
 #include <algorithm>
 #include <cfenv>
-#include <fstream>
 #include <memory>
-#include <sstream>
 #include <utility>
 
 #include "convergence/result.hpp"
 #include "solver/input_error.hpp"
+#include "solver/input_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -48,10 +47,7 @@ solver::Solution solve_rounded(const Point& point, const solver::Scene& scene,
 }  // namespace
 
 std::string read_text(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
+  return solver::read_input_file(file, solver::kLargestTable, "a file of at most a gigabyte");
 }
 
 std::string cells_override(const solver::Scene& scene, solver::Index across) {

@@ -18,6 +18,9 @@ constexpr double kLeastCells = 8.0;
 constexpr double kMostCells = 16384.0;
 /// More say nothing new about the spread.
 constexpr double kMostShifts = 32.0;
+/// Solves of a study, tightened and rounded ones not counted: more take days, and a wrong list may ask for
+/// billions.
+constexpr double kMostSolves = 10'000.0;
 
 std::vector<Index> read_cells(SceneReader& reader) {
   std::vector<Index> cells;
@@ -53,6 +56,20 @@ std::vector<std::string> read_quantities(SceneReader& reader) {
   return quantities;
 }
 
+void require_finite(const std::filesystem::path& file, const Study& study) {
+  const auto at_least_one = [](std::size_t count) {
+    return static_cast<double>(std::max<std::size_t>(1, count));
+  };
+  double solves = at_least_one(study.cells.size()) * at_least_one(study.tolerances.size()) * study.shifts;
+  for (const Variation& variation : study.variations) solves *= static_cast<double>(variation.values.size());
+  if (solves > kMostSolves) {
+    throw solver::InputError(file.string(),
+                             fmt::format("asks for {:g} solves; allowed: at most {:g}, cells times "
+                                         "shifts times tolerances times the values of each [[vary]]",
+                                         solves, kMostSolves));
+  }
+}
+
 }  // namespace
 
 Study read_study(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
@@ -74,6 +91,7 @@ Study read_study(const std::filesystem::path& file, const std::vector<std::strin
     throw solver::InputError(file.string(),
                              "nothing varies; allowed: several cells, several tolerances, or [[vary]]");
   }
+  require_finite(file, study);
   return study;
 }
 

@@ -7,15 +7,16 @@
 #include <hdf5_hl.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <fstream>
 #include <limits>
-#include <sstream>
+#include <string_view>
 #include <utility>
 
+#include "solver/dataset_reader.hpp"
 #include "solver/input_error.hpp"
+#include "solver/input_file.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -25,16 +26,22 @@ using std::filesystem::path;
 
 bool is_hdf5(const path& file) { return file.extension() == ".h5" || file.extension() == ".hdf5"; }
 
-/// An open HDF5 file; the library's own messages stay off the terminal.
+/// Rows of a table are cells of a contact, of 4,096 x 4,096 at most; heights of a map are cells of a grid. A
+/// solve on more takes tens of gigabytes.
+constexpr Index kMostRows = Index{1} << 24;
+constexpr Index kMostHeights = Index{1} << 26;
+/// Values on a line: as many as a grid has cells along a side.
+constexpr std::size_t kMostColumns = 65536;
+/// Written by some programs at the beginning of a text.
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+/// A new HDF5 file.
 class Hdf5File {
  public:
-  enum class Mode { read, create };
-  Hdf5File(const path& file, Mode mode) : file_(file) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    id_ = mode == Mode::read ? H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT)
-                             : H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-    if (id_ < 0)
-      throw InputError(file.string(), mode == Mode::read ? "cannot be read as HDF5" : "cannot be written");
+  explicit Hdf5File(const path& file) : file_(file) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the library's own messages stay off the terminal
+    id_ = H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    if (id_ < 0) throw InputError(file.string(), "cannot be written");
   }
   ~Hdf5File() { H5Fclose(id_); }
   Hdf5File(const Hdf5File&) = delete;
@@ -42,123 +49,133 @@ class Hdf5File {
 
   void write(const std::string& name, const ArrayXd& values) {
     const auto size = static_cast<hsize_t>(values.size());
-    require(H5LTmake_dataset_double(id_, name.c_str(), 1, &size, values.data()) >= 0, name,
-            "cannot be written");
-  }
-
-  /// A dataset of one or two dimensions, as rows x columns with rows of one another in memory.
-  Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> read(const std::string& name,
-                                                                             int rank) {
-    int found_rank = 0;
-    require(H5LTfind_dataset(id_, name.c_str()) == 1 &&
-                H5LTget_dataset_ndims(id_, name.c_str(), &found_rank) >= 0,
-            name, "no such dataset");
-    require(found_rank == rank, name, fmt::format("has {} dimensions; allowed: {}", found_rank, rank));
-    std::array<hsize_t, 2> size{1, 1};
-    require(H5LTget_dataset_info(id_, name.c_str(), size.data(), nullptr, nullptr) >= 0, name,
-            "cannot be read");
-    Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> values(static_cast<Index>(size[0]),
-                                                                                 static_cast<Index>(size[1]));
-    require(H5LTread_dataset_double(id_, name.c_str(), values.data()) >= 0, name,
-            "cannot be read as numbers");
-    return values;
+    if (H5LTmake_dataset_double(id_, name.c_str(), 1, &size, values.data()) < 0) {
+      throw InputError(fmt::format("{}: dataset {}", file_.string(), name), "cannot be written");
+    }
   }
 
  private:
-  void require(bool good, const std::string& name, const std::string& complaint) const {
-    if (!good) throw InputError(fmt::format("{}: dataset {}", file_.string(), name), complaint);
-  }
   path file_;
   hid_t id_ = -1;
 };
 
-std::ifstream open_text(const path& file) {
-  std::ifstream stream(file);
-  if (!stream || std::filesystem::is_directory(file)) throw InputError(file.string(), "cannot be read");
-  return stream;
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kAround = " \t\r\"";
+  const auto first = text.find_first_not_of(kAround);
+  return first == std::string_view::npos ? std::string_view()
+                                         : text.substr(first, text.find_last_not_of(kAround) - first + 1);
 }
 
-std::vector<std::string> split(const std::string& line) {
-  std::vector<std::string> parts;
-  std::istringstream stream(line);
-  for (std::string part; std::getline(stream, part, ',');) {
-    const auto first = part.find_first_not_of(" \t\r\"");
-    const auto last = part.find_last_not_of(" \t\r\"");
-    parts.push_back(first == std::string::npos ? "" : part.substr(first, last - first + 1));
+/// The text of a CSV file, line by line. Lines without anything are skipped.
+class CsvFile {
+ public:
+  explicit CsvFile(const path& file)
+      : file_(file),
+        text_(read_input_file(file, kLargestTable, "a CSV file, or an HDF5 file named .h5 or .hdf5")) {
+    if (text_.starts_with(kByteOrderMark)) next_ = kByteOrderMark.size();
   }
-  return parts;
-}
 
-double parse_number(const std::string& text, const path& file, std::size_t line) {
-  char* end = nullptr;
-  const double value = std::strtod(text.c_str(), &end);
-  if (text.empty() || *end != '\0' || !std::isfinite(value)) {
-    throw InputError(fmt::format("{}:{}", file.string(), line),
-                     fmt::format("\"{}\"; allowed: a finite number", text));
-  }
-  return value;
-}
-
-/// NaN for one that is missing.
-double parse_height(const std::string& text, const path& file, std::size_t line) {
-  const bool missing = text.empty() || text == "nan" || text == "NaN" || text == "NAN";
-  return missing ? std::numeric_limits<double>::quiet_NaN() : parse_number(text, file, line);
-}
-
-/// Rows of numbers, all of one length, from line `first_line` on; empty lines are skipped.
-template <typename Parse>
-std::vector<std::vector<double>> read_rows(std::ifstream& stream, const path& file, std::size_t first_line,
-                                           const Parse& parse) {
-  std::vector<std::vector<double>> rows;
-  std::size_t line_number = first_line;
-  for (std::string line; std::getline(stream, line); ++line_number) {
-    if (line.find_first_not_of(" \t\r") == std::string::npos) continue;
-    std::vector<double> row;
-    for (const std::string& part : split(line)) row.push_back(parse(part, file, line_number));
-    if (!rows.empty() && row.size() != rows.front().size()) {
-      throw InputError(
-          fmt::format("{}:{}", file.string(), line_number),
-          fmt::format("{} values; allowed: {}, as in the rows before", row.size(), rows.front().size()));
+  /// The values of the next line as text; none at the end. They stay until the next call.
+  const std::vector<std::string_view>& next_line() {
+    values_.clear();
+    while (values_.empty() && next_ < text_.size()) {
+      const std::size_t end = std::min(text_.find('\n', next_), text_.size());
+      const std::string_view line = std::string_view(text_).substr(next_, end - next_);
+      next_ = end + 1;
+      ++line_;
+      split(line);
     }
-    rows.push_back(std::move(row));
+    return values_;
   }
-  if (rows.empty()) throw InputError(file.string(), "holds no rows of numbers");
-  return rows;
-}
 
-std::vector<Column> read_csv_columns(const path& file, const std::vector<std::string>& names) {
-  std::ifstream stream = open_text(file);
-  std::string line;
-  std::getline(stream, line);
-  const std::vector<std::string> header = split(line);
+  double number(std::string_view text) const {
+    // The text ends with a separator or, after the last, with a zero: where strtod stops.
+    char* end = nullptr;
+    const double value = text.empty() ? NAN : std::strtod(text.data(), &end);
+    if (end != text.data() + text.size() || !std::isfinite(value)) {
+      fail(fmt::format("\"{}\"; allowed: a finite number", shown(text)));
+    }
+    return value;
+  }
+
+  /// NaN for one that is missing.
+  double height(std::string_view text) const {
+    const bool missing = text.empty() || text == "nan" || text == "NaN" || text == "NAN";
+    return missing ? std::numeric_limits<double>::quiet_NaN() : number(text);
+  }
+
+  [[noreturn]] void fail(const std::string& complaint) const {
+    throw InputError(fmt::format("{}:{}", file_.string(), line_), complaint);
+  }
+
+ private:
+  /// A separator at the end of the line is followed by nothing.
+  void split(std::string_view line) {
+    if (line.find_first_not_of(" \t\r") == std::string_view::npos) return;
+    for (std::size_t first = 0; first < line.size();) {
+      if (values_.size() == kMostColumns) fail(fmt::format("more than {} values", kMostColumns));
+      const std::size_t comma = std::min(line.find(',', first), line.size());
+      values_.push_back(trimmed(line.substr(first, comma - first)));
+      first = comma + 1;
+    }
+  }
+
+  const path& file_;
+  std::string text_;
+  std::size_t next_ = 0;
+  std::size_t line_ = 0;
+  std::vector<std::string_view> values_;
+};
+
+/// The place of each name in a header.
+std::vector<std::size_t> find_columns(const path& file, const std::vector<std::string>& names,
+                                      const std::vector<std::string_view>& header) {
+  if (header.empty())
+    throw InputError(file.string(), "is empty; allowed: a header line and a row for each cell");
   std::vector<std::size_t> positions;
   for (const std::string& name : names) {
     const auto found = std::find(header.begin(), header.end(), name);
     if (found == header.end()) {
-      throw InputError(file.string(),
-                       fmt::format("has no column {}; its columns: {}", name, fmt::join(header, ", ")));
+      throw InputError(file.string(), fmt::format("has no column {}; its columns: {}", name,
+                                                  shown(fmt::format("{}", fmt::join(header, ", ")))));
+    }
+    if (std::find(found + 1, header.end(), name) != header.end()) {
+      throw InputError(file.string(), fmt::format("has two columns {}; allowed: one", name));
     }
     positions.push_back(static_cast<std::size_t>(found - header.begin()));
   }
-  const auto rows = read_rows(stream, file, 2, parse_number);
-  if (rows.front().size() != header.size()) {
-    throw InputError(fmt::format("{}:2", file.string()),
-                     fmt::format("{} values; allowed: {}, one a column", rows.front().size(), header.size()));
+  return positions;
+}
+
+std::vector<Column> read_csv_columns(const path& file, const std::vector<std::string>& names) {
+  CsvFile csv(file);
+  const std::vector<std::string_view> header = csv.next_line();
+  const std::vector<std::size_t> positions = find_columns(file, names, header);
+  std::vector<std::vector<double>> values(names.size());
+  for (;;) {
+    const std::vector<std::string_view>& row = csv.next_line();
+    if (row.empty()) break;
+    if (row.size() != header.size()) {
+      csv.fail(fmt::format("{} values; allowed: {}, one a column", row.size(), header.size()));
+    }
+    if (static_cast<Index>(values[0].size()) == kMostRows)
+      csv.fail(fmt::format("more than {} rows", kMostRows));
+    for (std::size_t c = 0; c < names.size(); ++c) values[c].push_back(csv.number(row[positions[c]]));
   }
+  if (values[0].empty()) throw InputError(file.string(), "holds no rows of numbers");
   std::vector<Column> columns;
   for (std::size_t c = 0; c < names.size(); ++c) {
-    ArrayXd values(static_cast<Index>(rows.size()));
-    for (std::size_t r = 0; r < rows.size(); ++r) values[static_cast<Index>(r)] = rows[r][positions[c]];
-    columns.push_back({names[c], std::move(values)});
+    columns.push_back({names[c], ArrayXd::Map(values[c].data(), static_cast<Index>(values[c].size()))});
   }
   return columns;
 }
 
 std::vector<Column> read_hdf5_columns(const path& file, const std::vector<std::string>& names) {
-  Hdf5File hdf5(file, Hdf5File::Mode::read);
+  const std::vector<Dataset> datasets = read_datasets(file, names, 1, kMostRows);
   std::vector<Column> columns;
-  for (const std::string& name : names) {
-    columns.push_back({name, hdf5.read(name, 1).col(0)});
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    const std::string& name = names[c];
+    columns.push_back({name, datasets[c].col(0)});
     const ArrayXd& values = columns.back().values;
     if (values.size() != columns.front().values.size()) {
       throw InputError(file.string(),
@@ -230,16 +247,24 @@ std::vector<Column> read_columns(const path& file, const std::vector<std::string
 }
 
 Eigen::ArrayXXd read_height_map(const path& file) {
-  if (is_hdf5(file)) return Hdf5File(file, Hdf5File::Mode::read).read("height", 2);
-  std::ifstream stream = open_text(file);
-  const auto rows = read_rows(stream, file, 1, parse_height);
-  Eigen::ArrayXXd heights(static_cast<Index>(rows.size()), static_cast<Index>(rows.front().size()));
-  for (Index i = 0; i < heights.rows(); ++i) {
-    for (Index j = 0; j < heights.cols(); ++j) {
-      heights(i, j) = rows[static_cast<std::size_t>(i)][static_cast<std::size_t>(j)];
+  if (is_hdf5(file)) return read_datasets(file, {"height"}, 2, kMostHeights).front();
+  CsvFile csv(file);
+  std::vector<double> heights;
+  std::size_t columns = 0;
+  for (;;) {
+    const std::vector<std::string_view>& row = csv.next_line();
+    if (row.empty()) break;
+    if (heights.empty()) columns = row.size();
+    if (row.size() != columns) {
+      csv.fail(fmt::format("{} values; allowed: {}, as in the rows before", row.size(), columns));
     }
+    if (static_cast<Index>(heights.size() + columns) > kMostHeights)
+      csv.fail(fmt::format("more than {} values", kMostHeights));
+    for (const std::string_view text : row) heights.push_back(csv.height(text));
   }
-  return heights;
+  if (heights.empty()) throw InputError(file.string(), "holds no rows of numbers");
+  return Eigen::Map<const Dataset>(heights.data(), static_cast<Index>(heights.size() / columns),
+                                   static_cast<Index>(columns));
 }
 
 void require_field_format(const path& file) {
@@ -254,7 +279,7 @@ void write_fields(const path& file, const Grid& grid, const std::vector<Column>&
   if (file.extension() == ".vti") {
     write_vti(file, grid, columns);
   } else if (is_hdf5(file)) {
-    Hdf5File hdf5(file, Hdf5File::Mode::create);
+    Hdf5File hdf5(file);
     for (const Column& column : kept_rows(columns, keep)) hdf5.write(column.name, column.values);
   } else {
     write_csv(file, kept_rows(columns, keep));

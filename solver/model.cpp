@@ -23,6 +23,8 @@ constexpr double kFieldsHeld = 24.0;
 constexpr double kPaperFields = 20.0;
 /// Cells left free on each side of the expected contact where the scene does not give an extent.
 constexpr double kMarginCells = 2.0;
+/// With cells longer than so many times their width every method crawls.
+constexpr double kMostSlender = 1000.0;
 
 HalfSpace half_space(const Material& material) {
   return {0.5 * material.young_modulus / (1.0 + material.poisson_ratio), material.poisson_ratio};
@@ -61,6 +63,14 @@ void require_extent(const Scene& scene, const std::vector<Surface>& surfaces,
                                2.0 * (*expected)[0], 2.0 * (*expected)[1]));
 }
 
+Grid require_not_slender(const Scene& scene, const Grid& grid) {
+  const double slender = grid.h1 / grid.h2;
+  if (slender <= kMostSlender && slender >= 1.0 / kMostSlender) return grid;
+  throw InputError(scene.source.string(), "grid.cells", fmt::format("[{}, {}]", grid.n1, grid.n2),
+                   fmt::format("cells at most {} times as long as wide; these are {:.4g} x {:.4g}",
+                               kMostSlender, grid.h1, grid.h2));
+}
+
 Grid make_grid(const Scene& scene, const std::vector<Surface>& surfaces, double effective_modulus) {
   if (const auto grid = height_map_grid(surfaces)) {
     const std::array<Index, 2> samples{grid->n1, grid->n2};
@@ -70,7 +80,7 @@ Grid make_grid(const Scene& scene, const std::vector<Surface>& surfaces, double 
                        fmt::format("[{}, {}], the samples in {}, or left out", samples[0], samples[1],
                                    find_height_map(surfaces)->file.string()));
     }
-    return *grid;
+    return require_not_slender(scene, *grid);
   }
   const auto load = largest_normal(scene);
   const auto expected =
@@ -85,8 +95,18 @@ Grid make_grid(const Scene& scene, const std::vector<Surface>& surfaces, double 
     const auto cells = static_cast<double>(scene.cells[i]);
     const double margin = std::min(kMarginCells, cells / 8.0);
     h[i] = scene.extent ? (*scene.extent)[i] / cells : 2.0 * (*expected)[i] / (cells - 2.0 * margin);
+    if (scene.extent && expected && surfaces.size() == 1 && scene.cells[i] > 1 &&
+        h[i] > 2.0 * (*expected)[i]) {
+      throw InputError(
+          scene.source.string(), "grid.extent",
+          fmt::format("[{}, {}]", (*scene.extent)[0], (*scene.extent)[1]),
+          fmt::format("at most {:.2g} times the contact, about {:.4g} x {:.4g}, which fills less than "
+                      "one of [{}, {}] cells; or left out",
+                      0.5 * cells, 2.0 * (*expected)[0], 2.0 * (*expected)[1], scene.cells[0],
+                      scene.cells[1]));
+    }
   }
-  return {scene.cells[0], scene.cells[1], h[0], h[1]};
+  return require_not_slender(scene, {scene.cells[0], scene.cells[1], h[0], h[1]});
 }
 
 /// Undeformed gap on the dimensionless grid.

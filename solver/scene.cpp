@@ -32,6 +32,8 @@ const Words<Precision> kPrecisions{{"double", Precision::double_precision}, {"mi
 
 const Range kRatio{"above -1 and below 1 (1 is gross slip)", [](double x) { return x > -1.0 && x < 1.0; }};
 const Range kPoisson{"from 0 to 0.5", [](double x) { return x >= 0.0 && x <= 0.5; }};
+/// A step's result stays in memory to the end: some ten kilobytes.
+constexpr std::size_t kMostSteps = 100'000;
 const Range kTolerance{"from 1e-15 to below 1", [](double x) { return x >= 1e-15 && x < 1.0; }};
 
 Material read_material(SceneReader& reader, const std::string& body) {
@@ -87,6 +89,9 @@ std::vector<Step> read_steps(SceneReader& reader, bool needs_normal) {
   read_loads(reader, "load", load);
   std::vector<Step> steps;
   const std::size_t count = reader.count("step");
+  if (count > kMostSteps) {
+    reader.fail("step", fmt::format("{} tables", count), fmt::format("at most {}", kMostSteps));
+  }
   for (std::size_t i = 0; i < count; ++i) {
     Step step = steps.empty() ? load : steps.back();
     read_loads(reader, fmt::format("step[{}]", i), step);
@@ -182,7 +187,10 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
 
   scene.steps = read_steps(reader, scene.pressure != PressureModel::file);
   if (scene.steps.size() > 1 || reader.has("cycles")) {
-    scene.cycles = static_cast<int>(reader.number_or("cycles", 1, whole(1, 1e6)));
+    const auto most = static_cast<double>(kMostSteps / scene.steps.size());
+    Range cycles = whole(1, most);
+    cycles.words += fmt::format(", {} steps in all", kMostSteps);
+    scene.cycles = static_cast<int>(reader.number_or("cycles", 1, cycles));
   }
 
   scene.cells = read_cells(reader, scene.surfaces);

@@ -5,10 +5,10 @@
 
 #include <algorithm>
 #include <cstdint>
-#include <fstream>
 #include <sstream>
 
 #include "solver/input_error.hpp"
+#include "solver/input_file.hpp"
 #include "solver/misspelling.hpp"
 
 namespace slipstick::solver {
@@ -16,21 +16,42 @@ namespace {
 
 /// Edits that make a key look like a misspelling of another.
 constexpr std::size_t kMisspelling = 3;
+/// Parts of a dotted key. No key that is read has more than five.
+constexpr std::size_t kMostKeyParts = 256;
 
 std::string read_text(const std::filesystem::path& file) {
-  if (std::filesystem::is_directory(file))
-    throw InputError(file.string(), "is a folder; allowed: a TOML file");
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw InputError(file.string(), "cannot be read; allowed: a TOML file");
-  std::ostringstream text;
-  text << stream.rdbuf();
-  if (text.str().find('\0') != std::string::npos) {
+  const std::string text = read_input_file(file, kLargestSettings, "a TOML file");
+  if (text.find('\0') != std::string::npos) {
     throw InputError(file.string(), "is a binary file; allowed: a TOML file");
   }
-  return text.str();
+  return text;
+}
+
+/// Tables in tables end one another recursively: a key of a million parts would overrun the stack. Parts are
+/// told by their dots, wherever these stand: no other text has so many on a line with nothing else between.
+void require_short_keys(const std::string& text, const std::string& file) {
+  std::size_t line = 1;
+  std::size_t parts = 1;
+  bool after_dot = false;
+  for (const char c : text) {
+    if (c == '.') {
+      after_dot = true;
+    } else if (c == '\n' || c == '=' || c == ',') {
+      if (c == '\n') ++line;
+      parts = 1;
+      after_dot = false;
+    } else if (after_dot && c != ' ' && c != '\t') {
+      after_dot = false;
+      if (++parts > kMostKeyParts) {
+        throw InputError(fmt::format("{}:{}", file, line),
+                         fmt::format("a key of more than {0} parts; allowed: {0}", kMostKeyParts));
+      }
+    }
+  }
 }
 
 toml::table parse(const std::string& text, const std::string& file) {
+  require_short_keys(text, file);
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
@@ -49,6 +70,14 @@ std::string print(const toml::node& node) {
   std::ostringstream text;
   text << toml::node_view<const toml::node>(node);
   return text.str();
+}
+
+/// Nothing where it is no number. Whole numbers of more than 53 bits are rounded: toml++ has no double for
+/// them.
+std::optional<double> number_of(const toml::node& node) {
+  if (const auto* const whole = node.as_integer()) return static_cast<double>(whole->get());
+  if (const auto* const number = node.as_floating_point()) return number->get();
+  return std::nullopt;
 }
 
 bool is_array_of_tables(const toml::node& node) {
@@ -121,6 +150,9 @@ void SceneReader::apply_override(const std::string& assignment) {
   std::string part;
   std::vector<std::string> parts;
   while (std::getline(path, part, '.')) parts.push_back(part);
+  if (parts.empty() || parts.size() > kMostKeyParts) {
+    throw InputError(source, fmt::format("allowed: a key of 1 to {} parts", kMostKeyParts));
+  }
   for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
     table = table_below(*table, parts[i]);
     if (table == nullptr) {
@@ -208,9 +240,9 @@ std::size_t SceneReader::count(const std::string& key) {
 std::optional<double> SceneReader::find_number(const std::string& key, const Range& range) {
   const auto found = node(key);
   if (!found) return std::nullopt;
-  if (!found.is_number()) fail(key, print(*found.node()), fmt::format("a number, {}", range.words));
-  const double value = *found.value<double>();
-  if (!range.contains(value)) fail(key, print(*found.node()), range.words);
+  const auto value = number_of(*found.node());
+  if (!value) fail(key, print(*found.node()), fmt::format("a number, {}", range.words));
+  if (!range.contains(*value)) fail(key, print(*found.node()), range.words);
   return value;
 }
 
@@ -232,9 +264,8 @@ std::optional<std::array<double, 2>> SceneReader::find_pair(const std::string& k
   if (array == nullptr || array->size() != 2) fail(key, print(*found.node()), allowed);
   std::array<double, 2> pair{};
   for (std::size_t i = 0; i < 2; ++i) {
-    const auto value = (*array)[i].value<double>();
-    if (!value || !(*array)[i].is_number() || !range.contains(*value))
-      fail(key, print(*found.node()), allowed);
+    const auto value = number_of((*array)[i]);
+    if (!value || !range.contains(*value)) fail(key, print(*found.node()), allowed);
     pair[i] = *value;
   }
   return pair;

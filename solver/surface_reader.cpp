@@ -19,8 +19,10 @@ const Words<double> kHeightUnits{{"m", 1.0}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 
 /// Powers of a cell's size stay within double precision.
 const Range kExponent{"from 1 to 20", [](double x) { return x >= 1.0 && x <= 20.0; }};
 const Range kHurst{"above 0, at most 1", [](double x) { return x > 0.0 && x <= 1.0; }};
-/// Whole numbers that TOML readers and double precision have alike.
-const Range kSeed = whole(0, 0x1p53);
+/// Whole numbers that TOML readers and double precision have alike; one more and its neighbour would be one.
+const Range kSeed = whole(0, 0x1p53 - 1.0);
+/// Each takes a field over the grid.
+constexpr std::size_t kMostShapes = 1000;
 
 Roughness read_roughness(SceneReader& reader, const std::string& table) {
   Roughness roughness;
@@ -100,7 +102,11 @@ std::string to_string(Shape shape) { return word_of(kShapes, shape); }
 std::vector<Surface> read_surfaces(SceneReader& reader) {
   if (!reader.is_array("upper.shape")) return {read_surface(reader, "upper")};
   std::vector<Surface> surfaces;
-  for (std::size_t i = 0; i < reader.count("upper.shape"); ++i) {
+  const std::size_t count = reader.count("upper.shape");
+  if (count > kMostShapes) {
+    reader.fail("upper.shape", fmt::format("{} tables", count), fmt::format("at most {}", kMostShapes));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
     surfaces.push_back(read_surface(reader, fmt::format("upper.shape[{}]", i)));
   }
   return surfaces;

@@ -7,11 +7,12 @@
 #include <cstdlib>
 #include <fstream>
 #include <memory>
-#include <sstream>
 #include <system_error>
 #include <utility>
 
 #include "solver/input_error.hpp"
+#include "solver/input_file.hpp"
+#include "solver/run_apart.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -31,13 +32,21 @@ std::string known() {
   return text(fftw_export_wisdom_to_string()) + "\n" + text(fftwf_export_wisdom_to_string()) + "\n";
 }
 
+/// Over some damaged files FFTW ends the process: so another one tries first.
 bool import(const fs::path& file) {
-  std::ostringstream stream;
-  stream << std::ifstream(file).rdbuf();
-  const std::string text = stream.str();
+  const std::string text = read_input_file(file, kLargestSettings, "a file of FFTW's wisdom");
   const std::size_t single = text.find("(fftw-", 1);
-  return single != std::string::npos && fftw_import_wisdom_from_string(text.substr(0, single).c_str()) == 1 &&
-         fftwf_import_wisdom_from_string(text.substr(single).c_str()) == 1;
+  if (single == std::string::npos) return false;
+  const auto import_text = [&] {
+    return fftw_import_wisdom_from_string(text.substr(0, single).c_str()) == 1 &&
+           fftwf_import_wisdom_from_string(text.substr(single).c_str()) == 1;
+  };
+  const std::string tried = run_apart(
+      [&](const Send& send) {
+        if (import_text()) send("+", 1);
+      },
+      1);
+  return !tried.empty() && import_text();
 }
 
 [[noreturn]] void fail(const fs::path& file, const std::string& complaint) {

@@ -438,6 +438,19 @@ TEST_F(TableFile, IsRefusedByLine) {
   expect_refused("", "", "0 points; allowed: at least 16");
 }
 
+TEST_F(TableFile, IsAFileThatEnds) {
+  for (const std::string file : {"/dev/zero", "/", "/no/such/file"}) {
+    EXPECT_THAT(
+        [&] { read_tabulated_profile(file); },
+        ThrowsMessage<std::invalid_argument>(AllOf(HasSubstr(file), HasSubstr("allowed: a CSV file"))));
+  }
+  expect_refused(std::string((1 << 20) + 1, ' '), "", "it is larger");
+}
+
+TEST_F(TableFile, MayBeginWithAByteOrderMark) {
+  EXPECT_EQ(read_tabulated_profile(holding("\xEF\xBB\xBFradius,pressure\n0,3\n1,2\n2,1\n3,0\n")).radius, 3);
+}
+
 TEST(TableFiles, ThatAreNotThereAreNamed) {
   EXPECT_THAT([] { read_tabulated_profile("no/such/table.csv"); },
               ThrowsMessage<std::invalid_argument>(HasSubstr("no/such/table.csv: cannot be read")));

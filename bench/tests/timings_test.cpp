@@ -36,6 +36,11 @@ std::string complaint(const std::string& text) {
   return "none";
 }
 
+TEST(Timings, NumbersThatNoDoubleHoldsAreRefused) {
+  EXPECT_THAT(complaint(R"({"context": {}, "benchmarks": [{"name": "a", "real_time": 1e400}]})"),
+              AllOf(HasSubstr("file.json"), HasSubstr("1e400")));
+}
+
 std::vector<std::string> names(const Timings& timings) {
   std::vector<std::string> names;
   for (const TimedBenchmark& benchmark : timings.benchmarks) names.push_back(benchmark.name);

@@ -30,6 +30,11 @@ constexpr double kTightestTolerance = 1e-14;
 /// the fewest cells on which it does.
 constexpr double kMarginCells = 4.0;
 constexpr Index kFewestCells = 16;
+/// Cells across the contact on the coarse grid that it is first looked at on: with fewer the extent is so
+/// much too large that the grids that follow would have no end, and how large the contact is cannot be told.
+constexpr double kLeastAcross = 3.0;
+/// What is recommended in its place.
+constexpr double kWellAcross = 0.5 * static_cast<double>(kReferenceCells);
 
 /// The key whose file says the grid; null where it is free.
 const char* grid_owner(const Scene& scene) {
@@ -39,6 +44,18 @@ const char* grid_owner(const Scene& scene) {
 
 bool brings_torsion(const solver::TorsionLoad& load) {
   return load.twist || load.moment_ratio.value_or(load.moment.value_or(0.0)) != 0.0;
+}
+
+/// Of a scene whose grid is free.
+void require_contact_seen(const Scene& scene, double pressed, double cells_across) {
+  if (cells_across >= kLeastAcross) return;
+  throw InputError(
+      scene.source.string(), "grid.extent",
+      scene.extent ? fmt::format("[{}, {}]", (*scene.extent)[0], (*scene.extent)[1]) : "(missing)",
+      fmt::format(
+          "at most about {:.2g} times as long and wide, {}: of {} cells along its longer side the contact "
+          "fills {} in all, too few to choose a mesh by",
+          cells_across / kWellAcross, scene.extent ? "or left out" : "given", kReferenceCells, pressed));
 }
 
 std::string shortest(double value) { return fmt::format("{:g}", value); }
@@ -124,9 +141,11 @@ ContactOnGrid contact_on_grid(const Scene& scene) {
   const solver::NormalSolution normal = solver::find_pressure(coarse, model, step);
   solver::require_contact_within_grid(coarse, model, step, normal);
   const auto pressed = static_cast<double>((normal.pressure > 0.0).count());
+  const double across = 2.0 * std::sqrt(pressed / M_PI);
+  require_contact_seen(scene, pressed, across);
   return {.longer = static_cast<double>(kReferenceCells),
           .margin = scene.extent ? 0.0 : kMarginCells,
-          .cells_across = 2.0 * std::sqrt(pressed / M_PI)};
+          .cells_across = across};
 }
 
 Index cells_for(const ContactOnGrid& contact, double across) {

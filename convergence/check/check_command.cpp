@@ -1,5 +1,8 @@
 #include "convergence/check/check_command.hpp"
 
+#include <fmt/core.h>
+
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -7,6 +10,7 @@
 #include <vector>
 
 #include "convergence/check/check.hpp"
+#include "solver/input_error.hpp"
 #include "solver/scene.hpp"
 
 namespace slipstick::convergence {
@@ -20,6 +24,9 @@ struct Options {
 };
 
 int run(const Options& options, std::ostream& text, Json& result) {
+  if (options.twist && !std::isfinite(*options.twist)) {
+    throw solver::InputError(fmt::format("--twist {}", *options.twist), "allowed: a finite number, in rad");
+  }
   result = check_field(solver::read_scene(options.scene, options.overrides), options.field, options.twist);
   text << check_text(result);
   return result["verdict"] == "good" ? 0 : 1;

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
+#include <optional>
 
 #include "convergence/check/file_precision.hpp"
 #include "solver/input_error.hpp"
@@ -18,8 +20,18 @@ using solver::Index;
 constexpr std::size_t kFewestAcross = 4;
 /// Positions closer than this part of the grid's side are one: no grid has so many cells.
 constexpr double kSamePlace = 1e-6;
-/// Contacts that fill less of their bounding rectangle are taken for a mistake in a position.
-constexpr double kSparsest = 1e-4;
+/// Rough contacts and bodies side by side leave most of their bounding rectangle free. More cells for each
+/// row than these are taken for a mistake in a position, unless the grid is one that is quickly judged.
+constexpr double kMostCellsPerRow = 100.0;
+constexpr double kQuicklyJudged = 65536.0;
+/// Cells longer than so many times their width are taken for a mistake in a column: no contact is so slender.
+constexpr double kMostSlender = 1000.0;
+/// Rows are astray where so few of all lie beyond the widest gap. Where that is so many times as wide as all
+/// places side by side, they are on no contact with the others; where it is so many steps wide and something
+/// does not fit, it is likely them.
+constexpr double kMostAstray = 0.02;
+constexpr double kTimesAcross = 10.0;
+constexpr double kStepsAway = 10.0;
 /// A position may be off its cell's centre by this part of the cell, or by what its digits leave open, as far
 /// as that still tells cells apart.
 constexpr double kOffCentre = 1e-2;
@@ -73,14 +85,46 @@ Axis fit_axis(const std::vector<double>& places) {
   return {x.mean() - k.mean() * spacing, spacing, static_cast<Index>(whole) + 1};
 }
 
+/// The first of a few rows that the widest gap between values parts from all others, if it is wider than so
+/// much.
+std::optional<Index> row_astray(const ArrayXd& values, double distance) {
+  if (values.size() < 2) return std::nullopt;
+  std::vector<Index> rows(static_cast<std::size_t>(values.size()));
+  std::iota(rows.begin(), rows.end(), Index{0});
+  std::ranges::sort(rows, {}, [&](Index row) { return values[row]; });
+  std::size_t widest = 1;
+  const auto gap = [&](std::size_t i) { return values[rows[i]] - values[rows[i - 1]]; };
+  for (std::size_t i = 2; i < rows.size(); ++i) {
+    if (gap(i) > gap(widest)) widest = i;
+  }
+  const auto middle = rows.begin() + static_cast<std::ptrdiff_t>(widest);
+  const bool above = widest > rows.size() / 2;
+  const auto few = static_cast<double>(above ? rows.size() - widest : widest);
+  const bool astray = gap(widest) > distance && few <= kMostAstray * static_cast<double>(rows.size());
+  if (!astray) return std::nullopt;
+  return above ? *std::min_element(middle, rows.end()) : *std::min_element(rows.begin(), middle);
+}
+
 Axis find_axis(const std::filesystem::path& file, const solver::Column& x) {
   const double range = x.values.maxCoeff() - x.values.minCoeff();
   const std::vector<double> places = distinct_places(x.values, kSamePlace * range);
   if (places.size() < kFewestAcross) {
+    const auto astray = row_astray(x.values, 0.0);
     throw solver::InputError(
-        file.string(), fmt::format("column {}: {} different values; allowed: at least {}, one for each row "
-                                   "of cells across the contact",
-                                   x.name, places.size(), kFewestAcross));
+        file.string(),
+        fmt::format(
+            "column {}: {} different values{}; allowed: at least {}, one for each row of cells across "
+            "the contact",
+            x.name, places.size(),
+            astray ? fmt::format(" beside row {}: {}", *astray + 1, x.values[*astray]) : "", kFewestAcross));
+  }
+  const double step = median_step(places);
+  if (const auto far = row_astray(x.values, kTimesAcross * static_cast<double>(places.size()) * step)) {
+    throw solver::InputError(
+        file.string(),
+        fmt::format("row {}: {} = {} is far away from the others; allowed: one row for each cell of "
+                    "the contact, on one regular grid of steps of {:.4g}",
+                    *far + 1, x.name, x.values[*far], step));
   }
   const Axis axis = fit_axis(places);
   const ArrayXd place = (x.values - axis.first) / axis.spacing;
@@ -88,10 +132,36 @@ Axis find_axis(const std::filesystem::path& file, const solver::Column& x) {
   const double off = (place - place.round()).abs().maxCoeff(&worst);
   const double rounding = find_precision(x.values).rounding(x.values).maxCoeff() / axis.spacing;
   if (off <= std::clamp(2.0 * rounding, kOffCentre, kTellsCellsApart)) return axis;
+  worst = row_astray(x.values, kStepsAway * axis.spacing).value_or(worst);
   throw solver::InputError(
       file.string(), fmt::format("row {}: {} = {} is on no regular grid; allowed: about {:.4g} plus a whole "
                                  "number of steps of {:.4g}, as most rows have it",
                                  worst + 1, x.name, x.values[worst], axis.first, axis.spacing));
+}
+
+/// Before anything is held for each cell.
+void require_judgeable(const std::filesystem::path& file, const solver::Column& x1, const Axis& axis1,
+                       const solver::Column& x2, const Axis& axis2) {
+  const auto rows = static_cast<double>(x1.values.size());
+  const double cells = static_cast<double>(axis1.count) * static_cast<double>(axis2.count);
+  const double allowed = std::max(kQuicklyJudged, kMostCellsPerRow * rows);
+  if (cells > allowed) {
+    throw solver::InputError(
+        file.string(),
+        fmt::format(
+            "{} rows on a grid of {} x {} cells of {:.4g} x {:.4g}; allowed: one row for each cell of the "
+            "contact, on one regular grid of at most {:.0f} cells",
+            rows, axis1.count, axis2.count, axis1.spacing, axis2.spacing, allowed));
+  }
+  const double slender = axis1.spacing / axis2.spacing;
+  if (!(slender <= kMostSlender && slender >= 1.0 / kMostSlender)) {
+    throw solver::InputError(
+        file.string(),
+        fmt::format(
+            "row 1: ({}, {}) and those below are cells of {:.4g} x {:.4g}; allowed: one unit of length "
+            "in both columns, and cells at most {} times as long as wide",
+            x1.values[0], x2.values[0], axis1.spacing, axis2.spacing, kMostSlender));
+  }
 }
 
 }  // namespace
@@ -100,14 +170,9 @@ FieldGrid find_field_grid(const std::filesystem::path& file, const solver::Colum
                           const solver::Column& x2) {
   const Axis axis1 = find_axis(file, x1);
   const Axis axis2 = find_axis(file, x2);
+  require_judgeable(file, x1, axis1, x2, axis2);
   FieldGrid found{
       {axis1.count, axis2.count, axis1.spacing, axis2.spacing}, {axis1.centre(), axis2.centre()}, {}};
-  if (static_cast<double>(x1.values.size()) < kSparsest * static_cast<double>(found.grid.cells())) {
-    throw solver::InputError(
-        file.string(), fmt::format("{} rows on a grid of {} x {} cells of {:.4g} x {:.4g}; allowed: one row "
-                                   "for each cell of the contact, on one regular grid",
-                                   x1.values.size(), axis1.count, axis2.count, axis1.spacing, axis2.spacing));
-  }
   std::vector<Index> row_of(static_cast<std::size_t>(found.grid.cells()), -1);
   for (Index row = 0; row < x1.values.size(); ++row) {
     const Index cell =

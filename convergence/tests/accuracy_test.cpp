@@ -309,6 +309,22 @@ TEST(Accuracy, ThatCannotBeAskedForIsExitCode2) {
   refused("honed_surface", "--accuracy 1e-3", "the grid is that of upper.file");
 }
 
+// A contact of millimetres in a square metre: no mesh that resolves it over all of that has an end.
+TEST(Accuracy, NeedsAnExtentInWhichTheContactIsSeen) {
+  const auto is_refused =
+      AllOf(HasSubstr("grid.extent = [1, 1]"), HasSubstr("less than one of [64, 64] cells"));
+  for (const char* options : {"--accuracy 0.1", "--accuracy 0.1 --plan", "--set grid.cells=[64,64]"}) {
+    const ProgramRun out = solve("turned_ellipse", std::string(options) + " --set 'grid.extent=[1, 1]'");
+    EXPECT_EQ(out.exit_code, 2) << options;
+    EXPECT_THAT(out.output, is_refused) << options;
+  }
+  // How large the contact of a sum will be is known after a solve alone.
+  const ProgramRun rough = solve("patches", "--accuracy 0.1 --set 'grid.extent=[1, 1]'");
+  EXPECT_EQ(rough.exit_code, 2);
+  EXPECT_THAT(rough.output,
+              AllOf(HasSubstr("grid.extent = [1, 1]"), HasSubstr("too few to choose a mesh by")));
+}
+
 TEST(Accuracy, SaysWhatItReplaces) {
   const ProgramRun out = solve("paper", "--accuracy 1e-2 --model auto");
   EXPECT_THAT(out.output,

@@ -133,10 +133,39 @@ TEST(FieldGrid, NamesTheRowThatDoesNotFit) {
   EXPECT_THAT(complaint(twice), AllOf(HasSubstr("row 31"), HasSubstr("row 4 again")));
   Positions far = positions(in_disc, 1e-5, 1e-5, 0, 0);
   far.x2.values[5] = 3.0;
-  EXPECT_THAT(complaint(far), HasSubstr("field.csv"));
+  EXPECT_THAT(complaint(far), AllOf(HasSubstr("field.csv"), HasSubstr("row 6: x2 = 3 is far away")));
   const Positions few = positions([](int i, int) { return i < 3; }, 1e-5, 1e-5, 0, 0);
   EXPECT_THAT(complaint(few),
               AllOf(HasSubstr("column x1"), HasSubstr("3 different values"), HasSubstr("at least 4")));
+}
+
+// One digit too many makes a grid of any size: the row is named before anything is held for each cell.
+TEST(FieldGrid, NamesTheRowThatIsFarAway) {
+  const Positions good = positions(in_disc, 1e-5, 1e-5, 1e-6, 1e-6);
+  for (const double factor : {-1e3, 1e3, 1e4, 1e5, 1e6, 1e9, 1e300}) {
+    Positions far = good;
+    far.x1.values[33] *= factor;
+    EXPECT_THAT(complaint(far), AllOf(HasSubstr("row 34"), HasSubstr("x1"), HasSubstr("allowed"))) << factor;
+  }
+}
+
+// Columns in different units.
+TEST(FieldGrid, RefusesCellsThatAreLongAndThin) {
+  for (const double factor : {1e4, 1e9, 1e-4, 1e-9}) {
+    const Positions thin = positions(in_disc, factor * 1e-5, 1e-5, 0, 0);
+    EXPECT_THAT(complaint(thin), AllOf(HasSubstr("row 1: ("), HasSubstr("one unit of length"))) << factor;
+  }
+  EXPECT_EQ(complaint(positions(in_disc, 1e-4, 1e-6, 0, 0)), "");
+}
+
+// Two small patches in opposite corners, a hundred times as far apart as they are wide.
+TEST(FieldGrid, TakesPatchesFarApart) {
+  Positions patches =
+      positions([](int i, int j) { return (i < 4 && j < 3) || (i > 9 && j > 5); }, 1e-5, 1e-5, 0, 0);
+  for (solver::Column* const x : {&patches.x1, &patches.x2}) {
+    x->values = (x->values > 5e-5).select(x->values + 60 * 1e-5, x->values);
+  }
+  EXPECT_EQ(find(patches).grid.n1, 73);
 }
 
 }  // namespace

@@ -709,7 +709,7 @@ TEST_F(GateProgram, JudgesResultFilesOfAnyProgram) {
   fs::create_directory(folder_ / "results");
   write("results/work.json", counted("18"));
   EXPECT_EQ(run(file + " --results " + (folder_ / "results").string()).exit_code, 0);
-  for (const char* broken : {"{", "", "{\"counts\": NaN}"}) {
+  for (const char* broken : {"{", "", "{\"counts\": NaN}", "{\"counts\": 1e400}"}) {
     write("work.json", broken);
     const ProgramRun out = run(file);
     EXPECT_EQ(out.exit_code, 2) << broken;

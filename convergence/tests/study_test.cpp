@@ -284,6 +284,12 @@ TEST_F(StudyTest, BadStudiesSayWhatIsAllowed) {
     return "";
   };
   EXPECT_THAT(message(""), HasSubstr("nothing varies"));
+  std::string billions;
+  for (int i = 0; i < 9; ++i) {
+    billions += "[[vary]]\nkey = \"k" + std::to_string(i) + "\"\nvalues = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]\n";
+  }
+  EXPECT_THAT(message(billions),
+              testing::AllOf(HasSubstr("asks for 1e+09 solves"), HasSubstr("at most 10000")));
   EXPECT_THAT(message("cell = [16, 32]"), HasSubstr("the nearest known one is cells"));
   EXPECT_THAT(message("cells = [16, 16]"), HasSubstr("twice"));
   EXPECT_THAT(message("cells = [16, 0]"), HasSubstr("whole number"));

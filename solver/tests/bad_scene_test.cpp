@@ -390,6 +390,13 @@ TEST_F(SceneFile, OfAnExtentSmallerThanTheContactIsRefused) {
   EXPECT_THAT(
       complaint([&] { make_model(scene); }),
       testing::AllOf(HasSubstr("grid.extent = [0.0009, 0.0011]"), HasSubstr("larger than the contact")));
+  const auto complains = [&](const std::vector<std::string>& overrides) {
+    return complaint([&] { make_model(read(kShortScene, overrides)); });
+  };
+  EXPECT_THAT(complains({"grid.extent=[1, 1]"}),
+              testing::AllOf(HasSubstr("grid.extent = [1, 1]"), HasSubstr("at most 16 times the contact")));
+  EXPECT_THAT(complains({"grid.extent=[0.0011, 0.0011]", "grid.cells=[8, 16384]"}),
+              testing::AllOf(HasSubstr("grid.cells = [8, 16384]"), HasSubstr("1000 times as long as wide")));
 }
 
 }  // namespace

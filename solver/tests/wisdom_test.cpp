@@ -137,6 +137,17 @@ TEST_F(WisdomFile, KnowsThePlansOfEveryOperatorAndPreconditioner) {
   expect_plans_in_file<float>(file());
 }
 
+// FFTW ends its process over flags that do not fit into their bits.
+TEST_F(WisdomFile, IsRefusedWhereFftwDiesOfIt) {
+  solve(planned(scene(ModelChoice::automatic)));
+  std::string bad = text();
+  const auto upper_flags = bad.find(" #x", bad.find(" #x") + 1);
+  bad.replace(upper_flags, bad.find(' ', upper_flags + 1) - upper_flags, " #xffffffff");
+  std::ofstream(file()) << bad;
+  EXPECT_THAT(complaint([&] { solve(planned(scene(ModelChoice::automatic))); }),
+              AllOf(HasSubstr(file().string()), HasSubstr("holds no plans")));
+}
+
 TEST_F(WisdomFile, IsRefusedAndKeptWhereItIsNone) {
   solve(planned(scene(ModelChoice::automatic)));
   const std::string good = text();

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <string_view>
+
+namespace slipstick::solver {
+
+/// Sizes in bytes above which a file is taken for a mistake. People write settings, where a history of ten
+/// thousand steps fills one megabyte.
+inline constexpr std::uintmax_t kLargestSettings = std::uintmax_t{4} << 20;
+/// The result of a history of ten thousand steps; parsed, a JSON takes up to 25 times its text.
+inline constexpr std::uintmax_t kLargestJson = std::uintmax_t{128} << 20;
+/// Tables of numbers as text: all columns of a contact of five million cells.
+inline constexpr std::uintmax_t kLargestTable = std::uintmax_t{1} << 30;
+/// HDF5, of which only the datasets that are asked for are read.
+inline constexpr std::uintmax_t kLargestHdf5 = std::uintmax_t{16} << 30;
+
+/// Throws InputError, naming the file and `allowed` ("a TOML file"), for a folder, a device, a pipe, a file
+/// that is missing or may not be read, and one of more than `largest` bytes.
+void require_input_file(const std::filesystem::path& file, std::uintmax_t largest,
+                        const std::string& allowed);
+
+/// The bytes of such a file. Throws as above.
+std::string read_input_file(const std::filesystem::path& file, std::uintmax_t largest,
+                            const std::string& allowed);
+
+/// What a file says, as a message shows it: its beginning, bytes other than printable ASCII as \xNN.
+std::string shown(std::string_view text);
+
+}  // namespace slipstick::solver
