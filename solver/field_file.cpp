@@ -130,14 +130,14 @@ class CsvFile {
 /// The place of each name in a header.
 std::vector<std::size_t> find_columns(const path& file, const std::vector<std::string>& names,
                                       const std::vector<std::string_view>& header) {
-  if (header.empty())
-    throw InputError(file.string(), "is empty; allowed: a header line and a row for each cell");
   std::vector<std::size_t> positions;
   for (const std::string& name : names) {
     const auto found = std::find(header.begin(), header.end(), name);
     if (found == header.end()) {
-      throw InputError(file.string(), fmt::format("has no column {}; its columns: {}", name,
-                                                  shown(fmt::format("{}", fmt::join(header, ", ")))));
+      throw InputError(file.string(),
+                       fmt::format("has no column {}; its columns: {}", name,
+                                   header.empty() ? "none, it is empty"
+                                                  : shown(fmt::format("{}", fmt::join(header, ", ")))));
     }
     if (std::find(found + 1, header.end(), name) != header.end()) {
       throw InputError(file.string(), fmt::format("has two columns {}; allowed: one", name));

@@ -31,8 +31,8 @@ class InputFile {
   void require_regular() const {
     struct stat status {};
     if (descriptor_ < 0 || fstat(descriptor_, &status) != 0) fail_with(errno);
-    if (S_ISDIR(status.st_mode)) fail("is a folder");
-    if (!S_ISREG(status.st_mode)) fail("is a device or a pipe");
+    if (S_ISDIR(status.st_mode)) fail("it is a folder");
+    if (!S_ISREG(status.st_mode)) fail("it is a device or a pipe");
     if (static_cast<std::uintmax_t>(status.st_size) > largest_) fail_for_size();
   }
 
@@ -51,11 +51,11 @@ class InputFile {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& complaint) const {
-    throw InputError(file_.string(), fmt::format("{}; allowed: {}", complaint, allowed_));
+  [[noreturn]] void fail(const std::string& reason) const {
+    throw InputError(file_.string(), fmt::format("cannot be read: {}; allowed: {}", reason, allowed_));
   }
   [[noreturn]] void fail_with(int error) const {
-    fail(fmt::format("cannot be read ({})", std::generic_category().message(error)));
+    fail(std::generic_category().message(error));
   }
   [[noreturn]] void fail_for_size() const {
     throw InputError(file_.string(), fmt::format("is larger than {} MiB; allowed: {} of at most that size",

@@ -255,7 +255,13 @@ Model make_model(const Scene& scene) {
                 .normal_compliance = over_unit(pair.normal_compliance, compliance_unit),
                 .mismatch = over_unit(pair.mismatch, compliance_unit)};
   model.friction = scene.friction;
-  if (const auto load = largest_normal(scene)) model.normal_load = over_unit(*load, model.force_unit());
+  if (const auto load = largest_normal(scene)) {
+    model.normal_load = over_unit(*load, model.force_unit());
+    if (!std::isnormal(*model.normal_load)) {
+      throw InputError(scene.source.string(), "load.normal", fmt::format("{}", *load),
+                       fmt::format("what a double holds over the force of a cell, {:g}", model.force_unit()));
+    }
+  }
   model.gap = make_gap(scene, surfaces, model.grid, model.length_unit);
   model.pressure_part = reducible(scene)
                             ? Reduction(model.grid, model.gap, model.gap.isFinite().cast<double>())

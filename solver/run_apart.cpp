@@ -17,7 +17,7 @@ namespace slipstick::solver {
 namespace {
 
 /// Reading the largest file takes a few seconds.
-constexpr rlim_t kSeconds = 15;
+constexpr rlim_t kSeconds = 10;
 /// Beside what the process has when it starts: the largest dataset, and what a library keeps of its file.
 constexpr rlim_t kBytes = rlim_t{2} << 30;
 

@@ -191,7 +191,8 @@ void SceneReader::fail_missing(const std::string& key, const std::string& allowe
   std::vector<std::string> leaves;
   collect_leaves(root_, "", leaves);
   for (const std::string& leaf : leaves) {
-    if (!known_.contains(leaf) && edit_distance(leaf, key) <= kMisspelling) fail_unknown(leaf);
+    const bool similar = leaf.size() <= key.size() + kMisspelling && edit_distance(leaf, key) <= kMisspelling;
+    if (similar && !known_.contains(leaf)) fail_unknown(leaf);
   }
   const std::string parent = key.substr(0, key.rfind('.'));
   const auto found = root_.at_path(parent);

@@ -108,23 +108,19 @@ std::optional<Index> row_astray(const ArrayXd& values, double distance) {
 Axis find_axis(const std::filesystem::path& file, const solver::Column& x) {
   const double range = x.values.maxCoeff() - x.values.minCoeff();
   const std::vector<double> places = distinct_places(x.values, kSamePlace * range);
-  if (places.size() < kFewestAcross) {
-    const auto astray = row_astray(x.values, 0.0);
-    throw solver::InputError(
-        file.string(),
-        fmt::format(
-            "column {}: {} different values{}; allowed: at least {}, one for each row of cells across "
-            "the contact",
-            x.name, places.size(),
-            astray ? fmt::format(" beside row {}: {}", *astray + 1, x.values[*astray]) : "", kFewestAcross));
-  }
-  const double step = median_step(places);
+  const bool few = places.size() < kFewestAcross;
+  const double step = few ? 0.0 : median_step(places);
   if (const auto far = row_astray(x.values, kTimesAcross * static_cast<double>(places.size()) * step)) {
     throw solver::InputError(
-        file.string(),
-        fmt::format("row {}: {} = {} is far away from the others; allowed: one row for each cell of "
-                    "the contact, on one regular grid of steps of {:.4g}",
-                    *far + 1, x.name, x.values[*far], step));
+        file.string(), fmt::format("row {}: {} = {} is far away from the others; allowed: one row for each "
+                                   "cell of the contact, on one regular grid",
+                                   *far + 1, x.name, x.values[*far]));
+  }
+  if (few) {
+    throw solver::InputError(
+        file.string(), fmt::format("column {}: {} different values; allowed: at least {}, one for each row "
+                                   "of cells across the contact",
+                                   x.name, places.size(), kFewestAcross));
   }
   const Axis axis = fit_axis(places);
   const ArrayXd place = (x.values - axis.first) / axis.spacing;

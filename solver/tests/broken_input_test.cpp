@@ -71,7 +71,7 @@ TEST_F(BrokenInput, OnlyRegularFilesOfAReasonableSizeAreRead) {
   };
   EXPECT_THAT(says("/dev/zero"), AllOf(HasSubstr("/dev/zero"), HasSubstr("a device"), HasSubstr("a letter")));
   EXPECT_THAT(says(fifo()), AllOf(HasSubstr("fifo"), HasSubstr("a pipe")));
-  EXPECT_THAT(says(folder_), HasSubstr("is a folder; allowed: a letter"));
+  EXPECT_THAT(says(folder_), HasSubstr("cannot be read: it is a folder; allowed: a letter"));
   EXPECT_THAT(says(folder_ / "none"), AllOf(HasSubstr("none: cannot be read"), HasSubstr("No such file")));
   EXPECT_THAT(says(write("long", std::string(1001, 'a'))), HasSubstr("long: is larger than"));
   EXPECT_EQ(read_input_file(write("fits", std::string(1000, 'a')), 1000, "a letter").size(), 1000U);
@@ -90,7 +90,7 @@ TEST_F(BrokenInput, EndlessFilesAreRefusedByEveryReader) {
 }
 
 TEST_F(BrokenInput, TablesSayWhatIsWrongWithThem) {
-  EXPECT_THAT(read_field(""), HasSubstr("field.csv: is empty"));
+  EXPECT_THAT(read_field(""), HasSubstr("field.csv: has no column x1; its columns: none"));
   EXPECT_THAT(read_field("x1,q1\n"), HasSubstr("holds no rows"));
   EXPECT_THAT(read_field("x1,q1,x1\n1,2,3\n"), HasSubstr("two columns x1"));
   EXPECT_THAT(read_field("x1,q1\n1,1e400\n"), AllOf(HasSubstr("field.csv:2"), HasSubstr("1e400")));
@@ -195,8 +195,8 @@ TEST_F(BrokenInput, OnlyNumbersOfTheFileItselfAreRead) {
 
 // The library divides by the size of a chunk that the file says: where that is zero it ends its process.
 TEST_F(BrokenInput, AFileThatKillsTheLibraryIsOneThatCannotBeRead) {
-  const hsize_t chunk = 0x5A17;
-  const fs::path file = dataset({100}, chunk);
+  constexpr hsize_t kChunk = 0x5A17;
+  const fs::path file = dataset({kChunk + 1}, kChunk);
   std::string bytes = read_input_file(file, 1 << 20, "");
   const std::string size{'\x17', '\x5A', '\0', '\0'};
   const auto place = bytes.find(size);
@@ -204,7 +204,7 @@ TEST_F(BrokenInput, AFileThatKillsTheLibraryIsOneThatCannotBeRead) {
   bytes.replace(place, size.size(), std::string(size.size(), '\0'));
   write("file.h5", bytes);
   EXPECT_THAT(
-      complaint([&] { read_datasets(file, {"height"}, 1, 100); }),
+      complaint([&] { read_datasets(file, {"height"}, 1, 1 << 20); }),
       AllOf(HasSubstr(file.string()), AnyOf(HasSubstr("does not survive"), HasSubstr("is no dataset"))));
 }
 
@@ -215,7 +215,7 @@ TEST_F(BrokenInput, DamagedFieldsAreReadOrRefused) {
   const std::string whole = read_input_file(file, 1 << 20, "");
   std::mt19937 generator(1);
   int refused = 0;
-  for (int damage = 0; damage < 300; ++damage) {
+  for (int damage = 0; damage < 150; ++damage) {
     std::string bytes = whole;
     if (damage % 10 == 0) bytes.resize(generator() % bytes.size());
     for (int flips = damage % 7; flips >= 0 && !bytes.empty(); --flips) {
@@ -229,7 +229,7 @@ TEST_F(BrokenInput, DamagedFieldsAreReadOrRefused) {
       ++refused;
     }
   }
-  EXPECT_GT(refused, 30);
+  EXPECT_GT(refused, 15);
 }
 
 TEST(RunApart, ReturnsWhatWasSent) {
