@@ -17,6 +17,7 @@
 #include "analytic/named_profile.hpp"
 #include "analytic/spence.hpp"
 #include "analytic/tangential_history.hpp"
+#include "solver/input_error.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -91,14 +92,17 @@ struct TorsionUnits {
 class Indentation {
  public:
   explicit Indentation(const solver::Scene& scene)
-      : surface_(scene.surfaces.front()), pair_(moduli(scene)), friction_(scene.friction) {}
+      : source_(scene.source.string()),
+        surface_(scene.surfaces.front()),
+        pair_(moduli(scene)),
+        friction_(scene.friction) {}
 
   const Moduli& pair() const { return pair_; }
   double friction() const { return friction_; }
 
   /// The contact, without shear.
   Oracle pressed(double load) const {
-    const auto [named, contact] = press(surface_, load, pair_.effective);
+    const auto [named, contact] = pressed_shape(load);
     Oracle oracle{};
     oracle.profile = named.profile;
     oracle.centre = surface_.at;
@@ -115,6 +119,16 @@ class Indentation {
   }
 
  private:
+  /// What the theory does not answer is the scene's: a shape that is none in double precision.
+  analytic::PressedContact pressed_shape(double load) const {
+    try {
+      return press(surface_, load, pair_.effective);
+    } catch (const std::domain_error& error) {
+      throw solver::InputError(source_, fmt::format("[upper] has no exact contact: {}", error.what()));
+    }
+  }
+
+  std::string source_;
   solver::Surface surface_;
   Moduli pair_;
   double friction_;

@@ -298,6 +298,41 @@ TEST(Program, CheckWritesEveryKeyOfTheContract) {
   EXPECT_FALSE(result["why"].get<std::string>().empty());
 }
 
+// Whatever reads a file: none is waited for, and none is read for ever.
+TEST(Program, FilesWithoutAnEndAreExitCode2) {
+  const fs::path map = temporary("map.toml");
+  std::ofstream(map) << "[upper]\nshape = \"height_map\"\nfile = \"/dev/zero\"\nspacing = [1e-5, 1e-5]\n"
+                        "young_modulus = 1e11\npoisson_ratio = 0.3\n[lower]\nrigid = true\n[contact]\n"
+                        "friction = 0.1\n[load]\nnormal = 1.0\nmoment_ratio = 0.5\n";
+  const fs::path study = temporary("study.toml");
+  std::ofstream(study) << "scene = \"map.toml\"\ntolerances = [1e-3, 1e-5]\n";
+  const fs::path gates = temporary("gates.toml");
+  std::ofstream(gates) << "[[gate]]\nid = \"a\"\nresult = \"/dev/zero\"\nquantity = \"twist\"\nbelow = 1.0\n"
+                          "basis = \"b\"\n";
+  const std::string paper = kScenes + "/paper.toml";
+  for (const std::string& arguments :
+       {"check " + paper + " /dev/zero", std::string("solve /dev/zero"), "solve " + map.string(),
+        solve("paper") + " --set contact.pressure=file --set contact.pressure_file=/dev/zero",
+        solve("paper") + " --set solver.wisdom=/dev/zero", std::string("study /dev/zero"),
+        "study " + study.string() + " --output " + temporary("runs").string(), std::string("gate /dev/zero"),
+        "gate " + gates.string(), std::string("compare /dev/zero /dev/zero"),
+        std::string("exact --profile file:/dev/zero --moment-ratio 0.5")}) {
+    const ProgramRun out = run(arguments);
+    EXPECT_EQ(out.exit_code, 2) << arguments;
+    EXPECT_THAT(out.output, AllOf(HasSubstr("/dev/zero: cannot be read"), HasSubstr("allowed"))) << arguments;
+  }
+}
+
+// Names of files need not be UTF-8, and JSON is.
+TEST(Program, WritesJsonOfFilesWithAnyName) {
+  const fs::path field = temporary("caf\xe9.csv");
+  fs::copy_file(std::string(SLIPSTICK_FIELDS) + "/contact-64-0.9.csv", field,
+                fs::copy_options::overwrite_existing);
+  const ProgramRun out = run("check " + kScenes + "/paper.toml '" + field.string() + "' --json -");
+  EXPECT_EQ(out.exit_code, 0) << out.output;
+  EXPECT_TRUE(json::accept(out.output)) << out.output;
+}
+
 TEST(Program, CheckOfWhatCannotBeJudgedIsExitCode2) {
   const ProgramRun missing = run(check("no-such-field.csv"));
   EXPECT_EQ(missing.exit_code, 2);
