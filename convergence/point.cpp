@@ -47,7 +47,7 @@ solver::Solution solve_rounded(const Point& point, const solver::Scene& scene,
 }  // namespace
 
 std::string read_text(const std::filesystem::path& file) {
-  return solver::read_input_file(file, solver::kLargestTable, "a file of at most a gigabyte");
+  return solver::read_input_file(file, solver::kLargestTable, "a regular file");
 }
 
 std::string cells_override(const solver::Scene& scene, solver::Index across) {

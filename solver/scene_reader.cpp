@@ -16,8 +16,8 @@ namespace {
 
 /// Edits that make a key look like a misspelling of another.
 constexpr std::size_t kMisspelling = 3;
-/// Parts of a dotted key. No key that is read has more than five.
-constexpr std::size_t kMostKeyParts = 256;
+/// Parts of a dotted key. No key that is read has more than five; keys nest 256 deep at most.
+constexpr std::size_t kMostKeyParts = 32;
 
 std::string read_text(const std::filesystem::path& file) {
   const std::string text = read_input_file(file, kLargestSettings, "a TOML file");
@@ -27,26 +27,35 @@ std::string read_text(const std::filesystem::path& file) {
   return text;
 }
 
-/// Tables in tables end one another recursively: a key of a million parts would overrun the stack. Parts are
-/// told by their dots, wherever these stand: no other text has so many on a line with nothing else between.
+/// Tables in tables end one another recursively: keys of a million parts would overrun the stack. What counts
+/// are words with dots between, wherever they stand: quoted ones may hold blanks.
 void require_short_keys(const std::string& text, const std::string& file) {
   std::size_t line = 1;
   std::size_t parts = 1;
   bool after_dot = false;
+  bool after_blank = false;
+  bool quoted = false;
   for (const char c : text) {
-    if (c == '.') {
-      after_dot = true;
-    } else if (c == '\n' || c == '=' || c == ',') {
-      if (c == '\n') ++line;
+    if (c == '\n') ++line;
+    if (c == ' ' || c == '\t') {
+      after_blank = true;
+      continue;
+    }
+    const bool other_word = after_blank && !after_dot && !quoted && c != '.';
+    after_blank = false;
+    if (other_word || c == '\n' || c == '=' || c == ',') {
       parts = 1;
-      after_dot = false;
-    } else if (after_dot && c != ' ' && c != '\t') {
+      after_dot = quoted = false;
+    } else if (c == '.') {
+      after_dot = true;
+    } else if (after_dot) {
       after_dot = false;
       if (++parts > kMostKeyParts) {
         throw InputError(fmt::format("{}:{}", file, line),
                          fmt::format("a key of more than {0} parts; allowed: {0}", kMostKeyParts));
       }
     }
+    quoted = quoted || c == '"' || c == '\'';
   }
 }
 
