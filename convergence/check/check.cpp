@@ -1,8 +1,10 @@
 #include "convergence/check/check.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
+#include <vector>
 
 #include "convergence/check/examination.hpp"
 #include "convergence/check/verdict.hpp"
@@ -54,13 +56,15 @@ Json diagnosis_json(const Diagnosis& diagnosis) {
 }
 
 void add_field(Json& json, const Examination& e) {
-  const solver::Grid& grid = e.field.grid;
+  const solver::Grid& grid = e.read.field.grid;
   json["cells"] = {grid.n1, grid.n2};
   json["cell_size"] = {grid.h1, grid.h2};
-  json["centre"] = e.field.centre;
+  json["centre"] = e.read.field.centre;
   json["contact_cells"] = (e.contact.pressure > 0.0).count();
   json["stick_cells"] = (e.stick > 0.0).count();
-  json["conventions"] = e.field.notes;
+  json["conventions"] = e.read.conventions;
+  json["mistakes"] = e.read.mistakes;
+  json["remarks"] = e.read.remarks;
 }
 
 struct StickArea {
@@ -71,7 +75,8 @@ struct StickArea {
 
 StickArea stick_area(const Examination& e) {
   const solver::Model& model = e.contact.model;
-  const solver::StickFront front = find_stick_front(model.grid, e.contact.friction_bound, e.slip, e.stick);
+  const solver::StickFront front =
+      find_stick_front(model.grid, e.contact.friction_bound, e.state.slip, e.stick);
   return {front.radius * model.length_unit, front.counted_radius * model.length_unit, front.why_counted};
 }
 
@@ -86,10 +91,11 @@ void add_state(Json& json, const Examination& e, const StickArea& stick) {
   json["moment_limit"] = e.moment_limit * e.newton_metres();
   const auto [f1, f2] = e.contact.force();
   json["force"] = {f1 * e.newtons(), f2 * e.newtons()};
-  set_number(json, "twist_angle", e.twist, kBroken);
+  set_number(json, "twist_angle", e.state.twist, kBroken);
   json["twist_inferred"] = !e.twist_given;
   set_number(json, "twist_that_fits", e.inferred_twist, kBroken);
-  json["displacement"] = {e.displacement[0] * model.length_unit, e.displacement[1] * model.length_unit};
+  json["displacement"] = {e.state.displacement[0] * model.length_unit,
+                          e.state.displacement[1] * model.length_unit};
 }
 
 void add_errors(Json& json, const Examination& e, const StickArea& stick) {
@@ -105,7 +111,7 @@ void add_errors(Json& json, const Examination& e, const StickArea& stick) {
   const auto set_error = [&](const char* key, double value, double exact) {
     set_number(json, key, relative_error(value, exact), std::isnan(exact) ? unknown : kNoNumber);
   };
-  set_error("twist_error", e.twist, oracle.twist_angle);
+  set_error("twist_error", e.state.twist, oracle.twist_angle);
   set_error("moment_error", e.contact.moment() * e.newton_metres(), oracle.moment);
   set_error("stick_radius_error", stick.radius, oracle.stick_radius);
   set_error("stick_radius_counted_error", stick.counted, oracle.stick_radius);
@@ -120,30 +126,52 @@ void add_errors(Json& json, const Examination& e, const StickArea& stick) {
 Json yardstick_json(const Examination& e) {
   const Yardstick& yardstick = e.yardstick;
   Json json;
-  json["mesh_error"] = yardstick.mesh_error;
-  json["gap"] = yardstick.gap;
+  json["mesh_error"] = yardstick.mesh.tractions;
+  json["gap"] = yardstick.mesh.gap;
   json["slip_direction"] = yardstick.direction.mean;
-  json["twist_angle"] = yardstick.twist;
-  json["loads_scaled_down"] = yardstick.scaled;
-  json["distance"] = relative_distance(e.contact.traction, yardstick.traction);
+  json["twist_angle"] = yardstick.right.twist;
+  json["loads_scaled_down"] = yardstick.right.scaled;
+  json["distance"] = e.deviation.tractions;
+  json["noise"] = yardstick.noise_size.maxCoeff() / e.contact.friction_bound.maxCoeff();
   if (e.exact.oracle && e.exact.oracle->shear) {
-    json["traction_error"] =
-        traction_error_json(traction_error(yardstick.traction, *e.exact.oracle, e.contact.model), kNoNumber);
+    json["traction_error"] = traction_error_json(
+        traction_error(yardstick.right.traction, *e.exact.oracle, e.contact.model), kNoNumber);
   }
   return json;
 }
 
+/// Up to its reason.
+std::string short_note(const std::string& note) { return note.substr(0, note.find(':')); }
+
+/// Mistakes first, then the conventions that do not count, then what is to be said of the field as it was
+/// read.
+std::string why(const Examination& e, const Verdict& verdict, bool strict) {
+  std::vector<std::string> wrong;
+  for (const std::string& mistake : e.read.mistakes) wrong.push_back(short_note(mistake));
+  if (strict) {
+    for (const std::string& convention : e.read.conventions) wrong.push_back(short_note(convention));
+  }
+  if (wrong.empty()) return verdict.why;
+  return fmt::format("{}; without that {}", fmt::join(wrong, ", and "), verdict.why);
+}
+
 }  // namespace
 
-Json check_field(const solver::Scene& scene, const std::filesystem::path& file, std::optional<double> twist) {
-  const Examination e = examine(scene, file, twist);
-  const Verdict verdict = reach_verdict(e);
+Json check_field(const solver::Scene& scene, const std::filesystem::path& file, const CheckOptions& options) {
+  const Examination e = examine(scene, file, options.twist);
+  const Verdict verdict = reach_verdict(e, options.tolerance);
   const StickArea stick = stick_area(e);
+  const bool fits = e.read.mistakes.empty() && !(options.strict && !e.read.conventions.empty());
+  const bool good = verdict.within_mesh() && fits && (!options.discrete || verdict.discrete.holds());
   Json json;
   json["name"] = scene.name;
   json["field"] = file.string();
-  json["verdict"] = verdict.good ? "good" : "bad";
-  json["why"] = verdict.why;
+  json["verdict"] = good ? "good" : "bad";
+  json["why"] = why(e, verdict, options.strict);
+  json["within_mesh"] = verdict.within_mesh();
+  json["discrete"]["holds"] = verdict.discrete.holds();
+  set_number(json["discrete"], "gap", verdict.discrete.value, "|q| exceeds mu p: there is no gap");
+  set_number(json["discrete"], "allowed", verdict.discrete.allowed, kBroken);
   add_field(json, e);
   add_state(json, e, stick);
   add_errors(json, e, stick);
@@ -170,7 +198,9 @@ std::string field_text(const Json& r) {
                                         r["cells"][0].get<int>(), r["cells"][1].get<int>(),
                                         number_text(r["cell_size"][0]), number_text(r["cell_size"][1]),
                                         r["contact_cells"].get<int>(), r["stick_cells"].get<int>()));
-  for (const Json& note : r["conventions"]) text += text_line("note", note.get<std::string>());
+  for (const char* key : {"mistakes", "conventions", "remarks"}) {
+    for (const Json& note : r[key]) text += text_line("note", note.get<std::string>());
+  }
   return text;
 }
 
@@ -215,7 +245,11 @@ std::string certificate_text(const Json& r) {
 }  // namespace
 
 std::string check_text(const Json& r) {
-  std::string text = fmt::format("{}: {}\n", r["verdict"].get<std::string>(), r["why"].get<std::string>());
+  std::vector<std::string> taken;
+  for (const Json& note : r["conventions"]) taken.push_back(short_note(note));
+  std::string text = r["verdict"];
+  if (!taken.empty()) text += fmt::format(" ({})", fmt::join(taken, "; "));
+  text += fmt::format(": {}\n", r["why"].get<std::string>());
   text += field_text(r) + state_and_errors_text(r) + traction_text(r) + certificate_text(r);
   for (const Json& item : r["judged"]) {
     text +=

@@ -20,14 +20,14 @@ struct Options {
   std::string scene;
   std::string field;
   std::vector<std::string> overrides;
-  std::optional<double> twist;
+  CheckOptions check;
 };
 
 int run(const Options& options, std::ostream& text, Json& result) {
-  if (options.twist && !std::isfinite(*options.twist)) {
-    throw solver::InputError(fmt::format("--twist {}", *options.twist), "allowed: a finite number, in rad");
+  if (options.check.twist && !std::isfinite(*options.check.twist)) {
+    throw solver::InputError(fmt::format("--twist {}", *options.check.twist), "allowed: a finite number, in rad");
   }
-  result = check_field(solver::read_scene(options.scene, options.overrides), options.field, options.twist);
+  result = check_field(solver::read_scene(options.scene, options.overrides), options.field, options.check);
   text << check_text(result);
   return result["verdict"] == "good" ? 0 : 1;
 }
@@ -47,12 +47,21 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI
                    "key=value: override a key of the scene, e.g. load.moment_ratio=0.5")
       ->take_all()
       ->allow_extra_args(false);
-  command->add_option("--twist", options->twist,
+  command->add_option("--twist", options->check.twist,
                       "rad, that the program reported; without it the one that Coulomb's law fits best");
+  command->add_flag(
+      "--discrete", options->check.discrete,
+      "good only if it solves its own grid's problem, of constant cells, up to iteration error");
+  command
+      ->add_option(
+          "--tolerance", options->check.tolerance,
+          "error of loads, twist and tractions that is allowed, in place of what the mesh leaves open")
+      ->check(CLI::PositiveNumber);
+  command->add_flag("--strict", options->check.strict,
+                    "good only in the scene's own conventions: m, Pa, tractions on the lower body");
   command->footer(
       "Example:\n  slipstick check convergence/scenes/paper.toml tractions.csv --twist 2.361e-3\nExit code "
-      "0: "
-      "good; 1: bad; 2: cannot be judged. docs/verify-your-solver.md explains each number.");
+      "0: good; 1: bad; 2: cannot be judged. docs/verify-your-solver.md explains each number.");
   return
       [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };
 }

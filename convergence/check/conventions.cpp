@@ -1,6 +1,7 @@
 #include "convergence/check/conventions.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -51,7 +52,8 @@ double expected_width(const solver::Model& model, const OracleAnswer& exact) {
          model.length_unit;
 }
 
-void mend_length(ForeignField& field, const solver::Scene& scene, double expected) {
+void mend_length(Interpretation& read, const solver::Scene& scene, double expected) {
+  ForeignField& field = read.field;
   const double width = std::max(static_cast<double>(field.grid.n1) * field.grid.h1,
                                 static_cast<double>(field.grid.n2) * field.grid.h2);
   const auto unit = find_unit(kLengths, width / expected);
@@ -63,7 +65,7 @@ void mend_length(ForeignField& field, const solver::Scene& scene, double expecte
                     width, scene.source.string(), expected));
   }
   if (unit->size == 1.0) return;
-  field.notes.push_back(
+  read.conventions.push_back(
       fmt::format("positions look like {}: the cells reach over {:.4g}, the contact is about "
                   "{:.4g} m wide",
                   unit->name, width, expected));
@@ -72,7 +74,8 @@ void mend_length(ForeignField& field, const solver::Scene& scene, double expecte
   }
 }
 
-void mend_stress(ForeignField& field, const solver::Step& load) {
+void mend_stress(Interpretation& read, const solver::Step& load) {
+  ForeignField& field = read.field;
   if (!load.normal) return;
   const double carried = field.pressure.sum() * field.grid.cell_area();
   const auto unit = find_unit(kStresses, carried / *load.normal);
@@ -84,7 +87,7 @@ void mend_stress(ForeignField& field, const solver::Step& load) {
                     carried, load.key, *load.normal));
   }
   const double off = carried * unit->size / *load.normal - 1.0;
-  const bool mended = unit->size != 1.0 || !field.notes.empty();
+  const bool mended = unit->size != 1.0 || !read.conventions.empty();
   if (mended && !(std::abs(off) < kMendedLoad)) {
     throw InputError(
         field.file.string(),
@@ -94,7 +97,7 @@ void mend_stress(ForeignField& field, const solver::Step& load) {
                     load.key, *load.normal));
   }
   if (unit->size == 1.0) return;
-  field.notes.push_back(
+  read.conventions.push_back(
       fmt::format("pressure and tractions look like {}: in Pa they would carry {:.4g} N of "
                   "{} N",
                   unit->name, carried, *load.normal));
@@ -122,13 +125,14 @@ double aspect(const ForeignField& field) {
 }
 
 /// Only an elliptic contact along the axes tells.
-void mend_axes(ForeignField& field, const solver::Model& model) {
+void mend_axes(Interpretation& read, const solver::Model& model) {
+  ForeignField& field = read.field;
   if (!model.hertz) return;
   const double ratio = model.hertz->semi_axis_1 / model.hertz->semi_axis_2;
   const double expected = 2.0 * std::log(ratio);
   const double found = std::log(aspect(field));
   if (!(std::abs(found + expected) < 0.5 * std::abs(found - expected))) return;
-  field.notes.push_back(
+  read.conventions.push_back(
       "axes look exchanged: the contact's long axis lies along the file's other coordinate");
   const solver::Grid from = field.grid;
   const Index cells = from.cells();
@@ -142,11 +146,16 @@ void mend_axes(ForeignField& field, const solver::Model& model) {
   }
 }
 
+/// A scene of one body that stands about an axis.
+bool has_axis(const solver::Scene& scene) {
+  return scene.surfaces.size() == 1 && solver::find_height_map(scene.surfaces) == nullptr &&
+         scene.surfaces.front().shape != solver::Shape::roughness;
+}
+
 /// A contact that stands a cell or more from its place in the scene is one in other coordinates.
-void mend_origin(ForeignField& field, const solver::Scene& scene) {
-  const bool has_axis = scene.surfaces.size() == 1 && solver::find_height_map(scene.surfaces) == nullptr &&
-                        scene.surfaces.front().shape != solver::Shape::roughness;
-  if (!has_axis) return;
+void mend_origin(Interpretation& read, const solver::Scene& scene) {
+  ForeignField& field = read.field;
+  if (!has_axis(scene)) return;
   const double total = field.pressure.sum();
   std::array<double, 2> off{};
   for (std::size_t k = 0; k < 2; ++k) {
@@ -154,37 +163,66 @@ void mend_origin(ForeignField& field, const solver::Scene& scene) {
     off[k] = field.centre[k] + (field.pressure * x).sum() / total - scene.surfaces.front().at[k];
   }
   if (std::abs(off[0]) < field.grid.h1 && std::abs(off[1]) < field.grid.h2) return;
-  field.notes.push_back(fmt::format(
+  read.conventions.push_back(fmt::format(
       "the contact's middle stands ({:.4g}, {:.4g}) m from the scene's: moved there", off[0], off[1]));
   for (std::size_t k = 0; k < 2; ++k) field.centre[k] -= off[k];
 }
 
-/// Components of the traction exchanged, then each times its sign.
+/// How tractions may be written: those on the other body, in a left-handed frame, in another order of their
+/// columns; or, by mistake, with one component reversed. Applied in the order of the members.
 struct Orientation {
-  bool exchanged;
-  double sign1;
-  double sign2;
+  bool mirrored = false;   ///< x2 counts the other way, and q2 with it
+  bool exchanged = false;  ///< q1 and q2
+  double sign1 = 1.0;
+  double sign2 = 1.0;
 
-  ArrayXd of(const ArrayXd& traction) const {
-    const Index cells = traction.size() / 2;
-    ArrayXd turned(traction.size());
-    turned.head(cells) = sign1 * (exchanged ? traction.tail(cells) : traction.head(cells));
-    turned.tail(cells) = sign2 * (exchanged ? traction.head(cells) : traction.tail(cells));
-    return turned;
-  }
+  bool is_mistake() const { return sign1 != sign2; }
 
   std::string text() const {
-    if (!exchanged && sign1 < 0.0 && sign2 < 0.0) {
-      return "tractions look reversed (those on the other body, or a moment that turns the other way)";
+    std::vector<std::string> parts;
+    if (mirrored) parts.emplace_back("x2 and q2 look reversed (a left-handed frame)");
+    if (exchanged) parts.emplace_back("q1 and q2 look exchanged");
+    if (is_mistake()) {
+      parts.push_back(
+          fmt::format("{} looks reversed alone, as with the rotation field (x2, x1) in place of "
+                      "(-x2, x1)",
+                      sign1 < 0.0 ? "q1" : "q2"));
+    } else if (sign1 < 0.0) {
+      parts.emplace_back(
+          "tractions look reversed (those on the other body, or a moment that turns the other way)");
     }
-    std::string order = exchanged ? "q1 and q2 look exchanged" : "";
-    const char* reversed = sign1 < 0.0 && sign2 < 0.0 ? "both" : sign1 < 0.0 ? "q1" : sign2 < 0.0 ? "q2" : "";
-    if (*reversed == '\0') return order;
-    const std::string sign = fmt::format("{} reversed", reversed);
-    return exchanged ? fmt::format("{}, and then {}", order, sign)
-                     : fmt::format("{} looks reversed", reversed);
+    return fmt::format("{}: only so do they carry the scene's loads", fmt::join(parts, ", and "));
   }
 };
+
+ArrayXd mirrored(const solver::Grid& grid, const ArrayXd& values) {
+  ArrayXd turned(values.size());
+  for (Index i = 0; i < grid.n1; ++i) {
+    turned.segment(i * grid.n2, grid.n2) = values.segment(i * grid.n2, grid.n2).reverse();
+  }
+  return turned;
+}
+
+/// middle: x2 of the mirror.
+ForeignField turned(ForeignField field, const Orientation& orientation, double middle) {
+  const Index cells = field.grid.cells();
+  if (orientation.mirrored) {
+    field.centre[1] = 2.0 * middle - field.centre[1];
+    field.traction.head(cells) = mirrored(field.grid, field.traction.head(cells));
+    field.traction.tail(cells) = -mirrored(field.grid, field.traction.tail(cells));
+    for (ArrayXd* values : {&field.pressure, &field.pressure_rounding, &field.traction_rounding}) {
+      *values = mirrored(field.grid, *values);
+    }
+  }
+  if (orientation.exchanged) {
+    const ArrayXd q1 = field.traction.head(cells);
+    field.traction.head(cells) = field.traction.tail(cells);
+    field.traction.tail(cells) = q1;
+  }
+  field.traction.head(cells) *= orientation.sign1;
+  field.traction.tail(cells) *= orientation.sign2;
+  return field;
+}
 
 /// How far the tractions' loads are from the scene's, as parts of the limits.
 class LoadMismatch {
@@ -237,30 +275,38 @@ class LoadMismatch {
 };
 
 /// Loads wrong by less than half stay what they are, an error of the field; else the orientation counts under
-/// which they come closest.
-void mend_orientation(ForeignField& field, const solver::Scene& scene, const OracleAnswer& exact) {
-  const LoadMismatch mismatch(field, scene, exact);
-  double least = 0.5 * mismatch.size();
-  if (!(mismatch(field.traction) > least)) return;
-  std::optional<Orientation> best;
-  for (const bool exchanged : {false, true}) {
-    for (const double sign1 : {1.0, -1.0}) {
-      for (const double sign2 : {1.0, -1.0}) {
-        const Orientation orientation{exchanged, sign1, sign2};
-        const double off = mismatch(orientation.of(field.traction));
-        if (!(off < least)) continue;
-        least = off;
-        best = orientation;
-      }
-    }
+/// which they come closest, the first of those that are as close. Mistakes come last.
+void mend_orientation(Interpretation& read, const solver::Scene& scene, const OracleAnswer& exact) {
+  constexpr std::array<Orientation, 9> kOrientations{{{.sign1 = -1.0, .sign2 = -1.0},
+                                                      {.mirrored = true},
+                                                      {.mirrored = true, .sign1 = -1.0, .sign2 = -1.0},
+                                                      {.exchanged = true},
+                                                      {.exchanged = true, .sign1 = -1.0, .sign2 = -1.0},
+                                                      {.sign1 = -1.0},
+                                                      {.sign2 = -1.0},
+                                                      {.exchanged = true, .sign1 = -1.0},
+                                                      {.exchanged = true, .sign2 = -1.0}}};
+  constexpr double kClearlyCloser = 1e-3;
+  const LoadMismatch here(read.field, scene, exact);
+  double least = 0.5 * here.size();
+  if (!(here(read.field.traction) > least)) return;
+  const double middle = has_axis(scene) ? scene.surfaces.front().at[1] : 0.0;
+  const Orientation* best = nullptr;
+  for (const Orientation& orientation : kOrientations) {
+    const ForeignField field = turned(read.field, orientation, middle);
+    const double off = LoadMismatch(field, scene, exact)(field.traction);
+    if (!(off < least - (best ? kClearlyCloser * here.size() : 0.0))) continue;
+    least = off;
+    best = &orientation;
   }
-  if (!best) return;
-  field.traction = best->of(field.traction);
-  field.notes.push_back(best->text() + ": only so do they carry the scene's loads");
+  if (best == nullptr) return;
+  read.field = turned(std::move(read.field), *best, middle);
+  (best->is_mistake() ? read.mistakes : read.conventions).push_back(best->text());
 }
 
 /// Cells without pressure between cells that have some: rows that the file lacks, perhaps.
-void note_holes(ForeignField& field) {
+void note_holes(Interpretation& read) {
+  const ForeignField& field = read.field;
   const Index n2 = field.grid.n2;
   const ArrayXd& p = field.pressure;
   Index holes = 0;
@@ -270,20 +316,21 @@ void note_holes(ForeignField& field) {
     }
   }
   if (holes > 0)
-    field.notes.push_back(fmt::format("{} cells in the midst of the contact carry nothing", holes));
+    read.remarks.push_back(fmt::format("{} cells in the midst of the contact carry nothing", holes));
 }
 
 }  // namespace
 
-ForeignField in_own_conventions(ForeignField field, const solver::Scene& scene, const solver::Model& model,
-                                const OracleAnswer& exact) {
-  mend_length(field, scene, expected_width(model, exact));
-  mend_stress(field, scene.steps.front());
-  mend_axes(field, model);
-  mend_origin(field, scene);
-  mend_orientation(field, scene, exact);
-  note_holes(field);
-  return field;
+Interpretation in_own_conventions(ForeignField field, const solver::Scene& scene, const solver::Model& model,
+                                  const OracleAnswer& exact) {
+  Interpretation read{std::move(field), {}, {}, {}};
+  mend_length(read, scene, expected_width(model, exact));
+  mend_stress(read, scene.steps.front());
+  mend_axes(read, model);
+  mend_origin(read, scene);
+  mend_orientation(read, scene, exact);
+  note_holes(read);
+  return read;
 }
 
 }  // namespace slipstick::convergence

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "convergence/check/foreign_field.hpp"
 #include "convergence/oracle.hpp"
 #include "solver/model.hpp"
@@ -7,11 +10,20 @@
 
 namespace slipstick::convergence {
 
-/// The field in this project's conventions, with a note for each that was another one: units of length (by
-/// the contact's size) and of stress (by the load that it carries), axes exchanged (by the shape of an
-/// elliptic contact), another origin, and components of the traction reversed or exchanged (by the loads that
-/// they carry). model: the scene's. Throws InputError where no unit fits.
-ForeignField in_own_conventions(ForeignField field, const solver::Scene& scene, const solver::Model& model,
-                                const OracleAnswer& exact);
+/// A field in this project's conventions.
+struct Interpretation {
+  ForeignField field;
+  std::vector<std::string> conventions;  ///< other ones that it was in, one sentence each
+  std::vector<std::string> mistakes;     ///< what no convention is, and was undone to judge the rest
+  std::vector<std::string> remarks;      ///< what else is odd about it
+};
+
+/// Finds the conventions in which a field fits the scene best: units of length (by the contact's size) and of
+/// stress (by the load that it carries), axes exchanged (by the shape of an elliptic contact), another
+/// origin, tractions on the other body, a left-handed frame, and the order of the tractions' columns (by the
+/// loads that they carry). One component reversed alone is a mistake. model: the scene's. Throws InputError
+/// where no unit fits.
+Interpretation in_own_conventions(ForeignField field, const solver::Scene& scene, const solver::Model& model,
+                                  const OracleAnswer& exact);
 
 }  // namespace slipstick::convergence

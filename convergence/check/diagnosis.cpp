@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "convergence/check/deviation.hpp"
 #include "convergence/check/fitted_motion.hpp"
 #include "solver/certificate.hpp"
 #include "solver/influence.hpp"
@@ -21,8 +22,8 @@ constexpr double kMostPairs = 1e8;
 constexpr double kExplains = 0.1;
 /// A part of mu p by which a slipping cell may miss it where a solver stops at a tolerance.
 constexpr double kOnCircle = 1e-4;
-/// Of the contact: so many cells at the same |q|/p are slipping.
-constexpr double kSlippingPart = 0.1;
+/// A gap of the stick area that is no larger may be left by any iteration: no kernel is sought for it.
+constexpr double kNoStickGap = 10.0 * kIterationGap;
 
 /// The contact's cells as sources, and those at which displacements are summed.
 struct Cells {
@@ -56,9 +57,10 @@ ArrayXd at(const std::vector<Index>& points, const ArrayXd& field, Index cells) 
 }
 
 /// Displacements by tractions, part by part: u = S shear + N (poisson + cross), S and N the pair's shear and
-/// Poisson compliances. `mirrored` has |K12| in place of K12.
+/// Poisson compliances. `mirrored` has |K12| in place of K12, `exchanged` K22 in place of K11 and K11 in
+/// place of K22, both less their parts in `shear`.
 struct Displacements {
-  ArrayXd shear, poisson, cross, mirrored;
+  ArrayXd shear, poisson, cross, mirrored, exchanged;
 };
 
 Displacements sum_displacements(const GivenContact& contact, const Cells& cells) {
@@ -72,7 +74,7 @@ Displacements sum_displacements(const GivenContact& contact, const Cells& cells)
   const auto poisson = tables(0.0, 1.0);
   const auto count = static_cast<Index>(cells.points.size());
   Displacements u;
-  for (ArrayXd* part : {&u.shear, &u.poisson, &u.cross, &u.mirrored}) part->setZero(2 * count);
+  for (ArrayXd* part : {&u.shear, &u.poisson, &u.cross, &u.mirrored, &u.exchanged}) part->setZero(2 * count);
   for (Index k = 0; k < count; ++k) {
     const Index point = cells.points[static_cast<std::size_t>(k)];
     const Index i = point / grid.n2;
@@ -89,6 +91,8 @@ Displacements sum_displacements(const GivenContact& contact, const Cells& cells)
       u.shear[k + count] += shear[1][offset] * q2;
       u.poisson[k] += poisson[0][offset] * q1;
       u.poisson[k + count] += poisson[1][offset] * q2;
+      u.exchanged[k] += poisson[1][offset] * q1;
+      u.exchanged[k + count] += poisson[0][offset] * q2;
       u.cross[k] += signed_k12 * q2;
       u.cross[k + count] += signed_k12 * q1;
       u.mirrored[k] += std::abs(k12) * q2;
@@ -104,6 +108,7 @@ struct Assumption {
   double poisson = 1.0;      ///< Poisson compliance in K11 and K22
   double cross = 1.0;        ///< K12
   double mirrored = 0.0;     ///< |K12|
+  double exchanged = 0.0;    ///< the Poisson compliance of K22 in K11 and of K11 in K22
   double by_pressure = 1.0;  ///< K13 and K23
   double friction = 1.0;
 };
@@ -133,7 +138,7 @@ class Trial {
     const ArrayXd elastic =
         pair_.shear_compliance * u_.shear +
         pair_.poisson_compliance * (assumption.poisson * u_.poisson + assumption.cross * u_.cross +
-                                    assumption.mirrored * u_.mirrored);
+                                    assumption.mirrored * u_.mirrored + assumption.exchanged * u_.exchanged);
     const FittedMotion fitted = fit_motion(elastic + assumption.by_pressure * by_pressure_ - imposed_,
                                            traction_, at_least(assumption.friction * bound_), motions_);
     const double energy = 0.5 * (traction_ * elastic).sum();
@@ -182,6 +187,7 @@ std::vector<Hypothesis> try_kernels(const Trial& trial) {
       {.name = "the cross kernel K12 missing", .cross = 0.0},
       {.name = "the cross kernel K12 of the wrong sign, or the rotation field (x2, x1) in place of (-x2, x1)",
        .cross = -1.0},
+      {.name = "the kernels K11 and K22 exchanged", .poisson = 0.0, .exchanged = 1.0},
       {.name = "a Poisson's ratio of zero", .poisson = 0.0, .cross = 0.0}};
   if (const auto ratio = trial.best_poisson_ratio()) assumptions.push_back(*ratio);
   if (trial.coupled()) {
@@ -194,23 +200,6 @@ std::vector<Hypothesis> try_kernels(const Trial& trial) {
   return tried;
 }
 
-/// |q|/p of slipping cells, if a good part of the contact is at one value other than mu.
-std::optional<double> shown_friction(const GivenContact& contact) {
-  std::vector<double> ratios;
-  const double least = kNextToNothing * contact.pressure.maxCoeff();
-  for (Index cell = 0; cell < contact.pressure.size(); ++cell) {
-    if (!(contact.pressure[cell] > least)) continue;
-    ratios.push_back(std::hypot(contact.traction[cell], contact.traction[cell + contact.pressure.size()]) /
-                     contact.pressure[cell]);
-  }
-  std::ranges::sort(ratios);
-  const auto from_top = static_cast<std::size_t>(kSlippingPart * static_cast<double>(ratios.size()));
-  const double shown = ratios[ratios.size() - 1 - from_top];
-  const bool plateau = ratios.back() - shown <= kOnCircle * shown;
-  if (!plateau || std::abs(shown / contact.model.friction - 1.0) <= kOnCircle) return std::nullopt;
-  return shown;
-}
-
 }  // namespace
 
 ArrayXd stick_cells(const GivenContact& contact) {
@@ -220,21 +209,21 @@ ArrayXd stick_cells(const GivenContact& contact) {
   return ((contact.friction_bound > 0.0) && (size + margin < contact.friction_bound)).cast<double>();
 }
 
-Diagnosis diagnose(const GivenContact& contact, const solver::Step& load, double allowed) {
+Diagnosis diagnose(const GivenContact& contact, const solver::Step& load, double allowed,
+                   std::optional<double> friction) {
   const Trial trial(contact, load);
   Diagnosis diagnosis{trial.of({.name = "as it should be"}), try_kernels(trial), {}, {}};
   const Hypothesis& right = diagnosis.as_it_should_be;
   for (const Hypothesis& kernel : diagnosis.tried) {
-    const bool explains = right.stick_gap > allowed && kernel.stick_gap <= allowed &&
-                          kernel.stick_gap <= kExplains * right.stick_gap;
+    const bool explains = right.stick_gap > kNoStickGap && kernel.stick_gap <= kExplains * right.stick_gap;
     if (!explains) continue;
     if (!diagnosis.kernel || kernel.stick_gap < diagnosis.kernel->stick_gap) diagnosis.kernel = kernel;
   }
-  if (const auto friction = shown_friction(contact)) {
+  if (friction) {
     const std::string name =
         fmt::format("a friction coefficient of {:.4g} in place of {:.4g}", *friction, contact.model.friction);
-    diagnosis.tried.push_back(trial.of({.name = name, .friction = *friction / contact.model.friction}));
-    if (diagnosis.tried.back().gap <= allowed) diagnosis.friction = diagnosis.tried.back();
+    diagnosis.friction = trial.of({.name = name, .friction = *friction / contact.model.friction});
+    diagnosis.tried.push_back(*diagnosis.friction);
   }
   const Hypothesis& best = diagnosis.kernel ? *diagnosis.kernel : right;
   diagnosis.stick_area_explained = best.stick_gap <= std::min(allowed, kExplains * best.gap);

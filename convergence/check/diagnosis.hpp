@@ -22,16 +22,18 @@ struct Diagnosis {
   Hypothesis as_it_should_be;          ///< with the right kernel and friction
   std::vector<Hypothesis> tried;       ///< mistakes that solvers make
   std::optional<Hypothesis> kernel;    ///< that of them which explains the stick area
-  std::optional<Hypothesis> friction;  ///< the friction coefficient which explains all
+  std::optional<Hypothesis> friction;  ///< the friction coefficient that was used
   /// With that kernel, or the right one, the stick area is as it should be: what is left is slipping cells.
   bool stick_area_explained = false;
 };
 
-/// Tries kernels (K12 mirrored as an even function, missing, of the wrong sign; Poisson's ratio zero or
-/// another; K13 and K23 of dissimilar bodies missing or of the wrong sign) and another friction coefficient
-/// on a contact that breaks Coulomb's law. allowed: the gap over energy that its mesh explains. Displacements
-/// are summed directly, in large contacts at a part of the cells.
-Diagnosis diagnose(const GivenContact& contact, const solver::Step& load, double allowed);
+/// Tries kernels (K12 mirrored as an even function, missing, of the wrong sign; K11 and K22 exchanged;
+/// Poisson's ratio zero or another; K13 and K23 of dissimilar bodies missing or of the wrong sign) on a
+/// contact that breaks Coulomb's law, and the friction coefficient that its slip ring shows, if it is given.
+/// allowed: the gap over energy that its mesh explains. Displacements are summed directly, in large contacts
+/// at a part of the cells.
+Diagnosis diagnose(const GivenContact& contact, const solver::Step& load, double allowed,
+                   std::optional<double> friction = {});
 
 /// Cells that stick: |q| below mu p by more than what a file's digits or a solver's tolerance leave open.
 Eigen::ArrayXd stick_cells(const GivenContact& contact);

@@ -4,8 +4,7 @@
 #include <filesystem>
 #include <optional>
 
-#include "convergence/check/foreign_field.hpp"
-#include "convergence/check/given_contact.hpp"
+#include "convergence/check/conventions.hpp"
 #include "convergence/check/yardstick.hpp"
 #include "convergence/oracle.hpp"
 #include "solver/certificate.hpp"
@@ -16,19 +15,17 @@ namespace slipstick::convergence {
 /// its contact is; moments over the cell area.
 struct Examination {
   solver::Scene scene;
-  ForeignField field;
+  Interpretation read;
   OracleAnswer exact;  ///< its centre is that of the field's grid
   GivenContact contact;
   Yardstick yardstick;
   bool twist_given;
-  double twist;                          ///< rad
-  double inferred_twist;                 ///< rad, which Coulomb's law fits best
-  std::array<double, 2> displacement{};  ///< of the contact, dimensionless
-  Eigen::ArrayXd slip;                   ///< 2*cells
-  Eigen::ArrayXd gap;                    ///< cells
-  Eigen::ArrayXd stick;                  ///< cells
-  std::optional<double> moment;          ///< asked for, over the cell area; none: any
-  double moment_limit;                   ///< of the field's pressure, over the cell area
+  State state;                   ///< under the twist given, or the one that fits
+  double inferred_twist;         ///< rad, which Coulomb's law fits best
+  Deviation deviation;           ///< from the right answer
+  Eigen::ArrayXd stick;          ///< cells
+  std::optional<double> moment;  ///< asked for, over the cell area; none: any
+  double moment_limit;           ///< of the field's pressure, over the cell area
   solver::Certificate certificate{};
   solver::SlipDirection direction{};  ///< of noticeable slip
 

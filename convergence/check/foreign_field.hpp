@@ -3,8 +3,6 @@
 #include <Eigen/Core>
 #include <array>
 #include <filesystem>
-#include <string>
-#include <vector>
 
 #include "solver/grid.hpp"
 
@@ -14,13 +12,12 @@ namespace slipstick::convergence {
 /// Cells that its file does not hold carry nothing.
 struct ForeignField {
   std::filesystem::path file;
-  solver::Grid grid;                    ///< m, about its own centre
-  std::array<double, 2> centre;         ///< m, of the grid in the scene's coordinates
-  Eigen::ArrayXd pressure;              ///< cells, Pa
-  Eigen::ArrayXd traction;              ///< 2*cells, Pa, on the lower body
-  Eigen::ArrayXd pressure_rounding;     ///< cells: what the file's digits leave open
-  Eigen::ArrayXd traction_rounding;     ///< cells, of |q|
-  std::vector<std::string> notes = {};  ///< conventions other than this project's, one sentence each
+  solver::Grid grid;                 ///< m, about its own centre
+  std::array<double, 2> centre;      ///< m, of the grid in the scene's coordinates
+  Eigen::ArrayXd pressure;           ///< cells, Pa
+  Eigen::ArrayXd traction;           ///< 2*cells, Pa, on the lower body
+  Eigen::ArrayXd pressure_rounding;  ///< cells: what the file's digits leave open
+  Eigen::ArrayXd traction_rounding;  ///< cells, of |q|
 };
 
 /// Reads the columns x1, x2, pressure, q1, q2 (CSV or HDF5; others are ignored) with their numbers as they

@@ -1,5 +1,7 @@
 #include "convergence/check/given_contact.hpp"
 
+#include <utility>
+
 #include "solver/over_unit.hpp"
 
 namespace slipstick::convergence {
@@ -42,25 +44,37 @@ ArrayXd pressure_displacement(const solver::Model& model, const solver::Elastici
   return u;
 }
 
+GivenContact with_fields(const GivenContact& contact, const solver::Grid& grid, ArrayXd pressure,
+                         ArrayXd traction) {
+  GivenContact other{};
+  other.model = contact.model;
+  other.model.grid = grid;
+  other.elasticity = contact.elasticity;
+  other.centre = contact.centre;
+  other.pressure = std::move(pressure);
+  other.friction_bound = other.model.friction * other.pressure;
+  other.traction = std::move(traction);
+  other.traction_rounding = other.bound_rounding = ArrayXd::Zero(grid.cells());
+  other.rotation = rotation_about_origin(other);
+  other.elastic_displacement.resize(other.traction.size());
+  other.elasticity.make(grid, solver::tangential_kernel())->apply(other.traction, other.elastic_displacement);
+  other.displacement = other.elastic_displacement;
+  const ArrayXd by_pressure = pressure_displacement(other.model, other.elasticity, grid, other.pressure);
+  if (by_pressure.size() > 0) other.displacement += by_pressure;
+  return other;
+}
+
 GivenContact make_given_contact(const ForeignField& field, const solver::Scene& scene,
                                 const solver::Model& scene_model) {
-  GivenContact contact{};
-  contact.model = on_grid_of(field, scene_model);
-  const solver::Model& model = contact.model;
-  contact.elasticity = {.pair = model.pair, .threads = scene.threads};
-  contact.centre = {field.centre[0] / model.length_unit, field.centre[1] / model.length_unit};
-  contact.pressure = field.pressure / model.stress_unit;
-  contact.friction_bound = model.friction * contact.pressure;
-  contact.traction = field.traction / model.stress_unit;
+  GivenContact bodies{};
+  bodies.model = on_grid_of(field, scene_model);
+  const solver::Model& model = bodies.model;
+  bodies.elasticity = {.pair = model.pair, .threads = scene.threads};
+  bodies.centre = {field.centre[0] / model.length_unit, field.centre[1] / model.length_unit};
+  GivenContact contact =
+      with_fields(bodies, model.grid, field.pressure / model.stress_unit, field.traction / model.stress_unit);
   contact.traction_rounding = field.traction_rounding / model.stress_unit;
   contact.bound_rounding = model.friction * field.pressure_rounding / model.stress_unit;
-  contact.rotation = rotation_about_origin(contact);
-  contact.elastic_displacement.resize(contact.traction.size());
-  contact.elasticity.make(model.grid, solver::tangential_kernel())
-      ->apply(contact.traction, contact.elastic_displacement);
-  contact.displacement = contact.elastic_displacement;
-  const ArrayXd by_pressure = pressure_displacement(model, contact.elasticity, model.grid, contact.pressure);
-  if (by_pressure.size() > 0) contact.displacement += by_pressure;
   return contact;
 }
 
@@ -92,15 +106,26 @@ ArrayXd rigid_motion(const GivenContact& contact, const std::array<double, 2>& d
   return motion;
 }
 
-solver::TangentialProblem own_problem(const GivenContact& contact) {
-  const ArrayXd about_grid = solver::rotation_field(contact.model.grid);
+solver::TangentialProblem own_problem(const GivenContact& contact, const solver::Step& load) {
   solver::TangentialProblem problem{
       .friction_bound = contact.friction_bound,
       .initial_displacement = contact.displacement - contact.elastic_displacement,
-      .moment = (contact.traction * about_grid).sum(),
-      .twist = {},
-      .force = contact.force()};
+      .moment = {},
+      .twist = load.torsion.twist};
   if (!contact.model.pressure_coupling) problem.initial_displacement = {};
+  if (!problem.twist) {
+    problem.moment = (contact.traction * solver::rotation_field(contact.model.grid)).sum();
+  }
+  // The grid's centre moves with the body. Where it stands apart and the twist is free, that is not imposed.
+  const auto& [c1, c2] = contact.centre;
+  const double twist = problem.twist.value_or(0.0);
+  if (load.displacement && (problem.twist || (c1 == 0.0 && c2 == 0.0))) {
+    const double unit = contact.model.length_unit;
+    problem.displacement = {(*load.displacement)[0] / unit - twist * c2,
+                            (*load.displacement)[1] / unit + twist * c1};
+  } else {
+    problem.force = contact.force();
+  }
   return problem;
 }
 

@@ -39,6 +39,11 @@ struct GivenContact {
 GivenContact make_given_contact(const ForeignField& field, const solver::Scene& scene,
                                 const solver::Model& scene_model);
 
+/// The same bodies with another pressure and other tractions, without rounding, on another grid about the
+/// same centre.
+GivenContact with_fields(const GivenContact& contact, const solver::Grid& grid, Eigen::ArrayXd pressure,
+                         Eigen::ArrayXd traction);
+
 /// Displacement fields of the scene's rigid motions that are not imposed: translations, unless the scene says
 /// how far, and rotation, unless the twist is given. `imposed`: the sum of those that are.
 struct RigidMotions {
@@ -52,9 +57,9 @@ RigidMotions rigid_motions(const GivenContact& contact, const solver::Step& load
 Eigen::ArrayXd rigid_motion(const GivenContact& contact, const std::array<double, 2>& displacement,
                             double twist);
 
-/// The tangential problem that a contact with this pressure poses under the tractions' own loads, on its
-/// grid.
-solver::TangentialProblem own_problem(const GivenContact& contact);
+/// The tangential problem that a contact with this pressure poses on its grid: under the motions that the
+/// scene imposes, and else under the tractions' own loads.
+solver::TangentialProblem own_problem(const GivenContact& contact, const solver::Step& load);
 
 /// The displacement by pressure, of dissimilar materials; empty where there is none.
 Eigen::ArrayXd pressure_displacement(const solver::Model& model, const solver::Elasticity& elasticity,

@@ -16,13 +16,21 @@ namespace {
 using Eigen::ArrayXd;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-/// The right answers on a mesh and on one of half its size differ by half of the coarser one's error at
-/// least, where errors fall like h or faster: twice the difference bounds what the mesh accounts for.
-constexpr double kWholeMeshError = 2.0;
-/// A gap goes with the square of the error of tractions.
-constexpr double kWholeMeshGap = kWholeMeshError * kWholeMeshError;
+/// The yardstick's fields know the truth to a third of the mesh error, and other discretisations than its own
+/// have errors of the same size: twice what it measures is what a mesh accounts for.
+constexpr double kWholeMesh = 2.0;
+/// Errors drawn at random change what they disturb by as much as another draw does, within this factor.
+constexpr double kOtherDraws = 2.0;
+/// A sum over n cells of what ends at an edge like a square root: by Poisson's summation midpoints miss up
+/// to 4/pi^2 h^2/a^2 of it with the nearest images, and about 1/n with those of the stick area's edge; of two
+/// such sums twice that.
+constexpr double kQuadrature = 2.0;
 /// Friction coefficients are not known to more digits.
 constexpr double kFrictionSlack = 1e-3;
+/// Of so many standard deviations no cell of a contact is off by chance.
+constexpr double kLargestDraw = 6.0;
+/// A part of mu p by which a program that keeps its bound may exceed it.
+constexpr double kOnCircle = 1e-4;
 
 /// "5.1 % too low", or "right to 2e-05".
 std::string off_text(double error) {
@@ -34,15 +42,66 @@ Judged judge_error(const std::string& what, const std::string& key, double error
   return {key, std::abs(error), allowed, "", fmt::format("{} is {}", what, off_text(error))};
 }
 
+/// By how much rounding and noise may change sums over the contact, relative.
+double error_of_sums(const Examination& e) {
+  const GivenContact& c = e.contact;
+  return c.traction_rounding.sum() / solver::norms(c.traction).sum() +
+         c.bound_rounding.sum() / c.friction_bound.sum() +
+         kLargestDraw * std::sqrt(e.yardstick.noise_size.square().sum()) / c.friction_bound.sum();
+}
+
+/// By how much tractions that are wrong by a part may change the gap, over the energy.
+double gap_of_tolerance(const Examination& e, double tolerance) {
+  const GivenContact& c = e.contact;
+  const ArrayXd reach = solver::norms(e.state.slip) + solver::norms(c.displacement);
+  return tolerance * (c.friction_bound * reach).sum() / c.energy();
+}
+
+/// What is allowed of each quantity.
+struct Allowed {
+  double normal, moment, force;
+  double motion;
+  double tractions;
+  double friction;
+  double direction;  ///< degrees
+  double gap;
+  double discrete_gap;
+};
+
+Allowed find_allowed(const Examination& e, std::optional<double> tolerance) {
+  const Yardstick& y = e.yardstick;
+  const double discrete_gap = kIterationGap + kOtherDraws * y.rounding.gap;
+  if (tolerance) {
+    const double t = *tolerance;
+    return {t, t, t, t, t, t, kDegrees * t, discrete_gap + gap_of_tolerance(e, t), discrete_gap};
+  }
+  const auto by_chance = [&](double Deviation::*part) {
+    return kOtherDraws * (y.noise.*part + y.rounding.*part);
+  };
+  const double quadrature = kQuadrature / static_cast<double>((e.contact.pressure > 0.0).count());
+  const double sums = error_of_sums(e);
+  const auto load = [&](double measured) { return std::max(kWholeMesh * measured, quadrature) + sums; };
+  const double tractions = kWholeMesh * y.mesh.tractions + by_chance(&Deviation::tractions);
+  return {.normal = load(y.loads.normal),
+          .moment = load(std::max(y.loads.moment, y.mesh.moment)),
+          .force = load(y.loads.force),
+          .motion = kWholeMesh * y.mesh.motion + quadrature + by_chance(&Deviation::motion),
+          .tractions = tractions,
+          .friction = kFrictionSlack + kWholeMesh * y.mesh.friction + by_chance(&Deviation::friction),
+          .direction = kDegrees * tractions,
+          .gap = discrete_gap + kWholeMesh * y.mesh.gap + kOtherDraws * y.noise.gap,
+          .discrete_gap = discrete_gap};
+}
+
 /// Normal load and pressure. A contact may end a cell too early or too late, and its limit moment goes with
 /// its radius.
-void judge_pressure(std::vector<Judged>& judged, const Examination& e, double allowed) {
+void judge_pressure(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed) {
   const solver::Step& load = e.scene.steps.front();
   const solver::Model& model = e.contact.model;
   if (load.normal) {
     judged.push_back(judge_error("the normal load", "normal_load_error",
                                  relative_error(e.contact.pressure.sum() * e.newtons(), *load.normal),
-                                 allowed));
+                                 allowed.normal));
   }
   if (!e.exact.oracle || !std::isfinite(e.exact.oracle->contact_radius)) return;
   const double radius = e.exact.oracle->contact_radius / model.length_unit;
@@ -57,99 +116,93 @@ void judge_pressure(std::vector<Judged>& judged, const Examination& e, double al
                                "moment_limit_error", relative_error(e.moment_limit, limit), one_cell));
 }
 
-/// A ratio of the limit moment may be one of the exact limit, or of that of the field's own pressure.
-double moment_error(const Examination& e) {
+/// Against the moment asked for; a ratio of the limit moment may be one of the exact limit, or of that of the
+/// field's own pressure. Under an imposed twist against the one that it causes. None: none is known.
+std::optional<double> moment_error(const Examination& e) {
+  const solver::TorsionLoad& torsion = e.scene.steps.front().torsion;
+  if (torsion.twist) return e.deviation.moment;
+  if (!e.moment || *e.moment == 0.0) return std::nullopt;
   const double error = relative_error(e.contact.moment(), *e.moment);
-  const auto& ratio = e.scene.steps.front().torsion.moment_ratio;
-  if (!ratio) return error;
-  const double of_own_limit = relative_error(e.contact.moment(), *ratio * e.moment_limit);
+  if (!torsion.moment_ratio) return error;
+  const double of_own_limit = relative_error(e.contact.moment(), *torsion.moment_ratio * e.moment_limit);
   return std::abs(of_own_limit) < std::abs(error) ? of_own_limit : error;
 }
 
-void judge_loads(std::vector<Judged>& judged, const Examination& e, double allowed) {
-  if (e.moment && *e.moment != 0.0) {
-    const double error = moment_error(e);
-    Judged moment = judge_error("the moment", "moment_error", error, allowed);
-    moment.right = fmt::format("the moment is right ({:+.1e})", error);
+void judge_loads(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed) {
+  if (const auto error = moment_error(e)) {
+    Judged moment = judge_error("the moment", "moment_error", *error, allowed.moment);
+    moment.right = fmt::format("the moment is right ({:+.1e})", *error);
     judged.push_back(moment);
   }
-  judged.push_back({"force", e.certificate.force, allowed, "",
+  judged.push_back({"force", e.certificate.force, allowed.force, "",
                     fmt::format("the tangential force is off by {:.2g} of mu W", e.certificate.force)});
 }
 
-/// Relative error of tractions, L1, that mesh and digits account for.
-double allowed_error(const Examination& e) {
+/// By what part of mu p |q| exceeds it, beyond what the file's digits and noise leave open. In cells that
+/// carry next to nothing, of a part of the largest mu p.
+double friction_excess(const Examination& e) {
   const GivenContact& c = e.contact;
-  const double rounding = c.traction_rounding.sum() / solver::norms(c.traction).sum();
-  return kWholeMeshError * e.yardstick.mesh_error + rounding;
-}
-
-/// By how much rounding in the file may change the gap.
-double rounding_gap(const Examination& e) {
-  const GivenContact& c = e.contact;
-  const ArrayXd reach = solver::norms(e.slip) + solver::norms(c.displacement);
-  return ((c.traction_rounding + c.bound_rounding) * reach).sum() / c.energy();
-}
-
-/// By what part of mu p |q| exceeds it, beyond what the file's digits leave open. In cells that carry next to
-/// nothing, of a part of the largest mu p.
-double friction_excess(const GivenContact& c) {
-  const ArrayXd beyond =
-      solver::norms(c.traction) - c.friction_bound - c.traction_rounding - c.bound_rounding;
+  const ArrayXd beyond = solver::norms(c.traction) - c.friction_bound - c.traction_rounding -
+                         c.bound_rounding - kLargestDraw * e.yardstick.noise_size;
   return (beyond / c.friction_bound.max(kNextToNothing * c.friction_bound.maxCoeff())).maxCoeff();
 }
-
-double allowed_gap(const Examination& e) { return kWholeMeshGap * e.yardstick.gap + rounding_gap(e); }
 
 bool is_torsion(const solver::Scene& scene) {
   const solver::Step& load = scene.steps.front();
   return !load.displacement && load.force == std::array<double, 2>{};
 }
 
-/// Of the rigid motion, in the mean over the contact weighted with mu p, relative to the motion or to the
-/// displacements, whichever are larger; its sign is that of the change in size. With torsion alone it is the
-/// twist's.
-double motion_error(const Examination& e) {
-  const GivenContact& c = e.contact;
-  const auto size = [&](const ArrayXd& motion) { return (c.friction_bound * solver::norms(motion)).sum(); };
-  const ArrayXd found = rigid_motion(c, e.displacement, e.twist);
-  const ArrayXd right = rigid_motion(c, e.yardstick.displacement, e.yardstick.twist);
-  return std::copysign(size(found - right), size(found) - size(right)) /
-         std::max(size(right), size(c.displacement));
-}
-
 /// A twist that was inferred from a field that breaks Coulomb's law means little: no sentence speaks of it.
-void judge_motion(std::vector<Judged>& judged, const Examination& e, double allowed, bool lawful) {
-  if (e.yardstick.scaled) return;  // the right motion is that of other loads
+void judge_motion(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed, bool lawful) {
+  if (e.yardstick.right.scaled) return;  // the right motion and tractions are those of other loads
   const bool torsion = is_torsion(e.scene);
-  const double error = motion_error(e);
-  Judged motion = torsion ? judge_error("the twist", "twist", error, allowed)
-                          : judge_error("the rigid motion", "motion", error, allowed);
+  const double error = e.deviation.motion;
+  Judged motion = torsion ? judge_error("the twist", "twist", error, allowed.motion)
+                          : judge_error("the rigid motion", "motion", error, allowed.motion);
   if (torsion) {
     motion.right = fmt::format("the twist is right ({}{:+.1e})", e.twist_given ? "" : "inferred, ", error);
   }
   if (!e.twist_given && !lawful) motion.wrong.clear();
   judged.push_back(motion);
+  judged.push_back({"tractions", e.deviation.tractions, allowed.tractions, "",
+                    fmt::format("the tractions are {:.2g} % off in the mean (allowed: {:.1g})",
+                                100.0 * e.deviation.tractions, 100.0 * allowed.tractions)});
 }
 
-void judge_coulomb(std::vector<Judged>& judged, const Examination& e, double allowed) {
-  const double excess = friction_excess(e.contact);
-  judged.push_back({"friction_bound", excess, kFrictionSlack, "",
+void judge_coulomb(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed) {
+  judged.push_back(judge_error("|q|/p in the slip ring", "friction", e.deviation.friction, allowed.friction));
+  const double excess = friction_excess(e);
+  judged.push_back({"friction_bound", excess, std::max(kFrictionSlack, allowed.friction - kFrictionSlack), "",
                     fmt::format("|q| exceeds mu p by {:.2g} %", 100.0 * excess)});
   const bool within_friction = judged.back().holds();
-  const double degrees = kDegrees * allowed;
   judged.push_back(
-      {"slip_direction", e.direction.mean, degrees,
+      {"slip_direction", e.direction.mean, allowed.direction,
        fmt::format("slip opposes traction to {:.1g} degrees in the mean", e.direction.mean),
        fmt::format("slip is not opposed to traction ({:.2g} degrees off in the mean, of which the "
                    "mesh accounts for {:.1g})",
-                   e.direction.mean, degrees)});
+                   e.direction.mean, allowed.direction)});
   if (!within_friction) return;  // what it sums is not positive then
-  judged.push_back({"gap", e.certificate.gap, allowed_gap(e),
+  judged.push_back({"gap", e.certificate.gap, allowed.gap,
                     fmt::format("Coulomb's law holds (gap/energy {:.1e}; the mesh accounts for {:.1e})",
-                                e.certificate.gap, allowed_gap(e)),
+                                e.certificate.gap, allowed.gap),
                     fmt::format("Coulomb's law is broken (gap/energy {:.1e}; the mesh accounts for {:.1e})",
-                                e.certificate.gap, allowed_gap(e))});
+                                e.certificate.gap, allowed.gap)});
+}
+
+/// Whether cell-constant tractions solve the problem of this very grid. A field that leaves its bound has no
+/// gap.
+Judged judge_discrete(const Examination& e, const Allowed& allowed) {
+  const GivenContact& c = e.contact;
+  const ArrayXd beyond = solver::norms(c.traction) - (1.0 + kOnCircle) * c.friction_bound -
+                         c.traction_rounding - c.bound_rounding;
+  const bool bounded = beyond.maxCoeff() <= kNextToNothing * kOnCircle * c.friction_bound.maxCoeff();
+  return {"discrete", bounded ? e.certificate.gap : NAN, allowed.discrete_gap,
+          fmt::format("it solves its own grid's problem (gap/energy {:.1e}, allowed {:.1e})",
+                      e.certificate.gap, allowed.discrete_gap),
+          bounded
+              ? fmt::format("it does not solve its own grid's problem (gap/energy {:.1e}, allowed {:.1e})",
+                            e.certificate.gap, allowed.discrete_gap)
+              : "it does not solve its own grid's problem (|q| exceeds mu p)"};
 }
 
 /// "a, b and c".
@@ -176,9 +229,9 @@ std::string kernel_text(const Hypothesis& kernel, const Hypothesis& right, const
   std::string text =
       fmt::format("{}: with that the stick area moves as one body (its gap falls from {:.1e} to {:.1e})",
                   kernel.name, right.stick_gap, kernel.stick_gap);
-  if (e.yardstick.scaled || !is_torsion(e.scene)) return text;
+  if (e.yardstick.right.scaled || !is_torsion(e.scene)) return text;
   return text + fmt::format(" by {:.6g} rad, {}", kernel.twist,
-                            off_text(relative_error(kernel.twist, e.yardstick.twist)));
+                            off_text(relative_error(kernel.twist, e.yardstick.right.twist)));
 }
 
 /// What it may be that makes a twist wrong, by the ratio to the one that fits the tractions.
@@ -196,12 +249,12 @@ std::string twist_mistake(const Examination& e, double allowed) {
                                      {kDegrees, "a twist in degrees"},
                                      {-1.0, "a twist of the other sense"}}};
   for (const Ratio& ratio : ratios) {
-    if (std::abs(e.twist / e.inferred_twist / ratio.value - 1.0) <= allowed) return ratio.words;
+    if (std::abs(e.state.twist / e.inferred_twist / ratio.value - 1.0) <= allowed) return ratio.words;
   }
   return fmt::format("a twist that is not that of these tractions, {:.6g} rad", e.inferred_twist);
 }
 
-std::vector<std::string> causes(const Examination& e, const Verdict& verdict, double allowed) {
+std::vector<std::string> causes(const Examination& e, const Verdict& verdict, const Allowed& allowed) {
   std::vector<std::string> causes;
   if (!has_right_pressure(verdict.judged) && e.exact.oracle &&
       !std::isfinite(e.exact.oracle->peak_pressure)) {
@@ -210,55 +263,66 @@ std::vector<std::string> causes(const Examination& e, const Verdict& verdict, do
   }
   if (!verdict.diagnosis) return causes;
   const Diagnosis& diagnosis = *verdict.diagnosis;
-  if (e.twist_given && diagnosis.as_it_should_be.gap <= allowed_gap(e)) {
-    causes.push_back(twist_mistake(e, allowed));
+  if (e.twist_given && !holds(verdict.judged, "twist") && diagnosis.as_it_should_be.gap <= allowed.gap) {
+    causes.push_back(twist_mistake(e, allowed.motion));
   }
   if (diagnosis.friction) {
     causes.push_back(
         fmt::format("{} (gap/energy {:.1e} with that)", diagnosis.friction->name, diagnosis.friction->gap));
-    return causes;
   }
   if (diagnosis.kernel) causes.push_back(kernel_text(*diagnosis.kernel, diagnosis.as_it_should_be, e));
-  if (diagnosis.stick_area_explained && !holds(verdict.judged, "slip_direction")) {
+  if (!diagnosis.friction && diagnosis.stick_area_explained && !holds(verdict.judged, "slip_direction")) {
     causes.emplace_back("slipping cells that keep a direction which does not oppose their slip");
   }
   return causes;
 }
 
 /// What is right, what is not, and what that looks like.
-std::string sentence(const Examination& e, const Verdict& verdict, double allowed) {
+std::string sentence(const Examination& e, const Verdict& verdict, const Allowed& allowed) {
   std::vector<std::string> right;
   std::vector<std::string> wrong;
+  const bool lawful = holds(verdict.judged, "slip_direction") && holds(verdict.judged, "gap") &&
+                      holds(verdict.judged, "tractions") && holds(verdict.judged, "friction");
   for (const Judged& item : verdict.judged) {
+    const bool of_law = item.quantity == "slip_direction" || item.quantity == "gap";
+    if (item.holds() && of_law && !lawful) continue;  // it would say that the law holds, and that it does not
     const std::string& text = item.holds() ? item.right : item.wrong;
     if (!text.empty()) (item.holds() ? right : wrong).push_back(text);
   }
-  if (wrong.empty()) return listed(right);
+  const std::string& discrete = verdict.discrete.holds() ? verdict.discrete.right : verdict.discrete.wrong;
+  if (verdict.within_mesh()) {
+    return fmt::format("{}; {} {}", listed(right), verdict.discrete.holds() ? "and" : "but", discrete);
+  }
   const std::string but = right.empty() ? "" : listed(right) + ", but ";
   const std::vector<std::string> likely = causes(e, verdict, allowed);
-  if (!likely.empty())
-    return but + listed(wrong) + fmt::format("; it looks like {}", fmt::join(likely, ", and like "));
-  const bool unexplained = verdict.diagnosis && has_right_pressure(verdict.judged);
-  return but + listed(wrong) +
-         (unexplained ? "; none of the usual mistakes explains it, as where an iteration stops too early"
-                      : "");
+  std::string text = but + listed(wrong);
+  if (!likely.empty()) {
+    text += fmt::format("; it looks like {}", fmt::join(likely, ", and like "));
+  } else if (verdict.diagnosis && has_right_pressure(verdict.judged)) {
+    text += "; none of the usual mistakes explains it, as where an iteration stops too early";
+  }
+  return verdict.discrete.holds() ? text + "; " + discrete : text;
 }
 
 }  // namespace
 
-Verdict reach_verdict(const Examination& e) {
-  const double allowed = allowed_error(e);
-  Verdict verdict{true, "", {}, {}};
-  judge_pressure(verdict.judged, e, allowed);
-  judge_loads(verdict.judged, e, allowed);
+bool Verdict::within_mesh() const { return std::ranges::all_of(judged, &Judged::holds); }
+
+Verdict reach_verdict(const Examination& e, std::optional<double> tolerance) {
+  const Allowed allowed = find_allowed(e, tolerance);
+  Verdict verdict{{}, judge_discrete(e, allowed), {}, {}};
+  std::vector<Judged>& judged = verdict.judged;
+  judge_pressure(judged, e, allowed);
+  judge_loads(judged, e, allowed);
   std::vector<Judged> law;
   judge_coulomb(law, e, allowed);
   const bool lawful = std::ranges::all_of(law, &Judged::holds);
-  judge_motion(verdict.judged, e, allowed, lawful);
-  verdict.judged.insert(verdict.judged.end(), law.begin(), law.end());
-  verdict.good = std::ranges::all_of(verdict.judged, &Judged::holds);
-  if (!lawful) {
-    verdict.diagnosis = diagnose(e.contact, e.scene.steps.front(), allowed_gap(e));
+  judge_motion(judged, e, allowed, lawful);
+  judged.insert(judged.end(), law.begin(), law.end());
+  if (!lawful || !holds(judged, "tractions") || !holds(judged, "twist") || !holds(judged, "motion")) {
+    std::optional<double> friction;
+    if (!holds(judged, "friction")) friction = plateau_of_friction(e.contact, e.yardstick.right);
+    verdict.diagnosis = diagnose(e.contact, e.scene.steps.front(), allowed.gap, friction);
   }
   verdict.why = sentence(e, verdict, allowed);
   return verdict;

@@ -9,7 +9,7 @@
 
 namespace slipstick::convergence {
 
-/// A number that must not exceed what the mesh (or the file's digits) accounts for. NaN exceeds everything.
+/// A number that must not exceed what is allowed. NaN exceeds everything.
 struct Judged {
   std::string quantity;
   double value;
@@ -20,14 +20,20 @@ struct Judged {
   bool holds() const { return value <= allowed; }
 };
 
-/// Pressure, loads, Coulomb's law, each against what the yardstick says about this very mesh.
+/// Two answers. Is the field right within its mesh: pressure, loads, motion, tractions and Coulomb's law,
+/// each against what right fields of any discretisation have on this very mesh (or against the tolerance that
+/// a user asks for). And does it solve its own grid's problem, of cell-constant tractions, up to iteration
+/// error.
 struct Verdict {
-  bool good;
-  std::string why;  ///< one sentence
   std::vector<Judged> judged;
-  std::optional<Diagnosis> diagnosis;  ///< of a field that breaks Coulomb's law
+  Judged discrete;
+  std::optional<Diagnosis> diagnosis;  ///< of a field that is wrong
+  std::string why;                     ///< one sentence
+
+  bool within_mesh() const;
 };
 
-Verdict reach_verdict(const Examination& examination);
+/// tolerance: on loads, motion and tractions, in place of what the mesh leaves open.
+Verdict reach_verdict(const Examination& examination, std::optional<double> tolerance);
 
 }  // namespace slipstick::convergence

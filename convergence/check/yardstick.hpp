@@ -1,34 +1,38 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <array>
+#include <optional>
 
-#include "convergence/check/given_contact.hpp"
+#include "convergence/check/deviation.hpp"
+#include "convergence/oracle.hpp"
 #include "solver/certificate.hpp"
 
 namespace slipstick::convergence {
 
-/// What a right answer looks like on a given contact's grid, with its pressure and loads: what this project
-/// finds there, and how far from that one may be for the mesh alone. The latter is measured with the right
-/// answer on a mesh twice as fine under the same pressure, averaged over the cells: it keeps Coulomb's bound
-/// and carries the loads, but knows more than this mesh does.
-struct Yardstick {
-  Eigen::ArrayXd traction;               ///< 2*cells
-  double twist = 0.0;                    ///< rad
-  std::array<double, 2> displacement{};  ///< about the scene's origin
-  double mesh_error = 0.0;               ///< of tractions: that mean's distance from `traction`, relative, L1
-  double gap = 0.0;                      ///< its gap / energy
-  solver::SlipDirection direction{};     ///< its slip directions
-  /// The field's loads are beyond what friction can carry with its pressure: these are scaled down to
-  /// kScaledLoads of the limit.
-  bool scaled = false;
+/// How far loads that a field carries may be from those that its program meant.
+struct LoadErrors {
+  double normal = 0.0;  ///< relative
+  double moment = 0.0;  ///< relative
+  double force = 0.0;   ///< in parts of the sum of mu p
 };
-inline constexpr double kScaledLoads = 0.9;
 
-/// Throws std::runtime_error where a solve does not converge.
-Yardstick find_yardstick(const GivenContact& contact);
+/// What is to be expected of a right field on a given contact's grid, whatever its discretisation. It is
+/// measured on right fields: the solution on a mesh of cells a third as large, under the exact pressure where
+/// that is known, once averaged over this grid's cells and once sampled at their centres.
+struct Yardstick {
+  RightAnswer right;                  ///< with the field's own pressure and loads
+  Deviation mesh;                     ///< the larger one of the two fields
+  LoadErrors loads;                   ///< likewise: what midpoints and edge cells do to sums
+  solver::SlipDirection direction{};  ///< of the averaged one
+  Deviation rounding;                 ///< of the right answer, rounded like the field's file
+  Deviation noise;                    ///< and with as much noise as the field shows
+  Eigen::ArrayXd noise_size;          ///< cells: standard deviation, of |q|
+};
 
-/// sum |q - r| / sum |r|.
-double relative_distance(const Eigen::ArrayXd& traction, const Eigen::ArrayXd& reference);
+/// pressed: the exact normal contact, about the grid's centre. twist_given: motions are compared at a twist
+/// that a program reports, else at the one that Coulomb's law fits best. Throws std::runtime_error where a
+/// solve does not converge.
+Yardstick find_yardstick(const GivenContact& contact, const solver::Step& load,
+                         const std::optional<Oracle>& pressed, bool twist_given);
 
 }  // namespace slipstick::convergence

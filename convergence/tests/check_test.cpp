@@ -32,11 +32,11 @@ solver::Scene scene_of(const std::string& name, int cells = 32, std::vector<std:
 }
 
 Json check_rows(const FieldRows& rows, const solver::Scene& scene, std::optional<double> twist = {}) {
-  return check_field(scene, write_rows(rows), twist);
+  return check_field(scene, write_rows(rows), {.twist = twist});
 }
 
 Json check_peer(const std::string& name, std::optional<double> twist = {}) {
-  return check_field(scene_of("paper"), kFields + "/" + name + "-64-0.9.csv", twist);
+  return check_field(scene_of("paper"), kFields + "/" + name + "-64-0.9.csv", {.twist = twist});
 }
 
 std::string why(const Json& result) { return result["why"]; }

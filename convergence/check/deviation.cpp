@@ -1,0 +1,145 @@
+#include "convergence/check/deviation.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+#include "convergence/check/fitted_motion.hpp"
+#include "solver/certificate.hpp"
+#include "solver/coulomb_method.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using Eigen::ArrayXd;
+using solver::Grid;
+using solver::Index;
+
+/// Slipping cells of a solution lie on their circle up to rounding.
+constexpr double kOnCircle = 1e-9;
+/// A median over fewer cells is one of the ring's edges.
+constexpr std::size_t kFewestSlipping = 8;
+
+/// Of the rigid motion, in the mean over the contact weighted with mu p, relative to the motion or to the
+/// displacements, whichever are larger; its sign is that of the change in size. With torsion alone it is the
+/// twist's.
+double motion_error(const GivenContact& c, const RightAnswer& right, const State& state) {
+  const auto size = [&](const ArrayXd& motion) { return (c.friction_bound * solver::norms(motion)).sum(); };
+  const ArrayXd found = rigid_motion(c, state.displacement, state.twist);
+  const ArrayXd expected = rigid_motion(c, right.displacement, right.twist);
+  return std::copysign(size(found - expected), size(found) - size(expected)) /
+         std::max(size(expected), size(c.displacement));
+}
+
+}  // namespace
+
+void scale_loads(solver::TangentialProblem& problem, double factor) {
+  if (problem.moment) *problem.moment *= factor;
+  if (!problem.force) return;
+  for (double& force : *problem.force) force *= factor;
+}
+
+solver::TangentialSolution solve_problem(const GivenContact& contact, const Grid& grid,
+                                         const solver::TangentialProblem& problem) {
+  solver::TangentialSolution solution = solve_by_coulomb_method(contact.elasticity, grid, problem);
+  const bool usable = solution.status == solver::Status::converged || solution.change <= kIterationGap;
+  if (!usable) throw std::runtime_error("the right answer to judge by was not found: " + solution.message);
+  return solution;
+}
+
+RightAnswer find_right_answer(const GivenContact& contact, const solver::Step& load) {
+  RightAnswer right;
+  const Grid& grid = contact.model.grid;
+  solver::TangentialProblem problem = own_problem(contact, load);
+  if (const double factor = solver::limit_of(problem, grid).factor; !(factor > 1.0)) {
+    right.scaled = true;
+    scale_loads(problem, kScaledLoads * factor);
+  }
+  solver::TangentialSolution solution = solve_problem(contact, grid, problem);
+  right.traction = std::move(solution.traction);
+  right.twist = solution.twist;
+  right.displacement = {solution.displacement[0] + solution.twist * contact.centre[1],
+                        solution.displacement[1] - solution.twist * contact.centre[0]};
+  return right;
+}
+
+State find_state(const GivenContact& c, const solver::Step& load, std::optional<double> twist) {
+  // Where |q| exceeds its bound the gap would not be one.
+  const ArrayXd bound =
+      c.friction_bound.max(solver::norms(c.traction) * (c.friction_bound > 0.0).cast<double>());
+  const RigidMotions motions = rigid_motions(c, load, twist);
+  FittedMotion fitted = fit_motion(c.displacement - motions.imposed, c.traction, bound, motions.free);
+  const auto& found = fitted.coefficients;
+  State state{.twist = twist ? *twist : found[found.size() - 1],
+              .displacement = {},
+              .slip = std::move(fitted.slip),
+              .gap = std::move(fitted.gap)};
+  for (std::size_t k = 0; k < 2; ++k) {
+    state.displacement[k] =
+        load.displacement ? (*load.displacement)[k] / c.model.length_unit : found[static_cast<Index>(k)];
+  }
+  return state;
+}
+
+std::vector<Index> slip_ring(const GivenContact& contact, const RightAnswer& right) {
+  const ArrayXd size = solver::norms(right.traction);
+  const double least = kNextToNothing * contact.friction_bound.maxCoeff();
+  std::vector<Index> cells;
+  for (Index cell = 0; cell < size.size(); ++cell) {
+    const double bound = contact.friction_bound[cell];
+    if (bound > least && size[cell] >= (1.0 - kOnCircle) * bound) cells.push_back(cell);
+  }
+  return cells;
+}
+
+namespace {
+
+/// |q|/(mu p) - 1 in the slip ring, in order; empty where hardly any cell slips.
+std::vector<double> ring_excess(const GivenContact& contact, const RightAnswer& right) {
+  const std::vector<Index> ring = slip_ring(contact, right);
+  if (ring.size() < kFewestSlipping) return {};
+  const ArrayXd size = solver::norms(contact.traction);
+  std::vector<double> excess;
+  for (const Index cell : ring) excess.push_back(size[cell] / contact.friction_bound[cell] - 1.0);
+  std::ranges::sort(excess);
+  return excess;
+}
+
+}  // namespace
+
+std::optional<double> shown_friction(const GivenContact& contact, const RightAnswer& right) {
+  const std::vector<double> excess = ring_excess(contact, right);
+  if (excess.empty()) return std::nullopt;
+  return excess[excess.size() / 2];
+}
+
+std::optional<double> plateau_of_friction(const GivenContact& contact, const RightAnswer& right) {
+  constexpr double kConstant = 0.2;
+  const std::vector<double> excess = ring_excess(contact, right);
+  if (excess.empty()) return std::nullopt;
+  const double middle = excess[excess.size() / 2];
+  const double spread = excess[excess.size() * 3 / 4] - excess[excess.size() / 4];
+  if (!(spread <= kConstant * std::abs(middle))) return std::nullopt;
+  return (1.0 + middle) * contact.model.friction;
+}
+
+Deviation find_deviation(const GivenContact& contact, const RightAnswer& right, const State& state) {
+  const double moment = (right.traction * contact.rotation).sum();
+  return {.tractions = relative_distance(contact.traction, right.traction),
+          .motion = motion_error(contact, right, state),
+          .moment = moment == 0.0 ? 0.0 : contact.moment() / moment - 1.0,
+          .friction = shown_friction(contact, right).value_or(0.0),
+          .gap = state.gap.sum() / contact.energy()};
+}
+
+Deviation larger(const Deviation& a, const Deviation& b) {
+  const auto of = [&](double Deviation::*part) { return std::max(std::abs(a.*part), std::abs(b.*part)); };
+  return {of(&Deviation::tractions), of(&Deviation::motion), of(&Deviation::moment), of(&Deviation::friction),
+          of(&Deviation::gap)};
+}
+
+double relative_distance(const ArrayXd& traction, const ArrayXd& reference) {
+  return solver::norms(traction - reference).sum() / solver::norms(reference).sum();
+}
+
+}  // namespace slipstick::convergence
