@@ -63,8 +63,8 @@ void add_field(Json& json, const Examination& e) {
   json["contact_cells"] = (e.contact.pressure > 0.0).count();
   json["stick_cells"] = (e.stick > 0.0).count();
   json["conventions"] = e.read.conventions;
+  for (const std::string& remark : e.read.remarks) json["conventions"].push_back(remark);
   json["mistakes"] = e.read.mistakes;
-  json["remarks"] = e.read.remarks;
 }
 
 struct StickArea {
@@ -93,7 +93,7 @@ void add_state(Json& json, const Examination& e, const StickArea& stick) {
   json["force"] = {f1 * e.newtons(), f2 * e.newtons()};
   set_number(json, "twist_angle", e.state.twist, kBroken);
   json["twist_inferred"] = !e.twist_given;
-  set_number(json, "twist_that_fits", e.inferred_twist, kBroken);
+  set_number(json, "twist_that_fits", e.fitted.twist, kBroken);
   json["displacement"] = {e.state.displacement[0] * model.length_unit,
                           e.state.displacement[1] * model.length_unit};
 }
@@ -128,7 +128,7 @@ Json yardstick_json(const Examination& e) {
   Json json;
   json["mesh_error"] = yardstick.mesh.tractions;
   json["gap"] = yardstick.mesh.gap;
-  json["slip_direction"] = yardstick.direction.mean;
+  json["slip_direction"] = yardstick.direction;
   json["twist_angle"] = yardstick.right.twist;
   json["loads_scaled_down"] = yardstick.right.scaled;
   json["distance"] = e.deviation.tractions;
@@ -198,7 +198,7 @@ std::string field_text(const Json& r) {
                                         r["cells"][0].get<int>(), r["cells"][1].get<int>(),
                                         number_text(r["cell_size"][0]), number_text(r["cell_size"][1]),
                                         r["contact_cells"].get<int>(), r["stick_cells"].get<int>()));
-  for (const char* key : {"mistakes", "conventions", "remarks"}) {
+  for (const char* key : {"mistakes", "conventions"}) {
     for (const Json& note : r[key]) text += text_line("note", note.get<std::string>());
   }
   return text;

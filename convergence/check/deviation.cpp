@@ -123,13 +123,22 @@ std::optional<double> plateau_of_friction(const GivenContact& contact, const Rig
   return (1.0 + middle) * contact.model.friction;
 }
 
-Deviation find_deviation(const GivenContact& contact, const RightAnswer& right, const State& state) {
+Deviation find_deviation(const GivenContact& contact, const RightAnswer& right, const State& reported,
+                         const State& fitted) {
   const double moment = (right.traction * contact.rotation).sum();
   return {.tractions = relative_distance(contact.traction, right.traction),
-          .motion = motion_error(contact, right, state),
+          .motion = motion_error(contact, right, reported),
           .moment = moment == 0.0 ? 0.0 : contact.moment() / moment - 1.0,
           .friction = shown_friction(contact, right).value_or(0.0),
-          .gap = state.gap.sum() / contact.energy()};
+          .gap = fitted.gap.sum() / contact.energy()};
+}
+
+solver::SlipDirection noticeable_direction(const GivenContact& c, const State& state, double part) {
+  const double least = part * solver::norms(c.displacement).maxCoeff();
+  const ArrayXd size = solver::norms(state.slip);
+  const double something = kNextToNothing * c.friction_bound.maxCoeff();
+  const ArrayXd noticeable = ((size > least) && (c.friction_bound > something)).cast<double>();
+  return solver::slip_direction(c.traction, noticeable.replicate(2, 1) * state.slip);
 }
 
 Deviation larger(const Deviation& a, const Deviation& b) {

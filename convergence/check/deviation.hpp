@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "convergence/check/given_contact.hpp"
+#include "solver/certificate.hpp"
 
 namespace slipstick::convergence {
 
@@ -52,7 +53,14 @@ struct Deviation {
   double friction = 0.0;   ///< signed: see shown_friction()
   double gap = 0.0;        ///< over energy
 };
-Deviation find_deviation(const GivenContact& contact, const RightAnswer& right, const State& state);
+/// The motion is compared as it is reported, the gap is that under the motion that Coulomb's law fits best:
+/// a wrong twist is no mistake of the tractions.
+Deviation find_deviation(const GivenContact& contact, const RightAnswer& right, const State& reported,
+                         const State& fitted);
+
+/// Direction of slip that is more than a part of the displacements, what the mesh leaves open of them (in
+/// sticking cells the rest has any direction), in cells that carry something.
+solver::SlipDirection noticeable_direction(const GivenContact& contact, const State& state, double part);
 
 /// Each the larger one of two, without sign.
 Deviation larger(const Deviation& a, const Deviation& b);

@@ -69,24 +69,14 @@ std::optional<double> known_twist(const solver::Scene& scene, std::optional<doub
   return -*given;
 }
 
-/// Slip that is more than what the mesh leaves open of the displacements (in sticking cells the rest has any
-/// direction), in cells that carry something.
-ArrayXd noticeable_slip(const Examination& e) {
-  const GivenContact& c = e.contact;
-  const double least = e.yardstick.mesh.tractions * solver::norms(c.displacement).maxCoeff();
-  const ArrayXd size = solver::norms(e.state.slip);
-  const double something = kNextToNothing * c.friction_bound.maxCoeff();
-  const ArrayXd noticeable = ((size > least) && (c.friction_bound > something)).cast<double>();
-  return noticeable.replicate(2, 1) * e.state.slip;
-}
-
 void certify_field(Examination& e) {
   const GivenContact& c = e.contact;
   const solver::Step& load = e.scene.steps.front();
   const std::array<double, 2> asked{load.force[0] / e.newtons(), load.force[1] / e.newtons()};
-  e.certificate = solver::certify({c.traction, c.elastic_displacement, e.state.slip}, c.friction_bound, c.rotation,
-                                  e.moment.value_or(c.moment()), load.displacement ? c.force() : asked);
-  e.direction = solver::slip_direction(c.traction, noticeable_slip(e));
+  e.certificate =
+      solver::certify({c.traction, c.elastic_displacement, e.state.slip}, c.friction_bound, c.rotation,
+                      e.moment.value_or(c.moment()), load.displacement ? c.force() : asked);
+  e.direction = noticeable_direction(c, e.fitted, e.yardstick.mesh.tractions);
 }
 
 }  // namespace
@@ -101,10 +91,10 @@ Examination examine(const solver::Scene& scene, const std::filesystem::path& fil
   GivenContact contact = make_given_contact(read.field, scene, scene_model);
   const std::optional<double> twist = known_twist(scene, given_twist, contact.moment(), read.conventions);
   const OracleAnswer pressed = seen_from(exact_normal_contact(scene), read.field.centre);
-  Yardstick yardstick = find_yardstick(contact, load, pressed.oracle, twist.has_value());
-  State state = find_state(contact, load, twist);
-  const double inferred = twist ? find_state(contact, load, std::nullopt).twist : state.twist;
-  const Deviation deviation = find_deviation(contact, yardstick.right, state);
+  Yardstick yardstick = find_yardstick(contact, load, pressed.oracle, given_twist.has_value());
+  State fitted = find_state(contact, load, std::nullopt);
+  State state = twist ? find_state(contact, load, twist) : fitted;
+  const Deviation deviation = find_deviation(contact, yardstick.right, given_twist ? state : fitted, fitted);
   Examination e{.scene = scene,
                 .read = std::move(read),
                 .exact = {},
@@ -112,7 +102,7 @@ Examination examine(const solver::Scene& scene, const std::filesystem::path& fil
                 .yardstick = std::move(yardstick),
                 .twist_given = twist.has_value(),
                 .state = std::move(state),
-                .inferred_twist = inferred,
+                .fitted = std::move(fitted),
                 .deviation = deviation,
                 .stick = {},
                 .moment = {},

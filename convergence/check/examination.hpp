@@ -20,8 +20,8 @@ struct Examination {
   GivenContact contact;
   Yardstick yardstick;
   bool twist_given;
-  State state;                   ///< under the twist given, or the one that fits
-  double inferred_twist;         ///< rad, which Coulomb's law fits best
+  State state;                   ///< under the twist given or imposed, or else the one that fits
+  State fitted;                  ///< under the motion that Coulomb's law fits best
   Deviation deviation;           ///< from the right answer
   Eigen::ArrayXd stick;          ///< cells
   std::optional<double> moment;  ///< asked for, over the cell area; none: any

@@ -131,13 +131,15 @@ void measure_mesh(Yardstick& yardstick, const GivenContact& contact, const solve
     yardstick.loads = {.normal = std::max(yardstick.loads.normal, loads.normal),
                        .moment = std::max(yardstick.loads.moment, loads.moment),
                        .force = std::max(yardstick.loads.force, loads.force)};
-    const State state = find_state(field, load, twist_given ? std::optional(solution.twist) : std::nullopt);
-    yardstick.mesh = larger(yardstick.mesh, find_deviation(field, find_right_answer(field, load), state));
-    return solver::slip_direction(field.traction, state.slip);
+    const State fitted = find_state(field, load, std::nullopt);
+    const State reported = twist_given ? find_state(field, load, solution.twist) : fitted;
+    const Deviation deviation = find_deviation(field, find_right_answer(field, load), reported, fitted);
+    yardstick.mesh = larger(yardstick.mesh, deviation);
+    yardstick.direction =
+        std::max(yardstick.direction, noticeable_direction(field, fitted, deviation.tractions).mean);
   };
   measure(sampled(grid, pressure), sampled(grid, solution.traction));
-  yardstick.direction =
-      measure(restrict_to(grid, fine, pressure), restrict_to(grid, fine, solution.traction));
+  measure(restrict_to(grid, fine, pressure), restrict_to(grid, fine, solution.traction));
 }
 
 /// Standard deviation of |q| that a field shows where it slips, in each cell: in parts of mu p or of the
@@ -163,7 +165,7 @@ ArrayXd noise_size(const GivenContact& contact, const RightAnswer& right) {
 /// What the right answer deviates from itself with errors of a given size, cell by cell: the worse one of a
 /// random draw and its opposite.
 Deviation disturbed(const GivenContact& contact, const RightAnswer& right, const solver::Step& load,
-                    const ArrayXd& size, bool twist_given) {
+                    const ArrayXd& size) {
   if (!(size.maxCoeff() > 0.0)) return {};
   std::mt19937_64 random(1);
   std::normal_distribution<double> normal;
@@ -173,8 +175,8 @@ Deviation disturbed(const GivenContact& contact, const RightAnswer& right, const
   for (const double sign : {1.0, -1.0}) {
     const GivenContact field =
         with_fields(contact, contact.model.grid, contact.pressure, right.traction + sign * error);
-    const State state = find_state(field, load, twist_given ? std::optional(right.twist) : std::nullopt);
-    worst = larger(worst, find_deviation(field, right, state));
+    const State fitted = find_state(field, load, std::nullopt);
+    worst = larger(worst, find_deviation(field, right, fitted, fitted));
   }
   return worst;
 }
@@ -187,9 +189,9 @@ Yardstick find_yardstick(const GivenContact& contact, const solver::Step& load,
   yardstick.right = find_right_answer(contact, load);
   measure_mesh(yardstick, contact, load, pressed, twist_given);
   yardstick.noise_size = noise_size(contact, yardstick.right);
-  yardstick.noise = disturbed(contact, yardstick.right, load, yardstick.noise_size, twist_given);
-  yardstick.rounding = disturbed(contact, yardstick.right, load,
-                                 contact.traction_rounding + contact.bound_rounding, twist_given);
+  yardstick.noise = disturbed(contact, yardstick.right, load, yardstick.noise_size);
+  yardstick.rounding =
+      disturbed(contact, yardstick.right, load, contact.traction_rounding + contact.bound_rounding);
   return yardstick;
 }
 

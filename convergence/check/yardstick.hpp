@@ -5,7 +5,6 @@
 
 #include "convergence/check/deviation.hpp"
 #include "convergence/oracle.hpp"
-#include "solver/certificate.hpp"
 
 namespace slipstick::convergence {
 
@@ -20,18 +19,17 @@ struct LoadErrors {
 /// measured on right fields: the solution on a mesh of cells a third as large, under the exact pressure where
 /// that is known, once averaged over this grid's cells and once sampled at their centres.
 struct Yardstick {
-  RightAnswer right;                  ///< with the field's own pressure and loads
-  Deviation mesh;                     ///< the larger one of the two fields
-  LoadErrors loads;                   ///< likewise: what midpoints and edge cells do to sums
-  solver::SlipDirection direction{};  ///< of the averaged one
-  Deviation rounding;                 ///< of the right answer, rounded like the field's file
-  Deviation noise;                    ///< and with as much noise as the field shows
-  Eigen::ArrayXd noise_size;          ///< cells: standard deviation, of |q|
+  RightAnswer right;          ///< with the field's own pressure and loads
+  Deviation mesh;             ///< the larger one of the two fields
+  LoadErrors loads;           ///< likewise: what midpoints and edge cells do to sums
+  double direction = 0.0;     ///< likewise: of noticeable slip, in the mean, degrees
+  Deviation rounding;         ///< of the right answer, rounded like the field's file
+  Deviation noise;            ///< and with as much noise as the field shows
+  Eigen::ArrayXd noise_size;  ///< cells: standard deviation, of |q|
 };
 
-/// pressed: the exact normal contact, about the grid's centre. twist_given: motions are compared at a twist
-/// that a program reports, else at the one that Coulomb's law fits best. Throws std::runtime_error where a
-/// solve does not converge.
+/// pressed: the exact normal contact, about the grid's centre. twist_given: the program reported its twist;
+/// so do the right fields then. Throws std::runtime_error where a solve does not converge.
 Yardstick find_yardstick(const GivenContact& contact, const solver::Step& load,
                          const std::optional<Oracle>& pressed, bool twist_given);
 

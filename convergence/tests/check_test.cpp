@@ -8,6 +8,8 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <random>
+#include <tuple>
 
 #include "convergence/errors.hpp"
 #include "convergence/exact_result.hpp"
@@ -33,6 +35,22 @@ solver::Scene scene_of(const std::string& name, int cells = 32, std::vector<std:
 
 Json check_rows(const FieldRows& rows, const solver::Scene& scene, std::optional<double> twist = {}) {
   return check_field(scene, write_rows(rows), {.twist = twist});
+}
+
+FieldRows solved(const solver::Scene& scene) { return rows_of(solver::solve(scene)); }
+
+/// The exact field at cell centres.
+FieldRows sampled(const solver::Scene& scene) {
+  const std::filesystem::path file = temporary_file("exact.h5");
+  write_exact_fields(file, scene, require_oracle(scene));
+  return read_rows(file);
+}
+
+double allowed(const Json& result, const std::string& quantity) {
+  for (const Json& item : result["judged"]) {
+    if (item["quantity"] == quantity) return item["allowed"];
+  }
+  return NAN;
 }
 
 Json check_peer(const std::string& name, std::optional<double> twist = {}) {
@@ -142,9 +160,9 @@ TEST(Check, FindsReversedComponentsOnAnEllipseUnderAnImposedTwist) {
       if (both) q1 = -q1;
     }
     const Json result = check_rows(rows, scene);
-    EXPECT_EQ(result["verdict"], "good") << why(result);
-    ASSERT_EQ(result["conventions"].size(), 1);
-    EXPECT_THAT(result["conventions"][0].get<std::string>(),
+    EXPECT_EQ(result["verdict"], both ? "good" : "bad") << why(result);
+    ASSERT_EQ(result[both ? "conventions" : "mistakes"].size(), 1);
+    EXPECT_THAT(result[both ? "conventions" : "mistakes"][0].get<std::string>(),
                 HasSubstr(both ? "tractions look reversed" : "q2 looks reversed"));
   }
 }
@@ -238,12 +256,195 @@ TEST(Check, FindsExactFieldsGood) {
   for (const auto& [name, cells] :
        {std::pair{"paper", 32}, {"paper", 64}, {"cone", 32}, {"mindlin", 32}, {"rounded_punch", 64}}) {
     const solver::Scene scene = scene_of(name, cells);
-    const std::filesystem::path file = temporary_file("exact.h5");
-    write_exact_fields(file, scene, require_oracle(scene));
-    const Json result = check_field(scene, file);
+    const Json result = check_rows(sampled(scene), scene);
     EXPECT_EQ(result["verdict"], "good") << name << cells << ": " << why(result);
     EXPECT_LE(result["traction_error"]["l2"], 1e-12) << name;
   }
+}
+
+TEST(Check, FindsExactFieldsGoodAtAnyLoad) {
+  for (const char* name : {"paper", "cone"}) {
+    for (const int cells : {32, 64}) {
+      for (const char* ratio : {"0.1", "0.3", "0.6", "0.9", "0.99"}) {
+        const solver::Scene scene = scene_of(name, cells, {std::string("load.moment_ratio=") + ratio});
+        const Json result = check_rows(sampled(scene), scene, find_oracle(scene).oracle->twist_angle);
+        EXPECT_EQ(result["verdict"], "good") << name << cells << ratio << ": " << why(result);
+      }
+    }
+  }
+}
+
+// Samples of the exact answer do not solve the grid's problem of constant cells: they are right within the
+// mesh all the same.
+TEST(Check, AsksTwoQuestions) {
+  const solver::Scene scene = scene_of("paper", 48);
+  for (const bool exact : {false, true}) {
+    const auto file = write_rows(exact ? sampled(scene) : solved(scene));
+    const Json result = check_field(scene, file);
+    EXPECT_EQ(result["verdict"], "good") << why(result);
+    EXPECT_EQ(result["discrete"]["holds"], !exact);
+    EXPECT_THAT(why(result), HasSubstr(exact ? "it does not solve its own grid's problem"
+                                             : "it solves its own grid's problem"));
+    EXPECT_EQ(check_field(scene, file, {.discrete = true})["verdict"], exact ? "bad" : "good");
+  }
+}
+
+// On p and both components, of 0.03 to 0.2 %.
+TEST(Check, FindsNoisyFieldsGood) {
+  for (const auto& [name, cells, ratio] :
+       {std::tuple{"paper", 64, 0.3}, {"paper", 32, 0.6}, {"ellipse", 64, 0.9}}) {
+    const solver::Scene scene = scene_of(name, cells, {fmt::format("load.moment_ratio={}", ratio)});
+    const FieldRows rows = solved(scene);
+    for (const double noise : {3e-4, 1e-3, 2e-3}) {
+      std::mt19937 random(1);
+      std::normal_distribution<double> factor(1.0, noise);
+      const Json result = check_rows(changed(rows,
+                                             [&](FieldRow& r) {
+                                               r[2] *= factor(random), r[3] *= factor(random),
+                                                   r[4] *= factor(random);
+                                             }),
+                                     scene);
+      EXPECT_EQ(result["verdict"], "good") << name << noise << ": " << why(result);
+      EXPECT_FALSE(result["discrete"]["holds"].get<bool>());
+    }
+  }
+}
+
+// A program controls its loads: they may differ by the quadrature of its cells alone, which falls with their
+// number, whatever its tractions are.
+TEST(Check, AllowsOfLoadsNoMoreThanTheirQuadrature) {
+  for (const auto& [cells, most] : {std::pair{32, 4e-3}, {64, 1e-3}, {128, 2.5e-4}}) {
+    const solver::Scene scene = scene_of("paper", cells);
+    const Json result = check_rows(solved(scene), scene);
+    EXPECT_LE(allowed(result, "moment_error"), most) << cells;
+    EXPECT_LE(allowed(result, "normal_load_error"), most) << cells;
+  }
+}
+
+TEST(Check, KeepsAnImposedMotionUpToGrossSlip) {
+  for (const auto& load : {std::vector<std::string>{"load.twist=7e-3"},
+                           {"load.twist=2e-2"},
+                           {"load.twist=3e-3", "load.displacement=[3e-6,0]"}}) {
+    const solver::Scene scene = scene_of("paper", 32, load);
+    const Json result = check_rows(solved(scene), scene);
+    EXPECT_EQ(result["verdict"], "good") << load[0] << ": " << why(result);
+    EXPECT_TRUE(result["discrete"]["holds"].get<bool>()) << why(result);
+    EXPECT_FALSE(result["yardstick"]["loads_scaled_down"].get<bool>());
+  }
+}
+
+TEST(Check, JudgesTheMomentThatAnImposedTwistCauses) {
+  const solver::Scene scene = scene_of("paper", 48, {"load.twist=1e-3"});
+  const Json result = check_rows(solved(scene_of("paper", 48, {"load.twist=1.02e-3"})), scene);
+  EXPECT_EQ(result["verdict"], "bad");
+  EXPECT_THAT(why(result), HasSubstr("the moment is"));
+}
+
+// Loads of 32 to 64 cells across, where a mesh accounts for more.
+struct Coarse {
+  const char* scene;
+  int cells;
+  double ratio;
+};
+
+class CheckCoarseBadField : public testing::TestWithParam<Coarse> {
+ protected:
+  std::vector<std::string> load(double factor = 1.0) const {
+    return {fmt::format("load.moment_ratio={}", GetParam().ratio * factor)};
+  }
+  solver::Scene scene_ = scene_of(GetParam().scene, GetParam().cells, load());
+  solver::Solution solution_ = solver::solve(scene_);
+  FieldRows rows_ = rows_of(solution_);
+
+  Json expect_bad(const FieldRows& rows, const testing::Matcher<std::string>& reason,
+                  std::optional<double> twist = {}) const {
+    Json result = check_rows(rows, scene_, twist);
+    EXPECT_EQ(result["verdict"], "bad") << why(result);
+    EXPECT_THAT(why(result), reason);
+    return result;
+  }
+};
+
+TEST_P(CheckCoarseBadField, MomentOnePercentOff) {
+  for (const double factor : {0.99, 1.01}) {
+    const Json result = expect_bad(solved(scene_of(GetParam().scene, GetParam().cells, load(factor))),
+                                   HasSubstr("the moment is"));
+    EXPECT_TRUE(result["discrete"]["holds"].get<bool>());
+    EXPECT_THAT(why(result), HasSubstr("it solves its own grid's problem"));
+  }
+}
+
+TEST_P(CheckCoarseBadField, NormalLoadOnePercentOff) {
+  expect_bad(changed(rows_, [](FieldRow& r) { r[2] *= 0.99, r[3] *= 0.99, r[4] *= 0.99; }),
+             HasSubstr("the normal load is 1 % too low"));
+}
+
+TEST_P(CheckCoarseBadField, StoppedAtAGapOfOnePercent) {
+  const solver::Solution stopped =
+      solver::solve(scene_of(GetParam().scene, GetParam().cells,
+                             {load()[0], "solver.method=projected_gradient", "solver.tolerance=1e-2"}));
+  ASSERT_GT(stopped.certificate.gap, 3e-3);
+  expect_bad(rows_of(stopped), HasSubstr("an iteration stops too early"));
+}
+
+// The moment is as it should be, and so is every cell's bound. |q|/p tells.
+TEST_P(CheckCoarseBadField, FrictionTwoPercentLowUnderTheSameMoment) {
+  expect_bad(solved(scene_of(GetParam().scene, GetParam().cells,
+                             {fmt::format("load.moment={}", solution_.moment), "contact.friction=0.098"})),
+             AllOf(HasSubstr("the moment is right"), HasSubstr("|q|/p in the slip ring is 2 % too low"),
+                   HasSubstr("friction coefficient of 0.098 in place of 0.1")));
+}
+
+TEST_P(CheckCoarseBadField, OneQuadrantTwoPercentLow) {
+  expect_bad(changed(rows_,
+                     [](FieldRow& r) {
+                       const double factor = r[0] > 0.0 && r[1] > 0.0 ? 0.98 : 1.0;
+                       r[3] *= factor, r[4] *= factor;
+                     }),
+             testing::_);
+}
+
+// The twist that is wrong is that which was given, and no sentence calls it right.
+TEST_P(CheckCoarseBadField, TwistOnePercentHigh) {
+  expect_bad(rows_,
+             AllOf(HasSubstr("the twist is 1 % too high"), HasSubstr("not that of these tractions"),
+                   Not(HasSubstr("the twist is right"))),
+             1.01 * solution_.twist_angle);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, CheckCoarseBadField,
+                         testing::Values(Coarse{"paper", 64, 0.3}, Coarse{"paper", 32, 0.6},
+                                         Coarse{"ellipse", 64, 0.3}, Coarse{"cone", 32, 0.6}));
+
+// What is wrong with one number is said of that one alone: a right twist is not called another one's.
+TEST(Check, DoesNotContradictItself) {
+  const solver::Scene scene = scene_of("paper", 48);
+  const solver::Solution solution = solver::solve(scene);
+  for (const double factor : {0.5, 0.97, 0.995, 1.0}) {
+    const FieldRows rows = changed(rows_of(solution), [=](FieldRow& r) {
+      const double inside = std::hypot(r[0], r[1]) < 1e-4 ? factor : 1.0;
+      r[3] *= inside, r[4] *= inside;
+    });
+    const std::string text = why(check_rows(rows, scene, solution.twist_angle));
+    EXPECT_FALSE(text.find("the twist is right") != std::string::npos &&
+                 text.find("a twist that is not") != std::string::npos)
+        << text;
+    EXPECT_FALSE(text.find("Coulomb's law holds") != std::string::npos &&
+                 text.find("slip is not opposed") != std::string::npos)
+        << text;
+  }
+}
+
+// In place of what the mesh leaves open, both ways.
+TEST(Check, TakesTheTolerance) {
+  const solver::Scene scene = scene_of("paper", 64);
+  const FieldRows rows =
+      changed(solved(scene), [](FieldRow& r) { r[2] *= 0.995, r[3] *= 0.995, r[4] *= 0.995; });
+  EXPECT_EQ(check_field(scene, write_rows(rows), {})["verdict"], "bad");
+  EXPECT_EQ(check_field(scene, write_rows(rows), {.tolerance = 0.02})["verdict"], "good");
+  const auto exact = write_rows(sampled(scene));
+  EXPECT_EQ(check_field(scene, exact, {})["verdict"], "good");
+  EXPECT_EQ(check_field(scene, exact, {.tolerance = 1e-5})["verdict"], "bad");
 }
 
 TEST(Check, SaysThatAnInfinitePressureCannotBeSampled) {
@@ -301,9 +502,43 @@ TEST_F(CheckConventions, OrderOfRows) { expect_same(shuffled(rows_), {}); }
 TEST_F(CheckConventions, SignsAndComponents) {
   using std::swap;
   expect_same(changed(rows_, [](FieldRow& r) { r[3] = -r[3], r[4] = -r[4]; }), {"tractions look reversed"});
-  expect_same(changed(rows_, [](FieldRow& r) { r[3] = -r[3]; }), {"q1 looks reversed"});
-  expect_same(changed(rows_, [](FieldRow& r) { r[4] = -r[4]; }), {"q2 looks reversed"});
   expect_same(changed(rows_, [](FieldRow& r) { swap(r[3], r[4]); }), {"q1 and q2 look exchanged"});
+}
+
+// No frame and no body has it.
+TEST_F(CheckConventions, NoComponentIsReversedAlone) {
+  for (const std::size_t component : {3, 4}) {
+    const Json result =
+        check_rows(changed(rows_, [=](FieldRow& r) { r[component] = -r[component]; }), scene_);
+    EXPECT_EQ(result["verdict"], "bad");
+    EXPECT_TRUE(result["within_mesh"].get<bool>()) << why(result);  // all the rest is right
+    EXPECT_THAT(result["conventions"], IsEmpty());
+    EXPECT_THAT(why(result), HasSubstr(fmt::format("q{} looks reversed alone", component - 2)));
+  }
+}
+
+TEST_F(CheckConventions, StandInTheFirstLineAndStrictTakesNone) {
+  const auto file =
+      write_rows(changed(rows_, [](FieldRow& r) { r[3] = -r[3], r[4] = -r[4], r[0] *= 1e3, r[1] *= 1e3; }));
+  const Json taken = check_field(scene_, file);
+  EXPECT_EQ(taken["verdict"], "good");
+  const std::string text = check_text(taken);
+  EXPECT_THAT(text.substr(0, text.find('\n')),
+              AllOf(HasSubstr("good (positions look like mm; tractions look reversed")));
+  const Json strict = check_field(scene_, file, {.strict = true});
+  EXPECT_EQ(strict["verdict"], "bad");
+  EXPECT_THAT(why(strict), AllOf(HasSubstr("positions look like mm"), HasSubstr("tractions look reversed")));
+  EXPECT_EQ(check_field(scene_, write_rows(rows_), {.strict = true})["verdict"], "good");
+}
+
+// Under a force a mirrored frame is not the other body: only the moment turns round.
+TEST(Check, ReadsALeftHandedFrame) {
+  const solver::Scene scene = scene_of("paper", 32, {"load.moment_ratio=0.5", "load.force=[30,20]"});
+  const FieldRows rows = changed(solved(scene), [](FieldRow& r) { r[1] = -r[1], r[4] = -r[4]; });
+  const Json result = check_rows(rows, scene);
+  EXPECT_EQ(result["verdict"], "good") << why(result);
+  ASSERT_EQ(result["conventions"].size(), 1U);
+  EXPECT_THAT(result["conventions"][0].get<std::string>(), HasSubstr("left-handed"));
 }
 
 TEST_F(CheckConventions, Axes) {

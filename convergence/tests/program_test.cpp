@@ -282,6 +282,21 @@ TEST(Program, CheckTellsAGoodFieldFromABadOne) {
                                 HasSubstr("FAILS")));
 }
 
+// The exact answer, sampled, is right within its mesh; it solves no grid's own problem.
+TEST(Program, CheckAsksForMoreWhereItIsTold) {
+  const std::string scene = kScenes + "/paper.toml --set grid.cells=[48,48]";
+  const fs::path fields = temporary("sampled.csv");
+  ASSERT_EQ(run("solve " + scene + " --set solver.model=exact --fields " + fields.string()).exit_code, 0);
+  const std::string sampled = "check " + scene + " " + fields.string();
+  EXPECT_EQ(run(sampled).exit_code, 0);
+  EXPECT_EQ(run(sampled + " --strict").exit_code, 0);
+  EXPECT_EQ(run(sampled + " --discrete").exit_code, 1);
+  EXPECT_EQ(run(sampled + " --tolerance 0.02").exit_code, 0);
+  EXPECT_EQ(run(sampled + " --tolerance 1e-6").exit_code, 1);
+  EXPECT_EQ(run(sampled + " --tolerance 0").exit_code, 2);
+  EXPECT_EQ(run(check("contact-64-0.9.csv --discrete --strict")).exit_code, 0);
+}
+
 TEST(Program, CheckWritesEveryKeyOfTheContract) {
   const ProgramRun out = run(check("cgcontact-64-0.9.csv --json -"));
   ASSERT_EQ(out.exit_code, 1) << out.output;
