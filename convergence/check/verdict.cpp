@@ -25,6 +25,8 @@ constexpr double kOtherDraws = 2.0;
 /// to 4/pi^2 h^2/a^2 of it with the nearest images, and about 1/n with those of the stick area's edge; of two
 /// such sums twice that.
 constexpr double kQuadrature = 2.0;
+/// Degrees between slip and traction that matter to no result.
+constexpr double kUnseenAngle = 0.1;
 /// Friction coefficients are not known to more digits.
 constexpr double kFrictionSlack = 1e-3;
 /// Of so many standard deviations no cell of a contact is off by chance.
@@ -101,7 +103,7 @@ Allowed find_allowed(const Examination& e, std::optional<double> tolerance) {
       .motion = (discrete ? 0.0 : kWholeMesh * y.mesh.motion) + quadrature + by_chance(&Deviation::motion),
       .tractions = tractions,
       .friction = kFrictionSlack + kWholeMesh * y.mesh.friction + by_chance(&Deviation::friction),
-      .direction = std::max(kDegrees * tractions, kWholeMesh * y.direction),
+      .direction = kUnseenAngle + kWholeMesh * y.direction + kDegrees * by_chance(&Deviation::tractions),
       .gap = discrete_gap + kWholeMesh * y.mesh.gap + kOtherDraws * y.noise.gap,
       .discrete_gap = discrete_gap};
 }
