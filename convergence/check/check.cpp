@@ -130,6 +130,7 @@ Json yardstick_json(const Examination& e) {
   json["gap"] = yardstick.mesh.gap;
   json["slip_direction"] = yardstick.direction;
   json["twist_angle"] = yardstick.right.twist;
+  json["constant_cells"] = e.constant_cells;
   json["loads_scaled_down"] = yardstick.right.scaled;
   json["distance"] = e.deviation.tractions;
   json["noise"] = yardstick.noise_size.maxCoeff() / e.contact.friction_bound.maxCoeff();

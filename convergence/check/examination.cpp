@@ -92,6 +92,7 @@ Examination examine(const solver::Scene& scene, const std::filesystem::path& fil
   const std::optional<double> twist = known_twist(scene, given_twist, contact.moment(), read.conventions);
   const OracleAnswer pressed = seen_from(exact_normal_contact(scene), read.field.centre);
   Yardstick yardstick = find_yardstick(contact, load, pressed.oracle, given_twist.has_value());
+  const bool constant_cells = solves_normal_problem(contact, scene);
   State fitted = find_state(contact, load, std::nullopt);
   State state = twist ? find_state(contact, load, twist) : fitted;
   const Deviation deviation = find_deviation(contact, yardstick.right, given_twist ? state : fitted, fitted);
@@ -100,6 +101,7 @@ Examination examine(const solver::Scene& scene, const std::filesystem::path& fil
                 .exact = {},
                 .contact = std::move(contact),
                 .yardstick = std::move(yardstick),
+                .constant_cells = constant_cells,
                 .twist_given = twist.has_value(),
                 .state = std::move(state),
                 .fitted = std::move(fitted),

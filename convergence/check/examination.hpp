@@ -19,6 +19,7 @@ struct Examination {
   OracleAnswer exact;  ///< its centre is that of the field's grid
   GivenContact contact;
   Yardstick yardstick;
+  bool constant_cells;  ///< the pressure is one of constant cells: so are the tractions, then
   bool twist_given;
   State state;                   ///< under the twist given or imposed, or else the one that fits
   State fitted;                  ///< under the motion that Coulomb's law fits best

@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "solver/over_unit.hpp"
+#include "solver/surface.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -76,6 +77,25 @@ GivenContact make_given_contact(const ForeignField& field, const solver::Scene& 
   contact.traction_rounding = field.traction_rounding / model.stress_unit;
   contact.bound_rounding = model.friction * field.pressure_rounding / model.stress_unit;
   return contact;
+}
+
+bool solves_normal_problem(const GivenContact& contact, const solver::Scene& scene) {
+  // Of the displacements: what a solver's tolerance leaves between surfaces that should lie together.
+  constexpr double kTogether = 1e-5;
+  std::vector<solver::Surface> surfaces = scene.surfaces;
+  for (solver::Surface& surface : surfaces) {
+    if (surface.shape == solver::Shape::height_map || surface.shape == solver::Shape::roughness) return false;
+    surface = solver::over_unit(std::move(surface), contact.model.length_unit);
+    for (std::size_t k = 0; k < 2; ++k) surface.at[k] -= contact.centre[k];
+  }
+  const solver::Grid& grid = contact.model.grid;
+  const ArrayXd& p = contact.pressure;
+  const ArrayXd gap = solver::gap_field(surfaces, scene.combine, grid);
+  ArrayXd u3(grid.cells());
+  contact.elasticity.make(grid, solver::normal_kernel())->apply(p, u3);
+  const ArrayXd approach = (p > 0.0).select(gap + u3, 0.0);
+  const double mean = (p * approach).sum() / p.sum();
+  return (p * (approach - mean).abs()).sum() <= kTogether * (p * u3).sum();
 }
 
 RigidMotions rigid_motions(const GivenContact& contact, const solver::Step& load,

@@ -44,6 +44,11 @@ GivenContact make_given_contact(const ForeignField& field, const solver::Scene& 
 GivenContact with_fields(const GivenContact& contact, const solver::Grid& grid, Eigen::ArrayXd pressure,
                          Eigen::ArrayXd traction);
 
+/// Whether the pressure solves the normal problem of its own grid, of pressures constant in each cell, for
+/// the scene's bodies: no other discretisation's does. Not looked at under height maps and roughness, which
+/// stand on grids of their own.
+bool solves_normal_problem(const GivenContact& contact, const solver::Scene& scene);
+
 /// Displacement fields of the scene's rigid motions that are not imposed: translations, unless the scene says
 /// how far, and rotation, unless the twist is given. `imposed`: the sum of those that are.
 struct RigidMotions {

@@ -27,6 +27,9 @@ constexpr double kOtherDraws = 2.0;
 constexpr double kQuadrature = 2.0;
 /// Degrees between slip and traction that matter to no result.
 constexpr double kUnseenAngle = 0.1;
+/// Where the pressure shows that the program's cells are constant, what is left of a gap is its iteration's,
+/// not the mesh's. So much of it stands for tractions good to a few hundredths.
+constexpr double kUnfinishedGap = 1e-3;
 /// Friction coefficients are not known to more digits.
 constexpr double kFrictionSlack = 1e-3;
 /// Of so many standard deviations no cell of a contact is off by chance.
@@ -104,7 +107,8 @@ Allowed find_allowed(const Examination& e, std::optional<double> tolerance) {
       .tractions = tractions,
       .friction = kFrictionSlack + kWholeMesh * y.mesh.friction + by_chance(&Deviation::friction),
       .direction = kUnseenAngle + kWholeMesh * y.direction + kDegrees * by_chance(&Deviation::tractions),
-      .gap = discrete_gap + kWholeMesh * y.mesh.gap + kOtherDraws * y.noise.gap,
+      .gap = discrete_gap + std::min(kWholeMesh * y.mesh.gap, e.constant_cells ? kUnfinishedGap : INFINITY) +
+             kOtherDraws * y.noise.gap,
       .discrete_gap = discrete_gap};
 }
 
