@@ -180,6 +180,7 @@ Json step_result(const solver::Scene& scene, const Solution& solution, const Ora
   add_state(json, scene, solution);
   add_counts(json, scene, solution);
   json["certificate"] = certificate_json(solution.certificate, kBroken);
+  json["resolved"] = resolution_json(solution.resolution);
   add_errors(json, solution, exact);
   add_seconds(json, solution.seconds);
   return json;
@@ -206,6 +207,7 @@ Json solve_result(const solver::Scene& scene, const Solution& solution, const Or
   json["tolerance"] = scene.tolerance;
   set_number(json, "change", solution.tangential.change, "the solve broke down");
   json["certificate"] = certificate_json(solution.certificate, kBroken);
+  json["resolved"] = resolution_json(solution.resolution);
   set_number(json["slip_direction"], "mean", solution.slip_direction.mean, kBroken);
   set_number(json["slip_direction"], "max", solution.slip_direction.max, kBroken);
   add_errors(json, solution, exact);
@@ -303,6 +305,26 @@ std::string coupling_text(const Json& r) {
                                r["turns"].get<int>(), number_text(r["pressure_complementarity"])));
 }
 
+/// What the mesh resolves.
+std::string resolution_text(const Json& r) {
+  const Json& resolved = r["resolved"];
+  const std::string text = text_line(
+      "resolved", fmt::format("stick area {:.3g} cells wide, slip area {:.3g}; mesh error about {}",
+                              resolved["stick_width"].get<double>(), resolved["slip_width"].get<double>(),
+                              short_text(resolved["uncertainty"])));
+  if (!resolved.contains("warning")) return text;
+  return text + text_line("warning", resolved["warning"].get<std::string>());
+}
+
+/// How far rounding let the certificate go, where that is not as far as the tolerance.
+std::string energy_text(const Json& r) {
+  const Json& gap = r["certificate"]["gap"];
+  if (r["status"] != "converged" || r["method"] == "paper" || !gap.is_number() || gap <= r["tolerance"])
+    return "";
+  return text_line("", fmt::format("rounding hides the rest of the gap; the energy is within {} of the least",
+                                   number_text(r["certificate"]["energy_error"])));
+}
+
 }  // namespace
 
 std::string solve_text(const Json& r) {
@@ -316,9 +338,11 @@ std::string solve_text(const Json& r) {
                     fmt::format("gap/energy {}, moment off by {}, |q| above mu p by {}",
                                 number_text(r["certificate"]["gap"]), number_text(r["certificate"]["moment"]),
                                 number_text(r["certificate"]["friction_bound"])));
+  text += energy_text(r);
   text += text_line("slip direction", fmt::format("{} degrees off in the mean, {} at most (Coulomb: 0)",
                                                   number_text(r["slip_direction"]["mean"]),
                                                   number_text(r["slip_direction"]["max"])));
+  text += resolution_text(r);
   text += model_text(r);
   return r.contains("steps") ? text + steps_text(r) : text;
 }

@@ -78,9 +78,30 @@ Json traction_error_json(const TractionError& error, const std::string& reason) 
 Json certificate_json(const solver::Certificate& certificate, const std::string& reason) {
   Json json;
   set_number(json, "gap", certificate.gap, reason);
+  set_number(json, "energy_error", certificate.energy_error, reason);
+  set_number(json, "rounding", certificate.rounding, reason);
   set_number(json, "moment", certificate.moment, reason);
   set_number(json, "force", certificate.force, reason);
   set_number(json, "friction_bound", certificate.friction_bound, reason);
+  return json;
+}
+
+Json resolution_json(const solver::Resolution& resolution) {
+  Json json;
+  json["stick_width"] = resolution.stick_width;
+  json["slip_width"] = resolution.slip_width;
+  set_number(json, "uncertainty", resolution.uncertainty, "the stick area lies within a cell");
+  if (!(resolution.uncertainty <= solver::kPoorlyResolved)) {
+    constexpr double percent = 100.0;
+    const std::string uncertain = std::isfinite(resolution.uncertainty)
+                                      ? fmt::format("uncertain by {:.2g} %", percent * resolution.uncertainty)
+                                      : "not determined";
+    json["warning"] = fmt::format(
+        "the mesh is too coarse: the stick area is {:.2g} cells wide, so the contact's motion is {}; take "
+        "more "
+        "cells, or a load further from gross slip",
+        resolution.stick_width, uncertain);
+  }
   return json;
 }
 

@@ -8,6 +8,7 @@
 #include "convergence/errors.hpp"
 #include "solver/certificate.hpp"
 #include "solver/model.hpp"
+#include "solver/resolution.hpp"
 
 /// What all results have in common, on a grid or not.
 namespace slipstick::convergence {
@@ -25,6 +26,9 @@ Json field_error_json(const FieldError& error, const std::string& reason);
 Json traction_error_json(const TractionError& error, const std::string& reason);
 
 Json certificate_json(const solver::Certificate& certificate, const std::string& reason);
+
+/// What the mesh resolves, with a warning where that is little.
+Json resolution_json(const solver::Resolution& resolution);
 
 /// What a model leaves out, as results have it.
 Json model_json(const std::vector<solver::Omission>& left_out);

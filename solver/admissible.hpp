@@ -25,9 +25,6 @@ class PositivePressures {
 
   void project(Eigen::ArrayXd& p) const { p = reachable_ * p.max(0.0); }
 
-  /// Pressures are not bounded from above.
-  static double capacity(const Eigen::ArrayXd&) { return std::numeric_limits<double>::infinity(); }
-
   template <int M, typename Direction>
   LoadsAlong<M> loads_along(const Eigen::ArrayXd& y, const std::array<const Direction*, M>& w,
                             const Eigen::Vector<double, M>& x,
@@ -39,6 +36,7 @@ class PositivePressures {
       const double p = y[i] + x[0] * along;
       if (!(p > 0.0) || reachable_[i] == 0.0) continue;
       sum.load[0] += (*c[0])[i] * p;
+      sum.size[0] += std::abs((*c[0])[i] * p);
       sum.slope(0, 0) += (*c[0])[i] * along;
     }
     return sum;
@@ -100,12 +98,6 @@ class FrictionDiscs {
     }
   }
 
-  /// The most that c.q can be, one condition alone.
-  double capacity(const Eigen::ArrayXd& c) const {
-    const Index n = cells();
-    return (bound_ * (c.head(n).square() + c.tail(n).square()).sqrt()).sum();
-  }
-
   template <int M, typename Direction>
   LoadsAlong<M> loads_along(const Eigen::ArrayXd& y, const std::array<const Direction*, M>& w,
                             const Eigen::Vector<double, M>& x,
@@ -134,6 +126,7 @@ class FrictionDiscs {
         const auto row = static_cast<int>(k);
         const double c_z = weight[k][0] * z1 + weight[k][1] * z2;
         sum.load[row] += factor * c_z;
+        sum.size[row] += std::abs(factor * c_z);
         for (std::size_t l = 0; l < M; ++l) {
           double slope = weight[k][0] * along[l][0] + weight[k][1] * along[l][1];
           if (cut) slope -= c_z * (along[l][0] * z1 + along[l][1] * z2) / square;
@@ -156,6 +149,39 @@ class FrictionDiscs {
              bound_[i] * std::sqrt(slip[i] * slip[i] + slip[i + n] * slip[i + n]);
     }
     return sum;
+  }
+
+  /// Sum of the most that -s.d - k|d|^2/2 can be for |q + d| <= mu p, k > 0: see Certificate. With k = 0 it
+  /// is the gap.
+  double energy_error(const Eigen::ArrayXd& q, const Eigen::ArrayXd& slip, double k) const {
+    if (k == 0.0) return gap(q, slip);
+    const Index n = cells();
+    double sum = 0.0;
+    for (Index i = 0; i < n; ++i) {
+      if (bound_[i] == 0.0) continue;
+      double d1 = -slip[i] / k;
+      double d2 = -slip[i + n] / k;
+      const double size = std::hypot(q[i] + d1, q[i + n] + d2);
+      if (size > bound_[i]) {
+        d1 = (q[i] + d1) * bound_[i] / size - q[i];
+        d2 = (q[i + n] + d2) * bound_[i] / size - q[i + n];
+      }
+      sum -= slip[i] * d1 + slip[i + n] * d2 + 0.5 * k * (d1 * d1 + d2 * d2);
+    }
+    return sum;
+  }
+
+  /// What rounding of slips and tractions does to the gap: each slip is a difference of displacements, each
+  /// product one of numbers that are right to some units of rounding. displacement: K q.
+  double gap_rounding(const Eigen::ArrayXd& slip, const Eigen::ArrayXd& displacement) const {
+    constexpr double kUnits = 16.0;  // of transforms, and of loads, which are balanced to 1e-14
+    const Index n = cells();
+    double sum = 0.0;
+    for (Index i = 0; i < n; ++i) {
+      sum += bound_[i] *
+             (std::hypot(slip[i], slip[i + n]) + 2.0 * std::hypot(displacement[i], displacement[i + n]));
+    }
+    return kUnits * std::numeric_limits<double>::epsilon() * sum;
   }
 
   /// Stick where |z| <= mu p. Elsewhere q turns along its circle, against the stiffness (|z| - mu p)/(rho mu

@@ -20,15 +20,28 @@ struct Certificate {
   /// Coulomb's law holds. Coulomb's law minimises the convex energy q.Kq/2 over the friction discs and the
   /// given moment, hence |q - q*|_K^2/2 <= energy(q) - energy(q*) <= gap.
   double gap;
+  /// A sharper bound of (energy(q) - energy(q*)) / (q.Kq/2), of second order in what slip a stick cell has
+  /// left: the sum over cells of the most that -s.d - k|d|^2/2 can be for |q + d| <= mu p, with q.Kq >= k
+  /// q.q. Never above the gap, and free of its rounding: at small loads, where the gap weighs rounding errors
+  /// of the displacement with the whole of mu p, it stays as small as ever.
+  double energy_error;
+  /// What rounding of displacements, slips and tractions may do to the gap, over q.Kq/2: no smaller gap can
+  /// be told from zero.
+  double rounding;
   double moment;          ///< |t.q Delta - M| / M_lim
   double force;           ///< |sum of q - F/Delta| / sum of mu p
   double friction_bound;  ///< max |q|/(mu p) - 1
 };
 
 /// friction_bound: mu p of each cell; rotation: the field t = (-x2, x1); moment, force: M/Delta and F/Delta
-/// that were asked for.
+/// that were asked for. least_eigenvalue: of the operator, a lower bound (influence.hpp); with 0 the energy
+/// error is the gap.
 Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound,
-                    const Eigen::ArrayXd& rotation, double moment, const std::array<double, 2>& force = {});
+                    const Eigen::ArrayXd& rotation, double moment, const std::array<double, 2>& force = {},
+                    double least_eigenvalue = 0.0);
+
+/// Whether a gap is within a tolerance, or within its rounding where that is larger. NaN is not.
+bool is_certified(double gap, double rounding, double tolerance);
 
 /// What the members of a certificate may be. Infinite: anything but NaN.
 struct CertificateBounds {

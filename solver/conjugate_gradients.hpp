@@ -24,8 +24,8 @@ struct CgSummary {
 };
 
 /// Preconditioned conjugate gradients for (K + stiffness) x = r + sum of multiplier_k c_k on a tangent space,
-/// with c_k.x = 0 kept throughout (projected by the preconditioned c_k; Gould, Hribar and Nocedal 2001), or
-/// without conditions. Owns its workspace; nothing is allocated in the iteration.
+/// with c_k.x = 0, or given values, kept throughout (projected by the preconditioned c_k; Gould, Hribar and
+/// Nocedal 2001), or without conditions. Owns its workspace; nothing is allocated in the iteration.
 template <typename Real>
 class ConjugateGradients {
  public:
@@ -68,10 +68,13 @@ class ConjugateGradients {
   }
 
   /// Until the residual has fallen by `reduction`, or max_iterations. With conditions,
-  /// precondition(conditions) must have come before.
-  CgSummary solve(const TangentSpace<Real>& space, Fields conditions, double reduction, int max_iterations) {
+  /// precondition(conditions) must have come before. loads: c_k.x of each condition; empty: zero, which saves
+  /// an application.
+  CgSummary solve(const TangentSpace<Real>& space, Fields conditions, double reduction, int max_iterations,
+                  const Coefficients& loads = {}) {
     CgSummary summary;
     x_.setZero();
+    if (loads.size() > 0) start_with(space, loads);
     double square = next_direction(space, conditions, 0.0);
     const double first = square;
     if (!(square > 0.0)) return finish(summary, square, first);
@@ -111,6 +114,17 @@ class ConjugateGradients {
   }
 
  private:
+  /// x = the combination of preconditioned conditions that has these loads; the residual is what it leaves.
+  void start_with(const TangentSpace<Real>& space, const Coefficients& loads) {
+    const Coefficients parts = factor_.solve(loads);
+    for (Eigen::Index k = 0; k < parts.size(); ++k) {
+      x_ += static_cast<Real>(parts[k]) * tangents_[static_cast<std::size_t>(k)];
+    }
+    op_.apply(x_, Kd_);
+    space.add_stiffness(x_, Kd_);
+    r_ -= Kd_;
+  }
+
   /// Conditions that depend on each other on the tangent space: one stick cell can be turned and pushed, but
   /// not told which.
   static constexpr double kDependent = 1e-12;

@@ -55,6 +55,12 @@ ElasticPair elastic_pair(const HalfSpace& lower, const HalfSpace& upper) {
   };
 }
 
+double least_eigenvalue(const ElasticPair& pair, double h1, double h2) {
+  constexpr double kLeastOfSquareCells = 0.29;
+  return kLeastOfSquareCells * std::min(h1, h2) *
+         std::min(pair.shear_compliance, pair.shear_compliance - pair.poisson_compliance);
+}
+
 Parity parity(Component component) {
   switch (component) {
     case Component::k12:

@@ -30,6 +30,7 @@ template <int M>
 struct LoadsAlong {
   Eigen::Vector<double, M> load = Eigen::Vector<double, M>::Zero();
   Eigen::Matrix<double, M, M> slope = Eigen::Matrix<double, M, M>::Zero();
+  Eigen::Vector<double, M> size = Eigen::Vector<double, M>::Zero();  ///< the same as load, of absolute values
   double potential = 0.0;
   double square = 0.0;  ///< sum of |y + sum of x_l w_l|^2, in each cell at least its bound's
 };
@@ -54,7 +55,6 @@ class LoadBalance {
       load_.conservativeResize(load_.size() + 1);
       load_[load_.size() - 1] = load;
     }
-    for (const Eigen::ArrayXd* c : c_) capacity_.push_back(set.capacity(*c));
     majorant_.resize(load_.size(), load_.size());
     for (Eigen::Index k = 0; k < load_.size(); ++k) {
       for (Eigen::Index l = 0; l < load_.size(); ++l) majorant_(k, l) = (field(k) * field(l)).sum();
@@ -131,13 +131,12 @@ class LoadBalance {
     double low = -std::numeric_limits<double>::infinity();
     double high = std::numeric_limits<double>::infinity();
     double stride = 0.0;
-    const double scale = load_[0] != 0.0 ? std::abs(load_[0]) : capacity_[0];
     const Direction* const direction = &w;
     for (int i = 0; i < kBracketIterations; ++i) {
       const LoadsAlong<1> at =
           evaluate<1>(y, std::span<const Direction* const>(&direction, 1), Eigen::Vector<double, 1>(x));
       const double excess = at.load[0] - load_[0];
-      if (std::abs(excess) <= kLoadRounding * scale) return true;
+      if (std::abs(excess) <= kLoadRounding * std::max(at.size[0], std::abs(load_[0]))) return true;
       if (!std::isfinite(excess)) return false;
       (excess < 0.0 ? low : high) = x;
       const double slope = at.slope(0, 0);
@@ -154,14 +153,15 @@ class LoadBalance {
     return false;
   }
 
-  /// The largest part of a capacity that is missing.
+  /// The largest part of a load that is missing. A load that cells carry against each other is known to no
+  /// better than its rounding, which goes with what they carry.
   template <int M>
   double imbalance(const LoadsAlong<M>& at) const {
     double worst = 0.0;
     for (int k = 0; k < M; ++k) {
       const double missing = std::abs(load_[k] - at.load[k]);
       // A single cell on the axis carries no moment, and need not.
-      const double part = missing == 0.0 ? 0.0 : missing / capacity_[static_cast<std::size_t>(k)];
+      const double part = missing == 0.0 ? 0.0 : missing / std::max(at.size[k], std::abs(load_[k]));
       worst = part <= worst ? worst : part;  // keeps NaN
     }
     return worst;
@@ -209,7 +209,6 @@ class LoadBalance {
   const Set& set_;
   std::vector<const Eigen::ArrayXd*> c_;
   Coefficients load_;
-  std::vector<double> capacity_;
   CoefficientMatrix majorant_;
 };
 

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "solver/admissible.hpp"
+#include "solver/certificate.hpp"
 #include "solver/conjugate_gradients.hpp"
 #include "solver/load_balance.hpp"
 
@@ -32,7 +33,7 @@ struct ConvexProgram {
 };
 
 struct NewtonOptions {
-  double tolerance = 1e-8;       ///< on gap / (q.Kq/2)
+  double tolerance = 1e-8;       ///< on gap / (q.Kq/2); see is_certified()
   long max_applications = 1000;  ///< of the operator
   /// Whether the multipliers and the tangent stiffness are wanted to second order, at some applications more.
   bool refine_multipliers = true;
@@ -56,8 +57,10 @@ struct NewtonSummary {
 /// Each step fixes the state that the natural map gives to every cell and solves the linear problem in the
 /// tangent space by conjugate gradients, in the precision Real; the residual is always double. The step's end
 /// is projected onto the admissible set and the loads restored along the tangent fields (K + stiffness)^-1 c,
-/// which disturb the multipliers alone. The step is halved until the energy falls; where even that fails,
-/// steps of the projected gradient take over, which always descend.
+/// which disturb the multipliers alone. Near gross slip these fields bring the loads back to second order
+/// only, and cannot make up for what cells bring that jump onto their circles; where they fail the linear
+/// problem is solved again with the jumps' loads taken out of it. The step is halved until the energy falls;
+/// where even that fails, steps of the projected gradient take over, which always descend.
 template <class Set, typename Real>
 class NaturalMapNewton {
  public:
@@ -107,6 +110,9 @@ class NaturalMapNewton {
         summary.converged = true;
         return summary;
       }
+      if (summary.gap > options.tolerance && is_certified(summary.gap, options.tolerance, q)) {
+        return stop(q, options, summary, "rounding");
+      }
       without_progress = summary.gap < best_gap || energy_fell_ ? 0 : without_progress + 1;
       best_gap = std::min(best_gap, summary.gap);
       if (without_progress > kPatience) return stop(q, options, summary, "rounding: no further progress");
@@ -115,9 +121,9 @@ class NaturalMapNewton {
                     fmt::format("no convergence within {} operator applications", options.max_applications));
       }
       linearise();
-      const bool solved =
-          solve_linear(q, options.tolerance / summary.gap, options.max_applications - applications());
-      if (!(solved && take_newton_step(q)) && !take_gradient_step(q)) {
+      const LinearTarget target =
+          linear_target(options.tolerance / summary.gap, options.max_applications - applications());
+      if (!take_newton_step(q, target) && !take_gradient_step(q)) {
         return stop(q, options, summary, "rounding: no step lowers the energy");
       }
     }
@@ -222,6 +228,15 @@ class NaturalMapNewton {
     return elastic >= 0.0 ? gap / elastic : std::numeric_limits<double>::quiet_NaN();
   }
 
+  /// Of the gap that relative_gap() has just found.
+  bool is_certified(double gap, double tolerance, const ArrayXd& q) const {
+    double rounding = 0.0;
+    if constexpr (Set::kComponents == 2) {
+      rounding = set_.gap_rounding(trial_u_, u_) / (0.5 * (q * u_).sum());
+    }
+    return solver::is_certified(gap, rounding, tolerance);
+  }
+
   void linearise() {
     changed_ = set_.linearise(y_, rho_, mean_, space_);
     has_tangents_ = cg_.precondition(space_, imposed());
@@ -239,14 +254,33 @@ class NaturalMapNewton {
     cg_.residual() = -trial_u_.template cast<Real>();
   }
 
-  /// False where conjugate gradients broke down.
-  bool solve_linear(const ArrayXd& q, double wanted, long applications_left) {
+  struct LinearTarget {
+    double reduction;  ///< of the residual
+    int max_iterations;
+  };
+
+  /// wanted: the part that is to be left of the gap.
+  LinearTarget linear_target(double wanted, long applications_left) const {
+    return {changed_ == 0 ? std::clamp(0.3 * wanted, kTightReduction, kLooseReduction) : kLooseReduction,
+            static_cast<int>(std::clamp<long>(applications_left, 1, kInnerIterations))};
+  }
+
+  /// loads: of the solution; empty: none. False where conjugate gradients broke down.
+  bool solve_linear(const ArrayXd& q, const LinearTarget& target, const Coefficients& loads = {}) {
     write_residual(q);
-    const double reduction =
-        changed_ == 0 ? std::clamp(0.3 * wanted, kTightReduction, kLooseReduction) : kLooseReduction;
-    const auto most = static_cast<int>(std::clamp<long>(applications_left, 1, kInnerIterations));
     const auto kept = has_tangents_ ? imposed() : std::span<const Field* const>();
-    return cg_.solve(space_, kept, reduction, most).breakdown.empty();
+    return cg_.solve(space_, kept, target.reduction, target.max_iterations, loads).breakdown.empty();
+  }
+
+  /// The loads that cells bring which jump onto the face of their set.
+  Coefficients jump_loads(const ArrayXd& q) {
+    trial_.setZero();
+    set_.add_jump(y_, q, trial_);
+    Coefficients loads(balance_.count());
+    for (Eigen::Index k = 0; k < loads.size(); ++k) {
+      loads[k] = (*program_.imposed[static_cast<std::size_t>(k)].c * trial_).sum();
+    }
+    return loads;
   }
 
   /// Whether the energy fell; then q and its displacement are the new ones.
@@ -262,31 +296,46 @@ class NaturalMapNewton {
     return true;
   }
 
-  bool take_newton_step(ArrayXd& q) {
+  /// trial = q and this part of the linear solution and of the jumps.
+  void write_trial(const ArrayXd& q, double length) {
+    trial_ = cg_.solution().template cast<double>();
+    set_.add_jump(y_, q, trial_);
+    trial_ = q + length * trial_;
+  }
+
+  bool take_newton_step(ArrayXd& q, const LinearTarget& target) {
+    if (!solve_linear(q, target)) return false;
+    write_trial(q, 1.0);
+    bool restored = restore_along_tangents();
+    if (!restored && has_tangents_ && balance_.count() > 0) {
+      if (!solve_linear(q, target, -jump_loads(q))) return false;
+      write_trial(q, 1.0);
+      restored = restore_along_tangents();
+    }
     for (int halvings = 0; halvings <= kMostHalvings; ++halvings) {
-      const double length = std::ldexp(1.0, -halvings);
-      trial_ = cg_.solution().template cast<double>();
-      set_.add_jump(y_, q, trial_);
-      trial_ = q + length * trial_;
-      if (!restore_loads()) continue;
-      if (accept_trial(q)) return true;
+      if (halvings > 0) {
+        write_trial(q, std::ldexp(1.0, -halvings));
+        restored = restore_along_tangents();
+      }
+      if ((restored || restore_along_conditions()) && accept_trial(q)) return true;
     }
     return false;
   }
 
-  /// The loads of the projected trial, restored along the tangent fields if they can be, else along c.
-  bool restore_loads() {
+  /// The loads of the projected trial, restored; false if that is not possible near by.
+  bool restore_along_tangents() {
+    if (!has_tangents_) return false;
     Coefficients x = Coefficients::Zero(balance_.count());
-    if (has_tangents_) {
-      const auto tangents = cg_.tangents().first(imposed().size());
-      if (balance_.template solve_along<Field>(trial_, tangents, x)) {
-        for (std::size_t k = 0; k < tangents.size(); ++k) {
-          trial_ += x[static_cast<Eigen::Index>(k)] * tangents[k]->template cast<double>();
-        }
-        return true;
-      }
-      x.setZero();
+    const auto tangents = cg_.tangents().first(imposed().size());
+    if (!balance_.template solve_along<Field>(trial_, tangents, x)) return false;
+    for (std::size_t k = 0; k < tangents.size(); ++k) {
+      trial_ += x[static_cast<Eigen::Index>(k)] * tangents[k]->template cast<double>();
     }
+    return true;
+  }
+
+  bool restore_along_conditions() {
+    Coefficients x = Coefficients::Zero(balance_.count());
     if (!balance_.solve(trial_, x)) return false;
     balance_.add(x, trial_);
     return true;
@@ -344,7 +393,8 @@ class NaturalMapNewton {
   NewtonSummary stop(const ArrayXd& q, const NewtonOptions& options, NewtonSummary& summary,
                      const std::string& why) {
     if (options.refine_multipliers) refine(q, summary.gap, summary);
-    summary.converged = summary.gap <= options.tolerance;
+    summary.gap = relative_gap(q);
+    summary.converged = is_certified(summary.gap, options.tolerance, q);
     return summary.converged ? summary : fail(summary, why);
   }
 

@@ -63,8 +63,10 @@ void describe_tractions(Solution& solution, const LoadStep& loads, const ArrayXd
   }
   solution.certificate = certify({tangential.traction, tangential.elastic_displacement, tangential.slip},
                                  problem.friction_bound, rotation, problem.moment.value_or(moment),
-                                 problem.displacement ? force : problem.force.value_or(std::array{0.0, 0.0}));
+                                 problem.displacement ? force : problem.force.value_or(std::array{0.0, 0.0}),
+                                 least_eigenvalue(model.pair, grid.h1, grid.h2));
   solution.slip_direction = slip_direction(tangential.traction, tangential.slip);
+  solution.resolution = resolution(grid, loads, tangential.stick, tangential.twist);
 }
 
 /// What became of the loads' work.

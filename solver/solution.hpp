@@ -7,6 +7,7 @@
 #include "solver/load_step.hpp"
 #include "solver/model.hpp"
 #include "solver/normal_contact.hpp"
+#include "solver/resolution.hpp"
 #include "solver/scene.hpp"
 
 namespace slipstick::solver {
@@ -28,6 +29,7 @@ struct Solution {
   TangentialSolution tangential;
   Certificate certificate;
   SlipDirection slip_direction;
+  Resolution resolution;
 
   double normal_load = 0.0;              ///< W, N: what the pressure carries
   double peak_pressure = 0.0;            ///< Pa
