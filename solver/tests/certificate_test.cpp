@@ -198,12 +198,13 @@ class SmallProblem : public testing::Test {
   Certificate certify_at(const ArrayXd& q, double twist) const {
     const ArrayXd u = product(q);
     const ArrayXd s = u - twist * t_;
-    return certify({q, u, s}, bound_, t_, moment_);
+    return certify({q, u, s}, bound_, t_, moment_, {}, least_eigenvalue(pair_, grid_.h1, grid_.h2));
   }
 
   Grid grid_{6, 6, 1.0, 1.0};
   ArrayXd t_ = rotation_field(grid_);
-  DenseMatrix op_{grid_, tangential_kernel(), elastic_pair({1.0, 0.3}, {2.5, 0.1})};
+  ElasticPair pair_ = elastic_pair({1.0, 0.3}, {2.5, 0.1});
+  DenseMatrix op_{grid_, tangential_kernel(), pair_};
   const Eigen::MatrixXd& K_ = op_.matrix();
   ArrayXd bound_, q_star_;
   double moment_ = 0.0;
@@ -243,7 +244,8 @@ TEST_F(SmallProblem, GapBoundsTheEnergyErrorOfAnyFeasibleTraction) {
       EXPECT_LE(distance, error + 1e-12);
       for (const double twist : {0.0, 0.5 * kTwist, kTwist, 1.3 * kTwist}) {
         const Certificate c = certify_at(q, twist);
-        EXPECT_LE(error, c.gap * energy(q) + 1e-12);
+        EXPECT_LE(error, c.energy_error * energy(q) + 1e-12);
+        EXPECT_LE(c.energy_error, c.gap + kRounding);
         EXPECT_GE(c.gap, 0.0);
         EXPECT_LE(c.friction_bound, kRounding);
       }
@@ -271,6 +273,20 @@ TEST_F(SmallProblem, GapBoundsTheEnergyErrorOfThePapersMethod) {
 }
 
 // --- slip direction ---
+
+class LeastEigenvalue : public testing::TestWithParam<std::tuple<double, double>> {};
+INSTANTIATE_TEST_SUITE_P(Cells, LeastEigenvalue,
+                         testing::Combine(testing::Values(0.05, 0.5, 1.0, 2.0, 20.0),
+                                          testing::Values(-0.9, 0.0, 0.3, 0.5)));
+
+TEST_P(LeastEigenvalue, IsBelowThoseOfAMatrixAndNotFarBelow) {
+  const auto [h2, poisson_ratio] = GetParam();
+  const ElasticPair pair = elastic_pair({2.0, poisson_ratio}, {2.0, poisson_ratio});
+  const DenseMatrix matrix({12, 12, 1.0, h2}, tangential_kernel(), pair);
+  const double least = dense_eigenvalues(matrix.matrix())[0];
+  EXPECT_LT(least_eigenvalue(pair, 1.0, h2), least);
+  EXPECT_GT(least_eigenvalue(pair, 1.0, h2), 0.7 * least);
+}
 
 TEST(SlipDirection, IsTheAngleFromTheReverseOfTraction) {
   ArrayXd q = ArrayXd::Zero(8);

@@ -91,7 +91,6 @@ class CountingDiscs {
  public:
   static constexpr Index kComponents = 2;
   explicit CountingDiscs(const ArrayXd& bound) : discs_(bound) {}
-  double capacity(const ArrayXd& c) const { return discs_.capacity(c); }
   template <int M, typename Direction>
   LoadsAlong<M> loads_along(const ArrayXd& y, const std::array<const Direction*, M>& w,
                             const Eigen::Vector<double, M>& x, const std::array<const ArrayXd*, M>& c) const {
@@ -131,6 +130,23 @@ TEST_P(Balance, MeetsLoadsUpToTheirLimit) {
   EXPECT_LE(worst, kMet);
   RecordProperty("worst", std::to_string(worst * 1e15) + "e-15");
   RecordProperty("most_evaluations", most);
+}
+
+TEST_P(Balance, MeetsSmallLoadsToTheirOwnSize) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    Body body(GetParam(), seed);
+    const FrictionDiscs discs(body.bound);
+    for (const double part : {1e-6, 1e-9, 1e-12}) {
+      const ArrayXd y = part * body.random(2 * body.grid.cells(), -1.0, 1.0);
+      const std::vector<double> loads = body.loads(part);
+      const LoadBalance balance(discs, body.conditions(loads));
+      Coefficients x = Coefficients::Zero(GetParam());
+      ASSERT_TRUE(balance.solve(y, x)) << part << " of the limit, seed " << seed;
+      ArrayXd z = y;
+      balance.add(x, z);
+      EXPECT_LE(body.missing(z, loads), kMet * part);
+    }
+  }
 }
 
 TEST_P(Balance, IsFoundFromFarAway) {

@@ -1,0 +1,166 @@
+// Loads next to gross slip, and loads next to none: both are as easy as any other.
+
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "solver/coulomb_method.hpp"
+#include "solver/direct.hpp"
+#include "solver/solve.hpp"
+#include "solver/tests/paper_scene.hpp"
+#include "solver/tests/torsion_bench.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+
+/// No load's solve may take more than this many applications on the finest grid.
+constexpr double kMostApplications = 60.0;
+
+/// A friction bound on a grid of square cells, with cross contraction.
+struct Body {
+  std::string name;
+  Grid grid;
+  ArrayXd bound;
+};
+
+Body body(const std::string& name) {
+  const Grid grid{32, 32, 1.0, 1.0};
+  const ArrayXd x = cell_x1(grid);
+  const ArrayXd y = cell_x2(grid);
+  const auto cap = [&](double x0, double y0, double a, double b, double angle) {
+    const ArrayXd along = std::cos(angle) * (x - x0) + std::sin(angle) * (y - y0);
+    const ArrayXd across = -std::sin(angle) * (x - x0) + std::cos(angle) * (y - y0);
+    return ArrayXd((1.0 - (along / a).square() - (across / b).square()).max(0.0).sqrt());
+  };
+  const ArrayXd r = (x.square() + y.square()).sqrt();
+  if (name == "circle") return {name, grid, cap(0, 0, 14, 14, 0)};
+  if (name == "turned ellipse") return {name, grid, cap(0, 0, 14.5, 6, 0.6)};
+  if (name == "annulus") return {name, grid, (r > 6.0 && r < 14.0).cast<double>()};
+  if (name == "two patches") return {name, grid, cap(-8, 0, 6, 6, 0) + cap(8, 0, 6, 6, 0)};
+  if (name == "unequal patches") return {name, grid, cap(-8, -3, 6.5, 6.5, 0) + 0.6 * cap(9, 5, 5, 4, 0)};
+  return {name, grid, (r < 14.0).select((14.0 / r).log(), 0.0)};  // a cone's peak
+}
+
+struct Load {
+  std::string name;
+  std::array<double, 3> direction;  ///< F1, F2, M over the radius
+};
+void PrintTo(const Load& load, std::ostream* stream) { *stream << load.name; }
+
+class ExtremeLoads : public testing::TestWithParam<std::tuple<std::string, Load>> {
+ protected:
+  TangentialProblem problem(double part) const {
+    const auto& direction = std::get<1>(GetParam()).direction;
+    TangentialProblem problem;
+    problem.friction_bound = body_.bound;
+    problem.force = {direction[0], direction[1]};
+    problem.moment = 10.0 * direction[2];
+    const double scale = part * limit_of(problem, body_.grid).factor;
+    problem.force = {scale * direction[0], scale * direction[1]};
+    problem.moment = scale * 10.0 * direction[2];
+    return problem;
+  }
+  TangentialSolution solve(const TangentialProblem& problem) const {
+    return solve_by_coulomb_method(elasticity_, body_.grid, problem);
+  }
+  /// By direct summation.
+  Certificate certificate(const TangentialProblem& problem, const TangentialSolution& solution) const {
+    const auto op = make_operator(OperatorKind::direct, body_.grid, tangential_kernel(), elasticity_.pair);
+    ArrayXd u(solution.traction.size());
+    op->apply(solution.traction, u);
+    const Index n = body_.grid.cells();
+    const ArrayXd rotation = rotation_field(body_.grid);
+    ArrayXd motion = solution.twist * rotation;
+    motion.head(n) += solution.displacement[0];
+    motion.tail(n) += solution.displacement[1];
+    const ArrayXd contact = (body_.bound > 0.0).cast<double>().replicate(2, 1);
+    return certify({solution.traction, u, contact * (u - motion)}, body_.bound, rotation, *problem.moment,
+                   *problem.force, least_eigenvalue(elasticity_.pair, body_.grid.h1, body_.grid.h2));
+  }
+
+  Body body_ = body(std::get<0>(GetParam()));
+  Elasticity elasticity_{elastic_pair({2.0, 0.3}, {2.0, 0.3})};
+};
+
+INSTANTIATE_TEST_SUITE_P(Bodies, ExtremeLoads,
+                         testing::Combine(testing::Values("circle", "turned ellipse", "annulus",
+                                                          "two patches", "unequal patches", "cone"),
+                                          testing::Values(Load{"force", {1.0, 0.3, 0.0}},
+                                                          Load{"moment", {0.0, 0.0, 1.0}},
+                                                          Load{"both", {1.0, 0.3, 1.0}})));
+
+TEST_P(ExtremeLoads, NextToGrossSlipTakeAFewApplications) {
+  for (const double missing : {2e-4, 1e-4, 1e-5, 1e-6}) {
+    SCOPED_TRACE(missing);
+    const TangentialProblem loads = problem(1.0 - missing);
+    const TangentialSolution solution = solve(loads);
+    ASSERT_EQ(solution.status, Status::converged) << solution.message;
+    EXPECT_LE(finest_grid_applications(solution.grids), kMostApplications);
+    const Certificate c = certificate(loads, solution);
+    EXPECT_LE(c.gap, 1.1e-8);
+    EXPECT_LE(c.moment, kRounding);
+    EXPECT_LE(c.force, kRounding);
+    EXPECT_LE(c.friction_bound, kRounding);
+  }
+}
+
+// Nearly everything sticks, and a bonded contact is linear: half the load, half of everything. Only cells
+// whose bound is next to nothing slip, and carry next to nothing.
+TEST_P(ExtremeLoads, NextToNoneAreLinear) {
+  const TangentialSolution larger = solve(problem(1e-8));
+  for (const double part : {1e-10, 1e-12}) {
+    SCOPED_TRACE(part);
+    const TangentialProblem loads = problem(part);
+    const TangentialSolution solution = solve(loads);
+    ASSERT_EQ(solution.status, Status::converged) << solution.message;
+    EXPECT_LE(finest_grid_applications(solution.grids), kMostApplications);
+    const double scale = 1e-8 / part;
+    EXPECT_LE((scale * solution.traction - larger.traction).matrix().norm(),
+              1e-8 * larger.traction.matrix().norm());
+    const Certificate c = certificate(loads, solution);
+    EXPECT_LE(c.energy_error, 1e-16);  // tractions are right to eight digits
+    EXPECT_LE(c.moment, kRounding * part);
+    EXPECT_LE(c.force, kRounding * part);
+  }
+}
+
+// The same through a scene: the twist of 1e-10 of a load is 1e-10 of its twist, and a twist of 1e-12 rad
+// needs no luck either.
+TEST(SmallLoads, OfASceneEndWell) {
+  const Solution small = solve(paper_scene(32, 1e-10));
+  const Solution larger = solve(paper_scene(32, 1e-7));
+  ASSERT_EQ(small.status, Status::converged) << small.message;
+  EXPECT_NEAR(small.twist_angle / larger.twist_angle, 1e-3, 1e-12);
+
+  Scene turned = paper_scene(32, 0.0);
+  turned.steps[0].torsion.moment_ratio.reset();
+  turned.steps[0].torsion.twist = 1e-12;
+  const Solution by_twist = solve(turned);
+  ASSERT_EQ(by_twist.status, Status::converged) << by_twist.message;
+  EXPECT_NEAR(by_twist.moment / by_twist.twist_angle, larger.moment / larger.twist_angle,
+              1e-7 * larger.moment / larger.twist_angle);
+}
+
+// Dissimilar bodies with next to no friction slip nearly everywhere under their pressure alone: tractions
+// cannot be written to more digits than their gap asks for.
+TEST(SmallFriction, BetweenDissimilarBodiesEndsWell) {
+  Scene scene = paper_scene(32, 0.5);
+  scene.lower = {70e9, 0.33};
+  for (const double friction : {1e-12, 1e-9, 1e-6}) {
+    SCOPED_TRACE(friction);
+    scene.friction = friction;
+    const Solution solution = solve(scene);
+    EXPECT_EQ(solution.status, Status::converged) << solution.message;
+    EXPECT_LE(solution.certificate.moment, kRounding);
+    EXPECT_LE(solution.certificate.gap, std::max(1e-8, solution.certificate.rounding));
+  }
+}
+
+}  // namespace
+}  // namespace slipstick::solver

@@ -1,0 +1,70 @@
+#include "solver/resolution.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "solver/solve.hpp"
+#include "solver/tests/paper_scene.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+
+/// A step of a disc of radius a (in cells) whose pressure is constant, under a moment.
+LoadStep disc_under_moment(const Grid& grid, double a, double moment_ratio) {
+  LoadStep loads{};
+  loads.problem.friction_bound = (cell_x1(grid).square() + cell_x2(grid).square() < a * a).cast<double>();
+  loads.problem.moment = moment_ratio * moment_limit(grid, loads.problem.friction_bound);
+  loads.limit = limit_of(loads.problem, grid);
+  return loads;
+}
+
+TEST(Resolution, WidthsOfACircleAndItsRingAreThoseOfTheCircles) {
+  const Grid grid{80, 80, 1.0, 1.0};
+  const LoadStep loads = disc_under_moment(grid, 36.0, 0.5);
+  const ArrayXd stick = (cell_x1(grid).square() + cell_x2(grid).square() < 20.0 * 20.0).cast<double>();
+  const Resolution found = resolution(grid, loads, stick, 1.0);
+  EXPECT_NEAR(found.stick_width, 40.0, 4.0);  // a staircase follows a circle to a tenth
+  EXPECT_NEAR(found.slip_width, 16.0, 1.6);
+}
+
+TEST(Resolution, OfAStripIsItsWidth) {
+  const Grid grid{100, 20, 1.0, 1.0};
+  LoadStep loads{};
+  loads.problem.friction_bound = (cell_x2(grid).abs() < 5.0).cast<double>();
+  loads.limit.factor = INFINITY;
+  const Resolution found = resolution(grid, loads, loads.problem.friction_bound, 0.0);
+  // Four times area over outline tends to twice the width of a long strip, and staircases count pi/4.
+  EXPECT_NEAR(found.stick_width, 4.0 * 1000.0 / (220.0 * 0.25 * 3.141592653589793), 1e-9);
+  EXPECT_EQ(found.slip_width, 0.0);
+}
+
+TEST(Resolution, IsUnknownWhereNoCellSticksThoughOneShould) {
+  const Grid grid{20, 20, 1.0, 1.0};
+  const LoadStep loads = disc_under_moment(grid, 9.0, 1.0 - 1e-9);
+  EXPECT_TRUE(std::isinf(resolution(grid, loads, ArrayXd::Zero(400), 1.0).uncertainty));
+}
+
+TEST(Resolution, NearGrossSlipTurnsFromGoodToPoor) {
+  double last = 0.0;
+  for (const double missing : {0.5, 1e-2, 1e-4, 1e-6}) {
+    const Solution solution = solve(paper_scene(32, 1.0 - missing));
+    ASSERT_EQ(solution.status, Status::converged);
+    EXPECT_GT(solution.resolution.uncertainty, last);
+    last = solution.resolution.uncertainty;
+  }
+  EXPECT_GT(last, kPoorlyResolved);
+  EXPECT_LT(solve(paper_scene(32, 0.5)).resolution.uncertainty, 0.01);
+}
+
+TEST(Resolution, OfAnImposedTwistIsTheMeshAlone) {
+  Scene scene = paper_scene(32, 0.0);
+  scene.steps[0].torsion.moment_ratio.reset();
+  scene.steps[0].torsion.twist = 1.0;  // far beyond where all has slipped
+  EXPECT_LT(solve(scene).resolution.uncertainty, 0.01);
+}
+
+}  // namespace
+}  // namespace slipstick::solver
