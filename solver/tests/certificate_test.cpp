@@ -308,7 +308,12 @@ TEST(SlipDirection, IsTheAngleFromTheReverseOfTraction) {
 
 TEST(Beyond, NamesTheMemberItsValueAndItsBound) {
   const CertificateBounds bounds{.gap = 1e-8, .moment = 1e-9, .force = 1e-10, .friction_bound = 1e-11};
-  const Certificate holds{.gap = 1e-8, .moment = 1e-9, .force = 1e-10, .friction_bound = -0.1};
+  const Certificate holds{.gap = 1e-8,
+                          .energy_error = 0.0,
+                          .rounding = 0.0,
+                          .moment = 1e-9,
+                          .force = 1e-10,
+                          .friction_bound = -0.1};
   EXPECT_EQ(beyond(holds, bounds), "");
   const struct {
     double Certificate::*member;
