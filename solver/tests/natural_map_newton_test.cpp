@@ -121,11 +121,12 @@ TEST_F(Newton, SaysThatItsApplicationsWereTooFew) {
   EXPECT_LE((norms(q_) - bench_.bound).maxCoeff(), kRounding * bench_.bound.maxCoeff());
 }
 
-TEST_F(Newton, SaysThatRoundingStopsIt) {
-  const NewtonSummary summary = run(q_, {.tolerance = 1e-19, .max_applications = 100000});
-  EXPECT_FALSE(summary.converged);
-  EXPECT_THAT(summary.message, HasSubstr("rounding"));
+// No tractions have a gap below the rounding of their displacements: what is as small is certified.
+TEST_F(Newton, EndsWhereRoundingHidesTheGap) {
+  const NewtonSummary summary = run(q_, {.tolerance = 1e-19, .max_applications = 100});
+  EXPECT_TRUE(summary.converged);
   EXPECT_LE(summary.gap, 1e-13);
+  EXPECT_GT(summary.gap, 1e-19);
 }
 
 TEST_F(Newton, IsNotConvergedOnWhatIsNoNumber) {
