@@ -136,8 +136,7 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
                                            const TangentialProblem& problem, const CoulombOptions& options) {
   require_valid(problem, grid);
   if ((problem.friction_bound == 0.0).all()) return unloaded(grid);
-  NewtonOptions newton{.tolerance = options.tolerance,
-                       .max_applications = options.max_applications};
+  NewtonOptions newton{.tolerance = options.tolerance, .max_applications = options.max_applications};
   if (options.progress) {
     newton.progress = [&](long applications, double gap) {
       options.progress(static_cast<int>(applications), gap);

@@ -54,9 +54,7 @@ class InputFile {
   [[noreturn]] void fail(const std::string& reason) const {
     throw InputError(file_.string(), fmt::format("cannot be read: {}; allowed: {}", reason, allowed_));
   }
-  [[noreturn]] void fail_with(int error) const {
-    fail(std::generic_category().message(error));
-  }
+  [[noreturn]] void fail_with(int error) const { fail(std::generic_category().message(error)); }
   [[noreturn]] void fail_for_size() const {
     throw InputError(file_.string(), fmt::format("is larger than {} MiB; allowed: {} of at most that size",
                                                  largest_ >> 20, allowed_));
