@@ -36,7 +36,6 @@ class PositivePressures {
       const double p = y[i] + x[0] * along;
       if (!(p > 0.0) || reachable_[i] == 0.0) continue;
       sum.load[0] += (*c[0])[i] * p;
-      sum.size[0] += std::abs((*c[0])[i] * p);
       sum.slope(0, 0) += (*c[0])[i] * along;
     }
     return sum;
@@ -126,7 +125,6 @@ class FrictionDiscs {
         const auto row = static_cast<int>(k);
         const double c_z = weight[k][0] * z1 + weight[k][1] * z2;
         sum.load[row] += factor * c_z;
-        sum.size[row] += std::abs(factor * c_z);
         for (std::size_t l = 0; l < M; ++l) {
           double slope = weight[k][0] * along[l][0] + weight[k][1] * along[l][1];
           if (cut) slope -= c_z * (along[l][0] * z1 + along[l][1] * z2) / square;
@@ -134,6 +132,7 @@ class FrictionDiscs {
         }
       }
       sum.potential += cut ? bound * (size - 0.5 * bound) : 0.5 * square;
+      sum.carried += std::min(square, bound * bound);
       sum.square += std::max(square, bound * bound);
     }
     return sum;
@@ -161,7 +160,7 @@ class FrictionDiscs {
       if (bound_[i] == 0.0) continue;
       double d1 = -slip[i] / k;
       double d2 = -slip[i + n] / k;
-      const double size = std::hypot(q[i] + d1, q[i + n] + d2);
+      const double size = std::sqrt((q[i] + d1) * (q[i] + d1) + (q[i + n] + d2) * (q[i + n] + d2));
       if (size > bound_[i]) {
         d1 = (q[i] + d1) * bound_[i] / size - q[i];
         d2 = (q[i + n] + d2) * bound_[i] / size - q[i + n];
@@ -176,12 +175,11 @@ class FrictionDiscs {
   double gap_rounding(const Eigen::ArrayXd& slip, const Eigen::ArrayXd& displacement) const {
     constexpr double kUnits = 16.0;  // of transforms, and of loads, which are balanced to 1e-14
     const Index n = cells();
-    double sum = 0.0;
-    for (Index i = 0; i < n; ++i) {
-      sum += bound_[i] *
-             (std::hypot(slip[i], slip[i + n]) + 2.0 * std::hypot(displacement[i], displacement[i + n]));
-    }
-    return kUnits * std::numeric_limits<double>::epsilon() * sum;
+    const auto size = [n](const Eigen::ArrayXd& v) {
+      return (v.head(n).square() + v.tail(n).square()).sqrt();
+    };
+    return kUnits * std::numeric_limits<double>::epsilon() *
+           (bound_ * (size(slip) + 2.0 * size(displacement))).sum();
   }
 
   /// Stick where |z| <= mu p. Elsewhere q turns along its circle, against the stiffness (|z| - mu p)/(rho mu

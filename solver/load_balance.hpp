@@ -30,8 +30,9 @@ template <int M>
 struct LoadsAlong {
   Eigen::Vector<double, M> load = Eigen::Vector<double, M>::Zero();
   Eigen::Matrix<double, M, M> slope = Eigen::Matrix<double, M, M>::Zero();
-  Eigen::Vector<double, M> size = Eigen::Vector<double, M>::Zero();  ///< the same as load, of absolute values
   double potential = 0.0;
+  /// Sum of |P(y + sum of x_l w_l)|^2, where cells may carry a load against each other; else 0.
+  double carried = 0.0;
   double square = 0.0;  ///< sum of |y + sum of x_l w_l|^2, in each cell at least its bound's
 };
 
@@ -136,7 +137,7 @@ class LoadBalance {
       const LoadsAlong<1> at =
           evaluate<1>(y, std::span<const Direction* const>(&direction, 1), Eigen::Vector<double, 1>(x));
       const double excess = at.load[0] - load_[0];
-      if (std::abs(excess) <= kLoadRounding * std::max(at.size[0], std::abs(load_[0]))) return true;
+      if (std::abs(excess) <= kLoadRounding * known_to(at, 0)) return true;
       if (!std::isfinite(excess)) return false;
       (excess < 0.0 ? low : high) = x;
       const double slope = at.slope(0, 0);
@@ -153,15 +154,21 @@ class LoadBalance {
     return false;
   }
 
-  /// The largest part of a load that is missing. A load that cells carry against each other is known to no
-  /// better than its rounding, which goes with what they carry.
+  /// The size that the rounding of a load goes with: its own, or that of what cells carry against each other
+  /// (by Cauchy's inequality no less than the sum of |c_k.P|).
+  template <int M>
+  double known_to(const LoadsAlong<M>& at, int k) const {
+    return std::max(std::abs(load_[k]), std::sqrt(majorant_(k, k) * at.carried));
+  }
+
+  /// The largest part of a load that is missing.
   template <int M>
   double imbalance(const LoadsAlong<M>& at) const {
     double worst = 0.0;
     for (int k = 0; k < M; ++k) {
       const double missing = std::abs(load_[k] - at.load[k]);
       // A single cell on the axis carries no moment, and need not.
-      const double part = missing == 0.0 ? 0.0 : missing / std::max(at.size[k], std::abs(load_[k]));
+      const double part = missing == 0.0 ? 0.0 : missing / known_to(at, k);
       worst = part <= worst ? worst : part;  // keeps NaN
     }
     return worst;

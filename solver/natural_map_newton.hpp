@@ -110,7 +110,8 @@ class NaturalMapNewton {
         summary.converged = true;
         return summary;
       }
-      if (summary.gap > options.tolerance && is_certified(summary.gap, options.tolerance, q)) {
+      const bool settled = summary.iterations > 0 && !energy_fell_;
+      if (settled && summary.gap > options.tolerance && is_certified(summary.gap, options.tolerance, q)) {
         return stop(q, options, summary, "rounding");
       }
       without_progress = summary.gap < best_gap || energy_fell_ ? 0 : without_progress + 1;

@@ -20,20 +20,19 @@ struct Area {
 
 Area measure(const Grid& grid, const ArrayXd& field) {
   Area area;
-  const auto inside = [&](Index i, Index j) {
-    return i >= 0 && j >= 0 && i < grid.n1 && j < grid.n2 && field[i * grid.n2 + j] != 0.0;
-  };
-  for (Index i = 0; i < grid.n1; ++i) {
-    for (Index j = 0; j < grid.n2; ++j) {
-      if (!inside(i, j)) continue;
-      const double value = field[i * grid.n2 + j];
+  for (Index i = 0, k = 0; i < grid.n1; ++i) {
+    for (Index j = 0; j < grid.n2; ++j, ++k) {
+      const double value = field[k];
+      if (value == 0.0) continue;
+      int sides = 0;
+      sides += i == 0 || field[k - grid.n2] == 0.0;
+      sides += i + 1 == grid.n1 || field[k + grid.n2] == 0.0;
+      sides += j == 0 || field[k - 1] == 0.0;
+      sides += j + 1 == grid.n2 || field[k + 1] == 0.0;
       area.cells += 1.0;
       area.mean += value;
-      for (const bool beside : {inside(i - 1, j), inside(i + 1, j), inside(i, j - 1), inside(i, j + 1)}) {
-        if (beside) continue;
-        area.outline += 1.0;
-        area.edge += value;
-      }
+      area.outline += sides;
+      area.edge += sides * value;
     }
   }
   if (area.cells == 0.0) return area;
