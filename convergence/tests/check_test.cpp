@@ -8,6 +8,7 @@
 #include <cmath>
 #include <numbers>
 #include <optional>
+#include <ostream>
 #include <random>
 #include <tuple>
 
@@ -346,6 +347,9 @@ struct Coarse {
   int cells;
   double ratio;
 };
+void PrintTo(const Coarse& coarse, std::ostream* stream) {
+  *stream << coarse.scene << ", " << coarse.cells << " cells, " << coarse.ratio << " of the limit";
+}
 
 class CheckCoarseBadField : public testing::TestWithParam<Coarse> {
  protected:
@@ -380,10 +384,15 @@ TEST_P(CheckCoarseBadField, NormalLoadOnePercentOff) {
 }
 
 TEST_P(CheckCoarseBadField, StoppedAtAGapOfOnePercent) {
-  const solver::Solution stopped =
-      solver::solve(scene_of(GetParam().scene, GetParam().cells,
-                             {load()[0], "solver.method=projected_gradient", "solver.tolerance=1e-2"}));
-  if (stopped.certificate.gap < 3e-3) GTEST_SKIP() << "the last step took it further than was asked for";
+  solver::Solution stopped;
+  // A last step may take it further than was asked for.
+  for (const char* tolerance : {"1e-2", "2e-2", "4e-2", "8e-2"}) {
+    stopped = solver::solve(scene_of(
+        GetParam().scene, GetParam().cells,
+        {load()[0], "solver.method=projected_gradient", fmt::format("solver.tolerance={}", tolerance)}));
+    if (stopped.certificate.gap >= 3e-3) break;
+  }
+  ASSERT_GE(stopped.certificate.gap, 3e-3);
   expect_bad(rows_of(stopped), HasSubstr("an iteration stops too early"));
 }
 
