@@ -28,10 +28,15 @@ std::string read_text(const std::filesystem::path& file) {
 }
 
 /// Tables in tables end one another recursively: keys of a million parts would overrun the stack. What counts
-/// are words with dots between, wherever they stand: quoted ones may hold blanks.
+/// are words with dots between, wherever they stand (quoted ones may hold blanks), those of the tables in
+/// braces around them among them.
 void require_short_keys(const std::string& text, const std::string& file) {
   std::size_t line = 1;
   std::size_t parts = 1;
+  std::size_t around = 0;           // parts of the keys of all open braces
+  std::vector<std::size_t> braces;  // and of each
+  std::size_t of_value = 1;         // parts of the key before the last '='
+  char last = '\n';                 // that is no blank
   bool after_dot = false;
   bool after_blank = false;
   bool quoted = false;
@@ -41,19 +46,32 @@ void require_short_keys(const std::string& text, const std::string& file) {
       after_blank = true;
       continue;
     }
+    if (c == '{' && std::string_view("=,[").find(last) != std::string_view::npos) {
+      braces.push_back(last == '=' ? of_value : 1);
+      around += braces.back();
+    } else if (c == '}' && !braces.empty()) {
+      around -= braces.back();
+      braces.pop_back();
+    } else if (c == '\n') {
+      braces.clear();
+      around = 0;
+    }
+    last = c;
     const bool other_word = after_blank && !after_dot && !quoted && c != '.';
     after_blank = false;
     if (other_word || c == '\n' || c == '=' || c == ',') {
+      if (c == '=') of_value = parts;
       parts = 1;
       after_dot = quoted = false;
     } else if (c == '.') {
       after_dot = true;
     } else if (after_dot) {
       after_dot = false;
-      if (++parts > kMostKeyParts) {
-        throw InputError(fmt::format("{}:{}", file, line),
-                         fmt::format("a key of more than {0} parts; allowed: {0}", kMostKeyParts));
-      }
+      ++parts;
+    }
+    if (around + parts > kMostKeyParts) {
+      throw InputError(fmt::format("{}:{}", file, line),
+                       fmt::format("a key of more than {0} parts; allowed: {0}", kMostKeyParts));
     }
     quoted = quoted || c == '"' || c == '\'';
   }
