@@ -78,11 +78,11 @@ bench-trust: configure ## is a build never slower than itself, and 15 % always f
 
 references: configure ## make the table of proven values anew (2 minutes; needs FLINT with Arb)
 	$(call build,slipstick_references)
-	@$(BUILD)/analytic/certified/slipstick_references table --output analytic/tests/certified_references.csv
+	@$(BUILD)/analytic/certified/slipstick_references table --output analytic/references/certified_references.csv
 
 hardest: configure ## look for harder inputs of the exact functions (SEARCH_OPTIONS="--seed 2 --samples 1000")
 	$(call build,slipstick_references)
-	@$(BUILD)/analytic/certified/slipstick_references search --folder analytic/tests/hardest $(SEARCH_OPTIONS)
+	@$(BUILD)/analytic/certified/slipstick_references search --folder analytic/references/hardest $(SEARCH_OPTIONS)
 
 install: configure ## install under PREFIX (default /usr/local)
 	$(call build,slipstick)

@@ -12,13 +12,13 @@
 
 #include "analytic/exact_command.hpp"
 #include "bench/bench_command.hpp"
-#include "bench/compare_command.hpp"
+#include "bench/compare/compare_command.hpp"
 #include "convergence/check/check_command.hpp"
-#include "convergence/gate_command.hpp"
-#include "convergence/markup.hpp"
-#include "convergence/report_command.hpp"
-#include "convergence/solve_command.hpp"
-#include "convergence/study_command.hpp"
+#include "convergence/gates/gate_command.hpp"
+#include "convergence/report/report_command.hpp"
+#include "convergence/results/markup.hpp"
+#include "convergence/solve/solve_command.hpp"
+#include "convergence/studies/study_command.hpp"
 
 namespace {
 

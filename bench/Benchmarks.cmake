@@ -1,19 +1,19 @@
 # The programs that measure.
 
 add_executable(slipstick_benchmarks
-  checked_solve.cpp exact_benchmark.cpp history_benchmark.cpp influence_benchmark.cpp memory_benchmark.cpp
-  methods_benchmark.cpp normal_benchmark.cpp operator_benchmark.cpp planning_benchmark.cpp slipstick_benchmarks.cpp
-  solve_benchmark.cpp suite.cpp)
+  suite/checked_solve.cpp suite/exact_benchmark.cpp suite/history_benchmark.cpp suite/influence_benchmark.cpp
+  suite/memory_benchmark.cpp suite/methods_benchmark.cpp suite/normal_benchmark.cpp suite/operator_benchmark.cpp
+  suite/planning_benchmark.cpp suite/slipstick_benchmarks.cpp suite/solve_benchmark.cpp suite/suite.cpp)
 slipstick_configure(slipstick_benchmarks)
-target_link_libraries(slipstick_benchmarks PRIVATE slipstick::analytic slipstick::bench
-  PkgConfig::FFTW GSL::gsl fmt::fmt benchmark::benchmark)
+target_link_libraries(slipstick_benchmarks PRIVATE slipstick::analytic slipstick_reference_tables
+  slipstick::bench   PkgConfig::FFTW GSL::gsl fmt::fmt benchmark::benchmark)
 # Times stand beside errors: the exact wing's against the references that the tests use, the solver's in the scenes that
 # come with the program.
-target_compile_definitions(slipstick_benchmarks PRIVATE SLIPSTICK_TEST_DATA="${PROJECT_SOURCE_DIR}/analytic/tests"
-  SLIPSTICK_SCENES="${PROJECT_SOURCE_DIR}/convergence/scenes")
+target_compile_definitions(slipstick_benchmarks PRIVATE SLIPSTICK_SCENES="${PROJECT_SOURCE_DIR}/convergence/scenes")
 
-# Counts the work that solves take: the linker puts the functions of work_counts.cpp in the place of those counted.
-add_library(slipstick_work_counts STATIC work_counts.cpp work_counts_cases.cpp work_counts_instructions.cpp)
+# Counts the work that solves take: the linker puts the functions of work/work_counts.cpp in the place of those counted.
+add_library(slipstick_work_counts STATIC work/work_counts.cpp work/work_counts_cases.cpp
+  work/work_counts_instructions.cpp)
 slipstick_configure(slipstick_work_counts)
 target_link_libraries(slipstick_work_counts PUBLIC slipstick::convergence slipstick::solver PkgConfig::FFTW
   PRIVATE fmt::fmt)
@@ -28,10 +28,10 @@ foreach(function
     _ZN9slipstick6solver13integrate_rowERNS0_7CellRowEldddd)
   target_link_options(slipstick_work_counts INTERFACE -Wl,--wrap=${function})
 endforeach()
-add_executable(slipstick_work work_counts_program.cpp)
+add_executable(slipstick_work work/work_counts_program.cpp)
 slipstick_configure(slipstick_work)
 target_link_libraries(slipstick_work PRIVATE slipstick_work_counts CLI11::CLI11 fmt::fmt)
-slipstick_tests(work_counts_tests SOURCES tests/work_counts_test.cpp LIBRARIES slipstick_work_counts)
+slipstick_tests(work_counts_tests SOURCES work/tests/work_counts_test.cpp LIBRARIES slipstick_work_counts)
 
 # Takes a quarter of an hour and an idle machine: run by `make bench-trust` alone.
 include(tests/sleeping_operator.cmake)

@@ -13,22 +13,22 @@
 #include <string>
 #include <vector>
 
-#include "bench/accuracy_from_plane.hpp"
-#include "bench/baseline.hpp"
-#include "bench/contest.hpp"
-#include "bench/machine.hpp"
-#include "bench/pace.hpp"
-#include "bench/scaling_result.hpp"
-#include "bench/second_run.hpp"
-#include "bench/speed_error.hpp"
-#include "bench/survey.hpp"
-#include "convergence/journal.hpp"
-#include "convergence/markup.hpp"
-#include "convergence/point.hpp"
-#include "convergence/progress.hpp"
-#include "convergence/provenance.hpp"
-#include "convergence/python_script.hpp"
-#include "solver/input_error.hpp"
+#include "bench/compare/ab_run.hpp"
+#include "bench/compare/baseline.hpp"
+#include "bench/compare/pace.hpp"
+#include "bench/compare/second_run.hpp"
+#include "bench/compare/survey.hpp"
+#include "bench/plane/accuracy_from_plane.hpp"
+#include "bench/plane/speed_error.hpp"
+#include "bench/scaling/scaling_result.hpp"
+#include "bench/timing/machine.hpp"
+#include "convergence/programs/python_script.hpp"
+#include "convergence/results/markup.hpp"
+#include "convergence/results/provenance.hpp"
+#include "convergence/runs/progress.hpp"
+#include "convergence/runs/result_cache.hpp"
+#include "convergence/runs/run_spec.hpp"
+#include "solver/input/input_error.hpp"
 
 namespace slipstick::bench {
 namespace {

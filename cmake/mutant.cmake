@@ -22,7 +22,7 @@ function(add_mutant name)
     COMMAND ${CMAKE_COMMAND} -D NAME=${name} -D MUTANTS=${ARG_MUTANTS} -D SOURCE_DIR=${PROJECT_SOURCE_DIR}
       -D OUTPUT=${source} -P ${mutate}
     DEPENDS "${PROJECT_SOURCE_DIR}/${file}" "${ARG_MUTANTS}" ${mutate})
-  cmake_path(GET file PARENT_PATH folder)
+  string(REGEX REPLACE "/.*" "" folder "${file}")
   set(target slipstick_mutant_${name})
   add_executable(${target} EXCLUDE_FROM_ALL "${source}" $<TARGET_OBJECTS:${ARG_ORIGINAL}>)
   slipstick_configure(${target})

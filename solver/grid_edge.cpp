@@ -7,8 +7,8 @@
 #include <cmath>
 #include <optional>
 
-#include "solver/full_coupling.hpp"
-#include "solver/input_error.hpp"
+#include "solver/contact/full_coupling.hpp"
+#include "solver/input/input_error.hpp"
 #include "solver/pressure.hpp"
 
 namespace slipstick::solver {

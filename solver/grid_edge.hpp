@@ -1,7 +1,7 @@
 #pragma once
 
+#include "solver/contact/normal_contact.hpp"
 #include "solver/model.hpp"
-#include "solver/normal_contact.hpp"
 
 namespace slipstick::solver {
 

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/input_error.hpp"
+#include "solver/input/input_error.hpp"
 
 namespace slipstick::solver {
 namespace {

@@ -2,9 +2,9 @@
 
 #include <Eigen/Core>
 
-#include "solver/limit_load.hpp"
+#include "solver/contact/limit_load.hpp"
+#include "solver/contact/tangential_problem.hpp"
 #include "solver/model.hpp"
-#include "solver/tangential_problem.hpp"
 
 namespace slipstick::solver {
 

@@ -8,8 +8,8 @@
 #include <cmath>
 #include <utility>
 
-#include "solver/coulomb_method.hpp"
-#include "solver/input_error.hpp"
+#include "solver/contact/coulomb_method.hpp"
+#include "solver/input/input_error.hpp"
 
 namespace slipstick::solver {
 namespace {

@@ -5,10 +5,11 @@
 #include <string>
 #include <vector>
 
-#include "solver/hertz_pressure.hpp"
-#include "solver/over_unit.hpp"
-#include "solver/reduction.hpp"
-#include "solver/scene.hpp"
+#include "solver/grid/reduction.hpp"
+#include "solver/operator/elasticity.hpp"
+#include "solver/scene/hertz_pressure.hpp"
+#include "solver/scene/scene.hpp"
+#include "solver/scene/to_dimensionless.hpp"
 
 namespace slipstick::solver {
 

@@ -5,8 +5,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/field_file.hpp"
-#include "solver/input_error.hpp"
+#include "solver/input/field_file.hpp"
+#include "solver/input/input_error.hpp"
 
 namespace slipstick::solver {
 namespace {

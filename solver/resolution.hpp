@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "solver/grid.hpp"
+#include "solver/grid/grid.hpp"
 #include "solver/load_step.hpp"
 
 namespace slipstick::solver {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "solver/stick_front.hpp"
+#include "solver/contact/stick_front.hpp"
 
 namespace slipstick::solver {
 namespace {

@@ -3,12 +3,12 @@
 #include <array>
 #include <string>
 
-#include "solver/certificate.hpp"
+#include "solver/contact/certificate.hpp"
+#include "solver/contact/normal_contact.hpp"
 #include "solver/load_step.hpp"
 #include "solver/model.hpp"
-#include "solver/normal_contact.hpp"
 #include "solver/resolution.hpp"
-#include "solver/scene.hpp"
+#include "solver/scene/scene.hpp"
 
 namespace slipstick::solver {
 

@@ -7,16 +7,16 @@
 #include <limits>
 #include <utility>
 
-#include "solver/coulomb_method.hpp"
-#include "solver/full_coupling.hpp"
+#include "solver/contact/coulomb_method.hpp"
+#include "solver/contact/full_coupling.hpp"
+#include "solver/contact/paper_method.hpp"
+#include "solver/contact/projected_gradient.hpp"
+#include "solver/fft/wisdom.hpp"
+#include "solver/grid/mirror.hpp"
 #include "solver/grid_edge.hpp"
-#include "solver/input_error.hpp"
+#include "solver/input/input_error.hpp"
 #include "solver/load_step.hpp"
-#include "solver/mirror.hpp"
-#include "solver/paper_method.hpp"
 #include "solver/pressure.hpp"
-#include "solver/projected_gradient.hpp"
-#include "solver/wisdom.hpp"
 
 namespace slipstick::solver {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "solver/scene.hpp"
+#include "solver/scene/scene.hpp"
 #include "solver/solution.hpp"
 
 namespace slipstick::solver {

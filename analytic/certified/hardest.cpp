@@ -13,7 +13,7 @@
 
 #include "analytic/certified/certified.hpp"
 #include "analytic/certified/reference_rows.hpp"
-#include "analytic/tests/replay.hpp"
+#include "analytic/references/replay.hpp"
 
 namespace slipstick::analytic::certified {
 

@@ -8,7 +8,7 @@
 #include <set>
 #include <string>
 
-#include "analytic/tests/replay.hpp"
+#include "analytic/references/replay.hpp"
 
 namespace slipstick::analytic {
 namespace {

@@ -7,7 +7,7 @@
 #include <numbers>
 #include <stdexcept>
 
-#include "analytic/tests/references.hpp"
+#include "analytic/references/references.hpp"
 
 namespace slipstick::analytic {
 namespace {

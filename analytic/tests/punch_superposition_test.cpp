@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "analytic/gsl.hpp"
-#include "analytic/tests/references.hpp"
+#include "analytic/references/references.hpp"
 #include "analytic/torsion.hpp"
 
 namespace slipstick::analytic {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "analytic/gsl.hpp"
-#include "analytic/tests/replay.hpp"
+#include "analytic/references/replay.hpp"
 
 namespace slipstick::analytic {
 namespace {

@@ -6,9 +6,9 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
-#include "bench/tests/made_program.hpp"
-#include "convergence/temporary_folder.hpp"
-#include "convergence/tests/program_run.hpp"
+#include "bench/compare/tests/made_program.hpp"
+#include "convergence/programs/temporary_folder.hpp"
+#include "convergence/programs/tests/program_run.hpp"
 
 namespace slipstick::bench {
 namespace {

@@ -8,10 +8,10 @@
 
 #include "convergence/check/examination.hpp"
 #include "convergence/check/verdict.hpp"
-#include "convergence/errors.hpp"
-#include "convergence/provenance.hpp"
+#include "convergence/oracle/errors.hpp"
+#include "convergence/results/provenance.hpp"
+#include "solver/contact/stick_front.hpp"
 #include "solver/solution.hpp"
-#include "solver/stick_front.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -4,8 +4,8 @@
 #include <optional>
 #include <string>
 
-#include "convergence/result_parts.hpp"
-#include "solver/scene.hpp"
+#include "convergence/results/result_parts.hpp"
+#include "solver/scene/scene.hpp"
 
 namespace slipstick::convergence {
 

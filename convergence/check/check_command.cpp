@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "convergence/check/check.hpp"
-#include "solver/input_error.hpp"
-#include "solver/scene.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/scene/scene.hpp"
 
 namespace slipstick::convergence {
 namespace {

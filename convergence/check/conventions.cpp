@@ -9,9 +9,9 @@
 #include <optional>
 #include <utility>
 
-#include "solver/certificate.hpp"
-#include "solver/input_error.hpp"
-#include "solver/limit_load.hpp"
+#include "solver/contact/certificate.hpp"
+#include "solver/contact/limit_load.hpp"
+#include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
 namespace {

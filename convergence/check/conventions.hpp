@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "convergence/check/foreign_field.hpp"
-#include "convergence/oracle.hpp"
+#include "convergence/oracle/oracle.hpp"
 #include "solver/model.hpp"
-#include "solver/scene.hpp"
+#include "solver/scene/scene.hpp"
 
 namespace slipstick::convergence {
 

@@ -5,8 +5,8 @@
 #include <stdexcept>
 
 #include "convergence/check/fitted_motion.hpp"
-#include "solver/certificate.hpp"
-#include "solver/coulomb_method.hpp"
+#include "solver/contact/certificate.hpp"
+#include "solver/contact/coulomb_method.hpp"
 
 namespace slipstick::convergence {
 namespace {

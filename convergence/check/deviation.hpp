@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "convergence/check/given_contact.hpp"
-#include "solver/certificate.hpp"
+#include "solver/contact/certificate.hpp"
 
 namespace slipstick::convergence {
 

@@ -7,8 +7,8 @@
 
 #include "convergence/check/deviation.hpp"
 #include "convergence/check/fitted_motion.hpp"
-#include "solver/certificate.hpp"
-#include "solver/influence.hpp"
+#include "solver/contact/certificate.hpp"
+#include "solver/operator/influence.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -6,8 +6,8 @@
 #include <utility>
 
 #include "convergence/check/diagnosis.hpp"
-#include "solver/input_error.hpp"
-#include "solver/limit_load.hpp"
+#include "solver/contact/limit_load.hpp"
+#include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
 namespace {

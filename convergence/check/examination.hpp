@@ -5,9 +5,9 @@
 #include <optional>
 
 #include "convergence/check/conventions.hpp"
-#include "convergence/check/yardstick.hpp"
-#include "convergence/oracle.hpp"
-#include "solver/certificate.hpp"
+#include "convergence/check/reference_on_grid.hpp"
+#include "convergence/oracle/oracle.hpp"
+#include "solver/contact/certificate.hpp"
 
 namespace slipstick::convergence {
 

@@ -7,13 +7,14 @@
 #include <numeric>
 #include <optional>
 
-#include "convergence/check/file_precision.hpp"
-#include "solver/input_error.hpp"
+#include "solver/input/file_precision.hpp"
+#include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
 using Eigen::ArrayXd;
+using solver::find_precision;
 using solver::Index;
 
 /// A contact has an inside and an edge on both sides.

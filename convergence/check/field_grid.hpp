@@ -4,8 +4,8 @@
 #include <filesystem>
 #include <vector>
 
-#include "solver/field_file.hpp"
-#include "solver/grid.hpp"
+#include "solver/grid/grid.hpp"
+#include "solver/input/field_file.hpp"
 
 namespace slipstick::convergence {
 

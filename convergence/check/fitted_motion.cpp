@@ -3,7 +3,7 @@
 #include <Eigen/Cholesky>
 #include <cmath>
 
-#include "solver/certificate.hpp"
+#include "solver/contact/certificate.hpp"
 
 namespace slipstick::convergence {
 namespace {

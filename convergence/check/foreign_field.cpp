@@ -5,9 +5,9 @@
 #include <cmath>
 
 #include "convergence/check/field_grid.hpp"
-#include "convergence/check/file_precision.hpp"
-#include "solver/field_file.hpp"
-#include "solver/input_error.hpp"
+#include "solver/input/field_file.hpp"
+#include "solver/input/file_precision.hpp"
+#include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
 
@@ -19,9 +19,9 @@ ForeignField read_foreign_field(const std::filesystem::path& file) {
   const auto columns = solver::read_columns(file, {"x1", "x2", "pressure", "q1", "q2"});
   const FieldGrid found = find_field_grid(file, columns[0], columns[1]);
   const ArrayXd& pressure = columns[2].values;
-  const ArrayXd pressure_rounding = find_precision(pressure).rounding(pressure);
-  const ArrayXd q1_rounding = find_precision(columns[3].values).rounding(columns[3].values);
-  const ArrayXd q2_rounding = find_precision(columns[4].values).rounding(columns[4].values);
+  const ArrayXd pressure_rounding = solver::find_precision(pressure).rounding(pressure);
+  const ArrayXd q1_rounding = solver::find_precision(columns[3].values).rounding(columns[3].values);
+  const ArrayXd q2_rounding = solver::find_precision(columns[4].values).rounding(columns[4].values);
   const Index cells = found.grid.cells();
   ForeignField field{.file = file,
                      .grid = found.grid,

@@ -4,7 +4,7 @@
 #include <array>
 #include <filesystem>
 
-#include "solver/grid.hpp"
+#include "solver/grid/grid.hpp"
 
 namespace slipstick::convergence {
 

@@ -2,8 +2,8 @@
 
 #include <utility>
 
-#include "solver/over_unit.hpp"
-#include "solver/surface.hpp"
+#include "solver/scene/surface.hpp"
+#include "solver/scene/to_dimensionless.hpp"
 
 namespace slipstick::convergence {
 namespace {

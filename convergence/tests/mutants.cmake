@@ -4,7 +4,7 @@ include("${CMAKE_CURRENT_LIST_DIR}/../../cmake/mutant.cmake")
 
 # A convolution whose transforms are as long as the grid: offsets beyond half of it come round from the other side.
 mutant(no_zero_padding
-  FILE solver/convolution.cpp
+  FILE solver/operator/convolution.cpp
   FIND [[std::vector<double>& quadrant = quadrants[slot];]]
   REPLACE [[std::vector<double>& quadrant = quadrants[slot];
     const std::vector<double> open = quadrant;
@@ -21,21 +21,21 @@ mutant(no_zero_padding
 
 # The cross kernel, odd in both coordinates, taken to be even.
 mutant(k12_even
-  FILE solver/influence.cpp
+  FILE solver/operator/influence.cpp
   FIND [[      return {-1, -1};]]
   REPLACE [[      return {1, 1};]]
   GATES full-64-twist full-64-traction-averaged-l2)
 
 # The cross kernel's sign, where symmetry leaves a quadrant and one traction field.
 mutant(k12_sign_in_a_quadrant
-  FILE solver/mirrored_convolution.cpp
+  FILE solver/operator/mirrored_convolution.cpp
   FIND [[P::load(k11 + at + line) * P::load(plain + at + line) +]]
   REPLACE [[P::load(k11 + at + line) * P::load(plain + at + line) -]]
   GATES hertz-64-traction-l1)
 
 # A shear in place of a rotation, Eqs. (8), (9) as printed.
 mutant(rotation_as_printed
-  FILE solver/grid.cpp
+  FILE solver/grid/grid.cpp
   FIND [[t.head(grid.cells()) = -cell_x2(grid);]]
   REPLACE [[t.head(grid.cells()) = cell_x2(grid);]]
   GATES full-64-twist full-64-traction-averaged-l2)
@@ -54,7 +54,7 @@ mutant(frozen_slip_directions
   GATES ellipse-64-slip-direction ellipse-64-gap ellipse-64-twist)
 
 mutant(tolerance_times_ten
-  FILE solver/scene.cpp
+  FILE solver/scene/scene.cpp
   FIND [[scene.tolerance = reader.number_or(]]
   REPLACE [[scene.tolerance = 10.0 * reader.number_or(]]
   GATES gradient-64-gap)
@@ -68,7 +68,7 @@ mutant(equation_1_as_printed
 
 # Hertz's pressure at the corners of cells in place of their centres: the order of convergence falls.
 mutant(pressure_at_corners
-  FILE solver/hertz_pressure.cpp
+  FILE solver/scene/hertz_pressure.cpp
   FIND [[((cell_x1(grid) / contact.semi_axis_1).square() + (cell_x2(grid) / contact.semi_axis_2).square());]]
   REPLACE [[(((cell_x1(grid) + 0.5 * grid.h1) / contact.semi_axis_1).square() +
              ((cell_x2(grid) + 0.5 * grid.h2) / contact.semi_axis_2).square());]]

@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
-#include "convergence/tests/program_run.hpp"
+#include "convergence/programs/tests/program_run.hpp"
 
 namespace {
 

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "solver/coulomb_method.hpp"
-#include "solver/direct.hpp"
+#include "solver/contact/coulomb_method.hpp"
+#include "solver/operator/direct.hpp"
 #include "solver/solve.hpp"
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/torsion_bench.hpp"

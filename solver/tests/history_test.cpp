@@ -4,8 +4,8 @@
 #include <cmath>
 #include <vector>
 
-#include "solver/certificate.hpp"
-#include "solver/coulomb_method.hpp"
+#include "solver/contact/certificate.hpp"
+#include "solver/contact/coulomb_method.hpp"
 #include "solver/solve.hpp"
 #include "solver/tests/press.hpp"
 #include "solver/tests/scene_file.hpp"

@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "solver/input_error.hpp"
-#include "solver/scene.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/scene/scene.hpp"
 
 namespace slipstick::solver {
 

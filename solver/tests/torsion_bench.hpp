@@ -2,8 +2,8 @@
 
 #include <memory>
 
-#include "solver/certificate.hpp"
-#include "solver/paper_method.hpp"
+#include "solver/contact/certificate.hpp"
+#include "solver/contact/paper_method.hpp"
 #include "solver/pressure.hpp"
 #include "solver/tests/paper_scene.hpp"
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "solver/certificate.hpp"
+#include "solver/contact/certificate.hpp"
 #include "solver/solve.hpp"
 #include "solver/tests/press.hpp"
 #include "solver/tests/scene_file.hpp"

@@ -8,7 +8,7 @@
 
 #include "analytic/certified/reference_rows.hpp"
 #include "analytic/certified/tests/known.hpp"
-#include "analytic/tests/references.hpp"
+#include "analytic/references/references.hpp"
 
 namespace slipstick::analytic::certified {
 namespace {

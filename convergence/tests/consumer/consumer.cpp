@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "convergence/oracle.hpp"
+#include "convergence/oracle/oracle.hpp"
 #include "solver/solve.hpp"
 
 int main(int, char** arguments) {

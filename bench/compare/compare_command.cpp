@@ -1,0 +1,123 @@
+#include "bench/compare/compare_command.hpp"
+
+#include <fmt/core.h>
+
+#include <cstdio>
+#include <memory>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "bench/compare/comparison.hpp"
+#include "bench/compare/comparison_report.hpp"
+#include "bench/compare/second_run.hpp"
+#include "convergence/results/markup.hpp"
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::bench {
+namespace {
+
+using solver::InputError;
+
+struct Options {
+  std::string base;
+  std::string now;
+  std::string effect = "10%";
+  double level = ComparisonRules{}.level;
+  bool same_machine = false;
+  bool debug_library = false;
+  std::string rerun;
+  std::string summary;
+  std::string junit;
+};
+
+/// "10%" or "0.10".
+double read_effect(const std::string& text) {
+  double effect = 0.0;
+  std::size_t read = 0;
+  try {
+    effect = std::stod(text, &read);
+  } catch (const std::logic_error&) {
+    read = 0;
+  }
+  const bool percent = read > 0 && text.substr(read) == "%";
+  if (percent) effect /= 100.0;
+  if (read == 0 || (read != text.size() && !percent) || !(effect > 0.0 && effect <= 1.0)) {
+    throw InputError("command line", "--effect", text, "a part of the time, as 10% or 0.10, up to 100%");
+  }
+  return effect;
+}
+
+ComparisonRules rules_of(const Options& options) {
+  if (!(options.level > 0.0 && options.level <= 0.5)) {
+    throw InputError("command line", "--level", fmt::format("{}", options.level),
+                     "a chance above 0, at most 0.5");
+  }
+  ComparisonRules rules;
+  rules.effect = read_effect(options.effect);
+  rules.level = options.level;
+  rules.same_machine = options.same_machine;
+  rules.debug_library = options.debug_library;
+  return rules;
+}
+
+int run(const Options& options, std::ostream& text, nlohmann::ordered_json& result) {
+  const ComparisonRules rules = rules_of(options);
+  const TwoTimings first{read_timings(options.base), read_timings(options.now)};
+  const auto again = [&](const std::vector<std::string>& names) {
+    fmt::print(stderr, "slipstick: {} benchmark{} again: {}\n", names.size(), names.size() == 1 ? "" : "s",
+               options.rerun);
+    return TwoTimings{first.base, run_again(options.rerun, names)};
+  };
+  const ComparisonReport report =
+      options.rerun.empty()
+          ? ComparisonReport{options.base, options.now, rules, compare(first.base, first.now, rules), {}}
+          : compare_twice(first, rules, again);
+  result = comparison_json(report);
+  text << comparison_text(report);
+  convergence::write_option_file("--summary", options.summary, comparison_markdown(report));
+  convergence::write_option_file("--junit", options.junit, comparison_junit(report));
+  return exit_code(report.comparison);
+}
+
+constexpr const char* kFooter = R"(Example:
+  slipstick compare base.json new.json --rerun 'bench/program --benchmark_filter={filter}
+    --benchmark_repetitions=12 --benchmark_format=json'
+  new.json against base.json, as independent runs
+    benchmark     base       new  new/base   95 % interval  verdict
+    solve/256  61.2 ms   73.4 ms     1.199  1.187 to 1.212  slower (p 3e-06)
+    solve/128  14.1 ms   14.2 ms     1.004  0.997 to 1.011  same
+  2 benchmarks: 1 same, 1 slower
+Both files are what Google Benchmark writes (--benchmark_out=FILE), with 10 repetitions or so. Run the two builds
+in turn, on an idle machine.
+Exit code 0: nothing is slower; 1: a benchmark is slower, or fails in the new file alone; 2: it could not be judged:
+a benchmark is in one file only, failed before, has too few repetitions or is as much slower as counts without being
+so significantly; or the machines differ, were loaded, or the builds are debug builds: then no time is judged.)";
+
+}  // namespace
+
+std::function<int(std::ostream&, nlohmann::ordered_json&)> add_compare_command(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* const command =
+      app.add_subcommand("compare", "Compare two files of Google Benchmark: is anything slower?");
+  command->add_option("base", options->base, "JSON of the build to compare with")->required();
+  command->add_option("new", options->now, "JSON of the build in question")->required();
+  command->add_option("--effect", options->effect, "smallest change that counts, as 10% or 0.10")
+      ->capture_default_str();
+  command->add_option("--level", options->level, "chance of a false alarm, over all benchmarks together")
+      ->capture_default_str();
+  command->add_flag("--same-machine", options->same_machine, "whatever the files say, it is one machine");
+  command->add_flag("--debug-library", options->debug_library,
+                    "only Google Benchmark's library is a debug build, the programs are not");
+  command->add_option("--rerun", options->rerun,
+                      "command that runs suspicious benchmarks ({filter}) again and writes JSON on standard "
+                      "output: only what it confirms counts");
+  command->add_option("--summary", options->summary, "write a Markdown table, the worst first, below 64 kB");
+  command->add_option("--junit", options->junit, "write JUnit XML, as CI servers read it, to this file");
+  command->footer(kFooter);
+  return
+      [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };
+}
+
+}  // namespace slipstick::bench

@@ -1,0 +1,85 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "bench/timing/timings.hpp"
+
+namespace slipstick::bench {
+
+/// What calls a benchmark slower or quicker.
+struct ComparisonRules {
+  double effect = 0.10;       ///< smallest change of the time that counts
+  double level = 0.01;        ///< of significance, over all benchmarks of a comparison together (Holm 1979)
+  bool same_machine = false;  ///< the caller vouches for that
+  bool debug_library =
+      false;  ///< Google Benchmark may say that it was built without NDEBUG, as Debian's does
+  /// Benchmarks that are known to wait in the new build, so that it is no sign of load: of a second run, what
+  /// waits in the first.
+  std::vector<std::string> waiting = {};
+  std::vector<std::string> obstacles = {};  ///< that the caller knows of: no time is judged
+};
+
+/// What was found of one benchmark. Undecided: as much slower as counts, but not significantly so. Too few:
+/// its repetitions could show no change, however large. Failed: in the new file only. Not timed: it failed in
+/// the base, or left itself out. Not judged: an obstacle stands before all times.
+enum class Finding {
+  same,
+  slower,
+  quicker,
+  undecided,
+  too_few,
+  only_in_base,
+  only_in_new,
+  failed,
+  not_timed,
+  not_judged
+};
+std::string to_string(Finding finding);
+
+/// One benchmark of either file. What does not exist is NaN; an interval of too small a sample is infinite.
+struct ComparedBenchmark {
+  std::string name;
+  Finding finding = Finding::not_judged;
+  double base_seconds = 0.0;  ///< medians, by the clock
+  double new_seconds = 0.0;
+  double ratio = 0.0;  ///< new over base: Hodges and Lehmann's estimate (1963) on logarithms
+  double low = 0.0;    ///< its 95 % interval
+  double high = 0.0;
+  double p_value =
+      0.0;  ///< of a ratio of one or below (above, where it is below one), with Holm's correction
+  std::size_t base_repetitions = 0;
+  std::size_t new_repetitions = 0;
+  std::string remark;  ///< what a reader must know beside the numbers; empty: nothing
+};
+
+struct Comparison {
+  std::vector<ComparedBenchmark> benchmarks;  ///< in the base's order, then those only in the new file
+  std::vector<std::string> obstacles;  ///< why times could not be judged: the machines, the build, the load
+  std::vector<std::string> remarks;    ///< what a reader must know of the files
+  std::vector<std::string> waiting;    ///< benchmarks of the new file that wait, as for a processor
+  bool paired = false;                 ///< repetition by repetition
+};
+
+/// Two files of one sitting are compared repetition by repetition (Wilcoxon's signed ranks on the logarithms
+/// of ratios), others as independent samples (Mann and Whitney's test), both exactly.
+/// Throws std::invalid_argument for an effect that is not above zero and a level that is not between 0 and 1.
+Comparison compare(const Timings& base, const Timings& now, const ComparisonRules& rules = {});
+
+/// Benchmarks of which nothing should be said before a second run: slower, undecided or failed.
+std::vector<std::string> suspicious(const Comparison& comparison);
+
+/// The benchmarks of these names only.
+Timings select(const Timings& timings, const std::vector<std::string>& names);
+
+/// What is left of a comparison after its suspicious benchmarks ran again. Slower is what is as much slower
+/// as counts in both and significantly so in the second, failed what failed in both, undecided what the
+/// second could neither prove nor clear. The numbers stay the first run's, but for the chance.
+Comparison confirm(const Comparison& first, const Comparison& second);
+
+/// 1: a benchmark is slower or failed in the new file only. 2: else, where something could not be judged, or
+/// nothing was.
+int exit_code(const Comparison& comparison);
+
+}  // namespace slipstick::bench

@@ -1,0 +1,266 @@
+#include "bench/compare/comparison_report.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "convergence/results/markup.hpp"
+#include "convergence/results/result_parts.hpp"
+
+namespace slipstick::bench {
+namespace {
+
+using convergence::kMostMarkdown;
+using convergence::markdown_cell;
+using convergence::xml_text;
+using Json = nlohmann::ordered_json;
+
+/// From the worst to the best.
+constexpr std::array kSeverity{
+    Finding::slower,    Finding::failed,  Finding::undecided,  Finding::only_in_base, Finding::only_in_new,
+    Finding::not_timed, Finding::too_few, Finding::not_judged, Finding::quicker,      Finding::same};
+
+bool is_failure(Finding finding) { return finding == Finding::slower || finding == Finding::failed; }
+bool is_fine(Finding finding) { return finding == Finding::same || finding == Finding::quicker; }
+
+std::vector<ComparedBenchmark> worst_first(std::vector<ComparedBenchmark> benchmarks) {
+  const auto badness = [](const ComparedBenchmark& benchmark) {
+    const auto severity =
+        std::find(kSeverity.begin(), kSeverity.end(), benchmark.finding) - kSeverity.begin();
+    return std::pair(severity, std::isnan(benchmark.ratio) ? 0.0 : -benchmark.ratio);
+  };
+  std::stable_sort(benchmarks.begin(), benchmarks.end(),
+                   [&](const auto& a, const auto& b) { return badness(a) < badness(b); });
+  return benchmarks;
+}
+
+std::size_t count(const std::vector<ComparedBenchmark>& benchmarks, Finding finding) {
+  return static_cast<std::size_t>(
+      std::count_if(benchmarks.begin(), benchmarks.end(),
+                    [&](const ComparedBenchmark& benchmark) { return benchmark.finding == finding; }));
+}
+
+/// "30 benchmarks: 28 same, 1 slower, 1 undecided"
+std::string counts_text(const std::vector<ComparedBenchmark>& benchmarks) {
+  std::vector<std::string> parts;
+  for (auto finding = kSeverity.rbegin(); finding != kSeverity.rend(); ++finding) {
+    const std::size_t number = count(benchmarks, *finding);
+    if (number > 0) parts.push_back(fmt::format("{} {}", number, to_string(*finding)));
+  }
+  return fmt::format("{} benchmark{}: {}", benchmarks.size(), benchmarks.size() == 1 ? "" : "s",
+                     fmt::join(parts, ", "));
+}
+
+std::string seconds_text(double seconds) {
+  if (!std::isfinite(seconds)) return "-";
+  constexpr std::array<std::pair<double, std::string_view>, 4> units{
+      {{1.0, "s"}, {1e-3, "ms"}, {1e-6, "µs"}, {1e-9, "ns"}}};
+  for (const auto& [size, unit] : units) {
+    if (seconds >= size) return fmt::format("{:.4g} {}", seconds / size, unit);
+  }
+  return fmt::format("{:.3g} ns", seconds / units.back().first);
+}
+
+std::string ratio_text(double ratio) { return std::isfinite(ratio) ? fmt::format("{:.3f}", ratio) : "-"; }
+
+bool has_interval(const ComparedBenchmark& benchmark) {
+  return benchmark.low > 0.0 && std::isfinite(benchmark.high);
+}
+
+std::string interval_text(const ComparedBenchmark& benchmark) {
+  return has_interval(benchmark) ? fmt::format("{:.3f} to {:.3f}", benchmark.low, benchmark.high) : "-";
+}
+
+/// With the chance that it is none, where that says something.
+std::string verdict_text(const ComparedBenchmark& benchmark) {
+  const bool has_chance = is_failure(benchmark.finding) || benchmark.finding == Finding::undecided ||
+                          benchmark.finding == Finding::quicker;
+  return has_chance && std::isfinite(benchmark.p_value)
+             ? fmt::format("{} (p {:.1g})", to_string(benchmark.finding), benchmark.p_value)
+             : to_string(benchmark.finding);
+}
+
+using Row = std::array<std::string, 6>;
+
+Row row_of(const ComparedBenchmark& benchmark) {
+  return {benchmark.name,
+          seconds_text(benchmark.base_seconds),
+          seconds_text(benchmark.new_seconds),
+          ratio_text(benchmark.ratio),
+          interval_text(benchmark),
+          verdict_text(benchmark)};
+}
+
+const Row kHeader{"benchmark", "base", "new", "new/base", "95 % interval", "verdict"};
+
+/// Letters, of which some take two bytes.
+std::size_t letters(const std::string& text) {
+  return static_cast<std::size_t>(
+      std::count_if(text.begin(), text.end(), [](unsigned char c) { return (c & 0xC0U) != 0x80U; }));
+}
+
+std::string table(const std::vector<ComparedBenchmark>& benchmarks) {
+  std::vector<Row> rows{kHeader};
+  for (const ComparedBenchmark& benchmark : benchmarks) rows.push_back(row_of(benchmark));
+  std::array<std::size_t, 6> widths{};
+  for (const Row& row : rows) {
+    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], letters(row[i]));
+  }
+  std::string text;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const Row& row = rows[r];
+    std::string line = "  " + row[0] + std::string(widths[0] - letters(row[0]), ' ');
+    for (std::size_t i = 1; i + 1 < row.size(); ++i) {
+      line += "  " + std::string(widths[i] - letters(row[i]), ' ') + row[i];
+    }
+    text += line + "  " + row.back() + "\n";
+    if (r > 0 && !benchmarks[r - 1].remark.empty()) text += "      " + benchmarks[r - 1].remark + "\n";
+  }
+  return text;
+}
+
+std::string heading(const ComparisonReport& report) {
+  return fmt::format("{} against {}, {}", report.now, report.base,
+                     report.comparison.paired ? "repetition by repetition" : "as independent runs");
+}
+
+/// What counts, in words.
+std::string rules_text(const ComparisonRules& rules) {
+  return fmt::format("what counts: {:.3g} % or more, by chance in {:.3g} of 100 such comparisons at most",
+                     100.0 * rules.effect, 100.0 * rules.level);
+}
+
+/// What a reader needs beside the table, a paragraph each.
+std::vector<std::string> notes(const ComparisonReport& report) {
+  std::vector<std::string> lines;
+  for (const std::string& obstacle : report.comparison.obstacles) {
+    lines.push_back("could not judge: " + obstacle);
+  }
+  for (const std::string& remark : report.comparison.remarks) lines.push_back(remark);
+  if (!report.second && !suspicious(report.comparison).empty()) {
+    lines.push_back(
+        "this is one run only: let --rerun 'PROGRAM --benchmark_filter={filter} --benchmark_format=json "
+        "--benchmark_repetitions=N' run the suspicious ones again before they count");
+  }
+  return lines;
+}
+
+std::string junit_case(const ComparedBenchmark& benchmark) {
+  const Row row = row_of(benchmark);
+  const std::string shown = fmt::format("base {}, new {}, new/base {} ({})", row[1], row[2], row[3], row[4]);
+  const std::string out = fmt::format("<system-out>{}</system-out>", xml_text(shown));
+  std::string verdict = out;
+  if (!is_fine(benchmark.finding)) {
+    const std::string remark = benchmark.remark.empty() ? "" : ": " + benchmark.remark;
+    verdict = fmt::format(
+        "<{0} message=\"{1}\" type=\"{2}\">{3}</{0}>{4}", is_failure(benchmark.finding) ? "failure" : "error",
+        xml_text(verdict_text(benchmark) + remark), to_string(benchmark.finding), xml_text(shown), out);
+  }
+  return fmt::format("    <testcase classname=\"compare\" name=\"{}\">{}</testcase>\n",
+                     xml_text(benchmark.name), verdict);
+}
+
+Json benchmark_json(const ComparedBenchmark& benchmark) {
+  const std::string no_times = "no times to compare";
+  const std::string no_interval =
+      std::isfinite(benchmark.ratio) ? "too few repetitions for an interval" : no_times;
+  Json json{{"name", benchmark.name}, {"finding", to_string(benchmark.finding)}};
+  convergence::set_number(json, "base_seconds", benchmark.base_seconds, "no time");
+  convergence::set_number(json, "new_seconds", benchmark.new_seconds, "no time");
+  convergence::set_number(json, "ratio", benchmark.ratio, no_times);
+  if (has_interval(benchmark)) {
+    json["low"] = benchmark.low;
+    json["high"] = benchmark.high;
+  } else {
+    convergence::set_missing(json, "low", no_interval);
+    convergence::set_missing(json, "high", no_interval);
+  }
+  convergence::set_number(json, "p_value", benchmark.p_value, no_times);
+  json["base_repetitions"] = benchmark.base_repetitions;
+  json["new_repetitions"] = benchmark.new_repetitions;
+  json["remark"] = benchmark.remark;
+  return json;
+}
+
+Json benchmarks_json(const Comparison& comparison) {
+  Json list = Json::array();
+  for (const ComparedBenchmark& benchmark : comparison.benchmarks) list.push_back(benchmark_json(benchmark));
+  return list;
+}
+
+}  // namespace
+
+std::string comparison_text(const ComparisonReport& report) {
+  std::string text = heading(report) + "\n" + table(worst_first(report.comparison.benchmarks));
+  if (report.second && !report.second->benchmarks.empty()) {
+    text += "the suspicious ones, run again\n" + table(worst_first(report.second->benchmarks));
+  }
+  for (const std::string& note : notes(report)) text += note + "\n";
+  return text + fmt::format("{} ({})\n", counts_text(report.comparison.benchmarks), rules_text(report.rules));
+}
+
+std::string comparison_markdown(const ComparisonReport& report) {
+  constexpr std::size_t room_for_note = 100;
+  std::string text = fmt::format("### {}\n\n{}; {}.\n\n", counts_text(report.comparison.benchmarks),
+                                 markdown_cell(heading(report)), rules_text(report.rules));
+  for (const std::string& note : notes(report)) text += fmt::format("- {}\n", markdown_cell(note));
+  text += fmt::format("\n| {} | |\n|---|--:|--:|--:|--:|---|---|\n", fmt::join(kHeader, " | "));
+  const std::vector<ComparedBenchmark> sorted = worst_first(report.comparison.benchmarks);
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    Row row = row_of(sorted[i]);
+    row[0] = markdown_cell(row[0]);
+    const std::string line =
+        fmt::format("| {} | {} |\n", fmt::join(row, " | "), markdown_cell(sorted[i].remark));
+    if (text.size() + line.size() + room_for_note > kMostMarkdown) {
+      return text + fmt::format("\n{} more, none worse than these, are left out here.\n", sorted.size() - i);
+    }
+    text += line;
+  }
+  return text;
+}
+
+std::string comparison_junit(const ComparisonReport& report) {
+  const std::vector<ComparedBenchmark>& benchmarks = report.comparison.benchmarks;
+  const std::vector<std::string>& obstacles = report.comparison.obstacles;
+  const auto failures = count(benchmarks, Finding::slower) + count(benchmarks, Finding::failed);
+  const auto fine = count(benchmarks, Finding::same) + count(benchmarks, Finding::quicker);
+  const std::string counts =
+      fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\"", benchmarks.size() + obstacles.size(),
+                  failures, benchmarks.size() - failures - fine + obstacles.size());
+  std::string text = fmt::format(
+      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"slipstick compare\" {0}>\n  <testsuite "
+      "name=\"{1}\" {0}>\n",
+      counts, xml_text(heading(report)));
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    text += fmt::format(
+        "    <testcase classname=\"compare\" name=\"obstacle {}\"><error message=\"{}\" "
+        "type=\"obstacle\"/></testcase>\n",
+        i + 1, xml_text(obstacles[i]));
+  }
+  for (const ComparedBenchmark& benchmark : benchmarks) text += junit_case(benchmark);
+  return text + "  </testsuite>\n</testsuites>\n";
+}
+
+Json comparison_json(const ComparisonReport& report) {
+  const Comparison& comparison = report.comparison;
+  Json json{
+      {"exit_code", exit_code(comparison)}, {"base", report.base},         {"new", report.now},
+      {"effect", report.rules.effect},      {"level", report.rules.level}, {"paired", comparison.paired}};
+  json["counts"] = Json::object();
+  for (const Finding finding : kSeverity) {
+    json["counts"][to_string(finding)] = count(comparison.benchmarks, finding);
+  }
+  json["obstacles"] = comparison.obstacles;
+  json["remarks"] = comparison.remarks;
+  json["benchmarks"] = benchmarks_json(comparison);
+  if (report.second) json["second_run"] = benchmarks_json(*report.second);
+  return json;
+}
+
+}  // namespace slipstick::bench

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+
+#include "bench/compare/comparison.hpp"
+
+/// What a comparison found, for those who read it: a person, a CI server, a script.
+namespace slipstick::bench {
+
+/// All that a report shows.
+struct ComparisonReport {
+  std::string base;  ///< the files' names
+  std::string now;
+  ComparisonRules rules;
+  Comparison comparison;             ///< with what the second run confirmed, where there is one
+  std::optional<Comparison> second;  ///< of the suspicious benchmarks alone
+};
+
+/// For a person: a table, the worst first, why times could not be judged, and the counts.
+std::string comparison_text(const ComparisonReport& report);
+
+/// The same as Markdown, shorter than kMostMarkdown bytes: what does not fit is counted.
+std::string comparison_markdown(const ComparisonReport& report);
+
+/// JUnit's XML, as CI servers read it: a case a benchmark, and one for each obstacle. What is slower or
+/// failed is a failure, what could not be judged an error.
+std::string comparison_junit(const ComparisonReport& report);
+
+/// Every number, in seconds.
+nlohmann::ordered_json comparison_json(const ComparisonReport& report);
+
+}  // namespace slipstick::bench

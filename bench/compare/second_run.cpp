@@ -1,0 +1,96 @@
+#include "bench/compare/second_run.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+#include <sys/wait.h>
+
+#include <array>
+#include <cstdio>
+#include <memory>
+#include <string_view>
+
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::bench {
+namespace {
+
+using solver::InputError;
+
+constexpr std::string_view kPlace = "{filter}";
+
+std::string in_quotes(const std::string& word) {
+  std::string quoted = "'";
+  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
+std::string with_filter(std::string command, const std::string& filter, const std::string& option) {
+  const std::string word = in_quotes(filter);
+  for (std::size_t at = command.find(kPlace); at != std::string::npos; at = command.find(kPlace, at)) {
+    const std::string around = command.substr(at == 0 ? 0 : at - 1, kPlace.size() + 2);
+    if (around.find_first_of("'\"") != std::string::npos) {
+      throw InputError(option, "write {filter} without quotes: it comes with its own");
+    }
+    command.replace(at, kPlace.size(), word);
+    at += word.size();
+  }
+  return command;
+}
+
+struct Output {
+  std::string text;
+  int status = -1;
+};
+
+Output run_by_shell(const std::string& command) {
+  std::FILE* const pipe = popen(command.c_str(), "r");
+  Output output;
+  if (pipe == nullptr) return output;
+  std::array<char, 65536> buffer{};
+  while (const std::size_t size = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
+    output.text.append(buffer.data(), size);
+  }
+  const int status = pclose(pipe);
+  output.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  return output;
+}
+
+}  // namespace
+
+std::string benchmark_filter(const std::vector<std::string>& names) {
+  std::vector<std::string> escaped;
+  for (const std::string& name : names) {
+    std::string& pattern = escaped.emplace_back();
+    for (const char c : name) {
+      if (std::string_view(".[]{}()*+?|^$\\").find(c) != std::string_view::npos) pattern += '\\';
+      pattern += c;
+    }
+  }
+  return fmt::format("^({})$", fmt::join(escaped, "|"));
+}
+
+ComparisonReport compare_twice(const TwoTimings& first, const ComparisonRules& rules, const Again& again) {
+  ComparisonReport report{
+      first.base.file.string(), first.now.file.string(), rules, compare(first.base, first.now, rules), {}};
+  const std::vector<std::string> names = suspicious(report.comparison);
+  if (names.empty()) return report;
+  ComparisonRules with_waiting = rules;
+  with_waiting.waiting = report.comparison.waiting;
+  try {
+    const TwoTimings second = again(names);
+    report.second = compare(select(second.base, names), select(second.now, names), with_waiting);
+  } catch (const InputError& error) {
+    report.second.emplace().obstacles.emplace_back(error.what());
+  }
+  report.comparison = confirm(report.comparison, *report.second);
+  return report;
+}
+
+Timings run_again(const std::string& command, const std::vector<std::string>& names) {
+  const std::string option = fmt::format("--rerun {}", command);
+  const Output output = run_by_shell(with_filter(command, benchmark_filter(names), option));
+  if (output.status != 0) throw InputError(option, fmt::format("ended with {}", output.status));
+  return parse_timings(output.text, "second run");
+}
+
+}  // namespace slipstick::bench

@@ -1,0 +1,52 @@
+#include "bench/compare/survey.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cctype>
+#include <functional>
+
+#include "convergence/runs/progress.hpp"
+#include "convergence/runs/result_cache.hpp"
+
+namespace slipstick::bench {
+namespace {
+
+using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
+
+/// The name as that of a file: readable, and its own.
+std::string file_name(const std::string& benchmark) {
+  std::string name = benchmark;
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '-');
+  return fmt::format("{}-{:016x}", name.substr(0, 80), std::hash<std::string>{}(benchmark));
+}
+
+/// What the timings depend on.
+std::string question(const fs::path& program, const std::string& name, const RunLength& length) {
+  return fmt::format("{} of {} bytes, written at {}: {} for {} s, {} times", fs::absolute(program).string(),
+                     fs::file_size(program), fs::last_write_time(program).time_since_epoch().count(), name,
+                     length.seconds, length.repetitions);
+}
+
+}  // namespace
+
+Json run_survey(const fs::path& program, const std::vector<std::string>& names, const RunLength& length,
+                const fs::path& folder, const AtFullPace& at_full_pace) {
+  Patience patience = kPatience;
+  convergence::Journal journal(folder);
+  convergence::Progress progress(names.size(), static_cast<double>(names.size()));
+  Json file;
+  for (const std::string& name : names) {
+    const Json run = journal.point(file_name(name), question(program, name, length), [&] {
+      return run_heat({{program, name, name}}, false, length, at_full_pace, patience).runs.front();
+    });
+    if (file.is_null()) file = {{"context", run.at("context")}, {"benchmarks", Json::array()}};
+    for (const Json& row : run.at("benchmarks")) file["benchmarks"].push_back(row);
+    progress.finished(name, 1.0);
+  }
+  return file;
+}
+
+}  // namespace slipstick::bench

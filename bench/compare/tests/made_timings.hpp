@@ -1,0 +1,123 @@
+#pragma once
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <cstddef>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "bench/timing/timings.hpp"
+
+/// Timings with a known answer, by seeded draws.
+namespace slipstick::bench {
+
+inline TimingContext quiet_machine() {
+  TimingContext context;
+  context.date = "2026-11-20T12:00:00+00:00";
+  context.host_name = "somewhere";
+  context.cpus = 8;
+  context.mhz = 3000.0;
+  context.caches = {"L2 Unified 2097152 shared by 1"};
+  context.scaling = false;
+  context.load_average = {0.3, 0.2, 0.1};
+  context.library_build_type = "release";
+  return context;
+}
+
+/// One benchmark with these times in seconds, all of them the processor's.
+inline TimedBenchmark timed(const std::string& name, const std::vector<double>& seconds) {
+  TimedBenchmark benchmark;
+  benchmark.name = name;
+  for (const double time : seconds) benchmark.timings.push_back({.real = time, .cpu = time});
+  return benchmark;
+}
+
+inline Timings file_of(const std::string& file, const std::vector<TimedBenchmark>& benchmarks) {
+  return {.file = file, .context = quiet_machine(), .benchmarks = benchmarks};
+}
+
+/// Evenly spread by a percent around a time; of two seeds, times differ but not their spread.
+inline TimedBenchmark steady(const std::string& name, double seconds, std::size_t repetitions, int seed) {
+  std::mt19937_64 generator(static_cast<std::uint64_t>(seed));
+  std::uniform_real_distribution<double> spread(0.995, 1.005);
+  std::vector<double> times(repetitions);
+  for (double& time : times) time = seconds * spread(generator);
+  return timed(name, times);
+}
+
+/// How times scatter on real machines: lognormal, now and then a third longer, and slowly changing speed that
+/// two builds run in turn share.
+struct Noise {
+  double scatter = 0.03;
+  double outliers = 0.05;  ///< as a part of all repetitions
+  double outlier = 1.3;
+  double drift = 0.0;  ///< of the speed, from one repetition to the next
+};
+
+struct TwoFiles {
+  Timings base;
+  Timings now;
+};
+
+/// Two files of equal benchmarks, but that the first `slower` ones take `factor` times as long in the new
+/// one.
+inline TwoFiles draw(std::mt19937_64& generator, std::size_t benchmarks, std::size_t repetitions, bool paired,
+                     const Noise& noise, std::size_t slower = 0, double factor = 1.0) {
+  std::normal_distribution<double> normal;
+  std::bernoulli_distribution is_outlier(noise.outliers);
+  const auto disturbed = [&](double seconds) {
+    return seconds * std::exp(noise.scatter * normal(generator)) *
+           (is_outlier(generator) ? noise.outlier : 1.0);
+  };
+  TwoFiles run{file_of("base.json", {}), file_of("new.json", {})};
+  if (paired) run.base.context.sitting = run.now.context.sitting = "one";
+  for (std::size_t b = 0; b < benchmarks; ++b) {
+    std::vector<double> before(repetitions);
+    std::vector<double> after(repetitions);
+    double speed = 1.0;
+    for (std::size_t i = 0; i < repetitions; ++i) {
+      speed *= std::exp(noise.drift * normal(generator));
+      before[i] = disturbed(1e-3 * speed);
+      after[i] = disturbed(1e-3 * speed * (b < slower ? factor : 1.0));
+    }
+    run.base.benchmarks.push_back(timed(fmt::format("operator/{}", b), before));
+    run.now.benchmarks.push_back(timed(fmt::format("operator/{}", b), after));
+  }
+  return run;
+}
+
+/// As Google Benchmark writes it; times in milliseconds. What is no number is written as it writes it.
+inline std::string google_json(const Timings& timings) {
+  const TimingContext& context = timings.context;
+  const auto number = [](double x) {
+    return std::isnan(x) ? "NaN" : std::isinf(x) ? "Infinity" : fmt::format("{:.16e}", x);
+  };
+  std::vector<std::string> rows;
+  for (const TimedBenchmark& benchmark : timings.benchmarks) {
+    const auto row = [&](std::size_t i, const std::string& rest) {
+      rows.push_back(fmt::format(
+          R"({{"name": "{0}", "run_name": "{0}", "run_type": "iteration", "repetition_index": {1}, "threads": {2}, {3}}})",
+          benchmark.name, i, benchmark.threads, rest));
+    };
+    if (!benchmark.error.empty()) {
+      row(0,
+          fmt::format(R"("error_occurred": true, "error_message": "{}", "real_time": 0, "time_unit": "ms")",
+                      benchmark.error));
+    }
+    for (std::size_t i = 0; benchmark.error.empty() && i < benchmark.timings.size(); ++i) {
+      row(i, fmt::format(R"("iterations": 10, "real_time": {}, "cpu_time": {}, "time_unit": "ms")",
+                         number(1e3 * benchmark.timings[i].real), number(1e3 * benchmark.timings[i].cpu)));
+    }
+  }
+  return fmt::format(
+      R"({{"context": {{"date": "{}", "host_name": "{}", "num_cpus": {}, "mhz_per_cpu": {}, "cpu_scaling_enabled": {},
+"caches": [{{"type": "Unified", "level": 2, "size": 2097152, "num_sharing": 1}}], "load_avg": [{}],
+"library_build_type": "{}"}}, "benchmarks": [{}]}})",
+      context.date, context.host_name, context.cpus, context.mhz, context.scaling.value_or(false),
+      fmt::join(context.load_average, ","), context.library_build_type, fmt::join(rows, ",\n"));
+}
+
+}  // namespace slipstick::bench

@@ -1,0 +1,301 @@
+// Tests by ranks: against published tables, recurrences and full enumeration; intervals by how often they
+// hold.
+
+#include "bench/compare/rank_tests.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <random>
+#include <stdexcept>
+#include <tuple>
+
+namespace slipstick::bench {
+namespace {
+
+using testing::DoubleNear;
+using testing::ElementsAre;
+
+struct Samples {
+  std::vector<double> base;
+  std::vector<double> now;
+};
+
+/// Values 1 to n + m, so dealt that `now` (of m) exceeds `base` (of n) in u pairs.
+Samples samples_with(std::size_t u, std::size_t n, std::size_t m) {
+  std::vector<std::size_t> places(m);
+  std::iota(places.begin(), places.end(), std::size_t{0});
+  for (std::size_t i = m; i-- > 0;) {
+    const std::size_t step = std::min(u, n);
+    places[i] += step;
+    u -= step;
+  }
+  Samples samples;
+  for (std::size_t value = 0; value < n + m; ++value) {
+    const bool is_now = std::find(places.begin(), places.end(), value) != places.end();
+    (is_now ? samples.now : samples.base).push_back(static_cast<double>(value + 1));
+  }
+  return samples;
+}
+
+Shift shift_with(std::size_t u, std::size_t n, std::size_t m) {
+  const Samples samples = samples_with(u, n, m);
+  return rank_sum_shift(samples.base, samples.now);
+}
+
+/// 1 to n, so signed that the positive ones sum to t.
+std::vector<double> differences_with(std::size_t t, std::size_t n) {
+  std::vector<double> differences(n);
+  for (std::size_t rank = n; rank > 0; --rank) {
+    const bool positive = rank <= t;
+    if (positive) t -= rank;
+    differences[rank - 1] = (positive ? 1.0 : -1.0) * static_cast<double>(rank);
+  }
+  return differences;
+}
+
+/// Orders of n and m values with u pairs in which the second is larger: by whom the largest value belongs to
+/// (Mann and Whitney 1947).
+double orders(int u, int n, int m) {
+  static std::map<std::tuple<int, int, int>, double> known;
+  if (u < 0 || u > n * m) return 0.0;
+  if (n == 0 || m == 0) return 1.0;
+  const auto found = known.find({u, n, m});
+  if (found != known.end()) return found->second;
+  return known[{u, n, m}] = orders(u - n, n, m - 1) + orders(u, n - 1, m);
+}
+
+double chance_of_at_most(int u, int n, int m) {
+  double some = 0.0;
+  double all = 0.0;
+  for (int v = 0; v <= n * m; ++v) {
+    all += orders(v, n, m);
+    if (v <= u) some += orders(v, n, m);
+  }
+  return some / all;
+}
+
+// Critical values of U, one-sided 2.5 % (Mann and Whitney's table, as every textbook prints it).
+TEST(RankSum, HasThePublishedCriticalValues) {
+  const std::vector<std::tuple<std::size_t, std::size_t, std::size_t>> table{
+      {4, 4, 0}, {5, 5, 2}, {6, 8, 8}, {8, 8, 13}, {10, 10, 23}, {12, 12, 37}, {15, 15, 64}, {20, 20, 127}};
+  for (const auto& [n, m, critical] : table) {
+    EXPECT_LE(shift_with(critical, n, m).p_negative, 0.025) << n << ' ' << m;
+    EXPECT_GT(shift_with(critical + 1, n, m).p_negative, 0.025) << n << ' ' << m;
+    EXPECT_LE(shift_with(n * m - critical, n, m).p_positive, 0.025) << n << ' ' << m;
+    EXPECT_GT(shift_with(n * m - critical - 1, n, m).p_positive, 0.025) << n << ' ' << m;
+  }
+}
+
+TEST(RankSum, CountsAsTheRecurrenceDoes) {
+  for (const auto& [n, m] : {std::pair(3, 9), std::pair(10, 10), std::pair(30, 30), std::pair(7, 40)}) {
+    for (const int u : {0, n, n * m / 4, n * m / 2, n * m}) {
+      const Shift shift =
+          shift_with(static_cast<std::size_t>(u), static_cast<std::size_t>(n), static_cast<std::size_t>(m));
+      EXPECT_NEAR(shift.p_negative / chance_of_at_most(u, n, m), 1.0, 1e-11) << n << ' ' << m << ' ' << u;
+      EXPECT_NEAR(shift.p_positive / chance_of_at_most(n * m - u, n, m), 1.0, 1e-11);
+    }
+  }
+}
+
+// Tails of the sum are thinner than normal ones (its kurtosis is -0.06 here): beyond counting, chances are a
+// fifth too large at one in a thousand, which is the safe side.
+TEST(RankSum, NormalBeyondCounting) {
+  const int n = 31;
+  for (const int u : {481, 420, 360, 300, 262}) {
+    const Shift shift = shift_with(static_cast<std::size_t>(u), 31, 31);
+    EXPECT_GT(shift.p_negative, 0.99 * chance_of_at_most(u, n, n)) << u;
+    EXPECT_LT(shift.p_negative, (u > 350 ? 1.01 : 1.2) * chance_of_at_most(u, n, n)) << u;
+    const Shift mirrored = shift_with(static_cast<std::size_t>(n * n - u), 31, 31);
+    EXPECT_DOUBLE_EQ(mirrored.p_positive, shift.p_negative);
+  }
+  EXPECT_GT(shift_with(0, 31, 31).p_negative, chance_of_at_most(0, n, n));
+}
+
+/// Halves for ties.
+double pairs_won(const std::vector<double>& base, const std::vector<double>& now) {
+  double won = 0.0;
+  for (const double x : now) {
+    for (const double y : base) won += x > y ? 1.0 : x == y ? 0.5 : 0.0;
+  }
+  return won;
+}
+
+TEST(RankSum, CountsAllChoicesWhereThereAreTies) {
+  std::mt19937_64 generator(7);
+  std::uniform_int_distribution<int> value(1, 4);
+  for (int round = 0; round < 20; ++round) {
+    std::vector<double> pooled(9);
+    for (double& x : pooled) x = value(generator);
+    const std::vector<double> now(pooled.begin(), pooled.begin() + 4);
+    const std::vector<double> base(pooled.begin() + 4, pooled.end());
+    const double observed = pairs_won(base, now);
+    double all = 0.0;
+    double above = 0.0;
+    double below = 0.0;
+    for (unsigned choice = 0; choice < 512; ++choice) {
+      std::vector<double> chosen;
+      std::vector<double> others;
+      for (std::size_t i = 0; i < 9; ++i) ((choice >> i & 1U) != 0 ? chosen : others).push_back(pooled[i]);
+      if (chosen.size() != 4) continue;
+      const double won = pairs_won(others, chosen);
+      all += 1.0;
+      above += won >= observed ? 1.0 : 0.0;
+      below += won <= observed ? 1.0 : 0.0;
+    }
+    const Shift shift = rank_sum_shift(base, now);
+    EXPECT_NEAR(shift.p_positive, above / all, 1e-14);
+    EXPECT_NEAR(shift.p_negative, below / all, 1e-14);
+  }
+}
+
+TEST(RankSum, SeparatedSamplesHaveTheLeastChance) {
+  EXPECT_DOUBLE_EQ(least_rank_sum_chance(10, 10), 1.0 / 184756.0);
+  EXPECT_DOUBLE_EQ(least_rank_sum_chance(3, 5), 1.0 / 56.0);
+  EXPECT_NEAR(shift_with(100, 10, 10).p_positive * 184756.0, 1.0, 1e-12);
+  EXPECT_NEAR(shift_with(15, 5, 3).p_positive * 56.0, 1.0, 1e-12);
+  EXPECT_DOUBLE_EQ(shift_with(100, 10, 10).p_negative, 1.0);
+}
+
+// Critical values of the smaller sum, one-sided 2.5 % (Wilcoxon and Wilcox 1964).
+TEST(SignedRank, HasThePublishedCriticalValues) {
+  const std::vector<std::pair<std::size_t, std::size_t>> table{
+      {6, 0}, {7, 2}, {8, 3}, {9, 5}, {10, 8}, {12, 13}, {15, 25}, {20, 52}, {25, 89}, {30, 137}};
+  for (const auto& [n, critical] : table) {
+    EXPECT_LE(signed_rank_shift(differences_with(critical, n)).p_negative, 0.025) << n;
+    EXPECT_GT(signed_rank_shift(differences_with(critical + 1, n)).p_negative, 0.025) << n;
+    const std::size_t all = n * (n + 1) / 2;
+    EXPECT_LE(signed_rank_shift(differences_with(all - critical, n)).p_positive, 0.025) << n;
+    EXPECT_GT(signed_rank_shift(differences_with(all - critical - 1, n)).p_positive, 0.025) << n;
+  }
+}
+
+// Ties and zeros too: every way to set the signs of those that are not zero.
+TEST(SignedRank, CountsAllSigns) {
+  std::mt19937_64 generator(8);
+  std::uniform_int_distribution<int> value(-3, 3);
+  for (int round = 0; round < 20; ++round) {
+    std::vector<double> differences(8);
+    for (double& x : differences) x = value(generator);
+    std::vector<double> sizes;
+    double observed = 0.0;
+    const auto rank = [&](double size) {
+      double below = 0.0;
+      double equal = 0.0;
+      for (const double other : sizes) {
+        below += other < size ? 1.0 : 0.0;
+        equal += other == size ? 1.0 : 0.0;
+      }
+      return below + 0.5 * (equal + 1.0);
+    };
+    for (const double x : differences) {
+      if (x != 0.0) sizes.push_back(std::abs(x));
+    }
+    for (const double x : differences) observed += x > 0.0 ? rank(x) : 0.0;
+    double above = 0.0;
+    const unsigned all = 1U << sizes.size();
+    for (unsigned signs = 0; signs < all; ++signs) {
+      double sum = 0.0;
+      for (std::size_t i = 0; i < sizes.size(); ++i) sum += (signs >> i & 1U) != 0 ? rank(sizes[i]) : 0.0;
+      above += sum >= observed ? 1.0 : 0.0;
+    }
+    EXPECT_NEAR(signed_rank_shift(differences).p_positive, above / all, 1e-14);
+  }
+}
+
+TEST(SignedRank, NormalBeyondCounting) {
+  const std::size_t n = 61;
+  std::vector<double> chances(n * (n + 1) / 2 + 1, 0.0);  // by counting, here
+  chances[0] = 1.0;
+  for (std::size_t rank = 1; rank <= n; ++rank) {
+    for (std::size_t s = chances.size(); s-- > 0;) {
+      chances[s] = 0.5 * (chances[s] + (s >= rank ? chances[s - rank] : 0.0));
+    }
+  }
+  for (const std::size_t t : {945U, 800U, 700U, 600U, 540U}) {
+    const double exact = std::accumulate(chances.begin(), chances.begin() + static_cast<int>(t) + 1, 0.0);
+    EXPECT_GT(signed_rank_shift(differences_with(t, n)).p_negative, 0.99 * exact) << t;
+    EXPECT_LT(signed_rank_shift(differences_with(t, n)).p_negative, (t > 690 ? 1.01 : 1.2) * exact) << t;
+  }
+}
+
+TEST(SignedRank, OneSignHasTheLeastChance) {
+  EXPECT_DOUBLE_EQ(least_signed_rank_chance(10), 1.0 / 1024.0);
+  EXPECT_DOUBLE_EQ(signed_rank_shift(differences_with(55, 10)).p_positive, 1.0 / 1024.0);
+  EXPECT_DOUBLE_EQ(signed_rank_shift(std::vector<double>(5, 0.0)).p_positive, 1.0);
+  EXPECT_DOUBLE_EQ(signed_rank_shift(std::vector<double>(5, 0.0)).p_negative, 1.0);
+}
+
+// By hand: means of two of -1, 2, 3 are -1, 0.5, 1, 2, 2.5, 3; differences of {1, 2} from {4, 8} 3, 7, 2, 6.
+TEST(HodgesLehmann, IsTheMedianOfMeansOrDifferences) {
+  EXPECT_DOUBLE_EQ(signed_rank_shift(std::vector{-1.0, 2.0, 3.0}).estimate, 1.5);
+  EXPECT_DOUBLE_EQ(rank_sum_shift(std::vector{1.0, 2.0}, std::vector{4.0, 8.0}).estimate, 4.5);
+}
+
+TEST(HodgesLehmann, IntervalIsInfiniteWhereNoneReaches95Percent) {
+  EXPECT_TRUE(std::isinf(signed_rank_shift(differences_with(9, 5)).high));
+  EXPECT_TRUE(std::isinf(signed_rank_shift(differences_with(9, 5)).low));
+  EXPECT_DOUBLE_EQ(signed_rank_shift(differences_with(21, 6)).low, 1.0);
+  EXPECT_DOUBLE_EQ(signed_rank_shift(differences_with(21, 6)).high, 6.0);
+  EXPECT_TRUE(std::isinf(rank_sum_shift(std::vector{1.0, 2.0, 3.0}, std::vector{4.0, 5.0, 6.0}).high));
+  const Shift four = rank_sum_shift(std::vector{1.0, 2.0, 3.0, 4.0}, std::vector{11.0, 12.0, 13.0, 14.0});
+  EXPECT_DOUBLE_EQ(four.low, 7.0);
+  EXPECT_DOUBLE_EQ(four.high, 13.0);
+}
+
+/// Out of so many, within three standard deviations.
+void expect_share(int hits, int draws, double share) {
+  EXPECT_NEAR(static_cast<double>(hits) / draws, share, 3.0 * std::sqrt(share * (1.0 - share) / draws));
+}
+
+// The chance of an interval is known whatever the distribution: 1 - 2 P(U <= 23) of 10 and 10, 1 - 2 P(T <=
+// 13) of 12 pairs.
+TEST(HodgesLehmann, IntervalsHoldAsOftenAsTheySay) {
+  std::mt19937_64 generator(9);
+  std::lognormal_distribution<double> skew(0.0, 0.5);
+  std::student_t_distribution<double> heavy(2.0);  // symmetric, as signed ranks ask
+  constexpr int kDraws = 4000;
+  constexpr double kShift = 0.7;
+  int independent = 0;
+  int paired = 0;
+  for (int draw = 0; draw < kDraws; ++draw) {
+    std::vector<double> base(10);
+    std::vector<double> now(10);
+    std::vector<double> differences(12);
+    for (double& x : base) x = skew(generator);
+    for (double& x : now) x = kShift + skew(generator);
+    for (double& x : differences) x = kShift + heavy(generator);
+    const Shift one = rank_sum_shift(base, now);
+    const Shift two = signed_rank_shift(differences);
+    independent += one.low <= kShift && kShift <= one.high ? 1 : 0;
+    paired += two.low <= kShift && kShift <= two.high ? 1 : 0;
+  }
+  expect_share(independent, kDraws, 1.0 - 2.0 * chance_of_at_most(23, 10, 10));
+  expect_share(paired, kDraws, 1.0 - 2.0 * 87.0 / 4096.0);  // 87 of 4096 sign patterns sum to 13 or less
+}
+
+TEST(RankTests, TakeOnlyNumbers) {
+  const std::vector<double> good{1.0, 2.0};
+  for (const double bad : {std::nan(""), HUGE_VAL}) {
+    EXPECT_THROW(signed_rank_shift(std::vector{1.0, bad}), std::invalid_argument);
+    EXPECT_THROW(rank_sum_shift(good, std::vector{1.0, bad}), std::invalid_argument);
+    EXPECT_THROW(rank_sum_shift(std::vector{1.0, bad}, good), std::invalid_argument);
+  }
+  EXPECT_THROW(signed_rank_shift({}), std::invalid_argument);
+  EXPECT_THROW(rank_sum_shift(good, {}), std::invalid_argument);
+}
+
+// Four chances, by hand: 0.005 x 4, 0.01 x 3, 0.03 x 2, then 0.04 x 1, which may not be below the one before.
+TEST(Holm, MultipliesByThoseThatAreLeft) {
+  const auto near = [](double x) { return DoubleNear(x, 1e-15); };
+  EXPECT_THAT(holm({0.01, 0.04, 0.03, 0.005}), ElementsAre(near(0.03), near(0.06), near(0.06), near(0.02)));
+  EXPECT_THAT(holm({0.6, 0.7}), ElementsAre(1.0, 1.0));
+  EXPECT_TRUE(holm({}).empty());
+}
+
+}  // namespace
+}  // namespace slipstick::bench

@@ -1,0 +1,205 @@
+#include "bench/plane/speed_error.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <utility>
+#include <vector>
+
+#include "bench/timing/invalid_reason.hpp"
+#include "bench/timing/repetitions.hpp"
+#include "bench/timing/side_by_side.hpp"
+#include "convergence/results/exact_result.hpp"
+#include "convergence/results/provenance.hpp"
+#include "convergence/runs/result_cache.hpp"
+#include "convergence/runs/run_spec.hpp"
+#include "convergence/solve/cost.hpp"
+#include "convergence/studies/study_plan.hpp"
+
+namespace slipstick::bench {
+namespace {
+
+using convergence::Errors;
+using convergence::set_missing;
+using convergence::set_number;
+using solver::Index;
+
+/// Quantities of the plane, and what a person calls them.
+const std::vector<std::pair<std::string, std::string>> kQuantities{
+    {"twist", "twist"},
+    {"traction_l1", "traction, mean (L1)"},
+    {"traction_l2", "traction, root mean square (L2)"},
+    {"stick_radius", "stick radius"}};
+
+/// Grids of a mesh, whose edges lie differently in the cells: four, and fewer where one takes seconds.
+int grids_of(Index cells) { return cells <= 256 ? 4 : cells <= 512 ? 3 : 2; }
+
+/// Cells along a side of the grid on which the exact wing gives tractions.
+constexpr Index kExactCells = 128;
+
+std::vector<double> values(const Errors& errors) {
+  return {errors.twist, errors.traction.at_centres.l1, errors.traction.at_centres.l2, errors.stick_radius};
+}
+
+struct MeasuredGrid {
+  solver::Scene scene;
+  solver::Solution solution;
+  std::vector<double> errors;  ///< as kQuantities
+  std::string objection;
+};
+
+MeasuredGrid solve_grid(const std::filesystem::path& scene, const std::vector<std::string>& overrides) {
+  MeasuredGrid grid{
+      .scene = solver::read_scene(scene, overrides), .solution = {}, .errors = {}, .objection = {}};
+  const convergence::Oracle exact = convergence::require_oracle(grid.scene);
+  grid.solution = solver::solve(grid.scene);
+  const Errors errors = convergence::compare(grid.solution, exact);
+  grid.errors = values(errors);
+  grid.objection = objection(grid.scene, grid.solution, errors);
+  return grid;
+}
+
+Json seconds_json(const Repetitions& times) {
+  return {{"median", times.median}, {"low", times.low}, {"high", times.high}, {"repetitions", times.number}};
+}
+
+Json choice_json(const PlaneChoice& choice) {
+  return {{"method", choice.method},      {"operator", choice.op},         {"model", choice.model},
+          {"pressure", choice.pressure},  {"precision", choice.precision}, {"cells", choice.cells},
+          {"tolerance", choice.tolerance}};
+}
+
+double root_mean_square(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value * value;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+/// errors: of each quantity, of each grid.
+void add_errors(Json& json, const std::vector<std::vector<double>>& errors) {
+  for (std::size_t i = 0; i < kQuantities.size(); ++i) {
+    const std::string& name = kQuantities[i].first;
+    set_number(json["error"], name, root_mean_square(errors[i]), "a grid's error is not a number");
+    for (const double error : errors[i]) {
+      json["errors"][name].push_back(std::isfinite(error) ? Json(error) : Json(nullptr));
+    }
+  }
+}
+
+std::vector<std::string> all_overrides(double moment_ratio, const PlaneChoice& choice) {
+  std::vector<std::string> all = overrides(choice);
+  all.push_back(fmt::format("load.moment_ratio={}", moment_ratio));
+  return all;
+}
+
+std::vector<convergence::GridChoice> grids(const std::filesystem::path& scene, double moment_ratio,
+                                           const PlaneChoice& choice) {
+  convergence::Study study;
+  study.source = study.scene = scene;
+  study.overrides = all_overrides(moment_ratio, choice);
+  study.cells = {choice.cells};
+  study.shifts = grids_of(choice.cells);
+  return convergence::make_series(study).front().meshes.front().grids;
+}
+
+/// Of the point's file.
+std::string file_name(double moment_ratio, const PlaneChoice& c) {
+  return fmt::format("plane-{}-{}-{}-{}-{}-{}-{}-{}", moment_ratio, c.method, c.op, c.model, c.pressure,
+                     c.precision, c.cells, c.tolerance);
+}
+
+/// The whole exact answer: stick radius and twist from the load, then tractions in the cells of a grid.
+Json measure_exact(const std::filesystem::path& file, double moment_ratio) {
+  PlaneChoice choice;
+  choice.cells = kExactCells;
+  const solver::Scene scene = solver::read_scene(file, all_overrides(moment_ratio, choice));
+  const solver::Model model = solver::make_model(scene);
+  Eigen::ArrayXd radius =
+      (solver::cell_x1(model.grid).square() + solver::cell_x2(model.grid).square()).sqrt() *
+      model.length_unit;
+  Eigen::ArrayXd traction(radius.size());
+  double error = 0.0;
+  const Repetitions times = repeat([&] {
+    return seconds([&] {
+      const convergence::Oracle oracle = convergence::require_oracle(scene);
+      error = oracle.relative_uncertainty;
+      for (Index i = 0; i < radius.size(); ++i) traction[i] = oracle.traction(radius[i]);
+    });
+  });
+  return {{"seconds", seconds_json(times)}, {"error", error}, {"cells", kExactCells}};
+}
+
+std::string label(double moment_ratio, const PlaneChoice& c) {
+  return fmt::format("M/M_lim {}: {} {} {} {} {}, {} cells, tolerance {}", moment_ratio, c.method, c.op,
+                     c.model, c.pressure, c.precision, c.cells, c.tolerance);
+}
+
+}  // namespace
+
+Json measure_point(const std::filesystem::path& scene, double moment_ratio, const PlaneChoice& choice) {
+  Json json = choice_json(choice);
+  std::vector<std::vector<double>> errors(kQuantities.size());
+  double across = 0.0;
+  std::string objection;
+  MeasuredGrid first;
+  const auto all = grids(scene, moment_ratio, choice);
+  for (const convergence::GridChoice& grid : all) {
+    MeasuredGrid measured = solve_grid(scene, grid.overrides);
+    for (std::size_t i = 0; i < errors.size(); ++i) errors[i].push_back(measured.errors[i]);
+    across += 2.0 * measured.solution.contact_radius / grid.size / static_cast<double>(all.size());
+    if (objection.empty()) objection = measured.objection;
+    if (first.errors.empty()) first = std::move(measured);
+  }
+  json["contact_cells"] = across;
+  if (!objection.empty()) json["not_timed"] = objection;
+  if (objection.empty()) {
+    json["seconds"] = seconds_json(repeat([&] { return solver::solve(first.scene).seconds.total; }));
+  } else {
+    set_missing(json, "seconds", objection);
+  }
+  add_errors(json, errors);
+  set_number(json, "gap", first.solution.certificate.gap, "the solve broke down");
+  json["applications"] = first.solution.operator_applications;
+  json["pressure_applications"] = first.solution.pressure_applications;
+  json["bytes"] = first.solution.bytes;
+  return json;
+}
+
+Json measure_scene(const PlaneOptions& options, double moment_ratio, const std::vector<PlaneChoice>& design) {
+  convergence::Journal journal(options.output);
+  Json scene{{"name", fmt::format("paper-{}", moment_ratio)},
+             {"moment_ratio", moment_ratio},
+             {"points", Json::array()}};
+  for (const PlaneChoice& choice : design) {
+    const std::string question =
+        convergence::question({.scene = options.scene, .overrides = all_overrides(moment_ratio, choice)});
+    scene["points"].push_back(journal.point(file_name(moment_ratio, choice), question, [&] {
+      return measure_point(options.scene, moment_ratio, choice);
+    }));
+    if (options.progress) options.progress(label(moment_ratio, choice));
+  }
+  scene["exact"] = measure_exact(options.scene, moment_ratio);
+  return scene;
+}
+
+std::size_t plane_size(bool quick) {
+  std::size_t size = 0;
+  for (const double ratio : plane_moment_ratios(quick)) size += plane_design(ratio, quick).size();
+  return size;
+}
+
+Json measure_plane(const PlaneOptions& options) {
+  Json plane;
+  plane["quick"] = options.quick;
+  for (const auto& [name, text] : kQuantities)
+    plane["quantities"].push_back({{"name", name}, {"label", text}});
+  plane["application_seconds"] = convergence::application_seconds(solver::read_scene(options.scene));
+  for (const double ratio : plane_moment_ratios(options.quick)) {
+    plane["scenes"].push_back(measure_scene(options, ratio, plane_design(ratio, options.quick)));
+  }
+  judge_plane(plane);
+  plane["provenance"] = convergence::provenance(1);
+  return plane;
+}
+
+}  // namespace slipstick::bench

@@ -1,0 +1,169 @@
+// The plane's design, its points on small grids, its judgement of made points.
+
+#include "bench/plane/speed_error.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <set>
+
+#include "bench/timing/invalid_reason.hpp"
+#include "convergence/runs/result_cache.hpp"
+#include "convergence/runs/run_spec.hpp"
+
+namespace {
+
+using namespace slipstick;
+using bench::Json;
+using bench::PlaneChoice;
+using testing::ElementsAre;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+const fs::path kPaper = fs::path(SLIPSTICK_SCENES) / "paper.toml";
+
+fs::path folder(const std::string& name) {
+  const fs::path path = fs::path(testing::TempDir()) / ("slipstick-plane-" + std::to_string(getpid())) / name;
+  fs::create_directories(path);
+  return path;
+}
+
+TEST(PlaneDesign, HoldsNoChoiceTwiceAndOnlyReadableOnes) {
+  for (const bool quick : {false, true}) {
+    for (const double ratio : bench::plane_moment_ratios(quick)) {
+      std::set<std::vector<std::string>> seen;
+      for (const PlaneChoice& choice : bench::plane_design(ratio, quick)) {
+        EXPECT_TRUE(seen.insert(bench::overrides(choice)).second) << choice.method << choice.cells;
+        EXPECT_NO_THROW(solver::read_scene(kPaper, bench::overrides(choice)));
+      }
+      EXPECT_GT(seen.size(), 20U);
+    }
+  }
+}
+
+TEST(PlaneDesign, TriesEachChoiceSomewhere) {
+  std::set<std::string> words;
+  for (const PlaneChoice& choice : bench::plane_design(0.9, false)) {
+    words.insert({choice.method, choice.op, choice.model, choice.pressure, choice.precision});
+  }
+  for (const char* word : {"coulomb", "paper", "projected_gradient", "dcfft", "direct", "dense", "auto",
+                           "full", "solved", "hertz", "hertz_averaged", "double", "mixed"}) {
+    EXPECT_TRUE(words.contains(word)) << word;
+  }
+}
+
+/// The error of a point is the root mean square of what single solves give.
+TEST(PlanePoint, HasTheErrorsOfItsGrids) {
+  PlaneChoice choice;
+  choice.cells = 24;
+  const Json point = bench::measure_point(kPaper, 0.9, choice);
+  ASSERT_EQ(point["errors"]["twist"].size(), 4U);
+  std::vector<std::string> overrides = bench::overrides(choice);
+  overrides.push_back("load.moment_ratio=0.9");
+  const Json alone = convergence::solve_point({.scene = kPaper, .overrides = overrides});
+  EXPECT_DOUBLE_EQ(point["errors"]["twist"][0], alone["twist_error"]);
+  EXPECT_DOUBLE_EQ(point["errors"]["traction_l2"][0], alone["traction_error"]["l2"]);
+  double sum = 0.0;
+  for (const Json& error : point["errors"]["twist"]) sum += error.get<double>() * error.get<double>();
+  EXPECT_NEAR(point["error"]["twist"].get<double>(), std::sqrt(sum / 4.0), 1e-15);
+  EXPECT_GT(point["seconds"]["median"].get<double>(), 0.0);
+  EXPECT_LE(point["seconds"]["low"], point["seconds"]["median"]);
+  // 20 to 18 of 24 cells: the margin is two cells on each side, and grids grow by up to 1.5 cells.
+  EXPECT_GT(point["contact_cells"].get<double>(), 18.0);
+  EXPECT_LT(point["contact_cells"].get<double>(), 20.2);
+}
+
+TEST(PlanePoint, IsNotTimedWhereItDoesNotConverge) {
+  const fs::path scene = folder("slow") / "slow.toml";
+  std::ofstream(scene) << convergence::read_text(kPaper) << "max_iterations = 1\n";
+  PlaneChoice choice;
+  choice.cells = 24;
+  const Json point = bench::measure_point(scene, 0.9, choice);
+  EXPECT_TRUE(point["seconds"].is_null());
+  EXPECT_FALSE(point["not_timed"].get<std::string>().empty());
+}
+
+TEST(Objection, IsRaisedToATwistThatIsSixPercentTooSmall) {
+  solver::Scene scene = solver::read_scene(kPaper, {"grid.cells=[48,48]"});
+  const solver::Solution solution = solver::solve(scene);
+  convergence::Errors errors = convergence::compare(solution, *convergence::find_oracle(scene).oracle);
+  EXPECT_EQ(bench::objection(scene, solution, errors), "");
+  errors.twist = -0.06;
+  EXPECT_THAT(bench::objection(scene, solution, errors), HasSubstr("twist error"));
+  errors.twist = NAN;
+  EXPECT_THAT(bench::objection(scene, solution, errors), HasSubstr("twist error"));
+  errors.traction.at_centres.l2 = NAN;
+  EXPECT_THAT(bench::objection(scene, solution, errors), HasSubstr("traction error"));
+}
+
+TEST(PlaneScene, GoesOnFromKeptPoints) {
+  const bench::PlaneOptions options{.scene = kPaper, .output = folder("kept")};
+  PlaneChoice choice;
+  choice.cells = 16;
+  const Json first = bench::measure_scene(options, 0.5, {choice});
+  PlaneChoice next = choice;
+  next.tolerance = 1e-4;
+  const Json both = bench::measure_scene(options, 0.5, {choice, next});
+  ASSERT_EQ(both["points"].size(), 2U);
+  EXPECT_EQ(both["points"][0], first["points"][0]);  // seconds and all: it was not measured again
+  EXPECT_LE(both["exact"]["error"].get<double>(), 1e-13);
+}
+
+Json made_point(const std::string& method, double cells, double seconds, double error) {
+  Json point{{"method", method},      {"operator", "dcfft"}, {"model", "auto"},  {"pressure", "solved"},
+             {"precision", "double"}, {"cells", cells},      {"tolerance", 1e-8}};
+  point["seconds"] = {{"median", seconds}, {"low", seconds}, {"high", seconds}, {"repetitions", 5}};
+  point["error"] = {{"twist", error}};
+  return point;
+}
+
+Json made_plane() {
+  Json wrong = made_point("paper", 256, 0.001, 1e-6);
+  wrong["seconds"] = nullptr;
+  wrong["not_timed"] = "twist error 0.06 above 0.001";
+  Json plane;
+  plane["quantities"] = {{{"name", "twist"}, {"label", "twist"}}};
+  plane["scenes"].push_back({{"name", "made"},
+                             {"points",
+                              {made_point("coulomb", 64, 1.0, 2e-3), made_point("coulomb", 128, 4.0, 5e-4),
+                               made_point("paper", 128, 8.0, 5e-4), wrong}}});
+  bench::judge_plane(plane);
+  return plane;
+}
+
+TEST(PlaneJudgement, FindsTheEnvelopeAndWhatIsDominated) {
+  const Json plane = made_plane();
+  EXPECT_EQ(plane["scenes"][0]["envelope"]["twist"], Json({0, 1}));
+  ASSERT_EQ(plane["dominated"].size(), 1U);
+  EXPECT_EQ(plane["dominated"][0]["value"], "paper");
+  EXPECT_EQ(plane["dominated"][0]["by"], "coulomb");
+  EXPECT_EQ(plane["dominated"][0]["times_slower"]["median"], 2.0);
+}
+
+TEST(PlaneJudgement, TellsTheTimeToEachErrorOrWhyThereIsNone) {
+  const Json plane = made_plane();
+  const auto time_to = [&](double error, const std::string& method) {
+    for (const Json& row : plane["scenes"][0]["time_to"]) {
+      if (row["error"] == error && row["method"] == method) return row;
+    }
+    return Json();
+  };
+  EXPECT_EQ(time_to(1e-2, "coulomb")["seconds"], 1.0);
+  EXPECT_EQ(time_to(1e-2, "paper")["point"], 2);
+  EXPECT_EQ(time_to(1e-3, "any")["point"], 1);
+  EXPECT_TRUE(time_to(1e-4, "any")["seconds"].is_null());
+  EXPECT_THAT(time_to(1e-4, "any")["reason"].get<std::string>(), HasSubstr("0.0005"));
+}
+
+TEST(PlaneJudgement, ListsWrongRowsWithTheirReason) {
+  const Json plane = made_plane();
+  ASSERT_EQ(plane["not_timed"].size(), 1U);
+  EXPECT_EQ(plane["not_timed"][0]["choice"]["cells"], 256.0);
+  EXPECT_THAT(bench::plane_text(plane), HasSubstr("not timed (made): 256 x 256 cells"));
+}
+
+}  // namespace

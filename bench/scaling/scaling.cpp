@@ -1,0 +1,293 @@
+#include "bench/scaling/scaling.hpp"
+
+#include <fmt/core.h>
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_randist.h>
+#include <gsl/gsl_rng.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <utility>
+
+#include "bench/timing/median.hpp"
+
+namespace slipstick::bench {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kBothSides = 0.975;  // of 95 %
+constexpr double kAsymptoticSpan = 8.0;
+
+/// The logarithm of a time, its standard error and the degrees of freedom that this rests on.
+struct LogTime {
+  double value;
+  double error;  ///< NaN: one repetition
+  double freedom;
+};
+
+std::optional<LogTime> log_time(const std::vector<double>& seconds) {
+  std::vector<double> logs;
+  for (const double one : seconds) {
+    if (counts(one)) logs.push_back(std::log(one));
+  }
+  if (logs.empty()) return {};
+  const auto count = static_cast<double>(logs.size());
+  const double mean = std::accumulate(logs.begin(), logs.end(), 0.0) / count;
+  double squares = 0.0;
+  for (const double one : logs) squares += (one - mean) * (one - mean);
+  // The median of many normal deviates has this much of their mean's standard error.
+  const double of_median = std::sqrt(0.5 * std::numbers::pi);
+  const double error = count > 1.0 ? of_median * std::sqrt(squares / (count - 1.0) / count) : kNaN;
+  return LogTime{median(logs), error, count - 1.0};
+}
+
+/// Sizes that have a time.
+struct Times {
+  std::vector<double> cells;
+  std::vector<LogTime> times;
+
+  std::size_t size() const { return cells.size(); }
+};
+
+Times times_of(const Family& family) {
+  Times known;
+  for (const SizedSeconds& sized : family) {
+    const auto time = log_time(sized.seconds);
+    if (!time || !(sized.cells > 0.0)) continue;
+    known.cells.push_back(sized.cells);
+    known.times.push_back(*time);
+  }
+  return known;
+}
+
+PowerLaw no_law(std::string why_not) { return {kNaN, kNaN, kNaN, kNaN, {}, std::move(why_not)}; }
+
+/// A line through points: its slope with standard error, and its value at x = 0.
+struct Line {
+  double slope;
+  double slope_error;
+  double start;
+};
+
+Line fit_line(const std::vector<double>& x, const std::vector<double>& y) {
+  const auto count = static_cast<double>(x.size());
+  const double x_mean = std::accumulate(x.begin(), x.end(), 0.0) / count;
+  const double y_mean = std::accumulate(y.begin(), y.end(), 0.0) / count;
+  double xx = 0.0;
+  double xy = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    xx += (x[i] - x_mean) * (x[i] - x_mean);
+    xy += (x[i] - x_mean) * (y[i] - y_mean);
+  }
+  const double slope = xy / xx;
+  double squares = 0.0;
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double left = y[i] - y_mean - slope * (x[i] - x_mean);
+    squares += left * left;
+  }
+  return {slope, std::sqrt(squares / (count - 2.0) / xx), y_mean - slope * x_mean};
+}
+
+GrowthFit fit_growth(Growth growth, const Times& known) {
+  double ones = 0.0;  // sums over sizes of (1/t)^2, (1/t)(f/t), (f/t)^2, 1/t, f/t
+  double mixed = 0.0;
+  double squares = 0.0;
+  double one = 0.0;
+  double first = 0.0;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const double seconds = std::exp(known.times[i].value);
+    const double f = grown(growth, known.cells[i]) / seconds;
+    ones += 1.0 / (seconds * seconds);
+    mixed += f / seconds;
+    squares += f * f;
+    one += 1.0 / seconds;
+    first += f;
+  }
+  const double determinant = ones * squares - mixed * mixed;
+  GrowthFit fit{growth,
+                (one * squares - first * mixed) / determinant,
+                (ones * first - mixed * one) / determinant,
+                0.0,
+                0.0,
+                false};
+  if (!(fit.overhead >= 0.0)) fit = {growth, 0.0, first / squares, 0.0, 0.0, false};
+  if (!(fit.factor >= 0.0)) fit = {growth, one / ones, 0.0, 0.0, 0.0, false};
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    const double model = fit.overhead + fit.factor * grown(growth, known.cells[i]);
+    const double left = model / std::exp(known.times[i].value) - 1.0;
+    fit.rms += left * left / static_cast<double>(known.size());
+    fit.largest = std::max(fit.largest, std::abs(left));
+  }
+  fit.rms = std::sqrt(fit.rms);
+  return fit;
+}
+
+/// Two families at the sizes that both have.
+struct Race {
+  std::vector<double> log_cells;
+  std::vector<LogTime> slow;
+  std::vector<LogTime> quick;
+};
+
+Race race(const Times& slow, const Times& quick) {
+  Race both;
+  for (std::size_t i = 0; i < slow.size(); ++i) {
+    const auto place = std::ranges::find(quick.cells, slow.cells[i]);
+    if (place == quick.cells.end()) continue;
+    both.log_cells.push_back(std::log(slow.cells[i]));
+    both.slow.push_back(slow.times[i]);
+    both.quick.push_back(quick.times[static_cast<std::size_t>(place - quick.cells.begin())]);
+  }
+  return both;
+}
+
+/// Where the logarithm of slow over quick becomes positive for good; infinite outside the sizes.
+double crossing(const std::vector<double>& log_cells, const std::vector<double>& log_ratios) {
+  if (!(log_ratios.back() > 0.0)) return kInfinity;
+  std::size_t i = log_ratios.size() - 1;
+  while (i > 0 && log_ratios[i - 1] > 0.0) --i;
+  if (i == 0) return -kInfinity;
+  const double part = -log_ratios[i - 1] / (log_ratios[i] - log_ratios[i - 1]);
+  return std::exp(log_cells[i - 1] + part * (log_cells[i] - log_cells[i - 1]));
+}
+
+using Generator = std::unique_ptr<gsl_rng, decltype(&gsl_rng_free)>;
+
+/// A time that the repetitions allow.
+double drawn(const LogTime& time, const Generator& generator) {
+  return time.value + time.error * gsl_ran_tdist(generator.get(), time.freedom);
+}
+
+/// Sorted crossings.
+std::vector<double> drawn_crossings(const Race& both) {
+  constexpr std::size_t kDraws = 2000;  // leave the ends of a 95 % interval a percent of probability
+  const Generator generator(gsl_rng_alloc(gsl_rng_mt19937), gsl_rng_free);  // its seed is fixed
+  std::vector<double> crossings;
+  std::vector<double> ratios(both.log_cells.size());
+  for (std::size_t draw = 0; draw < kDraws; ++draw) {
+    for (std::size_t i = 0; i < ratios.size(); ++i) {
+      ratios[i] = drawn(both.slow[i], generator) - drawn(both.quick[i], generator);
+    }
+    crossings.push_back(crossing(both.log_cells, ratios));
+  }
+  std::ranges::sort(crossings);
+  return crossings;
+}
+
+bool has_scatter(const Race& both) {
+  const auto known = [](const LogTime& time) { return !std::isnan(time.error); };
+  return std::ranges::all_of(both.slow, known) && std::ranges::all_of(both.quick, known);
+}
+
+}  // namespace
+
+bool counts(double seconds) { return seconds > 0.0 && std::isfinite(seconds); }
+
+TypicalSeconds typical(const std::vector<double>& seconds) {
+  const auto time = log_time(seconds);
+  if (!time) return {kNaN, kNaN, kNaN};
+  const double half =
+      time->freedom > 0.0 ? time->error * gsl_cdf_tdist_Pinv(kBothSides, time->freedom) : kNaN;
+  return {std::exp(time->value), std::exp(time->value - half), std::exp(time->value + half)};
+}
+
+PowerLaw fit_power_law(const Family& family) {
+  const Times known = times_of(family);
+  if (known.size() < kFewestSizes) {
+    return no_law(fmt::format("{} sizes have a time, {} are needed", known.size(), kFewestSizes));
+  }
+  const double from = std::ranges::max(known.cells) / kAsymptoticSpan;
+  std::vector<double> cells;
+  std::vector<double> x;
+  std::vector<double> y;
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    if (known.cells[i] < from) continue;
+    cells.push_back(known.cells[i]);
+    x.push_back(std::log(known.cells[i]));
+    y.push_back(known.times[i].value);
+  }
+  if (cells.size() < kFewestSizes) {
+    return no_law(
+        fmt::format("{} sizes from {:g} cells up, {} are needed", cells.size(), from, kFewestSizes));
+  }
+  const Line line = fit_line(x, y);
+  const double half =
+      line.slope_error * gsl_cdf_tdist_Pinv(kBothSides, static_cast<double>(cells.size() - 2));
+  return {line.slope, line.slope - half, line.slope + half, std::exp(line.start), cells, ""};
+}
+
+std::string to_string(Growth growth) {
+  switch (growth) {
+    case Growth::n2:
+      return "N^2";
+    case Growth::n2_log_n:
+      return "N^2 log N";
+    case Growth::n3:
+      return "N^3";
+    case Growth::n4:
+      return "N^4";
+  }
+  return "unknown";
+}
+
+double grown(Growth growth, double cells) {
+  switch (growth) {
+    case Growth::n2:
+      return cells * cells;
+    case Growth::n2_log_n:
+      return cells * cells * std::log2(2.0 * cells);
+    case Growth::n3:
+      return std::pow(cells, 3);
+    case Growth::n4:
+      return std::pow(cells, 4);
+  }
+  return kNaN;
+}
+
+std::vector<GrowthFit> fit_growths(const Family& family) {
+  const Times known = times_of(family);
+  if (known.size() < kFewestSizes) return {};
+  std::vector<GrowthFit> fits;
+  for (const Growth growth : {Growth::n2, Growth::n2_log_n, Growth::n3, Growth::n4}) {
+    fits.push_back(fit_growth(growth, known));
+  }
+  std::ranges::stable_sort(fits, {}, &GrowthFit::rms);
+  const auto left = static_cast<double>(known.size() - 2);
+  const double tellable = std::sqrt(gsl_cdf_fdist_Pinv(0.95, left, left));
+  for (GrowthFit& fit : fits) fit.as_good = fit.rms <= tellable * fits.front().rms;
+  return fits;
+}
+
+Crossover find_crossover(const Family& slow, const Family& quick) {
+  const Race both = race(times_of(slow), times_of(quick));
+  if (both.log_cells.empty()) return {kNaN, kNaN, kNaN, "no size has a time in both"};
+  std::vector<double> ratios;
+  for (std::size_t i = 0; i < both.slow.size(); ++i) {
+    ratios.push_back(both.slow[i].value - both.quick[i].value);
+  }
+  Crossover found{crossing(both.log_cells, ratios), kNaN, kNaN, ""};
+  if (std::isinf(found.cells)) {
+    found.remark = found.cells > 0.0 ? fmt::format("not within the measured sizes: not yet at {:g} cells",
+                                                   std::exp(both.log_cells.back()))
+                                     : fmt::format("not within the measured sizes: already at {:g} cells",
+                                                   std::exp(both.log_cells.front()));
+    found.cells = kNaN;
+  }
+  if (!has_scatter(both)) {
+    found.remark += found.remark.empty() ? "one repetition tells no uncertainty" : "";
+    return found;
+  }
+  const std::vector<double> crossings = drawn_crossings(both);
+  const auto last = static_cast<double>(crossings.size() - 1);
+  found.low = crossings[static_cast<std::size_t>(std::floor((1.0 - kBothSides) * last))];
+  found.high = crossings[static_cast<std::size_t>(std::ceil(kBothSides * last))];
+  return found;
+}
+
+}  // namespace slipstick::bench

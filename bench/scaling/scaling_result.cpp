@@ -1,0 +1,191 @@
+#include "bench/scaling/scaling_result.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "bench/scaling/scaling.hpp"
+#include "convergence/results/result_parts.hpp"
+
+namespace slipstick::bench {
+namespace {
+
+using convergence::Json;
+using convergence::set_missing;
+using convergence::set_number;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// "a/cells:8/b" is the family "a/b" at 8 cells.
+std::optional<std::pair<std::string, double>> family_and_cells(const std::string& name) {
+  constexpr std::string_view kKey = "/cells:";
+  const auto at = ("/" + name).find(kKey);
+  if (at == std::string::npos) return {};
+  const auto digits = at + kKey.size() - 1;
+  const auto end = std::min(name.find('/', digits), name.size());
+  const std::string number = name.substr(digits, end - digits);
+  if (number.empty() || number.size() > 9 || number.find_first_not_of("0123456789") != std::string::npos) {
+    return {};
+  }
+  std::string family = name.substr(0, at == 0 ? 0 : at - 1) + name.substr(end);
+  if (family.starts_with('/')) family.erase(0, 1);
+  return std::pair{family, std::stod(number)};
+}
+
+/// A family's benchmarks, smallest size first.
+using Members = std::map<double, const TimedBenchmark*>;
+
+Family family_of(const Members& members) {
+  Family family;
+  for (const auto& [cells, benchmark] : members) {
+    SizedSeconds sized{cells, {}};
+    if (benchmark->error.empty()) {
+      for (const Timing& timing : benchmark->timings) sized.seconds.push_back(timing.real);
+    }
+    family.push_back(sized);
+  }
+  return family;
+}
+
+constexpr const char* kNoTheory = "no theory is known here";
+
+/// What theory says of families whose names begin so.
+constexpr std::array<std::pair<std::string_view, Growth>, 10> kTheory{
+    {{"application/dense", Growth::n4},
+     {"application/direct", Growth::n4},
+     {"application/dcfft", Growth::n2_log_n},
+     {"four_bare_transforms", Growth::n2_log_n},
+     {"influence/", Growth::n2},
+     {"setup/dense", Growth::n4},
+     {"setup/direct", Growth::n2},
+     {"setup/dcfft", Growth::n2_log_n},
+     {"normal/", Growth::n2_log_n},
+     {"solve/coulomb", Growth::n2_log_n}}};
+
+/// The slow one and the quick one of many cells.
+constexpr std::array<std::pair<const char*, const char*>, 4> kRaces{
+    {{"application/dense", "application/dcfft"},
+     {"application/direct", "application/dcfft"},
+     {"application/direct_2_threads", "application/dcfft_2_threads"},
+     {"setup/dense", "setup/dcfft"}}};
+
+Json row_json(double cells, const TimedBenchmark& benchmark, const SizedSeconds& sized) {
+  const TypicalSeconds time = typical(sized.seconds);
+  const std::string none = benchmark.error.empty() ? "no repetition has a time" : benchmark.error;
+  Json row{{"cells", cells}};
+  set_number(row, "seconds", time.seconds, none);
+  set_number(row, "low", time.low, std::isnan(time.seconds) ? none : "one repetition");
+  set_number(row, "high", time.high, std::isnan(time.seconds) ? none : "one repetition");
+  row["repetitions"] = std::ranges::count_if(sized.seconds, counts);
+  const auto error = benchmark.counters.contains("error") ? benchmark.counters.find("error")
+                                                          : benchmark.counters.find("twist_error");
+  set_number(row, "error", error == benchmark.counters.end() ? kNaN : error->second,
+             "the benchmark has no such counter");
+  row["counters"] = benchmark.counters;
+  return row;
+}
+
+std::optional<Growth> theory_of(const std::string& family) {
+  for (const auto& [name, growth] : kTheory) {
+    if (family.starts_with(name)) return growth;
+  }
+  return {};
+}
+
+/// Beside the exponent what theory's growth has between the same sizes.
+Json power_law_json(const PowerLaw& law, std::optional<Growth> theory) {
+  Json json;
+  set_number(json, "exponent", law.exponent, law.why_not);
+  set_number(json, "low", law.low, law.why_not);
+  set_number(json, "high", law.high, law.why_not);
+  set_number(json, "constant", law.constant, law.why_not);
+  double expected = kNaN;
+  if (theory && !law.cells.empty()) {
+    const double ratio = grown(*theory, law.cells.back()) / grown(*theory, law.cells.front());
+    expected = std::log(ratio) / std::log(law.cells.back() / law.cells.front());
+  }
+  set_number(json, "expected", expected, theory ? law.why_not : kNoTheory);
+  json["cells"] = law.cells;
+  return json;
+}
+
+Json growth_json(const std::vector<GrowthFit>& fits, std::optional<Growth> theory) {
+  Json json;
+  if (theory) {
+    json["theory"] = to_string(*theory);
+  } else {
+    set_missing(json, "theory", kNoTheory);
+  }
+  if (fits.empty()) {
+    set_missing(json, "best", fmt::format("fewer than {} sizes", kFewestSizes));
+  } else {
+    json["best"] = to_string(fits.front().growth);
+  }
+  json["models"] = Json::array();
+  for (const GrowthFit& fit : fits) {
+    json["models"].push_back({{"growth", to_string(fit.growth)},
+                              {"overhead", fit.overhead},
+                              {"factor", fit.factor},
+                              {"rms_residual", fit.rms},
+                              {"largest_residual", fit.largest},
+                              {"as_good", fit.as_good}});
+  }
+  return json;
+}
+
+Json family_json(const std::string& name, const Members& members) {
+  const Family family = family_of(members);
+  const std::optional<Growth> theory = theory_of(name);
+  Json rows = Json::array();
+  for (const SizedSeconds& sized : family) {
+    rows.push_back(row_json(sized.cells, *members.at(sized.cells), sized));
+  }
+  return {{"name", name},
+          {"rows", rows},
+          {"power_law", power_law_json(fit_power_law(family), theory)},
+          {"growth", growth_json(fit_growths(family), theory)}};
+}
+
+Json crossover_json(const std::string& slow, const std::string& quick, const Crossover& crossover) {
+  Json json{{"slow", slow}, {"quick", quick}};
+  const auto outside = [&](double bound) {
+    return std::isnan(bound) ? crossover.remark : "outside the measured sizes";
+  };
+  set_number(json, "cells", crossover.cells, crossover.remark);
+  set_number(json, "low", crossover.low, outside(crossover.low));
+  set_number(json, "high", crossover.high, outside(crossover.high));
+  json["remark"] = crossover.remark;
+  return json;
+}
+
+}  // namespace
+
+Json scaling_json(const Timings& timings) {
+  std::vector<std::string> order;
+  std::map<std::string, Members> families;
+  for (const TimedBenchmark& benchmark : timings.benchmarks) {
+    const auto place = family_and_cells(benchmark.name);
+    if (!place) continue;
+    if (!families.contains(place->first)) order.push_back(place->first);
+    families[place->first][place->second] = &benchmark;
+  }
+  Json json{{"families", Json::array()}, {"crossovers", Json::array()}};
+  for (const std::string& name : order) json["families"].push_back(family_json(name, families.at(name)));
+  for (const auto& [slow, quick] : kRaces) {
+    if (!families.contains(slow) || !families.contains(quick)) continue;
+    json["crossovers"].push_back(crossover_json(
+        slow, quick, find_crossover(family_of(families.at(slow)), family_of(families.at(quick)))));
+  }
+  return json;
+}
+
+}  // namespace slipstick::bench

@@ -1,0 +1,263 @@
+#include "bench/scaling/scaling.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+
+namespace slipstick::bench {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kRounding = 1e-12;
+const std::vector<double> kSizes{4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128};
+
+using Law = std::function<double(double cells)>;
+
+Family exact(const Law& law, const std::vector<double>& sizes = kSizes) {
+  Family family;
+  for (const double cells : sizes) family.push_back({cells, {law(cells)}});
+  return family;
+}
+
+/// Repetitions that miss the law by normal deviates of their logarithm.
+Family drawn(const Law& law, double scatter, int repetitions, std::mt19937& random,
+             const std::vector<double>& sizes = kSizes) {
+  std::normal_distribution<double> normal(0.0, scatter);
+  Family family = exact(law, sizes);
+  for (SizedSeconds& sized : family) {
+    sized.seconds.clear();
+    for (int i = 0; i < repetitions; ++i) {
+      sized.seconds.push_back(law(sized.cells) * std::exp(normal(random)));
+    }
+  }
+  return family;
+}
+
+/// Part of so many seeded trials that hold.
+double part_of(int trials, const std::function<bool()>& holds) {
+  int count = 0;
+  for (int i = 0; i < trials; ++i) count += holds() ? 1 : 0;
+  return static_cast<double>(count) / trials;
+}
+
+double fourth(double cells) { return 2e-10 * std::pow(cells, 4); }
+double square(double cells) { return 3e-8 * cells * cells; }
+
+TEST(TypicalSeconds, IsTheMedian) {
+  EXPECT_DOUBLE_EQ(typical({3.0, 1.0, 2.0}).seconds, 2.0);
+  EXPECT_NEAR(typical({1.0, 4.0}).seconds, 2.0, kRounding);  // of the logarithms
+}
+
+TEST(TypicalSeconds, HoldsTheTruthInNinetyFiveOfAHundredDraws) {
+  std::mt19937 random(1);
+  for (const int repetitions : {3, 5, 20}) {
+    const double held = part_of(2000, [&] {
+      const auto time = typical(drawn(square, 0.1, repetitions, random, {16}).front().seconds);
+      return time.low <= square(16) && square(16) <= time.high;
+    });
+    EXPECT_GT(held, 0.94) << repetitions;
+    EXPECT_LT(held, 0.99) << repetitions;
+  }
+}
+
+TEST(TypicalSeconds, OfOneRepetitionHasNoInterval) {
+  EXPECT_DOUBLE_EQ(typical({2.0}).seconds, 2.0);
+  EXPECT_TRUE(std::isnan(typical({2.0}).low));
+  EXPECT_TRUE(std::isnan(typical({}).seconds));
+}
+
+TEST(TypicalSeconds, LeavesOutWhatIsNoTime) {
+  EXPECT_DOUBLE_EQ(typical({kNaN, 2.0, -1.0, 2.0, 0.0, kInfinity, 2.0}).seconds, 2.0);
+  EXPECT_TRUE(std::isnan(typical({kNaN, 0.0}).seconds));
+}
+
+TEST(PowerLaw, OfExactPowersIsExact) {
+  for (const double exponent : {2.0, 3.0, 4.0}) {
+    const PowerLaw law = fit_power_law(exact([&](double n) { return 1e-9 * std::pow(n, exponent); }));
+    EXPECT_NEAR(law.exponent, exponent, kRounding);
+    EXPECT_NEAR(law.constant, 1e-9, 1e-9 * kRounding * 100);
+    EXPECT_LE(law.low, law.exponent);
+    EXPECT_GE(law.high, law.exponent);
+    EXPECT_LT(law.high - law.low, 1e-10);
+  }
+}
+
+TEST(PowerLaw, IsThatOfTheLastThreeDoublings) {
+  const auto bent = [](double n) { return n < 16 ? 1.0 : fourth(n); };
+  const PowerLaw law = fit_power_law(exact(bent));
+  EXPECT_NEAR(law.exponent, 4.0, kRounding);
+  EXPECT_EQ(law.cells, (std::vector<double>{16, 24, 32, 48, 64, 96, 128}));
+}
+
+TEST(PowerLaw, HoldsTheTruthInNinetyFiveOfAHundredDraws) {
+  std::mt19937 random(2);
+  const double held = part_of(1000, [&] {
+    const PowerLaw law = fit_power_law(drawn(fourth, 0.05, 5, random));
+    return law.low <= 4.0 && 4.0 <= law.high;
+  });
+  EXPECT_GT(held, 0.93);
+  EXPECT_LT(held, 0.97);
+}
+
+TEST(PowerLaw, NeedsThreeSizes) {
+  EXPECT_THAT(fit_power_law(exact(square, {64})).why_not, HasSubstr("1 sizes have a time"));
+  EXPECT_TRUE(std::isnan(fit_power_law(exact(square, {64})).exponent));
+  EXPECT_THAT(fit_power_law(exact(square, {1, 2, 64, 128})).why_not, HasSubstr("2 sizes from 16"));
+  EXPECT_TRUE(fit_growths(exact(square, {64, 128})).empty());
+  EXPECT_TRUE(fit_power_law({}).cells.empty());
+}
+
+constexpr std::array kGrowths{Growth::n2, Growth::n2_log_n, Growth::n3, Growth::n4};
+
+TEST(Growth, IsWhatItsNameSays) {
+  EXPECT_DOUBLE_EQ(grown(Growth::n2, 8), 64.0);
+  EXPECT_DOUBLE_EQ(grown(Growth::n2_log_n, 8), 64.0 * 4.0);
+  EXPECT_DOUBLE_EQ(grown(Growth::n3, 8), 512.0);
+  EXPECT_DOUBLE_EQ(grown(Growth::n4, 8), 4096.0);
+}
+
+TEST(GrowthFit, FindsOverheadAndFactorOfWhatWasMade) {
+  for (const Growth made : kGrowths) {
+    const auto fits = fit_growths(exact([&](double n) { return 3e-6 + 2e-9 * grown(made, n); }));
+    ASSERT_EQ(fits.size(), kGrowths.size());
+    EXPECT_EQ(fits[0].growth, made) << to_string(made);
+    EXPECT_NEAR(fits[0].overhead, 3e-6, 1e-15) << to_string(made);
+    EXPECT_NEAR(fits[0].factor, 2e-9, 1e-18) << to_string(made);
+    EXPECT_LT(fits[0].largest, 1e-9) << to_string(made);
+    EXPECT_GT(fits[1].rms, 0.01) << to_string(made);
+    EXPECT_TRUE(fits[0].as_good);
+    EXPECT_FALSE(fits[1].as_good) << to_string(made);
+    EXPECT_TRUE(std::ranges::is_sorted(fits, {}, &GrowthFit::rms));
+  }
+}
+
+TEST(GrowthFit, TellsALogarithmFromNoneThroughNoise) {
+  std::mt19937 random(3);
+  const std::vector<double> sizes{8, 16, 32, 64, 128, 256, 512, 1024};
+  for (const Growth made : {Growth::n2, Growth::n2_log_n}) {
+    const double right = part_of(200, [&] {
+      const auto law = [&](double n) { return 1e-6 + 1e-9 * grown(made, n); };
+      return fit_growths(drawn(law, 0.05, 5, random, sizes)).front().growth == made;
+    });
+    EXPECT_GT(right, 0.97) << to_string(made);
+  }
+}
+
+TEST(GrowthFit, SaysWhatNoiseHides) {
+  std::mt19937 random(8);
+  const auto fits = fit_growths(drawn(square, 0.2, 1, random, {256, 384, 512, 768, 1024}));
+  const auto as_good = [&](Growth growth) {
+    return std::ranges::find(fits, growth, &GrowthFit::growth)->as_good;
+  };
+  EXPECT_TRUE(as_good(Growth::n2));
+  EXPECT_TRUE(as_good(Growth::n2_log_n));
+  const auto clear = fit_growths(drawn(square, 0.02, 5, random));
+  EXPECT_EQ(clear[0].growth, Growth::n2);
+  EXPECT_FALSE(clear[1].as_good);
+}
+
+TEST(GrowthFit, ResidualsAreRelative) {
+  const Law law = [](double n) { return (n == 16 ? 1.1 : 1.0) * fourth(n); };
+  const auto fits = fit_growths(exact(law));
+  EXPECT_EQ(fits[0].growth, Growth::n4);
+  EXPECT_NEAR(fits[0].largest, 0.1, 0.02);
+  EXPECT_NEAR(fits[0].rms, 0.1 / std::sqrt(static_cast<double>(kSizes.size())), 0.01);
+}
+
+TEST(GrowthFit, HasNoNegativeOverhead) {
+  const auto fits = fit_growths(exact([](double n) { return std::pow(n, 5); }));
+  for (const GrowthFit& fit : fits) {
+    EXPECT_GE(fit.overhead, 0.0);
+    EXPECT_GE(fit.factor, 0.0);
+  }
+  EXPECT_EQ(fits[0].growth, Growth::n4);
+  EXPECT_EQ(fits[0].overhead, 0.0);
+}
+
+TEST(Crossover, OfPowersIsWhereTheyMeet) {
+  const Crossover found = find_crossover(exact(fourth), exact(square));
+  EXPECT_NEAR(found.cells, std::sqrt(3e-8 / 2e-10), 1e-9);
+  EXPECT_TRUE(std::isnan(found.low));
+  EXPECT_THAT(found.remark, HasSubstr("one repetition"));
+}
+
+TEST(Crossover, IsTheLastOfSeveral) {
+  const Law slow = [](double n) { return n == 8 ? 2.0 : n > 48 ? 2.0 : 0.5; };
+  const Crossover found = find_crossover(exact(slow), exact([](double) { return 1.0; }));
+  EXPECT_NEAR(found.cells, std::sqrt(48.0 * 64.0), 1e-9);
+}
+
+TEST(Crossover, UsesTheSizesThatBothHave) {
+  Family quick = exact(square, {2, 4, 8, 32, 256});
+  quick[2].seconds = {kNaN};
+  const Crossover found = find_crossover(exact(fourth), quick);
+  EXPECT_NEAR(found.cells, std::sqrt(3e-8 / 2e-10), 1e-9);  // between 4 and 32: powers are straight
+  EXPECT_THAT(find_crossover(exact(fourth, {4}), exact(square, {8})).remark, HasSubstr("no size"));
+}
+
+TEST(Crossover, OutsideTheMeasuredSizesIsAnAnswer) {
+  const Crossover already = find_crossover(exact(fourth, {16, 32, 64}), exact(square, {16, 32, 64}));
+  EXPECT_TRUE(std::isnan(already.cells));
+  EXPECT_THAT(already.remark, HasSubstr("already at 16 cells"));
+  const Crossover not_yet = find_crossover(exact(fourth, {4, 8}), exact(square, {4, 8}));
+  EXPECT_TRUE(std::isnan(not_yet.cells));
+  EXPECT_THAT(not_yet.remark, HasSubstr("not yet at 8 cells"));
+}
+
+TEST(Crossover, HoldsTheTruthInNinetyFiveOfAHundredDraws) {
+  std::mt19937 random(4);
+  const double truth = std::sqrt(3e-8 / 2e-10);
+  const std::vector<double> sizes{8, 12, 16, 24};
+  for (const int repetitions : {5, 15}) {
+    const double held = part_of(200, [&] {
+      const Crossover found = find_crossover(drawn(fourth, 0.1, repetitions, random, sizes),
+                                             drawn(square, 0.1, repetitions, random, sizes));
+      return found.low <= truth && truth <= found.high;
+    });
+    EXPECT_GT(held, 0.93) << repetitions;
+    EXPECT_LT(held, 0.999) << repetitions;
+  }
+}
+
+TEST(Crossover, IsTheMoreCertainTheLessTheScatter) {
+  std::mt19937 random(5);
+  const auto width = [&](double scatter) {
+    const Crossover found =
+        find_crossover(drawn(fourth, scatter, 10, random), drawn(square, scatter, 10, random));
+    return std::log(found.high / found.low);
+  };
+  const double coarse = width(0.05);
+  EXPECT_LT(width(0.005), 0.3 * coarse);
+  // Both medians' errors, 1.25 * 0.05 / sqrt(10) each, over the difference of the exponents, 95 % of
+  // Student's.
+  EXPECT_NEAR(coarse, 2 * 2.26 * std::sqrt(2.0) * 1.25 * 0.05 / std::sqrt(10.0) / 2.0, 0.5 * coarse);
+}
+
+TEST(Crossover, NearTheSmallestSizeMayLieBelowIt) {
+  std::mt19937 random(6);
+  const Law nearly = [](double n) { return square(n) * std::pow(n / 4.1, 2); };
+  const Crossover found = find_crossover(drawn(nearly, 0.2, 5, random), drawn(square, 0.2, 5, random));
+  EXPECT_EQ(found.low, -kInfinity);
+  EXPECT_GT(found.high, 4.0);
+  EXPECT_LT(found.high, 12.0);
+}
+
+TEST(Crossover, IsTheSameEachTime) {
+  std::mt19937 random(7);
+  const Family slow = drawn(fourth, 0.1, 5, random);
+  const Family quick = drawn(square, 0.1, 5, random);
+  EXPECT_EQ(find_crossover(slow, quick).low, find_crossover(slow, quick).low);
+  EXPECT_EQ(find_crossover(slow, quick).high, find_crossover(slow, quick).high);
+}
+
+}  // namespace
+}  // namespace slipstick::bench

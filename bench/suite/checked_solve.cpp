@@ -1,0 +1,58 @@
+#include "bench/suite/checked_solve.hpp"
+
+#include <filesystem>
+
+#include "bench/timing/invalid_reason.hpp"
+#include "convergence/results/exact_result.hpp"
+
+namespace slipstick::bench {
+
+using solver::Scene;
+
+Scene shipped_scene(const std::string& name) {
+  return solver::read_scene(std::filesystem::path(SLIPSTICK_SCENES) / (name + ".toml"));
+}
+
+Scene paper_scene(solver::Index cells, double moment_ratio) {
+  Scene scene = shipped_scene("paper");
+  scene.cells = {cells, cells};
+  scene.steps[0].torsion = {.moment_ratio = moment_ratio, .moment = {}, .twist = {}};
+  scene.method = solver::Method::coulomb;
+  scene.model = solver::ModelChoice::full;
+  scene.pressure = solver::PressureModel::solved;
+  scene.tolerance = 1e-8;
+  scene.threads = 1;
+  return scene;
+}
+
+CheckedSolution solve_and_check(const Scene& scene) {
+  const convergence::Oracle exact = convergence::require_oracle(scene);
+  CheckedSolution checked{.solution = solver::solve(scene), .errors = {}, .objection = {}};
+  checked.errors = convergence::compare(checked.solution, exact);
+  checked.objection = objection(scene, checked.solution, checked.errors);
+  return checked;
+}
+
+std::map<std::string, benchmark::Counter> counters(const CheckedSolution& checked) {
+  const auto& [solution, errors, objection] = checked;
+  const std::map<std::string, double> values{{"twist_error", errors.twist},
+                                             {"traction_error", errors.traction.at_centres.l2},
+                                             {"stick_radius_error", errors.stick_radius},
+                                             {"gap", solution.certificate.gap},
+                                             {"applications", solution.operator_applications},
+                                             {"pressure_applications", solution.pressure_applications},
+                                             {"iterations", solution.tangential.iterations},
+                                             {"bytes", solution.bytes}};
+  std::map<std::string, benchmark::Counter> result;
+  for (const auto& [name, value] : values) {
+    if (std::isfinite(value)) result[name] = value;  // JSON has no NaN
+  }
+  return result;
+}
+
+void show_ratio(Prepared& prepared, const SideBySide& times) {
+  prepared.counters["ratio"] = times.ratio;
+  prepared.counters["ratio_cpu"] = times.cpu_ratio;
+}
+
+}  // namespace slipstick::bench

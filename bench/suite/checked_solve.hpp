@@ -1,0 +1,37 @@
+#pragma once
+
+#include <string>
+
+#include "bench/suite/suite.hpp"
+#include "bench/timing/side_by_side.hpp"
+#include "convergence/oracle/errors.hpp"
+#include "solver/solve.hpp"
+
+namespace slipstick::bench {
+
+/// A solved scene with its errors against the exact answer.
+struct CheckedSolution {
+  solver::Solution solution;
+  convergence::Errors errors;
+  std::string objection;  ///< why it is no result and must not be timed; empty: none
+};
+
+/// The paper's scene on cells x cells cells under a part of the limit moment: Coulomb's method, nothing left
+/// out of the model, solved pressure, one thread, tolerance 1e-8.
+solver::Scene paper_scene(solver::Index cells, double moment_ratio);
+
+/// A scene that comes with the program.
+solver::Scene shipped_scene(const std::string& name);
+
+/// Objects to a solution that has not converged, whose certificate (by Coulomb's method and by projected
+/// gradients) is worse than the tolerance, or whose errors are above what its mesh explains; of a history,
+/// its last step. Throws InputError where there is no exact answer.
+CheckedSolution solve_and_check(const solver::Scene& scene);
+
+/// Errors, certificate, work and memory.
+std::map<std::string, benchmark::Counter> counters(const CheckedSolution& checked);
+
+/// First over second, by the clock ("ratio") and by the processor's time ("ratio_cpu").
+void show_ratio(Prepared& prepared, const SideBySide& times);
+
+}  // namespace slipstick::bench

@@ -1,0 +1,151 @@
+// The exact wing: stick ratio from a moment, twist and one traction, over inputs that span the range. Each
+// time stands beside the worst error over all proven references (error_eps, in units of 2.2e-16, and what is
+// allowed there: 8, or 4 times what an ulp of the input costs) and, since machines differ, as a multiple of
+// one call of GSL's Carlson R_D (per_RD).
+
+#include <fmt/core.h>
+#include <gsl/gsl_sf_ellint.h>
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "analytic/references/replay.hpp"
+#include "bench/suite/suite.hpp"
+
+namespace slipstick::bench {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+
+constexpr std::size_t kInputs = 256;
+using Inputs = std::array<double, kInputs>;
+
+/// Half the inputs uniform in (0, 1), the other half logarithmic down to 1e-12, in an order that no branch
+/// predictor learns.
+Inputs spread() {
+  Inputs inputs{};
+  for (std::size_t i = 0; i < kInputs; ++i) {
+    const double place = (static_cast<double>((i * 97) % kInputs) + 0.5) / kInputs;
+    inputs[i] = i % 2 == 0 ? place : std::pow(10.0, -12 * place);
+  }
+  return inputs;
+}
+
+/// Seconds of one call of f(i), i running over the inputs: the least of several runs.
+template <class Function>
+double seconds_per_call(Function f) {
+  constexpr int kRuns = 20;
+  constexpr std::size_t kCalls = 40 * kInputs;
+  double least = std::numeric_limits<double>::infinity();
+  for (int run = 0; run < kRuns; ++run) {
+    const auto start = Clock::now();
+    for (std::size_t i = 0; i < kCalls; ++i) benchmark::DoNotOptimize(f(i % kInputs));
+    least = std::min(least, std::chrono::duration<double>(Clock::now() - start).count() / kCalls);
+  }
+  return least;
+}
+
+double seconds_per_carlson_rd() {
+  static const double seconds = [] {
+    const Inputs inputs = spread();
+    return seconds_per_call([&](std::size_t i) {
+      gsl_sf_result result;
+      gsl_sf_ellint_RD_e(0, inputs[i] * inputs[i], 1, GSL_PREC_DOUBLE, &result);
+      return result.val;
+    });
+  }();
+  return seconds;
+}
+
+/// The worst error of a quantity over the certified table and the hardest inputs known, by what is allowed.
+Prepared judged(const std::string& profile, const std::string& given, const std::string& quantity) {
+  analytic::testing::Replay worst{.error = 0, .allowed = analytic::testing::kAllowed};
+  for (const auto& row : analytic::testing::all_references()) {
+    if (row.text("profile") != profile || row.text("quantity") != quantity) continue;
+    if (!given.empty() && row.text("given") != given) continue;
+    const auto replay = analytic::testing::replay(row);
+    if (!(replay.error / replay.allowed <= worst.error / worst.allowed)) worst = replay;
+  }
+  const bool right = worst.error > 0 && worst.error <= worst.allowed;
+  return {.counters = {{"error_eps", worst.error}, {"allowed_eps", worst.allowed}},
+          .objection = right ? "" : "disagrees with its references, or has none",
+          .timing = {}};
+}
+
+/// Times f(i), i running over the inputs, one call an iteration.
+template <class Function>
+Prepared timed(Prepared prepared, Function f) {
+  prepared.counters["per_RD"] = seconds_per_call(f) / seconds_per_carlson_rd();
+  prepared.timing =
+      repeated([f, i = std::size_t{0}]() mutable { benchmark::DoNotOptimize(f(i++ % kInputs)); });
+  return prepared;
+}
+
+const analytic::Profile& profile(const std::string& name) {
+  return name == "hertz"  ? analytic::hertz_profile()
+         : name == "cone" ? analytic::cone_profile()
+                          : analytic::flat_punch_profile();
+}
+
+Prepared stick_ratio_from_moment(const std::string& name) {
+  return timed(judged(name, "moment_ratio", "stick_ratio"),
+               [moment_ratios = spread(), &at = profile(name)](std::size_t i) {
+                 return analytic::from_moment_ratio(moment_ratios[i], at).stick_ratio;
+               });
+}
+
+Prepared twist_from_stick_ratio(const std::string& name) {
+  return timed(judged(name, "stick_ratio", "twist"), [ratios = spread(), &at = profile(name)](std::size_t i) {
+    return at.twist_integral({.ratio = ratios[i], .complement = 1 - ratios[i]}) / (2 * at.load());
+  });
+}
+
+Prepared state_from_stick_ratio(const std::string& name) {
+  return timed(judged(name, "stick_ratio", "moment_deficit"),
+               [ratios = spread(), &at = profile(name)](std::size_t i) {
+                 return analytic::from_stick_ratio(ratios[i], at).moment_deficit;
+               });
+}
+
+Prepared one_traction(const std::string& name) {
+  const Inputs fractions = spread();
+  std::array<analytic::TorsionState, kInputs> states{};
+  for (std::size_t i = 0; i < kInputs; ++i)
+    states[i] = analytic::from_stick_ratio(fractions[(i + 31) % kInputs], profile(name));
+  return timed(judged(name, "", "traction"), [fractions, states, &at = profile(name)](std::size_t i) {
+    return analytic::traction(states[i], fractions[i] * states[i].stick_ratio, at);
+  });
+}
+
+Prepared carlson_rd() {
+  return {.counters = {},
+          .objection = "",
+          .timing = repeated([inputs = spread(), i = std::size_t{0}]() mutable {
+            gsl_sf_result result;
+            gsl_sf_ellint_RD_e(0, inputs[i % kInputs] * inputs[i % kInputs], 1, GSL_PREC_DOUBLE, &result);
+            benchmark::DoNotOptimize(result.val);
+            ++i;
+          })};
+}
+
+}  // namespace
+
+void add_exact_benchmarks(Suite& suite) {
+  const auto add = [&suite](const std::string& what, Prepared (*prepare)(const std::string&)) {
+    for (const std::string profile : {"hertz", "cone", "flat_punch"}) {
+      suite.add(fmt::format("exact/{}/{}", what, profile), [prepare, profile] { return prepare(profile); })
+          ->Unit(benchmark::kNanosecond);
+    }
+  };
+  add("stick_ratio_from_moment", stick_ratio_from_moment);
+  add("twist_from_stick_ratio", twist_from_stick_ratio);
+  add("state_from_stick_ratio", state_from_stick_ratio);
+  add("traction", one_traction);
+  suite.add("exact/carlson_rd", carlson_rd)->Unit(benchmark::kNanosecond);
+}
+
+}  // namespace slipstick::bench

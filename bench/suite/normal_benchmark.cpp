@@ -1,0 +1,50 @@
+// The pressure of the paper's sphere, beside its errors against Hertz's.
+
+#include <memory>
+#include <string>
+
+#include "bench/suite/checked_solve.hpp"
+#include "bench/suite/suite.hpp"
+#include "convergence/results/exact_result.hpp"
+#include "solver/pressure.hpp"
+
+namespace slipstick::bench {
+namespace {
+
+using solver::Index;
+using solver::Scene;
+
+/// Of the pressure in L2, of first order by the contact's edge: twice what it is on 32 to 1,024 cells.
+constexpr double kPressureErrorTimesCells = 0.8;
+
+Prepared solve(Index cells) {
+  Scene scene = paper_scene(cells, 0.5);
+  scene.model = solver::ModelChoice::automatic;
+  const convergence::Oracle exact = convergence::require_oracle(scene);
+  const auto model = std::make_shared<solver::Model>(solver::make_model(scene));
+  const auto find = [scene, model] { return solver::find_pressure(scene, *model, scene.steps[0]); };
+  const solver::NormalSolution found = find();
+  const double error = convergence::pressure_error(found.pressure, exact, *model).l2;
+  const double radius = solver::measure_contact_radius(*model, found.pressure);
+  const bool right = error <= kPressureErrorTimesCells / static_cast<double>(cells);
+  return {.counters = {{"error", error},
+                       {"contact_radius_error", radius / model->hertz->semi_axis_1 - 1.0},
+                       {"complementarity", found.complementarity},
+                       {"applications", solver::finest_grid_applications(found.grids)},
+                       {"iterations", found.iterations},
+                       {"bytes", found.bytes}},
+          .objection = found.status != solver::Status::converged ? found.message
+                       : right                                   ? ""
+                                                                 : "the pressure is not Hertz's",
+          .timing = repeated([find] { benchmark::DoNotOptimize(find()); })};
+}
+
+}  // namespace
+
+void add_normal_benchmarks(Suite& suite) {
+  for (const Index cells : {32, 64, 128, 256, 512, 1024}) {
+    suite.add("normal/solve/cells:" + std::to_string(cells), [cells] { return solve(cells); });
+  }
+}
+
+}  // namespace slipstick::bench

@@ -1,0 +1,273 @@
+// The tangential operator in each of its forms: setting it up, and one application, beside the error against
+// another form, the memory held, and what bounds the time from below (four bare padded transforms for dcfft,
+// reading the matrix for dense).
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <functional>
+#include <iterator>
+#include <memory>
+#include <random>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "bench/suite/suite.hpp"
+#include "bench/timing/bandwidth.hpp"
+#include "bench/timing/four_transforms.hpp"
+#include "bench/timing/side_by_side.hpp"
+#include "solver/grid/mirror.hpp"
+#include "solver/operator/direct.hpp"
+#include "solver/operator/linear_operator.hpp"
+
+namespace slipstick::bench {
+namespace {
+
+using Eigen::ArrayXd;
+using solver::Grid;
+using solver::Index;
+using solver::Operator;
+using solver::OperatorKind;
+using solver::OperatorOptions;
+
+/// Ten times what rounding does: of direct sums on 128 cells along a side 2e-14, of transforms on 1,024 less;
+/// in single precision 3e-7.
+template <typename Real>
+constexpr double kAllowedError = std::is_same_v<Real, double> ? 2e-13 : 3e-6;
+
+/// One way to apply the operator. All know a grid of cells x cells; `quarter` works on one quadrant of it.
+struct Form {
+  OperatorKind kind = OperatorKind::dcfft;
+  OperatorOptions options = {};
+  bool quarter = false;
+};
+
+solver::ElasticPair pair() { return solver::elastic_pair({2.0, 0.3}, {2.0, 0.3}); }
+
+Grid whole(Index cells) { return {cells, cells, 1.0, 1.0}; }
+
+Grid grid_of(const Form& form, Index cells) {
+  return form.quarter ? solver::quadrant_of(whole(cells)) : whole(cells);
+}
+
+template <typename Real>
+std::shared_ptr<Operator<Real>> make(const Form& form, const Grid& grid) {
+  if constexpr (std::is_same_v<Real, double>) {
+    return solver::make_operator(form.kind, grid, solver::tangential_kernel(), pair(), form.options);
+  } else {
+    return solver::make_single_operator(grid, solver::tangential_kernel(), pair(), form.options);
+  }
+}
+
+template <typename Real>
+ArrayXd apply(Operator<Real>& op, const ArrayXd& traction) {
+  using Field = typename Operator<Real>::Field;
+  Field displacement(traction.size());
+  op.apply(Field(traction.cast<Real>()), displacement);
+  return displacement.template cast<double>();
+}
+
+ArrayXd random_field(Index size) {
+  std::mt19937_64 generator(1);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  return ArrayXd::NullaryExpr(size, [&] { return uniform(generator); });
+}
+
+/// As a body of revolution has it: q2(x1, x2) = -q1(x2, x1).
+ArrayXd with_diagonal_mirror(ArrayXd field, const Grid& grid) {
+  for (Index i = 0; i < grid.n1; ++i) {
+    for (Index j = 0; j < grid.n2; ++j) {
+      field[grid.cells() + i * grid.n2 + j] = -field[j * grid.n2 + i];
+    }
+  }
+  return field;
+}
+
+/// What a traction gives, and by how much an operator misses it.
+struct Reference {
+  ArrayXd traction;
+  ArrayXd displacement;
+
+  template <typename Real>
+  double error(Operator<Real>& op) const {
+    return (apply(op, traction) - displacement).abs().maxCoeff() / displacement.abs().maxCoeff();
+  }
+};
+
+/// Of a full field, by convolution on the whole grid.
+Reference by_convolution(const Form& form, Index cells) {
+  const Grid grid = grid_of(form, cells);
+  const auto convolution = make<double>({}, whole(cells));
+  ArrayXd traction = random_field(2 * grid.cells());
+  if (!form.quarter) return {traction, apply(*convolution, traction)};
+  if (form.options.diagonal) traction = with_diagonal_mirror(traction, grid);
+  const ArrayXd unfolded = solver::unfold(grid, traction, solver::torsion_symmetry());
+  return {traction, solver::restrict_to_quadrant(whole(cells), apply(*convolution, unfolded))};
+}
+
+/// Of tractions on the corners and a few cells more, summed up from the influence coefficients: a full field
+/// would take longer than it is worth.
+Reference by_summation(Index cells) {
+  constexpr std::array kComponents{solver::Component::k11, solver::Component::k12, solver::Component::k22};
+  constexpr int kFurther = 6;
+  const auto tables = solver::influence_tables(kComponents, pair(), 1.0, 1.0, cells, cells);
+  std::mt19937_64 generator(2);
+  std::uniform_int_distribution<Index> place(0, cells - 1);
+  std::vector<std::array<Index, 2>> loaded{{0, 0}, {0, cells - 1}, {cells - 1, 0}, {cells - 1, cells - 1}};
+  for (int i = 0; i < kFurther; ++i) loaded.push_back({place(generator), place(generator)});
+
+  const Index count = cells * cells;
+  Reference sums{ArrayXd::Zero(2 * count), ArrayXd::Zero(2 * count)};
+  for (const auto& [k, l] : loaded) {
+    const double q1 = std::cos(static_cast<double>(k + 3 * l));
+    const double q2 = std::sin(static_cast<double>(2 * k - l) + 1.0);
+    sums.traction[k * cells + l] += q1;
+    sums.traction[count + k * cells + l] += q2;
+    for (Index i = 0; i < cells; ++i) {
+      for (Index j = 0; j < cells; ++j) {
+        const auto offset = static_cast<std::size_t>(std::abs(i - k) * cells + std::abs(j - l));
+        const double k12 = (i < k) == (j < l) ? tables[1][offset] : -tables[1][offset];
+        sums.displacement[i * cells + j] += tables[0][offset] * q1 + k12 * q2;
+        sums.displacement[count + i * cells + j] += k12 * q1 + tables[2][offset] * q2;
+      }
+    }
+  }
+  return sums;
+}
+
+/// Four components, a multiplication and an addition for each pair of cells. Of transforms by the convention
+/// that a real one of P values takes 2.5 P log2 P, on the padded field, whatever it takes.
+double operations(OperatorKind kind, Index cells) {
+  const double pairs = std::pow(static_cast<double>(cells), 4);
+  if (kind != OperatorKind::dcfft) return 2.0 * 4.0 * pairs;
+  const double padded = std::pow(static_cast<double>(solver::fast_length(2 * cells - 1)), 2);
+  return 4.0 * 2.5 * padded * std::log2(padded);
+}
+
+template <typename Real>
+void compare_with_transforms(Prepared& prepared, const Form& form, Index cells,
+                             const std::function<void()>& application) {
+  constexpr Patience kPatience{.seconds = 0.1, .rounds = 5, .most_seconds = 0.5};
+  FourTransforms<Real> transforms(cells, form.options.measure_plans ? FFTW_MEASURE : FFTW_ESTIMATE);
+  const auto times =
+      side_by_side([&] { return seconds(application); }, [&] { return seconds(transforms); }, kPatience);
+  prepared.counters["over_four_transforms"] = times.ratio;
+}
+
+/// What an application takes at the least, as a part of what it takes.
+void compare_with_reading(Prepared& prepared, const Operator<double>& op) {
+  const Eigen::MatrixXd& matrix = dynamic_cast<const solver::DenseMatrix&>(op).matrix();
+  const std::span<const double> values(matrix.data(), static_cast<std::size_t>(matrix.size()));
+  prepared.counters["bytes_per_second"] = rate(static_cast<double>(values.size_bytes()));
+  prepared.counters["fraction_of_bandwidth"] = rate(seconds_to_read(values));
+}
+
+template <typename Real>
+Prepared application(const Form& form, Index cells) {
+  using Field = typename Operator<Real>::Field;
+  const auto op = make<Real>(form, grid_of(form, cells));
+  const bool by_sums = form.kind == OperatorKind::dcfft && !form.quarter;
+  const double error = (by_sums ? by_summation(cells) : by_convolution(form, cells)).error(*op);
+  const auto in = std::make_shared<Field>(random_field(2 * op->grid().cells()).template cast<Real>());
+  const auto out = std::make_shared<Field>(in->size());
+  const auto work = [op, in, out] {
+    op->apply(*in, *out);
+    benchmark::DoNotOptimize(out->data());
+  };
+  Prepared prepared;
+  prepared.counters = {{"error", error}, {"bytes", static_cast<double>(op->bytes())}};
+  if (!(error <= kAllowedError<Real>)) prepared.objection = "disagrees with its reference";
+  prepared.timing = repeated(work);
+  if (!form.quarter) prepared.counters["GFLOP/s"] = rate(1e-9 * operations(form.kind, cells));
+  if constexpr (std::is_same_v<Real, double>) {
+    if (form.kind == OperatorKind::dense) compare_with_reading(prepared, *op);
+  }
+  if (form.kind == OperatorKind::dcfft) compare_with_transforms<Real>(prepared, form, cells, work);
+  fftw_forget_wisdom();  // measured plans would be taken where others are to be estimated
+  return prepared;
+}
+
+/// Its result is checked where it is applied.
+Prepared set_up(const Form& form, Index cells) {
+  const Grid grid = grid_of(form, cells);
+  Prepared prepared;
+  prepared.counters["bytes"] = static_cast<double>(make<double>(form, grid)->bytes());
+  prepared.timing = repeated([form, grid] { benchmark::DoNotOptimize(make<double>(form, grid)); });
+  return prepared;
+}
+
+Prepared bare_transforms(Index cells) {
+  const auto transforms = std::make_shared<FourTransforms<double>>(cells);
+  Prepared prepared;
+  prepared.counters["GFLOP/s"] = rate(1e-9 * operations(OperatorKind::dcfft, cells));
+  prepared.timing = repeated([transforms] { (*transforms)(); });
+  return prepared;
+}
+
+/// Cells along a side: 2^k, and 3 2^k where a law is fitted to times. Padded lengths are exactly twice as
+/// large; the steps of dcfft's time, where lengths are rounded up, lie between.
+std::vector<Index> doubling(Index smallest, Index largest) {
+  std::vector<Index> sizes;
+  for (Index size = smallest; size <= largest; size *= 2) sizes.push_back(size);
+  return sizes;
+}
+
+std::vector<Index> fine_sizes(Index largest) {
+  std::vector<Index> sizes = doubling(4, largest);
+  std::ranges::copy(doubling(6, largest), std::back_inserter(sizes));
+  std::ranges::sort(sizes);
+  return sizes;
+}
+
+std::string name(const std::string& family, Index cells) {
+  return family + "/cells:" + std::to_string(cells);
+}
+
+template <typename Real>
+void add_applications(Suite& suite, const std::string& variant, const Form& form,
+                      const std::vector<Index>& sizes) {
+  for (const Index cells : sizes) {
+    suite.add(name("application/" + variant, cells), [=] { return application<Real>(form, cells); });
+  }
+}
+
+void add_set_ups(Suite& suite, const std::string& variant, const Form& form,
+                 const std::vector<Index>& sizes) {
+  for (const Index cells : sizes) {
+    suite.add(name("setup/" + variant, cells), [=] { return set_up(form, cells); });
+  }
+}
+
+}  // namespace
+
+void add_operator_benchmarks(Suite& suite) {
+  const std::vector<Index> all = fine_sizes(1024);
+  const std::vector<Index> direct = fine_sizes(128);  // a third of a second
+  const std::vector<Index> dense = fine_sizes(64);    // half a gigabyte
+  const OperatorOptions two_threads{.threads = 2};
+  const Form quarter{.quarter = true};
+
+  add_applications<double>(suite, "dense", {.kind = OperatorKind::dense}, dense);
+  add_applications<double>(suite, "direct", {.kind = OperatorKind::direct}, direct);
+  add_applications<double>(suite, "direct_2_threads", {.kind = OperatorKind::direct, .options = two_threads},
+                           doubling(4, 128));
+  add_applications<double>(suite, "dcfft", {}, all);
+  add_applications<double>(suite, "dcfft_2_threads", {.options = two_threads}, doubling(4, 1024));
+  add_applications<double>(suite, "dcfft_measured", {.options = {.measure_plans = true}}, doubling(16, 1024));
+  add_applications<float>(suite, "dcfft_single", {}, doubling(16, 1024));
+  add_applications<double>(suite, "dcfft_quarter", quarter, doubling(16, 1024));
+  add_applications<double>(suite, "dcfft_quarter_with_diagonal",
+                           {.options = {.diagonal = true}, .quarter = true}, doubling(16, 1024));
+
+  add_set_ups(suite, "dense", {.kind = OperatorKind::dense}, dense);
+  add_set_ups(suite, "direct", {.kind = OperatorKind::direct}, direct);
+  add_set_ups(suite, "dcfft", {}, all);
+  add_set_ups(suite, "dcfft_quarter", quarter, doubling(16, 1024));
+  for (const Index cells : all) {
+    suite.add(name("four_bare_transforms", cells), [cells] { return bare_transforms(cells); });
+  }
+}
+
+}  // namespace slipstick::bench

@@ -1,0 +1,44 @@
+#include "bench/timing/repetitions.hpp"
+
+#include <gsl/gsl_cdf.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "bench/timing/median.hpp"
+
+namespace slipstick::bench {
+namespace {
+
+/// At least three times; then until this many or so many seconds in all.
+constexpr int kFewest = 3;
+constexpr int kMost = 9;
+constexpr double kSeconds = 1.0;
+/// Chance that the median lies below the interval.
+constexpr double kTail = 0.025;
+
+}  // namespace
+
+Repetitions summarise(std::vector<double> seconds) {
+  if (seconds.empty()) throw std::invalid_argument("no repetition");
+  std::sort(seconds.begin(), seconds.end());
+  const std::size_t n = seconds.size();
+  std::size_t left_out = 0;  // on each side: from the k-th smallest to the k-th largest, k - 1 of them
+  while (gsl_cdf_binomial_P(static_cast<unsigned>(left_out + 1), 0.5, static_cast<unsigned>(n)) <= kTail) {
+    ++left_out;
+  }
+  return {median(seconds), seconds[left_out], seconds[n - 1 - left_out], static_cast<int>(n)};
+}
+
+Repetitions repeat(const std::function<double()>& work) {
+  std::vector<double> seconds;
+  double total = 0.0;
+  while (static_cast<int>(seconds.size()) < kFewest ||
+         (static_cast<int>(seconds.size()) < kMost && total < kSeconds)) {
+    seconds.push_back(work());
+    total += seconds.back();
+  }
+  return summarise(seconds);
+}
+
+}  // namespace slipstick::bench

@@ -1,0 +1,230 @@
+#include "bench/work/work_counts.hpp"
+
+#include <fftw3.h>
+
+#include <cstddef>
+#include <cstdlib>
+#include <new>
+#include <unordered_map>
+
+#include "solver/operator/cell_integrals.hpp"
+
+namespace slipstick::bench {
+namespace {
+
+WorkCounts counted;
+
+void count_allocation(std::size_t bytes) {
+  ++counted.allocations;
+  counted.allocated_bytes += static_cast<long>(bytes);
+}
+
+/// Points that each plan transforms. A plan that is destroyed may leave its address to another.
+std::unordered_map<const void*, long>& points_of_plans() {
+  static std::unordered_map<const void*, long> points;
+  return points;
+}
+
+template <typename Plan>
+Plan count_plan(Plan plan, long points) {
+  const WorkCounts before = counted;
+  points_of_plans()[plan] = points;
+  counted = before;  // what remembering allocates is not the program's
+  ++counted.plans;
+  return plan;
+}
+
+void count_transform(const void* plan) {
+  ++counted.transforms;
+  counted.transformed_points += points_of_plans().at(plan);
+}
+
+long product(int rank, const int* lengths) {
+  long points = 1;
+  for (int i = 0; i < rank; ++i) points *= lengths[i];
+  return points;
+}
+
+long product(int rank, const fftw_iodim* dimensions) {
+  long points = 1;
+  for (int i = 0; i < rank; ++i) points *= dimensions[i].n;
+  return points;
+}
+
+}  // namespace
+
+WorkCounts work_counts() { return counted; }
+
+WorkCounts operator-(const WorkCounts& after, const WorkCounts& before) {
+  return {.plans = after.plans - before.plans,
+          .transforms = after.transforms - before.transforms,
+          .transformed_points = after.transformed_points - before.transformed_points,
+          .allocations = after.allocations - before.allocations,
+          .allocated_bytes = after.allocated_bytes - before.allocated_bytes,
+          .kernel_evaluations = after.kernel_evaluations - before.kernel_evaluations};
+}
+
+}  // namespace slipstick::bench
+
+using slipstick::bench::count_allocation;
+using slipstick::bench::count_plan;
+using slipstick::bench::count_transform;
+using slipstick::bench::counted;
+using slipstick::bench::product;
+using slipstick::solver::CellRow;
+using slipstick::solver::Index;
+
+extern "C" {
+// NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming): the linker's names
+decltype(malloc) __real_malloc;
+decltype(calloc) __real_calloc;
+decltype(realloc) __real_realloc;
+decltype(fftw_alloc_real) __real_fftw_alloc_real;
+decltype(fftwf_alloc_real) __real_fftwf_alloc_real;
+void* __real__Znwm(std::size_t size);
+void* __real__Znam(std::size_t size);
+void* __real__ZnwmSt11align_val_t(std::size_t size, std::align_val_t alignment);
+
+void* __wrap_malloc(std::size_t size) {
+  count_allocation(size);
+  return __real_malloc(size);
+}
+void* __wrap_calloc(std::size_t number, std::size_t size) {
+  count_allocation(number * size);
+  return __real_calloc(number, size);
+}
+void* __wrap_realloc(void* old, std::size_t size) {
+  count_allocation(size);
+  return __real_realloc(old, size);
+}
+void* __wrap__Znwm(std::size_t size) {  // operator new
+  count_allocation(size);
+  return __real__Znwm(size);
+}
+void* __wrap__Znam(std::size_t size) {  // operator new[]
+  count_allocation(size);
+  return __real__Znam(size);
+}
+void* __wrap__ZnwmSt11align_val_t(std::size_t size, std::align_val_t alignment) {
+  count_allocation(size);
+  return __real__ZnwmSt11align_val_t(size, alignment);
+}
+double* __wrap_fftw_alloc_real(std::size_t number) {
+  count_allocation(number * sizeof(double));
+  return __real_fftw_alloc_real(number);
+}
+float* __wrap_fftwf_alloc_real(std::size_t number) {
+  count_allocation(number * sizeof(float));
+  return __real_fftwf_alloc_real(number);
+}
+
+decltype(fftw_plan_dft_1d) __real_fftw_plan_dft_1d;
+decltype(fftwf_plan_dft_1d) __real_fftwf_plan_dft_1d;
+decltype(fftw_plan_many_dft) __real_fftw_plan_many_dft;
+decltype(fftwf_plan_many_dft) __real_fftwf_plan_many_dft;
+decltype(fftw_plan_many_dft_r2c) __real_fftw_plan_many_dft_r2c;
+decltype(fftwf_plan_many_dft_r2c) __real_fftwf_plan_many_dft_r2c;
+decltype(fftw_plan_many_dft_c2r) __real_fftw_plan_many_dft_c2r;
+decltype(fftwf_plan_many_dft_c2r) __real_fftwf_plan_many_dft_c2r;
+decltype(fftw_plan_guru_r2r) __real_fftw_plan_guru_r2r;
+
+fftw_plan __wrap_fftw_plan_dft_1d(int n, fftw_complex* in, fftw_complex* out, int sign, unsigned flags) {
+  return count_plan(__real_fftw_plan_dft_1d(n, in, out, sign, flags), n);
+}
+fftwf_plan __wrap_fftwf_plan_dft_1d(int n, fftwf_complex* in, fftwf_complex* out, int sign, unsigned flags) {
+  return count_plan(__real_fftwf_plan_dft_1d(n, in, out, sign, flags), n);
+}
+fftw_plan __wrap_fftw_plan_many_dft(int rank, const int* n, int many, fftw_complex* in, const int* inembed,
+                                    int istride, int idist, fftw_complex* out, const int* onembed,
+                                    int ostride, int odist, int sign, unsigned flags) {
+  return count_plan(__real_fftw_plan_many_dft(rank, n, many, in, inembed, istride, idist, out, onembed,
+                                              ostride, odist, sign, flags),
+                    many * product(rank, n));
+}
+fftwf_plan __wrap_fftwf_plan_many_dft(int rank, const int* n, int many, fftwf_complex* in, const int* inembed,
+                                      int istride, int idist, fftwf_complex* out, const int* onembed,
+                                      int ostride, int odist, int sign, unsigned flags) {
+  return count_plan(__real_fftwf_plan_many_dft(rank, n, many, in, inembed, istride, idist, out, onembed,
+                                               ostride, odist, sign, flags),
+                    many * product(rank, n));
+}
+fftw_plan __wrap_fftw_plan_many_dft_r2c(int rank, const int* n, int many, double* in, const int* inembed,
+                                        int istride, int idist, fftw_complex* out, const int* onembed,
+                                        int ostride, int odist, unsigned flags) {
+  return count_plan(__real_fftw_plan_many_dft_r2c(rank, n, many, in, inembed, istride, idist, out, onembed,
+                                                  ostride, odist, flags),
+                    many * product(rank, n));
+}
+fftwf_plan __wrap_fftwf_plan_many_dft_r2c(int rank, const int* n, int many, float* in, const int* inembed,
+                                          int istride, int idist, fftwf_complex* out, const int* onembed,
+                                          int ostride, int odist, unsigned flags) {
+  return count_plan(__real_fftwf_plan_many_dft_r2c(rank, n, many, in, inembed, istride, idist, out, onembed,
+                                                   ostride, odist, flags),
+                    many * product(rank, n));
+}
+fftw_plan __wrap_fftw_plan_many_dft_c2r(int rank, const int* n, int many, fftw_complex* in,
+                                        const int* inembed, int istride, int idist, double* out,
+                                        const int* onembed, int ostride, int odist, unsigned flags) {
+  return count_plan(__real_fftw_plan_many_dft_c2r(rank, n, many, in, inembed, istride, idist, out, onembed,
+                                                  ostride, odist, flags),
+                    many * product(rank, n));
+}
+fftwf_plan __wrap_fftwf_plan_many_dft_c2r(int rank, const int* n, int many, fftwf_complex* in,
+                                          const int* inembed, int istride, int idist, float* out,
+                                          const int* onembed, int ostride, int odist, unsigned flags) {
+  return count_plan(__real_fftwf_plan_many_dft_c2r(rank, n, many, in, inembed, istride, idist, out, onembed,
+                                                   ostride, odist, flags),
+                    many * product(rank, n));
+}
+fftw_plan __wrap_fftw_plan_guru_r2r(int rank, const fftw_iodim* dims, int many_rank, const fftw_iodim* many,
+                                    double* in, double* out, const fftw_r2r_kind* kind, unsigned flags) {
+  return count_plan(__real_fftw_plan_guru_r2r(rank, dims, many_rank, many, in, out, kind, flags),
+                    product(rank, dims) * product(many_rank, many));
+}
+
+decltype(fftw_execute) __real_fftw_execute;
+decltype(fftw_execute_dft) __real_fftw_execute_dft;
+decltype(fftwf_execute_dft) __real_fftwf_execute_dft;
+decltype(fftw_execute_dft_r2c) __real_fftw_execute_dft_r2c;
+decltype(fftwf_execute_dft_r2c) __real_fftwf_execute_dft_r2c;
+decltype(fftw_execute_dft_c2r) __real_fftw_execute_dft_c2r;
+decltype(fftwf_execute_dft_c2r) __real_fftwf_execute_dft_c2r;
+
+void __wrap_fftw_execute(fftw_plan plan) {
+  count_transform(plan);
+  __real_fftw_execute(plan);
+}
+void __wrap_fftw_execute_dft(fftw_plan plan, fftw_complex* in, fftw_complex* out) {
+  count_transform(plan);
+  __real_fftw_execute_dft(plan, in, out);
+}
+void __wrap_fftwf_execute_dft(fftwf_plan plan, fftwf_complex* in, fftwf_complex* out) {
+  count_transform(plan);
+  __real_fftwf_execute_dft(plan, in, out);
+}
+void __wrap_fftw_execute_dft_r2c(fftw_plan plan, double* in, fftw_complex* out) {
+  count_transform(plan);
+  __real_fftw_execute_dft_r2c(plan, in, out);
+}
+void __wrap_fftwf_execute_dft_r2c(fftwf_plan plan, float* in, fftwf_complex* out) {
+  count_transform(plan);
+  __real_fftwf_execute_dft_r2c(plan, in, out);
+}
+void __wrap_fftw_execute_dft_c2r(fftw_plan plan, fftw_complex* in, double* out) {
+  count_transform(plan);
+  __real_fftw_execute_dft_c2r(plan, in, out);
+}
+void __wrap_fftwf_execute_dft_c2r(fftwf_plan plan, fftwf_complex* in, float* out) {
+  count_transform(plan);
+  __real_fftwf_execute_dft_c2r(plan, in, out);
+}
+
+// slipstick::solver::integrate_row
+decltype(slipstick::solver::integrate_row) __real__ZN9slipstick6solver13integrate_rowERNS0_7CellRowEldddd;
+void __wrap__ZN9slipstick6solver13integrate_rowERNS0_7CellRowEldddd(CellRow& row, Index first_block, double x,
+                                                                    double y, double h1, double h2) {
+  counted.kernel_evaluations += (row.xx.cols() - first_block) * slipstick::solver::kLanes;
+  __real__ZN9slipstick6solver13integrate_rowERNS0_7CellRowEldddd(row, first_block, x, y, h1, h2);
+}
+// NOLINTEND(bugprone-reserved-identifier, readability-identifier-naming)
+}

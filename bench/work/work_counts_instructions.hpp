@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "bench/work/work_counts_cases.hpp"
+
+namespace slipstick::bench {
+
+/// Instructions executed, by the file that holds them: the program, each shared library.
+using Instructions = std::map<std::string, long>;
+
+/// What callgrind wrote, of its first event. Throws std::runtime_error for what is no such file, or where the
+/// parts do not add up to the total that it states.
+Instructions read_callgrind(const std::filesystem::path& file);
+
+/// Does the work of a case once; what it prepares is outside of what run_callgrind() counts.
+void do_case(const WorkCase& work_case);
+
+/// Runs `PROGRAM --do CASE` for each case under callgrind, as many at a time as there are processors.
+/// Nothing where there is no valgrind. Throws std::runtime_error where a run fails.
+std::optional<std::map<std::string, Instructions>> run_callgrind(const std::filesystem::path& program,
+                                                                 const std::vector<WorkCase>& cases);
+
+}  // namespace slipstick::bench

@@ -1,0 +1,198 @@
+#include "convergence/check/reference_on_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+#include <utility>
+#include <vector>
+
+#include "solver/grid/grid_transfer.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using Eigen::ArrayXd;
+using solver::Grid;
+using solver::Index;
+
+/// Fine cells in one of the field's, along each axis: the middle one has its centre.
+constexpr Index kChildren = 3;
+constexpr double kChildrenOfCell = static_cast<double>(kChildren * kChildren);
+/// Centres that miss more of an exact pressure's load than this stand under one that is infinite at an edge.
+constexpr double kMissedLoad = 1e-2;
+/// Standard deviation over |q| up to which a field may be taken for a right one with noise.
+constexpr double kLargestNoise = 3e-3;
+/// Of a normal distribution: the upper quartile, in standard deviations.
+constexpr double kQuartile = 0.6745;
+
+/// One more cell on each side: a contact may cover a part of cells whose centres it does not reach.
+Grid padded(const Grid& grid) { return {grid.n1 + 2, grid.n2 + 2, grid.h1, grid.h2}; }
+
+Grid finer(const Grid& grid) {
+  constexpr auto parts = static_cast<double>(kChildren);
+  return {kChildren * grid.n1, kChildren * grid.n2, grid.h1 / parts, grid.h2 / parts};
+}
+
+/// Each fine cell of the padded grid has the value of the field's cell that it lies in.
+ArrayXd handed_down(const Grid& grid, const ArrayXd& values) {
+  const Grid fine = finer(padded(grid));
+  ArrayXd down = ArrayXd::Zero(fine.cells());
+  for (Index i = kChildren; i < fine.n1 - kChildren; ++i) {
+    for (Index j = kChildren; j < fine.n2 - kChildren; ++j) {
+      down[i * fine.n2 + j] = values[(i / kChildren - 1) * grid.n2 + j / kChildren - 1];
+    }
+  }
+  return down;
+}
+
+/// One or several components, at the centres of the coarse cells.
+ArrayXd sampled(const Grid& coarse, const ArrayXd& values) {
+  const Grid fine = finer(coarse);
+  const Index components = values.size() / fine.cells();
+  ArrayXd result(components * coarse.cells());
+  for (Index c = 0; c < components; ++c) {
+    for (Index i = 0; i < coarse.n1; ++i) {
+      for (Index j = 0; j < coarse.n2; ++j) {
+        result[c * coarse.cells() + i * coarse.n2 + j] =
+            values[c * fine.cells() + (kChildren * i + kChildren / 2) * fine.n2 + kChildren * j +
+                   kChildren / 2];
+      }
+    }
+  }
+  return result;
+}
+
+/// At the centres of a grid. None where they miss its load.
+std::optional<ArrayXd> exact_pressure(const Oracle& pressed, const solver::Model& model, const Grid& grid,
+                                      double load) {
+  const ArrayXd x1 = solver::cell_x1(grid);
+  const ArrayXd x2 = solver::cell_x2(grid);
+  // On a cone's axis the pressure is infinite; the mean over a cell there is that a third of a cell away.
+  const double nearest = 0.35 * std::min(grid.h1, grid.h2) * model.length_unit;
+  ArrayXd pressure(grid.cells());
+  for (Index cell = 0; cell < grid.cells(); ++cell) {
+    const double radius = pressed.radius(x1[cell] * model.length_unit - pressed.centre[0],
+                                         x2[cell] * model.length_unit - pressed.centre[1]);
+    pressure[cell] = pressed.pressure(std::max(radius, nearest)) / model.stress_unit;
+  }
+  const double carried = pressure.sum() * grid.cell_area() * model.force_unit();
+  if (!(std::abs(carried / load - 1.0) <= kMissedLoad)) return std::nullopt;
+  return pressure;
+}
+
+/// The right field under a pressure on the finer mesh, as near to the limit as the field's own loads are.
+solver::TangentialSolution solve_finer(const GivenContact& contact, const solver::Step& load,
+                                       const Grid& fine, const ArrayXd& pressure) {
+  solver::TangentialProblem problem = own_problem(contact, load);
+  const double own = solver::limit_of(problem, contact.model.grid).factor;
+  problem.friction_bound = contact.model.friction * pressure;
+  problem.initial_displacement = pressure_displacement(contact.model, contact.elasticity, fine, pressure);
+  scale_loads(problem, kChildrenOfCell);
+  const double limit = solver::limit_of(problem, fine).factor;
+  const double wanted = own > 1.0 ? own : 1.0 / kScaledLoads;
+  if (std::isfinite(limit)) scale_loads(problem, limit / wanted);
+  return solve_problem(contact, fine, problem);
+}
+
+/// Loads of a field over an area in the grid's units, about the grid's centre.
+struct Sums {
+  double normal, moment, force1, force2;
+
+  Sums(const Grid& grid, const ArrayXd& pressure, const ArrayXd& traction)
+      : normal(grid.cell_area() * pressure.sum()),
+        moment(grid.cell_area() * (traction * solver::rotation_field(grid)).sum()),
+        force1(grid.cell_area() * traction.head(grid.cells()).sum()),
+        force2(grid.cell_area() * traction.tail(grid.cells()).sum()) {}
+};
+
+LoadErrors load_errors(const Sums& coarse, const Sums& fine, double friction) {
+  return {.normal = std::abs(coarse.normal / fine.normal - 1.0),
+          .moment = fine.moment == 0.0 ? 0.0 : std::abs(coarse.moment / fine.moment - 1.0),
+          .force = std::hypot(coarse.force1 - fine.force1, coarse.force2 - fine.force2) /
+                   (friction * fine.normal)};
+}
+
+/// Measures what the mesh accounts for.
+void measure_mesh(Yardstick& yardstick, const GivenContact& contact, const solver::Step& load,
+                  const std::optional<Oracle>& pressed, bool twist_given) {
+  const Grid grid = padded(contact.model.grid);
+  const Grid fine = finer(grid);
+  ArrayXd pressure;
+  if (pressed && load.normal) {
+    pressure = exact_pressure(*pressed, contact.model, fine, *load.normal).value_or(ArrayXd());
+  }
+  if (pressure.size() == 0) pressure = handed_down(contact.model.grid, contact.pressure);
+  const solver::TangentialSolution solution = solve_finer(contact, load, fine, pressure);
+  const Sums sums(fine, pressure, solution.traction);
+  const auto measure = [&](ArrayXd p, ArrayXd q) {
+    const GivenContact field = with_fields(contact, grid, std::move(p), std::move(q));
+    const LoadErrors loads =
+        load_errors({grid, field.pressure, field.traction}, sums, contact.model.friction);
+    yardstick.loads = {.normal = std::max(yardstick.loads.normal, loads.normal),
+                       .moment = std::max(yardstick.loads.moment, loads.moment),
+                       .force = std::max(yardstick.loads.force, loads.force)};
+    const State fitted = find_state(field, load, std::nullopt);
+    const State reported = twist_given ? find_state(field, load, solution.twist) : fitted;
+    const Deviation deviation = find_deviation(field, find_right_answer(field, load), reported, fitted);
+    yardstick.mesh = larger(yardstick.mesh, deviation);
+    yardstick.direction =
+        std::max(yardstick.direction, noticeable_direction(field, fitted, deviation.tractions).mean);
+  };
+  measure(sampled(grid, pressure), sampled(grid, solution.traction));
+  measure(restrict_to(grid, fine, pressure), restrict_to(grid, fine, solution.traction));
+}
+
+/// Standard deviation of |q| that a field shows where it slips, in each cell: in parts of mu p or of the
+/// largest mu p, whichever is more. With noise |q| stands above its bound as often as below; a program that
+/// keeps the bound has none.
+ArrayXd noise_size(const GivenContact& contact, const RightAnswer& right) {
+  const std::vector<Index> ring = slip_ring(contact, right);
+  if (ring.empty()) return ArrayXd::Zero(contact.pressure.size());
+  const ArrayXd size = solver::norms(contact.traction);
+  const auto deviation = [&](const ArrayXd& scale) {
+    std::vector<double> beyond;
+    for (const Index cell : ring) beyond.push_back((size[cell] - contact.friction_bound[cell]) / scale[cell]);
+    std::ranges::sort(beyond);
+    const double upper = beyond[beyond.size() * 3 / 4];
+    const double middle = beyond[beyond.size() / 2];
+    return std::clamp(std::min(upper, upper - middle) / kQuartile, 0.0, kLargestNoise);
+  };
+  const ArrayXd largest = ArrayXd::Constant(size.size(), contact.friction_bound.maxCoeff());
+  return (deviation(contact.friction_bound) * contact.friction_bound).max(deviation(largest) * largest) *
+         (contact.friction_bound > 0.0).cast<double>();
+}
+
+/// What the right answer deviates from itself with errors of a given size, cell by cell: the worse one of a
+/// random draw and its opposite.
+Deviation disturbed(const GivenContact& contact, const RightAnswer& right, const solver::Step& load,
+                    const ArrayXd& size) {
+  if (!(size.maxCoeff() > 0.0)) return {};
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  ArrayXd error(right.traction.size());
+  for (Index k = 0; k < error.size(); ++k) error[k] = normal(random) * size[k % size.size()];
+  Deviation worst;
+  for (const double sign : {1.0, -1.0}) {
+    const GivenContact field =
+        with_fields(contact, contact.model.grid, contact.pressure, right.traction + sign * error);
+    const State fitted = find_state(field, load, std::nullopt);
+    worst = larger(worst, find_deviation(field, right, fitted, fitted));
+  }
+  return worst;
+}
+
+}  // namespace
+
+Yardstick find_yardstick(const GivenContact& contact, const solver::Step& load,
+                         const std::optional<Oracle>& pressed, bool twist_given) {
+  Yardstick yardstick;
+  yardstick.right = find_right_answer(contact, load);
+  measure_mesh(yardstick, contact, load, pressed, twist_given);
+  yardstick.noise_size = noise_size(contact, yardstick.right);
+  yardstick.noise = disturbed(contact, yardstick.right, load, yardstick.noise_size);
+  yardstick.rounding =
+      disturbed(contact, yardstick.right, load, contact.traction_rounding + contact.bound_rounding);
+  return yardstick;
+}
+
+}  // namespace slipstick::convergence

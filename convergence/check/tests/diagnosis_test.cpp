@@ -1,0 +1,162 @@
+// Fields made with a wrong kernel, and the mistakes that they are traced to.
+
+#include "convergence/check/diagnosis.hpp"
+
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "convergence/check/foreign_field.hpp"
+#include "convergence/check/given_contact.hpp"
+#include "solver/contact/projected_gradient.hpp"
+#include "solver/operator/influence.hpp"
+#include "solver/pressure.hpp"
+#include "solver/solve.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using solver::Index;
+using testing::HasSubstr;
+
+/// K12 at an offset whose signs along x1 and x2 multiply to `sign`, from its value at the positive one.
+using CrossKernel = std::function<double(double k12, int sign)>;
+
+/// The tangential operator with another cross kernel, and perhaps with K11 and K22 exchanged, as a matrix.
+class OtherKernel final : public solver::LinearOperator {
+ public:
+  OtherKernel(const solver::Grid& grid, const solver::ElasticPair& pair, const CrossKernel& cross,
+              bool exchanged)
+      : Operator<double>(grid, solver::tangential_kernel()), matrix_(2 * grid.cells(), 2 * grid.cells()) {
+    const std::array components{solver::Component::k11, solver::Component::k12, solver::Component::k22};
+    const auto tables = solver::influence_tables(components, pair, grid.h1, grid.h2, grid.n1, grid.n2);
+    const Index cells = grid.cells();
+    for (Index to = 0; to < cells; ++to) {
+      for (Index from = 0; from < cells; ++from) {
+        const Index k1 = to / grid.n2 - from / grid.n2;
+        const Index k2 = to % grid.n2 - from % grid.n2;
+        const auto at = static_cast<std::size_t>(std::abs(k1) * grid.n2 + std::abs(k2));
+        matrix_(to, from) = tables[exchanged ? 2 : 0][at];
+        matrix_(to, from + cells) = matrix_(to + cells, from) =
+            cross(tables[1][at], (k1 < 0) == (k2 < 0) ? 1 : -1);
+        matrix_(to + cells, from + cells) = tables[exchanged ? 0 : 2][at];
+      }
+    }
+  }
+  std::size_t bytes() const override { return static_cast<std::size_t>(matrix_.size()) * sizeof(double); }
+
+ private:
+  void do_apply(std::span<const double> traction, std::span<double> displacement) override {
+    const auto size = static_cast<Index>(traction.size());
+    Eigen::Map<Eigen::VectorXd>(displacement.data(), size).noalias() =
+        matrix_ * Eigen::Map<const Eigen::VectorXd>(traction.data(), size);
+  }
+  Eigen::MatrixXd matrix_;
+};
+
+double right_cross(double k12, int sign) { return sign * k12; }
+
+/// A contact with tractions by an operator of its own.
+GivenContact computed_with(const CrossKernel& cross, bool exchanged = false,
+                           const std::string& name = "ellipse") {
+  const solver::Scene scene =
+      solver::read_scene(std::string(SLIPSTICK_SCENES) + "/" + name + ".toml",
+                         {name == "ellipse" ? "grid.cells=[24,12]" : "grid.cells=[20,20]"});
+  const solver::Model model = solver::make_model(scene);
+  const solver::Step& load = scene.steps.front();
+  const Eigen::ArrayXd pressure = find_pressure(scene, model, load).pressure;
+  OtherKernel op(model.grid, model.pair, cross, exchanged);
+  const auto solution = solve_by_projected_gradient(op, load_step(scene, model, load, pressure, {}).problem);
+  EXPECT_EQ(solution.status, solver::Status::converged) << solution.message;
+  const Eigen::ArrayXd none = Eigen::ArrayXd::Zero(pressure.size());
+  solver::Grid grid = model.grid;
+  grid.h1 *= model.length_unit;
+  grid.h2 *= model.length_unit;
+  const ForeignField field{.file = "made",
+                           .grid = grid,
+                           .centre = {0.0, 0.0},
+                           .pressure = pressure * model.stress_unit,
+                           .traction = solution.traction * model.stress_unit,
+                           .pressure_rounding = none,
+                           .traction_rounding = none};
+  return make_given_contact(field, scene, model);
+}
+
+/// What a mesh of so few cells accounts for.
+constexpr double kAllowed = 1e-3;
+
+TEST(Diagnosis, NamesTheKernelThatWasUsed) {
+  const std::vector<std::pair<CrossKernel, std::string>> mistakes{
+      {[](double k12, int) { return -std::abs(k12); }, "mirrored as an even function"},
+      {[](double k12, int) { return std::abs(k12); }, "mirrored as an even function"},
+      {[](double, int) { return 0.0; }, "K12 missing"},
+      {[](double k12, int sign) { return -sign * k12; }, "K12 of the wrong sign"}};
+  for (const auto& [cross, name] : mistakes) {
+    const Diagnosis diagnosis = diagnose(computed_with(cross), {}, kAllowed);
+    ASSERT_TRUE(diagnosis.kernel) << name;
+    EXPECT_THAT(diagnosis.kernel->name, HasSubstr(name));
+    EXPECT_LE(diagnosis.kernel->gap, 1e-6) << name;
+    EXPECT_GT(diagnosis.as_it_should_be.gap, kAllowed) << name;
+    EXPECT_FALSE(diagnosis.friction) << name;
+  }
+}
+
+// As a Poisson's ratio of zero they differ from what they should be, but that is not what they are.
+TEST(Diagnosis, TellsExchangedKernelsFromPoissonsRatio) {
+  const Diagnosis diagnosis = diagnose(computed_with(right_cross, true), {}, kAllowed);
+  ASSERT_TRUE(diagnosis.kernel);
+  EXPECT_EQ(diagnosis.kernel->name, "the kernels K11 and K22 exchanged");
+  EXPECT_LE(diagnosis.kernel->gap, 1e-6);
+}
+
+TEST(Diagnosis, NamesTheCrossKernelOfASphere) {
+  const std::vector<std::pair<CrossKernel, std::string>> mistakes{
+      {[](double, int) { return 0.0; }, "K12 missing"},
+      {[](double k12, int sign) { return -sign * k12; }, "K12 of the wrong sign"}};
+  for (const auto& [cross, name] : mistakes) {
+    const Diagnosis diagnosis = diagnose(computed_with(cross, false, "paper"), {}, 0.1);
+    ASSERT_TRUE(diagnosis.kernel) << name;
+    EXPECT_THAT(diagnosis.kernel->name, HasSubstr(name));
+  }
+}
+
+TEST(Diagnosis, FindsNoMistakeInTheRightKernel) {
+  const Diagnosis diagnosis = diagnose(computed_with(right_cross), {}, kAllowed);
+  EXPECT_LE(diagnosis.as_it_should_be.gap, 1e-6);
+  EXPECT_FALSE(diagnosis.kernel);
+  EXPECT_FALSE(diagnosis.friction);
+}
+
+// The field of bodies with another Poisson's ratio and the same contact modulus E/(1 - nu^2).
+TEST(Diagnosis, TellsPoissonsRatioFromTheField) {
+  for (const double ratio : {0.1, 0.45}) {
+    solver::Scene scene =
+        solver::read_scene(std::string(SLIPSTICK_SCENES) + "/ellipse.toml", {"grid.cells=[32,16]"});
+    const solver::Scene right = scene;
+    for (solver::Material* material : {&scene.upper, &scene.lower}) {
+      material->young_modulus *= (1.0 - ratio * ratio) / (1.0 - 0.3 * 0.3);
+      material->poisson_ratio = ratio;
+    }
+    const solver::Solution solution = solver::solve(scene);
+    const solver::Model model = solver::make_model(right);
+    const Eigen::ArrayXd none = Eigen::ArrayXd::Zero(model.grid.cells());
+    const solver::Grid grid{model.grid.n1, model.grid.n2, model.length_unit,
+                            model.grid.h2 * model.length_unit};
+    const ForeignField field{.file = "made",
+                             .grid = grid,
+                             .centre = {0.0, 0.0},
+                             .pressure = solution.normal.pressure * solution.model.stress_unit,
+                             .traction = solution.tangential.traction * solution.model.stress_unit,
+                             .pressure_rounding = none,
+                             .traction_rounding = none};
+    const Diagnosis diagnosis = diagnose(make_given_contact(field, right, model), {}, 1e-5);
+    ASSERT_TRUE(diagnosis.kernel) << ratio;
+    EXPECT_THAT(diagnosis.kernel->name,
+                HasSubstr(fmt::format("Poisson's ratio of {} in place of 0.3", ratio)));
+  }
+}
+
+}  // namespace
+}  // namespace slipstick::convergence

@@ -1,0 +1,242 @@
+#include "convergence/gates/gate.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <cstring>
+#include <limits>
+#include <stdexcept>
+#include <utility>
+
+#include "convergence/results/quantity.hpp"
+#include "convergence/runs/failed_runs.hpp"
+#include "solver/input/misspelling.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The relative error of the reference that stands in one object of a result.
+const Json* stated_reference_error(const Json& object) {
+  if (!object.is_object()) return nullptr;
+  if (const auto direct = object.find("reference_uncertainty"); direct != object.end()) return &*direct;
+  const auto exact = object.find("exact");
+  if (exact == object.end() || !exact->is_object()) return nullptr;
+  const auto stated = exact->find("relative_uncertainty");
+  return stated == exact->end() ? nullptr : &*stated;
+}
+
+/// By how much a value may be off before the gate turns; NaN where it asks for no such thing.
+double tolerance(const Gate& gate) {
+  if (!gate.below) return kNaN;
+  return gate.above ? 0.5 * (*gate.below - *gate.above) : *gate.below;
+}
+
+/// Factor of the bound that a number reaches.
+double factor_of(const Gate& gate, const Json& value) {
+  if (!gate.equals.is_null()) return value == gate.equals ? 0.0 : kInfinity;
+  if (!value.is_number()) return kInfinity;
+  const double number = value.get<double>();
+  if (gate.below && gate.above) {
+    return std::abs(number - 0.5 * (*gate.below + *gate.above)) / tolerance(gate);
+  }
+  if (gate.below) return std::abs(number) / *gate.below;
+  if (number > 0.0 && *gate.above > 0.0) return *gate.above / number;
+  return number > *gate.above ? 0.0 : kInfinity;
+}
+
+bool holds(const Gate& gate, const Json& value) {
+  if (!gate.equals.is_null()) return value == gate.equals;
+  if (!value.is_number()) return false;
+  const double number = value.get<double>();
+  if (gate.above && !(number > *gate.above)) return false;
+  return !gate.below || (gate.above ? number : std::abs(number)) < *gate.below;
+}
+
+/// Why a gate is tighter than what it is judged by allows; empty where it is not.
+std::string too_tight(const Gate& gate, const Json& result) {
+  if (!gate.below) return "";
+  double reference = reference_error(result, gate.quantity);
+  if (std::isnan(reference) && gate.kind == GateSource::result) reference = 0.0;
+  if (std::isnan(reference)) {
+    return "the result does not say how uncertain the exact answer is, so nothing says whether the gate is "
+           "wide enough";
+  }
+  const double needed = kMargin * (reference + gate.platform_spread);
+  if (tolerance(gate) >= needed) return "";
+  return fmt::format(
+      "tighter than its reference allows: it leaves {:.3g}, and {:.3g} is needed, {:g} times the "
+      "reference error {:.2g} and the platform spread {:.2g} together",
+      tolerance(gate), needed, kMargin, reference, gate.platform_spread);
+}
+
+std::string because(const std::string& reason) { return reason.empty() ? "" : ": " + reason; }
+
+std::string word(const Json& result, const char* key) {
+  return result.is_object() && result.contains(key) && result[key].is_string()
+             ? result[key].get<std::string>()
+             : "";
+}
+
+/// What came to a result.
+std::string maker(GateSource kind) {
+  switch (kind) {
+    case GateSource::scene:
+      return "solve";
+    case GateSource::study:
+      return "study";
+    case GateSource::result:
+      return "run";
+  }
+  throw std::logic_error("unknown source of a gate");
+}
+
+bool is_value(const FoundQuantity& found) {
+  return found.value != nullptr && !found.value->is_null() && !found.value->is_structured();
+}
+
+/// Whether the result knows no such name, not even as one without a value.
+bool is_unknown(const FoundQuantity& found) { return found.value == nullptr && found.reason.empty(); }
+
+/// Why there is no number: what the result says, or which name comes nearest.
+std::string missing_text(const Gate& gate, const Json& result, const FoundQuantity& found) {
+  if (!is_unknown(found)) return fmt::format("{} is not a number{}", gate.quantity, because(found.reason));
+  if (const std::string status = word(result, "status"); status == "failed" || status == "refused") {
+    return fmt::format("there is no {}: the {} {}{}", gate.quantity, maker(gate.kind),
+                       status == "failed" ? "failed" : "was refused", because(word(result, "message")));
+  }
+  return fmt::format("the result has no {}; the nearest is {}", gate.quantity,
+                     solver::nearest_word(gate.quantity, quantity_paths(result)));
+}
+
+std::string out_of_bounds_text(const Gate& gate, const Json& value) {
+  const double factor = factor_of(gate, value);
+  const bool has_factor = gate.equals.is_null() && !gate.above && std::isfinite(factor);
+  return fmt::format("{} is {}, must be {}{}", gate.quantity,
+                     value.is_number() ? number_text(value) : value.dump(), bound_text(gate),
+                     has_factor ? fmt::format(": {:.3g} times the bound", factor) : "");
+}
+
+/// Why runs are missing that the value rests on, the one of a solve or some of a study's; empty: none is. It
+/// says nothing of what the gate asks for, so that nothing else is judged.
+std::string died(const Gate& gate, const Json& result) {
+  if (gate.kind != GateSource::result && word(result, "status") == "failed") {
+    return fmt::format("the {} failed{}", maker(gate.kind), because(word(result, "message")));
+  }
+  return result.is_object() ? failed_runs_text(result) : "";
+}
+
+/// Why a gate does not hold; empty where it does.
+std::string fault(const Gate& gate, const Json& result, const FoundQuantity& found) {
+  if (!is_value(found)) return missing_text(gate, result, found);
+  if (!holds(gate, *found.value)) return out_of_bounds_text(gate, *found.value);
+  const bool unfinished = gate.quantity != "status" && word(result, "status") == "not_converged";
+  return unfinished ? "the solve did not reach its tolerance" + because(word(result, "message")) : "";
+}
+
+/// A word as a shell takes it.
+std::string shell_word(const std::string& text) {
+  const auto is_plain = [](unsigned char c) {
+    return std::isalnum(c) != 0 || std::strchr("-._/+,:@", c) != nullptr;
+  };
+  if (std::all_of(text.begin(), text.end(), is_plain)) return text;
+  std::string quoted = "'";
+  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
+  return quoted + "'";
+}
+
+Outcome outcome_of(GateStatus status, bool held) {
+  if (status == GateStatus::report_only) return Outcome::reported;
+  if (status == GateStatus::active) return held ? Outcome::passed : Outcome::failed;
+  return held ? Outcome::passed_unexpectedly : Outcome::failed_as_expected;
+}
+
+}  // namespace
+
+std::string to_string(Outcome outcome) {
+  static const std::vector<std::pair<Outcome, std::string>> words{
+      {Outcome::passed, "passed"},
+      {Outcome::failed, "failed"},
+      {Outcome::failed_as_expected, "failed as expected"},
+      {Outcome::passed_unexpectedly, "passed unexpectedly"},
+      {Outcome::reported, "reported"},
+      {Outcome::refused, "refused"}};
+  return std::find_if(words.begin(), words.end(), [&](const auto& entry) { return entry.first == outcome; })
+      ->second;
+}
+
+bool is_error(const std::string& quantity) { return quantity.find("error") != std::string::npos; }
+
+double reference_error(const Json& result, const std::string& quantity) {
+  if (!is_error(quantity)) return 0.0;
+  const std::vector<const Json*> within = find_quantity(result, quantity).within;
+  for (auto object = within.rbegin(); object != within.rend(); ++object) {
+    const Json* const stated = stated_reference_error(**object);
+    if (stated != nullptr) return stated->is_number() ? stated->get<double>() : kNaN;
+  }
+  return kNaN;
+}
+
+Judgement judge(const Gate& gate, const Json& result) {
+  Judgement judgement = refuse(gate, died(gate, result));
+  const FoundQuantity found = find_quantity(result, gate.quantity);
+  if (!judgement.why.empty()) {
+    if (is_value(found)) judgement.value = *found.value;
+    judgement.outcome = Outcome::failed;
+    return judgement;
+  }
+  if (is_value(found)) {
+    judgement.value = *found.value;
+    judgement.factor = factor_of(gate, judgement.value);
+    judgement.why = too_tight(gate, result);
+    if (!judgement.why.empty()) return judgement;
+  }
+  judgement.why = fault(gate, result, found);
+  const bool held = judgement.why.empty();
+  judgement.outcome = outcome_of(gate.status, held);
+  if (judgement.outcome == Outcome::passed_unexpectedly) {
+    judgement.why = "expected to fail, and holds: remove the entry, or make it active";
+  }
+  if (judgement.outcome == Outcome::failed_as_expected && is_unknown(found)) {
+    judgement.outcome = Outcome::failed;  // a misspelt quantity is not the failure that was expected
+  }
+  return judgement;
+}
+
+Judgement refuse(const Gate& gate, const std::string& why) {
+  Judgement judgement;
+  judgement.gate = gate;
+  judgement.factor = kInfinity;
+  judgement.why = why;
+  return judgement;
+}
+
+int exit_code(const std::vector<Judgement>& judgements) {
+  const auto any = [&](Outcome outcome) {
+    return std::any_of(judgements.begin(), judgements.end(),
+                       [&](const Judgement& judgement) { return judgement.outcome == outcome; });
+  };
+  if (judgements.empty() || any(Outcome::refused)) return 2;
+  return any(Outcome::failed) || any(Outcome::passed_unexpectedly) ? 1 : 0;
+}
+
+std::string bound_text(const Gate& gate) {
+  if (gate.equals.is_number()) return fmt::format("equal to {}", gate.equals.get<double>());
+  if (!gate.equals.is_null()) return "equal to " + gate.equals.dump();
+  if (gate.below && gate.above) return fmt::format("between {} and {}", *gate.above, *gate.below);
+  if (gate.below) return fmt::format("below {} in size", *gate.below);
+  return fmt::format("above {}", *gate.above);
+}
+
+std::string rerun_command(const Gate& gate) {
+  return fmt::format(
+      "slipstick gate {}{} --only {}", shell_word(gate.file.string()),
+      gate.results_folder.empty() ? "" : " --results " + shell_word(gate.results_folder.string()),
+      shell_word(gate.id));
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "convergence/results/result_parts.hpp"
+
+namespace slipstick::convergence {
+
+/// What follows from a gate: an active one must hold, an expected failure must not (so that the entry goes
+/// when the defect goes), of a reported one nothing follows.
+enum class GateStatus { active, expected_failure, report_only };
+
+/// Whose number it is: of a solve, of a study, of a file that any program wrote.
+enum class GateSource { scene, study, result };
+
+/// A number of a result with the bounds that it must keep, as a gate file says it.
+struct Gate {
+  std::filesystem::path file;  ///< where it stands
+  std::size_t line = 0;
+  std::string id;
+  GateSource kind = GateSource::scene;
+  std::filesystem::path source;          ///< scene, study (TOML) or result (JSON)
+  std::filesystem::path results_folder;  ///< in which results were said to lie; empty: beside the gate file
+  std::string made_by;                   ///< the command that writes the result; empty: not known
+  std::vector<std::string> overrides;    ///< "key=value", as --set takes them
+  std::string quantity;                  ///< path into the result, as in steps[3].traction_error.l2
+  std::optional<double> below;           ///< alone: a bound on the size; with `above`: on the signed value
+  std::optional<double> above;           ///< a bound on the signed value
+  Json equals;                           ///< a word or a number; null: not asked
+  double platform_spread = 0.0;  ///< by how much machines and compilers differ, in the quantity's unit
+  std::string basis;             ///< where the bound comes from
+  std::string reason;            ///< why the number matters
+  GateStatus status = GateStatus::active;
+};
+
+/// What became of a gate. Refused: it could not be judged.
+enum class Outcome { passed, failed, failed_as_expected, passed_unexpectedly, reported, refused };
+std::string to_string(Outcome outcome);
+
+/// A gate with what was found.
+struct Judgement {
+  Gate gate;
+  Outcome outcome = Outcome::refused;
+  Json value;  ///< null: the result has none
+  double factor =
+      0.0;          ///< of the bound that the value reaches: 1 is at the bound; infinite where no number says
+  std::string why;  ///< one sentence; empty where it passed
+  std::string blame;     ///< which part of the error budget is likely to blame; empty: not known
+  double seconds = 0.0;  ///< that the result took; zero where an earlier gate looks at the same result
+};
+
+/// A gate needs this many times the error of what it is judged by: less, and a verdict says as much about the
+/// reference, or about the machine, as about the program.
+inline constexpr double kMargin = 10.0;
+
+/// Whether a quantity is the error of another, against an exact answer, or follows from one: by its path.
+bool is_error(const std::string& quantity);
+
+/// How wrong the exact answer is that a quantity is compared with, relative: what stands in the result beside
+/// the quantity, or beside what contains it, as exact.relative_uncertainty or reference_uncertainty. Zero for
+/// what is no error; NaN for an error whose reference does not say.
+double reference_error(const Json& result, const std::string& quantity);
+
+/// Judges a gate by the result of its scene or study, or by what its result file holds. A number that is
+/// missing, NaN or comes from a solve that did not reach its tolerance fails; a gate that is tighter than
+/// kMargin allows is refused. A solve that died, or a study some of whose runs failed, fails a gate of any
+/// status: that is neither the failure that was expected nor a number to report. Of a result file the
+/// reference's error counts where the file states one: it may call anything an error, of benchmarks that
+/// failed as well as of a twist.
+Judgement judge(const Gate& gate, const Json& result);
+
+/// A gate that cannot be judged, and why.
+Judgement refuse(const Gate& gate, const std::string& why);
+
+/// 0: every active gate holds and no expected failure passes. 2: nothing was judged, or something could not
+/// be. 1: else.
+int exit_code(const std::vector<Judgement>& judgements);
+
+/// What the gate asks for: "below 2e-05 in size".
+std::string bound_text(const Gate& gate);
+
+/// The command that runs it alone.
+std::string rerun_command(const Gate& gate);
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,75 @@
+#include "convergence/gates/gate_command.hpp"
+
+#include <filesystem>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "convergence/gates/gate_reader.hpp"
+#include "convergence/gates/gate_report.hpp"
+#include "convergence/gates/gate_run.hpp"
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+struct Options {
+  std::vector<std::string> files;
+  std::vector<std::string> only;
+  std::string junit;
+  std::string summary;
+  std::string output = "build/gates";
+  std::string results;
+  int jobs = 0;
+  bool github = false;
+};
+
+int run(const Options& options, std::ostream& text, nlohmann::ordered_json& result) {
+  const GateFiles files = read_gate_files(options.files, options.results);
+  std::vector<Judgement> judgements = files.unreadable;
+  PointRunner runner(options.output, options.jobs);
+  const std::vector<Judgement> judged = run_gates(select_gates(files.gates, options.only), runner);
+  judgements.insert(judgements.end(), judged.begin(), judged.end());
+
+  result = gates_json(judgements);
+  text << gates_text(judgements);
+  if (options.github) text << gates_annotations(judgements);
+  write_option_file("--junit", options.junit, gates_junit(judgements));
+  write_option_file("--summary", options.summary, gates_markdown(judgements));
+  if (judgements.empty()) {
+    throw solver::InputError(options.files.front(), "no gate ran; allowed: tables headed [[gate]]");
+  }
+  return exit_code(judgements);
+}
+
+}  // namespace
+
+std::function<int(std::ostream&, nlohmann::ordered_json&)> add_gate_command(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* const command =
+      app.add_subcommand("gate", "Run accuracy gates: numbers with bounds that they must keep");
+  command->add_option("files", options->files, "gate files (TOML)")->required();
+  command->add_option("--only", options->only, "run the gates with these ids alone; stands after the files");
+  command->add_option("--junit", options->junit, "write JUnit XML, as CI servers read it, to this file");
+  command->add_option("--summary", options->summary, "write a Markdown table, the worst first, below 64 kB");
+  command->add_flag("--github", options->github, "print GitHub's annotations, at each failing gate's line");
+  command->add_option("--output", options->output, "folder where finished solves are kept")
+      ->capture_default_str();
+  command->add_option("--results", options->results,
+                      "folder of the result files that gates name, in place of the gate file's own");
+  command->add_option("--jobs", options->jobs, "solves at a time; 0: one a processor")
+      ->check(CLI::NonNegativeNumber)
+      ->capture_default_str();
+  command->footer(
+      "Example:\n  slipstick gate convergence/gates/quick.toml --junit gates.xml --summary summary.md\n"
+      "Exit code 0: all gates pass; 1: an active gate fails, or an expected failure passes; 2: something "
+      "could "
+      "not be judged, or no gate ran. Finished solves are kept: repeating an interrupted command goes on "
+      "from "
+      "there.");
+  return
+      [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,160 @@
+#include "convergence/gates/gate_reader.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <map>
+
+#include "solver/input/input_error.hpp"
+#include "solver/input/misspelling.hpp"
+#include "solver/input/toml_reader.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using solver::InputError;
+using solver::SceneReader;
+
+const solver::Words<GateStatus> kStatuses{{"active", GateStatus::active},
+                                          {"expected_failure", GateStatus::expected_failure},
+                                          {"report_only", GateStatus::report_only}};
+
+const solver::Words<GateSource> kSources{
+    {"scene", GateSource::scene}, {"study", GateSource::study}, {"result", GateSource::result}};
+
+void read_source(SceneReader& reader, const std::string& at, Gate& gate) {
+  std::vector<std::string> given;
+  for (const auto& [key, kind] : kSources) {
+    if (!reader.has(at + key)) continue;
+    given.push_back(key);
+    gate.kind = kind;
+  }
+  if (given.size() != 1) {
+    reader.fail(at + "scene", given.empty() ? "(missing)" : "beside " + given.back(),
+                "one of scene and study, a file (TOML), and result, a file (JSON)");
+  }
+  gate.source = reader.path(at + given.front());
+  gate.overrides = reader.assignments(at + "set");
+}
+
+/// Any program's, so that only the gate file can say which.
+void read_result_source(SceneReader& reader, const std::string& at, const std::filesystem::path& folder,
+                        Gate& gate) {
+  if (!gate.overrides.empty()) {
+    reader.fail(at + "set", "(given)", "left out beside result: a file is taken as it is");
+  }
+  gate.results_folder = folder;
+  if (!folder.empty()) gate.source = folder / reader.text(at + "result");
+  gate.made_by = reader.text_or("made_by", "");
+}
+
+void read_bounds(SceneReader& reader, const std::string& at, Gate& gate) {
+  gate.below = reader.find_number(at + "below", solver::kFinite);
+  gate.above = reader.find_number(at + "above", solver::kFinite);
+  if (reader.has(at + "equals")) {
+    if (gate.below || gate.above) reader.fail(at + "equals", "beside below or above", "one or the other");
+    gate.equals = reader.is_text(at + "equals") ? Json(reader.text(at + "equals"))
+                                                : Json(reader.number(at + "equals", solver::kFinite));
+  } else if (!gate.below && !gate.above) {
+    reader.fail(at + "below", "(missing)", "below, above, both, or equals");
+  }
+  const auto shown = [](double number) { return fmt::format("{:g}", number); };
+  if (gate.below && gate.above && !(*gate.above < *gate.below)) {
+    reader.fail(at + "above", shown(*gate.above), "less than below, " + shown(*gate.below));
+  }
+  if (gate.below && !gate.above && !(*gate.below > 0.0)) {
+    reader.fail(at + "below", shown(*gate.below), "positive where it stands alone, as a bound on the size");
+  }
+}
+
+std::string required_text(SceneReader& reader, const std::string& key) {
+  const std::string text = reader.text(key);
+  if (text.empty()) reader.fail(key, "\"\"", "some text");
+  return text;
+}
+
+Gate read_gate(SceneReader& reader, const std::filesystem::path& file,
+               const std::filesystem::path& results_folder, std::size_t index) {
+  const std::string table = fmt::format("gate[{}]", index);
+  const std::string at = table + ".";
+  Gate gate;
+  gate.file = file;
+  gate.line = reader.line(table);
+  gate.id = required_text(reader, at + "id");
+  gate.status = reader.choice_or(at + "status", GateStatus::active, kStatuses);
+  read_source(reader, at, gate);
+  if (gate.kind == GateSource::result) read_result_source(reader, at, results_folder, gate);
+  gate.quantity = required_text(reader, at + "quantity");
+  read_bounds(reader, at, gate);
+  gate.platform_spread = reader.number_or(at + "platform_spread", 0.0, solver::kNotNegative);
+  gate.reason = reader.text_or(at + "reason", "");
+  gate.basis = reader.text_or(at + "basis", "");
+  if (gate.status == GateStatus::active && gate.basis.empty()) {
+    reader.fail(at + "basis", "(missing)", "where the bound of an active gate comes from");
+  }
+  return gate;
+}
+
+/// Throws InputError where an id is taken; remembers those that are not.
+void claim_ids(const std::vector<Gate>& gates, std::map<std::string, std::string>& places) {
+  std::map<std::string, std::string> claimed = places;
+  for (const Gate& gate : gates) {
+    const std::string place = fmt::format("{}:{}", gate.file.string(), gate.line);
+    const auto [taken, is_new] = claimed.emplace(gate.id, place);
+    if (!is_new)
+      throw InputError(place, "id", gate.id, "an id of its own; this one stands at " + taken->second);
+  }
+  places = std::move(claimed);
+}
+
+}  // namespace
+
+std::vector<Gate> read_gates(const std::filesystem::path& file, const std::filesystem::path& results_folder) {
+  SceneReader reader(file, {});
+  std::vector<Gate> gates;
+  const std::size_t count = reader.count("gate");
+  for (std::size_t i = 0; i < count; ++i) gates.push_back(read_gate(reader, file, results_folder, i));
+  reader.reject_unknown();
+  return gates;
+}
+
+GateFiles read_gate_files(const std::vector<std::string>& files,
+                          const std::filesystem::path& results_folder) {
+  GateFiles result;
+  std::map<std::string, std::string> places;
+  for (const std::string& file : files) {
+    try {
+      const std::vector<Gate> gates = read_gates(file, results_folder);
+      claim_ids(gates, places);
+      result.gates.insert(result.gates.end(), gates.begin(), gates.end());
+    } catch (const InputError& error) {
+      Gate gate;
+      gate.file = file;
+      gate.id = file;
+      result.unreadable.push_back(refuse(gate, error.what()));
+    }
+  }
+  return result;
+}
+
+std::vector<Gate> select_gates(const std::vector<Gate>& gates, const std::vector<std::string>& ids) {
+  if (ids.empty()) return gates;
+  std::vector<std::string> known;
+  for (const Gate& gate : gates) known.push_back(gate.id);
+  for (const std::string& id : ids) {
+    if (std::find(known.begin(), known.end(), id) == known.end()) {
+      throw InputError("--only " + id, known.empty() ? "there is no gate"
+                                                     : "no gate has this id; the nearest is " +
+                                                           solver::nearest_word(id, known));
+    }
+  }
+  std::vector<Gate> selected;
+  std::copy_if(gates.begin(), gates.end(), std::back_inserter(selected),
+               [&](const Gate& gate) { return std::find(ids.begin(), ids.end(), gate.id) != ids.end(); });
+  return selected;
+}
+
+}  // namespace slipstick::convergence

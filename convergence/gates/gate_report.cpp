@@ -1,0 +1,237 @@
+#include "convergence/gates/gate_report.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <map>
+#include <string_view>
+#include <tuple>
+#include <utility>
+
+namespace slipstick::convergence {
+namespace {
+
+/// From the worst to the best.
+constexpr std::array kSeverity{Outcome::failed,   Outcome::passed_unexpectedly, Outcome::refused,
+                               Outcome::reported, Outcome::failed_as_expected,  Outcome::passed};
+
+bool is_wrong(Outcome outcome) {
+  return outcome == Outcome::failed || outcome == Outcome::passed_unexpectedly || outcome == Outcome::refused;
+}
+
+bool is_skipped(Outcome outcome) {
+  return outcome == Outcome::reported || outcome == Outcome::failed_as_expected;
+}
+
+std::vector<const Judgement*> worst_first(const std::vector<Judgement>& judgements) {
+  std::vector<const Judgement*> sorted;
+  for (const Judgement& judgement : judgements) sorted.push_back(&judgement);
+  const auto badness = [](const Judgement* judgement) {
+    const auto severity =
+        std::find(kSeverity.begin(), kSeverity.end(), judgement->outcome) - kSeverity.begin();
+    return std::make_tuple(severity, -judgement->factor);
+  };
+  std::stable_sort(sorted.begin(), sorted.end(),
+                   [&](const auto* a, const auto* b) { return badness(a) < badness(b); });
+  return sorted;
+}
+
+std::size_t count(const std::vector<Judgement>& judgements, Outcome outcome) {
+  return static_cast<std::size_t>(
+      std::count_if(judgements.begin(), judgements.end(),
+                    [&](const auto& judgement) { return judgement.outcome == outcome; }));
+}
+
+/// "40 gates: 38 passed, 2 failed"
+std::string counts_text(const std::vector<Judgement>& judgements) {
+  std::vector<std::string> parts;
+  for (auto outcome = kSeverity.rbegin(); outcome != kSeverity.rend(); ++outcome) {
+    const std::size_t number = count(judgements, *outcome);
+    if (number > 0) parts.push_back(fmt::format("{} {}", number, to_string(*outcome)));
+  }
+  return fmt::format("{} gate{}: {}", judgements.size(), judgements.size() == 1 ? "" : "s",
+                     fmt::join(parts, ", "));
+}
+
+std::string value_text(const Json& value) {
+  if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
+  return value.is_null() ? "-" : value.dump();
+}
+
+/// Whether the gate was read; a file that could not be has no quantity.
+bool was_read(const Judgement& judgement) { return !judgement.gate.quantity.empty(); }
+
+std::string factor_text(const Judgement& judgement) {
+  return std::isfinite(judgement.factor) && judgement.gate.equals.is_null()
+             ? fmt::format("{:.2g}", judgement.factor)
+             : "-";
+}
+
+/// All there is to know of a gate that does not pass, a line each.
+std::vector<std::string> explanation(const Judgement& judgement) {
+  const Gate& gate = judgement.gate;
+  std::vector<std::string> lines{judgement.why};
+  const auto add = [&](const char* label, const std::string& text) {
+    if (!text.empty()) lines.push_back(fmt::format("{}: {}", label, text));
+  };
+  add("likely to blame", judgement.blame);
+  add("why it matters", gate.reason);
+  add("where the bound comes from", gate.basis);
+  if (was_read(judgement)) add("again, alone", rerun_command(gate));
+  return lines;
+}
+
+/// What a case holds beside its name.
+std::string junit_verdict(const Judgement& judgement) {
+  const std::string shown = was_read(judgement)
+                                ? fmt::format("{} = {}, must be {}", judgement.gate.quantity,
+                                              value_text(judgement.value), bound_text(judgement.gate))
+                                : "";
+  const std::string out = fmt::format("<system-out>{}</system-out>", xml_text(shown));
+  if (judgement.outcome == Outcome::passed) return out;
+  if (is_skipped(judgement.outcome)) {
+    return fmt::format("<skipped message=\"{}: {}\"/>{}", to_string(judgement.outcome),
+                       xml_text(judgement.why.empty() ? shown : judgement.why), out);
+  }
+  const char* const tag = judgement.outcome == Outcome::refused ? "error" : "failure";
+  return fmt::format("<{0} message=\"{1}\" type=\"{2}\">{3}</{0}>{4}", tag, xml_text(judgement.why),
+                     to_string(judgement.outcome),
+                     xml_text(fmt::format("{}", fmt::join(explanation(judgement), "\n"))), out);
+}
+
+std::string junit_counts(const std::vector<Judgement>& judgements) {
+  double seconds = 0.0;
+  for (const Judgement& judgement : judgements) seconds += judgement.seconds;
+  return fmt::format(
+      "tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\"", judgements.size(),
+      count(judgements, Outcome::failed) + count(judgements, Outcome::passed_unexpectedly),
+      count(judgements, Outcome::refused),
+      count(judgements, Outcome::reported) + count(judgements, Outcome::failed_as_expected), seconds);
+}
+
+std::string junit_suite(const std::string& file, const std::vector<Judgement>& judgements) {
+  std::string text = fmt::format("  <testsuite name=\"{}\" {}>\n", xml_text(file), junit_counts(judgements));
+  const std::string classname = std::filesystem::path(file).stem().string();
+  for (const Judgement& judgement : judgements) {
+    text += fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\">{}</testcase>\n",
+                        xml_text(classname), xml_text(judgement.gate.id), judgement.seconds,
+                        junit_verdict(judgement));
+  }
+  return text + "  </testsuite>\n";
+}
+
+std::string markdown_row(const Judgement& judgement) {
+  const std::string remarks =
+      judgement.outcome == Outcome::passed ? "" : fmt::format("{}", fmt::join(explanation(judgement), "\n"));
+  return fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", to_string(judgement.outcome),
+                     markdown_cell(judgement.gate.id), markdown_cell(judgement.gate.quantity),
+                     markdown_cell(value_text(judgement.value)),
+                     was_read(judgement) ? markdown_cell(bound_text(judgement.gate)) : "-",
+                     factor_text(judgement), markdown_cell(remarks));
+}
+
+/// What stands in a workflow command: properties end at commas and colons too.
+std::string annotation(std::string_view text, bool is_property) {
+  std::string escaped;
+  for (const char c : text) {
+    const bool special = c == '%' || c == '\r' || c == '\n' || (is_property && (c == ':' || c == ','));
+    escaped += special ? fmt::format("%{:02X}", static_cast<int>(c)) : std::string(1, c);
+  }
+  return escaped;
+}
+
+Json judgement_json(const Judgement& judgement) {
+  const Gate& gate = judgement.gate;
+  Json json{{"id", gate.id},
+            {"file", gate.file.string()},
+            {"line", gate.line},
+            {"outcome", to_string(judgement.outcome)}};
+  if (was_read(judgement)) {
+    json["quantity"] = gate.quantity;
+    json["value"] = judgement.value;
+    if (judgement.value.is_null()) json["value_reason"] = judgement.why;
+    if (gate.below) json["below"] = *gate.below;
+    if (gate.above) json["above"] = *gate.above;
+    if (!gate.equals.is_null()) json["equals"] = gate.equals;
+    set_number(json, "factor", judgement.factor, "no number says how far it is from the bound");
+    json["basis"] = gate.basis;
+    json["reason"] = gate.reason;
+    json["rerun"] = rerun_command(gate);
+  }
+  json["why"] = judgement.why;
+  if (!judgement.blame.empty()) json["blame"] = judgement.blame;
+  return json;
+}
+
+}  // namespace
+
+std::string gates_text(const std::vector<Judgement>& judgements) {
+  std::size_t width = 0;
+  for (const Judgement& judgement : judgements) width = std::max(width, judgement.gate.id.size());
+  std::string text;
+  std::string details;
+  for (const Judgement& judgement : judgements) {
+    const Gate& gate = judgement.gate;
+    if (was_read(judgement)) {
+      text += fmt::format("  {:<19} {:<{}}  {} = {}, {}\n", to_string(judgement.outcome), gate.id, width,
+                          gate.quantity, value_text(judgement.value), bound_text(gate));
+    }
+    if (!is_wrong(judgement.outcome)) continue;
+    details += fmt::format("\n{}: {}\n", to_string(judgement.outcome), gate.id);
+    for (const std::string& line : explanation(judgement)) details += fmt::format("  {}\n", line);
+  }
+  return text + details + counts_text(judgements) + "\n";
+}
+
+std::string gates_junit(const std::vector<Judgement>& judgements) {
+  std::map<std::string, std::vector<Judgement>> suites;
+  for (const Judgement& judgement : judgements) suites[judgement.gate.file.string()].push_back(judgement);
+  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
+  text += fmt::format("<testsuites name=\"slipstick gates\" {}>\n", junit_counts(judgements));
+  for (const auto& [file, cases] : suites) text += junit_suite(file, cases);
+  return text + "</testsuites>\n";
+}
+
+std::string gates_markdown(const std::vector<Judgement>& judgements) {
+  constexpr std::size_t room_for_note = 100;
+  std::string text = fmt::format("### {}\n\n", counts_text(judgements));
+  text +=
+      "| outcome | gate | quantity | value | must be | times the bound | |\n|---|---|---|---|---|---|---|\n";
+  const std::vector<const Judgement*> sorted = worst_first(judgements);
+  for (std::size_t i = 0; i < sorted.size(); ++i) {
+    const std::string row = markdown_row(*sorted[i]);
+    if (text.size() + row.size() + room_for_note > kMostMarkdown) {
+      return text +
+             fmt::format("\n{} more gates, none worse than these, are left out here.\n", sorted.size() - i);
+    }
+    text += row;
+  }
+  return text;
+}
+
+std::string gates_annotations(const std::vector<Judgement>& judgements) {
+  std::string text;
+  for (const Judgement* const judgement : worst_first(judgements)) {
+    if (!is_wrong(judgement->outcome)) continue;
+    const Gate& gate = judgement->gate;
+    text += fmt::format("::error file={},line={},title={}::{}\n", annotation(gate.file.string(), true),
+                        std::max<std::size_t>(gate.line, 1), annotation("Gate " + gate.id, true),
+                        annotation(fmt::format("{}", fmt::join(explanation(*judgement), "\n")), false));
+  }
+  return text;
+}
+
+Json gates_json(const std::vector<Judgement>& judgements) {
+  Json json;
+  json["exit_code"] = exit_code(judgements);
+  json["counts"] = Json::object();
+  for (const Outcome outcome : kSeverity) json["counts"][to_string(outcome)] = count(judgements, outcome);
+  json["gates"] = Json::array();
+  for (const Judgement& judgement : judgements) json["gates"].push_back(judgement_json(judgement));
+  return json;
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "convergence/gates/gate.hpp"
+#include "convergence/runs/point_runner.hpp"
+
+namespace slipstick::convergence {
+
+/// Computes what gates ask for, all scenes side by side and equal ones once, or reads it, and judges it. A
+/// gate whose scene, study or result cannot be read is refused; the others are judged all the same.
+std::vector<Judgement> run_gates(const std::vector<Gate>& gates, PointRunner& runner);
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "convergence/oracle/oracle.hpp"
+#include "solver/solve.hpp"
+
+namespace slipstick::convergence {
+
+/// Relative errors of a field: sum |f - exact| / sum |exact|, the same of squares under a root, and of
+/// maxima. A cell where the exact value is infinite (a cone's axis, with an odd number of cells) is left out.
+struct FieldError {
+  double l1;
+  double l2;
+  double max;
+};
+
+/// Errors of a traction field, all relative to the whole contact's exact field, so that those of the regions
+/// add up to that of `averaged` (l1; l2 in squares).
+struct TractionError {
+  FieldError at_centres;  ///< against the exact values at cell centres
+  FieldError
+      averaged;  ///< against exact averages over the cells, which differ where the traction has an edge
+  FieldError stick_edge;    ///< within kEdgeBand cells of the stick radius
+  FieldError contact_edge;  ///< within kEdgeBand cells of the contact radius, the stick edge's band excluded
+  FieldError inside;        ///< the rest of the stick area
+  FieldError outside;       ///< the rest of the slip ring, and cells that should carry nothing
+};
+inline constexpr double kEdgeBand = 2.0;
+
+/// Signed relative errors computed/exact - 1, and errors of the fields at cell centres. Where the exact value
+/// is zero (no load: twist, moment, traction), infinite (peak pressure of a cone and a flat punch) or not
+/// known, the error is NaN.
+struct Errors {
+  double twist;
+  double moment;
+  double moment_limit;
+  double stick_radius;
+  double stick_ratio;
+  double displacement;  ///< length of the difference, not signed
+  double dissipated;    ///< in the step
+  double stick_radius_counted;
+  double contact_radius;
+  double peak_pressure;
+  TractionError traction;
+  FieldError pressure;
+};
+
+/// Exact fields at the cell centres of a solution, in its model's units.
+struct ExactFields {
+  Eigen::ArrayXd radius;    ///< cells: as the oracle measures it
+  Eigen::ArrayXd pressure;  ///< cells
+  Eigen::ArrayXd traction;  ///< 2*cells; NaN where the oracle does not know it
+};
+
+ExactFields exact_fields(const Oracle& oracle, const solver::Model& model);
+/// traction: 2*cells, in the model's units.
+TractionError traction_error(const Eigen::ArrayXd& traction, const Oracle& oracle,
+                             const solver::Model& model);
+/// pressure: cells, in the model's units. Where the exact one is infinite it is left out.
+FieldError pressure_error(const Eigen::ArrayXd& pressure, const Oracle& oracle, const solver::Model& model);
+Errors compare(const solver::Solution& solution, const Oracle& oracle);
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,407 @@
+#include "convergence/oracle/exact_theories.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <numeric>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+#include <vector>
+
+#include "analytic/cycle.hpp"
+#include "analytic/indentation.hpp"
+#include "analytic/named_profile.hpp"
+#include "analytic/spence.hpp"
+#include "analytic/tangential_history.hpp"
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+/// Moduli of the pair: 1/E* = sum of (1 - nu^2)/E, and 1/G = sum of 2 (1 + nu)/E.
+struct Moduli {
+  double effective;
+  double shear;
+};
+Moduli moduli(const solver::Scene& scene) {
+  const auto sum_of = [&](auto numerator) {
+    return numerator(scene.upper.poisson_ratio) / scene.upper.young_modulus +
+           numerator(scene.lower.poisson_ratio) / scene.lower.young_modulus;
+  };
+  return {.effective = 1.0 / sum_of([](double nu) { return 1.0 - nu * nu; }),
+          .shear = 1.0 / sum_of([](double nu) { return 2.0 * (1.0 + nu); })};
+}
+
+/// The contact before torsion.
+analytic::PressedContact press(const solver::Surface& surface, double load, double effective_modulus) {
+  using solver::Shape;
+  const auto press_as = [&](const std::string& profile, const std::vector<double>& shape) {
+    return analytic::press(profile, {load, effective_modulus, shape});
+  };
+  switch (surface.shape) {
+    case Shape::sphere:
+      return press_as("hertz", {surface.radius});
+    case Shape::ellipsoid:  // of equal radii; others are PressedEllipse's
+      return press_as("hertz", {surface.radius_1});
+    case Shape::cone:
+      return press_as("cone", {surface.slope});
+    case Shape::flat_punch:
+      return press_as("flat_punch", {surface.radius});
+    case Shape::rounded_punch:
+      return press_as("rounded_punch", {surface.flat_radius, surface.corner_radius});
+    case Shape::power:
+      return press_as(fmt::format("power:{}", surface.exponent), {surface.coefficient});
+    case Shape::height_map:
+    case Shape::roughness:
+      break;
+  }
+  throw std::logic_error("a shape without an exact solution");
+}
+
+/// The highest pressure over p0: on the axis, at the edge, or, under what is flatter than a paraboloid, at
+/// the one maximum between them (golden section).
+double peak_of(const analytic::Profile& profile) {
+  constexpr int steps = 80;  // 0.618^80 is below the rounding of a radius
+  double low = 0.0;
+  double high = 1.0;
+  for (int step = 0; step < steps; ++step) {
+    const double part = (high - low) / (1.0 + std::numbers::phi);
+    const bool rises = profile.pressure(low + part) < profile.pressure(high - part);
+    (rises ? low : high) = rises ? low + part : high - part;
+  }
+  return std::max({profile.pressure(0.0), profile.pressure(high), profile.pressure(1.0)});
+}
+
+/// What the tests hold the functions of analytic/ to, at their worst (a rounded punch's), and a few roundings
+/// of the scene's units.
+constexpr double kUncertainty = 2e-14;
+/// Of Spence's stick ratio: ten digits of it stand still as his integral equations are refined.
+constexpr double kSpenceUncertainty = 1e-10;
+
+/// What makes dimensionless moments and twists those of the scene.
+struct TorsionUnits {
+  double moment;  ///< mu W a
+  double twist;   ///< mu W/(G a^2)
+};
+
+/// What the theories share: an indenter's contact, and the pair's moduli.
+class Indentation {
+ public:
+  explicit Indentation(const solver::Scene& scene)
+      : source_(scene.source.string()),
+        surface_(scene.surfaces.front()),
+        pair_(moduli(scene)),
+        friction_(scene.friction) {}
+
+  const Moduli& pair() const { return pair_; }
+  double friction() const { return friction_; }
+
+  /// The contact, without shear.
+  Oracle pressed(double load) const {
+    const auto [named, contact] = pressed_shape(load);
+    Oracle oracle{};
+    oracle.profile = named.profile;
+    oracle.centre = surface_.at;
+    oracle.contact_radius = contact.contact_radius;
+    oracle.reference_pressure = contact.reference_pressure;
+    oracle.peak_pressure = contact.reference_pressure * peak_of(*named.profile);
+    oracle.approach = contact.approach;
+    oracle.friction = friction_;
+    oracle.moment_limit = named.profile->moment_limit() * friction_ * load * contact.contact_radius;
+    oracle.stick_radius = contact.contact_radius;
+    oracle.state.stick_ratio = 1.0;
+    oracle.relative_uncertainty = kUncertainty;
+    return oracle;
+  }
+
+ private:
+  /// What the theory does not answer is the scene's: a shape that is none in double precision.
+  analytic::PressedContact pressed_shape(double load) const {
+    try {
+      return press(surface_, load, pair_.effective);
+    } catch (const std::domain_error& error) {
+      throw solver::InputError(source_, fmt::format("[upper] has no exact contact: {}", error.what()));
+    }
+  }
+
+  std::string source_;
+  solver::Surface surface_;
+  Moduli pair_;
+  double friction_;
+};
+
+/// Torsion under a constant normal load: first loading, then Masing's rule.
+class TorsionHistory final : public ExactHistory {
+ public:
+  TorsionHistory(const Indentation& indentation, double normal_load)
+      : contact_(indentation.pressed(normal_load)),
+        units_{.moment = contact_.friction * normal_load * contact_.contact_radius,
+               .twist = contact_.friction * normal_load /
+                        (indentation.pair().shear * contact_.contact_radius * contact_.contact_radius)},
+        history_(*contact_.profile) {}
+
+ private:
+  OracleAnswer follow(const solver::Step& step) override {
+    try {
+      return {first_ ? load_first(step.torsion) : load_on(step.torsion), ""};
+    } catch (const std::domain_error& error) {
+      return {std::nullopt,
+              fmt::format("beyond the range of the exact solution: {} (M_lim = {:.17g} N m, mu W/(G a^2) = "
+                          "{:.6g} rad)",
+                          error.what(), contact_.moment_limit, units_.twist),
+              true};
+    }
+  }
+
+  double ratio_of(const solver::TorsionLoad& load) const {
+    return load.moment_ratio ? *load.moment_ratio : *load.moment / contact_.moment_limit;
+  }
+
+  /// The ratio that turns the contact on to a twist, by bisection: 1 or -1 where none does.
+  double ratio_at(double twist) const {
+    double low = -1.0;
+    double high = 1.0;
+    for (double middle = 0.0; low < middle && middle < high; middle = std::midpoint(low, high)) {
+      analytic::LoadingHistory turned = history_;
+      turned.load_to(middle);
+      (turned.state().twist < twist ? low : high) = middle;
+    }
+    return high == 1.0 ? high : low;
+  }
+
+  Oracle load_first(const solver::TorsionLoad& load) {
+    first_ = false;
+    const double sign = std::copysign(1.0, load.twist ? *load.twist : ratio_of(load));
+    Oracle oracle = contact_;
+    oracle.state = load.twist ? analytic::from_twist(std::abs(*load.twist) / units_.twist, *contact_.profile)
+                              : analytic::from_moment_ratio(std::abs(ratio_of(load)), *contact_.profile);
+    history_.load_to(sign * oracle.state.moment_ratio);
+    dissipated_ = history_.state().dissipated;
+    oracle.dissipated = dissipated_ * energy_unit();
+    oracle.shear = [scale = sign * oracle.friction * oracle.reference_pressure, state = oracle.state,
+                    profile = oracle.profile, a = oracle.contact_radius](double radius) {
+      return scale * analytic::traction(state, radius / a, *profile);
+    };
+    for (double* const value : {&oracle.state.moment, &oracle.state.twist, &oracle.state.moment_ratio}) {
+      *value *= sign;
+    }
+    return in_units(oracle);
+  }
+
+  Oracle load_on(const solver::TorsionLoad& load) {
+    history_.load_to(load.twist ? ratio_at(*load.twist / units_.twist) : ratio_of(load));
+    const analytic::CycleState state = history_.state();
+    Oracle oracle = contact_;
+    oracle.state = {.moment_ratio = state.moment_ratio,
+                    .moment_deficit = 1.0 - std::abs(state.moment_ratio),
+                    .stick_ratio = state.stick_ratio,
+                    .stick_complement = 1.0 - state.stick_ratio,
+                    .twist = state.twist,
+                    .moment = state.moment,
+                    .tangent_stiffness = state.tangent_stiffness};
+    oracle.dissipated = (state.dissipated - dissipated_) * energy_unit();
+    dissipated_ = state.dissipated;
+    oracle.shear = [scale = oracle.friction * oracle.reference_pressure, history = history_,
+                    a = oracle.contact_radius](double radius) {
+      return scale * history.traction(radius / a);
+    };
+    return in_units(oracle);
+  }
+
+  Oracle in_units(Oracle oracle) const {
+    oracle.moment = oracle.state.moment * units_.moment;
+    oracle.twist_angle = oracle.state.twist * units_.twist;
+    oracle.stick_radius = oracle.state.stick_ratio * oracle.contact_radius;
+    return oracle;
+  }
+
+  double energy_unit() const { return units_.moment * units_.twist; }
+
+  Oracle contact_;
+  TorsionUnits units_;
+  analytic::LoadingHistory history_;
+  double dissipated_ = 0.0;
+  bool first_ = true;
+};
+
+/// A tangential force along one line, under any normal loads.
+class ForceHistory final : public ExactHistory {
+ public:
+  /// first_load: the scale of loads.
+  ForceHistory(Indentation indentation, double first_load, double exponent,
+               const std::array<double, 2>& direction)
+      : indentation_(std::move(indentation)),
+        direction_(direction),
+        load_(first_load),
+        reference_(indentation_.pressed(load_)),
+        history_(analytic::SelfSimilarIndenter(exponent)) {}
+
+ private:
+  OracleAnswer follow(const solver::Step& step) override {
+    const double unit = indentation_.friction() * load_;
+    const double force = step.force[0] * direction_[0] + step.force[1] * direction_[1];
+    try {
+      const double normal = *step.normal / load_;
+      // The solver's steps bring a rising load before the force.
+      if (normal > history_.state().normal_load) history_.load_to(normal, history_.state().force);
+      history_.load_to(normal, force / unit);
+    } catch (const std::domain_error& error) {
+      return {std::nullopt, fmt::format("beyond the range of the exact solution: {}", error.what()), true};
+    }
+    const analytic::tangential::HistoryState state = history_.state();
+    const double a = reference_.contact_radius;
+    const double length = unit / (indentation_.pair().shear * a);
+    Oracle oracle = indentation_.pressed(*step.normal);
+    oracle.force = step.force;
+    oracle.displacement = {state.displacement * length * direction_[0],
+                           state.displacement * length * direction_[1]};
+    oracle.stick_radius = state.stick_radius * a;
+    oracle.state.stick_ratio = state.stick_radius / state.contact_radius;
+    oracle.dissipated = (state.dissipated - dissipated_) * unit * length;
+    dissipated_ = state.dissipated;
+    oracle.direction = direction_;
+    oracle.shear = [scale = indentation_.friction() * reference_.reference_pressure, history = history_,
+                    a](double radius) { return scale * history.traction(radius / a); };
+    return {oracle, ""};
+  }
+
+  Indentation indentation_;
+  std::array<double, 2> direction_;
+  double load_;
+  Oracle reference_;
+  analytic::tangential::TangentialHistory history_;
+  double dissipated_ = 0.0;
+};
+
+/// Dissimilar bodies pressed together, more and more: the stick ratio is the same throughout.
+class FrictionalIndentation final : public ExactHistory {
+ public:
+  explicit FrictionalIndentation(const solver::Scene& scene)
+      : indentation_(scene), full_(scene.coupling == solver::Coupling::full) {
+    const double beta = 0.5 * indentation_.pair().effective * (mismatch(scene.lower) - mismatch(scene.upper));
+    stick_ratio_ = full_ ? analytic::spence_contact(scene.friction, beta).stick_ratio
+                         : analytic::goodman_stick_radius(scene.friction, beta).ratio;
+  }
+
+ private:
+  OracleAnswer follow(const solver::Step& step) override {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    Oracle oracle = indentation_.pressed(*step.normal);
+    oracle.state.stick_ratio = stick_ratio_;
+    oracle.stick_radius = stick_ratio_ * oracle.contact_radius;
+    oracle.dissipated = unknown;
+    if (full_) {  // shear has its part in the pressure
+      oracle.relative_uncertainty = kSpenceUncertainty;
+      oracle.contact_radius = oracle.stick_radius = oracle.approach = oracle.peak_pressure = unknown;
+      oracle.reference_pressure = oracle.moment_limit = unknown;
+    }
+    return {oracle, ""};
+  }
+
+  Indentation indentation_;
+  bool full_;
+  double stick_ratio_ = 0.0;
+};
+
+/// Hertz's elliptic contact, whatever friction does: only gross slip has an exact solution.
+class PressedEllipse final : public ExactHistory {
+ public:
+  explicit PressedEllipse(const solver::Scene& scene)
+      : surface_(scene.surfaces.front()), pair_(moduli(scene)), friction_(scene.friction) {}
+
+ private:
+  OracleAnswer follow(const solver::Step& step) override {
+    constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+    constexpr std::array unknown_pair{unknown, unknown};
+    Oracle oracle = pressed(*step.normal);
+    oracle.moment = moment_of(step.torsion, oracle.moment_limit);
+    oracle.twist_angle = step.torsion.twist.value_or(unknown);
+    oracle.force = step.displacement ? unknown_pair : step.force;
+    oracle.displacement = step.displacement.value_or(unknown_pair);
+    oracle.stick_radius = oracle.dissipated = unknown;
+    oracle.state = {.moment_ratio = oracle.moment / oracle.moment_limit,
+                    .moment_deficit = 1.0 - std::abs(oracle.moment) / oracle.moment_limit,
+                    .stick_ratio = unknown,
+                    .stick_complement = unknown,
+                    .twist = oracle.twist_angle * pair_.shear * oracle.contact_radius *
+                             oracle.contact_radius / (friction_ * *step.normal),
+                    .moment = oracle.moment / (friction_ * *step.normal * oracle.contact_radius),
+                    .tangent_stiffness = unknown};
+    oracle.only_normal =
+        "normal contact only: no exact solution with friction is known here for shape = \"ellipsoid\" with "
+        "two "
+        "different radii";
+    return {oracle, ""};
+  }
+
+  Oracle pressed(double load) const {
+    const analytic::HertzEllipse contact =
+        analytic::hertz_ellipse(load, surface_.radius_1, surface_.radius_2, pair_.effective);
+    Oracle oracle{};
+    oracle.profile = analytic::find_profile("hertz").profile;
+    oracle.centre = surface_.at;
+    oracle.axis_ratio = contact.semi_axis_1 / contact.semi_axis_2;
+    oracle.angle = surface_.angle;
+    oracle.contact_radius = std::sqrt(contact.semi_axis_1 * contact.semi_axis_2);
+    oracle.reference_pressure = contact.peak_pressure;
+    oracle.peak_pressure = contact.peak_pressure;
+    oracle.approach = contact.approach;
+    oracle.moment_limit = friction_ * load * contact.friction_arm;
+    oracle.friction = friction_;
+    oracle.relative_uncertainty = kUncertainty;
+    return oracle;
+  }
+
+  static double moment_of(const solver::TorsionLoad& load, double limit) {
+    if (load.twist) return std::numeric_limits<double>::quiet_NaN();
+    return load.moment.value_or(load.moment_ratio.value_or(0.0) * limit);
+  }
+
+  solver::Surface surface_;
+  Moduli pair_;
+  double friction_;
+};
+
+class NoTheory final : public ExactHistory {
+ public:
+  explicit NoTheory(std::string reason) : reason_(std::move(reason)) {}
+
+ private:
+  OracleAnswer follow(const solver::Step&) override { return {std::nullopt, reason_}; }
+
+  std::string reason_;
+};
+
+}  // namespace
+
+double mismatch(const solver::Material& m) {
+  return (1.0 - 2.0 * m.poisson_ratio) * (1.0 + m.poisson_ratio) / m.young_modulus;
+}
+
+std::unique_ptr<ExactHistory> torsion_history(const solver::Scene& scene) {
+  return std::make_unique<TorsionHistory>(Indentation(scene), *scene.steps.front().normal);
+}
+
+std::unique_ptr<ExactHistory> force_history(const solver::Scene& scene, double gap_exponent,
+                                            const std::array<double, 2>& direction) {
+  return std::make_unique<ForceHistory>(Indentation(scene), *scene.steps.front().normal, gap_exponent,
+                                        direction);
+}
+
+std::unique_ptr<ExactHistory> frictional_indentation(const solver::Scene& scene) {
+  return std::make_unique<FrictionalIndentation>(scene);
+}
+
+std::unique_ptr<ExactHistory> pressed_ellipse(const solver::Scene& scene) {
+  return std::make_unique<PressedEllipse>(scene);
+}
+
+std::unique_ptr<ExactHistory> no_theory(const std::string& reason) {
+  return std::make_unique<NoTheory>(reason);
+}
+
+}  // namespace slipstick::convergence

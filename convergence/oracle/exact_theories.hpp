@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <string>
+
+#include "convergence/oracle/oracle.hpp"
+
+/// The exact theories, each for scenes of which oracle.hpp knows that it holds.
+namespace slipstick::convergence {
+
+/// What the tangential displacement by pressure goes with, (1 - 2 nu)/(2 G): bodies of equal ones are
+/// similar.
+double mismatch(const solver::Material& material);
+
+/// Torsion under a constant normal load: first loading, then Masing's rule.
+std::unique_ptr<ExactHistory> torsion_history(const solver::Scene& scene);
+
+/// A tangential force along one line (a unit vector), under any normal loads, on a gap like r^n.
+std::unique_ptr<ExactHistory> force_history(const solver::Scene& scene, double gap_exponent,
+                                            const std::array<double, 2>& direction);
+
+/// Dissimilar bodies pressed together, more and more. Throws what Goodman's and Spence's solutions throw.
+std::unique_ptr<ExactHistory> frictional_indentation(const solver::Scene& scene);
+
+/// Normal contact and limit moment of an ellipsoid, under any loads.
+std::unique_ptr<ExactHistory> pressed_ellipse(const solver::Scene& scene);
+
+/// No answer, for this reason.
+std::unique_ptr<ExactHistory> no_theory(const std::string& reason);
+
+}  // namespace slipstick::convergence

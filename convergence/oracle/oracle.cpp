@@ -1,0 +1,185 @@
+#include "convergence/oracle/oracle.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <vector>
+
+#include "convergence/oracle/exact_theories.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+bool is_elliptic(const solver::Surface& surface) {
+  return surface.shape == solver::Shape::ellipsoid && surface.radius_1 != surface.radius_2;
+}
+
+/// Why a surface has no exact solution here; empty if it has one.
+std::string obstacle(const std::vector<solver::Surface>& surfaces) {
+  using solver::Shape;
+  if (surfaces.size() > 1) return "no exact solution is known here for several shapes";
+  const solver::Surface& surface = surfaces.front();
+  const char* detail = nullptr;
+  if (surface.shape == Shape::height_map || surface.shape == Shape::roughness) detail = "";
+  if (surface.shape == Shape::flat_punch && surface.inner_radius > 0.0) detail = " with an inner radius";
+  if (detail == nullptr) return "";
+  return fmt::format("no exact solution is known here for shape = \"{}\"{}", to_string(surface.shape),
+                     detail);
+}
+
+/// Whether the pressure moves the two surfaces sideways by different amounts, and the scene wants to know.
+bool is_coupled(const solver::Scene& scene) {
+  return scene.coupling != solver::Coupling::none && mismatch(scene.upper) != mismatch(scene.lower);
+}
+
+/// Why no theory holds for a scene; empty if one may.
+std::string obstacle(const solver::Scene& scene) {
+  std::string of_surface = obstacle(scene.surfaces);
+  if (!of_surface.empty()) return of_surface;
+  if (scene.pressure == solver::PressureModel::file) return "the pressure comes from a file";
+  if (scene.ends_at_grid_edge) return "the body may end at the grid's edge (upper.ends_at_grid_edge)";
+  if (!(scene.friction > 0.0)) return "without friction there is no traction";
+  return "";
+}
+
+bool without_torsion(const solver::Step& step) {
+  const solver::TorsionLoad& load = step.torsion;
+  return load.moment_ratio.value_or(load.moment.value_or(load.twist.value_or(0.0))) == 0.0;
+}
+
+bool without_force(const solver::Step& step) {
+  return !step.displacement && step.force == std::array<double, 2>{};
+}
+
+/// Of gaps like r^n.
+std::optional<double> gap_exponent(const solver::Surface& surface) {
+  using solver::Shape;
+  switch (surface.shape) {
+    case Shape::sphere:
+      return 2.0;
+    case Shape::ellipsoid:
+      return is_elliptic(surface) ? std::nullopt : std::optional(2.0);
+    case Shape::cone:
+      return 1.0;
+    case Shape::flat_punch:
+      return std::numeric_limits<double>::infinity();
+    case Shape::power:
+      return surface.exponent;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// Of a direction given by two numbers.
+constexpr double kRounding = 1e-14;
+
+/// The line along which all forces act, as a unit vector; none if there are several.
+std::optional<std::array<double, 2>> line_of_forces(const std::vector<solver::Step>& steps) {
+  std::array<double, 2> line{};
+  for (const solver::Step& step : steps) {
+    const auto& [f1, f2] = step.force;
+    const double size = std::hypot(f1, f2);
+    if (size == 0.0) continue;
+    if (line == std::array<double, 2>{}) line = {f1 / size, f2 / size};
+    if (std::abs(line[0] * f2 - line[1] * f1) > kRounding * size) return std::nullopt;
+  }
+  return line;
+}
+
+bool has_no_cross_contraction(const solver::Material& material) {
+  return material.poisson_ratio == 0.0 || std::isinf(material.young_modulus);
+}
+
+std::unique_ptr<ExactHistory> history_under_force(const solver::Scene& scene) {
+  const auto exponent = gap_exponent(scene.surfaces.front());
+  const auto line = line_of_forces(scene.steps);
+  if (std::any_of(scene.steps.begin(), scene.steps.end(), [](const auto& s) { return s.displacement; })) {
+    return no_theory("the displacement is imposed, not the force");
+  }
+  if (!has_no_cross_contraction(scene.upper) || !has_no_cross_contraction(scene.lower)) {
+    return no_theory("Cattaneo's and Mindlin's solution is exact only where Poisson's ratios are 0");
+  }
+  if (!line) return no_theory("no exact solution is known here for forces along several lines");
+  if (!exponent) return no_theory("the contact does not stay similar to itself as the load changes");
+  return force_history(scene, *exponent, *line);
+}
+
+std::unique_ptr<ExactHistory> history_of_dissimilar(const solver::Scene& scene) {
+  const auto& steps = scene.steps;
+  const bool pressed_only = std::all_of(steps.begin(), steps.end(), [](const solver::Step& step) {
+    return without_torsion(step) && without_force(step);
+  });
+  const bool growing =
+      scene.cycles == 1 && std::is_sorted(steps.begin(), steps.end(),
+                                          [](const auto& a, const auto& b) { return *a.normal < *b.normal; });
+  if (!pressed_only || !growing || !gap_exponent(scene.surfaces.front())) {
+    return no_theory(
+        "the pressure's tangential displacement of dissimilar materials enters (contact.coupling)");
+  }
+  try {
+    return frictional_indentation(scene);
+  } catch (const std::exception& error) {
+    return no_theory(error.what());
+  }
+}
+
+}  // namespace
+
+double Oracle::radius(double y1, double y2) const {
+  const double along = std::cos(angle) * y1 + std::sin(angle) * y2;
+  const double across = std::cos(angle) * y2 - std::sin(angle) * y1;
+  return std::sqrt(along * along / axis_ratio + across * across * axis_ratio);
+}
+
+double Oracle::longer_semi_axis() const {
+  return contact_radius * std::sqrt(std::max(axis_ratio, 1.0 / axis_ratio));
+}
+
+double Oracle::shorter_semi_axis() const {
+  return contact_radius * std::sqrt(std::min(axis_ratio, 1.0 / axis_ratio));
+}
+
+double Oracle::pressure(double radius) const {
+  const double ratio = radius / contact_radius;
+  if (std::isnan(ratio)) return ratio;
+  return ratio < 1.0 ? reference_pressure * profile->pressure(ratio) : 0.0;
+}
+
+double Oracle::traction(double radius) const {
+  if (!shear) return std::numeric_limits<double>::quiet_NaN();
+  return radius < contact_radius ? shear(radius) : 0.0;
+}
+
+OracleAnswer ExactHistory::advance(const solver::Step& step) {
+  if (left_) return {std::nullopt, "a step before left the range of the exact solution"};
+  OracleAnswer answer = follow(step);
+  left_ = answer.out_of_range;
+  return answer;
+}
+
+std::unique_ptr<ExactHistory> exact_history(const solver::Scene& scene) {
+  const std::string reason = obstacle(scene);
+  if (!reason.empty()) return no_theory(reason);
+  if (is_coupled(scene)) return history_of_dissimilar(scene);
+  if (is_elliptic(scene.surfaces.front())) return pressed_ellipse(scene);
+  const auto& steps = scene.steps;
+  if (!std::all_of(steps.begin(), steps.end(), without_force)) {
+    if (std::all_of(steps.begin(), steps.end(), without_torsion)) return history_under_force(scene);
+    return no_theory("no exact solution is known here for torsion together with a force");
+  }
+  const bool constant_load = std::all_of(steps.begin(), steps.end(), [&](const solver::Step& step) {
+    return step.normal == steps.front().normal;
+  });
+  if (!constant_load)
+    return no_theory("no exact solution is known here for torsion while the normal load changes");
+  return torsion_history(scene);
+}
+
+OracleAnswer find_oracle(const solver::Scene& scene) {
+  return exact_history(scene)->advance(scene.steps.front());
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,210 @@
+// solver.model = "exact": a scene answered without a grid.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "analytic/torsion.hpp"
+#include "convergence/results/exact_result.hpp"
+#include "solver/input/field_file.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/solve.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+namespace fs = std::filesystem;
+
+// A few roundings on the way from a scene's moduli to the number.
+constexpr double kTolerance = 1e-14;
+
+const std::vector<std::string> kBodies{"paper", "cone", "flat_punch"};
+
+solver::Scene scene(const std::string& name, std::vector<std::string> overrides = {}) {
+  overrides.emplace_back("solver.model=exact");
+  return solver::read_scene(std::string(SLIPSTICK_SCENES) + "/" + name + ".toml", overrides);
+}
+
+Json answer(const solver::Scene& scene) { return exact_result(scene, require_oracle(scene), 0.0); }
+
+double number(const Json& result, const char* key) { return result[key].get<double>(); }
+
+const analytic::Profile& profile_of(const std::string& name) {
+  return name == "cone"         ? analytic::cone_profile()
+         : name == "flat_punch" ? analytic::flat_punch_profile()
+                                : analytic::hertz_profile();
+}
+
+TEST(ExactModel, GivesTheNumbersOfTheExactSolution) {
+  for (const std::string& name : kBodies) {
+    for (const double ratio : {0.1, 0.5, 0.9, 0.99}) {
+      const Json result = answer(scene(name, {"load.moment_ratio=" + std::to_string(ratio)}));
+      const analytic::TorsionState state = analytic::from_moment_ratio(ratio, profile_of(name));
+      EXPECT_EQ(number(result, "moment_ratio"), ratio) << name;
+      EXPECT_EQ(number(result, "stick_ratio"), state.stick_ratio) << name;
+      EXPECT_EQ(number(result, "twist"), state.twist) << name;
+      const double a = number(result, "contact_radius");
+      const double force = 0.1 * number(result, "normal_load");
+      const double shear_modulus = 210e9 / (2.0 * 1.3) / 2.0;
+      EXPECT_DOUBLE_EQ(number(result, "stick_radius"), state.stick_ratio * a);
+      EXPECT_NEAR(number(result, "moment") / (state.moment * force * a), 1.0, kTolerance);
+      EXPECT_NEAR(number(result, "twist_angle") / (state.twist * force / (shear_modulus * a * a)), 1.0,
+                  kTolerance);
+    }
+  }
+}
+
+TEST(ExactModel, AnswersForTheMomentAndForTheTwist) {
+  for (const std::string& name : kBodies) {
+    const Json by_ratio = answer(scene(name, {"load.moment_ratio=0.7"}));
+    for (const auto& [key, value] : {std::pair("load.moment", number(by_ratio, "moment")),
+                                     std::pair("load.twist", number(by_ratio, "twist_angle"))}) {
+      solver::Scene other = scene(name);
+      other.steps[0].torsion = {};
+      (key == std::string("load.moment") ? other.steps[0].torsion.moment : other.steps[0].torsion.twist) =
+          value;
+      const Json result = answer(other);
+      for (const char* number_key : {"moment_ratio", "moment", "twist_angle", "stick_radius", "twist"}) {
+        EXPECT_NEAR(number(result, number_key) / number(by_ratio, number_key), 1.0, kTolerance)
+            << name << ' ' << key << ' ' << number_key;
+      }
+    }
+  }
+}
+
+solver::Scene in_units(solver::Scene scene, double metre, double newton) {
+  const double pascal = newton / (metre * metre);
+  scene.surfaces.front().radius *= metre;
+  scene.upper.young_modulus *= pascal;
+  scene.lower.young_modulus *= pascal;
+  scene.steps[0].normal = *scene.steps[0].normal * newton;
+  return scene;
+}
+
+TEST(ExactModel, DoesNotKnowTheUnits) {
+  for (const std::string& name : kBodies) {
+    const Json si = answer(scene(name));
+    for (const auto& [metre, newton] : {std::pair(1e3, 1.0), std::pair(1e9, 1e9), std::pair(1e-3, 1e-6)}) {
+      const Json other = answer(in_units(scene(name), metre, newton));
+      for (const char* key : {"stick_ratio", "moment_ratio", "twist"}) {
+        EXPECT_EQ(number(other, key), number(si, key)) << name;  // these the load alone decides
+      }
+      EXPECT_NEAR(number(other, "twist_angle") / number(si, "twist_angle"), 1.0, kTolerance) << name;
+      EXPECT_NEAR(number(other, "contact_radius") / (metre * number(si, "contact_radius")), 1.0, kTolerance);
+      EXPECT_NEAR(number(other, "approach") / (metre * number(si, "approach")), 1.0, kTolerance);
+      EXPECT_NEAR(number(other, "moment") / (newton * metre * number(si, "moment")), 1.0, kTolerance);
+    }
+  }
+}
+
+TEST(ExactModel, SaysThatThereIsNoGrid) {
+  for (const std::string& name : kBodies) {
+    const Json result = answer(scene(name));
+    EXPECT_EQ(result["status"], "converged");
+    EXPECT_EQ(result["method"], "exact");
+    EXPECT_EQ(result["model"]["left_out"][0]["what"], "the grid");
+    EXPECT_EQ(result["iterations"], 0);
+    EXPECT_EQ(result["operator_applications"], 0);
+    EXPECT_EQ(result["displacement"], Json::array({0.0, 0.0}));
+    for (const char* key : {"operator", "cells", "contact_cells", "stick_cells", "certificate", "twist_error",
+                            "traction_error"}) {
+      EXPECT_TRUE(result[key].is_null()) << key;
+      EXPECT_TRUE(result[std::string(key) + "_reason"].is_string()) << key;
+    }
+    EXPECT_THAT(exact_text(result), AllOf(HasSubstr(name), HasSubstr("exact solution"), HasSubstr("twist"),
+                                          HasSubstr("left out         the grid")));
+  }
+  EXPECT_TRUE(answer(scene("paper"))["peak_pressure"].is_number());
+  EXPECT_EQ(answer(scene("cone"))["peak_pressure_reason"], "infinite");
+}
+
+TEST(ExactModel, SaysThatTheScenesCouplingIsLeftOut) {
+  const Json result = answer(scene("dissimilar", {"contact.coupling=none"}));
+  ASSERT_EQ(result["model"]["left_out"].size(), 2);
+  EXPECT_EQ(result["model"]["left_out"][1]["what"], "K13, K23");
+}
+
+TEST(ExactModel, IsRefusedWhereNoExactSolutionIsKnown) {
+  const auto refused = [](const solver::Scene& refused_scene, const std::string& reason) {
+    EXPECT_THAT([&] { require_oracle(refused_scene); },
+                ThrowsMessage<solver::InputError>(AllOf(HasSubstr(refused_scene.source.string()),
+                                                        HasSubstr("solver.model = \"exact\""),
+                                                        HasSubstr("auto, full"), HasSubstr(reason))));
+  };
+  refused(scene("ellipse"), "ellipsoid");
+  refused(scene("dissimilar"), "coupling");
+  refused(scene("paper", {"contact.friction=0"}), "friction");
+  solver::Scene height_map = scene("paper");
+  height_map.surfaces.front().shape = solver::Shape::height_map;
+  refused(height_map, "height_map");
+}
+
+TEST(ExactModel, RefusesALoadThatTheContactCannotCarry) {
+  const auto refused = [](const std::string& load, const std::string& reason) {
+    EXPECT_THAT([&] { require_oracle(scene("cone", {load})); },
+                ThrowsMessage<solver::InputError>(AllOf(
+                    HasSubstr("cone.toml"), HasSubstr(load.substr(0, load.find('='))), HasSubstr(reason))));
+  };
+  refused("load.moment=0.0035", "gross slip");
+  refused("load.twist=1e6", "underflows");
+}
+
+// The solver's wing has no exact answers.
+TEST(ExactModel, IsNotForTheSolver) {
+  EXPECT_THAT([] { solver::solve(scene("paper")); },
+              ThrowsMessage<solver::InputError>(AllOf(HasSubstr("solver.model"), HasSubstr("auto, full"))));
+}
+
+class ExactFieldFile : public testing::Test {
+ protected:
+  ~ExactFieldFile() override { fs::remove_all(folder_); }
+  std::vector<solver::Column> sampled(const solver::Scene& scene) const {
+    const fs::path file = folder_ / "exact.csv";
+    write_exact_fields(file, scene, require_oracle(scene));
+    return solver::read_columns(file, {"x1", "x2", "pressure", "q1", "q2", "stick"});
+  }
+
+ private:
+  fs::path folder_ = [] {
+    fs::path folder = fs::path(testing::TempDir()) / ("slipstick-exact-fields-" + std::to_string(getpid()));
+    fs::create_directories(folder);
+    return folder;
+  }();
+};
+
+TEST_F(ExactFieldFile, HoldsPressureAndTractionsAtTheCellCentres) {
+  for (const std::string& name : kBodies) {
+    const solver::Scene small = scene(name, {"grid.cells=[24,20]"});
+    const Oracle oracle = require_oracle(small);
+    const std::vector<solver::Column> columns = sampled(small);
+    const Eigen::ArrayXd& x1 = columns[0].values;
+    const Eigen::ArrayXd& x2 = columns[1].values;
+    ASSERT_GT(x1.size(), 200);  // of 480; those in contact
+    for (Eigen::Index i = 0; i < x1.size(); ++i) {
+      const double r = std::hypot(x1[i], x2[i]);
+      const double q = oracle.traction(r);
+      const double edge = 1e-12 * (1.0 + 1.0 / std::abs(1.0 - r / oracle.contact_radius));
+      EXPECT_NEAR(columns[2].values[i] / oracle.pressure(r), 1.0, edge);
+      EXPECT_NEAR(columns[3].values[i], -q * x2[i] / r, edge * q);
+      EXPECT_NEAR(columns[4].values[i], q * x1[i] / r, edge * q);
+      EXPECT_EQ(columns[5].values[i], r < oracle.stick_radius ? 1.0 : 0.0);
+    }
+  }
+}
+
+// Dense summation would need 128 GiB for this grid, samples need none of it.
+TEST_F(ExactFieldFile, NeedsNoOperator) {
+  EXPECT_GT(sampled(scene("paper", {"grid.cells=[256,256]", "solver.operator=dense"})).front().values.size(),
+            40000);
+}
+
+}  // namespace
+}  // namespace slipstick::convergence

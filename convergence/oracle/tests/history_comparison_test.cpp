@@ -1,0 +1,382 @@
+// Histories of loads on the mesh against exact ones.
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "analytic/tangential_history.hpp"
+#include "convergence/oracle/errors.hpp"
+#include "convergence/oracle/oracle.hpp"
+#include "convergence/oracle/tests/histories.hpp"
+#include "solver/solve.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using solver::Index;
+using solver::Scene;
+using solver::Solution;
+
+struct State {
+  Solution solution;
+  Oracle exact;
+  Errors errors;
+};
+
+/// Every step, beside its exact answer.
+std::vector<State> follow(const Scene& scene) {
+  const std::unique_ptr<ExactHistory> history = exact_history(scene);
+  std::vector<State> states;
+  solver::solve(scene, {.progress = {}, .on_step = [&](const Solution& solution) {
+                          EXPECT_EQ(solution.status, solver::Status::converged) << solution.message;
+                          const OracleAnswer answer = history->advance(solution.loads);
+                          if (!answer.oracle) throw std::runtime_error(answer.reason);
+                          states.push_back({solution, *answer.oracle, compare(solution, *answer.oracle)});
+                        }});
+  if (states.size() != scene.steps.size()) throw std::runtime_error("the history stopped");
+  return states;
+}
+
+Scene on_cells(Scene scene, Index cells) {
+  scene.cells = {cells, cells};
+  return scene;
+}
+
+double size(const std::array<double, 2>& vector) { return std::hypot(vector[0], vector[1]); }
+
+/// Of twist or displacement: whichever the scene has.
+double motion_error(const Errors& errors) {
+  return std::isfinite(errors.twist) ? std::abs(errors.twist) : errors.displacement;
+}
+double motion(const Oracle& oracle) {
+  return oracle.moment != 0.0 || oracle.twist_angle != 0.0 ? std::abs(oracle.twist_angle)
+                                                           : size(oracle.displacement);
+}
+
+// What the program promises of first loading at 128 cells, the pressure solved on the same grid.
+constexpr double kMotionAt128 = 2e-4;
+constexpr double kTractionAt128 = 1e-2;  // L1
+// Twist, displacement and energy are off by the gap of either answer, 1e-8 of its energy; tractions by its
+// root, and in L2 by some six times that: waves of a cell's length are 30 to 60 times softer than the
+// contact.
+constexpr double kMotionToGap = 1e-6;
+constexpr double kTractionToGap = 1e-3;
+
+const Scene& steel() {
+  static const Scene scene = scene_of("paper");
+  return scene;
+}
+const Scene& plain() {
+  static const Scene scene = without_contraction(scene_of("paper"));
+  return scene;
+}
+
+/// Masing's rule holds on any mesh: after a reversal slip starts anew against twice the friction. So the
+/// errors at all reversals are those of first loading.
+void expect_every_reversal_as_good_as_the_first(const Scene& cycle) {
+  const std::vector<State> coarse = follow(on_cells(cycle, 64));
+  const std::vector<State> fine = follow(on_cells(cycle, 128));
+  for (const std::vector<State>* states : {&coarse, &fine}) {
+    const Errors& first = states->front().errors;
+    for (const auto& [solution, exact, errors] : *states) {
+      EXPECT_NEAR(motion_error(errors), motion_error(first), kMotionToGap);
+      EXPECT_NEAR(errors.dissipated, first.dissipated, 10.0 * kMotionToGap);  // a tenth of the energy
+      EXPECT_NEAR(errors.stick_radius, first.stick_radius, kTractionToGap);
+      EXPECT_NEAR(errors.traction.at_centres.l2, first.traction.at_centres.l2, kTractionToGap);
+    }
+  }
+  const Errors& at128 = fine.front().errors;
+  EXPECT_LE(motion_error(at128), kMotionAt128);
+  EXPECT_LE(at128.traction.at_centres.l1, kTractionAt128);
+  EXPECT_LE(std::abs(at128.dissipated), kMotionAt128);
+  EXPECT_LE(std::abs(at128.stick_radius), 1e-3);
+  EXPECT_LE(motion_error(at128), motion_error(coarse.front().errors) * std::pow(2.0, -1.5));
+  EXPECT_LE(at128.traction.at_centres.l2, coarse.front().errors.traction.at_centres.l2 * std::pow(2.0, -0.9));
+}
+
+TEST(HistoryComparison, TorsionTurnsBackAndForth) {
+  expect_every_reversal_as_good_as_the_first(twisted(steel(), {0.8, -0.8, 0.8, -0.8}));
+}
+
+TEST(HistoryComparison, AForceGoesBackAndForth) {
+  expect_every_reversal_as_good_as_the_first(
+      pushed(plain(), {{1000.0, 80.0}, {1000.0, -80.0}, {1000.0, 80.0}, {1000.0, -80.0}}));
+}
+
+/// Errors stay those of first loading in size, though the answers become smaller: residual states, loops
+/// within loops.
+void expect_errors_of_first_loading(const Scene& scene, double cells_to_the_radius) {
+  const std::vector<State> states = follow(on_cells(scene, 128));
+  const double largest = motion(states.front().exact);
+  const double first_lost = states.front().exact.dissipated;
+  for (const auto& [solution, exact, errors] : states) {
+    // Two or three branches of first loading, enlarged twice.
+    EXPECT_LE(motion_error(errors) * motion(exact), 5.0 * kMotionAt128 * largest);
+    EXPECT_LE(std::abs(errors.dissipated) * exact.dissipated, 5.0 * kMotionAt128 * first_lost);
+    EXPECT_LE(errors.traction.at_centres.l1, kTractionAt128);
+    EXPECT_LE(std::abs(errors.stick_radius) * exact.stick_radius,
+              0.5 * exact.contact_radius / cells_to_the_radius);
+  }
+}
+
+TEST(HistoryComparison, UnloadedContactsStayTwistedAndMoved) {
+  expect_errors_of_first_loading(twisted(steel(), {0.8, 0.0}), 62);
+  expect_errors_of_first_loading(pushed(plain(), {{1000.0, 80.0}, {1000.0, 0.0}}), 62);
+}
+
+TEST(HistoryComparison, SmallCyclesInALargeOne) {
+  expect_errors_of_first_loading(twisted(steel(), {0.8, -0.8, 0.3, -0.2, 0.25}), 62);
+  expect_errors_of_first_loading(
+      pushed(plain(), {{1000.0, 80.0}, {1000.0, -80.0}, {1000.0, 30.0}, {1000.0, -20.0}, {1000.0, 25.0}}),
+      62);
+}
+
+/// A loop that closes is forgotten: from 0.3 down to -0.2 and back, the state is the one before; then on to
+/// 0.8 as if there had been no loop.
+TEST(HistoryComparison, AClosedLoopIsForgotten) {
+  for (const Scene& scene :
+       {twisted(steel(), {0.8, -0.8, 0.3, -0.2, 0.3, 0.8}), pushed(plain(), {{1000.0, 80.0},
+                                                                             {1000.0, -80.0},
+                                                                             {1000.0, 30.0},
+                                                                             {1000.0, -20.0},
+                                                                             {1000.0, 30.0},
+                                                                             {1000.0, 80.0}})}) {
+    const std::vector<State> states = follow(on_cells(scene, 64));
+    for (const auto& [before, after] : {std::pair(2, 4), std::pair(0, 5)}) {
+      const Solution& a = states[before].solution;
+      const Solution& b = states[after].solution;
+      const double scale = std::abs(states[0].solution.twist_angle) + size(states[0].solution.displacement);
+      EXPECT_NEAR(b.twist_angle, a.twist_angle, kMotionToGap * scale);
+      EXPECT_NEAR(b.displacement[0], a.displacement[0], kMotionToGap * scale);
+      const Eigen::ArrayXd& q = a.tangential.traction;
+      EXPECT_LE((b.tangential.traction - q).matrix().norm(), kTractionToGap * q.matrix().norm());
+    }
+  }
+}
+
+// ------------------------------------------------------------------ normal loads that change
+
+/// From a push held after first loading to another, straight, in so many steps.
+Scene straight(const Push& from, const Push& to, int steps) {
+  std::vector<Push> pushes{from};
+  for (int i = 1; i <= steps; ++i) {
+    const double part = static_cast<double>(i) / steps;
+    pushes.push_back({std::lerp(from.normal, to.normal, part), std::lerp(from.force, to.force, part)});
+  }
+  return on_cells(pushed(plain(), pushes), 64);
+}
+
+struct Ended {
+  Solution solution;
+  double lost = 0.0;  ///< J, after the first push
+};
+Ended solve_straight(const Push& from, const Push& to, int steps) {
+  Ended ended;
+  ended.solution = solver::solve(straight(from, to, steps),
+                                 {.progress = {}, .on_step = [&](const Solution& at) {
+                                    EXPECT_EQ(at.status, solver::Status::converged) << at.message;
+                                    if (at.loads.key != "step[0]") ended.lost += at.dissipated;
+                                  }});
+  return ended;
+}
+
+/// The theory along the straight line, in the scene's units: 1000 N, mu = 0.1, 210 GPa twice.
+struct Exact {
+  double displacement;  ///< m
+  double lost;          ///< J, after the first push
+};
+Exact exact_straight(const Push& from, const Push& to) {
+  const double contact_radius = find_oracle(pushed(plain(), {{1000.0, 0.0}})).oracle->contact_radius;
+  const double length = 100.0 / (210e9 / 4.0 * contact_radius);
+  analytic::tangential::TangentialHistory history;
+  history.load_to(from.normal / 1000.0, 0.0);
+  history.load_to(from.normal / 1000.0, from.force / 100.0);
+  const double before = history.state().dissipated;
+  history.load_to(to.normal / 1000.0, to.force / 100.0);
+  return {history.state().displacement * length, (history.state().dissipated - before) * 100.0 * length};
+}
+
+double displacement_of(const Solution& solution) {
+  return 0.6 * solution.displacement[0] + 0.8 * solution.displacement[1];
+}
+
+struct Path {
+  Push from;
+  Push to;
+};
+
+/// The same tractions end a path in one step or in four where its slip advances without turning: wherever the
+/// normal load falls or stays, and where it rises more slowly than |F|/mu changes, or without a change of F.
+TEST(HistoryComparison, OneStepIsEnoughWhereSlipAdvances) {
+  for (const auto& [from, to] : {
+           Path{{1000, 50}, {1000, -50}},  // constant
+           Path{{1000, 50}, {1500, 50}},   // rising: the ring of slip is locked in
+           Path{{1000, 50}, {1500, 120}},  // rising, the force faster
+           Path{{1000, 50}, {1500, -50}},
+           Path{{1000, 50}, {700, 50}},  // falling: more and more slips
+           Path{{1000, 50}, {700, 35}},
+           Path{{1000, 30}, {700, 50}},
+           Path{{1000, 50}, {700, 10}},  // falling, the force faster
+           Path{{1000, 50}, {700, -30}},
+       }) {
+    const Solution in_one = solve_straight(from, to, 1).solution;
+    const Solution in_four = solve_straight(from, to, 4).solution;
+    const double exact = exact_straight(from, to).displacement;
+    // Residual states carry the mesh error of the branches that they are left from, 6e-5.
+    const double most = std::max(std::abs(exact), exact_straight({1000, 0}, from).displacement);
+    EXPECT_NEAR(displacement_of(in_one), exact, 2e-4 * most) << to.normal << ' ' << to.force;
+    EXPECT_NEAR(displacement_of(in_one), displacement_of(in_four), kMotionToGap * most);
+    const Eigen::ArrayXd& q = in_one.tangential.traction;
+    EXPECT_LE((in_four.tangential.traction - q).matrix().norm(), kTractionToGap * q.matrix().norm());
+  }
+}
+
+/// A rising normal load that outruns the force sticks throughout; a step that brings it first, then the
+/// force, slips at the edge. The error is of first order in the size of the steps; the answer is the exact
+/// one of the staircase.
+TEST(HistoryComparison, AForceThatRisesWithItsNormalLoadNeedsSmallSteps) {
+  for (const auto& [from, to] :
+       {Path{{1000, 50}, {1500, 80}}, Path{{1000, 50}, {1500, 20}}, Path{{100, 0}, {1000, 50}}}) {
+    const double exact = exact_straight(from, to).displacement;
+    const auto error = [&](int steps) {
+      return std::abs(displacement_of(solve_straight(from, to, steps).solution) / exact - 1.0);
+    };
+    const double of_two = error(2);
+    const double of_eight = error(8);
+    EXPECT_GT(of_two, 20.0 * kMotionAt128);  // far more than the mesh's
+    EXPECT_NEAR(std::log(of_two / of_eight) / std::log(4.0), 1.0, 0.15);
+    const std::vector<State> staircase = follow(straight(from, to, 2));
+    EXPECT_LE(staircase.back().errors.displacement, 2e-4);
+  }
+}
+
+/// A step's slip counts against the friction at its end: too little on the way down, too much on the way up,
+/// of first order in the size of the steps.
+TEST(HistoryComparison, EnergyLostUnderAChangingNormalLoadNeedsSmallSteps) {
+  for (const auto& [from, to] : {Path{{1000, 50}, {700, 50}}, Path{{1000, 50}, {1500, 120}}}) {
+    const double exact = exact_straight(from, to).lost;
+    const double of_two = solve_straight(from, to, 2).lost / exact - 1.0;
+    const double of_eight = solve_straight(from, to, 8).lost / exact - 1.0;
+    EXPECT_EQ(std::signbit(of_two), to.normal < from.normal);
+    EXPECT_NEAR(std::log(of_two / of_eight) / std::log(4.0), 1.0, 0.15);
+  }
+}
+
+// ------------------------------------------------------------------ torsion and force
+
+Solution twisted_and_pushed(double ratio, const std::array<double, 2>& force) {
+  Scene scene = on_cells(twisted(steel(), {ratio}), 64);
+  scene.steps.front().force = force;
+  const Solution solution = solver::solve(scene);
+  EXPECT_EQ(solution.status, solver::Status::converged) << solution.message;
+  EXPECT_LE(solution.certificate.gap, scene.tolerance);
+  EXPECT_LE(solution.certificate.moment, 1e-12);
+  EXPECT_LE(solution.certificate.force, 1e-12);
+  EXPECT_LE(solution.certificate.friction_bound, 1e-12);
+  return solution;
+}
+
+/// By symmetry: a quarter turn of the force turns the displacement with it; the opposite force gives the
+/// opposite displacement and the same twist; a small force changes the twist by its square.
+TEST(HistoryComparison, ASmallForceBesideTorsion) {
+  const Solution alone = twisted_and_pushed(0.7, {0.0, 0.0});
+  const Solution along_1 = twisted_and_pushed(0.7, {10.0, 0.0});
+  const Solution along_2 = twisted_and_pushed(0.7, {0.0, 10.0});
+  const Solution against_1 = twisted_and_pushed(0.7, {-10.0, 0.0});
+  const Solution twice = twisted_and_pushed(0.7, {20.0, 0.0});
+  const double moved = size(along_1.displacement);
+  EXPECT_NEAR(along_2.displacement[0], -along_1.displacement[1], kMotionToGap * moved);
+  EXPECT_NEAR(along_2.displacement[1], along_1.displacement[0], kMotionToGap * moved);
+  EXPECT_NEAR(against_1.displacement[0], -along_1.displacement[0], kMotionToGap * moved);
+  EXPECT_NEAR(against_1.displacement[1], -along_1.displacement[1], kMotionToGap * moved);
+  EXPECT_NEAR(against_1.twist_angle / along_1.twist_angle, 1.0, kMotionToGap);
+  EXPECT_NEAR(along_2.twist_angle / along_1.twist_angle, 1.0, kMotionToGap);
+  const double more = along_1.twist_angle / alone.twist_angle - 1.0;
+  EXPECT_GT(more, 1e-3);
+  // To the next order, F^4: F/(mu W) = 0.2, squared.
+  EXPECT_NEAR((twice.twist_angle / alone.twist_angle - 1.0) / more, 4.0, 4.0 * 0.04 * 4.0);
+  EXPECT_NEAR(size(twice.displacement) / moved, 2.0, 2.0 * 0.04 * 4.0);
+}
+
+/// A pure moment turns a body about its own axis, wherever it stands: the mesh moved by whole cells, the
+/// errors about the axis are those of the centred body.
+TEST(HistoryComparison, ASphereOffTheOriginTurnsAboutItsAxis) {
+  Scene centred = on_cells(twisted(steel(), {0.8, -0.3}), 80);
+  centred.extent = {1.6e-3, 1.6e-3};  // 20 um a cell
+  Scene shifted = centred;
+  shifted.surfaces.front().at = {8e-5, -1.2e-4};
+  const std::vector<State> here = follow(centred);
+  const std::vector<State> there = follow(shifted);
+  for (std::size_t i = 0; i < here.size(); ++i) {
+    const auto& [a, b] = std::pair(here[i].errors, there[i].errors);
+    EXPECT_NEAR(b.twist, a.twist, kMotionToGap);
+    EXPECT_NEAR(b.dissipated, a.dissipated, 10.0 * kMotionToGap);
+    EXPECT_NEAR(b.moment_limit, a.moment_limit, 1e-9);
+    EXPECT_NEAR(b.traction.at_centres.l2, a.traction.at_centres.l2, kTractionToGap);
+    EXPECT_NEAR(b.stick_radius, a.stick_radius, kTractionToGap);
+    // A turn about c moves what is at the origin by (c2, -c1) times the twist.
+    const double twist = there[i].solution.twist_angle;
+    EXPECT_NEAR(there[i].solution.displacement[0], -1.2e-4 * twist, kMotionToGap * 1e-4 * std::abs(twist));
+    EXPECT_NEAR(there[i].solution.displacement[1], -8e-5 * twist, kMotionToGap * 1e-4 * std::abs(twist));
+  }
+}
+
+// ------------------------------------------------------------------ dissimilar bodies pressed together
+
+/// Against a rigid body, nu = 0: beta = 1/2. mu = 0.2986 is Spence's.
+Scene against_rigid(const std::string& body, solver::Coupling coupling) {
+  Scene scene = without_contraction(scene_of(body));
+  scene.upper = {.young_modulus = INFINITY, .poisson_ratio = 0.0};
+  scene.friction = 0.2986;
+  scene.coupling = coupling;
+  return twisted(scene, {0.0});
+}
+
+/// What a punch sticks within, by Goodman or Spence, to half a cell.
+TEST(HistoryComparison, FlatPunchPressedOnAnotherMaterial) {
+  for (const auto& [coupling, cells] :
+       {std::pair(solver::Coupling::pressure, 128), std::pair(solver::Coupling::full, 64)}) {
+    const State state = follow(on_cells(against_rigid("flat_punch", coupling), cells)).front();
+    const double cell = state.solution.model.grid.h1 * state.solution.model.length_unit;
+    EXPECT_NEAR(state.solution.stick_radius / state.solution.contact_radius, state.exact.state.stick_ratio,
+                0.5 * cell / state.solution.contact_radius);
+  }
+}
+
+/// The last step's error of the stick ratio, by counting cells: the slip of one small step is no smooth
+/// function of the distance from the front. Each step brings as many times the load of the one before.
+double stick_ratio_error(Scene sphere, int steps) {
+  sphere = twisted(sphere, std::vector<double>(steps, 0.0));
+  for (int i = 0; i < steps; ++i) {
+    sphere.steps[i].normal = 1000.0 * std::pow(2.0, -6.0 * (steps - 1 - i) / steps);
+  }
+  const State last = follow(sphere).back();
+  const double ratio = last.solution.stick_radius_counted / last.solution.contact_radius;
+  return std::abs(ratio / last.exact.state.stick_ratio - 1.0);
+}
+
+/// A sphere's contact grows, and the answer depends on how: in more and more steps the stick ratio tends to
+/// the punch's, with an error of first order in the steps.
+TEST(HistoryComparison, SpherePressedOnAnotherMaterialInSteps) {
+  const Scene goodman = on_cells(against_rigid("paper", solver::Coupling::pressure), 64);
+  EXPECT_NEAR(std::log(stick_ratio_error(goodman, 2) / stick_ratio_error(goodman, 16)) / std::log(8.0), 1.0,
+              0.15);
+  const Scene spence = on_cells(against_rigid("paper", solver::Coupling::full), 48);
+  EXPECT_NEAR(std::log(stick_ratio_error(spence, 2) / stick_ratio_error(spence, 8)) / std::log(4.0), 1.0,
+              0.15);
+}
+
+/// The radius of the contact is that of its area, whether or not its pressure is Hertz's.
+TEST(HistoryComparison, ContactRadiusIsThatOfTheArea) {
+  for (const solver::Coupling coupling : {solver::Coupling::pressure, solver::Coupling::full}) {
+    const Solution solution = solver::solve(on_cells(against_rigid("paper", coupling), 64));
+    const double cell = solution.model.grid.h1 * solution.model.length_unit;
+    EXPECT_NEAR(solution.contact_radius, solution.contact_radius_counted, 0.3 * cell);
+  }
+}
+
+}  // namespace
+}  // namespace slipstick::convergence

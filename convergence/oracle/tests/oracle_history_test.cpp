@@ -1,0 +1,315 @@
+// Exact answers along histories of loads, in the scene's units.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+#include "analytic/cycle.hpp"
+#include "convergence/oracle/oracle.hpp"
+#include "convergence/oracle/tests/histories.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using solver::Scene;
+using solver::Step;
+using testing::AllOf;
+using testing::HasSubstr;
+
+// Some roundings on the way from a scene's moduli to a number, and as many branches of a history.
+constexpr double kTolerance = 1e-13;
+
+std::vector<OracleAnswer> answers(const Scene& scene) {
+  const std::unique_ptr<ExactHistory> history = exact_history(scene);
+  std::vector<OracleAnswer> list;
+  for (const Step& step : scene.steps) list.push_back(history->advance(step));
+  return list;
+}
+
+std::vector<Oracle> oracles(const Scene& scene) {
+  std::vector<Oracle> list;
+  for (const OracleAnswer& answer : answers(scene)) {
+    if (!answer.oracle) throw std::runtime_error(answer.reason);
+    list.push_back(*answer.oracle);
+  }
+  return list;
+}
+
+/// What pressure and shear carry: the integrals of p, |q| r and |q| over the contact, by the midpoint rule in
+/// r = a sin(t), which takes off what a flat punch's edge has too much.
+struct Carried {
+  double load = 0.0;
+  double moment = 0.0;
+  double force = 0.0;
+};
+Carried carried_by(const Oracle& oracle) {
+  constexpr int points = 4000;
+  const double a = oracle.contact_radius;
+  Carried carried;
+  for (int i = 0; i < points; ++i) {
+    const double t = std::numbers::pi / 2 * (i + 0.5) / points;
+    const double r = a * std::sin(t);
+    const double ring = std::numbers::pi / 2 / points * a * std::cos(t) * 2.0 * std::numbers::pi * r;
+    carried.load += ring * oracle.pressure(r);
+    carried.moment += ring * r * oracle.traction(r);
+    carried.force += ring * oracle.traction(r);
+  }
+  return carried;
+}
+// Fronts have vertical tangents in a few of the intervals: their size, 4e-4, to the power 1.5.
+constexpr double kQuadrature = 1e-5;
+
+TEST(OracleHistory, TractionsOfTorsionCarryTheMoments) {
+  for (const char* body : {"paper", "cone", "flat_punch"}) {
+    const Scene scene = twisted(scene_of(body), {0.9, 0.2, -0.7, 0.3, 0.0});
+    const std::vector<Oracle> exact = oracles(scene);
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+      const Carried carried = carried_by(exact[i]);
+      const double limit = exact[i].moment_limit;
+      EXPECT_NEAR(exact[i].moment / limit, *scene.steps[i].torsion.moment_ratio, kTolerance) << body << i;
+      EXPECT_NEAR(carried.load / *scene.steps[i].normal, 1.0, kQuadrature) << body << i;
+      EXPECT_NEAR(carried.moment / limit, *scene.steps[i].torsion.moment_ratio, kQuadrature) << body << i;
+    }
+  }
+}
+
+/// Hertz's laws, step by step, whatever the history: lengths go with the cube root of the load.
+TEST(OracleHistory, AnEllipseFollowsTheNormalLoadAlone) {
+  Scene scene = scene_of("ellipse");
+  scene.steps.resize(3, scene.steps.front());
+  scene.steps[1].normal = 8.0 * *scene.steps[0].normal;
+  scene.steps[1].force = {10.0, 20.0};
+  scene.steps[2].torsion = {.moment_ratio = {}, .moment = {}, .twist = -1e-4};
+  const std::vector<Oracle> exact = oracles(scene);
+  EXPECT_NEAR(exact[1].contact_radius / exact[0].contact_radius, 2.0, kTolerance);
+  EXPECT_NEAR(exact[1].peak_pressure / exact[0].peak_pressure, 2.0, kTolerance);
+  EXPECT_NEAR(exact[1].approach / exact[0].approach, 4.0, kTolerance);
+  EXPECT_NEAR(exact[1].moment_limit / exact[0].moment_limit, 16.0, kTolerance);
+  EXPECT_NEAR(exact[1].axis_ratio / exact[0].axis_ratio, 1.0, kTolerance);
+  EXPECT_EQ(exact[2].contact_radius, exact[0].contact_radius);
+  EXPECT_EQ(exact[2].twist_angle, -1e-4);
+}
+
+TEST(OracleHistory, TractionsOfAForceCarryIt) {
+  for (const char* body : {"paper", "cone", "flat_punch"}) {
+    Scene scene = without_contraction(scene_of(body));
+    const double normal = *scene.steps.front().normal;
+    const double friction = scene.friction * normal;
+    scene = pushed(scene, {{normal, 0.8 * friction},
+                           {1.5 * normal, 0.9 * friction},
+                           {1.5 * normal, -1.2 * friction},
+                           {0.7 * normal, -0.3 * friction},
+                           {0.7 * normal, 0.0}});
+    const std::vector<Oracle> exact = oracles(scene);
+    for (std::size_t i = 0; i < exact.size(); ++i) {
+      const Carried carried = carried_by(exact[i]);
+      EXPECT_NEAR(carried.load / *scene.steps[i].normal, 1.0, kQuadrature) << body << i;
+      for (const int axis : {0, 1}) {
+        EXPECT_NEAR(carried.force * exact[i].direction[axis] / friction,
+                    scene.steps[i].force[axis] / friction, kQuadrature)
+            << body << i;
+        EXPECT_EQ(exact[i].force[axis], scene.steps[i].force[axis]);
+      }
+    }
+  }
+}
+
+void expect_the_same_state(const Oracle& a, const Oracle& b, double sign) {
+  EXPECT_EQ(a.contact_radius, b.contact_radius);
+  EXPECT_NEAR(a.stick_radius / b.stick_radius, 1.0, kTolerance);
+  EXPECT_NEAR(a.dissipated, b.dissipated, kTolerance * std::abs(b.dissipated));
+  EXPECT_NEAR(a.moment, sign * b.moment, kTolerance * std::abs(b.moment_limit));
+  EXPECT_NEAR(a.twist_angle, sign * b.twist_angle, kTolerance * std::abs(b.twist_angle));
+  for (const int axis : {0, 1}) {
+    EXPECT_NEAR(a.displacement[axis], sign * b.displacement[axis],
+                kTolerance * std::abs(b.displacement[axis]));
+  }
+  for (const double part : {0.1, 0.6, 0.95}) {
+    const double r = part * a.contact_radius;
+    const double along = a.direction[0] * b.direction[0] + a.direction[1] * b.direction[1];  // 0: torsion
+    EXPECT_NEAR(a.traction(r), sign * (along == 0.0 ? 1.0 : along) * b.traction(r),
+                kTolerance * b.friction * b.reference_pressure);
+  }
+}
+
+TEST(OracleHistory, BeginsWithFirstLoading) {
+  const Scene torsion = twisted(scene_of("paper"), {0.7, -0.2});
+  Scene force = without_contraction(scene_of("paper"));
+  force = pushed(force, {{1000.0, 70.0}, {1000.0, -20.0}});
+  for (const Scene& scene : {torsion, force}) {
+    Scene first = scene;
+    first.steps.resize(1);
+    expect_the_same_state(oracles(scene).front(), *find_oracle(first).oracle, 1.0);
+  }
+}
+
+/// A normal load that grows before there is any force leaves no trace.
+TEST(OracleHistory, AForceAfterAGrowingLoadIsFirstLoading) {
+  const Scene plain = without_contraction(scene_of("paper"));
+  expect_the_same_state(oracles(pushed(plain, {{1000.0, 0.0}, {2000.0, 100.0}})).back(),
+                        oracles(pushed(plain, {{2000.0, 100.0}})).front(), 1.0);
+}
+
+TEST(OracleHistory, OppositeLoadsAreTheMirrorImage) {
+  const Scene torsion = twisted(scene_of("paper"), {0.7, -0.2, 0.5});
+  const Scene opposite_torsion = twisted(scene_of("paper"), {-0.7, 0.2, -0.5});
+  const Scene plain = without_contraction(scene_of("paper"));
+  const Scene force = pushed(plain, {{1000.0, 70.0}, {1200.0, -20.0}, {800.0, 50.0}});
+  const Scene opposite_force = pushed(plain, {{1000.0, -70.0}, {1200.0, 20.0}, {800.0, -50.0}});
+  for (const auto& [scene, opposite] :
+       {std::pair(torsion, opposite_torsion), std::pair(force, opposite_force)}) {
+    const std::vector<Oracle> a = oracles(opposite);
+    const std::vector<Oracle> b = oracles(scene);
+    for (std::size_t i = 0; i < a.size(); ++i) expect_the_same_state(a[i], b[i], -1.0);
+  }
+}
+
+TEST(OracleHistory, StandsWhereTheBodyStands) {
+  Scene scene = twisted(scene_of("paper"), {0.7, -0.2});
+  const std::vector<Oracle> centred = oracles(scene);
+  scene.surfaces.front().at = {1e-4, -2e-4};
+  const std::vector<Oracle> shifted = oracles(scene);
+  for (std::size_t i = 0; i < centred.size(); ++i) {
+    expect_the_same_state(shifted[i], centred[i], 1.0);
+    EXPECT_EQ(shifted[i].centre, (std::array{1e-4, -2e-4}));
+  }
+}
+
+/// Steel bodies on each other: 1/G = 2 * 2 (1 + nu)/E.
+TEST(OracleHistory, AClosedCycleOfTorsionLosesItsLoop) {
+  constexpr double shear_modulus = 210e9 / (4.0 * 1.3);
+  for (const double ratio : {0.1, 0.8}) {
+    const std::vector<Oracle> exact =
+        oracles(twisted(scene_of("paper"), {ratio, -ratio, ratio, -ratio, ratio}));
+    const double friction = 0.1 * 1000.0;
+    const double loop = analytic::energy_lost_per_cycle(ratio) * friction * friction /
+                        (shear_modulus * exact[0].contact_radius);
+    EXPECT_NEAR((exact[1].dissipated + exact[2].dissipated) / loop, 1.0, kTolerance);
+    EXPECT_NEAR((exact[3].dissipated + exact[4].dissipated) / loop, 1.0, kTolerance);
+    EXPECT_NEAR(exact[0].dissipated / loop, 0.25, kTolerance);
+  }
+}
+
+/// Mindlin and Deresiewicz (1953): with x = F/(mu W), (9/10) (mu W)^2/(a G) 2 (1 - (1 - x)^(5/3)
+/// - (5 x/6) (1 + (1 - x)^(2/3))) for nu = 0; and F to delta = (3/8) mu W/(a G) (1 - (1 - x)^(2/3)).
+TEST(OracleHistory, AClosedCycleOfForceLosesItsLoop) {
+  constexpr double shear_modulus = 210e9 / 4.0;
+  constexpr double x = 0.8;
+  constexpr double friction = 0.1 * 1000.0;
+  const Scene plain = without_contraction(scene_of("paper"));
+  const std::vector<Oracle> exact =
+      oracles(pushed(plain, {{1000.0, x * friction}, {1000.0, -x * friction}, {1000.0, x * friction}}));
+  const double unit = friction * friction / (shear_modulus * exact[0].contact_radius);
+  const double loop =
+      1.8 * unit *
+      (1.0 - std::pow(1.0 - x, 5.0 / 3.0) - 5.0 * x / 6.0 * (1.0 + std::pow(1.0 - x, 2.0 / 3.0)));
+  EXPECT_NEAR((exact[1].dissipated + exact[2].dissipated) / loop, 1.0, kTolerance);
+  EXPECT_NEAR(exact[0].dissipated / loop, 0.25, kTolerance);
+  const double displacement = 0.375 * unit / friction * (1.0 - std::pow(1.0 - x, 2.0 / 3.0));
+  EXPECT_NEAR(std::hypot(exact[0].displacement[0], exact[0].displacement[1]) / displacement, 1.0, kTolerance);
+  EXPECT_NEAR(exact[0].stick_radius / exact[0].contact_radius, std::cbrt(1.0 - x), kTolerance);
+}
+
+/// Against a rigid body G and E* are those of the other one alone.
+TEST(OracleHistory, OneBodyMayBeRigid) {
+  Scene scene = without_contraction(scene_of("paper"));
+  scene.upper = {.young_modulus = INFINITY, .poisson_ratio = 0.0};
+  scene.coupling = solver::Coupling::none;
+  const double a = std::cbrt(0.75 * 1000.0 * 0.018 / 210e9);
+  const double unit = 100.0 / (105e9 * a);  // mu W/(G a)
+  const Oracle force = oracles(pushed(scene, {{1000.0, 50.0}})).front();
+  EXPECT_NEAR(force.contact_radius / a, 1.0, kTolerance);
+  EXPECT_NEAR(std::hypot(force.displacement[0], force.displacement[1]) /
+                  (0.375 * unit * (1.0 - std::pow(0.5, 2.0 / 3.0))),
+              1.0, kTolerance);
+  const Oracle torsion = oracles(twisted(scene, {0.5})).front();
+  EXPECT_NEAR(torsion.twist_angle / (analytic::from_moment_ratio(0.5).twist * unit / a), 1.0, kTolerance);
+}
+
+/// The twists that a history of moments goes through bring back its moments.
+TEST(OracleHistory, ImposedTwistsAreThoseOfTheMoments) {
+  Scene scene = twisted(scene_of("paper"), {0.8, -0.3, 0.1, -0.9, 0.0});
+  const std::vector<Oracle> by_moment = oracles(scene);
+  for (std::size_t i = 0; i < scene.steps.size(); ++i) {
+    scene.steps[i].torsion = {.moment_ratio = {}, .moment = {}, .twist = by_moment[i].twist_angle};
+  }
+  const std::vector<Oracle> by_twist = oracles(scene);
+  ASSERT_EQ(by_twist.size(), by_moment.size());
+  for (std::size_t i = 0; i < by_twist.size(); ++i) expect_the_same_state(by_twist[i], by_moment[i], 1.0);
+}
+
+/// No answer from the first step on that no theory reaches: what comes after depends on it.
+TEST(OracleHistory, EndsWithGrossSlip) {
+  Scene moment = twisted(scene_of("paper"), {0.5, 0.0, 0.3});
+  moment.steps[1].torsion = {.moment_ratio = {}, .moment = -0.02882, .twist = {}};
+  Scene twist = moment;
+  twist.steps[1].torsion = {.moment_ratio = {}, .moment = {}, .twist = 1e3};
+  Scene twist_back = moment;
+  twist_back.steps[1].torsion = {.moment_ratio = {}, .moment = {}, .twist = -1e3};
+  const Scene force =
+      pushed(without_contraction(scene_of("paper")), {{1000.0, 50.0}, {900.0, -90.1}, {1000.0, 0.0}});
+  for (const Scene& scene : {moment, twist, twist_back, force}) {
+    const std::vector<OracleAnswer> all = answers(scene);
+    EXPECT_TRUE(all[0].oracle);
+    EXPECT_FALSE(all[1].oracle);
+    EXPECT_TRUE(all[1].out_of_range);
+    EXPECT_THAT(all[1].reason, HasSubstr("beyond the range of the exact solution"));
+    EXPECT_FALSE(all[2].oracle);
+    EXPECT_THAT(all[2].reason, HasSubstr("a step before"));
+  }
+}
+
+TEST(OracleHistory, SaysWhyNoTheoryHolds) {
+  const auto reason = [](const Scene& scene) {
+    const OracleAnswer answer = find_oracle(scene);
+    EXPECT_FALSE(answer.oracle);
+    EXPECT_FALSE(answer.out_of_range);
+    return answer.reason;
+  };
+  const Scene steel = scene_of("paper");
+  const Scene plain = without_contraction(steel);
+  EXPECT_THAT(reason(pushed(steel, {{1000.0, 50.0}})), HasSubstr("Poisson's ratios are 0"));
+  Scene two_lines = pushed(plain, {{1000.0, 50.0}, {1000.0, 60.0}});
+  two_lines.steps[1].force = {60.0, 0.0};
+  EXPECT_THAT(reason(two_lines), HasSubstr("several lines"));
+  Scene both = pushed(plain, {{1000.0, 50.0}});
+  both.steps[0].torsion.moment_ratio = 0.1;
+  EXPECT_THAT(reason(both), HasSubstr("torsion together with a force"));
+  Scene heavier = twisted(steel, {0.5, 0.5});
+  heavier.steps[1].normal = 1100.0;
+  EXPECT_THAT(reason(heavier), HasSubstr("while the normal load changes"));
+  Scene imposed = pushed(plain, {{1000.0, 50.0}, {1000.0, 0.0}});
+  imposed.steps[1].displacement = {1e-7, 0.0};
+  EXPECT_THAT(reason(imposed), HasSubstr("displacement is imposed"));
+  EXPECT_THAT(reason(pushed(without_contraction(scene_of("rounded_punch")), {{1000.0, 50.0}})),
+              HasSubstr("similar to itself"));
+  EXPECT_THAT(reason(scene_of("dissimilar")), HasSubstr("contact.coupling"));
+  EXPECT_THAT(reason(scene_of("patches")), HasSubstr("several shapes"));
+}
+
+/// Spence (1968): against a rigid body with nu = 0 and mu = 0.2986 half of the radius sticks, under any load.
+TEST(OracleHistory, PressingDissimilarBodiesSticksWithinTheSameRatio) {
+  Scene scene = without_contraction(scene_of("flat_punch"));
+  scene.upper = {.young_modulus = INFINITY, .poisson_ratio = 0.0};
+  scene.friction = 0.2986;
+  scene.coupling = solver::Coupling::full;
+  scene = pushed(scene, {{1.0, 0.0}, {10.0, 0.0}, {1000.0, 0.0}});
+  for (const Oracle& spence : oracles(scene)) {
+    EXPECT_NEAR(spence.state.stick_ratio, 0.5, 5e-4);  // his three digits
+    EXPECT_TRUE(std::isnan(spence.traction(0.0)));
+  }
+  std::swap(scene.upper, scene.lower);
+  EXPECT_NEAR(oracles(scene).back().state.stick_ratio, 0.5, 5e-4);
+  // Goodman's equation, artanh(c)/c = (mu/beta) K(sqrt(1 - c^2)), beta = 1/2.
+  scene.coupling = solver::Coupling::pressure;
+  const double c = oracles(scene).back().state.stick_ratio;
+  EXPECT_NEAR(std::atanh(c) / c, 2.0 * 0.2986 * std::comp_ellint_1(std::sqrt(1.0 - c * c)), 1e-9);
+  scene.steps.back().normal = 5.0;  // no longer growing
+  EXPECT_FALSE(find_oracle(scene).oracle);
+}
+
+}  // namespace
+}  // namespace slipstick::convergence

@@ -1,0 +1,325 @@
+#include "convergence/oracle/oracle.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "solver/scene/hertz_pressure.hpp"
+#include "solver/scene/scene.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+// The paper's case with mu = 0.1, computed to 30 digits from Hertz's formulas and the elliptic integrals.
+constexpr double kContactRadius = 0.48909732465087485e-3;
+constexpr double kPeakPressure = 1995.9553043899548e6;
+constexpr double kMomentLimit = 28.810210537755196e-3;
+struct Case {
+  const char* load;
+  double stick_ratio;
+  double twist;
+};
+constexpr Case kCases[] = {{"load.moment_ratio=0.1", 0.9693964204953627, 1.197249389022587e-4},
+                           {"load.moment_ratio=0.5", 0.8135681261276496, 7.629453516649457e-4},
+                           {"load.moment_ratio=0.9", 0.4958950522157781, 2.361048651456917e-3},
+                           {"load.moment_ratio=0.99", 0.2369661925296642, 4.413921104595224e-3}};
+// The published digits, and a few roundings on the way from a scene's moduli to the number.
+constexpr double kTolerance = 1e-14;
+
+solver::Scene paper(const std::vector<std::string>& overrides) {
+  return solver::read_scene(SLIPSTICK_SCENES "/paper.toml", overrides);
+}
+
+solver::Scene body(const std::string& file, const std::vector<std::string>& overrides) {
+  return solver::read_scene(SLIPSTICK_SCENES + file, overrides);
+}
+
+TEST(Oracle, PaperCase) {
+  for (const Case& c : kCases) {
+    const OracleAnswer answer = find_oracle(paper({c.load}));
+    ASSERT_TRUE(answer.oracle) << answer.reason;
+    EXPECT_NEAR(answer.oracle->contact_radius / kContactRadius, 1.0, kTolerance);
+    EXPECT_NEAR(answer.oracle->peak_pressure / kPeakPressure, 1.0, kTolerance);
+    EXPECT_NEAR(answer.oracle->moment_limit / kMomentLimit, 1.0, kTolerance);
+    EXPECT_NEAR(answer.oracle->state.stick_ratio / c.stick_ratio, 1.0, kTolerance) << c.load;
+    EXPECT_NEAR(answer.oracle->twist_angle / c.twist, 1.0, kTolerance) << c.load;
+  }
+}
+
+void expect_the_same_state_by_ratio_moment_and_twist(solver::Scene scene) {
+  scene.steps[0].torsion = {.moment_ratio = 0.7, .moment = {}, .twist = {}};
+  const Oracle by_ratio = *find_oracle(scene).oracle;
+  const auto with_load = [&](const std::string& key, double value) {
+    scene.steps[0].torsion = {};
+    (key == "moment" ? scene.steps[0].torsion.moment : scene.steps[0].torsion.twist) = value;
+    return *find_oracle(scene).oracle;
+  };
+  for (const Oracle& other :
+       {with_load("moment", by_ratio.moment), with_load("twist", by_ratio.twist_angle)}) {
+    EXPECT_NEAR(other.stick_radius / by_ratio.stick_radius, 1.0, kTolerance);
+    EXPECT_NEAR(other.twist_angle / by_ratio.twist_angle, 1.0, kTolerance);
+    EXPECT_NEAR(other.moment / by_ratio.moment, 1.0, kTolerance);
+  }
+}
+
+TEST(Oracle, TheSameStateByRatioMomentAndTwist) {
+  for (const char* file : {"/paper.toml", "/cone.toml", "/flat_punch.toml", "/rounded_punch.toml"}) {
+    SCOPED_TRACE(file);
+    expect_the_same_state_by_ratio_moment_and_twist(body(file, {}));
+  }
+}
+
+/// Pressure and moment of the fields of an oracle against what they should carry.
+void expect_fields_carry_the_loads(const Oracle& oracle, double load) {
+  // Midpoint rule in r = a sin(t), which takes off a flat punch's singularity at the edge, piecewise about
+  // the stick edge, where the traction has a vertical tangent.
+  double force = 0.0;
+  double moment = 0.0;
+  const double edge = oracle.stick_radius;
+  const double a = oracle.contact_radius;
+  const auto integrate = [&](auto radius, auto slope) {
+    constexpr int n = 4000;
+    for (int i = 0; i < n; ++i) {
+      const double weight = std::numbers::pi / 2 / n;
+      const double t = weight * (i + 0.5);
+      const double r = radius(t);
+      force += weight * slope(t) * 2.0 * std::numbers::pi * r * oracle.pressure(r);
+      moment += weight * slope(t) * 2.0 * std::numbers::pi * r * r * oracle.traction(r);
+    }
+  };
+  integrate([&](double t) { return edge * std::sin(t); }, [&](double t) { return edge * std::cos(t); });
+  integrate([&](double t) { return edge + (a - edge) * std::sin(t); },
+            [&](double t) { return (a - edge) * std::cos(t); });
+  constexpr double quadrature_error = 1e-6;
+  EXPECT_NEAR(force / load, 1.0, quadrature_error);
+  EXPECT_NEAR(moment / oracle.moment, 1.0, quadrature_error);
+}
+
+TEST(Oracle, FieldsIntegrateToTheLoads) {
+  for (const char* file : {"/paper.toml", "/cone.toml", "/flat_punch.toml", "/rounded_punch.toml"}) {
+    SCOPED_TRACE(file);
+    for (const char* load : {"load.moment_ratio=0.5", "load.moment_ratio=0.9"}) {
+      const solver::Scene loaded = body(file, {load});
+      expect_fields_carry_the_loads(*find_oracle(loaded).oracle, *loaded.steps[0].normal);
+    }
+  }
+}
+
+// Love's and Boussinesq's contacts, and what they carry in torsion, by their formulas.
+TEST(Oracle, ConeAndFlatPunch) {
+  const double effective_modulus = 210e9 / (1.0 - 0.3 * 0.3) / 2.0;
+  const Oracle cone = *find_oracle(body("/cone.toml", {"load.moment_ratio=0.5"})).oracle;
+  const double cone_radius = std::sqrt(2.0 * 200.0 / (std::numbers::pi * effective_modulus * 0.01));
+  EXPECT_EQ(cone.profile.get(), &analytic::cone_profile());
+  EXPECT_NEAR(cone.contact_radius / cone_radius, 1.0, kTolerance);
+  EXPECT_NEAR(cone.approach / (std::numbers::pi / 2 * 0.01 * cone_radius), 1.0, kTolerance);
+  EXPECT_NEAR(cone.moment_limit / (std::numbers::pi / 6 * 0.1 * 200.0 * cone_radius), 1.0, kTolerance);
+  EXPECT_NEAR(cone.moment / cone.moment_limit, 0.5, kTolerance);
+  EXPECT_EQ(cone.peak_pressure, HUGE_VAL);
+  EXPECT_EQ(cone.pressure(0.0), HUGE_VAL);
+  EXPECT_EQ(cone.traction(0.0), 0.0);
+
+  const Oracle punch = *find_oracle(body("/flat_punch.toml", {"load.moment_ratio=0.9"})).oracle;
+  EXPECT_EQ(punch.profile.get(), &analytic::flat_punch_profile());
+  EXPECT_EQ(punch.contact_radius, 5e-4);
+  EXPECT_NEAR(punch.approach / (1000.0 / (2.0 * effective_modulus * 5e-4)), 1.0, kTolerance);
+  EXPECT_NEAR(punch.moment_limit / (std::numbers::pi / 4 * 0.1 * 1000.0 * 5e-4), 1.0, kTolerance);
+  EXPECT_LT(punch.stick_radius, punch.contact_radius);
+  EXPECT_EQ(punch.peak_pressure, HUGE_VAL);
+  EXPECT_NEAR(punch.pressure(0.0) / (1000.0 / (2.0 * std::numbers::pi * 5e-4 * 5e-4)), 1.0, kTolerance);
+  EXPECT_EQ(punch.pressure(5e-4), 0.0);
+  EXPECT_EQ(punch.traction(6e-4), 0.0);
+}
+
+// Reissner and Sagoci's bonded punch until it begins to slip, phi = 3 M/(16 G a^3).
+TEST(Oracle, FlatPunchSticksEverywhereAtFirst) {
+  const double shear_modulus = 210e9 / (2.0 * 1.3) / 2.0;
+  for (const char* load : {"load.moment_ratio=0.5", "load.moment_ratio=0", "load.moment=0.033"}) {
+    const Oracle punch = *find_oracle(body("/flat_punch.toml", {load})).oracle;
+    EXPECT_EQ(punch.stick_radius, punch.contact_radius) << load;
+    EXPECT_NEAR(punch.twist_angle, 3.0 * punch.moment / (16.0 * shear_modulus * std::pow(5e-4, 3)),
+                kTolerance * punch.twist_angle)
+        << load;
+  }
+}
+
+TEST(Oracle, EllipsoidOfEqualRadiiIsASphere) {
+  const Oracle sphere = *find_oracle(paper({"load.moment_ratio=0.7"})).oracle;
+  const OracleAnswer round = find_oracle(
+      body("/ellipse.toml", {"upper.radius_1=0.018", "upper.radius_2=0.018", "load.moment_ratio=0.7"}));
+  ASSERT_TRUE(round.oracle) << round.reason;
+  EXPECT_EQ(round.oracle->profile.get(), &analytic::hertz_profile());
+  EXPECT_EQ(round.oracle->contact_radius, sphere.contact_radius);
+  EXPECT_EQ(round.oracle->twist_angle, sphere.twist_angle);
+}
+
+/// Load and limit moment that the pressure carries, by its radii in all directions: where a ray leaves the
+/// contact, and the midpoint rule in r = edge sin(t) on the way.
+struct Carried {
+  double load = 0.0;
+  double limit = 0.0;
+};
+Carried carried_by(const Oracle& oracle) {
+  constexpr int directions = 400;
+  constexpr int points = 400;
+  Carried carried;
+  for (int i = 0; i < directions; ++i) {
+    const double direction = 2.0 * std::numbers::pi * i / directions;
+    const double c = std::cos(direction);
+    const double s = std::sin(direction);
+    const double edge = oracle.contact_radius / oracle.radius(c, s);
+    for (int k = 0; k < points; ++k) {
+      const double t = std::numbers::pi / 2 * (k + 0.5) / points;
+      const double r = edge * std::sin(t);
+      const double area =
+          2.0 * std::numbers::pi / directions * (std::numbers::pi / 2 / points) * edge * std::cos(t) * r;
+      const double pressure = oracle.pressure(oracle.radius(r * c, r * s));
+      carried.load += area * pressure;
+      carried.limit += area * pressure * r * oracle.friction;
+    }
+  }
+  return carried;
+}
+constexpr double kQuadrature = 1e-5;  // of 400 points on a smooth integrand: 400^-2
+
+/// Both axes and the peak by the numerical wing's own integral and root-finder.
+TEST(Oracle, EllipseIsHertzs) {
+  for (const char* file : {"/ellipse.toml", "/turned_ellipse.toml"}) {
+    SCOPED_TRACE(file);
+    const solver::Scene scene = body(file, {});
+    const OracleAnswer answer = find_oracle(scene);
+    ASSERT_TRUE(answer.oracle) << answer.reason;
+    const Oracle& oracle = *answer.oracle;
+    const double effective_modulus = 210e9 / (1.0 - 0.3 * 0.3) / 2.0;
+    const solver::HertzContact hertz = solver::hertz_contact(1000.0, 0.018, 0.0063, effective_modulus);
+    EXPECT_NEAR(oracle.longer_semi_axis() / hertz.semi_axis_1, 1.0, 1e-13);
+    EXPECT_NEAR(oracle.shorter_semi_axis() / hertz.semi_axis_2, 1.0, 1e-13);
+    EXPECT_NEAR(oracle.peak_pressure / hertz.peak_pressure, 1.0, 1e-13);
+    const double angle = scene.surfaces.front().angle;
+    const auto edge_at = [&](double direction) {
+      return oracle.contact_radius / oracle.radius(std::cos(direction), std::sin(direction));
+    };
+    EXPECT_NEAR(edge_at(angle) / hertz.semi_axis_1, 1.0, 1e-13);
+    EXPECT_NEAR(edge_at(angle + std::numbers::pi / 2) / hertz.semi_axis_2, 1.0, 1e-13);
+    const Carried carried = carried_by(oracle);
+    EXPECT_NEAR(carried.load / 1000.0, 1.0, kQuadrature);
+    EXPECT_NEAR(carried.limit / oracle.moment_limit, 1.0, kQuadrature);
+    EXPECT_EQ(oracle.moment, *scene.steps[0].torsion.moment_ratio * oracle.moment_limit);
+  }
+}
+
+TEST(Oracle, EllipseOfNearlyEqualRadiiIsNearlyTheSphere) {
+  const Oracle sphere = *find_oracle(paper({"load.moment_ratio=0.7"})).oracle;
+  for (const char* radius_2 : {"upper.radius_2=0.01800000000001", "upper.radius_2=0.01799999999999"}) {
+    const Oracle ellipse =
+        *find_oracle(body("/ellipse.toml", {"upper.radius_1=0.018", radius_2, "load.moment_ratio=0.7"}))
+             .oracle;
+    constexpr double tolerance = 2e-12;  // the radii differ by 6e-13
+    EXPECT_NE(ellipse.axis_ratio, 1.0);
+    EXPECT_NEAR(ellipse.axis_ratio, 1.0, tolerance);
+    for (const auto number : {&Oracle::contact_radius, &Oracle::peak_pressure, &Oracle::reference_pressure,
+                              &Oracle::approach, &Oracle::moment_limit, &Oracle::moment}) {
+      EXPECT_NEAR(ellipse.*number / (sphere.*number), 1.0, tolerance);
+    }
+    const double r = 0.6 * sphere.contact_radius;
+    EXPECT_NEAR(ellipse.pressure(ellipse.radius(0.6 * r, 0.8 * r)) / sphere.pressure(r), 1.0, tolerance);
+  }
+}
+
+TEST(Oracle, EllipseSaysNothingOfFriction) {
+  const Oracle ratio = *find_oracle(body("/ellipse.toml", {"load.moment_ratio=0.5"})).oracle;
+  EXPECT_NE(ratio.only_normal.find("two different radii"), std::string::npos);
+  EXPECT_EQ(ratio.shear, nullptr);
+  for (const double unknown :
+       {ratio.twist_angle, ratio.stick_radius, ratio.dissipated, ratio.displacement[0], ratio.displacement[1],
+        ratio.state.stick_ratio, ratio.state.twist, ratio.traction(0.0)}) {
+    EXPECT_TRUE(std::isnan(unknown));
+  }
+  EXPECT_EQ(ratio.moment, 0.5 * ratio.moment_limit);
+  EXPECT_EQ(find_oracle(paper({})).oracle->only_normal, "");
+}
+
+/// What the scene imposes is known.
+TEST(Oracle, EllipseKnowsItsLoads) {
+  solver::Scene scene = body("/ellipse.toml", {});
+  solver::Step& step = scene.steps.front();
+  step.torsion = {.moment_ratio = {}, .moment = 0.01, .twist = {}};
+  EXPECT_EQ(find_oracle(scene).oracle->moment, 0.01);
+  step.torsion = {.moment_ratio = {}, .moment = {}, .twist = 1e-3};
+  EXPECT_EQ(find_oracle(scene).oracle->twist_angle, 1e-3);
+  EXPECT_TRUE(std::isnan(find_oracle(scene).oracle->moment));
+  step.torsion = {.moment_ratio = 0.0, .moment = {}, .twist = {}};
+  step.force = {3.0, 4.0};
+  EXPECT_EQ(find_oracle(scene).oracle->force, step.force);
+  EXPECT_EQ(find_oracle(scene).oracle->moment, 0.0);
+  step.displacement = {1e-7, 0.0};
+  EXPECT_EQ(find_oracle(scene).oracle->displacement, *step.displacement);
+  EXPECT_TRUE(std::isnan(find_oracle(scene).oracle->force[0]));
+}
+
+/// A power of 2 is a paraboloid: gap r^2/(2 R).
+TEST(Oracle, PowerOfTwoIsASphere) {
+  const Oracle sphere = *find_oracle(paper({"load.moment_ratio=0.7"})).oracle;
+  solver::Scene scene = paper({"load.moment_ratio=0.7"});
+  scene.surfaces = {{.shape = solver::Shape::power, .exponent = 2.0, .coefficient = 0.5 / 0.018}};
+  const OracleAnswer power = find_oracle(scene);
+  ASSERT_TRUE(power.oracle) << power.reason;
+  EXPECT_NEAR(power.oracle->contact_radius / sphere.contact_radius, 1.0, kTolerance);
+  EXPECT_NEAR(power.oracle->peak_pressure / sphere.peak_pressure, 1.0, kTolerance);
+  EXPECT_NEAR(power.oracle->approach / sphere.approach, 1.0, kTolerance);
+  EXPECT_NEAR(power.oracle->twist_angle / sphere.twist_angle, 1.0, kTolerance);
+  const double r = 0.6 * sphere.contact_radius;
+  EXPECT_NEAR(power.oracle->pressure(r) / sphere.pressure(r), 1.0, kTolerance);
+}
+
+/// Flat bodies press hardest off the axis: under r^4 by sqrt(1 - r^2) (1 + 2 r^2), most at r^2 = 1/2 (its
+/// slope is r (3 - 6 r^2)/sqrt(1 - r^2)).
+TEST(Oracle, FindsThePeakOffTheAxis) {
+  solver::Scene scene = paper({});
+  scene.surfaces = {{.shape = solver::Shape::power, .exponent = 4.0, .coefficient = 1e8}};
+  const Oracle power = *find_oracle(scene).oracle;
+  EXPECT_NEAR(power.peak_pressure / power.pressure(0.0), std::sqrt(2.0), kTolerance);
+  const Oracle rounded = *find_oracle(body("/rounded_punch.toml", {})).oracle;
+  double highest = 0.0;
+  for (int i = 0; i <= 1000; ++i) {
+    highest = std::max(highest, rounded.pressure(rounded.contact_radius * i / 1000.0));
+  }
+  EXPECT_LE(highest, rounded.peak_pressure);
+  EXPECT_GE(highest,
+            rounded.peak_pressure * (1.0 - 1e-4));  // a thousandth of the radius beside a smooth peak
+  EXPECT_GT(highest, 1.01 * rounded.pressure(0.0));
+}
+
+TEST(Oracle, StandsWhereTheBodyStands) {
+  const Oracle centred = *find_oracle(paper({})).oracle;
+  const Oracle shifted = *find_oracle(paper({"upper.at=[1e-4, -2e-4]"})).oracle;
+  EXPECT_EQ(shifted.twist_angle, centred.twist_angle);
+  EXPECT_EQ(shifted.centre, (std::array{1e-4, -2e-4}));
+}
+
+TEST(Oracle, SaysWhyThereIsNone) {
+  const auto reason = [](const char* scene, const std::vector<std::string>& overrides) {
+    const OracleAnswer answer =
+        find_oracle(solver::read_scene(std::string(SLIPSTICK_SCENES) + scene, overrides));
+    return answer.oracle ? std::string() : answer.reason;
+  };
+  EXPECT_NE(reason("/ellipse.toml", {"contact.friction=0"}).find("friction"), std::string::npos);
+  EXPECT_NE(reason("/ellipse.toml", {"lower.poisson_ratio=0.2"}).find("coupling"), std::string::npos);
+  EXPECT_NE(reason("/ellipse.toml", {"lower.poisson_ratio=0.2", "load.moment_ratio=0"}).find("coupling"),
+            std::string::npos);
+  EXPECT_EQ(reason("/ellipse.toml", {"lower.poisson_ratio=0.2", "contact.coupling=none"}), "");
+  EXPECT_NE(reason("/dissimilar.toml", {}).find("coupling"), std::string::npos);
+  EXPECT_EQ(reason("/dissimilar.toml", {"contact.coupling=none"}), "");
+  EXPECT_NE(reason("/annulus.toml", {}).find("inner radius"), std::string::npos);
+  EXPECT_NE(reason("/patches.toml", {}).find("several shapes"), std::string::npos);
+  EXPECT_NE(reason("/rough_sphere.toml", {}).find("several shapes"), std::string::npos);
+  EXPECT_NE(reason("/paper.toml", {"load.moment=0.02882"}).find("gross slip"), std::string::npos);
+  EXPECT_NE(reason("/cone.toml", {"load.moment=0.0035"}).find("gross slip"), std::string::npos);
+  EXPECT_NE(reason("/paper.toml", {"load.twist=1e3"}).find("range"), std::string::npos);
+  EXPECT_NE(reason("/paper.toml", {"contact.friction=0"}).find("friction"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace slipstick::convergence

@@ -1,0 +1,115 @@
+#include "convergence/orders/expected_order.hpp"
+
+#include <cmath>
+
+namespace slipstick::convergence {
+namespace {
+
+using solver::PressureModel;
+using solver::Shape;
+
+/// How the tractions end at the contact's edge.
+enum class Edge { root, singular, rough };
+
+Edge edge_of(const solver::Scene& scene) {
+  Edge edge = Edge::root;
+  for (const solver::Surface& surface : scene.surfaces) {
+    if (surface.shape == Shape::flat_punch) edge = Edge::singular;
+    if (surface.shape == Shape::height_map || surface.shape == Shape::roughness) return Edge::rough;
+  }
+  return edge;
+}
+
+bool is_norm(const std::string& quantity, const std::string& norm) {
+  const bool of_field = quantity.starts_with("traction_error") || quantity.starts_with("pressure_error");
+  return of_field && quantity.ends_with("." + norm);
+}
+
+ExpectedOrder of_field(const std::string& quantity, Edge edge) {
+  if (edge == Edge::singular) {
+    if (is_norm(quantity, "l1")) {
+      return {
+          0.5,
+          "beside a punch's edge the traction goes like d^(-1/2), and the edge's cells hold h^(1/2) of it"};
+    }
+    return {NAN, "a traction like d^(-1/2) at the edge has no finite norm of this kind"};
+  }
+  if (is_norm(quantity, "l1")) {
+    return {1.5,
+            "tractions have square-root edges: off by h^(1/2) in a band of width h, and by h^2 elsewhere"};
+  }
+  if (is_norm(quantity, "l2")) {
+    return {1.0, "off by h^(1/2) in a band of width h along the edges, whose square sums to h^2"};
+  }
+  return {0.5, "the cell that a square-root edge cuts is off by h^(1/2)"};
+}
+
+ExpectedOrder of_number(const std::string& quantity, const solver::Scene& scene) {
+  if (quantity.starts_with("stick_radius_counted")) {
+    return {1.0, "an edge told by counting whole cells is known to a part of one"};
+  }
+  if (quantity.starts_with("stick_")) {
+    return {
+        1.0,
+        "told from the slip in the 24 cells beside the edge, at most: once the ring is wider, what the mesh "
+        "does there is a part of a cell; on coarser meshes the error falls faster"};
+  }
+  if (edge_of(scene) == Edge::singular) {
+    return {1.0,
+            "the singular edge stands where the outermost cells end, a part of a cell from the true one"};
+  }
+  if (scene.pressure == PressureModel::hertz_averaged) {
+    return {2.0,
+            "averaging over cells keeps the load and widens the pressure by h^2/12 in its second moments"};
+  }
+  if (scene.pressure == PressureModel::hertz) {
+    return {
+        2.0,
+        "a pressure sampled at the centres misses loads by h^2, up or down as the edge lies between them"};
+  }
+  return {2.0,
+          "centres are the points where constant cells err by h^2; the edges' h^(1/2) in a band of width h "
+          "enters "
+          "a minimum's value by its square"};
+}
+
+}  // namespace
+
+const std::vector<std::string>& error_quantities() {
+  static const std::vector<std::string> paths{"twist_error",
+                                              "moment_error",
+                                              "moment_limit_error",
+                                              "displacement_error",
+                                              "stick_radius_error",
+                                              "stick_ratio_error",
+                                              "stick_radius_counted_error",
+                                              "contact_radius_error",
+                                              "peak_pressure_error",
+                                              "dissipated_error",
+                                              "traction_error.l1",
+                                              "traction_error.l2",
+                                              "traction_error.max",
+                                              "traction_error.averaged.l1",
+                                              "traction_error.averaged.l2",
+                                              "pressure_error.l1",
+                                              "pressure_error.l2"};
+  return paths;
+}
+
+const std::vector<std::string>& value_quantities() {
+  static const std::vector<std::string> paths{"twist_angle",  "moment",         "moment_limit",
+                                              "stick_radius", "contact_radius", "elastic_energy",
+                                              "dissipated"};
+  return paths;
+}
+
+ExpectedOrder expected_order(const std::string& quantity, const solver::Scene& scene) {
+  const Edge edge = edge_of(scene);
+  if (edge == Edge::rough) return {NAN, "finer meshes see more of a rough surface"};
+  for (const char* norm : {"l1", "l2", "max"}) {
+    if (is_norm(quantity, norm)) return of_field(quantity, edge);
+  }
+  return of_number(quantity, scene);
+}
+
+}  // namespace slipstick::convergence

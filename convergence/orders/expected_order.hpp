@@ -1,0 +1,27 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "solver/scene/scene.hpp"
+
+namespace slipstick::convergence {
+
+/// The order in the cell size with which an error falls, and the reason in one sentence; NaN where theory
+/// gives none.
+struct ExpectedOrder {
+  double value;
+  std::string why;
+};
+
+/// Errors that a study looks at where there is an exact answer: paths into a result.
+const std::vector<std::string>& error_quantities();
+
+/// Quantities that it looks at where there is none, or where it does not say them.
+const std::vector<std::string>& value_quantities();
+
+/// Of an error, or of the error of a value, in a scene: by the pressure model and by how the indenter's
+/// pressure ends.
+ExpectedOrder expected_order(const std::string& quantity, const solver::Scene& scene);
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,303 @@
+#include "convergence/orders/limit.hpp"
+
+#include <fmt/core.h>
+#include <gsl/gsl_cdf.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+namespace slipstick::convergence {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using Meshes = std::vector<MeshSample>;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kBothSides = 0.975;  // of a 95 % interval
+
+// Orders that the least-squares method extrapolates with, and up to which it trusts them (Eca and Hoekstra).
+constexpr double kLeastOrder = 0.5;
+constexpr double kMostOrder = 2.0;
+constexpr double kTrustedOrder = 2.1;
+constexpr double kTrusted = 1.25;  // Roache's safety factors
+constexpr double kCautious = 3.0;
+
+double safety_factor(double order) {
+  return order >= kLeastOrder && order <= kTrustedOrder ? kTrusted : kCautious;
+}
+
+double range(const Meshes& meshes) {
+  const auto [low, high] = std::ranges::minmax(meshes, {}, &MeshSample::value);
+  return high.value - low.value;
+}
+
+/// Richardson's order and limit of three values.
+struct Extrapolation {
+  double order;
+  double left;  ///< distance of the finest value from the limit, signed
+};
+
+/// The order p at which (coarse - middle)/(middle - fine) is what values = limit + C size^p give; that ratio
+/// grows with p.
+Extrapolation extrapolation(const MeshSample& coarse, const MeshSample& middle, const MeshSample& fine) {
+  const double ratio = (coarse.value - middle.value) / (middle.value - fine.value);
+  const double coarser = std::log(coarse.size / middle.size);
+  const double finer = std::log(middle.size / fine.size);
+  if (!(ratio > 0.0) || std::isinf(ratio)) return {kNaN, kNaN};
+  constexpr double most = 100.0;
+  double low = -most;
+  double high = 0.75 * most;  // so that halving does not meet 0, where the ratio is a limit
+  for (int halving = 0; halving < 2 * std::numeric_limits<double>::digits; ++halving) {
+    const double order = 0.5 * (low + high);
+    (std::expm1(order * coarser) / -std::expm1(-order * finer) < ratio ? low : high) = order;
+  }
+  return {high, (middle.value - fine.value) / std::expm1(high * finer)};
+}
+
+/// In words; empty where the order of the finest three meshes has not fallen from that of the three before.
+std::string fall_of_order(const Meshes& meshes) {
+  if (meshes.size() <= kFewestMeshes) return "";
+  const auto finest = meshes.end() - kFewestMeshes;
+  const double now = extrapolation(finest[0], finest[1], finest[2]).order;
+  const double before = extrapolation(finest[-1], finest[0], finest[1]).order;
+  if (!(before > now + kOrderMargin)) return "";
+  return fmt::format("the order still falls, from {:.2f} to {:.2f} on the finest meshes", before, now);
+}
+
+/// What of the verdict the values alone decide; the interval decides the rest.
+Order judged(Order order, const Meshes& meshes, double expected, const std::string& left_out) {
+  order = judged_by_interval(order, expected);
+  const MeshSample& finest = meshes.back();
+  const MeshSample& before = meshes[meshes.size() - 2];
+  const double told = resolution(finest) + resolution(before);
+  if (turns(meshes)) {
+    order.verdict = OrderVerdict::oscillatory;
+    order.why = "the values turn back from mesh to mesh";
+  } else if (!(std::abs(finest.value - before.value) > told)) {
+    order.verdict = OrderVerdict::floor;
+    order.why =
+        fmt::format("the values of the two finest meshes differ by {:.2g}, which noise and scatter hide",
+                    std::abs(finest.value - before.value));
+  } else if (std::isnan(order.value)) {
+    order.why = "the changes from mesh to mesh do not shrink like a power of the size";
+  } else if (const std::string falls = fall_of_order(meshes);
+             order.verdict == OrderVerdict::superconvergent && !falls.empty()) {
+    order.verdict = OrderVerdict::preasymptotic;
+    order.why = falls;
+  }
+  if (!left_out.empty()) order.why += "; " + left_out;
+  return order;
+}
+
+/// value = coefficients[0] + sum of coefficients[k] (size/coarsest size)^powers[k - 1].
+struct PowerFit {
+  std::vector<double> powers;
+  bool weighted;
+  VectorXd coefficients;
+  double deviation;  ///< standard deviation of the residuals
+};
+
+ArrayXd column(const Meshes& meshes, double MeshSample::*member) {
+  ArrayXd values(static_cast<Eigen::Index>(meshes.size()));
+  for (Eigen::Index i = 0; i < values.size(); ++i) values[i] = meshes[static_cast<std::size_t>(i)].*member;
+  return values;
+}
+
+/// Mean 1.
+ArrayXd fit_weights(const ArrayXd& sizes, bool weighted) {
+  if (!weighted) return ArrayXd::Ones(sizes.size());
+  return sizes.inverse() / sizes.inverse().mean();
+}
+
+/// fitted: powers that were found from the same values, which cost a degree of freedom each.
+PowerFit power_fit(const Meshes& meshes, const std::vector<double>& powers, bool weighted, int fitted = 0) {
+  const ArrayXd sizes = column(meshes, &MeshSample::size) / meshes.front().size;
+  const ArrayXd values = column(meshes, &MeshSample::value) - meshes.back().value;
+  const ArrayXd roots = fit_weights(sizes, weighted).sqrt();
+  MatrixXd terms(sizes.size(), static_cast<Eigen::Index>(powers.size()) + 1);
+  terms.col(0) = roots;
+  for (std::size_t k = 0; k < powers.size(); ++k) {
+    terms.col(static_cast<Eigen::Index>(k) + 1) = sizes.pow(powers[k]) * roots;
+  }
+  VectorXd coefficients = terms.colPivHouseholderQr().solve((values * roots).matrix());
+  const double squares = (terms * coefficients - (values * roots).matrix()).squaredNorm();
+  coefficients[0] += meshes.back().value;
+  const auto left = static_cast<double>(terms.rows() - terms.cols() - fitted);
+  return {powers, weighted, coefficients, std::sqrt(squares / left)};
+}
+
+/// The power of least deviation, by ever closer looks at its logarithm; none where it is at an end.
+std::optional<PowerFit> fit_with_order(const Meshes& meshes, bool weighted) {
+  constexpr double least = 0.02;  // a power this small looks like a logarithm
+  constexpr double most = 100.0;
+  constexpr int steps = 20;
+  constexpr double close = 1e-13;
+  double low = std::log(least);
+  double high = std::log(most);
+  double at = high;
+  PowerFit best = power_fit(meshes, {most}, weighted, 1);
+  while (high - low > close) {
+    const double step = (high - low) / steps;
+    for (int i = 0; i <= steps; ++i) {
+      const PowerFit fit = power_fit(meshes, {std::exp(low + step * i)}, weighted, 1);
+      if (!(fit.deviation < best.deviation)) continue;
+      best = fit;
+      at = low + step * i;
+    }
+    low = std::max(low, at - step);
+    high = std::min(high, at + step);
+  }
+  const double distance = std::min(at - std::log(least), std::log(most) - at);
+  return distance > close ? std::optional(best) : std::nullopt;
+}
+
+PowerFit better(const PowerFit& one, const PowerFit& other) {
+  return other.deviation < one.deviation ? other : one;
+}
+
+PowerFit best_of(const Meshes& meshes, const std::vector<std::vector<double>>& candidates) {
+  PowerFit best = power_fit(meshes, candidates.front(), false);
+  for (const auto& powers : candidates) {
+    for (const bool weighted : {false, true}) best = better(best, power_fit(meshes, powers, weighted));
+  }
+  return best;
+}
+
+/// The order of the smaller deviation, weighted or not; none where neither fit has one.
+std::optional<PowerFit> best_with_order(const Meshes& meshes) {
+  const auto alike = fit_with_order(meshes, false);
+  const auto weighted = fit_with_order(meshes, true);
+  if (alike && weighted) return better(*alike, *weighted);
+  return alike ? alike : weighted;
+}
+
+std::vector<double> sizes_of(const Meshes& meshes) {
+  std::vector<double> sizes;
+  for (const MeshSample& mesh : meshes) sizes.push_back(mesh.size);
+  return sizes;
+}
+
+/// Half the 95 % interval of a fitted order, the fit taken as linear about it.
+double half_interval(const PowerFit& fit, const Meshes& meshes) {
+  const ArrayXd sizes = column(meshes, &MeshSample::size) / meshes.front().size;
+  const ArrayXd roots = fit_weights(sizes, fit.weighted).sqrt();
+  const ArrayXd power = sizes.pow(fit.powers[0]);
+  MatrixXd slopes(sizes.size(), 3);
+  slopes << roots, power * roots, fit.coefficients[1] * power * sizes.log() * roots;
+  const double left = static_cast<double>(sizes.size()) - 3.0;
+  return gsl_cdf_tdist_Pinv(kBothSides, left) * fit.deviation *
+         slopes.completeOrthogonalDecomposition().pseudoInverse().row(2).norm();
+}
+
+Order order_of(const std::optional<PowerFit>& fit, const Meshes& meshes) {
+  if (!fit) return {kNaN, kNaN, kNaN, kNaN, OrderVerdict::preasymptotic, ""};
+  const double order = fit->powers[0];
+  const double half = half_interval(*fit, meshes);
+  const double constant = fit->coefficients[1] * std::pow(meshes.front().size, -order);
+  return {order, order - half, order + half, constant, OrderVerdict::asymptotic, "", sizes_of(meshes)};
+}
+
+/// The fit that the method extrapolates with.
+PowerFit chosen_fit(const std::optional<PowerFit>& with_order, const Meshes& meshes) {
+  if (with_order && with_order->powers[0] > kMostOrder) return best_of(meshes, {{1.0}, {2.0}});
+  if (with_order && with_order->powers[0] >= kLeastOrder) return *with_order;
+  return best_of(meshes, {{1.0}, {2.0}, {1.0, 2.0}});
+}
+
+std::string method_of(const PowerFit& fit, bool with_order) {
+  std::string terms;
+  for (const double power : fit.powers)
+    terms += fmt::format("{}h^{:.3g}", terms.empty() ? "" : " and ", power);
+  return fmt::format("least squares with {}{}{}", terms, with_order ? ", fitted" : ", given",
+                     fit.weighted ? ", weighted by 1/h" : "");
+}
+
+/// Of the finest mesh, by the method's rules.
+double grid_uncertainty(const PowerFit& fit, double order, const Meshes& meshes) {
+  const double finest = meshes.back().size / meshes.front().size;
+  double fitted = 0.0;
+  for (std::size_t k = 0; k < fit.powers.size(); ++k) {
+    fitted += fit.coefficients[static_cast<Eigen::Index>(k) + 1] * std::pow(finest, fit.powers[k]);
+  }
+  const double residual = std::abs(meshes.back().value - fit.coefficients[0] - fitted);
+  const double mean_change = range(meshes) / static_cast<double>(meshes.size() - 1);
+  if (fit.deviation < mean_change) {
+    return safety_factor(order) * std::abs(fitted) + fit.deviation + residual;
+  }
+  if (mean_change == 0.0) return 0.0;
+  return kCautious * fit.deviation / mean_change * (std::abs(fitted) + fit.deviation + residual);
+}
+
+/// From three meshes, with what an uncertainty in each value does to both.
+struct Propagated {
+  Extrapolation found;
+  double order_uncertainty;
+  double limit_uncertainty;
+};
+
+Propagated propagated(const Meshes& three) {
+  const auto found = extrapolation(three[0], three[1], three[2]);
+  double order_squares = 0.0;
+  double limit_squares = 0.0;
+  for (std::size_t i = 0; i < three.size(); ++i) {
+    Meshes moved = three;
+    moved[i].value += uncertainty(three[i]);
+    const Extrapolation other = extrapolation(moved[0], moved[1], moved[2]);
+    order_squares += std::pow(other.order - found.order, 2);
+    limit_squares += std::pow(moved[2].value - other.left - (three[2].value - found.left), 2);
+  }
+  return {found, std::sqrt(order_squares), std::sqrt(limit_squares)};
+}
+
+/// Too few values for an order.
+Limit limit_of_few(const Meshes& meshes, std::size_t asked, const std::string& left_out, double expected) {
+  const std::string why = fmt::format("{} of {} meshes have a number, {} are needed{}{}", meshes.size(),
+                                      asked, kFewestMeshes, left_out.empty() ? "" : "; ", left_out);
+  const Order order{kNaN, kNaN, kNaN, kNaN, OrderVerdict::too_few, why};
+  if (meshes.empty()) return {kNaN, kNaN, order, "none"};
+  const MeshSample& finest = meshes.back();
+  if (meshes.size() == 1) return {finest.value, kNaN, order, "finest mesh"};
+  const double left = range(meshes) / std::expm1(expected * std::log(meshes[0].size / finest.size));
+  return {finest.value, kCautious * left + uncertainty(finest), order, "finest mesh"};
+}
+
+}  // namespace
+
+Limit least_squares_limit(const std::vector<MeshSample>& values, double expected) {
+  const auto [meshes, left_out] = coarsest_first(values);
+  if (meshes.size() <= kFewestMeshes) return richardson_limit(values, expected);
+  const auto with_order = best_with_order(meshes);
+  const PowerFit fit = chosen_fit(with_order, meshes);
+  const bool fitted = with_order && fit.powers == with_order->powers;
+  Order order = judged(order_of(with_order, meshes), meshes, expected, left_out);
+  if (!fitted) order.constant = kNaN;
+  return {fit.coefficients[0], grid_uncertainty(fit, order.value, meshes) + uncertainty(meshes.back()), order,
+          method_of(fit, fitted)};
+}
+
+Limit richardson_limit(const std::vector<MeshSample>& values, double expected) {
+  constexpr double most_order = 3.0;  // piecewise constant fields give 2, with luck somewhat more
+  const auto [meshes, left_out] = coarsest_first(values);
+  if (meshes.size() < kFewestMeshes) return limit_of_few(meshes, values.size(), left_out, expected);
+  const Meshes three(meshes.end() - kFewestMeshes, meshes.end());
+  const auto [found, order_doubt, limit_doubt] = propagated(three);
+  const double constant = found.left / std::pow(three.back().size, found.order);
+  const Order fitted{found.order,    found.order - order_doubt, found.order + order_doubt,
+                     constant,       OrderVerdict::asymptotic,  "",
+                     sizes_of(three)};
+  Order order = judged(fitted, meshes, expected, left_out);
+  const double finest = three.back().value;
+  if (!(found.order >= kLeastOrder && found.order <= most_order)) {
+    order.constant = kNaN;
+    return {finest, kCautious * range(three) + uncertainty(three.back()), order, "finest mesh"};
+  }
+  return {finest - found.left, safety_factor(found.order) * std::abs(found.left) + limit_doubt, order,
+          fmt::format("Richardson with h^{:.3g}", found.order)};
+}
+
+}  // namespace slipstick::convergence

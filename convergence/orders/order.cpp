@@ -1,0 +1,244 @@
+#include "convergence/orders/order.hpp"
+
+#include <fmt/core.h>
+#include <gsl/gsl_cdf.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace slipstick::convergence {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::MatrixXd;
+using Eigen::VectorXd;
+using Meshes = std::vector<MeshSample>;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kConfidence = 0.95;
+constexpr double kBothSides = 0.5 * (1.0 + kConfidence);
+
+Order no_order(OrderVerdict verdict, std::string why) {
+  return {kNaN, kNaN, kNaN, kNaN, verdict, std::move(why), {}};
+}
+
+/// Standard errors of log |error| as the spread gives them, and the grids that they rest on beyond one a
+/// mesh.
+struct Scatter {
+  ArrayXd errors;  ///< empty: unknown
+  double freedom = 0.0;
+};
+
+/// A few grids tell their spread roughly, so half of the variance is that of all meshes together, relative to
+/// the errors.
+Scatter scatter(const Meshes& meshes) {
+  const auto count = static_cast<Eigen::Index>(meshes.size());
+  ArrayXd own(count);
+  ArrayXd grids(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const MeshSample& mesh = meshes[static_cast<std::size_t>(i)];
+    own[i] = std::pow(mesh.spread / mesh.value, 2);
+    grids[i] = mesh.grids;
+  }
+  const double freedom = (grids - 1.0).sum();
+  const double pooled = (own * (grids - 1.0)).sum() / freedom;
+  if ((grids < 2.0).any() || !(pooled > 0.0)) return {};
+  return {(0.5 * (own + pooled) / grids).sqrt(), freedom};
+}
+
+/// A polynomial of log |error| in log size, about the mean of log size.
+struct LogFit {
+  VectorXd coefficients;  ///< lowest power first
+  VectorXd halves;        ///< of their 95 % intervals
+};
+
+/// meshes: more than degree + 1, or as many where the scatter is known.
+LogFit log_fit(const Meshes& meshes, const Scatter& scatter, Eigen::Index degree) {
+  const auto count = static_cast<Eigen::Index>(meshes.size());
+  ArrayXd x(count);
+  ArrayXd y(count);
+  ArrayXd noise(count);
+  for (Eigen::Index i = 0; i < count; ++i) {
+    const auto& [size, value, spread, grids, left] = meshes[static_cast<std::size_t>(i)];
+    x[i] = std::log(size);
+    y[i] = std::log(std::abs(value));
+    noise[i] = left / std::abs(value);
+  }
+  x -= x.mean();
+  const bool known = scatter.errors.size() > 0;
+  const ArrayXd weights = known ? ArrayXd(scatter.errors.inverse()) : ArrayXd::Ones(count);
+  MatrixXd powers(count, degree + 1);
+  for (Eigen::Index k = 0; k <= degree; ++k) powers.col(k) = x.pow(static_cast<double>(k)) * weights;
+  const MatrixXd solves = powers.completeOrthogonalDecomposition().pseudoInverse();
+  const VectorXd coefficients = solves * (y * weights).matrix();
+  const double squares = (powers * coefficients - (y * weights).matrix()).squaredNorm();
+  const auto left = static_cast<double>(count - degree - 1);
+  const bool explained = known && (left == 0.0 || squares <= gsl_cdf_chisq_Pinv(kConfidence, left));
+  const double deviation = explained ? 1.0 : std::sqrt(squares / left);
+  const double quantile = gsl_cdf_tdist_Pinv(kBothSides, explained ? scatter.freedom : left);
+  const VectorXd by_noise = solves.cwiseAbs() * (noise * weights).matrix();
+  return {coefficients, quantile * deviation * solves.rowwise().norm() + by_noise};
+}
+
+/// Whether an error is more than noise and scatter.
+bool is_told(const MeshSample& error) { return std::abs(error.value) > resolution(error); }
+
+/// Between the two finest meshes.
+double finest_order(const Meshes& meshes) {
+  const MeshSample& finest = meshes.back();
+  const MeshSample& before = meshes[meshes.size() - 2];
+  return std::log(before.value / finest.value) / std::log(before.size / finest.size);
+}
+
+/// In words; empty where the finest meshes show the order of all.
+std::string drift(const Meshes& meshes, const Scatter& scatter, double order) {
+  constexpr std::size_t tellable = 5;  // meshes, which leave a curvature two degrees of freedom
+  const double finest = finest_order(meshes);
+  if (std::abs(finest - order) <= kOrderMargin) return "";
+  if (scatter.errors.size() > 0 || meshes.size() >= tellable) {
+    const LogFit curved = log_fit(meshes, scatter, 2);
+    if (std::abs(curved.coefficients[2]) <= curved.halves[2]) return "";
+  }
+  return fmt::format("the order still drifts, to {:.2f} between the two finest meshes", finest);
+}
+
+/// Whether the error has stopped to fall: an order near zero between the finest meshes, and not by scatter.
+bool stands_still(const Meshes& meshes, double expected) {
+  const MeshSample& finest = meshes.back();
+  const MeshSample& before = meshes[meshes.size() - 2];
+  const double due = std::abs(before.value) * std::pow(finest.size / before.size, expected);
+  return std::abs(finest_order(meshes)) <= kOrderMargin &&
+         !(std::abs(finest.value) - due <= resolution(before) + resolution(finest));
+}
+
+/// The meshes from the last change of sign on.
+Meshes of_one_sign(const Meshes& meshes) {
+  const auto opposite = std::find_if(meshes.rbegin(), meshes.rend(), [&](const MeshSample& mesh) {
+    return mesh.value * meshes.back().value < 0.0;
+  });
+  return {opposite.base(), meshes.end()};
+}
+
+bool changes_sign(const Meshes& meshes) { return of_one_sign(meshes).size() < meshes.size(); }
+
+/// Without the coarse meshes on which another term of the error, of the other sign, was the largest; all
+/// where the sign changes more than once or too late.
+Meshes past_change_of_sign(const Meshes& meshes) {
+  const Meshes past = of_one_sign(meshes);
+  const Meshes before(meshes.begin(), meshes.end() - std::ssize(past));
+  return past.size() >= kFewestMeshes && (before.empty() || !changes_sign(before)) ? past : meshes;
+}
+
+Meshes sizes_of(Meshes errors) {
+  for (MeshSample& error : errors) error.value = std::abs(error.value);
+  return errors;
+}
+
+/// What speaks against a power law, before any interval is looked at; empty reason: nothing.
+std::pair<OrderVerdict, std::string> obstacle(const Meshes& told, const Meshes& all, double expected) {
+  const MeshSample& finest = all.back();
+  if (!is_told(finest)) {
+    return {OrderVerdict::floor,
+            fmt::format("the finest error, {:.2g}, is lost in noise and scatter: less than {:.2g} cannot be "
+                        "told from zero",
+                        std::abs(finest.value), resolution(finest))};
+  }
+  if (told.size() < kFewestMeshes) return {};
+  if (changes_sign(told)) {
+    return {OrderVerdict::oscillatory, "the error changes its sign from mesh to mesh"};
+  }
+  if (stands_still(told, expected)) {
+    return {OrderVerdict::floor,
+            fmt::format("the error has stopped to fall: {:.3g} and {:.3g} on the two finest meshes",
+                        told[told.size() - 2].value, told.back().value)};
+  }
+  if (turns(sizes_of(told))) {
+    return {OrderVerdict::oscillatory, "the error rises on one mesh and falls on another"};
+  }
+  return {};
+}
+
+Order line_order(const Meshes& meshes, const Scatter& scatter) {
+  const LogFit line = log_fit(meshes, scatter, 1);
+  std::vector<double> sizes;
+  double centre = 0.0;
+  for (const MeshSample& mesh : meshes) {
+    sizes.push_back(mesh.size);
+    centre += std::log(mesh.size) / static_cast<double>(meshes.size());
+  }
+  const double order = line.coefficients[1];
+  const double constant = std::exp(line.coefficients[0] - order * centre);
+  return {.value = order,
+          .low = order - line.halves[1],
+          .high = order + line.halves[1],
+          .constant = std::copysign(constant, meshes.back().value),
+          .verdict = OrderVerdict::asymptotic,
+          .why = "",
+          .sizes = sizes};
+}
+
+std::string in_words(const Order& order) {
+  return fmt::format("order {:.2f} ({:.2f} to {:.2f})", order.value, order.low, order.high);
+}
+
+}  // namespace
+
+Order judged_by_interval(Order order, double expected) {
+  const double half = std::max(order.high - order.value, order.value - order.low);
+  order.verdict = OrderVerdict::preasymptotic;
+  if (std::isnan(expected)) {
+    order.why = fmt::format("{} has no expected order to compare with", in_words(order));
+  } else if (order.low > expected + kOrderMargin) {
+    order.verdict = OrderVerdict::superconvergent;
+    order.why = fmt::format("{} lies above the expected {:.4g}", in_words(order), expected);
+  } else if (!(half <= kWidestHalf)) {
+    order.why =
+        fmt::format("{} is too uncertain to compare with the expected {:.4g}", in_words(order), expected);
+  } else if (!(order.high >= expected - kOrderMargin)) {
+    order.why = fmt::format("{} lies below the expected {:.4g}", in_words(order), expected);
+  } else {
+    order.verdict = OrderVerdict::asymptotic;
+    order.why = fmt::format("{} agrees with the expected {:.4g}", in_words(order), expected);
+  }
+  return order;
+}
+
+Order fit_order(const std::vector<MeshSample>& errors, double expected) {
+  const auto [all, left_out] = coarsest_first(errors);
+  std::string also = left_out.empty() ? "" : "; " + left_out;
+  if (all.size() < kFewestMeshes) {
+    return no_order(OrderVerdict::too_few, fmt::format("{} of {} meshes have a number, {} are needed{}",
+                                                       all.size(), errors.size(), kFewestMeshes, also));
+  }
+  Meshes told;
+  std::ranges::copy_if(all, std::back_inserter(told), is_told);
+  const std::size_t above = told.size();
+  told = past_change_of_sign(told);
+  if (told.size() < above) {
+    also = fmt::format("; {} coarser, with errors of the other sign, left out{}", above - told.size(), also);
+  }
+  const auto [verdict, reason] = obstacle(told, all, expected);
+  if (told.size() < kFewestMeshes) {
+    return no_order(
+        reason.empty() ? OrderVerdict::too_few : verdict,
+        fmt::format("{}{} of {} errors are above noise and scatter, {} are needed{}",
+                    reason.empty() ? "" : reason + "; ", told.size(), all.size(), kFewestMeshes, also));
+  }
+  const Scatter known = scatter(told);
+  Order order = judged_by_interval(line_order(told, known), expected);
+  const std::string drifting = drift(told, known, order.value);
+  if (!reason.empty()) {
+    order.verdict = verdict;
+    order.why = fmt::format("{}; {}", reason, in_words(order));
+  } else if (!drifting.empty()) {
+    order.verdict = OrderVerdict::preasymptotic;
+    order.why = fmt::format("{}; {}", drifting, in_words(order));
+  }
+  order.why += fmt::format(" over {} meshes{}", told.size(), also);
+  return order;
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,32 @@
+#include "convergence/programs/solve_figure.hpp"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <string>
+
+#include "convergence/programs/python_script.hpp"
+#include "convergence/programs/temporary_folder.hpp"
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::convergence {
+namespace fs = std::filesystem;
+
+void require_figure_format(const fs::path& figure) {
+  constexpr std::array kEndings{".svg", ".pdf", ".png"};
+  if (std::ranges::find(kEndings, figure.extension()) == kEndings.end()) {
+    throw solver::InputError("--figure", figure.string() + ": allowed endings: .svg, .pdf, .png");
+  }
+}
+
+void draw_figure(const fs::path& figure, const Json& result,
+                 const std::function<void(const fs::path&)>& write_fields) {
+  const TemporaryFolder folder;
+  const fs::path json = folder / "result.json";
+  const fs::path fields = folder / "fields.h5";
+  std::ofstream(json) << result.dump() << '\n';
+  write_fields(fields);
+  run_report_script("solve_figure.py", {json, fields, "--output", figure}, "the result is complete");
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,151 @@
+#include "convergence/report/exact_curves.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "analytic/approximations.hpp"
+#include "analytic/cycle.hpp"
+#include "analytic/paper_equations.hpp"
+#include "analytic/torsion.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using Json = nlohmann::ordered_json;
+using analytic::TorsionState;
+
+constexpr int kCurvePoints = 200;
+constexpr double kHighestLoad = 0.99999;
+
+/// Loads from 0 on, denser towards both ends.
+std::vector<double> loads() {
+  std::vector<double> loads;
+  for (int i = 0; i <= kCurvePoints; ++i)
+    loads.push_back(std::min(0.5 * (1.0 - std::cos(std::numbers::pi * i / kCurvePoints)), kHighestLoad));
+  return loads;
+}
+
+/// And the load at whose twist a discrete element code reaches its cap, where it is farthest off.
+std::vector<double> loads_and_cap() {
+  std::vector<double> all = loads();
+  const double cap = analytic::from_twist(analytic::dem_twist(analytic::dem_moment_limit())).moment_ratio;
+  all.insert(std::ranges::upper_bound(all, cap), cap);
+  return all;
+}
+
+/// value/exact - 1; every law becomes exact as the load vanishes.
+double error_of(double value, double exact) { return exact > 0.0 ? value / exact - 1.0 : 0.0; }
+
+Json curve() {
+  Json rows = Json::array();
+  for (const double load : loads()) {
+    const TorsionState state = analytic::from_moment_ratio(load);
+    const double equation_7 = analytic::paper::eq7_twist(state.moment);
+    rows.push_back({{"moment_ratio", state.moment_ratio},
+                    {"stick_ratio", state.stick_ratio},
+                    {"stick_complement", state.stick_complement},
+                    {"twist", state.twist},
+                    {"equation_7", equation_7},
+                    {"equation_7_error", error_of(equation_7, state.twist)}});
+  }
+  return rows;
+}
+
+/// Where Eq. (5) as printed loses its digits: against the stable form at the same stick ratio.
+Json equation_5_digits() {
+  Json rows = Json::array();
+  for (int i = 0; i <= 48; ++i) {
+    const double complement = std::pow(10.0, -0.25 - 0.15 * i);
+    const double c = 1.0 - complement;
+    const double exact = analytic::from_stick_ratio(c).moment;
+    rows.push_back({{"stick_complement", complement},
+                    {"relative_error", std::abs(analytic::paper::eq5_moment(c) / exact - 1.0)}});
+  }
+  return rows;
+}
+
+/// One load: the twist by each law, its error, and the moment that a discrete element code has at the exact
+/// twist.
+Json approximation_row(double load) {
+  const TorsionState state = analytic::from_moment_ratio(load);
+  Json row{{"moment_ratio", load}, {"twist", state.twist}, {"moment", state.moment}};
+  for (const analytic::Approximation& law : analytic::approximations()) {
+    const double twist = law.twist(state.moment);
+    row[law.key] = {{"twist", twist}, {"error", error_of(twist, state.twist)}};
+  }
+  const double dem_moment = analytic::dem_moment(state.twist);
+  row["dem_moment"] = {{"moment", dem_moment}, {"error", error_of(dem_moment, state.moment)}};
+  return row;
+}
+
+Json approximation_rows(const std::vector<double>& at) {
+  Json rows = Json::array();
+  for (const double load : at) rows.push_back(approximation_row(load));
+  return rows;
+}
+
+Json bodies() {
+  Json list = Json::array();
+  for (const analytic::Profile* profile :
+       {&analytic::hertz_profile(), &analytic::cone_profile(), &analytic::flat_punch_profile()}) {
+    Json rows = Json::array();
+    for (const double load : loads()) {
+      const TorsionState state = analytic::from_moment_ratio(load, *profile);
+      rows.push_back({{"moment_ratio", load},
+                      {"moment", state.moment},
+                      {"stick_ratio", state.stick_ratio},
+                      {"twist", state.twist}});
+    }
+    list.push_back({{"profile", profile->name()},
+                    {"moment_limit", profile->moment_limit()},
+                    {"full_stick", profile->full_stick()},
+                    {"rows", rows}});
+  }
+  return list;
+}
+
+/// A loop of the sphere with an inner loop on its way up, which leaves no trace.
+Json loop() {
+  const std::vector<double> turning_points{0.9, -0.9, 0.5, -0.5, 0.9};
+  constexpr int kPointsPerBranch = 60;
+  Json rows = Json::array();
+  for (const analytic::CycleState& state : analytic::loading_curve(turning_points, kPointsPerBranch))
+    rows.push_back({{"moment_ratio", state.moment_ratio},
+                    {"moment", state.moment},
+                    {"twist", state.twist},
+                    {"dissipated", state.dissipated}});
+  return {{"turning_points", turning_points}, {"rows", rows}};
+}
+
+/// Energy lost per cycle against amplitude, and its limit for small amplitudes.
+Json cycle_energy() {
+  constexpr int kSmall = 59;
+  std::vector<double> amplitudes;
+  amplitudes.reserve(kSmall);
+  for (int i = 0; i < kSmall; ++i) amplitudes.push_back(std::pow(10.0, -3.0 + 0.05 * i));
+  for (const double load : {0.85, 0.9, 0.93, 0.96, 0.98, 0.99, 0.995, 0.999}) amplitudes.push_back(load);
+  Json rows = Json::array();
+  for (const double load : amplitudes)
+    rows.push_back({{"moment_ratio", load},
+                    {"energy", analytic::energy_lost_per_cycle(load)},
+                    {"small_amplitude", analytic::energy_lost_per_small_cycle(load)}});
+  return rows;
+}
+
+}  // namespace
+
+Json exact_curves() {
+  return {{"curve", curve()},
+          {"equation_5_digits", equation_5_digits()},
+          {"approximations", approximation_rows(loads_and_cap())},
+          {"approximation_table", approximation_rows({0.01, 0.1, 0.2, 0.3, 0.5, 0.7, 0.9, 0.99})},
+          {"bodies", bodies()},
+          {"loop", loop()},
+          {"cycle_energy", cycle_energy()}};
+}
+
+}  // namespace slipstick::convergence

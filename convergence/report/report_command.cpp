@@ -1,0 +1,79 @@
+#include "convergence/report/report_command.hpp"
+
+#include <fmt/core.h>
+
+#include <filesystem>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "convergence/programs/python_script.hpp"
+#include "convergence/report/validation.hpp"
+#include "convergence/runs/failed_runs.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  std::string scene;
+  std::string output = "build/report";
+  bool quick = false;
+};
+
+/// Whether the page is newer than all that it is made from.
+bool is_current(const fs::path& page, const std::vector<fs::path>& sources) {
+  if (!fs::exists(page)) return false;
+  for (const fs::path& folder : sources) {
+    for (const auto& entry : fs::directory_iterator(folder)) {
+      if (entry.is_regular_file() && entry.last_write_time() > fs::last_write_time(page)) return false;
+    }
+  }
+  return true;
+}
+
+void draw(const fs::path& data, const fs::path& output) {
+  if (is_current(output / "index.html", {data, project_file("reports")})) return;
+  run_report_script("render.py", {data, "--output", output}, "the results are in " + data.string());
+}
+
+int run(const Options& options, std::ostream& text, nlohmann::ordered_json& result) {
+  const fs::path scenes = project_file("convergence/scenes");
+  const fs::path scene = options.scene.empty() ? scenes / "paper.toml" : fs::path(options.scene);
+  const fs::path output = options.output;
+  const fs::path data = output / "data";
+  result = validate(scene, scenes, project_file("convergence/studies"),
+                    options.quick ? quick_validation() : full_validation(), data);
+  draw(data, output);
+  text << "page: " << (output / "index.html").string() << '\n';
+  int exit_code = 0;
+  for (const auto& study : result["studies"]) {
+    const std::string failures = failed_runs_text(study);
+    if (failures.empty()) continue;
+    text << fmt::format("study {}: {}\n", study["name"].get<std::string>(), failures);
+    exit_code = 1;
+  }
+  return exit_code;
+}
+
+}  // namespace
+
+std::function<int(std::ostream&, nlohmann::ordered_json&)> add_report_command(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* const command = app.add_subcommand("report", "Run the paper's validation and draw the page");
+  command->add_option("scene", options->scene, "scene file; left out: the paper's own case");
+  command->add_option("--output", options->output, "folder for the page")->capture_default_str();
+  command->add_flag("--quick", options->quick, "small grids: seconds instead of a minute");
+  command->footer(
+      "Example:\n  slipstick report --output build/report\nFinished solves are kept: repeating an "
+      "interrupted "
+      "command goes on from there.\nExit code 0: done; 1: a run of a study failed, and the page says so; 2: "
+      "it "
+      "could not be made.");
+  return
+      [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "solver/scene/scene.hpp"
+
+namespace slipstick::convergence {
+
+/// How large the validation is.
+struct ValidationSize {
+  solver::Index loading_cells;            ///< cells along each side for the loading curve and the maps
+  std::vector<solver::Index> mesh_cells;  ///< of the mesh study
+  std::vector<solver::Index>
+      ellipse_cells;  ///< along the ellipse's long axis; half as many along the short one
+  std::array<solver::Index, 3> gallery_cells;  ///< along the longer side
+  std::vector<double> moment_ratios;           ///< of the loading curve
+  solver::Index study_cells;                   ///< the finest mesh of the studies
+};
+ValidationSize full_validation();
+ValidationSize quick_validation();
+
+/// The paper's validation (its Section 5, Figs. 1-5) for a scene, computed and compared with the exact
+/// solution, beside it an elliptic contact, where the paper's method fails, the gallery, from the files in
+/// `scenes`, and the studies of the meshes and the tolerances, from the files in `studies`: fills `folder`
+/// with report.json and the fields that the page draws, and returns report.json's content. Finished points
+/// are kept in folder/points and not computed again. Progress goes to standard error. Throws InputError for a
+/// scene that has no exact solution to compare with.
+nlohmann::ordered_json validate(const std::filesystem::path& scene_file, const std::filesystem::path& scenes,
+                                const std::filesystem::path& studies, const ValidationSize& size,
+                                const std::filesystem::path& folder);
+
+/// What is wrong in the paper's equations as printed, each with numbers as evidence, computed here or taken
+/// from the results of the paper's method on a circular and on elliptic contacts.
+nlohmann::ordered_json errata(const nlohmann::ordered_json& circle, const nlohmann::ordered_json& ellipses);
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,137 @@
+#include "convergence/results/exact_result.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <vector>
+
+#include "convergence/oracle/errors.hpp"
+#include "convergence/results/provenance.hpp"
+#include "solver/input/field_file.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/model.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+/// The load, as the scene names it.
+std::string load_text(const solver::Step& step) {
+  const solver::TorsionLoad& load = step.torsion;
+  if (step.force != std::array<double, 2>{}) {
+    return fmt::format("{}.force = [{}, {}] N", step.key, step.force[0], step.force[1]);
+  }
+  if (load.moment) return fmt::format("{}.moment = {} N m", step.key, *load.moment);
+  if (load.twist) return fmt::format("{}.twist = {} rad", step.key, *load.twist);
+  return fmt::format("{}.moment_ratio = {}", step.key, load.moment_ratio.value());
+}
+
+/// The pressure's tangential displacement of dissimilar materials would change the answer; the scene may ask
+/// that it be left out.
+std::vector<solver::Omission> omissions(const solver::Scene& scene) {
+  std::vector<solver::Omission> left_out{
+      {"the grid", "the scene is axisymmetric: the exact solution answers"}};
+  if (scene.coupling == solver::Coupling::none) {
+    left_out.push_back({"K13, K23", "contact.coupling = \"none\""});
+  }
+  return left_out;
+}
+
+/// Null under each of these keys, for one reason.
+void set_all_missing(Json& json, const std::vector<std::string>& keys, const std::string& reason) {
+  for (const std::string& key : keys) set_missing(json, key, reason);
+}
+
+}  // namespace
+
+Oracle require_oracle(const solver::Scene& scene) {
+  const std::unique_ptr<ExactHistory> history = exact_history(scene);
+  const std::string file = scene.source.string();
+  OracleAnswer exact;
+  for (int cycle = 0; cycle < scene.cycles; ++cycle) {
+    for (const solver::Step& step : scene.steps) {
+      exact = history->advance(step);
+      if (exact.oracle && exact.oracle->only_normal.empty()) continue;
+      if (exact.out_of_range) {
+        throw solver::InputError(file, fmt::format("{}: {}", load_text(step), exact.reason));
+      }
+      throw solver::InputError(
+          file, "solver.model", "\"exact\"",
+          fmt::format("auto, full ({})", exact.oracle ? exact.oracle->only_normal : exact.reason));
+    }
+  }
+  return *exact.oracle;
+}
+
+Json exact_result(const solver::Scene& scene, const Oracle& oracle, double seconds) {
+  Json json;
+  json["name"] = scene.name;
+  json["status"] = "converged";
+  json["method"] = "exact";
+  json["profile"] = oracle.profile->name();
+  json["model"] = model_json(omissions(scene));
+  set_all_missing(json, {"operator", "cells", "cell_size", "contact_cells", "stick_cells"},
+                  "the exact solution needs no grid");
+  const std::string unknown = "the exact solution does not say";
+  set_number(json, "contact_radius", oracle.contact_radius, unknown);
+  set_number(json, "stick_radius", oracle.stick_radius, unknown);
+  set_all_missing(json, {"contact_radius_counted", "stick_radius_counted"}, "there are no cells to count");
+  json["stick_ratio"] = oracle.state.stick_ratio;
+  json["friction"] = oracle.friction;
+  json["normal_load"] = *scene.steps.back().normal;
+  set_number(json, "peak_pressure", oracle.peak_pressure,
+             std::isinf(oracle.peak_pressure) ? "infinite" : unknown);
+  set_number(json, "approach", oracle.approach, unknown);
+  json["twist_angle"] = oracle.twist_angle;
+  json["moment"] = oracle.moment;
+  set_number(json, "moment_limit", oracle.moment_limit, unknown);
+  json["moment_ratio"] = oracle.state.moment_ratio;
+  json["twist"] = oracle.state.twist;
+  json["force"] = oracle.force;
+  json["displacement"] = oracle.displacement;
+  json["iterations"] = 0;
+  json["operator_applications"] = 0;
+  set_all_missing(json, {"certificate", "slip_direction"},
+                  "nothing to certify: the exact solution meets Coulomb's law everywhere");
+  set_all_missing(json, {"twist_error", "moment_error", "stick_radius_error", "traction_error"},
+                  "this is the exact answer");
+  json["seconds"] = {{"total", seconds}};
+  json["peak_bytes"] = peak_bytes();
+  json["provenance"] = provenance(scene.threads);
+  return json;
+}
+
+std::string exact_text(const Json& r) {
+  return fmt::format("{}: exact solution, profile {}\n", r["name"].get<std::string>(),
+                     r["profile"].get<std::string>()) +
+         status_text(r) + state_text(r) + model_text(r);
+}
+
+void write_exact_fields(const std::filesystem::path& file, const solver::Scene& scene, const Oracle& oracle) {
+  if (!oracle.shear) {
+    throw solver::InputError(
+        scene.source.string(), "solver.model", "\"exact\"",
+        "auto, full where fields are asked for (the exact solution says the stick ratio alone)");
+  }
+  solver::Scene sampled = scene;
+  sampled.op =
+      solver::OperatorKind::dcfft;  // no operator is made, so none of the larger ones need fit in memory
+  const solver::Model model = solver::make_model(sampled);
+  const solver::Index cells = model.grid.cells();
+  const double metre = model.length_unit;
+  const double pascal = model.stress_unit;
+  const ExactFields fields = exact_fields(oracle, model);
+  const std::vector<solver::Column> columns{
+      {"x1", solver::cell_x1(model.grid) * metre},
+      {"x2", solver::cell_x2(model.grid) * metre},
+      {"pressure", fields.pressure * pascal},
+      {"q1", fields.traction.head(cells) * pascal},
+      {"q2", fields.traction.tail(cells) * pascal},
+      {"stick", (fields.radius * metre < oracle.stick_radius).cast<double>()},
+  };
+  solver::Grid grid = model.grid;
+  grid.h1 *= metre;
+  grid.h2 *= metre;
+  solver::write_fields(file, grid, columns, fields.pressure);
+}
+
+}  // namespace slipstick::convergence

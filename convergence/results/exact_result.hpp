@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "convergence/oracle/oracle.hpp"
+#include "convergence/results/result_parts.hpp"
+#include "solver/scene/scene.hpp"
+
+/// What `solve` gives where a scene asks for the exact answer, solver.model = "exact": the keys of a solve on
+/// a grid as far as they have a meaning without one.
+namespace slipstick::convergence {
+
+/// The scene's exact answer. Throws InputError, with the reason and what is allowed, where there is none.
+Oracle require_oracle(const solver::Scene& scene);
+
+/// Its result in SI units and radians; `seconds` is how long it took to find it. A number that does not exist
+/// without a grid is null, with its reason beside it.
+Json exact_result(const solver::Scene& scene, const Oracle& oracle, double seconds);
+
+/// The same for a person: a few lines.
+std::string exact_text(const Json& result);
+
+/// Writes pressure, tractions and stick at the cell centres of the scene's grid, with the columns of a solve
+/// on a grid but its slips, which have no closed form. A cone's pressure is infinite on the axis, where an
+/// odd number of cells has a centre. Throws InputError for an answer without tractions, a grid that does not
+/// fit in memory and a file that cannot be written.
+void write_exact_fields(const std::filesystem::path& file, const solver::Scene& scene, const Oracle& oracle);
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,63 @@
+#include "convergence/results/markup.hpp"
+
+#include <fmt/core.h>
+
+#include <stdexcept>
+
+#include "convergence/results/whole_file.hpp"
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::convergence {
+
+std::string xml_text(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    switch (c) {
+      case '&':
+        escaped += "&amp;";
+        break;
+      case '<':
+        escaped += "&lt;";
+        break;
+      case '>':
+        escaped += "&gt;";
+        break;
+      case '"':
+        escaped += "&quot;";
+        break;
+      case '\n':
+      case '\t':
+        escaped += fmt::format("&#{};", static_cast<int>(c));
+        break;
+      default:
+        if (static_cast<unsigned char>(c) >= 0x20) escaped += c;
+    }
+  }
+  return escaped;
+}
+
+std::string markdown_cell(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '\n') {
+      escaped += "<br>";
+    } else if (c == '<') {
+      escaped += "&lt;";
+    } else {
+      if (c == '|' || c == '\\') escaped += '\\';
+      escaped += c;
+    }
+  }
+  return escaped;
+}
+
+void write_option_file(const std::string& option, const std::string& path, const std::string& text) {
+  if (path.empty()) return;
+  try {
+    write_whole_file(path, text);
+  } catch (const std::runtime_error&) {
+    throw solver::InputError(fmt::format("{} {}", option, path), "cannot be written");
+  }
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include "convergence/oracle/oracle.hpp"
+#include "convergence/results/result_parts.hpp"
+#include "solver/solve.hpp"
+
+namespace slipstick::convergence {
+
+/// A solution as the result file has it: SI units, radians, errors against the exact answer where there is
+/// one. A number that does not exist is null, with its reason beside it under the same name and "_reason".
+Json solve_result(const solver::Scene& scene, const solver::Solution& solution, const OracleAnswer& exact);
+
+/// The end of one step of a history: its state, certificate, errors and cost.
+Json step_result(const solver::Scene& scene, const solver::Solution& solution, const OracleAnswer& exact);
+
+/// Whether the result of a scene has steps: what it asks for decides, not how far a solve came.
+bool has_history(const solver::Scene& scene);
+
+/// Adds the steps of a history to the result of its last one, with their sums.
+void add_steps(Json& result, Json steps);
+
+/// The same for a person: a few lines.
+std::string solve_text(const Json& result);
+
+/// Writes tractions, pressure, slip, stick and the energy dissipated (J/m^2) of a solution (and the exact
+/// traction, where known) over its cells; slip and dissipated of its step.
+void write_solution_fields(const std::filesystem::path& file, const solver::Solution& solution,
+                           const OracleAnswer& exact);
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,165 @@
+#include "convergence/results/result_parts.hpp"
+
+#include <fmt/core.h>
+#include <sys/resource.h>
+
+#include <cmath>
+
+namespace slipstick::convergence {
+namespace {
+
+std::string error_text(const Json& result, const std::string& key) {
+  const auto found = result.find(key);
+  return found != result.end() && found->is_number() ? fmt::format("   (error {:+.1e})", found->get<double>())
+                                                     : "";
+}
+
+/// Forces and translations, where there are any.
+std::string translation_text(const Json& r) {
+  const auto pair = [](const Json& value) {
+    return fmt::format("[{}, {}]", number_text(value[0]), number_text(value[1]));
+  };
+  const auto size = [](const Json& value) {
+    return std::hypot(value[0].get<double>(), value[1].get<double>());
+  };
+  constexpr double rounding = 1e-12;
+  const double friction = r["friction"].get<double>() * r["normal_load"].get<double>();
+  std::string text;
+  if (size(r["force"]) > rounding * friction) text += text_line("force", pair(r["force"]) + " N");
+  if (size(r["displacement"]) > 0.0) {
+    text += text_line("displacement", pair(r["displacement"]) + " m" + error_text(r, "displacement_error"));
+  }
+  return text;
+}
+
+/// Without a radius to compare, the ratio, which an exact solution may say alone.
+std::string stick_text(const Json& r) {
+  const std::string error = error_text(r, "stick_radius_error");
+  std::string text = text_line("stick radius", number_text(r["stick_radius"]) + " m" + error);
+  if (error.empty()) {
+    text += text_line("stick ratio", number_text(r["stick_ratio"]) + error_text(r, "stick_ratio_error"));
+  }
+  return text;
+}
+
+}  // namespace
+
+void set_missing(Json& object, const std::string& key, const std::string& reason) {
+  object[key] = nullptr;
+  object[key + "_reason"] = reason;
+}
+
+void set_number(Json& object, const std::string& key, double value, const std::string& reason) {
+  if (std::isfinite(value)) {
+    object[key] = value;
+  } else {
+    set_missing(object, key, reason);
+  }
+}
+
+Json field_error_json(const FieldError& error, const std::string& reason) {
+  Json json;
+  set_number(json, "l1", error.l1, reason);
+  set_number(json, "l2", error.l2, reason);
+  set_number(json, "max", error.max, reason);
+  return json;
+}
+
+Json traction_error_json(const TractionError& error, const std::string& reason) {
+  Json json = field_error_json(error.at_centres, reason);
+  json["averaged"] = field_error_json(error.averaged, reason);
+  json["stick_edge"] = field_error_json(error.stick_edge, reason);
+  json["contact_edge"] = field_error_json(error.contact_edge, reason);
+  json["inside"] = field_error_json(error.inside, reason);
+  json["outside"] = field_error_json(error.outside, reason);
+  return json;
+}
+
+Json certificate_json(const solver::Certificate& certificate, const std::string& reason) {
+  Json json;
+  set_number(json, "gap", certificate.gap, reason);
+  set_number(json, "energy_error", certificate.energy_error, reason);
+  set_number(json, "rounding", certificate.rounding, reason);
+  set_number(json, "moment", certificate.moment, reason);
+  set_number(json, "force", certificate.force, reason);
+  set_number(json, "friction_bound", certificate.friction_bound, reason);
+  return json;
+}
+
+Json resolution_json(const solver::Resolution& resolution) {
+  Json json;
+  json["stick_width"] = resolution.stick_width;
+  json["slip_width"] = resolution.slip_width;
+  set_number(json, "uncertainty", resolution.uncertainty, "the stick area lies within a cell");
+  if (!(resolution.uncertainty <= solver::kPoorlyResolved)) {
+    constexpr double percent = 100.0;
+    const std::string uncertain = std::isfinite(resolution.uncertainty)
+                                      ? fmt::format("uncertain by {:.2g} %", percent * resolution.uncertainty)
+                                      : "not determined";
+    json["warning"] = fmt::format(
+        "the mesh is too coarse: the stick area is {:.2g} cells wide, so the contact's motion is {}; take "
+        "more "
+        "cells, or a load further from gross slip",
+        resolution.stick_width, uncertain);
+  }
+  return json;
+}
+
+Json model_json(const std::vector<solver::Omission>& left_out) {
+  Json list = Json::array();
+  for (const auto& [what, why] : left_out) list.push_back({{"what", what}, {"why", why}});
+  return {{"left_out", list}};
+}
+
+std::size_t peak_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
+}
+
+std::string number_text(const Json& value) {
+  return value.is_number() ? fmt::format("{:.6g}", value.get<double>()) : "-";
+}
+
+std::string short_text(const Json& value) {
+  return value.is_number() ? fmt::format("{:.4g}", value.get<double>()) : "-";
+}
+
+std::string text_line(const std::string& label, const std::string& value) {
+  return fmt::format("  {:<16} {}\n", label, value);
+}
+
+std::string status_text(const Json& r) {
+  std::string text = text_line(
+      "status", fmt::format("{} ({} iterations, {} operator applications, {} s)",
+                            r["status"].get<std::string>(), r["iterations"].get<int>(),
+                            number_text(r["operator_applications"]), number_text(r["seconds"]["total"])));
+  if (r.contains("message")) text += text_line("why", r["message"].get<std::string>());
+  return text;
+}
+
+std::string state_text(const Json& r) {
+  const Json& peak = r["peak_pressure"];
+  return text_line("normal load", number_text(r["normal_load"]) + " N") +
+         text_line("contact radius",
+                   number_text(r["contact_radius"]) + " m" + error_text(r, "contact_radius_error")) +
+         text_line("peak pressure", peak.is_number()
+                                        ? number_text(peak) + " Pa" + error_text(r, "peak_pressure_error")
+                                        : r["peak_pressure_reason"].get<std::string>()) +
+         text_line("moment", fmt::format("{} N m = {} of the limit {} N m", number_text(r["moment"]),
+                                         number_text(r["moment_ratio"]), number_text(r["moment_limit"])) +
+                                 error_text(r, "moment_error")) +
+         text_line("twist", number_text(r["twist_angle"]) + " rad" + error_text(r, "twist_error")) +
+         translation_text(r) + stick_text(r);
+}
+
+std::string model_text(const Json& r) {
+  std::string text;
+  for (const Json& omission : r["model"]["left_out"]) {
+    text += text_line("left out", fmt::format("{} ({})", omission["what"].get<std::string>(),
+                                              omission["why"].get<std::string>()));
+  }
+  return text;
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstddef>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "convergence/oracle/errors.hpp"
+#include "solver/contact/certificate.hpp"
+#include "solver/model.hpp"
+#include "solver/resolution.hpp"
+
+/// What all results have in common, on a grid or not.
+namespace slipstick::convergence {
+
+using Json = nlohmann::ordered_json;
+
+/// What does not exist is null, and its reason stands beside it.
+void set_missing(Json& object, const std::string& key, const std::string& reason);
+
+/// JSON has no NaN and no infinity: such a number is missing.
+void set_number(Json& object, const std::string& key, double value, const std::string& reason);
+
+/// Errors of fields: of tractions at cell centres, beside it against cell averages, by region.
+Json field_error_json(const FieldError& error, const std::string& reason);
+Json traction_error_json(const TractionError& error, const std::string& reason);
+
+Json certificate_json(const solver::Certificate& certificate, const std::string& reason);
+
+/// What the mesh resolves, with a warning where that is little.
+Json resolution_json(const solver::Resolution& resolution);
+
+/// What a model leaves out, as results have it.
+Json model_json(const std::vector<solver::Omission>& left_out);
+
+/// The most memory that this process has held, in bytes.
+std::size_t peak_bytes();
+
+/// A number for a person, "-" where there is none.
+std::string number_text(const Json& value);
+
+/// The same with four digits.
+std::string short_text(const Json& value);
+
+/// One line of a result's text.
+std::string text_line(const std::string& label, const std::string& value);
+
+/// The lines that say how the solve went, those of the contact's state with their errors where there are
+/// any, and those of what was left out.
+std::string status_text(const Json& result);
+std::string state_text(const Json& result);
+std::string model_text(const Json& result);
+
+}  // namespace slipstick::convergence

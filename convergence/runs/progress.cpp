@@ -1,0 +1,24 @@
+#include "convergence/runs/progress.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+namespace slipstick::convergence {
+
+void Progress::finished(const std::string& label, double weight) {
+  ++done_;
+  left_ -= weight;
+  spent_ += weight;
+  const bool terminal = isatty(STDERR_FILENO) != 0;
+  const auto now = Clock::now();
+  const bool last = done_ == total_;
+  if (!terminal && !last && now - said_ < std::chrono::seconds(10)) return;
+  said_ = now;
+  const double seconds = std::chrono::duration<double>(now - start_).count();
+  fmt::print(stderr, "{}[{}/{}] {}, about {:.0f} s left{}", terminal ? "\r\033[K" : "", done_, total_, label,
+             spent_ > 0.0 ? seconds / spent_ * left_ : 0.0, terminal && !last ? "" : "\n");
+}
+
+std::string Progress::text() const { return fmt::format("{} of {}", done_, total_); }
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,240 @@
+#include "convergence/solve/accuracy.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "convergence/results/exact_result.hpp"
+#include "convergence/solve/cost.hpp"
+#include "convergence/solve/reached.hpp"
+#include "solver/grid_edge.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/pressure.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using solver::Index;
+using solver::InputError;
+using solver::Scene;
+
+/// A mesh is made finer by what the reached error suggests, and so much more, since errors scatter; by no
+/// more than the second at once, since an error on a coarse mesh may say little.
+constexpr double kRefinementMargin = 1.1;
+constexpr double kMostRefinement = 4.0;
+/// Tolerances that scene files may have.
+constexpr double kTightestTolerance = 1e-14;
+/// Cells that a grid without a given extent leaves free around the expected contact, both sides together; and
+/// the fewest cells on which it does.
+constexpr double kMarginCells = 4.0;
+constexpr Index kFewestCells = 16;
+/// Cells across the contact on the coarse grid that it is first looked at on: with fewer the extent is so
+/// much too large that the grids that follow would have no end, and how large the contact is cannot be told.
+constexpr double kLeastAcross = 3.0;
+/// What is recommended in its place.
+constexpr double kWellAcross = 0.5 * static_cast<double>(kReferenceCells);
+
+/// The key whose file says the grid; null where it is free.
+const char* grid_owner(const Scene& scene) {
+  if (solver::find_height_map(scene.surfaces) != nullptr) return "upper.file";
+  return scene.pressure == solver::PressureModel::file ? "contact.pressure_file" : nullptr;
+}
+
+bool brings_torsion(const solver::TorsionLoad& load) {
+  return load.twist || load.moment_ratio.value_or(load.moment.value_or(0.0)) != 0.0;
+}
+
+/// Of a scene whose grid is free.
+void require_contact_seen(const Scene& scene, double pressed, double cells_across) {
+  if (cells_across >= kLeastAcross) return;
+  throw InputError(
+      scene.source.string(), "grid.extent",
+      scene.extent ? fmt::format("[{}, {}]", (*scene.extent)[0], (*scene.extent)[1]) : "(missing)",
+      fmt::format(
+          "at most about {:.2g} times as long and wide, {}: of {} cells along its longer side the contact "
+          "fills {} in all, too few to choose a mesh by",
+          cells_across / kWellAcross, scene.extent ? "or left out" : "given", kReferenceCells, pressed));
+}
+
+std::string shortest(double value) { return fmt::format("{:g}", value); }
+
+Index multiple_of_four(double cells) { return 4 * static_cast<Index>(std::ceil(cells / 4.0 - 1e-9)); }
+
+bool fits_in_memory(const Scene& scene) {
+  try {
+    solver::make_model(scene);
+    return true;
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+/// Safety of the error that the mesh was chosen for.
+double mesh_error(const AccuracyWish& wish, bool estimated) {
+  return estimated ? wish.error / estimation_safety(wish.of) : wish.error;
+}
+
+}  // namespace
+
+AccuracyQuantity accuracy_quantity(const Scene& scene, AccuracyOf of) {
+  if (of == AccuracyOf::traction) return {"traction", "traction_error.l2", ""};
+  if (of == AccuracyOf::stick_radius) return {"stick_radius", "stick_radius_error", "stick_radius"};
+  const bool imposed = scene.steps.back().torsion.twist.has_value();
+  return imposed ? AccuracyQuantity{"moment", "moment_error", "moment"}
+                 : AccuracyQuantity{"twist", "twist_error", "twist_angle"};
+}
+
+void require_can_wish(const Scene& scene, const AccuracyWish& wish) {
+  const std::string option = fmt::format("--accuracy {}", shortest(wish.error));
+  if (!(wish.error > 0.0 && wish.error < 1.0)) throw InputError(option, "allowed: above 0 and below 1");
+  if (wish.of == AccuracyOf::twist && !brings_torsion(scene.steps.back().torsion)) {
+    throw InputError(option,
+                     fmt::format("{} brings no torsion in its last step, so that the twist has no relative "
+                                 "error; allowed: --accuracy-of traction, stick_radius",
+                                 scene.source.string()));
+  }
+  if (const char* const owner = grid_owner(scene);
+      owner != nullptr && scene.model != solver::ModelChoice::exact) {
+    throw InputError(scene.source.string(),
+                     fmt::format("the grid is that of {}: --accuracy cannot choose it", owner));
+  }
+  if (scene.method == solver::Method::paper && scene.model != solver::ModelChoice::exact) {
+    throw InputError(
+        scene.source.string(), "solver.method", "\"paper\"",
+        "coulomb, projected_gradient with --accuracy (the paper's stopping test bounds no error)");
+  }
+}
+
+bool answers_exactly(const Scene& scene, AccuracyOf of) {
+  try {
+    const Oracle oracle = require_oracle(scene);
+    if (of == AccuracyOf::traction) return static_cast<bool>(oracle.shear);
+    return std::isfinite(of == AccuracyOf::stick_radius ? oracle.stick_radius : oracle.twist_angle);
+  } catch (const InputError&) {
+    return false;
+  }
+}
+
+Scene with_cells(Scene scene, Index longer) {
+  const Index own = std::max(scene.cells[0], scene.cells[1]);
+  for (Index& cells : scene.cells) {
+    cells = std::max<Index>(
+        2, 2 * std::lround(0.5 * static_cast<double>(longer * cells) / static_cast<double>(own)));
+  }
+  return scene;
+}
+
+ContactOnGrid contact_on_grid(const Scene& scene) {
+  if (grid_owner(scene) != nullptr) {
+    const solver::Grid grid = solver::make_model(scene).grid;
+    const auto longer = static_cast<double>(std::max(grid.n1, grid.n2));
+    return {.longer = longer,
+            .margin = 0.0,
+            .cells_across = 2.0 * std::sqrt(static_cast<double>(grid.cells()) / M_PI)};
+  }
+  Scene coarse = with_cells(scene, kReferenceCells);
+  coarse.op = solver::OperatorKind::dcfft;
+  const solver::Model model = solver::make_model(coarse);
+  const solver::Step& step = coarse.steps.back();
+  const solver::NormalSolution normal = solver::find_pressure(coarse, model, step);
+  solver::require_contact_within_grid(coarse, model, step, normal);
+  const auto pressed = static_cast<double>((normal.pressure > 0.0).count());
+  const double across = 2.0 * std::sqrt(pressed / M_PI);
+  require_contact_seen(scene, pressed, across);
+  return {.longer = static_cast<double>(kReferenceCells),
+          .margin = scene.extent ? 0.0 : kMarginCells,
+          .cells_across = across};
+}
+
+Index cells_for(const ContactOnGrid& contact, double across) {
+  const double inside = (contact.longer - contact.margin) * across / contact.cells_across;
+  return std::max(kFewestCells, multiple_of_four(inside + contact.margin));
+}
+
+double cells_across(const ContactOnGrid& contact, Index cells) {
+  return contact.cells_across * (static_cast<double>(cells) - contact.margin) /
+         (contact.longer - contact.margin);
+}
+
+AccuracyChoice choose_grid(const Scene& scene, const ContactOnGrid& contact, const AccuracyWish& wish,
+                           bool estimated) {
+  const AccuracyData data = accuracy_data();
+  const double error = mesh_error(wish, estimated);
+  const double least = error_with(data, wish.of, kMostCellsAcross) * wish.error / error;
+  if (!(wish.error >= least)) {
+    throw InputError(
+        fmt::format("--accuracy {}", shortest(wish.error)),
+        fmt::format("allowed on a grid: {:.2g} or more for the {}, which {} cells across the contact "
+                    "are expected to reach; where a scene has an exact answer: any, with --model exact",
+                    least, accuracy_quantity(scene, wish.of).name, kMostCellsAcross));
+  }
+  const Needed needed = needed_for(data, wish.of, error);
+  AccuracyChoice choice{.cells = cells_for(contact, needed.cells_across),
+                        .tolerance = std::max(needed.tolerance, kTightestTolerance)};
+  solver::make_model(with_cells(scene, choice.cells));  // says what does not fit in memory
+  return choice;
+}
+
+std::optional<AccuracyChoice> refined(const Scene& scene, const ContactOnGrid& contact,
+                                      const AccuracyWish& wish, const AccuracyChoice& before,
+                                      double reached) {
+  const double order = falling_order(accuracy_data(), wish.of);
+  const double suggested = kRefinementMargin * std::pow(reached / wish.error, 1.0 / order);
+  const double across = cells_across(contact, before.cells);
+  if (!(suggested * across <= kMostCellsAcross)) return std::nullopt;
+  const double factor = std::clamp(suggested, kRefinementMargin, kMostRefinement);
+  const AccuracyChoice next{
+      .cells = cells_for(contact, factor * across),
+      .tolerance = std::max(before.tolerance * std::pow(factor, -order), kTightestTolerance)};
+  if (!fits_in_memory(with_cells(scene, next.cells))) return std::nullopt;
+  return next;
+}
+
+double predicted_seconds(const Scene& scene, const ContactOnGrid& contact) {
+  if (scene.method != solver::Method::coulomb || scene.op != solver::OperatorKind::dcfft) {
+    return std::numeric_limits<double>::quiet_NaN();
+  }
+  const double across = cells_across(contact, std::max(scene.cells[0], scene.cells[1]));
+  const auto steps = static_cast<double>(scene.steps.size()) * scene.cycles;
+  return steps * work_of(accuracy_data(), across, scene.tolerance) * application_seconds(scene);
+}
+
+Json plan_json(const Scene& scene) {
+  Json plan;
+  if (scene.model == solver::ModelChoice::exact) {
+    require_oracle(scene);
+    set_missing(plan, "cells", "the exact solution needs no grid");
+    plan.update({{"unknowns", 0}, {"bytes", 0}});
+    set_missing(plan, "seconds", "the exact solution takes about a millisecond a step");
+    return plan;
+  }
+  const solver::Model model = solver::make_model(scene);
+  const auto& [n1, n2, h1, h2, quadrant] = model.grid;
+  const ContactOnGrid contact = contact_on_grid(scene);
+  const double radius = 0.5 * cells_across(contact, std::max(n1, n2));
+  const solver::Reduction& part = model.pressure_part;
+  const double mirrored = (part.quadrant() ? 4.0 : 1.0) * (part.diagonal() ? 2.0 : 1.0);
+  plan["cells"] = {n1, n2};
+  plan["tolerance"] = scene.tolerance;
+  plan["unknowns"] = std::round(2.0 * M_PI * radius * radius / mirrored);
+  plan["bytes"] = solver::predicted_memory(scene, model).total();
+  set_number(plan, "seconds", predicted_seconds(scene, contact),
+             "measured for method = \"coulomb\" with operator = \"dcfft\" alone");
+  plan["seconds_from"] = fmt::format(
+      "work measured on the paper's sphere, in applications on {0} x {0} cells timed on this machine",
+      kReferenceCells);
+  return plan;
+}
+
+std::string plan_text(const Json& result) {
+  const Json& plan = result["plan"];
+  if (plan["cells"].is_null()) return text_line("plan", plan["cells_reason"].get<std::string>());
+  return text_line(
+      "plan", fmt::format("{} x {} cells, {} unknowns, {} bytes, about {} s", plan["cells"][0].get<int>(),
+                          plan["cells"][1].get<int>(), number_text(plan["unknowns"]),
+                          number_text(plan["bytes"]), short_text(plan["seconds"])));
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,81 @@
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "convergence/results/result_parts.hpp"
+#include "convergence/solve/measured_accuracy.hpp"
+#include "solver/scene/scene.hpp"
+
+/// How a wanted accuracy is reached: mesh and tolerance from measured data, what they will cost, and the way
+/// on where they were not enough.
+namespace slipstick::convergence {
+
+/// The finest mesh that is chosen: cells across the contact. Twice as fine as the finest measured one.
+inline constexpr double kMostCellsAcross = 2048.0;
+
+/// A relative error that is asked for.
+struct AccuracyWish {
+  double error;
+  AccuracyOf of = AccuracyOf::twist;
+};
+
+/// What the error is told of: a path into a result, and its name. The moment, where the twist is imposed.
+struct AccuracyQuantity {
+  std::string name;   ///< twist | moment | traction | stick_radius
+  std::string error;  ///< path of its error against the exact answer
+  std::string value;  ///< path of the value; empty: a field
+};
+AccuracyQuantity accuracy_quantity(const solver::Scene& scene, AccuracyOf of);
+
+/// Contact of the last step on a coarse grid: how fine a mesh becomes in it.
+struct ContactOnGrid {
+  double longer;        ///< cells along the grid's longer side
+  double margin;        ///< of these, outside the contact whatever the mesh
+  double cells_across;  ///< diameter of the circle of equal area over the side of a square of a cell's area
+};
+
+/// Told from the pressure on that grid; of a height map or a pressure file, whose grid is not free, as if all
+/// of it were pressed. Throws InputError as make_model().
+ContactOnGrid contact_on_grid(const solver::Scene& scene);
+
+/// Cells along the longer side, a multiple of four, that put at least so many across the contact.
+solver::Index cells_for(const ContactOnGrid& contact, double cells_across);
+double cells_across(const ContactOnGrid& contact, solver::Index cells);
+
+/// The scene on another mesh, in the shape of its own.
+solver::Scene with_cells(solver::Scene scene, solver::Index longer);
+
+/// What is solved to reach a wish.
+struct AccuracyChoice {
+  solver::Index cells = 0;  ///< along the grid's longer side
+  double tolerance = 0.0;
+};
+
+/// Checks a wish against the scene before anything is computed. Throws InputError for an error that is not
+/// between 0 and 1, a scene that has no such quantity or whose file says the grid, a method whose stopping
+/// test bounds no error.
+void require_can_wish(const solver::Scene& scene, const AccuracyWish& wish);
+
+/// Whether the exact wing answers with this quantity.
+bool answers_exactly(const solver::Scene& scene, AccuracyOf of);
+
+/// On a grid. estimated: its error will be told from two meshes, with a safety factor that the mesh has to
+/// make up for. Throws InputError, with what is reachable, where the data say that no grid gets there.
+AccuracyChoice choose_grid(const solver::Scene& scene, const ContactOnGrid& contact, const AccuracyWish& wish,
+                           bool estimated);
+
+/// The next choice after one that left too large an error; none where what the error suggests is finer than
+/// kMostCellsAcross, or the next mesh does not fit in memory.
+std::optional<AccuracyChoice> refined(const solver::Scene& scene, const ContactOnGrid& contact,
+                                      const AccuracyWish& wish, const AccuracyChoice& before, double reached);
+
+/// Predicted seconds of a solve on this machine: measured work times an application's seconds here. NaN for
+/// methods and operators that were not measured.
+double predicted_seconds(const solver::Scene& scene, const ContactOnGrid& contact);
+
+/// Cells, unknowns, bytes and seconds of what a scene asks for. Throws InputError as make_model().
+Json plan_json(const solver::Scene& scene);
+std::string plan_text(const Json& result);
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,69 @@
+#pragma once
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "solver/input/toml_reader.hpp"
+
+/// What solves of smooth contacts on meshes of several sizes were measured to err and to cost.
+namespace slipstick::convergence {
+
+/// What an accuracy is asked of: the twist (the moment, where the twist is imposed), the tractions (root mean
+/// square), the stick radius.
+enum class AccuracyOf { twist, traction, stick_radius };
+inline constexpr std::size_t kAccuracies = 3;
+
+/// Their words, as --accuracy-of and the data have them.
+const solver::Words<AccuracyOf>& accuracy_words();
+
+/// Error of a quantity on a mesh, the largest over the loads and over finer meshes; and the loosest tolerance
+/// that changes it by at most a tenth.
+struct MeasuredError {
+  double error;
+  double tolerance;
+};
+
+/// One mesh. Work is the seconds of a whole solve (with what symmetry leaves out) over those of one
+/// application on the reference grid, see application_seconds().
+struct MeasuredMesh {
+  double cells_across;                            ///< the contact's diameter over a cell's side
+  std::array<MeasuredError, kAccuracies> errors;  ///< as AccuracyOf
+  std::vector<double> tolerances;                 ///< falling
+  std::vector<double> applications;               ///< at each, the most over the loads
+  std::vector<double> work;                       ///< likewise
+};
+
+struct AccuracyData {
+  std::vector<MeasuredMesh> meshes;  ///< finer and finer, at least two
+};
+
+/// Those that come with the program.
+AccuracyData accuracy_data();
+
+/// Throws std::runtime_error, naming what is wrong, for a text that is no such data.
+AccuracyData parse_accuracy_data(const std::string& toml);
+
+/// The same as text; `origin` says in a comment where it was measured.
+std::string accuracy_toml(const AccuracyData& data, const std::string& origin);
+
+/// What reaches an error.
+struct Needed {
+  double cells_across;
+  double tolerance;
+};
+
+/// Coarsest mesh and loosest tolerance: between measured meshes as powers of the cells, beyond the finest as
+/// among the three finest. The error must be positive.
+Needed needed_for(const AccuracyData& data, AccuracyOf of, double error);
+
+/// The error that so many cells across the contact leave, in the same way.
+double error_with(const AccuracyData& data, AccuracyOf of, double cells_across);
+
+/// Power of the cell size with which the error falls on the finest measured meshes.
+double falling_order(const AccuracyData& data, AccuracyOf of);
+
+/// Work of a solve on so many cells across the contact to a tolerance.
+double work_of(const AccuracyData& data, double cells_across, double tolerance);
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,92 @@
+#include "convergence/solve/reached.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "convergence/orders/expected_order.hpp"
+#include "convergence/orders/limit.hpp"
+#include "convergence/results/quantity.hpp"
+#include "solver/grid/grid_transfer.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using solver::Scene;
+using solver::Solution;
+
+/// Of a number from two meshes, and of a norm of differences (Roache 1998).
+constexpr double kTwoMeshes = 3.0;
+constexpr double kOfNorm = 1.25;
+/// Where theory gives no order, as on rough surfaces.
+constexpr double kCautiousOrder = 1.0;
+
+double order_of(const AccuracyQuantity& quantity, const Scene& scene) {
+  const std::string path = quantity.value.empty() ? quantity.error : quantity.value;
+  const double order = expected_order(path, scene).value;
+  return std::isfinite(order) ? order : kCautiousOrder;
+}
+
+/// The same rectangle, in half as many cells along each side.
+Scene half_as_fine(const Scene& scene, const solver::Model& model) {
+  Scene coarse = scene;
+  const solver::Grid half = solver::coarser(model.grid);
+  coarse.cells = {half.n1, half.n2};
+  coarse.extent = {model.length_unit * model.grid.h1 * static_cast<double>(model.grid.n1),
+                   model.length_unit * model.grid.h2 * static_cast<double>(model.grid.n2)};
+  return coarse;
+}
+
+/// What smooth contacts were measured to err by on a mesh like this: two meshes may agree by luck, since
+/// errors of single numbers change their sign from mesh to mesh.
+double usual_error(const Solution& solution, AccuracyOf of) {
+  const solver::Model& model = solution.model;
+  const double side = model.length_unit * std::sqrt(model.grid.cell_area());
+  return error_with(accuracy_data(), of, 2.0 * solution.contact_radius / side);
+}
+
+double value_of(const Solution& solution, const std::string& path) {
+  if (path == "moment") return solution.moment;
+  return path == "stick_radius" ? solution.stick_radius : solution.twist_angle;
+}
+
+double number_error(const Solution& fine, const Solution& coarse, const std::string& path, double order) {
+  const double value = value_of(fine, path);
+  const Limit limit = richardson_limit(
+      {{.size = 1.0, .value = value}, {.size = 2.0, .value = value_of(coarse, path)}}, order);
+  return std::abs(limit.uncertainty / value);
+}
+
+/// Tractions are over the shear modulus in both models, cell by cell over the same rectangle.
+double field_error(const Solution& fine, const Solution& coarse, double order) {
+  const Eigen::ArrayXd mean =
+      solver::restrict_to(solver::coarser(fine.model.grid), fine.model.grid, fine.tangential.traction);
+  const double apart = (mean - coarse.tangential.traction).matrix().norm() / mean.matrix().norm();
+  return kOfNorm * apart / (std::exp2(order) - 1.0);
+}
+
+}  // namespace
+
+double estimation_safety(AccuracyOf of) { return of == AccuracyOf::traction ? kOfNorm : kTwoMeshes; }
+
+ReachedError reached_error(const Scene& scene, const Solution& solution, const Json& result, AccuracyOf of) {
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  const AccuracyQuantity quantity = accuracy_quantity(scene, of);
+  if (solution.status != solver::Status::converged) return {unknown, "exact", solution.message};
+  const double error = std::abs(number_at(result, quantity.error));
+  if (std::isfinite(error)) return {error, "exact", "against the exact answer"};
+  const Solution coarse = solver::solve(half_as_fine(scene, solution.model));
+  if (coarse.status != solver::Status::converged) {
+    return {unknown, "estimated", fmt::format("on half as many cells: {}", coarse.message)};
+  }
+  const double order = order_of(quantity, scene);
+  const double estimate = quantity.value.empty() ? field_error(solution, coarse, order)
+                                                 : number_error(solution, coarse, quantity.value, order);
+  if (!std::isfinite(estimate)) return {unknown, "estimated", "the value, or what is to be told, is zero"};
+  return {std::max(estimate, usual_error(solution, of)), "estimated",
+          fmt::format("from {} x {} cells, order {}", coarse.model.grid.n1, coarse.model.grid.n2, order)};
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,232 @@
+#include "convergence/solve/solve_command.hpp"
+
+#include <fmt/core.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <memory>
+#include <optional>
+#include <ostream>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "convergence/oracle/oracle.hpp"
+#include "convergence/programs/solve_figure.hpp"
+#include "convergence/results/exact_result.hpp"
+#include "convergence/results/result.hpp"
+#include "convergence/solve/accurate_solve.hpp"
+#include "solver/input/field_file.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/input/toml_reader.hpp"
+#include "solver/solve.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+struct Options {
+  std::string scene;
+  std::vector<std::string> overrides;
+  std::string fields;
+  std::string figure;
+  std::string model;
+  std::optional<double> accuracy;
+  std::string accuracy_of = "twist";
+  bool plan = false;
+};
+
+/// One line on a terminal, rewritten; nothing elsewhere.
+void show_progress(int iteration, double change) {
+  if (isatty(STDERR_FILENO) != 0)
+    fmt::print(stderr, "\r\033[Kiteration {}, change {:.1e}\r", iteration, change);
+}
+
+solver::Scene read_scene(const Options& options) {
+  std::vector<std::string> overrides = options.overrides;
+  if (!options.model.empty()) overrides.push_back(fmt::format("solver.model=\"{}\"", options.model));
+  return solver::read_scene(options.scene, overrides);
+}
+
+/// Stands for the number of the step in the name of a file that is written for each step of a history.
+constexpr std::string_view kStep = "{step}";
+
+bool one_file_a_step(const std::string& file) { return file.find(kStep) != std::string::npos; }
+
+std::string file_of_step(std::string file, std::size_t step) {
+  return file.replace(file.find(kStep), kStep.size(), std::to_string(step));
+}
+
+/// The files asked for beside the result; write_fields writes the cells to the file it is given.
+void write_files(const Options& options, const Json& result,
+                 const std::function<void(const std::filesystem::path&)>& write_fields) {
+  if (!options.fields.empty() && !one_file_a_step(options.fields)) write_fields(options.fields);
+  if (!options.figure.empty()) draw_figure(options.figure, result, write_fields);
+}
+
+int answer_exactly(const solver::Scene& scene, const Options& options, std::ostream& text, Json& result) {
+  const auto start = std::chrono::steady_clock::now();
+  const Oracle oracle = require_oracle(scene);
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  result = exact_result(scene, oracle, seconds);
+  text << exact_text(result);
+  write_files(options, result, [&](const auto& file) { write_exact_fields(file, scene, oracle); });
+  return 0;
+}
+
+/// Solves, and writes the fields of each step where they go to a file of its own.
+GridAnswer find_on_grid(const solver::Scene& scene, const Options& options, Json& result) {
+  const std::unique_ptr<ExactHistory> history = exact_history(scene);
+  GridAnswer answer;
+  Json steps = Json::array();
+  const auto on_step = [&](const solver::Solution& at) {
+    answer.exact = history->advance(at.loads);
+    if (has_history(scene)) steps.push_back(step_result(scene, at, answer.exact));
+    if (one_file_a_step(options.fields)) {
+      write_solution_fields(file_of_step(options.fields, std::max<std::size_t>(steps.size(), 1)), at,
+                            answer.exact);
+    }
+  };
+  try {
+    answer.solution = solver::solve(scene, {.progress = show_progress, .on_step = on_step});
+  } catch (const solver::InputError& error) {  // the steps before are not lost
+    if (!steps.empty()) {
+      result = {{"name", scene.name}, {"status", "not_converged"}, {"message", error.what()}};
+      add_steps(result, std::move(steps));
+    }
+    throw;
+  }
+  answer.result = solve_result(scene, answer.solution, answer.exact);
+  if (has_history(scene)) add_steps(answer.result, std::move(steps));
+  return answer;
+}
+
+void write_answer(const GridAnswer& answer, const Options& options, std::ostream& text) {
+  text << solve_text(answer.result);
+  write_files(options, answer.result,
+              [&](const auto& file) { write_solution_fields(file, answer.solution, answer.exact); });
+}
+
+int solve_on_grid(const solver::Scene& scene, const Options& options, std::ostream& text, Json& result) {
+  const GridAnswer answer = find_on_grid(scene, options, result);
+  result = answer.result;
+  write_answer(answer, options, text);
+  return answer.solution.status == solver::Status::converged ? 0 : 1;
+}
+
+AccuracyWish wish_of(const Options& options) {
+  AccuracyWish wish{.error = *options.accuracy};
+  for (const auto& [word, of] : accuracy_words()) {
+    if (word == options.accuracy_of) wish.of = of;
+  }
+  return wish;
+}
+
+/// The accuracy chooses these: both cannot hold.
+void require_not_set(const std::vector<std::string>& overrides) {
+  for (const std::string& assignment : overrides) {
+    for (const std::string_view key : {"grid.cells", "solver.tolerance"}) {
+      if (!assignment.starts_with(key)) continue;
+      throw solver::InputError(
+          fmt::format("--set {}", assignment),
+          "allowed: left out beside --accuracy, which chooses the cells and the tolerance");
+    }
+  }
+}
+
+/// The exact wing, where it answers and the user does not say otherwise.
+solver::Scene model_chosen(solver::Scene scene, const Options& options, AccuracyOf of) {
+  const bool said =
+      !options.model.empty() || solver::SceneReader(options.scene, options.overrides).has("solver.model");
+  if (!said && answers_exactly(scene, of)) scene.model = solver::ModelChoice::exact;
+  return scene;
+}
+
+int solve_accurately(solver::Scene scene, const Options& options, std::ostream& text, Json& result) {
+  const AccuracyWish wish = wish_of(options);
+  require_not_set(options.overrides);
+  scene = model_chosen(std::move(scene), options, wish.of);
+  require_can_wish(scene, wish);
+  if (options.plan) {
+    result["plan"] = plan_json(scene_for(scene, wish));
+    text << plan_text(result);
+    return 0;
+  }
+  if (scene.model == solver::ModelChoice::exact) {
+    const Json accuracy = exact_accuracy(scene, wish);
+    answer_exactly(scene, options, text, result);
+    result["accuracy"] = accuracy;
+    text << accuracy_text(result);
+    return 0;
+  }
+  const AccurateAnswer answer = solve_to_accuracy(
+      scene, wish, [&](const solver::Scene& chosen) { return find_on_grid(chosen, options, result); });
+  result = answer.answer.result;
+  result["accuracy"] = answer.accuracy;
+  write_answer(answer.answer, options, text);
+  text << accuracy_text(result);
+  return answer.reached ? 0 : 1;
+}
+
+int run(const Options& options, std::ostream& text, Json& result) {
+  if (!options.fields.empty()) solver::require_field_format(options.fields);
+  if (!options.figure.empty()) require_figure_format(options.figure);
+  const solver::Scene scene = read_scene(options);
+  if (options.accuracy) return solve_accurately(scene, options, text, result);
+  if (options.plan) {
+    result["plan"] = plan_json(scene);
+    text << plan_text(result);
+    return 0;
+  }
+  const bool exact = scene.model == solver::ModelChoice::exact;
+  return (exact ? answer_exactly : solve_on_grid)(scene, options, text, result);
+}
+
+}  // namespace
+
+std::function<int(std::ostream&, nlohmann::ordered_json&)> add_solve_command(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* const command = app.add_subcommand("solve", "Solve a scene, on a grid or exactly");
+  command->add_option("scene", options->scene, "scene file (TOML)")->required();
+  command
+      ->add_option("--set", options->overrides,
+                   "key=value: override a key of the scene, e.g. load.moment_ratio=0.5")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->add_option(
+      "--model", options->model,
+      "auto (leaves out what the scene allows) | full | exact (no grid: the exact solution of an "
+      "axisymmetric scene); as --set solver.model=...");
+  command->add_option(
+      "--accuracy", options->accuracy,
+      "relative error to reach, e.g. 1e-4: chooses cells, tolerance and, unless said, the model; "
+      "says what was reached");
+  std::vector<std::string> words;
+  for (const auto& [word, of] : accuracy_words()) words.push_back(word);
+  command
+      ->add_option("--accuracy-of", options->accuracy_of,
+                   "what --accuracy is asked of; where the twist is imposed, twist means the moment")
+      ->check(CLI::IsMember(words))
+      ->capture_default_str();
+  command->add_flag("--plan", options->plan, "predict memory and time of what would be solved, and stop");
+  command->add_option(
+      "--fields", options->fields,
+      "write tractions, pressure, stick and, from a grid, slip: .h5, .csv or .vti; of a history the "
+      "last step, or each to a file of its own where the name holds {step}");
+  command->add_option("--figure", options->figure,
+                      "draw slip and stick, tractions and pressure: .svg, .pdf or .png");
+  command->footer(
+      "Example:\n  slipstick solve convergence/scenes/paper.toml --set load.moment_ratio=0.5 --json "
+      "result.json --fields "
+      "fields.h5 --figure figure.svg\n  slipstick solve convergence/scenes/cone.toml --model exact\n  "
+      "slipstick solve convergence/scenes/ellipse.toml --accuracy 1e-3\nExit "
+      "code 0: converged; 1: "
+      "not, or the accuracy not reached, result written all the same; 2: bad input, or gross slip "
+      "asked for, or --model exact where no exact answer is known.");
+  return
+      [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };
+}
+
+}  // namespace slipstick::convergence

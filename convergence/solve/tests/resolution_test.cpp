@@ -1,0 +1,51 @@
+// What a result says of its mesh, against the exact answer.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "convergence/oracle/oracle.hpp"
+#include "convergence/results/result.hpp"
+#include "solver/solve.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+/// An estimate tells the size of an error, not its digits.
+constexpr double kSize = 2.0;
+
+class Resolved : public testing::TestWithParam<std::string> {
+ protected:
+  static Json result(double moment_ratio, int cells) {
+    const solver::Scene scene =
+        solver::read_scene(std::string(SLIPSTICK_SCENES) + "/" + GetParam() + ".toml",
+                           {"load.moment_ratio=" + std::to_string(moment_ratio),
+                            "grid.cells=[" + std::to_string(cells) + "," + std::to_string(cells) + "]"});
+    return solve_result(scene, solver::solve(scene), find_oracle(scene));
+  }
+};
+INSTANTIATE_TEST_SUITE_P(Bodies, Resolved, testing::Values("paper", "cone", "rounded_punch", "flat_punch"));
+
+TEST_P(Resolved, UncertaintyIsOfTheErrorsSizeAndLargeOnesAreWarnedOf) {
+  for (const int cells : {24, 48}) {
+    for (const double ratio : {0.3, 0.7, 0.95, 0.995, 0.9995, 0.99995, 0.999995}) {
+      SCOPED_TRACE(testing::Message() << ratio << " of the limit, " << cells << " cells");
+      const Json json = result(ratio, cells);
+      const Json& resolved = json["resolved"];
+      const double error = std::abs(json["twist_error"].get<double>());
+      const bool warned = resolved.contains("warning");
+      if (resolved["uncertainty"].is_null()) {
+        EXPECT_TRUE(resolved.contains("uncertainty_reason"));
+        EXPECT_TRUE(warned);
+        continue;
+      }
+      EXPECT_LE(error, kSize * resolved["uncertainty"].get<double>());
+      EXPECT_TRUE(warned || error < kSize * solver::kPoorlyResolved);
+      EXPECT_FALSE(warned && ratio < 0.9);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace slipstick::convergence

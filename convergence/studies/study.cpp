@@ -1,0 +1,133 @@
+#include "convergence/studies/study.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "convergence/results/provenance.hpp"
+#include "convergence/runs/failed_runs.hpp"
+#include "convergence/studies/budget.hpp"
+#include "convergence/studies/study_judgement.hpp"
+#include "convergence/studies/study_plan.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+/// Times that a study tightens a tolerance by itself, from 1e-8 to 1e-12.
+constexpr int kMostTightenings = 2;
+
+/// Collects points, then hands out their results in the same order.
+class Batch {
+ public:
+  Batch(PointRunner& runner, FailedRuns& failed) : runner_(runner), failed_(failed) {}
+  void add(Point point) { points_.push_back(std::move(point)); }
+  void run() {
+    results_ = runner_.run(points_);
+    for (std::size_t i = 0; i < points_.size(); ++i) failed_.add(run_text(points_[i]), results_[i]);
+  }
+  Json next() { return std::move(results_[taken_++]); }
+
+ private:
+  PointRunner& runner_;
+  FailedRuns& failed_;
+  std::vector<Point> points_;
+  std::vector<Json> results_;
+  std::size_t taken_ = 0;
+};
+
+void add_points(const Study& study, const Series& series, Batch& batch) {
+  for (const Mesh& mesh : series.meshes) {
+    for (const GridChoice& grid : mesh.grids) batch.add(make_point(study, grid, series.tolerance));
+    const BudgetPoints parts = budget_points(make_point(study, mesh.grids.front(), series.tolerance));
+    batch.add(parts.tightened);
+    if (!mesh.rounded) continue;
+    for (const Point& rounded : parts.rounded) batch.add(rounded);
+  }
+}
+
+std::vector<MeshResults> take_results(const Series& series, Batch& batch) {
+  std::vector<MeshResults> results;
+  for (const Mesh& mesh : series.meshes) {
+    MeshResults& at = results.emplace_back();
+    for (std::size_t k = 0; k < mesh.grids.size(); ++k) at.grids.push_back(batch.next());
+    at.tightened = batch.next();
+    if (!mesh.rounded) continue;
+    at.rounded = {batch.next(), batch.next()};
+  }
+  return results;
+}
+
+/// Solves the series, again and to tighter tolerances where the iteration shows.
+std::vector<std::vector<MeshResults>> solve_series(const Study& study, std::vector<Series>& all,
+                                                   PointRunner& runner, FailedRuns& failed) {
+  std::vector<std::vector<MeshResults>> results(all.size());
+  std::vector<bool> open(all.size(), true);
+  for (int pass = 0; pass <= kMostTightenings; ++pass) {
+    Batch batch(runner, failed);
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (open[i]) add_points(study, all[i], batch);
+    }
+    batch.run();
+    bool any = false;
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      if (!open[i]) continue;
+      results[i] = take_results(all[i], batch);
+      open[i] =
+          pass < kMostTightenings && all[i].meshes.size() > 1 && needs_tightening(study, all[i], results[i]);
+      if (!open[i]) continue;
+      any = true;
+      all[i].tolerance *= kTightening;
+      ++all[i].tightenings;
+    }
+    if (!any) break;
+  }
+  return results;
+}
+
+/// The tolerances that the study varies, and one tighter than all that stands for none.
+void add_tolerance_points(const Study& study, const Series& series, Batch& batch) {
+  for (const Mesh& mesh : series.meshes) {
+    for (const double tolerance : study.tolerances)
+      batch.add(make_point(study, mesh.grids.front(), tolerance));
+    batch.add(make_point(study, mesh.grids.front(), kTightening * study.tolerances.back()));
+  }
+}
+
+/// Of each mesh, in the same order.
+std::vector<std::vector<Json>> take_tolerance_results(const Study& study, const Series& series,
+                                                      Batch& batch) {
+  std::vector<std::vector<Json>> by_mesh(series.meshes.size());
+  for (std::vector<Json>& at : by_mesh) {
+    for (std::size_t k = 0; k <= study.tolerances.size(); ++k) at.push_back(batch.next());
+  }
+  return by_mesh;
+}
+
+}  // namespace
+
+Json run_study(const Study& study, PointRunner& runner) {
+  std::vector<Series> all = make_series(study);
+  FailedRuns failed;
+  const auto results = solve_series(study, all, runner, failed);
+  Json json;
+  json["name"] = study.name;
+  json["scene"] = study.scene.string();
+  json["shifts"] = study.shifts;
+  json["series"] = Json::object();
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    json["series"][all[i].name] = judge_series(study, all[i], results[i]);
+  }
+  if (study.tolerances.size() > 1) {
+    Batch batch(runner, failed);
+    for (const Series& series : all) add_tolerance_points(study, series, batch);
+    batch.run();
+    for (std::size_t i = 0; i < all.size(); ++i) {
+      const auto by_mesh = take_tolerance_results(study, all[i], batch);
+      json["series"][all[i].name]["tolerances"] = tolerance_rows(study, all[i], by_mesh, results[i]);
+    }
+  }
+  json["failed_runs"] = failed.json();
+  json["provenance"] = provenance(1);
+  return json;
+}
+
+}  // namespace slipstick::convergence

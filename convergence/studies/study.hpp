@@ -1,0 +1,44 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "convergence/runs/point_runner.hpp"
+#include "solver/grid/grid.hpp"
+
+namespace slipstick::convergence {
+
+/// A scene key and the values that a study gives it, as TOML writes them.
+struct Variation {
+  std::string key;
+  std::vector<std::string> values;
+};
+
+/// A study as its file (TOML) says it: every combination of the varied values is a series, solved on every
+/// mesh and to every tolerance.
+struct Study {
+  std::filesystem::path source;
+  std::string name;
+  std::filesystem::path scene;
+  std::vector<std::string> overrides;  ///< "key=value"
+  std::vector<solver::Index> cells;    ///< along the longer side, rising; empty: the scene's own grid
+  int shifts = 1;                      ///< grids of each mesh, whose cells lie differently under the edges
+  std::vector<double> tolerances;      ///< falling; empty: the scene's own
+  std::vector<Variation> variations;
+  std::vector<std::string> quantities;  ///< paths into a result; empty: all that have an expected order
+};
+
+/// overrides: as --set takes them, applied to the scene after the study's own. Throws InputError naming file,
+/// key, value and what is allowed.
+Study read_study(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+/// Solves, fits and judges: rows, orders, extrapolated values and budgets of each series, under
+/// result["series"][name]; the name joins the varied values with "-", or is the scene's where nothing varies.
+/// Paths that gates use: series.NAME.order.QUANTITY.value|low|high|verdict.
+Json run_study(const Study& study, PointRunner& runner);
+
+/// The same for a person: tables of errors, orders with verdicts, budgets.
+std::string study_text(const Json& result);
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,76 @@
+#include "convergence/studies/study_command.hpp"
+
+#include <fstream>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "convergence/programs/python_script.hpp"
+#include "convergence/programs/solve_figure.hpp"
+#include "convergence/programs/temporary_folder.hpp"
+#include "convergence/studies/study.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+struct Options {
+  std::string study;
+  std::vector<std::string> overrides;
+  std::string output = "build/studies";
+  std::string figure;
+  int jobs = 0;
+};
+
+void draw(const std::string& figure, const Json& result) {
+  const TemporaryFolder folder;
+  std::ofstream(folder / "study.json") << result.dump() << '\n';
+  run_report_script("study_figure.py", {folder / "study.json", figure}, "the study is complete");
+}
+
+bool all_converged(const Json& result) {
+  if (result["failed_runs"]["count"] != 0) return false;
+  for (const auto& [name, series] : result["series"].items()) {
+    for (const Json& row : series["rows"]) {
+      if (row["status"] != "converged") return false;
+    }
+  }
+  return true;
+}
+
+int run(const Options& options, std::ostream& text, Json& result) {
+  if (!options.figure.empty()) require_figure_format(options.figure);
+  const Study study = read_study(options.study, options.overrides);
+  PointRunner runner(options.output, options.jobs);
+  result = run_study(study, runner);
+  text << study_text(result);
+  if (!options.figure.empty()) draw(options.figure, result);
+  return all_converged(result) ? 0 : 1;
+}
+
+}  // namespace
+
+std::function<int(std::ostream&, nlohmann::ordered_json&)> add_study_command(CLI::App& app) {
+  const auto options = std::make_shared<Options>();
+  CLI::App* const command = app.add_subcommand(
+      "study", "Solve a scene on many meshes or to many tolerances; judge orders and errors");
+  command->add_option("study", options->study, "study file (TOML)")->required();
+  command->add_option("--set", options->overrides, "key=value: override a key of the scene, for all series")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->add_option("--output", options->output, "folder that keeps finished solves")
+      ->capture_default_str();
+  command->add_option("--figure", options->figure, "draw errors, orders and budget: .svg, .pdf or .png");
+  command->add_option("--jobs", options->jobs, "solves at a time; 0: one a processor, as memory allows")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command->footer(
+      "Example:\n  slipstick study convergence/studies/paper_mesh.toml --figure study.svg --json study.json\n"
+      "Finished solves are kept: repeating an interrupted command goes on from there.\nExit code 0: done; 1: "
+      "some "
+      "solve did not converge or failed, and is marked; 2: bad input.");
+  return
+      [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };
+}
+
+}  // namespace slipstick::convergence

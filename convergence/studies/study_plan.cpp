@@ -1,0 +1,98 @@
+#include "convergence/studies/study_plan.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using solver::Index;
+
+/// Rounding is looked at on the finest mesh up to this, where it costs little.
+constexpr Index kRoundingCells = 128;
+/// Of several grids of one mesh the contact's edge comes to lie over two cells' width: the grids grow by so
+/// many cells in all.
+constexpr double kShiftCells = 2.0;
+
+/// The grids of a mesh with so many cells along its longer side, in the shape of the scene's own.
+Mesh make_mesh(const Study& study, const std::vector<std::string>& overrides, std::optional<Index> across) {
+  std::vector<std::string> own = overrides;
+  if (across) {
+    const solver::Scene scene = solver::read_scene(study.scene, overrides);
+    if (solver::find_height_map(scene.surfaces) != nullptr) {
+      throw solver::InputError(study.source.string(), "cells", std::to_string(*across),
+                               "left out: the grid is that of the scene's height map");
+    }
+    own.push_back(cells_override(scene, *across));
+  }
+  const solver::Scene scene = solver::read_scene(study.scene, own);
+  const solver::Model model = solver::make_model(scene);
+  const auto& [n1, n2, h1, h2, quadrant] = model.grid;
+  Mesh mesh;
+  for (int k = 0; k < study.shifts; ++k) {
+    const double longer = static_cast<double>(std::max(n1, n2));
+    const double growth = 1.0 + kShiftCells * k / (study.shifts * longer);
+    const double unit = growth * model.length_unit;
+    GridChoice grid{own, {n1, n2}, unit * std::sqrt(h1 * h2)};
+    if (k > 0) {
+      grid.overrides.push_back(fmt::format("grid.extent=[{}, {}]", unit * h1 * static_cast<double>(n1),
+                                           unit * h2 * static_cast<double>(n2)));
+    }
+    mesh.grids.push_back(std::move(grid));
+  }
+  return mesh;
+}
+
+std::string without_quotes(std::string word) {
+  std::erase_if(word, [](char c) { return c == '"' || c == '\''; });
+  return word;
+}
+
+}  // namespace
+
+std::vector<Series> make_series(const Study& study) {
+  std::vector<Series> all(1);
+  all.front().overrides = study.overrides;
+  for (const auto& [key, values] : study.variations) {
+    std::vector<Series> longer;
+    for (const Series& series : all) {
+      for (const std::string& value : values) {
+        Series next = series;
+        const std::string word = without_quotes(value);
+        next.name += (next.name.empty() ? "" : "-") + word;
+        next.set[key] = Json::parse(value, nullptr, false);
+        if (next.set[key].is_discarded()) next.set[key] = word;
+        next.overrides.push_back(fmt::format("{}={}", key, value));
+        longer.push_back(std::move(next));
+      }
+    }
+    all = std::move(longer);
+  }
+  for (Series& series : all) {
+    const solver::Scene scene = solver::read_scene(study.scene, series.overrides);
+    if (series.name.empty()) series.name = scene.name;
+    series.tolerance = study.tolerances.empty() ? scene.tolerance : study.tolerances.back();
+    for (const Index across : study.cells)
+      series.meshes.push_back(make_mesh(study, series.overrides, across));
+    if (study.cells.empty()) series.meshes.push_back(make_mesh(study, series.overrides, std::nullopt));
+    Mesh* sample = &series.meshes.front();
+    for (Mesh& mesh : series.meshes) {
+      if (std::max(mesh.grids[0].cells[0], mesh.grids[0].cells[1]) <= kRoundingCells) sample = &mesh;
+    }
+    sample->rounded = true;
+  }
+  return all;
+}
+
+Point make_point(const Study& study, const GridChoice& grid, double tolerance) {
+  Point point{study.scene, grid.overrides};
+  point.overrides.push_back(fmt::format("solver.tolerance={}", tolerance));
+  return point;
+}
+
+}  // namespace slipstick::convergence

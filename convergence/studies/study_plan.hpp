@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "convergence/studies/study.hpp"
+
+/// What a study solves.
+namespace slipstick::convergence {
+
+/// One grid of a mesh.
+struct GridChoice {
+  std::vector<std::string> overrides;
+  std::array<solver::Index, 2> cells;
+  double size;  ///< m, the side of a square of a cell's area
+};
+
+struct Mesh {
+  std::vector<GridChoice> grids;
+  bool rounded = false;  ///< rounding is looked at here
+};
+
+/// One combination of the varied values.
+struct Series {
+  std::string name;
+  Json set = Json::object();
+  std::vector<std::string> overrides;
+  std::vector<Mesh> meshes;
+  double tolerance = 0.0;
+  int tightenings = 0;
+};
+
+/// What was computed on one mesh, to the series' tolerance.
+struct MeshResults {
+  std::vector<Json> grids;
+  Json tightened;             ///< the first grid's
+  std::vector<Json> rounded;  ///< likewise
+};
+
+/// All combinations of the varied values, with their meshes. Throws InputError for a scene that cannot have
+/// them.
+std::vector<Series> make_series(const Study& study);
+
+Point make_point(const Study& study, const GridChoice& grid, double tolerance);
+
+}  // namespace slipstick::convergence

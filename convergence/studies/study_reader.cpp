@@ -1,0 +1,98 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <functional>
+
+#include "convergence/studies/study.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/input/toml_reader.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using solver::Index;
+using solver::SceneReader;
+
+/// Of grids: below, a contact has no inside; above, one field takes gigabytes.
+constexpr double kLeastCells = 8.0;
+constexpr double kMostCells = 16384.0;
+/// More say nothing new about the spread.
+constexpr double kMostShifts = 32.0;
+/// Solves of a study, tightened and rounded ones not counted: more take days, and a wrong list may ask for
+/// billions.
+constexpr double kMostSolves = 10'000.0;
+
+std::vector<Index> read_cells(SceneReader& reader) {
+  std::vector<Index> cells;
+  for (const double number : reader.numbers("cells", solver::whole(kLeastCells, kMostCells))) {
+    cells.push_back(static_cast<Index>(number));
+  }
+  std::sort(cells.begin(), cells.end());
+  const auto twice = std::adjacent_find(cells.begin(), cells.end());
+  if (twice != cells.end()) reader.fail("cells", fmt::format("{} twice", *twice), "each mesh once");
+  return cells;
+}
+
+std::vector<Variation> read_variations(SceneReader& reader) {
+  std::vector<Variation> variations;
+  const std::size_t count = reader.count("vary");
+  for (std::size_t i = 0; i < count; ++i) {
+    const std::string at = fmt::format("vary[{}].", i);
+    variations.push_back({reader.text(at + "key"), reader.list(at + "values")});
+    if (variations.back().values.empty()) reader.fail(at + "values", "(missing)", "a list of values");
+    for (const char* own : {"grid.cells", "solver.tolerance"}) {
+      if (variations.back().key == own) {
+        reader.fail(at + "key", own, "a key of the scene other than those that cells and tolerances give");
+      }
+    }
+  }
+  return variations;
+}
+
+std::vector<std::string> read_quantities(SceneReader& reader) {
+  std::vector<std::string> quantities;
+  const std::size_t count = reader.list("quantities").size();
+  for (std::size_t i = 0; i < count; ++i) quantities.push_back(reader.text(fmt::format("quantities[{}]", i)));
+  return quantities;
+}
+
+void require_finite(const std::filesystem::path& file, const Study& study) {
+  const auto at_least_one = [](std::size_t count) {
+    return static_cast<double>(std::max<std::size_t>(1, count));
+  };
+  double solves = at_least_one(study.cells.size()) * at_least_one(study.tolerances.size()) * study.shifts;
+  for (const Variation& variation : study.variations) solves *= static_cast<double>(variation.values.size());
+  if (solves > kMostSolves) {
+    throw solver::InputError(file.string(),
+                             fmt::format("asks for {:g} solves; allowed: at most {:g}, cells times "
+                                         "shifts times tolerances times the values of each [[vary]]",
+                                         solves, kMostSolves));
+  }
+}
+
+}  // namespace
+
+Study read_study(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  SceneReader reader(file, {});
+  Study study;
+  study.source = file;
+  study.name = reader.text_or("name", file.stem().string());
+  study.scene = reader.path("scene");
+  study.overrides = reader.assignments("set");
+  study.overrides.insert(study.overrides.end(), overrides.begin(), overrides.end());
+  study.cells = read_cells(reader);
+  study.shifts = static_cast<int>(reader.number_or("shifts", 1.0, solver::whole(1.0, kMostShifts)));
+  study.tolerances = reader.numbers("tolerances", solver::kPositive);
+  std::sort(study.tolerances.begin(), study.tolerances.end(), std::greater<>());
+  study.variations = read_variations(reader);
+  study.quantities = read_quantities(reader);
+  reader.reject_unknown();
+  if (study.cells.size() < 2 && study.tolerances.size() < 2 && study.variations.empty()) {
+    throw solver::InputError(file.string(),
+                             "nothing varies; allowed: several cells, several tolerances, or [[vary]]");
+  }
+  require_finite(file, study);
+  return study;
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,381 @@
+#include "convergence/studies/study.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cfenv>
+#include <cmath>
+#include <csignal>
+#include <fstream>
+#include <set>
+
+#include "convergence/oracle/errors.hpp"
+#include "convergence/oracle/oracle.hpp"
+#include "convergence/orders/expected_order.hpp"
+#include "convergence/results/quantity.hpp"
+#include "convergence/studies/budget.hpp"
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+const std::string kPaper = std::string(SLIPSTICK_SCENES) + "/paper.toml";
+const std::string kEllipse = std::string(SLIPSTICK_SCENES) + "/ellipse.toml";
+
+std::string cells(int n) { return "grid.cells=[" + std::to_string(n) + "," + std::to_string(n) + "]"; }
+
+class StudyTest : public testing::Test {
+ protected:
+  StudyTest() { fs::create_directories(folder_); }
+  ~StudyTest() override { fs::remove_all(folder_); }
+
+  Study study(const std::string& text, const std::string& scene = kPaper) {
+    std::ofstream(folder_ / "study.toml") << "scene = \"" << scene << "\"\n" << text;
+    return read_study(folder_ / "study.toml");
+  }
+  Json run(const std::string& text, const std::string& scene = kPaper) {
+    return run_study(study(text, scene), runner_);
+  }
+
+  fs::path folder_ = fs::path(testing::TempDir()) / ("slipstick-study-test-" + std::to_string(getpid()));
+  PointRunner runner_{folder_ / "points"};
+};
+
+/// The directory's entries.
+std::size_t files(const fs::path& folder) {
+  return static_cast<std::size_t>(std::distance(fs::directory_iterator(folder), fs::directory_iterator()));
+}
+
+TEST_F(StudyTest, ProcessesGiveWhatOneSolveGives) {
+  const std::vector<Point> points{{kPaper, {cells(16)}}, {kPaper, {cells(24)}}, {kPaper, {cells(16)}}};
+  const std::vector<Json> results = runner_.run(points);
+  ASSERT_EQ(results.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(results[i]["twist_angle"], solve_point(points[i])["twist_angle"]);
+  }
+  EXPECT_EQ(files(folder_ / "points"), 2U);  // equal points are computed once
+}
+
+TEST_F(StudyTest, AFinishedPointIsNotComputedAgain) {
+  const Point point{kPaper, {cells(16)}};
+  const Json first = runner_.run(point);
+  EXPECT_EQ(runner_.run(point)["seconds"], first["seconds"]);  // no two runs take the same time
+  Point another = point;
+  another.rounding = Rounding::upward;
+  EXPECT_NE(runner_.run(another)["seconds"], first["seconds"]);
+}
+
+TEST_F(StudyTest, WhatCannotBeHadIsRefusedAndTheRestGoesOn) {
+  const std::vector<Json> results =
+      runner_.run({{kPaper, {cells(16), "load.moment=0.1"}}, {kPaper, {cells(16)}}});
+  EXPECT_EQ(results[0]["status"], "refused");
+  EXPECT_THAT(results[0]["message"].get<std::string>(), HasSubstr("moment"));
+  EXPECT_EQ(results[1]["status"], "converged");
+  EXPECT_THROW(runner_.run(Point{kPaper, {"load.moment_ration=0.5"}}), solver::InputError);
+}
+
+/// Rounding all results up changes them, by about as much as the number of operations says: far less than the
+/// digits that matter.
+TEST_F(StudyTest, DirectedRoundingIsSeenAndIsSmall) {
+  const BudgetPoints points = budget_points({kPaper, {cells(32)}});
+  const std::vector<Json> results =
+      runner_.run({points.observed, points.tightened, points.rounded[0], points.rounded[1]});
+  for (const Json& result : results) ASSERT_EQ(result["status"], "converged") << result.dump();
+  const Budget budget = split_error("twist_error", results[0], results[1], {results[2], results[3]});
+  EXPECT_GT(budget.rounding, 0.0);
+  EXPECT_LT(budget.rounding, 1e-10);
+  EXPECT_EQ(std::fegetround(), FE_TONEAREST);
+  EXPECT_DOUBLE_EQ(budget.observed, results[0]["twist_error"].get<double>());
+  EXPECT_DOUBLE_EQ(budget.discretisation + budget.iteration, budget.observed);
+  EXPECT_EQ(largest_part(budget), "discretisation");
+}
+
+/// Rounded downward this pressure's mirrors hold to rounding and half a turn, which is both of them, nearly
+/// to twice as much: one test decides for the quadrant and for the limit load.
+TEST_F(StudyTest, APressureThatIsMirroredToRoundingIsSolved) {
+  const BudgetPoints points =
+      budget_points({kPaper, {cells(96), "contact.pressure=\"hertz\"", "load.moment_ratio=0.5"}});
+  const std::vector<Json> results = runner_.run({points.tightened, points.rounded[0], points.rounded[1]});
+  for (const Json& result : results) EXPECT_EQ(result["status"], "converged") << result.dump();
+}
+
+/// A result that cannot be kept, for a folder lies where its file belongs, is a run that died: its exception
+/// is the reason, and what the study cannot know is missing and not zero.
+TEST_F(StudyTest, ARunThatDiedIsSaid) {
+  const Study meshes = study("cells = [8, 12, 16, 24]\nquantities = [\"twist_error\"]\n");
+  const Json whole = run_study(meshes, runner_);
+  EXPECT_EQ(whole["failed_runs"]["count"], 0);
+  EXPECT_THAT(study_text(whole), testing::Not(HasSubstr("failed")));
+  const auto total = whole["failed_runs"]["of"].get<std::size_t>();
+  ASSERT_EQ(total, files(folder_ / "points"));
+  std::vector<fs::path> points;
+  for (const auto& entry : fs::directory_iterator(folder_ / "points")) points.push_back(entry.path());
+  for (const fs::path& point : points) {
+    fs::rename(point, folder_ / "kept");
+    fs::create_directories(point / "in the way");
+    const Json result = run_study(meshes, runner_);
+    EXPECT_EQ(result["failed_runs"]["count"], 1);
+    EXPECT_EQ(result["failed_runs"]["of"], total);
+    EXPECT_THAT(result["failed_runs"]["first"]["message"].get<std::string>(), HasSubstr("cannot be written"));
+    EXPECT_THAT(study_text(result), HasSubstr("1 of " + std::to_string(total) + " runs failed"));
+    const Json& series = result["series"]["paper"];
+    EXPECT_THAT(series["order"]["twist_error"]["why"].get<std::string>(), HasSubstr("runs failed"));
+    bool missing = false;
+    for (const Json& mesh : series["meshes"]) {
+      const Json& noise = mesh["twist_error"]["noise"];
+      missing |= noise.is_null();
+      EXPECT_TRUE(noise.is_null() || noise.get<double>() > 0.0) << mesh.dump();
+    }
+    EXPECT_TRUE(missing);
+    fs::remove_all(point);
+    fs::rename(folder_ / "kept", point);
+  }
+}
+
+/// A program whose parent does not want to know of children's ends finds its results all the same.
+TEST_F(StudyTest, PointsAreFoundWhereNobodyIsToldHowTheyEnd) {
+  const auto before = std::signal(SIGCHLD, SIG_IGN);
+  EXPECT_EQ(runner_.run(Point{kPaper, {cells(16)}})["status"], "converged");
+  std::signal(SIGCHLD, before);
+}
+
+/// Solves run beside other children of this process, and leave those alone.
+TEST_F(StudyTest, OtherChildrenAreLeftAlone) {
+  const pid_t other = fork();
+  if (other == 0) _exit(3);
+  EXPECT_EQ(runner_.run(Point{kPaper, {cells(16)}})["status"], "converged");
+  int status = 0;
+  EXPECT_EQ(waitpid(other, &status, 0), other);
+  EXPECT_EQ(WEXITSTATUS(status), 3);
+}
+
+/// What a scene asks for decides whether its result has steps, not how far the solve came.
+TEST_F(StudyTest, AHistoryWhoseFirstStepFailsHasSteps) {
+  const fs::path scene = folder_ / "history.toml";
+  std::ofstream(scene) << read_text(kPaper).erase(read_text(kPaper).find("[load]"))
+                       << "[load]\nnormal = 1000.0\n[grid]\ncells = [24, 24]\n[solver]\nmax_iterations = 1\n"
+                          "[[step]]\nmoment_ratio = 0.8\n[[step]]\nmoment_ratio = -0.8\n";
+  const Json result = runner_.run(Point{scene, {}});
+  ASSERT_EQ(result["status"], "not_converged") << result.dump();
+  ASSERT_TRUE(result.contains("steps"));
+  EXPECT_EQ(result["steps"].size(), 1U);
+  EXPECT_EQ(result["history"]["steps"], 1);
+}
+
+TEST_F(StudyTest, ALooseToleranceShowsInTheBudget) {
+  const Budget budget = error_budget({kPaper, {cells(32), "solver.tolerance=0.1"}}, "twist_error", runner_);
+  EXPECT_EQ(largest_part(budget), "iteration");
+  EXPECT_TRUE(std::isnan(error_budget({kEllipse, {"grid.cells=[32,16]"}}, "twist_error", runner_).observed));
+}
+
+TEST_F(StudyTest, PartsOfTheBudgetAddUpOnEveryMesh) {
+  const Json result = run("cells = [12, 16, 24, 32, 48]\nshifts = 3\n");
+  const Json& series = result["series"]["paper"];
+  EXPECT_EQ(series["rows"].size(), 15U);
+  std::set<double> sizes;
+  for (const Json& row : series["rows"]) sizes.insert(row["h"].get<double>());
+  EXPECT_EQ(sizes.size(), 15U);  // every grid lies differently
+  ASSERT_FALSE(series["budget"].empty());
+  for (const Json& line : series["budget"]) {
+    const double observed = line["observed"].get<double>();
+    EXPECT_NEAR(line["discretisation"].get<double>() + line["iteration"].get<double>(), observed,
+                1e-12 * std::abs(observed));
+    if (line["trend"].is_null()) continue;
+    EXPECT_NEAR(line["trend"].get<double>() + line["staircase"].get<double>(),
+                line["discretisation"].get<double>(), 1e-12 * std::abs(line["trend"].get<double>()));
+  }
+}
+
+/// The contact radius follows from the pressure's second moments: second order (see expected_order.cpp).
+TEST_F(StudyTest, FindsSecondOrderOfTheContactRadius) {
+  const Json result =
+      run("cells = [12, 16, 24, 32, 48, 64]\nshifts = 3\nquantities = [\"contact_radius_error\"]\n");
+  const FoundQuantity order = find_quantity(result, "series.paper.order.contact_radius_error.value");
+  ASSERT_NE(order.value, nullptr);
+  EXPECT_NEAR(order.value->get<double>(), 2.0, 0.3);
+  EXPECT_LE(find_quantity(result, "series.paper.order.contact_radius_error.low").value->get<double>(), 2.0);
+}
+
+TEST_F(StudyTest, TightensTheToleranceWhereStoppingShows) {
+  const Json loose = run("cells = [12, 16, 24]\n[set]\nsolver.tolerance = 1e-2\n");
+  const Json& series = loose["series"]["paper"];
+  EXPECT_GT(series["tightened"].get<int>(), 0);
+  EXPECT_LT(series["tolerance"].get<double>(), 1e-2);
+  EXPECT_THAT(study_text(loose), HasSubstr("tightened by the study"));
+  for (const Json& line : series["budget"]) {
+    if (line["quantity"] != "twist_error") continue;
+    EXPECT_LE(std::abs(line["iteration"].get<double>()),
+              0.1 * std::abs(line["discretisation"].get<double>()));
+  }
+  EXPECT_EQ(run("cells = [12, 16, 24]\n")["series"]["paper"]["tightened"], 0);
+}
+
+TEST_F(StudyTest, WithoutAnExactAnswerTheLimitIsExtrapolated) {
+  const Json result = run("cells = [16, 24, 32, 48, 64]\nquantities = [\"moment_limit\"]\n", kEllipse);
+  const Json& series = result["series"]["ellipse"];
+  EXPECT_EQ(series["basis"], "extrapolated");
+  EXPECT_EQ(series["order"]["moment_limit"]["basis"], "extrapolated");
+  const double exact = find_oracle(solver::read_scene(kEllipse)).oracle->moment_limit;
+  const Json& limit = series["extrapolated"]["moment_limit"];
+  EXPECT_LE(std::abs(limit["value"].get<double>() - exact), limit["uncertainty"].get<double>());
+  EXPECT_LE(limit["uncertainty"].get<double>(), 1e-2 * exact);
+}
+
+/// Of an ellipse the normal contact is known, of what friction does nothing.
+TEST_F(StudyTest, WhatTheExactAnswerDoesNotSayIsExtrapolated) {
+  const Json result = run("cells = [16, 24, 32]\n", kEllipse);
+  const Json& series = result["series"]["ellipse"];
+  EXPECT_EQ(series["basis"], "exact");
+  for (const char* path : {"moment_error", "moment_limit_error", "contact_radius_error",
+                           "peak_pressure_error", "pressure_error.l1", "pressure_error.l2"}) {
+    ASSERT_TRUE(series["order"].contains(path)) << path;
+    EXPECT_EQ(series["order"][path]["basis"], "exact") << path;
+    EXPECT_FALSE(series["extrapolated"].contains(path)) << path;
+  }
+  for (const char* path : {"twist_angle", "stick_radius", "dissipated"}) {
+    ASSERT_TRUE(series["order"].contains(path)) << path;
+    EXPECT_EQ(series["order"][path]["basis"], "extrapolated") << path;
+    EXPECT_TRUE(series["extrapolated"][path]["value"].is_number()) << path;
+  }
+  for (const char* path : {"twist_error", "traction_error.l1", "moment_limit", "contact_radius"}) {
+    EXPECT_FALSE(series["order"].contains(path)) << path;
+  }
+  EXPECT_THAT(study_text(result), HasSubstr("where it says nothing against the extrapolated value"));
+}
+
+TEST_F(StudyTest, EveryCombinationIsASeries) {
+  const Json result =
+      run("cells = [12, 16]\n[[vary]]\nkey = \"contact.pressure\"\nvalues = [\"solved\", \"hertz\"]\n"
+          "[[vary]]\nkey = \"load.moment_ratio\"\nvalues = [0.5, 0.9]\n");
+  for (const char* name : {"solved-0.5", "solved-0.9", "hertz-0.5", "hertz-0.9"}) {
+    ASSERT_TRUE(result["series"].contains(name)) << name;
+    EXPECT_EQ(result["series"][name]["rows"].size(), 2U);
+    EXPECT_EQ(result["series"][name]["order"]["twist_error"]["verdict"], "too_few");
+  }
+  EXPECT_EQ(result["series"]["hertz-0.5"]["set"]["contact.pressure"], "hertz");
+  EXPECT_EQ(result["series"]["hertz-0.5"]["set"]["load.moment_ratio"], 0.5);
+}
+
+/// What is reached must not be worse than what is asked for, and the error that stopping leaves falls with
+/// it.
+TEST_F(StudyTest, AchievedToleranceFollowsTheRequested) {
+  const Json result = run("cells = [24]\ntolerances = [1e-6, 1e-1, 1e-3]\n");
+  const Json& rows = result["series"]["paper"]["tolerances"];
+  ASSERT_EQ(rows.size(), 3U);
+  EXPECT_EQ(rows[0]["requested"], 1e-1);
+  for (const Json& row : rows)
+    EXPECT_LE(row["certificate.gap"].get<double>(), row["requested"].get<double>());
+  EXPECT_GT(std::abs(rows[0]["iteration"]["twist_error"].get<double>()),
+            std::abs(rows[2]["iteration"]["twist_error"].get<double>()));
+}
+
+TEST_F(StudyTest, BadStudiesSayWhatIsAllowed) {
+  const auto message = [&](const std::string& text) -> std::string {
+    try {
+      study(text);
+    } catch (const solver::InputError& error) {
+      return error.what();
+    }
+    return "";
+  };
+  EXPECT_THAT(message(""), HasSubstr("nothing varies"));
+  std::string billions;
+  for (int i = 0; i < 9; ++i) {
+    billions += "[[vary]]\nkey = \"k" + std::to_string(i) + "\"\nvalues = [1, 2, 3, 4, 5, 6, 7, 8, 9, 10]\n";
+  }
+  EXPECT_THAT(message(billions),
+              testing::AllOf(HasSubstr("asks for 1e+09 solves"), HasSubstr("at most 10000")));
+  EXPECT_THAT(message("cell = [16, 32]"), HasSubstr("the nearest known one is cells"));
+  EXPECT_THAT(message("cells = [16, 16]"), HasSubstr("twice"));
+  EXPECT_THAT(message("cells = [16, 0]"), HasSubstr("whole number"));
+  EXPECT_THAT(message("cells = 16"), HasSubstr("list"));
+  EXPECT_THAT(message("cells = [16, 32]\nshifts = 0"), HasSubstr("shifts = 0"));
+  EXPECT_THAT(message("tolerances = [1e-3, -1.0]"), HasSubstr("positive"));
+  EXPECT_THAT(message("[[vary]]\nkey = \"grid.cells\"\nvalues = [1]"), HasSubstr("vary[0].key"));
+  EXPECT_THROW(run("cells = [12, 16]\nquantities = [\"twist_eror\"]\n"), solver::InputError);
+}
+
+/// One series in which no solve may run does not spoil the others.
+TEST_F(StudyTest, ASeriesThatCannotBeSolvedIsJudgedTooFew) {
+  const Json result =
+      run("cells = [12, 16, 24]\nquantities = [\"twist_error\"]\n[set]\nload.moment_ratio = 0.5\n"
+          "[[vary]]\nkey = \"solver.max_iterations\"\nvalues = [1, 5000]\n");
+  EXPECT_EQ(result["series"]["1"]["order"]["twist_error"]["verdict"], "too_few");
+  EXPECT_NE(result["series"]["5000"]["order"]["twist_error"]["verdict"], "too_few");
+}
+
+/// Of some contacts the ratio is all that is known; and a height map is its own grid.
+TEST_F(StudyTest, LooksAtWhatTheSceneHas) {
+  const Json spence = run("cells = [12, 16]\n", std::string(SLIPSTICK_SCENES) + "/spence.toml");
+  EXPECT_TRUE(spence["series"]["spence"]["order"].contains("stick_ratio_error"));
+  EXPECT_FALSE(run("cells = [12, 16]\n")["series"]["paper"]["order"].contains("stick_ratio_error"));
+  const std::string honed = std::string(SLIPSTICK_SCENES) + "/honed_surface.toml";
+  EXPECT_THROW(run("cells = [12, 16]\n", honed), solver::InputError);
+  EXPECT_EQ(run("tolerances = [1e-2, 1e-4]\n", honed)["series"]["honed_surface"]["tolerances"].size(), 2U);
+}
+
+/// A field that is exact at the centres differs from cell averages only where the traction has an edge, and
+/// there less and less: by h^(1/2) in bands of width h.
+TEST(TractionError, AverageAndCentreDifferAtTheEdgesOnly) {
+  const auto error_at = [](int n) {
+    const solver::Scene scene = solver::read_scene(kPaper, {cells(n)});
+    const solver::Model model = solver::make_model(scene);
+    const Oracle oracle = *find_oracle(scene).oracle;
+    return traction_error(exact_fields(oracle, model).traction, oracle, model);
+  };
+  const TractionError coarse = error_at(32);
+  const TractionError fine = error_at(128);
+  for (const TractionError& error : {coarse, fine}) {
+    EXPECT_EQ(error.at_centres.max, 0.0);
+    EXPECT_EQ(error.inside.max, 0.0);
+    EXPECT_EQ(error.outside.max, 0.0);
+    EXPECT_GT(error.stick_edge.l1, 0.0);
+    EXPECT_GT(error.contact_edge.l1, 0.0);
+  }
+  EXPECT_NEAR(std::log(coarse.averaged.l1 / fine.averaged.l1) / std::log(4.0), 1.5, 0.25);
+  EXPECT_NEAR(std::log(coarse.averaged.l2 / fine.averaged.l2) / std::log(4.0), 1.0, 0.25);
+}
+
+TEST(TractionError, RegionsAddUpToTheWhole) {
+  const solver::Scene scene = solver::read_scene(kPaper, {cells(48)});
+  const solver::Model model = solver::make_model(scene);
+  const Oracle oracle = *find_oracle(scene).oracle;
+  const Eigen::ArrayXd exact = exact_fields(oracle, model).traction;
+  const TractionError error = traction_error(1.01 * exact, oracle, model);
+  EXPECT_NEAR(error.at_centres.l1, 0.01, 1e-12);
+  EXPECT_NEAR(error.at_centres.l2, 0.01, 1e-12);
+  EXPECT_NEAR(error.at_centres.max, 0.01, 1e-12);
+  const FieldError parts[] = {error.stick_edge, error.contact_edge, error.inside, error.outside};
+  double l1 = 0.0;
+  double squares = 0.0;
+  double most = 0.0;
+  for (const FieldError& part : parts) {
+    l1 += part.l1;
+    squares += part.l2 * part.l2;
+    most = std::max(most, part.max);
+  }
+  EXPECT_NEAR(l1, error.averaged.l1, 1e-12);
+  EXPECT_NEAR(std::sqrt(squares), error.averaged.l2, 1e-12);
+  EXPECT_EQ(most, error.averaged.max);
+}
+
+TEST(ExpectedOrder, EveryErrorHasOneWithAReasonWhereTheEdgeIsARoot) {
+  const solver::Scene sphere = solver::read_scene(kPaper);
+  const solver::Scene punch = solver::read_scene(std::string(SLIPSTICK_SCENES) + "/flat_punch.toml");
+  const solver::Scene rough = solver::read_scene(std::string(SLIPSTICK_SCENES) + "/rough_sphere.toml");
+  for (const std::string& quantity : error_quantities()) {
+    EXPECT_GT(expected_order(quantity, sphere).value, 0.0) << quantity;
+    EXPECT_FALSE(expected_order(quantity, sphere).why.empty());
+    EXPECT_TRUE(std::isnan(expected_order(quantity, rough).value));
+    const double singular = expected_order(quantity, punch).value;
+    EXPECT_FALSE(singular > expected_order(quantity, sphere).value) << quantity;
+  }
+}
+
+}  // namespace
+}  // namespace slipstick::convergence

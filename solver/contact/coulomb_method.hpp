@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+
+#include "solver/contact/tangential_problem.hpp"
+#include "solver/operator/elasticity.hpp"
+
+namespace slipstick::solver {
+
+struct CoulombOptions {
+  double tolerance = 1e-8;  ///< on gap / (q.Kq/2), the certificate
+  long max_applications = 5000;
+  /// Called in each step on the finest grid with the applications there and gap over energy.
+  std::function<void(int applications, double gap)> progress;
+};
+
+/// Coulomb's law in every cell, certified: minimises the elastic energy over the friction discs under the
+/// moment, or the twist, by Newton's method on the natural map (natural_map_newton.hpp), from the coarsest
+/// grid up: each grid is solved to its own discretisation error and starts the next finer one. Stops on the
+/// certificate, never on change. The twist's error is of second order in that of the tractions.
+///
+/// Throws std::invalid_argument for a problem that require_valid() refuses. Everything that the numbers do is
+/// a status with its reason.
+TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const Grid& grid,
+                                           const TangentialProblem& problem,
+                                           const CoulombOptions& options = {});
+
+/// What TangentialSolution::bytes of it will be.
+double predicted_coulomb_bytes(const Elasticity& elasticity, const Grid& grid, bool translations = false);
+
+}  // namespace slipstick::solver

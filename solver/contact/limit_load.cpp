@@ -1,0 +1,299 @@
+#include "solver/contact/limit_load.hpp"
+
+#include <fmt/core.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+#include <vector>
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::Array2d;
+using Eigen::ArrayXd;
+using Eigen::Matrix;
+using Eigen::Matrix3d;
+using Eigen::MatrixXd;
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+using Eigen::VectorXd;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// Enough when upper and lower bound of the factor agree to this, some units of rounding: the motion, of
+/// which they depend on to second order, has then eight digits or so.
+constexpr double kTolerance = 2e-15;
+
+/// |v| is smoothed to sqrt(|v|^2 + s^2), where the root mean square of |v| is 1 at the start. s falls tenfold
+/// each time that Newton's method has settled to this part of the smoothing error, which is at most s, or
+/// gains no more than rounding.
+constexpr double kFirstSmoothing = 0.1;
+constexpr double kLeastSmoothing = 1e-15;
+constexpr double kReduction = 0.1;
+constexpr double kSettled = 0.01;
+constexpr double kRounding = 1e-15;
+
+constexpr int kMostSteps = 200;    // four times what has been seen; `carried` says what they have come to
+constexpr int kMostHalvings = 33;  // of a Newton step, which a flat stretch makes long
+constexpr double kArmijo = 1e-4;
+
+/// The contact's cells, lengths over its radius of gyration from its centroid, friction bounds over their
+/// sum. A motion is (velocity of the centroid, rotation times radius of gyration), so that the mean square of
+/// |v| is |motion|^2.
+struct Contact {
+  ArrayXd x1, x2, bound;
+  double total = 0.0;  ///< friction bound
+  Array2d centroid = {0.0, 0.0};
+  double length = 0.0;    ///< radius of gyration; of a single cell, which has none, its size
+  double gyration = 1.0;  ///< radius of gyration over length
+  double radius = 0.0;    ///< of the furthest cell, over length
+
+  Contact(const Grid& grid, const ArrayXd& friction_bound) : total(friction_bound.sum()) {
+    const Index count = (friction_bound > 0.0).count();
+    x1.resize(count);
+    x2.resize(count);
+    bound.resize(count);
+    for (Index cell = 0, k = 0; cell < grid.cells(); ++cell) {
+      if (!(friction_bound[cell] > 0.0)) continue;
+      x1[k] = grid.x1(cell / grid.n2);
+      x2[k] = grid.x2(cell % grid.n2);
+      bound[k++] = friction_bound[cell] / total;
+    }
+    length = std::sqrt(grid.cell_area());
+    if (count > 0) scale();
+  }
+
+  /// From the origin's motion to the scaled one of the centroid.
+  Matrix3d scaling() const {
+    Matrix3d scaling;
+    scaling << 1.0, 0.0, -centroid[1], 0.0, 1.0, centroid[0], 0.0, 0.0, length;
+    return scaling;
+  }
+
+ private:
+  /// Relative to the strongest cell first, so that rounding leaves no radius of gyration to a single one.
+  void scale() {
+    Index strongest = 0;
+    bound.maxCoeff(&strongest);
+    const Array2d start = {x1[strongest], x2[strongest]};
+    const Array2d shift = {(bound * (x1 - start[0])).sum(), (bound * (x2 - start[1])).sum()};
+    x1 = x1 - start[0] - shift[0];
+    x2 = x2 - start[1] - shift[1];
+    centroid = start + shift;
+    const double radius_of_gyration = std::sqrt((bound * (x1.square() + x2.square())).sum());
+    if (radius_of_gyration > 0.0) length = radius_of_gyration;
+    gyration = radius_of_gyration / length;
+    x1 /= length;
+    x2 /= length;
+    radius = std::sqrt((x1.square() + x2.square()).maxCoeff());
+  }
+};
+
+/// Friction in a motion, smoothed: sum of bound sqrt(|v|^2 + s^2), its first derivatives (the resultants of
+/// the tractions bound v/sqrt(|v|^2 + s^2)) and its second ones.
+struct Friction {
+  Vector3d motion;
+  double work = 0.0;  ///< without smoothing
+  double smoothed = 0.0;
+  Vector3d resultant = Vector3d::Zero();
+  Matrix3d stiffness = Matrix3d::Zero();
+  Index slowest = 0;  ///< the cell with the least |v|
+};
+
+Friction evaluate(const Contact& contact, const Vector3d& motion, double smoothing) {
+  constexpr Index kBlock = 256;  // in cache, and summed on its own: rounding grows with the block only
+  using Block = Eigen::Array<double, Eigen::Dynamic, 1, 0, kBlock, 1>;
+  Friction sum;
+  sum.motion = motion;
+  double least = kInfinity;
+  for (Index start = 0; start < contact.bound.size(); start += kBlock) {
+    const Index size = std::min(kBlock, contact.bound.size() - start);
+    const auto x1 = contact.x1.segment(start, size);
+    const auto x2 = contact.x2.segment(start, size);
+    const auto bound = contact.bound.segment(start, size);
+    const Block v1 = motion[0] - motion[2] * x2;
+    const Block v2 = motion[1] + motion[2] * x1;
+    const Block square = v1.square() + v2.square();
+    const Block speed = (square + smoothing * smoothing).sqrt();
+    const Block weight = bound / speed;
+    sum.work += (bound * square.sqrt()).sum();
+    sum.smoothed += (bound * speed).sum();
+    sum.resultant += Vector3d((weight * v1).sum(), (weight * v2).sum(), (weight * (x1 * v2 - x2 * v1)).sum());
+
+    const Block curvature = weight / speed.square();
+    const Block k11 = curvature * (v2.square() + smoothing * smoothing);
+    const Block k12 = -curvature * v1 * v2;
+    const Block k22 = curvature * (v1.square() + smoothing * smoothing);
+    const Block k13 = x1 * k12 - x2 * k11;
+    const Block k23 = x1 * k22 - x2 * k12;
+    Matrix3d stiffness;
+    stiffness << k11.sum(), k12.sum(), k13.sum(),  //
+        0.0, k22.sum(), k23.sum(),                 //
+        0.0, 0.0, (x1 * k23 - x2 * k13).sum();
+    sum.stiffness += stiffness;
+    Index slowest = 0;
+    if (const double slowest_square = square.minCoeff(&slowest); slowest_square < least) {
+      least = slowest_square;
+      sum.slowest = start + slowest;
+    }
+  }
+  sum.stiffness = Matrix3d(sum.stiffness.selfadjointView<Eigen::Upper>());
+  return sum;
+}
+
+/// The motions in which the loads do unit work: base + directions z, z any vector; orthonormal.
+struct Motions {
+  Vector3d base;
+  Matrix<double, 3, Eigen::Dynamic, 0, 3, 2> directions;
+};
+
+/// A lower bound of the least friction over all of the motions, by tractions that are within their bounds
+/// and whose resultants do the work q.v in the motion at hand and q.v + r.(z' - z) in any other one. A cell
+/// at a kink of |v|, where the smoothed law leaves a traction of its own making, takes as much of r as it
+/// can. What is left counts with the furthest that the minimiser can be: work >= bound |v|^2 / max |v| >=
+/// gyration^2 |motion| / sqrt(1 + radius^2).
+double lower_bound(const Contact& contact, const Friction& friction, const Motions& motions,
+                   double smoothing) {
+  if (contact.bound.size() == 0) return 0.0;
+  const Index k = friction.slowest;
+  Matrix<double, 2, 3> velocity;
+  velocity << 1.0, 0.0, -contact.x2[k], 0.0, 1.0, contact.x1[k];
+  const VectorXd residual = motions.directions.transpose() * friction.resultant;
+  const Vector2d v = velocity * friction.motion;
+  const Vector2d traction = contact.bound[k] / std::hypot(v.norm(), smoothing) * v;
+  const MatrixXd balance = motions.directions.transpose() * velocity.transpose();
+  Vector2d balanced = traction;
+  if (residual.size() > 0) balanced -= balance.completeOrthogonalDecomposition().solve(residual);
+  const Vector2d change = balanced * std::min(1.0, contact.bound[k] / balanced.norm()) - traction;
+
+  const double left = (residual + balance * change).norm();
+  const double work = friction.resultant.dot(friction.motion) + change.dot(v);
+  if (left == 0.0) return work;
+  const double furthest =
+      friction.work * std::hypot(1.0, contact.radius) / (contact.gyration * contact.gyration);
+  return std::max(0.0, work - left * (friction.motion.norm() + furthest));
+}
+
+struct Minimum {
+  Vector3d motion;
+  double work;     ///< the least friction found
+  double carried;  ///< it is not less than this
+};
+
+/// Newton's step of smoothed friction, and what it would gain twice over.
+struct Step {
+  Vector3d motion = Vector3d::Zero();
+  double decrement = 0.0;
+};
+
+Step newton_step(const Friction& at, const Motions& motions) {
+  const auto& directions = motions.directions;
+  if (directions.cols() == 0) return {};
+  const VectorXd residual = directions.transpose() * at.resultant;
+  MatrixXd stiffness = directions.transpose() * at.stiffness * directions;
+  stiffness.diagonal().array() += kRounding * stiffness.trace();
+  const VectorXd z = -stiffness.llt().solve(residual);
+  return {directions * z, -residual.dot(z)};
+}
+
+/// Goes the first of step, step/2, ... that lowers smoothed friction enough; false if none does.
+bool descend(const Contact& contact, const Step& step, double smoothing, Friction& at) {
+  for (int halvings = 0; halvings <= kMostHalvings; ++halvings) {
+    const double part = std::ldexp(1.0, -halvings);
+    const Friction next = evaluate(contact, at.motion + part * step.motion, smoothing);
+    if (!(next.smoothed <= at.smoothed - kArmijo * part * step.decrement)) continue;
+    at = next;
+    return true;
+  }
+  return false;
+}
+
+/// The least friction over the motions: Newton's method on smoothed friction, smoothed less and less.
+Minimum least_friction(const Contact& contact, const Motions& motions) {
+  double smoothing = kFirstSmoothing;
+  Friction at = evaluate(contact, motions.base, smoothing);
+  Minimum best{motions.base, at.work, 0.0};
+  for (int step_count = 0; step_count < kMostSteps; ++step_count) {
+    if (at.work < best.work) {
+      best.work = at.work;
+      best.motion = at.motion;
+    }
+    best.carried = std::max(best.carried, lower_bound(contact, at, motions, smoothing));
+    if (!(best.work - best.carried > kTolerance * best.work) || smoothing < kLeastSmoothing) break;
+
+    Step step = newton_step(at, motions);
+    const bool settled = step.decrement <= kSettled * smoothing + kRounding;
+    if (!settled && descend(contact, step, smoothing, at)) continue;
+    if (!settled) step = {};
+    smoothing *= kReduction;
+    at = evaluate(contact, at.motion + step.motion, smoothing);
+  }
+  best.carried = std::min(best.carried, best.work);
+  return best;
+}
+
+void require_valid(const Grid& grid, const ArrayXd& friction_bound, const ImposedLoads& loads) {
+  if (friction_bound.size() != grid.cells()) {
+    throw std::invalid_argument(
+        fmt::format("limit load: {} friction bounds on {} cells", friction_bound.size(), grid.cells()));
+  }
+  if (!(friction_bound >= 0.0).all() || !friction_bound.isFinite().all()) {
+    throw std::invalid_argument("limit load: friction bound: allowed: finite, zero or positive");
+  }
+  if (grid.quadrant) throw std::invalid_argument("limit load: allowed: whole grids, no quadrants");
+  for (const auto& load : loads) {
+    if (load && !std::isfinite(*load)) throw std::invalid_argument("limit load: loads: allowed: finite");
+  }
+}
+
+/// Beyond so many radii of gyration rounding decides where the turning centre is: a translation.
+constexpr double kFurthestCentre = 1e10;
+
+std::optional<std::array<double, 2>> turning_centre(const Contact& contact, const Vector3d& motion) {
+  const double speed = std::hypot(motion[0], motion[1]);
+  if (!(speed < kFurthestCentre * std::abs(motion[2]))) return std::nullopt;
+  const double scale = contact.length / motion[2];
+  return std::array{contact.centroid[0] - scale * motion[1], contact.centroid[1] + scale * motion[0]};
+}
+
+}  // namespace
+
+LimitLoad find_limit(const Grid& grid, const ArrayXd& friction_bound, const ImposedLoads& loads) {
+  require_valid(grid, friction_bound, loads);
+  std::vector<Index> imposed;
+  for (Index k = 0; k < 3; ++k) {
+    if (loads[static_cast<std::size_t>(k)]) imposed.push_back(k);
+  }
+  const auto m = static_cast<Index>(imposed.size());
+  VectorXd load(m);
+  for (Index k = 0; k < m; ++k) {
+    load[k] = *loads[static_cast<std::size_t>(imposed[static_cast<std::size_t>(k)])];
+  }
+  if (load.isZero(0.0)) return {kInfinity, kInfinity, {}, std::nullopt};
+
+  // Scaled motions with the imposed components zero are `basis` y; the loads' work in them is `work`.y.
+  const Contact contact(grid, friction_bound);
+  const Eigen::HouseholderQR<MatrixXd> motions_qr(contact.scaling()(Eigen::all, imposed));
+  const MatrixXd basis = motions_qr.householderQ() * MatrixXd::Identity(3, m);
+  const MatrixXd triangle = motions_qr.matrixQR().topRows(m).triangularView<Eigen::Upper>();
+  const VectorXd work = triangle.transpose().triangularView<Eigen::Lower>().solve(load);
+  const double size = work.norm();
+  const MatrixXd split = Eigen::HouseholderQR<MatrixXd>(work).householderQ();
+  const Minimum minimum = least_friction(contact, {basis * work / size, basis * split.rightCols(m - 1)});
+
+  Vector3d sliding = Vector3d::Zero();
+  sliding(imposed) = triangle.triangularView<Eigen::Upper>().solve(basis.transpose() * minimum.motion) / size;
+  return {contact.total * minimum.work / size,
+          contact.total * minimum.carried / size,
+          {sliding[0], sliding[1], sliding[2]},
+          turning_centre(contact, minimum.motion)};
+}
+
+double free_moment_limit(const Grid& grid, const ArrayXd& friction_bound) {
+  return find_limit(grid, friction_bound, {0.0, 0.0, 1.0}).factor;
+}
+
+}  // namespace slipstick::solver

@@ -1,0 +1,88 @@
+#include "solver/contact/normal_contact.hpp"
+
+#include <fmt/core.h>
+
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <utility>
+
+#include "solver/newton/nested_iteration.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+
+constexpr std::array<Parity, 1> kPressureParities{{{1, 1}}};
+
+/// The normal problem on one grid, as solve_nested() asks for it.
+class PressureOnGrid {
+ public:
+  /// reachable: 1 where the bodies can touch; height: the undeformed gap there, 0 elsewhere.
+  PressureOnGrid(ArrayXd reachable, ArrayXd height, double total_pressure)
+      : reachable_(std::move(reachable)), height_(std::move(height)), total_pressure_(total_pressure) {}
+
+  static BlockKernel kernel() { return normal_kernel(); }
+  static std::span<const Parity> parities() { return kPressureParities; }
+  PositivePressures admissible() const { return PositivePressures(reachable_); }
+  ArrayXd start() const { return ArrayXd::Zero(reachable_.size()); }
+  ConvexProgram program(LinearOperator&) const {
+    return {.g = &height_, .imposed = {{&reachable_, total_pressure_}}};
+  }
+
+  /// A coarse cell can touch where half of it can, at the mean height of that part.
+  PressureOnGrid coarsened(const Grid& grid, const Grid& coarse) const {
+    const ArrayXd part = restrict_to(coarse, grid, reachable_);
+    const ArrayXd height = restrict_to(coarse, grid, height_);
+    const ArrayXd reachable = (part >= std::min(0.5, part.maxCoeff())).cast<double>();
+    return {reachable, (reachable > 0.0).select(height / part.max(0.25 * part.maxCoeff()), 0.0),
+            total_pressure_ * grid.cell_area() / coarse.cell_area()};
+  }
+
+ private:
+  ArrayXd reachable_;
+  ArrayXd height_;
+  double total_pressure_;
+};
+
+void require_valid(const NormalProblem& problem, const Grid& grid) {
+  if (problem.gap.size() != grid.cells()) throw std::invalid_argument("the gap is not one value a cell");
+  if (!(problem.total_pressure > 0.0) || !std::isfinite(problem.total_pressure)) {
+    throw std::invalid_argument(fmt::format("normal load {}: allowed: positive", problem.total_pressure));
+  }
+  if (!problem.gap.isFinite().any() || problem.gap.isNaN().any()) {
+    throw std::invalid_argument("the gap is nowhere finite, or not a number");
+  }
+}
+
+}  // namespace
+
+double predicted_normal_bytes(const Elasticity& elasticity, const Grid& grid) {
+  return predicted_nested_bytes<PositivePressures>(elasticity, grid, normal_kernel(), 1);
+}
+
+NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& grid,
+                                    const NormalProblem& problem, const NormalOptions& options) {
+  require_valid(problem, grid);
+  const ArrayXd reachable = problem.gap.isFinite().cast<double>();
+  const PressureOnGrid contact(reachable, (reachable > 0.0).select(problem.gap, 0.0), problem.total_pressure);
+  const NewtonOptions newton{.tolerance = options.tolerance, .max_applications = options.max_applications};
+  NestedSummary nested = solve_nested(elasticity, grid, contact, newton);
+  NormalSolution solution;
+  solution.status = nested.newton.converged ? Status::converged : Status::not_converged;
+  if (!nested.newton.converged) {
+    solution.message = fmt::format("{}: complementarity gap {:.3g}, asked for {:.3g}", nested.newton.message,
+                                   nested.newton.gap, options.tolerance);
+  }
+  solution.pressure = std::move(nested.field);
+  solution.approach = nested.newton.multipliers.size() > 0 ? nested.newton.multipliers[0] : std::nan("");
+  solution.complementarity = nested.newton.gap;
+  solution.load_error = std::abs(solution.pressure.sum() / problem.total_pressure - 1.0);
+  solution.iterations = nested.newton.iterations;
+  solution.grids = std::move(nested.grids);
+  solution.bytes = nested.bytes;
+  return solution;
+}
+
+}  // namespace slipstick::solver

@@ -1,0 +1,50 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <string>
+#include <vector>
+
+#include "solver/operator/elasticity.hpp"
+
+namespace slipstick::solver {
+
+enum class Status { converged, not_converged };
+
+/// Frictionless contact under a given load: minimise p.Kp/2 + p.h over p >= 0 with sum of p given. All
+/// quantities in one consistent set of units; u3 = K33 p.
+struct NormalProblem {
+  Eigen::ArrayXd gap;     ///< undeformed gap h of each cell; infinite where the bodies cannot touch
+  double total_pressure;  ///< load over cell area
+};
+
+struct NormalOptions {
+  double tolerance = 1e-10;  ///< on the complementarity gap
+  long max_applications = 2000;
+};
+
+struct NormalSolution {
+  Status status = Status::not_converged;
+  std::string message;      ///< why it did not converge; empty if it did
+  Eigen::ArrayXd pressure;  ///< one value a cell
+  double approach = 0.0;    ///< u3 + h where the bodies touch
+  /// (energy - least possible energy) / (p.Kp/2) is at most this: sum over p of the gap left open above its
+  /// minimum.
+  double complementarity = 0.0;
+  double load_error = 0.0;  ///< relative
+  int iterations = 0;
+  std::vector<GridWork> grids = {};  ///< work done, coarsest grid first
+  double bytes = 0.0;                ///< operators and workspaces on the finest grid
+};
+
+/// Newton's method on the natural map p = max(0, p - rho (K p + h - approach)), from the coarsest grid up
+/// (natural_map_newton.hpp, nested_iteration.hpp). Stops when the complementarity gap and the load balance
+/// hold, not on change.
+///
+/// Throws std::invalid_argument for a load that is not positive or a gap that is nowhere finite or NaN.
+NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& grid,
+                                    const NormalProblem& problem, const NormalOptions& options = {});
+
+/// What NormalSolution::bytes will be.
+double predicted_normal_bytes(const Elasticity& elasticity, const Grid& grid);
+
+}  // namespace slipstick::solver

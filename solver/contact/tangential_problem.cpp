@@ -1,0 +1,62 @@
+#include "solver/contact/tangential_problem.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "solver/contact/certificate.hpp"
+
+namespace slipstick::solver {
+
+double moment_limit(const Grid& grid, const Eigen::ArrayXd& friction_bound) {
+  return (friction_bound * norms(rotation_field(grid))).sum();
+}
+
+LimitLoad limit_of(const TangentialProblem& problem, const Grid& grid) {
+  if (problem.force || problem.displacement) {
+    ImposedLoads loads;
+    if (problem.force) {
+      loads[0] = (*problem.force)[0];
+      loads[1] = (*problem.force)[1];
+    }
+    loads[2] = problem.moment;
+    return find_limit(grid, problem.friction_bound, loads);
+  }
+  const double moment = problem.moment.value_or(0.0);
+  const double factor = moment == 0.0 ? std::numeric_limits<double>::infinity()
+                                      : moment_limit(grid, problem.friction_bound) / std::abs(moment);
+  return {.factor = factor, .carried = factor, .sliding = {0.0, 0.0, 1.0 / moment}, .centre = {{0.0, 0.0}}};
+}
+
+void require_valid(const TangentialProblem& problem, const Grid& grid) {
+  const auto& bound = problem.friction_bound;
+  if (!(bound >= 0.0).all() || !bound.isFinite().all()) {
+    throw std::invalid_argument("friction bound mu p: allowed: finite, zero or positive in every cell");
+  }
+  if (problem.moment.has_value() == problem.twist.has_value()) {
+    throw std::invalid_argument("torsion: allowed: either a moment or a twist");
+  }
+  if (problem.force && problem.displacement) {
+    throw std::invalid_argument("translation: allowed: either forces or displacements");
+  }
+  if (problem.twist && !std::isfinite(*problem.twist)) throw std::invalid_argument("twist: allowed: finite");
+  for (const auto& pair : {problem.force, problem.displacement}) {
+    if (pair && !(std::isfinite((*pair)[0]) && std::isfinite((*pair)[1]))) {
+      throw std::invalid_argument("force or displacement: allowed: finite");
+    }
+  }
+  if (problem.moment && !std::isfinite(*problem.moment)) {
+    throw std::invalid_argument("moment: gross slip; allowed: finite");
+  }
+  const LimitLoad limit = limit_of(problem, grid);
+  if (!(limit.factor > 1.0)) {
+    throw std::invalid_argument(fmt::format(
+        "gross slip: the contact carries {} times these loads (over the cell area); allowed: less than it "
+        "carries",
+        limit.factor));
+  }
+}
+
+}  // namespace slipstick::solver

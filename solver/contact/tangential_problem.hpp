@@ -1,0 +1,60 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <optional>
+#include <string>
+
+#include "solver/contact/limit_load.hpp"
+#include "solver/contact/normal_contact.hpp"
+#include "solver/grid/grid.hpp"
+#include "solver/operator/elasticity.hpp"
+
+namespace slipstick::solver {
+
+/// A contact whose pressure is known, under a change of its tangential loads. One consistent set of units;
+/// displacements are K q. Motions and slip are measured from the state `start`.
+struct TangentialProblem {
+  Eigen::ArrayXd friction_bound;        ///< mu p of each cell; zero outside the contact
+  Eigen::ArrayXd initial_displacement;  ///< (u1, u2) by the change of pressure, Eq. (12); empty: none
+  std::optional<double> moment;         ///< M_3 over the cell area; or else
+  std::optional<double> twist;          ///< phi_3 itself is imposed
+  /// (F1, F2) over the cell area, balanced by translations; or else these are imposed. Neither: none, as
+  /// where a contact is its own image under half a turn and carries no force.
+  std::optional<std::array<double, 2>> force = {};
+  std::optional<std::array<double, 2>> displacement = {};
+  Eigen::ArrayXd start = {};  ///< tractions of the state before, 2*cells; empty: none
+};
+
+struct TangentialSolution {
+  Status status = Status::not_converged;
+  std::string message;      ///< why it did not converge; empty if it did
+  Eigen::ArrayXd traction;  ///< q, 2*cells
+  Eigen::ArrayXd
+      elastic_displacement;  ///< K q, 2*cells; of a reduced model zero outside its part of the grid
+  Eigen::ArrayXd slip;       ///< s of Eq. (8), 2*cells, zero outside the contact
+  Eigen::ArrayXd stick;      ///< 1 in A_S, 0 elsewhere
+  double twist = 0.0;        ///< phi_3
+  std::array<double, 2> displacement{};  ///< delta_1, delta_2
+  double change = 0.0;                   ///< what the method's stopping test saw last
+  int iterations = 0;
+  /// dM/dphi over the cell area under the given forces or translations (Coulomb's method; 0: not computed).
+  /// That of a bonded circular punch is (16/3) G a_s^3.
+  double tangent_stiffness = 0.0;
+  std::vector<GridWork> grids = {};  ///< work done, coarsest grid first
+  double bytes = 0.0;                ///< operators and workspaces on the finest grid
+};
+
+/// The largest moment (over the cell area) that the friction bounds can carry about the origin: sum of mu p
+/// r.
+double moment_limit(const Grid& grid, const Eigen::ArrayXd& friction_bound);
+
+/// By what the loads that the problem imposes could be multiplied, and how the body would slide. Without
+/// translations that is about the origin, of a quadrant too.
+LimitLoad limit_of(const TangentialProblem& problem, const Grid& grid);
+
+/// Throws std::invalid_argument if neither or both of moment and twist are given, or both of force and
+/// displacement, if a bound is negative or NaN, or if the loads are not below what the contact can carry.
+void require_valid(const TangentialProblem& problem, const Grid& grid);
+
+}  // namespace slipstick::solver

@@ -1,0 +1,351 @@
+#include "solver/contact/certificate.hpp"
+
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "solver/contact/paper_method.hpp"
+#include "solver/operator/direct.hpp"
+#include "solver/tests/dense_algebra.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+/// Sums of some tens of numbers of size 1.
+constexpr double kRounding = 1e-14;
+
+// --- members ---
+
+/// Coulomb's law to the letter on 4 x 4 cells: the inner four stick, the others slip against their traction
+/// at its bound. Everything is like a rotation, so the forces vanish.
+class CoulombState : public testing::Test {
+ protected:
+  CoulombState() {
+    const ArrayXd r = norms(t_);
+    inner_ = (r < 1.0).cast<double>();
+    bound_ = ArrayXd::Constant(16, 1.0);
+    const ArrayXd direction = t_ / r.replicate(2, 1);
+    q_ = (0.25 * inner_ + (1.0 - inner_)).replicate(2, 1) * direction;
+    s_ = -0.3 * (1.0 - inner_).replicate(2, 1) * direction;
+    u_ = 2.0 * q_;
+    moment_ = (q_ * t_).sum();
+  }
+  Certificate certificate() const { return certify({q_, u_, s_}, bound_, t_, moment_); }
+  double energy() const { return 0.5 * (q_ * u_).sum(); }
+  static constexpr Index kInner = 5;  // cell (1, 1)
+  static constexpr Index kOuter = 0;
+
+  Grid grid_{4, 4, 1.0, 1.0};
+  ArrayXd t_ = rotation_field(grid_);
+  ArrayXd inner_, bound_, q_, s_, u_;
+  double moment_ = 0.0;
+};
+
+TEST_F(CoulombState, HasNoGap) {
+  const Certificate c = certificate();
+  EXPECT_NEAR(c.gap, 0.0, kRounding);
+  EXPECT_EQ(c.moment, 0.0);
+  EXPECT_NEAR(c.force, 0.0, kRounding);
+  EXPECT_NEAR(c.friction_bound, 0.0, kRounding);
+}
+
+TEST_F(CoulombState, WithSlipInAStickingCellHasAGap) {
+  s_[kInner] = 0.2;
+  s_[16 + kInner] = 0.1;
+  const double cell_gap = 0.2 * q_[kInner] + 0.1 * q_[16 + kInner] + std::hypot(0.2, 0.1);
+  EXPECT_GT(cell_gap, 0.1);
+  const Certificate c = certificate();
+  EXPECT_NEAR(c.gap, cell_gap / energy(), kRounding);
+  EXPECT_EQ(c.moment, 0.0);
+  EXPECT_NEAR(c.friction_bound, 0.0, kRounding);
+}
+
+TEST_F(CoulombState, WithSlipInAnotherDirectionHasAGap) {
+  std::swap(s_[kOuter], s_[16 + kOuter]);
+  s_[kOuter] *= -1.0;  // turned by a right angle
+  EXPECT_NEAR(certificate().gap, 0.3 / energy(), kRounding);
+}
+
+TEST_F(CoulombState, WithSlipAlongTheTractionHasTwiceThatGap) {
+  s_[kOuter] *= -1.0;
+  s_[16 + kOuter] *= -1.0;
+  EXPECT_NEAR(certificate().gap, 0.6 / energy(), kRounding);
+}
+
+TEST_F(CoulombState, WithTractionBelowTheBoundInASlippingCellHasAGap) {
+  bound_[kOuter] = 1.5;
+  EXPECT_NEAR(certificate().gap, 0.5 * 0.3 / energy(), kRounding);
+  EXPECT_NEAR(certificate().friction_bound, 0.0, kRounding);
+}
+
+TEST_F(CoulombState, WithTractionBeyondTheBoundSaysByHowMuch) {
+  bound_[kInner] = 0.2;
+  const Certificate c = certificate();
+  EXPECT_NEAR(c.friction_bound, 0.25, kRounding);
+  EXPECT_NEAR(c.gap, 0.0, kRounding);
+  EXPECT_EQ(c.moment, 0.0);
+  bound_[kInner] = 0.0;  // traction outside the contact
+  EXPECT_EQ(certificate().friction_bound, std::numeric_limits<double>::infinity());
+}
+
+TEST_F(CoulombState, WithAnotherMomentSaysByHowMuchOfTheLimit) {
+  moment_ *= 1.1;
+  const Certificate c = certificate();
+  EXPECT_NEAR(c.moment, 0.1 / 1.1 * moment_ / norms(t_).sum(), kRounding);
+  EXPECT_NEAR(c.gap, 0.0, kRounding);
+  EXPECT_NEAR(c.friction_bound, 0.0, kRounding);
+}
+
+TEST_F(CoulombState, WithAForceSaysItsPartOfTheFriction) {
+  q_.head(16) += 0.1 * inner_;
+  const Certificate c = certificate();
+  EXPECT_NEAR(c.force, 0.4 / 16.0, kRounding);
+  EXPECT_NEAR(c.moment, 0.0, kRounding);
+  EXPECT_NEAR(c.friction_bound, 0.0, kRounding);
+}
+
+TEST_F(CoulombState, WithANumberThatIsNonePassesNoBound) {
+  constexpr double kAnything = std::numeric_limits<double>::max();
+  for (ArrayXd* const field : {&q_, &s_, &u_}) {
+    for (const Index cell : {kInner, kOuter, Index{16 + 3}}) {
+      const double before = std::exchange((*field)[cell], kNaN);
+      EXPECT_FALSE(certificate().gap <= kAnything);
+      if (field == &q_) {
+        EXPECT_FALSE(certificate().moment <= kAnything);
+        EXPECT_FALSE(certificate().force <= kAnything);
+        EXPECT_FALSE(certificate().friction_bound <= kAnything);
+      }
+      (*field)[cell] = before;
+    }
+  }
+  ArrayXd none = ArrayXd::Zero(16);
+  bound_.swap(none);  // traction without friction
+  EXPECT_FALSE(certificate().friction_bound <= kAnything);
+  bound_.swap(none);
+  bound_[kOuter] = kNaN;
+  EXPECT_FALSE(certificate().gap <= kAnything);
+  EXPECT_FALSE(certificate().friction_bound <= kAnything);
+}
+
+/// With no energy a gap has nothing to be relative to, and must not pass either.
+TEST_F(CoulombState, WithoutEnergyButWithAGapPassesNoBound) {
+  q_.setZero();
+  u_.setZero();
+  s_.setConstant(0.1);
+  EXPECT_FALSE(certificate().gap <= 1e300);
+}
+
+// --- the gap as a bound ---
+
+/// Minimises q.Kq/2 - phi t.q over the friction discs by accelerated projected gradients (Nesterov 1983): on
+/// 6 x 6 cells, slow and sure, and of nothing in common with the method under test.
+class SmallProblem : public testing::Test {
+ protected:
+  static constexpr double kTwist = 0.5;
+
+  SmallProblem() {
+    const ArrayXd r2 = cell_x1(grid_).square() + cell_x2(grid_).square();
+    bound_ = (1.0 - r2 / 12.0).max(0.0).sqrt() * 0.9;
+    q_star_ = minimise();
+    moment_ = (q_star_ * t_).sum();
+  }
+
+  ArrayXd product(const ArrayXd& q) const { return (K_ * q.matrix()).array(); }
+  double energy(const ArrayXd& q) const { return 0.5 * (q * product(q)).sum(); }
+
+  ArrayXd project(ArrayXd q) const {
+    const ArrayXd size = norms(q);
+    for (Index i = 0; i < 36; ++i) {
+      if (size[i] > bound_[i]) {
+        q[i] *= bound_[i] / size[i];
+        q[i + 36] *= bound_[i] / size[i];
+      }
+    }
+    return q;
+  }
+
+  ArrayXd minimise() const {
+    const double lipschitz = dense_eigenvalues(K_).maxCoeff();
+    ArrayXd q = ArrayXd::Zero(72);
+    ArrayXd ahead = q;
+    double momentum = 1.0;
+    for (int i = 0; i < 5000; ++i) {
+      const ArrayXd next = project(ahead - (product(ahead) - kTwist * t_) / lipschitz);
+      const bool downhill =
+          ((ahead - next) * (next - q)).sum() <= 0.0;  // else restart (O'Donoghue and Candes 2015)
+      const double next_momentum = downhill ? 0.5 * (1.0 + std::sqrt(1.0 + 4.0 * momentum * momentum)) : 1.0;
+      ahead = downhill ? ArrayXd(next + (momentum - 1.0) / next_momentum * (next - q)) : next;
+      momentum = next_momentum;
+      q = next;
+    }
+    return q;
+  }
+
+  ArrayXd random_feasible(std::mt19937_64& generator) const {
+    std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+    const ArrayXd noise = ArrayXd::NullaryExpr(72, [&] { return uniform(generator); });
+    return project(noise * bound_.replicate(2, 1));
+  }
+
+  Certificate certify_at(const ArrayXd& q, double twist) const {
+    const ArrayXd u = product(q);
+    const ArrayXd s = u - twist * t_;
+    return certify({q, u, s}, bound_, t_, moment_, {}, least_eigenvalue(pair_, grid_.h1, grid_.h2));
+  }
+
+  Grid grid_{6, 6, 1.0, 1.0};
+  ArrayXd t_ = rotation_field(grid_);
+  ElasticPair pair_ = elastic_pair({1.0, 0.3}, {2.5, 0.1});
+  DenseMatrix op_{grid_, tangential_kernel(), pair_};
+  const Eigen::MatrixXd& K_ = op_.matrix();
+  ArrayXd bound_, q_star_;
+  double moment_ = 0.0;
+};
+
+TEST_F(SmallProblem, HasPartialSlipAndItsMinimumHasNoGap) {
+  const ArrayXd size = norms(q_star_);
+  const Index contact = (bound_ > 0.0).count();
+  const Index slipping = (bound_ > 0.0 && size >= bound_ * (1.0 - 1e-12)).count();
+  EXPECT_GT(slipping, 4);
+  EXPECT_LT(slipping, contact - 4);
+  const Certificate c = certify_at(q_star_, kTwist);
+  EXPECT_LE(std::abs(c.gap), 1e-11);
+  EXPECT_LE(c.friction_bound, kRounding);
+}
+
+/// energy(q) - energy(q*) among tractions of one moment, bounded from both sides whatever the twist that is
+/// put in.
+TEST_F(SmallProblem, GapBoundsTheEnergyErrorOfAnyFeasibleTraction) {
+  std::mt19937_64 generator(20);
+  const double least = energy(q_star_);
+  const ArrayXd full = bound_.replicate(2, 1) * t_ / norms(t_).replicate(2, 1);  // the limit moment's
+  for (const double closeness : {0.0, 0.9, 0.99, 0.9999}) {
+    for (int i = 0; i < 25; ++i) {
+      const ArrayXd start = random_feasible(generator);
+      // The discs are convex: between a traction of less moment and one of more lies one with M.
+      const double of_start = (start * t_).sum();
+      const double of_full = (full * t_).sum();
+      ASSERT_LT(of_start, moment_);
+      ASSERT_GT(of_full, moment_);
+      const double part = (moment_ - of_start) / (of_full - of_start);
+      const ArrayXd q = closeness * q_star_ + (1.0 - closeness) * ((1.0 - part) * start + part * full);
+      ASSERT_NEAR((q * t_).sum(), moment_, 1e-12);
+
+      const double error = energy(q) - least;
+      const double distance = energy(q - q_star_);
+      EXPECT_LE(distance, error + 1e-12);
+      for (const double twist : {0.0, 0.5 * kTwist, kTwist, 1.3 * kTwist}) {
+        const Certificate c = certify_at(q, twist);
+        EXPECT_LE(error, c.energy_error * energy(q) + 1e-12);
+        EXPECT_LE(c.energy_error, c.gap + kRounding);
+        EXPECT_GE(c.gap, 0.0);
+        EXPECT_LE(c.friction_bound, kRounding);
+      }
+    }
+  }
+}
+
+/// The paper's method judged by the same: its certificate tells how far it stays from the minimum.
+TEST_F(SmallProblem, GapBoundsTheEnergyErrorOfThePapersMethod) {
+  TangentialProblem problem;
+  problem.friction_bound = bound_;
+  problem.moment = moment_;
+  PaperOptions options;
+  options.tolerance = 1e-12;
+  const TangentialSolution solution = solve_by_paper_method(op_, problem, options);
+  ASSERT_EQ(solution.status, Status::converged) << solution.message;
+  const Certificate c =
+      certify({solution.traction, solution.elastic_displacement, solution.slip}, bound_, t_, moment_);
+  const double error = energy(solution.traction) - energy(q_star_);
+  EXPECT_LE(c.moment, 1e-12);
+  EXPECT_GE(error, -1e-12);
+  EXPECT_LE(error, c.gap * energy(solution.traction) + 1e-12);
+  EXPECT_LE(c.gap, 1e-2);  // on 6 x 6 cells the slip directions are coarse, no more
+  EXPECT_NEAR(solution.twist / kTwist, 1.0, 1e-2);
+}
+
+// --- slip direction ---
+
+class LeastEigenvalue : public testing::TestWithParam<std::tuple<double, double>> {};
+INSTANTIATE_TEST_SUITE_P(Cells, LeastEigenvalue,
+                         testing::Combine(testing::Values(0.05, 0.5, 1.0, 2.0, 20.0),
+                                          testing::Values(-0.9, 0.0, 0.3, 0.5)));
+
+TEST_P(LeastEigenvalue, IsBelowThoseOfAMatrixAndNotFarBelow) {
+  const auto [h2, poisson_ratio] = GetParam();
+  const ElasticPair pair = elastic_pair({2.0, poisson_ratio}, {2.0, poisson_ratio});
+  const DenseMatrix matrix({12, 12, 1.0, h2}, tangential_kernel(), pair);
+  const double least = dense_eigenvalues(matrix.matrix())[0];
+  EXPECT_LT(least_eigenvalue(pair, 1.0, h2), least);
+  EXPECT_GT(least_eigenvalue(pair, 1.0, h2), 0.7 * least);
+}
+
+TEST(SlipDirection, IsTheAngleFromTheReverseOfTraction) {
+  ArrayXd q = ArrayXd::Zero(8);
+  ArrayXd s = ArrayXd::Zero(8);
+  EXPECT_EQ(slip_direction(q, s).mean, 0.0);
+  q << 1, 1, 1, 1, 0, 0, 0, 0;
+  s << -3, 0, 0, 0, 0, 0, 0, 0;
+  EXPECT_EQ(slip_direction(q, s).mean, 0.0);
+  s << -3, 0, 0, 0, 0, 1, 0, 0;  // a right angle where a quarter of the slip is
+  EXPECT_NEAR(slip_direction(q, s).mean, 90.0 / 4.0, 1e-12);
+  EXPECT_NEAR(slip_direction(q, s).max, 90.0, 1e-12);
+  s << -3, 0, 1e-3, 0, 0, 0, 0, 0;  // the wrong way round, but hardly at all
+  EXPECT_NEAR(slip_direction(q, s).mean, 180.0 * 1e-3 / 3.001, 1e-12);
+  EXPECT_EQ(slip_direction(q, s).max, 0.0);
+  s[1] = kNaN;
+  EXPECT_FALSE(slip_direction(q, s).mean <= 180.0);
+  EXPECT_FALSE(slip_direction(q, s).max <= 180.0);
+}
+
+TEST(Beyond, NamesTheMemberItsValueAndItsBound) {
+  const CertificateBounds bounds{.gap = 1e-8, .moment = 1e-9, .force = 1e-10, .friction_bound = 1e-11};
+  const Certificate holds{.gap = 1e-8,
+                          .energy_error = 0.0,
+                          .rounding = 0.0,
+                          .moment = 1e-9,
+                          .force = 1e-10,
+                          .friction_bound = -0.1};
+  EXPECT_EQ(beyond(holds, bounds), "");
+  const struct {
+    double Certificate::*member;
+    const char* name;
+  } members[] = {{&Certificate::gap, "gap / energy"},
+                 {&Certificate::moment, "the moment's error"},
+                 {&Certificate::force, "the force's error"},
+                 {&Certificate::friction_bound, "|q| above mu p"}};
+  for (const auto& [member, name] : members) {
+    for (const double value : {2e-8, kNaN, HUGE_VAL}) {
+      Certificate fails = holds;
+      fails.*member = value;
+      EXPECT_THAT(beyond(fails, bounds), testing::HasSubstr(name));
+      EXPECT_THAT(beyond(fails, bounds), testing::HasSubstr("allowed: 1e-"));
+      EXPECT_THAT(beyond(fails, bounds), testing::HasSubstr(fmt::format("{:.3g}", value)));
+    }
+  }
+  Certificate nothing_asked = holds;
+  nothing_asked.gap = kNaN;
+  EXPECT_NE(beyond(nothing_asked, {HUGE_VAL, HUGE_VAL, HUGE_VAL, HUGE_VAL}), "") << "NaN never holds";
+}
+
+TEST(Norms, AreThoseOfEachCell) {
+  ArrayXd v(4);
+  v << 3, 0, 4, -2;
+  ArrayXd w(4);
+  w << 1, 5, 2, 7;
+  EXPECT_EQ(norms(v)[0], 5.0);
+  EXPECT_EQ(norms(v)[1], 2.0);
+  EXPECT_EQ(dot_products(v, w)[0], 11.0);
+  EXPECT_EQ(dot_products(v, w)[1], -14.0);
+}
+
+}  // namespace
+}  // namespace slipstick::solver

@@ -1,0 +1,289 @@
+#include "solver/contact/coulomb_method.hpp"
+
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <random>
+
+#include "solver/contact/projected_gradient.hpp"
+#include "solver/tests/torsion_bench.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+
+/// An ellipse's friction bounds and whatever its torsion is compared with.
+struct EllipticBench {
+  EllipticBench(Index n1, Index n2, double h2 = 1.0)
+      : grid{n1, n2, 1.0, h2},
+        bound((1.0 - (cell_x1(grid) / (0.5 * static_cast<double>(n1) - 1.3)).square() -
+               (cell_x2(grid) / (h2 * (0.5 * static_cast<double>(n2) - 1.3))).square())
+                  .max(0.0)
+                  .sqrt()),
+        limit(moment_limit(grid, bound)) {}
+
+  TangentialSolution solve(double moment_ratio, double tolerance = 1e-8) const {
+    CoulombOptions options;
+    options.tolerance = tolerance;
+    return solve_by_coulomb_method(elasticity, grid, under_moment(bound, moment_ratio * limit), options);
+  }
+  TangentialSolution solve_twist(double twist, double tolerance = 1e-8) const {
+    CoulombOptions options;
+    options.tolerance = tolerance;
+    return solve_by_coulomb_method(elasticity, grid, under_twist(bound, twist), options);
+  }
+  double moment_of(const TangentialSolution& solution) const {
+    return (solution.traction * rotation_field(grid)).sum();
+  }
+
+  Grid grid;
+  ArrayXd bound;
+  double limit;
+  Elasticity elasticity{elastic_pair({2.0, 0.3}, {2.0, 0.3})};
+};
+
+/// K q and the slip afresh, by direct summation.
+Certificate independent_certificate(const EllipticBench& bench, const TangentialSolution& solution,
+                                    double moment) {
+  const auto op = make_operator(OperatorKind::direct, bench.grid, tangential_kernel(), bench.elasticity.pair);
+  ArrayXd u(solution.traction.size());
+  op->apply(solution.traction, u);
+  const ArrayXd contact = (bench.bound > 0.0).cast<double>().replicate(2, 1);
+  const ArrayXd slip = contact * (u - solution.twist * rotation_field(bench.grid));
+  return certify({solution.traction, u, slip}, bench.bound, rotation_field(bench.grid), moment);
+}
+
+// --- the certificate ---
+
+struct Shape {
+  Index n1;
+  Index n2;
+  double h2;
+};
+void PrintTo(const Shape& shape, std::ostream* stream) {
+  *stream << shape.n1 << " x " << shape.n2 << ", h2 " << shape.h2;
+}
+class Certified : public testing::TestWithParam<std::tuple<Shape, double>> {};
+INSTANTIATE_TEST_SUITE_P(Contacts, Certified,
+                         testing::Combine(testing::Values(Shape{40, 40, 1.0}, Shape{41, 37, 1.0},
+                                                          Shape{48, 24, 1.0}, Shape{160, 8, 1.0},
+                                                          Shape{32, 32, 0.05}, Shape{5, 5, 1.0}),
+                                          testing::Values(0.01, 0.1, 0.5, 0.9, 0.99, 0.999)));
+
+TEST_P(Certified, ToTheToleranceAskedForByDirectSummation) {
+  const auto [shape, moment_ratio] = GetParam();
+  const EllipticBench bench(shape.n1, shape.n2, shape.h2);
+  for (const double tolerance : {1e-8, 1e-12}) {
+    const TangentialSolution solution = bench.solve(moment_ratio, tolerance);
+    ASSERT_EQ(solution.status, Status::converged) << solution.message;
+    const Certificate certificate = independent_certificate(bench, solution, moment_ratio * bench.limit);
+    EXPECT_LE(certificate.gap, tolerance + 1e-13);
+    EXPECT_LE(certificate.moment, kRounding);
+    EXPECT_LE(certificate.friction_bound, kRounding);
+    EXPECT_LE(certificate.force, kRounding);
+  }
+}
+
+/// What Coulomb's law says of each cell; certify() does not come into it.
+TEST(Coulomb, HoldsInEachCell) {
+  const EllipticBench bench(48, 24);
+  const TangentialSolution solution = bench.solve(0.7, 1e-13);
+  const ArrayXd slip = norms(solution.slip);
+  const double largest_slip = slip.maxCoeff();
+  for (Index i = 0; i < bench.grid.cells(); ++i) {
+    const double q = std::hypot(solution.traction[i], solution.traction[i + bench.grid.cells()]);
+    if (solution.stick[i] > 0.0) {
+      EXPECT_LE(slip[i], 1e-9 * largest_slip);
+      EXPECT_LT(q, bench.bound[i]);
+    } else if (bench.bound[i] > 0.0) {
+      EXPECT_NEAR(q / bench.bound[i], 1.0, kRounding);
+    } else {
+      EXPECT_EQ(q, 0.0);
+    }
+  }
+  EXPECT_LE(slip_direction(solution.traction, solution.slip).max, 1e-4);
+  EXPECT_GT((solution.stick > 0.0).count(), 50);
+}
+
+/// Where the paper's method is a few degrees off at every mesh.
+TEST(Coulomb, SlipIsOpposedToTractionOnAnEllipse) {
+  const Index cells = 64;
+  for (const double moment_ratio : {0.5, 0.9}) {
+    Scene scene = ellipsoid_scene(cells, 1.7 * paper::kRadius, paper::kRadius / 1.7, moment_ratio);
+    EXPECT_LE(solve(scene).slip_direction.mean, 0.01);
+    EXPECT_GT(by_paper_method(scene).slip_direction.mean, 0.5);
+  }
+}
+
+// --- an independent method ---
+
+class AgainstProjectedGradient : public testing::TestWithParam<double> {};
+INSTANTIATE_TEST_SUITE_P(MomentRatios, AgainstProjectedGradient, testing::Values(0.1, 0.5, 0.9, 0.99));
+
+TEST_P(AgainstProjectedGradient, TheMinimumIsTheSame) {
+  const EllipticBench bench(28, 16);
+  const auto op = bench.elasticity.make(bench.grid, tangential_kernel());
+  ProjectedGradientOptions options;
+  options.tolerance = 1e-10;
+  const TangentialSolution slow =
+      solve_by_projected_gradient(*op, under_moment(bench.bound, GetParam() * bench.limit), options);
+  ASSERT_EQ(slow.status, Status::converged) << slow.message;
+  const TangentialSolution fast = bench.solve(GetParam(), 1e-12);
+  // |q - q*|_K^2 <= 2 gap: in the energy's norm 1e-5, in the largest traction somewhat more.
+  EXPECT_LE(relative_difference(slow.traction, fast.traction), 1e-4);
+  EXPECT_NEAR(slow.twist / fast.twist, 1.0, 1e-6);
+}
+
+// --- loads ---
+
+TEST(CoulombLoads, AMomentAndItsTwistAreOneState) {
+  const EllipticBench bench(32, 20);
+  for (const double moment_ratio : {0.05, 0.5, 0.95}) {
+    const TangentialSolution by_moment = bench.solve(moment_ratio, 1e-12);
+    const TangentialSolution by_twist = bench.solve_twist(by_moment.twist, 1e-12);
+    ASSERT_EQ(by_twist.status, Status::converged) << by_twist.message;
+    EXPECT_EQ(by_twist.twist, by_moment.twist);
+    EXPECT_NEAR(bench.moment_of(by_twist) / bench.limit, moment_ratio, 1e-9);
+    EXPECT_LE(relative_difference(by_twist.traction, by_moment.traction), 1e-5);
+  }
+}
+
+TEST(CoulombLoads, NoMomentNoTraction) {
+  const EllipticBench bench(20, 20);
+  const TangentialSolution solution = bench.solve(0.0);
+  EXPECT_EQ(solution.status, Status::converged) << solution.message;
+  EXPECT_EQ(solution.traction.abs().maxCoeff(), 0.0);
+  EXPECT_EQ(solution.twist, 0.0);
+  EXPECT_EQ(bench.solve_twist(0.0).traction.abs().maxCoeff(), 0.0);
+}
+
+TEST(CoulombLoads, WithoutFrictionNothingIsCarried) {
+  const EllipticBench bench(12, 12);
+  const TangentialSolution solution = solve_by_coulomb_method(
+      bench.elasticity, bench.grid, under_twist(ArrayXd::Zero(bench.grid.cells()), 0.1));
+  EXPECT_EQ(solution.status, Status::converged);
+  EXPECT_EQ(solution.traction.abs().maxCoeff(), 0.0);
+}
+
+TEST(CoulombLoads, GrossSlipIsRefusedWithTheLimit) {
+  const EllipticBench bench(12, 12);
+  EXPECT_THROW(bench.solve(1.0), std::invalid_argument);
+  EXPECT_THROW(bench.solve(std::nan("")), std::invalid_argument);
+}
+
+/// A twist has no limit: all but the middle slips.
+TEST(CoulombLoads, AHugeTwistNearlyReachesTheLimit) {
+  const EllipticBench bench(31, 31);
+  const TangentialSolution solution = bench.solve_twist(100.0);
+  ASSERT_EQ(solution.status, Status::converged) << solution.message;
+  EXPECT_NEAR(bench.moment_of(solution) / bench.limit, 1.0, 1e-6);
+  EXPECT_LE((solution.stick > 0.0).count(), 1);
+}
+
+/// Friction and moment times a factor: tractions, displacements and twist times that factor.
+TEST(CoulombLoads, AreScaledByFriction) {
+  EllipticBench bench(24, 24);
+  const TangentialSolution one = bench.solve(0.6, 1e-12);
+  bench.bound *= 1024.0;
+  bench.limit *= 1024.0;
+  const TangentialSolution many = bench.solve(0.6, 1e-12);
+  EXPECT_LE(relative_difference(many.traction / 1024.0, one.traction), 1e-9);
+  EXPECT_NEAR(many.twist / one.twist / 1024.0, 1.0, kRounding);
+}
+
+/// The pressure's displacement (dissimilar bodies) enters as in Eq. (12): a rigid rotation in it is a twist.
+TEST(CoulombLoads, AnInitialRotationShiftsTheTwist) {
+  const EllipticBench bench(30, 22);
+  TangentialProblem problem = under_moment(bench.bound, 0.6 * bench.limit);
+  const TangentialSolution plain = bench.solve(0.6, 1e-12);
+  problem.initial_displacement = 0.25 * rotation_field(bench.grid);
+  CoulombOptions options;
+  options.tolerance = 1e-12;
+  const TangentialSolution shifted = solve_by_coulomb_method(bench.elasticity, bench.grid, problem, options);
+  ASSERT_EQ(shifted.status, Status::converged) << shifted.message;
+  EXPECT_NEAR(shifted.twist - plain.twist, 0.25, 1e-10);
+  EXPECT_LE(relative_difference(shifted.traction, plain.traction), 1e-6);
+}
+
+// --- what the certificate and the second order are worth ---
+
+/// The gap bounds the square of the traction's error in the energy's norm, and the twist's error is of that
+/// order: a small part of the gap, where a twist of first order would be of the order of its root.
+TEST(Twist, IsOfSecondOrder) {
+  const EllipticBench bench(48, 30);
+  for (const double moment_ratio : {0.3, 0.8}) {
+    const TangentialSolution exact = bench.solve(moment_ratio, 1e-13);
+    for (const double tolerance : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
+      const TangentialSolution rough = bench.solve(moment_ratio, tolerance);
+      const double twist_error = std::abs(rough.twist / exact.twist - 1.0);
+      EXPECT_LE(twist_error, 0.01 * rough.change + 1e-13) << tolerance;
+      RecordProperty(fmt::format("twist_{}_{}", moment_ratio, tolerance),
+                     fmt::format("{:.2e} at gap {:.2e}", twist_error, rough.change));
+    }
+  }
+}
+
+TEST(TangentStiffness, IsTheSlopeOfMomentOverTwist) {
+  const EllipticBench bench(40, 28);
+  for (const double moment_ratio : {0.2, 0.7}) {
+    const TangentialSolution at = bench.solve(moment_ratio, 1e-13);
+    // So small a step changes no cell's state.
+    const double step = 1e-7 * at.twist;
+    const TangentialSolution up = bench.solve_twist(at.twist + step, 1e-15);
+    const TangentialSolution down = bench.solve_twist(at.twist - step, 1e-15);
+    const double slope = (bench.moment_of(up) - bench.moment_of(down)) / (2.0 * step);
+    EXPECT_NEAR(at.tangent_stiffness / slope, 1.0, 2e-5);
+  }
+}
+
+// --- work ---
+
+class Work : public testing::TestWithParam<std::tuple<Index, double>> {};
+INSTANTIATE_TEST_SUITE_P(Meshes, Work,
+                         testing::Combine(testing::Values<Index>(64, 128, 256, 512),
+                                          testing::Values(0.5, 0.9, 0.99)));
+
+/// Applications on all grids in those of the finest: a count, the same on every machine.
+TEST_P(Work, IsBoundedAtEveryMesh) {
+  const auto [cells, moment_ratio] = GetParam();
+  const Solution solution = solve(paper_scene(cells, moment_ratio));
+  EXPECT_EQ(solution.status, Status::converged) << solution.message;
+  EXPECT_LE(solution.certificate.gap, 1e-8);
+  EXPECT_LE(solution.operator_applications, 25.0);
+  EXPECT_LE(solution.pressure_applications, 30.0);
+  RecordProperty("tangential", fmt::format("{:.1f}", solution.operator_applications));
+  RecordProperty("normal", fmt::format("{:.1f}", solution.pressure_applications));
+}
+
+// --- accuracy against the exact solution ---
+
+struct Accuracy {
+  double moment_ratio;
+  double twist;  ///< rad, exact
+  double allowed;
+  double stick_ratio;  ///< exact
+  double allowed_stick;
+};
+void PrintTo(const Accuracy& accuracy, std::ostream* stream) { *stream << accuracy.moment_ratio; }
+class Accurate : public testing::TestWithParam<Accuracy> {};
+INSTANTIATE_TEST_SUITE_P(MomentRatios, Accurate,
+                         testing::Values(Accuracy{0.1, 1.197249389022587e-4, 2e-5, 0.9693964204953627, 2e-4},
+                                         Accuracy{0.5, 7.629453516649457e-4, 2e-5, 0.8135681261276496, 2e-4},
+                                         Accuracy{0.9, 2.361048651456917e-3, 2e-5, 0.4958950522157781, 2e-4},
+                                         Accuracy{0.99, 4.413921104595224e-3, 1e-4, 0.2369661925296642,
+                                                  1e-3}));
+
+TEST_P(Accurate, TwistAndStickRadiusAt256Cells) {
+  const Solution solution = solve(paper_scene(256, GetParam().moment_ratio));
+  const double error = solution.twist_angle / GetParam().twist - 1.0;
+  RecordProperty("error", fmt::format("{:.2e}", error));
+  EXPECT_LE(std::abs(error), GetParam().allowed);
+  const double stick_error = solution.stick_radius / (GetParam().stick_ratio * paper::kContactRadius) - 1.0;
+  RecordProperty("stick_error", fmt::format("{:.2e}", stick_error));
+  EXPECT_LE(std::abs(stick_error), GetParam().allowed_stick);
+}
+
+}  // namespace
+}  // namespace slipstick::solver

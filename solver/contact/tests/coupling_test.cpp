@@ -1,0 +1,359 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <vector>
+
+#include "solver/contact/certificate.hpp"
+#include "solver/contact/full_coupling.hpp"
+#include "solver/grid/mirror.hpp"
+#include "solver/solve.hpp"
+#include "solver/tests/torsion_bench.hpp"
+
+/// Dissimilar bodies: pressure moves the surfaces along each other, shear opens and closes the gap.
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+using std::numbers::pi;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// Gap over energy that scenes are solved to, and what two answers of one discrete problem may differ by.
+constexpr double kGap = 1e-12;
+constexpr double kSame = 1e-8;
+
+const Material kRigid{kInfinity, 0.0};
+/// G = 1/2 and nu = 0 in units of Pa: Dundurs' beta is 1/2 under a rigid body.
+const Material kSpences{1.0, 0.0};
+
+ArrayXd random_field(Index size, unsigned seed) {
+  std::mt19937_64 generator(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  return ArrayXd::NullaryExpr(size, [&] { return uniform(generator); });
+}
+
+ArrayXd applied(LinearOperator& op, const ArrayXd& traction) {
+  ArrayXd u(static_cast<Index>(op.outputs()) * op.grid().cells());
+  op.apply(traction, u);
+  return u;
+}
+
+ArrayXd applied(const BlockKernel& kernel, const Model& model, const ArrayXd& traction) {
+  return applied(*make_operator(OperatorKind::direct, model.grid, kernel, model.pair), traction);
+}
+
+Solution solved(const Scene& scene) {
+  Solution solution = solve(scene);
+  EXPECT_EQ(solution.status, Status::converged) << solution.message;
+  return solution;
+}
+
+// --- kernels ---
+
+/// Betti: the work of shear in the displacements by pressure is that of the pressure in those by shear.
+TEST(ShearKernel, IsReciprocalToThePressures) {
+  const ElasticPair pair = elastic_pair({1.0, 0.2}, {3.0, 0.35});
+  for (const Grid& grid : {Grid{9, 6, 1.0, 0.7}, Grid{16, 16, 1.0, 1.0}, Grid{1, 5, 1.0, 1.0}}) {
+    const ArrayXd q = random_field(2 * grid.cells(), 1);
+    const ArrayXd p = random_field(grid.cells(), 2);
+    for (const OperatorKind kind : {OperatorKind::dcfft, OperatorKind::direct, OperatorKind::dense}) {
+      const ArrayXd along = applied(*make_operator(kind, grid, coupling_kernel(), pair), p);
+      ShearOpening opening({.pair = pair, .kind = kind}, grid);
+      const ArrayXd normal = opening(q);
+      const double scale = std::sqrt(q.square().sum() * along.square().sum());
+      EXPECT_NEAR((q * along).sum(), (p * normal).sum(), 1e-13 * scale);
+      EXPECT_NEAR((applied(*make_operator(kind, grid, shear_kernel(), pair), q) + normal).abs().maxCoeff(),
+                  0.0, 1e-13 * largest(normal));
+    }
+  }
+}
+
+/// K13 is odd in x1 and even in x2, K23 the reverse. Far off they are those of a point load: pressure draws
+/// a compressible surface towards itself (Johnson 1985, Eq. 3.18), in relation to a rigid one.
+TEST(CouplingKernel, IsOddAndDrawsInwards) {
+  const Grid grid{41, 41, 1.0, 1.0};
+  const ElasticPair pair = elastic_pair({1.0, 0.25}, {kInfinity, 0.0});
+  const auto op = make_operator(OperatorKind::dcfft, grid, coupling_kernel(), pair);
+  ArrayXd p = ArrayXd::Zero(grid.cells());
+  p[20 * 41 + 20] = 1.0;
+  const ArrayXd u = applied(*op, p);
+  const auto at = [&](Index component, Index i, Index j) {
+    return u[component * grid.cells() + (20 + i) * grid.n2 + 20 + j];
+  };
+  for (Index i = 0; i <= 20; ++i) {
+    for (Index j = 0; j <= 20; ++j) {
+      const double tolerance = 1e-13 * largest(u);
+      EXPECT_NEAR(at(0, i, j), -at(0, -i, j), tolerance);
+      EXPECT_NEAR(at(0, i, j), at(0, i, -j), tolerance);
+      EXPECT_NEAR(at(1, i, j), at(0, j, i), tolerance);
+      const auto rho_square = static_cast<double>(i * i + j * j);
+      if (rho_square < 100.0) continue;
+      const double point = -(1.0 - 2.0 * 0.25) / (4.0 * pi) * static_cast<double>(i) / rho_square;
+      EXPECT_NEAR(at(0, i, j), point, 1e-3 * std::abs(0.5 / (4.0 * pi * std::sqrt(rho_square))));
+    }
+  }
+}
+
+// --- what it may not change ---
+
+Scene loaded(Coupling coupling, Index cells = 20) {
+  Scene scene = paper_scene(cells, 0.5);
+  scene.steps[0].force = {40.0, 20.0};
+  scene.tolerance = kGap;
+  scene.coupling = coupling;
+  return scene;
+}
+
+/// By (1 - 2 nu)/G the bodies are alike, whatever else they are.
+TEST(NoMismatch, UncouplesEveryModel) {
+  Scene scene = loaded(Coupling::none);
+  for (const bool similar : {true, false}) {
+    if (!similar) {
+      scene.lower = {2.0 * 80e9 * 1.3, 0.3};
+      scene.upper = {2.0 * 100e9 * 1.25, 0.25};
+    }
+    scene.coupling = Coupling::none;
+    const Solution none = solved(scene);
+    double worst = 0.0;
+    for (const Coupling coupling : {Coupling::automatic, Coupling::pressure, Coupling::full}) {
+      scene.coupling = coupling;
+      const Solution other = solved(scene);
+      EXPECT_LE(relative_difference(other.normal.pressure, none.normal.pressure), kSame);
+      EXPECT_LE(relative_difference(other.tangential.traction, none.tangential.traction), kSame);
+      EXPECT_NEAR(other.twist_angle / none.twist_angle, 1.0, kSame);
+      EXPECT_NEAR(other.displacement[0] / none.displacement[0], 1.0, kSame);
+      EXPECT_EQ(other.turns, 1);
+      worst = std::max({worst, relative_difference(other.normal.pressure, none.normal.pressure),
+                        relative_difference(other.tangential.traction, none.tangential.traction)});
+    }
+    RecordProperty(similar ? "similar" : "dissimilar", std::to_string(worst * 1e15) + "e-15");
+  }
+}
+
+// --- exchange of the bodies ---
+
+Scene dissimilar(Coupling coupling, double moment_ratio, Index cells = 24) {
+  Scene scene = paper_scene(cells, moment_ratio);
+  scene.lower.poisson_ratio = 0.1;
+  scene.upper.young_modulus = kInfinity;
+  scene.extent = {1.2e-3, 1.2e-3};
+  scene.friction = 0.3;
+  scene.tolerance = kGap;
+  scene.coupling = coupling;
+  return scene;
+}
+
+class Exchange : public testing::TestWithParam<Coupling> {};
+INSTANTIATE_TEST_SUITE_P(Coupling, Exchange, testing::Values(Coupling::pressure, Coupling::full),
+                         [](const auto& tested) {
+                           return tested.param == Coupling::full ? "full" : "pressure";
+                         });
+
+/// The mismatch changes its sign, and with it the shear by pressure; what shear of the other sign does to the
+/// gap is then the same.
+TEST_P(Exchange, ReversesTheShearByPressure) {
+  Scene scene = dissimilar(GetParam(), 0.0);
+  const Solution one = solved(scene);
+  std::swap(scene.lower, scene.upper);
+  const Solution other = solved(scene);
+  EXPECT_LE(relative_difference(other.normal.pressure, one.normal.pressure), kSame);
+  EXPECT_LE(relative_difference(other.tangential.traction, -one.tangential.traction), kSame);
+  EXPECT_EQ(other.stick_cells, one.stick_cells);
+  EXPECT_GT(one.stick_cells, 10);
+  EXPECT_LT(one.stick_cells, one.contact_cells - 10);
+}
+
+/// Under a moment too it is the answer to the reverse one with its sign changed, and that is the mirror image
+/// about x1 = 0 of the answer to the moment itself: q1 is mirrored, q2 mirrored and reversed.
+TEST_P(Exchange, MirrorsTheAnswerToAMoment) {
+  Scene scene = dissimilar(GetParam(), 0.5);
+  const Solution one = solved(scene);
+  std::swap(scene.lower, scene.upper);
+  const Solution other = solved(scene);
+  const Grid& grid = one.model.grid;
+  const auto mirrored = [&](const ArrayXd& field) {
+    ArrayXd result(field.size());
+    for (Index i = 0; i < grid.n1; ++i) {
+      result.segment(i * grid.n2, grid.n2) = field.segment((grid.n1 - 1 - i) * grid.n2, grid.n2);
+    }
+    return result;
+  };
+  ArrayXd expected(2 * grid.cells());
+  expected << mirrored(one.tangential.traction.head(grid.cells())),
+      -mirrored(one.tangential.traction.tail(grid.cells()));
+  EXPECT_LE(relative_difference(other.normal.pressure, mirrored(one.normal.pressure)), kSame);
+  EXPECT_LE(relative_difference(other.tangential.traction, expected), kSame);
+  EXPECT_NEAR(other.twist_angle / one.twist_angle, 1.0, kSame);
+}
+
+// --- full coupling ---
+
+/// Signorini's and Coulomb's laws, all displacements summed afresh.
+TEST(FullCoupling, HoldsBothLawsAtOnce) {
+  for (const double tolerance : {1e-8, 1e-12}) {
+    Scene scene = dissimilar(Coupling::full, 0.4);
+    scene.tolerance = tolerance;
+    scene.steps[0].force = {30.0, 10.0};
+    const Solution solution = solved(scene);
+    const Model& model = solution.model;
+    const Index cells = model.grid.cells();
+    const ArrayXd& p = solution.normal.pressure;
+    const ArrayXd& q = solution.tangential.traction;
+
+    const ArrayXd opening =
+        applied(normal_kernel(), model, p) - applied(shear_kernel(), model, q) + model.gap;
+    const double lowest = opening.minCoeff();
+    const double energy = 0.5 * (p * applied(normal_kernel(), model, p)).sum();
+    EXPECT_GE(p.minCoeff(), 0.0);
+    EXPECT_LE((p * (opening - lowest)).sum() / energy, tolerance + 1e-13);
+    EXPECT_NEAR(lowest, solution.normal.approach, std::sqrt(tolerance) * lowest);
+    EXPECT_NEAR(solution.normal_load / paper::kLoad, 1.0, kRounding);
+
+    ArrayXd slip = applied(tangential_kernel(), model, q) + applied(coupling_kernel(), model, p) -
+                   solution.tangential.twist * rotation_field(model.grid);
+    slip.head(cells) -= solution.tangential.displacement[0];
+    slip.tail(cells) -= solution.tangential.displacement[1];
+    slip *= (p > 0.0).cast<double>().replicate(2, 1);
+    const double area = model.grid.cell_area();
+    const Certificate fresh =
+        certify({q, applied(tangential_kernel(), model, q), slip}, model.friction * p,
+                rotation_field(model.grid), 0.4 * solution.moment_limit / (area * model.moment_unit()),
+                {30.0 / (area * model.force_unit()), 10.0 / (area * model.force_unit())});
+    EXPECT_LE(fresh.gap, tolerance + 1e-13);
+    EXPECT_LE(fresh.friction_bound, kRounding);
+    EXPECT_LE(std::max(fresh.moment, fresh.force), kRounding);
+    EXPECT_GT(solution.turns, 1);
+    EXPECT_EQ(solution.contact_radius, solution.contact_radius_counted) << "no longer Hertz's pressure";
+    RecordProperty("turns_" + std::to_string(std::lround(-std::log10(tolerance))), solution.turns);
+  }
+}
+
+/// Friction that holds everything, or a push close to sliding, where shear follows pressure and pressure
+/// shear: an answer, or a status that says why there is none.
+TEST(FullCoupling, EndsWhateverTheFriction) {
+  int unsettled = 0;
+  for (const double friction : {0.3, 1.0, 3.0, 30.0}) {
+    for (const double push : {0.0, 0.9, 0.99}) {
+      Scene scene = dissimilar(Coupling::full, 0.0, 16);
+      scene.lower.poisson_ratio = 0.0;
+      scene.friction = friction;
+      scene.ends_at_grid_edge = true;  // much friction drags the contact there
+      scene.tolerance = 1e-8;
+      scene.steps[0].torsion = {.moment_ratio = {}, .moment = {}, .twist = 0.0};
+      scene.steps[0].force = {push * friction * paper::kLoad, 0.0};
+      const Solution solution = solve(scene);
+      if (solution.status == Status::converged) {
+        EXPECT_LE(solution.certificate.gap, 1e-8);
+        EXPECT_LE(solution.normal.complementarity, 1e-8);
+      } else {
+        EXPECT_NE(solution.message, "");
+        ++unsettled;
+      }
+    }
+  }
+  RecordProperty("unsettled", unsettled);
+}
+
+// --- Goodman, Spence ---
+
+Scene spence(Shape shape, Coupling coupling, Index cells) {
+  Scene scene;
+  scene.source = "spence.toml";
+  scene.surfaces[0].shape = shape;
+  scene.surfaces[0].radius = shape == Shape::sphere ? 100.0 : 1.0;
+  scene.lower = kSpences;
+  scene.upper = kRigid;
+  scene.friction = 0.2986;
+  scene.coupling = coupling;
+  scene.cells = {cells, cells};
+  scene.steps[0].normal = 0.02;
+  scene.steps[0].torsion.moment_ratio = 0.0;
+  return scene;
+}
+
+/// Stick radius over contact radius at mu = 0.2986 and beta = 1/2: where pressure acts on shear alone the
+/// root of artanh(c)/c = (mu/beta) K(sqrt(1 - c^2)) (Goodman's approximation, Spence 1975); where shear acts
+/// on pressure too, 1/2 (Spence 1975).
+double exact_stick_ratio(Coupling coupling) { return coupling == Coupling::full ? 0.5 : 0.623310792994697; }
+
+double counted_stick_ratio(const Solution& solution) {
+  return solution.stick_radius_counted / solution.contact_radius_counted;
+}
+
+class Spence : public testing::TestWithParam<Coupling> {};
+INSTANTIATE_TEST_SUITE_P(Coupling, Spence, testing::Values(Coupling::pressure, Coupling::full),
+                         [](const auto& tested) {
+                           return tested.param == Coupling::full ? "full" : "pressure";
+                         });
+
+/// All that a punch carries grows in proportion to its load, slip included, so that one step from nothing is
+/// the whole history. The mesh knows the stick radius to a part of a cell.
+TEST_P(Spence, HoldsUnderAFlatPunch) {
+  for (const Index cells : {48, 64}) {
+    const Solution solution = solved(spence(Shape::flat_punch, GetParam(), cells));
+    const double cell = 2.0 / static_cast<double>(cells - 4);  // over the punch's radius
+    const double error = counted_stick_ratio(solution) - exact_stick_ratio(GetParam());
+    EXPECT_LE(std::abs(error), 0.25 * cell);
+    RecordProperty("error_in_cells_" + std::to_string(cells), std::to_string(error / cell));
+  }
+}
+
+/// Mean stick ratio over the end of a sphere's loading, each step by the same factor, from a 64th of the
+/// load.
+double late_stick_ratio(Coupling coupling, Index cells, int steps) {
+  Scene scene = spence(Shape::sphere, coupling, cells);
+  scene.tolerance = 1e-6;
+  const double load = *scene.steps[0].normal;
+  scene.steps.resize(static_cast<std::size_t>(steps) + 1, scene.steps[0]);
+  for (int i = 0; i <= steps; ++i) {
+    scene.steps[static_cast<std::size_t>(i)].normal =
+        load * std::pow(64.0, static_cast<double>(i) / steps - 1.0);
+  }
+  double sum = 0.0;
+  int count = 0;
+  const Solution last = solve(scene, {.progress = {}, .on_step = [&](const Solution& solution) {
+                                        if (!(*solution.loads.normal > 0.2 * load)) return;
+                                        EXPECT_EQ(solution.stick_radius, solution.stick_radius_counted);
+                                        EXPECT_NE(solution.stick_radius_note, "");
+                                        sum += counted_stick_ratio(solution);
+                                        ++count;
+                                      }});
+  EXPECT_EQ(last.status, Status::converged) << last.message;
+  return sum / count;
+}
+
+/// A sphere's contact grows, its stick ratio stays: the limit of many steps is the punch's ratio (Spence
+/// 1968). A step lets the cells that it brings into contact slip from its start: first order.
+TEST_P(Spence, HoldsInEachStepOfAGrowingContact) {
+  const Index cells = GetParam() == Coupling::full ? 32 : 48;
+  const double few = late_stick_ratio(GetParam(), cells, 10);
+  const double many = late_stick_ratio(GetParam(), cells, 20);
+  const double exact = exact_stick_ratio(GetParam());
+  EXPECT_LT(few, many);
+  EXPECT_LT(many, exact);
+  EXPECT_NEAR(2.0 * many - few, exact, 0.5 * 2.0 / static_cast<double>(cells)) << "a quarter of a cell";
+  RecordProperty("steps_10", std::to_string(few));
+  RecordProperty("steps_20", std::to_string(many));
+}
+
+/// With friction enough to hold everything a punch is bonded: stiffer than without friction by ln(3 - 4 nu)
+/// (1 - nu)/(1 - 2 nu), ln 3 at nu = 0 (Mossakowski 1954, Spence 1968). The mesh's error is of first order.
+TEST(BondedPunch, IsStifferByTheLogarithmOfThree) {
+  std::vector<double> errors;
+  for (const Index cells : {20, 36}) {  // 8 and 16 cells in a radius
+    Scene scene = spence(Shape::flat_punch, Coupling::full, cells);
+    scene.friction = 3.0;
+    const Solution bonded = solved(scene);
+    EXPECT_EQ(bonded.stick_cells, bonded.contact_cells);
+    scene.coupling = Coupling::none;
+    errors.push_back(solved(scene).approach / (std::log(3.0) * bonded.approach) - 1.0);
+    RecordProperty("error_" + std::to_string(cells), std::to_string(errors.back()));
+  }
+  EXPECT_LT(std::abs(errors[1]), 4e-3);
+  EXPECT_NEAR(2.0 * errors[1] - errors[0], 0.0, 3e-4);
+}
+
+}  // namespace
+}  // namespace slipstick::solver

@@ -1,0 +1,368 @@
+#include "solver/contact/limit_load.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+#include <vector>
+
+#include "solver/contact/certificate.hpp"
+#include "solver/contact/tangential_problem.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+/// The factor is a least value, so that what Newton's method leaves in the motion counts to second order;
+/// sums of some thousands of cells round by less.
+constexpr double kRelative = 1e-12;
+/// The motion, its centre and the resultants depend on the root of what is left of the least value, 5e-8,
+/// times the contact's condition.
+constexpr double kMotion = 2e-7;
+
+struct Contact {
+  Grid grid;
+  ArrayXd bound;
+
+  double sum() const { return bound.sum(); }
+  LimitLoad limit(const ImposedLoads& loads) const { return find_limit(grid, bound, loads); }
+  double moment() const { return free_moment_limit(grid, bound); }
+  double& operator()(Index i, Index j) { return bound[i * grid.n2 + j]; }
+};
+
+Contact empty(Index n1, Index n2, double h1 = 0.25, double h2 = 0.25) {
+  return {{n1, n2, h1, h2}, ArrayXd::Zero(n1 * n2)};
+}
+
+Contact hertz_disc(Index n) {
+  Contact disc = empty(n, n, 2.0 / static_cast<double>(n), 2.0 / static_cast<double>(n));
+  const ArrayXd r_square = cell_x1(disc.grid).square() + cell_x2(disc.grid).square();
+  disc.bound = (1.0 - r_square).max(0.0).sqrt();
+  return disc;
+}
+
+Contact ring(Index n) {
+  Contact ring = hertz_disc(n);
+  ring.bound = (ring.bound > 0.0 && ring.bound < 0.5).cast<double>();
+  return ring;
+}
+
+/// No symmetry, a third of the cells in contact, one cell much stronger than the others if asked for.
+Contact rough(unsigned seed, double strongest = 1.0) {
+  Contact contact = empty(11, 8, 0.2, 0.3);
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> uniform;
+  for (double& bound : contact.bound) {
+    if (uniform(random) < 0.35) bound = uniform(random);
+  }
+  contact(9, 6) = strongest;
+  return contact;
+}
+
+double friction_in(const Contact& contact, const RigidMotion& v) {
+  const ArrayXd v1 = v.delta1 - v.twist * cell_x2(contact.grid);
+  const ArrayXd v2 = v.delta2 + v.twist * cell_x1(contact.grid);
+  return (contact.bound * (v1.square() + v2.square()).sqrt()).sum();
+}
+
+template <typename Function>
+double golden_section_minimum(const Function& f, double low, double high) {
+  constexpr double kGolden = 1.0 / std::numbers::phi;
+  double a = high - kGolden * (high - low), b = low + kGolden * (high - low);
+  double fa = f(a), fb = f(b);
+  for (int step = 0; step < 60; ++step) {
+    if (fa < fb) {
+      high = b, b = a, fb = fa;
+      a = high - kGolden * (high - low);
+      fa = f(a);
+    } else {
+      low = a, a = b, fa = fb;
+      b = low + kGolden * (high - low);
+      fb = f(b);
+    }
+  }
+  return std::min(fa, fb);
+}
+
+void expect_relative(double value, double expected, double tolerance = kRelative) {
+  EXPECT_NEAR(value, expected, tolerance * std::abs(expected));
+}
+
+void expect_centre(const LimitLoad& limit, double c1, double c2, double tolerance = kMotion) {
+  ASSERT_TRUE(limit.centre.has_value());
+  EXPECT_NEAR((*limit.centre)[0], c1, tolerance);
+  EXPECT_NEAR((*limit.centre)[1], c2, tolerance);
+}
+
+TEST(LimitMoment, OfASymmetricContactIsTheOneAboutItsCentre) {
+  for (const Contact& contact : {hertz_disc(24), hertz_disc(25), ring(24), ring(25)}) {
+    expect_relative(contact.moment(), moment_limit(contact.grid, contact.bound));
+    expect_centre(contact.limit({0.0, 0.0, 1.0}), 0.0, 0.0);
+  }
+}
+
+TEST(LimitMoment, MovesWithTheContact) {
+  const Contact disc = hertz_disc(15);
+  const double h = disc.grid.h1;
+  Contact moved = empty(40, 31, h, h);
+  const Index i0 = 21, j0 = 3;
+  for (Index i = 0; i < 15; ++i) {
+    moved.bound.segment((i + i0) * 31 + j0, 15) = disc.bound.segment(i * 15, 15);
+  }
+  expect_relative(moved.moment(), disc.moment());
+  expect_centre(moved.limit({0.0, 0.0, 1.0}), moved.grid.x1(i0 + 7), moved.grid.x2(j0 + 7));
+}
+
+TEST(LimitMoment, IsLessThanAboutAnyOtherCentre) {
+  const Contact contact = rough(3);
+  const LimitLoad limit = contact.limit({0.0, 0.0, 1.0});
+  for (const double turn : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0}) {
+    const double c1 = (*limit.centre)[0] + 1e-3 * std::cos(turn);
+    const double c2 = (*limit.centre)[1] + 1e-3 * std::sin(turn);
+    EXPECT_LT(limit.factor, friction_in(contact, {c2, -c1, 1.0}));
+  }
+}
+
+TEST(LimitMoment, OfTwoEqualCellsIsTheirForceTimesTheirDistance) {
+  Contact pair = empty(7, 5);
+  pair(0, 1) = pair(6, 4) = 3.0;
+  const double distance = std::hypot(6 * 0.25, 3 * 0.25);
+  expect_relative(pair.moment(), 3.0 * distance);
+  const auto centre = *pair.limit({0.0, 0.0, 1.0}).centre;
+  const double there = std::hypot(centre[0] - pair.grid.x1(0), centre[1] - pair.grid.x2(1));
+  const double back = std::hypot(centre[0] - pair.grid.x1(6), centre[1] - pair.grid.x2(4));
+  EXPECT_NEAR(there + back, distance, kMotion);
+}
+
+TEST(LimitMoment, OfAStrongAndAWeakCellTurnsAboutTheStrongOne) {
+  for (const double weak : {0.5, 1e-3, 1e-12}) {
+    Contact pair = empty(7, 5);
+    pair(6, 4) = 1.0;
+    pair(0, 1) = weak;
+    expect_relative(pair.moment(), weak * std::hypot(6 * 0.25, 3 * 0.25));
+    expect_centre(pair.limit({0.0, 0.0, 1.0}), pair.grid.x1(6), pair.grid.x2(4));
+  }
+}
+
+TEST(LimitMoment, OfCellsOnALineTurnsAboutTheirMedian) {
+  Contact line = empty(9, 4);
+  line(0, 2) = 1.0;
+  line(3, 2) = 2.0;
+  line(4, 2) = 0.5;
+  line(8, 2) = 2.0;
+  expect_relative(line.moment(), 0.25 * (3 * 1.0 + 1 * 0.5 + 5 * 2.0));
+  expect_centre(line.limit({0.0, 0.0, 1.0}), line.grid.x1(3), line.grid.x2(2));
+}
+
+// Along the line friction has no curvature, only kinks, and here two neighbours that both are medians.
+TEST(LimitMoment, OfManyCellsOnALineIsTheOneAboutTheirMedian) {
+  for (const Index n : {16, 128, 512}) {
+    Contact line = empty(n, 2);
+    for (Index i = 0; i < n; i += 2) line(i, 1) = static_cast<double>(i + 1);
+    const ArrayXd x1 = cell_x1(line.grid);
+    double least = kInfinity;
+    for (const double centre : x1) least = std::min(least, (line.bound * (x1 - centre).abs()).sum());
+    expect_relative(line.moment(), least);
+  }
+}
+
+TEST(LimitMoment, OfThreeEqualCellsTurnsAboutFermatsPoint) {
+  // An equilateral triangle of side 2: the distances from the middle add up to sqrt(3) times the side.
+  const double root3 = std::numbers::sqrt3;
+  Contact triangle = empty(3, 2, 1.0, root3);
+  triangle(0, 0) = triangle(2, 0) = triangle(1, 1) = 1.0;
+  expect_relative(triangle.moment(), 2.0 * root3);
+  expect_centre(triangle.limit({0.0, 0.0, 1.0}), 0.0, triangle.grid.x2(0) + root3 / 3.0);
+  // An angle above 120 degrees: Fermat's point is the cell at its apex.
+  triangle.grid.h2 = 0.5;
+  expect_relative(triangle.moment(), 2.0 * std::hypot(1.0, 0.5));
+  expect_centre(triangle.limit({0.0, 0.0, 1.0}), 0.0, triangle.grid.x2(1));
+}
+
+TEST(LimitMoment, AboutAnImposedCentreIsTheSumAboutIt) {
+  const Contact contact = rough(5);
+  const LimitLoad limit = contact.limit({std::nullopt, std::nullopt, 1.0});
+  expect_relative(limit.factor, moment_limit(contact.grid, contact.bound));
+  EXPECT_EQ(limit.sliding.delta1, 0.0);
+  EXPECT_EQ(limit.sliding.delta2, 0.0);
+}
+
+TEST(LimitMoment, WithOneTranslationImposedTurnsOnThatLine) {
+  const Contact contact = rough(6);
+  const LimitLoad limit = contact.limit({std::nullopt, 0.0, 1.0});
+  EXPECT_EQ(limit.sliding.delta1, 0.0);
+  const auto about = [&](double c1) { return friction_in(contact, {0.0, -c1, 1.0}); };
+  expect_relative(limit.factor, golden_section_minimum(about, -3.0, 3.0));
+}
+
+TEST(LimitForce, IsAllOfTheFrictionIfTheBodyCannotTurn) {
+  const Contact contact = rough(7);
+  const LimitLoad limit = contact.limit({0.3, -0.4, std::nullopt});
+  expect_relative(limit.factor, contact.sum() / 0.5);
+  EXPECT_NEAR(limit.sliding.delta1, 0.3 / 0.25, kMotion);
+  EXPECT_NEAR(limit.sliding.delta2, -0.4 / 0.25, kMotion);
+  EXPECT_EQ(limit.sliding.twist, 0.0);
+  EXPECT_FALSE(limit.centre.has_value());
+}
+
+TEST(LimitForce, IsAllOfTheFrictionThroughTheCentreOfASymmetricContact) {
+  for (const Contact& contact : {hertz_disc(24), hertz_disc(25), ring(25)}) {
+    const LimitLoad limit = contact.limit({0.3, -0.4, 0.0});
+    expect_relative(limit.factor, contact.sum() / 0.5);
+    EXPECT_FALSE(limit.centre.has_value());
+  }
+}
+
+TEST(LimitForce, BesideTheCentreIsLess) {
+  const Contact contact = rough(7);
+  EXPECT_LT(contact.limit({0.3, -0.4, 0.0}).factor, 0.999 * contact.sum() / 0.5);
+}
+
+TEST(LimitLoad, OfADiscAndARingUnderForceAndMomentIsALeastSum) {
+  // Turning centres lie on the axis across the force, by symmetry.
+  for (const Contact& contact : {hertz_disc(16), hertz_disc(17), ring(25)}) {
+    for (const double force : {0.05, 1.0, 8.0}) {
+      const auto friction = [&](double delta1) {
+        return friction_in(contact, {delta1, 0.0, 1.0 - force * delta1});
+      };
+      const LimitLoad limit = contact.limit({force, 0.0, 1.0});
+      expect_relative(limit.factor, golden_section_minimum(friction, -2.0 / force, 2.0 / force));
+      EXPECT_NEAR(limit.sliding.delta2, 0.0, kMotion);
+    }
+  }
+}
+
+TEST(LimitLoad, OfAnyContactIsALeastSum) {
+  const Contact contact = rough(8);
+  const double f1 = 0.7, f2 = -0.4, m = 0.5;
+  const auto given_first = [&](double delta1) {
+    const auto friction = [&](double delta2) {
+      return friction_in(contact, {delta1, delta2, (1.0 - f1 * delta1 - f2 * delta2) / m});
+    };
+    return golden_section_minimum(friction, -4.0, 4.0);
+  };
+  expect_relative(contact.limit({f1, f2, m}).factor, golden_section_minimum(given_first, -4.0, 4.0));
+}
+
+TEST(LimitLoad, IsBoundedFromBothSides) {
+  for (const double strongest : {0.5, 2.0, 20.0}) {  // the last: turning about that cell
+    for (unsigned seed = 0; seed < 20; ++seed) {
+      const Contact contact = rough(seed, strongest);
+      for (const ImposedLoads& loads : {ImposedLoads{0.0, 0.0, 1.0}, ImposedLoads{0.3, -0.2, 1.0},
+                                        ImposedLoads{1.0, std::nullopt, 0.1}, ImposedLoads{1.0, 1.0, 0.0}}) {
+        const LimitLoad limit = contact.limit(loads);
+        EXPECT_LE(limit.carried, limit.factor);
+        EXPECT_GE(limit.carried, (1.0 - kRelative) * limit.factor) << seed << ' ' << strongest;
+        expect_relative(limit.factor, friction_in(contact, limit.sliding));
+      }
+    }
+  }
+}
+
+TEST(LimitLoad, IsBalancedByTractionsAgainstTheSliding) {
+  const Contact contact = rough(9);
+  const double f1 = 0.3, f2 = -0.2, m = 1.0;
+  const LimitLoad limit = contact.limit({f1, f2, m});
+  const auto& [delta1, delta2, twist] = limit.sliding;
+  EXPECT_NEAR(f1 * delta1 + f2 * delta2 + m * twist, 1.0, kRelative);
+  const ArrayXd x1 = cell_x1(contact.grid), x2 = cell_x2(contact.grid);
+  const ArrayXd v1 = delta1 - twist * x2, v2 = delta2 + twist * x1;
+  const ArrayXd speed = (v1.square() + v2.square()).sqrt();
+  const ArrayXd q1 = contact.bound * v1 / speed, q2 = contact.bound * v2 / speed;
+  EXPECT_NEAR(q1.sum(), limit.factor * f1, kMotion * contact.sum());
+  EXPECT_NEAR(q2.sum(), limit.factor * f2, kMotion * contact.sum());
+  EXPECT_NEAR((x1 * q2 - x2 * q1).sum(), limit.factor * m, kMotion * contact.sum());
+}
+
+TEST(LimitLoad, ScalesWithLoadsFrictionAndLength) {
+  const Contact contact = rough(10);
+  const double factor = contact.limit({0.3, -0.2, 1.0}).factor;
+  expect_relative(contact.limit({-3.0, 2.0, -10.0}).factor, factor / 10.0);
+  Contact other = contact;
+  other.bound *= 7e5;
+  expect_relative(other.limit({0.3, -0.2, 1.0}).factor, 7e5 * factor);
+  other = contact;
+  other.grid.h1 *= 1e-6;
+  other.grid.h2 *= 1e-6;
+  const LimitLoad limit = other.limit({0.3, -0.2, 1e-6});
+  expect_relative(limit.factor, factor);
+  expect_relative(limit.carried, factor);
+}
+
+TEST(LimitLoad, TurnsWithContactAndLoads) {
+  const Contact contact = rough(11);
+  Contact turned = empty(8, 11, 0.3, 0.2);  // a quarter turn: (x1, x2) -> (-x2, x1)
+  for (Index i = 0; i < 11; ++i) {
+    for (Index j = 0; j < 8; ++j) turned(7 - j, i) = contact.bound[i * 8 + j];
+  }
+  const LimitLoad limit = contact.limit({0.3, -0.2, 1.0});
+  const LimitLoad of_turned = turned.limit({0.2, 0.3, 1.0});
+  expect_relative(of_turned.factor, limit.factor);
+  expect_centre(of_turned, -(*limit.centre)[1], (*limit.centre)[0]);
+}
+
+TEST(LimitLoad, SurfaceIsConvex) {
+  const Contact contact = rough(12, 3.0);
+  std::mt19937 random(1);
+  std::normal_distribution<double> normal;
+  const auto at_the_limit = [&] {
+    Eigen::Array3d load = {normal(random), normal(random), normal(random)};
+    return Eigen::Array3d(load * contact.limit({load[0], load[1], load[2]}).factor);
+  };
+  for (int pair = 0; pair < 50; ++pair) {
+    const Eigen::Array3d between = 0.5 * (at_the_limit() + at_the_limit());
+    EXPECT_GE(contact.limit({between[0], between[1], between[2]}).factor, 1.0 - kRelative);
+  }
+}
+
+TEST(LimitLoad, OfNoLoadIsInfinite) {
+  const Contact contact = rough(13);
+  for (const ImposedLoads& loads : {ImposedLoads{0.0, 0.0, 0.0}, ImposedLoads{std::nullopt, 0.0, 0.0},
+                                    ImposedLoads{std::nullopt, std::nullopt, std::nullopt}}) {
+    EXPECT_EQ(contact.limit(loads).factor, kInfinity);
+    EXPECT_EQ(contact.limit(loads).carried, kInfinity);
+  }
+}
+
+TEST(LimitLoad, OfOneCellIsItsForceAndNoMoment) {
+  Contact cell = empty(6, 5);
+  cell(1, 3) = 2.0;
+  const double x1 = cell.grid.x1(1), x2 = cell.grid.x2(3);
+  EXPECT_NEAR(cell.moment(), 0.0, kRelative * 2.0);
+  const LimitLoad through = cell.limit({0.3, 0.4, 0.4 * x1 - 0.3 * x2});
+  expect_relative(through.factor, 2.0 / 0.5);
+  expect_relative(through.carried, 2.0 / 0.5);
+  EXPECT_NEAR(cell.limit({0.3, 0.4, 0.0}).factor, 0.0, kRelative * 2.0);
+}
+
+TEST(LimitLoad, WithoutFrictionIsZero) {
+  const Contact contact = empty(6, 5);
+  EXPECT_EQ(contact.limit({0.3, 0.4, 1.0}).factor, 0.0);
+  EXPECT_EQ(contact.moment(), 0.0);
+}
+
+TEST(LimitLoad, RefusesWhatIsNoFrictionBoundAndNoLoad) {
+  const Contact contact = rough(14);
+  for (const double bad : {kNaN, kInfinity, -1.0}) {
+    Contact other = contact;
+    other(2, 2) = bad;
+    EXPECT_THROW(other.limit({0.0, 0.0, 1.0}), std::invalid_argument);
+  }
+  EXPECT_THROW(contact.limit({0.0, kNaN, 1.0}), std::invalid_argument);
+  EXPECT_THROW(contact.limit({0.0, 0.0, kInfinity}), std::invalid_argument);
+  EXPECT_THROW(find_limit(contact.grid, contact.bound.head(5), {0.0, 0.0, 1.0}), std::invalid_argument);
+  Grid quadrant = contact.grid;
+  quadrant.quadrant = true;
+  EXPECT_THROW(find_limit(quadrant, contact.bound, {0.0, 0.0, 1.0}), std::invalid_argument);
+}
+
+}  // namespace
+}  // namespace slipstick::solver

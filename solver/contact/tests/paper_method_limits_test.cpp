@@ -1,0 +1,300 @@
+// The paper's method where there is nothing to do, too little to do it with, or no answer.
+
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "solver/input/input_error.hpp"
+#include "solver/solve.hpp"
+#include "solver/tests/scene_file.hpp"
+#include "solver/tests/torsion_bench.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+using testing::HasSubstr;
+using testing::StartsWith;
+
+TEST(Unloaded, HasNoTraction) {
+  const Bench bench(16);
+  for (const TangentialProblem& problem :
+       {under_moment(bench.bound, 0.0), under_twist(bench.bound, 0.0), under_moment(0.0 * bench.bound, 0.0),
+        under_twist(0.0 * bench.bound, 1e-3)}) {
+    const TangentialSolution solution = solve_by_paper_method(*bench.op, problem);
+    EXPECT_EQ(solution.status, Status::converged) << solution.message;
+    EXPECT_EQ(largest(solution.traction), 0.0);
+    EXPECT_EQ(solution.twist, problem.twist.value_or(0.0));
+    const Certificate certificate = certify({solution.traction, solution.elastic_displacement, solution.slip},
+                                            problem.friction_bound, rotation_field(bench.model.grid), 0.0);
+    EXPECT_EQ(certificate.gap, 0.0);
+    EXPECT_EQ(certificate.moment, 0.0);
+    EXPECT_LE(certificate.friction_bound, 0.0);
+  }
+  Scene frictionless = paper_scene(16, 0.5);
+  frictionless.friction = 0.0;
+  EXPECT_EQ(by_paper_method(frictionless).status, Status::converged);
+  EXPECT_EQ(by_paper_method(frictionless).moment, 0.0);
+}
+
+/// One cell of a grid off the axis: q = M/r at right angles to its arm, and it turns by K q/r.
+TEST(OneCell, OffTheAxisCarriesTheMomentAlone) {
+  const Grid grid{7, 7, 1.0, 1.0};
+  const ElasticPair pair = elastic_pair({1.0, 0.3}, {2.5, 0.1});
+  const auto op = make_operator(OperatorKind::dcfft, grid, tangential_kernel(), pair);
+  ArrayXd bound = ArrayXd::Zero(49);
+  const Index cell = 5 * 7 + 3;  // at (2, 0)
+  bound[cell] = 1.0;
+  EXPECT_DOUBLE_EQ(moment_limit(grid, bound), 2.0);
+  const TangentialSolution solution = solve_by_paper_method(*op, under_moment(bound, 1.2));
+  ASSERT_EQ(solution.status, Status::converged) << solution.message;
+  EXPECT_NEAR(solution.traction[49 + cell], 0.6, kRounding);
+  EXPECT_NEAR(solution.traction[cell], 0.0, kRounding);
+  const double self = influence_coefficients(Component::k22, pair, 1.0, 1.0, 1, 1).front();
+  EXPECT_NEAR(solution.twist, self * 0.6 / 2.0, kRounding);
+}
+
+/// A cell on the axis carries no moment about it, so there is nothing to turn it.
+TEST(OneCell, OnTheAxisCarriesNothing) {
+  const Solution solution = by_paper_method(paper_scene(1, 0.5));
+  EXPECT_EQ(solution.status, Status::converged);
+  EXPECT_EQ(solution.contact_cells, 1);
+  EXPECT_EQ(solution.moment_limit, 0.0);
+  EXPECT_EQ(solution.moment, 0.0);
+  EXPECT_EQ(solution.twist_angle, 0.0);
+  EXPECT_EQ(solution.certificate.gap, 0.0);
+  EXPECT_EQ(solution.certificate.moment, 0.0);
+}
+
+/// The axis' own cell holds neither moment nor twist: when all others slip, that is gross slip.
+TEST(OneCell, OnTheAxisIsNoStickArea) {
+  const Bench bench(9);
+  ASSERT_GT(bench.bound[40], 0.0);
+  const double just_below = std::nextafter(bench.limit, 0.0);
+  const TangentialSolution solution = solve_by_paper_method(*bench.op, under_moment(bench.bound, just_below));
+  EXPECT_TRUE(std::isfinite(solution.twist));
+  if (solution.status == Status::not_converged) {
+    EXPECT_THAT(solution.message, StartsWith("empty stick area in iteration "));
+  } else {
+    EXPECT_LE(bench.certify_solution(solution, just_below).moment, kRounding);
+  }
+}
+
+/// A linear operator of the test's own.
+class FakeOperator final : public LinearOperator {
+ public:
+  FakeOperator(const Grid& grid, double factor)
+      : LinearOperator(grid, tangential_kernel()), factor_(factor) {}
+  std::size_t bytes() const override { return 0; }
+
+ private:
+  void do_apply(std::span<const double> traction, std::span<double> displacement) override {
+    std::transform(traction.begin(), traction.end(), displacement.begin(),
+                   [this](double q) { return factor_ * q; });
+  }
+  double factor_;
+};
+
+TEST(Breakdown, OfTooFewIterationsIsNamedWithItsNumbers) {
+  const Bench bench(24);
+  PaperOptions options = to_tolerance(1e-9);
+  options.max_iterations = 3;
+  const TangentialSolution solution =
+      solve_by_paper_method(*bench.op, under_moment(bench.bound, 0.5 * bench.limit), options);
+  EXPECT_EQ(solution.status, Status::not_converged);
+  EXPECT_EQ(solution.iterations, 3);
+  EXPECT_THAT(solution.message, StartsWith("too many iterations: change "));
+  EXPECT_THAT(solution.message, HasSubstr("after 3, asked for 1e-09"));
+  EXPECT_THAT(solution.message, HasSubstr(fmt::format("{:.3g}", solution.change)));
+  EXPECT_GT(solution.change, 1e-9);
+  EXPECT_GT(largest(solution.traction), 0.0);  // what it has got is reported
+}
+
+TEST(Breakdown, OfNumbersThatAreNotFiniteIsNamed) {
+  const Bench bench(24);
+  for (const double factor :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    FakeOperator broken(bench.model.grid, factor);
+    const TangentialSolution solution =
+        solve_by_paper_method(broken, under_moment(bench.bound, 0.5 * bench.limit));
+    EXPECT_EQ(solution.status, Status::not_converged);
+    EXPECT_THAT(solution.message, StartsWith("non-finite slip in iteration 1: S = "));
+    EXPECT_FALSE(bench.certify_solution(solution, 0.5 * bench.limit).gap <= 1e300);
+  }
+}
+
+TEST(Breakdown, OfAnOperatorThatIsNotPositiveDefiniteIsNamed) {
+  const Bench bench(24);
+  FakeOperator indefinite(bench.model.grid, -1.0);
+  const TangentialSolution solution =
+      solve_by_paper_method(indefinite, under_moment(bench.bound, 0.5 * bench.limit));
+  EXPECT_EQ(solution.status, Status::not_converged);
+  EXPECT_THAT(solution.message, StartsWith("indefinite operator in iteration "));
+  EXPECT_THAT(solution.message, HasSubstr("d.Kd = -"));
+}
+
+TEST(Breakdown, OfAnEmptyStickAreaIsNamed) {
+  const Bench bench(24);
+  const TangentialSolution solution = solve_by_paper_method(*bench.op, under_twist(bench.bound, 1.0));
+  EXPECT_EQ(solution.status, Status::not_converged);
+  EXPECT_THAT(solution.message, StartsWith("empty stick area in iteration "));
+  EXPECT_THAT(solution.message, HasSubstr("every cell slips"));
+  EXPECT_EQ((solution.stick > 0.0).count(), 0);
+  EXPECT_NEAR(bench.moment_of(solution.traction) / bench.limit, 1.0, 1e-3);
+}
+
+TEST(BadTangentialProblem, ThrowsForBoundsThatAreNegativeOrNotFinite) {
+  const Bench bench(8);
+  for (const double value :
+       {-1e-300, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    ArrayXd bound = bench.bound;
+    bound[27] = value;
+    EXPECT_THROW(solve_by_paper_method(*bench.op, under_moment(bound, 0.1 * bench.limit)),
+                 std::invalid_argument)
+        << value;
+  }
+}
+
+TEST(BadTangentialProblem, ThrowsUnlessOneLoadIsGiven) {
+  const Bench bench(8);
+  TangentialProblem problem = under_moment(bench.bound, 0.0);
+  problem.twist = 0.0;
+  EXPECT_THROW(solve_by_paper_method(*bench.op, problem), std::invalid_argument);
+  problem.moment = problem.twist = std::nullopt;
+  EXPECT_THROW(solve_by_paper_method(*bench.op, problem), std::invalid_argument);
+  for (const double twist :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    EXPECT_THROW(solve_by_paper_method(*bench.op, under_twist(bench.bound, twist)), std::invalid_argument);
+  }
+}
+
+TEST(BadTangentialProblem, ThrowsForGrossSlipAndSaysTheLimit) {
+  const Bench bench(8);
+  for (const double moment :
+       {bench.limit, -bench.limit, 1.5 * bench.limit, std::numeric_limits<double>::quiet_NaN()}) {
+    try {
+      solve_by_paper_method(*bench.op, under_moment(bench.bound, moment));
+      ADD_FAILURE() << "no exception for a moment of " << moment;
+    } catch (const std::invalid_argument& error) {
+      EXPECT_THAT(error.what(), HasSubstr("gross slip"));
+      EXPECT_THAT(error.what(), HasSubstr("allowed: "));
+      if (std::isfinite(moment)) {
+        EXPECT_THAT(error.what(), HasSubstr(fmt::format("carries {} times", bench.limit / std::abs(moment))));
+      }
+    }
+  }
+  const double just_below = std::nextafter(bench.limit, 0.0);
+  EXPECT_NO_THROW(solve_by_paper_method(*bench.op, under_moment(bench.bound, just_below)));
+}
+
+// --- contacts that are not centred on the grid's origin ---
+
+Scene off_centre(Method method, std::array<double, 2> at) {
+  Scene scene = paper_scene(17, 0.5);
+  scene.cells = {17, 13};
+  scene.extent = {1.2e-3, 1.2e-3};
+  scene.surfaces.front().at = at;
+  scene.method = method;
+  return scene;
+}
+
+/// The pressure of a sphere at the origin, with a part of the load moved from one cell to its image.
+class LopsidedPressure : public SceneFile {
+ protected:
+  Scene lopsided(Method method, double part, double tolerance) const {
+    constexpr Index cells = 16;
+    const double h = 1e-4;
+    double load = 0.0;
+    std::string rows = "x1,x2,pressure\n";
+    for (const bool known : {false, true}) {
+      for (Index i = 0; i < cells; ++i) {
+        for (Index j = 0; j < cells; ++j) {
+          const double x1 = h * (static_cast<double>(i) - 7.5);
+          const double x2 = h * (static_cast<double>(j) - 7.5);
+          double p = 1e9 * std::sqrt(std::max(0.0, 1.0 - (x1 * x1 + x2 * x2) / (6e-4 * 6e-4)));
+          if (!known) load += p;
+          if (i == 10 && j == 9) p += part * load;
+          if (i == 5 && j == 6) p -= part * load;
+          if (known) rows += fmt::format("{},{},{:.17g}\n", x1, x2, p);
+        }
+      }
+    }
+    write("p.csv", rows);
+    std::string text = kShortScene;
+    text.erase(text.find("normal = 1000\n"), 14);
+    Scene scene = read(text, {"contact.pressure=file", "contact.pressure_file=p.csv", "grid.cells=[16, 16]",
+                              "grid.extent=[0.0016, 0.0016]", "load.moment_ratio=0.7"});
+    scene.method = method;
+    scene.tolerance = tolerance;
+    return scene;
+  }
+};
+
+constexpr Method kAboutTheOrigin[] = {Method::paper, Method::projected_gradient};
+
+TEST(ContactOffTheOrigin, IsRefusedByMethodsThatTurnAboutIt) {
+  for (const std::array<double, 2> at : {std::array{0.0, 1e-5}, std::array{-3e-5, 0.0}}) {
+    for (const Method method : kAboutTheOrigin) {
+      EXPECT_THAT(complaint([&] { solve(off_centre(method, at)); }),
+                  testing::AllOf(HasSubstr("solver.method = \"" + to_string(method) + "\""),
+                                 HasSubstr("allowed: coulomb"), HasSubstr("about the origin")));
+      EXPECT_EQ(solve(off_centre(method, {0.0, 0.0})).status, Status::converged);
+    }
+    const Solution solution = solve(off_centre(Method::coulomb, at));
+    EXPECT_EQ(solution.status, Status::converged);
+    EXPECT_LE(solution.certificate.force, kRounding);
+  }
+}
+
+/// What is odd of it may be as large as what the tolerance leaves of the tractions, and the force is no
+/// larger. A part of the load in its image's place is odd twice.
+TEST_F(LopsidedPressure, IsTakenUpToTheTolerance) {
+  for (const Method method : kAboutTheOrigin) {
+    for (const double tolerance : {1e-3, 1e-6}) {
+      const Solution solution = solve(lopsided(method, 0.45 * tolerance, tolerance));
+      EXPECT_EQ(solution.status, Status::converged) << solution.message;
+      EXPECT_LE(solution.certificate.force, tolerance);
+      EXPECT_THAT(complaint([&] { solve(lopsided(method, 0.55 * tolerance, tolerance)); }),
+                  testing::AllOf(HasSubstr("solver.method"), HasSubstr("odd")));
+    }
+  }
+}
+
+// --- what "converged" says ---
+
+/// Eq. (26) is met in iterations whose last step has lifted a few tractions far above mu p.
+TEST(LooseTolerance, HoldsTheFrictionBoundAsWell) {
+  for (const double tolerance : {1e-1, 1e-2, 1e-3}) {
+    for (const double ratio : {0.5, 0.9, 0.99}) {
+      for (Scene scene : {paper_scene(64, ratio), ellipsoid_scene(64, 0.018, 0.0063, ratio)}) {
+        scene.tolerance = tolerance;
+        const Solution solution = by_paper_method(scene);
+        EXPECT_EQ(solution.status, Status::converged) << solution.message;
+        EXPECT_LE(solution.certificate.friction_bound, tolerance) << ratio;
+      }
+    }
+  }
+}
+
+TEST(BadTangentialProblem, OfASceneSaysTheLimitInItsUnits) {
+  Scene scene = paper_scene(32, 0.5);
+  const double limit = by_paper_method(scene).moment_limit;
+  scene.steps[0].torsion = {};
+  scene.steps[0].torsion.moment = limit * (1.0 + 1e-12);
+  try {
+    by_paper_method(scene);
+    ADD_FAILURE() << "no exception";
+  } catch (const InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("paper.toml: load.moment = "));
+    EXPECT_THAT(error.what(), HasSubstr(fmt::format("below {:.10g}", limit).substr(0, 14)));
+  }
+  scene.steps[0].torsion.moment = 0.5 * limit;
+  EXPECT_NEAR(by_paper_method(scene).moment / limit, 0.5, kRounding);
+}
+
+}  // namespace
+}  // namespace slipstick::solver

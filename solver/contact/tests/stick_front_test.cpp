@@ -1,0 +1,311 @@
+#include "solver/contact/stick_front.hpp"
+
+#include <fmt/core.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <ostream>
+#include <string>
+#include <utility>
+
+#include "solver/contact/projected_gradient.hpp"
+#include "solver/scene/hertz_pressure.hpp"
+#include "solver/tests/torsion_bench.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// An ellipse of stick, and of contact `ring` times as large about the same centre, where the slip is
+/// d^(3/2) (1 + d/2) in directions that turn, d = sqrt((x/a)^2 + (y/b)^2) - 1.
+struct MadeUp {
+  double a = 0.5;
+  double b = 0.5;
+  double turned = 0.0;
+  double x0 = 0.0;
+  double y0 = 0.0;
+  double ring = 1.6;
+
+  double radius() const { return std::sqrt(a * b); }
+  /// 1 on the ellipse.
+  double level(double x1, double x2) const {
+    const double c = std::cos(turned);
+    const double s = std::sin(turned);
+    return std::hypot((c * (x1 - x0) + s * (x2 - y0)) / a, (c * (x2 - y0) - s * (x1 - x0)) / b);
+  }
+};
+
+struct Fields {
+  Grid grid;
+  ArrayXd bound, slip, stick;
+  StickFront front() const { return find_stick_front(grid, bound, slip, stick); }
+};
+
+/// Cell centres of n x n cells (of sides 1 to `aspect`) over |x1| < 1, |x2| < 1.
+Fields sample(const MadeUp& made_up, Index n, Index n2 = 0) {
+  if (n2 == 0) n2 = n;
+  const Grid grid{n, n2, 2.0 / static_cast<double>(n), 2.0 / static_cast<double>(n2)};
+  Fields fields{grid, ArrayXd::Zero(grid.cells()), ArrayXd::Zero(2 * grid.cells()),
+                ArrayXd::Zero(grid.cells())};
+  const ArrayXd x1 = cell_x1(grid);
+  const ArrayXd x2 = cell_x2(grid);
+  for (Index i = 0; i < grid.cells(); ++i) {
+    const double d = made_up.level(x1[i], x2[i]) - 1.0;
+    if (1.0 + d > made_up.ring) continue;
+    fields.bound[i] = 1.0;
+    if (d <= 0.0) {
+      fields.stick[i] = 1.0;
+      continue;
+    }
+    const double direction = 2.0 * x1[i] - x2[i];
+    const double size = std::pow(d, 1.5) * (1.0 + 0.5 * d);
+    fields.slip[i] = size * std::cos(direction);
+    fields.slip[i + grid.cells()] = size * std::sin(direction);
+  }
+  return fields;
+}
+
+/// The worst of some positions of the front between the cells, relative; each is found all round.
+struct Errors {
+  double fitted = 0.0;
+  double counted = 0.0;
+};
+Errors worst(const MadeUp& made_up, Index n, Index n2 = 0) {
+  Errors errors;
+  const double h = 2.0 / static_cast<double>(n);
+  for (const double shift : {0.0, 0.21, 0.5, 0.83}) {
+    MadeUp shifted = made_up;
+    shifted.x0 += shift * h;
+    shifted.y0 += 0.6 * shift * h;
+    shifted.a *= 1.0 + 0.2 * shift * h;
+    const StickFront front = sample(shifted, n, n2).front();
+    errors.fitted = std::max(errors.fitted, std::abs(front.radius / shifted.radius() - 1.0));
+    errors.counted = std::max(errors.counted, std::abs(front.counted_radius / shifted.radius() - 1.0));
+  }
+  return errors;
+}
+
+struct Shape {
+  const char* name;
+  MadeUp made_up;
+  double at_128;  ///< relative errors allowed
+  double at_256;
+};
+inline void PrintTo(const Shape& shape, std::ostream* stream) { *stream << shape.name; }
+const Shape kShapes[] = {{"Circle", {}, 3e-5, 5e-6},
+                         {"OffCentre", {.x0 = 0.13, .y0 = -0.11}, 3e-5, 5e-6},
+                         {"Ellipse", {.a = 0.6, .b = 0.4}, 6e-5, 2e-5},
+                         {"TurnedEllipse", {.a = 0.6, .b = 0.4, .turned = 0.5, .x0 = 0.02}, 6e-5, 2e-5},
+                         {"SlenderEllipse", {.a = 0.7, .b = 0.25, .turned = 1.0, .ring = 1.35}, 3e-4, 7e-5}};
+
+class MadeUpFront : public testing::TestWithParam<Shape> {};
+INSTANTIATE_TEST_SUITE_P(Shapes, MadeUpFront, testing::ValuesIn(kShapes),
+                         [](const auto& shape) { return std::string(shape.param.name); });
+
+/// Of order 2.6 at least while the window, in cells, covers less and less of the ring; then jitter is left.
+TEST_P(MadeUpFront, IsFoundAtAHighOrder) {
+  const Shape& shape = GetParam();
+  const Errors coarse = worst(shape.made_up, 64);
+  const Errors fine = worst(shape.made_up, 128);
+  const Errors finest = worst(shape.made_up, 256);
+  RecordProperty("errors",
+                 fmt::format("{:.2e} {:.2e} {:.2e}, counted {:.2e} {:.2e} {:.2e}", coarse.fitted, fine.fitted,
+                             finest.fitted, coarse.counted, fine.counted, finest.counted));
+  EXPECT_LE(fine.fitted, coarse.fitted / 6.0);
+  EXPECT_LE(finest.fitted, fine.fitted / 2.0);
+  EXPECT_LE(fine.fitted, shape.at_128);
+  EXPECT_LE(finest.fitted, shape.at_256);
+  EXPECT_LE(10.0 * finest.fitted, finest.counted);
+}
+
+TEST_P(MadeUpFront, IsFoundOnCellsThatAreNoSquares) {
+  const Errors errors = worst(GetParam().made_up, 128, 96);
+  EXPECT_LE(errors.fitted, 4.0 * GetParam().at_128 + 2e-4);
+  EXPECT_LE(2.0 * errors.fitted, errors.counted);
+}
+
+TEST(StickFront, InNarrowRingsBeatsCounting) {
+  for (const double ring : {1.1, 1.15, 1.2, 1.3}) {
+    for (const Index n : {64, 128, 256}) {
+      const Errors errors = worst({.ring = ring}, n);
+      const double width = (ring - 1.0) * 0.25 * static_cast<double>(n);  // in cells
+      EXPECT_LE(errors.fitted, errors.counted) << ring << ' ' << n;
+      EXPECT_LE(errors.fitted, width >= 6.0 ? 1.5e-4 : 1.0) << ring << ' ' << n;
+    }
+  }
+}
+
+/// Slip in a wide ring round few cells bends too much for the straight line that would have to do.
+TEST(StickFront, OnCoarseMeshesIsNoWorseThanCounting) {
+  const Errors errors = worst({.ring = 1.55}, 32);
+  EXPECT_LE(errors.fitted, errors.counted);
+}
+
+/// Nor does it matter that the angle jumps on one of the axes.
+TEST_P(MadeUpFront, TurnsWithTheContact) {
+  constexpr Index n = 64;
+  const Fields fields = sample(GetParam().made_up, n);
+  Fields turned = fields;
+  for (Index i = 0; i < n; ++i) {
+    for (Index j = 0; j < n; ++j) {
+      const Index from = i * n + j;
+      const Index to = (n - 1 - j) * n + i;  // (x1, x2) -> (-x2, x1)
+      turned.bound[to] = fields.bound[from];
+      turned.stick[to] = fields.stick[from];
+      turned.slip[to] = -fields.slip[from + n * n];
+      turned.slip[to + n * n] = fields.slip[from];
+    }
+  }
+  EXPECT_NEAR(turned.front().radius / fields.front().radius, 1.0, 1e-12);
+}
+
+// --- where it is counted ---
+
+TEST(StickFront, IsCountedWhereTheRingHoldsTooFewCells) {
+  const Fields fields = sample({.ring = 1.05}, 64);  // 0.8 cells
+  const StickFront front = fields.front();
+  EXPECT_EQ(front.fitted, 0.0);
+  EXPECT_EQ(front.radius, front.counted_radius);
+  EXPECT_THAT(front.why_counted, HasSubstr("slip ring too narrow, or no root near by, on 104 of 104 rays"));
+  EXPECT_DOUBLE_EQ(front.counted_radius,
+                   std::sqrt(fields.stick.sum() * fields.grid.cell_area() / std::numbers::pi));
+}
+
+/// Contact on one side only a cell away from the front.
+TEST(StickFront, IsCountedOnThoseRaysAlone) {
+  Fields fields = sample({}, 128);
+  const ArrayXd x1 = cell_x1(fields.grid);
+  fields.bound = (x1 < 0.45).select(fields.bound, 0.0);
+  fields.stick = (x1 < 0.45).select(fields.stick, 0.0);
+  const StickFront front = fields.front();
+  EXPECT_GT(front.fitted, 0.6);
+  EXPECT_LT(front.fitted, 0.9);
+  EXPECT_THAT(front.why_counted, HasSubstr("too narrow"));
+  // What x1 > 0.45 cuts off a disc of radius 1/2, but to the staircase of the straight edge.
+  const double area = 0.25 * (std::numbers::pi - std::acos(0.9)) + 0.45 * std::sqrt(0.25 - 0.45 * 0.45);
+  EXPECT_NEAR(front.radius / std::sqrt(area / std::numbers::pi), 1.0, 2e-3);
+}
+
+TEST(StickFront, IsCountedWhereNothingOrEverythingSticks) {
+  Fields fields = sample({}, 32);
+  fields.stick = (fields.bound > 0.0).cast<double>();
+  EXPECT_EQ(fields.front().why_counted, "everything sticks");
+  EXPECT_NEAR(fields.front().radius, 0.8, 0.02);
+  fields.stick.setZero();
+  EXPECT_EQ(fields.front().why_counted, "nothing sticks");
+  EXPECT_EQ(fields.front().radius, 0.0);
+  fields.stick[16 * 32 + 16] = 1.0;
+  EXPECT_EQ(fields.front().why_counted, "only 1 cells stick");
+  fields.bound.setZero();
+  EXPECT_EQ(fields.front().radius, 0.0);
+}
+
+TEST(StickFront, IsCountedWhereRaysFromTheCentroidCannotDescribeTheStickArea) {
+  const Fields whole = sample({.a = 0.5, .b = 0.5, .ring = 1.8}, 64);
+  const ArrayXd x1 = cell_x1(whole.grid);
+  const ArrayXd x2 = cell_x2(whole.grid);
+  const auto without = [&](const auto& hole) {
+    Fields fields = whole;
+    fields.stick = hole.select(0.0, fields.stick);
+    return fields.front();
+  };
+  const auto hole = without(((x1 - 0.2).square() + x2.square()) < 0.01);
+  const auto two_halves = without(x1.abs() < 0.15);
+  const auto ring = without((x1.square() + x2.square()) < 0.04);
+  Fields island = whole;
+  island.stick = (((x1 - 0.75).square() + x2.square()) < 0.005).select(whole.bound, island.stick);
+  for (const StickFront& front : {hole, two_halves, ring, island.front()}) {
+    EXPECT_THAT(front.why_counted, HasSubstr("not one patch"));
+    EXPECT_EQ(front.radius, front.counted_radius);
+    EXPECT_EQ(front.fitted, 0.0);
+  }
+}
+
+/// Slip that jumps at the front has no root near it.
+TEST(StickFront, IsCountedWhereTheFitHasNoRootNearIt) {
+  Fields fields = sample({}, 128);
+  const ArrayXd slips = (fields.stick == 0.0).cast<double>() * fields.bound;
+  fields.slip = slips.replicate(2, 1);
+  const StickFront front = fields.front();
+  EXPECT_EQ(front.fitted, 0.0);
+  EXPECT_EQ(front.radius, front.counted_radius);
+}
+
+TEST(StickFront, IsNoNumberWhereTheFieldsAreNone) {
+  const Fields good = sample({}, 64);
+  const Index slipping = 32 * 64 + 32 + 20;
+  ASSERT_EQ(good.stick[slipping], 0.0);
+  ASSERT_GT(good.bound[slipping], 0.0);
+  for (const double bad : {kNaN, std::numeric_limits<double>::infinity()}) {
+    Fields fields = good;
+    fields.slip[slipping + fields.grid.cells()] = bad;
+    EXPECT_TRUE(std::isnan(fields.front().radius));
+    EXPECT_THAT(fields.front().why_counted, HasSubstr("not finite"));
+    fields = good;
+    fields.bound[slipping] = bad;
+    EXPECT_TRUE(std::isnan(fields.front().radius));
+    fields = good;
+    fields.stick[slipping] = bad;
+    EXPECT_TRUE(std::isnan(fields.front().radius));
+  }
+  Fields outside = good;
+  outside.slip[0] = kNaN;  // no contact there
+  EXPECT_EQ(outside.front().radius, good.front().radius);
+}
+
+TEST(StickFront, RefusesFieldsOfAnotherSizeAndQuadrants) {
+  Fields fields = sample({}, 16);
+  fields.slip.conservativeResize(fields.grid.cells());
+  EXPECT_THROW(fields.front(), std::invalid_argument);
+  fields = sample({}, 16);
+  fields.grid.quadrant = true;
+  EXPECT_THROW(fields.front(), std::invalid_argument);
+}
+
+// --- the contact that is solved ---
+
+/// Lubkin's stick ratio on Hertz's pressure, its moment relative to the mesh's own limit.
+class CircularContact : public testing::TestWithParam<std::pair<double, double>> {};
+INSTANTIATE_TEST_SUITE_P(MomentRatios, CircularContact,
+                         testing::Values(std::pair{0.5, 0.8135681261276496},
+                                         std::pair{0.9, 0.4958950522157781}));
+
+TEST_P(CircularContact, SticksWithinLubkinsRadius) {
+  const double moment_ratio = GetParam().first;
+  const double stick_ratio = GetParam().second;
+  const auto errors = [&](Index n) {
+    const double h = 2.04 / static_cast<double>(n);
+    const Grid grid{n, n, h, h};
+    const ArrayXd bound = hertz_cell_averages({1.0, 1.0, 1.0}, grid);
+    const auto op =
+        make_operator(OperatorKind::dcfft, grid, tangential_kernel(), elastic_pair({1.0, 0.3}, {1.0, 0.3}));
+    ProjectedGradientOptions options;
+    options.tolerance = 1e-10;
+    const TangentialSolution solution = solve_by_projected_gradient(
+        *op, under_moment(bound, moment_ratio * moment_limit(grid, bound)), options);
+    EXPECT_EQ(solution.status, Status::converged) << solution.message;
+    const StickFront front = find_stick_front(grid, bound, solution.slip, solution.stick);
+    EXPECT_THAT(front.why_counted, IsEmpty());
+    return Errors{std::abs(front.radius / stick_ratio - 1.0),
+                  std::abs(front.counted_radius / stick_ratio - 1.0)};
+  };
+  const Errors coarse = errors(64);
+  const Errors fine = errors(128);
+  RecordProperty("errors", fmt::format("{:.2e} {:.2e}", coarse.fitted, fine.fitted));
+  EXPECT_LE(coarse.fitted, 1.3e-3);
+  EXPECT_LE(fine.fitted, 4e-4);
+  EXPECT_LE(5.0 * coarse.fitted, coarse.counted);
+  EXPECT_LE(4.0 * fine.fitted, fine.counted);
+}
+
+}  // namespace
+}  // namespace slipstick::solver

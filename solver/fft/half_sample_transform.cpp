@@ -1,0 +1,203 @@
+#include "solver/fft/half_sample_transform.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+namespace slipstick::solver {
+namespace {
+
+std::size_t count(Index n) { return static_cast<std::size_t>(n); }
+
+constexpr double kPi = std::numbers::pi;
+
+}  // namespace
+
+/// A multiple of 4, so that no packet of samples reaches over the end or from the front half into the back.
+template <typename Real>
+Index HalfSampleTransform<Real>::half_length(Index samples) {
+  return 2 * fast_length((samples + 1) / 2);
+}
+
+/// A stride that is a power of two would put the same sample of all lines into the same set of the cache.
+template <typename Real>
+Index HalfSampleTransform<Real>::padded_line(Index half) {
+  return half + kPairs;
+}
+
+template <typename Real>
+Index HalfSampleTransform<Real>::frequencies(Index samples) {
+  return 2 * half_length(samples);
+}
+
+template <typename Real>
+Index HalfSampleTransform<Real>::workspace_size(Index samples) {
+  const Index half = half_length(samples);
+  return 4 * kPairs * padded_line(half) + 2 * half * kLines;
+}
+
+template <typename Real>
+Index HalfSampleTransform<Real>::table_size(Index samples) {
+  const Index half = half_length(samples);
+  return 2 * (2 * half) + 2 * (half + 1);
+}
+
+template <typename Real>
+std::size_t HalfSampleTransform<Real>::bytes() const {
+  return sizeof(Real) * (turn_real_.size() + turn_imaginary_.size()) + sizeof(Twiddle) * twiddle_.size();
+}
+
+template <typename Real>
+HalfSampleTransform<Real>::Workspace::Workspace(const HalfSampleTransform& transform)
+    : half_(transform.half_),
+      samples_(count(4 * kPairs * transform.line_stride_)),
+      rows_(count(2 * half_ * kLines)) {}
+
+template <typename Real>
+HalfSampleTransform<Real>::HalfSampleTransform(Index samples, unsigned planner_flags)
+    : samples_(samples), half_(half_length(samples)), line_stride_(padded_line(half_)) {
+  for (Index t = 0; t < half_; ++t) {
+    const Index place = 2 * t < half_ ? t : t - half_;
+    const double angle = -kPi * static_cast<double>(place) / static_cast<double>(half_);
+    const Real real = static_cast<Real>(std::cos(angle));
+    const Real imaginary = static_cast<Real>(std::sin(angle));
+    turn_real_.insert(turn_real_.end(), {real, real});
+    turn_imaginary_.insert(turn_imaginary_.end(), {-imaginary, imaginary});
+  }
+  for (Index k = 0; k <= half_; ++k) {
+    const double angle = -kPi * static_cast<double>(k) / static_cast<double>(4 * half_);
+    twiddle_.push_back({static_cast<Real>(std::cos(angle)), static_cast<Real>(std::sin(angle))});
+  }
+  Workspace work(*this);
+  const int length = static_cast<int>(half_);
+  const int stride = static_cast<int>(line_stride_);
+  constexpr int pairs = static_cast<int>(kPairs);
+  auto* const lines = work.samples_.complex();
+  auto* const rows = work.rows_.complex();
+  forward_ = FftwPlan<Real>(
+      Fftw<Real>::plan_lines({length, pairs, 1, stride, pairs, 1}, lines, rows, FFTW_FORWARD, planner_flags));
+  backward_ = FftwPlan<Real>(Fftw<Real>::plan_lines({length, pairs, pairs, 1, 1, stride}, rows, lines,
+                                                    FFTW_BACKWARD, planner_flags));
+}
+
+template <typename Real>
+void HalfSampleTransform<Real>::load(Workspace& work, const Lines<const Real>& lines, int parity) const {
+  static constexpr std::array<Real, static_cast<std::size_t>(kLines)> kZeros{};
+  const auto line = [&](Index l) -> Line<const Real> {
+    if (l >= lines.count) return {kZeros.data(), 0};
+    return {lines.data + l * lines.line_stride, lines.piece_stride};
+  };
+  for (Index pair = 0; pair < kPairs; ++pair) {
+    load_pair(work.samples_.data() + 2 * pair * line_stride_, line(2 * pair), line(2 * pair + 1), parity);
+  }
+}
+
+template <typename Real>
+void HalfSampleTransform<Real>::put(Real* plain, Index t, Vector z) const {
+  const Vector real = P::load(&turn_real_[count(2 * t)]);
+  const Vector imaginary = P::load(&turn_imaginary_[count(2 * t)]);
+  P::store(plain + 2 * t, z);
+  P::store(turned(plain) + 2 * t, real * z + imaginary * P::exchanged(z));
+}
+
+template <typename Real>
+auto HalfSampleTransform<Real>::get(Real* plain, Index t) const -> Vector {
+  const Vector real = P::load(&turn_real_[count(2 * t)]);
+  const Vector imaginary = P::load(&turn_imaginary_[count(2 * t)]);
+  const Vector z = P::load(turned(plain) + 2 * t);
+  return P::load(plain + 2 * t) + (real * z - imaginary * P::exchanged(z));
+}
+
+/// Makhoul's order: samples 0, 2, 4, ... from the front, 1, 3, 5, ... from the back.
+template <typename Real>
+void HalfSampleTransform<Real>::load_pair(Real* plain, Line<const Real> first, Line<const Real> second,
+                                          int parity) const {
+  const Real sign = static_cast<Real>(parity);
+  Index front = 0;
+  Index back = half_ - kNumbers;
+  const auto put_samples = [&](const Real* x, const Real* y) {
+    const auto [even, odd] = P::split(P::load(x), P::load(y));
+    put(plain, front, even);
+    put(plain, back, sign * odd);
+    front += kNumbers;
+    back -= kNumbers;
+  };
+  for (Index start = 0; start < samples_; start += kLines) {
+    const Index length = std::min(kLines, samples_ - start);
+    const Index whole = length / P::kSize * P::kSize;
+    for (Index j = 0; j < whole; j += P::kSize) put_samples(first.piece + j, second.piece + j);
+    if (whole < length) {
+      Samples x{};
+      Samples y{};
+      std::copy(first.piece + whole, first.piece + length, x.begin());
+      std::copy(second.piece + whole, second.piece + length, y.begin());
+      put_samples(x.data(), y.data());
+    }
+    first.piece += first.stride;
+    second.piece += second.stride;
+  }
+  for (; front <= back; front += kNumbers) put(plain, front, Vector{});
+}
+
+template <typename Real>
+void HalfSampleTransform<Real>::store(Workspace& work, const Lines<Real>& lines, int parity) const {
+  std::array<Real, static_cast<std::size_t>(kLines)> unwanted;
+  const auto line = [&](Index l) -> Line<Real> {
+    if (l >= lines.count) return {unwanted.data(), 0};
+    return {lines.data + l * lines.line_stride, lines.piece_stride};
+  };
+  for (Index pair = 0; 2 * pair < lines.count; ++pair) {
+    store_pair(work.samples_.data() + 2 * pair * line_stride_, line(2 * pair), line(2 * pair + 1), parity);
+  }
+}
+
+template <typename Real>
+void HalfSampleTransform<Real>::store_pair(Real* plain, Line<Real> first, Line<Real> second,
+                                           int parity) const {
+  const Real sign = static_cast<Real>(parity);
+  Index front = 0;
+  Index back = half_ - kNumbers;
+  const auto get_samples = [&](Real* x, Real* y) {
+    const typename P::Halves samples{get(plain, front), sign * get(plain, back)};
+    P::store(x, P::real_part(samples));
+    P::store(y, P::imaginary_part(samples));
+    front += kNumbers;
+    back -= kNumbers;
+  };
+  for (Index start = 0; start < samples_; start += kLines) {
+    const Index length = std::min(kLines, samples_ - start);
+    const Index whole = length / P::kSize * P::kSize;
+    for (Index j = 0; j < whole; j += P::kSize) get_samples(first.piece + j, second.piece + j);
+    if (whole < length) {
+      Samples x;
+      Samples y;
+      get_samples(x.data(), y.data());
+      std::copy_n(x.data(), length - whole, first.piece + whole);
+      std::copy_n(y.data(), length - whole, second.piece + whole);
+    }
+    first.piece += first.stride;
+    second.piece += second.stride;
+  }
+}
+
+template <typename Real>
+void HalfSampleTransform<Real>::transform_forward(Workspace& work) const {
+  for (const Index part : {0, 1}) {
+    Fftw<Real>::execute(forward_.get(), work.samples_.complex() + part * kPairs * line_stride_,
+                        work.rows_.complex() + part * kPairs * half_);
+  }
+}
+
+template <typename Real>
+void HalfSampleTransform<Real>::transform_backward(Workspace& work) const {
+  for (const Index part : {0, 1}) {
+    Fftw<Real>::execute(backward_.get(), work.rows_.complex() + part * kPairs * half_,
+                        work.samples_.complex() + part * kPairs * line_stride_);
+  }
+}
+
+template class HalfSampleTransform<double>;
+template class HalfSampleTransform<float>;
+
+}  // namespace slipstick::solver

@@ -1,0 +1,244 @@
+#include "solver/fft/padded_transform.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace slipstick::solver {
+namespace {
+
+std::size_t count(Index n) { return static_cast<std::size_t>(n); }
+
+Index half_length(Index cells) { return fast_length(2 * cells - 1) / 2; }
+
+/// Products of finite numbers, without the checks for infinities of std::complex.
+template <typename Real>
+std::complex<Real> times(std::complex<Real> a, std::complex<Real> b) {
+  return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
+}
+template <typename Real>
+std::complex<Real> times_conjugate(std::complex<Real> a, std::complex<Real> b) {
+  return {a.real() * b.real() + a.imag() * b.imag(), a.imag() * b.real() - a.real() * b.imag()};
+}
+
+/// Neighbouring columns lie pages apart, where the processor does not look ahead: they are asked for by hand,
+/// so many before their turn.
+constexpr Index kAhead = 12;
+
+/// exp(-i pi j/m), 0 <= j < n.
+template <typename Real>
+std::vector<std::complex<Real>> twiddles(Index n, Index m) {
+  std::vector<std::complex<Real>> result;
+  for (Index j = 0; j < n; ++j) {
+    const auto factor = std::polar(1.0, -std::numbers::pi * static_cast<double>(j) / static_cast<double>(m));
+    result.emplace_back(static_cast<Real>(factor.real()), static_cast<Real>(factor.imag()));
+  }
+  return result;
+}
+
+}  // namespace
+
+template <typename Real>
+std::size_t PaddedTransform<Real>::predicted_bytes(const Grid& grid, std::size_t fields, int threads) {
+  const Index m2 = half_length(grid.n2);
+  const Index stride1 = stride(half_length(grid.n1));
+  const std::size_t columns = fields * count((m2 + 1) * stride1);
+  const std::size_t scratch =
+      static_cast<std::size_t>(threads) * count(scratch_size(fields, stride1, stride(m2)));
+  return sizeof(Complex) * (columns + scratch + count(grid.n1 + grid.n2)) + sizeof(Real) * count(grid.n2);
+}
+
+template <typename Real>
+std::size_t PaddedTransform<Real>::bytes() const {
+  std::size_t sum = columns_.bytes() + sizeof(Complex) * (twiddle1_.size() + twiddle2_.size()) +
+                    sizeof(Real) * zero_row_.size();
+  for (const FftwBuffer<Real>& buffer : scratch_) sum += buffer.bytes();
+  return sum;
+}
+
+template <typename Real>
+PaddedTransform<Real>::PaddedTransform(const Grid& grid, std::size_t fields, int threads, unsigned flags)
+    : grid_(grid),
+      fields_(fields),
+      threads_(threads),
+      m1_(half_length(grid.n1)),
+      m2_(half_length(grid.n2)),
+      stride1_(stride(m1_)),
+      stride2_(stride(m2_)),
+      twiddle1_(twiddles<Real>(grid.n1, m1_)),
+      twiddle2_(twiddles<Real>(grid.n2, m2_)),
+      zero_row_(count(grid.n2)),
+      columns_(2 * fields * count(columns() * stride1_)) {
+  const Index size = scratch_size(fields, stride1_, stride2_);
+  for (int thread = 0; thread < threads; ++thread) scratch_.emplace_back(2 * count(size));
+  const auto plan = [&](Index length, Index out, int direction) {
+    auto* const start = scratch_.front().complex();
+    return FftwPlan<Real>(Fftw<Real>::plan(static_cast<int>(length), start, start + out, direction, flags));
+  };
+  row_forward_ = plan(m2_, kRows * stride2_, FFTW_FORWARD);
+  row_backward_ = plan(m2_, kRows * stride2_, FFTW_BACKWARD);
+  column_forward_ = plan(m1_, stride1_, FFTW_FORWARD);
+  column_backward_ = plan(m1_, stride1_, FFTW_BACKWARD);
+}
+
+template <typename Real>
+void PaddedTransform<Real>::execute(const FftwPlan<Real>& plan, Complex* in, Complex* out) {
+  using Number = typename Fftw<Real>::Complex;
+  Fftw<Real>::execute(plan.get(), reinterpret_cast<Number*>(in), reinterpret_cast<Number*>(out));
+}
+
+template <typename Real>
+auto PaddedTransform<Real>::column(std::size_t field, Index column) -> Complex* {
+  return as_complex(columns_) + (static_cast<Index>(field) * columns() + column) * stride1_;
+}
+
+template <typename Real>
+auto PaddedTransform<Real>::spectrum_of(int thread) -> Spectrum {
+  Complex* const start = scratch(thread);
+  return {{start, start + 2 * stride1_}, {start + stride1_, start + 3 * stride1_}};
+}
+
+/// work(thread, field, first row, where the field starts among its values) for all groups of kRows rows.
+template <typename Real>
+template <typename Work>
+void PaddedTransform<Real>::in_groups(std::size_t values, const Work& work) {
+  const Index groups = (grid_.n1 + kRows - 1) / kRows;
+  const Index fields = static_cast<Index>(values) / grid_.cells();
+  in_parts(threads_, fields * groups, [&](int thread, Index first, Index last) {
+    for (Index group = first; group < last; ++group) {
+      const Index field = group / groups;
+      work(thread, count(field), group % groups * kRows, field * grid_.cells());
+    }
+  });
+}
+
+template <typename Real>
+void PaddedTransform<Real>::forward_rows(std::span<const Real> fields) {
+  in_groups(fields.size(), [&](int thread, std::size_t field, Index first_row, Index start) {
+    forward_group(thread, field, first_row, fields.data() + start);
+  });
+}
+
+template <typename Real>
+void PaddedTransform<Real>::backward_rows(std::span<Real> fields) {
+  in_groups(fields.size(), [&](int thread, std::size_t field, Index first_row, Index start) {
+    backward_group(thread, field, first_row, fields.data() + start);
+  });
+}
+
+/// Rows past the last are zero.
+template <typename Real>
+void PaddedTransform<Real>::forward_group(int thread, std::size_t field, Index first_row,
+                                          const Real* values) {
+  const Index n2 = grid_.n2;
+  Complex* const halves = scratch(thread);
+  Complex* const spectra = halves + kRows * stride2_;
+  const auto row = [&](Index i) { return i < grid_.n1 ? values + i * n2 : zero_row_.data(); };
+  for (Index r = 0; r < kRows; r += 2) {
+    const Real* const real = row(first_row + r);
+    const Real* const imaginary = row(first_row + r + 1);
+    Complex* const even = halves + r * stride2_;
+    Complex* const odd = even + stride2_;
+    for (Index j = 0; j < n2; ++j) {
+      even[j] = {real[j], imaginary[j]};
+      odd[j] = times(even[j], twiddle2_[count(j)]);
+    }
+    std::fill(even + n2, even + m2_, Complex());
+    std::fill(odd + n2, odd + m2_, Complex());
+    for (const Index half : {r, r + 1}) {
+      execute(row_forward_, halves + half * stride2_, spectra + half * stride2_);
+    }
+  }
+  separate(field, first_row, spectra);
+}
+
+/// The spectra X and Y of two real rows from that of x + i y: 2 X(k) = Z(k) + conj Z(-k), 2 i Y(k) = Z(k) -
+/// conj Z(-k).
+template <typename Real>
+void PaddedTransform<Real>::separate(std::size_t field, Index first_row, const Complex* spectra) {
+  constexpr Real half(0.5);
+  const auto separate_column = [&](Index to, Index k, Index mirrored, const Complex* pairs) {
+    Complex* const out = column(field, to) + first_row;
+    __builtin_prefetch(column(field, std::min(to + kAhead, columns() - 1)) + first_row, 1);
+    for (Index r = 0; r < kRows; r += 2) {
+      const Complex z = pairs[r * stride2_ + k];
+      const Complex y = pairs[r * stride2_ + mirrored];
+      out[r] = {half * (z.real() + y.real()), half * (z.imag() - y.imag())};
+      out[r + 1] = {half * (z.imag() + y.imag()), half * (y.real() - z.real())};
+    }
+  };
+  const Index evens = m2_ / 2 + 1;
+  separate_column(0, 0, 0, spectra);
+  for (Index k = 1; k < evens; ++k) separate_column(k, k, m2_ - k, spectra);
+  for (Index k = 0; evens + k < columns(); ++k) {
+    separate_column(evens + k, k, m2_ - 1 - k, spectra + stride2_);
+  }
+}
+
+/// The contrary of separate().
+template <typename Real>
+void PaddedTransform<Real>::join(std::size_t field, Index first_row, Complex* spectra) {
+  const auto join_column = [&](Index from, Index k, Index mirrored, Complex* pairs) {
+    const Complex* const in = column(field, from) + first_row;
+    __builtin_prefetch(column(field, std::min(from + kAhead, columns() - 1)) + first_row);
+    for (Index r = 0; r < kRows; r += 2) {
+      const Complex x = in[r];
+      const Complex y = in[r + 1];
+      pairs[r * stride2_ + mirrored] = {x.real() + y.imag(), y.real() - x.imag()};
+      pairs[r * stride2_ + k] = {x.real() - y.imag(), y.real() + x.imag()};
+    }
+  };
+  const Index evens = m2_ / 2 + 1;
+  join_column(0, 0, 0, spectra);
+  for (Index k = 1; k < evens; ++k) join_column(k, k, m2_ - k, spectra);
+  for (Index k = 0; evens + k < columns(); ++k) join_column(evens + k, k, m2_ - 1 - k, spectra + stride2_);
+}
+
+template <typename Real>
+void PaddedTransform<Real>::backward_group(int thread, std::size_t field, Index first_row, Real* values) {
+  const Index n2 = grid_.n2;
+  Complex* const spectra = scratch(thread);
+  Complex* const halves = spectra + kRows * stride2_;
+  join(field, first_row, spectra);
+  for (Index r = 0; r < kRows && first_row + r < grid_.n1; r += 2) {
+    for (const Index half : {r, r + 1}) {
+      execute(row_backward_, spectra + half * stride2_, halves + half * stride2_);
+    }
+    const Complex* const even = halves + r * stride2_;
+    const Complex* const odd = even + stride2_;
+    Real* const real = values + (first_row + r) * n2;
+    const bool paired = first_row + r + 1 < grid_.n1;
+    for (Index j = 0; j < n2; ++j) {
+      const Complex value = even[j] + times_conjugate(odd[j], twiddle2_[count(j)]);
+      real[j] = value.real();
+      if (paired) real[n2 + j] = value.imag();
+    }
+  }
+}
+
+template <typename Real>
+void PaddedTransform<Real>::forward_column(int thread, std::size_t field, Index column_index) {
+  const Spectrum spectrum = spectrum_of(thread);
+  Complex* const values = column(field, column_index);
+  Complex* const odd = turned(thread);
+  for (Index i = 0; i < grid_.n1; ++i) odd[i] = times(values[i], twiddle1_[count(i)]);
+  std::fill(odd + grid_.n1, odd + m1_, Complex());
+  execute(column_forward_, values, spectrum.even[field]);
+  execute(column_forward_, odd, spectrum.odd[field]);
+}
+
+template <typename Real>
+void PaddedTransform<Real>::backward_column(int thread, std::size_t field, Index column_index) {
+  const Spectrum spectrum = spectrum_of(thread);
+  Complex* const values = column(field, column_index);
+  Complex* const odd = turned(thread);
+  execute(column_backward_, spectrum.even[field], values);
+  execute(column_backward_, spectrum.odd[field], odd);
+  for (Index i = 0; i < grid_.n1; ++i) values[i] += times_conjugate(odd[i], twiddle1_[count(i)]);
+  std::fill(values + grid_.n1, values + m1_, Complex());  // what the next forward transform counts on
+}
+
+template class PaddedTransform<double>;
+template class PaddedTransform<float>;
+
+}  // namespace slipstick::solver

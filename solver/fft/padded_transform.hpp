@@ -1,0 +1,110 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <complex>
+#include <span>
+#include <vector>
+
+#include "solver/fft/fftw.hpp"
+#include "solver/grid/threads.hpp"
+
+namespace slipstick::solver {
+
+/// Two-dimensional Fourier transforms of real fields of n1 x n2 cells padded with zeros to p1 x p2 = 2 m1 x
+/// 2 m2, where m1 >= n1 and m2 >= n2, without the work that the zeros would cost.
+///
+/// With w = exp(-i pi/m), a sequence x of m values followed by m zeros has at even frequencies the transform
+/// of x, at odd ones that of x_j w^j, each of length m; and the first m values of a backward transform are
+/// the transform of the even frequencies plus w^-j times that of the odd ones. All transforms are therefore
+/// of length m1 or m2, over contiguous numbers, and nothing is padded.
+///
+/// Rows go through in pairs, as real and imaginary parts of one sequence. Columns lie transposed, so that
+/// each is read from memory once, carried forward, changed and carried back in cache.
+template <typename Real>
+class PaddedTransform {
+ public:
+  using Complex = std::complex<Real>;
+  /// The columns' spectra of one frequency along x2: for each field the m1 even frequencies along x1 (0, 2,
+  /// ...), then the odd ones.
+  struct Spectrum {
+    std::array<Complex*, 2> even;
+    std::array<Complex*, 2> odd;
+  };
+
+  /// For one or two fields at a time. flags: FFTW's.
+  PaddedTransform(const Grid& grid, std::size_t fields, int threads, unsigned flags);
+  static std::size_t predicted_bytes(const Grid& grid, std::size_t fields, int threads);
+  std::size_t bytes() const;
+
+  int threads() const { return threads_; }
+  Index padded1() const { return 2 * m1_; }
+  Index padded2() const { return 2 * m2_; }
+  /// Frequencies along x2 that hold all of a real field, m2 + 1: first the even ones, then the odd ones.
+  Index columns() const { return m2_ + 1; }
+
+  /// From the fields' n1*n2 values each to their columns, and back.
+  void forward_rows(std::span<const Real> fields);
+  void backward_rows(std::span<Real> fields);
+
+  /// The first `inputs` columns forward, work(column, spectrum), the first `outputs` columns back, for all
+  /// columns; on several threads at the same time.
+  template <typename Work>
+  void through_columns(std::size_t inputs, std::size_t outputs, const Work& work) {
+    in_parts(threads_, columns(), [&](int thread, Index first, Index last) {
+      const Spectrum spectrum = spectrum_of(thread);
+      for (Index column = first; column < last; ++column) {
+        for (std::size_t field = 0; field < inputs; ++field) forward_column(thread, field, column);
+        work(column, spectrum);
+        for (std::size_t field = 0; field < outputs; ++field) backward_column(thread, field, column);
+      }
+    });
+  }
+
+ private:
+  /// Rows that are written to the columns together: a cache line.
+  static constexpr Index kRows = 64 / static_cast<Index>(sizeof(Complex));
+  /// A count of groups of kRows, rounded up to odd: numbers a power of two apart would compete for one cache
+  /// set.
+  static Index stride(Index length) { return ((length + kRows - 1) / kRows | 1) * kRows; }
+  /// Of one thread: a group of rows before and after its transform; or the two halves of each field's column
+  /// and one that is being turned.
+  static Index scratch_size(std::size_t fields, Index stride1, Index stride2) {
+    return std::max(2 * kRows * stride2, (2 * static_cast<Index>(fields) + 1) * stride1);
+  }
+
+  template <typename Work>
+  void in_groups(std::size_t values, const Work& work);
+  Spectrum spectrum_of(int thread);
+  Complex* column(std::size_t field, Index column);
+  Complex* scratch(int thread) { return as_complex(scratch_[static_cast<std::size_t>(thread)]); }
+  Complex* turned(int thread) { return scratch(thread) + 2 * static_cast<Index>(fields_) * stride1_; }
+  static Complex* as_complex(FftwBuffer<Real>& buffer) { return reinterpret_cast<Complex*>(buffer.data()); }
+
+  void forward_group(int thread, std::size_t field, Index first_row, const Real* values);
+  void backward_group(int thread, std::size_t field, Index first_row, Real* values);
+  void separate(std::size_t field, Index first_row, const Complex* spectra);
+  void join(std::size_t field, Index first_row, Complex* spectra);
+  void forward_column(int thread, std::size_t field, Index column);
+  void backward_column(int thread, std::size_t field, Index column);
+  void execute(const FftwPlan<Real>& plan, Complex* in, Complex* out);
+
+  Grid grid_;
+  std::size_t fields_;
+  int threads_;
+  Index m1_;
+  Index m2_;
+  Index stride1_;                  ///< from column to column
+  Index stride2_;                  ///< from half a row's spectrum to the next
+  std::vector<Complex> twiddle1_;  ///< w^j along x1, j < n1
+  std::vector<Complex> twiddle2_;
+  std::vector<Real> zero_row_;
+  FftwBuffer<Real> columns_;               ///< of all fields, stride1_ from one to the next
+  std::vector<FftwBuffer<Real>> scratch_;  ///< for each thread
+  FftwPlan<Real> row_forward_;
+  FftwPlan<Real> row_backward_;
+  FftwPlan<Real> column_forward_;
+  FftwPlan<Real> column_backward_;
+};
+
+}  // namespace slipstick::solver

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <Eigen/Core>
+
+namespace slipstick::solver {
+
+using Eigen::Index;
+
+/// A rectangle of n1 x n2 equal cells, centred at the origin or, as the quadrant x1, x2 > 0 of one twice as
+/// long and wide, with a corner there. A field over it is n1*n2 values, cell (i, j) at i*n2 + j: x2 runs
+/// fastest. A vector field is its first component's values, then its second's.
+struct Grid {
+  Index n1;
+  Index n2;
+  double h1;  ///< cell size along x1
+  double h2;  ///< cell size along x2
+  bool quadrant = false;
+
+  Index cells() const { return n1 * n2; }
+  double cell_area() const { return h1 * h2; }
+  /// Cell centres. Mirror images about the origin are exact negatives of each other.
+  double x1(Index i) const { return 0.5 * static_cast<double>(2 * i + 1 - (quadrant ? 0 : n1)) * h1; }
+  double x2(Index j) const { return 0.5 * static_cast<double>(2 * j + 1 - (quadrant ? 0 : n2)) * h2; }
+};
+
+/// +1 if a field is even in x1 (or x2), -1 if it is odd.
+struct Parity {
+  int x1;
+  int x2;
+};
+
+/// The smallest even 2^a 3^b 5^c 7^d >= max(minimum, 4): lengths that are transformed quickly.
+Index fast_length(Index minimum);
+
+/// x1 and x2 of all cell centres: n1*n2 values each.
+Eigen::ArrayXd cell_x1(const Grid& grid);
+Eigen::ArrayXd cell_x2(const Grid& grid);
+
+/// The displacement field t = (-x2, x1) of a unit rotation about the origin: 2*n1*n2 values.
+Eigen::ArrayXd rotation_field(const Grid& grid);
+
+}  // namespace slipstick::solver

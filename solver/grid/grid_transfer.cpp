@@ -1,0 +1,95 @@
+#include "solver/grid/grid_transfer.hpp"
+
+#include <Eigen/SparseCore>
+#include <algorithm>
+#include <cmath>
+
+namespace slipstick::solver {
+namespace {
+
+using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
+using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
+/// A grid with fewer cells than this along a side no longer resembles the contact.
+constexpr Index kFewestCells = 8;
+
+/// Row i: the parts of coarse cell i that each fine cell covers.
+Weights overlaps(Index coarse, Index fine) {
+  Weights weights(coarse, fine);
+  const double ratio = static_cast<double>(fine) / static_cast<double>(coarse);
+  for (Index i = 0; i < coarse; ++i) {
+    const double low = static_cast<double>(i) * ratio;
+    const double high = static_cast<double>(i + 1) * ratio;
+    for (auto j = static_cast<Index>(low); j < fine && static_cast<double>(j) < high; ++j) {
+      const double covered =
+          std::min(high, static_cast<double>(j + 1)) - std::max(low, static_cast<double>(j));
+      if (covered > 0.0) weights.insert(i, j) = covered / ratio;
+    }
+  }
+  return weights;
+}
+
+/// Row i: weights of the coarse centres beside fine centre i.
+Weights interpolation(Index fine, Index coarse, bool mirrored, int parity) {
+  Weights weights(fine, coarse);
+  const double ratio = static_cast<double>(coarse) / static_cast<double>(fine);
+  for (Index i = 0; i < fine; ++i) {
+    const double x = (static_cast<double>(i) + 0.5) * ratio - 0.5;  // in coarse cells from the first centre
+    const auto left = static_cast<Index>(std::floor(x));
+    const double part = x - static_cast<double>(left);
+    const auto add = [&](Index j, double weight) {
+      if (j < 0) weight *= mirrored ? parity : 1;
+      weights.coeffRef(i, j < 0 ? 0 : std::min(j, coarse - 1)) += weight;
+    };
+    add(left, 1.0 - part);
+    add(left + 1, part);
+  }
+  return weights;
+}
+
+Eigen::ArrayXd transform(const Weights& along1, const Weights& along2, const double* component) {
+  const Eigen::Map<const Rows> in(component, along1.cols(), along2.cols());
+  const Rows half = along1 * in;
+  const Rows out = half * along2.transpose();
+  return Eigen::Map<const Eigen::ArrayXd>(out.data(), out.size());
+}
+
+}  // namespace
+
+Grid coarser(const Grid& grid) {
+  const auto fewer = [](Index n) { return (n + 1) / 2; };
+  const auto ratio = [&](Index n) { return static_cast<double>(n) / static_cast<double>(fewer(n)); };
+  return {fewer(grid.n1), fewer(grid.n2), grid.h1 * ratio(grid.n1), grid.h2 * ratio(grid.n2), grid.quadrant};
+}
+
+bool can_coarsen(const Grid& grid) {
+  const Index fewest = std::min(coarser(grid).n1, coarser(grid).n2) * (grid.quadrant ? 2 : 1);
+  return fewest >= kFewestCells;
+}
+
+Eigen::ArrayXd restrict_to(const Grid& coarse, const Grid& fine, const Eigen::ArrayXd& field) {
+  const Weights along1 = overlaps(coarse.n1, fine.n1);
+  const Weights along2 = overlaps(coarse.n2, fine.n2);
+  const Index components = field.size() / fine.cells();
+  Eigen::ArrayXd result(components * coarse.cells());
+  for (Index c = 0; c < components; ++c) {
+    result.segment(c * coarse.cells(), coarse.cells()) =
+        transform(along1, along2, field.data() + c * fine.cells());
+  }
+  return result;
+}
+
+Eigen::ArrayXd prolong_to(const Grid& fine, const Grid& coarse, const Eigen::ArrayXd& field,
+                          std::span<const Parity> parities) {
+  Eigen::ArrayXd result(static_cast<Index>(parities.size()) * fine.cells());
+  for (std::size_t c = 0; c < parities.size(); ++c) {
+    const Weights along1 = interpolation(fine.n1, coarse.n1, fine.quadrant, parities[c].x1);
+    const Weights along2 = interpolation(fine.n2, coarse.n2, fine.quadrant, parities[c].x2);
+    const auto component = static_cast<Index>(c);
+    result.segment(component * fine.cells(), fine.cells()) =
+        transform(along1, along2, field.data() + component * coarse.cells());
+  }
+  return result;
+}
+
+}  // namespace slipstick::solver

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <span>
+
+#include "solver/grid/grid.hpp"
+
+/// Fields from a grid to one of about half as many cells along each axis, over the same rectangle, and back.
+namespace slipstick::solver {
+
+/// Half as many cells along each axis (rounded up).
+Grid coarser(const Grid& grid);
+
+/// Whether coarser(grid) is worth a solve: no side of the contact would be left with fewer than a few cells.
+bool can_coarsen(const Grid& grid);
+
+/// Mean over each coarse cell; one or several components.
+Eigen::ArrayXd restrict_to(const Grid& coarse, const Grid& fine, const Eigen::ArrayXd& field);
+
+/// Linear interpolation between the coarse centres, continued beyond the outer ones as a constant and across
+/// a quadrant's axes by each component's parity.
+Eigen::ArrayXd prolong_to(const Grid& fine, const Grid& coarse, const Eigen::ArrayXd& field,
+                          std::span<const Parity> parities);
+
+}  // namespace slipstick::solver

@@ -1,0 +1,116 @@
+#include "solver/grid/reduction.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+using Matrix = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+using ConstComponent = Eigen::Map<const Matrix>;
+using MutableComponent = Eigen::Map<Matrix>;
+
+/// Images that differ by more than rounding are no images.
+constexpr double kRounding = 1e-13;
+
+/// Equal up to rounding, with infinite values in the same places.
+template <typename A, typename B>
+bool same(const A& a, const B& b) {
+  for (Index i = 0; i < a.rows(); ++i) {
+    for (Index j = 0; j < a.cols(); ++j) {
+      const double x = a(i, j);
+      const double y = b(i, j);
+      if (x != y && !(std::abs(x - y) <= kRounding * std::min(std::abs(x), std::abs(y)))) return false;
+    }
+  }
+  return true;
+}
+
+/// Whether a field is even in x1 and in x2, up to rounding.
+bool is_mirrored(const Grid& grid, const ArrayXd& field) {
+  const ConstComponent values(field.data(), grid.n1, grid.n2);
+  return same(values, values.rowwise().reverse()) && same(values, values.colwise().reverse());
+}
+
+/// Empty rows on each side, the smaller of the two counts; all but one if the field is empty.
+template <typename Occupied>
+Index empty_margin(Index count, const Occupied& occupied) {
+  Index margin = 0;
+  while (2 * (margin + 1) < count && !occupied(margin) && !occupied(count - 1 - margin)) ++margin;
+  return margin;
+}
+
+Grid trimmed_grid(const Grid& grid, const ArrayXd& contact) {
+  const ConstComponent field(contact.data(), grid.n1, grid.n2);
+  const Index rows = empty_margin(grid.n1, [&](Index i) { return (field.row(i) > 0.0).any(); });
+  const Index columns = empty_margin(grid.n2, [&](Index j) { return (field.col(j) > 0.0).any(); });
+  return {grid.n1 - 2 * rows, grid.n2 - 2 * columns, grid.h1, grid.h2};
+}
+
+/// The middle part of a field, component by component.
+ArrayXd middle(const Grid& whole, const Grid& part, const ArrayXd& field) {
+  const Index components = field.size() / whole.cells();
+  ArrayXd result(components * part.cells());
+  for (Index c = 0; c < components; ++c) {
+    const ConstComponent from(field.data() + c * whole.cells(), whole.n1, whole.n2);
+    MutableComponent(result.data() + c * part.cells(), part.n1, part.n2) =
+        from.block((whole.n1 - part.n1) / 2, (whole.n2 - part.n2) / 2, part.n1, part.n2);
+  }
+  return result;
+}
+
+ArrayXd padded(const Grid& whole, const Grid& part, const ArrayXd& field) {
+  const Index components = field.size() / part.cells();
+  ArrayXd result = ArrayXd::Zero(components * whole.cells());
+  for (Index c = 0; c < components; ++c) {
+    const ConstComponent from(field.data() + c * part.cells(), part.n1, part.n2);
+    MutableComponent(result.data() + c * whole.cells(), whole.n1, whole.n2)
+        .block((whole.n1 - part.n1) / 2, (whole.n2 - part.n2) / 2, part.n1, part.n2) = from;
+  }
+  return result;
+}
+
+}  // namespace
+
+Reduction::Reduction(const Grid& grid, const ArrayXd& contact)
+    : whole_(grid), trimmed_(trimmed_grid(grid, contact)), grid_(trimmed_) {}
+
+Reduction::Reduction(const Grid& grid, const ArrayXd& shape, const ArrayXd& contact)
+    : Reduction(grid, contact) {
+  if (trimmed_.n1 % 2 != 0 || trimmed_.n2 % 2 != 0) return;  // an axis would cut cells in two
+  const ArrayXd part = middle(whole_, trimmed_, shape);
+  if (!is_mirrored(trimmed_, part)) return;
+  const ConstComponent field(part.data(), trimmed_.n1, trimmed_.n2);
+  grid_ = quadrant_of(trimmed_);
+  diagonal_ = grid_.n1 == grid_.n2 && grid_.h1 == grid_.h2 && same(field, field.transpose());
+}
+
+ArrayXd Reduction::restricted(const ArrayXd& field) const {
+  if (field.size() == 0) return field;
+  const ArrayXd part = trimmed() ? middle(whole_, trimmed_, field) : field;
+  return quadrant() ? restrict_to_quadrant(trimmed_, part) : part;
+}
+
+ArrayXd Reduction::expanded(const ArrayXd& field, const Symmetry& symmetry) const {
+  const ArrayXd part = quadrant() ? unfold(grid_, field, symmetry) : field;
+  return trimmed() ? padded(whole_, trimmed_, part) : part;
+}
+
+bool is_half_turn_symmetric(const Grid& grid, const ArrayXd& field) {
+  const ConstComponent values(field.data(), 1, field.size());
+  return is_mirrored(grid, field) || same(values, values.reverse());
+}
+
+ArrayXd half_turn_symmetrised(const ArrayXd& pressure) { return 0.5 * (pressure + pressure.reverse()); }
+
+ArrayXd symmetrised(const Grid& grid, const ArrayXd& pressure) {
+  if (grid.n1 != grid.n2) throw std::invalid_argument("the diagonal of a grid that is not square");
+  const ConstComponent field(pressure.data(), grid.n1, grid.n2);
+  ArrayXd result(pressure.size());
+  MutableComponent(result.data(), grid.n1, grid.n2) = 0.5 * (field + field.transpose());
+  return result;
+}
+
+}  // namespace slipstick::solver

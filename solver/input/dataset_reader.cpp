@@ -1,0 +1,171 @@
+#include "solver/input/dataset_reader.hpp"
+
+#include <fmt/core.h>
+#include <hdf5.h>
+
+#include <array>
+#include <cstring>
+#include <exception>
+#include <stdexcept>
+#include <utility>
+
+#include "solver/input/input_error.hpp"
+#include "solver/input/input_file.hpp"
+#include "solver/input/run_apart.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::Index;
+using std::filesystem::path;
+
+/// Of numbers; the widest floating-point format in use has so many bytes.
+constexpr std::size_t kWidestNumber = 16;
+
+/// What the reading process sends of each dataset: this, then the values; of one that cannot be read a
+/// complaint, to the end.
+enum class Tag : char { values = '=', complaint = '!' };
+using Extent = std::array<Index, 2>;
+
+/// An id of the HDF5 library, closed at the end.
+class Id {
+ public:
+  Id(hid_t id, herr_t (*close)(hid_t), const std::string& complaint) : id_(id), close_(close) {
+    if (id < 0) throw std::runtime_error(complaint);
+  }
+  ~Id() { close_(id_); }
+  Id(const Id&) = delete;
+  Id& operator=(const Id&) = delete;
+  hid_t get() const { return id_; }
+
+ private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+void require(bool good, const std::string& complaint) {
+  if (!good) throw std::runtime_error(complaint);
+}
+
+/// Links may lead to other files, as may data that lie outside the file or are put together from others'.
+void require_own_dataset(hid_t file, const std::string& name) {
+  H5L_info_t link{};
+  require(H5Lexists(file, name.c_str(), H5P_DEFAULT) > 0, "no such dataset");
+  require(H5Lget_info(file, name.c_str(), &link, H5P_DEFAULT) >= 0 && link.type == H5L_TYPE_HARD,
+          "is a link; allowed: a dataset of this file");
+}
+
+void require_own_data(hid_t dataset) {
+  const Id creation(H5Dget_create_plist(dataset), H5Pclose, "cannot be read");
+  const H5D_layout_t layout = H5Pget_layout(creation.get());
+  require((layout == H5D_COMPACT || layout == H5D_CONTIGUOUS || layout == H5D_CHUNKED) &&
+              H5Pget_external_count(creation.get()) == 0,
+          "has its data elsewhere; allowed: data in this file");
+}
+
+void require_numbers(hid_t dataset) {
+  const Id type(H5Dget_type(dataset), H5Tclose, "cannot be read");
+  const H5T_class_t kind = H5Tget_class(type.get());
+  const std::size_t size = H5Tget_size(type.get());
+  require((kind == H5T_INTEGER || kind == H5T_FLOAT) && size > 0 && size <= kWidestNumber,
+          "holds no numbers; allowed: whole or floating-point numbers");
+}
+
+Extent find_extent(hid_t dataset, int rank, Index most) {
+  const Id space(H5Dget_space(dataset), H5Sclose, "cannot be read");
+  const int found = H5Sget_simple_extent_ndims(space.get());
+  require(found == rank, fmt::format("has {} dimensions; allowed: {}", found, rank));
+  std::array<hsize_t, 2> size{1, 1};
+  require(H5Sget_simple_extent_dims(space.get(), size.data(), nullptr) == rank, "cannot be read");
+  const auto limit = static_cast<hsize_t>(most);
+  require(size[0] > 0 && size[1] > 0 && size[0] <= limit && size[1] <= limit / size[0],
+          fmt::format("has {} x {} values; allowed: from 1 to {} in all", size[0], size[1], most));
+  return {static_cast<Index>(size[0]), static_cast<Index>(size[1])};
+}
+
+Dataset read_dataset(hid_t file, const std::string& name, int rank, Index most) {
+  require_own_dataset(file, name);
+  const Id dataset(H5Dopen2(file, name.c_str(), H5P_DEFAULT), H5Dclose, "is no dataset");
+  require_numbers(dataset.get());
+  require_own_data(dataset.get());
+  const Extent extent = find_extent(dataset.get(), rank, most);
+  Dataset values(extent[0], extent[1]);
+  require(H5Dread(dataset.get(), H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, values.data()) >= 0,
+          "cannot be read as numbers");
+  return values;
+}
+
+/// The work of the reading process.
+void send_datasets(const path& file, const std::vector<std::string>& names, int rank, Index most,
+                   const Send& send) {
+  std::string at;
+  try {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+    const Id hdf5(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "cannot be read as HDF5");
+    for (const std::string& name : names) {
+      at = fmt::format("dataset {}: ", name);
+      const Dataset values = read_dataset(hdf5.get(), name, rank, most);
+      const Tag tag = Tag::values;
+      const Extent extent{values.rows(), values.cols()};
+      send(&tag, sizeof tag);
+      send(extent.data(), sizeof extent);
+      send(values.data(), sizeof(double) * static_cast<std::size_t>(values.size()));
+    }
+  } catch (const std::exception& error) {
+    const Tag tag = Tag::complaint;
+    const std::string complaint = at + error.what();
+    send(&tag, sizeof tag);
+    send(complaint.data(), complaint.size());
+  }
+}
+
+/// Takes from what was received, from the front. Throws where there is too little left.
+class Received {
+ public:
+  Received(std::string bytes, const path& file) : bytes_(std::move(bytes)), file_(file) {}
+
+  Dataset take_dataset(Index most) {
+    if (take<Tag>() == Tag::complaint) throw InputError(file_.string(), bytes_.substr(taken_));
+    const auto [rows, columns] = take<Extent>();
+    if (rows < 1 || columns < 1 || rows > most || columns > most / rows) fail();
+    Dataset values(rows, columns);
+    take(values.data(), sizeof(double) * static_cast<std::size_t>(values.size()));
+    return values;
+  }
+
+ private:
+  [[noreturn]] void fail() const {
+    throw InputError(file_.string(), "is damaged: the HDF5 library does not survive reading it");
+  }
+  void take(void* to, std::size_t size) {
+    if (bytes_.size() - taken_ < size) fail();
+    std::memcpy(to, bytes_.data() + taken_, size);
+    taken_ += size;
+  }
+  template <typename Value>
+  Value take() {
+    Value value{};
+    take(&value, sizeof value);
+    return value;
+  }
+
+  std::string bytes_;
+  const path& file_;
+  std::size_t taken_ = 0;
+};
+
+}  // namespace
+
+std::vector<Dataset> read_datasets(const path& file, const std::vector<std::string>& names, int rank,
+                                   Index most) {
+  require_input_file(file, kLargestHdf5, "an HDF5 file");
+  const std::size_t largest =
+      names.size() * (sizeof(Tag) + sizeof(Extent) + sizeof(double) * static_cast<std::size_t>(most));
+  Received received(
+      run_apart([&](const Send& send) { send_datasets(file, names, rank, most, send); }, largest), file);
+  std::vector<Dataset> datasets;
+  for (std::size_t i = 0; i < names.size(); ++i) datasets.push_back(received.take_dataset(most));
+  return datasets;
+}
+
+}  // namespace slipstick::solver

@@ -1,0 +1,289 @@
+#include "solver/input/field_file.hpp"
+
+#include <fmt/core.h>
+#include <fmt/os.h>
+#include <fmt/ranges.h>
+#include <hdf5.h>
+#include <hdf5_hl.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <fstream>
+#include <limits>
+#include <string_view>
+#include <utility>
+
+#include "solver/input/dataset_reader.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/input/input_file.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+using std::filesystem::path;
+
+bool is_hdf5(const path& file) { return file.extension() == ".h5" || file.extension() == ".hdf5"; }
+
+/// Rows of a table are cells of a contact, of 4,096 x 4,096 at most; heights of a map are cells of a grid. A
+/// solve on more takes tens of gigabytes.
+constexpr Index kMostRows = Index{1} << 24;
+constexpr Index kMostHeights = Index{1} << 26;
+/// Values on a line: as many as a grid has cells along a side.
+constexpr std::size_t kMostColumns = 65536;
+/// Written by some programs at the beginning of a text.
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+/// A new HDF5 file.
+class Hdf5File {
+ public:
+  explicit Hdf5File(const path& file) : file_(file) {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the library's own messages stay off the terminal
+    id_ = H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
+    if (id_ < 0) throw InputError(file.string(), "cannot be written");
+  }
+  ~Hdf5File() { H5Fclose(id_); }
+  Hdf5File(const Hdf5File&) = delete;
+  Hdf5File& operator=(const Hdf5File&) = delete;
+
+  void write(const std::string& name, const ArrayXd& values) {
+    const auto size = static_cast<hsize_t>(values.size());
+    if (H5LTmake_dataset_double(id_, name.c_str(), 1, &size, values.data()) < 0) {
+      throw InputError(fmt::format("{}: dataset {}", file_.string(), name), "cannot be written");
+    }
+  }
+
+ private:
+  path file_;
+  hid_t id_ = -1;
+};
+
+std::string_view trimmed(std::string_view text) {
+  constexpr std::string_view kAround = " \t\r\"";
+  const auto first = text.find_first_not_of(kAround);
+  return first == std::string_view::npos ? std::string_view()
+                                         : text.substr(first, text.find_last_not_of(kAround) - first + 1);
+}
+
+/// The text of a CSV file, line by line. Lines without anything are skipped.
+class CsvFile {
+ public:
+  explicit CsvFile(const path& file)
+      : file_(file),
+        text_(read_input_file(file, kLargestTable, "a CSV file, or an HDF5 file named .h5 or .hdf5")) {
+    if (text_.starts_with(kByteOrderMark)) next_ = kByteOrderMark.size();
+  }
+
+  /// The values of the next line as text; none at the end. They stay until the next call.
+  const std::vector<std::string_view>& next_line() {
+    values_.clear();
+    while (values_.empty() && next_ < text_.size()) {
+      const std::size_t end = std::min(text_.find('\n', next_), text_.size());
+      const std::string_view line = std::string_view(text_).substr(next_, end - next_);
+      next_ = end + 1;
+      ++line_;
+      split(line);
+    }
+    return values_;
+  }
+
+  double number(std::string_view text) const {
+    // The text ends with a separator or, after the last, with a zero: where strtod stops.
+    char* end = nullptr;
+    const double value = text.empty() ? NAN : std::strtod(text.data(), &end);
+    if (end != text.data() + text.size() || !std::isfinite(value)) {
+      fail(fmt::format("\"{}\"; allowed: a finite number", shown(text)));
+    }
+    return value;
+  }
+
+  /// NaN for one that is missing.
+  double height(std::string_view text) const {
+    const bool missing = text.empty() || text == "nan" || text == "NaN" || text == "NAN";
+    return missing ? std::numeric_limits<double>::quiet_NaN() : number(text);
+  }
+
+  [[noreturn]] void fail(const std::string& complaint) const {
+    throw InputError(fmt::format("{}:{}", file_.string(), line_), complaint);
+  }
+
+ private:
+  /// A separator at the end of the line is followed by nothing.
+  void split(std::string_view line) {
+    if (line.find_first_not_of(" \t\r") == std::string_view::npos) return;
+    for (std::size_t first = 0; first < line.size();) {
+      if (values_.size() == kMostColumns) fail(fmt::format("more than {} values", kMostColumns));
+      const std::size_t comma = std::min(line.find(',', first), line.size());
+      values_.push_back(trimmed(line.substr(first, comma - first)));
+      first = comma + 1;
+    }
+  }
+
+  const path& file_;
+  std::string text_;
+  std::size_t next_ = 0;
+  std::size_t line_ = 0;
+  std::vector<std::string_view> values_;
+};
+
+/// The place of each name in a header.
+std::vector<std::size_t> find_columns(const path& file, const std::vector<std::string>& names,
+                                      const std::vector<std::string_view>& header) {
+  std::vector<std::size_t> positions;
+  for (const std::string& name : names) {
+    const auto found = std::find(header.begin(), header.end(), name);
+    if (found == header.end()) {
+      throw InputError(file.string(),
+                       fmt::format("has no column {}; its columns: {}", name,
+                                   header.empty() ? "none, it is empty"
+                                                  : shown(fmt::format("{}", fmt::join(header, ", ")))));
+    }
+    if (std::find(found + 1, header.end(), name) != header.end()) {
+      throw InputError(file.string(), fmt::format("has two columns {}; allowed: one", name));
+    }
+    positions.push_back(static_cast<std::size_t>(found - header.begin()));
+  }
+  return positions;
+}
+
+std::vector<Column> read_csv_columns(const path& file, const std::vector<std::string>& names) {
+  CsvFile csv(file);
+  const std::vector<std::string_view> header = csv.next_line();
+  const std::vector<std::size_t> positions = find_columns(file, names, header);
+  std::vector<std::vector<double>> values(names.size());
+  for (;;) {
+    const std::vector<std::string_view>& row = csv.next_line();
+    if (row.empty()) break;
+    if (row.size() != header.size()) {
+      csv.fail(fmt::format("{} values; allowed: {}, one a column", row.size(), header.size()));
+    }
+    if (static_cast<Index>(values[0].size()) == kMostRows)
+      csv.fail(fmt::format("more than {} rows", kMostRows));
+    for (std::size_t c = 0; c < names.size(); ++c) values[c].push_back(csv.number(row[positions[c]]));
+  }
+  if (values[0].empty()) throw InputError(file.string(), "holds no rows of numbers");
+  std::vector<Column> columns;
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    columns.push_back({names[c], ArrayXd::Map(values[c].data(), static_cast<Index>(values[c].size()))});
+  }
+  return columns;
+}
+
+std::vector<Column> read_hdf5_columns(const path& file, const std::vector<std::string>& names) {
+  const std::vector<Dataset> datasets = read_datasets(file, names, 1, kMostRows);
+  std::vector<Column> columns;
+  for (std::size_t c = 0; c < names.size(); ++c) {
+    const std::string& name = names[c];
+    columns.push_back({name, datasets[c].col(0)});
+    const ArrayXd& values = columns.back().values;
+    if (values.size() != columns.front().values.size()) {
+      throw InputError(file.string(),
+                       fmt::format("dataset {} has {} values; allowed: {}, as {}", name, values.size(),
+                                   columns.front().values.size(), names.front()));
+    }
+    for (Index row = 0; row < values.size(); ++row) {
+      if (!std::isfinite(values[row])) {
+        throw InputError(file.string(), fmt::format("dataset {}, row {}: {}; allowed: a finite number", name,
+                                                    row, values[row]));
+      }
+    }
+  }
+  return columns;
+}
+
+void write_csv(const path& file, const std::vector<Column>& columns) {
+  std::ofstream stream(file);
+  std::vector<std::string> names;
+  names.reserve(columns.size());
+  for (const Column& column : columns) names.push_back(column.name);
+  stream << fmt::format("{}\n", fmt::join(names, ","));
+  for (Index row = 0; row < columns.front().values.size(); ++row) {
+    const char* separator = "";
+    for (const Column& column : columns) {
+      stream << fmt::format("{}{:.17g}", std::exchange(separator, ","), column.values[row]);
+    }
+    stream << '\n';
+  }
+  if (!stream.flush()) throw InputError(file.string(), "cannot be written");
+}
+
+/// VTK's x runs fastest, this project's x2 does.
+void write_vti(const path& file, const Grid& grid, const std::vector<Column>& columns) {
+  std::ofstream stream(file);
+  stream
+      << "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
+      << fmt::format(
+             "<ImageData WholeExtent=\"0 {0} 0 {1} 0 0\" Origin=\"{2:.17g} {3:.17g} 0\" "
+             "Spacing=\"{4:.17g} {5:.17g} 1\">\n<Piece Extent=\"0 {0} 0 {1} 0 0\">\n<CellData>\n",
+             grid.n1, grid.n2, grid.x1(0) - 0.5 * grid.h1, grid.x2(0) - 0.5 * grid.h2, grid.h1, grid.h2);
+  for (const Column& column : columns) {
+    stream << fmt::format("<DataArray type=\"Float64\" Name=\"{}\" format=\"ascii\">\n", column.name);
+    for (Index j = 0; j < grid.n2; ++j) {
+      for (Index i = 0; i < grid.n1; ++i) stream << fmt::format("{:.17g} ", column.values[i * grid.n2 + j]);
+      stream << '\n';
+    }
+    stream << "</DataArray>\n";
+  }
+  stream << "</CellData>\n</Piece>\n</ImageData>\n</VTKFile>\n";
+  if (!stream.flush()) throw InputError(file.string(), "cannot be written");
+}
+
+std::vector<Column> kept_rows(const std::vector<Column>& columns, const ArrayXd& keep) {
+  std::vector<Index> rows;
+  for (Index i = 0; i < keep.size(); ++i) {
+    if (keep[i] != 0.0) rows.push_back(i);
+  }
+  std::vector<Column> kept;
+  kept.reserve(columns.size());
+  for (const Column& column : columns) kept.push_back({column.name, column.values(rows)});
+  return kept;
+}
+
+}  // namespace
+
+std::vector<Column> read_columns(const path& file, const std::vector<std::string>& names) {
+  return is_hdf5(file) ? read_hdf5_columns(file, names) : read_csv_columns(file, names);
+}
+
+Eigen::ArrayXXd read_height_map(const path& file) {
+  if (is_hdf5(file)) return read_datasets(file, {"height"}, 2, kMostHeights).front();
+  CsvFile csv(file);
+  std::vector<double> heights;
+  std::size_t columns = 0;
+  for (;;) {
+    const std::vector<std::string_view>& row = csv.next_line();
+    if (row.empty()) break;
+    if (heights.empty()) columns = row.size();
+    if (row.size() != columns) {
+      csv.fail(fmt::format("{} values; allowed: {}, as in the rows before", row.size(), columns));
+    }
+    if (static_cast<Index>(heights.size() + columns) > kMostHeights)
+      csv.fail(fmt::format("more than {} values", kMostHeights));
+    for (const std::string_view text : row) heights.push_back(csv.height(text));
+  }
+  if (heights.empty()) throw InputError(file.string(), "holds no rows of numbers");
+  return Eigen::Map<const Dataset>(heights.data(), static_cast<Index>(heights.size() / columns),
+                                   static_cast<Index>(columns));
+}
+
+void require_field_format(const path& file) {
+  if (!is_hdf5(file) && file.extension() != ".csv" && file.extension() != ".vti") {
+    throw InputError("--fields", file.string(), file.extension().string(), ".h5, .hdf5, .csv, .vti");
+  }
+}
+
+void write_fields(const path& file, const Grid& grid, const std::vector<Column>& columns,
+                  const ArrayXd& keep) {
+  require_field_format(file);
+  if (file.extension() == ".vti") {
+    write_vti(file, grid, columns);
+  } else if (is_hdf5(file)) {
+    Hdf5File hdf5(file);
+    for (const Column& column : kept_rows(columns, keep)) hdf5.write(column.name, column.values);
+  } else {
+    write_csv(file, kept_rows(columns, keep));
+  }
+}
+
+}  // namespace slipstick::solver

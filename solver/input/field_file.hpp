@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "solver/grid/grid.hpp"
+
+namespace slipstick::solver {
+
+/// A named column: one value for each row of its table.
+struct Column {
+  std::string name;
+  Eigen::ArrayXd values;
+};
+
+/// Reads columns by name from a CSV file (header line, one row a cell) or an HDF5 file (1-D datasets of equal
+/// length), told apart by the ending .csv or .h5/.hdf5. Throws InputError for a file that cannot be read, a
+/// missing column, and a value that is not a finite number (with its row).
+std::vector<Column> read_columns(const std::filesystem::path& file, const std::vector<std::string>& names);
+
+/// A matrix of heights: CSV without header, one line for each x1; or the 2-D HDF5 dataset "height". A point
+/// that is missing, an empty or "nan" cell of a CSV file, is NaN.
+Eigen::ArrayXXd read_height_map(const std::filesystem::path& file);
+
+/// Throws InputError unless the ending is one that write_fields knows.
+void require_field_format(const std::filesystem::path& file);
+
+/// Writes columns over all cells of a grid: .csv and .h5 get the rows where `keep` is not zero; .vti (VTK
+/// image data, for ParaView) gets all cells. Throws InputError if it cannot write.
+void write_fields(const std::filesystem::path& file, const Grid& grid, const std::vector<Column>& columns,
+                  const Eigen::ArrayXd& keep);
+
+}  // namespace slipstick::solver

@@ -1,0 +1,31 @@
+#include "solver/input/input_error.hpp"
+
+#include <fmt/core.h>
+
+namespace slipstick::solver {
+namespace {
+
+/// Bytes of a key or a value, and of a complaint, that a message shows: what a file holds may be endless.
+constexpr std::size_t kMostShown = 200;
+constexpr std::size_t kMostComplaint = 2000;
+
+/// A character of several bytes stays whole.
+std::string cut(const std::string& text, std::size_t most) {
+  if (text.size() <= most) return text;
+  constexpr unsigned char kContinues = 0x80;
+  constexpr unsigned char kContinuesMask = 0xC0;
+  while (most > 0 && (static_cast<unsigned char>(text[most]) & kContinuesMask) == kContinues) --most;
+  return text.substr(0, most) + "...";
+}
+
+}  // namespace
+
+InputError::InputError(const std::string& file, const std::string& key, const std::string& value,
+                       const std::string& allowed)
+    : std::invalid_argument(fmt::format("{}: {} = {}: allowed: {}", file, cut(key, kMostShown),
+                                        cut(value, kMostShown), allowed)) {}
+
+InputError::InputError(const std::string& file, const std::string& complaint)
+    : std::invalid_argument(fmt::format("{}: {}", file, cut(complaint, kMostComplaint))) {}
+
+}  // namespace slipstick::solver

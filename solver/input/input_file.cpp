@@ -1,0 +1,95 @@
+#include "solver/input/input_file.hpp"
+
+#include <fcntl.h>
+#include <fmt/core.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <array>
+#include <cerrno>
+#include <system_error>
+
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+/// A file open for reading. Opening does not wait for somebody to write into a pipe.
+class InputFile {
+ public:
+  InputFile(const std::filesystem::path& file, std::uintmax_t largest, const std::string& allowed)
+      : file_(file),
+        allowed_(allowed),
+        largest_(largest),
+        descriptor_(open(file.c_str(), O_RDONLY | O_NONBLOCK | O_CLOEXEC)) {}
+  ~InputFile() {
+    if (descriptor_ >= 0) close(descriptor_);
+  }
+  InputFile(const InputFile&) = delete;
+  InputFile& operator=(const InputFile&) = delete;
+
+  void require_regular() const {
+    struct stat status {};
+    if (descriptor_ < 0 || fstat(descriptor_, &status) != 0) fail_with(errno);
+    if (S_ISDIR(status.st_mode)) fail("it is a folder");
+    if (!S_ISREG(status.st_mode)) fail("it is a device or a pipe");
+    if (static_cast<std::uintmax_t>(status.st_size) > largest_) fail_for_size();
+  }
+
+  /// What its size says need not be all: it may grow, and files of the system have none.
+  std::string read() const {
+    std::string text;
+    std::array<char, 1 << 16> buffer;
+    for (;;) {
+      const ssize_t size = ::read(descriptor_, buffer.data(), buffer.size());
+      if (size < 0 && errno == EINTR) continue;
+      if (size < 0) fail_with(errno);
+      if (size == 0) return text;
+      text.append(buffer.data(), static_cast<std::size_t>(size));
+      if (text.size() > largest_) fail_for_size();
+    }
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& reason) const {
+    throw InputError(file_.string(), fmt::format("cannot be read: {}; allowed: {}", reason, allowed_));
+  }
+  [[noreturn]] void fail_with(int error) const { fail(std::generic_category().message(error)); }
+  [[noreturn]] void fail_for_size() const {
+    throw InputError(file_.string(), fmt::format("is larger than {} MiB; allowed: {} of at most that size",
+                                                 largest_ >> 20, allowed_));
+  }
+
+  const std::filesystem::path& file_;
+  const std::string& allowed_;
+  std::uintmax_t largest_;
+  int descriptor_;
+};
+
+/// Characters of what a file says.
+constexpr std::size_t kMostShown = 200;
+
+}  // namespace
+
+void require_input_file(const std::filesystem::path& file, std::uintmax_t largest,
+                        const std::string& allowed) {
+  InputFile(file, largest, allowed).require_regular();
+}
+
+std::string read_input_file(const std::filesystem::path& file, std::uintmax_t largest,
+                            const std::string& allowed) {
+  const InputFile input(file, largest, allowed);
+  input.require_regular();
+  return input.read();
+}
+
+std::string shown(std::string_view text) {
+  std::string printable;
+  for (const char c : text.substr(0, kMostShown)) {
+    const bool plain = c >= ' ' && c <= '~';
+    printable += plain ? std::string(1, c) : fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
+  }
+  return text.size() > kMostShown ? printable + "..." : printable;
+}
+
+}  // namespace slipstick::solver

@@ -1,0 +1,32 @@
+#include "solver/input/misspelling.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace slipstick::solver {
+
+std::size_t edit_distance(const std::string& a, const std::string& b) {
+  std::vector<std::size_t> row(b.size() + 1);
+  for (std::size_t j = 0; j <= b.size(); ++j) row[j] = j;
+  for (std::size_t i = 1; i <= a.size(); ++i) {
+    std::size_t diagonal = std::exchange(row[0], i);
+    for (std::size_t j = 1; j <= b.size(); ++j) {
+      const std::size_t substitute = diagonal + (a[i - 1] == b[j - 1] ? 0 : 1);
+      diagonal = row[j];
+      row[j] = std::min({row[j] + 1, row[j - 1] + 1, substitute});
+    }
+  }
+  return row.back();
+}
+
+std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
+  // Of a word that is endless the beginning tells as much.
+  constexpr std::size_t kMostCompared = 100;
+  const std::string compared = word.substr(0, kMostCompared);
+  const auto nearest = std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {
+    return edit_distance(compared, a) < edit_distance(compared, b);
+  });
+  return nearest == known.end() ? "" : *nearest;
+}
+
+}  // namespace slipstick::solver

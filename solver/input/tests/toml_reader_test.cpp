@@ -1,0 +1,122 @@
+// Arrays of tables, whose keys have an index: step[1].twist.
+
+#include "solver/input/toml_reader.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "solver/tests/scene_file.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const Range kFinite{"finite", [](double x) { return std::isfinite(x); }};
+
+constexpr const char* kSteps = R"(names = [1, 2]
+[[step]]
+force = 1
+[[step]]
+force = 2
+twist = 3
+[[step]]
+[[step.part]]
+length = 4
+)";
+
+class Tables : public SceneFile {
+ protected:
+  SceneReader reader(const std::string& text, const std::vector<std::string>& overrides = {}) const {
+    return {write("steps.toml", text), overrides};
+  }
+};
+
+TEST_F(Tables, AreCountedAndReadByIndex) {
+  SceneReader steps = reader(kSteps);
+  EXPECT_EQ(steps.count("step"), 3);
+  EXPECT_EQ(steps.count("stage"), 0);
+  EXPECT_EQ(steps.count("step[2].part"), 1);
+  EXPECT_EQ(steps.number("step[0].force", kFinite), 1.0);
+  EXPECT_EQ(steps.number("step[1].force", kFinite), 2.0);
+  EXPECT_EQ(steps.find_number("step[0].twist", kFinite), std::nullopt);
+  EXPECT_EQ(steps.number("step[2].part[0].length", kFinite), 4.0);
+  EXPECT_EQ(steps.pair("names", kFinite)[1], 2.0);  // an array, but of numbers
+  EXPECT_THAT(complaint([&] { steps.reject_unknown(); }),
+              AllOf(HasSubstr("steps.toml:6"), HasSubstr("step[1].twist = 3: unknown key")));
+  steps.find_number("step[1].twist", kFinite);
+  steps.reject_unknown();
+}
+
+TEST_F(Tables, AreReadAsOverridesOfAnotherFile) {
+  SceneReader steps = reader(
+      "[[step]]\n[[step]]\nword = 1\n  set = { \"load.force\" = [1e-8, 2.0], load.name = \"a b\", on = true "
+      "}\n");
+  EXPECT_THAT(steps.assignments("step[1].set"),
+              testing::UnorderedElementsAre("load.force=[1e-08, 2]", "load.name='a b'", "on=true"));
+  EXPECT_THAT(steps.assignments("step[0].set"), testing::IsEmpty());
+  EXPECT_EQ(steps.line("step[1]"), 2);
+  EXPECT_EQ(steps.line("step[1].set"), 4);
+  EXPECT_EQ(steps.line("step[2]"), 0);
+  EXPECT_FALSE(steps.is_text("step[1].word"));
+  steps.reject_unknown();  // what an assignment holds is known
+  EXPECT_THAT(complaint([&] { steps.assignments("step[1].word"); }),
+              AllOf(HasSubstr("step[1].word = 1"), HasSubstr("allowed: a table")));
+  const SceneReader other(write("other.toml", ""), {"load.force=[1e-08, 2]", "load.name='a b'", "on=true"});
+}
+
+TEST_F(Tables, AreToldFromOtherValues) {
+  for (const char* value : {"3", "\"text\"", "[1, 2]", "[]", "[{}, 1]"}) {
+    SceneReader other = reader(std::string("step = ") + value);
+    EXPECT_THAT(complaint([&] { other.count("step"); }),
+                AllOf(HasSubstr("steps.toml:1"), HasSubstr("step = "), HasSubstr("allowed: tables"),
+                      HasSubstr("[[step]]")))
+        << value;
+    EXPECT_EQ(other.is_array("step"), value[0] == '[');
+  }
+  EXPECT_FALSE(reader("").is_array("step"));
+}
+
+TEST_F(Tables, NameTheNearestKeyOfTheSameTable) {
+  SceneReader steps = reader("[[step]]\nforce = 1\n[[step]]\nfrce = 2\n");
+  for (const char* key : {"step[0].force", "step[1].force"}) steps.find_number(key, kFinite);
+  EXPECT_THAT(complaint([&] { steps.reject_unknown(); }),
+              AllOf(HasSubstr("steps.toml:4"), HasSubstr("step[1].frce = 2"),
+                    HasSubstr("nearest known one is step[1].force")));
+  SceneReader asked = reader("[[step]]\nfrce = 1\n");
+  EXPECT_THAT(complaint([&] { asked.number("step[0].force", kFinite); }),
+              AllOf(HasSubstr("step[0].frce = 1"), HasSubstr("nearest known one is step[0].force")));
+}
+
+TEST_F(Tables, AreOverriddenByIndex) {
+  SceneReader steps = reader(kSteps, {"step[0].force=7", "step[0].twist=8", "step[2].part[0].length=9"});
+  EXPECT_EQ(steps.count("step"), 3);
+  EXPECT_EQ(steps.number("step[0].force", kFinite), 7.0);
+  EXPECT_EQ(steps.number("step[0].twist", kFinite), 8.0);
+  EXPECT_EQ(steps.number("step[1].force", kFinite), 2.0);
+  EXPECT_EQ(steps.number("step[2].part[0].length", kFinite), 9.0);
+  EXPECT_THAT(complaint([&] { steps.fail("step[0].force", "7", "less"); }), HasSubstr("--set"));
+}
+
+TEST_F(Tables, AreNotMadeByOverrides) {
+  for (const char* path : {"step[3].force", "step[].force", "step[-1].force", "step[x].force",
+                           "names[0].force", "stage[0].force", "step[2].part[1].length"}) {
+    EXPECT_THAT(complaint([&] { reader(kSteps, {std::string(path) + "=1"}); }),
+                AllOf(HasSubstr(std::string("--set ") + path), HasSubstr("is not a table of the scene file")))
+        << path;
+  }
+}
+
+TEST_F(Tables, DropWhatAnOverrideReplaces) {
+  SceneReader steps = reader(kSteps, {"step[1].force=7"});
+  steps.prefer_overridden({"step[1].twist", "step[1].force"});
+  EXPECT_FALSE(steps.has("step[1].twist"));
+  EXPECT_EQ(steps.number("step[1].force", kFinite), 7.0);
+  EXPECT_EQ(steps.number("step[0].force", kFinite), 1.0);
+}
+
+}  // namespace
+}  // namespace slipstick::solver

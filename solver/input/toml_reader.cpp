@@ -1,0 +1,366 @@
+#include "solver/input/toml_reader.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cstdint>
+#include <sstream>
+
+#include "solver/input/input_error.hpp"
+#include "solver/input/input_file.hpp"
+#include "solver/input/misspelling.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+/// Edits that make a key look like a misspelling of another.
+constexpr std::size_t kMisspelling = 3;
+/// Parts of a dotted key. No key that is read has more than five; keys nest 256 deep at most.
+constexpr std::size_t kMostKeyParts = 32;
+
+std::string read_text(const std::filesystem::path& file) {
+  const std::string text = read_input_file(file, kLargestSettings, "a TOML file");
+  if (text.find('\0') != std::string::npos) {
+    throw InputError(file.string(), "is a binary file; allowed: a TOML file");
+  }
+  return text;
+}
+
+/// Tables in tables end one another recursively: keys of a million parts would overrun the stack. What counts
+/// are words with dots between, wherever they stand (quoted ones may hold blanks), those of the tables in
+/// braces around them among them.
+void require_short_keys(const std::string& text, const std::string& file) {
+  std::size_t line = 1;
+  std::size_t parts = 1;
+  std::size_t around = 0;           // parts of the keys of all open braces
+  std::vector<std::size_t> braces;  // and of each
+  std::size_t of_value = 1;         // parts of the key before the last '='
+  char last = '\n';                 // that is no blank
+  bool after_dot = false;
+  bool after_blank = false;
+  bool quoted = false;
+  for (const char c : text) {
+    if (c == '\n') ++line;
+    if (c == ' ' || c == '\t') {
+      after_blank = true;
+      continue;
+    }
+    if (c == '{' && std::string_view("=,[").find(last) != std::string_view::npos) {
+      braces.push_back(last == '=' ? of_value : 1);
+      around += braces.back();
+    } else if (c == '}' && !braces.empty()) {
+      around -= braces.back();
+      braces.pop_back();
+    } else if (c == '\n') {
+      braces.clear();
+      around = 0;
+    }
+    last = c;
+    const bool other_word = after_blank && !after_dot && !quoted && c != '.';
+    after_blank = false;
+    if (other_word || c == '\n' || c == '=' || c == ',') {
+      if (c == '=') of_value = parts;
+      parts = 1;
+      after_dot = quoted = false;
+    } else if (c == '.') {
+      after_dot = true;
+    } else if (after_dot) {
+      after_dot = false;
+      ++parts;
+    }
+    if (around + parts > kMostKeyParts) {
+      throw InputError(fmt::format("{}:{}", file, line),
+                       fmt::format("a key of more than {0} parts; allowed: {0}", kMostKeyParts));
+    }
+    quoted = quoted || c == '"' || c == '\'';
+  }
+}
+
+toml::table parse(const std::string& text, const std::string& file) {
+  require_short_keys(text, file);
+  try {
+    return toml::parse(text, file);
+  } catch (const toml::parse_error& error) {
+    throw InputError(fmt::format("{}:{}", file, error.source().begin.line), std::string(error.description()));
+  }
+}
+
+/// A value as a scene has it: numbers with the fewest digits that read back the same.
+std::string print(const toml::node& node) {
+  if (const auto* const number = node.as_floating_point()) return fmt::format("{}", number->get());
+  if (const auto* const array = node.as_array()) {
+    std::vector<std::string> parts;
+    for (const toml::node& part : *array) parts.push_back(print(part));
+    return fmt::format("[{}]", fmt::join(parts, ", "));
+  }
+  std::ostringstream text;
+  text << toml::node_view<const toml::node>(node);
+  return text.str();
+}
+
+/// Nothing where it is no number. Whole numbers of more than 53 bits are rounded: toml++ has no double for
+/// them.
+std::optional<double> number_of(const toml::node& node) {
+  if (const auto* const whole = node.as_integer()) return static_cast<double>(whole->get());
+  if (const auto* const number = node.as_floating_point()) return number->get();
+  return std::nullopt;
+}
+
+bool is_array_of_tables(const toml::node& node) {
+  return node.is_array() && node.is_homogeneous<toml::table>();
+}
+
+/// Dotted paths of all leaves of a table.
+void collect_leaves(const toml::table& table, const std::string& prefix, std::vector<std::string>& leaves) {
+  for (const auto& [name, child] : table) {
+    const std::string key = prefix + std::string(name.str());
+    if (const toml::table* const inner = child.as_table()) {
+      collect_leaves(*inner, key + ".", leaves);
+    } else if (is_array_of_tables(child)) {
+      const toml::array& tables = *child.as_array();
+      for (std::size_t i = 0; i < tables.size(); ++i) {
+        collect_leaves(*tables[i].as_table(), fmt::format("{}[{}].", key, i), leaves);
+      }
+    } else {
+      leaves.push_back(key);
+    }
+  }
+}
+
+/// "key=value" for all leaves of a table, keys dotted, values as TOML has them.
+void collect_assignments(const toml::table& table, const std::string& prefix,
+                         std::vector<std::string>& assignments) {
+  for (const auto& [name, child] : table) {
+    const std::string key = prefix + std::string(name.str());
+    if (const toml::table* const inner = child.as_table()) {
+      collect_assignments(*inner, key + ".", assignments);
+    } else {
+      assignments.push_back(fmt::format("{}={}", key, print(child)));
+    }
+  }
+}
+
+/// The table that one part of a dotted path names, "name" or "name[index]": one without an index is made
+/// where it is missing. Null where something else stands there, or nothing.
+toml::table* table_below(toml::table& table, const std::string& part) {
+  if (part.ends_with(']')) return table.at_path(part).as_table();
+  return table.insert(part, toml::table{}).first->second.as_table();
+}
+
+}  // namespace
+
+Range whole(double low, double high) {
+  return {fmt::format("a whole number from {:g} to {:g}", low, high),
+          [low, high](double x) { return x >= low && x <= high && x == std::floor(x); }};
+}
+
+SceneReader::SceneReader(const std::filesystem::path& file, const std::vector<std::string>& overrides)
+    : file_(file), root_(parse(read_text(file), file.string())) {
+  for (const std::string& assignment : overrides) apply_override(assignment);
+}
+
+void SceneReader::apply_override(const std::string& assignment) {
+  const std::string source = fmt::format("--set {}", assignment);
+  const auto equals = assignment.find('=');
+  if (equals == std::string::npos || equals == 0) throw InputError(source, "allowed: key=value");
+  const std::string key = assignment.substr(0, equals);
+  const std::string value = assignment.substr(equals + 1);
+  toml::table parsed;
+  try {
+    parsed = toml::parse(fmt::format("value = {}", value));
+  } catch (const toml::parse_error&) {  // a bare word is a string
+    parsed = toml::table{{"value", value}};
+  }
+  toml::table* table = &root_;
+  std::istringstream path(key);
+  std::string part;
+  std::vector<std::string> parts;
+  while (std::getline(path, part, '.')) parts.push_back(part);
+  if (parts.empty() || parts.size() > kMostKeyParts) {
+    throw InputError(source, fmt::format("allowed: a key of 1 to {} parts", kMostKeyParts));
+  }
+  for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
+    table = table_below(*table, parts[i]);
+    if (table == nullptr) {
+      throw InputError(
+          source,
+          fmt::format("{} is not a table{}", parts[i],
+                      parts[i].ends_with(']') ? " of the scene file, where they are counted from 0" : ""));
+    }
+  }
+  table->insert_or_assign(parts.back(), *parsed.get("value"));
+  overridden_.insert(key);
+}
+
+void SceneReader::prefer_overridden(const std::vector<std::string>& alternatives) {
+  const auto overridden = [&](const std::string& key) { return overridden_.contains(key); };
+  if (std::none_of(alternatives.begin(), alternatives.end(), overridden)) return;
+  for (const std::string& key : alternatives) {
+    if (overridden(key) || !root_.at_path(key)) continue;
+    const auto dot = key.rfind('.');
+    root_.at_path(key.substr(0, dot)).as_table()->erase(key.substr(dot + 1));
+  }
+}
+
+std::string SceneReader::where(const std::string& key) const {
+  if (overridden_.contains(key)) return "--set";
+  const auto node = root_.at_path(key);
+  return node ? fmt::format("{}:{}", file_.string(), node.node()->source().begin.line) : file_.string();
+}
+
+void SceneReader::fail(const std::string& key, const std::string& value, const std::string& allowed) const {
+  throw InputError(where(key), key, value, allowed);
+}
+
+/// A key that is missing may be there under a misspelt name: then that is what to say.
+void SceneReader::fail_missing(const std::string& key, const std::string& allowed) const {
+  std::vector<std::string> leaves;
+  collect_leaves(root_, "", leaves);
+  for (const std::string& leaf : leaves) {
+    const bool similar = leaf.size() <= key.size() + kMisspelling && edit_distance(leaf, key) <= kMisspelling;
+    if (similar && !known_.contains(leaf)) fail_unknown(leaf);
+  }
+  const std::string parent = key.substr(0, key.rfind('.'));
+  const auto found = root_.at_path(parent);
+  if (found && !found.is_table())
+    fail(parent, print(*found.node()), fmt::format("a table with the key {}", key));
+  fail(key, "(missing)", allowed);
+}
+
+void SceneReader::fail_unknown(const std::string& key) const {
+  const auto found = root_.at_path(key);  // not found where a quoted key holds a dot or a bracket
+  throw InputError(where(key), fmt::format("{} = {}: unknown key; the nearest known one is {}", key,
+                                           found ? print(*found.node()) : "...",
+                                           nearest_word(key, {known_.begin(), known_.end()})));
+}
+
+void SceneReader::fail_choice(const std::string& key, const std::string& word,
+                              const std::vector<std::string>& allowed) const {
+  fail(key, fmt::format("\"{}\"", word), fmt::format("{}", fmt::join(allowed, ", ")));
+}
+
+toml::node_view<toml::node> SceneReader::node(const std::string& key) {
+  known_.insert(key);
+  return root_.at_path(key);
+}
+
+bool SceneReader::has(const std::string& key) { return static_cast<bool>(node(key)); }
+
+bool SceneReader::is_array(const std::string& key) { return node(key).is_array(); }
+
+bool SceneReader::is_text(const std::string& key) { return node(key).is_string(); }
+
+std::size_t SceneReader::line(const std::string& key) const {
+  const auto found = root_.at_path(key);
+  return found ? found.node()->source().begin.line : 0;
+}
+
+std::size_t SceneReader::count(const std::string& key) {
+  const auto found = node(key);
+  if (!found) return 0;
+  if (!is_array_of_tables(*found.node())) {
+    fail(key, print(*found.node()), fmt::format("tables, each headed [[{}]]", key));
+  }
+  return found.as_array()->size();
+}
+
+std::optional<double> SceneReader::find_number(const std::string& key, const Range& range) {
+  const auto found = node(key);
+  if (!found) return std::nullopt;
+  const auto value = number_of(*found.node());
+  if (!value) fail(key, print(*found.node()), fmt::format("a number, {}", range.words));
+  if (!range.contains(*value)) fail(key, print(*found.node()), range.words);
+  return value;
+}
+
+double SceneReader::number(const std::string& key, const Range& range) {
+  const auto value = find_number(key, range);
+  if (!value) fail_missing(key, fmt::format("a number, {}", range.words));
+  return *value;
+}
+
+double SceneReader::number_or(const std::string& key, double otherwise, const Range& range) {
+  return find_number(key, range).value_or(otherwise);
+}
+
+std::optional<std::array<double, 2>> SceneReader::find_pair(const std::string& key, const Range& range) {
+  const auto found = node(key);
+  if (!found) return std::nullopt;
+  const toml::array* const array = found.as_array();
+  const std::string allowed = fmt::format("[a, b], two numbers, each {}", range.words);
+  if (array == nullptr || array->size() != 2) fail(key, print(*found.node()), allowed);
+  std::array<double, 2> pair{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto value = number_of((*array)[i]);
+    if (!value || !range.contains(*value)) fail(key, print(*found.node()), allowed);
+    pair[i] = *value;
+  }
+  return pair;
+}
+
+std::array<double, 2> SceneReader::pair(const std::string& key, const Range& range) {
+  const auto value = find_pair(key, range);
+  if (!value) fail_missing(key, fmt::format("[a, b], two numbers, each {}", range.words));
+  return *value;
+}
+
+std::vector<double> SceneReader::numbers(const std::string& key, const Range& range) {
+  std::vector<double> values;
+  const std::size_t count = list(key).size();
+  for (std::size_t i = 0; i < count; ++i) values.push_back(number(fmt::format("{}[{}]", key, i), range));
+  return values;
+}
+
+std::vector<std::string> SceneReader::list(const std::string& key) {
+  const auto found = node(key);
+  if (!found) return {};
+  const toml::array* const array = found.as_array();
+  if (array == nullptr || array->empty())
+    fail(key, print(*found.node()), "a list, [a, b, ...], of at least one");
+  std::vector<std::string> elements;
+  for (const toml::node& element : *array) elements.push_back(print(element));
+  return elements;
+}
+
+bool SceneReader::flag_or(const std::string& key, bool otherwise) {
+  const auto found = node(key);
+  if (!found) return otherwise;
+  if (!found.is_boolean()) fail(key, print(*found.node()), "true, false");
+  return *found.value<bool>();
+}
+
+std::vector<std::string> SceneReader::assignments(const std::string& key) {
+  const auto found = node(key);
+  if (!found) return {};
+  if (!found.is_table()) fail(key, print(*found.node()), "a table, { \"key\" = value }");
+  std::vector<std::string> leaves;
+  collect_leaves(*found.as_table(), key + ".", leaves);
+  known_.insert(leaves.begin(), leaves.end());
+  std::vector<std::string> assignments;
+  collect_assignments(*found.as_table(), "", assignments);
+  return assignments;
+}
+
+std::string SceneReader::text(const std::string& key) {
+  const auto found = node(key);
+  if (!found) fail_missing(key, "a string");
+  if (!found.is_string()) fail(key, print(*found.node()), "a string");
+  return *found.value<std::string>();
+}
+
+std::string SceneReader::text_or(const std::string& key, const std::string& otherwise) {
+  return has(key) ? text(key) : otherwise;
+}
+
+std::filesystem::path SceneReader::path(const std::string& key) { return file_.parent_path() / text(key); }
+
+void SceneReader::reject_unknown() const {
+  std::vector<std::string> leaves;
+  collect_leaves(root_, "", leaves);
+  for (const std::string& leaf : leaves) {
+    if (!known_.contains(leaf)) fail_unknown(leaf);
+  }
+}
+
+}  // namespace slipstick::solver

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <algorithm>
+#include <span>
+
+#include "solver/grid/grid_transfer.hpp"
+#include "solver/newton/natural_map_newton.hpp"
+
+namespace slipstick::solver {
+
+/// What a nested solve ends with on its finest grid.
+struct NestedSummary {
+  NewtonSummary newton;
+  Eigen::ArrayXd field;         ///< q or p
+  Eigen::ArrayXd displacement;  ///< K q
+  Eigen::ArrayXd slip;          ///< K q + g - multipliers c
+  std::vector<GridWork> grids;  ///< coarsest first
+  double bytes = 0.0;           ///< operators and workspaces on the finest grid
+};
+
+/// A coarse grid's answer need not be better than its mesh: gap over energy of the order of (h/a)^2.
+inline double coarse_tolerance(const Grid& grid) {
+  const double mirrored = grid.quadrant ? 4.0 : 1.0;
+  return 1.0 / (mirrored * static_cast<double>(grid.cells()));
+}
+
+/// What NestedSummary::bytes of such a solve with so many conditions will be.
+template <class Set>
+double predicted_nested_bytes(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel,
+                              std::size_t conditions) {
+  const auto bytes = [&]<typename Real>(Real) {
+    return GridOperators<Real>::predicted_bytes(elasticity, grid, kernel) +
+           NaturalMapNewton<Set, Real>::bytes(static_cast<double>(grid.cells()), conditions);
+  };
+  return elasticity.precision == Precision::mixed ? bytes(0.0F) : bytes(0.0);
+}
+
+/// Solves from the coarsest grid up, inner iterations in the precision Real. Problem gives, for its grid,
+/// kernel(), parities(), admissible(), start(), coarsened(coarse grid), and program(operator). From coarse
+/// grids only the change from start() is taken: start() itself is known in full.
+template <typename Real, class Problem>
+NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Problem problem,
+                              const NewtonOptions& options) {
+  NestedSummary result;
+  Coefficients multipliers;
+  result.field = problem.start();
+  if (can_coarsen(grid)) {
+    const Grid coarse = coarser(grid);
+    NewtonOptions coarse_options = options;
+    coarse_options.tolerance = std::max(options.tolerance, coarse_tolerance(coarse));
+    coarse_options.refine_multipliers = false;
+    coarse_options.progress = nullptr;
+    const Problem on_coarse = problem.coarsened(grid, coarse);
+    const Eigen::ArrayXd start = on_coarse.start();
+    NestedSummary below = solve_nested_in<Real>(elasticity, coarse, on_coarse, coarse_options);
+    result.grids = std::move(below.grids);
+    if (below.field.isFinite().all()) {
+      result.field += prolong_to(grid, coarse, below.field - start, problem.parities());
+    }
+    multipliers = below.newton.multipliers;
+  }
+
+  GridOperators<Real> operators(elasticity, grid, problem.kernel());
+  const auto admissible = problem.admissible();
+  const ConvexProgram program = problem.program(*operators.op);
+  NaturalMapNewton<std::remove_const_t<decltype(admissible)>, Real> newton(
+      admissible, program, *operators.op, operators.inner(), *operators.symbol);
+  result.newton = newton.run(result.field, multipliers, options);
+  result.displacement = newton.displacement();
+  newton.write_slip(result.slip);
+  result.grids.push_back(
+      {grid.n1, grid.n2, newton.applications(), result.newton.iterations, result.newton.gap});
+  result.bytes =
+      operators.bytes() + newton.bytes(static_cast<double>(grid.cells()), newton.conditions(program));
+  return result;
+}
+
+/// In the precision that is asked for.
+template <class Problem>
+NestedSummary solve_nested(const Elasticity& elasticity, const Grid& grid, const Problem& problem,
+                           const NewtonOptions& options) {
+  return elasticity.precision == Precision::mixed
+             ? solve_nested_in<float>(elasticity, grid, problem, options)
+             : solve_nested_in<double>(elasticity, grid, problem, options);
+}
+
+}  // namespace slipstick::solver

@@ -1,0 +1,112 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cmath>
+
+#include "solver/grid/grid.hpp"
+
+namespace slipstick::solver {
+
+/// Where each cell's traction may move once its state is fixed, with what that adds to the operator there:
+/// freely in a stick cell, along its circle in a slip cell, not at all outside. On fields of that kind the
+/// linearised problem is K + stiffness, and
+///
+///   scale * projector * (inverse symbol) * projector * scale + shift * projector
+///
+/// is close to its inverse. The two terms reproduce 1/(1/xi + stiffness), the symbol of the inverse where the
+/// stiffness varies slowly, at the wave numbers xi = P and P/12, P the mean of the inverse symbol along the
+/// free direction; one term alone is wrong by the ratio of the largest to the smallest wave number where the
+/// stiffness is large.
+///
+/// Real is the precision of the inner iteration.
+template <typename Real>
+struct TangentSpace {
+  using Field = Eigen::Array<Real, Eigen::Dynamic, 1>;
+
+  /// Of vectors (2 components) or scalars (1), on so many cells. Nothing is free: a linearisation counts the
+  /// cells that change.
+  TangentSpace(Index components, Index cells)
+      : a11(Field::Zero(cells)),
+        a12(Field::Zero(components == 2 ? cells : 0)),
+        a22(a12),
+        stiffness(a12),
+        scale(a12),
+        shift(a12) {}
+
+  Index components() const { return a12.size() > 0 ? 2 : 1; }
+
+  /// A cell that does not move, or moves freely.
+  void set(Index cell, bool free) {
+    a11[cell] = Real(free);
+    if (components() == 1) return;
+    a22[cell] = Real(free);
+    a12[cell] = stiffness[cell] = shift[cell] = Real(0);
+    scale[cell] = Real(1);
+  }
+
+  /// A cell that moves along the unit vector (f1, f2) against a stiffness; mean: that of the inverse symbol
+  /// along it.
+  void set_line(Index cell, double f1, double f2, double along, double mean) {
+    constexpr double kLowOverMean = 1.0 / 12.0;
+    const double low = kLowOverMean * mean;
+    const double alpha = 1.0 / ((1.0 + along * low) * (1.0 + along * mean));
+    a11[cell] = static_cast<Real>(f1 * f1);
+    a12[cell] = static_cast<Real>(f1 * f2);
+    a22[cell] = static_cast<Real>(f2 * f2);
+    stiffness[cell] = static_cast<Real>(along);
+    scale[cell] = static_cast<Real>(std::sqrt(alpha));
+    shift[cell] = static_cast<Real>(alpha * along * low * mean);
+  }
+
+  /// y = projector * scale * r
+  void restrict_to(const Field& r, Field& y) const {
+    const Index n = a11.size();
+    if (components() == 1) {
+      y = a11 * r;
+      return;
+    }
+    for (Index i = 0; i < n; ++i) {
+      const Real r1 = scale[i] * r[i];
+      const Real r2 = scale[i] * r[i + n];
+      y[i] = a11[i] * r1 + a12[i] * r2;
+      y[i + n] = a12[i] * r1 + a22[i] * r2;
+    }
+  }
+
+  /// y = projector * (scale * y + shift * projector * r). Projected once only, what rounding leaves of the
+  /// part of r across the lines would enter r.y to first order, and no residual could fall below the root of
+  /// its rounding.
+  void complete(const Field& r, Field& y) const {
+    const Index n = a11.size();
+    if (components() == 1) {
+      y *= a11;
+      return;
+    }
+    for (Index i = 0; i < n; ++i) {
+      const Real r1 = a11[i] * r[i] + a12[i] * r[i + n];
+      const Real r2 = a12[i] * r[i] + a22[i] * r[i + n];
+      const Real y1 = scale[i] * y[i] + shift[i] * r1;
+      const Real y2 = scale[i] * y[i + n] + shift[i] * r2;
+      y[i] = a11[i] * y1 + a12[i] * y2;
+      y[i + n] = a12[i] * y1 + a22[i] * y2;
+    }
+  }
+
+  /// Kd += stiffness * d
+  void add_stiffness(const Field& d, Field& Kd) const {
+    const Index n = a11.size();
+    if (components() == 1) return;
+    Kd.head(n) += stiffness * d.head(n);
+    Kd.tail(n) += stiffness * d.tail(n);
+  }
+
+  static double bytes(Index components, double cells) {
+    return (components == 2 ? 6.0 : 1.0) * sizeof(Real) * cells;
+  }
+
+  Field a11, a12, a22;  ///< the projector, symmetric
+  Field stiffness;      ///< lambda = |s|/(mu p) in slip cells
+  Field scale, shift;   ///< of the preconditioner
+};
+
+}  // namespace slipstick::solver

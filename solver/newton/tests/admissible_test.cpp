@@ -1,0 +1,419 @@
+#include "solver/newton/admissible.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::ArrayXf;
+using Eigen::Matrix2d;
+using Eigen::MatrixXd;
+
+constexpr double kRounding = 1e-13;
+constexpr Index kCells = 40;
+constexpr std::array<double, 2> kMeans{1.7, 0.9};
+constexpr double kRho = 0.3;
+
+class Random {
+ public:
+  explicit Random(unsigned seed) : generator_(seed) {}
+  double value() { return std::uniform_real_distribution<double>(-1.0, 1.0)(generator_); }
+  ArrayXd field(Index size) {
+    return ArrayXd::NullaryExpr(size, [this] { return value(); });
+  }
+  /// Some cells without friction among bounds up to 1.
+  ArrayXd bounds(Index cells) {
+    ArrayXd bound = field(cells);
+    return (bound > -0.6).select(bound.abs() + 0.01, 0.0);
+  }
+  /// 1 where the bodies can touch.
+  ArrayXd reachable(Index cells) { return (field(cells) > -0.5).cast<double>(); }
+  /// Symmetric, positive definite.
+  MatrixXd stiffness(Index size) {
+    const MatrixXd factor = MatrixXd::NullaryExpr(size, size, [this] { return value(); });
+    return factor * factor.transpose() / static_cast<double>(size) + 0.1 * MatrixXd::Identity(size, size);
+  }
+
+ private:
+  std::mt19937_64 generator_;
+};
+
+template <class Set>
+ArrayXd projected(const Set& set, ArrayXd field) {
+  set.project(field);
+  return field;
+}
+
+template <class Set>
+constexpr Index size_of() {
+  return Set::kComponents * kCells;
+}
+
+double energy(const MatrixXd& K, const ArrayXd& g, const ArrayXd& q) {
+  return 0.5 * q.matrix().dot(K * q.matrix()) + (g * q).sum();
+}
+
+ArrayXd displacement(const MatrixXd& K, const ArrayXd& g, const ArrayXd& q) {
+  return (K * q.matrix()).array() + g;
+}
+
+/// On the segment between two fields, where c.q is what was asked for; a convex set holds it with its ends.
+ArrayXd with_load(const ArrayXd& below, const ArrayXd& above, const ArrayXd& c, double load) {
+  const double low = (below * c).sum();
+  const double high = (above * c).sum();
+  EXPECT_TRUE(low <= load && load <= high) << low << ' ' << load << ' ' << high;
+  return below + (load - low) / (high - low) * (above - below);
+}
+
+// --- both sets: projection, load along a line, gap ---
+
+template <class Set>
+class Admissible : public testing::Test {
+ protected:
+  /// Bounds, or which cells can be reached.
+  static ArrayXd shape(unsigned seed) {
+    Random random(seed);
+    return Set::kComponents == 2 ? random.bounds(kCells) : random.reachable(kCells);
+  }
+  /// Made without the projection; every other cell is on its set's edge, or far out.
+  static ArrayXd random_admissible(const ArrayXd& shape, Random& random) {
+    ArrayXd q(size_of<Set>());
+    for (Index i = 0; i < kCells; ++i) {
+      const double part = std::min(2.0 * std::abs(random.value()), 1.0);
+      const double angle = 4.0 * random.value();
+      q[i] = Set::kComponents == 2 ? shape[i] * part * std::cos(angle) : shape[i] * 2.0 * (1.0 - part);
+      if (Set::kComponents == 2) q[i + kCells] = shape[i] * part * std::sin(angle);
+    }
+    return q;
+  }
+  static ArrayXd extreme(const Set& set, const ArrayXd& c, double length) {
+    return projected(set, length * c);
+  }
+};
+using Sets = testing::Types<PositivePressures, FrictionDiscs>;
+
+struct SetNames {
+  template <class Set>
+  static std::string GetName(int) {
+    return Set::kComponents == 2 ? "FrictionDiscs" : "PositivePressures";
+  }
+};
+TYPED_TEST_SUITE(Admissible, Sets, SetNames);
+
+/// The projection p of z onto a convex set is the point with (z - p).(q - p) <= 0 for all q in it.
+TYPED_TEST(Admissible, ProjectionIsTheNearestPoint) {
+  const ArrayXd shape = this->shape(1);
+  const TypeParam set(shape);
+  Random random(2);
+  const ArrayXd z = 2.0 * random.field(size_of<TypeParam>());
+  const ArrayXd p = projected(set, z);
+  for (int i = 0; i < 200; ++i) {
+    const ArrayXd q = this->random_admissible(shape, random);
+    const ArrayXd towards = (z - p) * (q - p);
+    for (Index cell = 0; cell < kCells; ++cell) {
+      EXPECT_LE(towards[cell] + (TypeParam::kComponents == 2 ? towards[cell + kCells] : 0.0), kRounding);
+    }
+  }
+}
+
+TYPED_TEST(Admissible, ProjectionLeavesAdmissibleFieldsAlone) {
+  const ArrayXd shape = this->shape(3);
+  const TypeParam set(shape);
+  Random random(4);
+  const ArrayXd p = projected(set, 2.0 * random.field(size_of<TypeParam>()));
+  EXPECT_LE((projected(set, p) - p).abs().maxCoeff(), 1e-15);
+  EXPECT_TRUE((projected(set, ArrayXd(0.5 * p)) == 0.5 * p).all());
+  for (Index i = 0; i < kCells; ++i) {
+    if (shape[i] != 0.0) continue;
+    for (Index c = 0; c < TypeParam::kComponents; ++c) EXPECT_EQ(p[i + c * kCells], 0.0);
+  }
+}
+
+template <typename Set, typename Direction>
+LoadsAlong<1> along(const Set& set, const ArrayXd& y, const Direction& direction, double x,
+                    const ArrayXd& c) {
+  return set.template loads_along<1, Direction>(y, {&direction}, Eigen::Vector<double, 1>(x), {&c});
+}
+
+TYPED_TEST(Admissible, LoadAlongALineIsThatOfItsProjection) {
+  const ArrayXd shape = this->shape(5);
+  const TypeParam set(shape);
+  Random random(6);
+  const ArrayXd y = random.field(size_of<TypeParam>());
+  const ArrayXd direction = random.field(size_of<TypeParam>());
+  const ArrayXd c = random.field(size_of<TypeParam>());
+  const auto load = [&](double x) { return (c * projected(set, ArrayXd(y + x * direction))).sum(); };
+  for (const double x : {-3.0, -0.41, 0.0, 0.77, 5.0}) {
+    const LoadsAlong<1> at = along(set, y, direction, x, c);
+    EXPECT_NEAR(at.load[0], load(x), kRounding);
+    // A cell that changes its state within the step would show as half its part of the slope.
+    constexpr double step = 1e-6;
+    EXPECT_NEAR(at.slope(0, 0), (load(x + step) - load(x - step)) / (2.0 * step), 1e-8);
+  }
+}
+
+TYPED_TEST(Admissible, LoadAlongTakesDirectionsInSinglePrecision) {
+  const ArrayXd shape = this->shape(7);
+  const TypeParam set(shape);
+  Random random(8);
+  const ArrayXd y = random.field(size_of<TypeParam>());
+  const ArrayXf direction = random.field(size_of<TypeParam>()).template cast<float>();
+  const ArrayXd same = direction.template cast<double>();
+  const ArrayXd c = random.field(size_of<TypeParam>());
+  EXPECT_EQ(along(set, y, direction, 0.3, c).load, along(set, y, same, 0.3, c).load);
+  EXPECT_EQ(along(set, y, direction, 0.3, c).slope, along(set, y, same, 0.3, c).slope);
+}
+
+/// Whatever the multiplier, the gap is at least what the energy can fall by under the same load, and
+/// positive.
+TYPED_TEST(Admissible, GapBoundsWhatTheEnergyCanFallBy) {
+  const ArrayXd shape = this->shape(9);
+  const TypeParam set(shape);
+  Random random(10);
+  const Index size = size_of<TypeParam>();
+  const MatrixXd K = random.stiffness(size);
+  const ArrayXd g = random.field(size);
+  // The load of pressures weighs all cells that can be reached alike.
+  const ArrayXd c = TypeParam::kComponents == 1 ? shape : random.field(size);
+  const ArrayXd above = this->extreme(set, c, 100.0);
+  const ArrayXd below = this->extreme(set, c, -100.0);
+  for (int i = 0; i < 30; ++i) {
+    const ArrayXd q = this->random_admissible(shape, random);
+    const double gap = set.gap(q, displacement(K, g, q) - random.value() * c);
+    EXPECT_GT(gap, 0.0);  // random fields do not obey the law
+    for (int j = 0; j < 30; ++j) {
+      const ArrayXd other = this->random_admissible(shape, random);
+      const double load = (q * c).sum();
+      const ArrayXd same_load =
+          (other * c).sum() < load ? with_load(other, above, c, load) : with_load(below, other, c, load);
+      EXPECT_GE(gap, energy(K, g, q) - energy(K, g, same_load) - kRounding);
+    }
+  }
+}
+
+TYPED_TEST(Admissible, GapIsNotANumberWhereADisplacementIsNone) {
+  const ArrayXd shape = ArrayXd::Ones(kCells);
+  const TypeParam set(shape);
+  Random random(11);
+  const ArrayXd q = this->random_admissible(shape, random);
+  for (const Index cell : {Index{0}, Index{17}, kCells - 1}) {
+    ArrayXd u = random.field(size_of<TypeParam>());
+    u[cell] = std::nan("");
+    EXPECT_TRUE(std::isnan(set.gap(q, u))) << cell;
+  }
+}
+
+// --- the gap of hand-made states ---
+
+TEST(FrictionGap, VanishesExactlyUnderCoulombsLaw) {
+  // Sticks within its bound; slips against its traction, twice; carries nothing where there is no pressure;
+  // sticks at its bound.
+  ArrayXd bound(5);
+  bound << 1.0, 5.0, 13.0, 0.0, 5.0;
+  ArrayXd q(10);
+  q << 0.3, -3.0, 5.0, 0.0, 3.0,  //
+      -0.4, -4.0, -12.0, 0.0, 4.0;
+  ArrayXd slip(10);
+  slip << 0.0, 6.0, -10.0, 7.0, 0.0,  //
+      0.0, 8.0, 24.0, -2.0, 0.0;
+  const FrictionDiscs set(bound);
+  const auto gap = [&](const ArrayXd& traction) { return set.gap(traction, slip); };
+  EXPECT_EQ(gap(q), 0.0);
+  // Each way to break it costs what theory says, s.q + mu p |s|.
+  ArrayXd turned = q;
+  turned[1] = 3.0;  // against s = (6, 8): 18 - 32 + 5*10
+  EXPECT_DOUBLE_EQ(gap(turned), 36.0);
+  ArrayXd weak = q;
+  weak[2] = weak[7] = 0.0;  // no traction on a slip of 26
+  EXPECT_DOUBLE_EQ(gap(weak), 13.0 * 26.0);
+}
+
+TEST(PressureGap, VanishesExactlyWhereOnlyTheClosestCellsPress) {
+  ArrayXd reachable(5);
+  reachable << 1.0, 1.0, 0.0, 1.0, 1.0;
+  ArrayXd p(5);
+  p << 2.0, 3.0, 0.0, 0.0, 0.0;
+  ArrayXd opening(5);
+  opening << 0.5, 0.5, -9.0, 0.5, 0.75;  // the lowest cannot be reached
+  const PositivePressures set(reachable);
+  EXPECT_EQ(set.gap(p, opening), 0.0);
+  p[4] = 2.0;
+  EXPECT_DOUBLE_EQ(set.gap(p, opening), 0.5);
+}
+
+// --- the linearised natural map ---
+
+Matrix2d projector(const TangentSpace<double>& space, Index cell) {
+  return (Matrix2d() << space.a11[cell], space.a12[cell], space.a12[cell], space.a22[cell]).finished();
+}
+
+/// d P(z)/dz in one cell.
+Matrix2d jacobian(const FrictionDiscs& set, const ArrayXd& z, Index cell) {
+  constexpr double step = 1e-6;
+  Matrix2d result;
+  for (const Index c : {0, 1}) {
+    ArrayXd shift = ArrayXd::Zero(z.size());
+    shift[cell + c * set.cells()] = step;
+    const ArrayXd slope =
+        (projected(set, ArrayXd(z + shift)) - projected(set, ArrayXd(z - shift))) / (2.0 * step);
+    result.col(c) << slope[cell], slope[cell + set.cells()];
+  }
+  return result;
+}
+
+/// d = P'(z)(d - rho K d) on the tangent space is (K + stiffness) d with P'(z) = projector/(1 + rho
+/// stiffness).
+TEST(FrictionLinearised, IsTheDerivativeOfTheProjection) {
+  Random random(13);
+  const ArrayXd bound = random.bounds(kCells);
+  const FrictionDiscs set(bound);
+  const ArrayXd z = 0.6 * random.field(2 * kCells);
+  TangentSpace<double> space(2, kCells);
+  set.linearise(z, kRho, kMeans, space);
+  Index slipping = 0;
+  Index sticking = 0;
+  for (Index i = 0; i < kCells; ++i) {
+    const Matrix2d expected = jacobian(set, z, i) * (1.0 + kRho * space.stiffness[i]);
+    EXPECT_LE((projector(space, i) - expected).cwiseAbs().maxCoeff(), 1e-8) << i;
+    EXPECT_GE(space.stiffness[i], 0.0);
+    slipping += space.stiffness[i] > 0.0;
+    sticking += space.stiffness[i] == 0.0 && space.a11[i] == 1.0 && space.a22[i] == 1.0;
+  }
+  EXPECT_GT(slipping, 5);
+  EXPECT_GT(sticking, 5);
+}
+
+TEST(FrictionLinearised, KnowsHandMadeStates) {
+  ArrayXd bound(3);
+  bound << 10.0, 5.0, 0.0;
+  ArrayXd z(6);
+  z << 6.0, 6.0, 1.0,  //
+      8.0, -8.0, 2.0;
+  const FrictionDiscs set(bound);
+  TangentSpace<double> space(2, 3);
+  set.linearise(z, kRho, kMeans, space);
+  EXPECT_EQ(projector(space, 0), Matrix2d::Identity());  // on its circle: sticks
+  EXPECT_EQ(space.stiffness[0], 0.0);
+  const Eigen::Vector2d along(0.8, 0.6);  // across z = (6, -8)
+  EXPECT_LE((projector(space, 1) - along * along.transpose()).cwiseAbs().maxCoeff(), 1e-15);
+  // q = (3, -4) slips by s = (q - z)/rho, of length 5/rho: |s|/(mu p) = 1/rho.
+  EXPECT_DOUBLE_EQ(space.stiffness[1], 1.0 / kRho);
+  EXPECT_EQ(projector(space, 2), Matrix2d::Zero());
+  EXPECT_EQ(space.stiffness[2], 0.0);
+}
+
+/// The two terms of the preconditioner together are 1/(1/xi + stiffness) at the mean along the line and at a
+/// twelfth of it.
+TEST(FrictionLinearised, PreconditionerMatchesTheSymbolTwice) {
+  Random random(14);
+  const ArrayXd bound = random.bounds(kCells);
+  TangentSpace<double> space(2, kCells);
+  FrictionDiscs(bound).linearise(2.0 * random.field(2 * kCells), kRho, kMeans, space);
+  for (Index i = 0; i < kCells; ++i) {
+    const double mean = space.a11[i] * kMeans[0] + space.a22[i] * kMeans[1];
+    for (const double xi : {mean, mean / 12.0}) {
+      if (space.stiffness[i] == 0.0) {
+        EXPECT_EQ(space.scale[i] * space.scale[i] * xi + space.shift[i], xi);
+      } else {
+        EXPECT_NEAR(space.scale[i] * space.scale[i] * xi + space.shift[i],
+                    1.0 / (1.0 / xi + space.stiffness[i]), 1e-14);
+      }
+    }
+  }
+}
+
+TEST(FrictionLinearised, CountsTheCellsThatChange) {
+  ArrayXd bound(4);
+  bound << 1.0, 1.0, 1.0, 0.0;
+  const FrictionDiscs set(bound);
+  TangentSpace<double> space(2, 4);
+  ArrayXd z = ArrayXd::Zero(8);
+  set.linearise(z, kRho, kMeans, space);
+  EXPECT_EQ(set.linearise(z, kRho, kMeans, space), 0);
+  z[0] = z[5] = 2.0;
+  EXPECT_EQ(set.linearise(z, kRho, kMeans, space), 2);
+  z[0] = -3.0;  // slips still
+  EXPECT_EQ(set.linearise(z, kRho, kMeans, space), 0);
+  z[0] = 0.5;
+  z[3] = 7.0;  // without a bound there is no state to change
+  EXPECT_EQ(set.linearise(z, kRho, kMeans, space), 1);
+  z[3] = 0.0;
+  EXPECT_EQ(set.linearise(z, kRho, kMeans, space), 0);
+}
+
+/// What the first linearisation counts must not depend on what the memory held before.
+TEST(FreshTangentSpace, HasNothingFree) {
+  {
+    const TangentSpace<double> used = [] {
+      TangentSpace<double> space(2, 1000);
+      for (Index i = 0; i < 1000; ++i) space.set_line(i, 0.6, 0.8, 3.0, 1.0);
+      return space;
+    }();
+  }
+  const TangentSpace<double> space(2, 1000);
+  for (const ArrayXd* field :
+       {&space.a11, &space.a12, &space.a22, &space.stiffness, &space.scale, &space.shift}) {
+    EXPECT_TRUE((*field == 0.0).all());
+  }
+}
+
+TEST(PressuresLinearised, AreFreeInContact) {
+  ArrayXd reachable(4);
+  reachable << 1.0, 1.0, 1.0, 0.0;
+  ArrayXd z(4);
+  z << 2.0, -1.0, 0.0, 3.0;
+  const PositivePressures set(reachable);
+  TangentSpace<double> space(1, 4);
+  for (Index i = 0; i < 4; ++i) space.set(i, false);
+  EXPECT_EQ(set.linearise(z, kRho, kMeans, space), 1);
+  EXPECT_TRUE((space.a11 == (ArrayXd(4) << 1.0, 0.0, 0.0, 0.0).finished()).all());
+  z << -2.0, 1.0, 0.5, 3.0;
+  EXPECT_EQ(set.linearise(z, kRho, kMeans, space), 3);
+  EXPECT_EQ(set.linearise(z, kRho, kMeans, space), 0);
+}
+
+/// After the jump, and nothing but it, each cell lies on the face on which z was projected: the tangent to
+/// its circle at P(z); or at zero pressure. The way along the face is left to the linear problem.
+TEST(Jump, PutsTractionsOnTheTangentThatTheNaturalMapChose) {
+  Random random(15);
+  const ArrayXd bound = random.bounds(kCells);
+  const FrictionDiscs set(bound);
+  const ArrayXd q = projected(set, random.field(2 * kCells));
+  const ArrayXd z = 0.6 * random.field(2 * kCells);
+  const ArrayXd target = projected(set, z);
+  const ArrayXd before = random.field(2 * kCells);
+  ArrayXd step = before;
+  set.add_jump(z, q, step);
+  for (Index i = 0; i < kCells; ++i) {
+    const Eigen::Vector2d jump(step[i] - before[i], step[i + kCells] - before[i + kCells]);
+    const Eigen::Vector2d at_z(z[i], z[i + kCells]);
+    const Eigen::Vector2d from(q[i], q[i + kCells]);
+    const Eigen::Vector2d to(target[i], target[i + kCells]);
+    if (at_z.norm() <= bound[i]) {
+      EXPECT_EQ(jump.norm(), 0.0) << "sticks: every traction is on the face";
+      continue;
+    }
+    EXPECT_NEAR((from + jump - to).dot(at_z), 0.0, kRounding);
+    EXPECT_NEAR(jump.x() * at_z.y() - jump.y() * at_z.x(), 0.0, kRounding) << "along the normal only";
+  }
+}
+
+TEST(Jump, EndsPressureWhereContactEnds) {
+  const ArrayXd reachable = (ArrayXd(4) << 1.0, 1.0, 1.0, 0.0).finished();
+  const ArrayXd p = (ArrayXd(4) << 2.0, 3.0, 0.0, 0.0).finished();
+  const ArrayXd z = (ArrayXd(4) << 1.0, -1.0, -2.0, 5.0).finished();
+  ArrayXd step = ArrayXd::Constant(4, 0.25);
+  step[1] = step[2] = step[3] = 0.0;  // the linear problem does not move what is not free
+  PositivePressures(reachable).add_jump(z, p, step);
+  EXPECT_TRUE((p + step == (ArrayXd(4) << 2.25, 0.0, 0.0, 0.0).finished()).all());
+}
+
+}  // namespace
+}  // namespace slipstick::solver

@@ -1,0 +1,265 @@
+#include "solver/newton/load_balance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "solver/contact/limit_load.hpp"
+#include "solver/newton/admissible.hpp"
+#include "solver/tests/allocations.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+using Eigen::ArrayXf;
+
+/// Loads over what the field could carry at most: what LoadBalance promises.
+constexpr double kMet = 1e-12;
+
+/// A rough contact, and the rigid motions of its body: those whose loads are imposed.
+struct Body {
+  Body(int conditions, unsigned seed) : generator(seed) {
+    bound = random(grid.cells(), -0.3, 1.0).max(0.0);
+    const ArrayXd contact = (bound > 0.0).cast<double>().replicate(2, 1);
+    std::array<ArrayXd, kMostConditions> motions;
+    for (Index k = 0; k < 2; ++k) {
+      motions[static_cast<std::size_t>(k)].setZero(2 * grid.cells());
+      motions[static_cast<std::size_t>(k)].segment(k * grid.cells(), grid.cells()).setOnes();
+    }
+    motions[2] = rotation_field(grid);
+    for (std::size_t k = conditions == 1 ? 2 : 0; fields.size() < static_cast<std::size_t>(conditions); ++k) {
+      fields.push_back(contact * motions[k]);
+      moved.push_back(k);
+    }
+  }
+
+  ArrayXd random(Index size, double low, double high) {
+    std::uniform_real_distribution<double> uniform(low, high);
+    return ArrayXd::NullaryExpr(size, [&] { return uniform(generator); });
+  }
+
+  double capacity(std::size_t k) const {
+    const Index n = grid.cells();
+    return (bound * (fields[k].head(n).square() + fields[k].tail(n).square()).sqrt()).sum();
+  }
+
+  /// Loads in a random direction, at a part of the most that tractions can balance in it.
+  std::vector<double> loads(double part) {
+    std::vector<double> result(fields.size());
+    ImposedLoads imposed;
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+      result[k] = random(1, -1.0, 1.0)[0] * capacity(k);
+      imposed[moved[k]] = result[k];
+    }
+    const double factor = find_limit(grid, bound, imposed).factor;
+    for (double& load : result) load *= part * factor;
+    return result;
+  }
+
+  std::vector<Condition> conditions(const std::vector<double>& loads) const {
+    std::vector<Condition> result;
+    for (std::size_t k = 0; k < fields.size(); ++k) result.push_back({&fields[k], loads[k]});
+    return result;
+  }
+
+  /// The largest load that P(z) leaves missing, over the condition's capacity.
+  double missing(const ArrayXd& z, const std::vector<double>& loads) const {
+    const Index n = grid.cells();
+    const ArrayXd size = (z.head(n).square() + z.tail(n).square()).sqrt();
+    const ArrayXd factor = (size > bound).select(bound / size, 1.0);
+    double worst = 0.0;
+    for (std::size_t k = 0; k < fields.size(); ++k) {
+      const double load = (fields[k] * factor.replicate(2, 1) * z).sum();
+      const double part = std::abs(load - loads[k]) / capacity(k);
+      worst = part <= worst ? worst : part;  // keeps NaN
+    }
+    return worst;
+  }
+
+  Grid grid{9, 7, 1.0, 0.8};
+  std::mt19937_64 generator;
+  ArrayXd bound;
+  std::vector<ArrayXd> fields;
+  std::vector<std::size_t> moved;  ///< 0, 1: along x1, x2; 2: turned
+};
+
+/// Friction discs that count how often they are asked.
+class CountingDiscs {
+ public:
+  static constexpr Index kComponents = 2;
+  explicit CountingDiscs(const ArrayXd& bound) : discs_(bound) {}
+  template <int M, typename Direction>
+  LoadsAlong<M> loads_along(const ArrayXd& y, const std::array<const Direction*, M>& w,
+                            const Eigen::Vector<double, M>& x, const std::array<const ArrayXd*, M>& c) const {
+    ++evaluations;
+    return discs_.loads_along<M>(y, w, x, c);
+  }
+  mutable int evaluations = 0;
+
+ private:
+  FrictionDiscs discs_;
+};
+
+class Balance : public testing::TestWithParam<int> {};
+INSTANTIATE_TEST_SUITE_P(Conditions, Balance, testing::Values(1, 2, 3));
+
+TEST_P(Balance, MeetsLoadsUpToTheirLimit) {
+  double worst = 0.0;
+  int most = 0;
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    Body body(GetParam(), seed);
+    const CountingDiscs discs(body.bound);
+    for (const double part : {0.0, 0.3, 0.9, 0.99, 0.999}) {
+      for (const double size : {0.1, 1.0, 1e3}) {
+        const ArrayXd y = size * body.random(2 * body.grid.cells(), -1.0, 1.0);
+        const std::vector<double> loads = body.loads(part);
+        const LoadBalance balance(discs, body.conditions(loads));
+        Coefficients x = Coefficients::Zero(GetParam());
+        discs.evaluations = 0;
+        ASSERT_TRUE(balance.solve(y, x)) << part << " of the limit, |y| up to " << size << ", seed " << seed;
+        most = std::max(most, discs.evaluations);
+        ArrayXd z = y;
+        balance.add(x, z);
+        worst = std::max(worst, body.missing(z, loads));
+      }
+    }
+  }
+  EXPECT_LE(worst, kMet);
+  RecordProperty("worst", std::to_string(worst * 1e15) + "e-15");
+  RecordProperty("most_evaluations", most);
+}
+
+TEST_P(Balance, MeetsSmallLoadsToTheirOwnSize) {
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    Body body(GetParam(), seed);
+    const FrictionDiscs discs(body.bound);
+    for (const double part : {1e-6, 1e-9, 1e-12}) {
+      const ArrayXd y = part * body.random(2 * body.grid.cells(), -1.0, 1.0);
+      const std::vector<double> loads = body.loads(part);
+      const LoadBalance balance(discs, body.conditions(loads));
+      Coefficients x = Coefficients::Zero(GetParam());
+      ASSERT_TRUE(balance.solve(y, x)) << part << " of the limit, seed " << seed;
+      ArrayXd z = y;
+      balance.add(x, z);
+      EXPECT_LE(body.missing(z, loads), kMet * part);
+    }
+  }
+}
+
+TEST_P(Balance, IsFoundFromFarAway) {
+  for (unsigned seed = 21; seed <= 26; ++seed) {
+    Body body(GetParam(), seed);
+    const FrictionDiscs discs(body.bound);
+    const ArrayXd y = body.random(2 * body.grid.cells(), -1.0, 1.0);
+    const std::vector<double> loads = body.loads(0.8);
+    const LoadBalance balance(discs, body.conditions(loads));
+    for (const double far : {-1e3, 1e3, 1e6}) {
+      Coefficients x = far * body.random(GetParam(), -1.0, 1.0).matrix();
+      ASSERT_TRUE(balance.solve(y, x)) << far << ", seed " << seed;
+      ArrayXd z = y;
+      balance.add(x, z);
+      EXPECT_LE(body.missing(z, loads), kMet);
+    }
+  }
+}
+
+/// Fields that answer a motion as elastic tractions do: in its sense, not everywhere alike.
+template <typename Direction>
+std::vector<Direction> answers(Body& body) {
+  std::vector<Direction> result;
+  for (const ArrayXd& c : body.fields) {
+    const ArrayXd factor = body.random(c.size(), 0.5, 1.5);
+    result.push_back((factor * c).template cast<typename Direction::Scalar>());
+  }
+  return result;
+}
+
+/// From tractions whose loads are a hundredth of their capacity off, as after a Newton step.
+template <typename Direction>
+void expect_met_along_other_fields(int conditions) {
+  for (unsigned seed = 31; seed <= 40; ++seed) {
+    Body body(conditions, seed);
+    const FrictionDiscs discs(body.bound);
+    const ArrayXd y = 0.8 * body.random(2 * body.grid.cells(), -1.0, 1.0);
+    ArrayXd q = y;
+    discs.project(q);
+    std::vector<double> loads;
+    for (std::size_t k = 0; k < body.fields.size(); ++k) {
+      loads.push_back((body.fields[k] * q).sum() + body.random(1, -0.01, 0.01)[0] * body.capacity(k));
+    }
+    const std::vector<Direction> w = answers<Direction>(body);
+    std::vector<const Direction*> directions;
+    for (const Direction& direction : w) directions.push_back(&direction);
+    const LoadBalance balance(discs, body.conditions(loads));
+    Coefficients x = Coefficients::Zero(conditions);
+    ASSERT_TRUE((balance.template solve_along<Direction>(y, directions, x))) << "seed " << seed;
+    ArrayXd z = y;
+    for (std::size_t k = 0; k < w.size(); ++k) {
+      z += x[static_cast<Index>(k)] * w[k].template cast<double>();
+    }
+    EXPECT_LE(body.missing(z, loads), kMet);
+  }
+}
+
+TEST_P(Balance, IsMetAlongOtherFields) { expect_met_along_other_fields<ArrayXd>(GetParam()); }
+TEST_P(Balance, IsMetAlongFieldsInSinglePrecision) { expect_met_along_other_fields<ArrayXf>(GetParam()); }
+
+/// Where no tractions balance the loads, no x is made up; the search ends soon.
+TEST_P(Balance, KnowsWhatCannotBeCarried) {
+  int most = 0;
+  for (unsigned seed = 41; seed <= 46; ++seed) {
+    Body body(GetParam(), seed);
+    const CountingDiscs discs(body.bound);
+    const ArrayXd y = body.random(2 * body.grid.cells(), -1.0, 1.0);
+    for (const double part : {1.001, 1.1, 10.0}) {
+      const LoadBalance balance(discs, body.conditions(body.loads(part)));
+      Coefficients x = Coefficients::Zero(GetParam());
+      discs.evaluations = 0;
+      EXPECT_FALSE(balance.solve(y, x)) << part << ", seed " << seed;
+      most = std::max(most, discs.evaluations);
+    }
+  }
+  EXPECT_LE(most, 450);  // two searches of 200 steps, few of them tried twice
+  RecordProperty("most_evaluations", most);
+}
+
+TEST_P(Balance, KnowsWhatIsNotANumber) {
+  Body body(GetParam(), 51);
+  const FrictionDiscs discs(body.bound);
+  ArrayXd y = body.random(2 * body.grid.cells(), -1.0, 1.0);
+  const LoadBalance balance(discs, body.conditions(body.loads(0.5)));
+  Index slipping = 0;
+  body.bound.maxCoeff(&slipping);
+  for (const double wrong :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    y[slipping] = wrong;
+    Coefficients x = Coefficients::Zero(GetParam());
+    EXPECT_FALSE(balance.solve(y, x));
+  }
+}
+
+TEST_P(Balance, AllocatesNothing) {
+  Body body(GetParam(), 61);
+  const FrictionDiscs discs(body.bound);
+  const ArrayXd y = body.random(2 * body.grid.cells(), -1.0, 1.0);
+  const LoadBalance balance(discs, body.conditions(body.loads(0.9)));
+  for (const double far : {0.0, 1e6}) {
+    Coefficients x = Coefficients::Constant(GetParam(), far);
+    const long before = allocations();
+    ASSERT_TRUE(balance.solve(y, x));
+    EXPECT_EQ(allocations(), before);
+  }
+}
+
+TEST(BalanceOfNothing, IsMet) {
+  Body body(1, 71);
+  const FrictionDiscs discs(body.bound);
+  Coefficients x;
+  EXPECT_TRUE(LoadBalance(discs, {}).solve(body.random(2 * body.grid.cells(), -1.0, 1.0), x));
+}
+
+}  // namespace
+}  // namespace slipstick::solver

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <array>
+#include <complex>
+#include <vector>
+
+#include "solver/fft/padded_transform.hpp"
+#include "solver/operator/linear_operator.hpp"
+
+namespace slipstick::solver {
+
+/// Discrete convolution by FFT (Liu, Wang and Liu 2000): fields are padded with zeros to p1 >= 2 n1 - 1 by
+/// p2 >= 2 n2 - 1, the kernel wraps around, so the cyclic convolution equals the linear one on the n1 x n2
+/// cells.
+///
+/// Rows go forward; then each column goes forward, is multiplied by the kernel's spectrum and goes back while
+/// it is in cache; then rows go back. The kernel is even or odd in each coordinate, so its spectrum is real
+/// or imaginary and a quadrant of it is stored. It is computed in double precision for either Real.
+template <typename Real>
+class Convolution final : public Operator<Real> {
+ public:
+  /// Throws std::invalid_argument for a kernel of another shape than the normal, tangential or coupling one.
+  Convolution(const Grid& grid, BlockKernel kernel, const ElasticPair& pair, const OperatorOptions& options);
+  std::size_t bytes() const override;
+  static double predicted_bytes(const Grid& grid, const BlockKernel& kernel, int threads);
+  Index padded1() const { return transform_.padded1(); }
+  Index padded2() const { return transform_.padded2(); }
+
+ private:
+  using Spectrum = typename PaddedTransform<Real>::Spectrum;
+  /// Of the kernel's components at one column, row by row of the kernel.
+  struct Factors {
+    std::array<const Real*, 4> quadrant;  ///< m1/2 + 1 even frequencies along x1 from 0, then the odd ones
+    std::array<Real, 4> sign;             ///< of the spectrum at negative frequencies along x1
+  };
+  using Multiply = void (*)(const Spectrum&, const Factors&, Index);
+
+  void do_apply(std::span<const Real> traction, std::span<Real> displacement) override;
+  void set_spectra(const ElasticPair& pair, PaddedTransform<double>& transform);
+  void set_factors(Component component, const std::complex<double>* even, const std::complex<double>* odd,
+                   Real* factors) const;
+  std::size_t start(Index column, std::size_t slot) const;  ///< of a component's factors at a column
+  Factors factors(Index column) const;
+  static Multiply multiply_for(const BlockKernel& kernel);
+
+  PaddedTransform<Real> transform_;
+  std::vector<Component> components_;  ///< the distinct ones
+  std::array<std::size_t, 4> slot_{};  ///< which of them stands at each place of the kernel
+  FftwBuffer<Real> spectra_;           ///< for each column, m1 + 1 factors of each component
+  Multiply multiply_;
+};
+
+}  // namespace slipstick::solver

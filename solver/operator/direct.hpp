@@ -1,0 +1,39 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <map>
+
+#include "solver/operator/linear_operator.hpp"
+
+namespace slipstick::solver {
+
+/// Matrix-free summation over source cells; cells without traction cost nothing.
+class DirectSum final : public LinearOperator {
+ public:
+  DirectSum(const Grid& grid, BlockKernel kernel, const ElasticPair& pair, const OperatorOptions& options);
+  std::size_t bytes() const override;
+  static double predicted_bytes(const Grid& grid, const BlockKernel& kernel);
+
+ private:
+  void do_apply(std::span<const double> traction, std::span<double> displacement) override;
+
+  /// Each component at all offsets -(n-1) .. n-1, (2 n1 - 1) x (2 n2 - 1) values.
+  std::map<Component, std::vector<double>> coefficients_;
+  int threads_;
+};
+
+/// The whole matrix, for small grids: the plainest form to check the others against.
+class DenseMatrix final : public LinearOperator {
+ public:
+  DenseMatrix(const Grid& grid, BlockKernel kernel, const ElasticPair& pair);
+  std::size_t bytes() const override;
+  static double predicted_bytes(const Grid& grid, const BlockKernel& kernel);
+  const Eigen::MatrixXd& matrix() const { return matrix_; }
+
+ private:
+  void do_apply(std::span<const double> traction, std::span<double> displacement) override;
+
+  Eigen::MatrixXd matrix_;
+};
+
+}  // namespace slipstick::solver

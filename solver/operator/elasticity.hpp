@@ -1,0 +1,52 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "solver/operator/inverse_symbol.hpp"
+#include "solver/operator/linear_operator.hpp"
+
+namespace slipstick::solver {
+
+/// How displacements follow from tractions on whatever grid a method asks for: the elastic pair and the way
+/// to evaluate its operators.
+struct Elasticity {
+  ElasticPair pair;
+  OperatorKind kind = OperatorKind::dcfft;
+  int threads = 1;
+  Precision precision = Precision::double_precision;
+  bool diagonal = false;       ///< see OperatorOptions; of the tangential operator
+  bool measure_plans = false;  ///< see OperatorOptions; of the preconditioner too
+
+  std::unique_ptr<LinearOperator> make(const Grid& grid, const BlockKernel& kernel) const;
+};
+
+/// One grid's operators: in double precision for residuals, in Real for inner iterations (the same object
+/// where Real is double), and the inner iteration's preconditioner.
+template <typename Real>
+struct GridOperators {
+  GridOperators(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel);
+
+  Operator<Real>& inner();
+  double bytes() const;
+  /// What bytes() will be.
+  static double predicted_bytes(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel);
+
+  std::unique_ptr<LinearOperator> op;
+  std::unique_ptr<Operator<Real>> single;  ///< empty where Real is double
+  std::unique_ptr<InverseSymbol<Real>> symbol;
+};
+
+/// What a nested solve cost on one of its grids.
+struct GridWork {
+  Index n1 = 0;
+  Index n2 = 0;
+  long applications = 0;
+  int iterations = 0;
+  double gap = 0.0;
+};
+
+/// Applications on all grids, in those of the last, finest one: each weighs by its cells.
+double finest_grid_applications(const std::vector<GridWork>& grids);
+
+}  // namespace slipstick::solver

@@ -1,0 +1,179 @@
+#include "solver/operator/inverse_symbol.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <stdexcept>
+#include <vector>
+
+#include "solver/fft/plane_transform.hpp"
+#include "solver/operator/mirrored_inverse_symbol.hpp"
+#include "solver/operator/symbol_table.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+PeriodicGrid padded(const Grid& grid) {
+  return {fast_length(grid.n1), fast_length(grid.n2), grid.h1, grid.h2};
+}
+
+std::vector<SymbolEntry> entries(bool tangential) {
+  if (!tangential) return {SymbolEntry::p11};
+  return {SymbolEntry::p11, SymbolEntry::p12, SymbolEntry::p22};
+}
+
+std::vector<Index> columns(const PeriodicGrid& periodic) {
+  std::vector<Index> frequencies(static_cast<std::size_t>(periodic.length2 / 2 + 1));
+  std::iota(frequencies.begin(), frequencies.end(), 0);
+  return frequencies;
+}
+
+/// Complex numbers times real ones.
+template <typename Real>
+void scale(Index count, const Real* __restrict p, Real* __restrict z) {
+  for (Index k = 0; k < count; ++k) {
+    z[2 * k] *= p[k];
+    z[2 * k + 1] *= p[k];
+  }
+}
+
+/// Pairs of complex numbers times symmetric real matrices, whose p12 is to be taken times sign.
+template <typename Real>
+void mix(Index count, Real sign, const Real* __restrict p11, const Real* __restrict p12,
+         const Real* __restrict p22, Real* __restrict z1, Real* __restrict z2) {
+  for (Index k = 0; k < count; ++k) {
+    const Real cross = sign * p12[k];
+    const Real real1 = z1[2 * k];
+    const Real imaginary1 = z1[2 * k + 1];
+    const Real real2 = z2[2 * k];
+    const Real imaginary2 = z2[2 * k + 1];
+    z1[2 * k] = p11[k] * real1 + cross * real2;
+    z1[2 * k + 1] = p11[k] * imaginary1 + cross * imaginary2;
+    z2[2 * k] = cross * real1 + p22[k] * real2;
+    z2[2 * k + 1] = cross * imaginary1 + p22[k] * imaginary2;
+  }
+}
+
+/// On a whole grid, padded with zeros to fast lengths.
+template <typename Real>
+class PeriodicInverseSymbol final : public InverseSymbol<Real> {
+ public:
+  PeriodicInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair, bool measure_plans)
+      : grid_(grid),
+        periodic_(padded(grid)),
+        fields_(tangential ? 2 : 1),
+        diagonal_(mean_inverse_symbol(periodic_, pair, tangential)),
+        table_(periodic_, pair, entries(tangential), columns(periodic_),
+               1.0 / (static_cast<double>(periodic_.length1) * static_cast<double>(periodic_.length2))),
+        transform_(periodic_.length1, periodic_.length2, fields_, planning(measure_plans)) {}
+
+  void apply(std::span<Real> field) override {
+    if (static_cast<Index>(field.size()) != fields_ * grid_.cells()) {
+      throw std::invalid_argument("inverse symbol applied to a field of another size");
+    }
+    for (Index f = 0; f < fields_; ++f) {
+      load(f, field.data() + f * grid_.cells());
+      transform_.forward(f);
+    }
+    multiply();
+    for (Index f = 0; f < fields_; ++f) {
+      transform_.backward(f);
+      store(f, field.data() + f * grid_.cells());
+    }
+  }
+
+  std::array<double, 2> diagonal() const override { return diagonal_; }
+  std::size_t bytes() const override { return table_.bytes() + transform_.bytes(); }
+
+  static Index predicted_size(const Grid& grid, bool tangential) {
+    const auto [length1, length2, h1, h2] = padded(grid);
+    return (tangential ? 3 : 1) * (length1 / 2 + 1) * (length2 / 2 + 1) +
+           PlaneTransform<Real>::size(length1, length2, tangential ? 2 : 1);
+  }
+
+ private:
+  void load(Index f, const Real* values) {
+    for (Index i = 0; i < periodic_.length1; ++i) {
+      Real* const row = transform_.row(f, i);
+      const Index cells = i < grid_.n1 ? grid_.n2 : 0;
+      if (cells > 0) std::copy_n(values + i * grid_.n2, cells, row);
+      std::fill(row + cells, row + periodic_.length2, Real(0));
+    }
+  }
+
+  void store(Index f, Real* values) {
+    for (Index i = 0; i < grid_.n1; ++i) std::copy_n(transform_.row(f, i), grid_.n2, values + i * grid_.n2);
+  }
+
+  void multiply() {
+    const Index count = periodic_.length2 / 2 + 1;
+    for (Index k = 0; k < periodic_.length1; ++k) {
+      const bool negative = 2 * k > periodic_.length1;
+      const Index f = negative ? periodic_.length1 - k : k;
+      const Real* const p11 = table_.row(SymbolEntry::p11, f);
+      if (fields_ == 1) {
+        scale(count, p11, transform_.row(0, k));
+      } else {
+        mix(count, Real(negative ? -1 : 1), p11, table_.row(SymbolEntry::p12, f),
+            table_.row(SymbolEntry::p22, f), transform_.row(0, k), transform_.row(1, k));
+      }
+    }
+  }
+
+  Grid grid_;
+  PeriodicGrid periodic_;
+  Index fields_;
+  std::array<double, 2> diagonal_;
+  SymbolTable<Real> table_;
+  PlaneTransform<Real> transform_;
+};
+
+bool is_tangential(const BlockKernel& kernel) {
+  for (const bool tangential : {false, true}) {
+    const BlockKernel known = tangential ? tangential_kernel() : normal_kernel();
+    if (kernel.outputs == known.outputs && kernel.inputs == known.inputs &&
+        kernel.components == known.components) {
+      return tangential;
+    }
+  }
+  throw std::invalid_argument("only the normal and the tangential kernel have an inverse symbol");
+}
+
+void check_diagonal(const Grid& grid, bool tangential, Diagonal diagonal) {
+  if (diagonal == Diagonal::no) return;
+  if (!tangential || !grid.quadrant || grid.n1 != grid.n2 || grid.h1 != grid.h2) {
+    throw std::invalid_argument("only torsion on a square quadrant mirrors at the diagonal");
+  }
+}
+
+}  // namespace
+
+template <typename Real>
+std::unique_ptr<InverseSymbol<Real>> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel,
+                                                         const ElasticPair& pair, Diagonal diagonal,
+                                                         bool measure_plans) {
+  const bool tangential = is_tangential(kernel);
+  check_diagonal(grid, tangential, diagonal);
+  if (grid.quadrant) {
+    return std::make_unique<MirroredInverseSymbol<Real>>(grid, tangential, pair, diagonal, measure_plans);
+  }
+  return std::make_unique<PeriodicInverseSymbol<Real>>(grid, tangential, pair, measure_plans);
+}
+
+template <typename Real>
+double predicted_inverse_symbol_bytes(const Grid& grid, const BlockKernel& kernel, Diagonal diagonal) {
+  const bool tangential = is_tangential(kernel);
+  check_diagonal(grid, tangential, diagonal);
+  const Index size = grid.quadrant ? MirroredInverseSymbol<Real>::predicted_size(grid, tangential, diagonal)
+                                   : PeriodicInverseSymbol<Real>::predicted_size(grid, tangential);
+  return static_cast<double>(sizeof(Real)) * static_cast<double>(size);
+}
+
+template std::unique_ptr<InverseSymbol<double>> make_inverse_symbol<double>(const Grid&, const BlockKernel&,
+                                                                            const ElasticPair&, Diagonal,
+                                                                            bool);
+template std::unique_ptr<InverseSymbol<float>> make_inverse_symbol<float>(const Grid&, const BlockKernel&,
+                                                                          const ElasticPair&, Diagonal, bool);
+template double predicted_inverse_symbol_bytes<double>(const Grid&, const BlockKernel&, Diagonal);
+template double predicted_inverse_symbol_bytes<float>(const Grid&, const BlockKernel&, Diagonal);
+
+}  // namespace slipstick::solver

@@ -1,0 +1,81 @@
+#include "solver/operator/linear_operator.hpp"
+
+#include "solver/operator/convolution.hpp"
+#include "solver/operator/direct.hpp"
+#include "solver/operator/mirrored_convolution.hpp"
+
+namespace slipstick::solver {
+
+BlockKernel normal_kernel() { return {1, 1, {Component::k33}}; }
+
+BlockKernel tangential_kernel() {
+  return {2, 2, {Component::k11, Component::k12, Component::k12, Component::k22}};
+}
+
+BlockKernel coupling_kernel() { return {2, 1, {Component::k13, Component::k23}}; }
+
+BlockKernel shear_kernel() { return {1, 2, {Component::k13, Component::k23}}; }
+
+namespace {
+
+template <typename Real>
+std::unique_ptr<Operator<Real>> make_convolution(const Grid& grid, const BlockKernel& kernel,
+                                                 const ElasticPair& pair, const OperatorOptions& options) {
+  if (grid.quadrant) {
+    return std::make_unique<MirroredConvolution<Real>>(grid, kernel, pair, options, options.diagonal);
+  }
+  return std::make_unique<Convolution<Real>>(grid, kernel, pair, options);
+}
+
+template <typename Real>
+double predicted_convolution_bytes(const Grid& grid, const BlockKernel& kernel,
+                                   const OperatorOptions& options) {
+  return grid.quadrant
+             ? MirroredConvolution<Real>::predicted_bytes(grid, kernel, options.threads, options.diagonal)
+             : Convolution<Real>::predicted_bytes(grid, kernel, options.threads);
+}
+
+void require_whole(const Grid& grid) {
+  if (grid.quadrant) throw std::invalid_argument("only dcfft knows quadrants");
+}
+
+}  // namespace
+
+std::unique_ptr<LinearOperator> make_operator(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
+                                              const ElasticPair& pair, const OperatorOptions& options) {
+  if (kind != OperatorKind::dcfft) require_whole(grid);
+  switch (kind) {
+    case OperatorKind::dcfft:
+      return make_convolution<double>(grid, kernel, pair, options);
+    case OperatorKind::direct:
+      return std::make_unique<DirectSum>(grid, kernel, pair, options);
+    case OperatorKind::dense:
+      return std::make_unique<DenseMatrix>(grid, kernel, pair);
+  }
+  throw std::logic_error("unknown operator kind");
+}
+
+std::unique_ptr<Operator<float>> make_single_operator(const Grid& grid, const BlockKernel& kernel,
+                                                      const ElasticPair& pair,
+                                                      const OperatorOptions& options) {
+  return make_convolution<float>(grid, kernel, pair, options);
+}
+
+double predicted_bytes(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
+                       const OperatorOptions& options) {
+  switch (kind) {
+    case OperatorKind::dcfft:
+      return predicted_convolution_bytes<double>(grid, kernel, options);
+    case OperatorKind::direct:
+      return DirectSum::predicted_bytes(grid, kernel);
+    case OperatorKind::dense:
+      return DenseMatrix::predicted_bytes(grid, kernel);
+  }
+  throw std::logic_error("unknown operator kind");
+}
+
+double predicted_single_bytes(const Grid& grid, const BlockKernel& kernel, const OperatorOptions& options) {
+  return predicted_convolution_bytes<float>(grid, kernel, options);
+}
+
+}  // namespace slipstick::solver

@@ -1,0 +1,105 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <memory>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "solver/grid/grid.hpp"
+#include "solver/operator/influence.hpp"
+#include "solver/operator/operator_kind.hpp"
+
+namespace slipstick::solver {
+
+/// Which components couple which fields: outputs x inputs of them, row by row.
+struct BlockKernel {
+  std::size_t outputs;
+  std::size_t inputs;
+  std::vector<Component> components;
+};
+
+/// u3 = K33 p; (u1, u2) = K (q1, q2); (u1, u2) = (K13, K23) p; K13 q1 + K23 q2, which is -u3 by shear.
+BlockKernel normal_kernel();
+BlockKernel tangential_kernel();
+BlockKernel coupling_kernel();
+BlockKernel shear_kernel();
+
+/// Fields of traction to fields of displacement on one grid. The methods know no more of elasticity than
+/// this, so that the three ways to evaluate it are interchangeable.
+///
+/// Real is double, or float where an iteration is corrected by residuals in double precision.
+template <typename Real>
+class Operator {
+ public:
+  using Field = Eigen::Array<Real, Eigen::Dynamic, 1>;
+
+  virtual ~Operator() = default;
+  Operator(const Operator&) = delete;
+  Operator& operator=(const Operator&) = delete;
+
+  /// displacement = K * traction: outputs()*cells and inputs()*cells values. They may not overlap. Allocates
+  /// nothing. Throws std::invalid_argument for other sizes.
+  void apply(std::span<const Real> traction, std::span<Real> displacement) {
+    const auto cells = static_cast<std::size_t>(grid_.cells());
+    if (traction.size() != inputs() * cells || displacement.size() != outputs() * cells) {
+      throw std::invalid_argument("operator applied to fields of another size");
+    }
+    do_apply(traction, displacement);
+    ++applications_;
+  }
+
+  void apply(const Field& traction, Field& displacement) {
+    apply(std::span(traction.data(), static_cast<std::size_t>(traction.size())),
+          std::span(displacement.data(), static_cast<std::size_t>(displacement.size())));
+  }
+
+  const Grid& grid() const { return grid_; }
+  std::size_t inputs() const { return kernel_.inputs; }
+  std::size_t outputs() const { return kernel_.outputs; }
+  /// Applications so far.
+  long applications() const { return applications_; }
+  /// Memory held for coefficients and workspace.
+  virtual std::size_t bytes() const = 0;
+
+ protected:
+  Operator(const Grid& grid, BlockKernel kernel) : grid_(grid), kernel_(std::move(kernel)) {}
+  const BlockKernel& kernel() const { return kernel_; }
+
+ private:
+  virtual void do_apply(std::span<const Real> traction, std::span<Real> displacement) = 0;
+
+  Grid grid_;
+  BlockKernel kernel_;
+  long applications_ = 0;
+};
+
+using LinearOperator = Operator<double>;
+
+struct OperatorOptions {
+  int threads = 1;
+  /// Let FFTW measure which plan is fastest: quicker applications, results that differ in their last bits
+  /// from run to run.
+  bool measure_plans = false;
+  /// On a square quadrant, tangential: the fields are mirror images about the diagonal too.
+  bool diagonal = false;
+};
+
+/// On a quadrant it is the operator of the fields' mirror images. Throws std::invalid_argument where the kind
+/// (other than dcfft) or the kernel (coupling) has no such form.
+std::unique_ptr<LinearOperator> make_operator(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
+                                              const ElasticPair& pair, const OperatorOptions& options = {});
+
+/// By discrete convolution and FFT in single precision.
+std::unique_ptr<Operator<float>> make_single_operator(const Grid& grid, const BlockKernel& kernel,
+                                                      const ElasticPair& pair,
+                                                      const OperatorOptions& options = {});
+
+/// What bytes() of such an operator will be.
+double predicted_bytes(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
+                       const OperatorOptions& options = {});
+double predicted_single_bytes(const Grid& grid, const BlockKernel& kernel,
+                              const OperatorOptions& options = {});
+
+}  // namespace slipstick::solver

@@ -1,0 +1,275 @@
+#include "solver/operator/mirrored_convolution.hpp"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+#include <utility>
+
+#include "solver/grid/threads.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+std::size_t count(Index n) { return static_cast<std::size_t>(n); }
+
+Index groups(Index lines, Index group) { return (lines + group - 1) / group; }
+
+bool is_normal(const BlockKernel& kernel) { return kernel.components == normal_kernel().components; }
+bool is_tangential(const BlockKernel& kernel) { return kernel.components == tangential_kernel().components; }
+
+BlockKernel checked(BlockKernel kernel, const Grid& grid, bool diagonal) {
+  if (!grid.quadrant) throw std::invalid_argument("a mirrored convolution needs the grid of a quadrant");
+  if (!is_normal(kernel) && !is_tangential(kernel)) {
+    throw std::invalid_argument("a mirrored convolution of another kernel than K33 or K11, K12, K22");
+  }
+  if (diagonal && (!is_tangential(kernel) || grid.n1 != grid.n2 || grid.h1 != grid.h2)) {
+    throw std::invalid_argument("mirror images about the diagonal need torsion of a square of square cells");
+  }
+  return kernel;
+}
+
+/// The components whose spectra are kept, in the order of the products.
+std::vector<Component> distinct_components(const BlockKernel& kernel, bool diagonal) {
+  if (is_normal(kernel)) return {Component::k33};
+  if (diagonal) return {Component::k11, Component::k12};
+  return {Component::k11, Component::k12, Component::k22};
+}
+
+/// The transform of a kernel that is even (odd) along a coordinate is a cosine (sine) transform over half a
+/// period, 0..h. The coefficients are transformed in place; a sine transform leaves the ends as they are.
+void transform_kernel(std::vector<double>& values, Index h1, Index h2, bool odd) {
+  const Index ends = odd ? 1 : 0;
+  const int stride = static_cast<int>(h2 + 1);
+  const fftw_iodim along1{static_cast<int>(h1 + 1 - 2 * ends), stride, stride};
+  const fftw_iodim along2{static_cast<int>(h2 + 1 - 2 * ends), 1, 1};
+  const std::array kinds{odd ? FFTW_RODFT00 : FFTW_REDFT00, odd ? FFTW_RODFT00 : FFTW_REDFT00};
+  const std::array both{along1, along2};
+  double* const start = values.data() + ends * (h2 + 1) + ends;
+  const FftwPlan<double> plan(
+      fftw_plan_guru_r2r(2, both.data(), 0, nullptr, start, start, kinds.data(), FFTW_ESTIMATE));
+  fftw_execute(plan.get());
+}
+
+/// The exchanged coordinates of the last group's columns reach up to a group further.
+template <typename Real>
+std::size_t transformed_reals(Index frequencies) {
+  constexpr Index lines = HalfSampleTransform<Real>::kLines;
+  return count((groups(frequencies, lines) * frequencies + lines) * lines);
+}
+
+}  // namespace
+
+template <typename Real>
+MirroredConvolution<Real>::MirroredConvolution(const Grid& quadrant, BlockKernel kernel,
+                                               const ElasticPair& pair, const OperatorOptions& options,
+                                               bool diagonal)
+    : Operator<Real>(quadrant, checked(std::move(kernel), quadrant, diagonal)),
+      diagonal_(diagonal),
+      threads_(std::max(options.threads, 1)),
+      along1_(quadrant.n1, planning(options.measure_plans)),
+      along2_(quadrant.n2, planning(options.measure_plans)),
+      row_groups_(groups(quadrant.n1, kLines)),
+      column_groups_(groups(along2_.frequencies(), kLines)),
+      half_transformed_(count(fields() * row_groups_ * row_group_stride())) {
+  if (diagonal_) transformed_ = FftwBuffer<Real>(transformed_reals<Real>(along1_.frequencies()));
+  for (const Component component : distinct_components(this->kernel(), diagonal_)) {
+    spectra_.push_back(kernel_spectrum(component, pair));
+  }
+  for (int thread = 0; thread < threads_; ++thread) {
+    row_workspaces_.emplace_back(along2_);
+    for (Index field = 0; field < fields(); ++field) column_workspaces_.emplace_back(along1_);
+  }
+}
+
+/// 1/(p1 p2) included, which undoes the transforms' scale.
+template <typename Real>
+FftwBuffer<Real> MirroredConvolution<Real>::kernel_spectrum(Component component,
+                                                            const ElasticPair& pair) const {
+  const Index h1 = along1_.frequencies();
+  const Index h2 = along2_.frequencies();
+  const bool odd = component == Component::k12;
+  std::vector<double> values =
+      influence_coefficients(component, pair, this->grid().h1, this->grid().h2, h1 + 1, h2 + 1);
+  transform_kernel(values, h1, h2, odd);
+  const double scale = 1.0 / (4.0 * static_cast<double>(h1) * static_cast<double>(h2));
+  // Where the field is odd, its row 0 is that of frequency h. K12's transform is zero at 0 and at h.
+  const Index row0 = component == Component::k22 ? h1 : 0;
+  const Index column0 = component == Component::k11 ? h2 : 0;
+  FftwBuffer<Real> spectrum(count(column_groups_ * kLines * h1));
+  for (Index k1 = odd ? 1 : 0; k1 < h1; ++k1) {
+    for (Index k2 = odd ? 1 : 0; k2 < h2; ++k2) {
+      const Index from = (k1 == 0 ? row0 : k1) * (h2 + 1) + (k2 == 0 ? column0 : k2);
+      spectrum.data()[(k2 / kLines * h1 + k1) * kLines + k2 % kLines] =
+          static_cast<Real>(scale * values[count(from)]);
+    }
+  }
+  return spectrum;
+}
+
+template <typename Real>
+Parity MirroredConvolution<Real>::parity_of(Index field) const {
+  if (this->inputs() == 1) return {1, 1};
+  return field == 0 ? Parity{1, -1} : Parity{-1, 1};
+}
+
+template <typename Real>
+std::size_t MirroredConvolution<Real>::bytes() const {
+  std::size_t sum = along1_.bytes() + along2_.bytes() + half_transformed_.bytes() + transformed_.bytes();
+  for (const FftwBuffer<Real>& spectrum : spectra_) sum += spectrum.bytes();
+  for (const Workspace& workspace : row_workspaces_) sum += workspace.bytes();
+  for (const Workspace& workspace : column_workspaces_) sum += workspace.bytes();
+  return sum;
+}
+
+template <typename Real>
+double MirroredConvolution<Real>::predicted_bytes(const Grid& quadrant, const BlockKernel& kernel,
+                                                  int threads, bool diagonal) {
+  checked(kernel, quadrant, diagonal);
+  const Index h1 = Transform::frequencies(quadrant.n1);
+  const Index columns = groups(Transform::frequencies(quadrant.n2), kLines) * kLines;
+  const Index fields = diagonal ? 1 : static_cast<Index>(kernel.inputs);
+  const auto spectra = static_cast<Index>(distinct_components(kernel, diagonal).size());
+  const Index half_transformed = fields * groups(quadrant.n1, kLines) * kLines * columns;
+  const Index transformed = diagonal ? static_cast<Index>(transformed_reals<Real>(h1)) : 0;
+  const Index tables = Transform::table_size(quadrant.n1) + Transform::table_size(quadrant.n2);
+  const Index per_thread =
+      Transform::workspace_size(quadrant.n2) + fields * Transform::workspace_size(quadrant.n1);
+  return static_cast<double>(sizeof(Real)) *
+         static_cast<double>(spectra * h1 * columns + half_transformed + transformed + tables +
+                             std::max(threads, 1) * per_thread);
+}
+
+template <typename Real>
+void MirroredConvolution<Real>::do_apply(std::span<const Real> traction, std::span<Real> displacement) {
+  const auto in_groups = [this](Index total, const auto& work) {
+    in_parts(threads_, total, [&work](int thread, Index first, Index last) {
+      for (Index group = first; group < last; ++group) work(thread, group);
+    });
+  };
+  in_groups(fields() * row_groups_, [&](int thread, Index group) {
+    const Index field = group / row_groups_;
+    rows_forward(thread, field, group % row_groups_, traction.data() + field * this->grid().cells());
+  });
+  if (diagonal_) {
+    in_groups(column_groups_, [&](int thread, Index group) { columns_forward_diagonal(thread, group); });
+    in_groups(column_groups_, [&](int thread, Index group) { columns_backward_diagonal(thread, group); });
+  } else {
+    in_groups(column_groups_, [&](int thread, Index group) { convolve_columns(thread, group); });
+  }
+  in_groups(fields() * row_groups_, [&](int thread, Index group) {
+    const Index field = group / row_groups_;
+    rows_backward(thread, field, group % row_groups_, displacement.data() + field * this->grid().cells());
+    if (diagonal_) mirror_about_diagonal(group, displacement);
+  });
+}
+
+template <typename Real>
+void MirroredConvolution<Real>::rows_forward(int thread, Index field, Index group, const Real* values) {
+  const Index n2 = this->grid().n2;
+  const Index rows = std::min(kLines, this->grid().n1 - group * kLines);
+  const Real* const first = values + group * kLines * n2;
+  Real* const block = half_transformed(field, group);
+  if (std::all_of(first, first + rows * n2, [](Real value) { return value == 0; })) {
+    std::fill_n(block, row_group_stride(), Real(0));
+    return;
+  }
+  along2_.forward(row_workspaces_[count(thread)], {.data = first, .line_stride = n2, .count = rows},
+                  parity_of(field).x2, [block](Index k2) { return block + k2 * kLines; });
+}
+
+template <typename Real>
+void MirroredConvolution<Real>::rows_backward(int thread, Index field, Index group, Real* values) {
+  const Index n2 = this->grid().n2;
+  const Index rows = std::min(kLines, this->grid().n1 - group * kLines);
+  const Real* const block = half_transformed(field, group);
+  along2_.backward(row_workspaces_[count(thread)],
+                   {.data = values + group * kLines * n2, .line_stride = n2, .count = rows},
+                   parity_of(field).x2,
+                   [block](Index k2) { return Transform::packets(block + k2 * kLines); });
+}
+
+template <typename Real>
+void MirroredConvolution<Real>::convolve_columns(int thread, Index group) {
+  for (Index field = 0; field < fields(); ++field) {
+    Workspace& work = column_workspace(thread, field);
+    along1_.forward(work, columns<const Real>(field, group), parity_of(field).x1,
+                    [&work](Index k1) { return work.row(k1); });
+  }
+  multiply(thread, group);
+  for (Index field = 0; field < fields(); ++field) {
+    Workspace& work = column_workspace(thread, field);
+    along1_.backward(work, columns<Real>(field, group), parity_of(field).x1,
+                     [&work](Index k1) { return Transform::packets(work.row(k1)); });
+  }
+}
+
+/// The spectra of odd fields and of odd kernels lack a factor of -i for each coordinate in which they are
+/// odd: K12's product with either field lacks (-i)^2.
+template <typename Real>
+void MirroredConvolution<Real>::multiply(int thread, Index group) {
+  using P = Packet<Real>;
+  const Index h1 = along1_.frequencies();
+  const auto spectrum = [&](std::size_t component, Index k1) {
+    return spectra_[component].data() + (group * h1 + k1) * kLines;
+  };
+  for (Index k1 = 0; k1 < h1; ++k1) {
+    Real* const first = column_workspace(thread, 0).row(k1);
+    const Real* const k11 = spectrum(0, k1);
+    if (fields() == 1) {
+      for (Index c = 0; c < kLines; c += P::kSize) P::store(first + c, P::load(k11 + c) * P::load(first + c));
+      continue;
+    }
+    Real* const second = column_workspace(thread, 1).row(k1);
+    const Real* const k12 = spectrum(1, k1);
+    const Real* const k22 = spectrum(2, k1);
+    for (Index c = 0; c < kLines; c += P::kSize) {
+      const auto q1 = P::load(first + c);
+      const auto q2 = P::load(second + c);
+      P::store(first + c, P::load(k11 + c) * q1 - P::load(k12 + c) * q2);
+      P::store(second + c, P::load(k22 + c) * q2 - P::load(k12 + c) * q1);
+    }
+  }
+}
+
+template <typename Real>
+void MirroredConvolution<Real>::columns_forward_diagonal(int thread, Index group) {
+  Real* const block = transformed_.data() + group * along1_.frequencies() * kLines;
+  along1_.forward(column_workspace(thread, 0), columns<const Real>(0, group), parity_of(0).x1,
+                  [block](Index k1) { return block + k1 * kLines; });
+}
+
+/// The spectrum of q2 is that of -q1 with its coordinates exchanged: k12's sign is the other one than above.
+template <typename Real>
+void MirroredConvolution<Real>::columns_backward_diagonal(int thread, Index group) {
+  const Index h = along1_.frequencies();
+  const Real* const k11 = spectra_[0].data() + group * h * kLines;
+  const Real* const k12 = spectra_[1].data() + group * h * kLines;
+  const Real* const plain = transformed_.data() + group * h * kLines;
+  const Real* const exchanged = transformed_.data() + group * kLines * kLines;
+  const auto product = [=](Index k1) {
+    return [=, at = k1 * kLines, column = exchanged + k1 / kLines * h * kLines + k1 % kLines](Index line) {
+      using P = Packet<Real>;
+      return P::load(k11 + at + line) * P::load(plain + at + line) +
+             P::load(k12 + at + line) * P::gather(column + line * kLines, kLines);
+    };
+  };
+  along1_.backward(column_workspace(thread, 0), columns<Real>(0, group), parity_of(0).x1, product);
+}
+
+/// Of a group of rows of u1, while it is in cache: u2(x2, x1) = -u1(x1, x2).
+template <typename Real>
+void MirroredConvolution<Real>::mirror_about_diagonal(Index group, std::span<Real> displacement) const {
+  const Index n = this->grid().n1;
+  const Index first = group * kLines;
+  const Index last = std::min(first + kLines, n);
+  const Real* const u1 = displacement.data();
+  Real* const u2 = displacement.data() + n * n;
+  for (Index j = 0; j < n; ++j) {
+    for (Index i = first; i < last; ++i) u2[j * n + i] = -u1[i * n + j];
+  }
+}
+
+template class MirroredConvolution<double>;
+template class MirroredConvolution<float>;
+
+}  // namespace slipstick::solver

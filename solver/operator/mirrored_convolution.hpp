@@ -1,0 +1,84 @@
+#pragma once
+
+#include <vector>
+
+#include "solver/fft/fftw.hpp"
+#include "solver/fft/half_sample_transform.hpp"
+#include "solver/operator/linear_operator.hpp"
+
+namespace slipstick::solver {
+
+/// The influence operator of a contact with two mirror axes, on the quadrant x1, x2 > 0 of its grid: what
+/// Convolution gives on the whole grid for fields that are the quadrant's mirror images,
+///
+///     normal:      p and u3 are even in x1 and x2;
+///     tangential:  as in torsion, q1 and u1 are even in x1 and odd in x2, q2 and u2 odd in x1 and even in
+///     x2.
+///
+/// Fields are padded to a quarter of Convolution's period and transformed by cosines and sines, in which the
+/// convolution is a product as well (Martucci, IEEE Transactions on Signal Processing 42, 1994): a quarter of
+/// Convolution's work, and half its memory, as that keeps no more than a quadrant of the kernel's transform
+/// either. The transforms of the kernel and of the fields are kept in blocks of the kLines columns that are
+/// transformed together, so that memory is read and written in order.
+///
+/// With `diagonal`, of a square quadrant of square cells, the fields are also mirror images about the
+/// diagonal, q2(x1, x2) = -q1(x2, x1): q1 alone is read and transformed, u2 is u1's image. Half the work.
+template <typename Real>
+class MirroredConvolution final : public Operator<Real> {
+ public:
+  /// Throws std::invalid_argument where the grid is no quadrant, for a kernel that is neither normal nor
+  /// tangential, and with `diagonal` for another kernel than the tangential one or unequal sides or cells.
+  MirroredConvolution(const Grid& quadrant, BlockKernel kernel, const ElasticPair& pair,
+                      const OperatorOptions& options, bool diagonal = false);
+  std::size_t bytes() const override;
+  static double predicted_bytes(const Grid& quadrant, const BlockKernel& kernel, int threads,
+                                bool diagonal = false);
+
+ private:
+  using Transform = HalfSampleTransform<Real>;
+  using Workspace = typename Transform::Workspace;
+  static constexpr Index kLines = Transform::kLines;
+
+  void do_apply(std::span<const Real> traction, std::span<Real> displacement) override;
+  FftwBuffer<Real> kernel_spectrum(Component component, const ElasticPair& pair) const;
+  void rows_forward(int thread, Index field, Index group, const Real* values);
+  void rows_backward(int thread, Index field, Index group, Real* values);
+  void convolve_columns(int thread, Index group);
+  void multiply(int thread, Index group);
+  void columns_forward_diagonal(int thread, Index group);
+  void columns_backward_diagonal(int thread, Index group);
+  void mirror_about_diagonal(Index group, std::span<Real> displacement) const;
+
+  Index fields() const { return diagonal_ ? 1 : static_cast<Index>(this->inputs()); }
+  Parity parity_of(Index field) const;
+  Workspace& column_workspace(int thread, Index field) {
+    return column_workspaces_[static_cast<std::size_t>(thread * fields() + field)];
+  }
+  /// Values from one group of rows of half_transformed_ to the next.
+  Index row_group_stride() const { return column_groups_ * kLines * kLines; }
+  Real* half_transformed(Index field, Index row_group) {
+    return half_transformed_.data() + (field * row_groups_ + row_group) * row_group_stride();
+  }
+  /// A group of columns of half_transformed_.
+  template <typename Value>
+  typename Transform::template Lines<Value> columns(Index field, Index group) {
+    return {half_transformed(field, 0) + group * kLines * kLines, kLines, row_group_stride()};
+  }
+
+  bool diagonal_;
+  int threads_;
+  Transform along1_;
+  Transform along2_;
+  Index row_groups_;                       ///< groups of kLines rows of cells
+  Index column_groups_;                    ///< groups of kLines frequencies along x2
+  std::vector<FftwBuffer<Real>> spectra_;  ///< of the distinct components: h1 rows for each group of columns
+  FftwBuffer<Real> half_transformed_;      ///< along x2 only: h2 rows for each field and group of rows
+  FftwBuffer<Real> transformed_;           ///< diagonal only: h1 rows for each group of columns
+  std::vector<Workspace> row_workspaces_;  ///< one for each thread
+  std::vector<Workspace> column_workspaces_;  ///< one for each thread and field
+};
+
+extern template class MirroredConvolution<double>;
+extern template class MirroredConvolution<float>;
+
+}  // namespace slipstick::solver

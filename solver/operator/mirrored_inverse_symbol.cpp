@@ -1,0 +1,359 @@
+#include "solver/operator/mirrored_inverse_symbol.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+
+namespace slipstick::solver {
+namespace {
+
+/// Half a period.
+Index transform_length(Index cells) { return fast_length(2 * cells) / 2; }
+
+PeriodicGrid mirrored(const Grid& grid) {
+  return {2 * transform_length(grid.n1), 2 * transform_length(grid.n2), grid.h1, grid.h2};
+}
+
+/// Where sample i of t goes: even ones forwards, then odd ones backwards.
+Index reordered(Index i, Index t) { return i % 2 == 0 ? i / 2 : t - 1 - i / 2; }
+
+/// Where frequencies f2 lie in a row of coefficients: those of cosines, then those of sines.
+std::vector<Index> columns(Index t) {
+  std::vector<Index> frequencies;
+  for (Index k = 0; k <= t / 2; ++k) frequencies.push_back(k);
+  for (Index k = 0; k <= t / 2; ++k) frequencies.push_back(t - k);
+  return frequencies;
+}
+
+std::vector<SymbolEntry> entries(bool tangential, bool symmetric) {
+  if (!tangential) return {SymbolEntry::p11};
+  if (symmetric) return {SymbolEntry::p11, SymbolEntry::p12};  // p22 is the transpose of p11
+  return {SymbolEntry::p11, SymbolEntry::p12, SymbolEntry::p22};
+}
+
+/// Values in the scratch memory, four coefficients for each field and a complex row, and of all twiddle
+/// factors.
+Index coefficient_size(Index half, bool two_fields) { return (two_fields ? 10 : 6) * half; }
+Index twiddle_size(Index t1, Index half) { return 2 * (t1 / 2 + 1 + half); }
+
+/// n samples, those at even and at odd places times a sign each, padded to t.
+template <typename Real>
+void reorder(const Real* __restrict values, Index n, Real even, Real odd, Index t, Real* __restrict row) {
+  if (n < t) std::fill_n(row, t, Real(0));
+  for (Index k = 0; k < n / 2; ++k) {
+    row[k] = even * values[2 * k];
+    row[t - 1 - k] = odd * values[2 * k + 1];
+  }
+  if (n % 2 != 0) row[n / 2] = even * values[n - 1];
+}
+
+template <typename Real>
+void restore(const Real* __restrict row, Index n, Real even, Real odd, Index t, Real* __restrict values) {
+  for (Index k = 0; k < n / 2; ++k) {
+    values[2 * k] = even * row[k];
+    values[2 * k + 1] = odd * row[t - 1 - k];
+  }
+  if (n % 2 != 0) values[n - 1] = even * row[n / 2];
+}
+
+/// cos and sin of pi k1/(2 t1), and those of pi k2/(2 t2) for all k2.
+template <typename Real>
+struct Twiddles {
+  Real c;
+  Real s;
+  const Real* c2;
+  const Real* s2;
+};
+
+/// With a and b the Fourier transform at (k1, k2) and (t1 - k1, k2), w1 = exp(-i pi k1/(2 t1)) and w2
+/// likewise, A = w1 w2 a and B = conj(w1) w2 b are the sums over samples times exp(-i (theta2 + theta1)) and
+/// exp(-i (theta2 - theta1)), theta the arguments of the cosines. Written is twice
+///
+///     cc = Re(A + B)/2,  cs = -Im(A + B)/2,  sc = Im(B - A)/2,  ss = Re(B - A)/2.
+template <typename Real>
+void separate_rows(Index count, Twiddles<Real> w, const Real* __restrict a, const Real* __restrict b,
+                   Real* __restrict cc, Real* __restrict cs, Real* __restrict sc, Real* __restrict ss) {
+  for (Index k = 0; k < count; ++k) {
+    const Real sum_real = a[2 * k] + b[2 * k];
+    const Real sum_imaginary = a[2 * k + 1] + b[2 * k + 1];
+    const Real difference_real = a[2 * k] - b[2 * k];
+    const Real difference_imaginary = a[2 * k + 1] - b[2 * k + 1];
+    const Real sr = w.c2[k] * sum_real + w.s2[k] * sum_imaginary;
+    const Real si = w.c2[k] * sum_imaginary - w.s2[k] * sum_real;
+    const Real dr = w.c2[k] * difference_real + w.s2[k] * difference_imaginary;
+    const Real di = w.c2[k] * difference_imaginary - w.s2[k] * difference_real;
+    cc[k] = w.c * sr + w.s * di;
+    cs[k] = w.s * dr - w.c * si;
+    sc[k] = w.s * sr - w.c * di;
+    ss[k] = -w.c * dr - w.s * si;
+  }
+}
+
+/// The inverse of separate_rows(), times 2.
+template <typename Real>
+void join_rows(Index count, Twiddles<Real> w, const Real* __restrict cc, const Real* __restrict cs,
+               const Real* __restrict sc, const Real* __restrict ss, Real* __restrict a, Real* __restrict b) {
+  for (Index k = 0; k < count; ++k) {
+    const Real sr = w.c * cc[k] + w.s * sc[k];
+    const Real si = -w.c * cs[k] - w.s * ss[k];
+    const Real dr = w.s * cs[k] - w.c * ss[k];
+    const Real di = w.s * cc[k] - w.c * sc[k];
+    const Real sum_real = w.c2[k] * sr - w.s2[k] * si;
+    const Real sum_imaginary = w.c2[k] * si + w.s2[k] * sr;
+    const Real difference_real = w.c2[k] * dr - w.s2[k] * di;
+    const Real difference_imaginary = w.c2[k] * di + w.s2[k] * dr;
+    a[2 * k] = sum_real + difference_real;
+    a[2 * k + 1] = sum_imaginary + difference_imaginary;
+    b[2 * k] = sum_real - difference_real;
+    b[2 * k + 1] = sum_imaginary - difference_imaginary;
+  }
+}
+
+template <typename Real>
+void scale(Index count, const Real* __restrict p, Real* __restrict x) {
+  for (Index k = 0; k < count; ++k) x[k] *= p[k];
+}
+
+template <typename Real>
+void mix(Index count, const Real* __restrict p11, const Real* __restrict p12, const Real* __restrict p22,
+         Real* __restrict x1, Real* __restrict x2) {
+  for (Index k = 0; k < count; ++k) {
+    const Real first = x1[k];
+    x1[k] = p11[k] * first + p12[k] * x2[k];
+    x2[k] = p12[k] * first + p22[k] * x2[k];
+  }
+}
+
+/// p11 x - p12 y, y every step-th value. The first p12 is zero, and there need be no first y.
+template <typename Real>
+void mix_with_other_half(Index count, const Real* __restrict p11, const Real* __restrict p12,
+                         const Real* __restrict x, const Real* __restrict y, Index step,
+                         Real* __restrict out) {
+  out[0] = p11[0] * x[0];
+  for (Index k = 1; k < count; ++k) out[k] = p11[k] * x[k] - p12[k] * y[k * step];
+}
+
+}  // namespace
+
+template <typename Real>
+MirroredInverseSymbol<Real>::MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair,
+                                                   Diagonal diagonal, bool measure_plans)
+    : grid_(grid),
+      tangential_(tangential),
+      symmetric_(diagonal == Diagonal::yes),
+      t1_(transform_length(grid.n1)),
+      t2_(transform_length(grid.n2)),
+      half_(t2_ / 2 + 1),
+      diagonal_(mean_inverse_symbol(mirrored(grid), pair, tangential)),
+      table_(mirrored(grid), pair, entries(tangential, diagonal == Diagonal::yes), columns(t2_),
+             0.5 / (static_cast<double>(t1_) * static_cast<double>(t2_))),
+      transform_(t1_, t2_, tangential ? 2 : 1, planning(measure_plans)),
+      coefficients_(static_cast<std::size_t>(coefficient_size(half_, tangential_ && !symmetric_))),
+      twiddles_(static_cast<std::size_t>(twiddle_size(t1_, half_))) {
+  fill_twiddles();
+}
+
+template <typename Real>
+void MirroredInverseSymbol<Real>::fill_twiddles() {
+  Real* next = twiddles_.data();
+  for (const Index t : {t1_, t2_}) {
+    const double step = 0.5 * std::numbers::pi / static_cast<double>(t);
+    for (Index k = 0; k <= t / 2; ++k) *next++ = static_cast<Real>(std::cos(step * static_cast<double>(k)));
+    for (Index k = 0; k <= t / 2; ++k) *next++ = static_cast<Real>(std::sin(step * static_cast<double>(k)));
+  }
+}
+
+template <typename Real>
+std::size_t MirroredInverseSymbol<Real>::bytes() const {
+  return table_.bytes() + transform_.bytes() + coefficients_.bytes() + twiddles_.bytes();
+}
+
+template <typename Real>
+Index MirroredInverseSymbol<Real>::predicted_size(const Grid& grid, bool tangential, Diagonal diagonal) {
+  const bool symmetric = diagonal == Diagonal::yes;
+  const Index t1 = transform_length(grid.n1);
+  const Index t2 = transform_length(grid.n2);
+  const Index half = t2 / 2 + 1;
+  const auto tables = static_cast<Index>(entries(tangential, symmetric).size());
+  return tables * (t1 + 1) * 2 * half + PlaneTransform<Real>::size(t1, t2, tangential ? 2 : 1) +
+         coefficient_size(half, tangential && !symmetric) + twiddle_size(t1, half);
+}
+
+template <typename Real>
+void MirroredInverseSymbol<Real>::apply(std::span<Real> field) {
+  const Index cells = grid_.cells();
+  if (static_cast<Index>(field.size()) != (tangential_ ? 2 : 1) * cells) {
+    throw std::invalid_argument("inverse symbol applied to a field of another size");
+  }
+  const Index transformed = tangential_ && !symmetric_ ? 2 : 1;
+  for (Index f = 0; f < transformed; ++f) {
+    load(f, field.data() + f * cells);
+    transform_.forward(f);
+  }
+  symmetric_ ? multiply_symmetric() : multiply();
+  for (Index f = 0; f < transformed; ++f) {
+    const Index result = symmetric_ ? 1 : f;
+    transform_.backward(result);
+    store(result, field.data() + f * cells);
+  }
+  if (symmetric_) store_transposed(field.data());
+}
+
+template <typename Real>
+void MirroredInverseSymbol<Real>::load(Index f, const Real* values) {
+  for (Index i = 0; i < t1_; ++i) {
+    Real* const row = transform_.row(f, reordered(i, t1_));
+    if (i < grid_.n1) {
+      const auto [even, odd] = signs(f, i);
+      reorder(values + i * grid_.n2, grid_.n2, even, odd, t2_, row);
+    } else {
+      std::fill_n(row, t2_, Real(0));
+    }
+  }
+}
+
+template <typename Real>
+void MirroredInverseSymbol<Real>::store(Index f, Real* values) {
+  for (Index i = 0; i < grid_.n1; ++i) {
+    const auto [even, odd] = signs(symmetric_ ? 0 : f, i);
+    restore(transform_.row(f, reordered(i, t1_)), grid_.n2, even, odd, t2_, values + i * grid_.n2);
+  }
+}
+
+/// q1 is odd in x2 and q2 in x1: their samples at odd places take the other sign there.
+template <typename Real>
+std::array<Real, 2> MirroredInverseSymbol<Real>::signs(Index f, Index i) const {
+  if (!tangential_) return {1, 1};
+  if (f == 0) return {1, -1};
+  const auto sign = static_cast<Real>(i % 2 == 0 ? 1 : -1);
+  return {sign, sign};
+}
+
+template <typename Real>
+typename MirroredInverseSymbol<Real>::Coefficients MirroredInverseSymbol<Real>::coefficients(Index f) {
+  Real* const first = coefficients_.data() + 4 * f * half_;
+  return {first, first + half_, first + 2 * half_, first + 3 * half_};
+}
+
+template <typename Real>
+void MirroredInverseSymbol<Real>::separate(Index f, Index k1) {
+  const Coefficients to = coefficients(f);
+  const Real* const c1 = twiddles_.data();
+  const Real* const c2 = c1 + 2 * (t1_ / 2 + 1);
+  const Real* const near = transform_.row(f, k1);
+  const Real* const far = transform_.row(f, k1 == 0 ? 0 : t1_ - k1);
+  separate_rows(half_, Twiddles<Real>{c1[k1], c1[t1_ / 2 + 1 + k1], c2, c2 + half_}, near, far, to.cc, to.cs,
+                to.sc, to.ss);
+}
+
+template <typename Real>
+void MirroredInverseSymbol<Real>::join(const Coefficients& from, Index f, Index k1) {
+  // Rows 0 and t1/2 are their own partners: what is written twice goes elsewhere once.
+  const bool alone = k1 == 0 || 2 * k1 == t1_;
+  Real* const unused = coefficients_.data() + coefficient_size(half_, tangential_ && !symmetric_) - 2 * half_;
+  const Real* const c1 = twiddles_.data();
+  const Real* const c2 = c1 + 2 * (t1_ / 2 + 1);
+  Real* const near = transform_.row(f, k1);
+  Real* const far = alone ? unused : transform_.row(f, t1_ - k1);
+  join_rows(half_, Twiddles<Real>{c1[k1], c1[t1_ / 2 + 1 + k1], c2, c2 + half_}, from.cc, from.cs, from.sc,
+            from.ss, near, far);
+}
+
+template <typename Real>
+void MirroredInverseSymbol<Real>::multiply() {
+  const Index fields = tangential_ ? 2 : 1;
+  for (Index k1 = 0; 2 * k1 <= t1_; ++k1) {
+    for (Index f = 0; f < fields; ++f) separate(f, k1);
+    multiply_rows(k1);
+    for (Index f = 0; f < fields; ++f) join(coefficients(f), f, k1);
+  }
+}
+
+/// Cosines of the frequencies k of p; sines of t - k, which for the odd coordinate of q1 and of q2 is k: so
+/// q1's cs has the frequencies of q2's sc, and so on.
+template <typename Real>
+void MirroredInverseSymbol<Real>::multiply_rows(Index k1) {
+  const auto low = [&](SymbolEntry entry) { return table_.row(entry, k1); };
+  const auto high = [&](SymbolEntry entry) { return table_.row(entry, t1_ - k1); };
+  const Coefficients x = coefficients(0);
+  if (!tangential_) {
+    scale(half_, low(SymbolEntry::p11), x.cc);
+    scale(half_, low(SymbolEntry::p11) + half_, x.cs);
+    scale(half_, high(SymbolEntry::p11), x.sc);
+    scale(half_, high(SymbolEntry::p11) + half_, x.ss);
+    return;
+  }
+  const auto multiply_pair = [&](const auto& row, Index column, Real* x1, Real* x2) {
+    mix(half_, row(SymbolEntry::p11) + column, row(SymbolEntry::p12) + column, row(SymbolEntry::p22) + column,
+        x1, x2);
+  };
+  const Coefficients y = coefficients(1);
+  multiply_pair(low, 0, x.cs, y.sc);
+  multiply_pair(low, half_, x.cc, y.ss);
+  multiply_pair(high, 0, x.ss, y.cc);
+  multiply_pair(high, half_, x.sc, y.cs);
+}
+
+/// The coefficients of q2 at (f1, f2) are minus those of q1 at (f2, f1): all of those are made first, in
+/// place of the transform.
+template <typename Real>
+void MirroredInverseSymbol<Real>::multiply_symmetric() {
+  const Coefficients x = coefficients(0);
+  for (Index k1 = 0; 2 * k1 <= t1_; ++k1) {
+    separate(0, k1);
+    Real* const low = transform_.row(0, k1);
+    std::copy_n(x.cs, half_, low);
+    std::copy_n(x.cc, half_, low + half_);
+    if (k1 == 0 || 2 * k1 == t1_) continue;
+    Real* const high = transform_.row(0, t1_ - k1);
+    std::copy_n(x.ss, half_, high);
+    std::copy_n(x.sc, half_, high + half_);
+  }
+  for (Index k1 = 0; 2 * k1 <= t1_; ++k1) {
+    multiply_symmetric_rows(k1);
+    join(x, 1, k1);
+  }
+}
+
+/// Rows and columns hold the frequencies k, and t - k after them (rows: before the end).
+template <typename Real>
+void MirroredInverseSymbol<Real>::multiply_symmetric_rows(Index k1) {
+  const Coefficients to = coefficients(0);
+  const Index step = transform_.row_stride();
+  const auto mix_row = [&](Index f1, Index column, Index other_column, Real* out) {
+    const Real* const other =
+        column == 0 ? transform_.row(0, 0) + other_column : transform_.row(0, t1_) + other_column;
+    mix_with_other_half(half_, table_.row(SymbolEntry::p11, f1) + column,
+                        table_.row(SymbolEntry::p12, f1) + column, transform_.row(0, f1) + column, other,
+                        column == 0 ? step : -step, out);
+  };
+  mix_row(k1, 0, k1, to.cs);
+  mix_row(k1, half_, k1, to.cc);
+  if (k1 == 0) {  // no frequency t1 along x1, in which q1 is even
+    std::fill_n(to.ss, half_, Real(0));
+    std::fill_n(to.sc, half_, Real(0));
+    return;
+  }
+  mix_row(t1_ - k1, 0, half_ + k1, to.ss);
+  mix_row(t1_ - k1, half_, half_ + k1, to.sc);
+}
+
+/// The second component, from the first.
+template <typename Real>
+void MirroredInverseSymbol<Real>::store_transposed(Real* field) const {
+  constexpr Index kBlock = 32;  // rows whose columns are read together, while they are in cache
+  const Index n = grid_.n1;
+  Real* const second = field + grid_.cells();
+  for (Index first_row = 0; first_row < n; first_row += kBlock) {
+    const Index last_row = std::min(first_row + kBlock, n);
+    for (Index j = 0; j < n; ++j) {
+      for (Index i = first_row; i < last_row; ++i) second[j * n + i] = -field[i * n + j];
+    }
+  }
+}
+
+template class MirroredInverseSymbol<double>;
+template class MirroredInverseSymbol<float>;
+
+}  // namespace slipstick::solver

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <vector>
+
+#include "solver/fft/plane_transform.hpp"
+#include "solver/operator/inverse_symbol.hpp"
+#include "solver/operator/symbol_table.hpp"
+
+namespace slipstick::solver {
+
+/// The inverse symbol on a quadrant: the periodic one on the mirrored field, whose period is 2 t1 x 2 t2
+/// cells, by cosine and sine transforms of the quadrant alone, padded with zeros to t1 x t2 cells.
+///
+/// A cosine transform is a Fourier transform of the same length, of the even samples forwards and then the
+/// odd ones backwards, times a twiddle factor (Makhoul, IEEE Transactions on Acoustics, Speech and Signal
+/// Processing 28, 1980); in two dimensions so along each. Coefficients of the frequencies k1 and t1 - k1 by
+/// k2 and t2 - k2 follow from the Fourier transform at (k1, k2) and (t1 - k1, k2) and from nothing else. A
+/// sine transform is a cosine transform of samples with alternating signs, t - k in place of its frequency k:
+/// the same four, in another order. So two rows of the transform at a time are turned into coefficients,
+/// multiplied and turned back.
+template <typename Real>
+class MirroredInverseSymbol final : public InverseSymbol<Real> {
+ public:
+  /// With Diagonal::yes only the first component is transformed, of which the second is minus the transpose.
+  MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair, Diagonal diagonal,
+                        bool measure_plans);
+
+  void apply(std::span<Real> field) override;
+  std::array<double, 2> diagonal() const override { return diagonal_; }
+  std::size_t bytes() const override;
+  static Index predicted_size(const Grid& grid, bool tangential, Diagonal diagonal);
+
+ private:
+  /// half_ values each, k2 = 0..t2/2, of the transform of reordered samples along x1 and x2: by cosines (c)
+  /// of the frequency k or sines (s), which are the cosines of t - k.
+  struct Coefficients {
+    Real* cc;
+    Real* cs;
+    Real* sc;
+    Real* ss;
+  };
+
+  Coefficients coefficients(Index f);
+  void fill_twiddles();
+  /// By which samples at even and odd places of row i are to be multiplied.
+  std::array<Real, 2> signs(Index f, Index i) const;
+  void load(Index f, const Real* values);
+  void store(Index f, Real* values);
+  void separate(Index f, Index k1);
+  void join(const Coefficients& from, Index f, Index k1);
+  void multiply();
+  void multiply_rows(Index k1);
+  void multiply_symmetric();
+  void multiply_symmetric_rows(Index k1);
+  void store_transposed(Real* field) const;
+
+  Grid grid_;
+  bool tangential_;
+  bool symmetric_;
+  Index t1_;
+  Index t2_;
+  Index half_;  ///< t2/2 + 1
+  std::array<double, 2> diagonal_;
+  SymbolTable<Real> table_;  ///< columns 0..t2/2, then t2 - 0..t2/2
+  PlaneTransform<Real> transform_;
+  FftwBuffer<Real> coefficients_;  ///< of each field, and a row that is thrown away
+  FftwBuffer<Real> twiddles_;      ///< cos and sin of pi k/(2 t1), k = 0..t1/2, then those of pi k/(2 t2)
+};
+
+}  // namespace slipstick::solver

@@ -1,0 +1,84 @@
+#include "solver/operator/symbol_table.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace slipstick::solver {
+namespace {
+
+double frequency(Index f, Index length, double h) {
+  return 2.0 * std::numbers::pi * static_cast<double>(f) / (static_cast<double>(length) * h);
+}
+
+}  // namespace
+
+double PeriodicGrid::xi1(Index f) const { return frequency(f, length1, h1); }
+double PeriodicGrid::xi2(Index f) const { return frequency(f, length2, h2); }
+
+std::array<double, 3> inverse_symbol(const PeriodicGrid& grid, const ElasticPair& pair, bool tangential,
+                                     Index f1, Index f2) {
+  const bool zero = f1 == 0 && f2 == 0;
+  const double xi1 = grid.xi1(f1);
+  const double xi2 = grid.xi2(f2);
+  const double modulus = zero ? 0.5 * std::min(grid.xi1(1), grid.xi2(1)) : std::hypot(xi1, xi2);
+  if (!tangential) return {modulus / pair.normal_compliance, 0.0, 0.0};
+  const double transverse = modulus / pair.shear_compliance;
+  if (zero) return {transverse, 0.0, transverse};
+  const double n1 = xi1 / modulus;
+  const double n2 = xi2 / modulus;
+  const double excess =
+      transverse * pair.poisson_compliance / (pair.shear_compliance - pair.poisson_compliance);
+  const bool nyquist = 2 * f1 == grid.length1 || 2 * f2 == grid.length2;
+  return {transverse + excess * n1 * n1, nyquist ? 0.0 : excess * n1 * n2, transverse + excess * n2 * n2};
+}
+
+template <typename Real>
+SymbolTable<Real>::SymbolTable(const PeriodicGrid& grid, const ElasticPair& pair,
+                               const std::vector<SymbolEntry>& entries, const std::vector<Index>& columns,
+                               double factor)
+    : columns_(static_cast<Index>(columns.size())) {
+  const Index rows = grid.length1 / 2 + 1;
+  for (const SymbolEntry entry : entries) {
+    tables_[static_cast<std::size_t>(entry)] = FftwBuffer<Real>(static_cast<std::size_t>(rows * columns_));
+  }
+  const bool tangential = entries.size() > 1;
+  for (Index f1 = 0; f1 < rows; ++f1) {
+    for (Index column = 0; column < columns_; ++column) {
+      const auto symbol =
+          inverse_symbol(grid, pair, tangential, f1, columns[static_cast<std::size_t>(column)]);
+      for (const SymbolEntry entry : entries) {
+        const auto e = static_cast<std::size_t>(entry);
+        tables_[e].data()[f1 * columns_ + column] = static_cast<Real>(factor * symbol[e]);
+      }
+    }
+  }
+}
+
+template <typename Real>
+std::size_t SymbolTable<Real>::bytes() const {
+  std::size_t sum = 0;
+  for (const FftwBuffer<Real>& table : tables_) sum += table.bytes();
+  return sum;
+}
+
+std::array<double, 2> mean_inverse_symbol(const PeriodicGrid& grid, const ElasticPair& pair,
+                                          bool tangential) {
+  const auto signs = [](Index f, Index length) { return f == 0 || 2 * f == length ? 1.0 : 2.0; };
+  std::array<double, 2> sum{};
+  for (Index f1 = 0; 2 * f1 <= grid.length1; ++f1) {
+    for (Index f2 = 0; 2 * f2 <= grid.length2; ++f2) {
+      const double weight = signs(f1, grid.length1) * signs(f2, grid.length2);
+      const auto symbol = inverse_symbol(grid, pair, tangential, f1, f2);
+      sum[0] += weight * symbol[0];
+      sum[1] += weight * symbol[tangential ? 2 : 0];
+    }
+  }
+  const double frequencies = static_cast<double>(grid.length1) * static_cast<double>(grid.length2);
+  return {sum[0] / frequencies, sum[1] / frequencies};
+}
+
+template class SymbolTable<double>;
+template class SymbolTable<float>;
+
+}  // namespace slipstick::solver

@@ -1,0 +1,191 @@
+#include "solver/operator/convolution.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <complex>
+#include <numbers>
+#include <random>
+#include <stdexcept>
+#include <string>
+
+#include "solver/fft/padded_transform.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Complex = std::complex<double>;
+
+/// A few roundings in each of some ten stages, relative to the largest value.
+constexpr double kRounding = 1e-14;
+constexpr double kSingleRounding = 1e-6;
+
+/// One cell, one row, one column; lengths whose padded half is odd, even, and longer than the grid.
+const std::vector<Grid>& shapes() {
+  static const std::vector<Grid> grids{{1, 1, 1.0, 1.0},   {1, 7, 1.0, 1.0},  {7, 1, 0.5, 1.0},
+                                       {2, 3, 1e-3, 1e-3}, {3, 5, 1.0, 1.0},  {11, 3, 1.0, 1.0},
+                                       {13, 17, 1.0, 2.0}, {25, 20, 1.0, 1.0}};
+  return grids;
+}
+
+std::string name(const Grid& grid) { return std::to_string(grid.n1) + " x " + std::to_string(grid.n2); }
+
+Eigen::ArrayXd random_field(Index size, unsigned seed) {
+  std::mt19937_64 generator(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  return Eigen::ArrayXd::NullaryExpr(size, [&] { return uniform(generator); });
+}
+
+template <typename Real>
+std::span<Real> span_of(Eigen::Array<Real, Eigen::Dynamic, 1>& field) {
+  return {field.data(), static_cast<std::size_t>(field.size())};
+}
+
+/// The transform by its definition, at one pair of frequencies.
+Complex plain_sum(const Grid& grid, const double* field, Index p1, Index p2, Index f1, Index f2) {
+  Complex sum = 0.0;
+  for (Index i = 0; i < grid.n1; ++i) {
+    for (Index j = 0; j < grid.n2; ++j) {
+      const double turns = static_cast<double>(i * f1 % p1) / static_cast<double>(p1) +
+                           static_cast<double>(j * f2 % p2) / static_cast<double>(p2);
+      sum += field[i * grid.n2 + j] * std::polar(1.0, -2.0 * std::numbers::pi * turns);
+    }
+  }
+  return sum;
+}
+
+TEST(PaddedTransform, IsThePlainSumAtEachFrequency) {
+  for (const Grid& grid : shapes()) {
+    SCOPED_TRACE(name(grid));
+    PaddedTransform<double> transform(grid, 2, 1, FFTW_ESTIMATE);
+    const Index p1 = transform.padded1();
+    const Index p2 = transform.padded2();
+    Eigen::ArrayXd fields = random_field(2 * grid.cells(), 1);
+    transform.forward_rows(span_of(fields));
+    const Index evens = p2 / 4 + 1;
+    double worst = 0.0;
+    transform.through_columns(2, 0, [&](Index column, const PaddedTransform<double>::Spectrum& spectrum) {
+      const Index f2 = column < evens ? 2 * column : 2 * (column - evens) + 1;
+      for (Index f1 = 0; f1 < p1; ++f1) {
+        for (std::size_t field = 0; field < 2; ++field) {
+          const Complex computed = (f1 % 2 == 0 ? spectrum.even : spectrum.odd)[field][f1 / 2];
+          const double* const values = fields.data() + static_cast<Index>(field) * grid.cells();
+          worst = std::max(worst, std::abs(computed - plain_sum(grid, values, p1, p2, f1, f2)));
+        }
+      }
+    });
+    EXPECT_EQ(transform.columns(), p2 / 2 + 1);
+    EXPECT_LE(worst, kRounding * static_cast<double>(grid.cells()));
+  }
+}
+
+TEST(PaddedTransform, ThereAndBackMultipliesByThePaddedSize) {
+  for (const Grid& grid : shapes()) {
+    for (const int threads : {1, 3}) {
+      SCOPED_TRACE(name(grid));
+      PaddedTransform<double> transform(grid, 2, threads, FFTW_ESTIMATE);
+      const auto padded = static_cast<double>(transform.padded1() * transform.padded2());
+      const Eigen::ArrayXd fields = random_field(2 * grid.cells(), 2);
+      for (int time = 0; time < 2; ++time) {  // the first must leave nothing behind
+        Eigen::ArrayXd back = fields;
+        transform.forward_rows(span_of(back));
+        transform.through_columns(2, 2, [](Index, const auto&) {});
+        transform.backward_rows(span_of(back));
+        EXPECT_LE((back / padded - fields).abs().maxCoeff(), kRounding);
+      }
+    }
+  }
+}
+
+const std::vector<BlockKernel>& kernels() {
+  static const std::vector<BlockKernel> all{normal_kernel(), tangential_kernel(), coupling_kernel()};
+  return all;
+}
+
+ElasticPair dissimilar_pair() { return elastic_pair({1.0, 0.3}, {2.5, 0.1}); }
+
+/// A grid too large for the dense matrix, of lengths that are prime and of which one is padded further.
+TEST(Convolution, OfPrimeLengthsIsTheDirectSum) {
+  const Grid grid{101, 67, 1.0, 1.0};
+  for (const BlockKernel& kernel : kernels()) {
+    const auto fft = make_operator(OperatorKind::dcfft, grid, kernel, dissimilar_pair());
+    const auto direct = make_operator(OperatorKind::direct, grid, kernel, dissimilar_pair());
+    const Eigen::ArrayXd traction = random_field(static_cast<Index>(kernel.inputs) * grid.cells(), 3);
+    Eigen::ArrayXd computed(static_cast<Index>(kernel.outputs) * grid.cells());
+    Eigen::ArrayXd expected(computed.size());
+    fft->apply(traction, computed);
+    direct->apply(traction, expected);
+    EXPECT_LE((computed - expected).abs().maxCoeff(), 10.0 * kRounding * expected.abs().maxCoeff());
+  }
+}
+
+TEST(Convolution, RefusesAKernelOfAnotherShape) {
+  const BlockKernel mixed{2, 1, {Component::k13, Component::k33}};
+  const BlockKernel wide{1, 2, {Component::k11, Component::k12}};
+  for (const BlockKernel& kernel : {mixed, wide}) {
+    EXPECT_THROW(make_operator(OperatorKind::dcfft, {4, 4, 1.0, 1.0}, kernel, dissimilar_pair()),
+                 std::invalid_argument);
+  }
+}
+
+TEST(SingleConvolution, IsTheDoubleOneToSinglePrecision) {
+  std::vector<Grid> grids = shapes();
+  grids.insert(grids.end(), {{127, 101, 1.0, 0.7}, {64, 64, 1.0, 1.0}, {250, 3, 1.0, 1.0}});
+  double worst = 0.0;
+  for (const Grid& grid : grids) {
+    for (const BlockKernel& kernel : kernels()) {
+      SCOPED_TRACE(name(grid));
+      const auto single = make_single_operator(grid, kernel, dissimilar_pair());
+      const auto twice = make_operator(OperatorKind::dcfft, grid, kernel, dissimilar_pair());
+      const Eigen::ArrayXf traction =
+          random_field(static_cast<Index>(kernel.inputs) * grid.cells(), 4).cast<float>();
+      Eigen::ArrayXf computed(static_cast<Index>(kernel.outputs) * grid.cells());
+      Eigen::ArrayXd expected(computed.size());
+      single->apply(traction, computed);
+      twice->apply(traction.cast<double>(), expected);
+      const double largest = expected.abs().maxCoeff();
+      const double difference = (computed.cast<double>() - expected).abs().maxCoeff();
+      EXPECT_LE(difference, kSingleRounding * largest);
+      if (largest > 0.0) worst = std::max(worst, difference / largest);
+    }
+  }
+  RecordProperty("worst_difference", std::to_string(worst * 1e7) + "e-7");
+}
+
+TEST(SingleConvolution, GivesTheSameBitsAgainAndWithTwoThreads) {
+  for (const Grid& grid : shapes()) {
+    SCOPED_TRACE(name(grid));
+    const auto one = make_single_operator(grid, tangential_kernel(), dissimilar_pair(), {.threads = 1});
+    const auto two = make_single_operator(grid, tangential_kernel(), dissimilar_pair(), {.threads = 2});
+    const Eigen::ArrayXf traction = random_field(2 * grid.cells(), 5).cast<float>();
+    Eigen::ArrayXf first(traction.size());
+    Eigen::ArrayXf again(traction.size());
+    one->apply(traction, first);
+    for (Operator<float>* const op : {one.get(), two.get()}) {
+      op->apply(traction, again);
+      EXPECT_TRUE((again == first).all());
+    }
+  }
+}
+
+TEST(SingleConvolution, TakesTheMemoryThatWasPredicted) {
+  for (const Grid& grid : shapes()) {
+    for (const BlockKernel& kernel : kernels()) {
+      const OperatorOptions options{.threads = 2};
+      const auto single = make_single_operator(grid, kernel, dissimilar_pair(), options);
+      EXPECT_EQ(static_cast<double>(single->bytes()), predicted_single_bytes(grid, kernel, options));
+    }
+  }
+}
+
+/// What keeps the largest grids possible: the spectra are stored as a quadrant, the fields without padding.
+TEST(Convolution, TakesLessThanTwoNumbersForEachPaddedCell) {
+  const Grid grid{512, 512, 1.0, 1.0};
+  const double padded = 1024.0 * 1024.0;
+  EXPECT_LE(predicted_bytes(OperatorKind::dcfft, grid, tangential_kernel()) / sizeof(double), 1.9 * padded);
+  EXPECT_LE(predicted_single_bytes(grid, tangential_kernel()) / sizeof(float), 1.9 * padded);
+}
+
+}  // namespace
+}  // namespace slipstick::solver

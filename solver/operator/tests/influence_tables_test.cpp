@@ -1,0 +1,54 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <utility>
+
+#include "solver/operator/cell_integrals.hpp"
+#include "solver/operator/influence.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+constexpr std::array kComponents{Component::k11, Component::k12, Component::k22,
+                                 Component::k13, Component::k23, Component::k33};
+
+/// What cell_integrals() promises, which influence_test.cpp holds against adaptive quadrature.
+constexpr double kPromised = 1e-13;
+
+/// Each component composed of the cell integrals (Johnson 1985, section 3.6), in kComponents' order.
+std::array<double, 6> composed(const ElasticPair& pair, const CellIntegrals& c) {
+  const double half = 0.5 / std::numbers::pi;
+  const double shear = half * pair.shear_compliance;
+  const double poisson = half * pair.poisson_compliance;
+  return {shear * c.xx + (shear - poisson) * c.yy, poisson * c.xy,
+          shear * c.yy + (shear - poisson) * c.xx, -0.5 * half * pair.mismatch * c.x,
+          -0.5 * half * pair.mismatch * c.y,       half * pair.normal_compliance * (c.xx + c.yy)};
+}
+
+/// Of any shape: square cells are mirrored about the diagonal, and threads share the rows.
+TEST(InfluenceTables, HoldTheIntegralsOfEachOffset) {
+  const ElasticPair pair = elastic_pair({1.0, 0.3}, {2.5, 0.1});
+  for (const double aspect : {1.0, 0.3}) {
+    for (const auto& [m1, m2] :
+         {std::pair<Index, Index>{1, 1}, {3, 21}, {21, 3}, {17, 17}, {24, 24}, {9, 30}}) {
+      for (const int threads : {1, 3}) {
+        const auto tables = influence_tables(kComponents, pair, 1.0, aspect, m1, m2, threads);
+        ASSERT_EQ(tables.size(), kComponents.size());
+        for (Index k = 0; k < m1 * m2; ++k) {
+          const double x = static_cast<double>(k / m2);
+          const double y = static_cast<double>(k % m2) * aspect;
+          const auto expected = composed(pair, cell_integrals(x, y, 1.0, aspect));
+          for (std::size_t i = 0; i < tables.size(); ++i) {
+            ASSERT_NEAR(tables[i][static_cast<std::size_t>(k)], expected[i],
+                        kPromised * std::abs(expected[i]));
+          }
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace slipstick::solver

@@ -1,0 +1,308 @@
+#include "solver/operator/mirrored_convolution.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <ostream>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "solver/grid/mirror.hpp"
+#include "solver/operator/convolution.hpp"
+#include "solver/operator/direct.hpp"
+#include "solver/tests/allocations.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+using Mirrored = MirroredConvolution<double>;
+using MirroredFloat = MirroredConvolution<float>;
+
+/// Relative to the largest displacement: the transforms round by some eps times the logarithm of their
+/// length.
+constexpr double kAgreement = 1e-13;
+
+struct Case {
+  std::string name;
+  Grid grid;
+  BlockKernel kernel;
+  ElasticPair pair;
+};
+
+void PrintTo(const Case& tested, std::ostream* stream) { *stream << tested.name; }
+
+Grid quadrant(Index n1, Index n2, double h1 = 1.0, double h2 = 1.0) { return {n1, n2, h1, h2, true}; }
+
+ElasticPair similar_pair(double poisson_ratio) {
+  return elastic_pair({1.0, poisson_ratio}, {1.0, poisson_ratio});
+}
+
+/// Poisson's ratios and moduli whose mismatch is not zero.
+ElasticPair dissimilar_pair() { return elastic_pair({1.0, 0.3}, {2.5, 0.1}); }
+
+std::vector<Case> all_cases() {
+  struct Pair {
+    std::string name;
+    ElasticPair pair;
+  };
+  const std::vector<Pair> pairs{{"nu0", similar_pair(0.0)},
+                                {"nu03", similar_pair(0.3)},
+                                {"nu05", similar_pair(0.5)},
+                                {"dissimilar", dissimilar_pair()}};
+  const std::vector<Grid> grids{quadrant(1, 1),   quadrant(2, 3, 1.0, 0.5),   quadrant(5, 4),
+                                quadrant(16, 16), quadrant(33, 17),           quadrant(7, 31, 0.3, 1.0),
+                                quadrant(17, 17), quadrant(37, 5, 1e-3, 2e-3)};
+  std::vector<Case> cases;
+  for (const Grid& grid : grids) {
+    for (const auto& [name, pair] : pairs) {
+      const std::string suffix = std::to_string(grid.n1) + "x" + std::to_string(grid.n2) + "_" + name;
+      cases.push_back({"normal_" + suffix, grid, normal_kernel(), pair});
+      cases.push_back({"tangential_" + suffix, grid, tangential_kernel(), pair});
+    }
+  }
+  return cases;
+}
+
+ArrayXd random_field(Index size, unsigned seed) {
+  std::mt19937_64 generator(seed);
+  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
+  return ArrayXd::NullaryExpr(size, [&] { return uniform(generator); });
+}
+
+/// q2(x1, x2) = -q1(x2, x1), as torsion of a body of revolution has it.
+ArrayXd random_diagonal_field(const Grid& grid, unsigned seed) {
+  ArrayXd field(2 * grid.cells());
+  field.head(grid.cells()) = random_field(grid.cells(), seed);
+  for (Index i = 0; i < grid.n1; ++i) {
+    for (Index j = 0; j < grid.n2; ++j) field[grid.cells() + i * grid.n2 + j] = -field[j * grid.n2 + i];
+  }
+  return field;
+}
+
+template <typename Real>
+auto apply(Operator<Real>& op, const Eigen::Array<Real, Eigen::Dynamic, 1>& traction) {
+  Eigen::Array<Real, Eigen::Dynamic, 1> displacement(static_cast<Index>(op.outputs()) * op.grid().cells());
+  op.apply(traction, displacement);
+  return displacement;
+}
+
+double relative_difference(const ArrayXd& a, const ArrayXd& b) {
+  return (a - b).abs().maxCoeff() / b.abs().maxCoeff();
+}
+
+Symmetry symmetry_of(const BlockKernel& kernel) {
+  return kernel.inputs == 1 ? normal_symmetry() : torsion_symmetry();
+}
+
+/// The same on the whole grid.
+template <typename Whole>
+ArrayXd apply_unfolded(const Case& tested, const ArrayXd& traction) {
+  const Grid whole = whole_grid(tested.grid);
+  Whole op(whole, tested.kernel, tested.pair, OperatorOptions{});
+  return restrict_to_quadrant(whole, apply(op, unfold(tested.grid, traction, symmetry_of(tested.kernel))));
+}
+
+class MirroredConvolutionTest : public testing::TestWithParam<Case> {
+ protected:
+  const Grid& grid() const { return GetParam().grid; }
+  const BlockKernel& kernel() const { return GetParam().kernel; }
+  Mirrored make(int threads = 1) const { return {grid(), kernel(), GetParam().pair, {.threads = threads}}; }
+  ArrayXd random_traction(unsigned seed) const {
+    return random_field(static_cast<Index>(kernel().inputs) * grid().cells(), seed);
+  }
+  /// As around a contact: nothing in the outer rows.
+  ArrayXd random_traction_inside(unsigned seed) const {
+    ArrayXd traction = random_traction(seed);
+    for (Index row = 0; row < traction.size() / grid().n2; ++row) {
+      if (row % grid().n1 > grid().n1 / 2) traction.segment(row * grid().n2, grid().n2).setZero();
+    }
+    return traction;
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Shapes, MirroredConvolutionTest, testing::ValuesIn(all_cases()),
+                         [](const auto& tested) { return tested.param.name; });
+
+TEST_P(MirroredConvolutionTest, IsTheConvolutionOfTheUnfoldedField) {
+  Mirrored mirrored = make();
+  for (const ArrayXd& traction : {random_traction(1), random_traction_inside(2)}) {
+    const ArrayXd u = apply(mirrored, traction);
+    EXPECT_LE(relative_difference(u, apply_unfolded<Convolution<double>>(GetParam(), traction)), kAgreement);
+  }
+}
+
+TEST_P(MirroredConvolutionTest, IsTheDirectSumOfTheUnfoldedField) {
+  Mirrored mirrored = make();
+  const ArrayXd traction = random_traction(3);
+  EXPECT_LE(relative_difference(apply(mirrored, traction), apply_unfolded<DirectSum>(GetParam(), traction)),
+            kAgreement);
+}
+
+TEST_P(MirroredConvolutionTest, OfNothingIsNothing) {
+  Mirrored mirrored = make();
+  apply(mirrored, random_traction(4));  // must leave nothing behind
+  EXPECT_EQ(apply(mirrored, ArrayXd(0.0 * random_traction(4))).abs().maxCoeff(), 0.0);
+}
+
+TEST_P(MirroredConvolutionTest, IsSymmetricAndPositiveDefinite) {
+  Mirrored mirrored = make();
+  const ArrayXd x = random_traction(5);
+  const ArrayXd y = random_traction(6);
+  const ArrayXd Kx = apply(mirrored, x);
+  const ArrayXd Ky = apply(mirrored, y);
+  EXPECT_NEAR((x * Ky).sum(), (y * Kx).sum(), kAgreement * std::sqrt((x * Kx).sum() * (y * Ky).sum()));
+  EXPECT_GT((x * Kx).sum(), 0.0);
+  EXPECT_GT((y * Ky).sum(), 0.0);
+}
+
+TEST_P(MirroredConvolutionTest, GivesTheSameBitsAgainAndWithMoreThreads) {
+  Mirrored one = make();
+  const ArrayXd traction = random_traction_inside(7);
+  const ArrayXd first = apply(one, traction);
+  apply(one, random_traction(8));
+  EXPECT_TRUE((apply(one, traction) == first).all());
+  for (const int threads : {2, 3}) {
+    Mirrored several = make(threads);
+    apply(several, random_traction(8));
+    EXPECT_TRUE((apply(several, traction) == first).all());
+  }
+}
+
+TEST_P(MirroredConvolutionTest, InSinglePrecisionIsNearToDouble) {
+  Mirrored reference = make();
+  MirroredFloat single(grid(), kernel(), GetParam().pair, {});
+  const Eigen::ArrayXf traction = random_traction(9).cast<float>();
+  EXPECT_LE(relative_difference(apply(single, traction).cast<double>(),
+                                apply(reference, ArrayXd(traction.cast<double>()))),
+            1e-6);
+}
+
+template <typename Real>
+void expect_no_allocation(const Grid& grid, const BlockKernel& kernel, bool diagonal) {
+  const long before_setup = allocations();
+  MirroredConvolution<Real> mirrored(grid, kernel, dissimilar_pair(), {}, diagonal);
+  EXPECT_GT(allocations(), before_setup) << "the count itself must work";
+  typename Operator<Real>::Field traction =
+      random_field(static_cast<Index>(kernel.inputs) * grid.cells(), 10).template cast<Real>();
+  typename Operator<Real>::Field displacement(traction.size());
+  const long before = allocations();
+  mirrored.apply(traction, displacement);
+  EXPECT_EQ(allocations(), before);
+}
+
+TEST_P(MirroredConvolutionTest, AllocatesNothingInAnApplication) {
+  expect_no_allocation<double>(grid(), kernel(), false);
+  expect_no_allocation<float>(grid(), kernel(), false);
+}
+
+template <typename Real>
+void expect_predicted_memory(const Grid& grid, const BlockKernel& kernel, bool diagonal) {
+  for (const int threads : {0, 1, 3}) {
+    const MirroredConvolution<Real> mirrored(grid, kernel, dissimilar_pair(), {.threads = threads}, diagonal);
+    EXPECT_EQ(static_cast<double>(mirrored.bytes()),
+              MirroredConvolution<Real>::predicted_bytes(grid, kernel, threads, diagonal));
+  }
+}
+
+TEST_P(MirroredConvolutionTest, TakesTheMemoryThatWasPredicted) {
+  expect_predicted_memory<double>(grid(), kernel(), false);
+  expect_predicted_memory<float>(grid(), kernel(), false);
+}
+
+class DiagonalConvolutionTest : public testing::TestWithParam<Index> {
+ protected:
+  Grid grid() const { return quadrant(GetParam(), GetParam(), 0.3, 0.3); }
+  template <typename Real>
+  MirroredConvolution<Real> make(int threads = 1) const {
+    return {grid(), tangential_kernel(), dissimilar_pair(), {.threads = threads}, true};
+  }
+};
+
+INSTANTIATE_TEST_SUITE_P(Sizes, DiagonalConvolutionTest, testing::Values(1, 2, 3, 8, 13, 16, 17, 33, 50));
+
+TEST_P(DiagonalConvolutionTest, IsTheMirroredConvolutionOfSymmetricFields) {
+  Mirrored plain(grid(), tangential_kernel(), dissimilar_pair(), {});
+  Mirrored diagonal = make<double>();
+  for (const unsigned seed : {11U, 12U}) {
+    const ArrayXd traction = random_diagonal_field(grid(), seed);
+    EXPECT_LE(relative_difference(apply(diagonal, traction), apply(plain, traction)), kAgreement);
+  }
+}
+
+TEST_P(DiagonalConvolutionTest, GivesExactlySymmetricDisplacementsAndReadsQ1Only) {
+  Mirrored diagonal = make<double>();
+  const Index n = GetParam();
+  const ArrayXd symmetric = random_diagonal_field(grid(), 13);
+  ArrayXd other = symmetric;
+  other.tail(n * n) = random_field(n * n, 14);
+  const ArrayXd u = apply(diagonal, symmetric);
+  EXPECT_TRUE((apply(diagonal, other) == u).all());
+  for (Index i = 0; i < n; ++i) {
+    for (Index j = 0; j < n; ++j) ASSERT_EQ(u[n * n + i * n + j], -u[j * n + i]);
+  }
+}
+
+TEST_P(DiagonalConvolutionTest, GivesTheSameBitsWithMoreThreads) {
+  const ArrayXd traction = random_diagonal_field(grid(), 15);
+  Mirrored one = make<double>();
+  const ArrayXd first = apply(one, traction);
+  for (const int threads : {2, 3}) {
+    Mirrored several = make<double>(threads);
+    EXPECT_TRUE((apply(several, traction) == first).all());
+    EXPECT_TRUE((apply(several, traction) == first).all());
+  }
+}
+
+TEST_P(DiagonalConvolutionTest, IsSymmetricAndPositiveDefinite) {
+  Mirrored diagonal = make<double>();
+  const ArrayXd x = random_diagonal_field(grid(), 16);
+  const ArrayXd y = random_diagonal_field(grid(), 17);
+  const ArrayXd Kx = apply(diagonal, x);
+  const ArrayXd Ky = apply(diagonal, y);
+  EXPECT_NEAR((x * Ky).sum(), (y * Kx).sum(), kAgreement * std::sqrt((x * Kx).sum() * (y * Ky).sum()));
+  EXPECT_GT((x * Kx).sum(), 0.0);
+}
+
+TEST_P(DiagonalConvolutionTest, InSinglePrecisionIsNearToDouble) {
+  const Eigen::ArrayXf traction = random_diagonal_field(grid(), 18).cast<float>();
+  auto reference = make<double>();
+  auto single = make<float>();
+  EXPECT_LE(relative_difference(apply(single, traction).cast<double>(),
+                                apply(reference, ArrayXd(traction.cast<double>()))),
+            1e-6);
+}
+
+TEST_P(DiagonalConvolutionTest, AllocatesNothingAndTakesTheMemoryThatWasPredicted) {
+  expect_no_allocation<double>(grid(), tangential_kernel(), true);
+  expect_no_allocation<float>(grid(), tangential_kernel(), true);
+  expect_predicted_memory<double>(grid(), tangential_kernel(), true);
+  expect_predicted_memory<float>(grid(), tangential_kernel(), true);
+}
+
+TEST(MirroredConvolutionRefuses, WhatHasNotItsSymmetry) {
+  const auto make = [](const Grid& grid, const BlockKernel& kernel, bool diagonal) {
+    const Mirrored mirrored(grid, kernel, dissimilar_pair(), {}, diagonal);
+  };
+  EXPECT_NO_THROW(make(quadrant(4, 4), tangential_kernel(), true));
+  EXPECT_THROW(make({4, 4, 1.0, 1.0}, tangential_kernel(), false), std::invalid_argument);
+  EXPECT_THROW(make(quadrant(4, 4), coupling_kernel(), false), std::invalid_argument);
+  EXPECT_THROW(make(quadrant(4, 4), {1, 1, {Component::k11}}, false), std::invalid_argument);
+  EXPECT_THROW(make(quadrant(4, 4), normal_kernel(), true), std::invalid_argument);
+  EXPECT_THROW(make(quadrant(4, 5), tangential_kernel(), true), std::invalid_argument);
+  EXPECT_THROW(make(quadrant(4, 4, 1.0, 0.5), tangential_kernel(), true), std::invalid_argument);
+  EXPECT_THROW(Mirrored::predicted_bytes({4, 4, 1.0, 1.0}, normal_kernel(), 1), std::invalid_argument);
+}
+
+TEST(MirroredConvolutionRefuses, FieldsOfAnotherSize) {
+  Mirrored mirrored(quadrant(3, 4), tangential_kernel(), dissimilar_pair(), {});
+  ArrayXd displacement(24);
+  EXPECT_THROW(mirrored.apply(ArrayXd::Ones(12), displacement), std::invalid_argument);
+  EXPECT_EQ(mirrored.applications(), 0);
+}
+
+}  // namespace
+}  // namespace slipstick::solver

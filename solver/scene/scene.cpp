@@ -1,0 +1,213 @@
+#include "solver/scene/scene.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <cmath>
+#include <limits>
+
+#include "solver/input/input_error.hpp"
+#include "solver/input/toml_reader.hpp"
+#include "solver/scene/surface_reader.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+const Words<PressureModel> kPressureModels{{"solved", PressureModel::solved},
+                                           {"hertz", PressureModel::hertz},
+                                           {"hertz_averaged", PressureModel::hertz_averaged},
+                                           {"file", PressureModel::file}};
+const Words<Coupling> kCouplings{{"auto", Coupling::automatic},
+                                 {"none", Coupling::none},
+                                 {"pressure", Coupling::pressure},
+                                 {"full", Coupling::full}};
+const Words<OperatorKind> kOperators{
+    {"dcfft", OperatorKind::dcfft}, {"direct", OperatorKind::direct}, {"dense", OperatorKind::dense}};
+const Words<Method> kMethods{{"coulomb", Method::coulomb},
+                             {"projected_gradient", Method::projected_gradient},
+                             {"paper", Method::paper}};
+const Words<ModelChoice> kModels{
+    {"auto", ModelChoice::automatic}, {"full", ModelChoice::full}, {"exact", ModelChoice::exact}};
+const Words<Precision> kPrecisions{{"double", Precision::double_precision}, {"mixed", Precision::mixed}};
+
+const Range kRatio{"above -1 and below 1 (1 is gross slip)", [](double x) { return x > -1.0 && x < 1.0; }};
+const Range kPoisson{"from 0 to 0.5", [](double x) { return x >= 0.0 && x <= 0.5; }};
+/// A step's result stays in memory to the end: some ten kilobytes.
+constexpr std::size_t kMostSteps = 100'000;
+const Range kTolerance{"from 1e-15 to below 1", [](double x) { return x >= 1e-15 && x < 1.0; }};
+
+Material read_material(SceneReader& reader, const std::string& body) {
+  if (reader.flag_or(body + ".rigid", false)) {
+    for (const char* key : {".young_modulus", ".poisson_ratio"}) {
+      if (reader.has(body + key))
+        reader.fail(body + ".rigid", "true", fmt::format("{}{} left out beside it", body, key));
+    }
+    return {std::numeric_limits<double>::infinity(), 0.0};
+  }
+  return {reader.number(body + ".young_modulus", kPositive),
+          reader.number(body + ".poisson_ratio", kPoisson)};
+}
+
+/// What a table says of the torsion; what it does not say is as before.
+void read_torsion(SceneReader& reader, const std::string& table, TorsionLoad& torsion) {
+  const std::vector<std::string> keys{table + ".moment_ratio", table + ".moment", table + ".twist"};
+  reader.prefer_overridden(keys);
+  const TorsionLoad load{reader.find_number(keys[0], kRatio), reader.find_number(keys[1], kFinite),
+                         reader.find_number(keys[2], kFinite)};
+  const int given = load.moment_ratio.has_value() + load.moment.has_value() + load.twist.has_value();
+  if (given > 1) {
+    reader.fail(load.moment ? keys[1] : keys[2], "(with another torsion load beside it)",
+                fmt::format("exactly one of {}", fmt::join(keys, ", ")));
+  }
+  if (given == 1) torsion = load;
+}
+
+/// Likewise of forces, or displacements in their place.
+void read_translation(SceneReader& reader, const std::string& table, Step& step) {
+  reader.prefer_overridden({table + ".force", table + ".displacement"});
+  const auto force = reader.find_pair(table + ".force", kFinite);
+  const auto displacement = reader.find_pair(table + ".displacement", kFinite);
+  if (force && displacement) {
+    reader.fail(table + ".displacement", "(with a force beside it)", "one of force, displacement");
+  }
+  if (force) step.force = *force;
+  if (displacement) step.force = {};
+  if (force || displacement) step.displacement = displacement;
+}
+
+void read_loads(SceneReader& reader, const std::string& table, Step& step) {
+  step.key = table;
+  if (const auto normal = reader.find_number(table + ".normal", kPositive)) step.normal = normal;
+  read_torsion(reader, table, step.torsion);
+  read_translation(reader, table, step);
+}
+
+/// [load], or the [[step]] tables, each of which begins with the loads of the one before, the first with
+/// [load].
+std::vector<Step> read_steps(SceneReader& reader, bool needs_normal) {
+  Step load;
+  read_loads(reader, "load", load);
+  std::vector<Step> steps;
+  const std::size_t count = reader.count("step");
+  if (count > kMostSteps) {
+    reader.fail("step", fmt::format("{} tables", count), fmt::format("at most {}", kMostSteps));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    Step step = steps.empty() ? load : steps.back();
+    read_loads(reader, fmt::format("step[{}]", i), step);
+    step.name = reader.text_or(step.key + ".name", fmt::format("{}", i + 1));
+    steps.push_back(step);
+  }
+  if (steps.empty()) steps.push_back(load);
+  for (Step& step : steps) {
+    if (needs_normal && !step.normal) reader.number(step.key + ".normal", kPositive);  // says what is missing
+    TorsionLoad& torsion = step.torsion;
+    if (torsion.moment_ratio || torsion.moment || torsion.twist) continue;
+    const bool translated = step.displacement || step.force != std::array<double, 2>{};
+    if (count == 0 && !translated) {
+      reader.fail("load.moment_ratio", "(missing)",
+                  "exactly one of load.moment_ratio, load.moment, load.twist, or a load.force or "
+                  "load.displacement");
+    }
+    torsion.moment_ratio = 0.0;
+  }
+  return steps;
+}
+
+std::array<Index, 2> read_cells(SceneReader& reader, const std::vector<Surface>& surfaces) {
+  const Range allowed = whole(1, 65536);
+  if (find_height_map(surfaces) != nullptr && !reader.has("grid.cells")) return {0, 0};  // as many as samples
+  const auto cells = reader.pair("grid.cells", allowed);
+  return {static_cast<Index>(cells[0]), static_cast<Index>(cells[1])};
+}
+
+/// The paper's method and projected gradients know torsion about the origin alone.
+void require_method_can(SceneReader& reader, const Scene& scene) {
+  if (scene.method == Method::coulomb) return;
+  const std::string method = fmt::format("\"{}\"", to_string(scene.method));
+  const std::string allowed = "coulomb (this method knows one step of torsion about the origin)";
+  if (scene.steps.size() > 1 || scene.cycles > 1) reader.fail("solver.method", method, allowed);
+  const Step& step = scene.steps.front();
+  if (step.displacement || step.force != std::array<double, 2>{})
+    reader.fail("solver.method", method, allowed);
+}
+
+void require_consistent(SceneReader& reader, const Scene& scene) {
+  require_method_can(reader, scene);
+  if (scene.coupling == Coupling::full && scene.pressure != PressureModel::solved) {
+    reader.fail("contact.coupling", "\"full\"",
+                "auto, none, pressure (shear changes a pressure only where that is solved: "
+                "contact.pressure = \"solved\")");
+  }
+  if (std::isinf(scene.upper.young_modulus) && std::isinf(scene.lower.young_modulus)) {
+    reader.fail("lower.rigid", "true", "false, since the upper body is rigid");
+  }
+  const bool asks_hertz =
+      scene.pressure == PressureModel::hertz || scene.pressure == PressureModel::hertz_averaged;
+  if (asks_hertz && !hertzian_radii(scene.surfaces)) {
+    reader.fail("contact.pressure", fmt::format("\"{}\"", to_string(scene.pressure)),
+                "solved, file (Hertz's pressure belongs to one sphere or ellipsoid at the origin, its axes "
+                "along the grid's)");
+  }
+  if (scene.precision == Precision::mixed &&
+      (scene.op != OperatorKind::dcfft || scene.method != Method::coulomb)) {
+    reader.fail("solver.precision", "\"mixed\"",
+                "double, or mixed with method = \"coulomb\" and operator = \"dcfft\"");
+  }
+  if (find_height_map(scene.surfaces) != nullptr && scene.extent) {
+    reader.fail("grid.extent", "(given)", "left out for a height map: upper.spacing says it");
+  }
+  if (scene.pressure == PressureModel::file && !scene.extent) {
+    reader.fail("grid.extent", "(missing)", "[L1, L2] in m, since the pressure's cells come from a file");
+  }
+}
+
+}  // namespace
+
+std::string to_string(PressureModel model) { return word_of(kPressureModels, model); }
+std::string to_string(OperatorKind kind) { return word_of(kOperators, kind); }
+std::string to_string(Method method) { return word_of(kMethods, method); }
+std::string to_string(Precision precision) { return word_of(kPrecisions, precision); }
+
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  SceneReader reader(file, overrides);
+  Scene scene;
+  scene.source = file;
+  scene.name = reader.text_or("name", file.stem().string());
+  scene.surfaces = read_surfaces(reader);
+  if (scene.surfaces.size() > 1) scene.combine = read_combine(reader);
+  scene.ends_at_grid_edge = reader.flag_or("upper.ends_at_grid_edge", false);
+  scene.upper = read_material(reader, "upper");
+  scene.lower = read_material(reader, "lower");
+
+  scene.friction = reader.number("contact.friction", kNotNegative);
+  scene.pressure = reader.choice_or("contact.pressure", PressureModel::solved, kPressureModels);
+  if (scene.pressure == PressureModel::file) scene.pressure_file = reader.path("contact.pressure_file");
+  scene.coupling = reader.choice_or("contact.coupling", Coupling::automatic, kCouplings);
+
+  scene.steps = read_steps(reader, scene.pressure != PressureModel::file);
+  if (scene.steps.size() > 1 || reader.has("cycles")) {
+    const auto most = static_cast<double>(kMostSteps / scene.steps.size());
+    Range cycles = whole(1, most);
+    cycles.words += fmt::format(", {} steps in all", kMostSteps);
+    scene.cycles = static_cast<int>(reader.number_or("cycles", 1, cycles));
+  }
+
+  scene.cells = read_cells(reader, scene.surfaces);
+  scene.extent = reader.find_pair("grid.extent", kPositive);
+
+  scene.method = reader.choice_or("solver.method", scene.method, kMethods);
+  scene.model = reader.choice_or("solver.model", scene.model, kModels);
+  scene.precision = reader.choice_or("solver.precision", scene.precision, kPrecisions);
+  scene.op = reader.choice_or("solver.operator", OperatorKind::dcfft, kOperators);
+  scene.tolerance = reader.number_or("solver.tolerance", scene.tolerance, kTolerance);
+  scene.max_iterations =
+      static_cast<int>(reader.number_or("solver.max_iterations", scene.max_iterations, whole(1, 1e9)));
+  scene.threads = static_cast<int>(reader.number_or("solver.threads", scene.threads, whole(1, 1024)));
+  if (reader.has("solver.wisdom")) scene.wisdom = reader.path("solver.wisdom");
+  reader.reject_unknown();
+  require_consistent(reader, scene);
+  return scene;
+}
+
+}  // namespace slipstick::solver

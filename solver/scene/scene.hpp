@@ -1,0 +1,93 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solver/operator/operator_kind.hpp"
+#include "solver/scene/surface.hpp"
+
+namespace slipstick::solver {
+
+struct Material {
+  double young_modulus = 0.0;  ///< Pa; infinite: rigid
+  double poisson_ratio = 0.0;
+};
+
+/// Where the pressure comes from: solved on the same grid; Hertz's at cell centres; Hertz's averaged over
+/// each cell; a file.
+enum class PressureModel { solved, hertz, hertz_averaged, file };
+
+/// What couples normal and tangential tractions of dissimilar materials: the pressure's tangential
+/// displacement where they are dissimilar, nothing, that displacement, and also the shear's normal
+/// displacement.
+enum class Coupling { automatic, none, pressure, full };
+
+/// Which method finds the tractions.
+enum class Method { coulomb, projected_gradient, paper };
+
+/// What may be left out of the model: what symmetry and the contact's size allow; nothing; the grid itself,
+/// where the scene has an exact answer.
+enum class ModelChoice { automatic, full, exact };
+
+/// One of the three is set. Signed: a history turns back.
+struct TorsionLoad {
+  std::optional<double> moment_ratio;  ///< M over the limit of this pressure and mesh
+  std::optional<double> moment;        ///< N m
+  std::optional<double> twist;         ///< rad, since the first step
+};
+
+/// The loads at the end of a step, which brings the normal load first, then the tangential ones.
+struct Step {
+  std::string key = "load";  ///< of its table in the scene file
+  std::string name = {};
+  std::optional<double> normal;  ///< N; may be left out where the pressure comes from a file
+  TorsionLoad torsion;
+  std::array<double, 2> force{};                      ///< N, tangential, on the upper body; or else
+  std::optional<std::array<double, 2>> displacement;  ///< m, imposed instead, since the first step
+};
+
+/// What a scene file says, checked, with defaults filled in; SI units, or any other consistent set.
+struct Scene {
+  std::filesystem::path source;  ///< the file it was read from
+  std::string name;
+  std::vector<Surface> surfaces{{}};  ///< of the indenter, at least one
+  Combine combine = Combine::sum;
+  /// Nothing of the indenter lies beyond the grid, so that its contact may reach the grid's edge.
+  bool ends_at_grid_edge = false;
+  Material upper;
+  Material lower;
+  double friction = 0.0;
+  PressureModel pressure = PressureModel::solved;
+  std::filesystem::path pressure_file;
+  Coupling coupling = Coupling::automatic;
+  std::vector<Step> steps = std::vector<Step>(1);  ///< at least one
+  int cycles = 1;                                  ///< how often the steps are gone through
+  std::array<Index, 2> cells{};
+  std::optional<std::array<double, 2>> extent;  ///< m
+  Method method = Method::coulomb;
+  ModelChoice model = ModelChoice::automatic;
+  OperatorKind op = OperatorKind::dcfft;
+  Precision precision = Precision::double_precision;
+  double tolerance = 1e-8;
+  int max_iterations = 5000;
+  int threads = 1;
+  /// Transforms are planned by measurement and the plans kept in this file; empty: by estimate, which gives
+  /// the same digits again.
+  std::filesystem::path wisdom;
+};
+
+/// Reads a scene file (TOML); each override is "key=value" with a dotted key, applied before anything is
+/// checked. Relative paths in the scene are relative to the scene file. Throws InputError naming file, key,
+/// value and what is allowed.
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+/// Words of the enumerations, as scene files and results have them.
+std::string to_string(PressureModel model);
+std::string to_string(OperatorKind kind);
+std::string to_string(Method method);
+std::string to_string(Precision precision);
+
+}  // namespace slipstick::solver

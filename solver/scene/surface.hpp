@@ -1,0 +1,83 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solver/grid/grid.hpp"
+#include "solver/scene/roughness.hpp"
+
+namespace slipstick::solver {
+
+enum class Shape { sphere, ellipsoid, cone, flat_punch, rounded_punch, power, height_map, roughness };
+
+/// How several shapes make one surface: their gaps add up, as of a sphere and its roughness; or each point
+/// has the nearest of them, as of bodies side by side.
+enum class Combine { sum, nearest };
+
+/// One shape of the indenter; the members that it uses are set. Lengths in m, or any one unit.
+struct Surface {
+  Shape shape = Shape::sphere;
+  double radius = 0.0;              ///< sphere; flat_punch
+  double inner_radius = 0.0;        ///< flat_punch: of the hole that makes it an annulus
+  double radius_1 = 0.0;            ///< ellipsoid, radius of curvature along its first axis
+  double radius_2 = 0.0;            ///< along its second
+  double slope = 0.0;               ///< cone: gap over radius
+  double flat_radius = 0.0;         ///< rounded_punch: of the flat face
+  double corner_radius = 0.0;       ///< rounded_punch: gap (r - flat_radius)^2/(2 corner_radius) beyond it
+  double exponent = 0.0;            ///< power: gap coefficient r^exponent, at least 1
+  double coefficient = 0.0;         ///< power: m^(1 - exponent)
+  std::filesystem::path file{};     ///< height_map: one height a cell, larger where further away
+  std::array<double, 2> spacing{};  ///< height_map
+  double height_unit = 1.0;         ///< height_map: m in one unit of the file's heights
+  Roughness roughness{};            ///< roughness
+  std::array<double, 2> at{};       ///< where its axis stands; neither of height maps nor of roughness
+  double angle = 0.0;               ///< rad, from x1 to its first axis, positive towards x2
+
+  Eigen::ArrayXXd heights{};  ///< height_map: from the file, the least one 0; see with_heights
+};
+
+std::string to_string(Shape shape);
+
+/// Whether the heights have no level of their own: of height maps and of roughness.
+bool is_measured(const Surface& surface);
+
+/// The first height map among them; null if there is none.
+const Surface* find_height_map(const std::vector<Surface>& surfaces);
+
+/// The surfaces with the heights of their files. Throws InputError for a file that cannot be read or misses
+/// points, with their place.
+std::vector<Surface> with_heights(std::vector<Surface> surfaces);
+
+/// The grid of the height maps that have been read, if there are any. Throws InputError where two disagree.
+std::optional<Grid> height_map_grid(const std::vector<Surface>& surfaces);
+
+/// Half the sides of a rectangle about the origin that the contact under a load W is expected to fill;
+/// nothing where that is not known before solving: of sums, and of roughness.
+std::optional<std::array<double, 2>> expected_half_sides(const std::vector<Surface>& surfaces,
+                                                         Combine combine, double load,
+                                                         double effective_modulus);
+
+/// Half the sides of a rectangle about the origin beyond which the gap, its least value taken as 0, is
+/// nowhere below a depth; infinite where that is not known: of roughness, of height maps.
+std::array<double, 2> half_sides_below(const std::vector<Surface>& surfaces, Combine combine, double depth);
+
+/// Whether Hertz's theory holds, up to where the contact stands and how it is turned: of one sphere or
+/// ellipsoid.
+bool is_hertzian(const std::vector<Surface>& surfaces);
+
+/// Radii of curvature along x1 and x2 where Hertz's theory holds as it stands: of one sphere or ellipsoid at
+/// the origin, its axes along the grid's.
+std::optional<std::array<double, 2>> hertzian_radii(const std::vector<Surface>& surfaces);
+
+/// The same surface in another unit of length, its numbers rounded as over_unit does.
+Surface over_unit(Surface surface, double unit);
+
+/// Undeformed gap at cell centres, infinite where the bodies cannot touch. With height maps and roughness,
+/// whose level means nothing, the least gap is 0.
+Eigen::ArrayXd gap_field(const std::vector<Surface>& surfaces, Combine combine, const Grid& grid);
+
+}  // namespace slipstick::solver

@@ -1,0 +1,119 @@
+#include "solver/scene/surface_reader.hpp"
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <cstdint>
+
+namespace slipstick::solver {
+namespace {
+
+const Words<Shape> kShapes{
+    {"sphere", Shape::sphere},         {"ellipsoid", Shape::ellipsoid},         {"cone", Shape::cone},
+    {"flat_punch", Shape::flat_punch}, {"rounded_punch", Shape::rounded_punch}, {"power", Shape::power},
+    {"height_map", Shape::height_map}, {"roughness", Shape::roughness}};
+const Words<Combine> kCombinations{{"sum", Combine::sum}, {"nearest", Combine::nearest}};
+/// Each in m.
+const Words<double> kHeightUnits{{"m", 1.0}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}};
+
+/// Powers of a cell's size stay within double precision.
+const Range kExponent{"from 1 to 20", [](double x) { return x >= 1.0 && x <= 20.0; }};
+const Range kHurst{"above 0, at most 1", [](double x) { return x > 0.0 && x <= 1.0; }};
+/// Whole numbers that TOML readers and double precision have alike; one more and its neighbour would be one.
+const Range kSeed = whole(0, 0x1p53 - 1.0);
+/// Each takes a field over the grid.
+constexpr std::size_t kMostShapes = 1000;
+
+Roughness read_roughness(SceneReader& reader, const std::string& table) {
+  Roughness roughness;
+  roughness.seed = static_cast<std::uint64_t>(reader.number(table + ".seed", kSeed));
+  roughness.hurst = reader.number(table + ".hurst", kHurst);
+  roughness.rms_slope = reader.number(table + ".rms_slope", kPositive);
+  const double longest = reader.number(table + ".longest", kPositive);
+  const double period = reader.number_or(table + ".period", 4.0 * longest,
+                                         {fmt::format("at least longest = {:g}, finite", longest),
+                                          [longest](double x) { return x >= longest && std::isfinite(x); }});
+  const double least = period / kMostWaves;
+  roughness.longest = longest;
+  roughness.period = period;
+  roughness.shortest = reader.number(
+      table + ".shortest", {fmt::format("from a {:g}th of the period, {:g}, to half of longest, {:g}",
+                                        kMostWaves, least, 0.5 * longest),
+                            [longest, least](double x) { return x >= least && x <= 0.5 * longest; }});
+  return roughness;
+}
+
+/// Parameters of a shape that has an axis.
+void read_body(SceneReader& reader, const std::string& table, Surface& surface) {
+  const auto positive = [&](const char* key) { return reader.number(table + key, kPositive); };
+  switch (surface.shape) {
+    case Shape::sphere:
+      surface.radius = positive(".radius");
+      break;
+    case Shape::flat_punch: {
+      const double radius = surface.radius = positive(".radius");
+      surface.inner_radius = reader.number_or(
+          table + ".inner_radius", 0.0,
+          {"zero or positive, below the radius", [radius](double x) { return x >= 0.0 && x < radius; }});
+      break;
+    }
+    case Shape::ellipsoid:
+      surface.radius_1 = positive(".radius_1");
+      surface.radius_2 = positive(".radius_2");
+      break;
+    case Shape::cone:
+      surface.slope = positive(".slope");
+      break;
+    case Shape::rounded_punch:
+      surface.flat_radius = positive(".flat_radius");
+      surface.corner_radius = positive(".corner_radius");
+      break;
+    case Shape::power:
+      surface.exponent = reader.number(table + ".exponent", kExponent);
+      surface.coefficient = positive(".coefficient");
+      break;
+    case Shape::height_map:
+    case Shape::roughness:
+      throw std::logic_error("a surface without an axis");
+  }
+  surface.at = reader.find_pair(table + ".at", kFinite).value_or(surface.at);
+  surface.angle = reader.number_or(table + ".angle", surface.angle, kFinite);
+}
+
+Surface read_surface(SceneReader& reader, const std::string& table) {
+  Surface surface;
+  surface.shape = reader.choice(table + ".shape", kShapes);
+  if (surface.shape == Shape::height_map) {
+    surface.file = reader.path(table + ".file");
+    surface.spacing = reader.pair(table + ".spacing", kPositive);
+    surface.height_unit = reader.choice_or(table + ".unit", surface.height_unit, kHeightUnits);
+  } else if (surface.shape == Shape::roughness) {
+    surface.roughness = read_roughness(reader, table);
+  } else {
+    read_body(reader, table, surface);
+  }
+  return surface;
+}
+
+}  // namespace
+
+std::string to_string(Shape shape) { return word_of(kShapes, shape); }
+
+std::vector<Surface> read_surfaces(SceneReader& reader) {
+  if (!reader.is_array("upper.shape")) return {read_surface(reader, "upper")};
+  std::vector<Surface> surfaces;
+  const std::size_t count = reader.count("upper.shape");
+  if (count > kMostShapes) {
+    reader.fail("upper.shape", fmt::format("{} tables", count), fmt::format("at most {}", kMostShapes));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    surfaces.push_back(read_surface(reader, fmt::format("upper.shape[{}]", i)));
+  }
+  return surfaces;
+}
+
+Combine read_combine(SceneReader& reader) {
+  return reader.choice_or("upper.combine", Combine::sum, kCombinations);
+}
+
+}  // namespace slipstick::solver

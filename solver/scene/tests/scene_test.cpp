@@ -1,0 +1,188 @@
+#include "solver/scene/scene.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "solver/input/input_error.hpp"
+#include "solver/model.hpp"
+#include "solver/tests/scene_file.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using testing::HasSubstr;
+
+TEST_F(SceneFile, IsReadKeyByKey) {
+  const Scene scene = read(kScene);
+  EXPECT_EQ(scene.source, folder_ / "scene.toml");
+  EXPECT_EQ(scene.name, "paper");
+  EXPECT_EQ(scene.surfaces.front().shape, Shape::sphere);
+  EXPECT_EQ(scene.surfaces.front().radius, 0.018);
+  EXPECT_EQ(scene.upper.young_modulus, 210e9);
+  EXPECT_EQ(scene.upper.poisson_ratio, 0.3);
+  EXPECT_EQ(scene.lower.young_modulus, 210e9);
+  EXPECT_EQ(scene.friction, 0.1);
+  EXPECT_EQ(scene.pressure, PressureModel::solved);
+  EXPECT_EQ(scene.coupling, Coupling::automatic);
+  EXPECT_EQ(scene.steps[0].normal, 1000.0);
+  EXPECT_EQ(scene.steps[0].torsion.moment_ratio, 0.9);
+  EXPECT_FALSE(scene.steps[0].torsion.moment || scene.steps[0].torsion.twist);
+  EXPECT_EQ(scene.cells, (std::array<Index, 2>{128, 96}));
+  EXPECT_EQ(scene.extent, (std::array<double, 2>{0.0011, 0.0012}));
+  EXPECT_EQ(scene.op, OperatorKind::dcfft);
+  EXPECT_EQ(scene.tolerance, 1e-7);
+  EXPECT_EQ(scene.max_iterations, 70);
+  EXPECT_EQ(scene.threads, 2);
+}
+
+TEST_F(SceneFile, NeedsNoMoreThanTheProblem) {
+  const Scene scene = read(kShortScene);
+  EXPECT_EQ(scene.name, "scene");  // the file's
+  EXPECT_EQ(scene.pressure, PressureModel::solved);
+  EXPECT_EQ(scene.coupling, Coupling::automatic);
+  EXPECT_EQ(scene.op, OperatorKind::dcfft);
+  EXPECT_FALSE(scene.extent);
+  EXPECT_EQ(scene.tolerance, 1e-8);
+  EXPECT_EQ(scene.threads, 1);
+  EXPECT_EQ(scene.steps[0].normal, 1000.0);  // written as a whole number
+}
+
+TEST_F(SceneFile, HasEachShapeWithItsKeys) {
+  EXPECT_EQ(read(kShortScene, {"upper.shape=flat_punch"}).surfaces.front().shape, Shape::flat_punch);
+  const std::string text = kShortScene;
+  const auto reshaped = [&](const std::string& keys) {
+    std::string changed = text;
+    const std::string sphere = "shape = \"sphere\"\nradius = 0.018\n";
+    return changed.replace(changed.find(sphere), sphere.size(), keys);
+  };
+  const Scene ellipsoid = read(reshaped("shape = \"ellipsoid\"\nradius_1 = 0.02\nradius_2 = 0.01\n"));
+  EXPECT_EQ(ellipsoid.surfaces.front().radius_1, 0.02);
+  EXPECT_EQ(ellipsoid.surfaces.front().radius_2, 0.01);
+  EXPECT_EQ(read(reshaped("shape = \"cone\"\nslope = 0.1\n")).surfaces.front().slope, 0.1);
+  const Scene map =
+      read(reshaped("shape = \"height_map\"\nfile = \"sub/heights.csv\"\nspacing = [1e-5, 2e-5]\n"));
+  EXPECT_EQ(map.surfaces.front().file, folder_ / "sub/heights.csv");  // relative to the scene
+  EXPECT_EQ(map.surfaces.front().spacing, (std::array<double, 2>{1e-5, 2e-5}));
+}
+
+/// The short scene with other keys for its sphere.
+std::string with_surface(const std::string& keys, const std::string& tables = "") {
+  std::string text = kShortScene;
+  const std::string sphere = "shape = \"sphere\"\nradius = 0.018\n";
+  return text.replace(text.find(sphere), sphere.size(), keys) + tables;
+}
+
+TEST_F(SceneFile, PlacesAndTurnsShapes) {
+  const Surface tube = read(with_surface("shape = \"flat_punch\"\nradius = 2e-3\ninner_radius = 1e-3\n"
+                                         "at = [1e-3, -2e-3]\nangle = 0.5\n"))
+                           .surfaces.front();
+  EXPECT_EQ(tube.inner_radius, 1e-3);
+  EXPECT_EQ(tube.at, (std::array{1e-3, -2e-3}));
+  EXPECT_EQ(tube.angle, 0.5);
+  const Surface sphere = read(kShortScene).surfaces.front();
+  EXPECT_EQ(sphere.at, (std::array{0.0, 0.0}));
+  EXPECT_EQ(sphere.angle, 0.0);
+  const Surface rounded =
+      read(with_surface("shape = \"rounded_punch\"\nflat_radius = 1e-3\ncorner_radius = 2e-3\n"))
+          .surfaces.front();
+  EXPECT_EQ(rounded.flat_radius, 1e-3);
+  EXPECT_EQ(rounded.corner_radius, 2e-3);
+  const Surface power =
+      read(with_surface("shape = \"power\"\nexponent = 4\ncoefficient = 3e7\n")).surfaces.front();
+  EXPECT_EQ(power.exponent, 4.0);
+  EXPECT_EQ(power.coefficient, 3e7);
+  const Surface map =
+      read(with_surface("shape = \"height_map\"\nfile = \"h.csv\"\nspacing = [1, 2]\nunit = \"um\"\n"))
+          .surfaces.front();
+  EXPECT_EQ(map.height_unit, 1e-6);
+}
+
+TEST_F(SceneFile, MayHaveSeveralShapes) {
+  const char* const tables = R"([[upper.shape]]
+shape = "sphere"
+radius = 0.01
+[[upper.shape]]
+shape = "roughness"
+seed = 12
+hurst = 0.7
+longest = 2e-4
+shortest = 1e-5
+rms_slope = 0.1
+)";
+  const Scene scene = read(with_surface("", tables));
+  ASSERT_EQ(scene.surfaces.size(), 2);
+  EXPECT_EQ(scene.combine, Combine::sum);
+  EXPECT_EQ(scene.surfaces[0].radius, 0.01);
+  const Roughness& roughness = scene.surfaces[1].roughness;
+  EXPECT_EQ(roughness.seed, 12);
+  EXPECT_EQ(roughness.hurst, 0.7);
+  EXPECT_EQ(roughness.longest, 2e-4);
+  EXPECT_EQ(roughness.shortest, 1e-5);
+  EXPECT_EQ(roughness.rms_slope, 0.1);
+  EXPECT_EQ(roughness.period, 8e-4);
+  EXPECT_EQ(scene.upper.young_modulus, 210e9);
+  const Scene other = read(with_surface("combine = \"nearest\"\n", tables),
+                           {"upper.shape[0].radius=0.02", "upper.shape[1].period=1e-3"});
+  EXPECT_EQ(other.combine, Combine::nearest);
+  EXPECT_EQ(other.surfaces[0].radius, 0.02);
+  EXPECT_EQ(other.surfaces[1].roughness.period, 1e-3);
+}
+
+TEST_F(SceneFile, OverridesAreAppliedFirst) {
+  const Scene scene = read(kShortScene, {"load.normal=5", "grid.cells=[8, 9]", "contact.pressure=hertz",
+                                         "name=other", "solver.operator=\"dense\"", "load.normal=6"});
+  EXPECT_EQ(scene.steps[0].normal, 6.0);  // the last one holds
+  EXPECT_EQ(scene.cells, (std::array<Index, 2>{8, 9}));
+  EXPECT_EQ(scene.pressure, PressureModel::hertz);
+  EXPECT_EQ(scene.name, "other");
+  EXPECT_EQ(scene.op, OperatorKind::dense);
+  // What is wrong in the file but overridden does not matter.
+  std::string text = kShortScene;
+  text.replace(text.find("friction = 0.1"), 14, "friction = \"x\"");
+  EXPECT_EQ(read(text, {"contact.friction=0.2"}).friction, 0.2);
+}
+
+TEST_F(SceneFile, OneTorsionLoadOverridesAnother) {
+  const Scene scene = read(kShortScene, {"load.twist=1e-3"});
+  EXPECT_EQ(scene.steps[0].torsion.twist, 1e-3);
+  EXPECT_FALSE(scene.steps[0].torsion.moment_ratio || scene.steps[0].torsion.moment);
+}
+
+TEST_F(SceneFile, MayHaveTablesWithoutKeys) {
+  EXPECT_EQ(read(std::string(kShortScene) + "[solver]\n").tolerance, 1e-8);
+}
+
+TEST_F(SceneFile, ARigidBodyHasNoModulus) {
+  std::string text = kShortScene;
+  const std::string modulus =
+      "[upper]\nshape = \"sphere\"\nradius = 0.018\nyoung_modulus = 210e9\npoisson_ratio = 0.3\n";
+  text.replace(0, modulus.size(), "[upper]\nshape = \"sphere\"\nradius = 0.018\nrigid = true\n");
+  const Scene scene = read(text);
+  EXPECT_TRUE(std::isinf(scene.upper.young_modulus));
+  const Model model = make_model(scene);
+  EXPECT_DOUBLE_EQ(model.stress_unit, 210e9 / 2.6);  // that of the other body alone
+}
+
+TEST_F(SceneFile, WordsAreThoseOfTheFile) {
+  for (const char* word : {"sphere", "ellipsoid", "cone", "flat_punch", "height_map"}) {
+    std::string text = kShortScene;
+    text.replace(
+        text.find("shape = \"sphere\"\nradius = 0.018"), 31,
+        std::string("shape = \"") + word +
+            "\"\nradius = 1.0\nradius_1 = 1.0\nradius_2 = 1.0\nslope = 1.0\nfile = \"f\"\nspacing = [1, 1]");
+    try {
+      EXPECT_EQ(to_string(read(text).surfaces.front().shape), word);
+      ADD_FAILURE() << "keys of other shapes are unknown to " << word;
+    } catch (const InputError& error) {
+      EXPECT_THAT(error.what(), HasSubstr("unknown key"));
+    }
+  }
+  EXPECT_EQ(to_string(PressureModel::hertz_averaged), "hertz_averaged");
+  EXPECT_EQ(to_string(OperatorKind::direct), "direct");
+  EXPECT_EQ(to_string(Shape::flat_punch), "flat_punch");
+}
+
+}  // namespace
+}  // namespace slipstick::solver

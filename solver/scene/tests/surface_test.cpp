@@ -1,0 +1,361 @@
+// Shapes of the indenter, and contacts that are known from others: the same body turned, shifted, put
+// together.
+
+#include "solver/scene/surface.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <numbers>
+
+#include "solver/input/input_error.hpp"
+#include "solver/solve.hpp"
+#include "solver/tests/paper_scene.hpp"
+#include "solver/tests/press.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+using std::numbers::pi;
+
+constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
+/// Pressures of two solves that stop at their own iterates within a gap of 1e-10.
+constexpr double kSolved = 1e-9;
+
+Surface sphere(double radius) { return {.shape = Shape::sphere, .radius = radius}; }
+Surface ellipsoid(double radius_1, double radius_2, double angle) {
+  return {.shape = Shape::ellipsoid, .radius_1 = radius_1, .radius_2 = radius_2, .angle = angle};
+}
+Surface punch(double radius, double inner_radius) {
+  return {.shape = Shape::flat_punch, .radius = radius, .inner_radius = inner_radius};
+}
+Surface rounded_punch(double flat_radius, double corner_radius) {
+  return {.shape = Shape::rounded_punch, .flat_radius = flat_radius, .corner_radius = corner_radius};
+}
+Surface power(double exponent, double coefficient) {
+  return {.shape = Shape::power, .exponent = exponent, .coefficient = coefficient};
+}
+Surface moved(Surface surface, double x1, double x2) {
+  surface.at = {x1, x2};
+  return surface;
+}
+
+Scene scene_of(const std::vector<Surface>& surfaces, Index cells, Combine combine = Combine::sum) {
+  Scene scene = paper_scene(cells, 0.5);
+  scene.surfaces = surfaces;
+  scene.combine = combine;
+  return scene;
+}
+
+/// One cell about a point.
+double gap_at(const Surface& surface, double x1, double x2) {
+  return gap_field({moved(surface, surface.at[0] - x1, surface.at[1] - x2)}, Combine::sum,
+                   {1, 1, 1.0, 1.0})[0];
+}
+
+/// Mean contact radius of a pressure like Hertz's, wherever it stands and however it lies: the second moments
+/// of its ellipse about its centre are a^2/5 and b^2/5, and their product is that of any axes' determinant.
+double hertzian_radius(const Model& model, const ArrayXd& pressure) {
+  const ArrayXd p = pressure / pressure.sum();
+  ArrayXd x1 = cell_x1(model.grid);
+  ArrayXd x2 = cell_x2(model.grid);
+  x1 -= (p * x1).sum();
+  x2 -= (p * x2).sum();
+  const double determinant =
+      (p * x1.square()).sum() * (p * x2.square()).sum() - std::pow((p * x1 * x2).sum(), 2.0);
+  return std::sqrt(5.0) * std::pow(determinant, 0.25) * model.length_unit;
+}
+
+double approach(const Contact& contact) { return contact.solution.approach * contact.model.length_unit; }
+
+// --- gaps ---
+
+TEST(Gap, OfEachShapeIsItsFormula) {
+  EXPECT_DOUBLE_EQ(gap_at(sphere(2.0), 0.3, 0.4), 0.0625);
+  EXPECT_DOUBLE_EQ(gap_at({.shape = Shape::cone, .slope = 0.2}, 0.3, 0.4), 0.1);
+  EXPECT_EQ(gap_at(punch(0.51, 0.49), 0.3, 0.4), 0.0);
+  EXPECT_EQ(gap_at(punch(0.49, 0.0), 0.3, 0.4), HUGE_VAL);
+  EXPECT_EQ(gap_at(punch(0.9, 0.51), 0.3, 0.4), HUGE_VAL);
+  EXPECT_EQ(gap_at(punch(0.9, 0.0), 0.0, 0.0), 0.0);
+  EXPECT_EQ(gap_at(rounded_punch(0.5, 2.0), 0.3, 0.4), 0.0);
+  EXPECT_DOUBLE_EQ(gap_at(rounded_punch(0.25, 2.0), 0.3, 0.4), 0.25 * 0.25 / 4.0);
+  EXPECT_DOUBLE_EQ(gap_at(power(3.0, 2.0), 0.3, 0.4), 0.25);
+  EXPECT_EQ(gap_at(power(3.0, 2.0), 0.0, 0.0), 0.0);
+}
+
+/// Along the first axis, at `angle` from x1 towards x2, an ellipsoid is as curved as a sphere of radius_1.
+TEST(Gap, OfATurnedEllipsoidTurnsWithIt) {
+  for (const double angle : {0.0, 0.4, 2.0, -1.1}) {
+    const Surface surface = moved(ellipsoid(4.0, 1.0, angle), 0.7, -0.2);
+    EXPECT_NEAR(gap_at(surface, 0.7 + std::cos(angle), -0.2 + std::sin(angle)), 0.125, 10.0 * kEpsilon);
+    EXPECT_NEAR(gap_at(surface, 0.7 - std::sin(angle), -0.2 + std::cos(angle)), 0.5, 10.0 * kEpsilon);
+    EXPECT_EQ(gap_at(surface, 0.7, -0.2), 0.0);
+  }
+}
+
+TEST(Gap, OfSeveralShapesIsTheirSumOrTheNearest) {
+  const Grid grid{6, 4, 0.3, 0.2};
+  const std::vector<Surface> both{moved(sphere(2.0), 0.4, 0.1), punch(0.5, 0.0)};
+  const ArrayXd first = gap_field({both[0]}, Combine::sum, grid);
+  const ArrayXd second = gap_field({both[1]}, Combine::sum, grid);
+  EXPECT_TRUE((gap_field(both, Combine::sum, grid) == first + second).all());
+  EXPECT_TRUE((gap_field(both, Combine::nearest, grid) == first.min(second)).all());
+  EXPECT_GT(first.minCoeff(), 0.0) << "a body's own level is kept";
+}
+
+/// Roughness and maps have no level: the least gap of the whole is 0, off the face of a punch it is infinite.
+TEST(Gap, WithRoughnessStartsAtZero) {
+  const Surface rough{
+      .shape = Shape::roughness,
+      .roughness = {
+          .seed = 1, .hurst = 0.8, .longest = 4.0, .shortest = 1.0, .rms_slope = 0.1, .period = 16.0}};
+  const Grid grid{12, 12, 0.5, 0.5};
+  const ArrayXd heights = roughness_heights(rough.roughness, grid);
+  for (const auto& [face, combine] : {std::pair{punch(2.0, 0.0), Combine::sum},
+                                      {sphere(5.0), Combine::sum},
+                                      {sphere(5.0), Combine::nearest}}) {
+    const ArrayXd gap = gap_field({face, rough}, combine, grid);
+    const ArrayXd smooth = gap_field({face}, combine, grid);
+    EXPECT_EQ(gap.minCoeff(), 0.0);
+    EXPECT_EQ(gap.isFinite().count(), smooth.isFinite().count());
+    ArrayXd expected = smooth.min(heights);
+    if (combine == Combine::sum) expected = smooth + heights;
+    EXPECT_TRUE(
+        (smooth.isFinite().select(gap - (expected - expected.minCoeff()), 0.0).abs() <= kEpsilon).all());
+  }
+}
+
+// --- where the contact is expected ---
+
+/// Sneddon (1965), by quadrature in r = a sin(t): W = 2 E* integral r^2 f'/sqrt(a^2 - r^2) dr, and the
+/// approach = a integral f'/sqrt(a^2 - r^2) dr.
+struct Indented {
+  double load;
+  double approach;
+};
+template <typename Slope>
+Indented indent(double a, double modulus, const Slope& slope) {
+  constexpr int points = 20000;
+  Indented indented{};
+  for (int i = 0; i < points; ++i) {
+    const double r = a * std::sin(0.5 * pi * (i + 0.5) / points);
+    indented.load += 2.0 * modulus * r * r * slope(r) * 0.5 * pi / points;
+    indented.approach += a * slope(r) * 0.5 * pi / points;
+  }
+  return indented;
+}
+
+struct Revolved {
+  Surface surface;
+  std::function<double(double)> slope;
+};
+std::vector<Revolved> revolved() {
+  const auto corner = [](double b, double radius) {
+    return [b, radius](double r) { return r > b ? (r - b) / radius : 0.0; };
+  };
+  return {{rounded_punch(4e-4, 5e-3), corner(4e-4, 5e-3)},
+          {rounded_punch(1e-4, 1e-2), corner(1e-4, 1e-2)},
+          {rounded_punch(1e-6, 1.8e-2), corner(1e-6, 1.8e-2)},
+          {power(4.0, 3e7), [](double r) { return 4.0 * 3e7 * r * r * r; }},
+          {power(1.5, 0.5), [](double r) { return 1.5 * 0.5 * std::sqrt(r); }}};
+}
+
+TEST(ExpectedContact, OfABodyOfRevolutionCarriesTheLoad) {
+  const double modulus = effective_modulus(paper_scene(1, 0.5));
+  for (const Revolved& body : revolved()) {
+    const auto half_sides = *expected_half_sides({body.surface}, Combine::sum, paper::kLoad, modulus);
+    EXPECT_EQ(half_sides[0], half_sides[1]);
+    // The midpoint rule of 20,000 points, with a kink inside.
+    EXPECT_NEAR(indent(half_sides[0], modulus, body.slope).load / paper::kLoad, 1.0, 1e-7);
+  }
+}
+
+TEST(ExpectedContact, OfPowersIsThatOfSphereAndCone) {
+  const auto half_side = [](const Surface& surface) {
+    return (*expected_half_sides({surface}, Combine::sum, 3.0, 5.0))[0];
+  };
+  EXPECT_NEAR(half_side(power(2.0, 0.25)) / half_side(sphere(2.0)), 1.0, 10.0 * kEpsilon);
+  EXPECT_NEAR(half_side(power(1.0, 0.3)) / half_side({.shape = Shape::cone, .slope = 0.3}), 1.0,
+              10.0 * kEpsilon);
+}
+
+/// The rectangle touches the turned ellipse on all sides.
+TEST(ExpectedContact, OfATurnedEllipsoidIsTheEllipsesBox) {
+  const HertzContact contact = hertz_contact(3.0, 4.0, 1.0, 5.0);
+  for (const double angle : {0.0, 0.4, 2.0, -1.1, 0.5 * pi}) {
+    std::array<double, 2> reach{};
+    for (int i = 0; i < 10000; ++i) {
+      const double t = 2.0 * pi * i / 10000;
+      const double u = contact.semi_axis_1 * std::cos(t);
+      const double v = contact.semi_axis_2 * std::sin(t);
+      reach[0] = std::max(reach[0], std::cos(angle) * u - std::sin(angle) * v);
+      reach[1] = std::max(reach[1], std::sin(angle) * u + std::cos(angle) * v);
+    }
+    const auto half_sides = *expected_half_sides({ellipsoid(4.0, 1.0, angle)}, Combine::sum, 3.0, 5.0);
+    for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(half_sides[i] / reach[i], 1.0, 1e-6);
+  }
+}
+
+TEST(ExpectedContact, HoldsAllBodiesSideBySide) {
+  const std::vector<Surface> bodies{moved(punch(1.0, 0.0), -3.0, 0.5), moved(punch(2.0, 0.0), 1.0, -2.0)};
+  EXPECT_EQ(expected_half_sides(bodies, Combine::nearest, 1.0, 1.0), (std::array{4.0, 4.0}));
+}
+
+TEST(ExpectedContact, IsNotKnownOfSumsAndRoughness) {
+  EXPECT_EQ(expected_half_sides({sphere(1.0), sphere(2.0)}, Combine::sum, 1.0, 1.0), std::nullopt);
+  const Surface rough{.shape = Shape::roughness};
+  EXPECT_EQ(expected_half_sides({rough}, Combine::sum, 1.0, 1.0), std::nullopt);
+  EXPECT_EQ(expected_half_sides({sphere(1.0), rough}, Combine::nearest, 1.0, 1.0), std::nullopt);
+  EXPECT_THROW(make_model(scene_of({sphere(1.0), sphere(2.0)}, 8)), InputError);
+}
+
+TEST(Hertz, HoldsForOneParaboloidThatStandsStraight) {
+  EXPECT_EQ(hertzian_radii({sphere(2.0)}), (std::array{2.0, 2.0}));
+  EXPECT_EQ(hertzian_radii({ellipsoid(2.0, 3.0, 0.0)}), (std::array{2.0, 3.0}));
+  EXPECT_EQ(hertzian_radii({ellipsoid(2.0, 2.0, 0.4)}), (std::array{2.0, 2.0}));
+  EXPECT_EQ(hertzian_radii({ellipsoid(2.0, 3.0, 0.4)}), std::nullopt);
+  EXPECT_EQ(hertzian_radii({moved(sphere(2.0), 0.0, 1.0)}), std::nullopt);
+  EXPECT_EQ(hertzian_radii({moved(sphere(2.0), 1.0, 0.0)}), std::nullopt);
+  EXPECT_EQ(hertzian_radii({sphere(2.0), sphere(2.0)}), std::nullopt);
+  EXPECT_EQ(hertzian_radii({punch(2.0, 0.0)}), std::nullopt);
+}
+
+// --- contacts that are known from others ---
+
+TEST(TurnedEllipsoid, ByARightAngleHasItsRadiiExchanged) {
+  const Solution turned = solve(scene_of({ellipsoid(0.03, 0.01, 0.5 * pi)}, 32));
+  const Solution exchanged = solve(scene_of({ellipsoid(0.01, 0.03, 0.0)}, 32));
+  EXPECT_TRUE(turned.model.pressure_part.quadrant());
+  EXPECT_LE((turned.normal.pressure - exchanged.normal.pressure).abs().maxCoeff(),
+            kSolved * exchanged.normal.pressure.maxCoeff());
+  EXPECT_NEAR(turned.twist_angle / exchanged.twist_angle, 1.0, 1e-7);  // certificates of 1e-8
+}
+
+/// Between the axes there is no mirror, and the contact is that at 0 degrees on another mesh: approach and
+/// contact area agree to the second order in h, 1/20 of the short semi-axis.
+TEST(TurnedEllipsoid, HasTheContactItHasStraight) {
+  const Contact straight = press(scene_of({ellipsoid(0.018, 0.0063, 0.0)}, 64));
+  const Contact turned = press(scene_of({ellipsoid(0.018, 0.0063, pi / 6.0)}, 64));
+  EXPECT_FALSE(turned.model.pressure_part.quadrant());
+  constexpr double tolerance = 1.0 / (20.0 * 20.0);
+  EXPECT_NEAR(approach(turned) / approach(straight), 1.0, tolerance);
+  EXPECT_NEAR(hertzian_radius(turned.model, turned.solution.pressure) /
+                  hertzian_radius(straight.model, straight.solution.pressure),
+              1.0, tolerance);
+  // Moments of the pressure about its axes, x1 x2 most of all: of an ellipse W/5 (a^2 - b^2) sin cos.
+  const ArrayXd p = turned.solution.pressure / turned.solution.pressure.sum();
+  const ArrayXd x1 = cell_x1(turned.model.grid) * turned.model.length_unit;
+  const ArrayXd x2 = cell_x2(turned.model.grid) * turned.model.length_unit;
+  const HertzContact hertz =
+      hertz_contact(paper::kLoad, 0.018, 0.0063, effective_modulus(paper_scene(1, 0.5)));
+  const double product = 0.2 * (std::pow(hertz.semi_axis_1, 2) - std::pow(hertz.semi_axis_2, 2)) *
+                         std::sin(pi / 6.0) * std::cos(pi / 6.0);
+  EXPECT_NEAR((p * x1 * x2).sum() / product, 1.0, 4.0 * tolerance);
+}
+
+/// Shifted by whole cells, a body has the pressure of the centred one, shifted.
+TEST(OffCentreSphere, HasItsPressureWhereItStands) {
+  Scene scene = paper_scene(32, 0.5);
+  scene.extent = {1.6e-3, 1.6e-3};
+  const Contact centred = press(scene);
+  scene.surfaces.front().at = {3.0 * 0.05e-3, -2.0 * 0.05e-3};
+  const Contact shifted = press(scene);
+  EXPECT_FALSE(shifted.model.pressure_part.quadrant());
+  EXPECT_FALSE(shifted.model.hertz);
+  const ArrayXd& there = shifted.solution.pressure;
+  const ArrayXd& here = centred.solution.pressure;
+  for (Index i = 0; i < 29; ++i) {
+    for (Index j = 2; j < 32; ++j) {
+      EXPECT_NEAR(there[(i + 3) * 32 + j - 2], here[i * 32 + j], kSolved * here.maxCoeff());
+    }
+  }
+  EXPECT_NEAR(approach(shifted) / approach(centred), 1.0, kSolved);
+}
+
+/// Curvatures add up: two spheres on each other are one of half the radius.
+TEST(SumOfSpheres, IsASphereOfHalfTheRadius) {
+  Scene scene = scene_of({sphere(0.018), sphere(0.018)}, 32);
+  scene.extent = {1e-3, 1e-3};
+  const Contact sum = press(scene);
+  scene.surfaces = {sphere(0.009)};
+  const Contact half = press(scene);
+  EXPECT_LE((sum.solution.pressure - half.solution.pressure).abs().maxCoeff(),
+            kSolved * half.solution.pressure.maxCoeff());
+  EXPECT_FALSE(sum.model.hertz);
+}
+
+/// Two equal spheres, each with half the load and its contact radius a. The other one's pressure sinks the
+/// surface by W/(2 pi E* D) here (a point force; its next terms are (a/D)^2 of it), which adds to the
+/// approach. It also tilts it, by W/(2 pi E* D^2), so that the contact moves away by R times that, and bends
+/// it, by (8/(3 pi)) (a/D)^3 of the sphere's curvature.
+TEST(SpheresSideBySide, ShareTheLoad) {
+  const double modulus = effective_modulus(paper_scene(1, 0.5));
+  const double a = std::cbrt(0.75 * 0.5 * paper::kLoad * paper::kRadius / modulus);
+  const double distance = 8.0 * a;
+  const double shift = paper::kRadius * 0.5 * paper::kLoad / (pi * modulus * distance * distance);
+  const std::vector<Surface> spheres{moved(sphere(paper::kRadius), -0.5 * distance, 0.0),
+                                     moved(sphere(paper::kRadius), 0.5 * distance, 0.0)};
+  Scene scene = scene_of(spheres, 0, Combine::nearest);
+  scene.cells = {128, 30};                             // 12 cells in a radius
+  scene.extent = {128.0 * a / 12.0, 30.0 * a / 12.0};  // too narrow only for one that carried the whole load
+  const Contact contact = press(scene);
+  const Model& model = contact.model;
+  EXPECT_TRUE(model.pressure_part.quadrant());
+  constexpr double mesh = 1.0 / (12.0 * 12.0);
+  const ArrayXd right = (cell_x1(model.grid) > 0.0).select(contact.solution.pressure, 0.0);
+  EXPECT_NEAR(right.sum() / contact.solution.pressure.sum(), 0.5, 10.0 * kEpsilon);
+  EXPECT_NEAR(hertzian_radius(model, right) / a, 1.0, mesh);
+  const double alone = a * a / paper::kRadius;
+  const double sunk = 0.5 * paper::kLoad / (pi * modulus * distance);
+  EXPECT_NEAR(approach(contact) / (alone + sunk), 1.0, mesh);
+  EXPECT_GT(sunk / alone, 5.0 * mesh);
+  const double centre = (right * cell_x1(model.grid)).sum() / right.sum() * model.length_unit;
+  EXPECT_NEAR((centre - 0.5 * distance) / shift, 1.0, 0.1);  // to (a/D)^2 and the mesh: shift is 0.08 cells
+}
+
+/// Smythe (1951), the capacity of an annular disc, which is its stiffness under a normal load over that of a
+/// point: within 0.1 % of it.
+TEST(Annulus, SinksInAsItsCapacitySays) {
+  constexpr double outer = 5e-4;
+  constexpr double ratio = 0.6;
+  const Scene scene = scene_of({punch(outer, ratio * outer)}, 96);
+  const Contact contact = press(scene);
+  const ArrayXd& p = contact.solution.pressure;
+  EXPECT_NEAR(load(contact) / paper::kLoad, 1.0, 1e-12);
+  EXPECT_TRUE(contact.model.pressure_part.diagonal());
+  const ArrayXd r = (cell_x1(contact.model.grid).square() + cell_x2(contact.model.grid).square()).sqrt() *
+                    contact.model.length_unit;
+  EXPECT_EQ((p > 0.0).count(), (r >= ratio * outer && r <= outer).count());
+  EXPECT_TRUE((r < ratio * outer).select(p == 0.0, true).all());
+  const double stiffness = 2.0 / pi *
+                           (std::acos(ratio) + std::sqrt(1.0 - ratio * ratio) * std::atanh(ratio)) *
+                           (1.0 + 0.0143 / ratio * std::pow(std::tan(1.28 * ratio), 3.0));
+  const double expected = paper::kLoad / (2.0 * effective_modulus(scene) * outer * stiffness);
+  // Circles made of squares are off by a part of a cell.
+  EXPECT_NEAR(approach(contact) / expected, 1.0, 1.0 / 96.0);
+  EXPECT_GT(expected, 1.03 * paper::kLoad / (2.0 * effective_modulus(scene) * outer)) << "a full face's";
+}
+
+TEST(BodiesOfRevolution, SinkInAsSneddonSays) {
+  for (const Revolved& body : revolved()) {
+    const Scene scene = scene_of({body.surface}, 48);
+    const double modulus = effective_modulus(scene);
+    const double a = (*expected_half_sides({body.surface}, Combine::sum, paper::kLoad, modulus))[0];
+    // 22 cells in the radius, and second order or nearly so.
+    EXPECT_NEAR(approach(press(scene)) / indent(a, modulus, body.slope).approach, 1.0, 2.0 / (22.0 * 22.0));
+  }
+}
+
+TEST(ASurface, ThatNoCellCanTouchIsRefused) {
+  Scene scene = scene_of({moved(punch(1e-4, 0.0), 2e-4, 0.0), moved(punch(1e-4, 0.0), -2e-4, 0.0)}, 16);
+  scene.extent = {1e-3, 1e-3};
+  EXPECT_THROW(make_model(scene), InputError);
+  scene.combine = Combine::nearest;
+  EXPECT_NO_THROW(make_model(scene));
+}
+
+}  // namespace
+}  // namespace slipstick::solver

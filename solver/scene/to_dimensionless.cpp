@@ -1,0 +1,14 @@
+#include "solver/scene/to_dimensionless.hpp"
+
+#include <cmath>
+
+namespace slipstick::solver {
+
+double over_unit(double value, double unit) {
+  constexpr int bits = 40;
+  int exponent = 0;
+  const double mantissa = std::frexp(value / unit, &exponent);
+  return std::ldexp(std::nearbyint(std::ldexp(mantissa, bits)), exponent - bits);
+}
+
+}  // namespace slipstick::solver
