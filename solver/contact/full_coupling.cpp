@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <limits>
+#include <utility>
 
 #include "solver/newton/admissible.hpp"
 

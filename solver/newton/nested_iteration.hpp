@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <concepts>
 #include <span>
 
 #include "solver/grid/grid_transfer.hpp"
@@ -35,10 +36,20 @@ double predicted_nested_bytes(const Elasticity& elasticity, const Grid& grid, co
   return elasticity.precision == Precision::mixed ? bytes(0.0F) : bytes(0.0);
 }
 
-/// Solves from the coarsest grid up, inner iterations in the precision Real. Problem gives, for its grid,
-/// kernel(), parities(), admissible(), start(), coarsened(coarse grid), and program(operator). From coarse
-/// grids only the change from start() is taken: start() itself is known in full.
-template <typename Real, class Problem>
+/// What solve_nested() asks of a problem on one grid.
+template <class Problem>
+concept NestedProblem = requires(Problem problem, const Grid& grid, LinearOperator& op) {
+  { problem.kernel() } -> std::same_as<BlockKernel>;                       // of its operator
+  { problem.parities() } -> std::convertible_to<std::span<const Parity>>;  // of its field's components
+  { problem.admissible() } -> AdmissibleSet;
+  { problem.program(op) } -> std::same_as<ConvexProgram>;      // refers to the problem's own fields
+  { problem.start() } -> std::same_as<Eigen::ArrayXd>;         // known in full
+  { problem.coarsened(grid, grid) } -> std::same_as<Problem>;  // from the grid to the coarse one
+};
+
+/// Solves from the coarsest grid up, inner iterations in the precision Real. From coarse grids only the
+/// change from start() is taken: start() itself is known in full.
+template <typename Real, NestedProblem Problem>
 NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Problem problem,
                               const NewtonOptions& options) {
   NestedSummary result;
@@ -70,13 +81,12 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
   newton.write_slip(result.slip);
   result.grids.push_back(
       {grid.n1, grid.n2, newton.applications(), result.newton.iterations, result.newton.gap});
-  result.bytes =
-      operators.bytes() + newton.bytes(static_cast<double>(grid.cells()), newton.conditions(program));
+  result.bytes = operators.bytes() + newton.bytes(static_cast<double>(grid.cells()), program.conditions());
   return result;
 }
 
 /// In the precision that is asked for.
-template <class Problem>
+template <NestedProblem Problem>
 NestedSummary solve_nested(const Elasticity& elasticity, const Grid& grid, const Problem& problem,
                            const NewtonOptions& options) {
   return elasticity.precision == Precision::mixed

@@ -2,8 +2,11 @@
 
 #include <Eigen/Core>
 #include <cmath>
+#include <span>
 
 #include "solver/grid/grid.hpp"
+#include "solver/operator/inverse_symbol.hpp"
+#include "solver/operator/linear_operator.hpp"
 
 namespace slipstick::solver {
 
@@ -107,6 +110,31 @@ struct TangentSpace {
   Field a11, a12, a22;  ///< the projector, symmetric
   Field stiffness;      ///< lambda = |s|/(mu p) in slip cells
   Field scale, shift;   ///< of the preconditioner
+};
+
+/// The linearised problem's matrix, K + stiffness. Fields outside the tangent space are not taken out.
+template <typename Real>
+struct TangentOperator {
+  Operator<Real>& op;
+  const TangentSpace<Real>& space;
+
+  void apply(const typename TangentSpace<Real>::Field& d, typename TangentSpace<Real>::Field& Kd) {
+    op.apply(d, Kd);
+    space.add_stiffness(d, Kd);
+  }
+};
+
+/// Its preconditioner; what it returns lies in the tangent space.
+template <typename Real>
+struct TangentPreconditioner {
+  InverseSymbol<Real>& symbol;
+  const TangentSpace<Real>& space;
+
+  void apply(const typename TangentSpace<Real>::Field& r, typename TangentSpace<Real>::Field& y) {
+    space.restrict_to(r, y);
+    symbol.apply(std::span(y.data(), static_cast<std::size_t>(y.size())));
+    space.complete(r, y);
+  }
 };
 
 }  // namespace slipstick::solver

@@ -13,6 +13,8 @@
 #include <string>
 #include <vector>
 
+#include "solver/newton/multiplier_refinement.hpp"
+#include "solver/newton/tangent_space.hpp"
 #include "solver/operator/direct.hpp"
 #include "solver/tests/allocations.hpp"
 #include "solver/tests/dense_algebra.hpp"
@@ -88,13 +90,67 @@ MatrixXd basis(const TangentSpace<double>& space) {
   return result;
 }
 
+/// Solves on a tangent space, with everything that the iteration needs.
+template <typename Real>
+class TangentCg {
+ public:
+  using Field = CgField<Real>;
+
+  TangentCg(Operator<Real>& op, InverseSymbol<Real>& symbol, Index size, std::size_t conditions)
+      : op_(op),
+        symbol_(symbol),
+        r_(size),
+        x_(size),
+        work_(size),
+        w_(conditions, Field(size)),
+        constraints_(w_) {}
+
+  Field& residual() { return r_; }
+  const Field& solution() const { return x_; }
+  const Field& tangent(std::size_t k) const { return w_[k]; }
+
+  bool precondition(const TangentSpace<Real>& space, CgFields<Real> conditions) {
+    TangentPreconditioner<Real> inverse{symbol_, space};
+    return constraints_.prepare(inverse, conditions);
+  }
+  CgSummary solve(const TangentSpace<Real>& space, double reduction, int max_iterations) {
+    return run(space, {}, reduction, max_iterations);
+  }
+  /// Under the conditions of the last precondition().
+  CgSummary solve_constrained(const TangentSpace<Real>& space, double reduction, int max_iterations) {
+    return run(space, constraints_, reduction, max_iterations);
+  }
+  CoefficientMatrix solve_for_conditions(const TangentSpace<Real>& space, CgFields<Real> conditions,
+                                         int iterations) {
+    TangentOperator<Real> map{op_, space};
+    TangentPreconditioner<Real> inverse{symbol_, space};
+    return tangent_stiffness<Real>(map, inverse, conditions, iterations, work_, r_, std::span(w_));
+  }
+
+ private:
+  CgSummary run(const TangentSpace<Real>& space, const CgConstraints<Real>& constraints, double reduction,
+                int max_iterations) {
+    TangentOperator<Real> map{op_, space};
+    TangentPreconditioner<Real> inverse{symbol_, space};
+    x_.setZero();
+    return projected_cg<Real>(map, inverse, constraints, r_, {reduction, max_iterations}, work_, x_);
+  }
+
+  Operator<Real>& op_;
+  InverseSymbol<Real>& symbol_;
+  Field r_, x_;
+  CgWorkspace<Real> work_;
+  std::vector<Field> w_;
+  CgConstraints<Real> constraints_;
+};
+
 /// The operators of one grid, and the same problem as a dense one.
 struct Bench {
   Bench(const Grid& grid, bool vectors, unsigned seed)
       : size((vectors ? 2 : 1) * grid.cells()),
         op(grid, vectors ? tangential_kernel() : normal_kernel(), kPair),
         symbol(make_inverse_symbol<double>(grid, vectors ? tangential_kernel() : normal_kernel(), kPair)),
-        cg(op, *symbol, size, kMostConditions),
+        cg(op, *symbol, size, kMaxConditions),
         space(random_states<double>(grid.cells(), seed)) {
     if (!vectors) {
       space = TangentSpace<double>(1, grid.cells());
@@ -129,7 +185,7 @@ struct Bench {
   Index size;
   DenseMatrix op;
   std::unique_ptr<InverseSymbol<double>> symbol;
-  ConjugateGradients<double> cg;
+  TangentCg<double> cg;
   TangentSpace<double> space;
   MatrixXd free;
   MatrixXd tangent;
@@ -153,8 +209,8 @@ TEST_P(CgOn, SolvesWithoutACondition) {
     Bench b = bench(seed);
     const ArrayXd r = random_field(b.size, 10 + seed);
     b.cg.residual() = r;
-    const CgSummary summary = b.cg.solve(b.space, {}, kReduction, kMany);
-    EXPECT_EQ(summary.breakdown, "");
+    const CgSummary summary = b.cg.solve(b.space, kReduction, kMany);
+    EXPECT_EQ(summary.message(), "");
     EXPECT_LE(summary.reduction, kReduction);
     const VectorXd exact = b.inverse(r.matrix());
     EXPECT_LE((b.cg.solution().matrix() - exact).norm(), kSolved * exact.norm());
@@ -168,8 +224,8 @@ TEST_P(CgOn, SolvesUnderACondition) {
     const ArrayXd c = random_field(b.size, 30 + seed);
     ASSERT_TRUE(b.cg.precondition(b.space, one(c)));
     b.cg.residual() = r;
-    const CgSummary summary = b.cg.solve(b.space, one(c), kReduction, kMany);
-    EXPECT_EQ(summary.breakdown, "");
+    const CgSummary summary = b.cg.solve_constrained(b.space, kReduction, kMany);
+    EXPECT_EQ(summary.message(), "");
     const VectorXd exact = b.constrained(r.matrix(), c.matrix());
     EXPECT_LE((b.cg.solution().matrix() - exact).norm(), kSolved * exact.norm());
   }
@@ -184,7 +240,7 @@ TEST_P(CgOn, SolvesUnderThreeConditions) {
     const std::array<const ArrayXd*, 3> conditions{&fields[0], &fields[1], &fields[2]};
     ASSERT_TRUE(b.cg.precondition(b.space, conditions));
     b.cg.residual() = r;
-    EXPECT_EQ(b.cg.solve(b.space, conditions, kReduction, kMany).breakdown, "");
+    EXPECT_EQ(b.cg.solve_constrained(b.space, kReduction, kMany).message(), "");
     const MatrixXd columns = c.matrix().reshaped(b.size, 3);
     const VectorXd exact = b.constrained(r.matrix(), columns);
     EXPECT_LE((b.cg.solution().matrix() - exact).norm(), kSolved * exact.norm());
@@ -219,7 +275,7 @@ TEST_P(CgOn, KeepsTheConditionThroughout) {
   for (const int iterations : {1, 2, 3, 5, 9}) {
     b.cg.precondition(b.space, one(c));
     b.cg.residual() = random_field(b.size, 42);
-    EXPECT_EQ(b.cg.solve(b.space, one(c), 0.0, iterations).iterations, iterations);
+    EXPECT_EQ(b.cg.solve_constrained(b.space, 0.0, iterations).iterations, iterations);
     const VectorXd x = b.cg.solution().matrix();
     EXPECT_NEAR(c.matrix().dot(x), 0.0, 1e-13 * c.matrix().norm() * x.norm());
     EXPECT_LE((x - b.free * (b.free.transpose() * x)).norm(), 1e-13 * x.norm()) << "in the tangent space";
@@ -237,7 +293,7 @@ TEST_P(CgOn, FindsTheConditionsStiffnessToSecondOrder) {
   for (int iterations = 1; iterations <= 12; ++iterations) {
     const double found = b.cg.solve_for_conditions(b.space, one(c), iterations)(0, 0);
     const double error = exact - found;
-    EXPECT_NEAR(error, b.energy(w - (*b.cg.tangents()[0]).matrix()), 1e-12 * exact);
+    EXPECT_NEAR(error, b.energy(w - b.cg.tangent(0).matrix()), 1e-12 * exact);
     EXPECT_GE(error, -1e-12 * exact) << "from below";
     EXPECT_LT(error, std::max(last, 1e-12 * exact));
     last = error;
@@ -254,7 +310,7 @@ TEST_P(CgOn, PreconditionerIsSymmetricAndDefiniteOnTheTangentSpace) {
     ArrayXd unit = ArrayXd::Zero(b.size);
     unit[i] = 1.0;
     b.cg.precondition(b.space, one(unit));
-    preconditioner.col(i) = (*b.cg.tangents()[0]).matrix();
+    preconditioner.col(i) = b.cg.tangent(0).matrix();
     b.symbol->apply(std::span(unit.data(), static_cast<std::size_t>(b.size)));
     symbol.col(i) = unit.matrix();
   }
@@ -274,6 +330,54 @@ TEST_P(CgOn, PreconditionerIsSymmetricAndDefiniteOnTheTangentSpace) {
   EXPECT_LE((preconditioner - expected).cwiseAbs().maxCoeff(), 1e-13 * largest);
 }
 
+// --- without a contact ---
+
+struct DenseMap {
+  MatrixXd matrix;
+  void apply(const ArrayXd& x, ArrayXd& y) const { y = (matrix * x.matrix()).array(); }
+};
+
+/// In as many iterations as there are unknowns, whatever positive definite preconditioner it is given, and
+/// from any start: what the constraints' values were there they are at the end.
+TEST(ProjectedCg, SolvesASystemOfEquationsUnderConstraints) {
+  constexpr Index kSize = 12;
+  const auto positive = [](unsigned seed) {
+    const MatrixXd random = random_field(kSize * kSize, seed).matrix().reshaped(kSize, kSize);
+    return MatrixXd(random * random.transpose() + MatrixXd::Identity(kSize, kSize));
+  };
+  DenseMap map{positive(1)};
+  DenseMap preconditioner{positive(2)};
+  const ArrayXd right = random_field(kSize, 3);
+  const ArrayXd c = random_field(kSize, 4);
+  const ArrayXd start = random_field(kSize, 5);
+  std::vector<ArrayXd> storage(1, ArrayXd(kSize));
+  CgConstraints<double> constraints{std::span(storage)};
+  const auto conditions = one(c);
+  ASSERT_TRUE(constraints.prepare(preconditioner, conditions));
+  ArrayXd x = start;
+  ArrayXd r = right - (map.matrix * start.matrix()).array();
+  CgWorkspace<double> work(kSize);
+  const CgSummary summary =
+      projected_cg<double>(map, preconditioner, constraints, r, {1e-12, 4 * kSize}, work, x);
+  EXPECT_EQ(summary.status, CgStatus::reduced);
+  EXPECT_LE(summary.iterations, 2 * kSize);
+
+  MatrixXd saddle = MatrixXd::Zero(kSize + 1, kSize + 1);
+  saddle.topLeftCorner(kSize, kSize) = map.matrix;
+  saddle.topRightCorner(kSize, 1) = -c.matrix();
+  saddle.bottomLeftCorner(1, kSize) = c.matrix().transpose();
+  VectorXd rights(kSize + 1);
+  rights << right.matrix(), (c * start).sum();
+  const VectorXd exact = dense_solution(saddle, rights).head(kSize);
+  EXPECT_LE((x.matrix() - exact).norm(), 1e-10 * exact.norm());
+
+  x = start;
+  r = right - (map.matrix * start.matrix()).array();
+  const CgSummary stopped = projected_cg<double>(map, preconditioner, constraints, r, {1e-12, 2}, work, x);
+  EXPECT_EQ(stopped.status, CgStatus::iterations);
+  EXPECT_NEAR((c * x).sum(), (c * start).sum(), 1e-12 * c.matrix().norm() * x.matrix().norm());
+}
+
 TEST(Cg, KnowsAConditionOutsideTheTangentSpace) {
   Bench b({4, 4, 1.0, 1.0}, true, 8);
   for (Index i = 0; i < 16; ++i) b.space.set(i, i != 5);
@@ -287,9 +391,9 @@ TEST(Cg, KnowsAConditionOutsideTheTangentSpace) {
 TEST(Cg, HasNothingToDoWithoutAResidual) {
   Bench b({4, 4, 1.0, 1.0}, true, 9);
   b.cg.residual() = ArrayXd::Zero(32);
-  const CgSummary summary = b.cg.solve(b.space, {}, 1e-10, kMany);
+  const CgSummary summary = b.cg.solve(b.space, 1e-10, kMany);
   EXPECT_EQ(summary.iterations, 0);
-  EXPECT_EQ(summary.breakdown, "");
+  EXPECT_EQ(summary.message(), "");
   EXPECT_TRUE((b.cg.solution() == 0.0).all());
   EXPECT_EQ(b.op.applications(), 0);
 }
@@ -301,7 +405,7 @@ TEST(Cg, AllocatesNothing) {
   const long before = allocations();
   b.cg.precondition(b.space, one(c));
   b.cg.residual() = r;
-  b.cg.solve(b.space, one(c), 1e-10, kMany);
+  b.cg.solve_constrained(b.space, 1e-10, kMany);
   b.cg.solve_for_conditions(b.space, one(c), 5);
   EXPECT_EQ(allocations(), before);
 }
@@ -325,20 +429,20 @@ CgSummary solve_with_multiple(double factor, double right) {
   const Grid grid{4, 4, 1.0, 1.0};
   Multiple op(grid, factor);
   const auto symbol = make_inverse_symbol<double>(grid, tangential_kernel(), kPair);
-  ConjugateGradients<double> cg(op, *symbol, 32, 1);
+  TangentCg<double> cg(op, *symbol, 32, 1);
   TangentSpace<double> space(2, 16);
   for (Index i = 0; i < 16; ++i) space.set(i, true);
   cg.residual() = random_field(32, 71);
   cg.residual()[3] *= right;
-  return cg.solve(space, {}, 1e-10, kMany);
+  return cg.solve(space, 1e-10, kMany);
 }
 
 TEST(CgBreakdown, IsNamed) {
-  EXPECT_EQ(solve_with_multiple(2.0, 1.0).breakdown, "");
-  EXPECT_THAT(solve_with_multiple(-2.0, 1.0).breakdown, HasSubstr("curvature -"));
-  EXPECT_THAT(solve_with_multiple(0.0, 1.0).breakdown, HasSubstr("curvature 0"));
-  EXPECT_THAT(solve_with_multiple(std::nan(""), 1.0).breakdown, HasSubstr("nan"));
-  EXPECT_THAT(solve_with_multiple(2.0, std::nan("")).breakdown, HasSubstr("square is nan"));
+  EXPECT_EQ(solve_with_multiple(2.0, 1.0).message(), "");
+  EXPECT_THAT(solve_with_multiple(-2.0, 1.0).message(), HasSubstr("curvature -"));
+  EXPECT_THAT(solve_with_multiple(0.0, 1.0).message(), HasSubstr("curvature 0"));
+  EXPECT_THAT(solve_with_multiple(std::nan(""), 1.0).message(), HasSubstr("nan"));
+  EXPECT_THAT(solve_with_multiple(2.0, std::nan("")).message(), HasSubstr("square is nan"));
 }
 
 // --- single precision ---
@@ -348,13 +452,13 @@ TEST(CgInSinglePrecision, SolvesToItsRounding) {
   Bench b(grid, true, 11);
   const auto op = make_single_operator(grid, tangential_kernel(), kPair);
   const auto symbol = make_inverse_symbol<float>(grid, tangential_kernel(), kPair);
-  ConjugateGradients<float> cg(*op, *symbol, b.size, 1);
+  TangentCg<float> cg(*op, *symbol, b.size, 1);
   const TangentSpace<float> space = random_states<float>(grid.cells(), 11);
   const ArrayXd r = random_field(b.size, 81);
   const ArrayXf c = random_field(b.size, 82).cast<float>();
   ASSERT_TRUE(cg.precondition(space, one(c)));
   cg.residual() = r.cast<float>();
-  EXPECT_EQ(cg.solve(space, one(c), 1e-6, kMany).breakdown, "");
+  EXPECT_EQ(cg.solve_constrained(space, 1e-6, kMany).message(), "");
   const VectorXd exact = b.constrained(r.matrix(), c.cast<double>().matrix());
   EXPECT_LE((cg.solution().cast<double>().matrix() - exact).norm(), 1e-5 * exact.norm());
 }
@@ -394,10 +498,10 @@ int iterations_needed(Index cells, bool two_terms) {
     space.scale[cell] = 1.0 / std::sqrt(1.0 + stiffness * mean);
     space.shift[cell] = 0.0;
   });
-  ConjugateGradients<double> cg(*op, *symbol, 2 * grid.cells(), 0);
+  TangentCg<double> cg(*op, *symbol, 2 * grid.cells(), 0);
   cg.residual() = random_field(2 * grid.cells(), 91);
-  const CgSummary summary = cg.solve(space, {}, 1e-6, 1000);
-  EXPECT_EQ(summary.breakdown, "");
+  const CgSummary summary = cg.solve(space, 1e-6, 1000);
+  EXPECT_EQ(summary.message(), "");
   return summary.iterations;
 }
 

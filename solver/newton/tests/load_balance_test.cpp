@@ -24,7 +24,7 @@ struct Body {
   Body(int conditions, unsigned seed) : generator(seed) {
     bound = random(grid.cells(), -0.3, 1.0).max(0.0);
     const ArrayXd contact = (bound > 0.0).cast<double>().replicate(2, 1);
-    std::array<ArrayXd, kMostConditions> motions;
+    std::array<ArrayXd, kMaxConditions> motions;
     for (Index k = 0; k < 2; ++k) {
       motions[static_cast<std::size_t>(k)].setZero(2 * grid.cells());
       motions[static_cast<std::size_t>(k)].segment(k * grid.cells(), grid.cells()).setOnes();

@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+
+namespace slipstick::solver {
+
+using Eigen::Index;
+
+/// The rigid motions of a body on a surface: two translations and a turn.
+inline constexpr int kMaxConditions = 3;
+
+/// One value a condition, and a matrix of them; nothing is allocated.
+using Coefficients = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxConditions, 1>;
+using CoefficientMatrix =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, 0, kMaxConditions, kMaxConditions>;
+
+/// The x of least length among those that solve matrix x = right, or come closest: of motions that do the
+/// same to the contact, as of a single cell, the least.
+Coefficients least_solution(const CoefficientMatrix& matrix, const Coefficients& right);
+
+/// Cholesky's factor L of a small symmetric matrix L L^T.
+class SmallCholesky {
+ public:
+  SmallCholesky() = default;
+  explicit SmallCholesky(const CoefficientMatrix& matrix) { compute(matrix); }
+  void compute(const CoefficientMatrix& matrix);
+
+  /// Whether the matrix is positive definite; solve() needs that.
+  bool is_definite() const;
+  Coefficients solve(const Coefficients& right) const;
+  /// Of L.
+  Coefficients diagonal() const;
+
+ private:
+  Eigen::LLT<CoefficientMatrix> factor_;
+};
+
+}  // namespace slipstick::solver

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "solver/newton/load_balance.hpp"
+
+namespace slipstick::solver {
+
+/// minimise q.Kq/2 + g.q - sum of multiplier_k c_k.q over the admissible q: with c_k.q = load_k for each
+/// condition that is imposed, which finds its multiplier, and with a given multiplier for the others. Fields
+/// of as many values as q; not owned.
+struct ConvexProgram {
+  const Eigen::ArrayXd* g = nullptr;  ///< null: zero
+  std::vector<Condition> imposed;     ///< at most kMaxConditions, with those that follow
+  struct Given {
+    const Eigen::ArrayXd* c;
+    double multiplier;
+  };
+  std::vector<Given> given = {};
+
+  std::size_t conditions() const { return imposed.size() + given.size(); }
+
+  /// Of q with the displacement u = K q; the imposed conditions' part, which is constant, left out.
+  double energy(const Eigen::ArrayXd& q, const Eigen::ArrayXd& u) const;
+
+  /// y = q - length * gradient at u = K q, without the imposed conditions' part.
+  void descend(const Eigen::ArrayXd& q, const Eigen::ArrayXd& u, double length, Eigen::ArrayXd& y) const;
+
+  /// The gradient at u = K q, the slip of a contact: s = u + g - sum of multiplier_k c_k. multipliers: of the
+  /// imposed conditions.
+  void write_slip(const Eigen::ArrayXd& u, const Coefficients& multipliers, Eigen::ArrayXd& s) const;
+};
+
+}  // namespace slipstick::solver

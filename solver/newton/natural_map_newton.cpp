@@ -1,0 +1,357 @@
+#include "solver/newton/natural_map_newton.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/newton/multiplier_refinement.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+
+/// rho over the mean of the inverse symbol. Smaller is more careful about changing cells' states; between
+/// 0.1 and 0.3 makes no difference, 1 overshoots.
+constexpr double kRho = 0.2;
+/// The inner residual falls by this while states change, and by what the tolerance needs once they stand, as
+/// this part of it.
+constexpr double kLooseReduction = 0.1;
+constexpr double kTightReduction = 1e-4;
+constexpr double kPartOfWanted = 0.3;
+constexpr int kInnerIterations = 40;
+/// Steps towards the tangent field at the end; each brings it nearer by about 5.
+constexpr int kTangentIterations = 3;
+constexpr int kPatience = 8;
+/// Of a Newton step, and of a gradient step of length rho, before it is given up.
+constexpr int kMaxHalvings = 6;
+constexpr int kMaxGradientHalvings = 30;
+/// Energies are compared up to their rounding.
+constexpr double kEnergyRounding = 1e-13;
+
+constexpr double kDoubleFields = 4.0;  ///< u_, y_, trial_, trial_u_
+constexpr double kRealFields = 5.0;    ///< r_, x_, and three of work_
+
+NewtonSummary fail(NewtonSummary& summary, const std::string& why) {
+  summary.message = why;
+  return summary;
+}
+
+}  // namespace
+
+template <AdmissibleSet Set, typename Real>
+NaturalMapNewton<Set, Real>::NaturalMapNewton(const Set& set, const ConvexProgram& program,
+                                              LinearOperator& op, Operator<Real>& inner,
+                                              InverseSymbol<Real>& symbol)
+    : set_(set),
+      program_(program),
+      op_(op),
+      inner_(inner),
+      symbol_(symbol),
+      mean_(symbol.diagonal()),
+      rho_(kRho * 0.5 * (mean_[0] + mean_[1])),
+      work_(size()),
+      tangents_(program.conditions(), Field(size())),
+      constraints_(tangents_),
+      r_(size()),
+      x_(size()),
+      space_(Set::kComponents, set.cells()),
+      balance_(set, program.imposed),
+      u_(size()),
+      y_(size()),
+      trial_(size()),
+      trial_u_(size()) {
+  for (const Condition& condition : program.imposed) add_condition(*condition.c);
+  for (const auto& given : program.given) add_condition(*given.c);
+  if constexpr (!std::is_same_v<Real, double>) {
+    for (const Field& field : rounded_) c_.push_back(&field);
+  }
+}
+
+template <AdmissibleSet Set, typename Real>
+NewtonSummary NaturalMapNewton<Set, Real>::run(ArrayXd& q, const Coefficients& multipliers,
+                                               const NewtonOptions& options) {
+  NewtonSummary summary;
+  multipliers_ = multipliers.size() == balance_.count() ? multipliers : Coefficients::Zero(balance_.count());
+  enter_admissible_set(q);
+  double best_gap = std::numeric_limits<double>::infinity();
+  int without_progress = 0;
+  for (;; ++summary.iterations) {
+    if (!find_state(q))
+      return fail(summary, "no multiplier restores the load: it is not finite, or at its limit");
+    summary.gap = relative_gap(q);
+    summary.multipliers = multipliers_;
+    if (options.progress) options.progress(applications(), summary.gap);
+    if (std::isnan(summary.gap)) return fail(summary, "an elastic energy that is not a positive number");
+    if (summary.gap <= options.tolerance &&
+        (!options.refine_multipliers || refine(q, options.tolerance, summary))) {
+      summary.converged = true;
+      return summary;
+    }
+    const bool settled = summary.iterations > 0 && !energy_fell_;
+    if (settled && summary.gap > options.tolerance && is_certified(summary.gap, options.tolerance, q)) {
+      return stop(q, options, summary, "rounding");
+    }
+    without_progress = summary.gap < best_gap || energy_fell_ ? 0 : without_progress + 1;
+    best_gap = std::min(best_gap, summary.gap);
+    if (without_progress > kPatience) return stop(q, options, summary, "rounding: no further progress");
+    if (applications() >= options.max_applications) {
+      return stop(q, options, summary,
+                  fmt::format("no convergence within {} operator applications", options.max_applications));
+    }
+    linearise();
+    const LinearTarget target =
+        linear_target(options.tolerance / summary.gap, options.max_applications - applications());
+    if (!take_newton_step(q, target) && !take_gradient_step(q)) {
+      return stop(q, options, summary, "rounding: no step lowers the energy");
+    }
+  }
+}
+
+template <AdmissibleSet Set, typename Real>
+long NaturalMapNewton<Set, Real>::applications() const {
+  const bool one = static_cast<const void*>(&op_) == static_cast<const void*>(&inner_);
+  return op_.applications() + (one ? 0 : inner_.applications());
+}
+
+template <AdmissibleSet Set, typename Real>
+double NaturalMapNewton<Set, Real>::bytes(double cells, std::size_t conditions) {
+  const double values = static_cast<double>(Set::kComponents) * cells;
+  const auto fields = static_cast<double>(conditions);
+  const double rounded = std::is_same_v<Real, double> ? 0.0 : fields;
+  return kDoubleFields * sizeof(double) * values + (kRealFields + fields + rounded) * sizeof(Real) * values +
+         TangentSpace<Real>::bytes(Set::kComponents, cells);
+}
+
+/// A condition's field in the precision of the inner iteration.
+template <AdmissibleSet Set, typename Real>
+void NaturalMapNewton<Set, Real>::add_condition(const ArrayXd& c) {
+  if constexpr (std::is_same_v<Real, double>) {
+    c_.push_back(&c);
+  } else {
+    rounded_.push_back(c.template cast<Real>());
+  }
+}
+
+template <AdmissibleSet Set, typename Real>
+void NaturalMapNewton<Set, Real>::enter_admissible_set(ArrayXd& q) {
+  Coefficients x = Coefficients::Zero(balance_.count());
+  if (balance_.solve(q, x)) balance_.add(x, q);
+  set_.project(q);
+  op_.apply(q, u_);
+}
+
+/// The multipliers by the natural map, and y = q - rho s.
+template <AdmissibleSet Set, typename Real>
+bool NaturalMapNewton<Set, Real>::find_state(const ArrayXd& q) {
+  program_.descend(q, u_, rho_, y_);
+  Coefficients x = rho_ * multipliers_;
+  if (!balance_.solve(y_, x)) return false;
+  multipliers_ = x / rho_;
+  balance_.add(x, y_);
+  return true;
+}
+
+template <AdmissibleSet Set, typename Real>
+double NaturalMapNewton<Set, Real>::relative_gap(const ArrayXd& q) {
+  const double elastic = 0.5 * (q * u_).sum();
+  write_slip(trial_u_);
+  const double gap = set_.gap(q, trial_u_);
+  if (gap == 0.0) return 0.0;
+  return elastic >= 0.0 ? gap / elastic : std::numeric_limits<double>::quiet_NaN();
+}
+
+/// Of the gap that relative_gap() has just found.
+template <AdmissibleSet Set, typename Real>
+bool NaturalMapNewton<Set, Real>::is_certified(double gap, double tolerance, const ArrayXd& q) const {
+  const double rounding = set_.gap_rounding(trial_u_, u_) / (0.5 * (q * u_).sum());
+  return solver::is_certified(gap, rounding, tolerance);
+}
+
+template <AdmissibleSet Set, typename Real>
+void NaturalMapNewton<Set, Real>::linearise() {
+  changed_ = set_.linearise(y_, rho_, mean_, space_);
+  TangentPreconditioner<Real> map = preconditioner();
+  has_tangents_ = constraints_.prepare(map, imposed());
+}
+
+/// Right-hand side -(s + stiffness q), of which the tangent space sees the turning part of q.
+template <AdmissibleSet Set, typename Real>
+void NaturalMapNewton<Set, Real>::write_residual(const ArrayXd& q) {
+  write_slip(trial_u_);
+  if (Set::kComponents == 2) {
+    const Index n = set_.cells();
+    const auto& stiffness = space_.stiffness.template cast<double>();
+    trial_u_.head(n) += stiffness * q.head(n);
+    trial_u_.tail(n) += stiffness * q.tail(n);
+  }
+  r_ = -trial_u_.template cast<Real>();
+}
+
+/// wanted: the part that is to be left of the gap.
+template <AdmissibleSet Set, typename Real>
+typename NaturalMapNewton<Set, Real>::LinearTarget NaturalMapNewton<Set, Real>::linear_target(
+    double wanted, long applications_left) const {
+  return {
+      changed_ == 0 ? std::clamp(kPartOfWanted * wanted, kTightReduction, kLooseReduction) : kLooseReduction,
+      static_cast<int>(std::clamp<long>(applications_left, 1, kInnerIterations))};
+}
+
+/// loads: of the solution; empty: none. False where conjugate gradients broke down.
+template <AdmissibleSet Set, typename Real>
+bool NaturalMapNewton<Set, Real>::solve_linear(const ArrayXd& q, const LinearTarget& target,
+                                               const Coefficients& loads) {
+  write_residual(q);
+  TangentOperator<Real> map = tangent_operator();
+  TangentPreconditioner<Real> inverse = preconditioner();
+  x_.setZero();
+  if (loads.size() > 0) {
+    constraints_.add_with_values(loads, x_);
+    map.apply(x_, work_.Ad);
+    r_ -= work_.Ad;
+  }
+  const CgConstraints<Real> none;
+  return !projected_cg<Real>(map, inverse, has_tangents_ ? constraints_ : none, r_,
+                             {target.reduction, target.max_iterations}, work_, x_)
+              .broke_down();
+}
+
+/// The loads that cells bring which jump onto the face of their set.
+template <AdmissibleSet Set, typename Real>
+Coefficients NaturalMapNewton<Set, Real>::jump_loads(const ArrayXd& q) {
+  trial_.setZero();
+  set_.add_jump(y_, q, trial_);
+  Coefficients loads(balance_.count());
+  for (Eigen::Index k = 0; k < loads.size(); ++k) {
+    loads[k] = (*program_.imposed[static_cast<std::size_t>(k)].c * trial_).sum();
+  }
+  return loads;
+}
+
+/// Whether the energy fell; then q and its displacement are the new ones.
+template <AdmissibleSet Set, typename Real>
+bool NaturalMapNewton<Set, Real>::accept_trial(ArrayXd& q) {
+  set_.project(trial_);
+  op_.apply(trial_, trial_u_);
+  const double before = program_.energy(q, u_);
+  const double after = program_.energy(trial_, trial_u_);
+  if (!(after <= before + kEnergyRounding * std::abs(before))) return false;
+  energy_fell_ = after < before - kEnergyRounding * std::abs(before);
+  q.swap(trial_);
+  u_.swap(trial_u_);
+  return true;
+}
+
+/// trial = q and this part of the linear solution and of the jumps.
+template <AdmissibleSet Set, typename Real>
+void NaturalMapNewton<Set, Real>::write_trial(const ArrayXd& q, double length) {
+  trial_ = x_.template cast<double>();
+  set_.add_jump(y_, q, trial_);
+  trial_ = q + length * trial_;
+}
+
+template <AdmissibleSet Set, typename Real>
+bool NaturalMapNewton<Set, Real>::take_newton_step(ArrayXd& q, const LinearTarget& target) {
+  if (!solve_linear(q, target)) return false;
+  write_trial(q, 1.0);
+  bool restored = restore_along_tangents();
+  if (!restored && has_tangents_ && balance_.count() > 0) {
+    if (!solve_linear(q, target, -jump_loads(q))) return false;
+    write_trial(q, 1.0);
+    restored = restore_along_tangents();
+  }
+  for (int halvings = 0; halvings <= kMaxHalvings; ++halvings) {
+    if (halvings > 0) {
+      write_trial(q, std::ldexp(1.0, -halvings));
+      restored = restore_along_tangents();
+    }
+    if ((restored || restore_along_conditions()) && accept_trial(q)) return true;
+  }
+  return false;
+}
+
+/// The loads of the projected trial, restored; false if that is not possible near by.
+template <AdmissibleSet Set, typename Real>
+bool NaturalMapNewton<Set, Real>::restore_along_tangents() {
+  if (!has_tangents_) return false;
+  Coefficients x = Coefficients::Zero(balance_.count());
+  const auto tangents = constraints_.preconditioned();
+  std::array<const Field*, kMaxConditions> directions{};
+  for (std::size_t k = 0; k < tangents.size(); ++k) directions[k] = &tangents[k];
+  if (!balance_.template solve_along<Field>(trial_, std::span(directions).first(tangents.size()), x))
+    return false;
+  for (std::size_t k = 0; k < tangents.size(); ++k) {
+    trial_ += x[static_cast<Index>(k)] * tangents[k].template cast<double>();
+  }
+  return true;
+}
+
+template <AdmissibleSet Set, typename Real>
+bool NaturalMapNewton<Set, Real>::restore_along_conditions() {
+  Coefficients x = Coefficients::Zero(balance_.count());
+  if (!balance_.solve(trial_, x)) return false;
+  balance_.add(x, trial_);
+  return true;
+}
+
+template <AdmissibleSet Set, typename Real>
+bool NaturalMapNewton<Set, Real>::take_gradient_step(ArrayXd& q) {
+  for (int halvings = 0; halvings <= kMaxGradientHalvings; halvings += 2) {
+    const double length = std::ldexp(rho_, -halvings);
+    program_.descend(q, u_, length, trial_);
+    Coefficients x = length * multipliers_;
+    if (!balance_.solve(trial_, x)) continue;
+    balance_.add(x, trial_);
+    if (accept_trial(q)) return true;
+  }
+  return false;
+}
+
+/// The multipliers to second order: those of a Newton step along the tangent fields w, from w.(s +
+/// stiffness q) and w.c. False if the gap at those multipliers is above the tolerance: then another step is
+/// due.
+template <AdmissibleSet Set, typename Real>
+bool NaturalMapNewton<Set, Real>::refine(const ArrayXd& q, double tolerance, NewtonSummary& summary) {
+  linearise();
+  summary.tangent_stiffness = CoefficientMatrix();
+  if (!has_tangents_) return true;
+  TangentOperator<Real> map = tangent_operator();
+  TangentPreconditioner<Real> inverse = preconditioner();
+  summary.tangent_stiffness =
+      tangent_stiffness<Real>(map, inverse, c_, kTangentIterations, work_, r_, std::span(tangents_));
+  if (balance_.count() == 0) return true;
+  write_residual(q);
+  const auto correction =
+      multiplier_correction<Real>(summary.tangent_stiffness, tangents_, r_, balance_.count());
+  if (!correction) return true;
+  const Coefficients first_order = multipliers_;
+  multipliers_ += *correction;
+  const double gap = relative_gap(q);
+  if (gap <= tolerance) {
+    summary.gap = gap;
+    summary.multipliers = multipliers_;
+    return true;
+  }
+  multipliers_ = first_order;
+  has_tangents_ = false;
+  return false;
+}
+
+/// An admissible state from which no step leads on, described as well as it can be: short of its tolerance,
+/// or within it where rounding keeps the multipliers of second order out.
+template <AdmissibleSet Set, typename Real>
+NewtonSummary NaturalMapNewton<Set, Real>::stop(const ArrayXd& q, const NewtonOptions& options,
+                                                NewtonSummary& summary, const std::string& why) {
+  if (options.refine_multipliers) refine(q, summary.gap, summary);
+  summary.gap = relative_gap(q);
+  summary.converged = is_certified(summary.gap, options.tolerance, q);
+  return summary.converged ? summary : fail(summary, why);
+}
+
+template class NaturalMapNewton<FrictionDiscs, double>;
+template class NaturalMapNewton<FrictionDiscs, float>;
+template class NaturalMapNewton<PositivePressures, double>;
+template class NaturalMapNewton<PositivePressures, float>;
+
+}  // namespace slipstick::solver
