@@ -1,104 +1,96 @@
 #include "convergence/check/fitted_motion.hpp"
 
-#include <Eigen/Cholesky>
 #include <cmath>
 
 #include "solver/contact/certificate.hpp"
+#include "solver/contact/smoothed_friction.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
 using Eigen::ArrayXd;
 using Eigen::Index;
-using Eigen::MatrixXd;
-using Eigen::VectorXd;
+using solver::CoefficientMatrix;
+using solver::Coefficients;
 
-/// |s| is smoothed to sqrt(|s|^2 + e^2), e being first the root mean square of s and falling tenfold each
-/// time that Newton's method has settled, down to what tells no slip of any file's digits apart.
-constexpr double kLeastSmoothing = 1e-9;
-constexpr double kReduction = 0.1;
-/// Newton's decrement, over the sum of mu p |s|, at which the smoothing that is left weighs more.
-constexpr double kSettled = 1e-3;
-constexpr int kMostSteps = 200;
-constexpr int kMostHalvings = 30;
+/// From the root mean square of s down to what tells no slip of any file's digits apart.
+constexpr solver::Smoothing kSmoothing{.first = 1.0, .least = 1e-9};
 
-/// Cells without a bound are zero in all fields.
+/// Cells without a bound are zero in all fields. Bounds are over their sum, displacements over the root mean
+/// square of s at the start, weighted with the bound.
 struct Program {
   ArrayXd displacement, traction, bound;
   std::vector<ArrayXd> motions;
 
-  ArrayXd slip(const VectorXd& z) const {
+  Index count() const { return static_cast<Index>(motions.size()); }
+  const ArrayXd& motion(Index k) const { return motions[static_cast<std::size_t>(k)]; }
+
+  ArrayXd slip(const Coefficients& z) const {
     ArrayXd s = displacement;
-    for (Index k = 0; k < z.size(); ++k) s -= z[k] * motions[static_cast<std::size_t>(k)];
+    for (Index k = 0; k < z.size(); ++k) s -= z[k] * motion(k);
     return s;
-  }
-
-  double smoothed_gap(const ArrayXd& s, double smoothing) const {
-    return (traction * s).sum() + (bound * (solver::dot_products(s, s) + smoothing * smoothing).sqrt()).sum();
-  }
-
-  /// Gradient and second derivatives in z.
-  struct Derivatives {
-    VectorXd gradient;
-    MatrixXd hessian;
-  };
-  Derivatives derivatives(const ArrayXd& s, double smoothing) const {
-    const auto n = static_cast<Index>(motions.size());
-    const ArrayXd size = (solver::dot_products(s, s) + smoothing * smoothing).sqrt();
-    const ArrayXd weight = bound / size;
-    Derivatives d{VectorXd(n), MatrixXd(n, n)};
-    const ArrayXd pull = traction + weight.replicate(2, 1) * s;
-    std::vector<ArrayXd> along;
-    for (const ArrayXd& motion : motions) along.push_back(solver::dot_products(s, motion) / size);
-    for (Index k = 0; k < n; ++k) {
-      const auto at_k = static_cast<std::size_t>(k);
-      d.gradient[k] = -(pull * motions[at_k]).sum();
-      for (Index l = 0; l <= k; ++l) {
-        const auto at_l = static_cast<std::size_t>(l);
-        d.hessian(k, l) = d.hessian(l, k) =
-            (weight * (solver::dot_products(motions[at_k], motions[at_l]) - along[at_k] * along[at_l])).sum();
-      }
-    }
-    return d;
   }
 };
 
-/// Least squares of s weighted with the bound.
-VectorXd least_slip(const Program& program) {
-  const auto n = static_cast<Index>(program.motions.size());
-  MatrixXd matrix(n, n);
-  VectorXd right(n);
+/// The sum of s.q + mu p |s|, |s| smoothed, and its derivatives in z.
+struct SmoothedGap {
+  Coefficients z;
+  double smoothed = 0.0;
+  Coefficients gradient = {};
+  CoefficientMatrix hessian = {};
+};
+
+SmoothedGap evaluate(const Program& program, const Coefficients& z, double smoothing) {
+  const Index n = program.count();
+  const ArrayXd s = program.slip(z);
+  const ArrayXd size = (solver::dot_products(s, s) + smoothing * smoothing).sqrt();
+  const ArrayXd weight = program.bound / size;
+  const ArrayXd pull = program.traction + weight.replicate(2, 1) * s;
+  SmoothedGap gap{z, (program.traction * s).sum() + (program.bound * size).sum(), Coefficients(n),
+                  CoefficientMatrix(n, n)};
   for (Index k = 0; k < n; ++k) {
-    const ArrayXd weighted = program.bound.replicate(2, 1) * program.motions[static_cast<std::size_t>(k)];
-    right[k] = (weighted * program.displacement).sum();
-    for (Index l = 0; l < n; ++l)
-      matrix(k, l) = (weighted * program.motions[static_cast<std::size_t>(l)]).sum();
+    const ArrayXd along = solver::dot_products(s, program.motion(k)) / size;
+    gap.gradient[k] = -(pull * program.motion(k)).sum();
+    for (Index l = 0; l <= k; ++l) {
+      gap.hessian(k, l) = gap.hessian(l, k) =
+          (weight * (solver::dot_products(program.motion(k), program.motion(l)) -
+                     along * solver::dot_products(s, program.motion(l)) / size))
+              .sum();
+    }
   }
-  return matrix.ldlt().solve(right);
+  return gap;
 }
 
-VectorXd least_gap(const Program& program) {
-  VectorXd z = least_slip(program);
-  ArrayXd s = program.slip(z);
-  const double scale = std::sqrt((program.bound * solver::dot_products(s, s)).sum() / program.bound.sum());
-  double smoothing = scale;
-  for (int step = 0; step < kMostSteps && smoothing > kLeastSmoothing * scale; ++step) {
-    const auto [gradient, hessian] = program.derivatives(s, smoothing);
-    const VectorXd newton = -hessian.ldlt().solve(gradient);
-    const double decrement = -gradient.dot(newton);
-    const double value = program.smoothed_gap(s, smoothing);
-    bool lower = false;
-    for (int halvings = 0; halvings < kMostHalvings && !lower; ++halvings) {
-      const VectorXd next = z + std::ldexp(1.0, -halvings) * newton;
-      const ArrayXd next_slip = program.slip(next);
-      lower = program.smoothed_gap(next_slip, smoothing) < value;
-      if (!lower) continue;
-      z = next;
-      s = next_slip;
-    }
-    if (!lower || !(decrement > kSettled * smoothing * program.bound.sum())) smoothing *= kReduction;
+/// Least squares of s weighted with the bound.
+Coefficients least_slip(const Program& program) {
+  const Index n = program.count();
+  CoefficientMatrix matrix(n, n);
+  Coefficients right(n);
+  for (Index k = 0; k < n; ++k) {
+    const ArrayXd weighted = program.bound.replicate(2, 1) * program.motion(k);
+    right[k] = (weighted * program.displacement).sum();
+    for (Index l = 0; l < n; ++l) matrix(k, l) = (weighted * program.motion(l)).sum();
   }
-  return z;
+  return solver::SmallCholesky(matrix).solve(right);
+}
+
+Coefficients least_gap(Program program) {
+  const double total = program.bound.sum();
+  program.bound /= total;
+  program.traction /= total;
+  const Coefficients start = least_slip(program);
+  const ArrayXd s = program.slip(start);
+  const double scale = std::sqrt((program.bound * solver::dot_products(s, s)).sum());
+  if (!(scale > 0.0)) return start;
+  program.displacement /= scale;
+  const auto move = [&](const SmoothedGap& from, const Coefficients& step, double smoothing) {
+    return evaluate(program, from.z + step, smoothing);
+  };
+  const auto is_least = [](const SmoothedGap&, double) { return false; };
+  const Coefficients scaled = start / scale;
+  return scale *
+         solver::minimise_smoothed(SmoothedGap{.z = scaled, .gradient = scaled}, kSmoothing, move, is_least)
+             .z;
 }
 
 }  // namespace

@@ -2,11 +2,13 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/Cholesky>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <utility>
+#include <vector>
 
 #include "solver/contact/certificate.hpp"
 #include "solver/newton/nested_iteration.hpp"
@@ -19,19 +21,65 @@ using Eigen::ArrayXd;
 /// Torsion's q1 is even in x1 and odd in x2, q2 the reverse.
 constexpr std::array<Parity, 2> kTorsionParities{{{1, -1}, {-1, 1}}};
 
+/// A rigid motion, or the load along it.
+enum class Motion { delta1, delta2, twist };
+
+/// Which motions the program finds, for their loads are imposed, and which it is given: the order of its
+/// conditions.
+struct Conditions {
+  std::vector<Motion> imposed, given;
+
+  explicit Conditions(const TangentialProblem& problem) {
+    for (const Motion translation : {Motion::delta1, Motion::delta2}) {
+      if (problem.force) imposed.push_back(translation);
+      if (problem.displacement) given.push_back(translation);
+    }
+    if (problem.moment) imposed.push_back(Motion::twist);
+    if (problem.twist) given.push_back(Motion::twist);
+  }
+
+  /// Among the imposed ones, or among all, the imposed ones first; empty: not there.
+  std::optional<Index> among_imposed(Motion motion) const { return position(imposed, motion); }
+  std::optional<Index> among_all(Motion motion) const {
+    std::vector<Motion> all = imposed;
+    all.insert(all.end(), given.begin(), given.end());
+    return position(all, motion);
+  }
+
+ private:
+  static std::optional<Index> position(const std::vector<Motion>& motions, Motion motion) {
+    const auto found = std::ranges::find(motions, motion);
+    if (found == motions.end()) return std::nullopt;
+    return found - motions.begin();
+  }
+};
+
+/// Along one motion.
+std::optional<double> load_of(const TangentialProblem& problem, Motion motion) {
+  if (motion == Motion::twist) return problem.moment;
+  if (!problem.force) return std::nullopt;
+  return (*problem.force)[motion == Motion::delta1 ? 0 : 1];
+}
+std::optional<double> given_of(const TangentialProblem& problem, Motion motion) {
+  if (motion == Motion::twist) return problem.twist;
+  if (!problem.displacement) return std::nullopt;
+  return (*problem.displacement)[motion == Motion::delta1 ? 0 : 1];
+}
+
 /// The tangential problem on one grid, as solve_nested() asks for it.
 class TangentialOnGrid {
  public:
   TangentialOnGrid(const Grid& grid, TangentialProblem problem)
       : problem_(std::move(problem)),
         contact_((problem_.friction_bound > 0.0).cast<double>()),
-        rotation_(contact_.replicate(2, 1) * rotation_field(grid)) {
-    if (problem_.start.size() == 0) problem_.start.setZero(rotation_.size());
+        fields_{ArrayXd(), ArrayXd(), contact_.replicate(2, 1) * rotation_field(grid)} {
+    const Index cells = contact_.size();
+    if (problem_.start.size() == 0) problem_.start.setZero(2 * cells);
     if (!problem_.force && !problem_.displacement) return;
-    for (std::size_t component = 0; component < 2; ++component) {
-      translation_[component].setZero(rotation_.size());
-      translation_[component].segment(static_cast<Index>(component) * contact_.size(), contact_.size()) =
-          contact_;
+    for (const Index component : {0, 1}) {
+      ArrayXd& field = fields_[static_cast<std::size_t>(component)];
+      field.setZero(2 * cells);
+      field.segment(component * cells, cells) = contact_;
     }
   }
 
@@ -40,7 +88,6 @@ class TangentialOnGrid {
   FrictionDiscs admissible() const { return FrictionDiscs(problem_.friction_bound); }
   ArrayXd start() const { return problem_.start; }
 
-  /// Translations first, where they are modelled.
   ConvexProgram program(LinearOperator& op) {
     reference_ = problem_.initial_displacement;
     if ((problem_.start != 0.0).any()) {
@@ -50,14 +97,13 @@ class TangentialOnGrid {
     }
     ConvexProgram program;
     if (reference_.size() > 0) program.g = &reference_;
-    for (std::size_t component = 0; component < 2; ++component) {
-      if (problem_.force) program.imposed.push_back({&translation_[component], (*problem_.force)[component]});
-      if (problem_.displacement) {
-        program.given.push_back({&translation_[component], (*problem_.displacement)[component]});
-      }
+    const Conditions conditions(problem_);
+    for (const Motion motion : conditions.imposed) {
+      program.imposed.push_back({&field(motion), *load_of(problem_, motion)});
     }
-    if (problem_.moment) program.imposed.push_back({&rotation_, *problem_.moment});
-    if (problem_.twist) program.given.push_back({&rotation_, *problem_.twist});
+    for (const Motion motion : conditions.given) {
+      program.given.push_back({&field(motion), *given_of(problem_, motion)});
+    }
     return program;
   }
 
@@ -77,34 +123,39 @@ class TangentialOnGrid {
   }
 
  private:
+  const ArrayXd& field(Motion motion) const { return fields_[static_cast<std::size_t>(motion)]; }
+
   TangentialProblem problem_;
-  ArrayXd contact_;   ///< 1 where tractions may be
-  ArrayXd rotation_;  ///< (-x2, x1) there
-  std::array<ArrayXd, 2> translation_;
+  ArrayXd contact_;                ///< 1 where tractions may be
+  std::array<ArrayXd, 3> fields_;  ///< by Motion: (1, 0) and (0, 1), empty where not modelled, and (-x2, x1)
   ArrayXd reference_;
 };
 
 /// The motions: those that the program found, and those that it was given.
 void describe_motion(TangentialSolution& solution, const NewtonSummary& newton,
                      const TangentialProblem& problem) {
-  const Coefficients& found = newton.multipliers;
-  if (problem.displacement) solution.displacement = *problem.displacement;
-  if (problem.force && found.size() >= 2) solution.displacement = {found[0], found[1]};
-  solution.twist = problem.twist      ? *problem.twist
-                   : found.size() > 0 ? found[found.size() - 1]
-                                      : std::numeric_limits<double>::quiet_NaN();
+  const Conditions conditions(problem);
+  const auto motion = [&](Motion of) {
+    if (const auto given = given_of(problem, of)) return *given;
+    const auto found = conditions.among_imposed(of);
+    if (!found) return 0.0;  // not modelled
+    return *found < newton.multipliers.size() ? newton.multipliers[*found]
+                                              : std::numeric_limits<double>::quiet_NaN();
+  };
+  solution.displacement = {motion(Motion::delta1), motion(Motion::delta2)};
+  solution.twist = motion(Motion::twist);
 }
 
 /// dM/dphi. Where forces are imposed, the translations answer.
 double turning_stiffness(const CoefficientMatrix& stiffness, const TangentialProblem& problem) {
-  const Eigen::Index n = stiffness.rows();
-  if (n == 0) return 0.0;
-  // Imposed loads come before given motions: the rotation is last, unless it alone is imposed.
-  const Eigen::Index turn = problem.moment && problem.displacement ? 0 : n - 1;
+  if (stiffness.rows() == 0) return 0.0;
+  const Conditions conditions(problem);
+  const Index turn = *conditions.among_all(Motion::twist);
   if (!problem.force) return stiffness(turn, turn);
-  const Eigen::Vector2d coupled = stiffness.block<2, 1>(0, turn);
-  const Eigen::Matrix2d pushed = stiffness.topLeftCorner<2, 2>();
-  return stiffness(turn, turn) - coupled.dot(pushed.ldlt().solve(coupled));
+  const Index push = *conditions.among_all(Motion::delta1);
+  const Coefficients coupled = stiffness.block<2, 1>(push, turn);
+  const CoefficientMatrix pushed = stiffness.block<2, 2>(push, push);
+  return stiffness(turn, turn) - coupled.dot(SmallCholesky(pushed).solve(coupled));
 }
 
 /// Slip where the bodies touch, and the stick area: where the tractions stay within their bound.

@@ -2,12 +2,14 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <vector>
+
+#include "solver/contact/smoothed_friction.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -16,10 +18,8 @@ using Eigen::Array2d;
 using Eigen::ArrayXd;
 using Eigen::Matrix;
 using Eigen::Matrix3d;
-using Eigen::MatrixXd;
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using Eigen::VectorXd;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
@@ -27,18 +27,8 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// which they depend on to second order, has then eight digits or so.
 constexpr double kTolerance = 2e-15;
 
-/// |v| is smoothed to sqrt(|v|^2 + s^2), where the root mean square of |v| is 1 at the start. s falls tenfold
-/// each time that Newton's method has settled to this part of the smoothing error, which is at most s, or
-/// gains no more than rounding.
-constexpr double kFirstSmoothing = 0.1;
-constexpr double kLeastSmoothing = 1e-15;
-constexpr double kReduction = 0.1;
-constexpr double kSettled = 0.01;
-constexpr double kRounding = 1e-15;
-
-constexpr int kMostSteps = 200;    // four times what has been seen; `carried` says what they have come to
-constexpr int kMostHalvings = 33;  // of a Newton step, which a flat stretch makes long
-constexpr double kArmijo = 1e-4;
+/// The root mean square of |v| is 1 at the start.
+constexpr Smoothing kSmoothing{.first = 0.1, .least = 1e-15};
 
 /// The contact's cells, lengths over its radius of gyration from its centroid, friction bounds over their
 /// sum. A motion is (velocity of the centroid, rotation times radius of gyration), so that the mean square of
@@ -100,7 +90,9 @@ struct Friction {
   double smoothed = 0.0;
   Vector3d resultant = Vector3d::Zero();
   Matrix3d stiffness = Matrix3d::Zero();
-  Index slowest = 0;  ///< the cell with the least |v|
+  Index slowest = 0;               ///< the cell with the least |v|
+  Coefficients gradient = {};      ///< of the smoothed friction along the free directions,
+  CoefficientMatrix hessian = {};  ///< and its second derivatives
 };
 
 Friction evaluate(const Contact& contact, const Vector3d& motion, double smoothing) {
@@ -161,12 +153,12 @@ double lower_bound(const Contact& contact, const Friction& friction, const Motio
   const Index k = friction.slowest;
   Matrix<double, 2, 3> velocity;
   velocity << 1.0, 0.0, -contact.x2[k], 0.0, 1.0, contact.x1[k];
-  const VectorXd residual = motions.directions.transpose() * friction.resultant;
+  const Coefficients& residual = friction.gradient;
   const Vector2d v = velocity * friction.motion;
   const Vector2d traction = contact.bound[k] / std::hypot(v.norm(), smoothing) * v;
-  const MatrixXd balance = motions.directions.transpose() * velocity.transpose();
+  const CoefficientMatrix balance = motions.directions.transpose() * velocity.transpose();
   Vector2d balanced = traction;
-  if (residual.size() > 0) balanced -= balance.completeOrthogonalDecomposition().solve(residual);
+  if (residual.size() > 0) balanced -= least_solution(balance, residual);
   const Vector2d change = balanced * std::min(1.0, contact.bound[k] / balanced.norm()) - traction;
 
   const double left = (residual + balance * change).norm();
@@ -183,54 +175,26 @@ struct Minimum {
   double carried;  ///< it is not less than this
 };
 
-/// Newton's step of smoothed friction, and what it would gain twice over.
-struct Step {
-  Vector3d motion = Vector3d::Zero();
-  double decrement = 0.0;
-};
-
-Step newton_step(const Friction& at, const Motions& motions) {
-  const auto& directions = motions.directions;
-  if (directions.cols() == 0) return {};
-  const VectorXd residual = directions.transpose() * at.resultant;
-  MatrixXd stiffness = directions.transpose() * at.stiffness * directions;
-  stiffness.diagonal().array() += kRounding * stiffness.trace();
-  const VectorXd z = -stiffness.llt().solve(residual);
-  return {directions * z, -residual.dot(z)};
-}
-
-/// Goes the first of step, step/2, ... that lowers smoothed friction enough; false if none does.
-bool descend(const Contact& contact, const Step& step, double smoothing, Friction& at) {
-  for (int halvings = 0; halvings <= kMostHalvings; ++halvings) {
-    const double part = std::ldexp(1.0, -halvings);
-    const Friction next = evaluate(contact, at.motion + part * step.motion, smoothing);
-    if (!(next.smoothed <= at.smoothed - kArmijo * part * step.decrement)) continue;
-    at = next;
-    return true;
-  }
-  return false;
-}
-
-/// The least friction over the motions: Newton's method on smoothed friction, smoothed less and less.
+/// The least friction over the motions.
 Minimum least_friction(const Contact& contact, const Motions& motions) {
-  double smoothing = kFirstSmoothing;
-  Friction at = evaluate(contact, motions.base, smoothing);
-  Minimum best{motions.base, at.work, 0.0};
-  for (int step_count = 0; step_count < kMostSteps; ++step_count) {
+  Minimum best{motions.base, kInfinity, 0.0};
+  const auto move = [&](const Friction& from, const Coefficients& step, double smoothing) {
+    Friction to = evaluate(contact, from.motion + motions.directions * step, smoothing);
+    to.gradient = motions.directions.transpose() * to.resultant;
+    to.hessian = motions.directions.transpose() * to.stiffness * motions.directions;
+    return to;
+  };
+  const auto is_least = [&](const Friction& at, double smoothing) {
     if (at.work < best.work) {
       best.work = at.work;
       best.motion = at.motion;
     }
     best.carried = std::max(best.carried, lower_bound(contact, at, motions, smoothing));
-    if (!(best.work - best.carried > kTolerance * best.work) || smoothing < kLeastSmoothing) break;
-
-    Step step = newton_step(at, motions);
-    const bool settled = step.decrement <= kSettled * smoothing + kRounding;
-    if (!settled && descend(contact, step, smoothing, at)) continue;
-    if (!settled) step = {};
-    smoothing *= kReduction;
-    at = evaluate(contact, at.motion + step.motion, smoothing);
-  }
+    return !(best.work - best.carried > kTolerance * best.work);
+  };
+  Friction start{.motion = motions.base};
+  start.gradient = Coefficients::Zero(motions.directions.cols());
+  minimise_smoothed(start, kSmoothing, move, is_least);
   best.carried = std::min(best.carried, best.work);
   return best;
 }
@@ -268,7 +232,7 @@ LimitLoad find_limit(const Grid& grid, const ArrayXd& friction_bound, const Impo
     if (loads[static_cast<std::size_t>(k)]) imposed.push_back(k);
   }
   const auto m = static_cast<Index>(imposed.size());
-  VectorXd load(m);
+  Coefficients load(m);
   for (Index k = 0; k < m; ++k) {
     load[k] = *loads[static_cast<std::size_t>(imposed[static_cast<std::size_t>(k)])];
   }
@@ -276,16 +240,15 @@ LimitLoad find_limit(const Grid& grid, const ArrayXd& friction_bound, const Impo
 
   // Scaled motions with the imposed components zero are `basis` y; the loads' work in them is `work`.y.
   const Contact contact(grid, friction_bound);
-  const Eigen::HouseholderQR<MatrixXd> motions_qr(contact.scaling()(Eigen::all, imposed));
-  const MatrixXd basis = motions_qr.householderQ() * MatrixXd::Identity(3, m);
-  const MatrixXd triangle = motions_qr.matrixQR().topRows(m).triangularView<Eigen::Upper>();
-  const VectorXd work = triangle.transpose().triangularView<Eigen::Lower>().solve(load);
+  const auto [basis, triangle] = small_qr(contact.scaling()(Eigen::all, imposed));
+  const Coefficients work = triangle.transpose().triangularView<Eigen::Lower>().solve(load);
   const double size = work.norm();
-  const MatrixXd split = Eigen::HouseholderQR<MatrixXd>(work).householderQ();
+  const CoefficientMatrix split = orthonormal_basis(work);
   const Minimum minimum = least_friction(contact, {basis * work / size, basis * split.rightCols(m - 1)});
 
   Vector3d sliding = Vector3d::Zero();
-  sliding(imposed) = triangle.triangularView<Eigen::Upper>().solve(basis.transpose() * minimum.motion) / size;
+  sliding(imposed) =
+      Coefficients(triangle.triangularView<Eigen::Upper>().solve(basis.transpose() * minimum.motion)) / size;
   return {contact.total * minimum.work / size,
           contact.total * minimum.carried / size,
           {sliding[0], sliding[1], sliding[2]},

@@ -8,9 +8,9 @@
 #include <stdexcept>
 #include <utility>
 
-#include "solver/contact/admissible_traction.hpp"
 #include "solver/contact/certificate.hpp"
 #include "solver/newton/admissible.hpp"
+#include "solver/newton/load_balance.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -36,6 +36,8 @@ class ProjectedGradient {
         contact_((problem.friction_bound > 0.0).cast<double>().replicate(2, 1)),
         q_(options.start.size() > 0 ? options.start : ArrayXd::Zero(t_.size())),
         Kq_(ArrayXd::Zero(t_.size())),
+        discs_(problem.friction_bound),
+        balance_(discs_, imposed(problem, t_)),
         phi_(problem.twist.value_or(0.0)) {
     if (q_.size() != t_.size()) throw std::invalid_argument("start: tractions of another size");
   }
@@ -107,14 +109,20 @@ class ProjectedGradient {
     most_momentum_ = (1.0 - e) / (1.0 + e);
   }
 
-  /// Onto the admissible tractions. The moment's multiplier is the twist, but for the length of the step.
+  static std::vector<Condition> imposed(const TangentialProblem& problem, const ArrayXd& rotation) {
+    if (!problem.moment) return {};
+    return {{&rotation, *problem.moment}};
+  }
+
+  /// Onto the admissible tractions. The moment's multiplier is the twist, but for the length of the step;
+  /// what no multiplier brings to the moment is not finite.
   void project(ArrayXd& q) {
-    if (problem_.twist) {
-      FrictionDiscs(problem_.friction_bound).project(q);
-    } else {
-      alpha_ = project_with_moment(q, problem_.friction_bound, t_, *problem_.moment, alpha_);
-      phi_ = L_ * alpha_;
+    if (problem_.moment) {
+      if (!balance_.solve(q, alpha_)) alpha_[0] = std::numeric_limits<double>::quiet_NaN();
+      balance_.add(alpha_, q);
+      phi_ = L_ * alpha_[0];
     }
+    discs_.project(q);
   }
 
   /// A projected step of length 1/L down the gradient at y; shorter if the energy curves more than L along
@@ -181,7 +189,10 @@ class ProjectedGradient {
   ArrayXd y_, Ky_;  // the extrapolated point, where the gradient is taken
   double L_ = 0.0;  // bounds the curvature: 1/L is the step
   double most_momentum_ = 1.0;
-  double alpha_ = 0.0, phi_ = 0.0, theta_ = 1.0;
+  const FrictionDiscs discs_;
+  const LoadBalance<FrictionDiscs> balance_;
+  Coefficients alpha_ = Coefficients::Zero(1);
+  double phi_ = 0.0, theta_ = 1.0;
   double energy_ = 0.0, gap_ = 0.0;
   int iteration_ = 0;
 };

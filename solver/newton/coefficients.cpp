@@ -8,6 +8,16 @@ Coefficients least_solution(const CoefficientMatrix& matrix, const Coefficients&
   return matrix.completeOrthogonalDecomposition().solve(right);
 }
 
+SmallQr small_qr(const CoefficientMatrix& matrix) {
+  const Eigen::HouseholderQR<CoefficientMatrix> factored(matrix);
+  return {factored.householderQ() * CoefficientMatrix::Identity(matrix.rows(), matrix.cols()),
+          factored.matrixQR().topRows(matrix.cols()).triangularView<Eigen::Upper>()};
+}
+
+CoefficientMatrix orthonormal_basis(const Coefficients& vector) {
+  return Eigen::HouseholderQR<CoefficientMatrix>(vector).householderQ();
+}
+
 void SmallCholesky::compute(const CoefficientMatrix& matrix) { factor_.compute(matrix); }
 
 bool SmallCholesky::is_definite() const { return factor_.info() == Eigen::Success; }

@@ -6,8 +6,8 @@ namespace slipstick::solver {
 
 using Eigen::Index;
 
-/// The rigid motions of a body on a surface: two translations and a turn.
-inline constexpr int kMaxConditions = 3;
+/// The rigid motions of a body on a surface, two translations and a turn, and one unknown more.
+inline constexpr int kMaxConditions = 4;
 
 /// One value a condition, and a matrix of them; nothing is allocated.
 using Coefficients = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxConditions, 1>;
@@ -17,6 +17,15 @@ using CoefficientMatrix =
 /// The x of least length among those that solve matrix x = right, or come closest: of motions that do the
 /// same to the contact, as of a single cell, the least.
 Coefficients least_solution(const CoefficientMatrix& matrix, const Coefficients& right);
+
+/// matrix = q r with orthonormal columns q and a triangle r, for no more columns than rows.
+struct SmallQr {
+  CoefficientMatrix q, r;
+};
+SmallQr small_qr(const CoefficientMatrix& matrix);
+
+/// Orthonormal columns of which the first has the direction of a vector, up to its sign.
+CoefficientMatrix orthonormal_basis(const Coefficients& vector);
 
 /// Cholesky's factor L of a small symmetric matrix L L^T.
 class SmallCholesky {

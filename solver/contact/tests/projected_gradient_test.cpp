@@ -10,7 +10,7 @@
 #include <random>
 #include <vector>
 
-#include "solver/contact/admissible_traction.hpp"
+#include "solver/newton/tests/project_with_moment.hpp"
 #include "solver/scene/hertz_pressure.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
