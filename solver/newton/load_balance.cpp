@@ -69,6 +69,7 @@ template <class Set>
 template <int M, typename Direction>
 LoadsAlong<M> LoadBalance<Set>::evaluate(const Eigen::ArrayXd& y, std::span<const Direction* const> w,
                                          const Eigen::Vector<double, M>& x) const {
+  ++evaluations_;
   std::array<const Direction*, M> directions;
   std::array<const Eigen::ArrayXd*, M> fields;
   for (std::size_t k = 0; k < M; ++k) {

@@ -37,6 +37,8 @@ class LoadBalance {
   LoadBalance(const Set& set, const std::vector<Condition>& conditions);
 
   int count() const { return static_cast<int>(load_.size()); }
+  /// How often the set has been asked for its loads: passes over all cells.
+  long evaluations() const { return evaluations_; }
 
   /// y += sum of x_k c_k
   void add(const Coefficients& x, Eigen::ArrayXd& y) const;
@@ -74,6 +76,7 @@ class LoadBalance {
   std::vector<const Eigen::ArrayXd*> c_;
   Coefficients load_;
   CoefficientMatrix majorant_;
+  mutable long evaluations_ = 0;
 };
 
 }  // namespace slipstick::solver
