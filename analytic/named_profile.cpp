@@ -86,8 +86,7 @@ PressedContact press(const std::string& profile_name, const NormalLoad& load) {
   }
   if (kind == "power") {
     require_shape(profile_name, shape, 1, "coefficient of r^N");
-    return {find_profile(profile_name),
-            indent_power(force, number(profile_name, argument), shape[0], modulus)};
+    return press_power(number(profile_name, argument), load);
   }
   if (profile_name == "rounded_punch") {
     require_shape(profile_name, shape, 2, "flat radius, corner radius");
@@ -98,6 +97,11 @@ PressedContact press(const std::string& profile_name, const NormalLoad& load) {
       "profile \"{}\" with a normal load; allowed: hertz, cone, flat_punch, power:N, rounded_punch "
       "(without a ratio: it follows from load and shape)",
       profile_name));
+}
+
+PressedContact press_power(double exponent, const NormalLoad& load) {
+  return {{.profile = power_profile(exponent)},
+          indent_power(load.load, exponent, load.shape.at(0), load.effective_modulus)};
 }
 
 }  // namespace slipstick::analytic

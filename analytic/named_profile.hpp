@@ -35,4 +35,7 @@ struct PressedContact {
 };
 PressedContact press(const std::string& profile_name, const NormalLoad& load);
 
+/// That of a power profile's load; load.shape holds the gap's coefficient.
+PressedContact press_power(double exponent, const NormalLoad& load);
+
 }  // namespace slipstick::analytic

@@ -44,10 +44,10 @@ Grid surroundings(const Scene& scene, const Model& model, double approach) {
   for (const Surface& surface : scene.surfaces) {
     if (scene.combine == Combine::sum && surface.shape == Shape::roughness && scene.surfaces.size() > 1) {
       // Where it is highest, the other shapes may lie so much lower.
-      const ArrayXd heights = roughness_heights(over_unit(surface, model.length_unit).roughness, grid);
+      const ArrayXd heights = roughness_heights(to_dimensionless(surface, model.length_unit).roughness, grid);
       depth += heights.maxCoeff() - heights.minCoeff();
     } else {
-      surfaces.push_back(over_unit(surface, model.length_unit));
+      surfaces.push_back(to_dimensionless(surface, model.length_unit));
     }
   }
   const auto half_sides = half_sides_below(surfaces, scene.combine, depth);
@@ -73,7 +73,8 @@ ArrayXd continued(const Grid& grid, const Grid& larger, const ArrayXd& field) {
 /// The undeformed gap on a larger grid, at the level that it has on the model's.
 ArrayXd continued_gap(const Scene& scene, const Model& model, const Grid& larger) {
   std::vector<Surface> surfaces;
-  for (const Surface& surface : scene.surfaces) surfaces.push_back(over_unit(surface, model.length_unit));
+  for (const Surface& surface : scene.surfaces)
+    surfaces.push_back(to_dimensionless(surface, model.length_unit));
   const ArrayXd gap = gap_field(surfaces, scene.combine, larger);
   Index lowest = 0;
   model.gap.minCoeff(&lowest);

@@ -76,19 +76,20 @@ void impose_turning(TangentialProblem& problem, const Model& model, const Step& 
   } else if (step.torsion.moment_ratio) {
     problem.moment = *step.torsion.moment_ratio * moment_limit;
   } else {
-    problem.moment = over_unit(*step.torsion.moment, model.moment_unit()) / model.grid.cell_area();
+    problem.moment = to_dimensionless(*step.torsion.moment, model.moment_unit()) / model.grid.cell_area();
   }
 }
 
 void impose_translation(TangentialProblem& problem, const Model& model, const Step& step,
                         const RigidMotion& before) {
   if (step.displacement) {
-    problem.displacement = {over_unit((*step.displacement)[0], model.length_unit) - before.delta1,
-                            over_unit((*step.displacement)[1], model.length_unit) - before.delta2};
+    problem.displacement = {to_dimensionless((*step.displacement)[0], model.length_unit) - before.delta1,
+                            to_dimensionless((*step.displacement)[1], model.length_unit) - before.delta2};
   } else {
     const double unit = model.force_unit();
     const double area = model.grid.cell_area();
-    problem.force = {over_unit(step.force[0], unit) / area, over_unit(step.force[1], unit) / area};
+    problem.force = {to_dimensionless(step.force[0], unit) / area,
+                     to_dimensionless(step.force[1], unit) / area};
   }
 }
 

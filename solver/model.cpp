@@ -111,7 +111,7 @@ Grid make_grid(const Scene& scene, const std::vector<Surface>& surfaces, double 
 
 /// Undeformed gap on the dimensionless grid.
 ArrayXd make_gap(const Scene& scene, std::vector<Surface> surfaces, const Grid& grid, double unit) {
-  for (Surface& surface : surfaces) surface = over_unit(std::move(surface), unit);
+  for (Surface& surface : surfaces) surface = to_dimensionless(std::move(surface), unit);
   ArrayXd gap = gap_field(surfaces, scene.combine, grid);
   if (!gap.isFinite().any()) {
     throw InputError(scene.source.string(), "no cell's centre lies where the bodies can touch");
@@ -249,14 +249,14 @@ Model make_model(const Scene& scene) {
   model.length_unit = grid.h1;
   model.stress_unit = pair.shear_modulus();
   const double compliance_unit = pair.shear_compliance;
-  model.grid = {grid.n1, grid.n2, 1.0, over_unit(grid.h2, grid.h1)};
+  model.grid = {grid.n1, grid.n2, 1.0, to_dimensionless(grid.h2, grid.h1)};
   model.pair = {.shear_compliance = 1.0,
-                .poisson_compliance = over_unit(pair.poisson_compliance, compliance_unit),
-                .normal_compliance = over_unit(pair.normal_compliance, compliance_unit),
-                .mismatch = over_unit(pair.mismatch, compliance_unit)};
+                .poisson_compliance = to_dimensionless(pair.poisson_compliance, compliance_unit),
+                .normal_compliance = to_dimensionless(pair.normal_compliance, compliance_unit),
+                .mismatch = to_dimensionless(pair.mismatch, compliance_unit)};
   model.friction = scene.friction;
   if (const auto load = largest_normal(scene)) {
-    model.normal_load = over_unit(*load, model.force_unit());
+    model.normal_load = to_dimensionless(*load, model.force_unit());
     if (!std::isnormal(*model.normal_load)) {
       throw InputError(scene.source.string(), "load.normal", fmt::format("{}", *load),
                        fmt::format("what a double holds over the force of a cell, {:g}", model.force_unit()));
@@ -268,8 +268,9 @@ Model make_model(const Scene& scene) {
                             : Reduction(model.grid);
 
   if (const auto radii = hertzian_radii(surfaces); radii && model.normal_load) {
-    model.hertz = hertz_contact(*model.normal_load, over_unit((*radii)[0], model.length_unit),
-                                over_unit((*radii)[1], model.length_unit), model.pair.effective_modulus());
+    model.hertz =
+        hertz_contact(*model.normal_load, to_dimensionless((*radii)[0], model.length_unit),
+                      to_dimensionless((*radii)[1], model.length_unit), model.pair.effective_modulus());
   }
   require_memory(scene, grid, predicted_memory(scene, model).total());
   return model;

@@ -48,7 +48,7 @@ Eigen::ArrayXd pressure_from_file(const Scene& scene, const Model& model) {
       throw InputError(file, fmt::format("row {}: ({}, {}) is given a second time; allowed: one row a cell",
                                          row + 1, columns[0].values[row], columns[1].values[row]));
     }
-    cell = over_unit(value, model.stress_unit);
+    cell = to_dimensionless(value, model.stress_unit);
   }
   pressure = pressure.max(0.0);
   if (!(pressure.sum() > 0.0)) throw InputError(file, "pressure is zero everywhere");
@@ -98,7 +98,7 @@ HertzContact under_part_of_load(const HertzContact& contact, double part) {
 NormalSolution find_pressure(const Scene& scene, const Model& model, const Step& step,
                              const Eigen::ArrayXd& opening) {
   if (scene.pressure == PressureModel::file) return given(pressure_from_file(scene, model));
-  const double load = over_unit(*step.normal, model.force_unit());
+  const double load = to_dimensionless(*step.normal, model.force_unit());
   if (scene.pressure == PressureModel::solved) return solved_pressure(scene, model, load, opening);
   const HertzContact hertz = under_part_of_load(*model.hertz, load / *model.normal_load);
   return given(scene.pressure == PressureModel::hertz ? hertz_at_centres(hertz, model.grid)

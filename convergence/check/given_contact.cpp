@@ -17,7 +17,7 @@ solver::Model on_grid_of(const ForeignField& field, solver::Model model) {
   const double unit = field.grid.h1;
   const double rescaled = model.length_unit / unit;
   model.length_unit = unit;
-  model.grid = {field.grid.n1, field.grid.n2, 1.0, solver::over_unit(field.grid.h2, unit)};
+  model.grid = {field.grid.n1, field.grid.n2, 1.0, solver::to_dimensionless(field.grid.h2, unit)};
   if (model.normal_load) *model.normal_load *= rescaled * rescaled;
   return model;
 }
@@ -85,7 +85,7 @@ bool solves_normal_problem(const GivenContact& contact, const solver::Scene& sce
   std::vector<solver::Surface> surfaces = scene.surfaces;
   for (solver::Surface& surface : surfaces) {
     if (surface.shape == solver::Shape::height_map || surface.shape == solver::Shape::roughness) return false;
-    surface = solver::over_unit(std::move(surface), contact.model.length_unit);
+    surface = solver::to_dimensionless(std::move(surface), contact.model.length_unit);
     for (std::size_t k = 0; k < 2; ++k) surface.at[k] -= contact.centre[k];
   }
   const solver::Grid& grid = contact.model.grid;

@@ -54,7 +54,7 @@ analytic::PressedContact press(const solver::Surface& surface, double load, doub
     case Shape::rounded_punch:
       return press_as("rounded_punch", {surface.flat_radius, surface.corner_radius});
     case Shape::power:
-      return press_as(fmt::format("power:{}", surface.exponent), {surface.coefficient});
+      return analytic::press_power(surface.exponent, {load, effective_modulus, {surface.coefficient}});
     case Shape::height_map:
     case Shape::roughness:
       break;

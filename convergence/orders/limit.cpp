@@ -9,6 +9,8 @@
 #include <limits>
 #include <optional>
 
+#include "solver/scene/bracketed_root.hpp"
+
 namespace slipstick::convergence {
 namespace {
 
@@ -49,14 +51,17 @@ Extrapolation extrapolation(const MeshSample& coarse, const MeshSample& middle, 
   const double coarser = std::log(coarse.size / middle.size);
   const double finer = std::log(middle.size / fine.size);
   if (!(ratio > 0.0) || std::isinf(ratio)) return {kNaN, kNaN};
-  constexpr double most = 100.0;
-  double low = -most;
-  double high = 0.75 * most;  // so that halving does not meet 0, where the ratio is a limit
-  for (int halving = 0; halving < 2 * std::numeric_limits<double>::digits; ++halving) {
-    const double order = 0.5 * (low + high);
-    (std::expm1(order * coarser) / -std::expm1(-order * finer) < ratio ? low : high) = order;
-  }
-  return {high, (middle.value - fine.value) / std::expm1(high * finer)};
+  const double at_zero = coarser / finer;  // there the ratio is a limit
+  const auto excess = [&](double order) {
+    const double at = order == 0.0 ? at_zero : std::expm1(order * coarser) / -std::expm1(-order * finer);
+    return std::log(at / ratio);
+  };
+  constexpr double kMaxOrder = 100.0;
+  const double order = ratio == at_zero              ? 0.0
+                       : !(excess(kMaxOrder) > 0.0)  ? kMaxOrder
+                       : !(excess(-kMaxOrder) < 0.0) ? -kMaxOrder
+                                                     : solver::bracketed_root(excess, -kMaxOrder, kMaxOrder);
+  return {order, (middle.value - fine.value) / std::expm1(order * finer)};
 }
 
 /// In words; empty where the order of the finest three meshes has not fallen from that of the three before.

@@ -10,6 +10,7 @@
 
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/scene/bracketed_root.hpp"
 #include "solver/scene/hertz_pressure.hpp"
 #include "solver/scene/to_dimensionless.hpp"
 
@@ -63,13 +64,8 @@ double rounded_punch_contact_radius(const Surface& surface, double load, double 
     return 2.0 * effective_modulus * a * a / surface.corner_radius *
            (a * c * (1.0 - c * c / 3.0) - 0.5 * b * (std::acos(s) + s * c));
   };
-  double low = b;
-  double high = b + std::cbrt(0.75 * load * surface.corner_radius / effective_modulus);
-  for (int halving = 0; halving < std::numeric_limits<double>::digits; ++halving) {
-    const double middle = 0.5 * (low + high);
-    (carried(middle) < load ? low : high) = middle;
-  }
-  return high;
+  const double reach = std::cbrt(0.75 * load * surface.corner_radius / effective_modulus);
+  return bracketed_root([&](double a) { return carried(a) / load - 1.0; }, b, b + reach);
 }
 
 /// Half the sides of the rectangle about an ellipse that is turned.
@@ -242,15 +238,16 @@ std::optional<std::array<double, 2>> hertzian_radii(const std::vector<Surface>& 
   return radii;
 }
 
-Surface over_unit(Surface surface, double unit) {
+Surface to_dimensionless(Surface surface, double unit) {
   for (double* const length :
        {&surface.radius, &surface.inner_radius, &surface.radius_1, &surface.radius_2, &surface.flat_radius,
         &surface.corner_radius, &surface.at[0], &surface.at[1], &surface.spacing[0], &surface.spacing[1],
         &surface.roughness.longest, &surface.roughness.shortest, &surface.roughness.period}) {
-    *length = over_unit(*length, unit);
+    *length = to_dimensionless(*length, unit);
   }
-  surface.coefficient = over_unit(surface.coefficient, std::pow(unit, 1.0 - surface.exponent));
-  surface.heights = surface.heights.unaryExpr([unit](double height) { return over_unit(height, unit); });
+  surface.coefficient = to_dimensionless(surface.coefficient, std::pow(unit, 1.0 - surface.exponent));
+  surface.heights =
+      surface.heights.unaryExpr([unit](double height) { return to_dimensionless(height, unit); });
   return surface;
 }
 

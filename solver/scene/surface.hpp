@@ -73,8 +73,8 @@ bool is_hertzian(const std::vector<Surface>& surfaces);
 /// the origin, its axes along the grid's.
 std::optional<std::array<double, 2>> hertzian_radii(const std::vector<Surface>& surfaces);
 
-/// The same surface in another unit of length, its numbers rounded as over_unit does.
-Surface over_unit(Surface surface, double unit);
+/// The same surface in another unit of length, its numbers rounded as to_dimensionless does.
+Surface to_dimensionless(Surface surface, double unit);
 
 /// Undeformed gap at cell centres, infinite where the bodies cannot touch. With height maps and roughness,
 /// whose level means nothing, the least gap is 0.

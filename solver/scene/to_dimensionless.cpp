@@ -4,7 +4,7 @@
 
 namespace slipstick::solver {
 
-double over_unit(double value, double unit) {
+double to_dimensionless(double value, double unit) {
   constexpr int bits = 40;
   int exponent = 0;
   const double mantissa = std::frexp(value / unit, &exponent);

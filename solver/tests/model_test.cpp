@@ -14,7 +14,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Numbers enter a model rounded to 40 bits (over_unit).
+/// Numbers enter a model rounded to 40 bits (to_dimensionless).
 constexpr double kModelRounding = 0x1p-40;
 
 // --- pressure files ---

@@ -144,11 +144,11 @@ TEST_P(OtherUnits, GiveTheSameDigits) {
 /// The price: a model's numbers are those of the scene to 12 digits.
 TEST(OverUnit, KeepsTwelveDigits) {
   for (const double value : {1.0, 0.1, 1.0 / 3.0, 6.02e23, -1.6e-19}) {
-    EXPECT_LE(std::abs(over_unit(value, 1.0) / value - 1.0), 0x1p-40);
-    EXPECT_EQ(over_unit(std::nextafter(value, 2.0 * value), 1.0), over_unit(value, 1.0));
+    EXPECT_LE(std::abs(to_dimensionless(value, 1.0) / value - 1.0), 0x1p-40);
+    EXPECT_EQ(to_dimensionless(std::nextafter(value, 2.0 * value), 1.0), to_dimensionless(value, 1.0));
   }
-  EXPECT_EQ(over_unit(0.0, 3.0), 0.0);
-  EXPECT_EQ(over_unit(0x1.8p10, 0x1p3), 0x1.8p7);
+  EXPECT_EQ(to_dimensionless(0.0, 3.0), 0.0);
+  EXPECT_EQ(to_dimensionless(0x1.8p10, 0x1p3), 0x1.8p7);
 }
 
 /// Units that are powers of two of each other round nothing, so the digits must be the same to the last bit.

@@ -1,0 +1,40 @@
+#include "solver/scene/bracketed_root.hpp"
+
+#include <gsl/gsl_roots.h>
+
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+namespace slipstick::solver {
+
+double bracketed_root(const std::function<double(double)>& f, double low, double high) {
+  const double at_low = f(low);
+  const double at_high = f(high);
+  if (at_low == 0.0) return low;
+  if (at_high == 0.0) return high;
+  // Said here: GSL's own handler would end the program.
+  if (!(at_low * at_high < 0.0))
+    throw std::domain_error("a bracket in which the function does not change sign");
+  gsl_function function;
+  function.function = [](double x, void* data) {
+    return (*static_cast<const std::function<double(double)>*>(data))(x);
+  };
+  function.params = const_cast<std::function<double(double)>*>(&f);
+  const std::unique_ptr<gsl_root_fsolver, decltype(&gsl_root_fsolver_free)> solver(
+      gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
+  gsl_root_fsolver_set(solver.get(), &function, low, high);
+  constexpr int kMaxIterations = 200;  // bisection alone would need about 60
+  double root = gsl_root_fsolver_root(solver.get());
+  for (int i = 0; i < kMaxIterations; ++i) {
+    gsl_root_fsolver_iterate(solver.get());
+    const double last = root;
+    root = gsl_root_fsolver_root(solver.get());
+    const double lower = gsl_root_fsolver_x_lower(solver.get());
+    const double upper = gsl_root_fsolver_x_upper(solver.get());
+    if (root == last || !(std::nextafter(lower, upper) < upper)) break;
+  }
+  return root;
+}
+
+}  // namespace slipstick::solver
