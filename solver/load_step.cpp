@@ -38,9 +38,10 @@ std::string sliding_text(const LimitLoad& limit, double length_unit) {
 [[noreturn]] void refuse(const Scene& scene, const Model& model, const Step& step, const LoadStep& loads) {
   const std::string file = scene.source.string();
   const std::string sliding = sliding_text(loads.limit, model.length_unit);
-  if (step.torsion.moment && step.force == std::array<double, 2>{}) {
+  const auto moment = value_if<Moment>(step.torsion);
+  if (moment && step.force == std::array<double, 2>{}) {
     throw InputError(
-        file, step.key + ".moment", fmt::format("{} N m", *step.torsion.moment),
+        file, step.key + ".moment", fmt::format("{} N m", *moment),
         fmt::format(
             "below {:.17g} N m in size, the limit moment of this pressure and mesh; at or above it the "
             "contact slips everywhere, {}",
@@ -71,12 +72,13 @@ void require_centred(const Scene& scene, const ArrayXd& pressure) {
 
 void impose_turning(TangentialProblem& problem, const Model& model, const Step& step, double moment_limit,
                     const RigidMotion& before) {
-  if (step.torsion.twist) {
-    problem.twist = *step.torsion.twist - before.twist;
-  } else if (step.torsion.moment_ratio) {
-    problem.moment = *step.torsion.moment_ratio * moment_limit;
+  if (const auto twist = value_if<Twist>(step.torsion)) {
+    problem.twist = *twist - before.twist;
+  } else if (const auto ratio = value_if<MomentRatio>(step.torsion)) {
+    problem.moment = *ratio * moment_limit;
   } else {
-    problem.moment = to_dimensionless(*step.torsion.moment, model.moment_unit()) / model.grid.cell_area();
+    problem.moment =
+        to_dimensionless(std::get<Moment>(step.torsion).value, model.moment_unit()) / model.grid.cell_area();
   }
 }
 

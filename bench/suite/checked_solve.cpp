@@ -16,7 +16,7 @@ Scene shipped_scene(const std::string& name) {
 Scene paper_scene(solver::Index cells, double moment_ratio) {
   Scene scene = shipped_scene("paper");
   scene.cells = {cells, cells};
-  scene.steps[0].torsion = {.moment_ratio = moment_ratio, .moment = {}, .twist = {}};
+  scene.steps[0].torsion = solver::MomentRatio{moment_ratio};
   scene.method = solver::Method::coulomb;
   scene.model = solver::ModelChoice::full;
   scene.pressure = solver::PressureModel::solved;

@@ -40,7 +40,7 @@ Prepared torsion_cycles(Index cells, std::size_t reversals) {
   const Scene first_loading = scene_of(cells, 0.8, ModelChoice::automatic);
   Scene scene = first_loading;
   scene.steps.resize(reversals + 1, scene.steps.front());
-  for (std::size_t i = 1; i < scene.steps.size(); i += 2) scene.steps[i].torsion.moment_ratio = -0.8;
+  for (std::size_t i = 1; i < scene.steps.size(); i += 2) scene.steps[i].torsion = solver::MomentRatio{-0.8};
   const CheckedSolution checked = solve_and_check(scene);
   Prepared prepared{.counters = counters(checked), .objection = checked.objection, .timing = {}};
   prepared.counters["dissipated_error"] = checked.errors.dissipated;

@@ -39,7 +39,7 @@ Torsion torsion_of(const Scene& scene) {
   Torsion torsion{.elasticity = {.pair = model.pair}, .grid = model.grid, .problem = {}};
   torsion.problem.friction_bound =
       model.friction * solver::find_pressure(scene, model, scene.steps[0]).pressure;
-  torsion.problem.moment = *scene.steps[0].torsion.moment_ratio *
+  torsion.problem.moment = *solver::value_if<solver::MomentRatio>(scene.steps[0].torsion) *
                            solver::moment_limit(torsion.grid, torsion.problem.friction_bound);
   return torsion;
 }
@@ -181,7 +181,7 @@ Prepared against_projected_gradient(const Scene& scene, int digits) {
 Scene ellipse_scene(Index cells, double moment_ratio) {
   Scene scene = shipped_scene("ellipse");
   scene.cells = {cells, cells / 2};
-  scene.steps[0].torsion = {.moment_ratio = moment_ratio, .moment = {}, .twist = {}};
+  scene.steps[0].torsion = solver::MomentRatio{moment_ratio};
   scene.model = solver::ModelChoice::full;
   return scene;
 }

@@ -237,12 +237,13 @@ class LoadMismatch {
     const solver::TorsionLoad& torsion = load_.torsion;
     if (exact.oracle && std::isfinite(exact.oracle->moment)) {
       moment_ = exact.oracle->moment / area / limit_;
-    } else if (torsion.moment) {
-      moment_ = *torsion.moment / area / limit_;
-    } else if (torsion.moment_ratio) {
-      moment_ = *torsion.moment_ratio;
+    } else if (const auto moment = solver::value_if<solver::Moment>(torsion)) {
+      moment_ = *moment / area / limit_;
+    } else if (const auto ratio = solver::value_if<solver::MomentRatio>(torsion)) {
+      moment_ = *ratio;
     } else {
-      turns_ = std::copysign(*torsion.twist == 0.0 ? 0.0 : 1.0, *torsion.twist);
+      const double twist = std::get<solver::Twist>(torsion).value;
+      turns_ = std::copysign(twist == 0.0 ? 0.0 : 1.0, twist);
     }
     for (std::size_t k = 0; k < 2; ++k) force_[k] = load_.force[k] / area / friction_;
   }

@@ -41,8 +41,7 @@ OracleAnswer exact_normal_contact(solver::Scene scene) {
   solver::Step& load = scene.steps.front();
   if (!load.normal) return {std::nullopt, "the normal load is not known"};
   constexpr double kAnyRatio = 0.5;
-  load.torsion = {};
-  load.torsion.moment_ratio = kAnyRatio;
+  load.torsion = solver::MomentRatio{kAnyRatio};
   load.force = {};
   load.displacement.reset();
   scene.coupling = solver::Coupling::none;
@@ -53,17 +52,16 @@ OracleAnswer exact_normal_contact(solver::Scene scene) {
 std::optional<double> moment_asked_for(const solver::Scene& scene, const OracleAnswer& exact, double limit,
                                        double unit) {
   const solver::TorsionLoad& torsion = scene.steps.front().torsion;
-  if (torsion.twist) return std::nullopt;
+  if (std::holds_alternative<solver::Twist>(torsion)) return std::nullopt;
   if (exact.oracle && std::isfinite(exact.oracle->moment)) return exact.oracle->moment / unit;
-  if (torsion.moment) return *torsion.moment / unit;
-  if (torsion.moment_ratio) return *torsion.moment_ratio * limit;
-  return std::nullopt;
+  if (const auto moment = solver::value_if<solver::Moment>(torsion)) return *moment / unit;
+  return std::get<solver::MomentRatio>(torsion).value * limit;
 }
 
 /// Twist in the sense of the moment, in which first loading turns.
 std::optional<double> known_twist(const solver::Scene& scene, std::optional<double> given, double moment,
                                   std::vector<std::string>& conventions) {
-  if (!given) return scene.steps.front().torsion.twist;
+  if (!given) return solver::value_if<solver::Twist>(scene.steps.front().torsion);
   if (*given * moment >= 0.0) return given;
   conventions.push_back("the twist that was given counts the other way round");
   return -*given;

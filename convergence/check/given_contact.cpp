@@ -131,7 +131,7 @@ solver::TangentialProblem own_problem(const GivenContact& contact, const solver:
       .friction_bound = contact.friction_bound,
       .initial_displacement = contact.displacement - contact.elastic_displacement,
       .moment = {},
-      .twist = load.torsion.twist};
+      .twist = solver::value_if<solver::Twist>(load.torsion)};
   if (!contact.model.pressure_coupling) problem.initial_displacement = {};
   if (!problem.twist) {
     problem.moment = (contact.traction * solver::rotation_field(contact.model.grid)).sum();

@@ -100,8 +100,9 @@ Allowed find_allowed(const Examination& e, std::optional<double> tolerance) {
   const double tractions = kWholeMesh * y.mesh.tractions + by_chance(&Deviation::tractions);
   return {
       .normal = load(y.loads.normal),
-      .moment = e.scene.steps.front().torsion.twist ? std::max(kWholeMesh * y.mesh.moment, quadrature) + sums
-                                                    : load(y.loads.moment),
+      .moment = solver::value_if<solver::Twist>(e.scene.steps.front().torsion)
+                    ? std::max(kWholeMesh * y.mesh.moment, quadrature) + sums
+                    : load(y.loads.moment),
       .force = load(y.loads.force),
       .motion = (discrete ? 0.0 : kWholeMesh * y.mesh.motion) + quadrature + by_chance(&Deviation::motion),
       .tractions = tractions,
@@ -139,11 +140,12 @@ void judge_pressure(std::vector<Judged>& judged, const Examination& e, const All
 /// field's own pressure. Under an imposed twist against the one that it causes. None: none is known.
 std::optional<double> moment_error(const Examination& e) {
   const solver::TorsionLoad& torsion = e.scene.steps.front().torsion;
-  if (torsion.twist) return e.deviation.moment;
+  if (std::holds_alternative<solver::Twist>(torsion)) return e.deviation.moment;
   if (!e.moment || *e.moment == 0.0) return std::nullopt;
   const double error = relative_error(e.contact.moment(), *e.moment);
-  if (!torsion.moment_ratio) return error;
-  const double of_own_limit = relative_error(e.contact.moment(), *torsion.moment_ratio * e.moment_limit);
+  const auto ratio = solver::value_if<solver::MomentRatio>(torsion);
+  if (!ratio) return error;
+  const double of_own_limit = relative_error(e.contact.moment(), *ratio * e.moment_limit);
   return std::abs(of_own_limit) < std::abs(error) ? of_own_limit : error;
 }
 

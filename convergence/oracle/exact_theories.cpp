@@ -158,7 +158,8 @@ class TorsionHistory final : public ExactHistory {
   }
 
   double ratio_of(const solver::TorsionLoad& load) const {
-    return load.moment_ratio ? *load.moment_ratio : *load.moment / contact_.moment_limit;
+    const auto ratio = solver::value_if<solver::MomentRatio>(load);
+    return ratio ? *ratio : std::get<solver::Moment>(load).value / contact_.moment_limit;
   }
 
   /// The ratio that turns the contact on to a twist, by bisection: 1 or -1 where none does.
@@ -175,10 +176,11 @@ class TorsionHistory final : public ExactHistory {
 
   Oracle load_first(const solver::TorsionLoad& load) {
     first_ = false;
-    const double sign = std::copysign(1.0, load.twist ? *load.twist : ratio_of(load));
+    const auto twist = solver::value_if<solver::Twist>(load);
+    const double sign = std::copysign(1.0, twist ? *twist : ratio_of(load));
     Oracle oracle = contact_;
-    oracle.state = load.twist ? analytic::from_twist(std::abs(*load.twist) / units_.twist, *contact_.profile)
-                              : analytic::from_moment_ratio(std::abs(ratio_of(load)), *contact_.profile);
+    oracle.state = twist ? analytic::from_twist(std::abs(*twist) / units_.twist, *contact_.profile)
+                         : analytic::from_moment_ratio(std::abs(ratio_of(load)), *contact_.profile);
     history_.load_to(sign * oracle.state.moment_ratio);
     dissipated_ = history_.state().dissipated;
     oracle.dissipated = dissipated_ * energy_unit();
@@ -193,7 +195,8 @@ class TorsionHistory final : public ExactHistory {
   }
 
   Oracle load_on(const solver::TorsionLoad& load) {
-    history_.load_to(load.twist ? ratio_at(*load.twist / units_.twist) : ratio_of(load));
+    const auto twist = solver::value_if<solver::Twist>(load);
+    history_.load_to(twist ? ratio_at(*twist / units_.twist) : ratio_of(load));
     const analytic::CycleState state = history_.state();
     Oracle oracle = contact_;
     oracle.state = {.moment_ratio = state.moment_ratio,
@@ -319,7 +322,7 @@ class PressedEllipse final : public ExactHistory {
     constexpr std::array unknown_pair{unknown, unknown};
     Oracle oracle = pressed(*step.normal);
     oracle.moment = moment_of(step.torsion, oracle.moment_limit);
-    oracle.twist_angle = step.torsion.twist.value_or(unknown);
+    oracle.twist_angle = solver::value_if<solver::Twist>(step.torsion).value_or(unknown);
     oracle.force = step.displacement ? unknown_pair : step.force;
     oracle.displacement = step.displacement.value_or(unknown_pair);
     oracle.stick_radius = oracle.dissipated = unknown;
@@ -357,8 +360,9 @@ class PressedEllipse final : public ExactHistory {
   }
 
   static double moment_of(const solver::TorsionLoad& load, double limit) {
-    if (load.twist) return std::numeric_limits<double>::quiet_NaN();
-    return load.moment.value_or(load.moment_ratio.value_or(0.0) * limit);
+    if (std::holds_alternative<solver::Twist>(load)) return std::numeric_limits<double>::quiet_NaN();
+    const auto moment = solver::value_if<solver::Moment>(load);
+    return moment ? *moment : std::get<solver::MomentRatio>(load).value * limit;
   }
 
   solver::Surface surface_;

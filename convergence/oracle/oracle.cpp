@@ -47,7 +47,7 @@ std::string obstacle(const solver::Scene& scene) {
 
 bool without_torsion(const solver::Step& step) {
   const solver::TorsionLoad& load = step.torsion;
-  return load.moment_ratio.value_or(load.moment.value_or(load.twist.value_or(0.0))) == 0.0;
+  return std::visit([](const auto& kind) { return kind.value == 0.0; }, load);
 }
 
 bool without_force(const solver::Step& step) {

@@ -20,9 +20,13 @@ std::string load_text(const solver::Step& step) {
   if (step.force != std::array<double, 2>{}) {
     return fmt::format("{}.force = [{}, {}] N", step.key, step.force[0], step.force[1]);
   }
-  if (load.moment) return fmt::format("{}.moment = {} N m", step.key, *load.moment);
-  if (load.twist) return fmt::format("{}.twist = {} rad", step.key, *load.twist);
-  return fmt::format("{}.moment_ratio = {}", step.key, load.moment_ratio.value());
+  if (const auto moment = solver::value_if<solver::Moment>(load)) {
+    return fmt::format("{}.moment = {} N m", step.key, *moment);
+  }
+  if (const auto twist = solver::value_if<solver::Twist>(load)) {
+    return fmt::format("{}.twist = {} rad", step.key, *twist);
+  }
+  return fmt::format("{}.moment_ratio = {}", step.key, std::get<solver::MomentRatio>(load).value);
 }
 
 /// The pressure's tangential displacement of dissimilar materials would change the answer; the scene may ask

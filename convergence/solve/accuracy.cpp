@@ -43,7 +43,8 @@ const char* grid_owner(const Scene& scene) {
 }
 
 bool brings_torsion(const solver::TorsionLoad& load) {
-  return load.twist || load.moment_ratio.value_or(load.moment.value_or(0.0)) != 0.0;
+  return std::holds_alternative<solver::Twist>(load) ||
+         std::visit([](const auto& kind) { return kind.value != 0.0; }, load);
 }
 
 /// Of a scene whose grid is free.
@@ -81,7 +82,7 @@ double mesh_error(const AccuracyWish& wish, bool estimated) {
 AccuracyQuantity accuracy_quantity(const Scene& scene, AccuracyOf of) {
   if (of == AccuracyOf::traction) return {"traction", "traction_error.l2", ""};
   if (of == AccuracyOf::stick_radius) return {"stick_radius", "stick_radius_error", "stick_radius"};
-  const bool imposed = scene.steps.back().torsion.twist.has_value();
+  const bool imposed = std::holds_alternative<solver::Twist>(scene.steps.back().torsion);
   return imposed ? AccuracyQuantity{"moment", "moment_error", "moment"}
                  : AccuracyQuantity{"twist", "twist_error", "twist_angle"};
 }

@@ -49,17 +49,19 @@ Material read_material(SceneReader& reader, const std::string& body) {
 }
 
 /// What a table says of the torsion; what it does not say is as before.
-void read_torsion(SceneReader& reader, const std::string& table, TorsionLoad& torsion) {
+void read_torsion(SceneReader& reader, const std::string& table, std::optional<TorsionLoad>& torsion) {
   const std::vector<std::string> keys{table + ".moment_ratio", table + ".moment", table + ".twist"};
   reader.prefer_overridden(keys);
-  const TorsionLoad load{reader.find_number(keys[0], kRatio), reader.find_number(keys[1], kFinite),
-                         reader.find_number(keys[2], kFinite)};
-  const int given = load.moment_ratio.has_value() + load.moment.has_value() + load.twist.has_value();
-  if (given > 1) {
-    reader.fail(load.moment ? keys[1] : keys[2], "(with another torsion load beside it)",
+  const auto ratio = reader.find_number(keys[0], kRatio);
+  const auto moment = reader.find_number(keys[1], kFinite);
+  const auto twist = reader.find_number(keys[2], kFinite);
+  if (ratio.has_value() + moment.has_value() + twist.has_value() > 1) {
+    reader.fail(moment ? keys[1] : keys[2], "(with another torsion load beside it)",
                 fmt::format("exactly one of {}", fmt::join(keys, ", ")));
   }
-  if (given == 1) torsion = load;
+  if (ratio) torsion = MomentRatio{*ratio};
+  if (moment) torsion = Moment{*moment};
+  if (twist) torsion = Twist{*twist};
 }
 
 /// Likewise of forces, or displacements in their place.
@@ -75,41 +77,48 @@ void read_translation(SceneReader& reader, const std::string& table, Step& step)
   if (force || displacement) step.displacement = displacement;
 }
 
-void read_loads(SceneReader& reader, const std::string& table, Step& step) {
+/// A step whose torsion may still be missing.
+struct ReadStep {
+  Step step = {};
+  std::optional<TorsionLoad> torsion = {};
+};
+
+void read_loads(SceneReader& reader, const std::string& table, ReadStep& read) {
+  Step& step = read.step;
   step.key = table;
   if (const auto normal = reader.find_number(table + ".normal", kPositive)) step.normal = normal;
-  read_torsion(reader, table, step.torsion);
+  read_torsion(reader, table, read.torsion);
   read_translation(reader, table, step);
 }
 
 /// [load], or the [[step]] tables, each of which begins with the loads of the one before, the first with
 /// [load].
 std::vector<Step> read_steps(SceneReader& reader, bool needs_normal) {
-  Step load;
+  ReadStep load;
   read_loads(reader, "load", load);
-  std::vector<Step> steps;
+  std::vector<ReadStep> read;
   const std::size_t count = reader.count("step");
   if (count > kMostSteps) {
     reader.fail("step", fmt::format("{} tables", count), fmt::format("at most {}", kMostSteps));
   }
   for (std::size_t i = 0; i < count; ++i) {
-    Step step = steps.empty() ? load : steps.back();
-    read_loads(reader, fmt::format("step[{}]", i), step);
-    step.name = reader.text_or(step.key + ".name", fmt::format("{}", i + 1));
-    steps.push_back(step);
+    ReadStep next = read.empty() ? load : read.back();
+    read_loads(reader, fmt::format("step[{}]", i), next);
+    next.step.name = reader.text_or(next.step.key + ".name", fmt::format("{}", i + 1));
+    read.push_back(next);
   }
-  if (steps.empty()) steps.push_back(load);
-  for (Step& step : steps) {
+  if (read.empty()) read.push_back(load);
+  std::vector<Step> steps;
+  for (auto& [step, torsion] : read) {
     if (needs_normal && !step.normal) reader.number(step.key + ".normal", kPositive);  // says what is missing
-    TorsionLoad& torsion = step.torsion;
-    if (torsion.moment_ratio || torsion.moment || torsion.twist) continue;
     const bool translated = step.displacement || step.force != std::array<double, 2>{};
-    if (count == 0 && !translated) {
+    if (!torsion && count == 0 && !translated) {
       reader.fail("load.moment_ratio", "(missing)",
                   "exactly one of load.moment_ratio, load.moment, load.twist, or a load.force or "
                   "load.displacement");
     }
-    torsion.moment_ratio = 0.0;
+    if (torsion) step.torsion = *torsion;
+    steps.push_back(step);
   }
   return steps;
 }

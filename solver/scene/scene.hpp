@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "solver/operator/operator_kind.hpp"
@@ -32,19 +33,31 @@ enum class Method { coulomb, projected_gradient, paper };
 /// where the scene has an exact answer.
 enum class ModelChoice { automatic, full, exact };
 
-/// One of the three is set. Signed: a history turns back.
-struct TorsionLoad {
-  std::optional<double> moment_ratio;  ///< M over the limit of this pressure and mesh
-  std::optional<double> moment;        ///< N m
-  std::optional<double> twist;         ///< rad, since the first step
+/// What turns the upper body about the grid's origin. Signed: a history turns back.
+struct MomentRatio {
+  double value = 0.0;  ///< M over the limit of this pressure and mesh
 };
+struct Moment {
+  double value = 0.0;  ///< N m
+};
+struct Twist {
+  double value = 0.0;  ///< rad, since the first step
+};
+using TorsionLoad = std::variant<MomentRatio, Moment, Twist>;
+
+/// The load's value where it is of this kind, as value_if<Twist>(step.torsion).
+template <class Kind>
+std::optional<double> value_if(const TorsionLoad& load) {
+  const auto* const kind = std::get_if<Kind>(&load);
+  return kind != nullptr ? std::optional(kind->value) : std::nullopt;
+}
 
 /// The loads at the end of a step, which brings the normal load first, then the tangential ones.
 struct Step {
   std::string key = "load";  ///< of its table in the scene file
   std::string name = {};
   std::optional<double> normal;  ///< N; may be left out where the pressure comes from a file
-  TorsionLoad torsion;
+  TorsionLoad torsion = MomentRatio{0.0};
   std::array<double, 2> force{};                      ///< N, tangential, on the upper body; or else
   std::optional<std::array<double, 2>> displacement;  ///< m, imposed instead, since the first step
 };

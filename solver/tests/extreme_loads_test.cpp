@@ -139,8 +139,7 @@ TEST(SmallLoads, OfASceneEndWell) {
   EXPECT_NEAR(small.twist_angle / larger.twist_angle, 1e-3, 1e-12);
 
   Scene turned = paper_scene(32, 0.0);
-  turned.steps[0].torsion.moment_ratio.reset();
-  turned.steps[0].torsion.twist = 1e-12;
+  turned.steps[0].torsion = Twist{1e-12};
   const Solution by_twist = solve(turned);
   ASSERT_EQ(by_twist.status, Status::converged) << by_twist.message;
   EXPECT_NEAR(by_twist.moment / by_twist.twist_angle, larger.moment / larger.twist_angle,

@@ -64,7 +64,7 @@ class Pushed : public testing::Test {
       Step& step = scene_.steps.emplace_back();
       step.name = step.key = "step " + std::to_string(scene_.steps.size());
       step.normal = part.normal * paper::kLoad;
-      step.torsion.twist = 0.0;
+      step.torsion = Twist{0.0};
       step.force = {0.6 * size, 0.8 * size};
     }
   }
@@ -186,7 +186,7 @@ Scene twisted(Index cells, const std::vector<double>& moment_ratios) {
   for (const double ratio : moment_ratios) {
     Step& step = scene.steps.emplace_back();
     step.normal = paper::kLoad;
-    step.torsion.moment_ratio = ratio;
+    step.torsion = MomentRatio{ratio};
   }
   return scene;
 }
@@ -347,7 +347,7 @@ TEST(Motion, TakesTheSamePathAsItsLoads) {
   const auto loaded = history(scene);
   for (std::size_t k = 0; k < loaded.size(); ++k) {
     Step& step = scene.steps[k];
-    step.torsion = {.moment_ratio = {}, .moment = {}, .twist = loaded[k].twist_angle};
+    step.torsion = Twist{loaded[k].twist_angle};
     step.force = {};
     step.displacement = loaded[k].displacement;
   }

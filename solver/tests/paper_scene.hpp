@@ -37,7 +37,7 @@ inline Scene paper_scene(Index cells, double moment_ratio) {
   scene.upper = scene.lower = steel;
   scene.friction = paper::kFriction;
   scene.steps[0].normal = paper::kLoad;
-  scene.steps[0].torsion.moment_ratio = moment_ratio;
+  scene.steps[0].torsion = MomentRatio{moment_ratio};
   scene.cells = {cells, cells};
   return scene;
 }

@@ -88,8 +88,8 @@ Certificate recomputed(const Scene& scene, const Solution& solution, OperatorKin
   }
   slip *= (pressure > 0.0).cast<double>().replicate(2, 1);
   const ArrayXd bound = model.friction * pressure;
-  const double moment = scene.steps[0].torsion.moment_ratio
-                            ? *scene.steps[0].torsion.moment_ratio * moment_limit(model.grid, bound)
+  const double moment = value_if<MomentRatio>(scene.steps[0].torsion)
+                            ? *value_if<MomentRatio>(scene.steps[0].torsion) * moment_limit(model.grid, bound)
                             : (q * rotation).sum();
   return certify({q, u, slip}, bound, rotation, moment);
 }
@@ -121,7 +121,7 @@ std::vector<Case> cases() {
   const Scene ellipsoid = ellipsoid_scene(32, 0.036, 0.018, 0.5);
   const auto imposed_twist = [](Scene& scene) {
     scene.steps[0].torsion = {};
-    scene.steps[0].torsion.twist = 1e-3;
+    scene.steps[0].torsion = Twist{1e-3};
   };
   const auto hertz_averaged = [](Scene& scene) { scene.pressure = PressureModel::hertz_averaged; };
   const auto square_cells = [](Scene& scene) { scene.extent = {1.5e-3, 1.5e-3}; };

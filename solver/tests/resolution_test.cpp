@@ -61,8 +61,7 @@ TEST(Resolution, NearGrossSlipTurnsFromGoodToPoor) {
 
 TEST(Resolution, OfAnImposedTwistIsTheMeshAlone) {
   Scene scene = paper_scene(32, 0.0);
-  scene.steps[0].torsion.moment_ratio.reset();
-  scene.steps[0].torsion.twist = 1.0;  // far beyond where all has slipped
+  scene.steps[0].torsion = Twist{1.0};  // far beyond where all has slipped
   EXPECT_LT(solve(scene).resolution.uncertainty, 0.01);
 }
 

@@ -139,7 +139,7 @@ Scene pushed(double force_ratio, double angle, double moment_ratio, Index cells 
   Scene scene = sphere({0.0, 0.0}, cells);
   const double force = force_ratio * paper::kFriction * paper::kLoad;
   scene.steps[0].force = {force * std::cos(angle), force * std::sin(angle)};
-  scene.steps[0].torsion.moment_ratio = moment_ratio;
+  scene.steps[0].torsion = MomentRatio{moment_ratio};
   return scene;
 }
 
@@ -343,7 +343,7 @@ TEST(TwoPatches, TurnAboutAPointBetweenThem) {
   scene.surfaces[1].at = {11.0 * h, 0.0};
   scene.surfaces[1].radius *= 0.5;
   scene.combine = Combine::nearest;
-  scene.steps[0].torsion.moment_ratio = 0.8;
+  scene.steps[0].torsion = MomentRatio{0.8};
   const Solution solution = solved(scene);
   EXPECT_LE(solution.certificate.moment, kRounding);
   EXPECT_LE(solution.certificate.force, kRounding);

@@ -654,7 +654,7 @@ TEST_F(CheckBadField, LoadAndPressure) {
   expect_bad(changed(rows_, [](FieldRow& r) { r[2] *= 0.95, r[3] *= 0.95, r[4] *= 0.95; }),
              HasSubstr("the normal load is 5 % too low"));
   solver::Scene scene = scene_;
-  scene.steps.front().torsion.moment_ratio = 0.85;
+  scene.steps.front().torsion = solver::MomentRatio{0.85};
   const Json result = check_rows(rows_, scene);
   EXPECT_EQ(result["verdict"], "bad");
   EXPECT_THAT(why(result), HasSubstr("the moment is 5.9 % too high"));

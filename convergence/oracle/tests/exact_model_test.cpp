@@ -68,9 +68,8 @@ TEST(ExactModel, AnswersForTheMomentAndForTheTwist) {
     for (const auto& [key, value] : {std::pair("load.moment", number(by_ratio, "moment")),
                                      std::pair("load.twist", number(by_ratio, "twist_angle"))}) {
       solver::Scene other = scene(name);
-      other.steps[0].torsion = {};
-      (key == std::string("load.moment") ? other.steps[0].torsion.moment : other.steps[0].torsion.twist) =
-          value;
+      other.steps[0].torsion = key == std::string("load.moment") ? solver::TorsionLoad(solver::Moment{value})
+                                                                 : solver::Twist{value};
       const Json result = answer(other);
       for (const char* number_key : {"moment_ratio", "moment", "twist_angle", "stick_radius", "twist"}) {
         EXPECT_NEAR(number(result, number_key) / number(by_ratio, number_key), 1.0, kTolerance)

@@ -69,9 +69,13 @@ TEST(OracleHistory, TractionsOfTorsionCarryTheMoments) {
     for (std::size_t i = 0; i < exact.size(); ++i) {
       const Carried carried = carried_by(exact[i]);
       const double limit = exact[i].moment_limit;
-      EXPECT_NEAR(exact[i].moment / limit, *scene.steps[i].torsion.moment_ratio, kTolerance) << body << i;
+      EXPECT_NEAR(exact[i].moment / limit, *solver::value_if<solver::MomentRatio>(scene.steps[i].torsion),
+                  kTolerance)
+          << body << i;
       EXPECT_NEAR(carried.load / *scene.steps[i].normal, 1.0, kQuadrature) << body << i;
-      EXPECT_NEAR(carried.moment / limit, *scene.steps[i].torsion.moment_ratio, kQuadrature) << body << i;
+      EXPECT_NEAR(carried.moment / limit, *solver::value_if<solver::MomentRatio>(scene.steps[i].torsion),
+                  kQuadrature)
+          << body << i;
     }
   }
 }
@@ -276,7 +280,7 @@ TEST(OracleHistory, SaysWhyNoTheoryHolds) {
   two_lines.steps[1].force = {60.0, 0.0};
   EXPECT_THAT(reason(two_lines), HasSubstr("several lines"));
   Scene both = pushed(plain, {{1000.0, 50.0}});
-  both.steps[0].torsion.moment_ratio = 0.1;
+  both.steps[0].torsion = solver::MomentRatio{0.1};
   EXPECT_THAT(reason(both), HasSubstr("torsion together with a force"));
   Scene heavier = twisted(steel, {0.5, 0.5});
   heavier.steps[1].normal = 1100.0;

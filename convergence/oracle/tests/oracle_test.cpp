@@ -49,11 +49,11 @@ TEST(Oracle, PaperCase) {
 }
 
 void expect_the_same_state_by_ratio_moment_and_twist(solver::Scene scene) {
-  scene.steps[0].torsion = {.moment_ratio = 0.7, .moment = {}, .twist = {}};
+  scene.steps[0].torsion = solver::MomentRatio{0.7};
   const Oracle by_ratio = *find_oracle(scene).oracle;
   const auto with_load = [&](const std::string& key, double value) {
-    scene.steps[0].torsion = {};
-    (key == "moment" ? scene.steps[0].torsion.moment : scene.steps[0].torsion.twist) = value;
+    scene.steps[0].torsion =
+        key == "moment" ? solver::TorsionLoad(solver::Moment{value}) : solver::Twist{value};
     return *find_oracle(scene).oracle;
   };
   for (const Oracle& other :
@@ -206,7 +206,8 @@ TEST(Oracle, EllipseIsHertzs) {
     const Carried carried = carried_by(oracle);
     EXPECT_NEAR(carried.load / 1000.0, 1.0, kQuadrature);
     EXPECT_NEAR(carried.limit / oracle.moment_limit, 1.0, kQuadrature);
-    EXPECT_EQ(oracle.moment, *scene.steps[0].torsion.moment_ratio * oracle.moment_limit);
+    EXPECT_EQ(oracle.moment,
+              *solver::value_if<solver::MomentRatio>(scene.steps[0].torsion) * oracle.moment_limit);
   }
 }
 

@@ -269,7 +269,7 @@ Scene spence(Shape shape, Coupling coupling, Index cells) {
   scene.coupling = coupling;
   scene.cells = {cells, cells};
   scene.steps[0].normal = 0.02;
-  scene.steps[0].torsion.moment_ratio = 0.0;
+  scene.steps[0].torsion = MomentRatio{0.0};
   return scene;
 }
 

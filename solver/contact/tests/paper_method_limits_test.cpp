@@ -284,7 +284,7 @@ TEST(BadTangentialProblem, OfASceneSaysTheLimitInItsUnits) {
   Scene scene = paper_scene(32, 0.5);
   const double limit = by_paper_method(scene).moment_limit;
   scene.steps[0].torsion = {};
-  scene.steps[0].torsion.moment = limit * (1.0 + 1e-12);
+  scene.steps[0].torsion = Moment{limit * (1.0 + 1e-12)};
   try {
     by_paper_method(scene);
     ADD_FAILURE() << "no exception";
@@ -292,7 +292,7 @@ TEST(BadTangentialProblem, OfASceneSaysTheLimitInItsUnits) {
     EXPECT_THAT(error.what(), HasSubstr("paper.toml: load.moment = "));
     EXPECT_THAT(error.what(), HasSubstr(fmt::format("below {:.10g}", limit).substr(0, 14)));
   }
-  scene.steps[0].torsion.moment = 0.5 * limit;
+  scene.steps[0].torsion = Moment{0.5 * limit};
   EXPECT_NEAR(by_paper_method(scene).moment / limit, 0.5, kRounding);
 }
 

@@ -27,8 +27,8 @@ TEST_F(SceneFile, IsReadKeyByKey) {
   EXPECT_EQ(scene.pressure, PressureModel::solved);
   EXPECT_EQ(scene.coupling, Coupling::automatic);
   EXPECT_EQ(scene.steps[0].normal, 1000.0);
-  EXPECT_EQ(scene.steps[0].torsion.moment_ratio, 0.9);
-  EXPECT_FALSE(scene.steps[0].torsion.moment || scene.steps[0].torsion.twist);
+  EXPECT_EQ(value_if<MomentRatio>(scene.steps[0].torsion), 0.9);
+  EXPECT_FALSE(value_if<Moment>(scene.steps[0].torsion) || value_if<Twist>(scene.steps[0].torsion));
   EXPECT_EQ(scene.cells, (std::array<Index, 2>{128, 96}));
   EXPECT_EQ(scene.extent, (std::array<double, 2>{0.0011, 0.0012}));
   EXPECT_EQ(scene.op, OperatorKind::dcfft);
@@ -146,8 +146,8 @@ TEST_F(SceneFile, OverridesAreAppliedFirst) {
 
 TEST_F(SceneFile, OneTorsionLoadOverridesAnother) {
   const Scene scene = read(kShortScene, {"load.twist=1e-3"});
-  EXPECT_EQ(scene.steps[0].torsion.twist, 1e-3);
-  EXPECT_FALSE(scene.steps[0].torsion.moment_ratio || scene.steps[0].torsion.moment);
+  EXPECT_EQ(value_if<Twist>(scene.steps[0].torsion), 1e-3);
+  EXPECT_FALSE(value_if<MomentRatio>(scene.steps[0].torsion) || value_if<Moment>(scene.steps[0].torsion));
 }
 
 TEST_F(SceneFile, MayHaveTablesWithoutKeys) {

@@ -33,8 +33,9 @@ Scene in_units(Scene scene, const Units& units) {
   scene.upper.young_modulus *= pascal;
   scene.lower.young_modulus *= pascal;
   scene.steps[0].normal = *scene.steps[0].normal * units.newton;
-  if (scene.steps[0].torsion.moment)
-    scene.steps[0].torsion.moment = *scene.steps[0].torsion.moment * units.newton * units.metre;
+  if (const auto moment = value_if<Moment>(scene.steps[0].torsion)) {
+    scene.steps[0].torsion = Moment{*moment * units.newton * units.metre};
+  }
   if (scene.extent) scene.extent = {(*scene.extent)[0] * units.metre, (*scene.extent)[1] * units.metre};
   return scene;
 }
@@ -45,7 +46,7 @@ Scene by_ratio() { return paper_scene(kCells, 0.5); }
 Scene by_moment() {
   Scene scene = paper_scene(kCells, 0.0);
   scene.steps[0].torsion = {};
-  scene.steps[0].torsion.moment = 0.9 * paper::kMomentLimit;
+  scene.steps[0].torsion = Moment{0.9 * paper::kMomentLimit};
   return scene;
 }
 Scene over_an_extent() {
