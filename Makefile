@@ -4,6 +4,7 @@ BUILD := build
 PREFIX ?= /usr/local
 REPORT_OPTIONS ?=
 BENCH_OPTIONS ?=
+REV ?= origin/main
 GATE_OPTIONS ?=
 SEARCH_OPTIONS ?=
 SANITIZE ?=
@@ -11,7 +12,7 @@ SANITIZE ?=
 INSTRUCTION_GATES = $(wildcard bench/gates/instructions-gcc-$(firstword $(subst ., ,$(shell c++ -dumpversion))).toml)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup configure build report test gate sanitize lint bench bench-baseline bench-trust references hardest \
+.PHONY: help setup configure build report test gate sanitize lint bench bench-against bench-trust references hardest \
   install clean
 
 help: ## show this list
@@ -60,18 +61,12 @@ lint: configure ## check format and clang-tidy's rules (needs clang-format, clan
 	@git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run --Werror
 	@git ls-files '*.cpp' | xargs -n 4 -P $$(nproc) clang-tidy -p $(BUILD) --quiet
 
-bench: configure ## time everything beside the error that it buys, draw it, compare with what is remembered
+bench: configure ## time everything beside the error that it buys, and draw it
 	$(call build,slipstick slipstick_benchmarks)
 	@$(BUILD)/slipstick bench $(BENCH_OPTIONS)
-	@if [ -f "bench/baselines/$$($(BUILD)/slipstick bench --machine).json" ]; then \
-	  $(BUILD)/slipstick bench --baselines bench/baselines; \
-	else \
-	  echo "No times of this kind of machine are remembered: make bench-baseline REASON='the first on this machine'"; \
-	fi
 
-bench-baseline: configure ## remember this build's times on this kind of machine (REASON="what changed them")
-	$(call build,slipstick slipstick_benchmarks)
-	@$(BUILD)/slipstick bench --baselines bench/baselines --renew "$(REASON)"
+bench-against: configure ## is this tree slower than REV (origin/main)? (bench/against itself exits with 0, 1 or 2)
+	@BUILD="$(BUILD)" bench/against "$(REV)" $(BENCH_OPTIONS)
 
 bench-trust: configure ## is a build never slower than itself, and 15 % always found? (a quarter of an hour)
 	@cmake --build $(BUILD) --target bench-trust

@@ -2,26 +2,19 @@
 
 #include <fmt/chrono.h>
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 
 #include <ctime>
 #include <filesystem>
-#include <fstream>
 #include <memory>
-#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
 
 #include "bench/compare/ab_run.hpp"
-#include "bench/compare/baseline.hpp"
-#include "bench/compare/pace.hpp"
-#include "bench/compare/second_run.hpp"
 #include "bench/compare/survey.hpp"
 #include "bench/plane/accuracy_from_plane.hpp"
 #include "bench/plane/speed_error.hpp"
 #include "bench/scaling/scaling_result.hpp"
-#include "bench/timing/machine.hpp"
 #include "convergence/programs/python_script.hpp"
 #include "convergence/results/markup.hpp"
 #include "convergence/results/provenance.hpp"
@@ -52,19 +45,16 @@ struct Options {
   std::string accuracy_data;
   std::string against;
   std::vector<std::string> pair;
-  std::string baselines;
-  std::optional<std::string> renew;
   int rounds = 16;
   double effect = ComparisonRules{}.effect;
   bool quick = false;
-  bool machine = false;
 };
-
-std::string today() { return fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::time(nullptr))); }
 
 /// What `solve --accuracy` picks by.
 void keep_accuracy_data(const std::string& file, const Json& plane) {
-  const std::string origin = fmt::format("Measured by slipstick bench on {}, {}.", machine_key(), today());
+  const std::string origin =
+      fmt::format("Measured by slipstick bench on {}, {:%Y-%m-%d}.",
+                  plane.at("provenance").at("cpu").get<std::string>(), fmt::gmtime(std::time(nullptr)));
   convergence::write_option_file("--accuracy-data", file,
                                  convergence::accuracy_toml(accuracy_from_plane(plane), origin));
 }
@@ -73,23 +63,18 @@ void keep_accuracy_data(const std::string& file, const Json& plane) {
 int survey(const Options& options, std::ostream& text, Json& result) {
   const fs::path folder = options.output;
   const fs::path data = folder / "data";
-  Pace pace;
-  const AtFullPace at_full_pace = [&] { return pace.is_full(); };
   result = run_survey(options.program, list_benchmarks(options.program, options.filter), kSurveyLength,
-                      data / "finished", at_full_pace);
+                      data / "finished");
   convergence::write_json_file(data / "timings.json", result);
   const Json laws = scaling_json(parse_timings(result.dump(), "timings.json"));
   convergence::write_json_file(data / "scaling.json", laws);
 
-  Patience patience = kPatience;
   convergence::Progress progress(plane_size(options.quick), static_cast<double>(plane_size(options.quick)));
-  const Json plane = measure_plane({.scene = convergence::project_file("convergence/scenes/paper.toml"),
-                                    .output = data / "finished",
-                                    .quick = options.quick,
-                                    .progress = [&](const std::string& point) {
-                                      progress.finished(point, 1.0);
-                                      wait_for_full_pace(at_full_pace, patience);
-                                    }});
+  const Json plane =
+      measure_plane({.scene = convergence::project_file("convergence/scenes/paper.toml"),
+                     .output = data / "finished",
+                     .quick = options.quick,
+                     .progress = [&](const std::string& point) { progress.finished(point, 1.0); }});
   convergence::write_json_file(data / "plane.json", plane);
   if (!options.accuracy_data.empty()) keep_accuracy_data(options.accuracy_data, plane);
   convergence::run_report_script("speed_page.py", {data, "--output", folder},
@@ -100,129 +85,28 @@ int survey(const Options& options, std::ostream& text, Json& result) {
   return 0;
 }
 
-int report_contest(const Options& options, const ContestResult& held, std::ostream& text, Json& result) {
+/// Two builds or two methods in interleaved pairs.
+int compare_ab(const Options& options, std::ostream& text, Json& result) {
+  const bool builds = options.pair.empty();
+  const auto pairs = builds ? two_builds(options.against, options.program,
+                                         options.filter.empty() ? kCompared : options.filter)
+                            : two_methods(options.program, options.pair[0], options.pair[1]);
+  ABRunResult found = run_ab(pairs, options.rounds, {.effect = options.effect});
+  found.report.base = builds ? options.against : options.pair[0];
+  found.report.now = builds ? options.program : options.pair[1];
   const fs::path folder = options.output;
   fs::create_directories(folder);
-  convergence::write_json_file(folder / "base.json", held.first.files[0]);
-  convergence::write_json_file(folder / "new.json", held.first.files[1]);
-  convergence::write_json_file(folder / "comparison.json", comparison_json(held.report));
-  result = held.first.files[1];
-  text << comparison_text(held.report);
-  return exit_code(held.report.comparison);
-}
-
-/// Two builds or two methods in turn.
-int contest(const Options& options, std::ostream& text, Json& result) {
-  const auto heats = options.pair.empty() ? two_builds(options.against, options.program,
-                                                       options.filter.empty() ? kCompared : options.filter)
-                                          : two_methods(options.program, options.pair[0], options.pair[1]);
-  ContestResult held =
-      hold_contest({.heats = heats, .rounds = options.rounds, .rules = {.effect = options.effect}});
-  held.report.base = options.pair.empty() ? options.against : options.pair[0];
-  held.report.now = options.pair.empty() ? options.program : options.pair[1];
-  return report_contest(options, held, text, result);
-}
-
-/// What this build is remembered by.
-Sitting sitting_to_remember(const Options& options, const std::vector<std::string>& names, Pace& pace) {
-  std::vector<Heat> heats;
-  for (const std::string& name : names) heats.push_back({{options.program, name, name}});
-  const std::size_t parts = heats.size() * static_cast<std::size_t>(options.rounds);
-  convergence::Progress progress(parts, static_cast<double>(parts));
-  Sitting sitting = run_in_turn(
-      heats, options.rounds, {}, [&](const Heat& heat) { progress.finished(heat.front().name, 1.0); },
-      [&] { return pace.is_full(); });
-  sitting.files.front()["context"]["pace_seconds"] = pace.best();
-  return sitting;
-}
-
-std::string unsteady(const Sitting& sitting) {
-  return fmt::format("in {} of {} runs the machine was slowed down by others", sitting.unsteady,
-                     sitting.heats);
-}
-
-Json read_baseline(const fs::path& file) {
-  return fs::exists(file) ? Json::parse(convergence::read_text(file)) : Json();
-}
-
-int renew(const Options& options, std::ostream& text, Json& result) {
-  if (options.renew->empty()) {
-    throw InputError("command line", "--renew", "", "the reason, in a sentence: what changed the times");
-  }
-  const fs::path file = baseline_file(options.baselines, machine_key());
-  Pace pace;
-  const Sitting sitting = sitting_to_remember(options, list_benchmarks(options.program, kCompared), pace);
-  result = sitting.files.front();
-  if (10 * sitting.unsteady > sitting.heats) {
-    throw std::runtime_error(unsteady(sitting) + ": nothing is remembered; try again when it is idle");
-  }
-  const Json made_by = convergence::provenance(1);
-  write_baseline(file, make_baseline(result, read_baseline(file),
-                                     {.date = today(),
-                                      .version = made_by["version"],
-                                      .commit = made_by["commit"],
-                                      .reason = *options.renew}));
-  text << "baseline: " << file.string() << '\n';
-  return 0;
-}
-
-/// Times of another day mean something only if the machine works as it did then.
-std::vector<std::string> obstacles(const Sitting& sitting, const Pace& pace) {
-  std::vector<std::string> found;
-  if (10 * sitting.unsteady > sitting.heats) found.push_back(unsteady(sitting));
-  if (pace.is_below_reference()) {
-    found.push_back(fmt::format("bare transforms take {:.3g} times as long as when the base was timed",
-                                pace.best() / pace.reference()));
-  }
-  return found;
-}
-
-/// Throws InputError for a second run that proves nothing.
-void require_full_pace(const Sitting& sitting, const Pace& pace) {
-  const std::vector<std::string> found = obstacles(sitting, pace);
-  if (!found.empty()) throw InputError("second run", fmt::format("{}", fmt::join(found, "; ")));
-}
-
-int compare_with_baseline(const Options& options, std::ostream& text, Json& result) {
-  const fs::path file = baseline_file(options.baselines, machine_key());
-  if (!fs::exists(file)) {
-    throw InputError(file.string(),
-                     "no times of this kind of machine are kept, so none can be compared; keep those of this "
-                     "build with --renew REASON");
-  }
-  const std::vector<std::string> names =
-      list_benchmarks(options.program, options.filter.empty() ? kCompared : options.filter);
-  Timings base = read_timings(file);
-  if (!options.filter.empty()) base = select(base, names);
-  Pace pace(read_baseline(file).at("context").value("pace_seconds", 0.0));
-  const auto timings = [](const Sitting& sitting) {
-    return parse_timings(sitting.files.front().dump(), "new");
-  };
-  const Sitting sitting = sitting_to_remember(options, names, pace);
-  ComparisonRules rules{.effect = options.effect};
-  rules.obstacles = obstacles(sitting, pace);
-  ComparisonReport report =
-      compare_twice({base, timings(sitting)}, rules, [&](const std::vector<std::string>& suspects) {
-        const Sitting second = sitting_to_remember(options, suspects, pace);
-        require_full_pace(second, pace);
-        return TwoTimings{select(base, suspects), timings(second)};
-      });
-  report.base = file.string();
-  report.now = options.program;
-  result = sitting.files.front();
-  text << comparison_text(report);
-  return exit_code(report.comparison);
+  convergence::write_json_file(folder / "base.json", found.files[0]);
+  convergence::write_json_file(folder / "new.json", found.files[1]);
+  convergence::write_json_file(folder / "comparison.json", comparison_json(found.report));
+  result = found.files[1];
+  text << comparison_text(found.report);
+  return exit_code(found.report.comparison);
 }
 
 int run(const Options& options, std::ostream& text, Json& result) {
-  if (options.machine) {
-    text << machine_key() << '\n';
-    return 0;
-  }
-  if (options.renew) return renew(options, text, result);
-  if (!options.baselines.empty()) return compare_with_baseline(options, text, result);
-  if (!options.against.empty() || !options.pair.empty()) return contest(options, text, result);
-  return survey(options, text, result);
+  const bool is_ab = !options.against.empty() || !options.pair.empty();
+  return is_ab ? compare_ab(options, text, result) : survey(options, text, result);
 }
 
 constexpr const char* kFooter = R"(Example:
@@ -231,9 +115,8 @@ constexpr const char* kFooter = R"(Example:
                                                      is this build slower than that one?
   slipstick bench --pair application/direct/cells:64 application/dcfft/cells:64
                                                      two methods, one over the other
-  slipstick bench --baselines bench/baselines        is it slower than what is remembered of this machine?
-Two builds or methods are timed in turn, in one sitting; what is at least 10 % slower is timed once more before it
-is called so. Finished timings of a survey are kept: an interrupted command goes on from there.
+Two builds or methods are timed in interleaved pairs; what is at least 10 % slower is timed once more before it is
+called so. Finished timings of a survey are kept: an interrupted command goes on from there.
 Exit code 0: done, nothing is slower; 1: something is; 2: it could not be judged.)";
 
 }  // namespace
@@ -251,21 +134,13 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_bench_command(CLI
       command->add_option("--against", options->against, "the same program of another build: the base");
   CLI::Option* const pair =
       command->add_option("--pair", options->pair, "two benchmarks, the second over the first")->expected(2);
-  CLI::Option* const baselines =
-      command->add_option("--baselines", options->baselines, "folder that remembers times by machine");
-  command
-      ->add_option("--renew", options->renew,
-                   "remember this build's times in that folder; the reason, in a sentence")
-      ->needs(baselines);
-  command->add_flag("--machine", options->machine, "print what this machine is called there, and stop");
   command->add_option("--rounds", options->rounds, "repetitions of what is compared")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();
   command->add_option("--effect", options->effect, "smallest change that counts, as a part")
       ->check(CLI::Range(0.001, 1.0))
       ->capture_default_str();
-  against->excludes(pair)->excludes(baselines);
-  pair->excludes(baselines);
+  against->excludes(pair);
   command->footer(kFooter);
   return
       [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };

@@ -1,9 +1,11 @@
 #include "bench/compare/ab_run.hpp"
 
 #include <fmt/core.h>
+#include <unistd.h>
 
 #include <algorithm>
-#include <set>
+#include <chrono>
+#include <utility>
 
 #include "bench/compare/second_run.hpp"
 #include "convergence/runs/progress.hpp"
@@ -12,62 +14,84 @@ namespace slipstick::bench {
 namespace {
 
 using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
 
-Sitting run(const std::vector<Heat>& heats, int rounds, const RunLength& length) {
-  const std::size_t parts = heats.size() * static_cast<std::size_t>(rounds);
-  convergence::Progress progress(parts, static_cast<double>(parts));
-  return run_in_turn(heats, rounds, length,
-                     [&](const Heat& heat) { progress.finished(heat.front().name, 1.0); });
+bool contains(const std::vector<std::string>& names, const std::string& name) {
+  return std::find(names.begin(), names.end(), name) != names.end();
 }
 
-TwoTimings timings_of(const Sitting& sitting) {
-  return {parse_timings(sitting.files[0].dump(), "base"), parse_timings(sitting.files[1].dump(), "new")};
+/// Distinguishes sessions: when, and by which process.
+std::string new_session() {
+  const auto now = std::chrono::system_clock::now().time_since_epoch();
+  return fmt::format("{}-{}", std::chrono::duration_cast<std::chrono::milliseconds>(now).count(), getpid());
 }
 
-std::vector<Heat> heats_of(const std::vector<Heat>& heats, const std::vector<std::string>& names) {
-  std::vector<Heat> found;
-  std::copy_if(heats.begin(), heats.end(), std::back_inserter(found), [&](const Heat& heat) {
-    return std::find(names.begin(), names.end(), heat.front().name) != names.end();
-  });
-  return found;
+/// Adds the rows of a run, as one repetition of all.
+void add_repetition(Json& file, const Json& run, const std::string& name, int round, int rounds) {
+  if (file["context"].empty()) file["context"] = run.at("context");
+  for (Json row : run.at("benchmarks")) {
+    if (row.value("run_type", "iteration") != "iteration") continue;
+    row["name"] = row["run_name"] = name;
+    row["repetitions"] = rounds;
+    row["repetition_index"] = round;
+    file["benchmarks"].push_back(std::move(row));
+  }
+}
+
+TwoTimings timings_of(const SessionFiles& files) {
+  return {parse_timings(files[0].dump(), "base"), parse_timings(files[1].dump(), "new")};
 }
 
 }  // namespace
 
-std::vector<Heat> two_builds(const std::filesystem::path& base, const std::filesystem::path& now,
-                             const std::string& filter) {
+std::vector<InterleavedPair> two_builds(const fs::path& base, const fs::path& now,
+                                        const std::string& filter) {
   const std::vector<std::string> of_base = list_benchmarks(base, filter);
   const std::vector<std::string> of_now = list_benchmarks(now, filter);
-  const std::set<std::string> base_names(of_base.begin(), of_base.end());
-  const std::set<std::string> now_names(of_now.begin(), of_now.end());
-  const auto contestant = [](const auto& program, const auto& names, const std::string& name) {
-    return Contestant{program, names.contains(name) ? name : "", name};
-  };
-  std::vector<Heat> heats;
-  const auto add = [&](const std::string& name) {
-    heats.push_back({contestant(base, base_names, name), contestant(now, now_names, name)});
-  };
-  for (const std::string& name : of_base) add(name);
-  for (const std::string& name : of_now) {
-    if (!base_names.contains(name)) add(name);
+  std::vector<InterleavedPair> pairs;
+  for (const std::string& name : of_base) {
+    pairs.push_back({name, {{{base, name}, {now, contains(of_now, name) ? name : ""}}}});
   }
-  return heats;
+  for (const std::string& name : of_now) {
+    if (!contains(of_base, name)) pairs.push_back({name, {{{base, ""}, {now, name}}}});
+  }
+  return pairs;
 }
 
-std::vector<Heat> two_methods(const std::filesystem::path& program, const std::string& base,
-                              const std::string& now) {
+std::vector<InterleavedPair> two_methods(const fs::path& program, const std::string& base,
+                                         const std::string& now) {
   for (const std::string& name : {base, now}) list_benchmarks(program, benchmark_filter({name}));
-  const std::string both = fmt::format("{} over {}", now, base);
-  return {{{program, base, both}, {program, now, both}}};
+  return {{fmt::format("{} over {}", now, base), {{{program, base}, {program, now}}}}};
 }
 
-ContestResult hold_contest(const Contest& contest) {
-  Sitting first = run(contest.heats, contest.rounds, contest.length);
+SessionFiles run_session(const std::vector<InterleavedPair>& pairs, int rounds, const RunLength& length) {
+  const std::size_t parts = pairs.size() * static_cast<std::size_t>(rounds);
+  convergence::Progress progress(parts, static_cast<double>(parts));
+  SessionFiles files;
+  files.fill({{"context", Json::object()}, {"benchmarks", Json::array()}});
+  for (int round = 0; round < rounds; ++round) {
+    for (const InterleavedPair& pair : pairs) {
+      for (const std::size_t turn : {0U, 1U}) {
+        const std::size_t side = round % 2 == 0 ? turn : 1 - turn;
+        const auto& [program, benchmark] = pair.sides[side];
+        if (benchmark.empty()) continue;
+        add_repetition(files[side], run_benchmark(program, benchmark, length), pair.name, round, rounds);
+      }
+      progress.finished(pair.name, 1.0);
+    }
+  }
+  files[0]["context"]["session"] = files[1]["context"]["session"] = new_session();
+  return files;
+}
+
+ABRunResult run_ab(const std::vector<InterleavedPair>& pairs, int rounds, const ComparisonRules& rules) {
+  SessionFiles files = run_session(pairs, rounds);
   const auto again = [&](const std::vector<std::string>& names) {
-    return timings_of(run(heats_of(contest.heats, names), 2 * contest.rounds, contest.length));
+    std::vector<InterleavedPair> suspicious = pairs;
+    std::erase_if(suspicious, [&](const InterleavedPair& pair) { return !contains(names, pair.name); });
+    return timings_of(run_session(suspicious, 2 * rounds));
   };
-  ComparisonReport report = compare_twice(timings_of(first), contest.rules, again);
-  return {std::move(report), std::move(first)};
+  return {compare_twice(timings_of(files), rules, again), std::move(files)};
 }
 
 }  // namespace slipstick::bench

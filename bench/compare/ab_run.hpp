@@ -1,40 +1,54 @@
 #pragma once
 
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "bench/compare/benchmark_program.hpp"
 #include "bench/compare/comparison_report.hpp"
-#include "bench/compare/rounds.hpp"
 
-/// Two builds, or two methods of one build, timed in turn in one sitting and compared.
+/// Two builds, or two methods of one build, run in interleaved pairs and compared.
 namespace slipstick::bench {
 
-/// A sitting: what is run, how often, and what counts as a difference.
-struct Contest {
-  std::vector<Heat> heats;  ///< the base first
-  int rounds = 16;
-  RunLength length = {};
-  ComparisonRules rules = {};
+/// A benchmark of a program; empty: there is none, and nothing is run.
+struct ProgramBenchmark {
+  std::filesystem::path program;
+  std::string benchmark;
+};
+
+/// The base and what is compared with it, run one right after the other.
+struct InterleavedPair {
+  std::string name;  ///< under which they are compared
+  std::array<ProgramBenchmark, 2> sides;
 };
 
 /// Every benchmark that fits the filter in either program, by its name: those in one only have nothing beside
 /// them.
-std::vector<Heat> two_builds(const std::filesystem::path& base, const std::filesystem::path& now,
-                             const std::string& filter);
+std::vector<InterleavedPair> two_builds(const std::filesystem::path& base, const std::filesystem::path& now,
+                                        const std::string& filter);
 
 /// Two benchmarks of one program; they are compared under both names. Throws InputError for one that it does
 /// not have.
-std::vector<Heat> two_methods(const std::filesystem::path& program, const std::string& base,
-                              const std::string& now);
+std::vector<InterleavedPair> two_methods(const std::filesystem::path& program, const std::string& base,
+                                         const std::string& now);
 
-struct ContestResult {
+/// The base's file and the new one of a session, in Google Benchmark's JSON, a repetition a round; both with
+/// the same "session" in their context.
+using SessionFiles = std::array<nlohmann::ordered_json, 2>;
+
+/// Runs all pairs, `rounds` times, every other time in the reverse order (AB, BA, AB...), so that what else
+/// the machine does falls on both sides. Says on standard error how far it is.
+SessionFiles run_session(const std::vector<InterleavedPair>& pairs, int rounds, const RunLength& length = {});
+
+struct ABRunResult {
   ComparisonReport report;
-  Sitting first;  ///< the first run's files, the base's first
+  SessionFiles files;  ///< the first session's
 };
 
-/// Runs a contest, and what is suspicious then once more, twice as often: only what both runs say counts.
-ContestResult hold_contest(const Contest& contest);
+/// Runs a session, and a second one with twice the rounds of what is suspicious then: only what both say
+/// counts.
+ABRunResult run_ab(const std::vector<InterleavedPair>& pairs, int rounds, const ComparisonRules& rules = {});
 
 }  // namespace slipstick::bench

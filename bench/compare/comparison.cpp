@@ -238,7 +238,7 @@ Comparison compare(const Timings& base, const Timings& now, const ComparisonRule
     throw std::invalid_argument("an effect is above 0, a level between 0 and 1");
   }
   Comparison comparison;
-  comparison.paired = !base.context.sitting.empty() && base.context.sitting == now.context.sitting;
+  comparison.paired = are_paired(base, now);
   std::vector<Pair> pairs;
   for (const TimedBenchmark& before : base.benchmarks) {
     const TimedBenchmark* const after = find(now, before.name);
@@ -254,7 +254,6 @@ Comparison compare(const Timings& base, const Timings& now, const ComparisonRule
   comparison.waiting = waiting_benchmarks(now);
   Obstacles found = find_obstacles(base, now, rules);
   comparison.obstacles = std::move(found.obstacles);
-  comparison.obstacles.insert(comparison.obstacles.end(), rules.obstacles.begin(), rules.obstacles.end());
   comparison.remarks = std::move(found.remarks);
   if (!comparison.obstacles.empty()) withdraw(comparison.benchmarks);
   return comparison;

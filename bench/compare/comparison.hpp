@@ -18,7 +18,6 @@ struct ComparisonRules {
   /// Benchmarks that are known to wait in the new build, so that it is no sign of load: of a second run, what
   /// waits in the first.
   std::vector<std::string> waiting = {};
-  std::vector<std::string> obstacles = {};  ///< that the caller knows of: no time is judged
 };
 
 /// What was found of one benchmark. Undecided: as much slower as counts, but not significantly so. Too few:
@@ -62,7 +61,7 @@ struct Comparison {
   bool paired = false;                 ///< repetition by repetition
 };
 
-/// Two files of one sitting are compared repetition by repetition (Wilcoxon's signed ranks on the logarithms
+/// Two files of one session are compared repetition by repetition (Wilcoxon's signed ranks on the logarithms
 /// of ratios), others as independent samples (Mann and Whitney's test), both exactly.
 /// Throws std::invalid_argument for an effect that is not above zero and a level that is not between 0 and 1.
 Comparison compare(const Timings& base, const Timings& now, const ComparisonRules& rules = {});

@@ -35,10 +35,6 @@ std::vector<std::string> machine_differences(const TimingContext& base, const Ti
   const auto differ = [&](const char* what, const auto& one, const auto& other) {
     if (one != other) differences.push_back(fmt::format("{} {} and {}", what, one, other));
   };
-  if (!base.machine.empty() && !now.machine.empty()) {
-    differ("machine", base.machine, now.machine);
-    return differences;
-  }
   differ("host_name", base.host_name, now.host_name);
   differ("num_cpus", base.cpus, now.cpus);
   if (!(std::abs(now.mhz - base.mhz) <= kClockTolerance * base.mhz)) {
@@ -135,7 +131,7 @@ Obstacles find_obstacles(const Timings& base, const Timings& now, const Comparis
     if (!obstacle.empty()) found.obstacles.push_back(obstacle);
   };
   const std::vector<std::string> differences = machine_differences(base.context, now.context);
-  if (!differences.empty() && !rules.same_machine) {
+  if (!differences.empty() && !rules.same_machine && !are_paired(base, now)) {
     add(fmt::format("the machines differ: {} (if it is one machine: --same-machine)",
                     fmt::join(differences, "; ")));
   }

@@ -1,7 +1,6 @@
 #include "bench/compare/second_run.hpp"
 
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 #include <sys/wait.h>
 
 #include <array>
@@ -9,6 +8,7 @@
 #include <memory>
 #include <string_view>
 
+#include "bench/compare/benchmark_program.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::bench {
@@ -56,18 +56,6 @@ Output run_by_shell(const std::string& command) {
 }
 
 }  // namespace
-
-std::string benchmark_filter(const std::vector<std::string>& names) {
-  std::vector<std::string> escaped;
-  for (const std::string& name : names) {
-    std::string& pattern = escaped.emplace_back();
-    for (const char c : name) {
-      if (std::string_view(".[]{}()*+?|^$\\").find(c) != std::string_view::npos) pattern += '\\';
-      pattern += c;
-    }
-  }
-  return fmt::format("^({})$", fmt::join(escaped, "|"));
-}
 
 ComparisonReport compare_twice(const TwoTimings& first, const ComparisonRules& rules, const Again& again) {
   ComparisonReport report{

@@ -9,9 +9,6 @@
 
 namespace slipstick::bench {
 
-/// What --benchmark_filter takes to run these benchmarks and no other.
-std::string benchmark_filter(const std::vector<std::string>& names);
-
 struct TwoTimings {
   Timings base;
   Timings now;

@@ -24,7 +24,7 @@ std::string file_name(const std::string& benchmark) {
 }
 
 /// What the timings depend on.
-std::string question(const fs::path& program, const std::string& name, const RunLength& length) {
+std::string cache_key(const fs::path& program, const std::string& name, const RunLength& length) {
   return fmt::format("{} of {} bytes, written at {}: {} for {} s, {} times", fs::absolute(program).string(),
                      fs::file_size(program), fs::last_write_time(program).time_since_epoch().count(), name,
                      length.seconds, length.repetitions);
@@ -33,15 +33,13 @@ std::string question(const fs::path& program, const std::string& name, const Run
 }  // namespace
 
 Json run_survey(const fs::path& program, const std::vector<std::string>& names, const RunLength& length,
-                const fs::path& folder, const AtFullPace& at_full_pace) {
-  Patience patience = kPatience;
+                const fs::path& folder) {
   convergence::Journal journal(folder);
   convergence::Progress progress(names.size(), static_cast<double>(names.size()));
   Json file;
   for (const std::string& name : names) {
-    const Json run = journal.point(file_name(name), question(program, name, length), [&] {
-      return run_heat({{program, name, name}}, false, length, at_full_pace, patience).runs.front();
-    });
+    const Json run = journal.point(file_name(name), cache_key(program, name, length),
+                                   [&] { return run_benchmark(program, name, length); });
     if (file.is_null()) file = {{"context", run.at("context")}, {"benchmarks", Json::array()}};
     for (const Json& row : run.at("benchmarks")) file["benchmarks"].push_back(row);
     progress.finished(name, 1.0);

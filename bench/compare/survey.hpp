@@ -5,16 +5,14 @@
 #include <string>
 #include <vector>
 
-#include "bench/compare/rounds.hpp"
+#include "bench/compare/benchmark_program.hpp"
 
 namespace slipstick::bench {
 
 /// Runs benchmarks of a program one after the other, each in a process of its own; one file of all, in Google
 /// Benchmark's JSON. Finished ones are kept in the folder and not run again for the same program and length;
-/// an interrupt loses the one being run. What runs while the machine is not at its full pace is run again,
-/// see run_heat. Says on standard error how far it is.
+/// an interrupt loses the one being run. Says on standard error how far it is.
 nlohmann::ordered_json run_survey(const std::filesystem::path& program, const std::vector<std::string>& names,
-                                  const RunLength& length, const std::filesystem::path& folder,
-                                  const AtFullPace& at_full_pace = {});
+                                  const RunLength& length, const std::filesystem::path& folder);
 
 }  // namespace slipstick::bench

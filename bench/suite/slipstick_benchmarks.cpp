@@ -11,7 +11,6 @@
 #include <vector>
 
 #include "bench/suite/suite.hpp"
-#include "bench/timing/machine.hpp"
 #include "convergence/results/provenance.hpp"
 
 namespace {
@@ -25,7 +24,6 @@ void say_where_times_come_from() {
 #else
   benchmark::AddCustomContext("build_type", "debug");
 #endif
-  benchmark::AddCustomContext("machine", slipstick::bench::machine_key());
   const auto provenance = slipstick::convergence::provenance(1);
   for (const auto& [key, value] : provenance.items()) {
     if (value.is_string()) benchmark::AddCustomContext(key, value.get<std::string>());

@@ -20,7 +20,7 @@ using testing::made_program;
 /// Two builds, of which the new one takes so many times as long.
 class ProgramBench : public ::testing::Test {
  protected:
-  ProgramRun contest(double factor, const std::string& options = "") {
+  ProgramRun ab_run(double factor, const std::string& options = "") {
     const fs::path base = made_program(folder_ / "", "base", "f/cells:8\\n", 1.0);
     const fs::path now = made_program(folder_ / "", "now", "f/cells:8\\n", factor);
     return run_program_with(fmt::format("bench --filter f --against {} --program {} --output {} {}",
@@ -31,13 +31,13 @@ class ProgramBench : public ::testing::Test {
 };
 
 TEST_F(ProgramBench, IsGreenWhereNothingIsSlower) {
-  const auto result = contest(1.01, "--rounds 10");
+  const auto result = ab_run(1.01, "--rounds 10");
   EXPECT_EQ(result.exit_code, 0) << result.output;
   EXPECT_THAT(result.output, HasSubstr("repetition by repetition"));
 }
 
 TEST_F(ProgramBench, FindsWhatIsSlowerAndKeepsTheTimings) {
-  const auto result = contest(1.15, "--rounds 10 --json " + (folder_ / "new.json").string());
+  const auto result = ab_run(1.15, "--rounds 10 --json " + (folder_ / "new.json").string());
   EXPECT_EQ(result.exit_code, 1) << result.output;
   EXPECT_THAT(result.output, HasSubstr("slower"));
   for (const fs::path& file : {folder_ / "new.json", folder_ / "out/base.json", folder_ / "out/new.json"}) {
@@ -47,26 +47,13 @@ TEST_F(ProgramBench, FindsWhatIsSlowerAndKeepsTheTimings) {
 }
 
 TEST_F(ProgramBench, SaysWhenThereAreTooFewRounds) {
-  const auto result = contest(1.5, "--rounds 3");
+  const auto result = ab_run(1.5, "--rounds 3");
   EXPECT_EQ(result.exit_code, 2) << result.output;
   EXPECT_THAT(result.output, HasSubstr("too few"));
 }
 
 TEST_F(ProgramBench, RefusesWhatItCannotDo) {
   EXPECT_EQ(run_program_with("bench --against nothing --program nothing").exit_code, 2);
-  EXPECT_EQ(run_program_with("bench --renew reason").exit_code, 2);
-  const auto without_reason = run_program_with("bench --baselines somewhere --renew \"\"");
-  EXPECT_EQ(without_reason.exit_code, 2);
-  EXPECT_THAT(without_reason.output, HasSubstr("what changed the times"));
-  const auto without_baseline = run_program_with("bench --baselines " + (folder_ / "empty").string());
-  EXPECT_EQ(without_baseline.exit_code, 2);
-  EXPECT_THAT(without_baseline.output, HasSubstr("--renew REASON"));
-}
-
-TEST_F(ProgramBench, SaysWhatThisMachineIsCalled) {
-  const auto result = run_program_with("bench --machine");
-  EXPECT_EQ(result.exit_code, 0);
-  EXPECT_THAT(result.output, ::testing::ContainsRegex("^[a-z0-9-]+cpus[a-z0-9-]*\n$"));
 }
 
 }  // namespace

@@ -102,8 +102,7 @@ TimingContext read_context(const Reader& context) {
   if (context.has("cpu_scaling_enabled")) read.scaling = context.flag("cpu_scaling_enabled");
   read.library_build_type = context.text("library_build_type");
   read.build_type = context.text("build_type");
-  read.machine = context.text("machine");
-  read.sitting = context.text("sitting");
+  read.session = context.text("session");
   const auto list = [&](const char* key, const char* allowed) {
     Json values = context.json().value(key, Json::array());
     if (!values.is_array()) context.refuse(key, allowed);
@@ -252,6 +251,10 @@ std::vector<TimedBenchmark> read_benchmarks(const Json& rows, const std::string&
 }
 
 }  // namespace
+
+bool are_paired(const Timings& one, const Timings& other) {
+  return !one.context.session.empty() && one.context.session == other.context.session;
+}
 
 const TimedBenchmark* find(const Timings& timings, const std::string& name) {
   const auto found = std::find_if(timings.benchmarks.begin(), timings.benchmarks.end(),

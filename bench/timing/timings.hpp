@@ -37,9 +37,8 @@ struct TimingContext {
   std::vector<double> load_average;  ///< over 1, 5 and 15 minutes, when the program began; may be empty
   std::string library_build_type;    ///< of Google Benchmark itself; Debian's says debug always
   std::string build_type;            ///< of the benchmarks: custom context "build_type"; empty: not said
-  std::string machine;               ///< custom context "machine", see machine_key(); empty: not said
-  std::string sitting;               ///< custom context "sitting": files that have the same one were run in
-                                     ///< turn, repetition by repetition; empty: not said
+  std::string session;               ///< custom context "session": files that have the same one were run in
+                                     ///< interleaved pairs on one machine; empty: not said
 };
 
 struct Timings {
@@ -47,6 +46,9 @@ struct Timings {
   TimingContext context;
   std::vector<TimedBenchmark> benchmarks;  ///< in the order of the file
 };
+
+/// Whether both files are of one session.
+bool are_paired(const Timings& one, const Timings& other);
 
 /// The benchmark of a name; null where there is none.
 const TimedBenchmark* find(const Timings& timings, const std::string& name);

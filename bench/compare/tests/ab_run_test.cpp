@@ -11,59 +11,84 @@
 namespace slipstick::bench {
 namespace {
 
+namespace fs = std::filesystem;
+using ::testing::ElementsAre;
 using testing::lines_of;
 using testing::made_program;
 
-std::vector<std::string> names(const std::vector<Heat>& heats) {
-  std::vector<std::string> found;
-  for (const Heat& heat : heats) {
-    EXPECT_EQ(heat.size(), 2U);
-    found.push_back(heat[0].benchmark + "|" + heat[1].benchmark);
+class ABRun : public ::testing::Test {
+ protected:
+  fs::path made(const std::string& label, const std::string& list = "f\\n", double milliseconds = 1.0) {
+    return made_program(folder_ / "", label, list, milliseconds);
   }
-  return found;
+  std::vector<std::string> log() const { return lines_of(folder_ / "log"); }
+
+ private:
+  convergence::TemporaryFolder folder_;
+};
+
+TEST_F(ABRun, HasTheBenchmarksOfEitherBuild) {
+  std::vector<std::string> found;
+  for (const auto& pair : two_builds(made("base", "common\\nold\\n"), made("now", "new\\ncommon\\n"), "")) {
+    found.push_back(pair.name + ": " + pair.sides[0].benchmark + "|" + pair.sides[1].benchmark);
+  }
+  EXPECT_THAT(found, ElementsAre("common: common|common", "old: old|", "new: |new"));
 }
 
-TEST(Contest, HasTheBenchmarksOfEitherBuild) {
-  const convergence::TemporaryFolder folder;
-  const auto base = made_program(folder / "", "base", "common\\nold\\n");
-  const auto now = made_program(folder / "", "now", "new\\ncommon\\n");
-  EXPECT_THAT(names(two_builds(base, now, "")), ::testing::ElementsAre("common|common", "old|", "|new"));
-}
-
-TEST(Contest, ReportsABenchmarkThatIsInOneBuildOnly) {
-  const convergence::TemporaryFolder folder;
-  const auto base = made_program(folder / "", "base", "common\\nold\\n");
-  const auto now = made_program(folder / "", "now", "common\\nnew\\n", 1.01);
-  const ContestResult result = hold_contest({.heats = two_builds(base, now, ""), .rounds = 10});
-  EXPECT_THAT(result.report.comparison.obstacles, ::testing::IsEmpty());
+TEST_F(ABRun, ReportsABenchmarkThatIsInOneBuildOnly) {
+  const auto pairs = two_builds(made("base", "common\\nold\\n"), made("now", "common\\nnew\\n", 1.01), "");
+  const Comparison comparison = run_ab(pairs, 10).report.comparison;
+  EXPECT_THAT(comparison.obstacles, ::testing::IsEmpty());
   std::vector<std::string> findings;
-  for (const auto& found : result.report.comparison.benchmarks) {
+  for (const auto& found : comparison.benchmarks) {
     findings.push_back(found.name + ": " + to_string(found.finding));
   }
-  EXPECT_THAT(findings, ::testing::ElementsAre("common: same", "old: only in base", "new: only in new"));
-  EXPECT_EQ(exit_code(result.report.comparison), 2);
+  EXPECT_THAT(findings, ElementsAre("common: same", "old: only in base", "new: only in new"));
+  EXPECT_EQ(exit_code(comparison), 2);
 }
 
-TEST(Contest, CallsNothingSlowerBeforeASecondRunTwiceAsLong) {
-  const convergence::TemporaryFolder folder;
-  const auto base = made_program(folder / "", "base", "f\\n", 1.0);
-  const auto now = made_program(folder / "", "now", "f\\n", 1.2);
-  const ContestResult result = hold_contest({.heats = two_builds(base, now, ""), .rounds = 10});
-  EXPECT_EQ(exit_code(result.report.comparison), 1);
-  ASSERT_TRUE(result.report.second.has_value());
-  const auto lines = lines_of(folder / "log");
+TEST_F(ABRun, CallsNothingSlowerBeforeASecondRunTwiceAsLong) {
+  const ComparisonReport report = run_ab(two_builds(made("base"), made("now", "f\\n", 1.2), ""), 10).report;
+  EXPECT_EQ(exit_code(report.comparison), 1);
+  ASSERT_TRUE(report.second.has_value());
+  const auto lines = log();
   EXPECT_EQ(std::count(lines.begin(), lines.end(), "now ^(f)$"), 30);
 }
 
-TEST(Contest, ComparesTwoMethodsUnderOneName) {
-  const convergence::TemporaryFolder folder;
-  const auto program = made_program(folder / "", "a", "f\\ng\\n");
-  const auto heats = two_methods(program, "f", "g");
-  ASSERT_EQ(heats.size(), 1U);
-  EXPECT_EQ(heats[0][0].benchmark, "f");
-  EXPECT_EQ(heats[0][1].benchmark, "g");
-  EXPECT_EQ(heats[0][0].name, "g over f");
-  EXPECT_EQ(heats[0][1].name, "g over f");
+TEST_F(ABRun, ComparesTwoMethodsUnderOneName) {
+  const auto pairs = two_methods(made("a", "f\\ng\\n"), "f", "g");
+  ASSERT_EQ(pairs.size(), 1U);
+  EXPECT_EQ(pairs[0].sides[0].benchmark, "f");
+  EXPECT_EQ(pairs[0].sides[1].benchmark, "g");
+  EXPECT_EQ(pairs[0].name, "g over f");
+}
+
+TEST_F(ABRun, TurnsTheOrderRoundEveryTime) {
+  const fs::path a = made("a");
+  const fs::path b = made("b");
+  run_session({{"f", {{{a, "f"}, {b, "f"}}}}, {"g", {{{a, "g"}, {b, ""}}}}}, 2);
+  EXPECT_THAT(log(), ElementsAre("a ^(f)$", "b ^(f)$", "a ^(g)$", "b ^(f)$", "a ^(f)$", "a ^(g)$"));
+}
+
+TEST_F(ABRun, MakesOneFileASideWithARepetitionARound) {
+  const fs::path a = made("a");
+  const SessionFiles files = run_session({{"common", {{{a, "f"}, {a, "g"}}}}}, 3);
+  EXPECT_EQ(files[0]["context"]["session"], files[1]["context"]["session"]);
+  for (const auto& file : files) {
+    ASSERT_EQ(file["benchmarks"].size(), 3U);  // no aggregates
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_EQ(file["benchmarks"][i]["run_name"], "common");
+      EXPECT_EQ(file["benchmarks"][i]["repetition_index"], i);
+    }
+  }
+}
+
+TEST_F(ABRun, OfTwoSessionsAreDistinguished) {
+  const fs::path a = made("a");
+  const auto session = [&] {
+    return run_session({{"f", {{{a, "f"}, {a, "f"}}}}}, 1)[0]["context"]["session"];
+  };
+  EXPECT_NE(session(), session());
 }
 
 }  // namespace

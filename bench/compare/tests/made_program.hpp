@@ -26,7 +26,7 @@ for word in "$@"; do
 done
 echo "{0} $filter" >> '{2}'
 cat > "$out" <<END
-{{"context": {{"num_cpus": 2, "machine": "made", "build_type": "release"}}, "benchmarks": [
+{{"context": {{"num_cpus": 2, "build_type": "release"}}, "benchmarks": [
  {{"name": "x", "run_name": "x", "run_type": "iteration", "real_time": {4}, "cpu_time": {4}, "time_unit": "ms"}},
  {{"name": "x_mean", "run_name": "x", "run_type": "aggregate", "real_time": {4}, "cpu_time": {4}, "time_unit": "ms"}}]}}
 END

@@ -73,7 +73,7 @@ inline TwoFiles draw(std::mt19937_64& generator, std::size_t benchmarks, std::si
            (is_outlier(generator) ? noise.outlier : 1.0);
   };
   TwoFiles run{file_of("base.json", {}), file_of("new.json", {})};
-  if (paired) run.base.context.sitting = run.now.context.sitting = "one";
+  if (paired) run.base.context.session = run.now.context.session = "one";
   for (std::size_t b = 0; b < benchmarks; ++b) {
     std::vector<double> before(repetitions);
     std::vector<double> after(repetitions);

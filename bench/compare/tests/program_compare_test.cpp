@@ -10,7 +10,6 @@
 #include <sstream>
 #include <string>
 
-#include "bench/compare/second_run.hpp"
 #include "bench/compare/tests/made_timings.hpp"
 #include "convergence/programs/tests/program_run.hpp"
 
@@ -175,10 +174,6 @@ TEST_F(ProgramCompare, ASecondRunThatTellsNothingLeavesItUndecided) {
   const ProgramRun quoted = run(files(1.2) + " --rerun 'program --benchmark_filter=\"{filter}\"'");
   EXPECT_EQ(quoted.exit_code, 2);
   EXPECT_THAT(quoted.output, HasSubstr("without quotes"));
-}
-
-TEST(BenchmarkFilter, NamesStandForThemselves) {
-  EXPECT_EQ(benchmark_filter({"a|b/(1)/x.y", "c"}), R"(^(a\|b/\(1\)/x\.y|c)$)");
 }
 
 TEST_F(ProgramCompare, WritesJson) {

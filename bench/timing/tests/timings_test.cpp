@@ -54,8 +54,7 @@ constexpr const char* kFile = R"({
     "mhz_per_cpu": 2100, "cpu_scaling_enabled": true,
     "caches": [ { "type": "Data", "level": 1, "size": 32768, "num_sharing": 1 },
                 { "type": "Unified", "level": 2, "size": 2097152, "num_sharing": 2 } ],
-    "load_avg": [0.52,0.34,1.2], "library_build_type": "debug", "build_type": "release", "machine": "m1",
-    "sitting": "s1"
+    "load_avg": [0.52,0.34,1.2], "library_build_type": "debug", "build_type": "release", "session": "s1"
   },
   "benchmarks": [
     { "name": "apply/8/repeats:2", "family_index": 0, "per_family_instance_index": 0, "run_name": "apply/8/repeats:2",
@@ -87,8 +86,7 @@ TEST(Timings, ReadsContextAndRepetitions) {
   EXPECT_THAT(context.load_average, ElementsAre(0.52, 0.34, 1.2));
   EXPECT_EQ(context.library_build_type, "debug");
   EXPECT_EQ(context.build_type, "release");
-  EXPECT_EQ(context.machine, "m1");
-  EXPECT_EQ(context.sitting, "s1");
+  EXPECT_EQ(context.session, "s1");
   ASSERT_THAT(names(timings), ElementsAre("apply/8/repeats:2"));  // fits are of no benchmark
   const TimedBenchmark& benchmark = timings.benchmarks[0];
   ASSERT_EQ(benchmark.timings.size(), 2U);

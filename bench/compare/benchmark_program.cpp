@@ -1,0 +1,76 @@
+#include "bench/compare/benchmark_program.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <fstream>
+#include <stdexcept>
+#include <string_view>
+
+#include "bench/timing/timings.hpp"
+#include "convergence/programs/run_program.hpp"
+#include "convergence/programs/temporary_folder.hpp"
+#include "convergence/runs/run_spec.hpp"
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::bench {
+namespace {
+
+namespace fs = std::filesystem;
+using convergence::run_program;
+using convergence::TemporaryFolder;
+
+/// A path that is not looked up on PATH.
+std::string program_word(const fs::path& program) { return fs::absolute(program).string(); }
+
+}  // namespace
+
+std::string benchmark_filter(const std::vector<std::string>& names) {
+  std::vector<std::string> escaped;
+  for (const std::string& name : names) {
+    std::string& pattern = escaped.emplace_back();
+    for (const char c : name) {
+      if (std::string_view(".[]{}()*+?|^$\\").find(c) != std::string_view::npos) pattern += '\\';
+      pattern += c;
+    }
+  }
+  return fmt::format("^({})$", fmt::join(escaped, "|"));
+}
+
+std::vector<std::string> list_benchmarks(const fs::path& program, const std::string& filter) {
+  if (!fs::is_regular_file(program)) {
+    throw solver::InputError(program.string(), "there is no such program; allowed: one of Google Benchmark");
+  }
+  const TemporaryFolder folder;
+  const fs::path list = folder / "list";
+  std::vector<std::string> words{program_word(program), "--benchmark_list_tests"};
+  if (!filter.empty()) words.push_back(fmt::format("--benchmark_filter={}", filter));
+  const int status = run_program(words, list);
+  std::vector<std::string> names;
+  std::ifstream lines(list);
+  for (std::string line; std::getline(lines, line);) names.push_back(line);
+  if (status != 0 || names.empty()) {
+    throw solver::InputError(program.string(), fmt::format("lists no benchmark that fits \"{}\"", filter));
+  }
+  return names;
+}
+
+nlohmann::ordered_json run_benchmark(const fs::path& program, const std::string& name,
+                                     const RunLength& length) {
+  const TemporaryFolder folder;
+  const fs::path out = folder / "timings.json";
+  const int status =
+      run_program({program_word(program), fmt::format("--benchmark_filter={}", benchmark_filter({name})),
+                   fmt::format("--benchmark_out={}", out.string()), "--benchmark_out_format=json",
+                   fmt::format("--benchmark_min_time={}", length.seconds),
+                   fmt::format("--benchmark_repetitions={}", length.repetitions)},
+                  folder / "shown", folder / "complaints");
+  if (status != 0) {
+    throw std::runtime_error(
+        fmt::format("{}: benchmark {} ended with code {}", program.string(), name, status));
+  }
+  return parse_benchmark_json(convergence::read_text(out),
+                              fmt::format("{}: benchmark {}", program.string(), name));
+}
+
+}  // namespace slipstick::bench

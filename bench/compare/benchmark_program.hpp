@@ -1,0 +1,30 @@
+#pragma once
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+/// Programs of Google Benchmark, run one benchmark at a time.
+namespace slipstick::bench {
+
+/// How long one run of a benchmark lasts.
+struct RunLength {
+  double seconds = 0.05;  ///< at least, of what is timed
+  int repetitions = 1;
+};
+
+/// What --benchmark_filter takes to run these benchmarks and no other.
+std::string benchmark_filter(const std::vector<std::string>& names);
+
+/// The benchmarks of a program of Google Benchmark whose names fit a regular expression (POSIX extended;
+/// empty: those that it runs by itself), in its order. Throws InputError where that is no such program, or
+/// has none.
+std::vector<std::string> list_benchmarks(const std::filesystem::path& program, const std::string& filter);
+
+/// Runs one benchmark in a process of its own; what it says, in Google Benchmark's JSON. Throws
+/// std::runtime_error where it ends otherwise.
+nlohmann::ordered_json run_benchmark(const std::filesystem::path& program, const std::string& name,
+                                     const RunLength& length);
+
+}  // namespace slipstick::bench
