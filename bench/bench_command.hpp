@@ -7,9 +7,9 @@
 
 namespace slipstick::bench {
 
-/// Adds `bench`: times everything beside the error that it buys and draws it; or two builds, two methods, or
-/// this build and what is remembered of it, against each other. The returned function runs it, see main.cpp;
-/// the result is timings in Google Benchmark's JSON.
+/// Adds `bench`: times everything beside the error that it buys and draws it; or two builds or two methods
+/// against each other. The returned function runs it, see main.cpp; the result is timings in Google
+/// Benchmark's JSON.
 std::function<int(std::ostream&, nlohmann::ordered_json&)> add_bench_command(CLI::App& app);
 
 }  // namespace slipstick::bench

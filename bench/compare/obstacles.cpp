@@ -25,8 +25,8 @@ constexpr double kWaiting = 1.25;
 /// its load average.
 constexpr double kWaitingByNature = 10.0;
 /// A wait that a change put into the program is in some benchmarks, one for a loaded machine is in most.
-/// Fewer benchmarks than this do not tell.
-constexpr std::size_t kFewestThatTell = 3;
+/// Fewer benchmarks than this decide nothing.
+constexpr std::size_t kMinConclusive = 3;
 
 std::string name(const Timings& timings) { return timings.file.filename().string(); }
 
@@ -96,7 +96,7 @@ std::string waiting(const Timings& timings, const std::vector<std::string>& know
   });
   const auto all = static_cast<std::size_t>(
       std::count_if(timings.benchmarks.begin(), timings.benchmarks.end(), has_both_times));
-  if (all < kFewestThatTell || 2 * waiting.size() <= all) return "";
+  if (all < kMinConclusive || 2 * waiting.size() <= all) return "";
   return fmt::format(
       "{}: the machine was loaded: {} of {} benchmarks in one thread took {} times as long as the processor "
       "worked for them, or longer (if that is their nature: MeasureProcessCPUTime or UseManualTime)",

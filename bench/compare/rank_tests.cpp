@@ -51,7 +51,7 @@ class RankSum {
     RankSum distribution;
     distribution.mean_ = 0.5 * static_cast<double>(largest);
     for (const std::size_t rank : ranks) distribution.variance_ += 0.25 * static_cast<double>(rank * rank);
-    if (ranks.size() > kMostCounted) return distribution;
+    if (ranks.size() > kMaxCounted) return distribution;
     std::vector<double>& chances = distribution.chances_;
     chances.assign(largest + 1, 0.0);
     chances[0] = 1.0;
@@ -75,7 +75,7 @@ class RankSum {
     distribution.mean_ = static_cast<double>(picked) * mean;
     distribution.variance_ =
         static_cast<double>(picked * (ranks.size() - picked)) / (count * (count - 1.0)) * squares;
-    if (ranks.size() <= kMostCounted) distribution.chances_ = count_choices(ranks, picked);
+    if (ranks.size() <= kMaxCounted) distribution.chances_ = count_choices(ranks, picked);
     return distribution;
   }
 

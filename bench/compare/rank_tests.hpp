@@ -21,10 +21,10 @@ struct Shift {
 Shift signed_rank_shift(std::span<const double> differences);
 
 /// Of `now` over `base`, independent samples: Mann and Whitney's test (1947). Both tests count all
-/// arrangements of the ranks, ties as they are (mid-ranks), up to kMostCounted numbers; beyond they take the
+/// arrangements of the ranks, ties as they are (mid-ranks), up to kMaxCounted numbers; beyond they take the
 /// normal distribution with corrections for ties and continuity.
 Shift rank_sum_shift(std::span<const double> base, std::span<const double> now);
-inline constexpr std::size_t kMostCounted = 60;
+inline constexpr std::size_t kMaxCounted = 60;
 
 /// The smallest chance that so many numbers can give at all: 2^-n; one in all choices of n of n + m.
 double least_signed_rank_chance(std::size_t n);

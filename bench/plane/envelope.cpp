@@ -17,10 +17,10 @@ bool beats(const Way& a, const Way& b) {
   return a.seconds <= b.seconds && a.error <= b.error && (a.seconds < b.seconds || a.error < b.error);
 }
 
-/// A way with a word, against the quickest of the other words' ways that is as good.
-struct Contest {
+/// A way with a word, beside the quickest of the other words' ways that is as good.
+struct BesideBest {
   double cells;
-  bool lost;  ///< surely slower
+  bool surely_slower;
   double times_slower;
   std::string by;
 };
@@ -35,29 +35,30 @@ bool rivals(const Way& a, const Way& b, const std::string& key) {
   return a.choice.at(key) != b.choice.at(key);
 }
 
-std::optional<Contest> contest(const std::vector<Way>& ways, const Way& way, const std::string& key) {
+std::optional<BesideBest> beside_best(const std::vector<Way>& ways, const Way& way, const std::string& key) {
   const Way* best = nullptr;
   for (const Way& other : ways) {
     if (!is_number(other) || !rivals(way, other, key) || !(other.error <= kSameError * way.error)) continue;
     if (best == nullptr || other.seconds < best->seconds) best = &other;
   }
   if (best == nullptr) return std::nullopt;
-  return Contest{way.cells, best->high < way.low, way.seconds / best->seconds, best->choice.at(key)};
+  return BesideBest{way.cells, best->high < way.low, way.seconds / best->seconds, best->choice.at(key)};
 }
 
-std::string most_frequent(const std::vector<Contest>& contests) {
+std::string most_frequent(const std::vector<BesideBest>& all) {
   std::map<std::string, int> count;
-  for (const Contest& one : contests) ++count[one.by];
+  for (const BesideBest& one : all) ++count[one.by];
   return std::max_element(count.begin(), count.end(),
                           [](const auto& a, const auto& b) { return a.second < b.second; })
       ->first;
 }
 
-DominatedChoice summary(const std::string& key, const std::string& word, const std::vector<Contest>& lost) {
+DominatedChoice summary(const std::string& key, const std::string& word,
+                        const std::vector<BesideBest>& lost) {
   DominatedChoice found{.key = key, .word = word, .by = most_frequent(lost)};
   std::vector<double> ratios;
   found.from_cells = std::numeric_limits<double>::infinity();
-  for (const Contest& one : lost) {
+  for (const BesideBest& one : lost) {
     ratios.push_back(one.times_slower);
     found.from_cells = std::min(found.from_cells, one.cells);
   }
@@ -72,17 +73,17 @@ DominatedChoice summary(const std::string& key, const std::string& word, const s
 std::optional<DominatedChoice> dominated(const std::vector<Way>& ways, const std::string& key,
                                          const std::string& word) {
   double last_won = 0.0;  // cells of the finest mesh on which it is worth taking
-  std::vector<Contest> lost;
+  std::vector<BesideBest> lost;
   for (const Way& way : ways) {
     if (!is_number(way) || way.choice.at(key) != word) continue;
-    const std::optional<Contest> found = contest(ways, way, key);
-    if (found && found->lost) {
+    const std::optional<BesideBest> found = beside_best(ways, way, key);
+    if (found && found->surely_slower) {
       lost.push_back(*found);
     } else {
       last_won = std::max(last_won, way.cells);
     }
   }
-  std::erase_if(lost, [&](const Contest& one) { return one.cells <= last_won; });
+  std::erase_if(lost, [&](const BesideBest& one) { return one.cells <= last_won; });
   if (lost.empty()) return std::nullopt;
   DominatedChoice choice = summary(key, word, lost);
   choice.everywhere = last_won == 0.0;

@@ -45,7 +45,7 @@ struct DominatedChoice {
   double times_slower = 0.0;  ///< median over its ways from there on, against the quickest that is as good
   double least = 0.0;
   double most = 0.0;
-  std::size_t ways = 0;  ///< that it was told from
+  std::size_t ways = 0;  ///< that it was determined from
 };
 
 /// For each key and word, in their order.

@@ -75,7 +75,7 @@ std::string best_text(const std::vector<Way>& ways) {
   return fmt::format("the best is {:.2g}, on {} x {} cells", best->error, best->cells, best->cells);
 }
 
-/// method: "any", or one; ways of others are put out of the race.
+/// method: "any", or one; ways of others do not count.
 Json time_to(std::vector<Way> ways, const std::string& method, double error) {
   for (Way& way : ways) {
     if (method != "any" && way.choice["method"] != method)

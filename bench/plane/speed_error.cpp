@@ -34,7 +34,7 @@ const std::vector<std::pair<std::string, std::string>> kQuantities{
 /// Grids of a mesh, whose edges lie differently in the cells: four, and fewer where one takes seconds.
 int grids_of(Index cells) { return cells <= 256 ? 4 : cells <= 512 ? 3 : 2; }
 
-/// Cells along a side of the grid on which the exact wing gives tractions.
+/// Cells along a side of the grid on which the exact side gives tractions.
 constexpr Index kExactCells = 128;
 
 std::vector<double> values(const Errors& errors) {
@@ -45,17 +45,17 @@ struct MeasuredGrid {
   solver::Scene scene;
   solver::Solution solution;
   std::vector<double> errors;  ///< as kQuantities
-  std::string objection;
+  std::string invalid_reason;
 };
 
 MeasuredGrid solve_grid(const std::filesystem::path& scene, const std::vector<std::string>& overrides) {
   MeasuredGrid grid{
-      .scene = solver::read_scene(scene, overrides), .solution = {}, .errors = {}, .objection = {}};
+      .scene = solver::read_scene(scene, overrides), .solution = {}, .errors = {}, .invalid_reason = {}};
   const convergence::Oracle exact = convergence::require_oracle(grid.scene);
   grid.solution = solver::solve(grid.scene);
   const Errors errors = convergence::compare(grid.solution, exact);
   grid.errors = values(errors);
-  grid.objection = objection(grid.scene, grid.solution, errors);
+  grid.invalid_reason = invalid_reason(grid.scene, grid.solution, errors);
   return grid;
 }
 
@@ -140,22 +140,22 @@ Json measure_point(const std::filesystem::path& scene, double moment_ratio, cons
   Json json = choice_json(choice);
   std::vector<std::vector<double>> errors(kQuantities.size());
   double across = 0.0;
-  std::string objection;
+  std::string invalid_reason;
   MeasuredGrid first;
   const auto all = grids(scene, moment_ratio, choice);
   for (const convergence::GridChoice& grid : all) {
     MeasuredGrid measured = solve_grid(scene, grid.overrides);
     for (std::size_t i = 0; i < errors.size(); ++i) errors[i].push_back(measured.errors[i]);
     across += 2.0 * measured.solution.contact_radius / grid.size / static_cast<double>(all.size());
-    if (objection.empty()) objection = measured.objection;
+    if (invalid_reason.empty()) invalid_reason = measured.invalid_reason;
     if (first.errors.empty()) first = std::move(measured);
   }
   json["contact_cells"] = across;
-  if (!objection.empty()) json["not_timed"] = objection;
-  if (objection.empty()) {
+  if (!invalid_reason.empty()) json["not_timed"] = invalid_reason;
+  if (invalid_reason.empty()) {
     json["seconds"] = seconds_json(repeat([&] { return solver::solve(first.scene).seconds.total; }));
   } else {
-    set_missing(json, "seconds", objection);
+    set_missing(json, "seconds", invalid_reason);
   }
   add_errors(json, errors);
   set_number(json, "gap", first.solution.certificate.gap, "the solve broke down");

@@ -28,8 +28,8 @@
 ///       errors {the same: [signed, of each grid]}
 ///       gap, applications, pressure_applications, bytes         of the first grid, the one that is timed
 ///     ]
-///     exact {seconds {...}, error, cells}   the exact wing: stick radius, twist and tractions in all cells
-///     envelope {QUANTITY: [indices into points, quickest first]}   the exact wing not among them
+///     exact {seconds {...}, error, cells}   the exact side: stick radius, twist and tractions in all cells
+///     envelope {QUANTITY: [indices into points, quickest first]}   the exact side not among them
 ///     time_to [{quantity, error, method, point (index) | null, reason, seconds}]  method also "any", "exact"
 ///   ]
 ///   dominated [{scene, quantity, key, value, by, everywhere, from_cells, times_slower {median, low, high},
@@ -54,7 +54,7 @@ Json measure_plane(const PlaneOptions& options);
 /// Points that plane holds.
 std::size_t plane_size(bool quick);
 
-/// One moment ratio's points, those that are in the output folder from there, and the exact wing.
+/// One moment ratio's points, those that are in the output folder from there, and the exact side.
 Json measure_scene(const PlaneOptions& options, double moment_ratio, const std::vector<PlaneChoice>& design);
 
 /// One point: errors on several grids, seconds on the first, unless the result is wrong.

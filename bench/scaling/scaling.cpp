@@ -15,6 +15,7 @@
 #include <utility>
 
 #include "bench/timing/median.hpp"
+#include "bench/timing/timings.hpp"
 
 namespace slipstick::bench {
 namespace {
@@ -34,7 +35,7 @@ struct LogTime {
 std::optional<LogTime> log_time(const std::vector<double>& seconds) {
   std::vector<double> logs;
   for (const double one : seconds) {
-    if (counts(one)) logs.push_back(std::log(one));
+    if (is_valid_time(one)) logs.push_back(std::log(one));
   }
   if (logs.empty()) return {};
   const auto count = static_cast<double>(logs.size());
@@ -187,8 +188,6 @@ bool has_scatter(const Race& both) {
 
 }  // namespace
 
-bool counts(double seconds) { return seconds > 0.0 && std::isfinite(seconds); }
-
 TypicalSeconds typical(const std::vector<double>& seconds) {
   const auto time = log_time(seconds);
   if (!time) return {kNaN, kNaN, kNaN};
@@ -199,8 +198,8 @@ TypicalSeconds typical(const std::vector<double>& seconds) {
 
 PowerLaw fit_power_law(const Family& family) {
   const Times known = times_of(family);
-  if (known.size() < kFewestSizes) {
-    return no_law(fmt::format("{} sizes have a time, {} are needed", known.size(), kFewestSizes));
+  if (known.size() < kMinSizes) {
+    return no_law(fmt::format("{} sizes have a time, {} are needed", known.size(), kMinSizes));
   }
   const double from = std::ranges::max(known.cells) / kAsymptoticSpan;
   std::vector<double> cells;
@@ -212,9 +211,8 @@ PowerLaw fit_power_law(const Family& family) {
     x.push_back(std::log(known.cells[i]));
     y.push_back(known.times[i].value);
   }
-  if (cells.size() < kFewestSizes) {
-    return no_law(
-        fmt::format("{} sizes from {:g} cells up, {} are needed", cells.size(), from, kFewestSizes));
+  if (cells.size() < kMinSizes) {
+    return no_law(fmt::format("{} sizes from {:g} cells up, {} are needed", cells.size(), from, kMinSizes));
   }
   const Line line = fit_line(x, y);
   const double half =
@@ -252,15 +250,15 @@ double grown(Growth growth, double cells) {
 
 std::vector<GrowthFit> fit_growths(const Family& family) {
   const Times known = times_of(family);
-  if (known.size() < kFewestSizes) return {};
+  if (known.size() < kMinSizes) return {};
   std::vector<GrowthFit> fits;
   for (const Growth growth : {Growth::n2, Growth::n2_log_n, Growth::n3, Growth::n4}) {
     fits.push_back(fit_growth(growth, known));
   }
   std::ranges::stable_sort(fits, {}, &GrowthFit::rms);
   const auto left = static_cast<double>(known.size() - 2);
-  const double tellable = std::sqrt(gsl_cdf_fdist_Pinv(0.95, left, left));
-  for (GrowthFit& fit : fits) fit.as_good = fit.rms <= tellable * fits.front().rms;
+  const double distinguishable = std::sqrt(gsl_cdf_fdist_Pinv(0.95, left, left));
+  for (GrowthFit& fit : fits) fit.as_good = fit.rms <= distinguishable * fits.front().rms;
   return fits;
 }
 

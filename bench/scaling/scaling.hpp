@@ -12,8 +12,6 @@ struct SizedSeconds {
   std::vector<double> seconds;
 };
 
-bool counts(double seconds);
-
 /// One benchmark at several sizes, smallest first.
 using Family = std::vector<SizedSeconds>;
 
@@ -27,7 +25,7 @@ struct TypicalSeconds {
 TypicalSeconds typical(const std::vector<double>& seconds);
 
 /// What a law can be fitted to.
-inline constexpr std::size_t kFewestSizes = 3;
+inline constexpr std::size_t kMinSizes = 3;
 
 /// t = constant cells^exponent, with the exponent's 95 % interval (Student's, from the residuals).
 struct PowerLaw {

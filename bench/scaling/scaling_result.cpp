@@ -85,7 +85,7 @@ Json row_json(double cells, const TimedBenchmark& benchmark, const SizedSeconds&
   set_number(row, "seconds", time.seconds, none);
   set_number(row, "low", time.low, std::isnan(time.seconds) ? none : "one repetition");
   set_number(row, "high", time.high, std::isnan(time.seconds) ? none : "one repetition");
-  row["repetitions"] = std::ranges::count_if(sized.seconds, counts);
+  row["repetitions"] = std::ranges::count_if(sized.seconds, is_valid_time);
   const auto error = benchmark.counters.contains("error") ? benchmark.counters.find("error")
                                                           : benchmark.counters.find("twist_error");
   set_number(row, "error", error == benchmark.counters.end() ? kNaN : error->second,
@@ -126,7 +126,7 @@ Json growth_json(const std::vector<GrowthFit>& fits, std::optional<Growth> theor
     set_missing(json, "theory", kNoTheory);
   }
   if (fits.empty()) {
-    set_missing(json, "best", fmt::format("fewer than {} sizes", kFewestSizes));
+    set_missing(json, "best", fmt::format("fewer than {} sizes", kMinSizes));
   } else {
     json["best"] = to_string(fits.front().growth);
   }

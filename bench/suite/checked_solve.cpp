@@ -27,14 +27,14 @@ Scene paper_scene(solver::Index cells, double moment_ratio) {
 
 CheckedSolution solve_and_check(const Scene& scene) {
   const convergence::Oracle exact = convergence::require_oracle(scene);
-  CheckedSolution checked{.solution = solver::solve(scene), .errors = {}, .objection = {}};
+  CheckedSolution checked{.solution = solver::solve(scene), .errors = {}, .invalid_reason = {}};
   checked.errors = convergence::compare(checked.solution, exact);
-  checked.objection = objection(scene, checked.solution, checked.errors);
+  checked.invalid_reason = invalid_reason(scene, checked.solution, checked.errors);
   return checked;
 }
 
 std::map<std::string, benchmark::Counter> counters(const CheckedSolution& checked) {
-  const auto& [solution, errors, objection] = checked;
+  const auto& [solution, errors, invalid_reason] = checked;
   const std::map<std::string, double> values{{"twist_error", errors.twist},
                                              {"traction_error", errors.traction.at_centres.l2},
                                              {"stick_radius_error", errors.stick_radius},

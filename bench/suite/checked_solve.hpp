@@ -13,7 +13,7 @@ namespace slipstick::bench {
 struct CheckedSolution {
   solver::Solution solution;
   convergence::Errors errors;
-  std::string objection;  ///< why it is no result and must not be timed; empty: none
+  std::string invalid_reason;  ///< why it is no result and must not be timed; empty: none
 };
 
 /// The paper's scene on cells x cells cells under a part of the limit moment: Coulomb's method, nothing left
@@ -23,9 +23,7 @@ solver::Scene paper_scene(solver::Index cells, double moment_ratio);
 /// A scene that comes with the program.
 solver::Scene shipped_scene(const std::string& name);
 
-/// Objects to a solution that has not converged, whose certificate (by Coulomb's method and by projected
-/// gradients) is worse than the tolerance, or whose errors are above what its mesh explains; of a history,
-/// its last step. Throws InputError where there is no exact answer.
+/// Of a history, its last step; see invalid_reason(). Throws InputError where there is no exact answer.
 CheckedSolution solve_and_check(const solver::Scene& scene);
 
 /// Errors, certificate, work and memory.

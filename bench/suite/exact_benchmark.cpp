@@ -1,4 +1,4 @@
-// The exact wing: stick ratio from a moment, twist and one traction, over inputs that span the range. Each
+// The exact side: stick ratio from a moment, twist and one traction, over inputs that span the range. Each
 // time stands beside the worst error over all proven references (error_eps, in units of 2.2e-16, and what is
 // allowed there: 8, or 4 times what an ulp of the input costs) and, since machines differ, as a multiple of
 // one call of GSL's Carlson R_D (per_RD).
@@ -72,8 +72,7 @@ Prepared judged(const std::string& profile, const std::string& given, const std:
   }
   const bool right = worst.error > 0 && worst.error <= worst.allowed;
   return {.counters = {{"error_eps", worst.error}, {"allowed_eps", worst.allowed}},
-          .objection = right ? "" : "disagrees with its references, or has none",
-          .timing = {}};
+          .invalid_reason = right ? "" : "disagrees with its references, or has none"};
 }
 
 /// Times f(i), i running over the inputs, one call an iteration.
@@ -122,9 +121,7 @@ Prepared one_traction(const std::string& name) {
 }
 
 Prepared carlson_rd() {
-  return {.counters = {},
-          .objection = "",
-          .timing = repeated([inputs = spread(), i = std::size_t{0}]() mutable {
+  return {.timing = repeated([inputs = spread(), i = std::size_t{0}]() mutable {
             gsl_sf_result result;
             gsl_sf_ellint_RD_e(0, inputs[i % kInputs] * inputs[i % kInputs], 1, GSL_PREC_DOUBLE, &result);
             benchmark::DoNotOptimize(result.val);

@@ -42,9 +42,9 @@ Prepared torsion_cycles(Index cells, std::size_t reversals) {
   scene.steps.resize(reversals + 1, scene.steps.front());
   for (std::size_t i = 1; i < scene.steps.size(); i += 2) scene.steps[i].torsion = solver::MomentRatio{-0.8};
   const CheckedSolution checked = solve_and_check(scene);
-  Prepared prepared{.counters = counters(checked), .objection = checked.objection, .timing = {}};
+  Prepared prepared{.counters = counters(checked), .invalid_reason = checked.invalid_reason};
   prepared.counters["dissipated_error"] = checked.errors.dissipated;
-  if (prepared.objection.empty()) time_against(prepared, scene, first_loading);
+  if (prepared.invalid_reason.empty()) time_against(prepared, scene, first_loading);
   return prepared;
 }
 
@@ -64,13 +64,12 @@ Prepared torsion_with_force(Index cells, ModelChoice torsion_model) {
                                  {"load_error", load_error},
                                  {"limit_factor", solution.limit.factor},
                                  {"applications", solution.operator_applications}},
-                    .objection = solution.message,
-                    .timing = {}};
-  if (prepared.objection.empty() &&
+                    .invalid_reason = solution.message};
+  if (prepared.invalid_reason.empty() &&
       !(solution.certificate.gap <= scene.tolerance && load_error <= kAllowedLoadError)) {
-    prepared.objection = "the certificate does not hold";
+    prepared.invalid_reason = "the certificate does not hold";
   }
-  if (prepared.objection.empty()) time_against(prepared, scene, torsion);
+  if (prepared.invalid_reason.empty()) time_against(prepared, scene, torsion);
   return prepared;
 }
 

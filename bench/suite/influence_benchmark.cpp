@@ -83,7 +83,7 @@ Prepared tangential(Index cells) {
   prepared.counters["error"] = worst;
   prepared.counters["coefficients_per_second"] =
       rate(static_cast<double>(kComponents.size()) * static_cast<double>(cells * cells));
-  if (!(worst <= kAllowedError)) prepared.objection = "disagrees with quadrature";
+  if (!(worst <= kAllowedError)) prepared.invalid_reason = "disagrees with quadrature";
   prepared.timing = repeated([tables] { benchmark::DoNotOptimize(tables()); });
   return prepared;
 }

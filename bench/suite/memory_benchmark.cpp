@@ -18,9 +18,10 @@ benchmark::Counter bytes_per_second(std::size_t values) {
 
 Prepared reading() {
   const auto array = std::make_shared<std::vector<double>>(kCount, 1.0);
-  return {.counters = {{"bytes_per_second", bytes_per_second(kCount)}},
-          .objection = sum(*array) == static_cast<double>(kCount) ? "" : "the sum of so many ones is wrong",
-          .timing = repeated([array] { benchmark::DoNotOptimize(sum(*array)); })};
+  return {
+      .counters = {{"bytes_per_second", bytes_per_second(kCount)}},
+      .invalid_reason = sum(*array) == static_cast<double>(kCount) ? "" : "the sum of so many ones is wrong",
+      .timing = repeated([array] { benchmark::DoNotOptimize(sum(*array)); })};
 }
 
 /// Bytes by STREAM's count: two arrays read, one written; that it is read before it is written is left out.
@@ -35,7 +36,7 @@ Prepared triad() {
   };
   work();
   return {.counters = {{"bytes_per_second", bytes_per_second(3 * kCount)}},
-          .objection = sum(*a) == 7.0 * static_cast<double>(kCount) ? "" : "the triad is wrong",
+          .invalid_reason = sum(*a) == 7.0 * static_cast<double>(kCount) ? "" : "the triad is wrong",
           .timing = repeated(work)};
 }
 

@@ -83,9 +83,9 @@ Loosest loosest(Scene scene, double wanted_error) {
   for (int digits = 2; digits <= 8 && !(best && best->as_good); ++digits) {
     scene.tolerance = tolerance_of_digits(digits);
     CheckedSolution checked = solve_and_check(scene);
-    const bool right = checked.objection.empty();
+    const bool right = checked.invalid_reason.empty();
     const double error = checked.errors.traction.at_centres.l2;
-    const bool better = !best || !best->checked.objection.empty() ||
+    const bool better = !best || !best->checked.invalid_reason.empty() ||
                         (right && error < best->checked.errors.traction.at_centres.l2);
     if (better) best = {scene, std::move(checked), right && error <= 1.1 * wanted_error};
   }
@@ -114,25 +114,24 @@ void time_methods(Prepared& prepared, const Scene& coulomb, const Scene& paper, 
 
 /// What is timed: the tractions alone, or the whole solve; Coulomb's method to 1e-8, or to the loosest
 /// tolerance at which its tractions are as good.
-struct Contest {
+struct Timed {
   bool whole;
   bool both_loosest;
 };
 
 /// The paper's method is to get the tractions that Coulomb's method has at 1e-8; its path, and with that its
 /// applications, hang on the last bits of the pressure.
-Prepared against_paper_method(Index cells, double moment_ratio, const Contest& contest) {
+Prepared against_paper_method(Index cells, double moment_ratio, const Timed& timed) {
   const Scene scene = paper_scene(cells, moment_ratio);
   Scene by_the_paper = scene;
   by_the_paper.method = solver::Method::paper;
   Loosest coulomb{scene, solve_and_check(scene), true};
   const double wanted_error = coulomb.checked.errors.traction.at_centres.l2;
-  if (contest.both_loosest) coulomb = loosest(scene, wanted_error);
+  if (timed.both_loosest) coulomb = loosest(scene, wanted_error);
   const Loosest paper = loosest(by_the_paper, wanted_error);
   Prepared prepared{.counters = counters(coulomb, paper),
-                    .objection = coulomb.checked.objection + paper.checked.objection,
-                    .timing = {}};
-  if (prepared.objection.empty()) time_methods(prepared, coulomb.scene, paper.scene, contest.whole);
+                    .invalid_reason = coulomb.checked.invalid_reason + paper.checked.invalid_reason};
+  if (prepared.invalid_reason.empty()) time_methods(prepared, coulomb.scene, paper.scene, timed.whole);
   return prepared;
 }
 
@@ -145,8 +144,8 @@ double gap(const Torsion& torsion, const solver::TangentialSolution& solution) {
 
 /// Why a solution, or two of one problem, must not be timed. Each lies within its gap of the least energy,
 /// hence |q - q'|_K^2 <= (sqrt(gap) + sqrt(gap'))^2 |q|_K^2.
-std::string objection(const Torsion& torsion, const solver::TangentialSolution& one,
-                      const solver::TangentialSolution& other, double tolerance) {
+std::string invalid_reason(const Torsion& torsion, const solver::TangentialSolution& one,
+                           const solver::TangentialSolution& other, double tolerance) {
   for (const auto* solution : {&one, &other}) {
     if (solution->status != solver::Status::converged) return solution->message;
     if (const double own = gap(torsion, *solution); !(own <= tolerance)) {
@@ -168,9 +167,8 @@ Prepared against_projected_gradient(const Scene& scene, int digits) {
                                  {"gradient_applications", solver::finest_grid_applications(gradient.grids)},
                                  {"gap", gap(*torsion, coulomb)},
                                  {"gradient_gap", gap(*torsion, gradient)}},
-                    .objection = objection(*torsion, coulomb, gradient, tolerance),
-                    .timing = {}};
-  if (!prepared.objection.empty()) return prepared;
+                    .invalid_reason = invalid_reason(*torsion, coulomb, gradient, tolerance)};
+  if (!prepared.invalid_reason.empty()) return prepared;
   time_both(
       prepared, [torsion, tolerance] { by_coulomb(*torsion, tolerance); },
       [torsion, tolerance] { by_projected_gradient(*torsion, tolerance); });
@@ -190,25 +188,25 @@ std::string load_name(Index cells, int permille) {
   return fmt::format("/cells:{}/permille:{}", cells, permille);
 }
 
-void add_paper_contests(Suite& suite, Index cells, int permille) {
-  const auto add = [&](const std::string& what, const Contest& contest) {
-    const std::string prefix = cells == 256 && permille != 990 && !contest.whole ? "" : "long/";
+void add_paper_pairs(Suite& suite, Index cells, int permille) {
+  const auto add = [&](const std::string& what, const Timed& timed) {
+    const std::string prefix = cells == 256 && permille != 990 && !timed.whole ? "" : "long/";
     suite.add(prefix + "paired/coulomb_over_paper/" + what + load_name(cells, permille),
-              [=] { return against_paper_method(cells, 1e-3 * permille, contest); });
+              [=] { return against_paper_method(cells, 1e-3 * permille, timed); });
   };
   add("traction", {.whole = false, .both_loosest = false});
   add("whole", {.whole = true, .both_loosest = false});
   add("both_loosest", {.whole = false, .both_loosest = true});
 }
 
-void add_gradient_contests(Suite& suite, Index cells, int permille, int digits) {
+void add_gradient_pairs(Suite& suite, Index cells, int permille, int digits) {
   const std::string name = load_name(cells, permille) + fmt::format("/digits:{}", digits);
   const std::string prefix = cells == 128 && permille == 900 && digits != 6 ? "" : "long/";
-  const std::string contest = "paired/coulomb_over_projected_gradient/";
+  const std::string family = "paired/coulomb_over_projected_gradient/";
   const double moment_ratio = 1e-3 * permille;
-  suite.add(prefix + contest + "sphere" + name,
+  suite.add(prefix + family + "sphere" + name,
             [=] { return against_projected_gradient(paper_scene(cells, moment_ratio), digits); });
-  suite.add(prefix + contest + "ellipse" + name,
+  suite.add(prefix + family + "ellipse" + name,
             [=] { return against_projected_gradient(ellipse_scene(cells, moment_ratio), digits); });
 }
 
@@ -216,9 +214,9 @@ void add_gradient_contests(Suite& suite, Index cells, int permille, int digits) 
 
 void add_methods_benchmarks(Suite& suite) {
   for (const int permille : {500, 900, 990}) {
-    for (const Index cells : {128, 256, 512}) add_paper_contests(suite, cells, permille);
+    for (const Index cells : {128, 256, 512}) add_paper_pairs(suite, cells, permille);
     for (const Index cells : {64, 128, 256}) {
-      for (const int digits : {4, 6, 8}) add_gradient_contests(suite, cells, permille, digits);
+      for (const int digits : {4, 6, 8}) add_gradient_pairs(suite, cells, permille, digits);
     }
   }
 }

@@ -33,9 +33,9 @@ Prepared solve(Index cells) {
                        {"applications", solver::finest_grid_applications(found.grids)},
                        {"iterations", found.iterations},
                        {"bytes", found.bytes}},
-          .objection = found.status != solver::Status::converged ? found.message
-                       : right                                   ? ""
-                                                                 : "the pressure is not Hertz's",
+          .invalid_reason = found.status != solver::Status::converged ? found.message
+                            : right                                   ? ""
+                                                                      : "the pressure is not Hertz's",
           .timing = repeated([find] { benchmark::DoNotOptimize(find()); })};
 }
 

@@ -178,7 +178,7 @@ Prepared application(const Form& form, Index cells) {
   };
   Prepared prepared;
   prepared.counters = {{"error", error}, {"bytes", static_cast<double>(op->bytes())}};
-  if (!(error <= kAllowedError<Real>)) prepared.objection = "disagrees with its reference";
+  if (!(error <= kAllowedError<Real>)) prepared.invalid_reason = "disagrees with its reference";
   prepared.timing = repeated(work);
   if (!form.quarter) prepared.counters["GFLOP/s"] = rate(1e-9 * operations(form.kind, cells));
   if constexpr (std::is_same_v<Real, double>) {

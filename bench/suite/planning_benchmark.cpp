@@ -29,10 +29,10 @@ std::string wisdom_of(Index cells) {
 
 /// FFTW learns nothing from one iteration to the next.
 Prepared planning(Index cells, unsigned flags) {
-  return {.counters = {}, .objection = "", .timing = repeated([cells, flags] {
-                                             plan(cells, flags);
-                                             fftw_forget_wisdom();
-                                           })};
+  return {.timing = repeated([cells, flags] {
+            plan(cells, flags);
+            fftw_forget_wisdom();
+          })};
 }
 
 Prepared planning_with_wisdom(Index cells) {
@@ -40,7 +40,7 @@ Prepared planning_with_wisdom(Index cells) {
   const bool usable = fftw_import_wisdom_from_string(wisdom.c_str()) != 0;
   fftw_forget_wisdom();
   return {.counters = {{"wisdom_bytes", static_cast<double>(wisdom.size())}},
-          .objection = usable ? "" : "FFTW does not read the wisdom that it wrote",
+          .invalid_reason = usable ? "" : "FFTW does not read the wisdom that it wrote",
           .timing = repeated([cells, wisdom] {
             fftw_import_wisdom_from_string(wisdom.c_str());
             plan(cells, FFTW_MEASURE);

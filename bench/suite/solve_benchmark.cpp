@@ -47,13 +47,13 @@ double seconds_of(const Scene& scene) {
 Prepared whole_solve(const Scene& scene) {
   const CheckedSolution checked = solve_and_check(scene);
   return {.counters = counters(checked),
-          .objection = checked.objection,
+          .invalid_reason = checked.invalid_reason,
           .timing = repeated([scene] { benchmark::DoNotOptimize(solver::solve(scene)); })};
 }
 
 Prepared over_transforms(const Load& load) {
   Prepared prepared = whole_solve(load.scene());
-  if (!prepared.objection.empty()) return prepared;
+  if (!prepared.invalid_reason.empty()) return prepared;
   FourTransforms<double> transforms(load.cells);
   const SideBySide times =
       side_by_side([&] { return seconds_of(load.scene()); }, [&] { return seconds(transforms); });
@@ -65,8 +65,8 @@ Prepared over_transforms(const Load& load) {
 Prepared over(const Scene& scene, const Scene& other) {
   Prepared prepared = whole_solve(scene);
   const CheckedSolution standard = solve_and_check(other);
-  if (prepared.objection.empty()) prepared.objection = standard.objection;
-  if (!prepared.objection.empty()) return prepared;
+  if (prepared.invalid_reason.empty()) prepared.invalid_reason = standard.invalid_reason;
+  if (!prepared.invalid_reason.empty()) return prepared;
   show_ratio(prepared, side_by_side([&] { return seconds_of(scene); }, [&] { return seconds_of(other); }));
   prepared.counters["ratio_of_bytes"] = prepared.counters["bytes"] / standard.solution.bytes;
   return prepared;

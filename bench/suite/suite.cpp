@@ -21,11 +21,11 @@ void Suite::run(benchmark::State& state, const Entry& entry) {
     try {
       prepared_ = entry.prepare();
     } catch (const std::exception& exception) {
-      prepared_.objection = exception.what();
+      prepared_.invalid_reason = exception.what();
     }
   }
   for (const auto& [counter, value] : prepared_.counters) state.counters[counter] = value;
-  if (!prepared_.objection.empty()) return state.SkipWithError(prepared_.objection.c_str());
+  if (!prepared_.invalid_reason.empty()) return state.SkipWithError(prepared_.invalid_reason.c_str());
   prepared_.timing(state);
 }
 

@@ -11,9 +11,9 @@ namespace slipstick::bench {
 
 /// A benchmark, set up and checked.
 struct Prepared {
-  std::map<std::string, benchmark::Counter> counters;
-  std::string objection;                          ///< why its result must not be timed; empty: nothing
-  std::function<void(benchmark::State&)> timing;  ///< the loop over iterations
+  std::map<std::string, benchmark::Counter> counters = {};
+  std::string invalid_reason = {};                     ///< why its result must not be timed; empty: nothing
+  std::function<void(benchmark::State&)> timing = {};  ///< the loop over iterations
 };
 
 template <typename Work>
@@ -35,7 +35,7 @@ class Suite {
  public:
   using Prepare = std::function<Prepared()>;
 
-  /// An exception in `prepare` is an objection.
+  /// An exception in `prepare` is a reason not to time.
   benchmark::internal::Benchmark* add(const std::string& name, Prepare prepare);
 
  private:

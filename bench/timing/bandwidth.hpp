@@ -35,11 +35,11 @@ inline double sum(std::span<const double> values) {
 /// Seconds to read an array once, from whichever cache or memory holds it by then: the least of several
 /// passes. What reads it once in a computation cannot take less.
 inline double seconds_to_read(std::span<const double> values) {
-  constexpr std::size_t kFewest = 5;
+  constexpr std::size_t kMinPasses = 5;
   constexpr double kLongEnough = 0.02;
   double least = std::numeric_limits<double>::infinity();
   double total = 0.0;
-  for (std::size_t pass = 0; pass < kFewest || total < kLongEnough; ++pass) {
+  for (std::size_t pass = 0; pass < kMinPasses || total < kLongEnough; ++pass) {
     const double taken = seconds([&] { benchmark::DoNotOptimize(sum(values)); });
     least = std::min(least, taken);
     total += taken;

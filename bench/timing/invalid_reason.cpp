@@ -32,7 +32,7 @@ double twist_bound(const Scene& scene, double cells) {
   return (second + kTwistErrorTimesCellsCubed / cells) / (cells * cells) + iteration;
 }
 
-std::string objection_to(const Scene& scene, double moment_ratio, const convergence::Errors& errors) {
+std::string error_above_bound(const Scene& scene, double moment_ratio, const convergence::Errors& errors) {
   const auto cells = static_cast<double>(std::min(scene.cells[0], scene.cells[1]));
   const double traction =
       kTractionErrorTimesCells / (cells * std::abs(moment_ratio)) + std::sqrt(scene.tolerance);
@@ -48,14 +48,14 @@ std::string objection_to(const Scene& scene, double moment_ratio, const converge
 
 }  // namespace
 
-std::string objection(const Scene& scene, const solver::Solution& solution,
-                      const convergence::Errors& errors) {
+std::string invalid_reason(const Scene& scene, const solver::Solution& solution,
+                           const convergence::Errors& errors) {
   if (solution.status != solver::Status::converged) return solution.message;
   const double gap = solution.certificate.gap;
   if (scene.method != solver::Method::paper && !(gap <= scene.tolerance)) {
     return fmt::format("certificate {:.3g} above the tolerance {:.3g}", gap, scene.tolerance);
   }
-  return objection_to(scene, solution.moment / solution.moment_limit, errors);
+  return error_above_bound(scene, solution.moment / solution.moment_limit, errors);
 }
 
 }  // namespace slipstick::bench

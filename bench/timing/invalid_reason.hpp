@@ -10,7 +10,7 @@ namespace slipstick::bench {
 /// Why a solution is no result and must not be timed; empty: none. It has not converged, its certificate (but
 /// by the paper's method) is worse than the tolerance, or its errors are above what its mesh, its pressure
 /// model and its tolerance explain.
-std::string objection(const solver::Scene& scene, const solver::Solution& solution,
-                      const convergence::Errors& errors);
+std::string invalid_reason(const solver::Scene& scene, const solver::Solution& solution,
+                           const convergence::Errors& errors);
 
 }  // namespace slipstick::bench

@@ -11,8 +11,8 @@ namespace slipstick::bench {
 namespace {
 
 /// At least three times; then until this many or so many seconds in all.
-constexpr int kFewest = 3;
-constexpr int kMost = 9;
+constexpr int kMinRepetitions = 3;
+constexpr int kMaxRepetitions = 9;
 constexpr double kSeconds = 1.0;
 /// Chance that the median lies below the interval.
 constexpr double kTail = 0.025;
@@ -33,8 +33,8 @@ Repetitions summarise(std::vector<double> seconds) {
 Repetitions repeat(const std::function<double()>& work) {
   std::vector<double> seconds;
   double total = 0.0;
-  while (static_cast<int>(seconds.size()) < kFewest ||
-         (static_cast<int>(seconds.size()) < kMost && total < kSeconds)) {
+  while (static_cast<int>(seconds.size()) < kMinRepetitions ||
+         (static_cast<int>(seconds.size()) < kMaxRepetitions && total < kSeconds)) {
     seconds.push_back(work());
     total += seconds.back();
   }

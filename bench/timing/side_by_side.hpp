@@ -18,11 +18,9 @@ double seconds(Work&& work) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// Two times in seconds, and first over second: by the clock, and by what the processor spent on them, which
-/// knows nothing of the time that other programs took.
+/// First over second: by the clock, and by what the processor spent on them, which knows nothing of the time
+/// that other programs took.
 struct SideBySide {
-  double first;
-  double second;
   double ratio;
   double cpu_ratio;
 };
@@ -54,24 +52,23 @@ Lap call_for(double wanted, Timed& timed) {
 }
 
 /// The two in turn, so that what else the machine does falls on both; the quicker one several times a round,
-/// lest it sample too short a part of it. Each returns the seconds that count. Medians of all rounds.
+/// so that it does not sample too short a part of it. Each returns the seconds that count. Medians of all
+/// rounds.
 template <typename First, typename Second>
 SideBySide side_by_side(First&& first, Second&& second, const Patience& patience = {}) {
   constexpr double kShare = 0.5;  // of the slower one's time that the quicker one gets at least
-  std::vector<double> firsts, seconds, ratios, cpu_ratios;
+  std::vector<double> ratios, cpu_ratios;
   Lap other{};
   const auto start = std::chrono::steady_clock::now();
   for (double total = 0.0;
        total < patience.seconds || (ratios.size() < patience.rounds && total < patience.most_seconds);) {
     const Lap one = call_for(kShare * other.seconds, first);
     other = call_for(kShare * one.seconds, second);
-    firsts.push_back(one.seconds);
-    seconds.push_back(other.seconds);
     ratios.push_back(one.seconds / other.seconds);
     cpu_ratios.push_back(one.cpu / other.cpu);
     total = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   }
-  return {median(firsts), median(seconds), median(ratios), median(cpu_ratios)};
+  return {median(ratios), median(cpu_ratios)};
 }
 
 }  // namespace slipstick::bench

@@ -95,7 +95,6 @@ std::string cache_text(const Json& cache) {
 
 TimingContext read_context(const Reader& context) {
   TimingContext read;
-  read.date = context.text("date");
   read.host_name = context.text("host_name");
   read.cpus = context.whole("num_cpus", 0);
   read.mhz = context.has("mhz_per_cpu") ? context.number("mhz_per_cpu") : 0.0;
@@ -130,7 +129,7 @@ double seconds_per(const Reader& row) {
   row.refuse("time_unit", "ns, us, ms, s");
 }
 
-/// Rows of a file, so that those which do not say what they are can be told apart.
+/// Rows of a file, so that those which do not say what they are can be distinguished.
 using Names = std::set<std::string>;
 
 /// Of rows without run_type an aggregate is what is called after another row, or after nothing, if a mean and
@@ -200,7 +199,7 @@ void add_repetition(TimedBenchmark& benchmark, const Reader& row) {
   benchmark.counters = read_counters(row);
   benchmark.threads = row.whole("threads", 1);
   const double real = benchmark.timings.back().real;
-  if (!(real > 0.0 && std::isfinite(real)) && benchmark.error.empty()) {
+  if (!is_valid_time(real) && benchmark.error.empty()) {
     benchmark.error =
         fmt::format("the time of repetition {} is {}, which is none", benchmark.timings.size(), real);
   }
@@ -252,6 +251,8 @@ std::vector<TimedBenchmark> read_benchmarks(const Json& rows, const std::string&
 
 }  // namespace
 
+bool is_valid_time(double seconds) { return seconds > 0.0 && std::isfinite(seconds); }
+
 bool are_paired(const Timings& one, const Timings& other) {
   return !one.context.session.empty() && one.context.session == other.context.session;
 }
@@ -265,7 +266,7 @@ const TimedBenchmark* find(const Timings& timings, const std::string& name) {
 bool has_times(const TimedBenchmark& benchmark) {
   return !benchmark.timings.empty() &&
          std::all_of(benchmark.timings.begin(), benchmark.timings.end(),
-                     [](const Timing& timing) { return timing.real > 0.0 && std::isfinite(timing.real); });
+                     [](const Timing& timing) { return is_valid_time(timing.real); });
 }
 
 Json parse_benchmark_json(const std::string& text, const std::string& source) {

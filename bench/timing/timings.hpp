@@ -10,6 +10,9 @@
 /// What Google Benchmark's programs write (--benchmark_format=json), anyone's.
 namespace slipstick::bench {
 
+/// Finite and above zero.
+bool is_valid_time(double seconds);
+
 /// One repetition: seconds of one iteration, by the clock and of the processor.
 struct Timing {
   double real = 0.0;
@@ -28,7 +31,6 @@ struct TimedBenchmark {
 
 /// Where, when and how a file's benchmarks were run.
 struct TimingContext {
-  std::string date;
   std::string host_name;
   int cpus = 0;
   double mhz = 0.0;
@@ -53,7 +55,7 @@ bool are_paired(const Timings& one, const Timings& other);
 /// The benchmark of a name; null where there is none.
 const TimedBenchmark* find(const Timings& timings, const std::string& name);
 
-/// Whether a benchmark has times that can be judged: repetitions, each of them finite and above zero.
+/// Whether a benchmark has times that can be judged: repetitions, each of a valid time.
 bool has_times(const TimedBenchmark& benchmark);
 
 /// Reads what versions 1.5 to 1.9 write, and older ones, whose rows do not say what they are. Throws

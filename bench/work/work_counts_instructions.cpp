@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The function that callgrind is told to count in, as it writes its name.
+/// The function that callgrind counts in, as it writes its name.
 constexpr const char* kCounted = "*do_counted_work*";
 
 [[gnu::noinline]] void do_counted_work(const std::function<SolveWork()>& work) { work(); }

@@ -16,7 +16,6 @@ namespace slipstick::bench {
 
 inline TimingContext quiet_machine() {
   TimingContext context;
-  context.date = "2026-11-20T12:00:00+00:00";
   context.host_name = "somewhere";
   context.cpus = 8;
   context.mhz = 3000.0;
@@ -113,10 +112,10 @@ inline std::string google_json(const Timings& timings) {
     }
   }
   return fmt::format(
-      R"({{"context": {{"date": "{}", "host_name": "{}", "num_cpus": {}, "mhz_per_cpu": {}, "cpu_scaling_enabled": {},
+      R"({{"context": {{"host_name": "{}", "num_cpus": {}, "mhz_per_cpu": {}, "cpu_scaling_enabled": {},
 "caches": [{{"type": "Unified", "level": 2, "size": 2097152, "num_sharing": 1}}], "load_avg": [{}],
 "library_build_type": "{}"}}, "benchmarks": [{}]}})",
-      context.date, context.host_name, context.cpus, context.mhz, context.scaling.value_or(false),
+      context.host_name, context.cpus, context.mhz, context.scaling.value_or(false),
       fmt::join(context.load_average, ","), context.library_build_type, fmt::join(rows, ",\n"));
 }
 

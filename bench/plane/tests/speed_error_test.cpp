@@ -87,17 +87,17 @@ TEST(PlanePoint, IsNotTimedWhereItDoesNotConverge) {
   EXPECT_FALSE(point["not_timed"].get<std::string>().empty());
 }
 
-TEST(Objection, IsRaisedToATwistThatIsSixPercentTooSmall) {
+TEST(InvalidReason, IsGivenForATwistThatIsSixPercentTooSmall) {
   solver::Scene scene = solver::read_scene(kPaper, {"grid.cells=[48,48]"});
   const solver::Solution solution = solver::solve(scene);
   convergence::Errors errors = convergence::compare(solution, *convergence::find_oracle(scene).oracle);
-  EXPECT_EQ(bench::objection(scene, solution, errors), "");
+  EXPECT_EQ(bench::invalid_reason(scene, solution, errors), "");
   errors.twist = -0.06;
-  EXPECT_THAT(bench::objection(scene, solution, errors), HasSubstr("twist error"));
+  EXPECT_THAT(bench::invalid_reason(scene, solution, errors), HasSubstr("twist error"));
   errors.twist = NAN;
-  EXPECT_THAT(bench::objection(scene, solution, errors), HasSubstr("twist error"));
+  EXPECT_THAT(bench::invalid_reason(scene, solution, errors), HasSubstr("twist error"));
   errors.traction.at_centres.l2 = NAN;
-  EXPECT_THAT(bench::objection(scene, solution, errors), HasSubstr("traction error"));
+  EXPECT_THAT(bench::invalid_reason(scene, solution, errors), HasSubstr("traction error"));
 }
 
 TEST(PlaneScene, GoesOnFromKeptPoints) {
