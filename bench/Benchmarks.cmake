@@ -7,7 +7,7 @@ add_executable(slipstick_benchmarks
 slipstick_configure(slipstick_benchmarks)
 target_link_libraries(slipstick_benchmarks PRIVATE slipstick::analytic slipstick_reference_tables
   slipstick::bench   PkgConfig::FFTW GSL::gsl fmt::fmt benchmark::benchmark)
-# Times stand beside errors: the exact wing's against the references that the tests use, the solver's in the scenes that
+# Times stand beside errors: the exact side's against the references that the tests use, the solver's in the scenes that
 # come with the program.
 target_compile_definitions(slipstick_benchmarks PRIVATE SLIPSTICK_SCENES="${PROJECT_SOURCE_DIR}/convergence/scenes")
 
@@ -15,11 +15,10 @@ target_compile_definitions(slipstick_benchmarks PRIVATE SLIPSTICK_SCENES="${PROJ
 add_library(slipstick_work_counts STATIC work/work_counts.cpp work/work_counts_cases.cpp
   work/work_counts_instructions.cpp)
 slipstick_configure(slipstick_work_counts)
-target_link_libraries(slipstick_work_counts PUBLIC slipstick::convergence slipstick::solver PkgConfig::FFTW
+target_link_libraries(slipstick_work_counts PUBLIC slipstick::convergence slipstick::solver slipstick::allocations PkgConfig::FFTW
   PRIVATE fmt::fmt)
 target_compile_definitions(slipstick_work_counts PRIVATE SLIPSTICK_SCENES="${PROJECT_SOURCE_DIR}/convergence/scenes")
 foreach(function
-    malloc calloc realloc _Znwm _Znam _ZnwmSt11align_val_t fftw_alloc_real fftwf_alloc_real
     fftw_plan_dft_1d fftwf_plan_dft_1d fftw_plan_many_dft fftwf_plan_many_dft
     fftw_plan_many_dft_r2c fftwf_plan_many_dft_r2c fftw_plan_many_dft_c2r fftwf_plan_many_dft_c2r
     fftw_plan_guru_r2r

@@ -3,21 +3,16 @@
 #include <fftw3.h>
 
 #include <cstddef>
-#include <cstdlib>
-#include <new>
 #include <unordered_map>
 
+#include "solver/allocations/allocations.hpp"
 #include "solver/operator/cell_integrals.hpp"
 
 namespace slipstick::bench {
 namespace {
 
+/// Of allocations only what is not the program's and must be left out, negative.
 WorkCounts counted;
-
-void count_allocation(std::size_t bytes) {
-  ++counted.allocations;
-  counted.allocated_bytes += static_cast<long>(bytes);
-}
 
 /// Points that each plan transforms. A plan that is destroyed may leave its address to another.
 std::unordered_map<const void*, long>& points_of_plans() {
@@ -27,9 +22,11 @@ std::unordered_map<const void*, long>& points_of_plans() {
 
 template <typename Plan>
 Plan count_plan(Plan plan, long points) {
-  const WorkCounts before = counted;
-  points_of_plans()[plan] = points;
-  counted = before;  // what remembering allocates is not the program's
+  const WorkCounts before = work_counts();
+  points_of_plans()[plan] = points;  // what that allocates is not the program's
+  const WorkCounts remembering = work_counts() - before;
+  counted.allocations -= remembering.allocations;
+  counted.allocated_bytes -= remembering.allocated_bytes;
   ++counted.plans;
   return plan;
 }
@@ -53,7 +50,12 @@ long product(int rank, const fftw_iodim* dimensions) {
 
 }  // namespace
 
-WorkCounts work_counts() { return counted; }
+WorkCounts work_counts() {
+  WorkCounts counts = counted;
+  counts.allocations += solver::allocations();
+  counts.allocated_bytes += solver::allocated_bytes();
+  return counts;
+}
 
 WorkCounts operator-(const WorkCounts& after, const WorkCounts& before) {
   return {.plans = after.plans - before.plans,
@@ -66,7 +68,6 @@ WorkCounts operator-(const WorkCounts& after, const WorkCounts& before) {
 
 }  // namespace slipstick::bench
 
-using slipstick::bench::count_allocation;
 using slipstick::bench::count_plan;
 using slipstick::bench::count_transform;
 using slipstick::bench::counted;
@@ -76,48 +77,6 @@ using slipstick::solver::Index;
 
 extern "C" {
 // NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming): the linker's names
-decltype(malloc) __real_malloc;
-decltype(calloc) __real_calloc;
-decltype(realloc) __real_realloc;
-decltype(fftw_alloc_real) __real_fftw_alloc_real;
-decltype(fftwf_alloc_real) __real_fftwf_alloc_real;
-void* __real__Znwm(std::size_t size);
-void* __real__Znam(std::size_t size);
-void* __real__ZnwmSt11align_val_t(std::size_t size, std::align_val_t alignment);
-
-void* __wrap_malloc(std::size_t size) {
-  count_allocation(size);
-  return __real_malloc(size);
-}
-void* __wrap_calloc(std::size_t number, std::size_t size) {
-  count_allocation(number * size);
-  return __real_calloc(number, size);
-}
-void* __wrap_realloc(void* old, std::size_t size) {
-  count_allocation(size);
-  return __real_realloc(old, size);
-}
-void* __wrap__Znwm(std::size_t size) {  // operator new
-  count_allocation(size);
-  return __real__Znwm(size);
-}
-void* __wrap__Znam(std::size_t size) {  // operator new[]
-  count_allocation(size);
-  return __real__Znam(size);
-}
-void* __wrap__ZnwmSt11align_val_t(std::size_t size, std::align_val_t alignment) {
-  count_allocation(size);
-  return __real__ZnwmSt11align_val_t(size, alignment);
-}
-double* __wrap_fftw_alloc_real(std::size_t number) {
-  count_allocation(number * sizeof(double));
-  return __real_fftw_alloc_real(number);
-}
-float* __wrap_fftwf_alloc_real(std::size_t number) {
-  count_allocation(number * sizeof(float));
-  return __real_fftwf_alloc_real(number);
-}
-
 decltype(fftw_plan_dft_1d) __real_fftw_plan_dft_1d;
 decltype(fftwf_plan_dft_1d) __real_fftwf_plan_dft_1d;
 decltype(fftw_plan_many_dft) __real_fftw_plan_many_dft;

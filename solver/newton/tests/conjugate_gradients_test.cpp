@@ -16,7 +16,7 @@
 #include "solver/newton/multiplier_refinement.hpp"
 #include "solver/newton/tangent_space.hpp"
 #include "solver/operator/direct.hpp"
-#include "solver/tests/allocations.hpp"
+#include "solver/allocations/allocations.hpp"
 #include "solver/tests/dense_algebra.hpp"
 
 namespace slipstick::solver {

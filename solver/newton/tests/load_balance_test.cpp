@@ -8,7 +8,7 @@
 
 #include "solver/contact/limit_load.hpp"
 #include "solver/newton/admissible.hpp"
-#include "solver/tests/allocations.hpp"
+#include "solver/allocations/allocations.hpp"
 
 namespace slipstick::solver {
 namespace {

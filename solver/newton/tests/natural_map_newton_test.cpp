@@ -8,7 +8,7 @@
 #include <random>
 
 #include "solver/operator/elasticity.hpp"
-#include "solver/tests/allocations.hpp"
+#include "solver/allocations/allocations.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
 namespace slipstick::solver {

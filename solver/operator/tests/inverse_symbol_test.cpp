@@ -11,7 +11,7 @@
 #include <vector>
 
 #include "solver/fft/fftw.hpp"
-#include "solver/tests/allocations.hpp"
+#include "solver/allocations/allocations.hpp"
 
 namespace slipstick::solver {
 namespace {

@@ -13,7 +13,7 @@
 #include "solver/grid/mirror.hpp"
 #include "solver/operator/convolution.hpp"
 #include "solver/operator/direct.hpp"
-#include "solver/tests/allocations.hpp"
+#include "solver/allocations/allocations.hpp"
 
 namespace slipstick::solver {
 namespace {

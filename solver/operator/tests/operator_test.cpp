@@ -13,7 +13,7 @@
 #include "solver/operator/convolution.hpp"
 #include "solver/operator/direct.hpp"
 #include "solver/operator/linear_operator.hpp"
-#include "solver/tests/allocations.hpp"
+#include "solver/allocations/allocations.hpp"
 
 namespace slipstick::solver {
 namespace {
