@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.ticker import LogLocator
 
 import style
-from plate import LIMIT, LOAD_LABEL, TWIST_LABEL, Plate
+from figure_entry import LIMIT, LOAD_LABEL, TWIST_LABEL, FigureEntry
 from results import Unavailable, column, nearest, number, rows, text, value
 from wording import percent, plain, rounded_down
 
@@ -48,7 +48,7 @@ def approximations(report, data_dir):
                        textcoords="offset points", va="center")
     right.set(xlabel=LOAD_LABEL, ylabel="error of the twist, |law/exact − 1|", xlim=(0, 1), ylim=(1e-4, 1))
     style.legend_on_top(figure, left.get_legend_handles_labels()[0], 3)
-    return Plate(
+    return FigureEntry(
         f"Up to this part of M<sub>lim</sub> the twist is right within 1&nbsp;% (10&nbsp;%): {', '.join(sentences)}. "
         f"The moment of the DEM law is off by over {rounded_down(100 * abs(dem_error[worst]))}&nbsp;% at "
         f"{LIMIT}{load[worst]:.2g}, and its cap lies {percent(cap - 1)} above M<sub>lim</sub>.",
@@ -70,7 +70,7 @@ def bodies_and_cycles(report, data_dir):
     peak, residual = _draw_loop(axes[1], value(report, "loop"))
     within, far, ratio = _draw_cycle_energy(axes[2], rows(report, "cycle_energy"))
     style.legend_on_top(figure, [handle for axis in axes for handle in axis.get_legend_handles_labels()[0]], 3)
-    return Plate(
+    return FigureEntry(
         f"The whole contact slips at {', '.join(limits)}. A sphere twisted up to {LIMIT}{plain(peak)} keeps "
         f"{percent(residual)} of its twist when the moment is taken away. The cube law for the energy lost in a cycle "
         f"is right within 10&nbsp;% up to an amplitude of {rounded_down(within)}&nbsp;M<sub>lim</sub>; at "

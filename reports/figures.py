@@ -1,4 +1,4 @@
-"""One function a figure: takes the report and the folder of its data, returns a Plate.
+"""One function a figure: takes the report and the folder of its data, returns a FigureEntry.
 
 Errors against the exact solution come with the data; here they are only drawn.
 """
@@ -12,7 +12,7 @@ import maps
 import method_figures
 import studies
 import style
-from plate import LIMIT, LOAD_LABEL, TWIST_LABEL, Plate
+from figure_entry import LIMIT, LOAD_LABEL, TWIST_LABEL, FigureEntry
 from results import Fields, column, nearest, number, rows, text, value
 from wording import percent, plain, sci, seconds
 
@@ -35,7 +35,7 @@ def shear_components(report, data_dir):
     figure.colorbar(top, ax=axes[0, :], label="$q_i/(\\mu p_0)$", pad=0.02)
     figure.colorbar(bottom, ax=axes[1, :], label="error over $\\mu p_0$", extend="min", pad=0.02)
     load, largest, turned = _load(profile), np.nanmax(errors), np.nanmax(np.abs(computed[1] + computed[0].T))
-    return Plate(
+    return FigureEntry(
         f"At {LIMIT}{load} each shear component is within {sci(largest)} μp₀ of the exact one in every "
         f"cell; half of the cells are within {sci(np.nanmedian(errors))} μp₀.",
         f"The circle is the exact edge of the stick area, a<sub>s</sub>/a = {stick_ratio:.4f}. The colours of the "
@@ -63,7 +63,7 @@ def traction_norm(report, data_dir):
     figure.colorbar(right, ax=axes[0, 1], label="error over $\\mu p_0$", extend="min", shrink=0.85)
     load, worst = _load(profile), np.unravel_index(np.nanargmax(error), error.shape)
     place = np.hypot(*(fields.extent[0] + (np.array(worst) + 0.5) * fields.cell))
-    return Plate(
+    return FigureEntry(
         f"The norm of the traction is off by at most {sci(error[worst])} μp₀, in a cell at r/a = {place:.3f}; "
         f"half of the cells are within {sci(np.nanmedian(error))} μp₀.",
         f"{LIMIT}{load}. Inside the circle r = a<sub>s</sub> = {stick_ratio:.4f} a the surfaces stick, "
@@ -98,7 +98,7 @@ def radial_profiles(report, data_dir):
     style.whole_decades(axes[1, 0])
     style.legend_on_top(figure, axes[0, 0].get_legend_handles_labels()[0], 3)
     factor = max(_printed_over_exact(profile) for profile in profiles)
-    return Plate(
+    return FigureEntry(
         f"The computed tractions lie on the exact curve (median error over μp₀: {', '.join(sentences)}); the stick "
         f"branch of Eq. (1), taken as printed, is {factor:.4f} times too large.",
         "π/2 = 1.5708: the printed branch lacks the factor 2/π and so jumps at the stick edge (dotted line), where the "
@@ -123,7 +123,7 @@ def stick_radius(report, data_dir):
     bottom.set(ylabel="|computed/exact − 1|", xlabel=LOAD_LABEL)
     style.whole_decades(bottom)
     style.legend_on_top(figure, top.get_legend_handles_labels()[0], 3)
-    return Plate(
+    return FigureEntry(
         f"Largest relative error of the computed stick radius over all loads: {'; '.join(sentences)}.",
         f"{_cells(report)} The error is relative to the stick radius itself, which vanishes at the right end.",
         "Stick radius against moment: computed points on the exact falling curve, and their relative error below.",
@@ -152,7 +152,7 @@ def twist(report, data_dir):
     bottom.set_ylim(bottom=_floor(report), top=1)
     style.whole_decades(bottom)
     style.legend_on_top(figure, top.get_legend_handles_labels()[0], 2)
-    return Plate(
+    return FigureEntry(
         f"At {LIMIT}{plain(high)} the error of the computed twist is {'; '.join(sentences)}; that of Eq. (7), the curve "
         f"that the paper compares with, is {percent(formula_error[nearest(load, high)])}.",
         "Eq. (7) is an approximation for small moments, printed as an equality. The “few percent” that the paper "
@@ -180,7 +180,7 @@ def convergence(report, data_dir):
     sentences = [f"{LIMIT}{study.load}: twist {_sci_at(row, 'twist_error')}, traction "
                  f"{_sci_at(row, 'traction_error.l1')} in L1, stick radius {_sci_at(row, 'stick_radius_error')}"
                  for study, row in finest]
-    return Plate(
+    return FigureEntry(
         f"Errors left at the finest mesh with the {finest[0][0].name} "
         f"({finest[0][0].cells[-1]:.0f} cells a side): {'; '.join(sentences)}.",
         "Grey lines fall as the cell size (order 1) and as its square (order 2). Norms are relative to that of the "
@@ -204,7 +204,7 @@ def cost(report, data_dir):
     style.legend_on_top(figure, studies.handles(runs), 2)
     sentences = [f"{study.name}: {seconds(number(study.table[-1], 'seconds.total'))} s for "
                  f"{_sci_at(study.table[-1], 'twist_error')}" for study in runs if study.load == runs[-1].load]
-    return Plate(
+    return FigureEntry(
         f"What the twist costs at {runs[0].cells[-1]:.0f} cells a side and {LIMIT}{runs[-1].load}: "
         f"{'; '.join(sentences)}.",
         "Down and left is better. The numbers beside one line are its cells a side; the other lines have the same "
@@ -225,7 +225,7 @@ def equation_5_digits(report, data_dir):
     style.legend_on_top(figure, axis.get_legend_handles_labels()[0], 2)
     samples = [nearest(np.log(complement), np.log(wanted)) for wanted in (1e-2, 1e-4, 1e-6)]
     sentences = [f"{sci(error[i])} at 1&nbsp;−&nbsp;c&nbsp;=&nbsp;{sci(complement[i])}" for i in samples]
-    return Plate(
+    return FigureEntry(
         f"Eq. (5) is right, but as c = a<sub>s</sub>/a tends to 1 its terms cancel: relative error "
         f"{', '.join(sentences)}.",
         "Its terms stay of the size of the limiting moment while their sum, the moment, goes to zero. The exact "

@@ -7,7 +7,7 @@ from matplotlib.colors import Normalize
 
 import style
 from cells import Cells
-from plate import Plate
+from figure_entry import FigureEntry
 from results import number, rows, text, value
 from wording import percent, sci
 
@@ -26,10 +26,11 @@ def gallery(report, data_dir):
         draw_scene(axis, scene, data_dir)
     figure.colorbar(ScalarMappable(Normalize(0, 1), style.SLIP), ax=axes, location="bottom", shrink=0.4, aspect=40,
                     pad=0.01, label="slip in the last step, over its largest value; blue: sticks")
-    return Plate(message(scenes),
-                 "Each panel shows the contact at the end of the scene’s last step, with the share of it that sticks; "
-                 "panels are not to one scale. Numbers are in the <a href=\"#gallery\">table</a>.",
-                 f"{len(scenes)} small maps of contacts, one a scene: what sticks in blue, slip in shades of orange.", figure)
+    return FigureEntry(
+        message(scenes),
+        "Each panel shows the contact at the end of the scene’s last step, with the share of it that sticks; "
+        "panels are not to one scale. Numbers are in the <a href=\"#gallery\">table</a>.",
+        f"{len(scenes)} small maps of contacts, one a scene: what sticks in blue, slip in shades of orange.", figure)
 
 
 def draw_scene(axis, scene, data_dir):

@@ -3,7 +3,7 @@
 import numpy as np
 
 import style
-from plate import LIMIT, LOAD_LABEL, Plate
+from figure_entry import LIMIT, LOAD_LABEL, FigureEntry
 from results import column, groups, number, rows
 from studies import cell_ticks_at
 from wording import plain, sci, seconds
@@ -38,7 +38,7 @@ def methods(report, data_dir):
             for found, name, *_ in by_method(spheres)]
     turned = [f"{_degrees(np.nanmax(column(found, 'slip_direction.mean')))} by {name}"
               for found, name, *_ in by_method(ellipses)]
-    return Plate(
+    return FigureEntry(
         f"On the sphere at {LIMIT}{plain(number(spheres[0], 'moment_ratio'))} and {_across(spheres)[-1]:.0f} cells a side: "
         f"{'; '.join(work)}. On an ellipse slip fails to oppose traction by up to {', '.join(turned)}.",
         "All work of Newton’s method is counted, that on coarser grids by its share of the cells; its applications hardly "
@@ -65,7 +65,7 @@ def certificate(report, data_dir):
     axis.set(xlabel=LOAD_LABEL, ylabel="gap / energy", xlim=(0, 1))
     style.whole_decades(axis)
     style.legend_on_top(figure, axis.get_legend_handles_labels()[0], 2)
-    return Plate(
+    return FigureEntry(
         f"The gap that is left in Coulomb’s law when the iteration stops: {'; '.join(sentences)}.",
         "The gap adds up, over all cells, how far traction and slip are from Coulomb’s law; it is zero only where the "
         "law holds in every cell, it bounds the error in energy, and it needs no exact solution. The paper’s test, "

@@ -4,8 +4,8 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 import style
+from figure_entry import LIMIT, FigureEntry
 from method_figures import METHODS
-from plate import LIMIT, Plate
 from results import Unavailable, number, rows, text, value
 from wording import plain, sci, seconds
 
@@ -86,7 +86,7 @@ def show_exact(axis, scene):
 
 
 def draw(scene):
-    """The figure of one scene of the plane, a Plate."""
+    """The figure of one scene of the plane, a FigureEntry."""
     figure, axes = style.panels(1, len(PANELS), 3.9, sharex=True)
     handles = {}
     for axis, (quantity, title) in zip(axes, PANELS):
@@ -95,8 +95,9 @@ def draw(scene):
     figure.supxlabel("time of a whole solve, s (one thread)", fontsize=9)
     last = Line2D([], [], label="envelope: nothing is quicker and as good", **ENVELOPE)
     style.legend_on_top(figure, [*handles.values(), last], 2)
-    return Plate(message(scene), details(scene),
-                 "Three log-log panels of error against time, a marker a choice, the envelope as a staircase.", figure)
+    return FigureEntry(
+        message(scene), details(scene),
+        "Three log-log panels of error against time, a marker a choice, the envelope as a staircase.", figure)
 
 
 def message(scene):

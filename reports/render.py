@@ -27,9 +27,9 @@ def draw_entry(name, title, draw, folder):
     """A figure as the page needs it: drawn, or with the reason why not."""
     entry = {"name": name, "title": title}
     try:
-        plate = draw()
-        style.save(plate.figure, folder / name)
-        entry.update(message=plate.message, details=plate.details, alt=plate.alt)
+        drawn = draw()
+        style.save(drawn.figure, folder / name)
+        entry.update(message=drawn.message, details=drawn.details, alt=drawn.alt)
     except results.Unavailable as reason:
         entry["unavailable"] = str(reason)
         print(f"render.py: {name} is not available: {reason}", file=sys.stderr)

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 import style
-from plate import Plate
+from figure_entry import FigureEntry
 from results import Unavailable, column, number, rows, value
 from studies import cell_ticks_at
 from wording import plain, sci
@@ -78,9 +78,10 @@ def growth(scaling):
     axis.set_ylim(low, high)
     axis.set(xlabel="cells N along a side", ylabel="time of one application, s")
     style.legend_on_top(figure, handles, 3)
-    return Plate(crossing_message(scaling), growth_details(scaling),
-                 "Log-log lines of time against cells, one a form of the operator, with vertical bands where they cross.",
-                 figure)
+    return FigureEntry(
+        crossing_message(scaling), growth_details(scaling),
+        "Log-log lines of time against cells, one a form of the operator, with vertical bands where they cross.",
+        figure)
 
 
 def mark_crossing(axis, crossing):
@@ -158,10 +159,11 @@ def setting_up(scaling):
     axes[0].set(ylabel="time to set up, s")
     axes[1].set(ylabel="set-up over one application")
     style.legend_on_top(figure, handles, 3)
-    return Plate(f"Setting up costs as much as so many applications: {'; '.join(sentences)}.",
-                 "Influence coefficients, their transforms and FFTW’s plans for convolution; the matrix for the dense "
-                 "operator; tables of coefficients for direct summation. Done once for each grid.",
-                 "Two log-log panels against cells: time to set up, and that time over one application.", figure)
+    return FigureEntry(
+        f"Setting up costs as much as so many applications: {'; '.join(sentences)}.",
+        "Influence coefficients, their transforms and FFTW’s plans for convolution; the matrix for the dense "
+        "operator; tables of coefficients for direct summation. Done once for each grid.",
+        "Two log-log panels against cells: time to set up, and that time over one application.", figure)
 
 
 FIGURES = [("One application of the operator", growth), ("Setting up", setting_up)]

@@ -17,7 +17,7 @@ from matplotlib.ticker import NullLocator  # noqa: E402
 
 import style  # noqa: E402
 import study_result  # noqa: E402
-from plate import Plate  # noqa: E402
+from figure_entry import FigureEntry  # noqa: E402
 from results import InputError, Unavailable, load, nearest, text  # noqa: E402
 from study_result import PARTS, numbers, quantity_words  # noqa: E402
 from wording import LENGTHS, sci, unit_for  # noqa: E402
@@ -165,7 +165,7 @@ def look_handles(series):
 
 
 def draw(study, head=0.0):
-    """The figure of a study, `head` inches free above it, and what it says: a Plate."""
+    """The figure of a study, `head` inches free above it, and what it says: a FigureEntry."""
     series = study_result.read(study)
     quantities = study_result.main_quantities(series)
     to_tolerances = [one for one in series if one.tolerances]
@@ -187,9 +187,10 @@ def draw(study, head=0.0):
     if handles:
         figure.legend(handles=handles, loc="upper center", ncol=2, handlelength=2.0, columnspacing=1.8,
                       borderaxespad=0.1, bbox_to_anchor=(0.5, 1 - head / height))
-    return Plate(failures(study) + message(series, quantities), details(series, quantities),
-                 "Log-log panels of errors against cell size with fitted orders, bars of what an error is made of, or "
-                 "errors against tolerances.", figure)
+    return FigureEntry(
+        failures(study) + message(series, quantities), details(series, quantities),
+        "Log-log panels of errors against cell size with fitted orders, bars of what an error is made of, or "
+        "errors against tolerances.", figure)
 
 
 def _grid(part, count):
@@ -297,9 +298,9 @@ def details(series, quantities):
     return " ".join(sentences)
 
 
-def head_lines(study, plate):
-    return (textwrap.wrap(plate.message, int(11.5 * style.WIDTH)),
-            textwrap.wrap(f"{text(study, 'name')}. {plate.details}", int(15 * style.WIDTH)))
+def head_lines(study, drawn):
+    return (textwrap.wrap(drawn.message, int(11.5 * style.WIDTH)),
+            textwrap.wrap(f"{text(study, 'name')}. {drawn.details}", int(15 * style.WIDTH)))
 
 
 def standalone(study):

@@ -10,7 +10,7 @@ LIMIT = "M/M<sub>lim</sub>&nbsp;=&nbsp;"
 
 
 @dataclass
-class Plate:
+class FigureEntry:
     """A finished figure and what stands beside it. The texts are HTML, but for the plain `alt`."""
     message: str
     details: str
