@@ -23,14 +23,14 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kBothSides = 0.975;  // of a 95 % interval
 
 // Orders that the least-squares method extrapolates with, and up to which it trusts them (Eca and Hoekstra).
-constexpr double kLeastOrder = 0.5;
-constexpr double kMostOrder = 2.0;
+constexpr double kMinOrder = 0.5;
+constexpr double kMaxOrder = 2.0;
 constexpr double kTrustedOrder = 2.1;
 constexpr double kTrusted = 1.25;  // Roache's safety factors
 constexpr double kCautious = 3.0;
 
 double safety_factor(double order) {
-  return order >= kLeastOrder && order <= kTrustedOrder ? kTrusted : kCautious;
+  return order >= kMinOrder && order <= kTrustedOrder ? kTrusted : kCautious;
 }
 
 double range(const Meshes& meshes) {
@@ -66,8 +66,8 @@ Extrapolation extrapolation(const MeshSample& coarse, const MeshSample& middle, 
 
 /// In words; empty where the order of the finest three meshes has not fallen from that of the three before.
 std::string fall_of_order(const Meshes& meshes) {
-  if (meshes.size() <= kFewestMeshes) return "";
-  const auto finest = meshes.end() - kFewestMeshes;
+  if (meshes.size() <= kMinMeshes) return "";
+  const auto finest = meshes.end() - kMinMeshes;
   const double now = extrapolation(finest[0], finest[1], finest[2]).order;
   const double before = extrapolation(finest[-1], finest[0], finest[1]).order;
   if (!(before > now + kOrderMargin)) return "";
@@ -79,11 +79,11 @@ Order judged(Order order, const Meshes& meshes, double expected, const std::stri
   order = judged_by_interval(order, expected);
   const MeshSample& finest = meshes.back();
   const MeshSample& before = meshes[meshes.size() - 2];
-  const double told = resolution(finest) + resolution(before);
-  if (turns(meshes)) {
+  const double noise = resolution(finest) + resolution(before);
+  if (is_non_monotone(meshes)) {
     order.verdict = OrderVerdict::oscillatory;
     order.why = "the values turn back from mesh to mesh";
-  } else if (!(std::abs(finest.value - before.value) > told)) {
+  } else if (!(std::abs(finest.value - before.value) > noise)) {
     order.verdict = OrderVerdict::floor;
     order.why =
         fmt::format("the values of the two finest meshes differ by {:.2g}, which noise and scatter hide",
@@ -209,8 +209,8 @@ Order order_of(const std::optional<PowerFit>& fit, const Meshes& meshes) {
 
 /// The fit that the method extrapolates with.
 PowerFit chosen_fit(const std::optional<PowerFit>& with_order, const Meshes& meshes) {
-  if (with_order && with_order->powers[0] > kMostOrder) return best_of(meshes, {{1.0}, {2.0}});
-  if (with_order && with_order->powers[0] >= kLeastOrder) return *with_order;
+  if (with_order && with_order->powers[0] > kMaxOrder) return best_of(meshes, {{1.0}, {2.0}});
+  if (with_order && with_order->powers[0] >= kMinOrder) return *with_order;
   return best_of(meshes, {{1.0}, {2.0}, {1.0, 2.0}});
 }
 
@@ -262,7 +262,7 @@ Propagated propagated(const Meshes& three) {
 /// Too few values for an order.
 Limit limit_of_few(const Meshes& meshes, std::size_t asked, const std::string& left_out, double expected) {
   const std::string why = fmt::format("{} of {} meshes have a number, {} are needed{}{}", meshes.size(),
-                                      asked, kFewestMeshes, left_out.empty() ? "" : "; ", left_out);
+                                      asked, kMinMeshes, left_out.empty() ? "" : "; ", left_out);
   const Order order{kNaN, kNaN, kNaN, kNaN, OrderVerdict::too_few, why};
   if (meshes.empty()) return {kNaN, kNaN, order, "none"};
   const MeshSample& finest = meshes.back();
@@ -275,7 +275,7 @@ Limit limit_of_few(const Meshes& meshes, std::size_t asked, const std::string& l
 
 Limit least_squares_limit(const std::vector<MeshSample>& values, double expected) {
   const auto [meshes, left_out] = coarsest_first(values);
-  if (meshes.size() <= kFewestMeshes) return richardson_limit(values, expected);
+  if (meshes.size() <= kMinMeshes) return richardson_limit(values, expected);
   const auto with_order = best_with_order(meshes);
   const PowerFit fit = chosen_fit(with_order, meshes);
   const bool fitted = with_order && fit.powers == with_order->powers;
@@ -288,8 +288,8 @@ Limit least_squares_limit(const std::vector<MeshSample>& values, double expected
 Limit richardson_limit(const std::vector<MeshSample>& values, double expected) {
   constexpr double most_order = 3.0;  // piecewise constant fields give 2, with luck somewhat more
   const auto [meshes, left_out] = coarsest_first(values);
-  if (meshes.size() < kFewestMeshes) return limit_of_few(meshes, values.size(), left_out, expected);
-  const Meshes three(meshes.end() - kFewestMeshes, meshes.end());
+  if (meshes.size() < kMinMeshes) return limit_of_few(meshes, values.size(), left_out, expected);
+  const Meshes three(meshes.end() - kMinMeshes, meshes.end());
   const auto [found, order_doubt, limit_doubt] = propagated(three);
   const double constant = found.left / std::pow(three.back().size, found.order);
   const Order fitted{found.order,    found.order - order_doubt, found.order + order_doubt,
@@ -297,7 +297,7 @@ Limit richardson_limit(const std::vector<MeshSample>& values, double expected) {
                      sizes_of(three)};
   Order order = judged(fitted, meshes, expected, left_out);
   const double finest = three.back().value;
-  if (!(found.order >= kLeastOrder && found.order <= most_order)) {
+  if (!(found.order >= kMinOrder && found.order <= most_order)) {
     order.constant = kNaN;
     return {finest, kCautious * range(three) + uncertainty(three.back()), order, "finest mesh"};
   }

@@ -10,7 +10,7 @@ namespace slipstick::convergence {
 /// Where a sequence of values leads, without an exact one.
 struct Limit {
   double value;        ///< NaN only where there is no finite sample
-  double uncertainty;  ///< how far the true limit may be from it; NaN where nothing tells
+  double uncertainty;  ///< how far the true limit may be from it; NaN where nothing says
   Order order;         ///< of value - limit; its constant is NaN where the limit is not that of its power
   std::string method;  ///< how it was found
 };
@@ -35,7 +35,7 @@ Limit least_squares_limit(const std::vector<MeshSample>& values, double expected
 /// their sizes. The uncertainty of the limit is F |e|, e being the finest mesh's distance from it, with F as
 /// above, and what noise and scatter of the three values do to the limit. Where they show no p between 0.5
 /// and 3, the finest value stands, with three times their range (their earlier rule, Computers & Fluids
-/// 38, 2009). Three values leave no freedom to tell an interval from: the order's is what
+/// 38, 2009). Three values leave no freedom to determine an interval from: the order's is what
 /// noise and scatter leave open, and its verdict rests on the agreement with the expected order. From two
 /// meshes, the finest value and three times the distance that the expected order gives (Roache 1998).
 Limit richardson_limit(const std::vector<MeshSample>& values, double expected);

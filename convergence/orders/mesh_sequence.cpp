@@ -65,14 +65,14 @@ double resolution(const MeshSample& sample) {
   return std::max(kAboveNoise * sample.noise, kBelievedScatter * standard_error(sample));
 }
 
-bool turns(const std::vector<MeshSample>& meshes) {
+bool is_non_monotone(const std::vector<MeshSample>& meshes) {
   bool rises = false;
   bool falls = false;
   for (std::size_t i = 0; i + 1 < meshes.size(); ++i) {
     const double step = meshes[i + 1].value - meshes[i].value;
-    const double told = resolution(meshes[i]) + resolution(meshes[i + 1]);
-    rises |= step > told;
-    falls |= step < -told;
+    const double noise = resolution(meshes[i]) + resolution(meshes[i + 1]);
+    rises |= step > noise;
+    falls |= step < -noise;
   }
   return rises && falls;
 }

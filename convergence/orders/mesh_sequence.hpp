@@ -28,11 +28,11 @@ struct MeshSequence {
 /// Throws std::invalid_argument for a size that is not positive and for one given twice.
 MeshSequence coarsest_first(const std::vector<MeshSample>& samples);
 
-/// Three values are the fewest that a limit, a factor and an order can be told from.
-inline constexpr std::size_t kFewestMeshes = 3;
+/// Three values are the fewest that a limit, a factor and an order can be determined from.
+inline constexpr std::size_t kMinMeshes = 3;
 
-/// An error, or the distance of two values, is told from its noise where it is so many times as large: a
-/// tenth of it then moves an order between meshes of twice the size by 0.15.
+/// An error, or the distance of two values, is distinguished from its noise where it is so many times as
+/// large: a tenth of it then moves an order between meshes of twice the size by 0.15.
 inline constexpr double kAboveNoise = 10.0;
 
 /// Standard errors that a mean is believed to: 95 % of a normal distribution.
@@ -44,11 +44,11 @@ double standard_error(const MeshSample& sample);
 /// How far a value may be from that of its mesh: noise, and scatter of the mean.
 double uncertainty(const MeshSample& sample);
 
-/// Up to here an error of the sample cannot be told from zero.
+/// Up to here an error of the sample cannot be distinguished from zero.
 double resolution(const MeshSample& sample);
 
 /// Whether the numbers, in the order of the meshes, go up and then down or down and then up by more than the
 /// meshes' resolution.
-bool turns(const std::vector<MeshSample>& meshes);
+bool is_non_monotone(const std::vector<MeshSample>& meshes);
 
 }  // namespace slipstick::convergence

@@ -84,7 +84,7 @@ LogFit log_fit(const Meshes& meshes, const Scatter& scatter, Eigen::Index degree
 }
 
 /// Whether an error is more than noise and scatter.
-bool is_told(const MeshSample& error) { return std::abs(error.value) > resolution(error); }
+bool is_distinguished(const MeshSample& error) { return std::abs(error.value) > resolution(error); }
 
 /// Between the two finest meshes.
 double finest_order(const Meshes& meshes) {
@@ -129,7 +129,7 @@ bool changes_sign(const Meshes& meshes) { return of_one_sign(meshes).size() < me
 Meshes past_change_of_sign(const Meshes& meshes) {
   const Meshes past = of_one_sign(meshes);
   const Meshes before(meshes.begin(), meshes.end() - std::ssize(past));
-  return past.size() >= kFewestMeshes && (before.empty() || !changes_sign(before)) ? past : meshes;
+  return past.size() >= kMinMeshes && (before.empty() || !changes_sign(before)) ? past : meshes;
 }
 
 Meshes sizes_of(Meshes errors) {
@@ -138,24 +138,25 @@ Meshes sizes_of(Meshes errors) {
 }
 
 /// What speaks against a power law, before any interval is looked at; empty reason: nothing.
-std::pair<OrderVerdict, std::string> obstacle(const Meshes& told, const Meshes& all, double expected) {
+std::pair<OrderVerdict, std::string> obstacle(const Meshes& distinguished, const Meshes& all,
+                                              double expected) {
   const MeshSample& finest = all.back();
-  if (!is_told(finest)) {
+  if (!is_distinguished(finest)) {
     return {OrderVerdict::floor,
             fmt::format("the finest error, {:.2g}, is lost in noise and scatter: less than {:.2g} cannot be "
                         "told from zero",
                         std::abs(finest.value), resolution(finest))};
   }
-  if (told.size() < kFewestMeshes) return {};
-  if (changes_sign(told)) {
+  if (distinguished.size() < kMinMeshes) return {};
+  if (changes_sign(distinguished)) {
     return {OrderVerdict::oscillatory, "the error changes its sign from mesh to mesh"};
   }
-  if (stands_still(told, expected)) {
+  if (stands_still(distinguished, expected)) {
     return {OrderVerdict::floor,
             fmt::format("the error has stopped to fall: {:.3g} and {:.3g} on the two finest meshes",
-                        told[told.size() - 2].value, told.back().value)};
+                        distinguished[distinguished.size() - 2].value, distinguished.back().value)};
   }
-  if (turns(sizes_of(told))) {
+  if (is_non_monotone(sizes_of(distinguished))) {
     return {OrderVerdict::oscillatory, "the error rises on one mesh and falls on another"};
   }
   return {};
@@ -209,27 +210,28 @@ Order judged_by_interval(Order order, double expected) {
 Order fit_order(const std::vector<MeshSample>& errors, double expected) {
   const auto [all, left_out] = coarsest_first(errors);
   std::string also = left_out.empty() ? "" : "; " + left_out;
-  if (all.size() < kFewestMeshes) {
+  if (all.size() < kMinMeshes) {
     return no_order(OrderVerdict::too_few, fmt::format("{} of {} meshes have a number, {} are needed{}",
-                                                       all.size(), errors.size(), kFewestMeshes, also));
+                                                       all.size(), errors.size(), kMinMeshes, also));
   }
-  Meshes told;
-  std::ranges::copy_if(all, std::back_inserter(told), is_told);
-  const std::size_t above = told.size();
-  told = past_change_of_sign(told);
-  if (told.size() < above) {
-    also = fmt::format("; {} coarser, with errors of the other sign, left out{}", above - told.size(), also);
+  Meshes distinguished;
+  std::ranges::copy_if(all, std::back_inserter(distinguished), is_distinguished);
+  const std::size_t above = distinguished.size();
+  distinguished = past_change_of_sign(distinguished);
+  if (distinguished.size() < above) {
+    also = fmt::format("; {} coarser, with errors of the other sign, left out{}",
+                       above - distinguished.size(), also);
   }
-  const auto [verdict, reason] = obstacle(told, all, expected);
-  if (told.size() < kFewestMeshes) {
+  const auto [verdict, reason] = obstacle(distinguished, all, expected);
+  if (distinguished.size() < kMinMeshes) {
     return no_order(
         reason.empty() ? OrderVerdict::too_few : verdict,
         fmt::format("{}{} of {} errors are above noise and scatter, {} are needed{}",
-                    reason.empty() ? "" : reason + "; ", told.size(), all.size(), kFewestMeshes, also));
+                    reason.empty() ? "" : reason + "; ", distinguished.size(), all.size(), kMinMeshes, also));
   }
-  const Scatter known = scatter(told);
-  Order order = judged_by_interval(line_order(told, known), expected);
-  const std::string drifting = drift(told, known, order.value);
+  const Scatter known = scatter(distinguished);
+  Order order = judged_by_interval(line_order(distinguished, known), expected);
+  const std::string drifting = drift(distinguished, known, order.value);
   if (!reason.empty()) {
     order.verdict = verdict;
     order.why = fmt::format("{}; {}", reason, in_words(order));
@@ -237,7 +239,7 @@ Order fit_order(const std::vector<MeshSample>& errors, double expected) {
     order.verdict = OrderVerdict::preasymptotic;
     order.why = fmt::format("{}; {}", drifting, in_words(order));
   }
-  order.why += fmt::format(" over {} meshes{}", told.size(), also);
+  order.why += fmt::format(" over {} meshes{}", distinguished.size(), also);
   return order;
 }
 

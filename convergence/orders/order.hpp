@@ -22,12 +22,12 @@ struct Order {
 /// error is still there.
 inline constexpr double kOrderMargin = 0.1;
 
-/// A wider interval, on either side of the order, does not tell whole orders apart.
+/// A wider interval, on either side of the order, does not distinguish whole orders.
 inline constexpr double kWidestHalf = 0.5;
 
-/// Least squares of log |error| against log size over the meshes whose error is told from its noise and
-/// scatter. errors: signed, in any order of the meshes. expected: the order that theory gives; NaN where it
-/// gives none, and then the verdict is preasymptotic at best. The interval is Student's. Where all meshes
+/// Least squares of log |error| against log size over the meshes whose error is distinguished from its noise
+/// and scatter. errors: signed, in any order of the meshes. expected: the order that theory gives; NaN where
+/// it gives none, and then the verdict is preasymptotic at best. The interval is Student's. Where all meshes
 /// have several grids whose spread explains the residuals (chi squared, 95 %), it follows from the spread,
 /// and meshes weigh as that says; otherwise from the residuals, with equal weights. What the noise can do to
 /// the order comes on top. Throws as coarsest_first().
@@ -38,7 +38,7 @@ inline constexpr double kWidestHalf = 0.5;
 /// - oscillatory: the sign changes, other than once before the three finest meshes (the meshes before that
 ///   take no part), or the size rises on one mesh and falls on another;
 /// - preasymptotic: the order between the two finest meshes is not that of all, to kOrderMargin, and a
-///   curvature is significant at 95 % (or there are too few meshes to tell);
+///   curvature is significant at 95 % (or there are too few meshes to say);
 /// - superconvergent: the interval lies above expected + kOrderMargin;
 /// - preasymptotic: the interval is wider than kWidestHalf on a side, or ends below expected - kOrderMargin;
 /// - asymptotic.
