@@ -15,6 +15,7 @@
 #include "bench/compare/compare_command.hpp"
 #include "convergence/check/check_command.hpp"
 #include "convergence/gates/gate_command.hpp"
+#include "convergence/programs/run_program.hpp"
 #include "convergence/report/report_command.hpp"
 #include "convergence/results/markup.hpp"
 #include "convergence/solve/solve_command.hpp"
@@ -87,6 +88,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
+    slipstick::convergence::obey_tie(argc, argv);
     return run(argc, argv);
   } catch (const std::exception& error) {
     std::cerr << "slipstick: " << error.what() << '\n';

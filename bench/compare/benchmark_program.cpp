@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include <fstream>
+#include <sstream>
 #include <stdexcept>
 #include <string_view>
 
@@ -17,6 +17,8 @@ namespace slipstick::bench {
 namespace {
 
 namespace fs = std::filesystem;
+using convergence::Captured;
+using convergence::ProgramEnd;
 using convergence::run_program;
 using convergence::TemporaryFolder;
 
@@ -41,15 +43,13 @@ std::vector<std::string> list_benchmarks(const fs::path& program, const std::str
   if (!fs::is_regular_file(program)) {
     throw solver::InputError(program.string(), "there is no such program; allowed: one of Google Benchmark");
   }
-  const TemporaryFolder folder;
-  const fs::path list = folder / "list";
   std::vector<std::string> words{program_word(program), "--benchmark_list_tests"};
   if (!filter.empty()) words.push_back(fmt::format("--benchmark_filter={}", filter));
-  const int status = run_program(words, list);
+  const ProgramEnd end = run_program(words, {.captured = Captured::output});
   std::vector<std::string> names;
-  std::ifstream lines(list);
+  std::istringstream lines(end.output);
   for (std::string line; std::getline(lines, line);) names.push_back(line);
-  if (status != 0 || names.empty()) {
+  if (end.code != 0 || names.empty()) {
     throw solver::InputError(program.string(), fmt::format("lists no benchmark that fits \"{}\"", filter));
   }
   return names;
@@ -59,15 +59,14 @@ nlohmann::ordered_json run_benchmark(const fs::path& program, const std::string&
                                      const RunLength& length) {
   const TemporaryFolder folder;
   const fs::path out = folder / "timings.json";
-  const int status =
+  const ProgramEnd end =
       run_program({program_word(program), fmt::format("--benchmark_filter={}", benchmark_filter({name})),
                    fmt::format("--benchmark_out={}", out.string()), "--benchmark_out_format=json",
                    fmt::format("--benchmark_min_time={}", length.seconds),
                    fmt::format("--benchmark_repetitions={}", length.repetitions)},
-                  folder / "shown", folder / "complaints");
-  if (status != 0) {
-    throw std::runtime_error(
-        fmt::format("{}: benchmark {} ended with code {}", program.string(), name, status));
+                  {.captured = Captured::everything});
+  if (end.code != 0) {
+    throw std::runtime_error(fmt::format("{}: benchmark {} {}", program.string(), name, end.trouble));
   }
   return parse_benchmark_json(convergence::read_text(out),
                               fmt::format("{}: benchmark {}", program.string(), name));

@@ -16,7 +16,7 @@
 namespace slipstick::bench {
 namespace {
 
-using convergence::kMostMarkdown;
+using convergence::kMaxMarkdown;
 using convergence::markdown_cell;
 using convergence::xml_text;
 using Json = nlohmann::ordered_json;
@@ -217,7 +217,7 @@ std::string comparison_markdown(const ComparisonReport& report) {
     row[0] = markdown_cell(row[0]);
     const std::string line =
         fmt::format("| {} | {} |\n", fmt::join(row, " | "), markdown_cell(sorted[i].remark));
-    if (text.size() + line.size() + room_for_note > kMostMarkdown) {
+    if (text.size() + line.size() + room_for_note > kMaxMarkdown) {
       return text + fmt::format("\n{} more, none worse than these, are left out here.\n", sorted.size() - i);
     }
     text += line;

@@ -21,7 +21,7 @@ struct ComparisonReport {
 /// For a person: a table, the worst first, why times could not be judged, and the counts.
 std::string comparison_text(const ComparisonReport& report);
 
-/// The same as Markdown, shorter than kMostMarkdown bytes: what does not fit is counted.
+/// The same as Markdown, shorter than kMaxMarkdown bytes: what does not fit is counted.
 std::string comparison_markdown(const ComparisonReport& report);
 
 /// JUnit's XML, as CI servers read it: a case a benchmark, and one for each obstacle. What is slower or

@@ -1,14 +1,12 @@
 #include "bench/compare/second_run.hpp"
 
 #include <fmt/core.h>
-#include <sys/wait.h>
 
-#include <array>
-#include <cstdio>
-#include <memory>
 #include <string_view>
 
 #include "bench/compare/benchmark_program.hpp"
+#include "convergence/programs/run_program.hpp"
+#include "convergence/results/markup.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::bench {
@@ -18,14 +16,8 @@ using solver::InputError;
 
 constexpr std::string_view kPlace = "{filter}";
 
-std::string in_quotes(const std::string& word) {
-  std::string quoted = "'";
-  for (const char c : word) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
-}
-
 std::string with_filter(std::string command, const std::string& filter, const std::string& option) {
-  const std::string word = in_quotes(filter);
+  const std::string word = convergence::shell_word(filter);
   for (std::size_t at = command.find(kPlace); at != std::string::npos; at = command.find(kPlace, at)) {
     const std::string around = command.substr(at == 0 ? 0 : at - 1, kPlace.size() + 2);
     if (around.find_first_of("'\"") != std::string::npos) {
@@ -35,24 +27,6 @@ std::string with_filter(std::string command, const std::string& filter, const st
     at += word.size();
   }
   return command;
-}
-
-struct Output {
-  std::string text;
-  int status = -1;
-};
-
-Output run_by_shell(const std::string& command) {
-  std::FILE* const pipe = popen(command.c_str(), "r");
-  Output output;
-  if (pipe == nullptr) return output;
-  std::array<char, 65536> buffer{};
-  while (const std::size_t size = std::fread(buffer.data(), 1, buffer.size(), pipe)) {
-    output.text.append(buffer.data(), size);
-  }
-  const int status = pclose(pipe);
-  output.status = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return output;
 }
 
 }  // namespace
@@ -76,9 +50,11 @@ ComparisonReport compare_twice(const TwoTimings& first, const ComparisonRules& r
 
 Timings run_again(const std::string& command, const std::vector<std::string>& names) {
   const std::string option = fmt::format("--rerun {}", command);
-  const Output output = run_by_shell(with_filter(command, benchmark_filter(names), option));
-  if (output.status != 0) throw InputError(option, fmt::format("ended with {}", output.status));
-  return parse_timings(output.text, "second run");
+  const convergence::ProgramEnd end =
+      convergence::run_program({"sh", "-c", with_filter(command, benchmark_filter(names), option)},
+                               {.captured = convergence::Captured::output});
+  if (end.code != 0) throw InputError(option, end.trouble);
+  return parse_timings(end.output, "second run");
 }
 
 }  // namespace slipstick::bench

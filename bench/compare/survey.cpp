@@ -34,12 +34,12 @@ std::string cache_key(const fs::path& program, const std::string& name, const Ru
 
 Json run_survey(const fs::path& program, const std::vector<std::string>& names, const RunLength& length,
                 const fs::path& folder) {
-  convergence::Journal journal(folder);
+  const convergence::ResultCache cache(folder);
   convergence::Progress progress(names.size(), static_cast<double>(names.size()));
   Json file;
   for (const std::string& name : names) {
-    const Json run = journal.point(file_name(name), cache_key(program, name, length),
-                                   [&] { return run_benchmark(program, name, length); });
+    const Json run = cache.find_or_compute(file_name(name), cache_key(program, name, length),
+                                           [&] { return run_benchmark(program, name, length); });
     if (file.is_null()) file = {{"context", run.at("context")}, {"benchmarks", Json::array()}};
     for (const Json& row : run.at("benchmarks")) file["benchmarks"].push_back(row);
     progress.finished(name, 1.0);

@@ -166,14 +166,15 @@ Json measure_point(const std::filesystem::path& scene, double moment_ratio, cons
 }
 
 Json measure_scene(const PlaneOptions& options, double moment_ratio, const std::vector<PlaneChoice>& design) {
-  convergence::Journal journal(options.output);
+  const convergence::ResultCache cache(options.output);
   Json scene{{"name", fmt::format("paper-{}", moment_ratio)},
              {"moment_ratio", moment_ratio},
              {"points", Json::array()}};
   for (const PlaneChoice& choice : design) {
-    const std::string question =
-        convergence::question({.scene = options.scene, .overrides = all_overrides(moment_ratio, choice)});
-    scene["points"].push_back(journal.point(file_name(moment_ratio, choice), question, [&] {
+    const std::string key =
+        convergence::prepare_run({.scene = options.scene, .overrides = all_overrides(moment_ratio, choice)})
+            .cache_key;
+    scene["points"].push_back(cache.find_or_compute(file_name(moment_ratio, choice), key, [&] {
       return measure_point(options.scene, moment_ratio, choice);
     }));
     if (options.progress) options.progress(label(moment_ratio, choice));

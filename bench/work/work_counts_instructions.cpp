@@ -1,17 +1,16 @@
 #include "bench/work/work_counts_instructions.hpp"
 
 #include <fmt/core.h>
-#include <sys/wait.h>
 
 #include <cctype>
 #include <fstream>
+#include <list>
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
 #include <thread>
 
-#include "convergence/programs/child_process.hpp"
 #include "convergence/programs/run_program.hpp"
 #include "convergence/programs/temporary_folder.hpp"
 
@@ -48,18 +47,22 @@ std::optional<long> own_count(const std::string& line) {
 }
 
 /// valgrind on one case.
-pid_t start(const fs::path& program, const std::string& name, const fs::path& output) {
-  return convergence::start_program(
-      {"valgrind", "--tool=callgrind", "--quiet", "--callgrind-out-file=" + output.string(),
-       std::string("--toggle-collect=") + kCounted, program.string(), "--do", name});
+std::vector<std::string> valgrind(const fs::path& program, const std::string& name, const fs::path& output) {
+  return {"valgrind",
+          "--tool=callgrind",
+          "--quiet",
+          "--callgrind-out-file=" + output.string(),
+          std::string("--toggle-collect=") + kCounted,
+          program.string(),
+          "--do",
+          name};
 }
 
 /// Whether there is a valgrind.
-bool wait_for(pid_t child, const std::string& name) {
-  const int status = convergence::wait_for_child(child);
-  if (WIFEXITED(status) && WEXITSTATUS(status) == convergence::kNotStarted) return false;
-  if (WIFEXITED(status) && WEXITSTATUS(status) == 0) return true;
-  throw std::runtime_error(fmt::format("{} under valgrind failed (status {})", name, status));
+bool wait_for(convergence::Program& child, const std::string& name) {
+  const convergence::ProgramEnd end = child.wait();
+  if (!end.started || end.code == 0) return end.started;
+  throw std::runtime_error(fmt::format("{} under valgrind {}", name, end.trouble));
 }
 
 }  // namespace
@@ -102,12 +105,13 @@ std::optional<std::map<std::string, Instructions>> run_callgrind(const fs::path&
   std::map<std::string, Instructions> found;
   for (std::size_t first = 0; first < cases.size(); first += at_a_time) {
     const std::size_t last = std::min(first + at_a_time, cases.size());
-    std::vector<pid_t> children;
+    std::list<convergence::Program> children;
     for (std::size_t i = first; i < last; ++i) {
-      children.push_back(start(program, cases[i].name, output(cases[i])));
+      children.emplace_back(valgrind(program, cases[i].name, output(cases[i])));
     }
     bool installed = true;
-    for (std::size_t i = first; i < last; ++i) installed &= wait_for(children[i - first], cases[i].name);
+    auto child = children.begin();
+    for (std::size_t i = first; i < last; ++i) installed &= wait_for(*child++, cases[i].name);
     if (!installed) return std::nullopt;
     for (std::size_t i = first; i < last; ++i) {
       found[cases[i].name] = read_callgrind(output(cases[i]));

@@ -3,13 +3,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <cctype>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <utility>
 
+#include "convergence/results/markup.hpp"
 #include "convergence/results/quantity.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "solver/input/misspelling.hpp"
@@ -30,7 +29,7 @@ const Json* stated_reference_error(const Json& object) {
   return stated == exact->end() ? nullptr : &*stated;
 }
 
-/// By how much a value may be off before the gate turns; NaN where it asks for no such thing.
+/// By how much a value may be off before the verdict changes; NaN where it asks for no such thing.
 double tolerance(const Gate& gate) {
   if (!gate.below) return kNaN;
   return gate.above ? 0.5 * (*gate.below - *gate.above) : *gate.below;
@@ -136,17 +135,6 @@ std::string fault(const Gate& gate, const Json& result, const FoundQuantity& fou
   if (!holds(gate, *found.value)) return out_of_bounds_text(gate, *found.value);
   const bool unfinished = gate.quantity != "status" && word(result, "status") == "not_converged";
   return unfinished ? "the solve did not reach its tolerance" + because(word(result, "message")) : "";
-}
-
-/// A word as a shell takes it.
-std::string shell_word(const std::string& text) {
-  const auto is_plain = [](unsigned char c) {
-    return std::isalnum(c) != 0 || std::strchr("-._/+,:@", c) != nullptr;
-  };
-  if (std::all_of(text.begin(), text.end(), is_plain)) return text;
-  std::string quoted = "'";
-  for (const char c : text) quoted += c == '\'' ? "'\\''" : std::string(1, c);
-  return quoted + "'";
 }
 
 Outcome outcome_of(GateStatus status, bool held) {

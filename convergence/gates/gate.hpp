@@ -49,8 +49,8 @@ struct Judgement {
   double factor =
       0.0;          ///< of the bound that the value reaches: 1 is at the bound; infinite where no number says
   std::string why;  ///< one sentence; empty where it passed
-  std::string blame;     ///< which part of the error budget is likely to blame; empty: not known
-  double seconds = 0.0;  ///< that the result took; zero where an earlier gate looks at the same result
+  std::string dominant_error;  ///< the largest part of the error budget; empty: not known
+  double seconds = 0.0;        ///< that the result took; zero where an earlier gate looks at the same result
 };
 
 /// A gate needs this many times the error of what it is judged by: less, and a verdict says as much about the

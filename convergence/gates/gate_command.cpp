@@ -9,6 +9,7 @@
 #include "convergence/gates/gate_reader.hpp"
 #include "convergence/gates/gate_report.hpp"
 #include "convergence/gates/gate_run.hpp"
+#include "convergence/runs/interrupts.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
@@ -28,8 +29,9 @@ struct Options {
 int run(const Options& options, std::ostream& text, nlohmann::ordered_json& result) {
   const GateFiles files = read_gate_files(options.files, options.results);
   std::vector<Judgement> judgements = files.unreadable;
-  PointRunner runner(options.output, options.jobs);
-  const std::vector<Judgement> judged = run_gates(select_gates(files.gates, options.only), runner);
+  const Interrupts interrupts;
+  const ProcessPool pool({.folder = options.output, .jobs = options.jobs, .interrupted = Interrupts::seen});
+  const std::vector<Judgement> judged = run_gates(select_gates(files.gates, options.only), pool);
   judgements.insert(judgements.end(), judged.begin(), judged.end());
 
   result = gates_json(judgements);

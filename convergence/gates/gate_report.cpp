@@ -77,7 +77,7 @@ std::vector<std::string> explanation(const Judgement& judgement) {
   const auto add = [&](const char* label, const std::string& text) {
     if (!text.empty()) lines.push_back(fmt::format("{}: {}", label, text));
   };
-  add("likely to blame", judgement.blame);
+  add("likely to blame", judgement.dominant_error);
   add("why it matters", gate.reason);
   add("where the bound comes from", gate.basis);
   if (was_read(judgement)) add("again, alone", rerun_command(gate));
@@ -162,7 +162,7 @@ Json judgement_json(const Judgement& judgement) {
     json["rerun"] = rerun_command(gate);
   }
   json["why"] = judgement.why;
-  if (!judgement.blame.empty()) json["blame"] = judgement.blame;
+  if (!judgement.dominant_error.empty()) json["blame"] = judgement.dominant_error;
   return json;
 }
 
@@ -203,7 +203,7 @@ std::string gates_markdown(const std::vector<Judgement>& judgements) {
   const std::vector<const Judgement*> sorted = worst_first(judgements);
   for (std::size_t i = 0; i < sorted.size(); ++i) {
     const std::string row = markdown_row(*sorted[i]);
-    if (text.size() + row.size() + room_for_note > kMostMarkdown) {
+    if (text.size() + row.size() + room_for_note > kMaxMarkdown) {
       return text +
              fmt::format("\n{} more gates, none worse than these, are left out here.\n", sorted.size() - i);
     }

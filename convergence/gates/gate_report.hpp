@@ -16,7 +16,7 @@ std::string gates_text(const std::vector<Judgement>& judgements);
 /// expected failures are skipped.
 std::string gates_junit(const std::vector<Judgement>& judgements);
 
-/// A Markdown table, the worst first, shorter than kMostMarkdown bytes: what does not fit is counted.
+/// A Markdown table, the worst first, shorter than kMaxMarkdown bytes: what does not fit is counted.
 std::string gates_markdown(const std::vector<Judgement>& judgements);
 
 /// Workflow commands of GitHub Actions, which put a message at the gate's line in its file: an error for each

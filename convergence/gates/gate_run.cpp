@@ -21,19 +21,17 @@ namespace {
 using solver::InputError;
 using Judgements = std::vector<std::optional<Judgement>>;
 
-Point point_of(const Gate& gate) { return {.scene = gate.source, .overrides = gate.overrides}; }
-
 double seconds_of(const Json& result) {
   const auto seconds = result.find("seconds");
   return seconds != result.end() && seconds->is_object() ? seconds->value("total", 0.0) : 0.0;
 }
 
 /// Which part of the error budget is the largest, where a gate on an error fails; it takes some more solves.
-std::string find_blame(const Judgement& judgement, PointRunner& runner) {
+std::string find_dominant_error(const Judgement& judgement, const PreparedRun& run, const ProcessPool& pool) {
   const Gate& gate = judgement.gate;
   if (judgement.outcome != Outcome::failed || !judgement.value.is_number() || !is_error(gate.quantity))
     return "";
-  const Budget budget = error_budget(point_of(gate), gate.quantity, runner);
+  const Budget budget = error_budget(run, gate.quantity, pool);
   const double parts = budget.discretisation + budget.iteration + budget.rounding + budget.reference;
   if (!std::isfinite(parts)) return "not known: solves that would tell have no such number";
   return fmt::format(
@@ -42,35 +40,33 @@ std::string find_blame(const Judgement& judgement, PointRunner& runner) {
       budget.reference);
 }
 
-void judge_scenes(const std::vector<Gate>& gates, PointRunner& runner, Judgements& judgements) {
+void judge_scenes(const std::vector<Gate>& gates, const ProcessPool& pool, Judgements& judgements) {
   std::vector<std::size_t> places;
-  std::vector<Point> points;
-  std::vector<std::string> questions;
+  std::vector<PreparedRun> runs;
   for (std::size_t i = 0; i < gates.size(); ++i) {
     if (gates[i].kind != GateSource::scene) continue;
     try {
-      questions.push_back(question(point_of(gates[i])));
-      points.push_back(point_of(gates[i]));
+      runs.push_back(prepare_run({.scene = gates[i].source, .overrides = gates[i].overrides}));
       places.push_back(i);
     } catch (const InputError& error) {
       judgements[i] = refuse(gates[i], error.what());
     }
   }
-  const std::vector<Json> results = runner.run(points);
+  const std::vector<Json> results = pool.run_prepared(runs);
   std::set<std::string> timed;
   for (std::size_t k = 0; k < places.size(); ++k) {
     Judgement judgement = judge(gates[places[k]], results[k]);
-    if (timed.insert(questions[k]).second) judgement.seconds = seconds_of(results[k]);
-    judgement.blame = find_blame(judgement, runner);
+    if (timed.insert(runs[k].name).second) judgement.seconds = seconds_of(results[k]);
+    judgement.dominant_error = find_dominant_error(judgement, runs[k], pool);
     judgements[places[k]] = std::move(judgement);
   }
 }
 
 /// What cannot be judged as a study, with solves that did not converge for one, is a result that failed.
-Json study_result(const Gate& gate, PointRunner& runner) {
+Json study_result(const Gate& gate, const ProcessPool& pool) {
   const Study study = read_study(gate.source, gate.overrides);
   try {
-    return run_study(study, runner);
+    return run_study(study, pool);
   } catch (const InputError&) {
     throw;
   } catch (const std::invalid_argument& error) {
@@ -79,14 +75,14 @@ Json study_result(const Gate& gate, PointRunner& runner) {
 }
 
 /// Equal studies are run once.
-void judge_studies(const std::vector<Gate>& gates, PointRunner& runner, Judgements& judgements) {
+void judge_studies(const std::vector<Gate>& gates, const ProcessPool& pool, Judgements& judgements) {
   std::map<std::pair<std::filesystem::path, std::vector<std::string>>, Json> results;
   for (std::size_t i = 0; i < gates.size(); ++i) {
     const Gate& gate = gates[i];
     if (gate.kind != GateSource::study) continue;
     try {
       auto [found, is_new] = results.try_emplace({gate.source, gate.overrides});
-      if (is_new) found->second = study_result(gate, runner);
+      if (is_new) found->second = study_result(gate, pool);
       judgements[i] = judge(gate, found->second);
     } catch (const InputError& error) {
       judgements[i] = refuse(gate, error.what());
@@ -121,10 +117,10 @@ void judge_results(const std::vector<Gate>& gates, Judgements& judgements) {
 
 }  // namespace
 
-std::vector<Judgement> run_gates(const std::vector<Gate>& gates, PointRunner& runner) {
+std::vector<Judgement> run_gates(const std::vector<Gate>& gates, const ProcessPool& pool) {
   Judgements judgements(gates.size());
-  judge_scenes(gates, runner, judgements);
-  judge_studies(gates, runner, judgements);
+  judge_scenes(gates, pool, judgements);
+  judge_studies(gates, pool, judgements);
   judge_results(gates, judgements);
   std::vector<Judgement> result;
   for (std::optional<Judgement>& judgement : judgements) result.push_back(*std::move(judgement));

@@ -3,12 +3,12 @@
 #include <vector>
 
 #include "convergence/gates/gate.hpp"
-#include "convergence/runs/point_runner.hpp"
+#include "convergence/runs/process_pool.hpp"
 
 namespace slipstick::convergence {
 
 /// Computes what gates ask for, all scenes side by side and equal ones once, or reads it, and judges it. A
 /// gate whose scene, study or result cannot be read is refused; the others are judged all the same.
-std::vector<Judgement> run_gates(const std::vector<Gate>& gates, PointRunner& runner);
+std::vector<Judgement> run_gates(const std::vector<Gate>& gates, const ProcessPool& pool);
 
 }  // namespace slipstick::convergence

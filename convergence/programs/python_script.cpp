@@ -29,10 +29,10 @@ void run_report_script(const std::string& script, const std::vector<std::string>
   }
   std::vector<std::string> words{python, project_file("reports") / script};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  const int status = run_program(words);
-  if (status != 0) {
+  const ProgramEnd end = run_program(words, {.tied_by = kOwnProgram});
+  if (end.code != 0) {
     throw std::runtime_error(
-        fmt::format("{}, but drawing failed ({} {} ended with {})", done, python, script, status));
+        fmt::format("{}, but drawing failed ({} {} {})", done, python, script, end.trouble));
   }
 }
 

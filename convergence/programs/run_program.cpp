@@ -1,41 +1,143 @@
 #include "convergence/programs/run_program.hpp"
 
 #include <fcntl.h>
+#include <fmt/core.h>
+#include <spawn.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "convergence/programs/child_process.hpp"
+#include <array>
+#include <cerrno>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <stdexcept>
+#include <string_view>
+
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+
+extern char** environ;
 
 namespace slipstick::convergence {
 namespace {
 
-/// Whether what is written on a descriptor now goes to the file; empty: where it went before.
-bool redirect(int descriptor, const std::filesystem::path& file) {
-  if (file.empty()) return true;
-  const int opened = open(file.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
-  return opened >= 0 && dup2(opened, descriptor) >= 0;
+/// The exit code of a program that could not be started, as shells have it.
+constexpr int kNotStarted = 127;
+/// Before the number of the parent that a tied program must not outlive.
+constexpr std::string_view kTied = "--tied-to";
+/// Before the words of another program.
+constexpr std::string_view kStart = "start";
+
+std::vector<std::string> tied(const std::vector<std::string>& words, const std::string& program) {
+  if (program.empty()) return words;
+  std::vector<std::string> all{program, std::string(kTied), std::to_string(getpid())};
+  const bool itself = words.front() == program;
+  if (!itself) all.emplace_back(kStart);
+  all.insert(all.end(), words.begin() + (itself ? 1 : 0), words.end());
+  return all;
+}
+
+/// Empty: none.
+std::string trouble_of(int status) {
+  if (WIFSIGNALED(status)) {
+    const int signal = WTERMSIG(status);
+    return fmt::format("was killed by signal {}{}", signal,
+                       signal == SIGKILL ? ", as where memory runs out" : "");
+  }
+  return WEXITSTATUS(status) == 0 ? "" : fmt::format("ended with code {}", WEXITSTATUS(status));
+}
+
+ProgramEnd not_started(int error) {
+  return {.started = false, .output = {}, .trouble = fmt::format("not started: {}", std::strerror(error))};
 }
 
 }  // namespace
 
-pid_t start_program(const std::vector<std::string>& words, const std::filesystem::path& output,
-                    const std::filesystem::path& complaints) {
+Program::Program(const std::vector<std::string>& words, const ProgramOptions& options) {
+  std::vector<std::string> all = tied(words, options.tied_by);
   std::vector<char*> arguments;
-  arguments.reserve(words.size() + 1);
-  for (const std::string& word : words) arguments.push_back(const_cast<char*>(word.c_str()));
+  for (std::string& word : all) arguments.push_back(word.data());
   arguments.push_back(nullptr);
-  const pid_t child = fork_child();
-  if (child > 0) return child;
-  if (redirect(STDOUT_FILENO, output) && redirect(STDERR_FILENO, complaints)) {
-    execvp(arguments[0], arguments.data());
+  std::array<int, 2> ends{-1, -1};
+  if (options.captured != Captured::nothing && pipe2(ends.data(), O_CLOEXEC) != 0) {
+    throw std::runtime_error(fmt::format("no pipe: {}", std::strerror(errno)));
   }
-  _exit(kNotStarted);
+  output_ = ends[0];
+  posix_spawn_file_actions_t actions;
+  posix_spawn_file_actions_init(&actions);
+  if (output_ >= 0) {
+    posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
+    if (options.captured == Captured::everything) {
+      posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
+    }
+  }
+  const int error = posix_spawnp(&process_, arguments[0], &actions, nullptr, arguments.data(), environ);
+  posix_spawn_file_actions_destroy(&actions);
+  if (ends[1] >= 0) close(ends[1]);
+  if (error == 0) return;
+  process_ = -1;
+  end_ = not_started(error);
 }
 
-int run_program(const std::vector<std::string>& words, const std::filesystem::path& output,
-                const std::filesystem::path& complaints) {
-  const int status = wait_for_child(start_program(words, output, complaints));
-  return WIFEXITED(status) && WEXITSTATUS(status) != kNotStarted ? WEXITSTATUS(status) : -1;
+Program::~Program() {
+  if (process_ > 0) kill(process_, SIGKILL);
+  close_output();
+  wait();
+}
+
+void Program::close_output() {
+  if (output_ >= 0) close(output_);
+  output_ = -1;
+}
+
+bool Program::read_on() {
+  if (output_ < 0) return true;
+  std::array<char, 65536> buffer{};
+  const ssize_t size = read(output_, buffer.data(), buffer.size());
+  if (size < 0 && errno == EINTR) return false;
+  if (size > 0) end_.output.append(buffer.data(), static_cast<std::size_t>(size));
+  if (size <= 0) close_output();
+  return size <= 0;
+}
+
+ProgramEnd Program::wait() {
+  while (!read_on()) {
+  }
+  if (process_ <= 0) return end_;
+  int status = 0;
+  pid_t found = 0;
+  do found = waitpid(process_, &status, 0);
+  while (found < 0 && errno == EINTR);
+  process_ = -1;
+  if (found < 0) {
+    end_.trouble = "ended, and nobody says how";
+  } else if (WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted) {
+    end_ = not_started(ENOENT);
+  } else {
+    end_.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    end_.trouble = trouble_of(status);
+  }
+  return end_;
+}
+
+ProgramEnd run_program(const std::vector<std::string>& words, const ProgramOptions& options) {
+  return Program(words, options).wait();
+}
+
+void obey_tie(int& argc, char**& argv) {
+  if (argc < 4 || argv[1] != kTied) return;
+#ifdef __linux__
+  prctl(PR_SET_PDEATHSIG, SIGKILL);
+  if (getppid() != std::atoi(argv[2])) _exit(EXIT_FAILURE);  // it was gone before that
+#endif
+  argv[2] = argv[0];
+  argv += 2;
+  argc -= 2;
+  if (argv[1] != kStart) return;
+  execvp(argv[2], argv + 2);
+  _exit(kNotStarted);
 }
 
 }  // namespace slipstick::convergence

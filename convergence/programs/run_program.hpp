@@ -6,20 +6,65 @@
 #include <string>
 #include <vector>
 
+/// The one way in which other programs are started: by posix_spawn(), without a shell.
 namespace slipstick::convergence {
 
-/// The exit code of a program that could not be started, as shells have it.
-inline constexpr int kNotStarted = 127;
+/// The program that this process runs, whatever becomes of its file meanwhile.
+inline constexpr const char* kOwnProgram = "/proc/self/exe";
 
-/// Starts a program, looked for on PATH where its name has no slash; it does not outlive this one (see
-/// fork_child, which says what it throws). Returns its number; wait_for_child() says how it ended. output,
-/// complaints: the files that get what it writes on standard output and on standard error; empty: those of
-/// this program.
-pid_t start_program(const std::vector<std::string>& words, const std::filesystem::path& output = {},
-                    const std::filesystem::path& complaints = {});
+/// What a program writes on standard output, or there and on standard error, comes back to who started it.
+/// The rest goes where this program's own goes.
+enum class Captured { nothing, output, everything };
 
-/// Starts a program and waits. Returns its exit code; -1: it could not be started, or was killed.
-int run_program(const std::vector<std::string>& words, const std::filesystem::path& output = {},
-                const std::filesystem::path& complaints = {});
+struct ProgramOptions {
+  Captured captured = Captured::nothing;
+  /// The slipstick program, through which another is started that must not outlive this process, however that
+  /// ends: on Linux the kernel kills it then. Elsewhere, or where this is empty, it is only of this process's
+  /// group, so that what reaches the group ends it too.
+  std::filesystem::path tied_by = {};
+};
+
+/// How a program ended.
+struct ProgramEnd {
+  int code = -1;  ///< -1: it was not started, was killed, or nobody is told, as under an ignored SIGCHLD
+  bool started = true;
+  std::string output;   ///< what was captured
+  std::string trouble;  ///< what speaks against its success, after its name; empty: it ended with 0
+};
+
+/// A program that runs. Who leaves it before it has ended kills it.
+class Program {
+ public:
+  /// words: the program, looked for on PATH where its name has no slash, and its arguments. Throws
+  /// std::runtime_error where there is no pipe.
+  explicit Program(const std::vector<std::string>& words, const ProgramOptions& options = {});
+  ~Program();
+  Program(const Program&) = delete;
+  Program& operator=(const Program&) = delete;
+
+  /// The descriptor that is ready when there is more captured output, or its end; -1: nothing is captured.
+  int output() const { return output_; }
+
+  /// Waits for more captured output. Returns whether that was all.
+  bool read_on();
+
+  /// Waits for its end.
+  ProgramEnd wait();
+
+ private:
+  void close_output();
+
+  pid_t process_ = -1;
+  int output_ = -1;
+  ProgramEnd end_;
+};
+
+/// Starts a program and waits for its end.
+ProgramEnd run_program(const std::vector<std::string>& words, const ProgramOptions& options = {});
+
+/// What the slipstick program does first where it was started as another's `tied_by`: binds itself to the
+/// life of that process, and becomes the program that was asked for unless that is itself. The words that
+/// said so are taken off.
+void obey_tie(int& argc, char**& argv);
 
 }  // namespace slipstick::convergence

@@ -6,7 +6,6 @@
 #include <cmath>
 
 #include "convergence/orders/limit.hpp"
-#include "convergence/results/result.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace slipstick::convergence {
@@ -47,16 +46,13 @@ const GalleryScene kScenes[] = {
      kStickRatio},
 };
 
+/// A height map has its own grid.
 bool has_height_map(const solver::Scene& scene) { return solver::find_height_map(scene.surfaces) != nullptr; }
 
 /// Of what answers to a smooth contact as a whole.
 constexpr double kSmoothOrder = 2.0;
 
-/// A height map has its own grid.
-std::vector<std::string> grid_overrides(const solver::Scene& scene, Index across) {
-  if (has_height_map(scene)) return {};
-  return {cells_override(scene, across)};
-}
+std::string picture(const GalleryScene& scene) { return fmt::format("gallery-{}.h5", scene.stem); }
 
 /// A number of a result, or the length of a pair; NaN where there is none.
 double read(const Json& result, const std::string& key) {
@@ -116,23 +112,23 @@ const std::vector<GalleryScene>& gallery_scenes() {
   return scenes;
 }
 
-std::size_t gallery_solves() { return 3 * std::size(kScenes); }
-
-Json gallery_row(Runner& runner, const GalleryScene& scene, const fs::path& scenes,
-                 const std::array<Index, 3>& across, const fs::path& fields) {
+std::vector<RunSpec> gallery_runs(const GalleryScene& scene, const fs::path& scenes,
+                                  const std::array<Index, 3>& across, const fs::path& fields) {
   const fs::path file = scenes / (scene.stem + ".toml");
   const solver::Scene own = solver::read_scene(file);
-  const std::string picture = fmt::format("gallery-{}.h5", scene.stem);
-  const Look keep_fields = [&](Json&, const solver::Solution& solution, const OracleAnswer& exact) {
-    write_solution_fields(fields / picture, solution, exact);
-  };
-  std::vector<Json> meshes;
-  for (std::size_t i = has_height_map(own) ? 2 : 0; i < 3; ++i) {
-    const bool finest = i == 2;
-    meshes.push_back(runner.solve(fmt::format("gallery-{}-{}", scene.stem, across[i]), file,
-                                  grid_overrides(own, across[i]), finest ? keep_fields : Look{},
-                                  finest ? fields / picture : fs::path{}));
+  std::vector<RunSpec> runs;
+  if (has_height_map(own)) {
+    runs.push_back({.scene = file});
+  } else {
+    for (const Index cells : across) {
+      runs.push_back({.scene = file, .overrides = {cells_override(own, cells)}});
+    }
   }
+  runs.back().fields = fields / picture(scene);
+  return runs;
+}
+
+Json gallery_row(const GalleryScene& scene, const std::vector<Json>& meshes) {
   Json row{{"scene", scene.stem},
            {"title", scene.title},
            {"shows", scene.shows},
@@ -145,18 +141,9 @@ Json gallery_row(Runner& runner, const GalleryScene& scene, const fs::path& scen
     row[key] = finest[key];
   }
   row["steps"] = finest.contains("steps") ? finest["steps"].size() : 1;
-  row["fields"] = picture;
+  row["fields"] = picture(scene);
   for (const Json& mesh : meshes) row["meshes"].push_back(mesh_json(scene, mesh));
   return row;
-}
-
-Json gallery(Runner& runner, const fs::path& scenes, const std::array<Index, 3>& across,
-             const fs::path& fields) {
-  Json rows = Json::array();
-  for (const GalleryScene& scene : gallery_scenes()) {
-    rows.push_back(gallery_row(runner, scene, scenes, across, fields));
-  }
-  return rows;
 }
 
 }  // namespace slipstick::convergence

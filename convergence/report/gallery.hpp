@@ -1,13 +1,12 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <vector>
 
 #include "convergence/results/result_parts.hpp"
-#include "convergence/runs/runner.hpp"
+#include "convergence/runs/run_spec.hpp"
 
 namespace slipstick::convergence {
 
@@ -31,18 +30,14 @@ struct GalleryScene {
 /// The scenes that show what can be solved.
 const std::vector<GalleryScene>& gallery_scenes();
 
-/// How many solves gallery() makes at most.
-std::size_t gallery_solves();
+/// The runs of a scene from a folder on three meshes with so many cells along the longer side, coarsest first
+/// (of a height map at its own size alone); the last writes its contact cells into the folder `fields`.
+std::vector<RunSpec> gallery_runs(const GalleryScene& scene, const std::filesystem::path& scenes,
+                                  const std::array<solver::Index, 3>& across,
+                                  const std::filesystem::path& fields);
 
-/// Solves a scene from a folder at three meshes with so many cells along the longer side, coarsest first (a
-/// height map at its own size alone), and returns what it shows, the judged quantity at the finest mesh with
-/// its exact or extrapolated value, the certificate's worst gap, the work, and the name of the file in
-/// `fields` with the contact cells of the last step.
-Json gallery_row(Runner& runner, const GalleryScene& scene, const std::filesystem::path& scenes,
-                 const std::array<solver::Index, 3>& across, const std::filesystem::path& fields);
-
-/// The rows of all scenes.
-Json gallery(Runner& runner, const std::filesystem::path& scenes, const std::array<solver::Index, 3>& across,
-             const std::filesystem::path& fields);
+/// What a scene shows, from the results of its runs: the judged quantity at the finest mesh with its exact or
+/// extrapolated value, the certificate's worst gap, the work, and the name of the file of contact cells.
+Json gallery_row(const GalleryScene& scene, const std::vector<Json>& meshes);
 
 }  // namespace slipstick::convergence

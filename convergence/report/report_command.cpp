@@ -11,6 +11,7 @@
 #include "convergence/programs/python_script.hpp"
 #include "convergence/report/validation.hpp"
 #include "convergence/runs/failed_runs.hpp"
+#include "convergence/runs/interrupts.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -44,8 +45,10 @@ int run(const Options& options, std::ostream& text, nlohmann::ordered_json& resu
   const fs::path scene = options.scene.empty() ? scenes / "paper.toml" : fs::path(options.scene);
   const fs::path output = options.output;
   const fs::path data = output / "data";
+  const Interrupts interrupts;
+  const ProcessPool pool({.folder = data / "points", .interrupted = Interrupts::seen});
   result = validate(scene, scenes, project_file("convergence/studies"),
-                    options.quick ? quick_validation() : full_validation(), data);
+                    options.quick ? quick_validation() : full_validation(), data, pool);
   draw(data, output);
   text << "page: " << (output / "index.html").string() << '\n';
   int exit_code = 0;

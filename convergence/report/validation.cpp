@@ -4,18 +4,19 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numbers>
+#include <stdexcept>
+#include <utility>
 
 #include "analytic/paper_equations.hpp"
 #include "analytic/torsion.hpp"
-#include "convergence/oracle/errors.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/report/exact_curves.hpp"
 #include "convergence/report/gallery.hpp"
 #include "convergence/results/provenance.hpp"
-#include "convergence/results/result.hpp"
+#include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/result_cache.hpp"
-#include "convergence/runs/runner.hpp"
 #include "convergence/studies/study.hpp"
 #include "solver/input/input_error.hpp"
 
@@ -47,30 +48,6 @@ Json exact_profile(const analytic::TorsionState& state) {
   return rows;
 }
 
-/// Traction over mu p0 in the cells beside the positive x1 axis and along the diagonal, with the exact
-/// values.
-Json computed_profile(const solver::Solution& solution, const Oracle& oracle) {
-  const solver::Model& model = solution.model;
-  const ExactFields exact = exact_fields(oracle, model);
-  const double unit = model.stress_unit / (oracle.friction * oracle.reference_pressure);
-  const Eigen::ArrayXd value = unit * solver::norms(solution.tangential.traction);
-  const Eigen::ArrayXd exact_value = unit * solver::norms(exact.traction);
-  const solver::Grid& grid = model.grid;
-  Json rows = Json::array();
-  const auto add = [&](Index i, Index j) {
-    const Index cell = i * grid.n2 + j;
-    const double radius = std::hypot(grid.x1(i), grid.x2(j)) * model.length_unit / oracle.contact_radius;
-    if (radius > 1.0) return;
-    rows.push_back({{"radius", radius},
-                    {"value", value[cell]},
-                    {"exact", exact_value[cell]},
-                    {"error", value[cell] - exact_value[cell]}});
-  };
-  for (Index i = grid.n1 / 2; i < grid.n1; ++i) add(i, grid.n2 / 2);
-  for (Index i = grid.n1 / 2 + 1; i < grid.n1; ++i) add(i, i);
-  return rows;
-}
-
 /// The scene at one mesh, pressure model and load, by one method.
 struct MeshPoint {
   Index cells;
@@ -78,7 +55,6 @@ struct MeshPoint {
   double moment_ratio;
   std::string method = "coulomb";
 
-  std::string name() const { return fmt::format("{}-{}-{}-{}", method, pressure, cells, moment_ratio); }
   std::vector<std::string> overrides() const {
     return {fmt::format("grid.cells=[{0},{0}]", cells), fmt::format("contact.pressure=\"{}\"", pressure),
             fmt::format("load.moment_ratio={}", moment_ratio), method_override(method)};
@@ -88,26 +64,85 @@ struct MeshPoint {
   }
 };
 
-Json profile(Runner& runner, const fs::path& scene_file, const fs::path& folder, Index cells,
-             double moment_ratio) {
-  const std::string fields = fmt::format("fields-{}.h5", moment_ratio);
-  const MeshPoint point{cells, "solved", moment_ratio};
-  Json result = runner.solve(
-      point.name() + "-profile", scene_file, point.overrides(),
-      [&](Json& computed, const solver::Solution& solution, const OracleAnswer& exact) {
-        write_solution_fields(folder / fields, solution, exact);
-        computed["profile"] = computed_profile(solution, *exact.oracle);
-      },
-      folder / fields);
-  Json computed = result["profile"];
+std::string fields_file(double moment_ratio) { return fmt::format("fields-{}.h5", moment_ratio); }
+
+/// The runs of the page by its sections.
+using Sections = std::map<std::string, std::vector<RunSpec>>;
+
+Sections page_runs(const fs::path& scene, const fs::path& scenes, const ValidationSize& size,
+                   const fs::path& folder) {
+  Sections runs;
+  const auto add = [&](const char* section, const MeshPoint& point) {
+    runs[section].push_back({.scene = scene, .overrides = point.overrides()});
+  };
+  for (const double ratio : kProfileRatios) {
+    add("profiles", {size.loading_cells, "solved", ratio});
+    runs["profiles"].back().fields = folder / fields_file(ratio);
+    runs["profiles"].back().profile = true;
+  }
+  for (const char* method : {"coulomb", "paper"}) {
+    for (const double ratio : size.moment_ratios)
+      add("loading", {size.loading_cells, "solved", ratio, method});
+  }
+  for (const char* pressure : kPressures) {
+    for (const double ratio : kProfileRatios) {
+      for (const Index cells : size.mesh_cells) add("mesh", {cells, pressure, ratio});
+    }
+  }
+  for (const char* method : kMethods) {
+    for (const Index cells : size.mesh_cells) add("methods", {cells, "solved", kMethodsRatio, method});
+    for (const Index cells : size.ellipse_cells) {
+      runs["ellipse"].push_back({.scene = scenes / "ellipse.toml",
+                                 .overrides = {fmt::format("grid.cells=[{},{}]", cells, cells / 2),
+                                               MeshPoint::method_override(method)}});
+    }
+  }
+  add("errata", {size.loading_cells, "solved", kMethodsRatio, "paper"});
+  for (const GalleryScene& shown : gallery_scenes()) {
+    runs["gallery-" + shown.stem] = gallery_runs(shown, scenes, size.gallery_cells, folder);
+  }
+  return runs;
+}
+
+/// The results of each section, all computed side by side. Throws std::runtime_error where one is missing.
+std::map<std::string, std::vector<Json>> solve_all(const Sections& sections, const ProcessPool& pool) {
+  std::vector<RunSpec> all;
+  for (const auto& [name, runs] : sections) all.insert(all.end(), runs.begin(), runs.end());
+  const std::vector<Json> results = pool.run(all);
+  std::map<std::string, std::vector<Json>> found;
+  auto next = results.begin();
+  for (const auto& [name, runs] : sections) {
+    for (std::size_t i = 0; i < runs.size(); ++i, ++next) {
+      if (is_failed(*next)) {
+        throw std::runtime_error(
+            fmt::format("{}: {}", (*next)["run"].get<std::string>(), (*next)["message"].get<std::string>()));
+      }
+      found[name].push_back(*next);
+    }
+  }
+  return found;
+}
+
+Json profile(double moment_ratio, Json result) {
+  const Json computed = result["profile"];
   result.erase("profile");
   const analytic::TorsionState state = analytic::from_moment_ratio(moment_ratio);
-  return {{"moment_ratio", moment_ratio},
-          {"stick_ratio", state.stick_ratio},
-          {"exact", exact_profile(state)},
-          {"computed", computed},
-          {"fields", fields},
-          {"result", result}};
+  return {{"moment_ratio", moment_ratio},        {"stick_ratio", state.stick_ratio},
+          {"exact", exact_profile(state)},       {"computed", computed},
+          {"fields", fields_file(moment_ratio)}, {"result", std::move(result)}};
+}
+
+/// Of the ellipses, what there is without an exact answer.
+Json without_errors(const std::vector<Json>& results) {
+  Json rows = Json::array();
+  for (const Json& result : results) {
+    Json& row = rows.emplace_back();
+    for (const char* key : {"method", "moment_ratio", "cells", "certificate", "slip_direction",
+                            "operator_applications", "iterations", "seconds", "twist"}) {
+      row[key] = result[key];
+    }
+  }
+  return rows;
 }
 
 /// The rows of one method.
@@ -135,20 +170,15 @@ Json summary(const solver::Scene& scene, const Oracle& oracle) {
   });
 }
 
-}  // namespace
-
-namespace {
-
 /// The studies of meshes and tolerances, of the scene at hand, up to so many cells.
-Json study_results(const fs::path& scene_file, const fs::path& studies, Index most, const fs::path& folder) {
-  PointRunner runner(folder / "points");
+Json study_results(const fs::path& scene_file, const fs::path& studies, Index most, const ProcessPool& pool) {
   Json results = Json::array();
   for (const char* file : {"paper_mesh.toml", "paper_tolerance.toml"}) {
     Study study = read_study(studies / file);
     study.scene = scene_file;
     for (Index& cells : study.cells) cells = std::min(cells, most);
     study.cells.erase(std::unique(study.cells.begin(), study.cells.end()), study.cells.end());
-    results.push_back(run_study(study, runner));
+    results.push_back(run_study(study, pool));
   }
   return results;
 }
@@ -174,7 +204,7 @@ ValidationSize quick_validation() {
 }
 
 Json validate(const fs::path& scene_file, const fs::path& scenes, const fs::path& studies,
-              const ValidationSize& size, const fs::path& folder) {
+              const ValidationSize& size, const fs::path& folder, const ProcessPool& pool) {
   const solver::Scene scene = solver::read_scene(scene_file);
   if (scene.surfaces.front().shape != solver::Shape::sphere) {  // whose equations the paper's are
     throw solver::InputError(scene_file.string(), "upper.shape",
@@ -185,14 +215,7 @@ Json validate(const fs::path& scene_file, const fs::path& scenes, const fs::path
     throw solver::InputError(scene_file.string(), "the page compares with exact values: " + exact.reason);
   }
   fs::create_directories(folder);
-  const auto solves = std::size(kProfileRatios) * (1 + size.mesh_cells.size() * std::size(kPressures)) +
-                      2 * size.moment_ratios.size() +
-                      std::size(kMethods) * (size.mesh_cells.size() + size.ellipse_cells.size()) + 1 +
-                      gallery_solves();
-  Runner runner(folder, solves);
-  const auto solve = [&](const MeshPoint& point) {
-    return runner.solve(point.name(), scene_file, point.overrides());
-  };
+  const auto results = solve_all(page_runs(scene_file, scenes, size, folder), pool);
 
   Json report;
   report["provenance"] = provenance(scene.threads);
@@ -205,44 +228,18 @@ Json validate(const fs::path& scene_file, const fs::path& scenes, const fs::path
   report["loading_cells"] = size.loading_cells;
   report.update(exact_curves());
   report["profiles"] = Json::array();
-  for (const double ratio : kProfileRatios) {
-    report["profiles"].push_back(profile(runner, scene_file, folder, size.loading_cells, ratio));
+  for (std::size_t i = 0; i < std::size(kProfileRatios); ++i) {
+    report["profiles"].push_back(profile(kProfileRatios[i], results.at("profiles")[i]));
   }
-  report["loading"] = Json::array();
-  for (const char* method : {"coulomb", "paper"}) {
-    for (const double ratio : size.moment_ratios) {
-      report["loading"].push_back(solve({size.loading_cells, "solved", ratio, method}));
-    }
-  }
-  report["mesh"] = Json::array();
-  for (const char* pressure : kPressures) {
-    for (const double ratio : kProfileRatios) {
-      for (const Index cells : size.mesh_cells) report["mesh"].push_back(solve({cells, pressure, ratio}));
-    }
-  }
-  report["methods"] = Json::array();
-  report["ellipse"] = Json::array();
-  for (const char* method : kMethods) {
-    for (const Index cells : size.mesh_cells) {
-      report["methods"].push_back(solve({cells, "solved", kMethodsRatio, method}));
-    }
-    for (const Index cells : size.ellipse_cells) {
-      const Json result = runner.solve(
-          fmt::format("{}-ellipse-{}", method, cells), scenes / "ellipse.toml",
-          {fmt::format("grid.cells=[{},{}]", cells, cells / 2), MeshPoint::method_override(method)});
-      Json row;  // what there is without an exact answer
-      for (const char* key : {"method", "moment_ratio", "cells", "certificate", "slip_direction",
-                              "operator_applications", "iterations", "seconds", "twist"}) {
-        row[key] = result[key];
-      }
-      report["ellipse"].push_back(row);
-    }
-  }
-  report["errata"] = errata(solve({size.loading_cells, "solved", kMethodsRatio, "paper"}),
-                            by_method(report["ellipse"], "paper"));
+  for (const char* section : {"loading", "mesh", "methods"}) report[section] = results.at(section);
+  report["ellipse"] = without_errors(results.at("ellipse"));
+  report["errata"] = errata(results.at("errata").front(), by_method(report["ellipse"], "paper"));
   fs::copy(scenes, folder / "scenes", fs::copy_options::recursive | fs::copy_options::update_existing);
-  report["gallery"] = gallery(runner, scenes, size.gallery_cells, folder);
-  report["studies"] = study_results(scene_file, studies, size.study_cells, folder);
+  report["gallery"] = Json::array();
+  for (const GalleryScene& shown : gallery_scenes()) {
+    report["gallery"].push_back(gallery_row(shown, results.at("gallery-" + shown.stem)));
+  }
+  report["studies"] = study_results(scene_file, studies, size.study_cells, pool);
   write_json_file(folder / "report.json", report);
   return report;
 }

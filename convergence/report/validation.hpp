@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "convergence/runs/process_pool.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace slipstick::convergence {
@@ -25,12 +26,12 @@ ValidationSize quick_validation();
 /// The paper's validation (its Section 5, Figs. 1-5) for a scene, computed and compared with the exact
 /// solution, beside it an elliptic contact, where the paper's method fails, the gallery, from the files in
 /// `scenes`, and the studies of the meshes and the tolerances, from the files in `studies`: fills `folder`
-/// with report.json and the fields that the page draws, and returns report.json's content. Finished points
-/// are kept in folder/points and not computed again. Progress goes to standard error. Throws InputError for a
-/// scene that has no exact solution to compare with.
+/// with report.json and the fields that the page draws, and returns report.json's content. Throws InputError
+/// for a scene that has no exact solution to compare with; std::runtime_error where a run has no result, and
+/// as the pool does.
 nlohmann::ordered_json validate(const std::filesystem::path& scene_file, const std::filesystem::path& scenes,
                                 const std::filesystem::path& studies, const ValidationSize& size,
-                                const std::filesystem::path& folder);
+                                const std::filesystem::path& folder, const ProcessPool& pool);
 
 /// What is wrong in the paper's equations as printed, each with numbers as evidence, computed here or taken
 /// from the results of the paper's method on a circular and on elliptic contacts.

@@ -9,7 +9,7 @@ namespace slipstick::convergence {
 /// Says on standard error how far work is: one line on a terminal, rewritten; elsewhere a line now and then.
 class Progress {
  public:
-  /// weight: of all the work together, in the unit in which its parts are told.
+  /// weight: of all the work together, in the unit in which its parts are given.
   Progress(std::size_t parts, double weight) : total_(parts), left_(weight) {}
 
   /// A part of so much weight is done.

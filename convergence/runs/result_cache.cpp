@@ -14,18 +14,11 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-std::string identify_program() {
+std::string identify(const fs::path& program) {
   std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const auto written = fs::last_write_time(program, error);
   if (error) return "unknown program";
-  return fmt::format("{} bytes, written {}", fs::file_size(program),
-                     fs::last_write_time(program).time_since_epoch().count());
-}
-
-/// The executable that runs, whatever becomes of its file meanwhile.
-const std::string& program() {
-  static const std::string identity = identify_program();
-  return identity;
+  return fmt::format("{} bytes, written {}", fs::file_size(program), written.time_since_epoch().count());
 }
 
 }  // namespace
@@ -38,31 +31,32 @@ void write_json_file(const fs::path& file, const Json& json) {
   write_whole_file(file, content);
 }
 
-Journal::Journal(fs::path folder) : folder_(std::move(folder)), program_(program()) {
+ResultCache::ResultCache(fs::path folder, const fs::path& program)
+    : folder_(std::move(folder)), program_(identify(program)) {
   fs::create_directories(folder_);
 }
 
-std::optional<Json> Journal::find(const std::string& name, const std::string& question) const {
+std::optional<Json> ResultCache::find(const std::string& name, const std::string& cache_key) const {
   std::ifstream stream(file(name));
   const Json found = stream && fs::is_regular_file(file(name)) ? Json::parse(stream, nullptr, false) : Json();
   const bool finished = found.is_object() && found.value("program", "") == program_ &&
-                        found.value("question", "") == question && found.contains("result");
+                        found.value("cache_key", "") == cache_key && found.contains("result");
   return finished ? std::optional(found["result"]) : std::nullopt;
 }
 
-void Journal::keep(const std::string& name, const std::string& question, const Json& result) const {
-  write_json_file(file(name), {{"program", program_}, {"question", question}, {"result", result}});
+void ResultCache::keep(const std::string& name, const std::string& cache_key, const Json& result) const {
+  write_json_file(file(name), {{"program", program_}, {"cache_key", cache_key}, {"result", result}});
 }
 
-Json Journal::point(const std::string& name, const std::string& question,
-                    const std::function<Json()>& compute, const fs::path& also) {
-  std::optional<Json> found = find(name, question);
-  reused_ = found && (also.empty() || fs::exists(also));
-  if (reused_) return *std::move(found);
-  fs::remove(
-      file(name));  // so that a kill while the other file is written leaves nothing that looks finished
+void ResultCache::forget(const std::string& name) const {
+  if (fs::is_regular_file(file(name))) fs::remove(file(name));
+}
+
+Json ResultCache::find_or_compute(const std::string& name, const std::string& cache_key,
+                                  const std::function<Json()>& compute) const {
+  if (std::optional<Json> found = find(name, cache_key)) return *std::move(found);
   Json result = compute();
-  keep(name, question, result);
+  keep(name, cache_key, result);
   return result;
 }
 

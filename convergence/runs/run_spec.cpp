@@ -4,47 +4,44 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cfenv>
-#include <memory>
+#include <cstdint>
 #include <utility>
 
-#include "convergence/results/result.hpp"
-#include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
-int mode(Rounding rounding) {
-  switch (rounding) {
-    case Rounding::upward:
-      return FE_UPWARD;
-    case Rounding::downward:
-      return FE_DOWNWARD;
-    default:
-      return FE_TONEAREST;
-  }
+/// FNV-1a.
+std::uint64_t hash(const std::string& text) {
+  std::uint64_t value = 14695981039346656037ULL;
+  for (const char c : text) value = (value ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
+  return value;
 }
 
-/// Sets how this thread rounds, and sets it back.
-class RoundingScope {
- public:
-  explicit RoundingScope(Rounding rounding) : before_(std::fegetround()) { std::fesetround(mode(rounding)); }
-  ~RoundingScope() { std::fesetround(before_); }
-  RoundingScope(const RoundingScope&) = delete;
-  RoundingScope& operator=(const RoundingScope&) = delete;
-
- private:
-  int before_;
-};
-
-solver::Solution solve_rounded(const Point& point, const solver::Scene& scene,
-                               const std::function<void(const solver::Solution&)>& on_step) {
-  const RoundingScope scope(point.rounding);
-  return solver::solve(scene, {.progress = {}, .on_step = on_step});
+std::string cache_key(const RunSpec& spec, const solver::Scene& scene) {
+  std::string text = fmt::format("{}\n{}", read_text(spec.scene), fmt::join(spec.overrides, "\n"));
+  for (const solver::Surface& surface : scene.surfaces) {
+    if (!surface.file.empty()) text += read_text(surface.file);
+  }
+  if (!scene.pressure_file.empty()) text += read_text(scene.pressure_file);
+  if (spec.rounding != Rounding::nearest) {
+    text += spec.rounding == Rounding::upward ? "\nrounded upward" : "\nrounded downward";
+  }
+  if (!spec.fields.empty()) text += "\nfields " + spec.fields.string();
+  if (spec.profile) text += "\nprofile";
+  return text;
 }
 
 }  // namespace
+
+PreparedRun prepare_run(const RunSpec& spec) {
+  PreparedRun run{
+      .spec = spec, .scene = solver::read_scene(spec.scene, spec.overrides), .cache_key = {}, .name = {}};
+  run.cache_key = cache_key(spec, run.scene);
+  run.name = fmt::format("{}-{:016x}", spec.scene.stem().string(), hash(run.cache_key));
+  return run;
+}
 
 std::string read_text(const std::filesystem::path& file) {
   return solver::read_input_file(file, solver::kLargestTable, "a regular file");
@@ -56,40 +53,12 @@ std::string cells_override(const solver::Scene& scene, solver::Index across) {
                      across * scene.cells[1] / longer);
 }
 
-std::string question(const Point& point) {
-  const solver::Scene scene = solver::read_scene(point.scene, point.overrides);
-  std::string text = fmt::format("{}\n{}", read_text(point.scene), fmt::join(point.overrides, "\n"));
-  for (const solver::Surface& surface : scene.surfaces) {
-    if (!surface.file.empty()) text += read_text(surface.file);
-  }
-  if (!scene.pressure_file.empty()) text += read_text(scene.pressure_file);
-  if (point.rounding != Rounding::nearest) text += fmt::format("\nrounding {}", mode(point.rounding));
+std::string run_text(const RunSpec& spec) {
+  std::string text = spec.scene.stem().string();
+  for (const std::string& assignment : spec.overrides) text += ", " + assignment;
+  if (spec.rounding == Rounding::upward) text += ", rounded upward";
+  if (spec.rounding == Rounding::downward) text += ", rounded downward";
   return text;
-}
-
-std::string run_text(const Point& point) {
-  std::string text = point.scene.stem().string();
-  for (const std::string& assignment : point.overrides) text += ", " + assignment;
-  if (point.rounding == Rounding::upward) text += ", rounded upward";
-  if (point.rounding == Rounding::downward) text += ", rounded downward";
-  return text;
-}
-
-Json solve_point(const Point& point, const Look& look) {
-  const solver::Scene scene = solver::read_scene(point.scene, point.overrides);
-  const std::unique_ptr<ExactHistory> history = exact_history(scene);
-  OracleAnswer exact;
-  Json steps = Json::array();
-  const auto on_step = [&](const solver::Solution& at) {
-    const RoundingScope scope(Rounding::nearest);  // the exact answer is no part of what is tried
-    exact = history->advance(at.loads);
-    steps.push_back(step_result(scene, at, exact));
-  };
-  const solver::Solution solution = solve_rounded(point, scene, on_step);
-  Json result = solve_result(scene, solution, exact);
-  if (has_history(scene)) add_steps(result, std::move(steps));
-  if (look) look(result, solution, exact);
-  return result;
 }
 
 }  // namespace slipstick::convergence

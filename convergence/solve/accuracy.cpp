@@ -23,16 +23,16 @@ using solver::Scene;
 /// A mesh is made finer by what the reached error suggests, and so much more, since errors scatter; by no
 /// more than the second at once, since an error on a coarse mesh may say little.
 constexpr double kRefinementMargin = 1.1;
-constexpr double kMostRefinement = 4.0;
+constexpr double kMaxRefinement = 4.0;
 /// Tolerances that scene files may have.
 constexpr double kTightestTolerance = 1e-14;
 /// Cells that a grid without a given extent leaves free around the expected contact, both sides together; and
 /// the fewest cells on which it does.
 constexpr double kMarginCells = 4.0;
-constexpr Index kFewestCells = 16;
+constexpr Index kMinCells = 16;
 /// Cells across the contact on the coarse grid that it is first looked at on: with fewer the extent is so
 /// much too large that the grids that follow would have no end, and how large the contact is cannot be told.
-constexpr double kLeastAcross = 3.0;
+constexpr double kMinAcross = 3.0;
 /// What is recommended in its place.
 constexpr double kWellAcross = 0.5 * static_cast<double>(kReferenceCells);
 
@@ -49,7 +49,7 @@ bool brings_torsion(const solver::TorsionLoad& load) {
 
 /// Of a scene whose grid is free.
 void require_contact_seen(const Scene& scene, double pressed, double cells_across) {
-  if (cells_across >= kLeastAcross) return;
+  if (cells_across >= kMinAcross) return;
   throw InputError(
       scene.source.string(), "grid.extent",
       scene.extent ? fmt::format("[{}, {}]", (*scene.extent)[0], (*scene.extent)[1]) : "(missing)",
@@ -73,8 +73,8 @@ bool fits_in_memory(const Scene& scene) {
 }
 
 /// Safety of the error that the mesh was chosen for.
-double mesh_error(const AccuracyWish& wish, bool estimated) {
-  return estimated ? wish.error / estimation_safety(wish.of) : wish.error;
+double mesh_error(const AccuracyTarget& target, bool estimated) {
+  return estimated ? target.error / estimation_safety(target.of) : target.error;
 }
 
 }  // namespace
@@ -87,10 +87,10 @@ AccuracyQuantity accuracy_quantity(const Scene& scene, AccuracyOf of) {
                  : AccuracyQuantity{"twist", "twist_error", "twist_angle"};
 }
 
-void require_can_wish(const Scene& scene, const AccuracyWish& wish) {
-  const std::string option = fmt::format("--accuracy {}", shortest(wish.error));
-  if (!(wish.error > 0.0 && wish.error < 1.0)) throw InputError(option, "allowed: above 0 and below 1");
-  if (wish.of == AccuracyOf::twist && !brings_torsion(scene.steps.back().torsion)) {
+void require_reachable(const Scene& scene, const AccuracyTarget& target) {
+  const std::string option = fmt::format("--accuracy {}", shortest(target.error));
+  if (!(target.error > 0.0 && target.error < 1.0)) throw InputError(option, "allowed: above 0 and below 1");
+  if (target.of == AccuracyOf::twist && !brings_torsion(scene.steps.back().torsion)) {
     throw InputError(option,
                      fmt::format("{} brings no torsion in its last step, so that the twist has no relative "
                                  "error; allowed: --accuracy-of traction, stick_radius",
@@ -151,7 +151,7 @@ ContactOnGrid contact_on_grid(const Scene& scene) {
 
 Index cells_for(const ContactOnGrid& contact, double across) {
   const double inside = (contact.longer - contact.margin) * across / contact.cells_across;
-  return std::max(kFewestCells, multiple_of_four(inside + contact.margin));
+  return std::max(kMinCells, multiple_of_four(inside + contact.margin));
 }
 
 double cells_across(const ContactOnGrid& contact, Index cells) {
@@ -159,19 +159,19 @@ double cells_across(const ContactOnGrid& contact, Index cells) {
          (contact.longer - contact.margin);
 }
 
-AccuracyChoice choose_grid(const Scene& scene, const ContactOnGrid& contact, const AccuracyWish& wish,
+AccuracyChoice choose_grid(const Scene& scene, const ContactOnGrid& contact, const AccuracyTarget& target,
                            bool estimated) {
   const AccuracyData data = accuracy_data();
-  const double error = mesh_error(wish, estimated);
-  const double least = error_with(data, wish.of, kMostCellsAcross) * wish.error / error;
-  if (!(wish.error >= least)) {
+  const double error = mesh_error(target, estimated);
+  const double least = error_with(data, target.of, kMaxCellsAcross) * target.error / error;
+  if (!(target.error >= least)) {
     throw InputError(
-        fmt::format("--accuracy {}", shortest(wish.error)),
+        fmt::format("--accuracy {}", shortest(target.error)),
         fmt::format("allowed on a grid: {:.2g} or more for the {}, which {} cells across the contact "
                     "are expected to reach; where a scene has an exact answer: any, with --model exact",
-                    least, accuracy_quantity(scene, wish.of).name, kMostCellsAcross));
+                    least, accuracy_quantity(scene, target.of).name, kMaxCellsAcross));
   }
-  const Needed needed = needed_for(data, wish.of, error);
+  const Needed needed = needed_for(data, target.of, error);
   AccuracyChoice choice{.cells = cells_for(contact, needed.cells_across),
                         .tolerance = std::max(needed.tolerance, kTightestTolerance)};
   solver::make_model(with_cells(scene, choice.cells));  // says what does not fit in memory
@@ -179,13 +179,13 @@ AccuracyChoice choose_grid(const Scene& scene, const ContactOnGrid& contact, con
 }
 
 std::optional<AccuracyChoice> refined(const Scene& scene, const ContactOnGrid& contact,
-                                      const AccuracyWish& wish, const AccuracyChoice& before,
+                                      const AccuracyTarget& target, const AccuracyChoice& before,
                                       double reached) {
-  const double order = falling_order(accuracy_data(), wish.of);
-  const double suggested = kRefinementMargin * std::pow(reached / wish.error, 1.0 / order);
+  const double order = falling_order(accuracy_data(), target.of);
+  const double suggested = kRefinementMargin * std::pow(reached / target.error, 1.0 / order);
   const double across = cells_across(contact, before.cells);
-  if (!(suggested * across <= kMostCellsAcross)) return std::nullopt;
-  const double factor = std::clamp(suggested, kRefinementMargin, kMostRefinement);
+  if (!(suggested * across <= kMaxCellsAcross)) return std::nullopt;
+  const double factor = std::clamp(suggested, kRefinementMargin, kMaxRefinement);
   const AccuracyChoice next{
       .cells = cells_for(contact, factor * across),
       .tolerance = std::max(before.tolerance * std::pow(factor, -order), kTightestTolerance)};

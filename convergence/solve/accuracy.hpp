@@ -12,15 +12,15 @@
 namespace slipstick::convergence {
 
 /// The finest mesh that is chosen: cells across the contact. Twice as fine as the finest measured one.
-inline constexpr double kMostCellsAcross = 2048.0;
+inline constexpr double kMaxCellsAcross = 2048.0;
 
 /// A relative error that is asked for.
-struct AccuracyWish {
+struct AccuracyTarget {
   double error;
   AccuracyOf of = AccuracyOf::twist;
 };
 
-/// What the error is told of: a path into a result, and its name. The moment, where the twist is imposed.
+/// What the error is of: a path into a result, and its name. The moment, where the twist is imposed.
 struct AccuracyQuantity {
   std::string name;   ///< twist | moment | traction | stick_radius
   std::string error;  ///< path of its error against the exact answer
@@ -35,8 +35,8 @@ struct ContactOnGrid {
   double cells_across;  ///< diameter of the circle of equal area over the side of a square of a cell's area
 };
 
-/// Told from the pressure on that grid; of a height map or a pressure file, whose grid is not free, as if all
-/// of it were pressed. Throws InputError as make_model().
+/// Determined from the pressure on that grid; of a height map or a pressure file, whose grid is not free, as
+/// if all of it were pressed. Throws InputError as make_model().
 ContactOnGrid contact_on_grid(const solver::Scene& scene);
 
 /// Cells along the longer side, a multiple of four, that put at least so many across the contact.
@@ -46,29 +46,30 @@ double cells_across(const ContactOnGrid& contact, solver::Index cells);
 /// The scene on another mesh, in the shape of its own.
 solver::Scene with_cells(solver::Scene scene, solver::Index longer);
 
-/// What is solved to reach a wish.
+/// What is solved to reach a target.
 struct AccuracyChoice {
   solver::Index cells = 0;  ///< along the grid's longer side
   double tolerance = 0.0;
 };
 
-/// Checks a wish against the scene before anything is computed. Throws InputError for an error that is not
+/// Checks a target against the scene before anything is computed. Throws InputError for an error that is not
 /// between 0 and 1, a scene that has no such quantity or whose file says the grid, a method whose stopping
 /// test bounds no error.
-void require_can_wish(const solver::Scene& scene, const AccuracyWish& wish);
+void require_reachable(const solver::Scene& scene, const AccuracyTarget& target);
 
-/// Whether the exact wing answers with this quantity.
+/// Whether the exact side answers with this quantity.
 bool answers_exactly(const solver::Scene& scene, AccuracyOf of);
 
-/// On a grid. estimated: its error will be told from two meshes, with a safety factor that the mesh has to
-/// make up for. Throws InputError, with what is reachable, where the data say that no grid gets there.
-AccuracyChoice choose_grid(const solver::Scene& scene, const ContactOnGrid& contact, const AccuracyWish& wish,
-                           bool estimated);
+/// On a grid. estimated: its error will be estimated from two meshes, with a safety factor that the mesh has
+/// to make up for. Throws InputError, with what is reachable, where the data say that no grid gets there.
+AccuracyChoice choose_grid(const solver::Scene& scene, const ContactOnGrid& contact,
+                           const AccuracyTarget& target, bool estimated);
 
 /// The next choice after one that left too large an error; none where what the error suggests is finer than
-/// kMostCellsAcross, or the next mesh does not fit in memory.
+/// kMaxCellsAcross, or the next mesh does not fit in memory.
 std::optional<AccuracyChoice> refined(const solver::Scene& scene, const ContactOnGrid& contact,
-                                      const AccuracyWish& wish, const AccuracyChoice& before, double reached);
+                                      const AccuracyTarget& target, const AccuracyChoice& before,
+                                      double reached);
 
 /// Predicted seconds of a solve on this machine: measured work times an application's seconds here. NaN for
 /// methods and operators that were not measured.

@@ -17,7 +17,7 @@ namespace {
 using solver::InputError;
 using solver::Scene;
 
-/// Whether the error will have to be told from two meshes. The normal contact of an ellipse has an exact
+/// Whether the error will have to be estimated from two meshes. The normal contact of an ellipse has an exact
 /// answer, but not its twist.
 bool is_estimated(const Scene& scene, AccuracyOf of) { return !answers_exactly(scene, of); }
 
@@ -27,14 +27,14 @@ Scene chosen_scene(const Scene& scene, const AccuracyChoice& choice) {
   return chosen;
 }
 
-/// A second solve on half as many cells along each side, where the error is told from one.
+/// A second solve on half as many cells along each side, where the error is estimated from it.
 constexpr double kWithCoarserSolve = 1.25;
 
 const std::string kNoFinerMesh =
     fmt::format("a mesh that would is finer than {} cells across the contact, or does not fit in memory",
-                kMostCellsAcross);
+                kMaxCellsAcross);
 
-/// Surfaces whose errors the data do not tell.
+/// Surfaces whose errors the data do not cover.
 std::string note_on(const Scene& scene) {
   for (const solver::Surface& surface : scene.surfaces) {
     if (surface.shape == solver::Shape::roughness) {
@@ -46,13 +46,14 @@ std::string note_on(const Scene& scene) {
              : "";
 }
 
-Json account(const Scene& scene, const AccuracyWish& wish) {
-  Json json{{"wanted", wish.error}, {"quantity", accuracy_quantity(scene, wish.of).name}};
+Json account(const Scene& scene, const AccuracyTarget& target) {
+  Json json{{"wanted", target.error}, {"quantity", accuracy_quantity(scene, target.of).name}};
   json["reached"] = nullptr;
   return json;
 }
 
-Json attempt_json(const GridAnswer& answer, const Scene& scene, const ReachedError& reached, double seconds) {
+Json attempt_json(const SolvedScene& answer, const Scene& scene, const ReachedError& reached,
+                  double seconds) {
   Json json{{"cells", answer.result["cells"]}, {"tolerance", scene.tolerance}};
   set_number(json, "error", reached.error, reached.why);
   json["seconds"] = seconds;
@@ -61,30 +62,31 @@ Json attempt_json(const GridAnswer& answer, const Scene& scene, const ReachedErr
 
 }  // namespace
 
-Scene scene_for(const Scene& scene, const AccuracyWish& wish) {
+Scene scene_for(const Scene& scene, const AccuracyTarget& target) {
   if (scene.model == solver::ModelChoice::exact) return scene;
-  return chosen_scene(scene, choose_grid(scene, contact_on_grid(scene), wish, is_estimated(scene, wish.of)));
+  return chosen_scene(scene,
+                      choose_grid(scene, contact_on_grid(scene), target, is_estimated(scene, target.of)));
 }
 
-AccurateAnswer solve_to_accuracy(const Scene& scene, const AccuracyWish& wish, const GridSolve& solve) {
+AccurateAnswer solve_to_accuracy(const Scene& scene, const AccuracyTarget& target, const GridSolve& solve) {
   const ContactOnGrid contact = contact_on_grid(scene);
-  const bool estimated = is_estimated(scene, wish.of);
-  std::optional<AccuracyChoice> choice = choose_grid(scene, contact, wish, estimated);
-  AccurateAnswer found{.answer = {}, .accuracy = account(scene, wish)};
+  const bool estimated = is_estimated(scene, target.of);
+  std::optional<AccuracyChoice> choice = choose_grid(scene, contact, target, estimated);
+  AccurateAnswer found{.answer = {}, .accuracy = account(scene, target)};
   const double predicted = predicted_seconds(chosen_scene(scene, *choice), contact);
   Json attempts = Json::array();
   ReachedError reached{};
-  std::string stopped = fmt::format("{} refinements did not get there", kMostRefinements);
-  for (int attempt = 0; attempt <= kMostRefinements; ++attempt) {
+  std::string stopped = fmt::format("{} refinements did not get there", kMaxRefinements);
+  for (int attempt = 0; attempt <= kMaxRefinements; ++attempt) {
     const Scene chosen = chosen_scene(scene, *choice);
     const auto start = std::chrono::steady_clock::now();
     found.answer = solve(chosen);
-    reached = reached_error(chosen, found.answer.solution, found.answer.result, wish.of);
+    reached = reached_error(chosen, found.answer.solution, found.answer.result, target.of);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
     attempts.push_back(attempt_json(found.answer, chosen, reached, seconds));
-    found.reached = reached.error <= wish.error;
+    found.reached = reached.error <= target.error;
     if (found.reached) break;
-    choice = refined(scene, contact, wish, *choice, reached.error);
+    choice = refined(scene, contact, target, *choice, reached.error);
     if (!choice) {
       stopped = std::isfinite(reached.error) ? kNoFinerMesh : reached.why;
       break;
@@ -100,15 +102,15 @@ AccurateAnswer solve_to_accuracy(const Scene& scene, const AccuracyWish& wish, c
   return found;
 }
 
-Json exact_accuracy(const Scene& scene, const AccuracyWish& wish) {
+Json exact_accuracy(const Scene& scene, const AccuracyTarget& target) {
   const Oracle oracle = require_oracle(scene);
-  if (!(oracle.relative_uncertainty <= wish.error)) {
+  if (!(oracle.relative_uncertainty <= target.error)) {
     throw InputError(
-        fmt::format("--accuracy {:g}", wish.error),
+        fmt::format("--accuracy {:g}", target.error),
         fmt::format("allowed: {:.2g} or more, the exact answer's own uncertainty in double precision",
                     oracle.relative_uncertainty));
   }
-  Json json = account(scene, wish);
+  Json json = account(scene, target);
   json.update({{"reached", oracle.relative_uncertainty},
                {"how", "exact"},
                {"why", "the exact solution needs no grid; this is its own uncertainty"},
@@ -116,7 +118,7 @@ Json exact_accuracy(const Scene& scene, const AccuracyWish& wish) {
   Scene on_grid = scene;
   on_grid.model = solver::ModelChoice::automatic;
   try {
-    json["grid_instead"] = plan_json(scene_for(on_grid, wish));
+    json["grid_instead"] = plan_json(scene_for(on_grid, target));
   } catch (const InputError& error) {
     set_missing(json, "grid_instead", error.what());
   }

@@ -5,15 +5,15 @@
 
 namespace slipstick::convergence {
 
-/// What an estimated error may have to allow for: the mesh that a wish takes is chosen for so many times
+/// What an estimated error may have to allow for: the mesh that a target takes is chosen for so many times
 /// less.
 double estimation_safety(AccuracyOf of);
 
 /// The error that a solve left, and how that is known.
 struct ReachedError {
-  double error;     ///< relative, not negative; NaN where it cannot be told
+  double error;     ///< relative, not negative; NaN where it is not known
   std::string how;  ///< exact | estimated
-  std::string why;  ///< what it was estimated from, or why it cannot be told
+  std::string why;  ///< what it was estimated from, or why it is not known
 };
 
 /// Against the exact answer where the result has an error against it; else from a second solve on half as

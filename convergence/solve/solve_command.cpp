@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -18,6 +17,8 @@
 #include "convergence/programs/solve_figure.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/result.hpp"
+#include "convergence/runs/process_pool.hpp"
+#include "convergence/runs/solve_scene.hpp"
 #include "convergence/solve/accurate_solve.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
@@ -36,6 +37,10 @@ struct Options {
   std::optional<double> accuracy;
   std::string accuracy_of = "twist";
   bool plan = false;
+  // Of the processes of a pool alone.
+  std::string keep;
+  std::string rounding;
+  bool profile = false;
 };
 
 /// One line on a terminal, rewritten; nothing elsewhere.
@@ -77,51 +82,35 @@ int answer_exactly(const solver::Scene& scene, const Options& options, std::ostr
 }
 
 /// Solves, and writes the fields of each step where they go to a file of its own.
-GridAnswer find_on_grid(const solver::Scene& scene, const Options& options, Json& result) {
-  const std::unique_ptr<ExactHistory> history = exact_history(scene);
-  GridAnswer answer;
-  Json steps = Json::array();
-  const auto on_step = [&](const solver::Solution& at) {
-    answer.exact = history->advance(at.loads);
-    if (has_history(scene)) steps.push_back(step_result(scene, at, answer.exact));
-    if (one_file_a_step(options.fields)) {
-      write_solution_fields(file_of_step(options.fields, std::max<std::size_t>(steps.size(), 1)), at,
-                            answer.exact);
-    }
+SolvedScene find_on_grid(const solver::Scene& scene, const Options& options, Json& result) {
+  std::size_t step = 0;
+  const auto on_step = [&](const solver::Solution& at, const OracleAnswer& exact) {
+    ++step;
+    if (!one_file_a_step(options.fields)) return;
+    write_solution_fields(file_of_step(options.fields, step), at, exact);
   };
-  try {
-    answer.solution = solver::solve(scene, {.progress = show_progress, .on_step = on_step});
-  } catch (const solver::InputError& error) {  // the steps before are not lost
-    if (!steps.empty()) {
-      result = {{"name", scene.name}, {"status", "not_converged"}, {"message", error.what()}};
-      add_steps(result, std::move(steps));
-    }
-    throw;
-  }
-  answer.result = solve_result(scene, answer.solution, answer.exact);
-  if (has_history(scene)) add_steps(answer.result, std::move(steps));
-  return answer;
+  return solve_scene(scene, {.progress = show_progress, .on_step = on_step, .incomplete = &result});
 }
 
-void write_answer(const GridAnswer& answer, const Options& options, std::ostream& text) {
+void write_answer(const SolvedScene& answer, const Options& options, std::ostream& text) {
   text << solve_text(answer.result);
   write_files(options, answer.result,
               [&](const auto& file) { write_solution_fields(file, answer.solution, answer.exact); });
 }
 
 int solve_on_grid(const solver::Scene& scene, const Options& options, std::ostream& text, Json& result) {
-  const GridAnswer answer = find_on_grid(scene, options, result);
+  const SolvedScene answer = find_on_grid(scene, options, result);
   result = answer.result;
   write_answer(answer, options, text);
   return answer.solution.status == solver::Status::converged ? 0 : 1;
 }
 
-AccuracyWish wish_of(const Options& options) {
-  AccuracyWish wish{.error = *options.accuracy};
+AccuracyTarget target_of(const Options& options) {
+  AccuracyTarget target{.error = *options.accuracy};
   for (const auto& [word, of] : accuracy_words()) {
-    if (word == options.accuracy_of) wish.of = of;
+    if (word == options.accuracy_of) target.of = of;
   }
-  return wish;
+  return target;
 }
 
 /// The accuracy chooses these: both cannot hold.
@@ -136,7 +125,7 @@ void require_not_set(const std::vector<std::string>& overrides) {
   }
 }
 
-/// The exact wing, where it answers and the user does not say otherwise.
+/// The exact side, where it answers and the user does not say otherwise.
 solver::Scene model_chosen(solver::Scene scene, const Options& options, AccuracyOf of) {
   const bool said =
       !options.model.empty() || solver::SceneReader(options.scene, options.overrides).has("solver.model");
@@ -145,24 +134,24 @@ solver::Scene model_chosen(solver::Scene scene, const Options& options, Accuracy
 }
 
 int solve_accurately(solver::Scene scene, const Options& options, std::ostream& text, Json& result) {
-  const AccuracyWish wish = wish_of(options);
+  const AccuracyTarget target = target_of(options);
   require_not_set(options.overrides);
-  scene = model_chosen(std::move(scene), options, wish.of);
-  require_can_wish(scene, wish);
+  scene = model_chosen(std::move(scene), options, target.of);
+  require_reachable(scene, target);
   if (options.plan) {
-    result["plan"] = plan_json(scene_for(scene, wish));
+    result["plan"] = plan_json(scene_for(scene, target));
     text << plan_text(result);
     return 0;
   }
   if (scene.model == solver::ModelChoice::exact) {
-    const Json accuracy = exact_accuracy(scene, wish);
+    const Json accuracy = exact_accuracy(scene, target);
     answer_exactly(scene, options, text, result);
     result["accuracy"] = accuracy;
     text << accuracy_text(result);
     return 0;
   }
   const AccurateAnswer answer = solve_to_accuracy(
-      scene, wish, [&](const solver::Scene& chosen) { return find_on_grid(chosen, options, result); });
+      scene, target, [&](const solver::Scene& chosen) { return find_on_grid(chosen, options, result); });
   result = answer.answer.result;
   result["accuracy"] = answer.accuracy;
   write_answer(answer.answer, options, text);
@@ -170,7 +159,21 @@ int solve_accurately(solver::Scene scene, const Options& options, std::ostream& 
   return answer.reached ? 0 : 1;
 }
 
+RunSpec spec_of(const Options& options) {
+  RunSpec spec{.scene = options.scene,
+               .overrides = options.overrides,
+               .fields = options.fields,
+               .profile = options.profile};
+  if (options.rounding == "upward") spec.rounding = Rounding::upward;
+  if (options.rounding == "downward") spec.rounding = Rounding::downward;
+  return spec;
+}
+
 int run(const Options& options, std::ostream& text, Json& result) {
+  if (!options.keep.empty()) {
+    solve_and_keep(spec_of(options), options.keep);
+    return 0;
+  }
   if (!options.fields.empty()) solver::require_field_format(options.fields);
   if (!options.figure.empty()) require_figure_format(options.figure);
   const solver::Scene scene = read_scene(options);
@@ -217,6 +220,10 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_solve_command(CLI
       "last step, or each to a file of its own where the name holds {step}");
   command->add_option("--figure", options->figure,
                       "draw slip and stick, tractions and pressure: .svg, .pdf or .png");
+  constexpr const char* kHidden = "";
+  command->add_option("--keep", options->keep, "folder that keeps the result")->group(kHidden);
+  command->add_option("--rounding", options->rounding, "upward | downward")->group(kHidden);
+  command->add_flag("--profile", options->profile, "tractions along two radii")->group(kHidden);
   command->footer(
       "Example:\n  slipstick solve convergence/scenes/paper.toml --set load.moment_ratio=0.5 --json "
       "result.json --fields "

@@ -10,15 +10,14 @@
 
 namespace slipstick::convergence {
 
-BudgetPoints budget_points(const Point& point) {
-  const double tolerance = solver::read_scene(point.scene, point.overrides).tolerance;
-  Point tightened = point;
+BudgetRuns budget_runs(const RunSpec& observed, double tolerance) {
+  RunSpec tightened = observed;
   tightened.overrides.push_back(fmt::format("solver.tolerance={}", kTightening * tolerance));
-  Point upward = tightened;
+  RunSpec upward = tightened;
   upward.rounding = Rounding::upward;
-  Point downward = tightened;
+  RunSpec downward = tightened;
   downward.rounding = Rounding::downward;
-  return {point, tightened, {upward, downward}};
+  return {observed, tightened, {upward, downward}};
 }
 
 Budget split_error(const std::string& quantity, const Json& observed, const Json& tightened,
@@ -37,10 +36,10 @@ Budget split_error(const std::string& quantity, const Json& observed, const Json
   return budget;
 }
 
-Budget error_budget(const Point& point, const std::string& quantity, PointRunner& runner) {
-  const BudgetPoints points = budget_points(point);
+Budget error_budget(const PreparedRun& run, const std::string& quantity, const ProcessPool& pool) {
+  const BudgetRuns runs = budget_runs(run.spec, run.scene.tolerance);
   const std::vector<Json> results =
-      runner.run({points.observed, points.tightened, points.rounded[0], points.rounded[1]});
+      pool.run({runs.observed, runs.tightened, runs.rounded[0], runs.rounded[1]});
   return split_error(quantity, results[0], results[1], {results[2], results[3]});
 }
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "convergence/runs/point_runner.hpp"
+#include "convergence/runs/process_pool.hpp"
 
 namespace slipstick::convergence {
 
@@ -18,19 +18,19 @@ struct Budget {
   double reference = 0.0;       ///< uncertainty of the exact answer
 };
 
-/// A point with those that tell the parts of its error: to a hundredth of the tolerance, and this rounded
+/// A run with those that show the parts of its error: to a hundredth of its tolerance, and this rounded
 /// upward and downward.
-struct BudgetPoints {
-  Point observed;
-  Point tightened;
-  std::array<Point, 2> rounded;
+struct BudgetRuns {
+  RunSpec observed;
+  RunSpec tightened;
+  std::array<RunSpec, 2> rounded;
 };
 
 /// How much tighter the tolerance is with which a result is compared to see its iteration error. What that
 /// leaves is a hundredth of it or a tenth, as the error goes with the tolerance or with its root.
 inline constexpr double kTightening = 1e-2;
 
-BudgetPoints budget_points(const Point& point);
+BudgetRuns budget_runs(const RunSpec& observed, double tolerance);
 
 /// The parts of an error, a path into the results; NaN where a result does not have it, and the rounding
 /// where any of the rounded results has none, or there is no such result.
@@ -38,7 +38,7 @@ Budget split_error(const std::string& quantity, const Json& observed, const Json
                    const std::vector<Json>& rounded);
 
 /// Solves what it takes and splits.
-Budget error_budget(const Point& point, const std::string& quantity, PointRunner& runner);
+Budget error_budget(const PreparedRun& run, const std::string& quantity, const ProcessPool& pool);
 
 /// The name of the largest part.
 std::string largest_part(const Budget& budget);

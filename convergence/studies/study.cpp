@@ -13,34 +13,35 @@ namespace slipstick::convergence {
 namespace {
 
 /// Times that a study tightens a tolerance by itself, from 1e-8 to 1e-12.
-constexpr int kMostTightenings = 2;
+constexpr int kMaxTightenings = 2;
 
-/// Collects points, then hands out their results in the same order.
+/// Collects runs, then hands out their results in the same order.
 class Batch {
  public:
-  Batch(PointRunner& runner, FailedRuns& failed) : runner_(runner), failed_(failed) {}
-  void add(Point point) { points_.push_back(std::move(point)); }
+  Batch(const ProcessPool& pool, FailedRuns& failed) : pool_(pool), failed_(failed) {}
+  void add(RunSpec run) { runs_.push_back(std::move(run)); }
   void run() {
-    results_ = runner_.run(points_);
-    for (std::size_t i = 0; i < points_.size(); ++i) failed_.add(run_text(points_[i]), results_[i]);
+    results_ = pool_.run(runs_);
+    for (std::size_t i = 0; i < runs_.size(); ++i) failed_.add(run_text(runs_[i]), results_[i]);
   }
   Json next() { return std::move(results_[taken_++]); }
 
  private:
-  PointRunner& runner_;
+  const ProcessPool& pool_;
   FailedRuns& failed_;
-  std::vector<Point> points_;
+  std::vector<RunSpec> runs_;
   std::vector<Json> results_;
   std::size_t taken_ = 0;
 };
 
-void add_points(const Study& study, const Series& series, Batch& batch) {
+void add_runs(const Study& study, const Series& series, Batch& batch) {
   for (const Mesh& mesh : series.meshes) {
-    for (const GridChoice& grid : mesh.grids) batch.add(make_point(study, grid, series.tolerance));
-    const BudgetPoints parts = budget_points(make_point(study, mesh.grids.front(), series.tolerance));
+    for (const GridChoice& grid : mesh.grids) batch.add(make_run(study, grid, series.tolerance));
+    const BudgetRuns parts =
+        budget_runs(make_run(study, mesh.grids.front(), series.tolerance), series.tolerance);
     batch.add(parts.tightened);
     if (!mesh.rounded) continue;
-    for (const Point& rounded : parts.rounded) batch.add(rounded);
+    for (const RunSpec& rounded : parts.rounded) batch.add(rounded);
   }
 }
 
@@ -58,13 +59,13 @@ std::vector<MeshResults> take_results(const Series& series, Batch& batch) {
 
 /// Solves the series, again and to tighter tolerances where the iteration shows.
 std::vector<std::vector<MeshResults>> solve_series(const Study& study, std::vector<Series>& all,
-                                                   PointRunner& runner, FailedRuns& failed) {
+                                                   const ProcessPool& pool, FailedRuns& failed) {
   std::vector<std::vector<MeshResults>> results(all.size());
   std::vector<bool> open(all.size(), true);
-  for (int pass = 0; pass <= kMostTightenings; ++pass) {
-    Batch batch(runner, failed);
+  for (int pass = 0; pass <= kMaxTightenings; ++pass) {
+    Batch batch(pool, failed);
     for (std::size_t i = 0; i < all.size(); ++i) {
-      if (open[i]) add_points(study, all[i], batch);
+      if (open[i]) add_runs(study, all[i], batch);
     }
     batch.run();
     bool any = false;
@@ -72,7 +73,7 @@ std::vector<std::vector<MeshResults>> solve_series(const Study& study, std::vect
       if (!open[i]) continue;
       results[i] = take_results(all[i], batch);
       open[i] =
-          pass < kMostTightenings && all[i].meshes.size() > 1 && needs_tightening(study, all[i], results[i]);
+          pass < kMaxTightenings && all[i].meshes.size() > 1 && needs_tightening(study, all[i], results[i]);
       if (!open[i]) continue;
       any = true;
       all[i].tolerance *= kTightening;
@@ -84,11 +85,10 @@ std::vector<std::vector<MeshResults>> solve_series(const Study& study, std::vect
 }
 
 /// The tolerances that the study varies, and one tighter than all that stands for none.
-void add_tolerance_points(const Study& study, const Series& series, Batch& batch) {
+void add_tolerance_runs(const Study& study, const Series& series, Batch& batch) {
   for (const Mesh& mesh : series.meshes) {
-    for (const double tolerance : study.tolerances)
-      batch.add(make_point(study, mesh.grids.front(), tolerance));
-    batch.add(make_point(study, mesh.grids.front(), kTightening * study.tolerances.back()));
+    for (const double tolerance : study.tolerances) batch.add(make_run(study, mesh.grids.front(), tolerance));
+    batch.add(make_run(study, mesh.grids.front(), kTightening * study.tolerances.back()));
   }
 }
 
@@ -104,10 +104,10 @@ std::vector<std::vector<Json>> take_tolerance_results(const Study& study, const 
 
 }  // namespace
 
-Json run_study(const Study& study, PointRunner& runner) {
+Json run_study(const Study& study, const ProcessPool& pool) {
   std::vector<Series> all = make_series(study);
   FailedRuns failed;
-  const auto results = solve_series(study, all, runner, failed);
+  const auto results = solve_series(study, all, pool, failed);
   Json json;
   json["name"] = study.name;
   json["scene"] = study.scene.string();
@@ -117,8 +117,8 @@ Json run_study(const Study& study, PointRunner& runner) {
     json["series"][all[i].name] = judge_series(study, all[i], results[i]);
   }
   if (study.tolerances.size() > 1) {
-    Batch batch(runner, failed);
-    for (const Series& series : all) add_tolerance_points(study, series, batch);
+    Batch batch(pool, failed);
+    for (const Series& series : all) add_tolerance_runs(study, series, batch);
     batch.run();
     for (std::size_t i = 0; i < all.size(); ++i) {
       const auto by_mesh = take_tolerance_results(study, all[i], batch);

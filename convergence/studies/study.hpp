@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "convergence/runs/point_runner.hpp"
+#include "convergence/runs/process_pool.hpp"
 #include "solver/grid/grid.hpp"
 
 namespace slipstick::convergence {
@@ -36,7 +36,7 @@ Study read_study(const std::filesystem::path& file, const std::vector<std::strin
 /// Solves, fits and judges: rows, orders, extrapolated values and budgets of each series, under
 /// result["series"][name]; the name joins the varied values with "-", or is the scene's where nothing varies.
 /// Paths that gates use: series.NAME.order.QUANTITY.value|low|high|verdict.
-Json run_study(const Study& study, PointRunner& runner);
+Json run_study(const Study& study, const ProcessPool& pool);
 
 /// The same for a person: tables of errors, orders with verdicts, budgets.
 std::string study_text(const Json& result);

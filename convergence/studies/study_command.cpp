@@ -9,6 +9,7 @@
 #include "convergence/programs/python_script.hpp"
 #include "convergence/programs/solve_figure.hpp"
 #include "convergence/programs/temporary_folder.hpp"
+#include "convergence/runs/interrupts.hpp"
 #include "convergence/studies/study.hpp"
 
 namespace slipstick::convergence {
@@ -41,8 +42,9 @@ bool all_converged(const Json& result) {
 int run(const Options& options, std::ostream& text, Json& result) {
   if (!options.figure.empty()) require_figure_format(options.figure);
   const Study study = read_study(options.study, options.overrides);
-  PointRunner runner(options.output, options.jobs);
-  result = run_study(study, runner);
+  const Interrupts interrupts;
+  const ProcessPool pool({.folder = options.output, .jobs = options.jobs, .interrupted = Interrupts::seen});
+  result = run_study(study, pool);
   text << study_text(result);
   if (!options.figure.empty()) draw(options.figure, result);
   return all_converged(result) ? 0 : 1;

@@ -7,7 +7,7 @@
 /// What the results of a study say.
 namespace slipstick::convergence {
 
-/// Orders, extrapolated values and budgets of a series, with the rows that they are told from.
+/// Orders, extrapolated values and budgets of a series, with the rows that they are determined from.
 Json judge_series(const Study& study, const Series& series, const std::vector<MeshResults>& results);
 
 /// Whether an order that is fitted would say more about the tolerance than about the mesh.

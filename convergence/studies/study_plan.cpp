@@ -20,17 +20,18 @@ constexpr Index kRoundingCells = 128;
 constexpr double kShiftCells = 2.0;
 
 /// The grids of a mesh with so many cells along its longer side, in the shape of the scene's own.
-Mesh make_mesh(const Study& study, const std::vector<std::string>& overrides, std::optional<Index> across) {
+Mesh make_mesh(const Study& study, const solver::Scene& of_series, const std::vector<std::string>& overrides,
+               std::optional<Index> across) {
+  solver::Scene scene = of_series;
   std::vector<std::string> own = overrides;
   if (across) {
-    const solver::Scene scene = solver::read_scene(study.scene, overrides);
     if (solver::find_height_map(scene.surfaces) != nullptr) {
       throw solver::InputError(study.source.string(), "cells", std::to_string(*across),
                                "left out: the grid is that of the scene's height map");
     }
     own.push_back(cells_override(scene, *across));
+    scene = solver::read_scene(study.scene, own);
   }
-  const solver::Scene scene = solver::read_scene(study.scene, own);
   const solver::Model model = solver::make_model(scene);
   const auto& [n1, n2, h1, h2, quadrant] = model.grid;
   Mesh mesh;
@@ -78,8 +79,8 @@ std::vector<Series> make_series(const Study& study) {
     if (series.name.empty()) series.name = scene.name;
     series.tolerance = study.tolerances.empty() ? scene.tolerance : study.tolerances.back();
     for (const Index across : study.cells)
-      series.meshes.push_back(make_mesh(study, series.overrides, across));
-    if (study.cells.empty()) series.meshes.push_back(make_mesh(study, series.overrides, std::nullopt));
+      series.meshes.push_back(make_mesh(study, scene, series.overrides, across));
+    if (study.cells.empty()) series.meshes.push_back(make_mesh(study, scene, series.overrides, std::nullopt));
     Mesh* sample = &series.meshes.front();
     for (Mesh& mesh : series.meshes) {
       if (std::max(mesh.grids[0].cells[0], mesh.grids[0].cells[1]) <= kRoundingCells) sample = &mesh;
@@ -89,10 +90,10 @@ std::vector<Series> make_series(const Study& study) {
   return all;
 }
 
-Point make_point(const Study& study, const GridChoice& grid, double tolerance) {
-  Point point{study.scene, grid.overrides};
-  point.overrides.push_back(fmt::format("solver.tolerance={}", tolerance));
-  return point;
+RunSpec make_run(const Study& study, const GridChoice& grid, double tolerance) {
+  RunSpec run{.scene = study.scene, .overrides = grid.overrides};
+  run.overrides.push_back(fmt::format("solver.tolerance={}", tolerance));
+  return run;
 }
 
 }  // namespace slipstick::convergence

@@ -43,6 +43,6 @@ struct MeshResults {
 /// them.
 std::vector<Series> make_series(const Study& study);
 
-Point make_point(const Study& study, const GridChoice& grid, double tolerance);
+RunSpec make_run(const Study& study, const GridChoice& grid, double tolerance);
 
 }  // namespace slipstick::convergence

@@ -14,17 +14,17 @@ using solver::Index;
 using solver::SceneReader;
 
 /// Of grids: below, a contact has no inside; above, one field takes gigabytes.
-constexpr double kLeastCells = 8.0;
-constexpr double kMostCells = 16384.0;
+constexpr double kMinCells = 8.0;
+constexpr double kMaxCells = 16384.0;
 /// More say nothing new about the spread.
-constexpr double kMostShifts = 32.0;
+constexpr double kMaxShifts = 32.0;
 /// Solves of a study, tightened and rounded ones not counted: more take days, and a wrong list may ask for
 /// billions.
-constexpr double kMostSolves = 10'000.0;
+constexpr double kMaxSolves = 10'000.0;
 
 std::vector<Index> read_cells(SceneReader& reader) {
   std::vector<Index> cells;
-  for (const double number : reader.numbers("cells", solver::whole(kLeastCells, kMostCells))) {
+  for (const double number : reader.numbers("cells", solver::whole(kMinCells, kMaxCells))) {
     cells.push_back(static_cast<Index>(number));
   }
   std::sort(cells.begin(), cells.end());
@@ -62,11 +62,11 @@ void require_finite(const std::filesystem::path& file, const Study& study) {
   };
   double solves = at_least_one(study.cells.size()) * at_least_one(study.tolerances.size()) * study.shifts;
   for (const Variation& variation : study.variations) solves *= static_cast<double>(variation.values.size());
-  if (solves > kMostSolves) {
+  if (solves > kMaxSolves) {
     throw solver::InputError(file.string(),
                              fmt::format("asks for {:g} solves; allowed: at most {:g}, cells times "
                                          "shifts times tolerances times the values of each [[vary]]",
-                                         solves, kMostSolves));
+                                         solves, kMaxSolves));
   }
 }
 
@@ -81,7 +81,7 @@ Study read_study(const std::filesystem::path& file, const std::vector<std::strin
   study.overrides = reader.assignments("set");
   study.overrides.insert(study.overrides.end(), overrides.begin(), overrides.end());
   study.cells = read_cells(reader);
-  study.shifts = static_cast<int>(reader.number_or("shifts", 1.0, solver::whole(1.0, kMostShifts)));
+  study.shifts = static_cast<int>(reader.number_or("shifts", 1.0, solver::whole(1.0, kMaxShifts)));
   study.tolerances = reader.numbers("tolerances", solver::kPositive);
   std::sort(study.tolerances.begin(), study.tolerances.end(), std::greater<>());
   study.variations = read_variations(reader);

@@ -5,12 +5,9 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <fstream>
 #include <functional>
 #include <sstream>
@@ -479,7 +476,7 @@ std::vector<Judgement> one_of_each() {
       judge(with_status(named(below("x", 1.0), "watched"), GateStatus::report_only), solve_with("x", 3.0)),
       refuse(named(below("x", 1.0), "unreadable"), "no\nsuch \x01 scene <here>"),
   };
-  judgements[1].blame = "discretisation";
+  judgements[1].dominant_error = "discretisation";
   judgements[1].seconds = 1.5;
   judgements[2].gate.file = "gates/other.toml";
   return judgements;
@@ -505,13 +502,8 @@ std::string parse_xml(const fs::path& file) {
   std::ofstream(script) << "import sys, xml.etree.ElementTree as tree\n"
                            "for e in tree.parse(sys.argv[1]).iter():\n"
                            "    print(e.tag, dict(e.attrib), repr(e.text))\n";
-  FILE* const pipe =
-      popen((std::string(SLIPSTICK_PYTHON) + " " + script.string() + " " + file.string()).c_str(), "r");
-  std::string output;
-  std::array<char, 4096> buffer{};
-  while (const std::size_t size = fread(buffer.data(), 1, buffer.size(), pipe))
-    output.append(buffer.data(), size);
-  return pclose(pipe) == 0 ? output : "not XML";
+  const ProgramEnd end = run_program({SLIPSTICK_PYTHON, script, file}, {.captured = Captured::output});
+  return end.code == 0 ? end.output : "not XML";
 }
 
 class GateJunit : public GateFolder {};

@@ -1,10 +1,8 @@
 #pragma once
 
-#include <sys/wait.h>
-
-#include <array>
-#include <cstdio>
 #include <string>
+
+#include "convergence/programs/run_program.hpp"
 
 namespace slipstick {
 
@@ -13,16 +11,16 @@ struct ProgramRun {
   std::string output;  ///< standard output and error together
 };
 
-/// Runs the program as users do.
+/// Runs a command line as users do, in a shell.
+inline ProgramRun run_command(const std::string& line) {
+  const auto end =
+      convergence::run_program({"sh", "-c", line}, {.captured = convergence::Captured::everything});
+  return {end.code, end.output};
+}
+
+/// Runs the program with arguments as a shell takes them.
 inline ProgramRun run_program_with(const std::string& arguments) {
-  FILE* const pipe = popen((std::string(SLIPSTICK_PROGRAM) + " " + arguments + " 2>&1").c_str(), "r");
-  ProgramRun result{-1, ""};
-  std::array<char, 4096> buffer{};
-  while (const std::size_t size = fread(buffer.data(), 1, buffer.size(), pipe))
-    result.output.append(buffer.data(), size);
-  const int status = pclose(pipe);
-  result.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
-  return result;
+  return run_command(std::string(SLIPSTICK_PROGRAM) + " " + arguments);
 }
 
 }  // namespace slipstick

@@ -1,33 +1,63 @@
 #include "convergence/programs/run_program.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <string>
 
-#include "convergence/programs/child_process.hpp"
-#include "convergence/programs/temporary_folder.hpp"
 #include "convergence/programs/tests/processes.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
+using testing::HasSubstr;
+
 TEST(RunProgram, GivesTheExitCode) {
-  EXPECT_EQ(run_program({"sh", "-c", "exit 0"}), 0);
-  EXPECT_EQ(run_program({"sh", "-c", "exit 3"}), 3);
-  EXPECT_EQ(run_program({"sh", "-c", "kill -KILL $$"}), -1);
-  EXPECT_EQ(run_program({"no-such-program-anywhere"}), -1);
+  EXPECT_EQ(run_program({"sh", "-c", "exit 0"}).code, 0);
+  EXPECT_EQ(run_program({"sh", "-c", "exit 3"}).code, 3);
+  EXPECT_EQ(run_program({"sh", "-c", "kill -KILL $$"}).code, -1);
+  EXPECT_EQ(run_program({"no-such-program-anywhere"}).code, -1);
 }
 
-TEST(RunProgram, SendsOutputAndComplaintsToFiles) {
-  const TemporaryFolder folder;
-  EXPECT_EQ(run_program({"sh", "-c", "echo said; echo cried >&2"}, folder / "out", folder / "err"), 0);
-  EXPECT_EQ(file_text(folder / "out"), "said\n");
-  EXPECT_EQ(file_text(folder / "err"), "cried\n");
-  EXPECT_EQ(run_program({"sh", "-c", "exit 0"}, folder / "no/such/folder"), -1);
+TEST(RunProgram, SaysWhatWentWrong) {
+  EXPECT_EQ(run_program({"sh", "-c", "exit 0"}).trouble, "");
+  EXPECT_THAT(run_program({"sh", "-c", "exit 3"}).trouble, HasSubstr("code 3"));
+  EXPECT_THAT(run_program({"sh", "-c", "kill -KILL $$"}).trouble, HasSubstr("signal 9"));
+  const ProgramOptions tied{.tied_by = SLIPSTICK_PROGRAM};
+  for (const ProgramOptions& options : {ProgramOptions{}, tied}) {
+    const ProgramEnd end = run_program({"no-such-program-anywhere"}, options);
+    EXPECT_FALSE(end.started);
+    EXPECT_EQ(end.code, -1);
+  }
+}
+
+TEST(RunProgram, GivesBackWhatWasWritten) {
+  const std::vector<std::string> words{"sh", "-c", "echo said; echo cried >&2"};
+  EXPECT_EQ(run_program(words, {.captured = Captured::output}).output, "said\n");
+  EXPECT_EQ(run_program(words, {.captured = Captured::everything}).output, "said\ncried\n");
+  EXPECT_EQ(run_program(words).output, "");
+  const auto much = run_program({"head", "-c", "1000000", "/dev/zero"}, {.captured = Captured::output});
+  EXPECT_EQ(much.output.size(), 1000000U);
+}
+
+/// No shell takes arguments apart, and a program that is tied gets them as they are.
+TEST(RunProgram, HandsArgumentsOnAsTheyAre) {
+  const std::vector<std::string> words{"printf", "[%s]", "a b", "$HOME", "'", "--json", ""};
+  for (const char* const tied_by : {"", SLIPSTICK_PROGRAM}) {
+    const auto end = run_program(words, {.captured = Captured::output, .tied_by = tied_by});
+    EXPECT_EQ(end.output, "[a b][$HOME]['][--json][]");
+  }
+}
+
+TEST(RunProgram, OneThatIsLeftIsKilled) {
+  const auto start = std::chrono::steady_clock::now();
+  { const Program left({"sleep", "600"}); }
+  EXPECT_LT(std::chrono::steady_clock::now() - start, std::chrono::seconds(60));
 }
 
 /// A program that was started goes when who started it is killed.
@@ -40,7 +70,7 @@ TEST(RunProgram, DoesNotOutliveWhoStartedIt) {
     const pid_t parent = fork();
     if (parent == 0) {
       setenv(kMarker, marker.c_str(), 1);  // the program's environment, not what is seen of this process
-      run_program({"sleep", "600"});
+      run_program({"sleep", "600"}, {.tied_by = SLIPSTICK_PROGRAM});
       _exit(0);
     }
     ASSERT_TRUE(comes_true([&] { return marked_processes(marker).size() == 1; }));
@@ -52,11 +82,11 @@ TEST(RunProgram, DoesNotOutliveWhoStartedIt) {
 }
 
 /// Where nobody is told how children end, nothing is said of it.
-TEST(ChildProcess, AnEndThatIsNotToldIsNoSuccess) {
+TEST(RunProgram, AnEndThatIsNotToldIsNoSuccess) {
   const auto before = std::signal(SIGCHLD, SIG_IGN);
-  EXPECT_EQ(run_program({"sh", "-c", "exit 0"}), -1);
+  EXPECT_EQ(run_program({"sh", "-c", "exit 0"}).code, -1);
   std::signal(SIGCHLD, before);
-  EXPECT_EQ(run_program({"sh", "-c", "exit 0"}), 0);
+  EXPECT_EQ(run_program({"sh", "-c", "exit 0"}).code, 0);
 }
 
 }  // namespace

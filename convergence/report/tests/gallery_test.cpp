@@ -5,10 +5,12 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <numbers>
 #include <ostream>
 #include <set>
+
+#include "convergence/oracle/oracle.hpp"
+#include "convergence/runs/process_pool.hpp"
 
 namespace slipstick::convergence {
 
@@ -24,15 +26,9 @@ constexpr std::array<solver::Index, 3> kAcross{12, 24, 48};
 class Gallery : public testing::TestWithParam<GalleryScene> {
  protected:
   ~Gallery() override { fs::remove_all(folder_); }
-  Json row() {
-    Runner runner(folder_, kAcross.size());
-    return gallery_row(runner, GetParam(), SLIPSTICK_SCENES, kAcross, folder_);
-  }
-  /// The whole result at the finest mesh.
-  Json finest() {
-    const std::string point = "gallery-" + GetParam().stem + "-" + std::to_string(kAcross.back()) + ".json";
-    std::ifstream stream(folder_ / "points" / point);
-    return Json::parse(stream)["result"];
+  std::vector<Json> meshes() {
+    const ProcessPool pool({.folder = folder_ / "points", .program = SLIPSTICK_PROGRAM});
+    return pool.run(gallery_runs(GetParam(), SLIPSTICK_SCENES, kAcross, folder_));
   }
   fs::path folder_ = fs::path(testing::TempDir()) / ("slipstick-gallery-" + std::to_string(getpid()));
 };
@@ -94,7 +90,8 @@ void expect_sums_of_steps(const Json& row, const Json& steps) {
 }
 
 TEST_P(Gallery, IsSolvedCertifiedAndJudged) {
-  const Json found = row();
+  const std::vector<Json> results = meshes();
+  const Json found = gallery_row(GetParam(), results);
   EXPECT_EQ(found["status"], "converged");
   EXPECT_LE(found["gap"].get<double>(), found["tolerance"].get<double>());
   EXPECT_TRUE(fs::exists(folder_ / found["fields"].get<std::string>()));
@@ -111,7 +108,7 @@ TEST_P(Gallery, IsSolvedCertifiedAndJudged) {
     EXPECT_EQ(found["basis"], "extrapolated");
   }
   if (found["basis"] == "extrapolated") expect_meshes_lead_to_one_point(found);
-  const Json result = finest();
+  const Json& result = results.back();
   if (result.contains("steps")) expect_sums_of_steps(found, result["steps"]);
 }
 

@@ -9,64 +9,51 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
-class JournalTest : public testing::Test {
+class ResultCacheTest : public testing::Test {
  protected:
-  JournalTest() { std::filesystem::remove_all(folder_); }
-  ~JournalTest() override { std::filesystem::remove_all(folder_); }
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "slipstick-journal-test";
+  ResultCacheTest() { std::filesystem::remove_all(folder_); }
+  ~ResultCacheTest() override { std::filesystem::remove_all(folder_); }
+  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "slipstick-result-cache-test";
   int computed_ = 0;
   Json compute() {
     ++computed_;
     return {{"value", 0.1}};
   }
-  Json ask(const std::string& question, const std::filesystem::path& also = {}) {
-    return Journal(folder_).point(
-        "point", question, [this] { return compute(); }, also);
+  Json ask(const std::string& cache_key) {
+    return ResultCache(folder_).find_or_compute("point", cache_key, [this] { return compute(); });
   }
 };
 
-TEST_F(JournalTest, ComputesOnce) {
+TEST_F(ResultCacheTest, ComputesOnce) {
   EXPECT_EQ(ask("a")["value"], 0.1);
   EXPECT_EQ(ask("a")["value"], 0.1);
   EXPECT_EQ(computed_, 1);
 }
 
-TEST_F(JournalTest, AnotherQuestionIsComputed) {
+TEST_F(ResultCacheTest, AnotherKeyIsComputed) {
   ask("a");
   ask("b");
   EXPECT_EQ(computed_, 2);
 }
 
-TEST_F(JournalTest, ADamagedPointIsComputedAgain) {
+TEST_F(ResultCacheTest, ADamagedPointIsComputedAgain) {
   ask("a");
-  std::ofstream(folder_ / "point.json") << "{ \"question\": ";
+  std::ofstream(folder_ / "point.json") << "{ \"cache_key\": ";
   ask("a");
   EXPECT_EQ(computed_, 2);
 }
 
-TEST_F(JournalTest, APointWithoutItsOtherFileIsComputedAgain) {
-  const auto also = folder_ / "fields.h5";
-  ask("a", also);
-  ask("a", also);
-  EXPECT_EQ(computed_, 2);
-  std::ofstream(also) << "there";
-  ask("a", also);
-  EXPECT_EQ(computed_, 2);
+/// So that a kill while it is computed anew leaves nothing that says finished.
+TEST_F(ResultCacheTest, WhatIsForgottenIsNotFinished) {
+  ask("a");
+  ResultCache(folder_).forget("point");
+  EXPECT_FALSE(ResultCache(folder_).find("point", "a").has_value());
 }
 
-/// A kill while the other file is written anew must not leave its half beside a result that says finished.
-TEST_F(JournalTest, WhatIsComputedAgainIsNotFinishedMeanwhile) {
-  const auto also = folder_ / "fields.h5";
-  ask("a", also);
-  bool finished = true;
-  Journal(folder_).point(
-      "point", "a",
-      [&] {
-        finished = Journal(folder_).find("point", "a").has_value();
-        return compute();
-      },
-      also);
-  EXPECT_FALSE(finished);
+TEST_F(ResultCacheTest, AnotherProgramComputesAgain) {
+  ask("a");
+  EXPECT_TRUE(ResultCache(folder_).find("point", "a").has_value());
+  EXPECT_FALSE(ResultCache(folder_, SLIPSTICK_PROGRAM).find("point", "a").has_value());
 }
 
 }  // namespace

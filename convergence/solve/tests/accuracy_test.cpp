@@ -22,7 +22,7 @@ using namespace slipstick;
 using convergence::AccuracyChoice;
 using convergence::AccuracyData;
 using convergence::AccuracyOf;
-using convergence::AccuracyWish;
+using convergence::AccuracyTarget;
 using convergence::ContactOnGrid;
 using convergence::Json;
 using testing::AllOf;
@@ -199,10 +199,10 @@ TEST(Accuracy, NeedsNoGridWhereThereIsAnExactAnswer) {
 TEST(Accuracy, IsEstimatedOnAnEllipse) {
   for (const double wanted : {1e-2, 1e-3}) {
     const Json result = solved("ellipse", "--accuracy " + std::to_string(wanted));
-    const Json fine =
-        convergence::solve_point({.scene = fs::path(kScenes) / "ellipse.toml",
-                                  .overrides = {convergence::cells_override(
-                                      scene("ellipse"), 4 * result["cells"][0].get<solver::Index>())}});
+    const solver::Scene finer =
+        scene("ellipse",
+              {convergence::cells_override(scene("ellipse"), 4 * result["cells"][0].get<solver::Index>())});
+    const Json fine = convergence::solve_scene(finer).result;
     const double error = result["twist_angle"].get<double>() / fine["twist_angle"].get<double>() - 1.0;
     EXPECT_EQ(result["accuracy"]["how"], "estimated");
     EXPECT_LE(result["accuracy"]["reached"].get<double>(), wanted);
@@ -210,7 +210,7 @@ TEST(Accuracy, IsEstimatedOnAnEllipse) {
   }
 }
 
-/// The sphere told as if it had no exact answer: the estimate is above the error, and not by orders.
+/// The sphere as if it had no exact answer: the estimate is above the error, and not by orders.
 TEST(Accuracy, IsEstimatedFromTwoMeshesAboveTheErrorThatIsThere) {
   const solver::Scene at = scene("paper", {"grid.cells=[64,64]"});
   const solver::Solution solution = solver::solve(at);
@@ -237,8 +237,8 @@ TEST(Accuracy, IsEstimatedFromTheDifferenceWhereContactsAreNotSmooth) {
 }
 
 /// Solves whose errors are made: 100 over the cells squared.
-convergence::GridAnswer made_answer(const solver::Scene& at, double constant, double order) {
-  convergence::GridAnswer answer;
+convergence::SolvedScene made_answer(const solver::Scene& at, double constant, double order) {
+  convergence::SolvedScene answer;
   answer.solution.status = solver::Status::converged;
   const auto cells = static_cast<double>(at.cells[0]);
   answer.result = {{"cells", at.cells}, {"twist_error", -constant * std::pow(cells, -order)}};
@@ -271,7 +271,7 @@ TEST(Accuracy, IsGivenUpWhereNoMeshThatMayBeChosenGetsThere) {
       scene("paper"), {1e-2}, [](const solver::Scene& at) { return made_answer(at, 0.99, 0.0); });
   EXPECT_FALSE(found.reached);
   EXPECT_LE(found.accuracy["attempts"].size(), 4U);
-  EXPECT_LE(found.accuracy["attempts"].back()["cells"][0].get<double>(), convergence::kMostCellsAcross + 8.0);
+  EXPECT_LE(found.accuracy["attempts"].back()["cells"][0].get<double>(), convergence::kMaxCellsAcross + 8.0);
   const auto at_once = convergence::solve_to_accuracy(
       scene("paper"), {1e-5}, [](const solver::Scene& at) { return made_answer(at, 0.99, 0.0); });
   EXPECT_EQ(at_once.accuracy["attempts"].size(), 1U);
@@ -282,7 +282,7 @@ TEST(Accuracy, ThatIsNoNumberIsNeverReached) {
   int solves = 0;
   const auto found = convergence::solve_to_accuracy(scene("paper"), {1e-2}, [&](const solver::Scene& at) {
     ++solves;
-    convergence::GridAnswer answer = made_answer(at, 1.0, 1.0);
+    convergence::SolvedScene answer = made_answer(at, 1.0, 1.0);
     answer.solution.status = solver::Status::not_converged;
     return answer;
   });

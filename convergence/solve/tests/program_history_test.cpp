@@ -2,16 +2,15 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
-#include <array>
 #include <cmath>
-#include <cstdio>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
+
+#include "convergence/programs/tests/program_run.hpp"
 
 namespace {
 
@@ -41,15 +40,9 @@ class ProgramHistory : public testing::Test {
            "[lower]\nyoung_modulus = 210e9\npoisson_ratio = 0.3\n"
            "[contact]\nfriction = 0.1\n[load]\nnormal = 1000.0\n[grid]\ncells = [24, 24]\n"
         << steps;
-    const std::string command = std::string(SLIPSTICK_PROGRAM) + " solve " + scene.string() + " " + options +
-                                " 2>" + file("errors").string();
-    FILE* const pipe = popen(command.c_str(), "r");
-    Run run{-1, "", ""};
-    std::array<char, 4096> buffer{};
-    while (const std::size_t size = fread(buffer.data(), 1, buffer.size(), pipe))
-      run.output.append(buffer.data(), size);
-    const int status = pclose(pipe);
-    run.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    const auto end = slipstick::run_command(std::string(SLIPSTICK_PROGRAM) + " solve " + scene.string() +
+                                            " " + options + " 2>" + file("errors").string());
+    Run run{end.exit_code, end.output, ""};
     std::getline(std::ifstream(file("errors")), run.errors, '\0');
     return run;
   }

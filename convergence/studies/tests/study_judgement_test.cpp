@@ -112,8 +112,8 @@ TEST_F(Judged, SpreadIsOverTheGridsThatAreThere) {
   EXPECT_NEAR(number(json["meshes"][2], "spread"), 1e-5 * std::sqrt(2.0), 1e-18);
 }
 
-/// Its first grid is what a mesh's budget is told from: without it the noise is not known, which is not zero,
-/// and the mesh takes no part in the order.
+/// Its first grid is what a mesh's budget is determined from: without it the noise is not known, which is not
+/// zero, and the mesh takes no part in the order.
 TEST_F(Judged, WithoutItsFirstGridAMeshHasNoNoise) {
   results_[1].grids[0] = kKilled;
   const Json json = judged();

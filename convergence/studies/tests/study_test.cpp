@@ -15,6 +15,7 @@
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/orders/expected_order.hpp"
 #include "convergence/results/quantity.hpp"
+#include "convergence/runs/solve_scene.hpp"
 #include "convergence/studies/budget.hpp"
 #include "solver/input/input_error.hpp"
 
@@ -39,11 +40,11 @@ class StudyTest : public testing::Test {
     return read_study(folder_ / "study.toml");
   }
   Json run(const std::string& text, const std::string& scene = kPaper) {
-    return run_study(study(text, scene), runner_);
+    return run_study(study(text, scene), pool_);
   }
 
   fs::path folder_ = fs::path(testing::TempDir()) / ("slipstick-study-test-" + std::to_string(getpid()));
-  PointRunner runner_{folder_ / "points"};
+  ProcessPool pool_{{.folder = folder_ / "points", .program = SLIPSTICK_PROGRAM}};
 };
 
 /// The directory's entries.
@@ -52,39 +53,39 @@ std::size_t files(const fs::path& folder) {
 }
 
 TEST_F(StudyTest, ProcessesGiveWhatOneSolveGives) {
-  const std::vector<Point> points{{kPaper, {cells(16)}}, {kPaper, {cells(24)}}, {kPaper, {cells(16)}}};
-  const std::vector<Json> results = runner_.run(points);
+  const std::vector<RunSpec> points{{kPaper, {cells(16)}}, {kPaper, {cells(24)}}, {kPaper, {cells(16)}}};
+  const std::vector<Json> results = pool_.run(points);
   ASSERT_EQ(results.size(), 3U);
   for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(results[i]["twist_angle"], solve_point(points[i])["twist_angle"]);
+    EXPECT_EQ(results[i]["twist_angle"], solve_scene(prepare_run(points[i]).scene).result["twist_angle"]);
   }
   EXPECT_EQ(files(folder_ / "points"), 2U);  // equal points are computed once
 }
 
 TEST_F(StudyTest, AFinishedPointIsNotComputedAgain) {
-  const Point point{kPaper, {cells(16)}};
-  const Json first = runner_.run(point);
-  EXPECT_EQ(runner_.run(point)["seconds"], first["seconds"]);  // no two runs take the same time
-  Point another = point;
+  const RunSpec point{kPaper, {cells(16)}};
+  const Json first = pool_.run(point);
+  EXPECT_EQ(pool_.run(point)["seconds"], first["seconds"]);  // no two runs take the same time
+  RunSpec another = point;
   another.rounding = Rounding::upward;
-  EXPECT_NE(runner_.run(another)["seconds"], first["seconds"]);
+  EXPECT_NE(pool_.run(another)["seconds"], first["seconds"]);
 }
 
 TEST_F(StudyTest, WhatCannotBeHadIsRefusedAndTheRestGoesOn) {
   const std::vector<Json> results =
-      runner_.run({{kPaper, {cells(16), "load.moment=0.1"}}, {kPaper, {cells(16)}}});
+      pool_.run({{kPaper, {cells(16), "load.moment=0.1"}}, {kPaper, {cells(16)}}});
   EXPECT_EQ(results[0]["status"], "refused");
   EXPECT_THAT(results[0]["message"].get<std::string>(), HasSubstr("moment"));
   EXPECT_EQ(results[1]["status"], "converged");
-  EXPECT_THROW(runner_.run(Point{kPaper, {"load.moment_ration=0.5"}}), solver::InputError);
+  EXPECT_THROW(pool_.run(RunSpec{kPaper, {"load.moment_ration=0.5"}}), solver::InputError);
 }
 
 /// Rounding all results up changes them, by about as much as the number of operations says: far less than the
 /// digits that matter.
 TEST_F(StudyTest, DirectedRoundingIsSeenAndIsSmall) {
-  const BudgetPoints points = budget_points({kPaper, {cells(32)}});
+  const BudgetRuns points = budget_runs({kPaper, {cells(32)}}, 1e-8);
   const std::vector<Json> results =
-      runner_.run({points.observed, points.tightened, points.rounded[0], points.rounded[1]});
+      pool_.run({points.observed, points.tightened, points.rounded[0], points.rounded[1]});
   for (const Json& result : results) ASSERT_EQ(result["status"], "converged") << result.dump();
   const Budget budget = split_error("twist_error", results[0], results[1], {results[2], results[3]});
   EXPECT_GT(budget.rounding, 0.0);
@@ -98,9 +99,9 @@ TEST_F(StudyTest, DirectedRoundingIsSeenAndIsSmall) {
 /// Rounded downward this pressure's mirrors hold to rounding and half a turn, which is both of them, nearly
 /// to twice as much: one test decides for the quadrant and for the limit load.
 TEST_F(StudyTest, APressureThatIsMirroredToRoundingIsSolved) {
-  const BudgetPoints points =
-      budget_points({kPaper, {cells(96), "contact.pressure=\"hertz\"", "load.moment_ratio=0.5"}});
-  const std::vector<Json> results = runner_.run({points.tightened, points.rounded[0], points.rounded[1]});
+  const BudgetRuns points =
+      budget_runs({kPaper, {cells(96), "contact.pressure=\"hertz\"", "load.moment_ratio=0.5"}}, 1e-8);
+  const std::vector<Json> results = pool_.run({points.tightened, points.rounded[0], points.rounded[1]});
   for (const Json& result : results) EXPECT_EQ(result["status"], "converged") << result.dump();
 }
 
@@ -108,7 +109,7 @@ TEST_F(StudyTest, APressureThatIsMirroredToRoundingIsSolved) {
 /// is the reason, and what the study cannot know is missing and not zero.
 TEST_F(StudyTest, ARunThatDiedIsSaid) {
   const Study meshes = study("cells = [8, 12, 16, 24]\nquantities = [\"twist_error\"]\n");
-  const Json whole = run_study(meshes, runner_);
+  const Json whole = run_study(meshes, pool_);
   EXPECT_EQ(whole["failed_runs"]["count"], 0);
   EXPECT_THAT(study_text(whole), testing::Not(HasSubstr("failed")));
   const auto total = whole["failed_runs"]["of"].get<std::size_t>();
@@ -118,7 +119,7 @@ TEST_F(StudyTest, ARunThatDiedIsSaid) {
   for (const fs::path& point : points) {
     fs::rename(point, folder_ / "kept");
     fs::create_directories(point / "in the way");
-    const Json result = run_study(meshes, runner_);
+    const Json result = run_study(meshes, pool_);
     EXPECT_EQ(result["failed_runs"]["count"], 1);
     EXPECT_EQ(result["failed_runs"]["of"], total);
     EXPECT_THAT(result["failed_runs"]["first"]["message"].get<std::string>(), HasSubstr("cannot be written"));
@@ -140,7 +141,7 @@ TEST_F(StudyTest, ARunThatDiedIsSaid) {
 /// A program whose parent does not want to know of children's ends finds its results all the same.
 TEST_F(StudyTest, PointsAreFoundWhereNobodyIsToldHowTheyEnd) {
   const auto before = std::signal(SIGCHLD, SIG_IGN);
-  EXPECT_EQ(runner_.run(Point{kPaper, {cells(16)}})["status"], "converged");
+  EXPECT_EQ(pool_.run(RunSpec{kPaper, {cells(16)}})["status"], "converged");
   std::signal(SIGCHLD, before);
 }
 
@@ -148,7 +149,7 @@ TEST_F(StudyTest, PointsAreFoundWhereNobodyIsToldHowTheyEnd) {
 TEST_F(StudyTest, OtherChildrenAreLeftAlone) {
   const pid_t other = fork();
   if (other == 0) _exit(3);
-  EXPECT_EQ(runner_.run(Point{kPaper, {cells(16)}})["status"], "converged");
+  EXPECT_EQ(pool_.run(RunSpec{kPaper, {cells(16)}})["status"], "converged");
   int status = 0;
   EXPECT_EQ(waitpid(other, &status, 0), other);
   EXPECT_EQ(WEXITSTATUS(status), 3);
@@ -160,7 +161,7 @@ TEST_F(StudyTest, AHistoryWhoseFirstStepFailsHasSteps) {
   std::ofstream(scene) << read_text(kPaper).erase(read_text(kPaper).find("[load]"))
                        << "[load]\nnormal = 1000.0\n[grid]\ncells = [24, 24]\n[solver]\nmax_iterations = 1\n"
                           "[[step]]\nmoment_ratio = 0.8\n[[step]]\nmoment_ratio = -0.8\n";
-  const Json result = runner_.run(Point{scene, {}});
+  const Json result = pool_.run(RunSpec{scene, {}});
   ASSERT_EQ(result["status"], "not_converged") << result.dump();
   ASSERT_TRUE(result.contains("steps"));
   EXPECT_EQ(result["steps"].size(), 1U);
@@ -168,9 +169,11 @@ TEST_F(StudyTest, AHistoryWhoseFirstStepFailsHasSteps) {
 }
 
 TEST_F(StudyTest, ALooseToleranceShowsInTheBudget) {
-  const Budget budget = error_budget({kPaper, {cells(32), "solver.tolerance=0.1"}}, "twist_error", runner_);
+  const Budget budget =
+      error_budget(prepare_run({kPaper, {cells(32), "solver.tolerance=0.1"}}), "twist_error", pool_);
   EXPECT_EQ(largest_part(budget), "iteration");
-  EXPECT_TRUE(std::isnan(error_budget({kEllipse, {"grid.cells=[32,16]"}}, "twist_error", runner_).observed));
+  EXPECT_TRUE(std::isnan(
+      error_budget(prepare_run({kEllipse, {"grid.cells=[32,16]"}}), "twist_error", pool_).observed));
 }
 
 TEST_F(StudyTest, PartsOfTheBudgetAddUpOnEveryMesh) {

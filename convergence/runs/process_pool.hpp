@@ -1,0 +1,49 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "convergence/programs/run_program.hpp"
+#include "convergence/results/result_parts.hpp"
+#include "convergence/runs/run_spec.hpp"
+
+namespace slipstick::convergence {
+
+struct ProcessPoolOptions {
+  std::filesystem::path folder;                 ///< keeps finished results, see ResultCache
+  int jobs = 0;                                 ///< processes at a time; 0: one a processor
+  std::filesystem::path program = kOwnProgram;  ///< the slipstick program, which solves
+  /// Asked every second at least, and when a signal ends waiting: whether to stop.
+  std::function<bool()> interrupted = {};
+};
+
+/// The one way in which many scenes are solved: side by side, each by a slipstick program of its own, as many
+/// at a time as there are processors and memory allows. Finished results are kept on disk and never computed
+/// again by the same program; an interrupt or a killed process loses at most what is being computed. The
+/// processes end with this one (see ProgramOptions::tied_by); its other children are left alone, and its
+/// handlers of signals. Says on standard error how far it is.
+class ProcessPool {
+ public:
+  explicit ProcessPool(ProcessPoolOptions options);
+
+  /// The results, in the order of the runs; equal runs are computed once. What a scene asks for and cannot
+  /// have, gross slip for one, is a result with status = "refused"; one whose process was killed or failed
+  /// has status = "failed"; both have a message and `run`, which says which it was. Throws InputError, before
+  /// anything is computed, for a scene that cannot be read; std::runtime_error where it was interrupted.
+  std::vector<Json> run(const std::vector<RunSpec>& specs) const;
+  std::vector<Json> run_prepared(const std::vector<PreparedRun>& runs) const;
+
+  /// The same for one.
+  Json run(const RunSpec& spec) const;
+
+ private:
+  ProcessPoolOptions options_;
+};
+
+/// Solves the scene of a run and keeps its result in a folder; what the processes of a pool do. Throws
+/// std::runtime_error if a file cannot be written, or memory runs out.
+void solve_and_keep(const RunSpec& spec, const std::filesystem::path& folder);
+
+}  // namespace slipstick::convergence

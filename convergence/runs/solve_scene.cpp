@@ -1,0 +1,63 @@
+#include "convergence/runs/solve_scene.hpp"
+
+#include <cfenv>
+#include <memory>
+#include <utility>
+
+#include "convergence/results/result.hpp"
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+int mode(Rounding rounding) {
+  switch (rounding) {
+    case Rounding::upward:
+      return FE_UPWARD;
+    case Rounding::downward:
+      return FE_DOWNWARD;
+    default:
+      return FE_TONEAREST;
+  }
+}
+
+/// Sets how this thread rounds, and sets it back.
+class RoundingScope {
+ public:
+  explicit RoundingScope(Rounding rounding) : before_(std::fegetround()) { std::fesetround(mode(rounding)); }
+  ~RoundingScope() { std::fesetround(before_); }
+  RoundingScope(const RoundingScope&) = delete;
+  RoundingScope& operator=(const RoundingScope&) = delete;
+
+ private:
+  int before_;
+};
+
+}  // namespace
+
+SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& options) {
+  const std::unique_ptr<ExactHistory> history = exact_history(scene);
+  SolvedScene solved;
+  Json steps = Json::array();
+  const auto on_step = [&](const solver::Solution& at) {
+    const RoundingScope scope(Rounding::nearest);
+    solved.exact = history->advance(at.loads);
+    if (has_history(scene)) steps.push_back(step_result(scene, at, solved.exact));
+    if (options.on_step) options.on_step(at, solved.exact);
+  };
+  try {
+    const RoundingScope scope(options.rounding);
+    solved.solution = solver::solve(scene, {.progress = options.progress, .on_step = on_step});
+  } catch (const solver::InputError& error) {
+    if (!steps.empty() && options.incomplete != nullptr) {
+      *options.incomplete = {{"name", scene.name}, {"status", "not_converged"}, {"message", error.what()}};
+      add_steps(*options.incomplete, std::move(steps));
+    }
+    throw;
+  }
+  solved.result = solve_result(scene, solved.solution, solved.exact);
+  if (has_history(scene)) add_steps(solved.result, std::move(steps));
+  return solved;
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <functional>
+
+#include "convergence/oracle/oracle.hpp"
+#include "convergence/results/result_parts.hpp"
+#include "convergence/runs/run_spec.hpp"
+#include "solver/solve.hpp"
+
+namespace slipstick::convergence {
+
+/// The last step of a scene that was solved on its grid, the exact answer to it, and the result that compares
+/// the two, of a history with all steps in it.
+struct SolvedScene {
+  solver::Solution solution;
+  OracleAnswer exact;
+  Json result;
+};
+
+struct SolveSceneOptions {
+  /// See solver::SolveOptions.
+  std::function<void(int iteration, double change)> progress = {};
+  /// Called at the end of each step of a history, or of the one load.
+  std::function<void(const solver::Solution&, const OracleAnswer&)> on_step = {};
+  /// Of the solve. The exact answer is always rounded to nearest: it is no part of what is tried.
+  Rounding rounding = Rounding::nearest;
+  /// Gets the result of a history that an InputError ends after its first step; it is thrown all the same.
+  Json* incomplete = nullptr;
+};
+
+/// The one way in which a scene is solved on its grid and compared with its exact answer, by whichever
+/// command. Throws InputError as solver::solve() does.
+SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& options = {});
+
+}  // namespace slipstick::convergence

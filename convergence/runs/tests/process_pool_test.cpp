@@ -1,0 +1,100 @@
+#include "convergence/runs/process_pool.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
+#include <fstream>
+#include <stdexcept>
+
+namespace slipstick::convergence {
+namespace {
+
+namespace fs = std::filesystem;
+
+const std::string kPaper = std::string(SLIPSTICK_SCENES) + "/paper.toml";
+const std::string kCells = "grid.cells=[16,16]";
+
+class ProcessPoolTest : public testing::Test {
+ protected:
+  ProcessPoolTest() { fs::create_directories(folder_); }
+  ~ProcessPoolTest() override { fs::remove_all(folder_); }
+
+  ProcessPoolOptions options() const { return {.folder = folder_ / "points", .program = SLIPSTICK_PROGRAM}; }
+
+  /// The paper's scene, through steps of its moment.
+  fs::path history(int most_iterations) const {
+    const fs::path scene = folder_ / "history.toml";
+    std::ofstream(scene) << read_text(kPaper).erase(read_text(kPaper).find("[load]"))
+                         << "[load]\nnormal = 1000.0\n[grid]\ncells = [16, 16]\n[solver]\nmax_iterations = "
+                         << most_iterations
+                         << "\n[[step]]\nmoment_ratio = 0.8\n[[step]]\nmoment_ratio = -0.8\n";
+    return scene;
+  }
+
+  fs::path folder_ = fs::path(testing::TempDir()) / ("slipstick-process-pool-" + std::to_string(getpid()));
+};
+
+/// Names and places of all numbers and words.
+std::vector<std::string> paths(const Json& result) {
+  std::vector<std::string> found;
+  const Json flat = result.flatten();
+  for (const auto& [path, value] : flat.items()) found.push_back(path);
+  return found;
+}
+
+/// There is one way to solve a scene, also where a history fails in its first step.
+TEST_F(ProcessPoolTest, GivesWhatSolveGives) {
+  for (const auto& [scene, status] : {std::pair<fs::path, std::string>{kPaper, "converged"},
+                                      {history(5000), "converged"},
+                                      {history(1), "not_converged"}}) {
+    const Json pooled = ProcessPool(options()).run(RunSpec{scene, {kCells}});
+    const ProgramEnd solve = run_program({SLIPSTICK_PROGRAM, "solve", scene, "--set", kCells, "--json", "-"},
+                                         {.captured = Captured::output});
+    const Json solved = Json::parse(solve.output);
+    EXPECT_EQ(paths(pooled), paths(solved));
+    EXPECT_EQ(pooled["status"], status);
+    EXPECT_EQ(pooled["twist_angle"], solved["twist_angle"]);
+    EXPECT_EQ(pooled.contains("steps"), scene != kPaper);
+  }
+}
+
+TEST_F(ProcessPoolTest, ARunWithoutItsFieldsIsNotFinished) {
+  RunSpec spec{.scene = kPaper, .overrides = {kCells}, .fields = folder_ / "fields.h5", .profile = true};
+  const ProcessPool pool(options());
+  const Json first = pool.run(spec);
+  EXPECT_GT(fs::file_size(spec.fields), 1000U);
+  EXPECT_FALSE(first["profile"].empty());
+  EXPECT_EQ(pool.run(spec)["seconds"], first["seconds"]);  // no two runs take the same time
+  fs::remove(spec.fields);
+  EXPECT_NE(pool.run(spec)["seconds"], first["seconds"]);
+  EXPECT_TRUE(fs::exists(spec.fields));
+  spec.profile = false;
+  EXPECT_FALSE(pool.run(spec).contains("profile"));
+  spec.fields = folder_ / "no/such/folder/fields.h5";
+  EXPECT_EQ(pool.run(spec)["status"], "failed");
+}
+
+void handle(int) {}
+
+/// A library leaves the handlers of signals to its host, which says when to stop.
+TEST_F(ProcessPoolTest, StopsWhereItsHostSaysSo) {
+  const auto before = std::signal(SIGINT, handle);
+  ProcessPoolOptions stopping = options();
+  bool untouched = false;
+  stopping.interrupted = [&] {
+    struct sigaction now {};
+    sigaction(SIGINT, nullptr, &now);
+    untouched = now.sa_handler == handle;
+    return true;
+  };
+  EXPECT_THROW(ProcessPool(stopping).run(RunSpec{kPaper, {"grid.cells=[256,256]", "solver.operator=direct"}}),
+               std::runtime_error);
+  EXPECT_TRUE(untouched);
+  std::signal(SIGINT, before);
+  EXPECT_TRUE(fs::is_empty(folder_ / "points"));
+}
+
+}  // namespace
+}  // namespace slipstick::convergence
