@@ -8,6 +8,7 @@ REV ?= origin/main
 GATE_OPTIONS ?=
 SEARCH_OPTIONS ?=
 SANITIZE ?=
+LINT_SINCE ?=
 # How many instructions a solve takes is gated where it is known of this compiler.
 INSTRUCTION_GATES = $(wildcard bench/gates/instructions-gcc-$(firstword $(subst ., ,$(shell c++ -dumpversion))).toml)
 
@@ -56,10 +57,11 @@ sanitize: setup ## run every test under the address and undefined-behaviour sani
 	@ctest --test-dir build-asan-ubsan --output-on-failure -j$$(nproc) \
 	  $(if $(SANITIZE),-R "^($$(echo $(SANITIZE) | tr ' ' '|'))_tests",-E '^reports')
 
-lint: configure ## check format and clang-tidy's rules (needs clang-format, clang-tidy 14 or later)
-	@cmake --build $(BUILD) --target slipstick_commit
+lint: configure ## check format and clang-tidy's rules, 14 or later (of what changed alone: LINT_SINCE=origin/main)
 	@git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run --Werror
-	@git ls-files '*.cpp' | xargs -n 4 -P $$(nproc) clang-tidy -p $(BUILD) --quiet
+	@cmake --build $(BUILD) --target slipstick_commit
+	@git $(if $(LINT_SINCE),diff --name-only --diff-filter=d $(LINT_SINCE),ls-files) -- '*.cpp' \
+	  | xargs --no-run-if-empty -n 4 -P $$(nproc) clang-tidy -p $(BUILD) --quiet
 
 bench: configure ## time everything beside the error that it buys, and draw it
 	$(call build,slipstick slipstick_benchmarks)

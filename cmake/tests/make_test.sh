@@ -3,12 +3,10 @@
 # had to be left out. cmake, ctest and the programs are made up.
 set -uo pipefail
 cd "$1" || exit 1
-folder="$(mktemp -d)"
-trap 'rm -rf "$folder"' EXIT
+source cmake/tests/expect.sh
 export CALLS="$folder/calls" SLIPSTICK_SKIP_SETUP=1
 unset MAKEFLAGS MAKELEVEL MFLAGS
 build="$folder/build"
-failures=0
 
 mkdir -p "$folder/programs" "$build/bench" "$build/analytic/certified"
 for program in "$folder"/programs/{cmake,ctest} "$build"/{slipstick,bench/slipstick_work} \
@@ -17,31 +15,13 @@ for program in "$folder"/programs/{cmake,ctest} "$build"/{slipstick,bench/slipst
   chmod +x "$program"
 done
 
-# check <target> <targets that it builds>
-check() {
+check() {  # <target> <targets that it builds>
   : > "$CALLS"
   PATH="$folder/programs:$PATH" make BUILD="$build" "$1" > "$folder/output" 2>&1
-  local status=$?
-  local built
-  built="$(sed --quiet "s|^cmake --build $build --target ||p" "$CALLS")"
-  if [[ "$status" != 0 || "$built" != "$2" ]]; then
-    echo "FAILED: make $1 (exit code $status) builds “$built”, not “$2”"
-    sed 's/^/    /' "$folder/output"
-    failures=$((failures + 1))
-  fi
+  expect "make $1 succeeds" test $? = 0
+  expect "make $1 builds $2" test "$(sed --quiet "s|^cmake --build $build --target ||p" "$CALLS")" = "$2"
 }
-expect() {  # <what> <command...>
-  local what="$1"
-  shift
-  if ! "$@"; then
-    echo "FAILED: $what"
-    sed 's/^/    /' "$folder/output" "$CALLS"
-    failures=$((failures + 1))
-  fi
-}
-says() { [[ "$(cat "$folder/output")" == *"$1"* ]]; }
 configured() { [[ "$(cat "$CALLS")" == *"cmake --preset release"* ]]; }
-not() { ! "$@"; }
 
 check report slipstick
 expect "make report configures what was never configured" configured
@@ -63,5 +43,4 @@ check references slipstick_references
 check install slipstick
 check build all
 
-((failures == 0)) && echo "all as expected"
-exit $((failures > 0))
+conclude

@@ -3,16 +3,14 @@
 # setup fails, however slow the machine.
 set -uo pipefail
 setup="$1/cmake/setup"
-folder="$(mktemp -d)"
-trap 'rm -rf "$folder"' EXIT
-export STATE="$folder/state" FLINT=2.9.0-5 LACKS=none
-failures=0
+source "$1/cmake/tests/expect.sh"
+export CALLS="$folder/calls" INSTALLED="$folder/installed" FLINT=2.9.0-5 LACKS=none
 
-# The fakes. $STATE/installed lists what is installed, $STATE/calls what apt-get was asked for.
+# The fakes. $INSTALLED lists what is installed, $CALLS what apt-get was asked for.
 mkdir "$folder/debian"
 cat > "$folder/debian/dpkg-query" <<'FAKE'
 #!/usr/bin/env bash
-grep --line-regexp --fixed-strings "${!#}" "$STATE/installed" >/dev/null || exit 1
+grep --line-regexp --fixed-strings "${!#}" "$INSTALLED" >/dev/null || exit 1
 case "$*" in
   *Version*) echo "$FLINT" ;;
   *) printf 'installed ' ;;
@@ -31,12 +29,12 @@ for ((line = 0; line < 20000; ++line)); do echo "     1.0 500 http://deb.debian.
 FAKE
 cat > "$folder/debian/apt-get" <<'FAKE'
 #!/usr/bin/env bash
-echo "$*" >> "$STATE/calls"
+echo "$*" >> "$CALLS"
 [[ " $* " == *" install "* ]] || exit 0
 for word in "$@"; do
   [[ "$word" == "$LACKS" ]] && { echo "E: Unable to locate package $word" >&2; exit 100; }
 done
-[[ "$LACKS" == all_in_silence ]] || printf '%s\n' "$@" >> "$STATE/installed"
+[[ "$LACKS" == all_in_silence ]] || printf '%s\n' "$@" >> "$INSTALLED"
 FAKE
 printf '#!/usr/bin/env bash\nexec "$@"\n' > "$folder/debian/sudo"
 chmod +x "$folder"/debian/*
@@ -46,28 +44,17 @@ mkdir "$folder/elsewhere"
 for program in bash dirname grep env; do ln -s "$(command -v $program)" "$folder/elsewhere/"; done
 
 bare() {
-  rm -rf "$STATE"
-  mkdir "$STATE"
-  touch "$STATE/installed" "$STATE/calls"
-}
-expect() {  # <what> <command...>
-  local what="$1"
-  shift
-  if ! "$@"; then
-    echo "FAILED: $what"
-    sed 's/^/    /' "$folder/output" "$STATE/calls"
-    failures=$((failures + 1))
-  fi
+  : > "$INSTALLED"
+  : > "$CALLS"
 }
 run_setup() {  # [NAME=value...]: sets exit_code
   env PATH="$folder/debian:$PATH" "$@" "$setup" > "$folder/output" 2>&1
   exit_code=$?
 }
 exits_with() { [[ "$exit_code" == "$1" ]]; }
-installed() { grep --line-regexp --fixed-strings "$1" "$STATE/installed" >/dev/null; }
-not_asked_for() { [[ " $(cat "$STATE/calls") " != *" $1"* ]]; }
-nothing_asked_for() { [[ ! -s "$STATE/calls" ]]; }
-says() { [[ "$(cat "$folder/output")" == *"$1"* ]]; }
+installed() { grep --line-regexp --fixed-strings "$1" "$INSTALLED" >/dev/null; }
+not_asked_for() { [[ " $(cat "$CALLS") " != *" $1"* ]]; }
+nothing_asked_for() { [[ ! -s "$CALLS" ]]; }
 
 bare
 run_setup
@@ -75,7 +62,7 @@ expect "a bare machine with FLINT 2 is set up" exits_with 0
 for package in g++ libgsl-dev python3-h5py libflint-dev libflint-arb-dev valgrind; do
   expect "$package is installed" installed "$package"
 done
-: > "$STATE/calls"
+: > "$CALLS"
 run_setup
 expect "a second run succeeds" exits_with 0
 expect "a second run asks for nothing" nothing_asked_for
@@ -110,9 +97,8 @@ for words in libgsl-dev libflint-arb-dev SLIPSTICK_SKIP_SETUP=1; do
 done
 
 # A reader that leaves early breaks the pipe of the writer, which pipefail takes for failure.
-: > "$STATE/calls"
+: > "$CALLS"
 grep --line-number --extended-regexp '\| *grep.* (-[a-zA-Z]*q|--quiet|--silent)' "$setup" "$1/.ci/run" > "$folder/output"
 expect "no pipe ends in a grep that leaves early" test ! -s "$folder/output"
 
-((failures == 0)) && echo "all as expected"
-exit $((failures > 0))
+conclude
