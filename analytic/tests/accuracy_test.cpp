@@ -16,18 +16,12 @@ namespace {
 using testing::replay;
 using testing::Row;
 
-void expect_accurate(const std::vector<Row>& rows) {
-  for (const Row& row : rows) {
+TEST(Accuracy, HoldsOverTheCertifiedTableAndTheHardestInputs) {
+  for (const Row& row : testing::all_references()) {
     const auto [error, allowed] = replay(row);
     EXPECT_LE(error, allowed) << "eps: " << row.line();
   }
 }
-
-TEST(Accuracy, HoldsOverTheCertifiedTable) {
-  expect_accurate(testing::read_references("certified_references.csv"));
-}
-
-TEST(Accuracy, HoldsAtTheHardestInputs) { expect_accurate(testing::all_references()); }
 
 /// Moment and tangent stiffness are in no file: they are M_lim M/M_lim, and 16/3 c^3.
 TEST(Accuracy, HoldsForMomentAndStiffness) {

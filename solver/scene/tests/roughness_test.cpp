@@ -29,13 +29,6 @@ Grid over_a_period(const Roughness& roughness, Index n) {
 /// Sums of some hundred waves, each with a phase of up to 2 pi 33 in its argument.
 constexpr double kRounding = 1e3 * kEpsilon;
 
-/// The platform's generator is the standard's: [rand.predef] says what comes 10,000th.
-TEST(Roughness, IsDrawnFromTheStandardsGenerator) {
-  std::mt19937_64 generator;
-  generator.discard(9999);
-  EXPECT_EQ(generator(), 9981545732273789042ULL);
-}
-
 /// The waves between a period and half of it, one by one: as many as one can write down.
 TEST(Roughness, IsASumOfWaves) {
   const Roughness roughness{
