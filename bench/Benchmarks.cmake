@@ -5,6 +5,8 @@ add_executable(slipstick_benchmarks
   suite/memory_benchmark.cpp suite/methods_benchmark.cpp suite/normal_benchmark.cpp suite/operator_benchmark.cpp
   suite/planning_benchmark.cpp suite/slipstick_benchmarks.cpp suite/solve_benchmark.cpp suite/suite.cpp)
 slipstick_configure(slipstick_benchmarks)
+target_precompile_headers(slipstick_benchmarks PRIVATE ${SLIPSTICK_HEADERS} <Eigen/Core> <nlohmann/json.hpp>
+  <benchmark/benchmark.h>)
 target_link_libraries(slipstick_benchmarks PRIVATE slipstick::analytic slipstick_reference_tables
   slipstick::bench   PkgConfig::FFTW GSL::gsl fmt::fmt benchmark::benchmark)
 # Times stand beside errors: the exact side's against the references that the tests use, the solver's in the scenes that
@@ -29,6 +31,8 @@ foreach(function
 endforeach()
 add_executable(slipstick_work work/work_counts_program.cpp)
 slipstick_configure(slipstick_work)
+slipstick_compile_quickly(slipstick_work)
+target_precompile_headers(slipstick_work REUSE_FROM slipstick_command_headers)
 target_link_libraries(slipstick_work PRIVATE slipstick_work_counts CLI11::CLI11 fmt::fmt)
 slipstick_tests(work_counts_tests SOURCES work/tests/work_counts_test.cpp LIBRARIES slipstick_work_counts)
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <functional>
+#include <nlohmann/json.hpp>
 
 #include "convergence/runs/progress.hpp"
 #include "convergence/runs/result_cache.hpp"

@@ -1,7 +1,9 @@
 #include "convergence/gates/gate_command.hpp"
 
+#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
 #include <vector>

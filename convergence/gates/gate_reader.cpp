@@ -7,6 +7,7 @@
 #include <cmath>
 #include <exception>
 #include <map>
+#include <nlohmann/json.hpp>
 
 #include "solver/input/input_error.hpp"
 #include "solver/input/misspelling.hpp"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
 #include "convergence/orders/limit.hpp"
 #include "solver/scene/scene.hpp"

@@ -1,6 +1,7 @@
 #include "convergence/report/validation.hpp"
 
 #include <fmt/core.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -6,6 +6,7 @@
 
 #include <Eigen/Core>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <string>
 
 #include "commit.hpp"  // written by the build

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "convergence/results/exact_result.hpp"
 #include "convergence/solve/cost.hpp"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "convergence/orders/expected_order.hpp"
 #include "convergence/orders/limit.hpp"

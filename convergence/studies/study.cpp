@@ -1,5 +1,6 @@
 #include "convergence/studies/study.hpp"
 
+#include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 

@@ -1,7 +1,9 @@
 #include "convergence/studies/study_command.hpp"
 
+#include <CLI/CLI.hpp>
 #include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <ostream>
 #include <string>
 #include <vector>

@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
+#include <toml++/toml.h>
 
 #include <algorithm>
 #include <cstdint>
@@ -155,8 +156,17 @@ Range whole(double low, double high) {
           [low, high](double x) { return x >= low && x <= high && x == std::floor(x); }};
 }
 
+struct SceneReader::Questions {
+  toml::table root;
+  std::set<std::string> known;
+  toml::node_view<toml::node> node(const std::string& key) {
+    known.insert(key);
+    return root.at_path(key);
+  }
+};
+
 SceneReader::SceneReader(const std::filesystem::path& file, const std::vector<std::string>& overrides)
-    : file_(file), root_(parse(read_text(file), file.string())) {
+    : file_(file), toml_(new Questions{parse(read_text(file), file.string()), {}}) {
   for (const std::string& assignment : overrides) apply_override(assignment);
 }
 
@@ -172,7 +182,7 @@ void SceneReader::apply_override(const std::string& assignment) {
   } catch (const toml::parse_error&) {  // a bare word is a string
     parsed = toml::table{{"value", value}};
   }
-  toml::table* table = &root_;
+  toml::table* table = &toml_->root;
   std::istringstream path(key);
   std::string part;
   std::vector<std::string> parts;
@@ -197,15 +207,15 @@ void SceneReader::prefer_overridden(const std::vector<std::string>& alternatives
   const auto overridden = [&](const std::string& key) { return overridden_.contains(key); };
   if (std::none_of(alternatives.begin(), alternatives.end(), overridden)) return;
   for (const std::string& key : alternatives) {
-    if (overridden(key) || !root_.at_path(key)) continue;
+    if (overridden(key) || !toml_->root.at_path(key)) continue;
     const auto dot = key.rfind('.');
-    root_.at_path(key.substr(0, dot)).as_table()->erase(key.substr(dot + 1));
+    toml_->root.at_path(key.substr(0, dot)).as_table()->erase(key.substr(dot + 1));
   }
 }
 
 std::string SceneReader::where(const std::string& key) const {
   if (overridden_.contains(key)) return "--set";
-  const auto node = root_.at_path(key);
+  const auto node = toml_->root.at_path(key);
   return node ? fmt::format("{}:{}", file_.string(), node.node()->source().begin.line) : file_.string();
 }
 
@@ -216,23 +226,23 @@ void SceneReader::fail(const std::string& key, const std::string& value, const s
 /// A key that is missing may be there under a misspelt name: then that is what to say.
 void SceneReader::fail_missing(const std::string& key, const std::string& allowed) const {
   std::vector<std::string> leaves;
-  collect_leaves(root_, "", leaves);
+  collect_leaves(toml_->root, "", leaves);
   for (const std::string& leaf : leaves) {
     const bool similar = leaf.size() <= key.size() + kMisspelling && edit_distance(leaf, key) <= kMisspelling;
-    if (similar && !known_.contains(leaf)) fail_unknown(leaf);
+    if (similar && !toml_->known.contains(leaf)) fail_unknown(leaf);
   }
   const std::string parent = key.substr(0, key.rfind('.'));
-  const auto found = root_.at_path(parent);
+  const auto found = toml_->root.at_path(parent);
   if (found && !found.is_table())
     fail(parent, print(*found.node()), fmt::format("a table with the key {}", key));
   fail(key, "(missing)", allowed);
 }
 
 void SceneReader::fail_unknown(const std::string& key) const {
-  const auto found = root_.at_path(key);  // not found where a quoted key holds a dot or a bracket
+  const auto found = toml_->root.at_path(key);  // not found where a quoted key holds a dot or a bracket
   throw InputError(where(key), fmt::format("{} = {}: unknown key; the nearest known one is {}", key,
                                            found ? print(*found.node()) : "...",
-                                           nearest_word(key, {known_.begin(), known_.end()})));
+                                           nearest_word(key, {toml_->known.begin(), toml_->known.end()})));
 }
 
 void SceneReader::fail_choice(const std::string& key, const std::string& word,
@@ -240,24 +250,19 @@ void SceneReader::fail_choice(const std::string& key, const std::string& word,
   fail(key, fmt::format("\"{}\"", word), fmt::format("{}", fmt::join(allowed, ", ")));
 }
 
-toml::node_view<toml::node> SceneReader::node(const std::string& key) {
-  known_.insert(key);
-  return root_.at_path(key);
-}
+bool SceneReader::has(const std::string& key) { return static_cast<bool>(toml_->node(key)); }
 
-bool SceneReader::has(const std::string& key) { return static_cast<bool>(node(key)); }
+bool SceneReader::is_array(const std::string& key) { return toml_->node(key).is_array(); }
 
-bool SceneReader::is_array(const std::string& key) { return node(key).is_array(); }
-
-bool SceneReader::is_text(const std::string& key) { return node(key).is_string(); }
+bool SceneReader::is_text(const std::string& key) { return toml_->node(key).is_string(); }
 
 std::size_t SceneReader::line(const std::string& key) const {
-  const auto found = root_.at_path(key);
+  const auto found = toml_->root.at_path(key);
   return found ? found.node()->source().begin.line : 0;
 }
 
 std::size_t SceneReader::count(const std::string& key) {
-  const auto found = node(key);
+  const auto found = toml_->node(key);
   if (!found) return 0;
   if (!is_array_of_tables(*found.node())) {
     fail(key, print(*found.node()), fmt::format("tables, each headed [[{}]]", key));
@@ -266,7 +271,7 @@ std::size_t SceneReader::count(const std::string& key) {
 }
 
 std::optional<double> SceneReader::find_number(const std::string& key, const Range& range) {
-  const auto found = node(key);
+  const auto found = toml_->node(key);
   if (!found) return std::nullopt;
   const auto value = number_of(*found.node());
   if (!value) fail(key, print(*found.node()), fmt::format("a number, {}", range.words));
@@ -285,7 +290,7 @@ double SceneReader::number_or(const std::string& key, double otherwise, const Ra
 }
 
 std::optional<std::array<double, 2>> SceneReader::find_pair(const std::string& key, const Range& range) {
-  const auto found = node(key);
+  const auto found = toml_->node(key);
   if (!found) return std::nullopt;
   const toml::array* const array = found.as_array();
   const std::string allowed = fmt::format("[a, b], two numbers, each {}", range.words);
@@ -313,7 +318,7 @@ std::vector<double> SceneReader::numbers(const std::string& key, const Range& ra
 }
 
 std::vector<std::string> SceneReader::list(const std::string& key) {
-  const auto found = node(key);
+  const auto found = toml_->node(key);
   if (!found) return {};
   const toml::array* const array = found.as_array();
   if (array == nullptr || array->empty())
@@ -324,26 +329,26 @@ std::vector<std::string> SceneReader::list(const std::string& key) {
 }
 
 bool SceneReader::flag_or(const std::string& key, bool otherwise) {
-  const auto found = node(key);
+  const auto found = toml_->node(key);
   if (!found) return otherwise;
   if (!found.is_boolean()) fail(key, print(*found.node()), "true, false");
   return *found.value<bool>();
 }
 
 std::vector<std::string> SceneReader::assignments(const std::string& key) {
-  const auto found = node(key);
+  const auto found = toml_->node(key);
   if (!found) return {};
   if (!found.is_table()) fail(key, print(*found.node()), "a table, { \"key\" = value }");
   std::vector<std::string> leaves;
   collect_leaves(*found.as_table(), key + ".", leaves);
-  known_.insert(leaves.begin(), leaves.end());
+  toml_->known.insert(leaves.begin(), leaves.end());
   std::vector<std::string> assignments;
   collect_assignments(*found.as_table(), "", assignments);
   return assignments;
 }
 
 std::string SceneReader::text(const std::string& key) {
-  const auto found = node(key);
+  const auto found = toml_->node(key);
   if (!found) fail_missing(key, "a string");
   if (!found.is_string()) fail(key, print(*found.node()), "a string");
   return *found.value<std::string>();
@@ -357,9 +362,9 @@ std::filesystem::path SceneReader::path(const std::string& key) { return file_.p
 
 void SceneReader::reject_unknown() const {
   std::vector<std::string> leaves;
-  collect_leaves(root_, "", leaves);
+  collect_leaves(toml_->root, "", leaves);
   for (const std::string& leaf : leaves) {
-    if (!known_.contains(leaf)) fail_unknown(leaf);
+    if (!toml_->known.contains(leaf)) fail_unknown(leaf);
   }
 }
 

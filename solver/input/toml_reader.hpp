@@ -1,10 +1,10 @@
 #pragma once
 
-#include <toml++/toml.h>
 #include <array>
 #include <cmath>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <set>
 #include <stdexcept>
@@ -98,13 +98,12 @@ class SceneReader {
   [[noreturn]] void fail_unknown(const std::string& key) const;
   [[noreturn]] void fail_choice(const std::string& key, const std::string& word,
                                 const std::vector<std::string>& allowed) const;
-  toml::node_view<toml::node> node(const std::string& key);
   void apply_override(const std::string& assignment);
   std::string where(const std::string& key) const;
 
   std::filesystem::path file_;
-  toml::table root_;
-  std::set<std::string> known_;
+  struct Questions;  ///< the parsed file, and the keys that were asked for
+  std::shared_ptr<Questions> toml_;
   std::set<std::string> overridden_;
 };
 

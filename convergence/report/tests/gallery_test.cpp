@@ -1,5 +1,6 @@
 #include "convergence/report/gallery.hpp"
 
+#include <nlohmann/json.hpp>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
