@@ -49,8 +49,8 @@ TEST_F(PressureFile, MustFitTheGridAndTheLoad) {
   EXPECT_THAT(complaint([&] { pressure(); }),
               testing::AllOf(HasSubstr("p.csv"), HasSubstr("cannot be read")));
   const std::string good = "0.000125,0.000125,1e9\n";
-  EXPECT_EQ(complaint_about(good), "(no InputError)");
-  EXPECT_EQ(complaint_about(good, {"load.normal=62.5"}), "(no InputError)");  // 1e9 Pa on (0.25 mm)^2
+  EXPECT_EQ(complaint_about(good), "");
+  EXPECT_EQ(complaint_about(good, {"load.normal=62.5"}), "");  // 1e9 Pa on (0.25 mm)^2
   EXPECT_THAT(complaint_about(good, {"load.normal=1000"}),
               testing::AllOf(HasSubstr("load.normal = 1000 N"), HasSubstr("62.5"), HasSubstr("p.csv")));
   EXPECT_THAT(complaint_about(good + "0.000125,-0.000125,nan\n"),
@@ -110,7 +110,7 @@ TEST_F(HeightMapFile, MustBeARectangleOfNumbers) {
       testing::AllOf(HasSubstr("grid.cells = [3, 2]"), HasSubstr("[2, 2]"), HasSubstr("heights.csv")));
   EXPECT_THAT(complaint([&] { model("1,2\n3,4\n", {"grid.extent=[1, 1]"}); }),
               testing::AllOf(HasSubstr("grid.extent"), HasSubstr("upper.spacing")));
-  EXPECT_EQ(complaint([&] { model("1,2\n3,4\n", {"grid.cells=[2, 2]"}); }), "(no InputError)");
+  EXPECT_EQ(complaint([&] { model("1,2\n3,4\n", {"grid.cells=[2, 2]"}); }), "");
 }
 
 TEST_F(HeightMapFile, IsRefusedWithThePlaceOfAMissingPoint) {

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "solver/input/input_error.hpp"
+#include "solver/input/tests/complaint.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace slipstick::solver {
@@ -75,16 +75,5 @@ class SceneFile : public testing::Test {
   std::filesystem::path folder_ =
       std::filesystem::path(testing::TempDir()) / ("scene_" + std::to_string(::getpid()));
 };
-
-/// What a call complains of.
-template <typename Call>
-std::string complaint(const Call& call) {
-  try {
-    call();
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "(no InputError)";
-}
 
 }  // namespace slipstick::solver

@@ -10,6 +10,7 @@
 
 #include "bench/compare/tests/made_timings.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/input/tests/complaint.hpp"
 
 namespace slipstick::bench {
 namespace {
@@ -28,12 +29,7 @@ std::string file_with(const std::string& rows, const std::string& context = "") 
 Timings parse(const std::string& text) { return parse_timings(text, "file.json"); }
 
 std::string complaint(const std::string& text) {
-  try {
-    parse(text);
-  } catch (const InputError& error) {
-    return error.what();
-  }
-  return "none";
+  return solver::complaint([&] { parse(text); });
 }
 
 TEST(Timings, NumbersThatNoDoubleHoldsAreRefused) {

@@ -12,7 +12,7 @@
 #include <random>
 
 #include "solver/input/file_precision.hpp"
-#include "solver/input/input_error.hpp"
+#include "solver/input/tests/complaint.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -115,12 +115,7 @@ TEST(FieldGrid, LetsCellsAndWholeRowsOfThemBeMissing) {
 }
 
 std::string complaint(const Positions& at) {
-  try {
-    find(at);
-  } catch (const solver::InputError& error) {
-    return error.what();
-  }
-  return "";
+  return solver::complaint([&] { find(at); });
 }
 
 TEST(FieldGrid, NamesTheRowThatDoesNotFit) {

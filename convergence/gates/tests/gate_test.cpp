@@ -10,6 +10,7 @@
 #include <cmath>
 #include <fstream>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "convergence/gates/gate_reader.hpp"
@@ -17,6 +18,7 @@
 #include "convergence/programs/tests/program_run.hpp"
 #include "convergence/results/quantity.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/input/tests/complaint.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -313,12 +315,7 @@ class GateFolder : public testing::Test {
 class GateFile : public GateFolder {
  protected:
   std::string complaint(const std::string& text) const {
-    try {
-      read_gates(write("bad.toml", text));
-    } catch (const solver::InputError& error) {
-      return error.what();
-    }
-    return "";
+    return solver::complaint([&] { read_gates(write("bad.toml", text)); });
   }
 };
 
@@ -451,12 +448,8 @@ TEST_F(GateFile, OnlyPicksByIdAndNamesTheNearest) {
   EXPECT_EQ(select_gates(gates, {}).size(), 1);
   EXPECT_EQ(select_gates(gates, {"first", "first"}).size(), 1);
   for (const auto& ids : {std::vector<std::string>{"frist"}, {"first", "frist"}}) {
-    try {
-      select_gates(gates, ids);
-      ADD_FAILURE() << "an unknown id was taken";
-    } catch (const solver::InputError& error) {
-      EXPECT_THAT(error.what(), AllOf(HasSubstr("--only frist"), HasSubstr("nearest is first")));
-    }
+    EXPECT_THAT(solver::complaint([&] { select_gates(gates, ids); }),
+                AllOf(HasSubstr("--only frist"), HasSubstr("nearest is first")));
   }
   EXPECT_THROW(select_gates({}, {"first"}), solver::InputError);
 }

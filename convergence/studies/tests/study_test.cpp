@@ -9,6 +9,7 @@
 #include <cmath>
 #include <csignal>
 #include <fstream>
+#include <nlohmann/json.hpp>
 #include <set>
 
 #include "convergence/oracle/errors.hpp"
@@ -18,6 +19,7 @@
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/studies/budget.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/input/tests/complaint.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -278,14 +280,7 @@ TEST_F(StudyTest, AchievedToleranceFollowsTheRequested) {
 }
 
 TEST_F(StudyTest, BadStudiesSayWhatIsAllowed) {
-  const auto message = [&](const std::string& text) -> std::string {
-    try {
-      study(text);
-    } catch (const solver::InputError& error) {
-      return error.what();
-    }
-    return "";
-  };
+  const auto message = [&](const std::string& text) { return solver::complaint([&] { study(text); }); };
   EXPECT_THAT(message(""), HasSubstr("nothing varies"));
   std::string billions;
   for (int i = 0; i < 9; ++i) {

@@ -10,7 +10,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "solver/input/input_error.hpp"
+#include "solver/input/tests/complaint.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -30,15 +30,6 @@ class FieldFile : public testing::Test {
   static std::string read(const std::filesystem::path& file) {
     std::ifstream stream(file);
     return {std::istreambuf_iterator<char>(stream), {}};
-  }
-  template <typename Call>
-  static std::string complaint(const Call& call) {
-    try {
-      call();
-    } catch (const InputError& error) {
-      return error.what();
-    }
-    return "(no InputError)";
   }
 
   std::filesystem::path folder_ =
