@@ -3,7 +3,7 @@
 option(SLIPSTICK_CCACHE "Compile through ccache where it is installed" ON)
 find_program(SLIPSTICK_CCACHE_PROGRAM ccache)
 mark_as_advanced(SLIPSTICK_CCACHE_PROGRAM)
-if(SLIPSTICK_CCACHE AND SLIPSTICK_CCACHE_PROGRAM AND NOT CMAKE_CXX_COMPILER_LAUNCHER)
+if(SLIPSTICK_CCACHE AND SLIPSTICK_CCACHE_PROGRAM AND "${CMAKE_CXX_COMPILER_LAUNCHER}" MATCHES "^(.*ccache)?$")
   # What a precompiled header defines, ccache has to take on trust.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros
     ${SLIPSTICK_CCACHE_PROGRAM})
