@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -174,29 +175,22 @@ void suggest_renaming(Benchmarks& benchmarks) {
   }
 }
 
-bool is_of_times(Finding finding) {
-  return finding == Finding::same || finding == Finding::slower || finding == Finding::quicker ||
-         finding == Finding::undecided || finding == Finding::too_few;
-}
-
 /// Where times cannot be judged, the numbers stay and the verdicts go.
 void withdraw(Benchmarks& benchmarks) {
   for (ComparedBenchmark& benchmark : benchmarks) {
-    if (!is_of_times(benchmark.finding)) continue;
+    if (benchmark.finding > Finding::too_few) continue;
     benchmark.finding = Finding::not_judged;
     benchmark.remark.clear();
   }
 }
 
-bool is_suspicious(Finding finding) {
-  return finding == Finding::slower || finding == Finding::undecided || finding == Finding::failed;
-}
+bool is_suspicious(Finding finding) { return is_failure(finding) || finding == Finding::undecided; }
 
 /// A second run is a test of its own, of few benchmarks, so that chance speaks in it no more often than its
 /// level says: what the first found as much slower as counts, but not significantly, it may prove.
 Finding confirmed(Finding first, Finding second) {
   if (first == second || (first == Finding::undecided && second == Finding::slower)) return second;
-  return second == Finding::same || second == Finding::quicker ? Finding::same : Finding::undecided;
+  return is_fine(second) ? Finding::same : Finding::undecided;
 }
 
 std::string numbers(const ComparedBenchmark& benchmark) {
@@ -208,30 +202,13 @@ std::string numbers(const ComparedBenchmark& benchmark) {
 }  // namespace
 
 std::string to_string(Finding finding) {
-  switch (finding) {
-    case Finding::same:
-      return "same";
-    case Finding::slower:
-      return "slower";
-    case Finding::quicker:
-      return "quicker";
-    case Finding::undecided:
-      return "undecided";
-    case Finding::too_few:
-      return "too few";
-    case Finding::only_in_base:
-      return "only in base";
-    case Finding::only_in_new:
-      return "only in new";
-    case Finding::failed:
-      return "failed";
-    case Finding::not_timed:
-      return "not timed";
-    case Finding::not_judged:
-      return "not judged";
-  }
-  return "";
+  constexpr std::array kNames{"same",         "slower",      "quicker", "undecided", "too few",
+                              "only in base", "only in new", "failed",  "not timed", "not judged"};
+  return kNames.at(static_cast<std::size_t>(finding));
 }
+
+bool is_failure(Finding finding) { return finding == Finding::slower || finding == Finding::failed; }
+bool is_fine(Finding finding) { return finding == Finding::same || finding == Finding::quicker; }
 
 Comparison compare(const Timings& base, const Timings& now, const ComparisonRules& rules) {
   if (!(rules.effect > 0.0 && rules.level > 0.0 && rules.level < 1.0)) {
@@ -268,11 +245,10 @@ std::vector<std::string> suspicious(const Comparison& comparison) {
 }
 
 Timings select(const Timings& timings, const std::vector<std::string>& names) {
-  Timings selected{timings.file, timings.context, {}};
-  for (const TimedBenchmark& benchmark : timings.benchmarks) {
-    if (std::find(names.begin(), names.end(), benchmark.name) != names.end())
-      selected.benchmarks.push_back(benchmark);
-  }
+  Timings selected = timings;
+  std::erase_if(selected.benchmarks, [&](const TimedBenchmark& benchmark) {
+    return std::ranges::find(names, benchmark.name) == names.end();
+  });
   return selected;
 }
 
@@ -281,8 +257,7 @@ Comparison confirm(const Comparison& first, const Comparison& second) {
   result.obstacles.insert(result.obstacles.end(), second.obstacles.begin(), second.obstacles.end());
   for (ComparedBenchmark& benchmark : result.benchmarks) {
     if (!is_suspicious(benchmark.finding)) continue;
-    const auto again = std::find_if(second.benchmarks.begin(), second.benchmarks.end(),
-                                    [&](const auto& other) { return other.name == benchmark.name; });
+    const auto again = std::ranges::find(second.benchmarks, benchmark.name, &ComparedBenchmark::name);
     const bool ran = again != second.benchmarks.end();
     benchmark.remark =
         fmt::format("{}first run: {}; second: {}", benchmark.remark.empty() ? "" : benchmark.remark + "; ",
@@ -294,16 +269,10 @@ Comparison confirm(const Comparison& first, const Comparison& second) {
 }
 
 int exit_code(const Comparison& comparison) {
-  const auto any = [&](auto&& property) {
-    return std::any_of(comparison.benchmarks.begin(), comparison.benchmarks.end(),
-                       [&](const auto& benchmark) { return property(benchmark.finding); });
-  };
-  if (any([](Finding finding) { return finding == Finding::slower || finding == Finding::failed; })) return 1;
-  const bool judged =
-      any([](Finding finding) { return finding == Finding::same || finding == Finding::quicker; });
-  const bool doubtful =
-      any([](Finding finding) { return finding != Finding::same && finding != Finding::quicker; });
-  return judged && !doubtful && comparison.obstacles.empty() ? 0 : 2;
+  if (std::ranges::any_of(comparison.benchmarks, is_failure, &ComparedBenchmark::finding)) return 1;
+  const bool passed = !comparison.benchmarks.empty() && comparison.obstacles.empty() &&
+                      std::ranges::all_of(comparison.benchmarks, is_fine, &ComparedBenchmark::finding);
+  return passed ? 0 : 2;
 }
 
 }  // namespace slipstick::bench

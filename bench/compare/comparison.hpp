@@ -20,9 +20,10 @@ struct ComparisonRules {
   std::vector<std::string> waiting = {};
 };
 
-/// What was found of one benchmark. Undecided: as much slower as counts, but not significantly so. Too few:
-/// its repetitions could show no change, however large. Failed: in the new file only. Not timed: it failed in
-/// the base, or left itself out. Not judged: an obstacle stands before all times.
+/// What was found of one benchmark, first what its times say. Undecided: as much slower as counts, but not
+/// significantly so. Too few: its repetitions could show no change, however large. Failed: in the new file
+/// only. Not timed: it failed in the base, or left itself out. Not judged: an obstacle stands before all
+/// times.
 enum class Finding {
   same,
   slower,
@@ -36,6 +37,8 @@ enum class Finding {
   not_judged
 };
 std::string to_string(Finding finding);
+bool is_failure(Finding finding);  ///< slower or failed
+bool is_fine(Finding finding);     ///< same or quicker
 
 /// One benchmark of either file. What does not exist is NaN; an interval of too small a sample is infinite.
 struct ComparedBenchmark {

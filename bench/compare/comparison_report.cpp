@@ -27,31 +27,23 @@ constexpr std::array kSeverity{
     Finding::slower,    Finding::failed,  Finding::undecided,  Finding::only_in_base, Finding::only_in_new,
     Finding::not_timed, Finding::too_few, Finding::not_judged, Finding::quicker,      Finding::same};
 
-bool is_failure(Finding finding) { return finding == Finding::slower || finding == Finding::failed; }
-bool is_fine(Finding finding) { return finding == Finding::same || finding == Finding::quicker; }
-
 std::vector<ComparedBenchmark> worst_first(std::vector<ComparedBenchmark> benchmarks) {
-  const auto badness = [](const ComparedBenchmark& benchmark) {
-    const auto severity =
-        std::find(kSeverity.begin(), kSeverity.end(), benchmark.finding) - kSeverity.begin();
-    return std::pair(severity, std::isnan(benchmark.ratio) ? 0.0 : -benchmark.ratio);
-  };
-  std::stable_sort(benchmarks.begin(), benchmarks.end(),
-                   [&](const auto& a, const auto& b) { return badness(a) < badness(b); });
+  std::ranges::stable_sort(benchmarks, {}, [](const ComparedBenchmark& benchmark) {
+    return std::pair(std::ranges::find(kSeverity, benchmark.finding),
+                     std::isnan(benchmark.ratio) ? 0.0 : -benchmark.ratio);
+  });
   return benchmarks;
 }
 
-std::size_t count(const std::vector<ComparedBenchmark>& benchmarks, Finding finding) {
-  return static_cast<std::size_t>(
-      std::count_if(benchmarks.begin(), benchmarks.end(),
-                    [&](const ComparedBenchmark& benchmark) { return benchmark.finding == finding; }));
+auto count(const std::vector<ComparedBenchmark>& benchmarks, Finding finding) {
+  return std::ranges::count(benchmarks, finding, &ComparedBenchmark::finding);
 }
 
 /// "30 benchmarks: 28 same, 1 slower, 1 undecided"
 std::string counts_text(const std::vector<ComparedBenchmark>& benchmarks) {
   std::vector<std::string> parts;
   for (auto finding = kSeverity.rbegin(); finding != kSeverity.rend(); ++finding) {
-    const std::size_t number = count(benchmarks, *finding);
+    const auto number = count(benchmarks, *finding);
     if (number > 0) parts.push_back(fmt::format("{} {}", number, to_string(*finding)));
   }
   return fmt::format("{} benchmark{}: {}", benchmarks.size(), benchmarks.size() == 1 ? "" : "s",
@@ -229,11 +221,11 @@ std::string comparison_markdown(const ComparisonReport& report) {
 std::string comparison_junit(const ComparisonReport& report) {
   const std::vector<ComparedBenchmark>& benchmarks = report.comparison.benchmarks;
   const std::vector<std::string>& obstacles = report.comparison.obstacles;
-  const auto failures = count(benchmarks, Finding::slower) + count(benchmarks, Finding::failed);
-  const auto fine = count(benchmarks, Finding::same) + count(benchmarks, Finding::quicker);
+  const auto cases = std::ssize(benchmarks) + std::ssize(obstacles);
+  const auto failures = std::ranges::count_if(benchmarks, is_failure, &ComparedBenchmark::finding);
+  const auto fine = std::ranges::count_if(benchmarks, is_fine, &ComparedBenchmark::finding);
   const std::string counts =
-      fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\"", benchmarks.size() + obstacles.size(),
-                  failures, benchmarks.size() - failures - fine + obstacles.size());
+      fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\"", cases, failures, cases - failures - fine);
   std::string text = fmt::format(
       "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"slipstick compare\" {0}>\n  <testsuite "
       "name=\"{1}\" {0}>\n",

@@ -26,7 +26,7 @@ constexpr double kWaiting = 1.25;
 constexpr double kWaitingByNature = 10.0;
 /// A wait that a change put into the program is in some benchmarks, one for a loaded machine is in most.
 /// Fewer benchmarks than this decide nothing.
-constexpr std::size_t kMinConclusive = 3;
+constexpr std::ptrdiff_t kMinConclusive = 3;
 
 std::string name(const Timings& timings) { return timings.file.filename().string(); }
 
@@ -77,8 +77,7 @@ bool has_both_times(const TimedBenchmark& benchmark) {
   return has_times(benchmark) && benchmark.threads == 1 &&
          benchmark.name.find("/manual_time") == std::string::npos &&
          benchmark.name.find("/process_time") == std::string::npos &&
-         std::all_of(benchmark.timings.begin(), benchmark.timings.end(),
-                     [](const Timing& timing) { return timing.cpu > 0.0; });
+         std::ranges::all_of(benchmark.timings, [](const Timing& timing) { return timing.cpu > 0.0; });
 }
 
 bool waits(const TimedBenchmark& benchmark) {
@@ -90,29 +89,23 @@ bool waits(const TimedBenchmark& benchmark) {
 
 /// Whether most benchmarks wait, but for those that are known to.
 std::string waiting(const Timings& timings, const std::vector<std::string>& known) {
-  std::vector<std::string> waiting = waiting_benchmarks(timings);
-  std::erase_if(waiting, [&](const std::string& benchmark) {
-    return std::find(known.begin(), known.end(), benchmark) != known.end();
+  const auto waiting = std::ranges::count_if(waiting_benchmarks(timings), [&](const std::string& benchmark) {
+    return std::ranges::find(known, benchmark) == known.end();
   });
-  const auto all = static_cast<std::size_t>(
-      std::count_if(timings.benchmarks.begin(), timings.benchmarks.end(), has_both_times));
-  if (all < kMinConclusive || 2 * waiting.size() <= all) return "";
+  const auto all = std::ranges::count_if(timings.benchmarks, has_both_times);
+  if (all < kMinConclusive || 2 * waiting <= all) return "";
   return fmt::format(
       "{}: the machine was loaded: {} of {} benchmarks in one thread took {} times as long as the processor "
       "worked for them, or longer (if that is their nature: MeasureProcessCPUTime or UseManualTime)",
-      name(timings), waiting.size(), all, kWaiting);
+      name(timings), waiting, all, kWaiting);
 }
 
-bool same_times(const Timings& base, const Timings& now) {
-  const auto times = [](const Timings& timings) {
-    std::vector<double> all;
-    for (const TimedBenchmark& benchmark : timings.benchmarks) {
-      for (const Timing& timing : benchmark.timings) all.push_back(timing.real);
-    }
-    return all;
-  };
-  const std::vector<double> before = times(base);
-  return !before.empty() && before == times(now);
+std::vector<double> all_times(const Timings& timings) {
+  std::vector<double> all;
+  for (const TimedBenchmark& benchmark : timings.benchmarks) {
+    for (const Timing& timing : benchmark.timings) all.push_back(timing.real);
+  }
+  return all;
 }
 
 }  // namespace
@@ -145,7 +138,9 @@ Obstacles find_obstacles(const Timings& base, const Timings& now, const Comparis
   }
   add(waiting(base, {}));
   add(waiting(now, rules.waiting));
-  if (same_times(base, now)) add("both files hold the very same times: one run is compared with itself");
+  const std::vector<double> times = all_times(base);
+  if (!times.empty() && times == all_times(now))
+    add("both files hold the very same times: one run is compared with itself");
   return found;
 }
 

@@ -21,7 +21,7 @@ constexpr double kTail = 0.025;
 std::vector<std::size_t> doubled_ranks(std::span<const double> values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  std::ranges::sort(order, {}, [&](std::size_t i) { return values[i]; });
   std::vector<std::size_t> ranks(values.size());
   for (std::size_t first = 0; first < order.size();) {
     std::size_t end = first + 1;
@@ -92,10 +92,9 @@ class RankSum {
  private:
   static std::vector<double> count_choices(std::span<const std::size_t> ranks, std::size_t picked) {
     std::vector<std::size_t> sorted(ranks.begin(), ranks.end());
-    std::sort(sorted.begin(), sorted.end());
+    std::ranges::sort(sorted);
     const std::size_t largest = sum(std::span(sorted).last(picked));
-    const bool even =
-        std::all_of(sorted.begin(), sorted.end(), [](std::size_t rank) { return rank % 2 == 0; });
+    const bool even = std::ranges::all_of(sorted, [](std::size_t rank) { return rank % 2 == 0; });
     const std::size_t step = even ? 2 : 1;
     // ways[j][s]: choices of j ranks that sum to s.
     std::vector<std::vector<double>> ways(picked + 1, std::vector<double>(largest + 1, 0.0));
@@ -204,8 +203,7 @@ double least_rank_sum_chance(std::size_t n, std::size_t m) {
 std::vector<double> holm(const std::vector<double>& chances) {
   std::vector<std::size_t> order(chances.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::sort(order.begin(), order.end(),
-            [&](std::size_t a, std::size_t b) { return chances[a] < chances[b]; });
+  std::ranges::sort(order, {}, [&](std::size_t i) { return chances[i]; });
   std::vector<double> corrected(chances.size());
   double largest = 0.0;
   for (std::size_t i = 0; i < order.size(); ++i) {

@@ -71,9 +71,8 @@ double largest_error(const Loads& loads, const std::string& quantity) {
 std::vector<double> shared_tolerances(const Loads& loads) {
   std::vector<double> shared;
   for (auto it = loads.front().rbegin(); it != loads.front().rend(); ++it) {
-    const bool everywhere = std::all_of(
-        loads.begin(), loads.end(), [&](const ByTolerance& points) { return points.contains(it->first); });
-    if (everywhere) shared.push_back(it->first);
+    const auto has_it = [&](const ByTolerance& points) { return points.contains(it->first); };
+    if (std::ranges::all_of(loads, has_it)) shared.push_back(it->first);
   }
   return shared;
 }

@@ -48,9 +48,7 @@ std::optional<BesideBest> beside_best(const std::vector<Way>& ways, const Way& w
 std::string most_frequent(const std::vector<BesideBest>& all) {
   std::map<std::string, int> count;
   for (const BesideBest& one : all) ++count[one.by];
-  return std::max_element(count.begin(), count.end(),
-                          [](const auto& a, const auto& b) { return a.second < b.second; })
-      ->first;
+  return std::ranges::max_element(count, {}, &decltype(count)::value_type::second)->first;
 }
 
 DominatedChoice summary(const std::string& key, const std::string& word,
@@ -63,8 +61,8 @@ DominatedChoice summary(const std::string& key, const std::string& word,
     found.from_cells = std::min(found.from_cells, one.cells);
   }
   found.times_slower = median(ratios);
-  found.least = *std::min_element(ratios.begin(), ratios.end());
-  found.most = *std::max_element(ratios.begin(), ratios.end());
+  found.least = std::ranges::min(ratios);
+  found.most = std::ranges::max(ratios);
   found.ways = lost.size();
   return found;
 }
@@ -96,10 +94,9 @@ std::vector<std::size_t> pareto_front(const std::vector<Way>& ways) {
   std::vector<std::size_t> front;
   for (std::size_t i = 0; i < ways.size(); ++i) {
     const auto beats_it = [&](const Way& other) { return is_number(other) && beats(other, ways[i]); };
-    if (is_number(ways[i]) && std::none_of(ways.begin(), ways.end(), beats_it)) front.push_back(i);
+    if (is_number(ways[i]) && std::ranges::none_of(ways, beats_it)) front.push_back(i);
   }
-  std::stable_sort(front.begin(), front.end(),
-                   [&](std::size_t a, std::size_t b) { return ways[a].seconds < ways[b].seconds; });
+  std::ranges::stable_sort(front, {}, [&](std::size_t way) { return ways[way].seconds; });
   return front;
 }
 

@@ -2,15 +2,17 @@
 
 #include <fmt/core.h>
 #include <gsl/gsl_cdf.h>
+#include <gsl/gsl_fit.h>
 #include <gsl/gsl_randist.h>
 #include <gsl/gsl_rng.h>
+#include <gsl/gsl_statistics_double.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <numbers>
-#include <numeric>
 #include <optional>
 #include <utility>
 
@@ -39,12 +41,10 @@ std::optional<LogTime> log_time(const std::vector<double>& seconds) {
   }
   if (logs.empty()) return {};
   const auto count = static_cast<double>(logs.size());
-  const double mean = std::accumulate(logs.begin(), logs.end(), 0.0) / count;
-  double squares = 0.0;
-  for (const double one : logs) squares += (one - mean) * (one - mean);
   // The median of many normal deviates has this much of their mean's standard error.
   const double of_median = std::sqrt(0.5 * std::numbers::pi);
-  const double error = count > 1.0 ? of_median * std::sqrt(squares / (count - 1.0) / count) : kNaN;
+  const double error =
+      count > 1.0 ? of_median * gsl_stats_sd(logs.data(), 1, logs.size()) / std::sqrt(count) : kNaN;
   return LogTime{median(logs), error, count - 1.0};
 }
 
@@ -77,22 +77,15 @@ struct Line {
 };
 
 Line fit_line(const std::vector<double>& x, const std::vector<double>& y) {
-  const auto count = static_cast<double>(x.size());
-  const double x_mean = std::accumulate(x.begin(), x.end(), 0.0) / count;
-  const double y_mean = std::accumulate(y.begin(), y.end(), 0.0) / count;
-  double xx = 0.0;
-  double xy = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    xx += (x[i] - x_mean) * (x[i] - x_mean);
-    xy += (x[i] - x_mean) * (y[i] - y_mean);
-  }
-  const double slope = xy / xx;
+  Line line{};
+  double start_variance = 0.0;
+  double covariance = 0.0;
+  double slope_variance = 0.0;
   double squares = 0.0;
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double left = y[i] - y_mean - slope * (x[i] - x_mean);
-    squares += left * left;
-  }
-  return {slope, std::sqrt(squares / (count - 2.0) / xx), y_mean - slope * x_mean};
+  gsl_fit_linear(x.data(), 1, y.data(), 1, x.size(), &line.start, &line.slope, &start_variance, &covariance,
+                 &slope_variance, &squares);
+  line.slope_error = std::sqrt(slope_variance);
+  return line;
 }
 
 GrowthFit fit_growth(Growth growth, const Times& known) {
@@ -221,17 +214,8 @@ PowerLaw fit_power_law(const Family& family) {
 }
 
 std::string to_string(Growth growth) {
-  switch (growth) {
-    case Growth::n2:
-      return "N^2";
-    case Growth::n2_log_n:
-      return "N^2 log N";
-    case Growth::n3:
-      return "N^3";
-    case Growth::n4:
-      return "N^4";
-  }
-  return "unknown";
+  constexpr std::array kNames{"N^2", "N^2 log N", "N^3", "N^4"};
+  return kNames.at(static_cast<std::size_t>(growth));
 }
 
 double grown(Growth growth, double cells) {

@@ -8,18 +8,16 @@
 
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "analytic/references/replay.hpp"
 #include "bench/suite/suite.hpp"
+#include "bench/timing/side_by_side.hpp"
 
 namespace slipstick::bench {
 namespace {
-
-using Clock = std::chrono::steady_clock;
 
 constexpr std::size_t kInputs = 256;
 using Inputs = std::array<double, kInputs>;
@@ -42,9 +40,10 @@ double seconds_per_call(Function f) {
   constexpr std::size_t kCalls = 40 * kInputs;
   double least = std::numeric_limits<double>::infinity();
   for (int run = 0; run < kRuns; ++run) {
-    const auto start = Clock::now();
-    for (std::size_t i = 0; i < kCalls; ++i) benchmark::DoNotOptimize(f(i % kInputs));
-    least = std::min(least, std::chrono::duration<double>(Clock::now() - start).count() / kCalls);
+    least = std::min(least, seconds([&] {
+                              for (std::size_t i = 0; i < kCalls; ++i)
+                                benchmark::DoNotOptimize(f(i % kInputs));
+                            }) / kCalls);
   }
   return least;
 }

@@ -258,15 +258,12 @@ bool are_paired(const Timings& one, const Timings& other) {
 }
 
 const TimedBenchmark* find(const Timings& timings, const std::string& name) {
-  const auto found = std::find_if(timings.benchmarks.begin(), timings.benchmarks.end(),
-                                  [&](const TimedBenchmark& benchmark) { return benchmark.name == name; });
+  const auto found = std::ranges::find(timings.benchmarks, name, &TimedBenchmark::name);
   return found == timings.benchmarks.end() ? nullptr : &*found;
 }
 
 bool has_times(const TimedBenchmark& benchmark) {
-  return !benchmark.timings.empty() &&
-         std::all_of(benchmark.timings.begin(), benchmark.timings.end(),
-                     [](const Timing& timing) { return is_valid_time(timing.real); });
+  return !benchmark.timings.empty() && std::ranges::all_of(benchmark.timings, is_valid_time, &Timing::real);
 }
 
 Json parse_benchmark_json(const std::string& text, const std::string& source) {

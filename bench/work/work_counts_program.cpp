@@ -36,8 +36,7 @@ std::vector<WorkCase> selected_cases(const std::vector<std::string>& names) {
   if (names.empty()) return all;
   std::vector<WorkCase> selected;
   for (const std::string& name : names) {
-    const auto found =
-        std::find_if(all.begin(), all.end(), [&](const WorkCase& known) { return known.name == name; });
+    const auto found = std::ranges::find(all, name, &WorkCase::name);
     if (found == all.end()) {
       std::string allowed;
       for (const WorkCase& known : all) allowed += (allowed.empty() ? "" : ", ") + known.name;

@@ -2,16 +2,16 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 
 #include "bench/compare/tests/made_timings.hpp"
+#include "convergence/programs/temporary_folder.hpp"
 #include "convergence/programs/tests/program_run.hpp"
+#include "convergence/runs/run_spec.hpp"
 
 namespace slipstick::bench {
 namespace {
@@ -24,19 +24,10 @@ namespace fs = std::filesystem;
 
 ProgramRun run(const std::string& arguments) { return run_program_with(arguments); }
 
-std::string text_of(const fs::path& file) {
-  std::ostringstream text;
-  text << std::ifstream(file).rdbuf();
-  return text.str();
-}
-
 /// Files of one test, in a folder of its own.
 class ProgramCompare : public ::testing::Test {
  protected:
-  ProgramCompare() { fs::create_directories(folder_); }
-  ~ProgramCompare() override { fs::remove_all(folder_); }
-
-  std::string file(const std::string& name) const { return folder_ / name; }
+  std::string file(const std::string& name) const { return folder_ / name.c_str(); }
 
   std::string write(const std::string& name, const Timings& timings) const {
     std::ofstream(file(name)) << google_json(timings);
@@ -55,7 +46,7 @@ class ProgramCompare : public ::testing::Test {
   }
 
  private:
-  fs::path folder_ = fs::path(::testing::TempDir()) / ("slipstick-compare-test-" + std::to_string(getpid()));
+  convergence::TemporaryFolder folder_;
 };
 
 TEST_F(ProgramCompare, HasHelpWithAnExample) {
@@ -152,7 +143,7 @@ TEST_F(ProgramCompare, OnlyWhatTheSecondRunConfirmsCounts) {
   EXPECT_EQ(cleared.exit_code, 0) << cleared.output;
   EXPECT_THAT(cleared.output, AllOf(HasSubstr("run again"), HasSubstr("first run: slower (1.2"),
                                     HasSubstr("second: same (1.00"), HasSubstr("2 same")));
-  EXPECT_EQ(text_of(file("filter")), "^(apply/dcfft/64)$");
+  EXPECT_EQ(convergence::read_text(file("filter")), "^(apply/dcfft/64)$");
 
   write("again.json", 1.2, 5);
   const ProgramRun confirmed = run(files(1.2) + again);
@@ -210,10 +201,10 @@ TEST_F(ProgramCompare, MissingNumbersAreNullWithAReason) {
 TEST_F(ProgramCompare, WritesJunitAndMarkdown) {
   const ProgramRun out = run(files(1.2) + " --junit " + file("out.xml") + " --summary " + file("out.md"));
   EXPECT_EQ(out.exit_code, 1);
-  EXPECT_THAT(text_of(file("out.xml")),
+  EXPECT_THAT(convergence::read_text(file("out.xml")),
               AllOf(HasSubstr(R"(tests="2" failures="1" errors="0")"), HasSubstr("<failure message=\"slower"),
                     HasSubstr("name=\"apply|(direct)/8\"")));
-  EXPECT_THAT(text_of(file("out.md")),
+  EXPECT_THAT(convergence::read_text(file("out.md")),
               AllOf(HasSubstr("### 2 benchmarks: 1 same, 1 slower"), HasSubstr("| apply/dcfft/64 | 61."),
                     HasSubstr("| apply\\|(direct)/8 | ")));
   Timings elsewhere = file_of("", {steady("apply/dcfft/64", 1.0, 10, 8), steady("other", 1e-6, 10, 9)});
@@ -224,8 +215,9 @@ TEST_F(ProgramCompare, WritesJunitAndMarkdown) {
   EXPECT_EQ(
       run("compare " + file("base.json") + " " + file("new.json") + " --junit " + file("out.xml")).exit_code,
       2);
-  EXPECT_THAT(text_of(file("out.xml")), AllOf(HasSubstr(R"(tests="4" failures="0" errors="4")"),
-                                              HasSubstr("a &quot;b&quot; &amp; &lt;c&gt;")));
+  EXPECT_THAT(
+      convergence::read_text(file("out.xml")),
+      AllOf(HasSubstr(R"(tests="4" failures="0" errors="4")"), HasSubstr("a &quot;b&quot; &amp; &lt;c&gt;")));
 }
 
 TEST_F(ProgramCompare, MarkdownStaysBelow64Kilobytes) {
@@ -240,7 +232,7 @@ TEST_F(ProgramCompare, MarkdownStaysBelow64Kilobytes) {
                              write("new.json", file_of("", now)) + " --quiet --summary " + file("out.md"));
   EXPECT_EQ(out.exit_code, 2);
   EXPECT_LT(fs::file_size(file("out.md")), 64000U);
-  EXPECT_THAT(text_of(file("out.md")), HasSubstr("none worse than these, are left out here"));
+  EXPECT_THAT(convergence::read_text(file("out.md")), HasSubstr("none worse than these, are left out here"));
 }
 
 }  // namespace

@@ -4,7 +4,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -13,6 +12,7 @@
 #include <set>
 
 #include "bench/timing/invalid_reason.hpp"
+#include "convergence/programs/temporary_folder.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/solve_scene.hpp"
 
@@ -26,12 +26,6 @@ using testing::HasSubstr;
 namespace fs = std::filesystem;
 
 const fs::path kPaper = fs::path(SLIPSTICK_SCENES) / "paper.toml";
-
-fs::path folder(const std::string& name) {
-  const fs::path path = fs::path(testing::TempDir()) / ("slipstick-plane-" + std::to_string(getpid())) / name;
-  fs::create_directories(path);
-  return path;
-}
 
 TEST(PlaneDesign, HoldsNoChoiceTwiceAndOnlyReadableOnes) {
   for (const bool quick : {false, true}) {
@@ -79,7 +73,8 @@ TEST(PlanePoint, HasTheErrorsOfItsGrids) {
 }
 
 TEST(PlanePoint, IsNotTimedWhereItDoesNotConverge) {
-  const fs::path scene = folder("slow") / "slow.toml";
+  const convergence::TemporaryFolder folder;
+  const fs::path scene = folder / "slow.toml";
   std::ofstream(scene) << convergence::read_text(kPaper) << "max_iterations = 1\n";
   PlaneChoice choice;
   choice.cells = 24;
@@ -102,7 +97,8 @@ TEST(InvalidReason, IsGivenForATwistThatIsSixPercentTooSmall) {
 }
 
 TEST(PlaneScene, GoesOnFromKeptPoints) {
-  const bench::PlaneOptions options{.scene = kPaper, .output = folder("kept")};
+  const convergence::TemporaryFolder folder;
+  const bench::PlaneOptions options{.scene = kPaper, .output = folder / "kept"};
   PlaneChoice choice;
   choice.cells = 16;
   const Json first = bench::measure_scene(options, 0.5, {choice});

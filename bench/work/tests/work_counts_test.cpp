@@ -4,15 +4,14 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cstdlib>
-#include <filesystem>
 #include <fstream>
 #include <new>
 
 #include "bench/work/work_counts_cases.hpp"
 #include "bench/work/work_counts_instructions.hpp"
+#include "convergence/programs/temporary_folder.hpp"
 
 namespace slipstick::bench {
 namespace {
@@ -93,17 +92,11 @@ TEST(WorkCounts, SummationTransformsNothingButItsPreconditioner) {
   EXPECT_GT(direct.solve.applications, 1.0);
 }
 
-class Callgrind : public testing::Test {
- protected:
-  void TearDown() override { std::filesystem::remove(file_); }
-  Instructions read(const std::string& text) const {
-    std::ofstream(file_) << text;
-    return read_callgrind(file_);
-  }
-
-  std::filesystem::path file_ =
-      std::filesystem::path(testing::TempDir()) / ("slipstick-callgrind-" + std::to_string(getpid()));
-};
+Instructions read(const std::string& text) {
+  const convergence::TemporaryFolder folder;
+  std::ofstream(folder / "out") << text;
+  return read_callgrind(folder / "out");
+}
 
 /// A call's line says what it takes inside, which stands again where it is executed.
 constexpr const char* kCallgrind = R"(# callgrind format
@@ -131,14 +124,14 @@ fn=(3) other
 -3 10
 )";
 
-TEST_F(Callgrind, IsReadByObject) {
+TEST(Callgrind, IsReadByObject) {
   const Instructions found = read(std::string(kCallgrind) + "totals: 1111\n");
   EXPECT_THAT(found, Contains(Pair("program", 111)));
   EXPECT_THAT(found, Contains(Pair("libm.so.6", 1000)));
   EXPECT_EQ(found.size(), 2);
 }
 
-TEST_F(Callgrind, RefusesWhatDoesNotAddUp) {
+TEST(Callgrind, RefusesWhatDoesNotAddUp) {
   EXPECT_THROW(read(std::string(kCallgrind) + "totals: 1112\n"), std::runtime_error);
   EXPECT_THROW(read(kCallgrind), std::runtime_error);
   EXPECT_THROW(read(""), std::runtime_error);
