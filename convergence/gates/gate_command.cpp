@@ -32,7 +32,10 @@ int run(const Options& options, std::ostream& text, nlohmann::ordered_json& resu
   const GateFiles files = read_gate_files(options.files, options.results);
   std::vector<Judgement> judgements = files.unreadable;
   const Interrupts interrupts;
-  const ProcessPool pool({.folder = options.output, .jobs = options.jobs, .interrupted = Interrupts::seen});
+  const ProcessPool pool({.folder = options.output,
+                          .jobs = options.jobs,
+                          .program = kOwnProgram,
+                          .interrupted = Interrupts::seen});
   const std::vector<Judgement> judged = run_gates(select_gates(files.gates, options.only), pool);
   judgements.insert(judgements.end(), judged.begin(), judged.end());
 

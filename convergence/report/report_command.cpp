@@ -47,10 +47,13 @@ int run(const Options& options, std::ostream& text, nlohmann::ordered_json& resu
   const fs::path scene = options.scene.empty() ? scenes / "paper.toml" : fs::path(options.scene);
   const fs::path output = options.output;
   const fs::path data = output / "data";
-  const Interrupts interrupts;
-  const ProcessPool pool({.folder = data / "points", .interrupted = Interrupts::seen});
-  result = validate(scene, scenes, project_file("convergence/studies"),
-                    options.quick ? quick_validation() : full_validation(), data, pool);
+  const ProcessPool pool(
+      {.folder = data / "points", .program = kOwnProgram, .interrupted = Interrupts::seen});
+  {
+    const Interrupts interrupts;
+    result = validate(scene, scenes, project_file("convergence/studies"),
+                      options.quick ? quick_validation() : full_validation(), data, pool);
+  }
   draw(data, output);
   text << "page: " << (output / "index.html").string() << '\n';
   int exit_code = 0;

@@ -10,16 +10,29 @@ namespace slipstick::convergence {
 /// host.
 class Interrupts {
  public:
-  Interrupts();
-  ~Interrupts();
+  Interrupts() {
+    interrupted = 0;
+    struct sigaction action {};
+    action.sa_handler = [](int) { interrupted = 1; };  // no SA_RESTART: waiting ends
+    for (std::size_t i = 0; i < kSignals.size(); ++i) {
+      sigaction(kSignals[i], nullptr, &before_[i]);
+      if (before_[i].sa_handler != SIG_IGN) sigaction(kSignals[i], &action, nullptr);
+    }
+  }
+  ~Interrupts() {
+    for (std::size_t i = 0; i < kSignals.size(); ++i) sigaction(kSignals[i], &before_[i], nullptr);
+  }
   Interrupts(const Interrupts&) = delete;
   Interrupts& operator=(const Interrupts&) = delete;
 
   /// Whether any has come.
-  static bool seen();
+  static bool seen() { return interrupted != 0; }
 
  private:
-  std::array<struct sigaction, 3> before_{};
+  static constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
+  static inline volatile std::sig_atomic_t interrupted = 0;
+
+  std::array<struct sigaction, kSignals.size()> before_{};
 };
 
 }  // namespace slipstick::convergence

@@ -12,9 +12,9 @@
 namespace slipstick::convergence {
 
 struct ProcessPoolOptions {
-  std::filesystem::path folder;                 ///< keeps finished results, see ResultCache
-  int jobs = 0;                                 ///< processes at a time; 0: one a processor
-  std::filesystem::path program = kOwnProgram;  ///< the slipstick program, which solves
+  std::filesystem::path folder;        ///< keeps finished results, see ResultCache
+  int jobs = 0;                        ///< processes at a time; 0: one a processor
+  std::filesystem::path program = {};  ///< the slipstick program, which solves
   /// Asked every second at least, and when a signal ends waiting: whether to stop.
   std::function<bool()> interrupted = {};
 };

@@ -44,9 +44,14 @@ bool all_converged(const Json& result) {
 int run(const Options& options, std::ostream& text, Json& result) {
   if (!options.figure.empty()) require_figure_format(options.figure);
   const Study study = read_study(options.study, options.overrides);
-  const Interrupts interrupts;
-  const ProcessPool pool({.folder = options.output, .jobs = options.jobs, .interrupted = Interrupts::seen});
-  result = run_study(study, pool);
+  const ProcessPool pool({.folder = options.output,
+                          .jobs = options.jobs,
+                          .program = kOwnProgram,
+                          .interrupted = Interrupts::seen});
+  {
+    const Interrupts interrupts;
+    result = run_study(study, pool);
+  }
   text << study_text(result);
   if (!options.figure.empty()) draw(options.figure, result);
   return all_converged(result) ? 0 : 1;

@@ -157,19 +157,6 @@ TEST_F(StudyTest, OtherChildrenAreLeftAlone) {
   EXPECT_EQ(WEXITSTATUS(status), 3);
 }
 
-/// What a scene asks for decides whether its result has steps, not how far the solve came.
-TEST_F(StudyTest, AHistoryWhoseFirstStepFailsHasSteps) {
-  const fs::path scene = folder_ / "history.toml";
-  std::ofstream(scene) << read_text(kPaper).erase(read_text(kPaper).find("[load]"))
-                       << "[load]\nnormal = 1000.0\n[grid]\ncells = [24, 24]\n[solver]\nmax_iterations = 1\n"
-                          "[[step]]\nmoment_ratio = 0.8\n[[step]]\nmoment_ratio = -0.8\n";
-  const Json result = pool_.run(RunSpec{scene, {}});
-  ASSERT_EQ(result["status"], "not_converged") << result.dump();
-  ASSERT_TRUE(result.contains("steps"));
-  EXPECT_EQ(result["steps"].size(), 1U);
-  EXPECT_EQ(result["history"]["steps"], 1);
-}
-
 TEST_F(StudyTest, ALooseToleranceShowsInTheBudget) {
   const Budget budget =
       error_budget(prepare_run({kPaper, {cells(32), "solver.tolerance=0.1"}}), "twist_error", pool_);
