@@ -53,7 +53,7 @@ Timings run_again(const std::string& command, const std::vector<std::string>& na
   const convergence::ProgramEnd end =
       convergence::run_program({"sh", "-c", with_filter(command, benchmark_filter(names), option)},
                                {.captured = convergence::Captured::output});
-  if (end.code != 0) throw InputError(option, end.trouble);
+  if (end.code != 0) throw InputError(option, fmt::format("ended with {}", end.code));
   return parse_timings(end.output, "second run");
 }
 
