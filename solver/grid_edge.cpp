@@ -10,6 +10,8 @@
 #include "solver/contact/full_coupling.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/pressure.hpp"
+#include "solver/scene/roughness.hpp"
+#include "solver/scene/surface_geometry.hpp"
 
 namespace slipstick::solver {
 namespace {

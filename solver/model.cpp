@@ -10,6 +10,7 @@
 
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/scene/surface_geometry.hpp"
 
 namespace slipstick::solver {
 namespace {

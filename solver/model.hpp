@@ -10,14 +10,9 @@
 #include "solver/scene/hertz_pressure.hpp"
 #include "solver/scene/scene.hpp"
 #include "solver/scene/to_dimensionless.hpp"
+#include "solver/solution.hpp"
 
 namespace slipstick::solver {
-
-/// Something that a scene lets the model leave out, and why its answer does not change by that.
-struct Omission {
-  std::string what;
-  std::string why;
-};
 
 /// A scene made dimensionless: lengths over one cell's size along x1, stresses over the combined shear
 /// modulus G, so that the same scene in other units gives the same digits.
@@ -38,6 +33,10 @@ struct Model {
   Reduction pressure_part;  ///< of the grid, on which the pressure is found
   std::vector<Omission> left_out;
 
+  /// Its cells in m.
+  Grid grid_in_m() const {
+    return {grid.n1, grid.n2, grid.h1 * length_unit, grid.h2 * length_unit, grid.quadrant};
+  }
   double force_unit() const { return stress_unit * length_unit * length_unit; }
   double moment_unit() const { return force_unit() * length_unit; }
 };

@@ -2,23 +2,10 @@
 
 #include <Eigen/Core>
 
-#include "solver/grid/grid.hpp"
 #include "solver/load_step.hpp"
+#include "solver/solution.hpp"
 
 namespace slipstick::solver {
-
-/// What a mesh resolves of a contact's slip and stick.
-struct Resolution {
-  /// Cells across the stick area, in the mean: four times its area over its outline. Zero where no cell
-  /// sticks.
-  double stick_width = 0.0;
-  double slip_width = 0.0;  ///< cells across the slip area, likewise, twice its area over its outline
-  /// Relative, of the twist (of the translation where forces alone act; where motions are imposed, of the
-  /// loads): what the mesh leaves open, an estimate of its size. Where it is worse than kPoorlyResolved the
-  /// numbers are those of the mesh, not of the contact.
-  double uncertainty = 0.0;
-};
-inline constexpr double kPoorlyResolved = 0.1;
 
 /// Two parts. Everywhere the error of cells of size h on a contact of mean radius r: h^2/(2 r^2), and h/(4 r)
 /// where the pressure does not fall to zero at the edge. And where a moment is imposed, that of a stick area

@@ -1,16 +1,35 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <array>
 #include <string>
+#include <vector>
 
 #include "solver/contact/certificate.hpp"
-#include "solver/contact/normal_contact.hpp"
-#include "solver/load_step.hpp"
-#include "solver/model.hpp"
-#include "solver/resolution.hpp"
+#include "solver/contact/limit_load.hpp"
+#include "solver/grid/grid.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace slipstick::solver {
+
+/// Something that a scene lets the model leave out, and why its answer does not change by that.
+struct Omission {
+  std::string what;
+  std::string why;
+};
+
+/// What a mesh resolves of a contact's slip and stick.
+struct Resolution {
+  /// Cells across the stick area, in the mean: four times its area over its outline. Zero where no cell
+  /// sticks.
+  double stick_width = 0.0;
+  double slip_width = 0.0;  ///< cells across the slip area, likewise, twice its area over its outline
+  /// Relative, of the twist (of the translation where forces alone act; where motions are imposed, of the
+  /// loads): what the mesh leaves open, an estimate of its size. Where it is worse than kPoorlyResolved the
+  /// numbers are those of the mesh, not of the contact.
+  double uncertainty = 0.0;
+};
+inline constexpr double kPoorlyResolved = 0.1;
 
 struct Seconds {
   double setup = 0.0;
@@ -19,23 +38,31 @@ struct Seconds {
   double total = 0.0;
 };
 
-/// The numerical answer at the end of a step. Fields are in the model's units, slip is that of the step; the
-/// scalars below them are in the scene's units.
+/// The numerical answer at the end of a step, in SI units (those of the scene). Fields have one value a cell
+/// of the grid, vectors first all first components, then all second ones.
 struct Solution {
   Status status = Status::not_converged;
   std::string message;  ///< why it did not converge
-  Model model;
-  NormalSolution normal;
-  TangentialSolution tangential;
-  Certificate certificate;
-  SlipDirection slip_direction;
+
+  Grid grid{};                          ///< m
+  Eigen::ArrayXd pressure;              ///< Pa
+  Eigen::ArrayXd traction;              ///< Pa, (q1, q2) on the lower body
+  Eigen::ArrayXd elastic_displacement;  ///< m, (u1, u2) by them, of the lower surface less that of the upper
+  Eigen::ArrayXd slip;                  ///< m, (s1, s2) in this step
+  Eigen::ArrayXd stick;                 ///< 1 where the bodies stick, else 0
+  double friction = 0.0;                ///< mu
+  double shear_modulus = 0.0;           ///< Pa, of the pair: 1/G = 1/G_1 + 1/G_2
+  std::vector<Omission> left_out;
+
+  Certificate certificate{};
+  SlipDirection slip_direction{};
   Resolution resolution;
 
   double normal_load = 0.0;              ///< W, N: what the pressure carries
   double peak_pressure = 0.0;            ///< Pa
   double contact_radius = 0.0;           ///< m, see measure_contact_radius
   double contact_radius_counted = 0.0;   ///< m, of a circle with the contact cells' area
-  double stick_radius = 0.0;             ///< m, of a circle with the stick area, told within the cells
+  double stick_radius = 0.0;             ///< m, of a circle with the stick area, sub-cell
   std::string stick_radius_note;         ///< why it is only counted, all or in part; empty if it is not
   double stick_radius_counted = 0.0;     ///< m, of a circle with the stick cells' area
   double approach = 0.0;                 ///< m
@@ -58,16 +85,14 @@ struct Solution {
   double operator_applications = 0.0;  ///< tangential, of all grids in those of the finest one
   double pressure_applications = 0.0;  ///< likewise of the normal operator
   double bytes = 0.0;                  ///< operators and workspaces of the larger of the two problems
+  double predicted_bytes = 0.0;        ///< of all that the solve holds, said before it
   Seconds seconds;
+
+  int iterations = 0;           ///< of the method that found the tractions
+  double change = 0.0;          ///< what its stopping test saw last
+  std::vector<GridWork> grids;  ///< its work, coarsest grid first
+  int pressure_iterations = 0;
+  double pressure_complementarity = 0.0;
 };
-
-/// Fills in the members that follow from pressure, tractions and loads: the contact, the stick area, loads
-/// and limits, certificate, energies. slip: see ContactState.
-void describe(Solution& solution, const LoadStep& loads, const Eigen::ArrayXd& slip);
-
-/// Contact radius of a pressure, in the grid's units: of a Hertzian contact from the second moments of the
-/// pressure about its centre (those along the axes are a_i^2/5), which know the radius to far less than a
-/// cell; else from the area of the contact cells.
-double measure_contact_radius(const Model& model, const Eigen::ArrayXd& pressure);
 
 }  // namespace slipstick::solver

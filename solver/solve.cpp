@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <limits>
+#include <optional>
 #include <utility>
 
 #include "solver/contact/coulomb_method.hpp"
@@ -16,10 +17,13 @@
 #include "solver/grid_edge.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/load_step.hpp"
+#include "solver/model_solution.hpp"
 #include "solver/pressure.hpp"
 
 namespace slipstick::solver {
 namespace {
+
+using Progress = std::function<void(int iteration, double change)>;
 
 using Eigen::ArrayXd;
 
@@ -63,25 +67,24 @@ void expand(TangentialSolution& solution, const Reduction& part) {
 }
 
 TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduction& part,
-                            const TangentialProblem& problem, const SolveOptions& options) {
+                            const TangentialProblem& problem, const Progress& progress) {
   const Elasticity elastic = elasticity(scene, model, part);
   if (scene.method == Method::coulomb) {
-    return solve_by_coulomb_method(elastic, part.grid(), problem,
-                                   {.tolerance = scene.tolerance,
-                                    .max_applications = scene.max_iterations,
-                                    .progress = options.progress});
+    return solve_by_coulomb_method(
+        elastic, part.grid(), problem,
+        {.tolerance = scene.tolerance, .max_applications = scene.max_iterations, .progress = progress});
   }
   const auto op = elastic.make(part.grid(), tangential_kernel());
-  TangentialSolution solution = scene.method == Method::paper
-                                    ? solve_by_paper_method(*op, problem,
-                                                            {.tolerance = scene.tolerance,
-                                                             .max_iterations = scene.max_iterations,
-                                                             .progress = options.progress})
-                                    : solve_by_projected_gradient(*op, problem,
-                                                                  {.tolerance = scene.tolerance,
-                                                                   .max_iterations = scene.max_iterations,
-                                                                   .start = {},
-                                                                   .progress = options.progress});
+  TangentialSolution solution =
+      scene.method == Method::paper
+          ? solve_by_paper_method(
+                *op, problem,
+                {.tolerance = scene.tolerance, .max_iterations = scene.max_iterations, .progress = progress})
+          : solve_by_projected_gradient(*op, problem,
+                                        {.tolerance = scene.tolerance,
+                                         .max_iterations = scene.max_iterations,
+                                         .start = {},
+                                         .progress = progress});
   solution.grids = {
       {part.grid().n1, part.grid().n2, op->applications(), solution.iterations, solution.change}};
   solution.bytes = static_cast<double>(op->bytes());
@@ -91,10 +94,10 @@ TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduct
 /// Tractions under a pressure that is known.
 TangentialSolution find_tractions(Model& model, const Scene& scene, const LoadStep& loads,
                                   const ArrayXd& pressure, const ContactState& before,
-                                  const SolveOptions& options) {
+                                  const Progress& progress) {
   const Reduction part = traction_part(scene, model, pressure, before.pressure);
   note_omissions(model, scene, part, loads.problem.force || loads.problem.displacement);
-  TangentialSolution solution = solve_on(scene, model, part, reduced(loads.problem, part), options);
+  TangentialSolution solution = solve_on(scene, model, part, reduced(loads.problem, part), progress);
   expand(solution, part);
   return solution;
 }
@@ -126,8 +129,8 @@ ArrayXd slip_onwards(const ContactState& before, const ArrayXd& pressure,
 }
 
 /// Pressure and tractions, each under the other.
-LoadStep solve_coupled(Solution& solution, const Scene& scene, const Step& step, const ContactState& state,
-                       const SolveOptions& options) {
+LoadStep solve_coupled(ModelSolution& solution, const Scene& scene, const Step& step,
+                       const ContactState& state, const Progress& progress) {
   const Model& model = solution.model;
   const Reduction whole(model.grid);
   LoadStep loads;
@@ -145,7 +148,8 @@ LoadStep solve_coupled(Solution& solution, const Scene& scene, const Step& step,
       .solve_tractions =
           [&](const ArrayXd& pressure) {
             loads = load_step(scene, model, step, pressure, state);
-            TangentialSolution found = find_tractions(solution.model, scene, loads, pressure, state, options);
+            TangentialSolution found =
+                find_tractions(solution.model, scene, loads, pressure, state, progress);
             solution.operator_applications += finest_grid_applications(found.grids);
             return found;
           }};
@@ -159,8 +163,8 @@ LoadStep solve_coupled(Solution& solution, const Scene& scene, const Step& step,
   return loads;
 }
 
-LoadStep solve_in_sequence(Solution& solution, const Scene& scene, const Step& step, const Step* previous,
-                           const ContactState& state, const SolveOptions& options) {
+LoadStep solve_in_sequence(ModelSolution& solution, const Scene& scene, const Step& step,
+                           const Step* previous, const ContactState& state, const Progress& progress) {
   Stopwatch watch;
   solution.pressure_applications = 0.0;
   if (previous == nullptr || previous->normal != step.normal) {
@@ -171,20 +175,20 @@ LoadStep solve_in_sequence(Solution& solution, const Scene& scene, const Step& s
   solution.seconds.pressure = watch.lap();
   LoadStep loads = load_step(scene, solution.model, step, solution.normal.pressure, state);
   solution.tangential =
-      find_tractions(solution.model, scene, loads, solution.normal.pressure, state, options);
+      find_tractions(solution.model, scene, loads, solution.normal.pressure, state, progress);
   solution.operator_applications = finest_grid_applications(solution.tangential.grids);
   solution.seconds.traction = watch.lap();
   return loads;
 }
 
 /// after: filled in, unless null.
-void solve_step(Solution& solution, const Scene& scene, const Step& step, const Step* previous,
-                const ContactState& before, const SolveOptions& options, ContactState* after) {
+void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, const Step* previous,
+                const ContactState& before, const Progress& progress, ContactState* after) {
   Stopwatch watch;
   const Model& model = solution.model;
   const LoadStep loads = model.shear_coupling
-                             ? solve_coupled(solution, scene, step, before, options)
-                             : solve_in_sequence(solution, scene, step, previous, before, options);
+                             ? solve_coupled(solution, scene, step, before, progress)
+                             : solve_in_sequence(solution, scene, step, previous, before, progress);
   const TangentialSolution& tangential = solution.tangential;
   const RigidMotion motion = moved(before.motion, tangential);
   solution.loads = step;
@@ -211,10 +215,13 @@ void solve_step(Solution& solution, const Scene& scene, const Step& step, const 
   solution.seconds.total = solution.seconds.setup + watch.lap();
 }
 
-Solution solve_steps(const Scene& scene, const SolveOptions& options) {
+/// Step by step, until one does not converge. after_step may take the solution's fields where it is the last.
+using AfterStep = std::function<void(ModelSolution& solution, bool last)>;
+void solve_steps(const Scene& scene, const Progress& progress, const AfterStep& after_step) {
   Stopwatch watch;
-  Solution solution;
+  ModelSolution solution;
   solution.model = make_model(scene);
+  solution.predicted_bytes = predicted_memory(scene, solution.model).total();
   solution.seconds.setup = watch.lap();
   ContactState state;
   const Step* previous = nullptr;
@@ -224,30 +231,51 @@ Solution solve_steps(const Scene& scene, const SolveOptions& options) {
       solution.cycle = cycle;
       const bool last = cycle == scene.cycles && &step == &scene.steps.back();
       ContactState after;
-      solve_step(solution, scene, step, previous, state, options, last ? nullptr : &after);
+      solve_step(solution, scene, step, previous, state, progress, last ? nullptr : &after);
       state = std::move(after);
-      if (options.on_step) options.on_step(solution);
-      if (solution.status != Status::converged) return solution;
+      const bool failed = solution.status != Status::converged;
+      after_step(solution, last || failed);
+      if (failed) return;
       previous = &step;
     }
   }
-  return solution;
+}
+
+void require_can_solve(const Scene& scene) {
+  validate(scene);
+  if (scene.model == ModelChoice::exact) {
+    throw InputError(scene.source.string(), "solver.model", "\"exact\"", "auto, full for a solve on a grid");
+  }
 }
 
 }  // namespace
 
+ModelSolution solve_in_model_units(const Scene& scene,
+                                   const std::function<void(const ModelSolution&)>& on_step) {
+  require_can_solve(scene);
+  ModelSolution result;
+  solve_steps(scene, {}, [&](ModelSolution& solution, bool last) {
+    if (on_step) on_step(solution);
+    if (last) result = std::move(solution);
+  });
+  return result;
+}
+
 Solution solve(const Scene& scene, const SolveOptions& options) {
-  if (scene.model == ModelChoice::exact) {
-    throw InputError(scene.source.string(), "solver.model", "\"exact\"", "auto, full for a solve on a grid");
+  require_can_solve(scene);
+  std::optional<Wisdom> wisdom;
+  if (!scene.wisdom.empty()) wisdom.emplace(scene.wisdom);
+  Solution result;
+  solve_steps(scene, options.progress, [&](ModelSolution& solution, bool last) {
+    if (!last && !options.on_step) return;
+    result = in_si(last ? std::move(solution) : ModelSolution(solution));
+    if (options.on_step) options.on_step(result);
+  });
+  if (wisdom && !wisdom->save()) {
+    result.message += fmt::format("{}solver.wisdom: {} could not be written",
+                                  result.message.empty() ? "" : "; ", scene.wisdom.string());
   }
-  if (scene.wisdom.empty()) return solve_steps(scene, options);
-  const Wisdom wisdom(scene.wisdom);
-  Solution solution = solve_steps(scene, options);
-  if (!wisdom.save()) {
-    solution.message += fmt::format("{}solver.wisdom: {} could not be written",
-                                    solution.message.empty() ? "" : "; ", scene.wisdom.string());
-  }
-  return solution;
+  return result;
 }
 
 }  // namespace slipstick::solver

@@ -41,7 +41,7 @@ std::map<std::string, benchmark::Counter> counters(const CheckedSolution& checke
                                              {"gap", solution.certificate.gap},
                                              {"applications", solution.operator_applications},
                                              {"pressure_applications", solution.pressure_applications},
-                                             {"iterations", solution.tangential.iterations},
+                                             {"iterations", solution.iterations},
                                              {"bytes", solution.bytes}};
   std::map<std::string, benchmark::Counter> result;
   for (const auto& [name, value] : values) {

@@ -25,7 +25,7 @@ WorkCase solve_case(const std::string& name, const std::string& scene_name,
                 throw std::runtime_error(fmt::format("{}: {}", name, solution.message));
               }
               return SolveWork{solution.operator_applications, solution.pressure_applications,
-                               solution.tangential.iterations};
+                               solution.iterations};
             };
           }};
 }

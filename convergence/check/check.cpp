@@ -12,7 +12,7 @@
 #include "convergence/oracle/errors.hpp"
 #include "convergence/results/provenance.hpp"
 #include "solver/contact/stick_front.hpp"
-#include "solver/solution.hpp"
+#include "solver/model_solution.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -117,10 +117,12 @@ void add_errors(Json& json, const Examination& e, const StickArea& stick) {
   set_error("stick_radius_error", stick.radius, oracle.stick_radius);
   set_error("stick_radius_counted_error", stick.counted, oracle.stick_radius);
   set_error("contact_radius_error", json["contact_radius"], oracle.contact_radius);
+  const solver::Grid grid = e.contact.model.grid_in_m();
+  const double unit = e.contact.model.stress_unit;
   json["pressure_error"] =
-      field_error_json(pressure_error(e.contact.pressure, oracle, e.contact.model), kNoNumber);
+      field_error_json(pressure_error(unit * e.contact.pressure, oracle, grid), kNoNumber);
   json["traction_error"] =
-      traction_error_json(traction_error(e.contact.traction, oracle, e.contact.model), unknown);
+      traction_error_json(traction_error(unit * e.contact.traction, oracle, grid), unknown);
 }
 
 /// What the right answer on this mesh has.
@@ -137,7 +139,8 @@ Json yardstick_json(const Examination& e) {
   json["noise"] = yardstick.noise_size.maxCoeff() / e.contact.friction_bound.maxCoeff();
   if (e.exact.oracle && e.exact.oracle->shear) {
     json["traction_error"] = traction_error_json(
-        traction_error(yardstick.right.traction, *e.exact.oracle, e.contact.model), kNoNumber);
+        traction_error(e.contact.model.stress_unit * yardstick.right.traction, *e.exact.oracle,
+                       e.contact.model.grid_in_m()), kNoNumber);
   }
   return json;
 }

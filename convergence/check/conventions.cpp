@@ -12,6 +12,7 @@
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/limit_load.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/scene/surface_geometry.hpp"
 
 namespace slipstick::convergence {
 namespace {

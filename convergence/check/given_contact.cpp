@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "solver/scene/surface.hpp"
+#include "solver/scene/surface_geometry.hpp"
 #include "solver/scene/to_dimensionless.hpp"
 
 namespace slipstick::convergence {

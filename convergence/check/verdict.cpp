@@ -8,7 +8,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "solver/solution.hpp"
+#include "solver/model_solution.hpp"
 
 namespace slipstick::convergence {
 namespace {

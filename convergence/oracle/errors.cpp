@@ -92,9 +92,9 @@ struct Places {
   ArrayXd radius;  ///< as the oracle measures it
 };
 
-Places places(const Oracle& oracle, const solver::Model& model) {
-  const ArrayXd y1 = solver::cell_x1(model.grid) * model.length_unit - oracle.centre[0];
-  const ArrayXd y2 = solver::cell_x2(model.grid) * model.length_unit - oracle.centre[1];
+Places places(const Oracle& oracle, const solver::Grid& grid) {
+  const ArrayXd y1 = solver::cell_x1(grid) - oracle.centre[0];
+  const ArrayXd y2 = solver::cell_x2(grid) - oracle.centre[1];
   return {y1, y2, y1.binaryExpr(y2, [&](double a, double b) { return oracle.radius(a, b); })};
 }
 
@@ -106,10 +106,10 @@ constexpr double kTableSteps = 64.0;
 
 /// Averages over the cells near an edge, values at the centres elsewhere, where the two differ by h^2/24
 /// times the traction's second derivatives. 2*cells, Pa.
-ArrayXd averaged_traction(const Oracle& oracle, const solver::Model& model, const Places& at) {
+ArrayXd averaged_traction(const Oracle& oracle, const solver::Grid& grid, const Places& at) {
   const Index cells = at.radius.size();
-  const double h1 = model.grid.h1 * model.length_unit;
-  const double h2 = model.grid.h2 * model.length_unit;
+  const double h1 = grid.h1;
+  const double h2 = grid.h2;
   const double diagonal = std::hypot(h1, h2);
   const ExactShear everywhere(oracle);
   const ExactShear beside_edges(oracle, 2.0 * diagonal, std::min(h1, h2) / kTableSteps);
@@ -146,28 +146,28 @@ ArrayXd band(const ArrayXd& radius, double edge, double width) {
 
 }  // namespace
 
-ExactFields exact_fields(const Oracle& oracle, const solver::Model& model) {
-  const Places at = places(oracle, model);
+ExactFields exact_fields(const Oracle& oracle, const solver::Grid& grid) {
+  const Places at = places(oracle, grid);
   const ExactShear shear(oracle);
   const Index cells = at.radius.size();
-  ExactFields exact{at.radius / model.length_unit, ArrayXd(cells), ArrayXd(2 * cells)};
+  ExactFields exact{at.radius, ArrayXd(cells), ArrayXd(2 * cells)};
   for (Index i = 0; i < cells; ++i) {
-    exact.pressure[i] = oracle.pressure(at.radius[i]) / model.stress_unit;
+    exact.pressure[i] = oracle.pressure(at.radius[i]);
     const auto [q1, q2] = shear.at(at.y1[i], at.y2[i]);
-    exact.traction[i] = q1 / model.stress_unit;
-    exact.traction[i + cells] = q2 / model.stress_unit;
+    exact.traction[i] = q1;
+    exact.traction[i + cells] = q2;
   }
   return exact;
 }
 
-TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, const solver::Model& model) {
+TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, const solver::Grid& grid) {
   if (!oracle.shear) return unknown_tractions();
-  const ArrayXd at_centres = exact_fields(oracle, model).traction;
-  const Places at = places(oracle, model);
-  const ArrayXd averaged = averaged_traction(oracle, model, at) / model.stress_unit;
+  const ArrayXd at_centres = exact_fields(oracle, grid).traction;
+  const Places at = places(oracle, grid);
+  const ArrayXd averaged = averaged_traction(oracle, grid, at);
   const ArrayXd exact = solver::norms(averaged);
   const ArrayXd difference = solver::norms(traction - averaged);
-  const double width = kEdgeBand * std::sqrt(model.grid.cell_area()) * model.length_unit;
+  const double width = kEdgeBand * std::sqrt(grid.cell_area());
   const bool slips = oracle.stick_radius < oracle.contact_radius;
   const ArrayXd stick_edge =
       slips ? band(at.radius, oracle.stick_radius, width) : ArrayXd::Zero(at.radius.size());
@@ -184,8 +184,8 @@ TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, cons
   };
 }
 
-FieldError pressure_error(const ArrayXd& pressure, const Oracle& oracle, const solver::Model& model) {
-  const ArrayXd exact = exact_fields(oracle, model).pressure;
+FieldError pressure_error(const ArrayXd& pressure, const Oracle& oracle, const solver::Grid& grid) {
+  const ArrayXd exact = exact_fields(oracle, grid).pressure;
   const auto finite = exact.isFinite();
   const ArrayXd difference = (pressure - exact).abs();
   return field_error(finite.select(difference, 0.0), finite.select(exact, 0.0));
@@ -204,8 +204,8 @@ Errors compare(const solver::Solution& solution, const Oracle& oracle) {
       .stick_radius_counted = relative_error(solution.stick_radius_counted, oracle.stick_radius),
       .contact_radius = relative_error(solution.contact_radius, oracle.contact_radius),
       .peak_pressure = relative_error(solution.peak_pressure, oracle.peak_pressure),
-      .traction = traction_error(solution.tangential.traction, oracle, solution.model),
-      .pressure = pressure_error(solution.normal.pressure, oracle, solution.model),
+      .traction = traction_error(solution.traction, oracle, solution.grid),
+      .pressure = pressure_error(solution.pressure, oracle, solution.grid),
   };
 }
 

@@ -46,19 +46,18 @@ struct Errors {
   FieldError pressure;
 };
 
-/// Exact fields at the cell centres of a solution, in its model's units.
+/// Exact fields at the cell centres of a grid, in SI units.
 struct ExactFields {
   Eigen::ArrayXd radius;    ///< cells: as the oracle measures it
   Eigen::ArrayXd pressure;  ///< cells
   Eigen::ArrayXd traction;  ///< 2*cells; NaN where the oracle does not know it
 };
 
-ExactFields exact_fields(const Oracle& oracle, const solver::Model& model);
-/// traction: 2*cells, in the model's units.
-TractionError traction_error(const Eigen::ArrayXd& traction, const Oracle& oracle,
-                             const solver::Model& model);
-/// pressure: cells, in the model's units. Where the exact one is infinite it is left out.
-FieldError pressure_error(const Eigen::ArrayXd& pressure, const Oracle& oracle, const solver::Model& model);
+ExactFields exact_fields(const Oracle& oracle, const solver::Grid& grid);
+/// grid: m; traction: 2*cells, Pa.
+TractionError traction_error(const Eigen::ArrayXd& traction, const Oracle& oracle, const solver::Grid& grid);
+/// pressure: cells, Pa. Where the exact one is infinite it is left out.
+FieldError pressure_error(const Eigen::ArrayXd& pressure, const Oracle& oracle, const solver::Grid& grid);
 Errors compare(const solver::Solution& solution, const Oracle& oracle);
 
 }  // namespace slipstick::convergence

@@ -8,6 +8,7 @@
 
 #include "convergence/orders/limit.hpp"
 #include "solver/scene/scene.hpp"
+#include "solver/scene/surface_geometry.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -120,22 +120,14 @@ void write_exact_fields(const std::filesystem::path& file, const solver::Scene& 
   solver::Scene sampled = scene;
   sampled.op =
       solver::OperatorKind::dcfft;  // no operator is made, so none of the larger ones need fit in memory
-  const solver::Model model = solver::make_model(sampled);
-  const solver::Index cells = model.grid.cells();
-  const double metre = model.length_unit;
-  const double pascal = model.stress_unit;
-  const ExactFields fields = exact_fields(oracle, model);
+  const solver::Grid grid = solver::make_model(sampled).grid_in_m();
+  const solver::Index cells = grid.cells();
+  const ExactFields fields = exact_fields(oracle, grid);
   const std::vector<solver::Column> columns{
-      {"x1", solver::cell_x1(model.grid) * metre},
-      {"x2", solver::cell_x2(model.grid) * metre},
-      {"pressure", fields.pressure * pascal},
-      {"q1", fields.traction.head(cells) * pascal},
-      {"q2", fields.traction.tail(cells) * pascal},
-      {"stick", (fields.radius * metre < oracle.stick_radius).cast<double>()},
+      {"x1", solver::cell_x1(grid)},       {"x2", solver::cell_x2(grid)},
+      {"pressure", fields.pressure},       {"q1", fields.traction.head(cells)},
+      {"q2", fields.traction.tail(cells)}, {"stick", (fields.radius < oracle.stick_radius).cast<double>()},
   };
-  solver::Grid grid = model.grid;
-  grid.h1 *= metre;
-  grid.h2 *= metre;
   solver::write_fields(file, grid, columns, fields.pressure);
 }
 

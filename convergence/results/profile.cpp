@@ -9,16 +9,15 @@ namespace slipstick::convergence {
 Json profile_json(const solver::Solution& solution, const OracleAnswer& answer) {
   if (!answer.oracle || !answer.oracle->shear) return Json::array();
   const Oracle& oracle = *answer.oracle;
-  const solver::Model& model = solution.model;
-  const ExactFields exact = exact_fields(oracle, model);
-  const double unit = model.stress_unit / (oracle.friction * oracle.reference_pressure);
-  const Eigen::ArrayXd value = unit * solver::norms(solution.tangential.traction);
+  const ExactFields exact = exact_fields(oracle, solution.grid);
+  const double unit = 1.0 / (oracle.friction * oracle.reference_pressure);
+  const Eigen::ArrayXd value = unit * solver::norms(solution.traction);
   const Eigen::ArrayXd exact_value = unit * solver::norms(exact.traction);
-  const solver::Grid& grid = model.grid;
+  const solver::Grid& grid = solution.grid;
   Json rows = Json::array();
   const auto add = [&](solver::Index i, solver::Index j) {
     const solver::Index cell = i * grid.n2 + j;
-    const double radius = std::hypot(grid.x1(i), grid.x2(j)) * model.length_unit / oracle.contact_radius;
+    const double radius = std::hypot(grid.x1(i), grid.x2(j)) / oracle.contact_radius;
     if (radius > 1.0) return;
     rows.push_back({{"radius", radius},
                     {"value", value[cell]},

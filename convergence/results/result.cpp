@@ -11,6 +11,7 @@
 #include "convergence/results/provenance.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "solver/input/field_file.hpp"
+#include "solver/scene/roughness.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -124,10 +125,9 @@ void add_state(Json& json, const solver::Scene& scene, const Solution& solution)
   set_number(json, "moment", solution.moment, "the solve broke down");
   json["moment_limit"] = solution.moment_limit;
   set_number(json, "moment_ratio", solution.moment / solution.moment_limit, "the limit moment is zero");
-  set_number(
-      json, "twist",
-      solution.model.stress_unit * a * a * solution.twist_angle / (scene.friction * solution.normal_load),
-      "without friction the normalised twist has no scale");
+  set_number(json, "twist",
+             solution.shear_modulus * a * a * solution.twist_angle / (scene.friction * solution.normal_load),
+             "without friction the normalised twist has no scale");
   json["force"] = solution.force;
   json["displacement"] = solution.displacement;
   json["limit"] = limit_json(solution.limit);
@@ -137,7 +137,7 @@ void add_state(Json& json, const solver::Scene& scene, const Solution& solution)
 }
 
 void add_counts(Json& json, const solver::Scene& scene, const Solution& solution) {
-  json["iterations"] = solution.tangential.iterations;
+  json["iterations"] = solution.iterations;
   json["operator_applications"] = solution.operator_applications;
   json["pressure_applications"] = solution.pressure_applications;
   if (scene.coupling == solver::Coupling::full) json["turns"] = solution.turns;
@@ -188,7 +188,7 @@ Json step_result(const solver::Scene& scene, const Solution& solution, const Ora
 }
 
 Json solve_result(const solver::Scene& scene, const Solution& solution, const OracleAnswer& exact) {
-  const solver::Model& model = solution.model;
+  const solver::Grid& grid = solution.grid;
   Json json;
   json["name"] = scene.name;
   add_status(json, solution);
@@ -196,17 +196,17 @@ Json solve_result(const solver::Scene& scene, const Solution& solution, const Or
   json["operator"] = to_string(scene.op);
   json["precision"] = to_string(scene.precision);
   json["pressure"] = to_string(scene.pressure);
-  json["model"] = model_json(model.left_out);
-  json["cells"] = {model.grid.n1, model.grid.n2};
-  json["cell_size"] = {model.grid.h1 * model.length_unit, model.grid.h2 * model.length_unit};
+  json["model"] = model_json(solution.left_out);
+  json["cells"] = {grid.n1, grid.n2};
+  json["cell_size"] = {grid.h1, grid.h2};
   add_roughness(json, scene.surfaces);
   add_state(json, scene, solution);
   add_counts(json, scene, solution);
-  json["grids"] = grids_json(solution.tangential.grids);
-  json["pressure_iterations"] = solution.normal.iterations;
-  json["pressure_complementarity"] = solution.normal.complementarity;
+  json["grids"] = grids_json(solution.grids);
+  json["pressure_iterations"] = solution.pressure_iterations;
+  json["pressure_complementarity"] = solution.pressure_complementarity;
   json["tolerance"] = scene.tolerance;
-  set_number(json, "change", solution.tangential.change, "the solve broke down");
+  set_number(json, "change", solution.change, "the solve broke down");
   json["certificate"] = certificate_json(solution.certificate, kBroken);
   json["resolved"] = resolution_json(solution.resolution);
   set_number(json["slip_direction"], "mean", solution.slip_direction.mean, kBroken);
@@ -214,7 +214,7 @@ Json solve_result(const solver::Scene& scene, const Solution& solution, const Or
   add_errors(json, solution, exact);
   add_seconds(json, solution.seconds);
   json["solver_bytes"] = solution.bytes;
-  json["predicted_bytes"] = solver::predicted_memory(scene, model).total();
+  json["predicted_bytes"] = solution.predicted_bytes;
   json["peak_bytes"] = peak_bytes();
   json["provenance"] = provenance(scene.threads);
   return json;
@@ -350,31 +350,24 @@ std::string solve_text(const Json& r) {
 
 void write_solution_fields(const std::filesystem::path& file, const Solution& solution,
                            const OracleAnswer& exact) {
-  const solver::Model& model = solution.model;
-  const solver::Index cells = model.grid.cells();
-  const double metre = model.length_unit;
-  const double pascal = model.stress_unit;
+  const solver::Index cells = solution.grid.cells();
   std::vector<solver::Column> columns{
-      {"x1", solver::cell_x1(model.grid) * metre},
-      {"x2", solver::cell_x2(model.grid) * metre},
-      {"pressure", solution.normal.pressure * pascal},
-      {"q1", solution.tangential.traction.head(cells) * pascal},
-      {"q2", solution.tangential.traction.tail(cells) * pascal},
-      {"slip1", solution.tangential.slip.head(cells) * metre},
-      {"slip2", solution.tangential.slip.tail(cells) * metre},
-      {"stick", solution.tangential.stick},
-      {"dissipated", solution.model.friction * solution.normal.pressure *
-                         solver::norms(solution.tangential.slip) * pascal * metre},
+      {"x1", solver::cell_x1(solution.grid)},
+      {"x2", solver::cell_x2(solution.grid)},
+      {"pressure", solution.pressure},
+      {"q1", solution.traction.head(cells)},
+      {"q2", solution.traction.tail(cells)},
+      {"slip1", solution.slip.head(cells)},
+      {"slip2", solution.slip.tail(cells)},
+      {"stick", solution.stick},
+      {"dissipated", solution.friction * solution.pressure * solver::norms(solution.slip)},
   };
   if (exact.oracle && exact.oracle->shear) {
-    const ExactFields fields = exact_fields(*exact.oracle, model);
-    columns.push_back({"q1_exact", fields.traction.head(cells) * pascal});
-    columns.push_back({"q2_exact", fields.traction.tail(cells) * pascal});
+    const ExactFields fields = exact_fields(*exact.oracle, solution.grid);
+    columns.push_back({"q1_exact", fields.traction.head(cells)});
+    columns.push_back({"q2_exact", fields.traction.tail(cells)});
   }
-  solver::Grid grid = model.grid;
-  grid.h1 *= metre;
-  grid.h2 *= metre;
-  solver::write_fields(file, grid, columns, solution.normal.pressure);
+  solver::write_fields(file, solution.grid, columns, solution.pressure);
 }
 
 }  // namespace slipstick::convergence

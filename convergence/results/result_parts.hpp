@@ -7,8 +7,7 @@
 
 #include "convergence/oracle/errors.hpp"
 #include "solver/contact/certificate.hpp"
-#include "solver/model.hpp"
-#include "solver/resolution.hpp"
+#include "solver/solution.hpp"
 
 /// What all results have in common, on a grid or not.
 namespace slipstick::convergence {

@@ -13,6 +13,7 @@
 #include "solver/grid_edge.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/pressure.hpp"
+#include "solver/scene/surface_geometry.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -31,20 +31,18 @@ double order_of(const AccuracyQuantity& quantity, const Scene& scene) {
 }
 
 /// The same rectangle, in half as many cells along each side.
-Scene half_as_fine(const Scene& scene, const solver::Model& model) {
+Scene half_as_fine(const Scene& scene, const solver::Grid& grid) {
   Scene coarse = scene;
-  const solver::Grid half = solver::coarser(model.grid);
+  const solver::Grid half = solver::coarser(grid);
   coarse.cells = {half.n1, half.n2};
-  coarse.extent = {model.length_unit * model.grid.h1 * static_cast<double>(model.grid.n1),
-                   model.length_unit * model.grid.h2 * static_cast<double>(model.grid.n2)};
+  coarse.extent = {grid.h1 * static_cast<double>(grid.n1), grid.h2 * static_cast<double>(grid.n2)};
   return coarse;
 }
 
 /// What smooth contacts were measured to err by on a mesh like this: two meshes may agree by luck, since
 /// errors of single numbers change their sign from mesh to mesh.
 double usual_error(const Solution& solution, AccuracyOf of) {
-  const solver::Model& model = solution.model;
-  const double side = model.length_unit * std::sqrt(model.grid.cell_area());
+  const double side = std::sqrt(solution.grid.cell_area());
   return error_with(accuracy_data(), of, 2.0 * solution.contact_radius / side);
 }
 
@@ -60,11 +58,10 @@ double number_error(const Solution& fine, const Solution& coarse, const std::str
   return std::abs(limit.uncertainty / value);
 }
 
-/// Tractions are over the shear modulus in both models, cell by cell over the same rectangle.
+/// Cell by cell over the same rectangle.
 double field_error(const Solution& fine, const Solution& coarse, double order) {
-  const Eigen::ArrayXd mean =
-      solver::restrict_to(solver::coarser(fine.model.grid), fine.model.grid, fine.tangential.traction);
-  const double apart = (mean - coarse.tangential.traction).matrix().norm() / mean.matrix().norm();
+  const Eigen::ArrayXd mean = solver::restrict_to(solver::coarser(fine.grid), fine.grid, fine.traction);
+  const double apart = (mean - coarse.traction).matrix().norm() / mean.matrix().norm();
   return kOfNorm * apart / (std::exp2(order) - 1.0);
 }
 
@@ -78,7 +75,7 @@ ReachedError reached_error(const Scene& scene, const Solution& solution, const J
   if (solution.status != solver::Status::converged) return {unknown, "exact", solution.message};
   const double error = std::abs(number_at(result, quantity.error));
   if (std::isfinite(error)) return {error, "exact", "against the exact answer"};
-  const Solution coarse = solver::solve(half_as_fine(scene, solution.model));
+  const Solution coarse = solver::solve(half_as_fine(scene, solution.grid));
   if (coarse.status != solver::Status::converged) {
     return {unknown, "estimated", fmt::format("on half as many cells: {}", coarse.message)};
   }
@@ -87,7 +84,7 @@ ReachedError reached_error(const Scene& scene, const Solution& solution, const J
                                                  : number_error(solution, coarse, quantity.value, order);
   if (!std::isfinite(estimate)) return {unknown, "estimated", "the value, or what is to be told, is zero"};
   return {std::max(estimate, usual_error(solution, of)), "estimated",
-          fmt::format("from {} x {} cells, order {}", coarse.model.grid.n1, coarse.model.grid.n2, order)};
+          fmt::format("from {} x {} cells, order {}", coarse.grid.n1, coarse.grid.n2, order)};
 }
 
 }  // namespace slipstick::convergence

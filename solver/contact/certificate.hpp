@@ -6,6 +6,8 @@
 
 namespace slipstick::solver {
 
+enum class Status { converged, not_converged };
+
 /// Tractions q, the displacements K q that they cause, and the slip s. 2*cells values each.
 struct TractionField {
   const Eigen::ArrayXd& traction;

@@ -4,11 +4,10 @@
 #include <string>
 #include <vector>
 
+#include "solver/contact/certificate.hpp"
 #include "solver/operator/elasticity.hpp"
 
 namespace slipstick::solver {
-
-enum class Status { converged, not_converged };
 
 /// Frictionless contact under a given load: minimise p.Kp/2 + p.h over p >= 0 with sum of p given. All
 /// quantities in one consistent set of units; u3 = K33 p.

@@ -32,6 +32,15 @@ struct Parity {
 /// The smallest even 2^a 3^b 5^c 7^d >= max(minimum, 4): lengths that are transformed quickly.
 Index fast_length(Index minimum);
 
+/// What a nested solve cost on one of its grids.
+struct GridWork {
+  Index n1 = 0;
+  Index n2 = 0;
+  long applications = 0;
+  int iterations = 0;
+  double gap = 0.0;
+};
+
 /// x1 and x2 of all cell centres: n1*n2 values each.
 Eigen::ArrayXd cell_x1(const Grid& grid);
 Eigen::ArrayXd cell_x2(const Grid& grid);

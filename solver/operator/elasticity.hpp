@@ -37,15 +37,6 @@ struct GridOperators {
   std::unique_ptr<InverseSymbol<Real>> symbol;
 };
 
-/// What a nested solve cost on one of its grids.
-struct GridWork {
-  Index n1 = 0;
-  Index n2 = 0;
-  long applications = 0;
-  int iterations = 0;
-  double gap = 0.0;
-};
-
 /// Applications on all grids, in those of the last, finest one: each weighs by its cells.
 double finest_grid_applications(const std::vector<GridWork>& grids);
 

@@ -5,20 +5,9 @@
 #include <vector>
 
 #include "solver/grid/grid.hpp"
+#include "solver/scene/surface.hpp"
 
 namespace slipstick::solver {
-
-/// An isotropic self-affine random surface: plane waves whose wave vectors are whole multiples of 2 pi/period
-/// along x1 and x2, of power proportional to |k|^(-2 (1 + hurst)) between two wavelengths, and of random
-/// phase. Lengths in m, or any one unit.
-struct Roughness {
-  std::uint64_t seed = 0;
-  double hurst = 0.0;      ///< above 0, at most 1
-  double longest = 0.0;    ///< wavelength
-  double shortest = 0.0;   ///< wavelength, at most half the longest: so there are waves between the two
-  double rms_slope = 0.0;  ///< of the gradient's length, over a period
-  double period = 0.0;     ///< at least the longest wavelength
-};
 
 /// Waves that fit into a period along one axis, period/shortest, are at most this many: a megapixel of them.
 constexpr double kMostWaves = 1024.0;

@@ -8,7 +8,9 @@
 
 #include "solver/input/input_error.hpp"
 #include "solver/input/toml_reader.hpp"
+#include "solver/scene/surface_geometry.hpp"
 #include "solver/scene/surface_reader.hpp"
+#include "solver/scene/validate.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -29,12 +31,6 @@ const Words<Method> kMethods{{"coulomb", Method::coulomb},
 const Words<ModelChoice> kModels{
     {"auto", ModelChoice::automatic}, {"full", ModelChoice::full}, {"exact", ModelChoice::exact}};
 const Words<Precision> kPrecisions{{"double", Precision::double_precision}, {"mixed", Precision::mixed}};
-
-const Range kRatio{"above -1 and below 1 (1 is gross slip)", [](double x) { return x > -1.0 && x < 1.0; }};
-const Range kPoisson{"from 0 to 0.5", [](double x) { return x >= 0.0 && x <= 0.5; }};
-/// A step's result stays in memory to the end: some ten kilobytes.
-constexpr std::size_t kMostSteps = 100'000;
-const Range kTolerance{"from 1e-15 to below 1", [](double x) { return x >= 1e-15 && x < 1.0; }};
 
 Material read_material(SceneReader& reader, const std::string& body) {
   if (reader.flag_or(body + ".rigid", false)) {
@@ -98,8 +94,8 @@ std::vector<Step> read_steps(SceneReader& reader, bool needs_normal) {
   read_loads(reader, "load", load);
   std::vector<ReadStep> read;
   const std::size_t count = reader.count("step");
-  if (count > kMostSteps) {
-    reader.fail("step", fmt::format("{} tables", count), fmt::format("at most {}", kMostSteps));
+  if (count > kMaxSteps) {
+    reader.fail("step", fmt::format("{} tables", count), fmt::format("at most {}", kMaxSteps));
   }
   for (std::size_t i = 0; i < count; ++i) {
     ReadStep next = read.empty() ? load : read.back();
@@ -124,51 +120,9 @@ std::vector<Step> read_steps(SceneReader& reader, bool needs_normal) {
 }
 
 std::array<Index, 2> read_cells(SceneReader& reader, const std::vector<Surface>& surfaces) {
-  const Range allowed = whole(1, 65536);
   if (find_height_map(surfaces) != nullptr && !reader.has("grid.cells")) return {0, 0};  // as many as samples
-  const auto cells = reader.pair("grid.cells", allowed);
+  const auto cells = reader.pair("grid.cells", kCells);
   return {static_cast<Index>(cells[0]), static_cast<Index>(cells[1])};
-}
-
-/// The paper's method and projected gradients know torsion about the origin alone.
-void require_method_can(SceneReader& reader, const Scene& scene) {
-  if (scene.method == Method::coulomb) return;
-  const std::string method = fmt::format("\"{}\"", to_string(scene.method));
-  const std::string allowed = "coulomb (this method knows one step of torsion about the origin)";
-  if (scene.steps.size() > 1 || scene.cycles > 1) reader.fail("solver.method", method, allowed);
-  const Step& step = scene.steps.front();
-  if (step.displacement || step.force != std::array<double, 2>{})
-    reader.fail("solver.method", method, allowed);
-}
-
-void require_consistent(SceneReader& reader, const Scene& scene) {
-  require_method_can(reader, scene);
-  if (scene.coupling == Coupling::full && scene.pressure != PressureModel::solved) {
-    reader.fail("contact.coupling", "\"full\"",
-                "auto, none, pressure (shear changes a pressure only where that is solved: "
-                "contact.pressure = \"solved\")");
-  }
-  if (std::isinf(scene.upper.young_modulus) && std::isinf(scene.lower.young_modulus)) {
-    reader.fail("lower.rigid", "true", "false, since the upper body is rigid");
-  }
-  const bool asks_hertz =
-      scene.pressure == PressureModel::hertz || scene.pressure == PressureModel::hertz_averaged;
-  if (asks_hertz && !hertzian_radii(scene.surfaces)) {
-    reader.fail("contact.pressure", fmt::format("\"{}\"", to_string(scene.pressure)),
-                "solved, file (Hertz's pressure belongs to one sphere or ellipsoid at the origin, its axes "
-                "along the grid's)");
-  }
-  if (scene.precision == Precision::mixed &&
-      (scene.op != OperatorKind::dcfft || scene.method != Method::coulomb)) {
-    reader.fail("solver.precision", "\"mixed\"",
-                "double, or mixed with method = \"coulomb\" and operator = \"dcfft\"");
-  }
-  if (find_height_map(scene.surfaces) != nullptr && scene.extent) {
-    reader.fail("grid.extent", "(given)", "left out for a height map: upper.spacing says it");
-  }
-  if (scene.pressure == PressureModel::file && !scene.extent) {
-    reader.fail("grid.extent", "(missing)", "[L1, L2] in m, since the pressure's cells come from a file");
-  }
 }
 
 }  // namespace
@@ -196,10 +150,7 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
 
   scene.steps = read_steps(reader, scene.pressure != PressureModel::file);
   if (scene.steps.size() > 1 || reader.has("cycles")) {
-    const auto most = static_cast<double>(kMostSteps / scene.steps.size());
-    Range cycles = whole(1, most);
-    cycles.words += fmt::format(", {} steps in all", kMostSteps);
-    scene.cycles = static_cast<int>(reader.number_or("cycles", 1, cycles));
+    scene.cycles = static_cast<int>(reader.number_or("cycles", 1, cycles_of(scene.steps.size())));
   }
 
   scene.cells = read_cells(reader, scene.surfaces);
@@ -211,11 +162,13 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
   scene.op = reader.choice_or("solver.operator", OperatorKind::dcfft, kOperators);
   scene.tolerance = reader.number_or("solver.tolerance", scene.tolerance, kTolerance);
   scene.max_iterations =
-      static_cast<int>(reader.number_or("solver.max_iterations", scene.max_iterations, whole(1, 1e9)));
-  scene.threads = static_cast<int>(reader.number_or("solver.threads", scene.threads, whole(1, 1024)));
+      static_cast<int>(reader.number_or("solver.max_iterations", scene.max_iterations, kIterations));
+  scene.threads = static_cast<int>(reader.number_or("solver.threads", scene.threads, kThreads));
   if (reader.has("solver.wisdom")) scene.wisdom = reader.path("solver.wisdom");
   reader.reject_unknown();
-  require_consistent(reader, scene);
+  validate(scene, [&](const std::string& key, const std::string& value, const std::string& allowed) {
+    reader.fail(key, value, allowed);
+  });
   return scene;
 }
 

@@ -7,6 +7,7 @@
 #include <variant>
 #include <vector>
 
+#include "solver/grid/grid.hpp"
 #include "solver/operator/operator_kind.hpp"
 #include "solver/scene/surface.hpp"
 
@@ -96,6 +97,11 @@ struct Scene {
 /// checked. Relative paths in the scene are relative to the scene file. Throws InputError naming file, key,
 /// value and what is allowed.
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+/// Throws InputError, naming key, value and what is allowed, for a scene that cannot be solved as it stands,
+/// whoever built it. What only the solve can find (a contact wider than the grid, loads beyond the limit) is
+/// found there. solve() calls it.
+void validate(const Scene& scene);
 
 /// Words of the enumerations, as scene files and results have them.
 std::string to_string(PressureModel model);

@@ -5,6 +5,9 @@
 #include <cmath>
 #include <cstdint>
 
+#include "solver/scene/roughness.hpp"
+#include "solver/scene/validate.hpp"
+
 namespace slipstick::solver {
 namespace {
 
@@ -16,13 +19,8 @@ const Words<Combine> kCombinations{{"sum", Combine::sum}, {"nearest", Combine::n
 /// Each in m.
 const Words<double> kHeightUnits{{"m", 1.0}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}};
 
-/// Powers of a cell's size stay within double precision.
-const Range kExponent{"from 1 to 20", [](double x) { return x >= 1.0 && x <= 20.0; }};
-const Range kHurst{"above 0, at most 1", [](double x) { return x > 0.0 && x <= 1.0; }};
 /// Whole numbers that TOML readers and double precision have alike; one more and its neighbour would be one.
 const Range kSeed = whole(0, 0x1p53 - 1.0);
-/// Each takes a field over the grid.
-constexpr std::size_t kMostShapes = 1000;
 
 Roughness read_roughness(SceneReader& reader, const std::string& table) {
   Roughness roughness;
@@ -30,16 +28,9 @@ Roughness read_roughness(SceneReader& reader, const std::string& table) {
   roughness.hurst = reader.number(table + ".hurst", kHurst);
   roughness.rms_slope = reader.number(table + ".rms_slope", kPositive);
   const double longest = reader.number(table + ".longest", kPositive);
-  const double period = reader.number_or(table + ".period", 4.0 * longest,
-                                         {fmt::format("at least longest = {:g}, finite", longest),
-                                          [longest](double x) { return x >= longest && std::isfinite(x); }});
-  const double least = period / kMostWaves;
   roughness.longest = longest;
-  roughness.period = period;
-  roughness.shortest = reader.number(
-      table + ".shortest", {fmt::format("from a {:g}th of the period, {:g}, to half of longest, {:g}",
-                                        kMostWaves, least, 0.5 * longest),
-                            [longest, least](double x) { return x >= least && x <= 0.5 * longest; }});
+  roughness.period = reader.number_or(table + ".period", 4.0 * longest, period_for(longest));
+  roughness.shortest = reader.number(table + ".shortest", shortest_for(longest, roughness.period));
   return roughness;
 }
 
@@ -52,9 +43,7 @@ void read_body(SceneReader& reader, const std::string& table, Surface& surface) 
       break;
     case Shape::flat_punch: {
       const double radius = surface.radius = positive(".radius");
-      surface.inner_radius = reader.number_or(
-          table + ".inner_radius", 0.0,
-          {"zero or positive, below the radius", [radius](double x) { return x >= 0.0 && x < radius; }});
+      surface.inner_radius = reader.number_or(table + ".inner_radius", 0.0, inner_radius_below(radius));
       break;
     }
     case Shape::ellipsoid:
@@ -103,8 +92,8 @@ std::vector<Surface> read_surfaces(SceneReader& reader) {
   if (!reader.is_array("upper.shape")) return {read_surface(reader, "upper")};
   std::vector<Surface> surfaces;
   const std::size_t count = reader.count("upper.shape");
-  if (count > kMostShapes) {
-    reader.fail("upper.shape", fmt::format("{} tables", count), fmt::format("at most {}", kMostShapes));
+  if (count > kMaxShapes) {
+    reader.fail("upper.shape", fmt::format("{} tables", count), fmt::format("at most {}", kMaxShapes));
   }
   for (std::size_t i = 0; i < count; ++i) {
     surfaces.push_back(read_surface(reader, fmt::format("upper.shape[{}]", i)));

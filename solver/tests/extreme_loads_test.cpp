@@ -10,7 +10,7 @@
 
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/operator/direct.hpp"
-#include "solver/solve.hpp"
+#include "solver/model_solution.hpp"
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
@@ -99,7 +99,7 @@ TEST_P(ExtremeLoads, NextToGrossSlipTakeAFewApplications) {
   for (const double missing : {2e-4, 1e-4, 1e-5, 1e-6}) {
     SCOPED_TRACE(missing);
     const TangentialProblem loads = problem(1.0 - missing);
-    const TangentialSolution solution = solve(loads);
+    const TangentialSolution solution = solve_in_model_units(loads);
     ASSERT_EQ(solution.status, Status::converged) << solution.message;
     EXPECT_LE(finest_grid_applications(solution.grids), kMostApplications);
     const Certificate c = certificate(loads, solution);
@@ -113,11 +113,11 @@ TEST_P(ExtremeLoads, NextToGrossSlipTakeAFewApplications) {
 // Nearly everything sticks, and a bonded contact is linear: half the load, half of everything. Only cells
 // whose bound is next to nothing slip, and carry next to nothing.
 TEST_P(ExtremeLoads, NextToNoneAreLinear) {
-  const TangentialSolution larger = solve(problem(1e-8));
+  const TangentialSolution larger = solve_in_model_units(problem(1e-8));
   for (const double part : {1e-10, 1e-12}) {
     SCOPED_TRACE(part);
     const TangentialProblem loads = problem(part);
-    const TangentialSolution solution = solve(loads);
+    const TangentialSolution solution = solve_in_model_units(loads);
     ASSERT_EQ(solution.status, Status::converged) << solution.message;
     EXPECT_LE(finest_grid_applications(solution.grids), kMostApplications);
     const double scale = 1e-8 / part;
@@ -133,14 +133,14 @@ TEST_P(ExtremeLoads, NextToNoneAreLinear) {
 // The same through a scene: the twist of 1e-10 of a load is 1e-10 of its twist, and a twist of 1e-12 rad
 // needs no luck either.
 TEST(SmallLoads, OfASceneEndWell) {
-  const Solution small = solve(paper_scene(32, 1e-10));
-  const Solution larger = solve(paper_scene(32, 1e-7));
+  const ModelSolution small = solve_in_model_units(paper_scene(32, 1e-10));
+  const ModelSolution larger = solve_in_model_units(paper_scene(32, 1e-7));
   ASSERT_EQ(small.status, Status::converged) << small.message;
   EXPECT_NEAR(small.twist_angle / larger.twist_angle, 1e-3, 1e-12);
 
   Scene turned = paper_scene(32, 0.0);
   turned.steps[0].torsion = Twist{1e-12};
-  const Solution by_twist = solve(turned);
+  const ModelSolution by_twist = solve_in_model_units(turned);
   ASSERT_EQ(by_twist.status, Status::converged) << by_twist.message;
   EXPECT_NEAR(by_twist.moment / by_twist.twist_angle, larger.moment / larger.twist_angle,
               1e-7 * larger.moment / larger.twist_angle);
@@ -154,7 +154,7 @@ TEST(SmallFriction, BetweenDissimilarBodiesEndsWell) {
   for (const double friction : {1e-12, 1e-9, 1e-6}) {
     SCOPED_TRACE(friction);
     scene.friction = friction;
-    const Solution solution = solve(scene);
+    const ModelSolution solution = solve_in_model_units(scene);
     EXPECT_EQ(solution.status, Status::converged) << solution.message;
     EXPECT_LE(solution.certificate.moment, kRounding);
     EXPECT_LE(solution.certificate.gap, std::max(1e-8, solution.certificate.rounding));

@@ -45,7 +45,7 @@ Scene scene_of(const std::vector<Surface>& surfaces, std::array<Index, 2> cells,
 }
 
 std::string refusal(const Scene& scene) {
-  return complaint([&] { solve(scene); });
+  return complaint([&] { solve_in_model_units(scene); });
 }
 
 /// The extent that a refusal tells to be enough.
@@ -78,7 +78,7 @@ TEST(CutOffContact, OfTwoSpheresSideBySideIsRefused) {
 /// Two spheres of 36 mm are one of 18 mm, whose contact is 0.978 mm wide.
 TEST(CutOffContact, OfTwoSpheresSummedIsRefused) {
   EXPECT_THAT(refusal(two_spheres_summed(0.8e-3)), HasSubstr("grid.extent = [0.0008, 0.0008]"));
-  const Solution solution = solve(two_spheres_summed(1.1e-3));
+  const ModelSolution solution = solve_in_model_units(two_spheres_summed(1.1e-3));
   EXPECT_NEAR(solution.peak_pressure / paper::kPeakPressure, 1.0, 1e-3);
 }
 
@@ -142,7 +142,7 @@ TEST_P(ShrinkingGrid, HoldsTheContactOrIsRefused) {
   const auto on = [&](Index n1, Index n2) {
     return scene_of(body.surfaces, {n1, n2}, body.cell_size, body.combine);
   };
-  const Solution generous = solve(on(kGenerous, kGenerous));
+  const ModelSolution generous = solve_in_model_units(on(kGenerous, kGenerous));
   ASSERT_EQ(generous.status, Status::converged) << generous.message;
   const Grid& grid = generous.model.grid;
   const Eigen::ArrayXd pressed = (generous.normal.pressure > 0.0).cast<double>();
@@ -158,8 +158,8 @@ TEST_P(ShrinkingGrid, HoldsTheContactOrIsRefused) {
         const double side = static_cast<double>(n) - spare;
         return needed[1] <= side && (!both || needed[0] <= side);
       };
-      std::optional<Solution> found;
-      const std::string message = complaint([&] { found = solve(scene); });
+      std::optional<ModelSolution> found;
+      const std::string message = complaint([&] { found = solve_in_model_units(scene); });
       if (!found) {
         EXPECT_THAT(message, HasSubstr("grid.extent"));
         EXPECT_FALSE(fits(1.0)) << n << " cells are enough: " << message;
@@ -184,8 +184,8 @@ INSTANTIATE_TEST_SUITE_P(OfManyShapes, ShrinkingGrid, testing::ValuesIn(bodies()
 
 TEST(GridEdge, MayBeAPunchsOwn) {
   // 20 cells across: the outermost cells are pressed, and beyond them there is no body.
-  const Solution filled = solve(scene_of({flat_punch(5.01e-4)}, {20, 20}, 5.02e-5));
-  const Solution roomy = solve(scene_of({flat_punch(5.01e-4)}, {30, 30}, 5.02e-5));
+  const ModelSolution filled = solve_in_model_units(scene_of({flat_punch(5.01e-4)}, {20, 20}, 5.02e-5));
+  const ModelSolution roomy = solve_in_model_units(scene_of({flat_punch(5.01e-4)}, {30, 30}, 5.02e-5));
   EXPECT_EQ(filled.contact_cells, roomy.contact_cells);
   EXPECT_NEAR(filled.twist_angle / roomy.twist_angle, 1.0, 1e-6);
 }
@@ -204,17 +204,17 @@ TEST(GridEdge, OfARoughPlaneHasToBeTheBodys) {
   EXPECT_THAT(refusal(scene), AllOf(HasSubstr("grid.extent = [0.0008, 0.0008]"),
                                     HasSubstr("upper.ends_at_grid_edge = true")));
   scene.ends_at_grid_edge = true;
-  EXPECT_EQ(solve(scene).status, Status::converged);
+  EXPECT_EQ(solve_in_model_units(scene).status, Status::converged);
 }
 
 TEST(GridEdge, MayBeTheBodysWhereTheSceneSaysSo) {
   Scene scene = two_spheres_side_by_side(1.1e-3);
   scene.ends_at_grid_edge = true;
-  EXPECT_EQ(solve(scene).status, Status::converged);
+  EXPECT_EQ(solve_in_model_units(scene).status, Status::converged);
   Scene one = scene_of({sphere(0.018)}, {32, 32}, 2e-5);
   EXPECT_THAT(refusal(one), HasSubstr("larger than the contact"));
   one.ends_at_grid_edge = true;
-  EXPECT_EQ(solve(one).status, Status::converged);
+  EXPECT_EQ(solve_in_model_units(one).status, Status::converged);
   for (const PressureModel hertz : {PressureModel::hertz, PressureModel::hertz_averaged}) {
     for (const bool ends : {false, true}) {  // Hertz's bodies do not end
       one.pressure = hertz;
@@ -231,7 +231,7 @@ TEST(GridEdge, HoldsAHistorysLargestLoad) {
   scene.steps[1].normal = 4000.0;
   int steps = 0;
   EXPECT_THAT(
-      complaint([&] { solve(scene, {.progress = {}, .on_step = [&](const Solution&) { ++steps; }}); }),
+      complaint([&] { solve_in_model_units(scene, ([&](const ModelSolution&) { ++steps; }}); }),
       AllOf(HasSubstr("grid.extent"), HasSubstr("under 4000 N")));
   EXPECT_EQ(steps, 1) << "the first step fits";
 }
@@ -279,10 +279,10 @@ class MappedSphere : public SceneFile {
 };
 
 TEST_F(MappedSphere, HoldsTheContactOrIsRefused) {
-  const Solution generous = solve(mapped(48));
+  const ModelSolution generous = solve_in_model_units(mapped(48));
   for (Index cells = 46; cells >= 8; cells -= 2) {
-    std::optional<Solution> found;
-    const std::string message = complaint([&] { found = solve(mapped(cells)); });
+    std::optional<ModelSolution> found;
+    const std::string message = complaint([&] { found = solve_in_model_units(mapped(cells)); });
     if (cells <= 32) {  // 0.978 mm of contact over 30 um a cell
       EXPECT_THAT(message, AllOf(HasSubstr("grid.extent"), HasSubstr("heights.csv"), HasSubstr("outermost")))
           << cells;
@@ -291,7 +291,7 @@ TEST_F(MappedSphere, HoldsTheContactOrIsRefused) {
     ASSERT_TRUE(found) << message;
     EXPECT_NEAR(found->twist_angle / generous.twist_angle, 1.0, 1e-6);
   }
-  EXPECT_EQ(solve(mapped(16, {"upper.ends_at_grid_edge=true"})).status, Status::converged);
+  EXPECT_EQ(solve_in_model_units(mapped(16, {"upper.ends_at_grid_edge=true"})).status, Status::converged);
 }
 
 class PressedEdge : public SceneFile {

@@ -6,7 +6,7 @@
 
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/coulomb_method.hpp"
-#include "solver/solve.hpp"
+#include "solver/model_solution.hpp"
 #include "solver/tests/press.hpp"
 #include "solver/tests/scene_file.hpp"
 #include "solver/tests/torsion_bench.hpp"
@@ -23,10 +23,10 @@ constexpr double kGap = 1e-13;
 constexpr double kSame = 1e-9;
 
 /// What is kept of each step.
-std::vector<Solution> history(const Scene& scene) {
-  std::vector<Solution> steps;
-  const Solution last =
-      solve(scene, {.progress = {}, .on_step = [&](const Solution& solution) { steps.push_back(solution); }});
+std::vector<ModelSolution> history(const Scene& scene) {
+  std::vector<ModelSolution> steps;
+  const ModelSolution last =
+      solve_in_model_units(scene, ([&](const ModelSolution& solution) { steps.push_back(solution); }});
   EXPECT_EQ(last.status, Status::converged) << last.message;
   steps.resize(scene.steps.size(), last);
   return steps;
@@ -84,7 +84,7 @@ class Pushed : public testing::Test {
   /// First loading by a force under a constant load (Cattaneo, Mindlin).
   ArrayXd loaded(double normal, double force) const { return carried(normal) - carried(normal - force); }
 
-  void expect_traction(const Solution& step, const ArrayXd& expected) const {
+  void expect_traction(const ModelSolution& step, const ArrayXd& expected) const {
     EXPECT_LE(largest(step.tangential.traction - expected), kSame * largest(carried(1.0))) << step.loads.name;
   }
 
@@ -147,7 +147,7 @@ TEST_F(Pushed, SlipsOnWhileTheLoadFalls) {
 
 TEST_F(Pushed, SlidesWhenTheLoadHasFallenTooFar) {
   take_steps({{1.0, 0.5}, {0.6, 0.5}, {0.45, 0.5}});
-  const std::string refused = complaint([&] { solve(scene_); });
+  const std::string refused = complaint([&] { solve_in_model_units(scene_); });
   EXPECT_THAT(refused, HasSubstr("step 3.force"));
   EXPECT_THAT(refused, HasSubstr("0.9 times these"));
   EXPECT_THAT(refused, HasSubstr("along (0.6, 0.8)"));
@@ -233,7 +233,7 @@ TEST(Step, IsTheSameOnTheReducedGrid) {
   scene.precision = Precision::mixed;
   const auto mixed = history(scene);
   for (std::size_t k = 0; k < loads.size(); ++k) {
-    for (const Solution& other : {full[k], mixed[k]}) {
+    for (const ModelSolution& other : {full[k], mixed[k]}) {
       EXPECT_LE(relative_difference(other.tangential.traction, reduced[k].tangential.traction), 1e-7);
       EXPECT_NEAR(other.twist_angle / reduced[k].twist_angle, 1.0, 1e-7);
       EXPECT_NEAR(other.dissipated / reduced[k].dissipated, 1.0, 1e-7);
@@ -285,7 +285,7 @@ TEST(StickRadius, IsThatOfThePath) {
     for (int i = 1; reversed && i <= count; ++i) moments.push_back(0.8 - 1.6 * i / count);
     return history(twisted(64, moments)).back();
   };
-  const Solution once = ends_at(1, false);
+  const ModelSolution once = ends_at(1, false);
   const double cell = 2.0 * once.contact_radius / 60.0;
   double worst = 0.0;
   for (const bool reversed : {false, true}) {
@@ -303,7 +303,7 @@ TEST(Torsion, ReturnsToTheSameLoopAThousandTimes) {
   scene.tolerance = 1e-10;
   std::vector<std::array<double, 2>> twists;
   std::vector<double> dissipated;
-  const Solution last = solve(scene, {.progress = {}, .on_step = [&](const Solution& step) {
+  const ModelSolution last = solve_in_model_units(scene, ([&](const ModelSolution& step) {
                                         if (step.moment > 0.0) {
                                           twists.push_back({step.twist_angle, 0.0});
                                           dissipated.push_back(step.dissipated);
@@ -362,7 +362,7 @@ TEST(Motion, TakesTheSamePathAsItsLoads) {
 
 // --- energy ---
 
-double in_energy_norm(const Solution& solution, const ArrayXd& q) {
+double in_energy_norm(const ModelSolution& solution, const ArrayXd& q) {
   const Model& model = solution.model;
   const auto op = make_operator(OperatorKind::direct, model.grid, tangential_kernel(), model.pair);
   ArrayXd u(q.size());
@@ -378,7 +378,7 @@ TEST(Energy, GoesIntoHeatAndElasticity) {
   double stored = 0.0;
   double twist = 0.0;
   std::array<double, 2> at{};
-  for (const Solution& step : steps) {
+  for (const ModelSolution& step : steps) {
     const ArrayXd change = step.tangential.traction - before;
     const double loads = step.moment * (step.twist_angle - twist) +
                          step.force[0] * (step.displacement[0] - at[0]) +

@@ -2,7 +2,7 @@
 
 #include <ostream>
 
-#include "solver/solve.hpp"
+#include "solver/model_solution.hpp"
 
 namespace slipstick::solver {
 
@@ -52,9 +52,9 @@ inline Scene ellipsoid_scene(Index cells, double radius_1, double radius_2, doub
 }
 
 /// The scene solved by the paper's method.
-inline Solution by_paper_method(Scene scene) {
+inline ModelSolution by_paper_method(Scene scene) {
   scene.method = Method::paper;
-  return solve(scene);
+  return solve_in_model_units(scene);
 }
 
 /// 1/E* = sum of (1 - nu^2)/E.

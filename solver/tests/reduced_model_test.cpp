@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "solver/solve.hpp"
+#include "solver/model_solution.hpp"
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/scene_file.hpp"
 
@@ -36,7 +36,7 @@ double relative_difference(const ArrayXd& a, const ArrayXd& b) {
   return (a - b).abs().maxCoeff<Eigen::PropagateNaN>() / b.abs().maxCoeff();
 }
 
-std::vector<std::string> left_out(const Solution& solution) {
+std::vector<std::string> left_out(const ModelSolution& solution) {
   std::vector<std::string> names;
   for (const Omission& omission : solution.model.left_out) {
     names.push_back(omission.what);
@@ -45,13 +45,13 @@ std::vector<std::string> left_out(const Solution& solution) {
   return names;
 }
 
-Solution solve_full(Scene scene) {
+ModelSolution solve_full(Scene scene) {
   scene.model = ModelChoice::full;
-  return solve(scene);
+  return solve_in_model_units(scene);
 }
 
 /// Counts of the smallest rectangle about the origin that holds the contact.
-std::array<Index, 2> contact_sides(const Solution& solution) {
+std::array<Index, 2> contact_sides(const ModelSolution& solution) {
   const Grid& grid = solution.model.grid;
   std::array<Index, 2> sides{};
   for (Index i = 0; i < grid.n1; ++i) {
@@ -64,7 +64,7 @@ std::array<Index, 2> contact_sides(const Solution& solution) {
   return sides;
 }
 
-std::string trimming(const Solution& solution) {
+std::string trimming(const ModelSolution& solution) {
   const auto [n1, n2] = contact_sides(solution);
   const Grid& grid = solution.model.grid;
   std::ostringstream text;
@@ -73,7 +73,7 @@ std::string trimming(const Solution& solution) {
 }
 
 /// From the tractions, the pressure and the twist alone, on the whole grid.
-Certificate recomputed(const Scene& scene, const Solution& solution, OperatorKind kind) {
+Certificate recomputed(const Scene& scene, const ModelSolution& solution, OperatorKind kind) {
   const Model& model = solution.model;
   const ArrayXd& pressure = solution.normal.pressure;
   const ArrayXd& q = solution.tangential.traction;
@@ -191,8 +191,8 @@ INSTANTIATE_TEST_SUITE_P(Scenes, ReducedModel, testing::ValuesIn(cases()),
 /// root.
 TEST_P(ReducedModel, GivesTheFullModelsAnswer) {
   const Scene& scene = GetParam().scene;
-  const Solution full = solve_full(scene);
-  const Solution reduced = solve(scene);
+  const ModelSolution full = solve_full(scene);
+  const ModelSolution reduced = solve_in_model_units(scene);
   ASSERT_EQ(full.status, Status::converged) << full.message;
   ASSERT_EQ(reduced.status, Status::converged) << reduced.message;
   constexpr double same = 1e-10;
@@ -219,7 +219,7 @@ TEST_P(ReducedModel, GivesTheFullModelsAnswer) {
 
 TEST_P(ReducedModel, NamesWhatItLeavesOut) {
   const Case& tested = GetParam();
-  const Solution reduced = solve(tested.scene);
+  const ModelSolution reduced = solve(tested.scene);
   std::vector<std::string> expected;
   expected.emplace_back(coupled() ? kShearCoupling : kCoupling);
   expected.emplace_back(kTranslations);
@@ -238,7 +238,7 @@ TEST_P(ReducedModel, NamesWhatItLeavesOut) {
 
 TEST_P(ReducedModel, FullLeavesOutNothingThatTheSceneAllows) {
   const Scene& scene = GetParam().scene;
-  const Solution full = solve_full(scene);
+  const ModelSolution full = solve_full(scene);
   std::vector<std::string> expected;
   if (scene.coupling == Coupling::none) {
     expected.emplace_back(kCoupling);
@@ -252,7 +252,7 @@ TEST_P(ReducedModel, FullLeavesOutNothingThatTheSceneAllows) {
 
 TEST_P(ReducedModel, HoldsItsCertificateOnTheWholeGrid) {
   const Scene& scene = GetParam().scene;
-  const Solution reduced = solve(scene);
+  const ModelSolution reduced = solve_in_model_units(scene);
   expect_certificate(reduced.certificate, scene.tolerance);
   expect_certificate(recomputed(scene, reduced, OperatorKind::dcfft), scene.tolerance);
 }
@@ -265,7 +265,7 @@ TEST(MixedPrecision, HoldsTheSameCertificate) {
     scene.model = full ? ModelChoice::full : ModelChoice::automatic;
     scene.precision = Precision::mixed;
     scene.tolerance = 1e-10;
-    const Solution solution = solve(scene);
+    const ModelSolution solution = solve_in_model_units(scene);
     ASSERT_EQ(solution.status, Status::converged) << solution.message;
     expect_certificate(recomputed(scene, solution, OperatorKind::direct), 1e-10);
 
@@ -286,8 +286,8 @@ TEST(PapersMethod, AgreesToItsTolerance) {
   for (Scene scene : {paper_scene(32, 0.5), ellipsoid_scene(32, 0.036, 0.018, 0.5), paper_scene(27, 0.7)}) {
     scene.method = Method::paper;
     scene.tolerance = 1e-10;
-    const Solution full = solve_full(scene);
-    const Solution reduced = solve(scene);
+    const ModelSolution full = solve_full(scene);
+    const ModelSolution reduced = solve_in_model_units(scene);
     ASSERT_TRUE(full.status == Status::converged && reduced.status == Status::converged);
     EXPECT_LE(relative_difference(reduced.tangential.traction, full.tangential.traction),
               100.0 * scene.tolerance);
@@ -304,7 +304,7 @@ TEST(DirectAndDense, LeaveNoCellsOut) {
   for (const OperatorKind kind : {OperatorKind::direct, OperatorKind::dense}) {
     Scene scene = paper_scene(12, 0.5);
     scene.op = kind;
-    const Solution solution = solve(scene);
+    const ModelSolution solution = solve_in_model_units(scene);
     EXPECT_THAT(left_out(solution), ElementsAre(kCoupling, kTranslations));
     EXPECT_EQ(solution.tangential.grids.back().n1, 12);
   }
@@ -315,7 +315,7 @@ TEST(DirectAndDense, LeaveNoCellsOut) {
 class HeightMapSymmetry : public SceneFile {
  protected:
   /// A bowl with ripples, in mirror image about both axes; one height may be changed.
-  Solution solved(double change = 0.0) const {
+  ModelSolution solved(double change = 0.0) const {
     constexpr Index n1 = 20;
     constexpr Index n2 = 24;
     std::ostringstream text;
@@ -335,8 +335,8 @@ class HeightMapSymmetry : public SceneFile {
     scene.surfaces.front() = {
         .shape = Shape::height_map, .file = write("heights.csv", text.str()), .spacing = {5e-5, 5e-5}};
     scene.tolerance = 1e-12;
-    const Solution reduced = solve(scene);
-    const Solution full = solve_full(scene);
+    const ModelSolution reduced = solve_in_model_units(scene);
+    const ModelSolution full = solve_full(scene);
     EXPECT_EQ(reduced.status, Status::converged) << reduced.message;
     EXPECT_LE(relative_difference(reduced.normal.pressure, full.normal.pressure), 1e-10);
     EXPECT_LE(relative_difference(reduced.tangential.traction, full.tangential.traction), 1e-10);
@@ -346,14 +346,14 @@ class HeightMapSymmetry : public SceneFile {
 };
 
 TEST_F(HeightMapSymmetry, IsFoundInTheData) {
-  const Solution symmetric = solved();
+  const ModelSolution symmetric = solved();
   EXPECT_TRUE(symmetric.model.pressure_part.quadrant());
   EXPECT_THAT(left_out(symmetric), Contains(kQuadrant));
 }
 
 /// A nanometre in one cell: the pressure is no mirror image any more, and nor is the traction.
 TEST_F(HeightMapSymmetry, IsNotMadeUp) {
-  const Solution bumpy = solved(1e-9);
+  const ModelSolution bumpy = solved(1e-9);
   EXPECT_FALSE(bumpy.model.pressure_part.quadrant());
   EXPECT_THAT(left_out(bumpy), Not(Contains(kQuadrant)));
   EXPECT_THAT(left_out(bumpy), Not(Contains(kDiagonal)));
@@ -377,7 +377,7 @@ TEST(PredictedMemory, IsWhatTheSolutionHolds) {
           scene.precision = precision;
           scene.method = method;
           scene.pressure = pressure;
-          const Solution solution = solve(scene);
+          const ModelSolution solution = solve_in_model_units(scene);
           ASSERT_THAT(left_out(solution), Not(Contains(StartsWith("all but"))));
           EXPECT_EQ(predicted_memory(scene, make_model(scene)).solver, solution.bytes)
               << cells[0] << " x " << cells[1] << (choice == ModelChoice::full ? ", full" : ", reduced")
@@ -392,7 +392,7 @@ TEST(PredictedMemory, IsWhatTheSolutionHolds) {
 /// How far the contact reaches is not known before: what is trimmed later is not needed either.
 TEST(PredictedMemory, IsEnoughWhereTheContactIsTrimmed) {
   for (const Case& tested : cases()) {
-    const Solution solution = solve(tested.scene);
+    const ModelSolution solution = solve(tested.scene);
     EXPECT_GE(predicted_memory(tested.scene, make_model(tested.scene)).solver, solution.bytes) << tested.name;
   }
 }
@@ -412,7 +412,7 @@ TEST_F(PressureFromAFile, NeedsTheWholeGrid) {
   scene.steps[0].normal.reset();
   scene.pressure = PressureModel::file;
   scene.pressure_file = write("pressure.csv", text.str());
-  const Solution solution = solve(scene);
+  const ModelSolution solution = solve_in_model_units(scene);
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   EXPECT_THAT(left_out(solution), ElementsAre(kCoupling));  // it turns about a centre of its own
   EXPECT_EQ(predicted_memory(scene, make_model(scene)).solver, solution.bytes);
@@ -421,10 +421,10 @@ TEST_F(PressureFromAFile, NeedsTheWholeGrid) {
 /// Without translations 9.2 of them; each condition brings a field of two components, half a number a padded
 /// cell.
 TEST(Memory, OfTheFullModelIsTenNumbersAPaddedCell) {
-  const Solution solution = solve_full(paper_scene(64, 0.5));
+  const ModelSolution solution = solve_full(paper_scene(64, 0.5));
   const double padded = 4.0 * 64.0 * 64.0;
   EXPECT_LE(solution.bytes, (9.25 + 2 * 0.5) * sizeof(double) * padded);
-  EXPECT_LE(solve(paper_scene(64, 0.5)).bytes, 0.3 * solution.bytes) << "a quadrant of it";
+  EXPECT_LE(solve_in_model_units(paper_scene(64, 0.5)).bytes, 0.3 * solution.bytes) << "a quadrant of it";
 }
 
 }  // namespace

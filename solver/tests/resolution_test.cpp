@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "solver/solve.hpp"
+#include "solver/model_solution.hpp"
 #include "solver/tests/paper_scene.hpp"
 
 namespace slipstick::solver {
@@ -50,19 +50,19 @@ TEST(Resolution, IsUnknownWhereNoCellSticksThoughOneShould) {
 TEST(Resolution, NearGrossSlipTurnsFromGoodToPoor) {
   double last = 0.0;
   for (const double missing : {0.5, 1e-2, 1e-4, 1e-6}) {
-    const Solution solution = solve(paper_scene(32, 1.0 - missing));
+    const ModelSolution solution = solve_in_model_units(paper_scene(32, 1.0 - missing));
     ASSERT_EQ(solution.status, Status::converged);
     EXPECT_GT(solution.resolution.uncertainty, last);
     last = solution.resolution.uncertainty;
   }
   EXPECT_GT(last, kPoorlyResolved);
-  EXPECT_LT(solve(paper_scene(32, 0.5)).resolution.uncertainty, 0.01);
+  EXPECT_LT(solve_in_model_units(paper_scene(32, 0.5)).resolution.uncertainty, 0.01);
 }
 
 TEST(Resolution, OfAnImposedTwistIsTheMeshAlone) {
   Scene scene = paper_scene(32, 0.0);
   scene.steps[0].torsion = Twist{1.0};  // far beyond where all has slipped
-  EXPECT_LT(solve(scene).resolution.uncertainty, 0.01);
+  EXPECT_LT(solve_in_model_units(scene).resolution.uncertainty, 0.01);
 }
 
 }  // namespace

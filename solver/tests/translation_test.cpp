@@ -5,7 +5,7 @@
 #include <numbers>
 
 #include "solver/contact/certificate.hpp"
-#include "solver/solve.hpp"
+#include "solver/model_solution.hpp"
 #include "solver/tests/press.hpp"
 #include "solver/tests/scene_file.hpp"
 #include "solver/tests/torsion_bench.hpp"
@@ -37,8 +37,8 @@ Scene sphere(const Pair& at_cells, Index cells = 40) {
 
 double cell_size(const Scene& scene) { return (*scene.extent)[0] / static_cast<double>(scene.cells[0]); }
 
-Solution solved(const Scene& scene) {
-  Solution solution = solve(scene);
+ModelSolution solved(const Scene& scene) {
+  ModelSolution solution = solve_in_model_units(scene);
   EXPECT_EQ(solution.status, Status::converged) << solution.message;
   return solution;
 }
@@ -63,7 +63,7 @@ ArrayXd moved_vectors(const ArrayXd& field, Index n, const Image& image) {
 }
 
 /// K q and the slip afresh, by direct summation.
-Certificate independent_certificate(const Solution& solution, const Pair& force, double moment) {
+Certificate independent_certificate(const ModelSolution& solution, const Pair& force, double moment) {
   const Model& model = solution.model;
   const auto op = make_operator(OperatorKind::direct, model.grid, tangential_kernel(), model.pair);
   const TangentialSolution& found = solution.tangential;
@@ -85,13 +85,13 @@ Certificate independent_certificate(const Solution& solution, const Pair& force,
 
 /// A body free to move turns about where it touches.
 TEST(OffCentreSphere, TurnsAsTheCentredOneAboutItsOwnAxis) {
-  const Solution centred = solved(sphere({0.0, 0.0}));
+  const ModelSolution centred = solved(sphere({0.0, 0.0}));
   const Index n = 40;
   double worst_twist = 0.0;
   double worst_traction = 0.0;
   for (const std::array<Index, 2>& cells : {std::array<Index, 2>{5, -7}, {-8, 0}, {1, 9}}) {
     const Scene scene = sphere({static_cast<double>(cells[0]), static_cast<double>(cells[1])});
-    const Solution off = solved(scene);
+    const ModelSolution off = solved(scene);
     const ArrayXd expected = moved_vectors(centred.tangential.traction, n, [&](Index i, Index j) {
       return std::array{i + cells[0], j + cells[1]};
     });
@@ -114,11 +114,11 @@ TEST(OffCentreSphere, TurnsAsTheCentredOneAboutItsOwnAxis) {
 
 /// Between the cells the mesh shows: its error in the twist is 1e-3 at ten cells a radius.
 TEST(OffCentreSphere, TurnsAboutItsOwnAxisBetweenTheCells) {
-  const Solution centred = solved(sphere({0.0, 0.0}));
+  const ModelSolution centred = solved(sphere({0.0, 0.0}));
   double worst = 0.0;
   for (const Pair& cells : {Pair{0.5, 0.5}, Pair{2.3, -4.1}, Pair{-6.7, 3.2}}) {
     const Scene scene = sphere(cells);
-    const Solution off = solved(scene);
+    const ModelSolution off = solved(scene);
     const Pair& centre = scene.surfaces[0].at;
     const double length = paper::kContactRadius;
     worst = std::max({worst, std::abs(off.twist_angle / centred.twist_angle - 1.0),
@@ -145,9 +145,9 @@ Scene pushed(double force_ratio, double angle, double moment_ratio, Index cells 
 
 TEST(Force, AlongEitherAxisGivesTheSame) {
   constexpr double kHalfPi = 0.5 * std::numbers::pi;
-  const Solution along_1 = solved(pushed(0.5, 0.0, 0.0));
-  const Solution along_2 = solved(pushed(0.5, kHalfPi, 0.0));
-  const Solution back = solved(pushed(0.5, 2.0 * kHalfPi, 0.0));
+  const ModelSolution along_1 = solved(pushed(0.5, 0.0, 0.0));
+  const ModelSolution along_2 = solved(pushed(0.5, kHalfPi, 0.0));
+  const ModelSolution back = solved(pushed(0.5, 2.0 * kHalfPi, 0.0));
   const Index cells = along_1.model.grid.cells();
   ArrayXd exchanged(2 * cells);
   const auto diagonal = [](Index i, Index j) { return std::array{j, i}; };
@@ -163,8 +163,8 @@ TEST(Force, AlongEitherAxisGivesTheSame) {
 
 TEST(ForceAndMoment, TurnWithTheGrid) {
   const double angle = 0.4;
-  const Solution one = solved(pushed(0.5, angle, 0.5));
-  const Solution turned = solved(pushed(0.5, angle + 0.5 * std::numbers::pi, 0.5));
+  const ModelSolution one = solved(pushed(0.5, angle, 0.5));
+  const ModelSolution turned = solved(pushed(0.5, angle + 0.5 * std::numbers::pi, 0.5));
   const Index n = 28;
   const auto quarter = [](Index i, Index j) { return std::array{n - 1 - j, i}; };
   const ArrayXd& q = one.tangential.traction;
@@ -182,7 +182,7 @@ TEST(ForceAndMoment, AreCertifiedByDirectSummation) {
     for (const double tolerance : {1e-8, 1e-12}) {
       Scene scene = pushed(0.6, 0.4, moment_ratio);
       scene.tolerance = tolerance;
-      const Solution solution = solved(scene);
+      const ModelSolution solution = solved(scene);
       const double moment = moment_ratio * solution.moment_limit;
       const Certificate fresh = independent_certificate(solution, scene.steps[0].force, moment);
       for (const Certificate& certificate : {solution.certificate, fresh}) {
@@ -200,7 +200,7 @@ TEST(ForceAndMoment, AreCertifiedByDirectSummation) {
 /// Loads and motions are each other's answers, in every mixture.
 TEST(Motion, GivesTheLoadsThatItCameFrom) {
   const Scene scene = pushed(0.5, 0.4, 0.5);
-  const Solution loaded = solved(scene);
+  const ModelSolution loaded = solved(scene);
   for (const bool by_displacement : {false, true}) {
     for (const bool by_twist : {false, true}) {
       Scene imposed = scene;
@@ -210,7 +210,7 @@ TEST(Motion, GivesTheLoadsThatItCameFrom) {
         step.force = {};
       }
       if (by_twist) step.torsion = {.moment_ratio = {}, .moment = {}, .twist = loaded.twist_angle};
-      const Solution moved = solved(imposed);
+      const ModelSolution moved = solved(imposed);
       EXPECT_LE(relative_difference(moved.tangential.traction, loaded.tangential.traction), kSame);
       EXPECT_NEAR(moved.moment / loaded.moment, 1.0, kSame);
       for (std::size_t k = 0; k < 2; ++k) {
@@ -270,7 +270,7 @@ TEST_P(Mindlin, IsTheDifferenceOfTwoPressures) {
   const double force = paper::kFriction * part * paper::kLoad;
   scene.steps[0].force = {force * along[0], force * along[1]};
   scene.steps[0].torsion = {.moment_ratio = {}, .moment = {}, .twist = 0.0};
-  const Solution solution = solved(scene);
+  const ModelSolution solution = solved(scene);
   const Index cells = expected.size();
   const ArrayXd& q = solution.tangential.traction;
   const double largest_q = expected.maxCoeff();
@@ -295,9 +295,9 @@ TEST_P(Mindlin, IsTheDifferenceOfTwoPressures) {
 TEST(FullModel, TurnsASymmetricContactAsTheReducedOne) {
   Scene scene = ellipsoid_scene(32, 1.5 * paper::kRadius, paper::kRadius, 0.7);
   scene.tolerance = kGap;
-  const Solution reduced = solved(scene);
+  const ModelSolution reduced = solved(scene);
   scene.model = ModelChoice::full;
-  const Solution full = solved(scene);
+  const ModelSolution full = solved(scene);
   EXPECT_TRUE(reduced.model.left_out.size() > full.model.left_out.size());
   EXPECT_NEAR(full.twist_angle / reduced.twist_angle, 1.0, 1e-10);
   EXPECT_NEAR(full.moment_limit / reduced.moment_limit, 1.0, 1e-10);
@@ -311,12 +311,12 @@ TEST(TangentStiffness, IsThatOfTheLoadsHeld) {
   for (const bool by_displacement : {false, true}) {
     Scene scene = sphere({4.0, 2.0}, 36);
     scene.steps[0].force = {40.0, 10.0};
-    const Solution middle = solved(scene);
+    const ModelSolution middle = solved(scene);
     if (by_displacement) {
       scene.steps[0].force = {};
       scene.steps[0].displacement = middle.displacement;
     }
-    const Solution found = solved(scene);
+    const ModelSolution found = solved(scene);
     std::array<double, 2> moments{};
     const double step = 1e-5 * middle.twist_angle;
     for (const int side : {0, 1}) {
@@ -344,7 +344,7 @@ TEST(TwoPatches, TurnAboutAPointBetweenThem) {
   scene.surfaces[1].radius *= 0.5;
   scene.combine = Combine::nearest;
   scene.steps[0].torsion = MomentRatio{0.8};
-  const Solution solution = solved(scene);
+  const ModelSolution solution = solved(scene);
   EXPECT_LE(solution.certificate.moment, kRounding);
   EXPECT_LE(solution.certificate.force, kRounding);
   EXPECT_LE(solution.certificate.gap, kGap);
@@ -364,7 +364,7 @@ TEST(OneCell, MovesByItsOwnCoefficient) {
   Scene scene = paper_scene(3, 0.0);
   scene.extent = {2.9e-3, 2.9e-3};  // a cell is hardly smaller than the contact
   scene.steps[0].force = {30.0, -10.0};
-  const Solution solution = solved(scene);
+  const ModelSolution solution = solved(scene);
   EXPECT_EQ(solution.contact_cells, 1);
   const HalfSpace steel{0.5 * paper::kYoungModulus / (1.0 + paper::kPoissonRatio), paper::kPoissonRatio};
   const double area = cell_size(scene) * cell_size(scene);
@@ -379,8 +379,8 @@ TEST(OneCell, MovesByItsOwnCoefficient) {
 // --- limits ---
 
 TEST(MomentRatio, IsOfTheLimitWithoutForce) {
-  const Solution alone = solved(pushed(0.0, 0.0, 0.5));
-  const Solution with_force = solved(pushed(0.6, 0.4, 0.5));
+  const ModelSolution alone = solved(pushed(0.0, 0.0, 0.5));
+  const ModelSolution with_force = solved(pushed(0.6, 0.4, 0.5));
   EXPECT_NEAR(with_force.moment_limit / alone.moment_limit, 1.0, kSame);
   EXPECT_NEAR(with_force.moment / (0.5 * with_force.moment_limit), 1.0, kRounding);
   EXPECT_GT(with_force.limit.factor, 1.0);
@@ -388,7 +388,7 @@ TEST(MomentRatio, IsOfTheLimitWithoutForce) {
 }
 
 TEST(Limit, RefusesMoreThanTheContactCanCarry) {
-  const auto complaint_of = [](const Scene& scene) { return complaint([&] { solve(scene); }); };
+  const auto complaint_of = [](const Scene& scene) { return complaint([&] { solve_in_model_units(scene); }); };
   const std::string slides = complaint_of(pushed(1.25, 0.0, 0.0));
   EXPECT_THAT(slides, HasSubstr("load.force"));
   EXPECT_THAT(slides, HasSubstr("[125, 0] N"));

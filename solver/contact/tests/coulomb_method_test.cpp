@@ -112,7 +112,7 @@ TEST(Coulomb, SlipIsOpposedToTractionOnAnEllipse) {
   const Index cells = 64;
   for (const double moment_ratio : {0.5, 0.9}) {
     Scene scene = ellipsoid_scene(cells, 1.7 * paper::kRadius, paper::kRadius / 1.7, moment_ratio);
-    EXPECT_LE(solve(scene).slip_direction.mean, 0.01);
+    EXPECT_LE(solve_in_model_units(scene).slip_direction.mean, 0.01);
     EXPECT_GT(by_paper_method(scene).slip_direction.mean, 0.5);
   }
 }
@@ -248,7 +248,7 @@ INSTANTIATE_TEST_SUITE_P(Meshes, Work,
 /// Applications on all grids in those of the finest: a count, the same on every machine.
 TEST_P(Work, IsBoundedAtEveryMesh) {
   const auto [cells, moment_ratio] = GetParam();
-  const Solution solution = solve(paper_scene(cells, moment_ratio));
+  const ModelSolution solution = solve_in_model_units(paper_scene(cells, moment_ratio));
   EXPECT_EQ(solution.status, Status::converged) << solution.message;
   EXPECT_LE(solution.certificate.gap, 1e-8);
   EXPECT_LE(solution.operator_applications, 25.0);
@@ -276,7 +276,7 @@ INSTANTIATE_TEST_SUITE_P(MomentRatios, Accurate,
                                                   1e-3}));
 
 TEST_P(Accurate, TwistAndStickRadiusAt256Cells) {
-  const Solution solution = solve(paper_scene(256, GetParam().moment_ratio));
+  const ModelSolution solution = solve_in_model_units(paper_scene(256, GetParam().moment_ratio));
   const double error = solution.twist_angle / GetParam().twist - 1.0;
   RecordProperty("error", fmt::format("{:.2e}", error));
   EXPECT_LE(std::abs(error), GetParam().allowed);

@@ -9,7 +9,7 @@
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/full_coupling.hpp"
 #include "solver/grid/mirror.hpp"
-#include "solver/solve.hpp"
+#include "solver/model_solution.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
 /// Dissimilar bodies: pressure moves the surfaces along each other, shear opens and closes the gap.
@@ -44,8 +44,8 @@ ArrayXd applied(const BlockKernel& kernel, const Model& model, const ArrayXd& tr
   return applied(*make_operator(OperatorKind::direct, model.grid, kernel, model.pair), traction);
 }
 
-Solution solved(const Scene& scene) {
-  Solution solution = solve(scene);
+ModelSolution solved(const Scene& scene) {
+  ModelSolution solution = solve_in_model_units(scene);
   EXPECT_EQ(solution.status, Status::converged) << solution.message;
   return solution;
 }
@@ -115,11 +115,11 @@ TEST(NoMismatch, UncouplesEveryModel) {
       scene.upper = {2.0 * 100e9 * 1.25, 0.25};
     }
     scene.coupling = Coupling::none;
-    const Solution none = solved(scene);
+    const ModelSolution none = solved(scene);
     double worst = 0.0;
     for (const Coupling coupling : {Coupling::automatic, Coupling::pressure, Coupling::full}) {
       scene.coupling = coupling;
-      const Solution other = solved(scene);
+      const ModelSolution other = solved(scene);
       EXPECT_LE(relative_difference(other.normal.pressure, none.normal.pressure), kSame);
       EXPECT_LE(relative_difference(other.tangential.traction, none.tangential.traction), kSame);
       EXPECT_NEAR(other.twist_angle / none.twist_angle, 1.0, kSame);
@@ -155,9 +155,9 @@ INSTANTIATE_TEST_SUITE_P(Coupling, Exchange, testing::Values(Coupling::pressure,
 /// gap is then the same.
 TEST_P(Exchange, ReversesTheShearByPressure) {
   Scene scene = dissimilar(GetParam(), 0.0);
-  const Solution one = solved(scene);
+  const ModelSolution one = solved(scene);
   std::swap(scene.lower, scene.upper);
-  const Solution other = solved(scene);
+  const ModelSolution other = solved(scene);
   EXPECT_LE(relative_difference(other.normal.pressure, one.normal.pressure), kSame);
   EXPECT_LE(relative_difference(other.tangential.traction, -one.tangential.traction), kSame);
   EXPECT_EQ(other.stick_cells, one.stick_cells);
@@ -169,9 +169,9 @@ TEST_P(Exchange, ReversesTheShearByPressure) {
 /// about x1 = 0 of the answer to the moment itself: q1 is mirrored, q2 mirrored and reversed.
 TEST_P(Exchange, MirrorsTheAnswerToAMoment) {
   Scene scene = dissimilar(GetParam(), 0.5);
-  const Solution one = solved(scene);
+  const ModelSolution one = solved(scene);
   std::swap(scene.lower, scene.upper);
-  const Solution other = solved(scene);
+  const ModelSolution other = solved(scene);
   const Grid& grid = one.model.grid;
   const auto mirrored = [&](const ArrayXd& field) {
     ArrayXd result(field.size());
@@ -196,7 +196,7 @@ TEST(FullCoupling, HoldsBothLawsAtOnce) {
     Scene scene = dissimilar(Coupling::full, 0.4);
     scene.tolerance = tolerance;
     scene.steps[0].force = {30.0, 10.0};
-    const Solution solution = solved(scene);
+    const ModelSolution solution = solved(scene);
     const Model& model = solution.model;
     const Index cells = model.grid.cells();
     const ArrayXd& p = solution.normal.pressure;
@@ -243,7 +243,7 @@ TEST(FullCoupling, EndsWhateverTheFriction) {
       scene.tolerance = 1e-8;
       scene.steps[0].torsion = {.moment_ratio = {}, .moment = {}, .twist = 0.0};
       scene.steps[0].force = {push * friction * paper::kLoad, 0.0};
-      const Solution solution = solve(scene);
+      const ModelSolution solution = solve_in_model_units(scene);
       if (solution.status == Status::converged) {
         EXPECT_LE(solution.certificate.gap, 1e-8);
         EXPECT_LE(solution.normal.complementarity, 1e-8);
@@ -278,7 +278,7 @@ Scene spence(Shape shape, Coupling coupling, Index cells) {
 /// on pressure too, 1/2 (Spence 1975).
 double exact_stick_ratio(Coupling coupling) { return coupling == Coupling::full ? 0.5 : 0.623310792994697; }
 
-double counted_stick_ratio(const Solution& solution) {
+double counted_stick_ratio(const ModelSolution& solution) {
   return solution.stick_radius_counted / solution.contact_radius_counted;
 }
 
@@ -292,7 +292,7 @@ INSTANTIATE_TEST_SUITE_P(Coupling, Spence, testing::Values(Coupling::pressure, C
 /// the whole history. The mesh knows the stick radius to a part of a cell.
 TEST_P(Spence, HoldsUnderAFlatPunch) {
   for (const Index cells : {48, 64}) {
-    const Solution solution = solved(spence(Shape::flat_punch, GetParam(), cells));
+    const ModelSolution solution = solved(spence(Shape::flat_punch, GetParam(), cells));
     const double cell = 2.0 / static_cast<double>(cells - 4);  // over the punch's radius
     const double error = counted_stick_ratio(solution) - exact_stick_ratio(GetParam());
     EXPECT_LE(std::abs(error), 0.25 * cell);
@@ -313,7 +313,7 @@ double late_stick_ratio(Coupling coupling, Index cells, int steps) {
   }
   double sum = 0.0;
   int count = 0;
-  const Solution last = solve(scene, {.progress = {}, .on_step = [&](const Solution& solution) {
+  const ModelSolution last = solve_in_model_units(scene, ([&](const ModelSolution& solution) {
                                         if (!(*solution.loads.normal > 0.2 * load)) return;
                                         EXPECT_EQ(solution.stick_radius, solution.stick_radius_counted);
                                         EXPECT_NE(solution.stick_radius_note, "");
@@ -345,7 +345,7 @@ TEST(BondedPunch, IsStifferByTheLogarithmOfThree) {
   for (const Index cells : {20, 36}) {  // 8 and 16 cells in a radius
     Scene scene = spence(Shape::flat_punch, Coupling::full, cells);
     scene.friction = 3.0;
-    const Solution bonded = solved(scene);
+    const ModelSolution bonded = solved(scene);
     EXPECT_EQ(bonded.stick_cells, bonded.contact_cells);
     scene.coupling = Coupling::none;
     errors.push_back(solved(scene).approach / (std::log(3.0) * bonded.approach) - 1.0);

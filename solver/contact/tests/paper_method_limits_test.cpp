@@ -9,7 +9,7 @@
 #include <limits>
 
 #include "solver/input/tests/complaint.hpp"
-#include "solver/solve.hpp"
+#include "solver/model_solution.hpp"
 #include "solver/tests/scene_file.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
@@ -61,7 +61,7 @@ TEST(OneCell, OffTheAxisCarriesTheMomentAlone) {
 
 /// A cell on the axis carries no moment about it, so there is nothing to turn it.
 TEST(OneCell, OnTheAxisCarriesNothing) {
-  const Solution solution = by_paper_method(paper_scene(1, 0.5));
+  const ModelSolution solution = by_paper_method(paper_scene(1, 0.5));
   EXPECT_EQ(solution.status, Status::converged);
   EXPECT_EQ(solution.contact_cells, 1);
   EXPECT_EQ(solution.moment_limit, 0.0);
@@ -240,12 +240,12 @@ constexpr Method kAboutTheOrigin[] = {Method::paper, Method::projected_gradient}
 TEST(ContactOffTheOrigin, IsRefusedByMethodsThatTurnAboutIt) {
   for (const std::array<double, 2> at : {std::array{0.0, 1e-5}, std::array{-3e-5, 0.0}}) {
     for (const Method method : kAboutTheOrigin) {
-      EXPECT_THAT(complaint([&] { solve(off_centre(method, at)); }),
+      EXPECT_THAT(complaint([&] { solve_in_model_units(off_centre(method, at)); }),
                   testing::AllOf(HasSubstr("solver.method = \"" + to_string(method) + "\""),
                                  HasSubstr("allowed: coulomb"), HasSubstr("about the origin")));
-      EXPECT_EQ(solve(off_centre(method, {0.0, 0.0})).status, Status::converged);
+      EXPECT_EQ(solve_in_model_units(off_centre(method, {0.0, 0.0})).status, Status::converged);
     }
-    const Solution solution = solve(off_centre(Method::coulomb, at));
+    const ModelSolution solution = solve_in_model_units(off_centre(Method::coulomb, at));
     EXPECT_EQ(solution.status, Status::converged);
     EXPECT_LE(solution.certificate.force, kRounding);
   }
@@ -256,10 +256,10 @@ TEST(ContactOffTheOrigin, IsRefusedByMethodsThatTurnAboutIt) {
 TEST_F(LopsidedPressure, IsTakenUpToTheTolerance) {
   for (const Method method : kAboutTheOrigin) {
     for (const double tolerance : {1e-3, 1e-6}) {
-      const Solution solution = solve(lopsided(method, 0.45 * tolerance, tolerance));
+      const ModelSolution solution = solve_in_model_units(lopsided(method, 0.45 * tolerance, tolerance));
       EXPECT_EQ(solution.status, Status::converged) << solution.message;
       EXPECT_LE(solution.certificate.force, tolerance);
-      EXPECT_THAT(complaint([&] { solve(lopsided(method, 0.55 * tolerance, tolerance)); }),
+      EXPECT_THAT(complaint([&] { solve_in_model_units(lopsided(method, 0.55 * tolerance, tolerance)); }),
                   testing::AllOf(HasSubstr("solver.method"), HasSubstr("odd")));
     }
   }
@@ -273,7 +273,7 @@ TEST(LooseTolerance, HoldsTheFrictionBoundAsWell) {
     for (const double ratio : {0.5, 0.9, 0.99}) {
       for (Scene scene : {paper_scene(64, ratio), ellipsoid_scene(64, 0.018, 0.0063, ratio)}) {
         scene.tolerance = tolerance;
-        const Solution solution = by_paper_method(scene);
+        const ModelSolution solution = by_paper_method(scene);
         EXPECT_EQ(solution.status, Status::converged) << solution.message;
         EXPECT_LE(solution.certificate.friction_bound, tolerance) << ratio;
       }

@@ -8,7 +8,7 @@
 #include <numbers>
 
 #include "solver/contact/certificate.hpp"
-#include "solver/solve.hpp"
+#include "solver/model_solution.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
 namespace slipstick::solver {
@@ -25,7 +25,7 @@ TEST_P(Sphere, TurnsAsTheExactSolutionSays) {
   const double moment_ratio = GetParam().moment_ratio;
   const double exact = GetParam().twist;
   const auto error = [&](Index cells) {
-    const Solution solution = by_paper_method(paper_scene(cells, moment_ratio));
+    const ModelSolution solution = by_paper_method(paper_scene(cells, moment_ratio));
     EXPECT_EQ(solution.status, Status::converged) << solution.message;
     return std::abs(solution.twist_angle / exact - 1.0);
   };
@@ -38,7 +38,7 @@ TEST_P(Sphere, TurnsAsTheExactSolutionSays) {
 }
 
 TEST_P(Sphere, CarriesTheMomentWithinTheFrictionBounds) {
-  const Solution solution = by_paper_method(paper_scene(64, GetParam().moment_ratio));
+  const ModelSolution solution = by_paper_method(paper_scene(64, GetParam().moment_ratio));
   EXPECT_NEAR(solution.moment / (GetParam().moment_ratio * solution.moment_limit), 1.0, kRounding);
   EXPECT_LE(solution.certificate.moment, kRounding);
   EXPECT_LE(solution.certificate.friction_bound, kRounding);
@@ -72,7 +72,7 @@ TEST_P(Sphere, SticksInsideTheExactRadius) {
   const double stick_ratio = GetParam().moment_ratio == 0.1   ? 0.9693964204953627
                              : GetParam().moment_ratio == 0.5 ? 0.8135681261276496
                                                               : 0.4958950522157781;
-  const Solution solution = by_paper_method(paper_scene(128, GetParam().moment_ratio));
+  const ModelSolution solution = by_paper_method(paper_scene(128, GetParam().moment_ratio));
   const double cell = solution.model.length_unit / solution.contact_radius;
   EXPECT_NEAR(solution.stick_radius_counted / solution.contact_radius, stick_ratio, cell);
 }
@@ -146,7 +146,7 @@ TEST_P(Sphere, ForgetsPoissonsRatioWithTheMesh) {
     const auto normalised_twist = [&](double poisson_ratio) {
       Scene scene = paper_scene(cells, GetParam().moment_ratio);
       scene.upper.poisson_ratio = scene.lower.poisson_ratio = poisson_ratio;
-      const Solution solution = by_paper_method(scene);
+      const ModelSolution solution = by_paper_method(scene);
       return solution.twist_angle * solution.model.stress_unit * std::pow(solution.contact_radius, 2);
     };
     return std::abs(normalised_twist(0.5) / normalised_twist(0.0) - 1.0);
@@ -189,10 +189,10 @@ TEST(Restick, BringsBackTheCellsThatTheInitialGuessMadeSlip) {
 /// certificate can.
 TEST(FrozenSlipDirection, ShowsOnAnEllipseInTheCertificateAlone) {
   const double elongation = 1.7;  // radii of curvature 2.9 to 1: semi-axes 1 to 0.495
-  const Solution sphere = by_paper_method(paper_scene(64, 0.9));
+  const ModelSolution sphere = by_paper_method(paper_scene(64, 0.9));
   double coarse_direction = 0.0;
   for (const Index cells : {64, 128}) {
-    const Solution ellipse = by_paper_method(
+    const ModelSolution ellipse = by_paper_method(
         ellipsoid_scene(cells, paper::kRadius * elongation, paper::kRadius / elongation, 0.9));
     ASSERT_EQ(ellipse.status, Status::converged);
     EXPECT_LE(ellipse.tangential.change, 1e-8);
@@ -221,7 +221,7 @@ TEST(DissimilarMaterials, CarryTheMomentWithinTheFrictionBounds) {
   Scene scene = paper_scene(32, 0.5);
   scene.friction = 0.3;
   scene.lower.young_modulus = 150e9;
-  const Solution solution = by_paper_method(scene);
+  const ModelSolution solution = by_paper_method(scene);
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   EXPECT_TRUE(solution.model.pressure_coupling);
   EXPECT_LE(solution.certificate.moment, kRounding);
@@ -229,7 +229,7 @@ TEST(DissimilarMaterials, CarryTheMomentWithinTheFrictionBounds) {
   EXPECT_LE(solution.certificate.force, 1e-8);
   // The pressure pulls the surfaces of unlike bodies radially: tractions have a radial part, that of like
   // ones do not.
-  const auto radial_part = [](const Solution& of) {
+  const auto radial_part = [](const ModelSolution& of) {
     const Grid& grid = of.model.grid;
     ArrayXd position(2 * grid.cells());
     position << cell_x1(grid), cell_x2(grid);
@@ -248,10 +248,10 @@ TEST(DissimilarMaterials, WithoutMismatchNeedNoCoupling) {
   scene.lower = {400e9, 0.0};
   scene.op = OperatorKind::direct;  // on all cells, coupled or not
   scene.coupling = Coupling::automatic;
-  const Solution automatic = by_paper_method(scene);
+  const ModelSolution automatic = by_paper_method(scene);
   EXPECT_FALSE(automatic.model.pressure_coupling);
   scene.coupling = Coupling::pressure;
-  const Solution coupled = by_paper_method(scene);
+  const ModelSolution coupled = by_paper_method(scene);
   EXPECT_TRUE(coupled.model.pressure_coupling);
   EXPECT_TRUE((coupled.tangential.traction == automatic.tangential.traction).all());
   EXPECT_EQ(coupled.twist_angle, automatic.twist_angle);
@@ -263,7 +263,7 @@ TEST(DissimilarMaterials, OfOneCombinedModulusTurnAlike) {
   scene.coupling = Coupling::none;
   scene.upper = {250e9, 0.25};
   scene.lower = {100e9, 0.4};
-  const Solution solution = by_paper_method(scene);
+  const ModelSolution solution = by_paper_method(scene);
   const double combined_compliance = 2.0 * 1.25 / 250e9 + 2.0 * 1.4 / 100e9;
   const double paper_compliance = 2.0 * 2.0 * 1.3 / 210e9;
   // phi = (mu W/(G a^2)) f(M/M_lim), Eq. (4).

@@ -11,7 +11,9 @@
 #include <numbers>
 
 #include "solver/input/input_error.hpp"
-#include "solver/solve.hpp"
+#include "solver/scene/roughness.hpp"
+#include "solver/scene/surface_geometry.hpp"
+#include "solver/model_solution.hpp"
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/press.hpp"
 
@@ -226,8 +228,8 @@ TEST(Hertz, HoldsForOneParaboloidThatStandsStraight) {
 // --- contacts that are known from others ---
 
 TEST(TurnedEllipsoid, ByARightAngleHasItsRadiiExchanged) {
-  const Solution turned = solve(scene_of({ellipsoid(0.03, 0.01, 0.5 * pi)}, 32));
-  const Solution exchanged = solve(scene_of({ellipsoid(0.01, 0.03, 0.0)}, 32));
+  const ModelSolution turned = solve_in_model_units(scene_of({ellipsoid(0.03, 0.01, 0.5 * pi)}, 32));
+  const ModelSolution exchanged = solve_in_model_units(scene_of({ellipsoid(0.01, 0.03, 0.0)}, 32));
   EXPECT_TRUE(turned.model.pressure_part.quadrant());
   EXPECT_LE((turned.normal.pressure - exchanged.normal.pressure).abs().maxCoeff(),
             kSolved * exchanged.normal.pressure.maxCoeff());

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <string>
 
-#include "solver/solve.hpp"
+#include "solver/model_solution.hpp"
 #include "solver/tests/paper_scene.hpp"
 
 namespace slipstick::solver {
@@ -121,8 +121,8 @@ TEST_P(OtherUnits, GiveTheSameDigits) {
   const double moment = units.newton * units.metre;
   const double pascal = units.newton / (units.metre * units.metre);
   for (const Scene& scene : {by_ratio(), by_moment(), over_an_extent()}) {
-    const Solution si = solve(scene);
-    const Solution other = solve(in_units(scene, units));
+    const ModelSolution si = solve_in_model_units(scene);
+    const ModelSolution other = solve_in_model_units(in_units(scene, units));
     ASSERT_EQ(si.status, Status::converged) << si.message;
     ASSERT_EQ(other.status, Status::converged) << other.message;
     EXPECT_EQ(other.stick_cells, si.stick_cells);
@@ -156,8 +156,8 @@ TEST(OverUnit, KeepsTwelveDigits) {
 TEST(BinaryUnits, GiveTheSameBits) {
   for (const Units& units : {Units{"small", 0x1p10, 0x1p-7}, Units{"large", 0x1p-20, 0x1p30}}) {
     for (const Scene& scene : {by_ratio(), by_moment(), over_an_extent()}) {
-      const Solution si = solve(scene);
-      const Solution other = solve(in_units(scene, units));
+      const ModelSolution si = solve_in_model_units(scene);
+      const ModelSolution other = solve_in_model_units(in_units(scene, units));
       ASSERT_EQ(other.status, Status::converged) << other.message;
       EXPECT_TRUE((other.normal.pressure == si.normal.pressure).all());
       EXPECT_TRUE((other.tangential.traction == si.tangential.traction).all());

@@ -1,11 +1,13 @@
-#include "solver/solution.hpp"
+#include "solver/model_solution.hpp"
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "solver/contact/stick_front.hpp"
+#include "solver/resolution.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -17,7 +19,7 @@ double equal_area_radius(const Grid& grid, Index cells) {
 }
 
 /// The pressure and the contact under it.
-void describe_contact(Solution& solution) {
+void describe_contact(ModelSolution& solution) {
   const Model& model = solution.model;
   const Grid& grid = model.grid;
   const ArrayXd& pressure = solution.normal.pressure;
@@ -30,7 +32,7 @@ void describe_contact(Solution& solution) {
 }
 
 /// Stick area, loads and their limits, certificate. slip: see ContactState.
-void describe_tractions(Solution& solution, const LoadStep& loads, const ArrayXd& slip) {
+void describe_tractions(ModelSolution& solution, const LoadStep& loads, const ArrayXd& slip) {
   const Model& model = solution.model;
   const Grid& grid = model.grid;
   const TangentialProblem& problem = loads.problem;
@@ -70,7 +72,7 @@ void describe_tractions(Solution& solution, const LoadStep& loads, const ArrayXd
 }
 
 /// What became of the loads' work.
-void describe_energy(Solution& solution, const LoadStep& loads) {
+void describe_energy(ModelSolution& solution, const LoadStep& loads) {
   const Model& model = solution.model;
   const TangentialSolution& tangential = solution.tangential;
   const double unit = model.grid.cell_area() * model.moment_unit();
@@ -81,10 +83,33 @@ void describe_energy(Solution& solution, const LoadStep& loads) {
 
 }  // namespace
 
-void describe(Solution& solution, const LoadStep& loads, const ArrayXd& slip) {
+void describe(ModelSolution& solution, const LoadStep& loads, const ArrayXd& slip) {
   describe_contact(solution);
   describe_tractions(solution, loads, slip);
   describe_energy(solution, loads);
+}
+
+Solution in_si(ModelSolution solution) {
+  const Model& model = solution.model;
+  solution.grid = model.grid_in_m();
+  solution.friction = model.friction;
+  solution.shear_modulus = model.stress_unit;
+  const auto in_unit = [](ArrayXd& field, double unit) {
+    field *= unit;
+    return std::move(field);
+  };
+  solution.pressure = in_unit(solution.normal.pressure, model.stress_unit);
+  solution.traction = in_unit(solution.tangential.traction, model.stress_unit);
+  solution.elastic_displacement = in_unit(solution.tangential.elastic_displacement, model.length_unit);
+  solution.slip = in_unit(solution.tangential.slip, model.length_unit);
+  solution.stick = std::move(solution.tangential.stick);
+  solution.left_out = model.left_out;
+  solution.iterations = solution.tangential.iterations;
+  solution.change = solution.tangential.change;
+  solution.grids = std::move(solution.tangential.grids);
+  solution.pressure_iterations = solution.normal.iterations;
+  solution.pressure_complementarity = solution.normal.complementarity;
+  return std::move(solution);
 }
 
 double measure_contact_radius(const Model& model, const ArrayXd& pressure) {

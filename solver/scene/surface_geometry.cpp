@@ -1,4 +1,4 @@
-#include "solver/scene/surface.hpp"
+#include "solver/scene/surface_geometry.hpp"
 
 #include <fmt/core.h>
 
@@ -12,6 +12,7 @@
 #include "solver/input/input_error.hpp"
 #include "solver/scene/bracketed_root.hpp"
 #include "solver/scene/hertz_pressure.hpp"
+#include "solver/scene/roughness.hpp"
 #include "solver/scene/to_dimensionless.hpp"
 
 namespace slipstick::solver {

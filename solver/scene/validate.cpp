@@ -1,0 +1,215 @@
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "solver/input/input_error.hpp"
+#include "solver/input/toml_reader.hpp"
+#include "solver/scene/hertz_pressure.hpp"
+#include "solver/scene/roughness.hpp"
+#include "solver/scene/scene.hpp"
+#include "solver/scene/surface_geometry.hpp"
+#include "solver/scene/validate.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+class Validation {
+ public:
+  Validation(const Scene& scene, const Refuse& refuse) : scene_(scene), refuse_(refuse) {}
+
+  void check() const {
+    check_surfaces();
+    check_material("upper", scene_.upper);
+    check_material("lower", scene_.lower);
+    require("contact.friction", scene_.friction, kNotNegative);
+    check_steps();
+    check_grid();
+    require("solver.tolerance", scene_.tolerance, kTolerance);
+    require("solver.max_iterations", scene_.max_iterations, kIterations);
+    require("solver.threads", scene_.threads, kThreads);
+    check_consistency();
+  }
+
+ private:
+  void require(const std::string& key, double value, const Range& range) const {
+    if (!range.contains(value)) refuse_(key, fmt::format("{}", value), range.words);
+  }
+
+  void check_surfaces() const {
+    const auto& surfaces = scene_.surfaces;
+    if (surfaces.empty() || surfaces.size() > kMaxShapes) {
+      refuse_("upper.shape", fmt::format("{} shapes", surfaces.size()),
+              fmt::format("from 1 to {}", kMaxShapes));
+    }
+    for (std::size_t i = 0; i < surfaces.size(); ++i) {
+      check_surface(surfaces.size() == 1 ? "upper" : fmt::format("upper.shape[{}]", i), surfaces[i]);
+    }
+  }
+
+  void check_surface(const std::string& table, const Surface& surface) const {
+    const auto positive = [&](const char* key, double value) { require(table + key, value, kPositive); };
+    switch (surface.shape) {
+      case Shape::sphere:
+        positive(".radius", surface.radius);
+        break;
+      case Shape::flat_punch:
+        positive(".radius", surface.radius);
+        require(table + ".inner_radius", surface.inner_radius, inner_radius_below(surface.radius));
+        break;
+      case Shape::ellipsoid:
+        positive(".radius_1", surface.radius_1);
+        positive(".radius_2", surface.radius_2);
+        break;
+      case Shape::cone:
+        positive(".slope", surface.slope);
+        break;
+      case Shape::rounded_punch:
+        positive(".flat_radius", surface.flat_radius);
+        positive(".corner_radius", surface.corner_radius);
+        break;
+      case Shape::power:
+        require(table + ".exponent", surface.exponent, kExponent);
+        positive(".coefficient", surface.coefficient);
+        break;
+      case Shape::height_map:
+        for (const double spacing : surface.spacing) positive(".spacing", spacing);
+        positive(".unit", surface.height_unit);
+        break;
+      case Shape::roughness: {
+        const Roughness& roughness = surface.roughness;
+        require(table + ".hurst", roughness.hurst, kHurst);
+        positive(".rms_slope", roughness.rms_slope);
+        positive(".longest", roughness.longest);
+        require(table + ".period", roughness.period, period_for(roughness.longest));
+        require(table + ".shortest", roughness.shortest, shortest_for(roughness.longest, roughness.period));
+        break;
+      }
+    }
+    for (const double at : surface.at) require(table + ".at", at, kFinite);
+    require(table + ".angle", surface.angle, kFinite);
+  }
+
+  /// An infinite modulus is that of a rigid body.
+  void check_material(const std::string& body, const Material& material) const {
+    if (!(material.young_modulus > 0.0)) {
+      refuse_(body + ".young_modulus", fmt::format("{}", material.young_modulus), "positive");
+    }
+    require(body + ".poisson_ratio", material.poisson_ratio, kPoisson);
+  }
+
+  void check_steps() const {
+    if (scene_.steps.empty() || scene_.steps.size() > kMaxSteps) {
+      refuse_("step", fmt::format("{} steps", scene_.steps.size()), fmt::format("from 1 to {}", kMaxSteps));
+    }
+    require("cycles", scene_.cycles, cycles_of(scene_.steps.size()));
+    for (const Step& step : scene_.steps) {
+      if (step.normal) require(step.key + ".normal", *step.normal, kPositive);
+      if (!step.normal && scene_.pressure != PressureModel::file) {
+        refuse_(step.key + ".normal", "(missing)", kPositive.words);
+      }
+      if (const auto ratio = value_if<MomentRatio>(step.torsion)) {
+        require(step.key + ".moment_ratio", *ratio, kRatio);
+      } else {
+        std::visit([&](const auto& load) { require(step.key + ".moment or .twist", load.value, kFinite); },
+                   step.torsion);
+      }
+      for (const double force : step.force) require(step.key + ".force", force, kFinite);
+      if (!step.displacement) continue;
+      for (const double displacement : *step.displacement)
+        require(step.key + ".displacement", displacement, kFinite);
+      if (step.force != std::array<double, 2>{}) {
+        refuse_(step.key + ".displacement", "(with a force beside it)", "one of force, displacement");
+      }
+    }
+  }
+
+  void check_grid() const {
+    const bool as_samples =
+        find_height_map(scene_.surfaces) != nullptr && scene_.cells == std::array<Index, 2>{};
+    for (const Index cells : scene_.cells) {
+      if (!as_samples) require("grid.cells", static_cast<double>(cells), kCells);
+    }
+    if (!scene_.extent) return;
+    for (const double extent : *scene_.extent) require("grid.extent", extent, kPositive);
+  }
+
+  /// The paper's method and projected gradients know torsion about the origin alone.
+  void check_method() const {
+    if (scene_.method == Method::coulomb) return;
+    const Step& step = scene_.steps.front();
+    if (scene_.steps.size() > 1 || scene_.cycles > 1 || step.displacement ||
+        step.force != std::array<double, 2>{}) {
+      refuse_("solver.method", fmt::format("\"{}\"", to_string(scene_.method)),
+              "coulomb (this method knows one step of torsion about the origin)");
+    }
+  }
+
+  void check_consistency() const {
+    check_method();
+    if (scene_.coupling == Coupling::full && scene_.pressure != PressureModel::solved) {
+      refuse_("contact.coupling", "\"full\"",
+              "auto, none, pressure (shear changes a pressure only where that is solved: "
+              "contact.pressure = \"solved\")");
+    }
+    if (std::isinf(scene_.upper.young_modulus) && std::isinf(scene_.lower.young_modulus)) {
+      refuse_("lower.rigid", "true", "false, since the upper body is rigid");
+    }
+    const bool asks_hertz =
+        scene_.pressure == PressureModel::hertz || scene_.pressure == PressureModel::hertz_averaged;
+    if (asks_hertz && !hertzian_radii(scene_.surfaces)) {
+      refuse_("contact.pressure", fmt::format("\"{}\"", to_string(scene_.pressure)),
+              "solved, file (Hertz's pressure belongs to one sphere or ellipsoid at the origin, its axes "
+              "along the grid's)");
+    }
+    if (scene_.precision == Precision::mixed &&
+        (scene_.op != OperatorKind::dcfft || scene_.method != Method::coulomb)) {
+      refuse_("solver.precision", "\"mixed\"",
+              "double, or mixed with method = \"coulomb\" and operator = \"dcfft\"");
+    }
+    if (find_height_map(scene_.surfaces) != nullptr && scene_.extent) {
+      refuse_("grid.extent", "(given)", "left out for a height map: upper.spacing says it");
+    }
+    if (scene_.pressure == PressureModel::file && !scene_.extent) {
+      refuse_("grid.extent", "(missing)", "[L1, L2] in m, since the pressure's cells come from a file");
+    }
+  }
+
+  const Scene& scene_;
+  const Refuse& refuse_;
+};
+
+}  // namespace
+
+void validate(const Scene& scene, const Refuse& refuse) { Validation(scene, refuse).check(); }
+
+void validate(const Scene& scene) {
+  const std::string source = scene.source.empty() ? "scene" : scene.source.string();
+  validate(scene, [&](const std::string& key, const std::string& value, const std::string& allowed) {
+    throw InputError(source, key, value, allowed);
+  });
+}
+
+Range inner_radius_below(double radius) {
+  return {"zero or positive, below the radius", [radius](double x) { return x >= 0.0 && x < radius; }};
+}
+
+Range period_for(double longest) {
+  return {fmt::format("at least longest = {:g}, finite", longest),
+          [longest](double x) { return x >= longest && std::isfinite(x); }};
+}
+
+Range shortest_for(double longest, double period) {
+  const double least = period / kMostWaves;
+  return {fmt::format("from a {:g}th of the period, {:g}, to half of longest, {:g}", kMostWaves, least,
+                      0.5 * longest),
+          [longest, least](double x) { return x >= least && x <= 0.5 * longest; }};
+}
+
+Range cycles_of(std::size_t steps) {
+  Range cycles = whole(1, static_cast<double>(kMaxSteps / std::max<std::size_t>(steps, 1)));
+  cycles.words += fmt::format(", {} steps in all", kMaxSteps);
+  return cycles;
+}
+
+}  // namespace slipstick::solver

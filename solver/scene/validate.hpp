@@ -1,0 +1,36 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "solver/input/toml_reader.hpp"
+#include "solver/scene/scene.hpp"
+
+/// What a scene's numbers may be, whether a file or a program says them.
+namespace slipstick::solver {
+
+inline const Range kRatio{"above -1 and below 1 (1 is gross slip)",
+                          [](double x) { return x > -1.0 && x < 1.0; }};
+inline const Range kPoisson{"from 0 to 0.5", [](double x) { return x >= 0.0 && x <= 0.5; }};
+inline const Range kTolerance{"from 1e-15 to below 1", [](double x) { return x >= 1e-15 && x < 1.0; }};
+inline const Range kCells = whole(1, 65536);
+inline const Range kIterations = whole(1, 1e9);
+inline const Range kThreads = whole(1, 1024);
+/// Powers of a cell's size stay within double precision.
+inline const Range kExponent{"from 1 to 20", [](double x) { return x >= 1.0 && x <= 20.0; }};
+inline const Range kHurst{"above 0, at most 1", [](double x) { return x > 0.0 && x <= 1.0; }};
+Range inner_radius_below(double radius);
+Range period_for(double longest);
+Range shortest_for(double longest, double period);
+/// A step's result stays in memory to the end: some ten kilobytes.
+inline constexpr std::size_t kMaxSteps = 100'000;
+Range cycles_of(std::size_t steps);
+/// Each takes a field over the grid.
+inline constexpr std::size_t kMaxShapes = 1000;
+
+/// Says what is wrong, by throwing.
+using Refuse =
+    std::function<void(const std::string& key, const std::string& value, const std::string& allowed)>;
+void validate(const Scene& scene, const Refuse& refuse);
+
+}  // namespace slipstick::solver
