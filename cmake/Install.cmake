@@ -1,12 +1,9 @@
 include(CMakePackageConfigHelpers)
+include(PublicHeaders)
 
 install(TARGETS slipstick)
 install(TARGETS slipstick_analytic slipstick_solver slipstick_convergence EXPORT slipstick-targets)
-foreach(folder analytic solver convergence)
-  install(DIRECTORY ${folder} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/slipstick
-    FILES_MATCHING PATTERN "*.hpp" PATTERN "*_command.hpp" EXCLUDE PATTERN "gsl.hpp" EXCLUDE PATTERN "exact_answer.hpp" EXCLUDE
-    PATTERN "elliptic_series.hpp" EXCLUDE PATTERN "certified/*" EXCLUDE PATTERN "tests" EXCLUDE PATTERN "allocations" EXCLUDE)
-endforeach()
+install(DIRECTORY ${SLIPSTICK_PUBLIC_INCLUDE}/slipstick DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 install(EXPORT slipstick-targets NAMESPACE slipstick:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/slipstick)
 configure_package_config_file(cmake/slipstickConfig.cmake.in ${PROJECT_BINARY_DIR}/slipstickConfig.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/slipstick)

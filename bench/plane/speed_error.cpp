@@ -16,6 +16,7 @@
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/solve/cost.hpp"
 #include "convergence/studies/study_plan.hpp"
+#include "solver/model.hpp"
 
 namespace slipstick::bench {
 namespace {
@@ -114,10 +115,8 @@ Json measure_exact(const std::filesystem::path& file, double moment_ratio) {
   PlaneChoice choice;
   choice.cells = kExactCells;
   const solver::Scene scene = solver::read_scene(file, all_overrides(moment_ratio, choice));
-  const solver::Model model = solver::make_model(scene);
-  Eigen::ArrayXd radius =
-      (solver::cell_x1(model.grid).square() + solver::cell_x2(model.grid).square()).sqrt() *
-      model.length_unit;
+  const solver::Grid grid = solver::make_model(scene).grid_in_m();
+  const Eigen::ArrayXd radius = (solver::cell_x1(grid).square() + solver::cell_x2(grid).square()).sqrt();
   Eigen::ArrayXd traction(radius.size());
   double error = 0.0;
   const Repetitions times = repeat([&] {

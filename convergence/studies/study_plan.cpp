@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "solver/input/input_error.hpp"
+#include "solver/model.hpp"
 #include "solver/scene/surface_geometry.hpp"
 
 namespace slipstick::convergence {

@@ -8,10 +8,20 @@ endfunction()
 
 file(REMOVE_RECURSE ${WORK_DIR})
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/prefix)
-run(${CMAKE_COMMAND} -S ${CMAKE_CURRENT_LIST_DIR}/consumer -B ${WORK_DIR}/consumer -G Ninja
+# The consumer is the program of docs/use-from-cpp.md.
+file(READ ${CMAKE_CURRENT_LIST_DIR}/../../docs/use-from-cpp.md page)
+string(REGEX MATCH "```cpp\n([^`]*)```" snippet "${page}")
+file(WRITE ${WORK_DIR}/source/consumer.cpp "${CMAKE_MATCH_1}")
+file(COPY ${CMAKE_CURRENT_LIST_DIR}/consumer/CMakeLists.txt DESTINATION ${WORK_DIR}/source)
+run(${CMAKE_COMMAND} -S ${WORK_DIR}/source -B ${WORK_DIR}/consumer -G Ninja
   -D CMAKE_PREFIX_PATH=${WORK_DIR}/prefix -D CMAKE_BUILD_TYPE=Release -D "CMAKE_CXX_FLAGS=${CXX_FLAGS}")
 run(${CMAKE_COMMAND} --build ${WORK_DIR}/consumer)
+file(GLOB_RECURSE headers RELATIVE ${WORK_DIR}/prefix/include ${WORK_DIR}/prefix/include/*)
+list(LENGTH headers count)
+if(count GREATER 13)
+  message(FATAL_ERROR "more than the public headers is installed: ${headers}")
+endif()
 set(scene ${WORK_DIR}/prefix/share/slipstick/convergence/scenes/paper.toml)
-run(${WORK_DIR}/consumer/consumer ${scene})
+run(${WORK_DIR}/consumer/consumer)
 run(${WORK_DIR}/prefix/bin/slipstick solve ${scene} --set "grid.cells=[32,32]")
 file(REMOVE_RECURSE ${WORK_DIR})

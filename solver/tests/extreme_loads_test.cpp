@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "solver/contact/coulomb_method.hpp"
-#include "solver/operator/direct.hpp"
 #include "solver/model_solution.hpp"
+#include "solver/operator/direct.hpp"
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
@@ -99,7 +99,7 @@ TEST_P(ExtremeLoads, NextToGrossSlipTakeAFewApplications) {
   for (const double missing : {2e-4, 1e-4, 1e-5, 1e-6}) {
     SCOPED_TRACE(missing);
     const TangentialProblem loads = problem(1.0 - missing);
-    const TangentialSolution solution = solve_in_model_units(loads);
+    const TangentialSolution solution = solve(loads);
     ASSERT_EQ(solution.status, Status::converged) << solution.message;
     EXPECT_LE(finest_grid_applications(solution.grids), kMostApplications);
     const Certificate c = certificate(loads, solution);
@@ -113,11 +113,11 @@ TEST_P(ExtremeLoads, NextToGrossSlipTakeAFewApplications) {
 // Nearly everything sticks, and a bonded contact is linear: half the load, half of everything. Only cells
 // whose bound is next to nothing slip, and carry next to nothing.
 TEST_P(ExtremeLoads, NextToNoneAreLinear) {
-  const TangentialSolution larger = solve_in_model_units(problem(1e-8));
+  const TangentialSolution larger = solve(problem(1e-8));
   for (const double part : {1e-10, 1e-12}) {
     SCOPED_TRACE(part);
     const TangentialProblem loads = problem(part);
-    const TangentialSolution solution = solve_in_model_units(loads);
+    const TangentialSolution solution = solve(loads);
     ASSERT_EQ(solution.status, Status::converged) << solution.message;
     EXPECT_LE(finest_grid_applications(solution.grids), kMostApplications);
     const double scale = 1e-8 / part;

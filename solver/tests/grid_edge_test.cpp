@@ -230,9 +230,8 @@ TEST(GridEdge, HoldsAHistorysLargestLoad) {
   scene.steps[0].normal = 200.0;
   scene.steps[1].normal = 4000.0;
   int steps = 0;
-  EXPECT_THAT(
-      complaint([&] { solve_in_model_units(scene, ([&](const ModelSolution&) { ++steps; }}); }),
-      AllOf(HasSubstr("grid.extent"), HasSubstr("under 4000 N")));
+  EXPECT_THAT(complaint([&] { solve_in_model_units(scene, [&](const ModelSolution&) { ++steps; }); }),
+              AllOf(HasSubstr("grid.extent"), HasSubstr("under 4000 N")));
   EXPECT_EQ(steps, 1) << "the first step fits";
 }
 

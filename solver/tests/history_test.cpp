@@ -26,7 +26,7 @@ constexpr double kSame = 1e-9;
 std::vector<ModelSolution> history(const Scene& scene) {
   std::vector<ModelSolution> steps;
   const ModelSolution last =
-      solve_in_model_units(scene, ([&](const ModelSolution& solution) { steps.push_back(solution); }});
+      solve_in_model_units(scene, [&](const ModelSolution& solution) { steps.push_back(solution); });
   EXPECT_EQ(last.status, Status::converged) << last.message;
   steps.resize(scene.steps.size(), last);
   return steps;
@@ -303,15 +303,15 @@ TEST(Torsion, ReturnsToTheSameLoopAThousandTimes) {
   scene.tolerance = 1e-10;
   std::vector<std::array<double, 2>> twists;
   std::vector<double> dissipated;
-  const ModelSolution last = solve_in_model_units(scene, ([&](const ModelSolution& step) {
-                                        if (step.moment > 0.0) {
-                                          twists.push_back({step.twist_angle, 0.0});
-                                          dissipated.push_back(step.dissipated);
-                                        } else {
-                                          twists.back()[1] = step.twist_angle;
-                                          dissipated.back() += step.dissipated;
-                                        }
-                                      }});
+  const ModelSolution last = solve_in_model_units(scene, [&](const ModelSolution& step) {
+    if (step.moment > 0.0) {
+      twists.push_back({step.twist_angle, 0.0});
+      dissipated.push_back(step.dissipated);
+    } else {
+      twists.back()[1] = step.twist_angle;
+      dissipated.back() += step.dissipated;
+    }
+  });
   ASSERT_EQ(last.status, Status::converged) << last.message;
   ASSERT_EQ(twists.size(), 500U);
   EXPECT_EQ(last.cycle, 500);

@@ -219,7 +219,7 @@ TEST_P(ReducedModel, GivesTheFullModelsAnswer) {
 
 TEST_P(ReducedModel, NamesWhatItLeavesOut) {
   const Case& tested = GetParam();
-  const ModelSolution reduced = solve(tested.scene);
+  const ModelSolution reduced = solve_in_model_units(tested.scene);
   std::vector<std::string> expected;
   expected.emplace_back(coupled() ? kShearCoupling : kCoupling);
   expected.emplace_back(kTranslations);
@@ -392,7 +392,7 @@ TEST(PredictedMemory, IsWhatTheSolutionHolds) {
 /// How far the contact reaches is not known before: what is trimmed later is not needed either.
 TEST(PredictedMemory, IsEnoughWhereTheContactIsTrimmed) {
   for (const Case& tested : cases()) {
-    const ModelSolution solution = solve(tested.scene);
+    const ModelSolution solution = solve_in_model_units(tested.scene);
     EXPECT_GE(predicted_memory(tested.scene, make_model(tested.scene)).solver, solution.bytes) << tested.name;
   }
 }

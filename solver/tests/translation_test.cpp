@@ -209,7 +209,7 @@ TEST(Motion, GivesTheLoadsThatItCameFrom) {
         step.displacement = loaded.displacement;
         step.force = {};
       }
-      if (by_twist) step.torsion = {.moment_ratio = {}, .moment = {}, .twist = loaded.twist_angle};
+      if (by_twist) step.torsion = Twist{loaded.twist_angle};
       const ModelSolution moved = solved(imposed);
       EXPECT_LE(relative_difference(moved.tangential.traction, loaded.tangential.traction), kSame);
       EXPECT_NEAR(moved.moment / loaded.moment, 1.0, kSame);
@@ -269,7 +269,7 @@ TEST_P(Mindlin, IsTheDifferenceOfTwoPressures) {
 
   const double force = paper::kFriction * part * paper::kLoad;
   scene.steps[0].force = {force * along[0], force * along[1]};
-  scene.steps[0].torsion = {.moment_ratio = {}, .moment = {}, .twist = 0.0};
+  scene.steps[0].torsion = Twist{0.0};
   const ModelSolution solution = solved(scene);
   const Index cells = expected.size();
   const ArrayXd& q = solution.tangential.traction;
@@ -320,8 +320,7 @@ TEST(TangentStiffness, IsThatOfTheLoadsHeld) {
     std::array<double, 2> moments{};
     const double step = 1e-5 * middle.twist_angle;
     for (const int side : {0, 1}) {
-      scene.steps[0].torsion = {
-          .moment_ratio = {}, .moment = {}, .twist = middle.twist_angle + (side == 0 ? -step : step)};
+      scene.steps[0].torsion = Twist{middle.twist_angle + (side == 0 ? -step : step)};
       moments[static_cast<std::size_t>(side)] = solved(scene).moment;
     }
     const double expected = (moments[1] - moments[0]) / (2.0 * step);
@@ -388,7 +387,9 @@ TEST(MomentRatio, IsOfTheLimitWithoutForce) {
 }
 
 TEST(Limit, RefusesMoreThanTheContactCanCarry) {
-  const auto complaint_of = [](const Scene& scene) { return complaint([&] { solve_in_model_units(scene); }); };
+  const auto complaint_of = [](const Scene& scene) {
+    return complaint([&] { solve_in_model_units(scene); });
+  };
   const std::string slides = complaint_of(pushed(1.25, 0.0, 0.0));
   EXPECT_THAT(slides, HasSubstr("load.force"));
   EXPECT_THAT(slides, HasSubstr("[125, 0] N"));
@@ -400,14 +401,14 @@ TEST(Limit, RefusesMoreThanTheContactCanCarry) {
   EXPECT_THAT(both, HasSubstr("turning about ("));
 
   Scene scene = sphere({5.0, -7.0});
-  scene.steps[0].torsion = {.moment_ratio = {}, .moment = 1.1 * paper::kMomentLimit, .twist = {}};
+  scene.steps[0].torsion = Moment{1.1 * paper::kMomentLimit};
   const std::string turns = complaint_of(scene);
   EXPECT_THAT(turns, HasSubstr("load.moment = "));
   EXPECT_THAT(turns, HasSubstr("turning about (0.0002445, -0.0003424) m"));
 
   // No force in one direction is too large where the other motion is imposed.
   scene = pushed(0.99, 0.0, 0.0);
-  scene.steps[0].torsion = {.moment_ratio = {}, .moment = {}, .twist = 1e-3};
+  scene.steps[0].torsion = Twist{1e-3};
   EXPECT_NEAR(solved(scene).force[0], 0.99 * paper::kFriction * paper::kLoad, 1e-9);
 }
 

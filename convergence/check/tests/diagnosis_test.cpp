@@ -147,8 +147,8 @@ TEST(Diagnosis, TellsPoissonsRatioFromTheField) {
     const ForeignField field{.file = "made",
                              .grid = grid,
                              .centre = {0.0, 0.0},
-                             .pressure = solution.normal.pressure * solution.model.stress_unit,
-                             .traction = solution.tangential.traction * solution.model.stress_unit,
+                             .pressure = solution.pressure,
+                             .traction = solution.traction,
                              .pressure_rounding = none,
                              .traction_rounding = none};
     const Diagnosis diagnosis = diagnose(make_given_contact(field, right, model), {}, 1e-5);

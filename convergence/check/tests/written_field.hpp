@@ -42,14 +42,13 @@ inline std::filesystem::path write_rows(const FieldRows& rows, int digits = 17,
   return file;
 }
 
-/// The contact cells of a solution, in SI units.
+/// The contact cells of a solution.
 inline FieldRows rows_of(const solver::Solution& solution) {
-  const solver::Model& model = solution.model;
-  const solver::Index cells = model.grid.cells();
-  const Eigen::ArrayXd x1 = solver::cell_x1(model.grid) * model.length_unit;
-  const Eigen::ArrayXd x2 = solver::cell_x2(model.grid) * model.length_unit;
-  const Eigen::ArrayXd p = solution.normal.pressure * model.stress_unit;
-  const Eigen::ArrayXd q = solution.tangential.traction * model.stress_unit;
+  const solver::Index cells = solution.grid.cells();
+  const Eigen::ArrayXd x1 = solver::cell_x1(solution.grid);
+  const Eigen::ArrayXd x2 = solver::cell_x2(solution.grid);
+  const Eigen::ArrayXd& p = solution.pressure;
+  const Eigen::ArrayXd& q = solution.traction;
   FieldRows rows;
   for (solver::Index i = 0; i < cells; ++i) {
     if (p[i] > 0.0) rows.push_back({x1[i], x2[i], p[i], q[i], q[i + cells]});

@@ -11,6 +11,7 @@
 #include "convergence/results/result.hpp"
 #include "solver/scene/hertz_pressure.hpp"
 #include "solver/solve.hpp"
+#include "solver/model.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -76,8 +77,8 @@ TEST(Comparison, OfABodyOffTheOrigin) {
       scene("/paper.toml", {"grid.cells=[40, 40]", "grid.extent=[2e-3, 2e-3]", "upper.at=[1e-4, -2e-4]"});
   solver::Scene centred = shifted;
   centred.surfaces.front().at = {0.0, 0.0};
-  const ExactFields there = exact_fields(*find_oracle(shifted).oracle, solver::make_model(shifted));
-  const ExactFields here = exact_fields(*find_oracle(centred).oracle, solver::make_model(centred));
+  const ExactFields there = exact_fields(*find_oracle(shifted).oracle, solver::make_model(shifted).grid_in_m());
+  const ExactFields here = exact_fields(*find_oracle(centred).oracle, solver::make_model(centred).grid_in_m());
   for (int i = 0; i < 38; ++i) {  // cells of 0.05 mm: shifted by two and by four
     for (int j = 4; j < 40; ++j) {
       const int from = i * 40 + j;

@@ -18,6 +18,7 @@
 #include "convergence/results/quantity.hpp"
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/studies/budget.hpp"
+#include "solver/model.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/tests/complaint.hpp"
 
@@ -309,9 +310,9 @@ TEST_F(StudyTest, LooksAtWhatTheSceneHas) {
 TEST(TractionError, AverageAndCentreDifferAtTheEdgesOnly) {
   const auto error_at = [](int n) {
     const solver::Scene scene = solver::read_scene(kPaper, {cells(n)});
-    const solver::Model model = solver::make_model(scene);
+    const solver::Grid grid = solver::make_model(scene).grid_in_m();
     const Oracle oracle = *find_oracle(scene).oracle;
-    return traction_error(exact_fields(oracle, model).traction, oracle, model);
+    return traction_error(exact_fields(oracle, grid).traction, oracle, grid);
   };
   const TractionError coarse = error_at(32);
   const TractionError fine = error_at(128);
@@ -328,10 +329,10 @@ TEST(TractionError, AverageAndCentreDifferAtTheEdgesOnly) {
 
 TEST(TractionError, RegionsAddUpToTheWhole) {
   const solver::Scene scene = solver::read_scene(kPaper, {cells(48)});
-  const solver::Model model = solver::make_model(scene);
+  const solver::Grid grid = solver::make_model(scene).grid_in_m();
   const Oracle oracle = *find_oracle(scene).oracle;
-  const Eigen::ArrayXd exact = exact_fields(oracle, model).traction;
-  const TractionError error = traction_error(1.01 * exact, oracle, model);
+  const Eigen::ArrayXd exact = exact_fields(oracle, grid).traction;
+  const TractionError error = traction_error(1.01 * exact, oracle, grid);
   EXPECT_NEAR(error.at_centres.l1, 0.01, 1e-12);
   EXPECT_NEAR(error.at_centres.l2, 0.01, 1e-12);
   EXPECT_NEAR(error.at_centres.max, 0.01, 1e-12);

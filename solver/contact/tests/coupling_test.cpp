@@ -241,7 +241,7 @@ TEST(FullCoupling, EndsWhateverTheFriction) {
       scene.friction = friction;
       scene.ends_at_grid_edge = true;  // much friction drags the contact there
       scene.tolerance = 1e-8;
-      scene.steps[0].torsion = {.moment_ratio = {}, .moment = {}, .twist = 0.0};
+      scene.steps[0].torsion = Twist{0.0};
       scene.steps[0].force = {push * friction * paper::kLoad, 0.0};
       const ModelSolution solution = solve_in_model_units(scene);
       if (solution.status == Status::converged) {
@@ -313,13 +313,13 @@ double late_stick_ratio(Coupling coupling, Index cells, int steps) {
   }
   double sum = 0.0;
   int count = 0;
-  const ModelSolution last = solve_in_model_units(scene, ([&](const ModelSolution& solution) {
-                                        if (!(*solution.loads.normal > 0.2 * load)) return;
-                                        EXPECT_EQ(solution.stick_radius, solution.stick_radius_counted);
-                                        EXPECT_NE(solution.stick_radius_note, "");
-                                        sum += counted_stick_ratio(solution);
-                                        ++count;
-                                      }});
+  const ModelSolution last = solve_in_model_units(scene, [&](const ModelSolution& solution) {
+    if (!(*solution.loads.normal > 0.2 * load)) return;
+    EXPECT_EQ(solution.stick_radius, solution.stick_radius_counted);
+    EXPECT_NE(solution.stick_radius_note, "");
+    sum += counted_stick_ratio(solution);
+    ++count;
+  });
   EXPECT_EQ(last.status, Status::converged) << last.message;
   return sum / count;
 }

@@ -13,10 +13,10 @@
 #include <string>
 #include <vector>
 
+#include "solver/allocations/allocations.hpp"
 #include "solver/newton/multiplier_refinement.hpp"
 #include "solver/newton/tangent_space.hpp"
 #include "solver/operator/direct.hpp"
-#include "solver/allocations/allocations.hpp"
 #include "solver/tests/dense_algebra.hpp"
 
 namespace slipstick::solver {

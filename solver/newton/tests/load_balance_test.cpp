@@ -6,9 +6,9 @@
 #include <limits>
 #include <random>
 
+#include "solver/allocations/allocations.hpp"
 #include "solver/contact/limit_load.hpp"
 #include "solver/newton/admissible.hpp"
-#include "solver/allocations/allocations.hpp"
 
 namespace slipstick::solver {
 namespace {

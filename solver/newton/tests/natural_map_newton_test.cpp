@@ -7,8 +7,8 @@
 #include <limits>
 #include <random>
 
-#include "solver/operator/elasticity.hpp"
 #include "solver/allocations/allocations.hpp"
+#include "solver/operator/elasticity.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
 namespace slipstick::solver {

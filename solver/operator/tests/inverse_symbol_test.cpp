@@ -10,8 +10,8 @@
 #include <string>
 #include <vector>
 
-#include "solver/fft/fftw.hpp"
 #include "solver/allocations/allocations.hpp"
+#include "solver/fft/fftw.hpp"
 
 namespace slipstick::solver {
 namespace {

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
+#include "solver/allocations/allocations.hpp"
 #include "solver/grid/mirror.hpp"
 #include "solver/operator/convolution.hpp"
 #include "solver/operator/direct.hpp"
-#include "solver/allocations/allocations.hpp"
 
 namespace slipstick::solver {
 namespace {

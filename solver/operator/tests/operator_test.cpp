@@ -10,10 +10,10 @@
 #include <random>
 #include <string>
 
+#include "solver/allocations/allocations.hpp"
 #include "solver/operator/convolution.hpp"
 #include "solver/operator/direct.hpp"
 #include "solver/operator/linear_operator.hpp"
-#include "solver/allocations/allocations.hpp"
 
 namespace slipstick::solver {
 namespace {

@@ -11,9 +11,9 @@
 #include <numbers>
 
 #include "solver/input/input_error.hpp"
+#include "solver/model_solution.hpp"
 #include "solver/scene/roughness.hpp"
 #include "solver/scene/surface_geometry.hpp"
-#include "solver/model_solution.hpp"
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/press.hpp"
 
