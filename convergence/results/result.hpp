@@ -25,6 +25,10 @@ void add_steps(Json& result, Json steps);
 /// The same for a person: a few lines.
 std::string solve_text(const Json& result);
 
+/// Traction over mu p0 in the contact's cells beside the positive x1 axis and along the diagonal, as rows of
+/// {radius (r/a), value, exact, error}; none where the exact tractions are not known.
+Json profile_json(const solver::Solution& solution, const OracleAnswer& exact);
+
 /// Writes tractions, pressure, slip, stick and the energy dissipated (J/m^2) of a solution (and the exact
 /// traction, where known) over its cells; slip and dissipated of its step.
 void write_solution_fields(const std::filesystem::path& file, const solver::Solution& solution,

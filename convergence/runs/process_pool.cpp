@@ -18,7 +18,6 @@
 #include <thread>
 #include <utility>
 
-#include "convergence/results/profile.hpp"
 #include "convergence/results/result.hpp"
 #include "convergence/runs/progress.hpp"
 #include "convergence/runs/result_cache.hpp"

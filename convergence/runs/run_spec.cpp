@@ -1,12 +1,10 @@
 #include "convergence/runs/run_spec.hpp"
 
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cstdint>
-#include <utility>
 
 #include "solver/input/input_file.hpp"
 
@@ -21,14 +19,11 @@ std::uint64_t hash(const std::string& text) {
 }
 
 std::string cache_key(const RunSpec& spec, const solver::Scene& scene) {
-  std::string text = fmt::format("{}\n{}", read_text(spec.scene), fmt::join(spec.overrides, "\n"));
+  std::string text = read_text(spec.scene) + run_text(spec);
   for (const solver::Surface& surface : scene.surfaces) {
     if (!surface.file.empty()) text += read_text(surface.file);
   }
   if (!scene.pressure_file.empty()) text += read_text(scene.pressure_file);
-  if (spec.rounding != Rounding::nearest) {
-    text += spec.rounding == Rounding::upward ? "\nrounded upward" : "\nrounded downward";
-  }
   if (!spec.fields.empty()) text += "\nfields " + spec.fields.string();
   if (spec.profile) text += "\nprofile";
   return text;

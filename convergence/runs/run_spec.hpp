@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cfenv>
 #include <filesystem>
 #include <string>
 #include <vector>
@@ -10,7 +11,7 @@ namespace slipstick::convergence {
 
 /// How floating-point results are rounded. A solve that is rounded upwards or downwards throughout differs
 /// from the usual one by what rounding does to it, at its worst: all roundings lean to the same side.
-enum class Rounding { nearest, upward, downward };
+enum class Rounding : int { nearest = FE_TONEAREST, upward = FE_UPWARD, downward = FE_DOWNWARD };
 
 /// One solve that a study, a gate or the page asks for: a scene with some keys changed.
 struct RunSpec {

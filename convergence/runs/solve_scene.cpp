@@ -10,21 +10,12 @@
 namespace slipstick::convergence {
 namespace {
 
-int mode(Rounding rounding) {
-  switch (rounding) {
-    case Rounding::upward:
-      return FE_UPWARD;
-    case Rounding::downward:
-      return FE_DOWNWARD;
-    default:
-      return FE_TONEAREST;
-  }
-}
-
 /// Sets how this thread rounds, and sets it back.
 class RoundingScope {
  public:
-  explicit RoundingScope(Rounding rounding) : before_(std::fegetround()) { std::fesetround(mode(rounding)); }
+  explicit RoundingScope(Rounding rounding) : before_(std::fegetround()) {
+    std::fesetround(static_cast<int>(rounding));
+  }
   ~RoundingScope() { std::fesetround(before_); }
   RoundingScope(const RoundingScope&) = delete;
   RoundingScope& operator=(const RoundingScope&) = delete;
