@@ -6,6 +6,7 @@
 #include "bench/suite/checked_solve.hpp"
 #include "bench/suite/suite.hpp"
 #include "convergence/results/exact_result.hpp"
+#include "solver/model_solution.hpp"
 #include "solver/pressure.hpp"
 
 namespace slipstick::bench {
@@ -24,7 +25,8 @@ Prepared solve(Index cells) {
   const auto model = std::make_shared<solver::Model>(solver::make_model(scene));
   const auto find = [scene, model] { return solver::find_pressure(scene, *model, scene.steps[0]); };
   const solver::NormalSolution found = find();
-  const double error = convergence::pressure_error(found.pressure, exact, *model).l2;
+  const double error =
+      convergence::pressure_error(model->stress_unit * found.pressure, exact, model->grid_in_m()).l2;
   const double radius = solver::measure_contact_radius(*model, found.pressure);
   const bool right = error <= kPressureErrorTimesCells / static_cast<double>(cells);
   return {.counters = {{"error", error},

@@ -3,12 +3,13 @@
 #include <fmt/core.h>
 #include <gsl/gsl_cdf.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
 
+#include "solver/newton/coefficients.hpp"
 #include "solver/scene/bracketed_root.hpp"
 
 namespace slipstick::convergence {
@@ -129,7 +130,7 @@ PowerFit power_fit(const Meshes& meshes, const std::vector<double>& powers, bool
   for (std::size_t k = 0; k < powers.size(); ++k) {
     terms.col(static_cast<Eigen::Index>(k) + 1) = sizes.pow(powers[k]) * roots;
   }
-  VectorXd coefficients = terms.colPivHouseholderQr().solve((values * roots).matrix());
+  VectorXd coefficients = solver::least_squares(terms, (values * roots).matrix());
   const double squares = (terms * coefficients - (values * roots).matrix()).squaredNorm();
   coefficients[0] += meshes.back().value;
   const auto left = static_cast<double>(terms.rows() - terms.cols() - fitted);
@@ -195,8 +196,7 @@ double half_interval(const PowerFit& fit, const Meshes& meshes) {
   MatrixXd slopes(sizes.size(), 3);
   slopes << roots, power * roots, fit.coefficients[1] * power * sizes.log() * roots;
   const double left = static_cast<double>(sizes.size()) - 3.0;
-  return gsl_cdf_tdist_Pinv(kBothSides, left) * fit.deviation *
-         slopes.completeOrthogonalDecomposition().pseudoInverse().row(2).norm();
+  return gsl_cdf_tdist_Pinv(kBothSides, left) * fit.deviation * solver::pseudo_inverse(slopes).row(2).norm();
 }
 
 Order order_of(const std::optional<PowerFit>& fit, const Meshes& meshes) {

@@ -3,11 +3,13 @@
 #include <fmt/core.h>
 #include <gsl/gsl_cdf.h>
 
-#include <Eigen/Dense>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
+
+#include "solver/newton/coefficients.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -72,7 +74,7 @@ LogFit log_fit(const Meshes& meshes, const Scatter& scatter, Eigen::Index degree
   const ArrayXd weights = known ? ArrayXd(scatter.errors.inverse()) : ArrayXd::Ones(count);
   MatrixXd powers(count, degree + 1);
   for (Eigen::Index k = 0; k <= degree; ++k) powers.col(k) = x.pow(static_cast<double>(k)) * weights;
-  const MatrixXd solves = powers.completeOrthogonalDecomposition().pseudoInverse();
+  const MatrixXd solves = solver::pseudo_inverse(powers);
   const VectorXd coefficients = solves * (y * weights).matrix();
   const double squares = (powers * coefficients - (y * weights).matrix()).squaredNorm();
   const auto left = static_cast<double>(count - degree - 1);

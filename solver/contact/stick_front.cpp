@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/QR>
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "solver/contact/certificate.hpp"
+
+#include "solver/newton/coefficients.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -71,7 +73,7 @@ double fitted_root(const std::vector<Sample>& samples, int degree) {
     basis.row(k).tail<3>() << y, x * y, y * y;
     psi[k] = value;
   }
-  const Eigen::VectorXd c = basis.colPivHouseholderQr().solve(psi);
+  const Eigen::VectorXd c = least_squares(basis, psi);
   double x = 0.0;
   for (int step = 0; step < 20; ++step) {
     double value = 0.0;

@@ -26,4 +26,12 @@ Coefficients SmallCholesky::solve(const Coefficients& right) const { return fact
 
 Coefficients SmallCholesky::diagonal() const { return factor_.matrixLLT().diagonal(); }
 
+Eigen::VectorXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right) {
+  return matrix.colPivHouseholderQr().solve(right);
+}
+
+Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix) {
+  return matrix.completeOrthogonalDecomposition().pseudoInverse();
+}
+
 }  // namespace slipstick::solver

@@ -110,9 +110,10 @@ class Validation {
       }
       if (const auto ratio = value_if<MomentRatio>(step.torsion)) {
         require(step.key + ".moment_ratio", *ratio, kRatio);
+      } else if (const auto moment = value_if<Moment>(step.torsion)) {
+        require(step.key + ".moment", *moment, kFinite);
       } else {
-        std::visit([&](const auto& load) { require(step.key + ".moment or .twist", load.value, kFinite); },
-                   step.torsion);
+        require(step.key + ".twist", std::get<Twist>(step.torsion).value, kFinite);
       }
       for (const double force : step.force) require(step.key + ".force", force, kFinite);
       if (!step.displacement) continue;

@@ -369,6 +369,7 @@ TEST(PredictedMemory, IsWhatTheSolutionHolds) {
       for (const auto& [method, pressure] : {std::pair{Method::coulomb, PressureModel::solved},
                                              {Method::paper, PressureModel::solved},
                                              {Method::paper, PressureModel::hertz_averaged}}) {
+        if (method == Method::paper && precision == Precision::mixed) continue;  // no such scene
         for (const std::array<Index, 2> cells : {std::array<Index, 2>{32, 32}, {32, 26}, {31, 32}}) {
           Scene scene = paper_scene(32, 0.5);
           scene.cells = cells;

@@ -24,7 +24,7 @@ inline solver::Scene twisted(solver::Scene scene, const std::vector<double>& rat
   scene.steps.assign(ratios.size(), first);
   for (std::size_t i = 0; i < ratios.size(); ++i) {
     scene.steps[i].key = "step[" + std::to_string(i) + "]";
-    scene.steps[i].torsion = {.moment_ratio = ratios[i], .moment = {}, .twist = {}};
+    scene.steps[i].torsion = solver::MomentRatio{ratios[i]};
   }
   return scene;
 }

@@ -86,7 +86,7 @@ TEST(OracleHistory, AnEllipseFollowsTheNormalLoadAlone) {
   scene.steps.resize(3, scene.steps.front());
   scene.steps[1].normal = 8.0 * *scene.steps[0].normal;
   scene.steps[1].force = {10.0, 20.0};
-  scene.steps[2].torsion = {.moment_ratio = {}, .moment = {}, .twist = -1e-4};
+  scene.steps[2].torsion = solver::Twist{-1e-4};
   const std::vector<Oracle> exact = oracles(scene);
   EXPECT_NEAR(exact[1].contact_radius / exact[0].contact_radius, 2.0, kTolerance);
   EXPECT_NEAR(exact[1].peak_pressure / exact[0].peak_pressure, 2.0, kTolerance);
@@ -238,7 +238,7 @@ TEST(OracleHistory, ImposedTwistsAreThoseOfTheMoments) {
   Scene scene = twisted(scene_of("paper"), {0.8, -0.3, 0.1, -0.9, 0.0});
   const std::vector<Oracle> by_moment = oracles(scene);
   for (std::size_t i = 0; i < scene.steps.size(); ++i) {
-    scene.steps[i].torsion = {.moment_ratio = {}, .moment = {}, .twist = by_moment[i].twist_angle};
+    scene.steps[i].torsion = solver::Twist{by_moment[i].twist_angle};
   }
   const std::vector<Oracle> by_twist = oracles(scene);
   ASSERT_EQ(by_twist.size(), by_moment.size());
@@ -248,11 +248,11 @@ TEST(OracleHistory, ImposedTwistsAreThoseOfTheMoments) {
 /// No answer from the first step on that no theory reaches: what comes after depends on it.
 TEST(OracleHistory, EndsWithGrossSlip) {
   Scene moment = twisted(scene_of("paper"), {0.5, 0.0, 0.3});
-  moment.steps[1].torsion = {.moment_ratio = {}, .moment = -0.02882, .twist = {}};
+  moment.steps[1].torsion = solver::Moment{-0.02882};
   Scene twist = moment;
-  twist.steps[1].torsion = {.moment_ratio = {}, .moment = {}, .twist = 1e3};
+  twist.steps[1].torsion = solver::Twist{1e3};
   Scene twist_back = moment;
-  twist_back.steps[1].torsion = {.moment_ratio = {}, .moment = {}, .twist = -1e3};
+  twist_back.steps[1].torsion = solver::Twist{-1e3};
   const Scene force =
       pushed(without_contraction(scene_of("paper")), {{1000.0, 50.0}, {900.0, -90.1}, {1000.0, 0.0}});
   for (const Scene& scene : {moment, twist, twist_back, force}) {

@@ -246,12 +246,12 @@ TEST(Oracle, EllipseSaysNothingOfFriction) {
 TEST(Oracle, EllipseKnowsItsLoads) {
   solver::Scene scene = body("/ellipse.toml", {});
   solver::Step& step = scene.steps.front();
-  step.torsion = {.moment_ratio = {}, .moment = 0.01, .twist = {}};
+  step.torsion = solver::Moment{0.01};
   EXPECT_EQ(find_oracle(scene).oracle->moment, 0.01);
-  step.torsion = {.moment_ratio = {}, .moment = {}, .twist = 1e-3};
+  step.torsion = solver::Twist{1e-3};
   EXPECT_EQ(find_oracle(scene).oracle->twist_angle, 1e-3);
   EXPECT_TRUE(std::isnan(find_oracle(scene).oracle->moment));
-  step.torsion = {.moment_ratio = 0.0, .moment = {}, .twist = {}};
+  step.torsion = solver::MomentRatio{0.0};
   step.force = {3.0, 4.0};
   EXPECT_EQ(find_oracle(scene).oracle->force, step.force);
   EXPECT_EQ(find_oracle(scene).oracle->moment, 0.0);

@@ -16,6 +16,7 @@
 #include "convergence/solve/accurate_solve.hpp"
 #include "convergence/solve/reached.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/model.hpp"
 
 namespace {
 

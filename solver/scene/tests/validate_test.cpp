@@ -1,0 +1,99 @@
+// Scenes that a program built: whatever a file may not say, they may not hold.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <functional>
+#include <limits>
+
+#include "solver/input/tests/complaint.hpp"
+#include "solver/scene/scene.hpp"
+#include "solver/solve.hpp"
+#include "solver/tests/paper_scene.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using testing::HasSubstr;
+
+struct Mistake {
+  const char* key;
+  std::function<void(Scene&)> make;
+};
+
+const double kNaN = std::numeric_limits<double>::quiet_NaN();
+const double kInfinite = std::numeric_limits<double>::infinity();
+
+const Mistake kMistakes[] = {
+    {"upper.shape", [](Scene& s) { s.surfaces.clear(); }},
+    {"upper.radius", [](Scene& s) { s.surfaces[0].radius = 0.0; }},
+    {"upper.angle", [](Scene& s) { s.surfaces[0].angle = kNaN; }},
+    {"upper.at",
+     [](Scene& s) {
+       s.surfaces[0].at = {kInfinite, 0.0};
+     }},
+    {"upper.shape[1].slope", [](Scene& s) { s.surfaces.push_back({.shape = Shape::cone}); }},
+    {"upper.inner_radius",
+     [](Scene& s) { s.surfaces[0] = {.shape = Shape::flat_punch, .radius = 1e-3, .inner_radius = 1e-3}; }},
+    {"upper.exponent", [](Scene& s) { s.surfaces[0] = {.shape = Shape::power, .exponent = 0.5}; }},
+    {"upper.hurst", [](Scene& s) { s.surfaces[0] = {.shape = Shape::roughness}; }},
+    {"upper.young_modulus", [](Scene& s) { s.upper.young_modulus = -1.0; }},
+    {"lower.poisson_ratio", [](Scene& s) { s.lower.poisson_ratio = 0.6; }},
+    {"lower.rigid", [](Scene& s) { s.upper.young_modulus = s.lower.young_modulus = kInfinite; }},
+    {"contact.friction", [](Scene& s) { s.friction = kNaN; }},
+    {"contact.coupling",
+     [](Scene& s) {
+       s.coupling = Coupling::full;
+       s.pressure = PressureModel::hertz;
+     }},
+    {"step", [](Scene& s) { s.steps.clear(); }},
+    {"load.normal", [](Scene& s) { s.steps[0].normal.reset(); }},
+    {"load.moment_ratio", [](Scene& s) { s.steps[0].torsion = MomentRatio{1.0}; }},
+    {"load.moment", [](Scene& s) { s.steps[0].torsion = Moment{kNaN}; }},
+    {"load.twist", [](Scene& s) { s.steps[0].torsion = Twist{kInfinite}; }},
+    {"load.force",
+     [](Scene& s) {
+       s.steps[0].force = {kNaN, 0.0};
+     }},
+    {"load.displacement",
+     [](Scene& s) {
+       s.steps[0].force = {1.0, 0.0};
+       s.steps[0].displacement = {1e-6, 0.0};
+     }},
+    {"cycles", [](Scene& s) { s.cycles = 0; }},
+    {"grid.cells", [](Scene& s) { s.cells = {}; }},
+    {"grid.extent",
+     [](Scene& s) {
+       s.extent = {1e-3, -1e-3};
+     }},
+    {"solver.tolerance", [](Scene& s) { s.tolerance = 0.0; }},
+    {"solver.max_iterations", [](Scene& s) { s.max_iterations = 0; }},
+    {"solver.threads", [](Scene& s) { s.threads = 0; }},
+    {"solver.precision",
+     [](Scene& s) {
+       s.precision = Precision::mixed;
+       s.op = OperatorKind::direct;
+     }},
+    {"solver.method",
+     [](Scene& s) {
+       s.method = Method::paper;
+       s.steps[0].force = {1.0, 0.0};
+     }},
+};
+
+TEST(Validate, NamesTheKeyOfEachMistake) {
+  for (const auto& [key, make] : kMistakes) {
+    Scene scene = paper_scene(16, 0.5);
+    scene.source.clear();
+    EXPECT_EQ(complaint([&] { validate(scene); }), "") << key;
+    make(scene);
+    EXPECT_THAT(complaint([&] { solve(scene); }), HasSubstr(std::string("scene: ") + key + " = "));
+  }
+}
+
+TEST(Validate, ASceneAsItIsConstructedLacksItsShape) {
+  EXPECT_THAT(complaint([] { validate(Scene()); }), HasSubstr("upper.radius = 0: allowed: positive"));
+}
+
+}  // namespace
+}  // namespace slipstick::solver
