@@ -77,6 +77,18 @@ else()
 python3-h5py (or run `make setup`), or set SLIPSTICK_PYTHON")
 endif()
 
+# Optional: reads docs/schema.
+if(SLIPSTICK_TESTS AND SLIPSTICK_PYTHON)
+  execute_process(COMMAND "${SLIPSTICK_PYTHON}" -c "from jsonschema import Draft202012Validator"
+    RESULT_VARIABLE status OUTPUT_QUIET ERROR_QUIET)
+  if(status EQUAL 0)
+    set(SLIPSTICK_JSONSCHEMA ON)
+  else()
+    slipstick_leave_out("the test that holds results to docs/schema"
+      "${SLIPSTICK_PYTHON} cannot import jsonschema 4: install python3-jsonschema (or run `make setup`)")
+  endif()
+endif()
+
 # Optional: counts instructions.
 find_program(SLIPSTICK_VALGRIND valgrind)
 mark_as_advanced(SLIPSTICK_VALGRIND)

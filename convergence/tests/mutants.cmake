@@ -48,7 +48,7 @@ mutant(frozen_slip_directions
     return solve_by_paper_method(*elastic.make(part.grid(), tangential_kernel()), problem,
                                  {.tolerance = scene.tolerance,
                                   .max_iterations = scene.max_iterations,
-                                  .progress = options.progress});
+                                  .progress = progress});
   }
   if (scene.method == Method::coulomb) {]]
   GATES ellipse-64-slip-direction ellipse-64-gap ellipse-64-twist)

@@ -1,0 +1,270 @@
+"""schema_test.py PROGRAM SOURCE_DIR: what the program writes follows docs/schema, and each null says why it is one."""
+
+import copy
+import json
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+import jsonschema
+
+PROGRAM, ROOT = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+SCENES, FIELDS = ROOT / "convergence/scenes", ROOT / "convergence/check/tests/fields"
+SCHEMAS = {path.name.split(".")[0]: json.loads(path.read_text()) for path in (ROOT / "docs/schema").glob("*.json")}
+
+STUDY = f"""
+name = "small"
+scene = "{SCENES}/paper.toml"
+cells = [8, 12, 16]
+shifts = 2
+tolerances = [1e-2, 1e-4]
+"""
+GATE = f"""
+[[gate]]
+id = "{{}}"
+scene = "{SCENES}/paper.toml"
+set = {{{{ "grid.cells" = [32, 32] }}}}
+quantity = "{{}}"
+basis = "made up"
+{{}}
+"""
+# A program as Google Benchmark makes them, whose benchmarks all take so long.
+BENCHMARKS = """#!/bin/sh
+for word in "$@"; do
+  case "$word" in
+    --benchmark_list_tests*)
+      for n in 8 16 32; do echo "application/direct/cells:$n"; echo "application/dcfft/cells:$n"; done
+      exit 0;;
+    --benchmark_filter=*) name="$(printf %s "${word#*=}" | tr -cd 'a-z0-9/:')";;
+    --benchmark_out=*) out="${word#*=}";;
+  esac
+done
+cat > "$out" <<END
+{"context": {"num_cpus": 2, "build_type": "release"}, "benchmarks": [
+ {"name": "$name", "run_name": "$name", "run_type": "iteration", "real_time": MS, "cpu_time": MS, "time_unit": "ms"}]}
+END
+"""
+
+
+def validator(name, part=None):
+    """Of a schema, or of one of its $defs."""
+    schema = {"$ref": f"{SCHEMAS[name]['$id']}#/$defs/{part}"} if part else SCHEMAS[name]
+    try:
+        import referencing
+    except ImportError:  # before jsonschema 4.18
+        store = {each["$id"]: each for each in SCHEMAS.values()}
+        known = {"resolver": jsonschema.RefResolver(schema.get("$id", ""), schema, store)}
+    else:
+        resources = [(each["$id"], referencing.Resource.from_contents(each)) for each in SCHEMAS.values()]
+        known = {"registry": referencing.Registry().with_resources(resources)}
+    return jsonschema.Draft202012Validator(schema, **known)
+
+
+def parse(text):
+    """JSON as the standard has it: NaN and Infinity are none."""
+    def refuse(word):
+        raise ValueError(f"{word} is no JSON")
+    return json.loads(text, parse_constant=refuse)
+
+
+def unexplained(value, path="$"):
+    """Nulls without a reason beside them, and reasons without a null."""
+    if isinstance(value, list):
+        return [found for i, each in enumerate(value) for found in unexplained(each, f"{path}[{i}]")]
+    if not isinstance(value, dict):
+        return []
+    found = [f"{path}.{key}" for key, each in value.items() if each is None and not value.get(f"{key}_reason")]
+    found += [f"{path}.{key}" for key in value if key.endswith("_reason") and value.get(key[:-7], 0) is not None]
+    return found + [each for key in value for each in unexplained(value[key], f"{path}.{key}")]
+
+
+class Results(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.temporary.name)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def file(self, name, text):
+        path = self.folder / name
+        path.write_text(text)
+        return path
+
+    def follows(self, result, name, part=None):
+        error = jsonschema.exceptions.best_match(validator(name, part).iter_errors(result))
+        self.assertIsNone(error, error and f"{name}: {error.json_path}: {error.message[:400]}")
+        self.assertEqual(unexplained(result), [])
+
+    def run_program(self, *words, code=0):
+        """What the command writes; None: nothing."""
+        out = self.folder / "result.json"
+        out.unlink(missing_ok=True)
+        words = [str(word) for word in words]
+        run = subprocess.run([PROGRAM, *words, "--json", out], capture_output=True, text=True, cwd=self.folder)
+        self.assertEqual(run.returncode, code, f"{' '.join(words)}: {run.stderr}")
+        return parse(out.read_text()) if out.exists() else None
+
+    def run_and_check(self, *words, code=0):
+        result = self.run_program(*words, code=code)
+        with self.subTest(command=" ".join(map(str, words))):
+            self.assertIsNotNone(result, "nothing was written")
+            self.follows(result, words[0])
+        return result
+
+    def solve(self, scene, *words, cells="[32,32]", code=0):
+        return self.run_and_check("solve", SCENES / f"{scene}.toml", "--set", f"grid.cells={cells}", *words, code=code)
+
+    def test_exact(self):
+        units = ["--normal-load", 1000, "--effective-modulus", 1e11, "--friction", 0.1, "--shear-modulus", 4e10]
+        self.run_and_check("exact", "--moment-ratio", 0.9, "--radius", "0,0.5,1", *units, "--shape", 0.018)
+        self.run_and_check("exact", "--profile", "flat_punch", "--stick-ratio", 0.5, "--radius", 1, "--unload-to", 0.2)
+        self.run_and_check("exact", "--profile", "cone", "--history", "0.8,-0.8", "--points", 3, "--radius", "0,0.5")
+        rows = "".join(f"{i / 20},{1 - (i / 20)**2}\n" for i in range(21))
+        table = self.file("pressure.csv", "radius,pressure\n" + rows)
+        self.run_and_check("exact", "--profile", f"file:{table}", "--twist", 0.1, "--radius", 0.5)
+
+    def test_certified(self):
+        words = ["exact", "--certified", 20, "--moment-ratio", 0.5, "--radius", 0.5]
+        if "FLINT" in subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True).stderr:
+            self.skipTest("no proven digits without FLINT")
+        self.run_and_check(*words)
+
+    def test_solve(self):
+        for scene in ("paper", "ellipse", "flat_punch", "rough_sphere", "mindlin", "off_centre", "spence", "goodman"):
+            self.solve(scene)
+        for method in ("paper", "projected_gradient"):
+            self.solve("paper", "--set", f"solver.method={method}")
+        self.solve("paper", "--set", "load.moment_ratio=0")
+        self.solve("paper", "--set", "contact.friction=0", "--set", "load.moment_ratio=0")
+        self.run_and_check("solve", SCENES / "honed_surface.toml")
+
+    def test_histories(self):
+        for scene in ("fretting_torsion", "growing_load"):
+            self.assertGreater(len(self.solve(scene)["steps"]), 1)
+
+    def test_solve_without_grid(self):
+        for scene in ("paper", "flat_punch", "fretting_torsion"):
+            self.run_and_check("solve", SCENES / f"{scene}.toml", "--model", "exact")
+
+    def test_accuracy_and_plan(self):
+        words = ["solve", SCENES / "paper.toml", "--accuracy", 0.01]
+        self.run_and_check(*words)
+        self.run_and_check(*words, "--model", "auto")
+        self.run_and_check("solve", SCENES / "ellipse.toml", "--accuracy", 0.05)
+        self.run_and_check(*words, "--plan")
+        self.run_and_check("solve", SCENES / "paper.toml", "--plan")
+
+    def test_failures(self):
+        self.assertEqual(self.solve("paper", "--set", "solver.max_iterations=1", code=1)["status"], "not_converged")
+        self.assertIsNone(self.run_program("solve", SCENES / "paper.toml", "--set", "load.moment_ratio=1.5", code=2))
+        self.assertIsNone(self.run_program("solve", "nothing.toml", code=2))
+        steps = "".join(f'[[step]]\nname = "{moment} N m"\nmoment = {moment}\n' for moment in (0.01, 1.0))
+        scene = (SCENES / "paper.toml").read_text().replace("moment_ratio = 0.9", "")
+        broken_off = self.run_and_check("solve", self.file("broken_off.toml", scene + steps), code=2)
+        self.assertEqual(len(broken_off["steps"]), 1)
+
+    def test_check(self):
+        words = ["--set", "load.moment_ratio=0.9", "--twist"]
+        for file, twist, code in (("contact", 2.361048651456917e-3, 0), ("cgcontact", 2.21775472e-3, 1)):
+            self.run_and_check("check", SCENES / "paper.toml", FIELDS / f"{file}-64-0.9.csv", *words, twist, code=code)
+
+    def test_study(self):
+        self.run_and_check("study", self.file("study.toml", STUDY), "--output", self.folder / "study")
+        scene = STUDY.replace("paper.toml", "ellipse.toml").replace("[8, 12, 16]", "[8, 12]")
+        self.run_and_check("study", self.file("extrapolated.toml", scene), "--output", self.folder / "study")
+
+    def test_study_with_failed_runs(self):
+        paper = (SCENES / "paper.toml").read_text()
+        scene = self.file("moment.toml", paper.replace("moment_ratio = 0.9", "moment = 0.01"))
+        study = f'name = "far"\nscene = "{scene}"\ncells = [8]\n[[vary]]\nkey = "load.moment"\nvalues = [0.01, 1.0]\n'
+        result = self.run_and_check("study", self.file("far.toml", study), "--output", self.folder / "far", code=1)
+        self.assertGreater(result["failed_runs"]["count"], 0)
+
+    def test_gate(self):
+        gates = [("passes", "twist_error", "below = 1e-2"), ("fails", "twist_error", "below = 1e-6"),
+                 ("word", "status", 'equals = "converged"'), ("missing", "displacement_error", "below = 1")]
+        text = "".join(GATE.format(*gate) for gate in gates)
+        self.run_and_check("gate", self.file("gates.toml", text), "--output", self.folder / "gates", code=1)
+        refused = text + GATE.format("refused", "status", "equals = 1").replace("paper.toml", "nothing.toml")
+        files = [self.file("refused.toml", refused), self.file("unreadable.toml", "[[gate]]\nid =")]
+        self.run_and_check("gate", *files, "--output", self.folder / "gates", code=2)
+
+    def made_benchmarks(self, milliseconds=1.0):
+        program = self.file(f"benchmarks-{milliseconds}", BENCHMARKS.replace("MS", str(milliseconds)))
+        program.chmod(0o700)
+        return program
+
+    def test_comparison(self):
+        base, slower, data = self.made_benchmarks(), self.made_benchmarks(1.2), self.folder / "ab"
+        self.run_and_check("bench", "--program", slower, "--against", base, "--rounds", 10, "--output", data, code=1)
+        self.follows(parse((data / "comparison.json").read_text()), "compare")
+        self.run_and_check("compare", data / "base.json", data / "new.json", code=1)
+        self.run_and_check("compare", data / "base.json", data / "base.json", code=2)
+
+    def test_survey(self):
+        """Up to the first point of the plane: all take a minute."""
+        data = self.folder / "survey/data"
+        survey = subprocess.Popen([PROGRAM, "bench", "--quick", "--program", self.made_benchmarks(), "--output",
+                                   self.folder / "survey"], stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        while survey.poll() is None and not list(data.glob("finished/plane-*.json")):
+            time.sleep(0.05)
+        survey.terminate()
+        survey.wait()
+        for name, schema in (("timings", "bench"), ("scaling", "scaling")):
+            self.follows(parse((data / f"{name}.json").read_text()), schema)
+        self.assertEqual(len(parse((data / "scaling.json").read_text())["crossovers"]), 1)
+        points = list(data.glob("finished/plane-*.json"))
+        self.assertGreater(len(points), 0)
+        for path in points:
+            self.follows(parse(path.read_text())["result"], "plane", "point")
+
+
+class Schemas(unittest.TestCase):
+    def test_are_schemas(self):
+        for name, schema in SCHEMAS.items():
+            with self.subTest(schema=name):
+                jsonschema.Draft202012Validator.check_schema(schema)
+
+    def test_all_references_lead_somewhere(self):
+        def references(value):
+            for key, each in value.items() if isinstance(value, dict) else enumerate(value):
+                if key == "$ref":
+                    yield each
+                elif isinstance(each, (dict, list)):
+                    yield from references(each)
+        for name, schema in SCHEMAS.items():
+            for reference in references(schema):
+                file, _, path = reference.partition("#")
+                at = SCHEMAS[file.split(".")[0]] if file else schema
+                for key in path.strip("/").split("/") if path else []:
+                    self.assertIn(key, at, f"{name}: {reference}")
+                    at = at[key]
+
+    def test_refuse_what_is_wrong(self):
+        words = [PROGRAM, "solve", SCENES / "fretting_torsion.toml", "--set", "grid.cells=[16,16]", "--json", "-"]
+        right = parse(subprocess.run(words, capture_output=True, text=True, check=True).stdout)
+        self.assertTrue(validator("solve").is_valid(right))
+
+        def rename(at, key):
+            at[f"{key}s"] = at.pop(key)
+        for spoil in (lambda r: rename(r, "twist_angle"), lambda r: rename(r["steps"][1], "moment"),
+                      lambda r: rename(r["certificate"], "gap"), lambda r: rename(r["exact"], "twist"),
+                      lambda r: r.update(moment="0.02"), lambda r: r.update(cells=[16.5, 16]),
+                      lambda r: r.update(status="done"), lambda r: r.update(twist_error_reason=""),
+                      lambda r: r["steps"].append({})):
+            wrong = copy.deepcopy(right)
+            spoil(wrong)
+            self.assertFalse(validator("solve").is_valid(wrong), "a spoilt result is valid")
+        self.assertEqual(unexplained({"a": None, "b": 1, "b_reason": "none"}), ["$.a", "$.b_reason"])
+        with self.assertRaises(ValueError):
+            parse(json.dumps({"moment": float("nan")}))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
