@@ -14,31 +14,35 @@
 
 namespace slipstick::solver {
 
-/// A scene made dimensionless: lengths over one cell's size along x1, stresses over the combined shear
-/// modulus G, so that the same scene in other units gives the same digits.
-struct Model {
+/// A scene made dimensionless, on a grid: lengths over one cell's size along x1, stresses over the combined
+/// shear modulus G, so that the same scene in other units gives the same digits.
+struct Dimensionless {
   double length_unit;  ///< m
   double stress_unit;  ///< Pa
   Grid grid;
   ElasticPair pair;
   double friction;
-  std::optional<double> normal_load;  ///< the largest of the scene's steps
-  Eigen::ArrayXd gap;  ///< undeformed, one value a cell; infinite where the bodies cannot touch
-  std::optional<HertzContact>
-      hertz;                ///< where Hertz's theory holds as it stands, hertzian_radii, under that load
-  bool hertzian;            ///< the pressure is Hertz's, wherever the body stands, up to the mesh
-  bool pressure_coupling;   ///< K13, K23 enter
-  bool shear_coupling;      ///< and K31, K32
-  bool forces;              ///< some step brings a tangential force or displacement
-  Reduction pressure_part;  ///< of the grid, on which the pressure is found
-  std::vector<Omission> left_out;
+  bool hertzian;           ///< the pressure is Hertz's, wherever the body stands, up to the mesh
+  bool pressure_coupling;  ///< K13, K23 enter
 
-  /// Its cells in m.
+  /// The grid in m.
   Grid grid_in_m() const {
     return {grid.n1, grid.n2, grid.h1 * length_unit, grid.h2 * length_unit, grid.quadrant};
   }
   double force_unit() const { return stress_unit * length_unit * length_unit; }
   double moment_unit() const { return force_unit() * length_unit; }
+};
+
+/// What is solved for a scene on its own grid.
+struct Model : Dimensionless {
+  std::optional<double> normal_load;  ///< the largest of the scene's steps
+  Eigen::ArrayXd gap;  ///< undeformed, one value a cell; infinite where the bodies cannot touch
+  std::optional<HertzContact>
+      hertz;                ///< where Hertz's theory holds as it stands, hertzian_radii, under that load
+  bool shear_coupling;      ///< K31, K32 enter, beside K13 and K23
+  bool forces;              ///< some step brings a tangential force or displacement
+  Reduction pressure_part;  ///< of the grid, on which the pressure is found
+  std::vector<Omission> left_out;
 };
 
 /// Whether the contact's translations are unknowns: not where the contact is its own image under half a turn

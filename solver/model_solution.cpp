@@ -112,7 +112,7 @@ Solution in_si(ModelSolution solution) {
   return std::move(solution);
 }
 
-double measure_contact_radius(const Model& model, const ArrayXd& pressure) {
+double measure_contact_radius(const Dimensionless& model, const ArrayXd& pressure) {
   const double load = pressure.sum();
   const auto mean = [&](const ArrayXd& x) { return (pressure * x).sum() / load; };
   const ArrayXd x1 = cell_x1(model.grid) - mean(cell_x1(model.grid));

@@ -30,6 +30,6 @@ void describe(ModelSolution& solution, const LoadStep& loads, const Eigen::Array
 /// Contact radius of a pressure, in the grid's units: of a Hertzian contact from the second moments of the
 /// pressure about its centre (those along the axes are a_i^2/5), which know the radius to far less than a
 /// cell; else from the area of the contact cells.
-double measure_contact_radius(const Model& model, const Eigen::ArrayXd& pressure);
+double measure_contact_radius(const Dimensionless& model, const Eigen::ArrayXd& pressure);
 
 }  // namespace slipstick::solver

@@ -41,7 +41,7 @@ Json hypothesis_json(const Hypothesis& hypothesis) {
 
 Json diagnosis_json(const Diagnosis& diagnosis) {
   Json json;
-  json["as_it_should_be"] = hypothesis_json(diagnosis.as_it_should_be);
+  json["as_it_should_be"] = hypothesis_json(diagnosis.reference_kernel);
   for (const Hypothesis& hypothesis : diagnosis.tried) json["tried"].push_back(hypothesis_json(hypothesis));
   const auto set_found = [&](const char* key, const std::optional<Hypothesis>& found) {
     if (found) {
@@ -63,7 +63,7 @@ void add_field(Json& json, const Examination& e) {
   json["centre"] = e.read.field.centre;
   json["contact_cells"] = (e.contact.pressure > 0.0).count();
   json["stick_cells"] = (e.stick > 0.0).count();
-  json["conventions"] = e.read.conventions;
+  json["conventions"] = e.conventions;
   for (const std::string& remark : e.read.remarks) json["conventions"].push_back(remark);
   json["mistakes"] = e.read.mistakes;
 }
@@ -75,28 +75,26 @@ struct StickArea {
 };
 
 StickArea stick_area(const Examination& e) {
-  const solver::Model& model = e.contact.model;
-  const solver::StickFront front =
-      find_stick_front(model.grid, e.contact.friction_bound, e.state.slip, e.stick);
-  return {front.radius * model.length_unit, front.counted_radius * model.length_unit, front.why_counted};
+  const GivenContact& c = e.contact;
+  const solver::StickFront front = find_stick_front(c.grid, c.friction_bound, e.state.slip, e.stick);
+  return {front.radius * c.length_unit, front.counted_radius * c.length_unit, front.why_counted};
 }
 
 void add_state(Json& json, const Examination& e, const StickArea& stick) {
-  const solver::Model& model = e.contact.model;
-  json["normal_load"] = e.contact.pressure.sum() * e.newtons();
-  json["contact_radius"] = measure_contact_radius(model, e.contact.pressure) * model.length_unit;
+  const GivenContact& c = e.contact;
+  json["normal_load"] = c.pressure.sum() * c.newtons();
+  json["contact_radius"] = measure_contact_radius(c, c.pressure) * c.length_unit;
   set_number(json, "stick_radius", stick.radius, kBroken);
   if (!stick.note.empty()) json["stick_radius_note"] = stick.note;
   json["stick_radius_counted"] = stick.counted;
-  json["moment"] = e.contact.moment() * e.newton_metres();
-  json["moment_limit"] = e.moment_limit * e.newton_metres();
-  const auto [f1, f2] = e.contact.force();
-  json["force"] = {f1 * e.newtons(), f2 * e.newtons()};
+  json["moment"] = c.moment() * c.newton_metres();
+  json["moment_limit"] = e.moment_limit * c.newton_metres();
+  const auto [f1, f2] = c.force();
+  json["force"] = {f1 * c.newtons(), f2 * c.newtons()};
   set_number(json, "twist_angle", e.state.twist, kBroken);
   json["twist_inferred"] = !e.twist_given;
   set_number(json, "twist_that_fits", e.fitted.twist, kBroken);
-  json["displacement"] = {e.state.displacement[0] * model.length_unit,
-                          e.state.displacement[1] * model.length_unit};
+  json["displacement"] = {e.state.displacement[0] * c.length_unit, e.state.displacement[1] * c.length_unit};
 }
 
 void add_errors(Json& json, const Examination& e, const StickArea& stick) {
@@ -107,40 +105,41 @@ void add_errors(Json& json, const Examination& e, const StickArea& stick) {
     }
     return;
   }
+  const GivenContact& c = e.contact;
   const Oracle& oracle = *e.exact.oracle;
   const std::string& unknown = oracle.only_normal.empty() ? kNoNumber : oracle.only_normal;
   const auto set_error = [&](const char* key, double value, double exact) {
     set_number(json, key, relative_error(value, exact), std::isnan(exact) ? unknown : kNoNumber);
   };
   set_error("twist_error", e.state.twist, oracle.twist_angle);
-  set_error("moment_error", e.contact.moment() * e.newton_metres(), oracle.moment);
+  set_error("moment_error", c.moment() * c.newton_metres(), oracle.moment);
   set_error("stick_radius_error", stick.radius, oracle.stick_radius);
   set_error("stick_radius_counted_error", stick.counted, oracle.stick_radius);
   set_error("contact_radius_error", json["contact_radius"], oracle.contact_radius);
-  const solver::Grid grid = e.contact.model.grid_in_m();
-  const double unit = e.contact.model.stress_unit;
+  const solver::Grid grid = c.grid_in_m();
   json["pressure_error"] =
-      field_error_json(pressure_error(unit * e.contact.pressure, oracle, grid), kNoNumber);
+      field_error_json(pressure_error(c.stress_unit * c.pressure, oracle, grid), kNoNumber);
   json["traction_error"] =
-      traction_error_json(traction_error(unit * e.contact.traction, oracle, grid), unknown);
+      traction_error_json(traction_error(c.stress_unit * c.traction, oracle, grid), unknown);
 }
 
 /// What the right answer on this mesh has.
-Json yardstick_json(const Examination& e) {
-  const Yardstick& yardstick = e.yardstick;
+Json reference_json(const Examination& e) {
+  const ReferenceOnGrid& reference = e.reference;
   Json json;
-  json["mesh_error"] = yardstick.mesh.tractions;
-  json["gap"] = yardstick.mesh.gap;
-  json["slip_direction"] = yardstick.direction;
-  json["twist_angle"] = yardstick.right.twist;
+  json["mesh_error"] = reference.mesh.deviation.tractions;
+  json["gap"] = reference.mesh.deviation.gap;
+  json["slip_direction"] = reference.mesh.direction;
+  json["twist_angle"] = reference.right.twist;
   json["constant_cells"] = e.constant_cells;
-  json["loads_scaled_down"] = yardstick.right.scaled;
+  json["loads_scaled_down"] = reference.right.scaled;
   json["distance"] = e.deviation.tractions;
-  json["noise"] = yardstick.noise_size.maxCoeff() / e.contact.friction_bound.maxCoeff();
+  json["noise"] = reference.noise_size.maxCoeff() / e.contact.friction_bound.maxCoeff();
   if (e.exact.oracle && e.exact.oracle->shear) {
-    json["traction_error"] = traction_error_json(
-        traction_error(e.contact.model.stress_unit * yardstick.right.traction, *e.exact.oracle,
-                       e.contact.model.grid_in_m()), kNoNumber);
+    json["traction_error"] =
+        traction_error_json(traction_error(e.contact.stress_unit * reference.right.traction, *e.exact.oracle,
+                                           e.contact.grid_in_m()),
+                            kNoNumber);
   }
   return json;
 }
@@ -154,7 +153,7 @@ std::string why(const Examination& e, const Verdict& verdict, bool strict) {
   std::vector<std::string> wrong;
   for (const std::string& mistake : e.read.mistakes) wrong.push_back(short_note(mistake));
   if (strict) {
-    for (const std::string& convention : e.read.conventions) wrong.push_back(short_note(convention));
+    for (const std::string& convention : e.conventions) wrong.push_back(short_note(convention));
   }
   if (wrong.empty()) return verdict.why;
   return fmt::format("{}; without that {}", fmt::join(wrong, ", and "), verdict.why);
@@ -166,7 +165,7 @@ Json check_field(const solver::Scene& scene, const std::filesystem::path& file, 
   const Examination e = examine(scene, file, options.twist);
   const Verdict verdict = reach_verdict(e, options.tolerance);
   const StickArea stick = stick_area(e);
-  const bool fits = e.read.mistakes.empty() && !(options.strict && !e.read.conventions.empty());
+  const bool fits = e.read.mistakes.empty() && !(options.strict && !e.conventions.empty());
   const bool good = verdict.within_mesh() && fits && (!options.discrete || verdict.discrete.holds());
   Json json;
   json["name"] = scene.name;
@@ -183,7 +182,7 @@ Json check_field(const solver::Scene& scene, const std::filesystem::path& file, 
   json["certificate"] = certificate_json(e.certificate, kBroken);
   set_number(json["slip_direction"], "mean", e.direction.mean, kBroken);
   set_number(json["slip_direction"], "max", e.direction.max, kBroken);
-  json["yardstick"] = yardstick_json(e);
+  json["yardstick"] = reference_json(e);
   json["judged"] = judged_json(verdict.judged);
   if (verdict.diagnosis) json["diagnosis"] = diagnosis_json(*verdict.diagnosis);
   json["provenance"] = provenance(scene.threads);

@@ -9,6 +9,7 @@
 #include <optional>
 #include <utility>
 
+#include "convergence/check/given_contact.hpp"
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/limit_load.hpp"
 #include "solver/input/input_error.hpp"
@@ -26,7 +27,7 @@ using solver::InputError;
 constexpr double kSameUnit = 31.6;
 
 /// Where units had to be guessed the load has to confirm them.
-constexpr double kMendedLoad = 0.2;
+constexpr double kCorrectedLoad = 0.2;
 
 struct Unit {
   const char* name;
@@ -44,19 +45,19 @@ std::optional<Unit> find_unit(const std::array<Unit, 4>& units, double ratio) {
   return std::nullopt;
 }
 
-/// About how wide the contact is, in m.
-double expected_width(const solver::Model& model, const OracleAnswer& exact) {
-  if (exact.oracle && std::isfinite(exact.oracle->contact_radius))
-    return 2.0 * exact.oracle->longer_semi_axis();
-  const solver::Grid& grid = model.grid;
-  return std::max(static_cast<double>(grid.n1) * grid.h1, static_cast<double>(grid.n2) * grid.h2) *
-         model.length_unit;
+double longer_side(const solver::Grid& grid) {
+  return std::max(static_cast<double>(grid.n1) * grid.h1, static_cast<double>(grid.n2) * grid.h2);
 }
 
-void mend_length(Interpretation& read, const solver::Scene& scene, double expected) {
+/// About how wide the contact is, in m.
+double expected_width(const solver::Model& model, const OracleAnswer& exact) {
+  const bool known = exact.oracle && std::isfinite(exact.oracle->contact_radius);
+  return known ? 2.0 * exact.oracle->longer_semi_axis() : longer_side(model.grid) * model.length_unit;
+}
+
+void correct_length(Interpretation& read, const solver::Scene& scene, double expected) {
   ForeignField& field = read.field;
-  const double width = std::max(static_cast<double>(field.grid.n1) * field.grid.h1,
-                                static_cast<double>(field.grid.n2) * field.grid.h2);
+  const double width = longer_side(field.grid);
   const auto unit = find_unit(kLengths, width / expected);
   if (!unit) {
     throw InputError(
@@ -75,7 +76,7 @@ void mend_length(Interpretation& read, const solver::Scene& scene, double expect
   }
 }
 
-void mend_stress(Interpretation& read, const solver::Step& load) {
+void correct_stress(Interpretation& read, const solver::Step& load) {
   ForeignField& field = read.field;
   if (!load.normal) return;
   const double carried = field.pressure.sum() * field.grid.cell_area();
@@ -88,8 +89,8 @@ void mend_stress(Interpretation& read, const solver::Step& load) {
                     carried, load.key, *load.normal));
   }
   const double off = carried * unit->size / *load.normal - 1.0;
-  const bool mended = unit->size != 1.0 || !read.conventions.empty();
-  if (mended && !(std::abs(off) < kMendedLoad)) {
+  const bool corrected = unit->size != 1.0 || !read.conventions.empty();
+  if (corrected && !(std::abs(off) < kCorrectedLoad)) {
     throw InputError(
         field.file.string(),
         fmt::format("in no units that are understood does the pressure carry {}.normal = {} N; allowed: "
@@ -108,12 +109,16 @@ void mend_stress(Interpretation& read, const solver::Step& load) {
   }
 }
 
-ArrayXd transposed(const solver::Grid& grid, const ArrayXd& values) {
-  ArrayXd turned(values.size());
-  for (Index i = 0; i < grid.n1; ++i) {
-    for (Index j = 0; j < grid.n2; ++j) turned[j * grid.n1 + i] = values[i * grid.n2 + j];
+/// Puts each field's cells, with x2 running down the columns, where `place` puts them.
+template <typename Place>
+void rearrange(ForeignField& field, const solver::Grid& from, const Place& place) {
+  const auto placed = [&](const ArrayXd& values) {
+    return ArrayXd(place(values.reshaped(from.n2, from.n1)).reshaped());
+  };
+  for (ArrayXd* values : {&field.pressure, &field.pressure_rounding, &field.traction_rounding}) {
+    *values = placed(*values);
   }
-  return turned;
+  field.traction << placed(field.traction.head(from.cells())), placed(field.traction.tail(from.cells()));
 }
 
 /// Mean of x1^2 over mean of x2^2 under the pressure, about its centre.
@@ -125,8 +130,8 @@ double aspect(const ForeignField& field) {
   return variance(solver::cell_x1(field.grid)) / variance(solver::cell_x2(field.grid));
 }
 
-/// Only an elliptic contact along the axes tells.
-void mend_axes(Interpretation& read, const solver::Model& model) {
+/// Only an elliptic contact along the axes shows it.
+void correct_axes(Interpretation& read, const solver::Model& model) {
   ForeignField& field = read.field;
   if (!model.hertz) return;
   const double ratio = model.hertz->semi_axis_1 / model.hertz->semi_axis_2;
@@ -139,12 +144,8 @@ void mend_axes(Interpretation& read, const solver::Model& model) {
   const Index cells = from.cells();
   field.grid = {from.n2, from.n1, from.h2, from.h1};
   std::swap(field.centre[0], field.centre[1]);
-  const ArrayXd q1 = transposed(from, field.traction.head(cells));
-  field.traction.head(cells) = transposed(from, field.traction.tail(cells));
-  field.traction.tail(cells) = q1;
-  for (ArrayXd* values : {&field.pressure, &field.pressure_rounding, &field.traction_rounding}) {
-    *values = transposed(from, *values);
-  }
+  field.traction.head(cells).swap(field.traction.tail(cells));
+  rearrange(field, from, [](const auto& values) { return values.transpose(); });
 }
 
 /// A scene of one body that stands about an axis.
@@ -154,7 +155,7 @@ bool has_axis(const solver::Scene& scene) {
 }
 
 /// A contact that stands a cell or more from its place in the scene is one in other coordinates.
-void mend_origin(Interpretation& read, const solver::Scene& scene) {
+void correct_origin(Interpretation& read, const solver::Scene& scene) {
   ForeignField& field = read.field;
   if (!has_axis(scene)) return;
   const double total = field.pressure.sum();
@@ -196,30 +197,15 @@ struct Orientation {
   }
 };
 
-ArrayXd mirrored(const solver::Grid& grid, const ArrayXd& values) {
-  ArrayXd turned(values.size());
-  for (Index i = 0; i < grid.n1; ++i) {
-    turned.segment(i * grid.n2, grid.n2) = values.segment(i * grid.n2, grid.n2).reverse();
-  }
-  return turned;
-}
-
 /// middle: x2 of the mirror.
 ForeignField turned(ForeignField field, const Orientation& orientation, double middle) {
   const Index cells = field.grid.cells();
   if (orientation.mirrored) {
     field.centre[1] = 2.0 * middle - field.centre[1];
-    field.traction.head(cells) = mirrored(field.grid, field.traction.head(cells));
-    field.traction.tail(cells) = -mirrored(field.grid, field.traction.tail(cells));
-    for (ArrayXd* values : {&field.pressure, &field.pressure_rounding, &field.traction_rounding}) {
-      *values = mirrored(field.grid, *values);
-    }
+    rearrange(field, field.grid, [](const auto& values) { return values.colwise().reverse(); });
+    field.traction.tail(cells) *= -1.0;
   }
-  if (orientation.exchanged) {
-    const ArrayXd q1 = field.traction.head(cells);
-    field.traction.head(cells) = field.traction.tail(cells);
-    field.traction.tail(cells) = q1;
-  }
+  if (orientation.exchanged) field.traction.head(cells).swap(field.traction.tail(cells));
   field.traction.head(cells) *= orientation.sign1;
   field.traction.tail(cells) *= orientation.sign2;
   return field;
@@ -229,23 +215,14 @@ ForeignField turned(ForeignField field, const Orientation& orientation, double m
 class LoadMismatch {
  public:
   LoadMismatch(const ForeignField& field, const solver::Scene& scene, const OracleAnswer& exact)
-      : load_(scene.steps.front()), friction_(scene.friction * field.pressure.sum()) {
-    rotation_ = solver::rotation_field(field.grid);
-    rotation_.head(field.grid.cells()) -= field.centre[1];
-    rotation_.tail(field.grid.cells()) += field.centre[0];
-    limit_ = solver::free_moment_limit(field.grid, scene.friction * field.pressure);
+      : load_(scene.steps.front()),
+        friction_(scene.friction * field.pressure.sum()),
+        limit_(solver::free_moment_limit(field.grid, scene.friction * field.pressure)),
+        moment_(known_moment(scene, exact, limit_, field.grid.cell_area())),
+        rotation_(rotation_about_origin(field.grid, field.centre)) {
     const double area = field.grid.cell_area();
-    const solver::TorsionLoad& torsion = load_.torsion;
-    if (exact.oracle && std::isfinite(exact.oracle->moment)) {
-      moment_ = exact.oracle->moment / area / limit_;
-    } else if (const auto moment = solver::value_if<solver::Moment>(torsion)) {
-      moment_ = *moment / area / limit_;
-    } else if (const auto ratio = solver::value_if<solver::MomentRatio>(torsion)) {
-      moment_ = *ratio;
-    } else {
-      const double twist = std::get<solver::Twist>(torsion).value;
-      turns_ = std::copysign(twist == 0.0 ? 0.0 : 1.0, twist);
-    }
+    const double twist = solver::value_if<solver::Twist>(load_.torsion).value_or(0.0);
+    sense_ = std::copysign(twist == 0.0 ? 0.0 : 1.0, twist);
     for (std::size_t k = 0; k < 2; ++k) force_[k] = load_.force[k] / area / friction_;
   }
 
@@ -253,8 +230,8 @@ class LoadMismatch {
     const Index cells = traction.size() / 2;
     const double moment = (traction * rotation_).sum();
     const double off =
-        moment_ ? std::abs(moment / limit_ - *moment_)
-                : std::abs(moment / (solver::norms(traction) * solver::norms(rotation_)).sum() - turns_);
+        moment_ ? std::abs(moment - *moment_) / limit_
+                : std::abs(moment / (solver::norms(traction) * solver::norms(rotation_)).sum() - sense_);
     if (load_.displacement) return off;
     return off + std::hypot(traction.head(cells).sum() / friction_ - force_[0],
                             traction.tail(cells).sum() / friction_ - force_[1]);
@@ -263,22 +240,22 @@ class LoadMismatch {
   /// Of no traction at all.
   double size() const {
     const double force = load_.displacement ? 0.0 : std::hypot(force_[0], force_[1]);
-    return std::abs(moment_.value_or(turns_)) + force;
+    return std::abs(moment_ ? *moment_ / limit_ : sense_) + force;
   }
 
  private:
   const solver::Step& load_;
   double friction_;  ///< all loads over the cell area
-  double limit_ = 0.0;
+  double limit_;
   std::optional<double> moment_;
-  double turns_ = 0.0;
-  std::array<double, 2> force_{};
   ArrayXd rotation_;
+  double sense_;  ///< of an imposed twist
+  std::array<double, 2> force_{};
 };
 
 /// Loads wrong by less than half stay what they are, an error of the field; else the orientation counts under
 /// which they come closest, the first of those that are as close. Mistakes come last.
-void mend_orientation(Interpretation& read, const solver::Scene& scene, const OracleAnswer& exact) {
+void correct_orientation(Interpretation& read, const solver::Scene& scene, const OracleAnswer& exact) {
   constexpr std::array<Orientation, 9> kOrientations{{{.sign1 = -1.0, .sign2 = -1.0},
                                                       {.mirrored = true},
                                                       {.mirrored = true, .sign1 = -1.0, .sign2 = -1.0},
@@ -323,14 +300,23 @@ void note_holes(Interpretation& read) {
 
 }  // namespace
 
+std::optional<double> known_moment(const solver::Scene& scene, const OracleAnswer& exact, double limit,
+                                   double unit) {
+  const solver::TorsionLoad& torsion = scene.steps.front().torsion;
+  if (exact.oracle && std::isfinite(exact.oracle->moment)) return exact.oracle->moment / unit;
+  if (const auto moment = solver::value_if<solver::Moment>(torsion)) return *moment / unit;
+  if (const auto ratio = solver::value_if<solver::MomentRatio>(torsion)) return *ratio * limit;
+  return std::nullopt;
+}
+
 Interpretation in_own_conventions(ForeignField field, const solver::Scene& scene, const solver::Model& model,
                                   const OracleAnswer& exact) {
   Interpretation read{std::move(field), {}, {}, {}};
-  mend_length(read, scene, expected_width(model, exact));
-  mend_stress(read, scene.steps.front());
-  mend_axes(read, model);
-  mend_origin(read, scene);
-  mend_orientation(read, scene, exact);
+  correct_length(read, scene, expected_width(model, exact));
+  correct_stress(read, scene.steps.front());
+  correct_axes(read, model);
+  correct_origin(read, scene);
+  correct_orientation(read, scene, exact);
   note_holes(read);
   return read;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -25,5 +26,10 @@ struct Interpretation {
 /// where no unit fits.
 Interpretation in_own_conventions(ForeignField field, const solver::Scene& scene, const solver::Model& model,
                                   const OracleAnswer& exact);
+
+/// A scene's moment over a unit, by the exact answer or as a load, under a pressure with a limit moment over
+/// that unit. None under an imposed twist without an exact answer.
+std::optional<double> known_moment(const solver::Scene& scene, const OracleAnswer& exact, double limit,
+                                   double unit);
 
 }  // namespace slipstick::convergence

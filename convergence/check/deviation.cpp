@@ -18,15 +18,21 @@ using solver::Index;
 /// Slipping cells of a solution lie on their circle up to rounding.
 constexpr double kOnCircle = 1e-9;
 /// A median over fewer cells is one of the ring's edges.
-constexpr std::size_t kFewestSlipping = 8;
+constexpr std::size_t kMinSlipping = 8;
 
 /// Of the rigid motion, in the mean over the contact weighted with mu p, relative to the motion or to the
 /// displacements, whichever are larger; its sign is that of the change in size. With torsion alone it is the
 /// twist's.
 double motion_error(const GivenContact& c, const RightAnswer& right, const State& state) {
   const auto size = [&](const ArrayXd& motion) { return (c.friction_bound * solver::norms(motion)).sum(); };
-  const ArrayXd found = rigid_motion(c, state.displacement, state.twist);
-  const ArrayXd expected = rigid_motion(c, right.displacement, right.twist);
+  const auto about_origin = [&](const std::array<double, 2>& displacement, double twist) {
+    ArrayXd motion = twist * c.rotation;
+    motion.head(c.pressure.size()) += displacement[0];
+    motion.tail(c.pressure.size()) += displacement[1];
+    return motion;
+  };
+  const ArrayXd found = about_origin(state.displacement, state.twist);
+  const ArrayXd expected = about_origin(right.displacement, right.twist);
   return std::copysign(size(found - expected), size(found) - size(expected)) /
          std::max(size(expected), size(c.displacement));
 }
@@ -48,19 +54,17 @@ solver::TangentialSolution solve_problem(const GivenContact& contact, const Grid
 }
 
 RightAnswer find_right_answer(const GivenContact& contact, const solver::Step& load) {
-  RightAnswer right;
-  const Grid& grid = contact.model.grid;
+  const Grid& grid = contact.grid;
   solver::TangentialProblem problem = own_problem(contact, load);
-  if (const double factor = solver::limit_of(problem, grid).factor; !(factor > 1.0)) {
-    right.scaled = true;
-    scale_loads(problem, kScaledLoads * factor);
-  }
-  solver::TangentialSolution solution = solve_problem(contact, grid, problem);
-  right.traction = std::move(solution.traction);
-  right.twist = solution.twist;
-  right.displacement = {solution.displacement[0] + solution.twist * contact.centre[1],
-                        solution.displacement[1] - solution.twist * contact.centre[0]};
-  return right;
+  const double factor = solver::limit_of(problem, grid).factor;
+  const bool scaled = !(factor > 1.0);
+  if (scaled) scale_loads(problem, kScaledLoads * factor);
+  const solver::TangentialSolution solution = solve_problem(contact, grid, problem);
+  return {.traction = solution.traction,
+          .twist = solution.twist,
+          .displacement = {solution.displacement[0] + solution.twist * contact.centre[1],
+                           solution.displacement[1] - solution.twist * contact.centre[0]},
+          .scaled = scaled};
 }
 
 State find_state(const GivenContact& c, const solver::Step& load, std::optional<double> twist) {
@@ -76,7 +80,7 @@ State find_state(const GivenContact& c, const solver::Step& load, std::optional<
               .gap = std::move(fitted.gap)};
   for (std::size_t k = 0; k < 2; ++k) {
     state.displacement[k] =
-        load.displacement ? (*load.displacement)[k] / c.model.length_unit : found[static_cast<Index>(k)];
+        load.displacement ? (*load.displacement)[k] / c.length_unit : found[static_cast<Index>(k)];
   }
   return state;
 }
@@ -97,7 +101,7 @@ namespace {
 /// |q|/(mu p) - 1 in the slip ring, in order; empty where hardly any cell slips.
 std::vector<double> ring_excess(const GivenContact& contact, const RightAnswer& right) {
   const std::vector<Index> ring = slip_ring(contact, right);
-  if (ring.size() < kFewestSlipping) return {};
+  if (ring.size() < kMinSlipping) return {};
   const ArrayXd size = solver::norms(contact.traction);
   std::vector<double> excess;
   for (const Index cell : ring) excess.push_back(size[cell] / contact.friction_bound[cell] - 1.0);
@@ -107,12 +111,6 @@ std::vector<double> ring_excess(const GivenContact& contact, const RightAnswer& 
 
 }  // namespace
 
-std::optional<double> shown_friction(const GivenContact& contact, const RightAnswer& right) {
-  const std::vector<double> excess = ring_excess(contact, right);
-  if (excess.empty()) return std::nullopt;
-  return excess[excess.size() / 2];
-}
-
 std::optional<double> plateau_of_friction(const GivenContact& contact, const RightAnswer& right) {
   constexpr double kConstant = 0.2;
   const std::vector<double> excess = ring_excess(contact, right);
@@ -120,16 +118,18 @@ std::optional<double> plateau_of_friction(const GivenContact& contact, const Rig
   const double middle = excess[excess.size() / 2];
   const double spread = excess[excess.size() * 3 / 4] - excess[excess.size() / 4];
   if (!(spread <= kConstant * std::abs(middle))) return std::nullopt;
-  return (1.0 + middle) * contact.model.friction;
+  return (1.0 + middle) * contact.friction;
 }
 
 Deviation find_deviation(const GivenContact& contact, const RightAnswer& right, const State& reported,
                          const State& fitted) {
   const double moment = (right.traction * contact.rotation).sum();
-  return {.tractions = relative_distance(contact.traction, right.traction),
+  const std::vector<double> excess = ring_excess(contact, right);
+  return {.tractions =
+              solver::norms(contact.traction - right.traction).sum() / solver::norms(right.traction).sum(),
           .motion = motion_error(contact, right, reported),
           .moment = moment == 0.0 ? 0.0 : contact.moment() / moment - 1.0,
-          .friction = shown_friction(contact, right).value_or(0.0),
+          .friction = excess.empty() ? 0.0 : excess[excess.size() / 2],
           .gap = fitted.gap.sum() / contact.energy()};
 }
 
@@ -145,10 +145,6 @@ Deviation larger(const Deviation& a, const Deviation& b) {
   const auto of = [&](double Deviation::*part) { return std::max(std::abs(a.*part), std::abs(b.*part)); };
   return {of(&Deviation::tractions), of(&Deviation::motion), of(&Deviation::moment), of(&Deviation::friction),
           of(&Deviation::gap)};
-}
-
-double relative_distance(const ArrayXd& traction, const ArrayXd& reference) {
-  return solver::norms(traction - reference).sum() / solver::norms(reference).sum();
 }
 
 }  // namespace slipstick::convergence

@@ -17,12 +17,12 @@ inline constexpr double kIterationGap = 1e-5;
 /// What Coulomb's law has for an answer on a contact's grid, with its pressure, under the motions that the
 /// scene imposes and else under the contact's own loads.
 struct RightAnswer {
-  Eigen::ArrayXd traction;               ///< 2*cells
-  double twist = 0.0;                    ///< rad
-  std::array<double, 2> displacement{};  ///< about the scene's origin
+  Eigen::ArrayXd traction;             ///< 2*cells
+  double twist;                        ///< rad
+  std::array<double, 2> displacement;  ///< about the scene's origin
   /// The own loads are beyond what friction can carry with this pressure: they are scaled down to
   /// kScaledLoads of the limit.
-  bool scaled = false;
+  bool scaled;
 };
 inline constexpr double kScaledLoads = 0.9;
 
@@ -47,11 +47,13 @@ State find_state(const GivenContact& contact, const solver::Step& load, std::opt
 
 /// How far tractions are from the right answer with their pressure and loads, and from Coulomb's law.
 struct Deviation {
-  double tractions = 0.0;  ///< L1, relative
+  double tractions = 0.0;  ///< sum |q - r| / sum |r|
   double motion = 0.0;     ///< signed: see motion_error()
   double moment = 0.0;     ///< relative to the right one, signed; of a moment that is asked for: 0
-  double friction = 0.0;   ///< signed: see shown_friction()
-  double gap = 0.0;        ///< over energy
+  /// |q|/(mu p) in the slip ring less one: the median over the cells that slip in the right answer, which a
+  /// few cells along its edges do not move. 0 where hardly any cell slips.
+  double friction = 0.0;
+  double gap = 0.0;  ///< of Coulomb's law, over energy
 };
 /// The motion is compared as it is reported, the gap is that under the motion that Coulomb's law fits best:
 /// a wrong twist is no mistake of the tractions.
@@ -65,18 +67,11 @@ solver::SlipDirection noticeable_direction(const GivenContact& contact, const St
 /// Each the larger one of two, without sign.
 Deviation larger(const Deviation& a, const Deviation& b);
 
-/// |q|/(mu p) in the slip ring less one: the median over the cells that slip in the right answer, which a few
-/// cells along its edges do not move. None where hardly any cell slips.
-std::optional<double> shown_friction(const GivenContact& contact, const RightAnswer& right);
-
 /// The friction coefficient that the slip ring shows, if it is constant there: |q|/p is the same in half of
 /// it, up to a part of what it is off by.
 std::optional<double> plateau_of_friction(const GivenContact& contact, const RightAnswer& right);
 
 /// The cells that slip in the right answer, of those that carry more than next to nothing.
 std::vector<solver::Index> slip_ring(const GivenContact& contact, const RightAnswer& right);
-
-/// sum |q - r| / sum |r|.
-double relative_distance(const Eigen::ArrayXd& traction, const Eigen::ArrayXd& reference);
 
 }  // namespace slipstick::convergence

@@ -17,7 +17,7 @@ using Eigen::ArrayXd;
 using solver::Index;
 
 /// Pairs of cells that are summed over: about a second's work.
-constexpr double kMostPairs = 1e8;
+constexpr double kMaxPairs = 1e8;
 /// An assumption explains a gap that it lowers to this part.
 constexpr double kExplains = 0.1;
 /// A part of mu p by which a slipping cell may miss it where a solver stops at a tolerance.
@@ -37,23 +37,14 @@ Cells choose_cells(const GivenContact& contact) {
     if (contact.pressure[cell] > 0.0) cells.sources.push_back(cell);
   }
   const std::size_t count = cells.sources.size();
-  const auto every =
-      static_cast<std::size_t>(std::ceil(std::pow(static_cast<double>(count), 2) / kMostPairs));
+  const auto every = static_cast<std::size_t>(std::ceil(std::pow(static_cast<double>(count), 2) / kMaxPairs));
   for (std::size_t k = 0; k < count; k += every) cells.points.push_back(cells.sources[k]);
   return cells;
 }
 
 /// The values of a field of any number of components at some of its cells.
 ArrayXd at(const std::vector<Index>& points, const ArrayXd& field, Index cells) {
-  const auto count = static_cast<Index>(points.size());
-  const Index components = field.size() / cells;
-  ArrayXd values(components * count);
-  for (Index c = 0; c < components; ++c) {
-    for (Index k = 0; k < count; ++k) {
-      values[c * count + k] = field[c * cells + points[static_cast<std::size_t>(k)]];
-    }
-  }
-  return values;
+  return field.reshaped(cells, field.size() / cells)(points, Eigen::all).reshaped();
 }
 
 /// Displacements by tractions, part by part: u = S shear + N (poisson + cross), S and N the pair's shear and
@@ -64,7 +55,7 @@ struct Displacements {
 };
 
 Displacements sum_displacements(const GivenContact& contact, const Cells& cells) {
-  const solver::Grid& grid = contact.model.grid;
+  const solver::Grid& grid = contact.grid;
   const auto tables = [&](double shear, double poisson) {
     const std::array components{solver::Component::k11, solver::Component::k22, solver::Component::k12};
     return solver::influence_tables(components, {shear, poisson, 0.0, 0.0}, grid.h1, grid.h2, grid.n1,
@@ -119,8 +110,8 @@ class Trial {
   Trial(const GivenContact& contact, const solver::Step& load)
       : cells_(choose_cells(contact)),
         u_(sum_displacements(contact, cells_)),
-        pair_(contact.model.pair),
-        coupled_(contact.model.pressure_coupling && contact.model.pair.mismatch != 0.0) {
+        pair_(contact.pair),
+        coupled_(contact.pressure_coupling && contact.pair.mismatch != 0.0) {
     const Index count = contact.pressure.size();
     const auto here = [&](const ArrayXd& field) { return at(cells_.points, field, count); };
     const RigidMotions motions = rigid_motions(contact, load, std::nullopt);
@@ -212,22 +203,24 @@ ArrayXd stick_cells(const GivenContact& contact) {
 Diagnosis diagnose(const GivenContact& contact, const solver::Step& load, double allowed,
                    std::optional<double> friction) {
   const Trial trial(contact, load);
-  Diagnosis diagnosis{trial.of({.name = "as it should be"}), try_kernels(trial), {}, {}};
-  const Hypothesis& right = diagnosis.as_it_should_be;
-  for (const Hypothesis& kernel : diagnosis.tried) {
-    const bool explains = right.stick_gap > kNoStickGap && kernel.stick_gap <= kExplains * right.stick_gap;
-    if (!explains) continue;
-    if (!diagnosis.kernel || kernel.stick_gap < diagnosis.kernel->stick_gap) diagnosis.kernel = kernel;
-  }
+  const Hypothesis right = trial.of({.name = "as it should be"});
+  std::vector<Hypothesis> tried = try_kernels(trial);
+  const Hypothesis& best = *std::ranges::min_element(tried, {}, &Hypothesis::stick_gap);
+  std::optional<Hypothesis> kernel;
+  if (right.stick_gap > kNoStickGap && best.stick_gap <= kExplains * right.stick_gap) kernel = best;
+  std::optional<Hypothesis> with_friction;
   if (friction) {
     const std::string name =
-        fmt::format("a friction coefficient of {:.4g} in place of {:.4g}", *friction, contact.model.friction);
-    diagnosis.friction = trial.of({.name = name, .friction = *friction / contact.model.friction});
-    diagnosis.tried.push_back(*diagnosis.friction);
+        fmt::format("a friction coefficient of {:.4g} in place of {:.4g}", *friction, contact.friction);
+    with_friction = trial.of({.name = name, .friction = *friction / contact.friction});
+    tried.push_back(*with_friction);
   }
-  const Hypothesis& best = diagnosis.kernel ? *diagnosis.kernel : right;
-  diagnosis.stick_area_explained = best.stick_gap <= std::min(allowed, kExplains * best.gap);
-  return diagnosis;
+  const Hypothesis& explained = kernel ? *kernel : right;
+  return {.reference_kernel = right,
+          .tried = std::move(tried),
+          .kernel = kernel,
+          .friction = with_friction,
+          .stick_area_explained = explained.stick_gap <= std::min(allowed, kExplains * explained.gap)};
 }
 
 }  // namespace slipstick::convergence

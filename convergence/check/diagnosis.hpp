@@ -9,7 +9,7 @@
 namespace slipstick::convergence {
 
 /// Coulomb's law under one assumption about how tractions were computed. Gaps are over the energy; that in
-/// stick cells, where the contact has to move as a rigid body, tells of the elastic kernel alone, whatever
+/// stick cells, where the contact has to move as a rigid body, depends on the elastic kernel alone, whatever
 /// was done to slipping cells.
 struct Hypothesis {
   std::string name;
@@ -19,12 +19,12 @@ struct Hypothesis {
 };
 
 struct Diagnosis {
-  Hypothesis as_it_should_be;          ///< with the right kernel and friction
+  Hypothesis reference_kernel;         ///< with the right kernel and friction
   std::vector<Hypothesis> tried;       ///< mistakes that solvers make
   std::optional<Hypothesis> kernel;    ///< that of them which explains the stick area
   std::optional<Hypothesis> friction;  ///< the friction coefficient that was used
-  /// With that kernel, or the right one, the stick area is as it should be: what is left is slipping cells.
-  bool stick_area_explained = false;
+  /// With that kernel, or the right one, the stick area keeps the law: what is left is slipping cells.
+  bool stick_area_explained;
 };
 
 /// Tries kernels (K12 mirrored as an even function, missing, of the wrong sign; K11 and K22 exchanged;

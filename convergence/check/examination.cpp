@@ -48,33 +48,12 @@ OracleAnswer exact_normal_contact(solver::Scene scene) {
   return find_oracle(scene);
 }
 
-/// M over the cell area that the scene asks for, of this pressure. Under an imposed twist it is an outcome.
-std::optional<double> moment_asked_for(const solver::Scene& scene, const OracleAnswer& exact, double limit,
-                                       double unit) {
-  const solver::TorsionLoad& torsion = scene.steps.front().torsion;
-  if (std::holds_alternative<solver::Twist>(torsion)) return std::nullopt;
-  if (exact.oracle && std::isfinite(exact.oracle->moment)) return exact.oracle->moment / unit;
-  if (const auto moment = solver::value_if<solver::Moment>(torsion)) return *moment / unit;
-  return std::get<solver::MomentRatio>(torsion).value * limit;
-}
-
-/// Twist in the sense of the moment, in which first loading turns.
-std::optional<double> known_twist(const solver::Scene& scene, std::optional<double> given, double moment,
-                                  std::vector<std::string>& conventions) {
-  if (!given) return solver::value_if<solver::Twist>(scene.steps.front().torsion);
-  if (*given * moment >= 0.0) return given;
-  conventions.push_back("the twist that was given counts the other way round");
-  return -*given;
-}
-
-void certify_field(Examination& e) {
-  const GivenContact& c = e.contact;
-  const solver::Step& load = e.scene.steps.front();
-  const std::array<double, 2> asked{load.force[0] / e.newtons(), load.force[1] / e.newtons()};
-  e.certificate =
-      solver::certify({c.traction, c.elastic_displacement, e.state.slip}, c.friction_bound, c.rotation,
-                      e.moment.value_or(c.moment()), load.displacement ? c.force() : asked);
-  e.direction = noticeable_direction(c, e.fitted, e.yardstick.mesh.tractions);
+/// The loads are those that the scene asks for, and else the field's own.
+solver::Certificate certify_field(const GivenContact& c, const solver::Step& load, const State& state,
+                                  const std::optional<double>& moment) {
+  const std::array<double, 2> asked{load.force[0] / c.newtons(), load.force[1] / c.newtons()};
+  return solver::certify({c.traction, c.elastic_displacement, state.slip}, c.friction_bound, c.rotation,
+                         moment.value_or(c.moment()), load.displacement ? c.force() : asked);
 }
 
 }  // namespace
@@ -83,36 +62,44 @@ Examination examine(const solver::Scene& scene, const std::filesystem::path& fil
                     std::optional<double> given_twist) {
   require_judgeable(scene);
   const solver::Step& load = scene.steps.front();
-  const solver::Model scene_model = solver::make_model(scene);
+  const solver::Model model = solver::make_model(scene);
   const OracleAnswer exact = find_oracle(scene);
-  Interpretation read = in_own_conventions(read_foreign_field(file), scene, scene_model, exact);
-  GivenContact contact = make_given_contact(read.field, scene, scene_model);
-  const std::optional<double> twist = known_twist(scene, given_twist, contact.moment(), read.conventions);
+  const Interpretation read = in_own_conventions(read_foreign_field(file), scene, model, exact);
+  const GivenContact contact = make_given_contact(read.field, model, scene.threads);
+
+  std::vector<std::string> conventions = read.conventions;
+  std::optional<double> twist = given_twist;
+  if (!twist) {
+    twist = solver::value_if<solver::Twist>(load.torsion);
+  } else if (!(*twist * contact.moment() >= 0.0)) {  // first loading turns in the sense of the moment
+    twist = -*twist;
+    conventions.emplace_back("the twist that was given counts the other way round");
+  }
   const OracleAnswer pressed = seen_from(exact_normal_contact(scene), read.field.centre);
-  Yardstick yardstick = find_yardstick(contact, load, pressed.oracle, given_twist.has_value());
-  const bool constant_cells = solves_normal_problem(contact, scene);
-  State fitted = find_state(contact, load, std::nullopt);
-  State state = twist ? find_state(contact, load, twist) : fitted;
-  const Deviation deviation = find_deviation(contact, yardstick.right, given_twist ? state : fitted, fitted);
-  Examination e{.scene = scene,
-                .read = std::move(read),
-                .exact = {},
-                .contact = std::move(contact),
-                .yardstick = std::move(yardstick),
-                .constant_cells = constant_cells,
-                .twist_given = twist.has_value(),
-                .state = std::move(state),
-                .fitted = std::move(fitted),
-                .deviation = deviation,
-                .stick = {},
-                .moment = {},
-                .moment_limit = NAN};
-  e.exact = seen_from(exact, e.read.field.centre);
-  e.stick = stick_cells(e.contact);
-  e.moment_limit = solver::free_moment_limit(e.contact.model.grid, e.contact.friction_bound);
-  e.moment = moment_asked_for(scene, exact, e.moment_limit, e.newton_metres());
-  certify_field(e);
-  return e;
+  const ReferenceOnGrid reference =
+      find_reference_on_grid(contact, load, pressed.oracle, given_twist.has_value());
+  const State fitted = find_state(contact, load, std::nullopt);
+  const State state = twist ? find_state(contact, load, twist) : fitted;
+  const double limit = solver::free_moment_limit(contact.grid, contact.friction_bound);
+  const auto moment = std::holds_alternative<solver::Twist>(load.torsion)
+                          ? std::nullopt
+                          : known_moment(scene, exact, limit, contact.newton_metres());
+  return {.scene = scene,
+          .read = read,
+          .conventions = std::move(conventions),
+          .exact = seen_from(exact, read.field.centre),
+          .contact = contact,
+          .reference = reference,
+          .constant_cells = solves_normal_problem(contact, scene),
+          .twist_given = twist.has_value(),
+          .state = state,
+          .fitted = fitted,
+          .deviation = find_deviation(contact, reference.right, given_twist ? state : fitted, fitted),
+          .stick = stick_cells(contact),
+          .moment = moment,
+          .moment_limit = limit,
+          .certificate = certify_field(contact, load, state, moment),
+          .direction = noticeable_direction(contact, fitted, reference.mesh.deviation.tractions)};
 }
 
 double relative_error(double value, double exact) { return value / exact - 1.0; }

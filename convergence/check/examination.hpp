@@ -16,28 +16,26 @@ namespace slipstick::convergence {
 struct Examination {
   solver::Scene scene;
   Interpretation read;
-  OracleAnswer exact;  ///< its centre is that of the field's grid
+  std::vector<std::string> conventions;  ///< the field's, and that of its twist
+  OracleAnswer exact;                    ///< its centre is that of the field's grid
   GivenContact contact;
-  Yardstick yardstick;
+  ReferenceOnGrid reference;
   bool constant_cells;  ///< the pressure is one of constant cells: so are the tractions, then
   bool twist_given;
   State state;                   ///< under the twist given or imposed, or else the one that fits
   State fitted;                  ///< under the motion that Coulomb's law fits best
   Deviation deviation;           ///< from the right answer
   Eigen::ArrayXd stick;          ///< cells
-  std::optional<double> moment;  ///< asked for, over the cell area; none: any
-  double moment_limit;           ///< of the field's pressure, over the cell area
-  solver::Certificate certificate{};
-  solver::SlipDirection direction{};  ///< of noticeable slip
-
-  double newton_metres() const { return contact.model.grid.cell_area() * contact.model.moment_unit(); }
-  double newtons() const { return contact.model.grid.cell_area() * contact.model.force_unit(); }
+  std::optional<double> moment;  ///< asked for; none: any
+  double moment_limit;           ///< of the field's pressure
+  solver::Certificate certificate;
+  solver::SlipDirection direction;  ///< of noticeable slip
 };
 
 /// twist: the one that the program reported, in rad; none: the scene's, if it imposes one, or the one that
 /// Coulomb's law fits best. Throws InputError for what cannot be judged: a history, a scene without friction,
-/// and what read_foreign_field() and in_own_conventions() refuse; std::runtime_error where the yardstick's
-/// solve does not converge.
+/// and what read_foreign_field() and in_own_conventions() refuse; std::runtime_error where the
+/// reference's solve does not converge.
 Examination examine(const solver::Scene& scene, const std::filesystem::path& file,
                     std::optional<double> twist);
 

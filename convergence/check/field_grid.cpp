@@ -18,25 +18,25 @@ using solver::find_precision;
 using solver::Index;
 
 /// A contact has an inside and an edge on both sides.
-constexpr std::size_t kFewestAcross = 4;
+constexpr std::size_t kMinAcross = 4;
 /// Positions closer than this part of the grid's side are one: no grid has so many cells.
 constexpr double kSamePlace = 1e-6;
 /// Rough contacts and bodies side by side leave most of their bounding rectangle free. More cells for each
 /// row than these are taken for a mistake in a position, unless the grid is one that is quickly judged.
-constexpr double kMostCellsPerRow = 100.0;
+constexpr double kMaxCellsPerRow = 100.0;
 constexpr double kQuicklyJudged = 65536.0;
 /// Cells longer than so many times their width are taken for a mistake in a column: no contact is so slender.
-constexpr double kMostSlender = 1000.0;
+constexpr double kMaxSlender = 1000.0;
 /// Rows are astray where so few of all lie beyond the widest gap. Where that is so many times as wide as all
 /// places side by side, they are on no contact with the others; where it is so many steps wide and something
 /// does not fit, it is likely them.
-constexpr double kMostAstray = 0.02;
+constexpr double kMaxAstray = 0.02;
 constexpr double kTimesAcross = 10.0;
 constexpr double kStepsAway = 10.0;
 /// A position may be off its cell's centre by this part of the cell, or by what its digits leave open, as far
-/// as that still tells cells apart.
+/// as that still distinguishes cells.
 constexpr double kOffCentre = 1e-2;
-constexpr double kTellsCellsApart = 0.25;
+constexpr double kDistinguishesCells = 0.25;
 
 /// Equally spaced places along one axis.
 struct Axis {
@@ -101,7 +101,7 @@ std::optional<Index> row_astray(const ArrayXd& values, double distance) {
   const auto middle = rows.begin() + static_cast<std::ptrdiff_t>(widest);
   const bool above = widest > rows.size() / 2;
   const auto few = static_cast<double>(above ? rows.size() - widest : widest);
-  const bool astray = gap(widest) > distance && few <= kMostAstray * static_cast<double>(rows.size());
+  const bool astray = gap(widest) > distance && few <= kMaxAstray * static_cast<double>(rows.size());
   if (!astray) return std::nullopt;
   return above ? *std::min_element(middle, rows.end()) : *std::min_element(rows.begin(), middle);
 }
@@ -109,7 +109,7 @@ std::optional<Index> row_astray(const ArrayXd& values, double distance) {
 Axis find_axis(const std::filesystem::path& file, const solver::Column& x) {
   const double range = x.values.maxCoeff() - x.values.minCoeff();
   const std::vector<double> places = distinct_places(x.values, kSamePlace * range);
-  const bool few = places.size() < kFewestAcross;
+  const bool few = places.size() < kMinAcross;
   const double step = few ? 0.0 : median_step(places);
   if (const auto far = row_astray(x.values, kTimesAcross * static_cast<double>(places.size()) * step)) {
     throw solver::InputError(
@@ -121,14 +121,14 @@ Axis find_axis(const std::filesystem::path& file, const solver::Column& x) {
     throw solver::InputError(
         file.string(), fmt::format("column {}: {} different values; allowed: at least {}, one for each row "
                                    "of cells across the contact",
-                                   x.name, places.size(), kFewestAcross));
+                                   x.name, places.size(), kMinAcross));
   }
   const Axis axis = fit_axis(places);
   const ArrayXd place = (x.values - axis.first) / axis.spacing;
   Index worst = 0;
   const double off = (place - place.round()).abs().maxCoeff(&worst);
   const double rounding = find_precision(x.values).rounding(x.values).maxCoeff() / axis.spacing;
-  if (off <= std::clamp(2.0 * rounding, kOffCentre, kTellsCellsApart)) return axis;
+  if (off <= std::clamp(2.0 * rounding, kOffCentre, kDistinguishesCells)) return axis;
   worst = row_astray(x.values, kStepsAway * axis.spacing).value_or(worst);
   throw solver::InputError(
       file.string(), fmt::format("row {}: {} = {} is on no regular grid; allowed: about {:.4g} plus a whole "
@@ -141,7 +141,7 @@ void require_judgeable(const std::filesystem::path& file, const solver::Column& 
                        const solver::Column& x2, const Axis& axis2) {
   const auto rows = static_cast<double>(x1.values.size());
   const double cells = static_cast<double>(axis1.count) * static_cast<double>(axis2.count);
-  const double allowed = std::max(kQuicklyJudged, kMostCellsPerRow * rows);
+  const double allowed = std::max(kQuicklyJudged, kMaxCellsPerRow * rows);
   if (cells > allowed) {
     throw solver::InputError(
         file.string(),
@@ -151,13 +151,13 @@ void require_judgeable(const std::filesystem::path& file, const solver::Column& 
             rows, axis1.count, axis2.count, axis1.spacing, axis2.spacing, allowed));
   }
   const double slender = axis1.spacing / axis2.spacing;
-  if (!(slender <= kMostSlender && slender >= 1.0 / kMostSlender)) {
+  if (!(slender <= kMaxSlender && slender >= 1.0 / kMaxSlender)) {
     throw solver::InputError(
         file.string(),
         fmt::format(
             "row 1: ({}, {}) and those below are cells of {:.4g} x {:.4g}; allowed: one unit of length "
             "in both columns, and cells at most {} times as long as wide",
-            x1.values[0], x2.values[0], axis1.spacing, axis2.spacing, kMostSlender));
+            x1.values[0], x2.values[0], axis1.spacing, axis2.spacing, kMaxSlender));
   }
 }
 

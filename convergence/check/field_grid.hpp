@@ -16,7 +16,7 @@ struct FieldGrid {
   std::vector<solver::Index> cells;  ///< for each row of the file its cell on the grid
 };
 
-/// x1, x2: positions of the cells' centres, in any order, rounded to as few digits as still tell them apart;
+/// x1, x2: positions of the cells' centres, in any order, rounded to as few digits as still distinguish them;
 /// cells may be missing. Throws InputError, with file, row and value, for positions on no regular grid, a
 /// cell that is given twice, and too few cells to judge.
 FieldGrid find_field_grid(const std::filesystem::path& file, const solver::Column& x1,

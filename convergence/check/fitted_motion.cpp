@@ -13,7 +13,7 @@ using Eigen::Index;
 using solver::CoefficientMatrix;
 using solver::Coefficients;
 
-/// From the root mean square of s down to what tells no slip of any file's digits apart.
+/// From the root mean square of s down to what no digits of a file can distinguish from no slip.
 constexpr solver::Smoothing kSmoothing{.first = 1.0, .least = 1e-9};
 
 /// Cells without a bound are zero in all fields. Bounds are over their sum, displacements over the root mean

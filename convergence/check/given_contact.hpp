@@ -11,33 +11,41 @@
 
 namespace slipstick::convergence {
 
-/// Of the largest mu p: cells below it are told from empty ones by the tolerance of the normal contact only.
+/// Of the largest mu p: only the tolerance of the normal contact distinguishes cells below it from empty
+/// ones.
 inline constexpr double kNextToNothing = 1e-3;
 
-/// A contact whose pressure and tractions are given, dimensionless on its own grid, with the displacements
-/// that the tractions cause by this project's operator.
-struct GivenContact {
-  solver::Model model;                  ///< of the scene, on the field's grid
+/// A contact whose pressure and tractions are given, on a grid of its own, with the displacements that the
+/// tractions cause by this project's operator.
+struct GivenContact : solver::Dimensionless {
+  /// bodies: on the contact's grid; the others are the members of these names.
+  GivenContact(const solver::Dimensionless& bodies, int threads, const std::array<double, 2>& middle,
+               Eigen::ArrayXd p, Eigen::ArrayXd q, Eigen::ArrayXd rounding_of_bound,
+               Eigen::ArrayXd rounding_of_q);
+
   solver::Elasticity elasticity;        ///< how its displacements are computed
   std::array<double, 2> centre;         ///< of the grid in the scene's coordinates
   Eigen::ArrayXd pressure;              ///< cells
   Eigen::ArrayXd friction_bound;        ///< cells: mu p
   Eigen::ArrayXd traction;              ///< 2*cells
-  Eigen::ArrayXd traction_rounding;     ///< cells: what the file's digits leave open of |q|
-  Eigen::ArrayXd bound_rounding;        ///< and of mu p
-  Eigen::ArrayXd displacement;          ///< 2*cells: K q and, of dissimilar materials, that by pressure
-  Eigen::ArrayXd elastic_displacement;  ///< 2*cells: K q
+  Eigen::ArrayXd bound_rounding;        ///< cells: what the file's digits leave open of mu p
+  Eigen::ArrayXd traction_rounding;     ///< and of |q|
   Eigen::ArrayXd rotation;              ///< 2*cells: (-x2, x1) about the scene's origin
+  Eigen::ArrayXd elastic_displacement;  ///< 2*cells: K q
+  Eigen::ArrayXd displacement;          ///< 2*cells: K q and, of dissimilar materials, that by pressure
 
   /// Moment about the scene's origin and force, over the cell area.
   double moment() const { return (traction * rotation).sum(); }
   std::array<double, 2> force() const;
   double energy() const { return 0.5 * (traction * elastic_displacement).sum(); }
+
+  /// N and N m of a load over the cell area.
+  double newtons() const { return grid.cell_area() * force_unit(); }
+  double newton_metres() const { return grid.cell_area() * moment_unit(); }
 };
 
-/// Throws InputError for a grid that does not fit in memory.
-GivenContact make_given_contact(const ForeignField& field, const solver::Scene& scene,
-                                const solver::Model& scene_model);
+/// The scene's bodies with a field's pressure and tractions, on the field's grid. bodies: on any grid.
+GivenContact make_given_contact(const ForeignField& field, const solver::Dimensionless& bodies, int threads);
 
 /// The same bodies with another pressure and other tractions, without rounding, on another grid about the
 /// same centre.
@@ -58,16 +66,15 @@ struct RigidMotions {
 RigidMotions rigid_motions(const GivenContact& contact, const solver::Step& load,
                            std::optional<double> twist);
 
-/// The displacements of a rigid motion about the scene's origin: 2*cells.
-Eigen::ArrayXd rigid_motion(const GivenContact& contact, const std::array<double, 2>& displacement,
-                            double twist);
+/// (-x2, x1) about the scene's origin: 2*cells. centre: of the grid, in the scene's coordinates.
+Eigen::ArrayXd rotation_about_origin(const solver::Grid& grid, const std::array<double, 2>& centre);
 
 /// The tangential problem that a contact with this pressure poses on its grid: under the motions that the
 /// scene imposes, and else under the tractions' own loads.
 solver::TangentialProblem own_problem(const GivenContact& contact, const solver::Step& load);
 
-/// The displacement by pressure, of dissimilar materials; empty where there is none.
-Eigen::ArrayXd pressure_displacement(const solver::Model& model, const solver::Elasticity& elasticity,
-                                     const solver::Grid& grid, const Eigen::ArrayXd& pressure);
+/// The displacement that a pressure on a grid causes, of dissimilar materials; empty where there is none.
+Eigen::ArrayXd pressure_displacement(const GivenContact& contact, const solver::Grid& grid,
+                                     const Eigen::ArrayXd& pressure);
 
 }  // namespace slipstick::convergence

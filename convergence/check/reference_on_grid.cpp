@@ -48,34 +48,30 @@ ArrayXd handed_down(const Grid& grid, const ArrayXd& values) {
 /// One or several components, at the centres of the coarse cells.
 ArrayXd sampled(const Grid& coarse, const ArrayXd& values) {
   const Grid fine = finer(coarse);
-  const Index components = values.size() / fine.cells();
-  ArrayXd result(components * coarse.cells());
-  for (Index c = 0; c < components; ++c) {
-    for (Index i = 0; i < coarse.n1; ++i) {
-      for (Index j = 0; j < coarse.n2; ++j) {
-        result[c * coarse.cells() + i * coarse.n2 + j] =
-            values[c * fine.cells() + (kChildren * i + kChildren / 2) * fine.n2 + kChildren * j +
-                   kChildren / 2];
-      }
-    }
+  const auto centres = Eigen::seq(kChildren / 2, Eigen::last, kChildren);
+  ArrayXd result(values.size() / (kChildren * kChildren));
+  for (Index c = 0; c * fine.cells() < values.size(); ++c) {
+    result.segment(c * coarse.cells(), coarse.cells()) = values.segment(c * fine.cells(), fine.cells())
+                                                             .reshaped(fine.n2, fine.n1)(centres, centres)
+                                                             .reshaped();
   }
   return result;
 }
 
 /// At the centres of a grid. None where they miss its load.
-std::optional<ArrayXd> exact_pressure(const Oracle& pressed, const solver::Model& model, const Grid& grid,
+std::optional<ArrayXd> exact_pressure(const Oracle& pressed, const GivenContact& contact, const Grid& grid,
                                       double load) {
   const ArrayXd x1 = solver::cell_x1(grid);
   const ArrayXd x2 = solver::cell_x2(grid);
   // On a cone's axis the pressure is infinite; the mean over a cell there is that a third of a cell away.
-  const double nearest = 0.35 * std::min(grid.h1, grid.h2) * model.length_unit;
+  const double nearest = 0.35 * std::min(grid.h1, grid.h2) * contact.length_unit;
   ArrayXd pressure(grid.cells());
   for (Index cell = 0; cell < grid.cells(); ++cell) {
-    const double radius = pressed.radius(x1[cell] * model.length_unit - pressed.centre[0],
-                                         x2[cell] * model.length_unit - pressed.centre[1]);
-    pressure[cell] = pressed.pressure(std::max(radius, nearest)) / model.stress_unit;
+    const double radius = pressed.radius(x1[cell] * contact.length_unit - pressed.centre[0],
+                                         x2[cell] * contact.length_unit - pressed.centre[1]);
+    pressure[cell] = pressed.pressure(std::max(radius, nearest)) / contact.stress_unit;
   }
-  const double carried = pressure.sum() * grid.cell_area() * model.force_unit();
+  const double carried = pressure.sum() * grid.cell_area() * contact.force_unit();
   if (!(std::abs(carried / load - 1.0) <= kMissedLoad)) return std::nullopt;
   return pressure;
 }
@@ -84,9 +80,9 @@ std::optional<ArrayXd> exact_pressure(const Oracle& pressed, const solver::Model
 solver::TangentialSolution solve_finer(const GivenContact& contact, const solver::Step& load,
                                        const Grid& fine, const ArrayXd& pressure) {
   solver::TangentialProblem problem = own_problem(contact, load);
-  const double own = solver::limit_of(problem, contact.model.grid).factor;
-  problem.friction_bound = contact.model.friction * pressure;
-  problem.initial_displacement = pressure_displacement(contact.model, contact.elasticity, fine, pressure);
+  const double own = solver::limit_of(problem, contact.grid).factor;
+  problem.friction_bound = contact.friction * pressure;
+  problem.initial_displacement = pressure_displacement(contact, fine, pressure);
   scale_loads(problem, kChildrenOfCell);
   const double limit = solver::limit_of(problem, fine).factor;
   const double wanted = own > 1.0 ? own : 1.0 / kScaledLoads;
@@ -112,34 +108,34 @@ LoadErrors load_errors(const Sums& coarse, const Sums& fine, double friction) {
                    (friction * fine.normal)};
 }
 
-/// Measures what the mesh accounts for.
-void measure_mesh(Yardstick& yardstick, const GivenContact& contact, const solver::Step& load,
-                  const std::optional<Oracle>& pressed, bool twist_given) {
-  const Grid grid = padded(contact.model.grid);
+MeshErrors measure_mesh(const GivenContact& contact, const solver::Step& load,
+                        const std::optional<Oracle>& pressed, bool twist_given) {
+  const Grid grid = padded(contact.grid);
   const Grid fine = finer(grid);
   ArrayXd pressure;
   if (pressed && load.normal) {
-    pressure = exact_pressure(*pressed, contact.model, fine, *load.normal).value_or(ArrayXd());
+    pressure = exact_pressure(*pressed, contact, fine, *load.normal).value_or(ArrayXd());
   }
-  if (pressure.size() == 0) pressure = handed_down(contact.model.grid, contact.pressure);
+  if (pressure.size() == 0) pressure = handed_down(contact.grid, contact.pressure);
   const solver::TangentialSolution solution = solve_finer(contact, load, fine, pressure);
   const Sums sums(fine, pressure, solution.traction);
+  MeshErrors errors;
   const auto measure = [&](ArrayXd p, ArrayXd q) {
     const GivenContact field = with_fields(contact, grid, std::move(p), std::move(q));
-    const LoadErrors loads =
-        load_errors({grid, field.pressure, field.traction}, sums, contact.model.friction);
-    yardstick.loads = {.normal = std::max(yardstick.loads.normal, loads.normal),
-                       .moment = std::max(yardstick.loads.moment, loads.moment),
-                       .force = std::max(yardstick.loads.force, loads.force)};
+    const LoadErrors loads = load_errors({grid, field.pressure, field.traction}, sums, contact.friction);
+    errors.loads = {.normal = std::max(errors.loads.normal, loads.normal),
+                    .moment = std::max(errors.loads.moment, loads.moment),
+                    .force = std::max(errors.loads.force, loads.force)};
     const State fitted = find_state(field, load, std::nullopt);
     const State reported = twist_given ? find_state(field, load, solution.twist) : fitted;
     const Deviation deviation = find_deviation(field, find_right_answer(field, load), reported, fitted);
-    yardstick.mesh = larger(yardstick.mesh, deviation);
-    yardstick.direction =
-        std::max(yardstick.direction, noticeable_direction(field, fitted, deviation.tractions).mean);
+    errors.deviation = larger(errors.deviation, deviation);
+    errors.direction =
+        std::max(errors.direction, noticeable_direction(field, fitted, deviation.tractions).mean);
   };
   measure(sampled(grid, pressure), sampled(grid, solution.traction));
   measure(restrict_to(grid, fine, pressure), restrict_to(grid, fine, solution.traction));
+  return errors;
 }
 
 /// Standard deviation of |q| that a field shows where it slips, in each cell: in parts of mu p or of the
@@ -174,7 +170,7 @@ Deviation disturbed(const GivenContact& contact, const RightAnswer& right, const
   Deviation worst;
   for (const double sign : {1.0, -1.0}) {
     const GivenContact field =
-        with_fields(contact, contact.model.grid, contact.pressure, right.traction + sign * error);
+        with_fields(contact, contact.grid, contact.pressure, right.traction + sign * error);
     const State fitted = find_state(field, load, std::nullopt);
     worst = larger(worst, find_deviation(field, right, fitted, fitted));
   }
@@ -183,16 +179,15 @@ Deviation disturbed(const GivenContact& contact, const RightAnswer& right, const
 
 }  // namespace
 
-Yardstick find_yardstick(const GivenContact& contact, const solver::Step& load,
-                         const std::optional<Oracle>& pressed, bool twist_given) {
-  Yardstick yardstick;
-  yardstick.right = find_right_answer(contact, load);
-  measure_mesh(yardstick, contact, load, pressed, twist_given);
-  yardstick.noise_size = noise_size(contact, yardstick.right);
-  yardstick.noise = disturbed(contact, yardstick.right, load, yardstick.noise_size);
-  yardstick.rounding =
-      disturbed(contact, yardstick.right, load, contact.traction_rounding + contact.bound_rounding);
-  return yardstick;
+ReferenceOnGrid find_reference_on_grid(const GivenContact& contact, const solver::Step& load,
+                                       const std::optional<Oracle>& pressed, bool twist_given) {
+  const RightAnswer right = find_right_answer(contact, load);
+  const ArrayXd noise = noise_size(contact, right);
+  return {.right = right,
+          .mesh = measure_mesh(contact, load, pressed, twist_given),
+          .rounding = disturbed(contact, right, load, contact.traction_rounding + contact.bound_rounding),
+          .noise = disturbed(contact, right, load, noise),
+          .noise_size = noise};
 }
 
 }  // namespace slipstick::convergence

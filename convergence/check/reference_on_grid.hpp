@@ -15,14 +15,19 @@ struct LoadErrors {
   double force = 0.0;   ///< in parts of the sum of mu p
 };
 
+/// What a mesh does to a right field.
+struct MeshErrors {
+  Deviation deviation;     ///< from the right answer
+  LoadErrors loads;        ///< by midpoints and edge cells
+  double direction = 0.0;  ///< of noticeable slip, in the mean, degrees
+};
+
 /// What is to be expected of a right field on a given contact's grid, whatever its discretisation. It is
 /// measured on right fields: the solution on a mesh of cells a third as large, under the exact pressure where
 /// that is known, once averaged over this grid's cells and once sampled at their centres.
-struct Yardstick {
+struct ReferenceOnGrid {
   RightAnswer right;          ///< with the field's own pressure and loads
-  Deviation mesh;             ///< the larger one of the two fields
-  LoadErrors loads;           ///< likewise: what midpoints and edge cells do to sums
-  double direction = 0.0;     ///< likewise: of noticeable slip, in the mean, degrees
+  MeshErrors mesh;            ///< the larger ones of the two fields
   Deviation rounding;         ///< of the right answer, rounded like the field's file
   Deviation noise;            ///< and with as much noise as the field shows
   Eigen::ArrayXd noise_size;  ///< cells: standard deviation, of |q|
@@ -30,7 +35,7 @@ struct Yardstick {
 
 /// pressed: the exact normal contact, about the grid's centre. twist_given: the program reported its twist;
 /// so do the right fields then. Throws std::runtime_error where a solve does not converge.
-Yardstick find_yardstick(const GivenContact& contact, const solver::Step& load,
-                         const std::optional<Oracle>& pressed, bool twist_given);
+ReferenceOnGrid find_reference_on_grid(const GivenContact& contact, const solver::Step& load,
+                                       const std::optional<Oracle>& pressed, bool twist_given);
 
 }  // namespace slipstick::convergence

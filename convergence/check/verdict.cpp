@@ -16,7 +16,7 @@ namespace {
 using Eigen::ArrayXd;
 
 constexpr double kDegrees = 180.0 / std::numbers::pi;
-/// The yardstick's fields know the truth to a third of the mesh error, and other discretisations than its own
+/// The reference fields know the truth to a third of the mesh error, and other discretisations than its own
 /// have errors of the same size: twice what it measures is what a mesh accounts for.
 constexpr double kWholeMesh = 2.0;
 /// Errors drawn at random change what they disturb by as much as another draw does, within this factor.
@@ -52,7 +52,7 @@ double error_of_sums(const Examination& e) {
   const GivenContact& c = e.contact;
   return c.traction_rounding.sum() / solver::norms(c.traction).sum() +
          c.bound_rounding.sum() / c.friction_bound.sum() +
-         kLargestDraw * std::sqrt(e.yardstick.noise_size.square().sum()) / c.friction_bound.sum();
+         kLargestDraw * std::sqrt(e.reference.noise_size.square().sum()) / c.friction_bound.sum();
 }
 
 /// By how much tractions that are wrong by a part may change the gap, over the energy.
@@ -81,7 +81,7 @@ struct Allowed {
 };
 
 Allowed find_allowed(const Examination& e, std::optional<double> tolerance) {
-  const Yardstick& y = e.yardstick;
+  const ReferenceOnGrid& y = e.reference;
   const double discrete_gap = kIterationGap + kOtherDraws * y.rounding.gap;
   if (tolerance) {
     const double t = *tolerance;
@@ -97,18 +97,20 @@ Allowed find_allowed(const Examination& e, std::optional<double> tolerance) {
   const auto load = [&](double measured) {
     return std::max(discrete ? 0.0 : kWholeMesh * measured, quadrature) + sums;
   };
-  const double tractions = kWholeMesh * y.mesh.tractions + by_chance(&Deviation::tractions);
+  const double tractions = kWholeMesh * y.mesh.deviation.tractions + by_chance(&Deviation::tractions);
   return {
-      .normal = load(y.loads.normal),
+      .normal = load(y.mesh.loads.normal),
       .moment = solver::value_if<solver::Twist>(e.scene.steps.front().torsion)
-                    ? std::max(kWholeMesh * y.mesh.moment, quadrature) + sums
-                    : load(y.loads.moment),
-      .force = load(y.loads.force),
-      .motion = (discrete ? 0.0 : kWholeMesh * y.mesh.motion) + quadrature + by_chance(&Deviation::motion),
+                    ? std::max(kWholeMesh * y.mesh.deviation.moment, quadrature) + sums
+                    : load(y.mesh.loads.moment),
+      .force = load(y.mesh.loads.force),
+      .motion = (discrete ? 0.0 : kWholeMesh * y.mesh.deviation.motion) + quadrature +
+                by_chance(&Deviation::motion),
       .tractions = tractions,
-      .friction = kFrictionSlack + kWholeMesh * y.mesh.friction + by_chance(&Deviation::friction),
-      .direction = kUnseenAngle + kWholeMesh * y.direction + kDegrees * by_chance(&Deviation::tractions),
-      .gap = discrete_gap + std::min(kWholeMesh * y.mesh.gap, e.constant_cells ? kUnfinishedGap : INFINITY) +
+      .friction = kFrictionSlack + kWholeMesh * y.mesh.deviation.friction + by_chance(&Deviation::friction),
+      .direction = kUnseenAngle + kWholeMesh * y.mesh.direction + kDegrees * by_chance(&Deviation::tractions),
+      .gap = discrete_gap +
+             std::min(kWholeMesh * y.mesh.deviation.gap, e.constant_cells ? kUnfinishedGap : INFINITY) +
              kOtherDraws * y.noise.gap,
       .discrete_gap = discrete_gap};
 }
@@ -117,20 +119,19 @@ Allowed find_allowed(const Examination& e, std::optional<double> tolerance) {
 /// its radius.
 void judge_pressure(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed) {
   const solver::Step& load = e.scene.steps.front();
-  const solver::Model& model = e.contact.model;
+  const GivenContact& c = e.contact;
   if (load.normal) {
     judged.push_back(judge_error("the normal load", "normal_load_error",
-                                 relative_error(e.contact.pressure.sum() * e.newtons(), *load.normal),
+                                 relative_error(c.pressure.sum() * c.newtons(), *load.normal),
                                  allowed.normal));
   }
   if (!e.exact.oracle || !std::isfinite(e.exact.oracle->contact_radius)) return;
-  const double radius = e.exact.oracle->contact_radius / model.length_unit;
+  const double radius = e.exact.oracle->contact_radius / c.length_unit;
   const double one_cell =
-      std::max(model.grid.h1, model.grid.h2) * model.length_unit / e.exact.oracle->shorter_semi_axis();
+      std::max(c.grid.h1, c.grid.h2) * c.length_unit / e.exact.oracle->shorter_semi_axis();
   judged.push_back(judge_error("the contact radius", "contact_radius_error",
-                               relative_error(measure_contact_radius(model, e.contact.pressure), radius),
-                               one_cell));
-  const double limit = e.exact.oracle->moment_limit / e.newton_metres();
+                               relative_error(measure_contact_radius(c, c.pressure), radius), one_cell));
+  const double limit = e.exact.oracle->moment_limit / c.newton_metres();
   if (!std::isfinite(limit)) return;
   judged.push_back(judge_error("the limit moment of the pressure (its shape is not the exact one)",
                                "moment_limit_error", relative_error(e.moment_limit, limit), one_cell));
@@ -164,7 +165,7 @@ void judge_loads(std::vector<Judged>& judged, const Examination& e, const Allowe
 double friction_excess(const Examination& e) {
   const GivenContact& c = e.contact;
   const ArrayXd beyond = solver::norms(c.traction) - c.friction_bound - c.traction_rounding -
-                         c.bound_rounding - kLargestDraw * e.yardstick.noise_size;
+                         c.bound_rounding - kLargestDraw * e.reference.noise_size;
   return (beyond / c.friction_bound.max(kNextToNothing * c.friction_bound.maxCoeff())).maxCoeff();
 }
 
@@ -175,7 +176,7 @@ bool is_torsion(const solver::Scene& scene) {
 
 /// A twist that was inferred from a field that breaks Coulomb's law means little: no sentence speaks of it.
 void judge_motion(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed, bool lawful) {
-  if (e.yardstick.right.scaled) return;  // the right motion and tractions are those of other loads
+  if (e.reference.right.scaled) return;  // the right motion and tractions are those of other loads
   const bool torsion = is_torsion(e.scene);
   const double error = e.deviation.motion;
   Judged motion = torsion ? judge_error("the twist", "twist", error, allowed.motion)
@@ -237,6 +238,8 @@ bool holds(const std::vector<Judged>& judged, const std::string& quantity) {
                              [&](const Judged& item) { return item.quantity != quantity || item.holds(); });
 }
 
+bool all_hold(const std::vector<Judged>& judged) { return std::ranges::all_of(judged, &Judged::holds); }
+
 bool has_right_pressure(const std::vector<Judged>& judged) {
   return holds(judged, "normal_load_error") && holds(judged, "moment_limit_error");
 }
@@ -246,9 +249,9 @@ std::string kernel_text(const Hypothesis& kernel, const Hypothesis& right, const
   std::string text =
       fmt::format("{}: with that the stick area moves as one body (its gap falls from {:.1e} to {:.1e})",
                   kernel.name, right.stick_gap, kernel.stick_gap);
-  if (e.yardstick.right.scaled || !is_torsion(e.scene)) return text;
+  if (e.reference.right.scaled || !is_torsion(e.scene)) return text;
   return text + fmt::format(" by {:.6g} rad, {}", kernel.twist,
-                            off_text(relative_error(kernel.twist, e.yardstick.right.twist)));
+                            off_text(relative_error(kernel.twist, e.reference.right.twist)));
 }
 
 /// What it may be that makes a twist wrong, by the ratio to the one that fits the tractions.
@@ -271,78 +274,75 @@ std::string twist_mistake(const Examination& e, double allowed) {
   return fmt::format("a twist that is not that of these tractions, {:.6g} rad", e.fitted.twist);
 }
 
-std::vector<std::string> causes(const Examination& e, const Verdict& verdict, const Allowed& allowed) {
+std::vector<std::string> causes(const Examination& e, const std::vector<Judged>& judged,
+                                const std::optional<Diagnosis>& diagnosis, const Allowed& allowed) {
   std::vector<std::string> causes;
-  if (!has_right_pressure(verdict.judged) && e.exact.oracle &&
-      !std::isfinite(e.exact.oracle->peak_pressure)) {
+  if (!has_right_pressure(judged) && e.exact.oracle && !std::isfinite(e.exact.oracle->peak_pressure)) {
     causes.emplace_back(
         "a pressure that is infinite at a place, sampled at cell centres in place of averaged");
   }
-  if (!verdict.diagnosis) return causes;
-  const Diagnosis& diagnosis = *verdict.diagnosis;
-  if (e.twist_given && !holds(verdict.judged, "twist") && diagnosis.as_it_should_be.gap <= allowed.gap) {
+  if (!diagnosis) return causes;
+  if (e.twist_given && !holds(judged, "twist") && diagnosis->reference_kernel.gap <= allowed.gap) {
     causes.push_back(twist_mistake(e, allowed.motion));
   }
-  if (diagnosis.friction) {
-    causes.push_back(
-        fmt::format("{} (gap/energy {:.1e} with that)", diagnosis.friction->name, diagnosis.friction->gap));
+  if (const auto& friction = diagnosis->friction) {
+    causes.push_back(fmt::format("{} (gap/energy {:.1e} with that)", friction->name, friction->gap));
   }
-  if (diagnosis.kernel) causes.push_back(kernel_text(*diagnosis.kernel, diagnosis.as_it_should_be, e));
-  if (!diagnosis.friction && diagnosis.stick_area_explained && !holds(verdict.judged, "slip_direction")) {
+  if (diagnosis->kernel) causes.push_back(kernel_text(*diagnosis->kernel, diagnosis->reference_kernel, e));
+  if (!diagnosis->friction && diagnosis->stick_area_explained && !holds(judged, "slip_direction")) {
     causes.emplace_back("slipping cells that keep a direction which does not oppose their slip");
   }
   return causes;
 }
 
 /// What is right, what is not, and what that looks like.
-std::string sentence(const Examination& e, const Verdict& verdict, const Allowed& allowed) {
+std::string sentence(const Examination& e, const std::vector<Judged>& judged, const Judged& discrete,
+                     const std::optional<Diagnosis>& diagnosis, const Allowed& allowed) {
   std::vector<std::string> right;
   std::vector<std::string> wrong;
-  const bool lawful = holds(verdict.judged, "slip_direction") && holds(verdict.judged, "gap") &&
-                      holds(verdict.judged, "tractions") && holds(verdict.judged, "friction");
-  for (const Judged& item : verdict.judged) {
+  const bool lawful = holds(judged, "slip_direction") && holds(judged, "gap") && holds(judged, "tractions") &&
+                      holds(judged, "friction");
+  for (const Judged& item : judged) {
     const bool of_law = item.quantity == "slip_direction" || item.quantity == "gap";
     if (item.holds() && of_law && !lawful) continue;  // it would say that the law holds, and that it does not
-    const std::string& text = item.holds() ? item.right : item.wrong;
+    const std::string& text = item.text();
     if (!text.empty()) (item.holds() ? right : wrong).push_back(text);
   }
-  const std::string& discrete = verdict.discrete.holds() ? verdict.discrete.right : verdict.discrete.wrong;
-  if (verdict.within_mesh()) {
-    return fmt::format("{}; {} {}", listed(right), verdict.discrete.holds() ? "and" : "but", discrete);
+  if (all_hold(judged)) {
+    return fmt::format("{}; {} {}", listed(right), discrete.holds() ? "and" : "but", discrete.text());
   }
-  const std::string but = right.empty() ? "" : listed(right) + ", but ";
-  const std::vector<std::string> likely = causes(e, verdict, allowed);
-  std::string text = but + listed(wrong);
+  const std::vector<std::string> likely = causes(e, judged, diagnosis, allowed);
+  std::string text = (right.empty() ? "" : listed(right) + ", but ") + listed(wrong);
   if (!likely.empty()) {
     text += fmt::format("; it looks like {}", fmt::join(likely, ", and like "));
-  } else if (verdict.diagnosis && has_right_pressure(verdict.judged)) {
+  } else if (diagnosis && has_right_pressure(judged)) {
     text += "; none of the usual mistakes explains it, as where an iteration stops too early";
   }
-  return verdict.discrete.holds() ? text + "; " + discrete : text;
+  return discrete.holds() ? text + "; " + discrete.right : text;
 }
 
 }  // namespace
 
-bool Verdict::within_mesh() const { return std::ranges::all_of(judged, &Judged::holds); }
+bool Verdict::within_mesh() const { return all_hold(judged); }
 
 Verdict reach_verdict(const Examination& e, std::optional<double> tolerance) {
   const Allowed allowed = find_allowed(e, tolerance);
-  Verdict verdict{{}, judge_discrete(e, allowed), {}, {}};
-  std::vector<Judged>& judged = verdict.judged;
+  std::vector<Judged> judged;
   judge_pressure(judged, e, allowed);
   judge_loads(judged, e, allowed);
   std::vector<Judged> law;
   judge_coulomb(law, e, allowed);
-  const bool lawful = std::ranges::all_of(law, &Judged::holds);
+  const bool lawful = all_hold(law);
   judge_motion(judged, e, allowed, lawful);
   judged.insert(judged.end(), law.begin(), law.end());
+  std::optional<Diagnosis> diagnosis;
   if (!lawful || !holds(judged, "tractions") || !holds(judged, "twist") || !holds(judged, "motion")) {
     std::optional<double> friction;
-    if (!holds(judged, "friction")) friction = plateau_of_friction(e.contact, e.yardstick.right);
-    verdict.diagnosis = diagnose(e.contact, e.scene.steps.front(), allowed.gap, friction);
+    if (!holds(judged, "friction")) friction = plateau_of_friction(e.contact, e.reference.right);
+    diagnosis = diagnose(e.contact, e.scene.steps.front(), allowed.gap, friction);
   }
-  verdict.why = sentence(e, verdict, allowed);
-  return verdict;
+  const Judged discrete = judge_discrete(e, allowed);
+  return {judged, discrete, diagnosis, sentence(e, judged, discrete, diagnosis, allowed)};
 }
 
 }  // namespace slipstick::convergence

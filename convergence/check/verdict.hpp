@@ -14,10 +14,11 @@ struct Judged {
   std::string quantity;
   double value;
   double allowed;
-  std::string right;  ///< how a sentence says that it is as it should be; empty: it does not
+  std::string right;  ///< how a sentence says that it holds; empty: it does not
   std::string wrong;  ///< and that it is not
 
   bool holds() const { return value <= allowed; }
+  const std::string& text() const { return holds() ? right : wrong; }
 };
 
 /// Two answers. Is the field right within its mesh: pressure, loads, motion, tractions and Coulomb's law,
