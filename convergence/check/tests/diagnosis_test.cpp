@@ -99,7 +99,7 @@ TEST(Diagnosis, NamesTheKernelThatWasUsed) {
 }
 
 // As a Poisson's ratio of zero they differ from what they should be, but that is not what they are.
-TEST(Diagnosis, TellsExchangedKernelsFromPoissonsRatio) {
+TEST(Diagnosis, DistinguishesExchangedKernelsFromPoissonsRatio) {
   const Diagnosis diagnosis = diagnose(computed_with(right_cross, true), {}, kAllowed);
   ASSERT_TRUE(diagnosis.kernel);
   EXPECT_EQ(diagnosis.kernel->name, "the kernels K11 and K22 exchanged");
@@ -125,7 +125,7 @@ TEST(Diagnosis, FindsNoMistakeInTheRightKernel) {
 }
 
 // The field of bodies with another Poisson's ratio and the same contact modulus E/(1 - nu^2).
-TEST(Diagnosis, TellsPoissonsRatioFromTheField) {
+TEST(Diagnosis, DeterminesPoissonsRatioFromTheField) {
   for (const double ratio : {0.1, 0.45}) {
     solver::Scene scene =
         solver::read_scene(std::string(SLIPSTICK_SCENES) + "/ellipse.toml", {"grid.cells=[32,16]"});

@@ -61,14 +61,8 @@ Positions positions(const std::function<bool(int, int)>& keep, double h1, double
     }
   }
   std::ranges::shuffle(places, std::mt19937(3));
-  Positions at;
-  at.x1.values.resize(static_cast<Index>(places.size()));
-  at.x2.values.resize(at.x1.values.size());
-  for (Index row = 0; row < at.x1.values.size(); ++row) {
-    at.x1.values[row] = places[static_cast<std::size_t>(row)][0];
-    at.x2.values[row] = places[static_cast<std::size_t>(row)][1];
-  }
-  return at;
+  const Eigen::Map<const Eigen::Array2Xd> at(places.front().data(), 2, static_cast<Index>(places.size()));
+  return {{"x1", at.row(0).transpose()}, {"x2", at.row(1).transpose()}};
 }
 
 bool in_disc(int i, int j) { return std::hypot((i - 6) / 6.6, (j - 4) / 4.6) < 1.0; }
