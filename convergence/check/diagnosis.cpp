@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "convergence/check/deviation.hpp"
 #include "convergence/check/fitted_motion.hpp"

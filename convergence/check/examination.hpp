@@ -3,6 +3,8 @@
 #include <array>
 #include <filesystem>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "convergence/check/conventions.hpp"
 #include "convergence/check/reference_on_grid.hpp"
