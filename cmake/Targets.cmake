@@ -20,9 +20,14 @@ function(slipstick_configure target)
     $<$<BOOL:${SLIPSTICK_WERROR}>:-Werror> $<$<BOOL:${SLIPSTICK_NATIVE}>:-march=native>)
 endfunction()
 
-# For tests, commands and what compares, whose work is done in the two wings: -O3 takes them half as long again to compile.
+# For commands and what compares, whose work is done in the two sides: -O3 takes them half as long again to compile.
 function(slipstick_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
+endfunction()
+
+# For tests: what they test is compiled elsewhere.
+function(slipstick_compile_as_test target)
+  target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O0>)
 endfunction()
 
 # slipstick_library(<folder> SOURCES ... PUBLIC <libraries> PRIVATE <libraries>)
@@ -43,18 +48,19 @@ endfunction()
 # mutants, takes alone.
 set(SLIPSTICK_TEST_HANGS 3600)
 
-# slipstick_headers(<name> HEADERS ... LIBRARIES ...): precompiled headers for several targets that compile quickly.
+# slipstick_headers(<name> HEADERS ... LIBRARIES ...): precompiled headers for several targets; their flags are to follow.
 function(slipstick_headers name)
   cmake_parse_arguments(ARG "" "" "HEADERS;LIBRARIES" ${ARGN})
   add_library(${name} OBJECT EXCLUDE_FROM_ALL ${PROJECT_SOURCE_DIR}/cmake/headers.cpp)
   slipstick_configure(${name})
-  slipstick_compile_quickly(${name})
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} fmt::fmt nlohmann_json::nlohmann_json Eigen3::Eigen)
   target_precompile_headers(${name} PRIVATE ${SLIPSTICK_HEADERS} <Eigen/Core> <nlohmann/json.hpp> ${ARG_HEADERS})
 endfunction()
 slipstick_headers(slipstick_command_headers HEADERS <CLI/CLI.hpp> LIBRARIES CLI11::CLI11)
+slipstick_compile_quickly(slipstick_command_headers)
 if(SLIPSTICK_TESTS)
   slipstick_headers(slipstick_test_headers HEADERS <gmock/gmock.h> <gtest/gtest.h> LIBRARIES GTest::gmock)
+  slipstick_compile_as_test(slipstick_test_headers)
 endif()
 
 # slipstick_tests(<name> SOURCES ... LIBRARIES ...): one GoogleTest program, each case a test of its own in CTest; or,
@@ -71,7 +77,7 @@ function(slipstick_tests name)
   target_compile_options(${name} PRIVATE
     $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-restrict -Wno-stringop-overflow>)
   slipstick_configure(${name})
-  slipstick_compile_quickly(${name})
+  slipstick_compile_as_test(${name})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} fmt::fmt GTest::gmock GTest::gtest_main)
   if(SLIPSTICK_TEST_SHARDS)

@@ -109,7 +109,7 @@ Solution in_si(ModelSolution solution) {
   solution.grids = std::move(solution.tangential.grids);
   solution.pressure_iterations = solution.normal.iterations;
   solution.pressure_complementarity = solution.normal.complementarity;
-  return std::move(solution);
+  return solution;
 }
 
 double measure_contact_radius(const Dimensionless& model, const ArrayXd& pressure) {

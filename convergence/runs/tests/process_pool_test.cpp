@@ -58,7 +58,9 @@ TEST_F(ProcessPoolTest, GivesWhatSolveGives) {
     EXPECT_EQ(pooled["status"], status);
     EXPECT_EQ(pooled["twist_angle"], solved["twist_angle"]);
     EXPECT_EQ(pooled.contains("steps"), scene != kPaper);
-    if (status == "not_converged") EXPECT_EQ(pooled["history"]["steps"], 1);
+    if (status == "not_converged") {
+      EXPECT_EQ(pooled["history"]["steps"], 1);
+    }
   }
 }
 
