@@ -31,7 +31,7 @@ foreach(function
 endforeach()
 add_executable(slipstick_work work/work_counts_program.cpp)
 slipstick_configure(slipstick_work)
-slipstick_compile_quickly(slipstick_work)
+slipstick_compile_unoptimised(slipstick_work)
 target_precompile_headers(slipstick_work REUSE_FROM slipstick_command_headers)
 target_link_libraries(slipstick_work PRIVATE slipstick_work_counts CLI11::CLI11 fmt::fmt)
 slipstick_tests(work_counts_tests SOURCES work/tests/work_counts_test.cpp LIBRARIES slipstick_work_counts)

@@ -20,13 +20,13 @@ function(slipstick_configure target)
     $<$<BOOL:${SLIPSTICK_WERROR}>:-Werror> $<$<BOOL:${SLIPSTICK_NATIVE}>:-march=native>)
 endfunction()
 
-# For commands and what compares, whose work is done in the two sides: -O3 takes them half as long again to compile.
+# For what compares, whose work is done in the two sides: -O3 takes it half as long again to compile.
 function(slipstick_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# For tests: what they test is compiled elsewhere.
-function(slipstick_compile_as_test target)
+# For commands and tests: what they call is compiled elsewhere.
+function(slipstick_compile_unoptimised target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O0>)
 endfunction()
 
@@ -57,10 +57,10 @@ function(slipstick_headers name)
   target_precompile_headers(${name} PRIVATE ${SLIPSTICK_HEADERS} <Eigen/Core> <nlohmann/json.hpp> ${ARG_HEADERS})
 endfunction()
 slipstick_headers(slipstick_command_headers HEADERS <CLI/CLI.hpp> LIBRARIES CLI11::CLI11)
-slipstick_compile_quickly(slipstick_command_headers)
+slipstick_compile_unoptimised(slipstick_command_headers)
 if(SLIPSTICK_TESTS)
   slipstick_headers(slipstick_test_headers HEADERS <gmock/gmock.h> <gtest/gtest.h> LIBRARIES GTest::gmock)
-  slipstick_compile_as_test(slipstick_test_headers)
+  slipstick_compile_unoptimised(slipstick_test_headers)
 endif()
 
 # slipstick_tests(<name> SOURCES ... LIBRARIES ...): one GoogleTest program, each case a test of its own in CTest; or,
@@ -77,7 +77,7 @@ function(slipstick_tests name)
   target_compile_options(${name} PRIVATE
     $<$<CXX_COMPILER_ID:GNU>:-Wno-array-bounds -Wno-restrict -Wno-stringop-overflow>)
   slipstick_configure(${name})
-  slipstick_compile_as_test(${name})
+  slipstick_compile_unoptimised(${name})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR})
   target_link_libraries(${name} PRIVATE ${ARG_LIBRARIES} fmt::fmt GTest::gmock GTest::gtest_main)
   if(SLIPSTICK_TEST_SHARDS)
