@@ -15,12 +15,14 @@ LoadsAlong<M> PositivePressures::loads_along(const ArrayXd& y, const std::array<
                                              const std::array<const ArrayXd*, M>& c) const {
   static_assert(M == 1, "the approach is a pressure's only condition");
   LoadsAlong<M> sum;
+  const auto* const direction = w[0]->data();
+  const double* const field = c[0]->data();
   for (Index i = 0; i < y.size(); ++i) {
-    const auto along = static_cast<double>((*w[0])[i]);
+    const auto along = static_cast<double>(direction[i]);
     const double p = y[i] + x[0] * along;
     if (!(p > 0.0) || reachable_[i] == 0.0) continue;
-    sum.load[0] += (*c[0])[i] * p;
-    sum.slope(0, 0) += (*c[0])[i] * along;
+    sum.load[0] += field[i] * p;
+    sum.slope(0, 0) += field[i] * along;
   }
   return sum;
 }
@@ -72,14 +74,20 @@ LoadsAlong<M> FrictionDiscs::loads_along(const ArrayXd& y, const std::array<cons
   LoadsAlong<M> sum;
   std::array<std::array<double, 2>, M> along{};
   std::array<std::array<double, 2>, M> weight{};
+  std::array<const typename Direction::Scalar*, M> directions;
+  std::array<const double*, M> fields;
+  for (std::size_t k = 0; k < M; ++k) {
+    directions[k] = w[k]->data();
+    fields[k] = c[k]->data();
+  }
   for (Index i = 0; i < n; ++i) {
     const double bound = bound_[i];
     if (bound == 0.0) continue;
     double z1 = y[i];
     double z2 = y[i + n];
     for (std::size_t k = 0; k < M; ++k) {
-      along[k] = {static_cast<double>((*w[k])[i]), static_cast<double>((*w[k])[i + n])};
-      weight[k] = {(*c[k])[i], (*c[k])[i + n]};
+      along[k] = {static_cast<double>(directions[k][i]), static_cast<double>(directions[k][i + n])};
+      weight[k] = {fields[k][i], fields[k][i + n]};
       z1 += x[static_cast<int>(k)] * along[k][0];
       z2 += x[static_cast<int>(k)] * along[k][1];
     }
