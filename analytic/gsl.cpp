@@ -61,7 +61,7 @@ void check(int status) {
 }
 
 double root(const std::function<double(double)>& f, double low, double high) {
-  constexpr int kMostIterations = 200;  // bisection alone would need about 60
+  constexpr int kMaxIterations = 200;  // bisection alone would need about 60
   constexpr double kRelative = 4 * std::numeric_limits<double>::epsilon();
 
   turn_abort_handler_off();
@@ -71,7 +71,7 @@ double root(const std::function<double(double)>& f, double low, double high) {
   int status = gsl_root_fsolver_set(solver.get(), &function, low, high);
   callback.rethrow();
   check(status);
-  for (int i = 0; i < kMostIterations; ++i) {
+  for (int i = 0; i < kMaxIterations; ++i) {
     status = gsl_root_fsolver_iterate(solver.get());
     callback.rethrow();
     check(status);

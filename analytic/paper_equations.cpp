@@ -103,12 +103,12 @@ double eq7_twist(double moment) {
 
 double stick_ratio_from_eq5(double moment) {
   // Outside, what is left of Eq. (5) in double precision after cancellation says nothing about c.
-  constexpr double kLeast = 1e-4;
-  constexpr double kMost = 1 - 1e-6;
+  constexpr double kMin = 1e-4;
+  constexpr double kMax = 1 - 1e-6;
   const auto excess = [moment](double c) { return eq5_moment(c) - moment; };
-  require(moment > 0 && excess(kLeast) > 0 && excess(kMost) < 0, "M/(mu W a)", moment,
+  require(moment > 0 && excess(kMin) > 0 && excess(kMax) < 0, "M/(mu W a)", moment,
           "0 < M/(mu W a) < 3 pi/16, as far as Eq. (5) keeps digits");
-  return gsl::root(excess, kLeast, kMost);
+  return gsl::root(excess, kMin, kMax);
 }
 
 }  // namespace slipstick::analytic::paper

@@ -333,11 +333,11 @@ class RoundedPunch final : public Superposition {
 }  // namespace
 
 std::unique_ptr<const Profile> power_profile(double exponent) {
-  constexpr double kLeast = 0.01;
-  constexpr double kMost = 1000;
-  if (!(exponent >= kLeast && exponent <= kMost))
+  constexpr double kMin = 0.01;
+  constexpr double kMax = 1000;
+  if (!(exponent >= kMin && exponent <= kMax))
     throw std::domain_error(
-        fmt::format("exponent of the gap = {}; allowed: {} <= n <= {}", exponent, kLeast, kMost));
+        fmt::format("exponent of the gap = {}; allowed: {} <= n <= {}", exponent, kMin, kMax));
   return std::make_unique<const Power>(exponent);
 }
 

@@ -19,11 +19,11 @@ namespace {
 using std::numbers::pi;
 
 void require_dissimilar_bodies(double friction, double beta, double least, double most) {
-  constexpr double kMostBeta = 0.5;  // nu = 0 against a rigid body
+  constexpr double kMaxBeta = 0.5;  // nu = 0 against a rigid body
   if (!(friction > 0 && std::isfinite(friction)))
     throw std::domain_error(fmt::format("friction = {}; allowed: positive and finite", friction));
-  if (!(std::abs(beta) > 0 && std::abs(beta) <= kMostBeta))
-    throw std::domain_error(fmt::format("beta = {}; allowed: 0 < |beta| <= {}", beta, kMostBeta));
+  if (!(std::abs(beta) > 0 && std::abs(beta) <= kMaxBeta))
+    throw std::domain_error(fmt::format("beta = {}; allowed: 0 < |beta| <= {}", beta, kMaxBeta));
   const double ratio = friction / std::abs(beta);
   if (!(ratio >= least && ratio <= most))
     throw std::domain_error(
@@ -34,15 +34,15 @@ void require_dissimilar_bodies(double friction, double beta, double least, doubl
 StickRadius stick_at(double x) { return {.ratio = std::tanh(x), .complement = 2 / (std::exp(2 * x) + 1)}; }
 
 double goodman_artanh(double friction_over_beta) {
-  constexpr double kLeastLog = -650;  // x is c there, and c above 4 exp(-600)
-  constexpr double kMostK = 1.81;     // above K at c = tanh(1), from where on x/tanh(x) > x
-  const double high = std::max(1.0, kMostK * friction_over_beta);
+  constexpr double kMinLog = -650;  // x is c there, and c above 4 exp(-600)
+  constexpr double kMaxK = 1.81;    // above K at c = tanh(1), from where on x/tanh(x) > x
+  const double high = std::max(1.0, kMaxK * friction_over_beta);
   const auto excess = [&](double log_x) {
     const double x = std::exp(log_x);
     const double c = std::tanh(x);
     return x / c - friction_over_beta * complete_elliptic_k(c);
   };
-  return std::exp(gsl::root(excess, kLeastLog, std::log(high)));
+  return std::exp(gsl::root(excess, kMinLog, std::log(high)));
 }
 
 /// Gauss's rule on a panel, with the polynomials through its nodes.
@@ -282,7 +282,7 @@ struct Solution {
 
 /// By the secant method, from two guesses, x0 the larger, neither too small by much.
 Solution solve(double friction, double beta, const GaussPanel& rule, double x0, double x1) {
-  constexpr int kMostSteps = 50;       // about six are usual
+  constexpr int kMaxSteps = 50;        // about six are usual
   constexpr double kConverged = 1e-8;  // the error left is of the order of a power between 1 and 2 of it
   const auto punch_at = [&](double x) {
     const Mesh mesh(stick_at(x), rule);
@@ -291,7 +291,7 @@ Solution solve(double friction, double beta, const GaussPanel& rule, double x0, 
   };
   const double highest = 1.1 * x0;
   double before = punch_at(x0).first;
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMaxSteps; ++i) {
     const auto [jump, stiffness] = punch_at(x1);
     const double step = -jump * (x1 - x0) / (jump - before);
     if (!std::isfinite(step)) break;

@@ -31,7 +31,7 @@ constexpr double kSmallest = 1e-100;
 /// Bytes of a table: a hundred times what resolves any pressure.
 constexpr std::uintmax_t kLargestTable = std::uintmax_t{1} << 20;
 /// Characters of a line that a message shows.
-constexpr std::size_t kMostShown = 200;
+constexpr std::size_t kMaxShown = 200;
 /// Written by some programs at the beginning of a text.
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
@@ -268,18 +268,18 @@ void check_points(const std::string& name, const Points& points, const Where& wh
     if (pressure == 0 && i + 1 < points.size())
       refuse(where(i), "pressure", pressure, "> 0 except at the last point, where the contact ends");
   }
-  constexpr std::size_t kFewest = 16;  // every second of fewer tells too little of the error
-  if (points.size() < kFewest)
+  constexpr std::size_t kMin = 16;  // every second of fewer tells too little of the error
+  if (points.size() < kMin)
     throw std::invalid_argument(fmt::format(
         "{}: {} points; allowed: at least {}, since the error of fewer cannot be estimated; best are points "
         "that crowd towards the edge",
-        name, points.size(), kFewest));
+        name, points.size(), kMin));
 }
 
 /// Where H does not decrease the tractions of a circle that sticks would exceed friction within it.
 void check_that_a_circle_sticks(const Tabulated& profile, const Points& points, const Where& where) {
-  constexpr std::size_t kMost = 200;  // more checks would say little and cost more than the profile
-  const std::size_t step = 1 + points.size() / kMost;
+  constexpr std::size_t kMax = 200;  // more checks would say little and cost more than the profile
+  const std::size_t step = 1 + points.size() / kMax;
   for (std::size_t i = 1; i + 1 < points.size(); i += step) {
     const double c = points[i].radius;
     if (!(profile.twist_slope({.ratio = c, .complement = 1 - c}) > 0))
@@ -359,12 +359,12 @@ double power_at(const Points& points, std::size_t i) {
 /// to which this tends, and like the square root by which smooth bodies part.
 std::vector<Points> other_endings(const Points& points) {
   constexpr double kLeast = 0.1;  // nearly a step
-  constexpr double kMost = 8;
+  constexpr double kMax = 8;
   const std::size_t last = points.size() - 2;
   const double power = power_at(points, last);
   std::vector<Points> endings;
   for (const double p : {power, 2 * power - power_at(points, last - 1), 0.5})
-    endings.push_back(ending_like(std::clamp(p, kLeast, kMost), points));
+    endings.push_back(ending_like(std::clamp(p, kLeast, kMax), points));
   return endings;
 }
 
@@ -432,7 +432,7 @@ double parse_number(std::string_view text, std::string_view what, const std::str
   const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (error != std::errc() || end != text.data() + text.size())
     throw std::invalid_argument(
-        fmt::format("{}: {} = {}; allowed: a number", where, what, text.substr(0, kMostShown)));
+        fmt::format("{}: {} = {}; allowed: a number", where, what, text.substr(0, kMaxShown)));
   return value;
 }
 
@@ -440,7 +440,7 @@ PressurePoint parse_point(std::string_view line, const std::string& where) {
   const auto comma = line.find(',');
   if (comma == std::string_view::npos || line.find(',', comma + 1) != std::string_view::npos)
     throw std::invalid_argument(
-        fmt::format("{}: {}; allowed: radius,pressure", where, line.substr(0, kMostShown)));
+        fmt::format("{}: {}; allowed: radius,pressure", where, line.substr(0, kMaxShown)));
   return {.radius = parse_number(trimmed(line.substr(0, comma)), "radius", where),
           .pressure = parse_number(trimmed(line.substr(comma + 1)), "pressure", where)};
 }

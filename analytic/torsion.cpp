@@ -15,7 +15,7 @@ namespace {
 using std::numbers::pi;
 
 /// Numbers below lose digits.
-constexpr double kLeast = std::numeric_limits<double>::min();
+constexpr double kMin = std::numeric_limits<double>::min();
 
 /// dM/dphi of a bonded flat punch, over G a^3 (Reissner and Sagoci 1944).
 constexpr double kBondedStiffness = 16.0 / 3;
@@ -67,11 +67,11 @@ struct Sample {
 template <class Function>
 double solve(double value, double start, double high, Function f) {
   constexpr double kConverged = 1e-9;  // in ln x; the error left is of the order of its square
-  constexpr int kMostSteps = 200;      // four are usual
+  constexpr int kMaxSteps = 200;       // four are usual
   if (value == 0) return 0;
   double low = 0;
   double x = start < high ? start : high / 2;
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMaxSteps; ++i) {
     const Sample sample = f(x);
     const double step = std::log(value / sample.value) / sample.power;
     double next = x * std::exp(step);
@@ -139,7 +139,7 @@ TorsionState from_moment_ratio(double moment_ratio, const Profile& profile) {
 TorsionState from_moment_deficit(double moment_deficit, const Profile& profile) {
   if (moment_deficit == 0)
     throw std::domain_error("1 - M/M_lim = 0 is gross slip; allowed: 0 < 1 - M/M_lim <= 1");
-  if (!(moment_deficit >= kLeast && moment_deficit <= 1))
+  if (!(moment_deficit >= kMin && moment_deficit <= 1))
     out_of_range("1 - M/M_lim", moment_deficit, "2.3e-308 <= 1 - M/M_lim <= 1");
   const double excess = profile.slip_share() - moment_deficit;
   if (excess < 0) return fully_stuck(1 - moment_deficit, moment_deficit, profile);
@@ -147,7 +147,7 @@ TorsionState from_moment_deficit(double moment_deficit, const Profile& profile) 
 }
 
 TorsionState from_stick_ratio(double stick_ratio, const Profile& profile) {
-  if (!(stick_ratio >= kLeast && stick_ratio <= 1))
+  if (!(stick_ratio >= kMin && stick_ratio <= 1))
     out_of_range("a_s/a", stick_ratio, "2.3e-308 <= a_s/a <= 1");
   return state_at({.ratio = stick_ratio, .complement = 1 - stick_ratio}, profile);
 }
@@ -159,7 +159,7 @@ TorsionState from_stick_complement(double stick_complement, const Profile& profi
 }
 
 TorsionState from_twist(double twist, const Profile& profile) {
-  const double largest = twist_at(profile.twist_integral({.ratio = kLeast, .complement = 1}), profile);
+  const double largest = twist_at(profile.twist_integral({.ratio = kMin, .complement = 1}), profile);
   if (!(twist >= 0 && twist <= largest))
     out_of_range("G a^2 phi/(mu W)", twist,
                  fmt::format("0 <= G a^2 phi/(mu W) <= {:.6g}, beyond which a_s/a underflows", largest));
@@ -176,11 +176,10 @@ TorsionState from_twist(double twist, const Profile& profile) {
   };
   const double value = 2 * profile.load() * (twist - stuck);
   const StickRadius full{.ratio = 1, .complement = 0};
-  const StickRadius c =
-      stick(solve(value, value / profile.twist_slope(full), -std::log(kLeast), [&](double x) {
-        const double h = profile.twist_integral(stick(x)) - profile.edge();
-        return Sample{.value = h, .power = x * profile.twist_slope(stick(x)) / h};
-      }));
+  const StickRadius c = stick(solve(value, value / profile.twist_slope(full), -std::log(kMin), [&](double x) {
+    const double h = profile.twist_integral(stick(x)) - profile.edge();
+    return Sample{.value = h, .power = x * profile.twist_slope(stick(x)) / h};
+  }));
   TorsionState state = state_at(c, profile);
   state.twist = twist;
   return state;

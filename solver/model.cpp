@@ -25,7 +25,7 @@ constexpr double kPaperFields = 20.0;
 /// Cells left free on each side of the expected contact where the scene does not give an extent.
 constexpr double kMarginCells = 2.0;
 /// With cells longer than so many times their width every method crawls.
-constexpr double kMostSlender = 1000.0;
+constexpr double kMaxSlender = 1000.0;
 
 HalfSpace half_space(const Material& material) {
   return {0.5 * material.young_modulus / (1.0 + material.poisson_ratio), material.poisson_ratio};
@@ -66,10 +66,10 @@ void require_extent(const Scene& scene, const std::vector<Surface>& surfaces,
 
 Grid require_not_slender(const Scene& scene, const Grid& grid) {
   const double slender = grid.h1 / grid.h2;
-  if (slender <= kMostSlender && slender >= 1.0 / kMostSlender) return grid;
+  if (slender <= kMaxSlender && slender >= 1.0 / kMaxSlender) return grid;
   throw InputError(scene.source.string(), "grid.cells", fmt::format("[{}, {}]", grid.n1, grid.n2),
                    fmt::format("cells at most {} times as long as wide; these are {:.4g} x {:.4g}",
-                               kMostSlender, grid.h1, grid.h2));
+                               kMaxSlender, grid.h1, grid.h2));
 }
 
 Grid make_grid(const Scene& scene, const std::vector<Surface>& surfaces, double effective_modulus) {

@@ -134,10 +134,10 @@ constexpr slong kRoughBits = 20;
 
 /// A root to about 20 bits. Nothing where the precision does not do.
 std::optional<Ball> rough_root(const Equation& equation) {
-  constexpr int kMostSteps = 100;
+  constexpr int kMaxSteps = 100;
   constexpr int kFarthest = 2400;  // c or 1 - c = 1e-1042
   Ball y;
-  for (int i = 0; i < kMostSteps; ++i) {
+  for (int i = 0; i < kMaxSteps; ++i) {
     const Residual at = residual(equation, y);
     const Ball step = at.value / at.slope;
     if (!step.finite()) return {};
@@ -217,10 +217,10 @@ std::optional<Ball> traction(const Law& law, const Stick& stick, const Rational&
 
 /// From few bits to all of them, each step at the precision that its result deserves.
 std::optional<Stick> solve(const Equation& equation) {
-  constexpr slong kFewest = 64;
+  constexpr slong kMin = 64;
   const slong bits = Precision::bits();
   std::optional<Ball> y;
-  slong guard = kFewest - kRoughBits;
+  slong guard = kMin - kRoughBits;
   for (; !y; guard *= 2) {
     if (kRoughBits + guard > bits) return {};
     const Precision precision(kRoughBits + guard);

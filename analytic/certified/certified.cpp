@@ -13,8 +13,8 @@ namespace slipstick::analytic::certified {
 
 namespace {
 
-constexpr int kFewestDigits = 15;
-constexpr int kMostDigits = 100;
+constexpr int kMinDigits = 15;
+constexpr int kMaxDigits = 100;
 
 /// What is asked for, checked, as exact numbers.
 struct Question {
@@ -196,17 +196,17 @@ bool available() { return true; }
 
 State state(const Profile& profile, Quantity given, const std::string& value,
             const std::vector<std::string>& radii, int digits) {
-  if (digits < kFewestDigits || digits > kMostDigits)
-    out_of_range("digits", std::to_string(digits), fmt::format("{}..{}", kFewestDigits, kMostDigits));
+  if (digits < kMinDigits || digits > kMaxDigits)
+    out_of_range("digits", std::to_string(digits), fmt::format("{}..{}", kMinDigits, kMaxDigits));
   const Question question = read(profile, given, value, radii);
 
-  constexpr slong kMostBits = 8000;
-  for (slong bits = 10 * digits / 3 + 64; bits <= kMostBits; bits += bits / 2) {
+  constexpr slong kMaxBits = 8000;
+  for (slong bits = 10 * digits / 3 + 64; bits <= kMaxBits; bits += bits / 2) {
     const Precision precision(bits);
     if (const auto balls = compute(question))
       if (const auto printed = print(question, *balls, digits)) return *printed;
   }
-  throw std::runtime_error(fmt::format("{} digits are not proven even with {} bits", digits, kMostBits));
+  throw std::runtime_error(fmt::format("{} digits are not proven even with {} bits", digits, kMaxBits));
 }
 
 }  // namespace slipstick::analytic::certified

@@ -309,11 +309,11 @@ TEST(LoadingHistory, HasTheTangentStiffnessOfItsStickArea) {
 }
 
 TEST(LoadingHistory, AgreesWithSpringsAndSlidersAlongRandomHistories) {
-  constexpr double kMost = 0.97;
+  constexpr double kMax = 0.97;
   for (const Profile* profile : kProfiles) {
-    SpringsAndSliders model(*profile, 2000, kMost);
+    SpringsAndSliders model(*profile, 2000, kMax);
     LoadingHistory history(*profile);
-    RandomMoments next(kMost);
+    RandomMoments next(kMax);
     std::size_t deepest = 0;
     for (int i = 0; i < 300; ++i) {
       // Excursions of all sizes, about where it stands: they nest.

@@ -27,7 +27,7 @@ def is_allowed(included, folder, allowed):
         for entry in allowed)
 
 
-def objections(root, arrows):
+def violations(root, arrows):
     units = {}
     files = [file for top in TOPS for file in (root / top).rglob("*.[ch]pp")] + [root / "main.cpp"]
     for file in files:
@@ -56,7 +56,7 @@ def objections(root, arrows):
 def main():
     root = pathlib.Path(sys.argv[1])
     arrows = read_arrows(pathlib.Path(__file__).with_name("arrows.txt"))
-    found = list(objections(root, arrows))
+    found = list(violations(root, arrows))
     print("\n".join(found) or "every include follows an arrow")
     return 1 if found else 0
 

@@ -12,10 +12,10 @@ namespace {
 
 using Eigen::ArrayXd;
 
-constexpr int kMostTurns = 100;
+constexpr int kMaxTurns = 100;
 /// The gap has to fall by this part of the step in a turn, or the next ones are more careful.
 constexpr double kProgress = 0.1;
-constexpr double kLeastStep = 1.0 / 64.0;
+constexpr double kMinStep = 1.0 / 64.0;
 
 /// Complementarity gap of a pressure under an opening besides its own, over p.Kp/2.
 class Complementarity {
@@ -60,7 +60,7 @@ CoupledSolution solve_fully_coupled(const Elasticity& elasticity, const Grid& gr
   double gap = std::numeric_limits<double>::infinity();
   double step = 1.0;
   CoupledSolution solution;
-  for (solution.turns = 1; solution.turns <= kMostTurns; ++solution.turns) {
+  for (solution.turns = 1; solution.turns <= kMaxTurns; ++solution.turns) {
     solution.normal = problem.solve_pressure(opening);
     solution.tangential = problem.solve_tractions(solution.normal.pressure);
     if (!converged(solution)) return solution;
@@ -69,7 +69,7 @@ CoupledSolution solve_fully_coupled(const Elasticity& elasticity, const Grid& gr
     solution.normal.complementarity = gap;
     if (gap <= problem.tolerance) return solution;
     if (!(gap <= (1.0 - kProgress * step) * last)) step *= 0.5;
-    if (!(step >= kLeastStep)) break;
+    if (!(step >= kMinStep)) break;
     opening += step * change;
   }
   solution.normal.status = Status::not_converged;

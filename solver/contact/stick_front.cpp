@@ -21,7 +21,7 @@ using Eigen::ArrayXd;
 constexpr double kTurn = 2.0 * std::numbers::pi;
 
 // Lengths are in cells from here on, and (i, j) is the centre of that cell.
-constexpr double kFewestStickCells = 12.0;
+constexpr double kMinStickCells = 12.0;
 constexpr double kMarch = 0.125;    // step along a ray across the cells
 constexpr double kStaircase = 2.0;  // what the counted front may be off between two rays
 constexpr double kLateral = 3.5;    // cells up to here on both sides of a ray take part in its fit
@@ -123,7 +123,7 @@ class FrontFinder {
   std::string why_not_rays() {
     if (stick_cells_ == 0.0) return "nothing sticks";
     if (stick_cells_ == static_cast<double>((bound_ > 0.0).count())) return "everything sticks";
-    if (stick_cells_ < kFewestStickCells) return fmt::format("only {} cells stick", stick_cells_);
+    if (stick_cells_ < kMinStickCells) return fmt::format("only {} cells stick", stick_cells_);
     find_centroid();
     cast_rays();
     if (!star_shaped()) return "the stick area is not one patch that its centroid sees all of";

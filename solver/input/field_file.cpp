@@ -28,10 +28,10 @@ bool is_hdf5(const path& file) { return file.extension() == ".h5" || file.extens
 
 /// Rows of a table are cells of a contact, of 4,096 x 4,096 at most; heights of a map are cells of a grid. A
 /// solve on more takes tens of gigabytes.
-constexpr Index kMostRows = Index{1} << 24;
-constexpr Index kMostHeights = Index{1} << 26;
+constexpr Index kMaxRows = Index{1} << 24;
+constexpr Index kMaxHeights = Index{1} << 26;
 /// Values on a line: as many as a grid has cells along a side.
-constexpr std::size_t kMostColumns = 65536;
+constexpr std::size_t kMaxColumns = 65536;
 /// Written by some programs at the beginning of a text.
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
@@ -113,7 +113,7 @@ class CsvFile {
   void split(std::string_view line) {
     if (line.find_first_not_of(" \t\r") == std::string_view::npos) return;
     for (std::size_t first = 0; first < line.size();) {
-      if (values_.size() == kMostColumns) fail(fmt::format("more than {} values", kMostColumns));
+      if (values_.size() == kMaxColumns) fail(fmt::format("more than {} values", kMaxColumns));
       const std::size_t comma = std::min(line.find(',', first), line.size());
       values_.push_back(trimmed(line.substr(first, comma - first)));
       first = comma + 1;
@@ -158,8 +158,8 @@ std::vector<Column> read_csv_columns(const path& file, const std::vector<std::st
     if (row.size() != header.size()) {
       csv.fail(fmt::format("{} values; allowed: {}, one a column", row.size(), header.size()));
     }
-    if (static_cast<Index>(values[0].size()) == kMostRows)
-      csv.fail(fmt::format("more than {} rows", kMostRows));
+    if (static_cast<Index>(values[0].size()) == kMaxRows)
+      csv.fail(fmt::format("more than {} rows", kMaxRows));
     for (std::size_t c = 0; c < names.size(); ++c) values[c].push_back(csv.number(row[positions[c]]));
   }
   if (values[0].empty()) throw InputError(file.string(), "holds no rows of numbers");
@@ -171,7 +171,7 @@ std::vector<Column> read_csv_columns(const path& file, const std::vector<std::st
 }
 
 std::vector<Column> read_hdf5_columns(const path& file, const std::vector<std::string>& names) {
-  const std::vector<Dataset> datasets = read_datasets(file, names, 1, kMostRows);
+  const std::vector<Dataset> datasets = read_datasets(file, names, 1, kMaxRows);
   std::vector<Column> columns;
   for (std::size_t c = 0; c < names.size(); ++c) {
     const std::string& name = names[c];
@@ -247,7 +247,7 @@ std::vector<Column> read_columns(const path& file, const std::vector<std::string
 }
 
 Eigen::ArrayXXd read_height_map(const path& file) {
-  if (is_hdf5(file)) return read_datasets(file, {"height"}, 2, kMostHeights).front();
+  if (is_hdf5(file)) return read_datasets(file, {"height"}, 2, kMaxHeights).front();
   CsvFile csv(file);
   std::vector<double> heights;
   std::size_t columns = 0;
@@ -258,8 +258,8 @@ Eigen::ArrayXXd read_height_map(const path& file) {
     if (row.size() != columns) {
       csv.fail(fmt::format("{} values; allowed: {}, as in the rows before", row.size(), columns));
     }
-    if (static_cast<Index>(heights.size() + columns) > kMostHeights)
-      csv.fail(fmt::format("more than {} values", kMostHeights));
+    if (static_cast<Index>(heights.size() + columns) > kMaxHeights)
+      csv.fail(fmt::format("more than {} values", kMaxHeights));
     for (const std::string_view text : row) heights.push_back(csv.height(text));
   }
   if (heights.empty()) throw InputError(file.string(), "holds no rows of numbers");

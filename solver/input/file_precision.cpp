@@ -15,7 +15,7 @@ constexpr int kDigitsOfDouble = 17;
 /// Numbers of so many digits may be in single precision by chance.
 constexpr int kDigitsOfSingle = 7;
 /// Numbers that need more decimals were not written with a fixed count of them.
-constexpr int kMostDecimals = 20;
+constexpr int kMaxDecimals = 20;
 
 bool is(const std::string& text, double value) { return std::strtod(text.c_str(), nullptr) == value; }
 
@@ -31,8 +31,8 @@ int digits_needed(const Eigen::ArrayXd& values) {
 int decimals_needed(const Eigen::ArrayXd& values) {
   int decimals = 0;
   for (const double value : values) {
-    while (decimals < kMostDecimals && !is(fmt::format("{:.{}f}", value, decimals), value)) ++decimals;
-    if (decimals == kMostDecimals) break;
+    while (decimals < kMaxDecimals && !is(fmt::format("{:.{}f}", value, decimals), value)) ++decimals;
+    if (decimals == kMaxDecimals) break;
   }
   return decimals;
 }
@@ -49,7 +49,7 @@ FilePrecision find_precision(const Eigen::ArrayXd& values) {
   if (digits == kDigitsOfDouble) return {0.5 * std::numeric_limits<double>::epsilon(), 0.0};
   const double relative = 0.5 * std::pow(10.0, 1 - digits);
   const int decimals = decimals_needed(values);
-  const double absolute = decimals < kMostDecimals ? 0.5 * std::pow(10.0, -decimals) : 0.0;
+  const double absolute = decimals < kMaxDecimals ? 0.5 * std::pow(10.0, -decimals) : 0.0;
   // The largest number of a fixed count of decimals has all the digits; small numbers written with all digits
   // need more decimals.
   constexpr double kOneDigit = 10.0;

@@ -6,8 +6,8 @@ namespace slipstick::solver {
 namespace {
 
 /// Bytes of a key or a value, and of a complaint, that a message shows: what a file holds may be endless.
-constexpr std::size_t kMostShown = 200;
-constexpr std::size_t kMostComplaint = 2000;
+constexpr std::size_t kMaxShown = 200;
+constexpr std::size_t kMaxComplaint = 2000;
 
 /// A character of several bytes stays whole.
 std::string cut(const std::string& text, std::size_t most) {
@@ -22,10 +22,10 @@ std::string cut(const std::string& text, std::size_t most) {
 
 InputError::InputError(const std::string& file, const std::string& key, const std::string& value,
                        const std::string& allowed)
-    : std::invalid_argument(fmt::format("{}: {} = {}: allowed: {}", file, cut(key, kMostShown),
-                                        cut(value, kMostShown), allowed)) {}
+    : std::invalid_argument(fmt::format("{}: {} = {}: allowed: {}", file, cut(key, kMaxShown),
+                                        cut(value, kMaxShown), allowed)) {}
 
 InputError::InputError(const std::string& file, const std::string& complaint)
-    : std::invalid_argument(fmt::format("{}: {}", file, cut(complaint, kMostComplaint))) {}
+    : std::invalid_argument(fmt::format("{}: {}", file, cut(complaint, kMaxComplaint))) {}
 
 }  // namespace slipstick::solver

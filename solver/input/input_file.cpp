@@ -67,7 +67,7 @@ class InputFile {
 };
 
 /// Characters of what a file says.
-constexpr std::size_t kMostShown = 200;
+constexpr std::size_t kMaxShown = 200;
 
 }  // namespace
 
@@ -85,11 +85,11 @@ std::string read_input_file(const std::filesystem::path& file, std::uintmax_t la
 
 std::string shown(std::string_view text) {
   std::string printable;
-  for (const char c : text.substr(0, kMostShown)) {
+  for (const char c : text.substr(0, kMaxShown)) {
     const bool plain = c >= ' ' && c <= '~';
     printable += plain ? std::string(1, c) : fmt::format("\\x{:02x}", static_cast<unsigned char>(c));
   }
-  return text.size() > kMostShown ? printable + "..." : printable;
+  return text.size() > kMaxShown ? printable + "..." : printable;
 }
 
 }  // namespace slipstick::solver

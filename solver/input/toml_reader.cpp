@@ -18,7 +18,7 @@ namespace {
 /// Edits that make a key look like a misspelling of another.
 constexpr std::size_t kMisspelling = 3;
 /// Parts of a dotted key. No key that is read has more than five; keys nest 256 deep at most.
-constexpr std::size_t kMostKeyParts = 32;
+constexpr std::size_t kMaxKeyParts = 32;
 
 std::string read_text(const std::filesystem::path& file) {
   const std::string text = read_input_file(file, kLargestSettings, "a TOML file");
@@ -70,9 +70,9 @@ void require_short_keys(const std::string& text, const std::string& file) {
       after_dot = false;
       ++parts;
     }
-    if (around + parts > kMostKeyParts) {
+    if (around + parts > kMaxKeyParts) {
       throw InputError(fmt::format("{}:{}", file, line),
-                       fmt::format("a key of more than {0} parts; allowed: {0}", kMostKeyParts));
+                       fmt::format("a key of more than {0} parts; allowed: {0}", kMaxKeyParts));
     }
     quoted = quoted || c == '"' || c == '\'';
   }
@@ -187,8 +187,8 @@ void SceneReader::apply_override(const std::string& assignment) {
   std::string part;
   std::vector<std::string> parts;
   while (std::getline(path, part, '.')) parts.push_back(part);
-  if (parts.empty() || parts.size() > kMostKeyParts) {
-    throw InputError(source, fmt::format("allowed: a key of 1 to {} parts", kMostKeyParts));
+  if (parts.empty() || parts.size() > kMaxKeyParts) {
+    throw InputError(source, fmt::format("allowed: a key of 1 to {} parts", kMaxKeyParts));
   }
   for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
     table = table_below(*table, parts[i]);

@@ -56,8 +56,8 @@ ElasticPair elastic_pair(const HalfSpace& lower, const HalfSpace& upper) {
 }
 
 double least_eigenvalue(const ElasticPair& pair, double h1, double h2) {
-  constexpr double kLeastOfSquareCells = 0.29;
-  return kLeastOfSquareCells * std::min(h1, h2) *
+  constexpr double kMinOfSquareCells = 0.29;
+  return kMinOfSquareCells * std::min(h1, h2) *
          std::min(pair.shear_compliance, pair.shear_compliance - pair.poisson_compliance);
 }
 

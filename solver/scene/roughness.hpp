@@ -10,7 +10,7 @@
 namespace slipstick::solver {
 
 /// Waves that fit into a period along one axis, period/shortest, are at most this many: a megapixel of them.
-constexpr double kMostWaves = 1024.0;
+constexpr double kMaxWaves = 1024.0;
 
 /// Heights at cell centres, in the unit of the roughness and of the grid: the same surface on every mesh and
 /// platform. Phases are drawn from long waves to short ones, so that a smaller `shortest` adds waves to those

@@ -201,8 +201,8 @@ Range period_for(double longest) {
 }
 
 Range shortest_for(double longest, double period) {
-  const double least = period / kMostWaves;
-  return {fmt::format("from a {:g}th of the period, {:g}, to half of longest, {:g}", kMostWaves, least,
+  const double least = period / kMaxWaves;
+  return {fmt::format("from a {:g}th of the period, {:g}, to half of longest, {:g}", kMaxWaves, least,
                       0.5 * longest),
           [longest, least](double x) { return x >= least && x <= 0.5 * longest; }};
 }

@@ -20,7 +20,7 @@ namespace {
 using Eigen::ArrayXd;
 
 /// No load's solve may take more than this many applications on the finest grid.
-constexpr double kMostApplications = 60.0;
+constexpr double kMaxApplications = 60.0;
 
 /// A friction bound on a grid of square cells, with cross contraction.
 struct Body {
@@ -101,7 +101,7 @@ TEST_P(ExtremeLoads, NextToGrossSlipTakeAFewApplications) {
     const TangentialProblem loads = problem(1.0 - missing);
     const TangentialSolution solution = solve(loads);
     ASSERT_EQ(solution.status, Status::converged) << solution.message;
-    EXPECT_LE(finest_grid_applications(solution.grids), kMostApplications);
+    EXPECT_LE(finest_grid_applications(solution.grids), kMaxApplications);
     const Certificate c = certificate(loads, solution);
     EXPECT_LE(c.gap, 1.1e-8);
     EXPECT_LE(c.moment, kRounding);
@@ -119,7 +119,7 @@ TEST_P(ExtremeLoads, NextToNoneAreLinear) {
     const TangentialProblem loads = problem(part);
     const TangentialSolution solution = solve(loads);
     ASSERT_EQ(solution.status, Status::converged) << solution.message;
-    EXPECT_LE(finest_grid_applications(solution.grids), kMostApplications);
+    EXPECT_LE(finest_grid_applications(solution.grids), kMaxApplications);
     const double scale = 1e-8 / part;
     EXPECT_LE((scale * solution.traction - larger.traction).matrix().norm(),
               1e-8 * larger.traction.matrix().norm());

@@ -1,4 +1,4 @@
-// Where the two wings meet: numerical answers against exact ones.
+// Where the two sides meet: numerical answers against exact ones.
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include "convergence/oracle/errors.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/results/result.hpp"
+#include "solver/model.hpp"
 #include "solver/scene/hertz_pressure.hpp"
 #include "solver/solve.hpp"
-#include "solver/model.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -77,8 +77,10 @@ TEST(Comparison, OfABodyOffTheOrigin) {
       scene("/paper.toml", {"grid.cells=[40, 40]", "grid.extent=[2e-3, 2e-3]", "upper.at=[1e-4, -2e-4]"});
   solver::Scene centred = shifted;
   centred.surfaces.front().at = {0.0, 0.0};
-  const ExactFields there = exact_fields(*find_oracle(shifted).oracle, solver::make_model(shifted).grid_in_m());
-  const ExactFields here = exact_fields(*find_oracle(centred).oracle, solver::make_model(centred).grid_in_m());
+  const ExactFields there =
+      exact_fields(*find_oracle(shifted).oracle, solver::make_model(shifted).grid_in_m());
+  const ExactFields here =
+      exact_fields(*find_oracle(centred).oracle, solver::make_model(centred).grid_in_m());
   for (int i = 0; i < 38; ++i) {  // cells of 0.05 mm: shifted by two and by four
     for (int j = 4; j < 40; ++j) {
       const int from = i * 40 + j;
@@ -178,7 +180,7 @@ TEST(Comparison, LeavesOutWhatIsInfinite) {
   }
 }
 
-// Both wings find Hertz's ellipse, by different integrals and different root-finders.
+// Both sides find Hertz's ellipse, by different integrals and different root-finders.
 TEST(Comparison, HertzEllipseOfBothWings) {
   constexpr double tolerance = 1e-13;
   for (const double ratio : {1.0, 1.0001, 1.5, 0.2, 10.0, 400.0, 1.0 / 400.0}) {

@@ -157,7 +157,7 @@ TEST(ExactModel, RefusesALoadThatTheContactCannotCarry) {
   refused("load.twist=1e6", "underflows");
 }
 
-// The solver's wing has no exact answers.
+// The solver has no exact answers.
 TEST(ExactModel, IsNotForTheSolver) {
   EXPECT_THAT([] { solver::solve(scene("paper")); },
               ThrowsMessage<solver::InputError>(AllOf(HasSubstr("solver.model"), HasSubstr("auto, full"))));

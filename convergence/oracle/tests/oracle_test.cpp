@@ -184,7 +184,7 @@ Carried carried_by(const Oracle& oracle) {
 }
 constexpr double kQuadrature = 1e-5;  // of 400 points on a smooth integrand: 400^-2
 
-/// Both axes and the peak by the numerical wing's own integral and root-finder.
+/// Both axes and the peak by the solver's own integral and root-finder.
 TEST(Oracle, EllipseIsHertzs) {
   for (const char* file : {"/ellipse.toml", "/turned_ellipse.toml"}) {
     SCOPED_TRACE(file);
