@@ -1,8 +1,8 @@
 #include "convergence/report/gallery.hpp"
 
-#include <nlohmann/json.hpp>
 #include <gtest/gtest.h>
 #include <unistd.h>
+#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cmath>

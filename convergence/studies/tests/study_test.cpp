@@ -18,9 +18,9 @@
 #include "convergence/results/quantity.hpp"
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/studies/budget.hpp"
-#include "solver/model.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/tests/complaint.hpp"
+#include "solver/model.hpp"
 
 namespace slipstick::convergence {
 namespace {
