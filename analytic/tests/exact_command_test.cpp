@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -140,7 +141,7 @@ TEST(ExactProfiles, AgreeWhereOneIsAnother) {
 
 /// Hertz's pressure in a file, closer and closer towards the edge.
 std::string hertz_table(int points) {
-  const std::string file = ::testing::TempDir() + fmt::format("hertz_pressure_{}.csv", points);
+  const std::string file = ::testing::TempDir() + fmt::format("hertz_pressure_{}_{}.csv", points, ::getpid());
   std::ofstream table(file);
   table << "radius,pressure\n";
   for (int i = 0; i < points; ++i) {

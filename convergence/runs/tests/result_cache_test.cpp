@@ -1,6 +1,7 @@
 #include "convergence/runs/result_cache.hpp"
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -14,7 +15,8 @@ class ResultCacheTest : public testing::Test {
  protected:
   ResultCacheTest() { std::filesystem::remove_all(folder_); }
   ~ResultCacheTest() override { std::filesystem::remove_all(folder_); }
-  std::filesystem::path folder_ = std::filesystem::path(testing::TempDir()) / "slipstick-result-cache-test";
+  std::filesystem::path folder_ =
+      std::filesystem::path(testing::TempDir()) / ("slipstick-result-cache-" + std::to_string(::getpid()));
   int computed_ = 0;
   Json compute() {
     ++computed_;
