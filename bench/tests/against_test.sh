@@ -64,7 +64,7 @@ expect() {
   : > "$CALLS"
   "${@:3}" > "$folder/output" 2>&1
   local status=$?
-  if [[ "$status" != "$1" ]] || ! cat "$folder/output" "$CALLS" | grep --quiet --fixed-strings -e "$2"; then
+  if [[ "$status" != "$1" ]] || [[ "$(cat "$folder/output" "$CALLS")" != *"$2"* ]]; then
     echo "FAILED: ${*:3} (exit code $status, not $1), or nothing says “$2”"
     sed 's/^/    /' "$folder/output" "$CALLS"
     failures=$((failures + 1))
