@@ -57,13 +57,12 @@ sanitize: setup ## run every test under the address and undefined-behaviour sani
 	@ctest --test-dir build-asan-ubsan --output-on-failure -j$$(nproc) \
 	  $(if $(SANITIZE),-R "^($$(echo $(SANITIZE) | tr ' ' '|'))_tests",-E '^reports')
 
-lint: configure ## check format and clang-tidy's rules, 14 or later (of what changed alone: LINT_SINCE=origin/main)
+lint: setup ## check format and clang-tidy's rules, 14 or later (of what changed alone: LINT_SINCE=origin/main)
 	@git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run --Werror
-	@cmake --build $(BUILD) --target slipstick_commit
-	@mkdir -p $(BUILD)/lint  # clang does not read what gcc has precompiled
-	@sed 's/-Winvalid-pch -include [^ ]*//' $(BUILD)/compile_commands.json > $(BUILD)/lint/compile_commands.json
+	@test -f build-dev/build.ninja || cmake --preset dev
+	@cmake --build build-dev --target slipstick_commit
 	@git $(if $(LINT_SINCE),diff --name-only --diff-filter=d $(LINT_SINCE),ls-files) -- '*.cpp' \
-	  | xargs --no-run-if-empty -n 4 -P $$(nproc) clang-tidy -p $(BUILD)/lint --quiet
+	  | xargs --no-run-if-empty -n 4 -P $$(nproc) clang-tidy -p build-dev --quiet
 
 bench: configure ## time everything beside the error that it buys, and draw it
 	$(call build,slipstick slipstick_benchmarks)

@@ -27,7 +27,7 @@ using std::numbers::pi;
 
 /// Below this stick radius the squares of what is as small leave the range of a double; all functions have
 /// long become their leading terms in c, and c^3 has all but underflowed.
-constexpr double kSmallest = 1e-100;
+constexpr double kSmallestRatio = 1e-100;
 /// Bytes of a table: a hundred times what resolves any pressure.
 constexpr std::uintmax_t kLargestTable = std::uintmax_t{1} << 20;
 /// Characters of a line that a message shows.
@@ -135,16 +135,17 @@ class Tabulated final : public Profile {
   }
 
   double twist_integral(StickRadius c) const override {
-    if (c.ratio < kSmallest)
-      return twist_integral({.ratio = kSmallest, .complement = 1}) +
-             pressure(0) * (std::log(kSmallest) - std::log(c.ratio));
+    if (c.ratio < kSmallestRatio)
+      return twist_integral({.ratio = kSmallestRatio, .complement = 1}) +
+             pressure(0) * (std::log(kSmallestRatio) - std::log(c.ratio));
     return beyond(c, c.ratio,
                   [](double, double rho, const Piece& piece, double s) { return piece.pressure(s) / rho; });
   }
 
   /// d/dc of the integral, in u of rho = c cosh(u).
   double twist_slope(StickRadius c) const override {
-    const StickRadius at = c.ratio < kSmallest ? StickRadius{.ratio = kSmallest, .complement = 1} : c;
+    const StickRadius at =
+        c.ratio < kSmallestRatio ? StickRadius{.ratio = kSmallestRatio, .complement = 1} : c;
     const double edge_pressure = pieces_.back().pressure(0);
     const double inner =
         beyond(at, at.ratio, [](double, double, const Piece& piece, double s) { return -piece.slope(s); });
@@ -163,9 +164,9 @@ class Tabulated final : public Profile {
 
   /// (2/pi) integral (r/rho) p dtheta, rho^2 = c^2 + (c^2 - r^2) tan(theta)^2: a mean of the pressure.
   double stick_traction(StickRadius c, double radius, double inward) const override {
-    if (c.ratio < kSmallest) {
-      const double scale = kSmallest / c.ratio;
-      return stick_traction({.ratio = kSmallest, .complement = 1}, radius * scale, inward * scale);
+    if (c.ratio < kSmallestRatio) {
+      const double scale = kSmallestRatio / c.ratio;
+      return stick_traction({.ratio = kSmallestRatio, .complement = 1}, radius * scale, inward * scale);
     }
     if (inward == 0) return pressure(c.ratio);
     const double depth = std::sqrt(inward * (c.ratio + radius));
@@ -234,7 +235,7 @@ class Tabulated final : public Profile {
 
   /// 1 - M/M_lim: all that the pressure within c could carry, less what it does.
   double moment_deficit(StickRadius c) const {
-    if (c.ratio < kSmallest) return 0;
+    if (c.ratio < kSmallestRatio) return 0;
     const double a_s = c.ratio;
     const std::size_t i = piece_at(a_s);
     const double inner = inner_moment_[i] + pieces_[i].moment(2, a_s);

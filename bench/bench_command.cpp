@@ -40,7 +40,7 @@ constexpr const char* kCompared =
 /// A survey's: repetitions for intervals.
 constexpr RunLength kSurveyLength{.seconds = 0.02, .repetitions = 7};
 
-struct Options {
+struct BenchRequest {
   std::string program = SLIPSTICK_BENCHMARK_PROGRAM;
   std::string output = "build/benchmarks";
   std::string filter;
@@ -62,23 +62,23 @@ void keep_accuracy_data(const std::string& file, const Json& plane) {
 }
 
 /// Everything, one after the other, and the page.
-int survey(const Options& options, std::ostream& text, Json& result) {
-  const fs::path folder = options.output;
+int survey(const BenchRequest& request, std::ostream& text, Json& result) {
+  const fs::path folder = request.output;
   const fs::path data = folder / "data";
-  result = run_survey(options.program, list_benchmarks(options.program, options.filter), kSurveyLength,
+  result = run_survey(request.program, list_benchmarks(request.program, request.filter), kSurveyLength,
                       data / "finished");
   convergence::write_json_file(data / "timings.json", result);
   const Json laws = scaling_json(parse_timings(result.dump(), "timings.json"));
   convergence::write_json_file(data / "scaling.json", laws);
 
-  convergence::Progress progress(plane_size(options.quick), static_cast<double>(plane_size(options.quick)));
+  convergence::Progress progress(plane_size(request.quick), static_cast<double>(plane_size(request.quick)));
   const Json plane =
       measure_plane({.scene = convergence::project_file("convergence/scenes/paper.toml"),
                      .output = data / "finished",
-                     .quick = options.quick,
+                     .quick = request.quick,
                      .progress = [&](const std::string& point) { progress.finished(point, 1.0); }});
   convergence::write_json_file(data / "plane.json", plane);
-  if (!options.accuracy_data.empty()) keep_accuracy_data(options.accuracy_data, plane);
+  if (!request.accuracy_data.empty()) keep_accuracy_data(request.accuracy_data, plane);
   convergence::run_report_script("speed_page.py", {data, "--output", folder},
                                  "the timings are in " + data.string());
   convergence::write_option_file("--output", data / "scaling.txt", scaling_text(laws));
@@ -88,15 +88,15 @@ int survey(const Options& options, std::ostream& text, Json& result) {
 }
 
 /// Two builds or two methods in interleaved pairs.
-int compare_ab(const Options& options, std::ostream& text, Json& result) {
-  const bool builds = options.pair.empty();
-  const auto pairs = builds ? two_builds(options.against, options.program,
-                                         options.filter.empty() ? kCompared : options.filter)
-                            : two_methods(options.program, options.pair[0], options.pair[1]);
-  ABRunResult found = run_ab(pairs, options.rounds, {.effect = options.effect});
-  found.report.base = builds ? options.against : options.pair[0];
-  found.report.now = builds ? options.program : options.pair[1];
-  const fs::path folder = options.output;
+int compare_ab(const BenchRequest& request, std::ostream& text, Json& result) {
+  const bool builds = request.pair.empty();
+  const auto pairs = builds ? two_builds(request.against, request.program,
+                                         request.filter.empty() ? kCompared : request.filter)
+                            : two_methods(request.program, request.pair[0], request.pair[1]);
+  ABRunResult found = run_ab(pairs, request.rounds, {.effect = request.effect});
+  found.report.base = builds ? request.against : request.pair[0];
+  found.report.now = builds ? request.program : request.pair[1];
+  const fs::path folder = request.output;
   fs::create_directories(folder);
   convergence::write_json_file(folder / "base.json", found.files[0]);
   convergence::write_json_file(folder / "new.json", found.files[1]);
@@ -106,12 +106,12 @@ int compare_ab(const Options& options, std::ostream& text, Json& result) {
   return exit_code(found.report.comparison);
 }
 
-int run(const Options& options, std::ostream& text, Json& result) {
-  const bool is_ab = !options.against.empty() || !options.pair.empty();
-  return is_ab ? compare_ab(options, text, result) : survey(options, text, result);
+int run_bench(const BenchRequest& request, std::ostream& text, Json& result) {
+  const bool is_ab = !request.against.empty() || !request.pair.empty();
+  return is_ab ? compare_ab(request, text, result) : survey(request, text, result);
 }
 
-constexpr const char* kFooter = R"(Example:
+constexpr const char* kBenchFooter = R"(Example:
   slipstick bench                                    everything, and the page build/benchmarks/index.html
   slipstick bench --against ../before/build/bench/slipstick_benchmarks
                                                      is this build slower than that one?
@@ -124,28 +124,29 @@ Exit code 0: done, nothing is slower; 1: something is; 2: it could not be judged
 }  // namespace
 
 std::function<int(std::ostream&, nlohmann::ordered_json&)> add_bench_command(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto request = std::make_shared<BenchRequest>();
   CLI::App* const command = app.add_subcommand("bench", "Time everything beside the error that it buys");
-  command->add_option("--program", options->program, "program of Google Benchmark")->capture_default_str();
-  command->add_option("--output", options->output, "folder for timings and the page")->capture_default_str();
-  command->add_option("--filter", options->filter, "benchmarks whose names fit this regular expression");
-  command->add_flag("--quick", options->quick, "a small speed-error plane");
-  command->add_option("--accuracy-data", options->accuracy_data,
+  command->add_option("--program", request->program, "program of Google Benchmark")->capture_default_str();
+  command->add_option("--output", request->output, "folder for timings and the page")->capture_default_str();
+  command->add_option("--filter", request->filter, "benchmarks whose names fit this regular expression");
+  command->add_flag("--quick", request->quick, "a small speed-error plane");
+  command->add_option("--accuracy-data", request->accuracy_data,
                       "write what `solve --accuracy` picks by, from this plane, to this file (TOML)");
   CLI::Option* const against =
-      command->add_option("--against", options->against, "the same program of another build: the base");
+      command->add_option("--against", request->against, "the same program of another build: the base");
   CLI::Option* const pair =
-      command->add_option("--pair", options->pair, "two benchmarks, the second over the first")->expected(2);
-  command->add_option("--rounds", options->rounds, "repetitions of what is compared")
+      command->add_option("--pair", request->pair, "two benchmarks, the second over the first")->expected(2);
+  command->add_option("--rounds", request->rounds, "repetitions of what is compared")
       ->check(CLI::Range(2, 1000))
       ->capture_default_str();
-  command->add_option("--effect", options->effect, "smallest change that counts, as a part")
+  command->add_option("--effect", request->effect, "smallest change that counts, as a part")
       ->check(CLI::Range(0.001, 1.0))
       ->capture_default_str();
   against->excludes(pair);
-  command->footer(kFooter);
-  return
-      [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };
+  command->footer(kBenchFooter);
+  return [request](std::ostream& text, nlohmann::ordered_json& result) {
+    return run_bench(*request, text, result);
+  };
 }
 
 }  // namespace slipstick::bench

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "analytic/paper_equations.hpp"
+#include "analytic/tests/limits.hpp"
 #include "analytic/torsion.hpp"
 
 namespace slipstick::analytic {
@@ -20,7 +21,6 @@ using std::numbers::pi;
 using ::testing::Pair;
 using ::testing::UnorderedElementsAre;
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 const double kLimit = hertz_profile().moment_limit();
 
 double error(double (*twist)(double), double moment_ratio) {

@@ -12,6 +12,7 @@
 
 #include "analytic/elliptic.hpp"
 #include "analytic/gsl.hpp"
+#include "analytic/tests/limits.hpp"
 #include "analytic/tests/quadrature.hpp"
 
 namespace slipstick::analytic::tangential {
@@ -20,10 +21,6 @@ namespace {
 using std::numbers::pi;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
-
-constexpr double kEps = std::numeric_limits<double>::epsilon();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 const SelfSimilarIndenter kSphere;
 const SelfSimilarIndenter kFlat(kInfinity);

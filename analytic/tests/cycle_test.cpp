@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <vector>
 
+#include "analytic/tests/limits.hpp"
 #include "analytic/tests/quadrature.hpp"
 
 namespace slipstick::analytic {
@@ -22,9 +23,6 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using ::testing::ThrowsMessage;
-
-constexpr double kEps = std::numeric_limits<double>::epsilon();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 const std::vector<const Profile*> kProfiles{&hertz_profile(), &cone_profile(), &flat_punch_profile()};
 

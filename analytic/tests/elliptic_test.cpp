@@ -8,12 +8,12 @@
 #include <stdexcept>
 
 #include "analytic/references/references.hpp"
+#include "analytic/tests/limits.hpp"
 
 namespace slipstick::analytic {
 namespace {
 
 using std::numbers::pi;
-constexpr double kEps = std::numeric_limits<double>::epsilon();
 
 TEST(CompleteElliptic, AgreesWithReferences) {
   constexpr double kBound = 5 * kEps;

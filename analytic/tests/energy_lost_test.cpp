@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "analytic/cycle.hpp"
+#include "analytic/tests/limits.hpp"
 #include "analytic/tests/quadrature.hpp"
 
 namespace slipstick::analytic {
@@ -18,9 +19,7 @@ namespace {
 using std::numbers::pi;
 using testing::integral_between_roots;
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
-
-const std::vector<const Profile*> kProfiles{&hertz_profile(), &cone_profile(), &flat_punch_profile()};
+const std::vector<const Profile*> kClosedForms{&hertz_profile(), &cone_profile(), &flat_punch_profile()};
 
 /// Energy lost on first loading, as the friction's work on the slip. The stick area's turn by dphi drags
 /// the surface at r >= s by (2/pi) (asin(s/r) - (s/r) sqrt(1 - (s/r)^2)) r dphi: the rest is slip.
@@ -47,7 +46,7 @@ double work_of_friction(const TorsionState& state, const Profile& profile) {
 
 /// The loop by Masing's rule alone: 8 integral M dphi - 4 M phi over the first loading.
 TEST(EnergyLost, IsTheAreaOfTheLoop) {
-  for (const Profile* profile : kProfiles)
+  for (const Profile* profile : kClosedForms)
     for (const double m : {0.3, 0.6, 0.9, 0.99}) {
       const auto twist = [&](double ratio) { return from_moment_ratio(ratio, *profile).twist; };
       const double corner = std::min(m, profile->full_stick());
@@ -60,7 +59,7 @@ TEST(EnergyLost, IsTheAreaOfTheLoop) {
 }
 
 TEST(EnergyLost, IsTheWorkOfFrictionOnTheSlip) {
-  for (const Profile* profile : kProfiles)
+  for (const Profile* profile : kClosedForms)
     for (const double c : {0.1, 0.5, 0.9}) {
       const auto state = from_stick_ratio(c, *profile);
       const double accuracy = profile->edge() > 0 ? 1e-7 : 1e-9;
@@ -84,7 +83,7 @@ TEST(EnergyLost, GoesLikeTheCubeOfSmallMoments) {
 
 /// Then c is small, and the loop a parallelogram: M_lim up and down, phi to and fro.
 TEST(EnergyLost, GoesLikeTheTwistNearGrossSlip) {
-  for (const Profile* profile : kProfiles) {
+  for (const Profile* profile : kClosedForms) {
     const auto lost = [&](double c) {
       return energy_lost_per_cycle(from_stick_ratio(c, *profile), *profile);
     };

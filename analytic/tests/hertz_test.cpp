@@ -15,9 +15,9 @@ namespace {
 
 using std::numbers::pi;
 
-constexpr double kLoad = 1000;        // N
-constexpr double kModulus = 115.4e9;  // Pa
-constexpr double kRadius = 0.018;     // m
+constexpr double kLoadOfEllipse = 1000;        // N
+constexpr double kModulusOfEllipse = 115.4e9;  // Pa
+constexpr double kRadiusOfEllipse = 0.018;     // m
 
 /// Surface displacement at (x1, x2) inside the contact under a semi-ellipsoidal pressure, from Boussinesq's
 /// point load integrated along chords: along each p is a half ellipse, over whose length its integral is
@@ -43,17 +43,20 @@ double displacement(const HertzEllipse& contact, double modulus, double x1, doub
 }
 
 TEST(HertzCircle, AgreesWithJohnson) {  // Johnson 1985, Eqs. (4.22)-(4.24), in terms of a
-  const auto contact = indent_sphere(kLoad, kRadius, kModulus);
-  EXPECT_NEAR(pi * contact.reference_pressure * kRadius / (2 * kModulus) / contact.contact_radius, 1, 1e-15);
+  const auto contact = indent_sphere(kLoadOfEllipse, kRadiusOfEllipse, kModulusOfEllipse);
   EXPECT_NEAR(
-      2.0 / 3 * contact.reference_pressure * pi * contact.contact_radius * contact.contact_radius / kLoad, 1,
-      1e-15);
-  EXPECT_NEAR(contact.approach * kRadius / (contact.contact_radius * contact.contact_radius), 1, 1e-15);
+      pi * contact.reference_pressure * kRadiusOfEllipse / (2 * kModulusOfEllipse) / contact.contact_radius,
+      1, 1e-15);
+  EXPECT_NEAR(2.0 / 3 * contact.reference_pressure * pi * contact.contact_radius * contact.contact_radius /
+                  kLoadOfEllipse,
+              1, 1e-15);
+  EXPECT_NEAR(contact.approach * kRadiusOfEllipse / (contact.contact_radius * contact.contact_radius), 1,
+              1e-15);
 }
 
 TEST(HertzEllipse, OfEqualRadiiIsTheCircle) {
-  const auto circle = indent_sphere(kLoad, kRadius, kModulus);
-  const auto ellipse = hertz_ellipse(kLoad, kRadius, kRadius, kModulus);
+  const auto circle = indent_sphere(kLoadOfEllipse, kRadiusOfEllipse, kModulusOfEllipse);
+  const auto ellipse = hertz_ellipse(kLoadOfEllipse, kRadiusOfEllipse, kRadiusOfEllipse, kModulusOfEllipse);
   EXPECT_NEAR(ellipse.semi_axis_1 / circle.contact_radius, 1, 1e-15);
   EXPECT_NEAR(ellipse.semi_axis_2 / circle.contact_radius, 1, 1e-15);
   EXPECT_NEAR(ellipse.peak_pressure / circle.reference_pressure, 1, 1e-15);
@@ -63,14 +66,14 @@ TEST(HertzEllipse, OfEqualRadiiIsTheCircle) {
 
 TEST(HertzEllipse, DisplacesTheSurfaceByApproachLessGap) {
   for (const double ratio : {1.0, 1.0 + 1e-9, 1.3, 4.0, 20.0, 1.0 / 20, 1e3, 1e-3}) {
-    const double radius_2 = kRadius / ratio;
-    const auto contact = hertz_ellipse(kLoad, kRadius, radius_2, kModulus);
+    const double radius_2 = kRadiusOfEllipse / ratio;
+    const auto contact = hertz_ellipse(kLoadOfEllipse, kRadiusOfEllipse, radius_2, kModulusOfEllipse);
     for (const auto& [f1, f2] : {std::pair{0.0, 0.0}, {0.5, 0.0}, {0.0, 0.5}, {0.6, -0.7}, {0.95, 0.1}}) {
       const double x1 = f1 * contact.semi_axis_1;
       const double x2 = f2 * contact.semi_axis_2;
-      const double expected = contact.approach - x1 * x1 / (2 * kRadius) - x2 * x2 / (2 * radius_2);
-      EXPECT_NEAR(displacement(contact, kModulus, x1, x2) / contact.approach, expected / contact.approach,
-                  1e-13)
+      const double expected = contact.approach - x1 * x1 / (2 * kRadiusOfEllipse) - x2 * x2 / (2 * radius_2);
+      EXPECT_NEAR(displacement(contact, kModulusOfEllipse, x1, x2) / contact.approach,
+                  expected / contact.approach, 1e-13)
           << ratio << " at " << f1 << ", " << f2;
     }
   }
@@ -78,9 +81,11 @@ TEST(HertzEllipse, DisplacesTheSurfaceByApproachLessGap) {
 
 TEST(HertzEllipse, CarriesTheLoad) {
   for (const double ratio : {1.0, 3.0, 20.0, 1e3, 1e6}) {
-    const auto contact = hertz_ellipse(kLoad, kRadius, kRadius * ratio, kModulus);
-    EXPECT_NEAR(2.0 / 3 * contact.peak_pressure * pi * contact.semi_axis_1 * contact.semi_axis_2 / kLoad, 1,
-                1e-15);
+    const auto contact =
+        hertz_ellipse(kLoadOfEllipse, kRadiusOfEllipse, kRadiusOfEllipse * ratio, kModulusOfEllipse);
+    EXPECT_NEAR(
+        2.0 / 3 * contact.peak_pressure * pi * contact.semi_axis_1 * contact.semi_axis_2 / kLoadOfEllipse, 1,
+        1e-15);
   }
 }
 
@@ -90,14 +95,15 @@ TEST(HertzEllipse, CarriesTheLoad) {
 TEST(HertzEllipse, HasTheCurvaturesOfTheGapAtAnyRatio) {
   for (const double ratio :
        {1.0, 1.0 + 1e-15, 1.0 + 1e-12, 1.0 + 1e-6, 1.01, 2.0, 10.0, 1e2, 1e3, 1e4, 1e5, 1e6}) {
-    const auto contact = hertz_ellipse(kLoad, kRadius, kRadius / ratio, kModulus);
+    const auto contact =
+        hertz_ellipse(kLoadOfEllipse, kRadiusOfEllipse, kRadiusOfEllipse / ratio, kModulusOfEllipse);
     const double a = contact.semi_axis_1;
     const double b = contact.semi_axis_2;
     const auto [k, e, d] = complete_elliptic(std::min(b / a, 1.0));
-    const double unit = 2 * contact.peak_pressure / kModulus;
+    const double unit = 2 * contact.peak_pressure / kModulusOfEllipse;
     constexpr double kTolerance = 1e-14;
-    EXPECT_NEAR(unit * b / (a * a) * d * kRadius, 1, kTolerance) << ratio;
-    EXPECT_NEAR(unit / b * (k - d) * kRadius / ratio, 1, kTolerance) << ratio;
+    EXPECT_NEAR(unit * b / (a * a) * d * kRadiusOfEllipse, 1, kTolerance) << ratio;
+    EXPECT_NEAR(unit / b * (k - d) * kRadiusOfEllipse / ratio, 1, kTolerance) << ratio;
     EXPECT_NEAR(unit / 2 * b * k / contact.approach, 1, kTolerance) << ratio;
   }
 }
@@ -105,7 +111,8 @@ TEST(HertzEllipse, HasTheCurvaturesOfTheGapAtAnyRatio) {
 TEST(HertzEllipse, NarrowsAsTheRatioGrows) {
   double ratio_before = 2;
   for (double ratio = 1; ratio < 2e6; ratio *= 1.25) {
-    const auto contact = hertz_ellipse(kLoad, kRadius, kRadius / ratio, kModulus);
+    const auto contact =
+        hertz_ellipse(kLoadOfEllipse, kRadiusOfEllipse, kRadiusOfEllipse / ratio, kModulusOfEllipse);
     const double narrower = contact.semi_axis_2 / contact.semi_axis_1;
     EXPECT_LT(narrower, ratio_before) << ratio;
     ratio_before = narrower;
@@ -118,7 +125,8 @@ TEST(HertzEllipse, NarrowsAsTheRatioGrows) {
 TEST(HertzEllipse, HasTheFrictionArmOfItsPressure) {
   constexpr int kDirections = 4000;
   for (const double ratio : {1.0, 1.0 + 1e-9, 3.0, 20.0, 1.0 / 20, 1e3}) {
-    const auto contact = hertz_ellipse(kLoad, kRadius, kRadius / ratio, kModulus);
+    const auto contact =
+        hertz_ellipse(kLoadOfEllipse, kRadiusOfEllipse, kRadiusOfEllipse / ratio, kModulusOfEllipse);
     double sum = 0;
     for (int i = 0; i < kDirections; ++i) {
       const double angle = 2 * pi * i / kDirections;
@@ -126,20 +134,23 @@ TEST(HertzEllipse, HasTheFrictionArmOfItsPressure) {
           1 / std::hypot(std::cos(angle) / contact.semi_axis_1, std::sin(angle) / contact.semi_axis_2);
       sum += pi / 16 * contact.peak_pressure * edge * edge * edge;
     }
-    EXPECT_NEAR(sum * 2 * pi / kDirections / kLoad / contact.friction_arm, 1, 1e-13) << ratio;
+    EXPECT_NEAR(sum * 2 * pi / kDirections / kLoadOfEllipse / contact.friction_arm, 1, 1e-13) << ratio;
   }
 }
 
 /// The mean distance from the middle of a line that carries 1 - x^2: 3/8 of half its length.
 TEST(HertzEllipse, TendsToALine) {
-  const auto contact = hertz_ellipse(kLoad, kRadius, kRadius / 1e9, kModulus);
+  const auto contact =
+      hertz_ellipse(kLoadOfEllipse, kRadiusOfEllipse, kRadiusOfEllipse / 1e9, kModulusOfEllipse);
   EXPECT_NEAR(contact.friction_arm / contact.semi_axis_1, 3.0 / 8, 1e-9);
 }
 
 TEST(HertzEllipse, TurnsWithItsAxes) {
   for (const double ratio : {1.5, 20.0, 1e3}) {
-    const auto one = hertz_ellipse(kLoad, kRadius, kRadius * ratio, kModulus);
-    const auto other = hertz_ellipse(kLoad, kRadius * ratio, kRadius, kModulus);
+    const auto one =
+        hertz_ellipse(kLoadOfEllipse, kRadiusOfEllipse, kRadiusOfEllipse * ratio, kModulusOfEllipse);
+    const auto other =
+        hertz_ellipse(kLoadOfEllipse, kRadiusOfEllipse * ratio, kRadiusOfEllipse, kModulusOfEllipse);
     EXPECT_LT(one.semi_axis_1, one.semi_axis_2) << "the longer axis lies where the curvature is smaller";
     EXPECT_EQ(one.semi_axis_1, other.semi_axis_2);
     EXPECT_EQ(one.semi_axis_2, other.semi_axis_1);
@@ -149,27 +160,31 @@ TEST(HertzEllipse, TurnsWithItsAxes) {
 }
 
 TEST(HertzEllipse, ScalesWithLoadModulusAndSize) {
-  const auto base = hertz_ellipse(kLoad, kRadius, 5 * kRadius, kModulus);
-  const auto loaded = hertz_ellipse(8 * kLoad, kRadius, 5 * kRadius, kModulus);
+  const auto base = hertz_ellipse(kLoadOfEllipse, kRadiusOfEllipse, 5 * kRadiusOfEllipse, kModulusOfEllipse);
+  const auto loaded =
+      hertz_ellipse(8 * kLoadOfEllipse, kRadiusOfEllipse, 5 * kRadiusOfEllipse, kModulusOfEllipse);
   EXPECT_NEAR(loaded.semi_axis_1 / base.semi_axis_1, 2, 1e-14);
   EXPECT_NEAR(loaded.peak_pressure / base.peak_pressure, 2, 1e-14);
   EXPECT_NEAR(loaded.approach / base.approach, 4, 1e-14);
-  const auto stiffer = hertz_ellipse(8 * kLoad, kRadius, 5 * kRadius, 8 * kModulus);
+  const auto stiffer =
+      hertz_ellipse(8 * kLoadOfEllipse, kRadiusOfEllipse, 5 * kRadiusOfEllipse, 8 * kModulusOfEllipse);
   EXPECT_NEAR(stiffer.semi_axis_2 / base.semi_axis_2, 1, 1e-14);
-  const auto larger = hertz_ellipse(4 * kLoad, 2 * kRadius, 10 * kRadius, kModulus);
+  const auto larger =
+      hertz_ellipse(4 * kLoadOfEllipse, 2 * kRadiusOfEllipse, 10 * kRadiusOfEllipse, kModulusOfEllipse);
   EXPECT_NEAR(larger.semi_axis_2 / base.semi_axis_2, 2, 1e-14);
   EXPECT_NEAR(larger.peak_pressure / base.peak_pressure, 1, 1e-14);
 }
 
 TEST(Hertz, RefusesWhatIsNotPositive) {
   for (const double bad : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
-    EXPECT_THROW(indent_sphere(bad, kRadius, kModulus), std::domain_error);
-    EXPECT_THROW(indent_sphere(kLoad, bad, kModulus), std::domain_error);
-    EXPECT_THROW(indent_sphere(kLoad, kRadius, bad), std::domain_error);
-    EXPECT_THROW(hertz_ellipse(bad, kRadius, kRadius, kModulus), std::domain_error);
-    EXPECT_THROW(hertz_ellipse(kLoad, bad, kRadius, kModulus), std::domain_error);
-    EXPECT_THROW(hertz_ellipse(kLoad, kRadius, bad, kModulus), std::domain_error);
-    EXPECT_THROW(hertz_ellipse(kLoad, kRadius, kRadius, bad), std::domain_error);
+    EXPECT_THROW(indent_sphere(bad, kRadiusOfEllipse, kModulusOfEllipse), std::domain_error);
+    EXPECT_THROW(indent_sphere(kLoadOfEllipse, bad, kModulusOfEllipse), std::domain_error);
+    EXPECT_THROW(indent_sphere(kLoadOfEllipse, kRadiusOfEllipse, bad), std::domain_error);
+    EXPECT_THROW(hertz_ellipse(bad, kRadiusOfEllipse, kRadiusOfEllipse, kModulusOfEllipse),
+                 std::domain_error);
+    EXPECT_THROW(hertz_ellipse(kLoadOfEllipse, bad, kRadiusOfEllipse, kModulusOfEllipse), std::domain_error);
+    EXPECT_THROW(hertz_ellipse(kLoadOfEllipse, kRadiusOfEllipse, bad, kModulusOfEllipse), std::domain_error);
+    EXPECT_THROW(hertz_ellipse(kLoadOfEllipse, kRadiusOfEllipse, kRadiusOfEllipse, bad), std::domain_error);
   }
 }
 

@@ -13,6 +13,7 @@
 
 #include "analytic/gsl.hpp"
 #include "analytic/references/references.hpp"
+#include "analytic/tests/limits.hpp"
 #include "analytic/torsion.hpp"
 
 namespace slipstick::analytic {
@@ -23,8 +24,7 @@ using ::testing::HasSubstr;
 using testing::relative_error;
 using ::testing::ThrowsMessage;
 
-constexpr double kEps = std::numeric_limits<double>::epsilon();
-constexpr double kTolerance = 1e-14;
+constexpr double kFewRoundings = 1e-14;
 
 StickRadius at(double c) { return {.ratio = c, .complement = 1 - c}; }
 StickRadius before_edge(double complement) { return {.ratio = 1 - complement, .complement = complement}; }
@@ -62,12 +62,12 @@ void expect_same(const Profile& profile, const Profile& expected, double scale, 
   }
 }
 
-TEST(PowerProfile, OfTwoIsTheSphere) { expect_same(*power_profile(2), hertz_profile(), 1, kTolerance); }
+TEST(PowerProfile, OfTwoIsTheSphere) { expect_same(*power_profile(2), hertz_profile(), 1, kFewRoundings); }
 
-TEST(PowerProfile, OfOneIsTheCone) { expect_same(*power_profile(1), cone_profile(), 1, kTolerance); }
+TEST(PowerProfile, OfOneIsTheCone) { expect_same(*power_profile(1), cone_profile(), 1, kFewRoundings); }
 
 TEST(RoundedPunchProfile, WithoutAFlatIsTheSphere) {
-  expect_same(*rounded_punch_profile(0), hertz_profile(), 1.5, kTolerance);
+  expect_same(*rounded_punch_profile(0), hertz_profile(), 1.5, kFewRoundings);
 }
 
 TEST(Superposition, AgreesWithReferences) {
@@ -78,7 +78,7 @@ TEST(Superposition, AgreesWithReferences) {
     const double value = row.argument("value");
     const StickRadius c = row.text("given") == "stick_ratio" ? at(value) : before_edge(value);
     const auto near = [&](double computed, const char* name) {
-      EXPECT_LE(relative_error(computed, row.number(name)), kTolerance) << name << " of " << row.line();
+      EXPECT_LE(relative_error(computed, row.number(name)), kFewRoundings) << name << " of " << row.line();
     };
     near(profile->twist_integral(c), "twist_integral");
     near(profile->twist_slope(c), "twist_slope");
@@ -99,7 +99,7 @@ TEST(PowerProfile, OfFourHasItsPolynomial) {
   const auto profile = power_profile(4);
   for (const double r : {0.0, 0.1, 0.5, 0.9, 0.9999}) {
     const double v = std::sqrt((1 - r) * (1 + r));
-    EXPECT_NEAR(profile->pressure(r) / (v * (1 - 2 * v * v / 3)), 1, kTolerance) << r;
+    EXPECT_NEAR(profile->pressure(r) / (v * (1 - 2 * v * v / 3)), 1, kFewRoundings) << r;
   }
 }
 
@@ -118,12 +118,12 @@ TEST(PowerProfile, TellsItsPeakAndItsMean) {
   for (const double n : {0.01, 0.7, 1.0})
     EXPECT_EQ(power_profile(n)->pressure(0), std::numeric_limits<double>::infinity()) << n;
   for (const double n : {1.01, 2.0, 4.0, 1000.0}) {
-    EXPECT_NEAR(power_profile(n)->pressure(0) * (n - 1), 1, kTolerance) << n;
-    EXPECT_NEAR(power_profile(n)->pressure(1e-300) * (n - 1), 1, n < 2 ? 2e-3 : kTolerance) << n;
+    EXPECT_NEAR(power_profile(n)->pressure(0) * (n - 1), 1, kFewRoundings) << n;
+    EXPECT_NEAR(power_profile(n)->pressure(1e-300) * (n - 1), 1, n < 2 ? 2e-3 : kFewRoundings) << n;
   }
   for (const double n : {0.5, 2.0, 7.0}) {
-    EXPECT_NEAR(power_profile(n)->load() / pi, 2 / (n + 1), kTolerance) << n;
-    EXPECT_NEAR(power_profile(n)->moment_limit(), pi * (n + 1) / (4 * (n + 2)), kTolerance) << n;
+    EXPECT_NEAR(power_profile(n)->load() / pi, 2 / (n + 1), kFewRoundings) << n;
+    EXPECT_NEAR(power_profile(n)->moment_limit(), pi * (n + 1) / (4 * (n + 2)), kFewRoundings) << n;
   }
 }
 
@@ -246,7 +246,7 @@ TEST(Superposition, ReachesTheLimitByItsLaw) {
     const double c = 1e-40;
     const double law = 8.0 / 9 * c * c * c * peak / (profile->moment_limit() * profile->load());
     EXPECT_NEAR(profile->moment_share(at(c)).deficit / law, 1,
-                profile->name() == "power:1.5" ? 1e-11 : kTolerance)
+                profile->name() == "power:1.5" ? 1e-11 : kFewRoundings)
         << profile->name();
   }
   for (const double n : {0.01, 0.5}) {

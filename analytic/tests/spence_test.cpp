@@ -12,6 +12,7 @@
 
 #include "analytic/elliptic.hpp"
 #include "analytic/gsl.hpp"
+#include "analytic/tests/limits.hpp"
 
 namespace slipstick::analytic {
 namespace {
@@ -20,9 +21,6 @@ using std::numbers::pi;
 using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
-
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// Radial displacement of Goodman's traction under a sphere over the combined compliance, ring by ring:
 /// integral q(s) s integral J_1(kr) J_1(ks) dk ds, the inner one (2/pi) (K - E)/(k max(r, s)), k = min/max.

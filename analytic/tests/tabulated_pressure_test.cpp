@@ -30,8 +30,6 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-StickRadius at(double c) { return {.ratio = c, .complement = 1 - c}; }
-
 /// Sampled at equal steps, or (graded) closer and closer towards the edge.
 std::vector<PressurePoint> sample(const std::function<double(double)>& pressure, int intervals,
                                   bool graded = false) {

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "analytic/cattaneo_mindlin.hpp"
+#include "analytic/tests/limits.hpp"
 #include "analytic/tests/quadrature.hpp"
 
 namespace slipstick::analytic::tangential {
@@ -21,12 +22,10 @@ using ::testing::AllOf;
 using ::testing::HasSubstr;
 using ::testing::ThrowsMessage;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kRounding = 1e-14;  // some ten steps' errors of 1e-15 each
 
-const SelfSimilarIndenter kSphere;
-const std::vector<SelfSimilarIndenter> kIndenters{SelfSimilarIndenter(1), kSphere, SelfSimilarIndenter(3.5),
+const SelfSimilarIndenter kBall;
+const std::vector<SelfSimilarIndenter> kIndenters{SelfSimilarIndenter(1), kBall, SelfSimilarIndenter(3.5),
                                                   SelfSimilarIndenter(kInfinity)};
 
 struct Loads {
@@ -34,7 +33,7 @@ struct Loads {
   double tangential;
 };
 
-TangentialHistory loaded(const std::vector<Loads>& path, const SelfSimilarIndenter& indenter = kSphere) {
+TangentialHistory loaded(const std::vector<Loads>& path, const SelfSimilarIndenter& indenter = kBall) {
   TangentialHistory history(indenter);
   for (const auto [normal, tangential] : path) history.load_to(normal, tangential);
   return history;
@@ -203,7 +202,7 @@ TEST(TangentialHistory, StaysWhereItStands) {
 }
 
 TEST(TangentialHistory, HasTheForceOfItsTractionsWithinCoulombsBound) {
-  for (const auto& indenter : {SelfSimilarIndenter(1), kSphere}) {
+  for (const auto& indenter : {SelfSimilarIndenter(1), kBall}) {
     TangentialHistory history(indenter);
     for (const auto& [normal, tangential] : random_path(20)) {
       history.load_to(normal, tangential);

@@ -15,19 +15,17 @@
 
 #include "analytic/gsl.hpp"
 #include "analytic/references/replay.hpp"
+#include "analytic/tests/limits.hpp"
 
 namespace slipstick::analytic {
 namespace {
 
 using std::numbers::pi;
 using ::testing::HasSubstr;
-using testing::kEps;
 using testing::kFrom;
 using testing::kMember;
 using testing::relative_error;
 using ::testing::ThrowsMessage;
-
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// M/(mu W a) of the tractions: 3 integral_0^1 q/(mu p0) r^2 dr, on either side of the front by the sine of
 /// an angle, which makes both square-root ends smooth.

@@ -22,7 +22,7 @@ namespace {
 
 using solver::InputError;
 
-struct Options {
+struct CompareRequest {
   std::string base;
   std::string now;
   std::string effect = "10%";
@@ -51,39 +51,39 @@ double read_effect(const std::string& text) {
   return effect;
 }
 
-ComparisonRules rules_of(const Options& options) {
-  if (!(options.level > 0.0 && options.level <= 0.5)) {
-    throw InputError("command line", "--level", fmt::format("{}", options.level),
+ComparisonRules rules_of(const CompareRequest& request) {
+  if (!(request.level > 0.0 && request.level <= 0.5)) {
+    throw InputError("command line", "--level", fmt::format("{}", request.level),
                      "a chance above 0, at most 0.5");
   }
   ComparisonRules rules;
-  rules.effect = read_effect(options.effect);
-  rules.level = options.level;
-  rules.same_machine = options.same_machine;
-  rules.debug_library = options.debug_library;
+  rules.effect = read_effect(request.effect);
+  rules.level = request.level;
+  rules.same_machine = request.same_machine;
+  rules.debug_library = request.debug_library;
   return rules;
 }
 
-int run(const Options& options, std::ostream& text, nlohmann::ordered_json& result) {
-  const ComparisonRules rules = rules_of(options);
-  const TwoTimings first{read_timings(options.base), read_timings(options.now)};
+int run_compare(const CompareRequest& request, std::ostream& text, nlohmann::ordered_json& result) {
+  const ComparisonRules rules = rules_of(request);
+  const TwoTimings first{read_timings(request.base), read_timings(request.now)};
   const auto again = [&](const std::vector<std::string>& names) {
     fmt::print(stderr, "slipstick: {} benchmark{} again: {}\n", names.size(), names.size() == 1 ? "" : "s",
-               options.rerun);
-    return TwoTimings{first.base, run_again(options.rerun, names)};
+               request.rerun);
+    return TwoTimings{first.base, run_again(request.rerun, names)};
   };
   const ComparisonReport report =
-      options.rerun.empty()
-          ? ComparisonReport{options.base, options.now, rules, compare(first.base, first.now, rules), {}}
+      request.rerun.empty()
+          ? ComparisonReport{request.base, request.now, rules, compare(first.base, first.now, rules), {}}
           : compare_twice(first, rules, again);
   result = comparison_json(report);
   text << comparison_text(report);
-  convergence::write_option_file("--summary", options.summary, comparison_markdown(report));
-  convergence::write_option_file("--junit", options.junit, comparison_junit(report));
+  convergence::write_option_file("--summary", request.summary, comparison_markdown(report));
+  convergence::write_option_file("--junit", request.junit, comparison_junit(report));
   return exit_code(report.comparison);
 }
 
-constexpr const char* kFooter = R"(Example:
+constexpr const char* kCompareFooter = R"(Example:
   slipstick compare base.json new.json --rerun 'bench/program --benchmark_filter={filter}
     --benchmark_repetitions=12 --benchmark_format=json'
   new.json against base.json, as independent runs
@@ -100,26 +100,27 @@ so significantly; or the machines differ, were loaded, or the builds are debug b
 }  // namespace
 
 std::function<int(std::ostream&, nlohmann::ordered_json&)> add_compare_command(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto request = std::make_shared<CompareRequest>();
   CLI::App* const command =
       app.add_subcommand("compare", "Compare two files of Google Benchmark: is anything slower?");
-  command->add_option("base", options->base, "JSON of the build to compare with")->required();
-  command->add_option("new", options->now, "JSON of the build in question")->required();
-  command->add_option("--effect", options->effect, "smallest change that counts, as 10% or 0.10")
+  command->add_option("base", request->base, "JSON of the build to compare with")->required();
+  command->add_option("new", request->now, "JSON of the build in question")->required();
+  command->add_option("--effect", request->effect, "smallest change that counts, as 10% or 0.10")
       ->capture_default_str();
-  command->add_option("--level", options->level, "chance of a false alarm, over all benchmarks together")
+  command->add_option("--level", request->level, "chance of a false alarm, over all benchmarks together")
       ->capture_default_str();
-  command->add_flag("--same-machine", options->same_machine, "whatever the files say, it is one machine");
-  command->add_flag("--debug-library", options->debug_library,
+  command->add_flag("--same-machine", request->same_machine, "whatever the files say, it is one machine");
+  command->add_flag("--debug-library", request->debug_library,
                     "only Google Benchmark's library is a debug build, the programs are not");
-  command->add_option("--rerun", options->rerun,
+  command->add_option("--rerun", request->rerun,
                       "command that runs suspicious benchmarks ({filter}) again and writes JSON on standard "
                       "output: only what it confirms counts");
-  command->add_option("--summary", options->summary, "write a Markdown table, the worst first, below 64 kB");
-  command->add_option("--junit", options->junit, "write JUnit XML, as CI servers read it, to this file");
-  command->footer(kFooter);
-  return
-      [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };
+  command->add_option("--summary", request->summary, "write a Markdown table, the worst first, below 64 kB");
+  command->add_option("--junit", request->junit, "write JUnit XML, as CI servers read it, to this file");
+  command->footer(kCompareFooter);
+  return [request](std::ostream& text, nlohmann::ordered_json& result) {
+    return run_compare(*request, text, result);
+  };
 }
 
 }  // namespace slipstick::bench

@@ -22,7 +22,6 @@
 namespace slipstick::bench {
 namespace {
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kBothSides = 0.975;  // of 95 %
 constexpr double kAsymptoticSpan = 8.0;

@@ -1,10 +1,14 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
 /// How times grow with the cells along a side, and where one way to compute overtakes another.
 namespace slipstick::bench {
+
+/// In the place of a number that there is none of.
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// The repetitions of a benchmark at one size. Those that are no positive number take no part in anything.
 struct SizedSeconds {

@@ -24,8 +24,6 @@ using convergence::Json;
 using convergence::set_missing;
 using convergence::set_number;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-
 /// "a/cells:8/b" is the family "a/b" at 8 cells.
 std::optional<std::pair<std::string, double>> family_and_cells(const std::string& name) {
   constexpr std::string_view kKey = "/cells:";

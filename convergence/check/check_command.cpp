@@ -18,22 +18,22 @@
 namespace slipstick::convergence {
 namespace {
 
-struct Options {
+struct CheckRequest {
   std::string scene;
   std::string field;
   std::vector<std::string> overrides;
   CheckOptions check;
 };
 
-int run(const Options& options, std::ostream& text, Json& result) {
-  if (options.check.twist && !std::isfinite(*options.check.twist)) {
-    throw solver::InputError(fmt::format("--twist {}", *options.check.twist),
+int run_check(const CheckRequest& request, std::ostream& text, Json& result) {
+  if (request.check.twist && !std::isfinite(*request.check.twist)) {
+    throw solver::InputError(fmt::format("--twist {}", *request.check.twist),
                              "allowed: a finite number, in rad");
   }
-  if (const auto& tolerance = options.check.tolerance; tolerance && !(*tolerance > 0.0)) {
+  if (const auto& tolerance = request.check.tolerance; tolerance && !(*tolerance > 0.0)) {
     throw solver::InputError("check", "--tolerance", fmt::format("{}", *tolerance), "larger than zero");
   }
-  result = check_field(solver::read_scene(options.scene, options.overrides), options.field, options.check);
+  result = check_field(solver::read_scene(request.scene, request.overrides), request.field, request.check);
   text << check_text(result);
   return result["verdict"] == "good" ? 0 : 1;
 }
@@ -41,33 +41,34 @@ int run(const Options& options, std::ostream& text, Json& result) {
 }  // namespace
 
 std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto request = std::make_shared<CheckRequest>();
   CLI::App* const command = app.add_subcommand("check", "Judge a traction field that any program computed");
-  command->add_option("scene", options->scene, "scene file (TOML) that the program solved")->required();
+  command->add_option("scene", request->scene, "scene file (TOML) that the program solved")->required();
   command
-      ->add_option("field", options->field,
+      ->add_option("field", request->field,
                    "columns x1, x2 (m), pressure, q1, q2 (Pa), one row for each contact cell: .csv or .h5")
       ->required();
   command
-      ->add_option("--set", options->overrides,
+      ->add_option("--set", request->overrides,
                    "key=value: override a key of the scene, e.g. load.moment_ratio=0.5")
       ->take_all()
       ->allow_extra_args(false);
-  command->add_option("--twist", options->check.twist,
+  command->add_option("--twist", request->check.twist,
                       "rad, that the program reported; without it the one that Coulomb's law fits best");
   command->add_flag(
-      "--discrete", options->check.discrete,
+      "--discrete", request->check.discrete,
       "good only if it solves its own grid's problem, of constant cells, up to iteration error");
   command->add_option(
-      "--tolerance", options->check.tolerance,
+      "--tolerance", request->check.tolerance,
       "error of loads, twist and tractions that is allowed, in place of what the mesh leaves open");
-  command->add_flag("--strict", options->check.strict,
+  command->add_flag("--strict", request->check.strict,
                     "good only in the scene's own conventions: m, Pa, tractions on the lower body");
   command->footer(
       "Example:\n  slipstick check convergence/scenes/paper.toml tractions.csv --twist 2.361e-3\nExit code "
       "0: good; 1: bad; 2: cannot be judged. docs/verify-your-solver.md explains each number.");
-  return
-      [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };
+  return [request](std::ostream& text, nlohmann::ordered_json& result) {
+    return run_check(*request, text, result);
+  };
 }
 
 }  // namespace slipstick::convergence

@@ -16,7 +16,7 @@ using solver::Grid;
 using solver::Index;
 
 /// Slipping cells of a solution lie on their circle up to rounding.
-constexpr double kOnCircle = 1e-9;
+constexpr double kExactlyOnCircle = 1e-9;
 /// A median over fewer cells is one of the ring's edges.
 constexpr std::size_t kMinSlipping = 8;
 
@@ -91,7 +91,7 @@ std::vector<Index> slip_ring(const GivenContact& contact, const RightAnswer& rig
   std::vector<Index> cells;
   for (Index cell = 0; cell < size.size(); ++cell) {
     const double bound = contact.friction_bound[cell];
-    if (bound > least && size[cell] >= (1.0 - kOnCircle) * bound) cells.push_back(cell);
+    if (bound > least && size[cell] >= (1.0 - kExactlyOnCircle) * bound) cells.push_back(cell);
   }
   return cells;
 }

@@ -21,8 +21,6 @@ using solver::Index;
 constexpr double kMaxPairs = 1e8;
 /// An assumption explains a gap that it lowers to this part.
 constexpr double kExplains = 0.1;
-/// A part of mu p by which a slipping cell may miss it where a solver stops at a tolerance.
-constexpr double kOnCircle = 1e-4;
 /// A gap of the stick area that is no larger may be left by any iteration: no kernel is sought for it.
 constexpr double kNoStickGap = 10.0 * kIterationGap;
 

@@ -14,6 +14,9 @@ namespace slipstick::convergence {
 /// ones.
 inline constexpr double kNextToNothing = 1e-3;
 
+/// A part of mu p by which a cell may miss its circle, or exceed it, where a solver stops at a tolerance.
+inline constexpr double kOnCircle = 1e-4;
+
 /// A contact whose pressure and tractions are given, on a grid of its own, with the displacements that the
 /// tractions cause by this project's operator.
 struct GivenContact : solver::Dimensionless {

@@ -34,8 +34,6 @@ constexpr double kUnfinishedGap = 1e-3;
 constexpr double kFrictionSlack = 1e-3;
 /// Of so many standard deviations no cell of a contact is off by chance.
 constexpr double kLargestDraw = 6.0;
-/// A part of mu p by which a program that keeps its bound may exceed it.
-constexpr double kOnCircle = 1e-4;
 
 /// "5.1 % too low", or "right to 2e-05".
 std::string off_text(double error) {

@@ -17,7 +17,7 @@
 namespace slipstick::convergence {
 namespace {
 
-struct Options {
+struct GateRequest {
   std::vector<std::string> files;
   std::vector<std::string> only;
   std::string junit;
@@ -28,24 +28,24 @@ struct Options {
   bool github = false;
 };
 
-int run(const Options& options, std::ostream& text, nlohmann::ordered_json& result) {
-  const GateFiles files = read_gate_files(options.files, options.results);
+int run_gates(const GateRequest& request, std::ostream& text, nlohmann::ordered_json& result) {
+  const GateFiles files = read_gate_files(request.files, request.results);
   std::vector<Judgement> judgements = files.unreadable;
   const Interrupts interrupts;
-  const ProcessPool pool({.folder = options.output,
-                          .jobs = options.jobs,
+  const ProcessPool pool({.folder = request.output,
+                          .jobs = request.jobs,
                           .program = kOwnProgram,
                           .interrupted = Interrupts::seen});
-  const std::vector<Judgement> judged = run_gates(select_gates(files.gates, options.only), pool);
+  const std::vector<Judgement> judged = run_gates(select_gates(files.gates, request.only), pool);
   judgements.insert(judgements.end(), judged.begin(), judged.end());
 
   result = gates_json(judgements);
   text << gates_text(judgements);
-  if (options.github) text << gates_annotations(judgements);
-  write_option_file("--junit", options.junit, gates_junit(judgements));
-  write_option_file("--summary", options.summary, gates_markdown(judgements));
+  if (request.github) text << gates_annotations(judgements);
+  write_option_file("--junit", request.junit, gates_junit(judgements));
+  write_option_file("--summary", request.summary, gates_markdown(judgements));
   if (judgements.empty()) {
-    throw solver::InputError(options.files.front(), "no gate ran; allowed: tables headed [[gate]]");
+    throw solver::InputError(request.files.front(), "no gate ran; allowed: tables headed [[gate]]");
   }
   return exit_code(judgements);
 }
@@ -53,19 +53,19 @@ int run(const Options& options, std::ostream& text, nlohmann::ordered_json& resu
 }  // namespace
 
 std::function<int(std::ostream&, nlohmann::ordered_json&)> add_gate_command(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto request = std::make_shared<GateRequest>();
   CLI::App* const command =
       app.add_subcommand("gate", "Run accuracy gates: numbers with bounds that they must keep");
-  command->add_option("files", options->files, "gate files (TOML)")->required();
-  command->add_option("--only", options->only, "run the gates with these ids alone; stands after the files");
-  command->add_option("--junit", options->junit, "write JUnit XML, as CI servers read it, to this file");
-  command->add_option("--summary", options->summary, "write a Markdown table, the worst first, below 64 kB");
-  command->add_flag("--github", options->github, "print GitHub's annotations, at each failing gate's line");
-  command->add_option("--output", options->output, "folder where finished solves are kept")
+  command->add_option("files", request->files, "gate files (TOML)")->required();
+  command->add_option("--only", request->only, "run the gates with these ids alone; stands after the files");
+  command->add_option("--junit", request->junit, "write JUnit XML, as CI servers read it, to this file");
+  command->add_option("--summary", request->summary, "write a Markdown table, the worst first, below 64 kB");
+  command->add_flag("--github", request->github, "print GitHub's annotations, at each failing gate's line");
+  command->add_option("--output", request->output, "folder where finished solves are kept")
       ->capture_default_str();
-  command->add_option("--results", options->results,
+  command->add_option("--results", request->results,
                       "folder of the result files that gates name, in place of the gate file's own");
-  command->add_option("--jobs", options->jobs, "solves at a time; 0: one a processor")
+  command->add_option("--jobs", request->jobs, "solves at a time; 0: one a processor")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   command->footer(
@@ -75,8 +75,9 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_gate_command(CLI:
       "not be judged, or no gate ran. Finished solves are kept: repeating an interrupted command goes on "
       "from "
       "there.");
-  return
-      [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };
+  return [request](std::ostream& text, nlohmann::ordered_json& result) {
+    return run_gates(*request, text, result);
+  };
 }
 
 }  // namespace slipstick::convergence

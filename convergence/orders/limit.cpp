@@ -20,9 +20,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Meshes = std::vector<MeshSample>;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kBothSides = 0.975;  // of a 95 % interval
-
 // Orders that the least-squares method extrapolates with, and up to which it trusts them (Eca and Hoekstra).
 constexpr double kMinOrder = 0.5;
 constexpr double kMaxOrder = 2.0;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,13 @@ struct MeshSample {
   int grids = 1;
   double noise = 0.0;  ///< bound of what iteration and rounding leave undetermined
 };
+
+/// In the place of a number that there is none of.
+inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+
+/// What all intervals hold, and what lies below the upper end of one.
+inline constexpr double kConfidence = 0.95;
+inline constexpr double kBothSides = 0.5 * (1.0 + kConfidence);
 
 /// What a sequence of meshes shows.
 enum class OrderVerdict { asymptotic, preasymptotic, superconvergent, oscillatory, floor, too_few };

@@ -19,10 +19,6 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using Meshes = std::vector<MeshSample>;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kConfidence = 0.95;
-constexpr double kBothSides = 0.5 * (1.0 + kConfidence);
-
 Order no_order(OrderVerdict verdict, std::string why) {
   return {kNaN, kNaN, kNaN, kNaN, verdict, std::move(why), {}};
 }
@@ -134,7 +130,7 @@ Meshes past_change_of_sign(const Meshes& meshes) {
   return past.size() >= kMinMeshes && (before.empty() || !changes_sign(before)) ? past : meshes;
 }
 
-Meshes sizes_of(Meshes errors) {
+Meshes magnitudes(Meshes errors) {
   for (MeshSample& error : errors) error.value = std::abs(error.value);
   return errors;
 }
@@ -158,7 +154,7 @@ std::pair<OrderVerdict, std::string> obstacle(const Meshes& distinguished, const
             fmt::format("the error has stopped to fall: {:.3g} and {:.3g} on the two finest meshes",
                         distinguished[distinguished.size() - 2].value, distinguished.back().value)};
   }
-  if (is_non_monotone(sizes_of(distinguished))) {
+  if (is_non_monotone(magnitudes(distinguished))) {
     return {OrderVerdict::oscillatory, "the error rises on one mesh and falls on another"};
   }
   return {};

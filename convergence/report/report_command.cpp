@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct Options {
+struct ReportRequest {
   std::string scene;
   std::string output = "build/report";
   bool quick = false;
@@ -42,17 +42,17 @@ void draw(const fs::path& data, const fs::path& output) {
   run_report_script("render.py", {data, "--output", output}, "the results are in " + data.string());
 }
 
-int run(const Options& options, std::ostream& text, nlohmann::ordered_json& result) {
+int run_report(const ReportRequest& request, std::ostream& text, nlohmann::ordered_json& result) {
   const fs::path scenes = project_file("convergence/scenes");
-  const fs::path scene = options.scene.empty() ? scenes / "paper.toml" : fs::path(options.scene);
-  const fs::path output = options.output;
+  const fs::path scene = request.scene.empty() ? scenes / "paper.toml" : fs::path(request.scene);
+  const fs::path output = request.output;
   const fs::path data = output / "data";
   const ProcessPool pool(
       {.folder = data / "points", .program = kOwnProgram, .interrupted = Interrupts::seen});
   {
     const Interrupts interrupts;
     result = validate(scene, scenes, project_file("convergence/studies"),
-                      options.quick ? quick_validation() : full_validation(), data, pool);
+                      request.quick ? quick_validation() : full_validation(), data, pool);
   }
   draw(data, output);
   text << "page: " << (output / "index.html").string() << '\n';
@@ -69,19 +69,20 @@ int run(const Options& options, std::ostream& text, nlohmann::ordered_json& resu
 }  // namespace
 
 std::function<int(std::ostream&, nlohmann::ordered_json&)> add_report_command(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto request = std::make_shared<ReportRequest>();
   CLI::App* const command = app.add_subcommand("report", "Run the paper's validation and draw the page");
-  command->add_option("scene", options->scene, "scene file; left out: the paper's own case");
-  command->add_option("--output", options->output, "folder for the page")->capture_default_str();
-  command->add_flag("--quick", options->quick, "small grids: seconds instead of a minute");
+  command->add_option("scene", request->scene, "scene file; left out: the paper's own case");
+  command->add_option("--output", request->output, "folder for the page")->capture_default_str();
+  command->add_flag("--quick", request->quick, "small grids: seconds instead of a minute");
   command->footer(
       "Example:\n  slipstick report --output build/report\nFinished solves are kept: repeating an "
       "interrupted "
       "command goes on from there.\nExit code 0: done; 1: a run of a study failed, and the page says so; 2: "
       "it "
       "could not be made.");
-  return
-      [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };
+  return [request](std::ostream& text, nlohmann::ordered_json& result) {
+    return run_report(*request, text, result);
+  };
 }
 
 }  // namespace slipstick::convergence

@@ -30,7 +30,7 @@
 namespace slipstick::convergence {
 namespace {
 
-struct Options {
+struct SolveRequest {
   std::string scene;
   std::vector<std::string> overrides;
   std::string fields;
@@ -51,10 +51,10 @@ void show_progress(int iteration, double change) {
     fmt::print(stderr, "\r\033[Kiteration {}, change {:.1e}\r", iteration, change);
 }
 
-solver::Scene read_scene(const Options& options) {
-  std::vector<std::string> overrides = options.overrides;
-  if (!options.model.empty()) overrides.push_back(fmt::format("solver.model=\"{}\"", options.model));
-  return solver::read_scene(options.scene, overrides);
+solver::Scene read_scene(const SolveRequest& request) {
+  std::vector<std::string> overrides = request.overrides;
+  if (!request.model.empty()) overrides.push_back(fmt::format("solver.model=\"{}\"", request.model));
+  return solver::read_scene(request.scene, overrides);
 }
 
 /// Stands for the number of the step in the name of a file that is written for each step of a history.
@@ -67,50 +67,51 @@ std::string file_of_step(std::string file, std::size_t step) {
 }
 
 /// The files asked for beside the result; write_fields writes the cells to the file it is given.
-void write_files(const Options& options, const Json& result,
+void write_files(const SolveRequest& request, const Json& result,
                  const std::function<void(const std::filesystem::path&)>& write_fields) {
-  if (!options.fields.empty() && !one_file_a_step(options.fields)) write_fields(options.fields);
-  if (!options.figure.empty()) draw_figure(options.figure, result, write_fields);
+  if (!request.fields.empty() && !one_file_a_step(request.fields)) write_fields(request.fields);
+  if (!request.figure.empty()) draw_figure(request.figure, result, write_fields);
 }
 
-int answer_exactly(const solver::Scene& scene, const Options& options, std::ostream& text, Json& result) {
+int answer_exactly(const solver::Scene& scene, const SolveRequest& request, std::ostream& text,
+                   Json& result) {
   const auto start = std::chrono::steady_clock::now();
   const Oracle oracle = require_oracle(scene);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result = exact_result(scene, oracle, seconds);
   text << exact_text(result);
-  write_files(options, result, [&](const auto& file) { write_exact_fields(file, scene, oracle); });
+  write_files(request, result, [&](const auto& file) { write_exact_fields(file, scene, oracle); });
   return 0;
 }
 
 /// Solves, and writes the fields of each step where they go to a file of its own.
-SolvedScene find_on_grid(const solver::Scene& scene, const Options& options, Json& result) {
+SolvedScene find_on_grid(const solver::Scene& scene, const SolveRequest& request, Json& result) {
   std::size_t step = 0;
   const auto on_step = [&](const solver::Solution& at, const OracleAnswer& exact) {
     ++step;
-    if (!one_file_a_step(options.fields)) return;
-    write_solution_fields(file_of_step(options.fields, step), at, exact);
+    if (!one_file_a_step(request.fields)) return;
+    write_solution_fields(file_of_step(request.fields, step), at, exact);
   };
   return solve_scene(scene, {.progress = show_progress, .on_step = on_step, .incomplete = &result});
 }
 
-void write_answer(const SolvedScene& answer, const Options& options, std::ostream& text) {
+void write_answer(const SolvedScene& answer, const SolveRequest& request, std::ostream& text) {
   text << solve_text(answer.result);
-  write_files(options, answer.result,
+  write_files(request, answer.result,
               [&](const auto& file) { write_solution_fields(file, answer.solution, answer.exact); });
 }
 
-int solve_on_grid(const solver::Scene& scene, const Options& options, std::ostream& text, Json& result) {
-  const SolvedScene answer = find_on_grid(scene, options, result);
+int solve_on_grid(const solver::Scene& scene, const SolveRequest& request, std::ostream& text, Json& result) {
+  const SolvedScene answer = find_on_grid(scene, request, result);
   result = answer.result;
-  write_answer(answer, options, text);
+  write_answer(answer, request, text);
   return answer.solution.status == solver::Status::converged ? 0 : 1;
 }
 
-AccuracyTarget target_of(const Options& options) {
-  AccuracyTarget target{.error = *options.accuracy};
+AccuracyTarget target_of(const SolveRequest& request) {
+  AccuracyTarget target{.error = *request.accuracy};
   for (const auto& [word, of] : accuracy_words()) {
-    if (word == options.accuracy_of) target.of = of;
+    if (word == request.accuracy_of) target.of = of;
   }
   return target;
 }
@@ -128,104 +129,104 @@ void require_not_set(const std::vector<std::string>& overrides) {
 }
 
 /// The exact side, where it answers and the user does not say otherwise.
-solver::Scene model_chosen(solver::Scene scene, const Options& options, AccuracyOf of) {
+solver::Scene model_chosen(solver::Scene scene, const SolveRequest& request, AccuracyOf of) {
   const bool said =
-      !options.model.empty() || solver::SceneReader(options.scene, options.overrides).has("solver.model");
+      !request.model.empty() || solver::SceneReader(request.scene, request.overrides).has("solver.model");
   if (!said && answers_exactly(scene, of)) scene.model = solver::ModelChoice::exact;
   return scene;
 }
 
-int solve_accurately(solver::Scene scene, const Options& options, std::ostream& text, Json& result) {
-  const AccuracyTarget target = target_of(options);
-  require_not_set(options.overrides);
-  scene = model_chosen(std::move(scene), options, target.of);
+int solve_accurately(solver::Scene scene, const SolveRequest& request, std::ostream& text, Json& result) {
+  const AccuracyTarget target = target_of(request);
+  require_not_set(request.overrides);
+  scene = model_chosen(std::move(scene), request, target.of);
   require_reachable(scene, target);
-  if (options.plan) {
+  if (request.plan) {
     result["plan"] = plan_json(scene_for(scene, target));
     text << plan_text(result);
     return 0;
   }
   if (scene.model == solver::ModelChoice::exact) {
     const Json accuracy = exact_accuracy(scene, target);
-    answer_exactly(scene, options, text, result);
+    answer_exactly(scene, request, text, result);
     result["accuracy"] = accuracy;
     text << accuracy_text(result);
     return 0;
   }
   const AccurateAnswer answer = solve_to_accuracy(
-      scene, target, [&](const solver::Scene& chosen) { return find_on_grid(chosen, options, result); });
+      scene, target, [&](const solver::Scene& chosen) { return find_on_grid(chosen, request, result); });
   result = answer.answer.result;
   result["accuracy"] = answer.accuracy;
-  write_answer(answer.answer, options, text);
+  write_answer(answer.answer, request, text);
   text << accuracy_text(result);
   return answer.reached ? 0 : 1;
 }
 
-RunSpec spec_of(const Options& options) {
-  RunSpec spec{.scene = options.scene,
-               .overrides = options.overrides,
-               .fields = options.fields,
-               .profile = options.profile};
-  if (options.rounding == "upward") spec.rounding = Rounding::upward;
-  if (options.rounding == "downward") spec.rounding = Rounding::downward;
+RunSpec spec_of(const SolveRequest& request) {
+  RunSpec spec{.scene = request.scene,
+               .overrides = request.overrides,
+               .fields = request.fields,
+               .profile = request.profile};
+  if (request.rounding == "upward") spec.rounding = Rounding::upward;
+  if (request.rounding == "downward") spec.rounding = Rounding::downward;
   return spec;
 }
 
-int run(const Options& options, std::ostream& text, Json& result) {
-  if (!options.keep.empty()) {
-    solve_and_keep(spec_of(options), options.keep);
+int run_solve(const SolveRequest& request, std::ostream& text, Json& result) {
+  if (!request.keep.empty()) {
+    solve_and_keep(spec_of(request), request.keep);
     return 0;
   }
-  if (!options.fields.empty()) solver::require_field_format(options.fields);
-  if (!options.figure.empty()) require_figure_format(options.figure);
-  const solver::Scene scene = read_scene(options);
-  if (options.accuracy) return solve_accurately(scene, options, text, result);
-  if (options.plan) {
+  if (!request.fields.empty()) solver::require_field_format(request.fields);
+  if (!request.figure.empty()) require_figure_format(request.figure);
+  const solver::Scene scene = read_scene(request);
+  if (request.accuracy) return solve_accurately(scene, request, text, result);
+  if (request.plan) {
     result["plan"] = plan_json(scene);
     text << plan_text(result);
     return 0;
   }
   const bool exact = scene.model == solver::ModelChoice::exact;
-  return (exact ? answer_exactly : solve_on_grid)(scene, options, text, result);
+  return (exact ? answer_exactly : solve_on_grid)(scene, request, text, result);
 }
 
 }  // namespace
 
 std::function<int(std::ostream&, nlohmann::ordered_json&)> add_solve_command(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto request = std::make_shared<SolveRequest>();
   CLI::App* const command = app.add_subcommand("solve", "Solve a scene, on a grid or exactly");
-  command->add_option("scene", options->scene, "scene file (TOML)")->required();
+  command->add_option("scene", request->scene, "scene file (TOML)")->required();
   command
-      ->add_option("--set", options->overrides,
+      ->add_option("--set", request->overrides,
                    "key=value: override a key of the scene, e.g. load.moment_ratio=0.5")
       ->take_all()
       ->allow_extra_args(false);
   command->add_option(
-      "--model", options->model,
+      "--model", request->model,
       "auto (leaves out what the scene allows) | full | exact (no grid: the exact solution of an "
       "axisymmetric scene); as --set solver.model=...");
   command->add_option(
-      "--accuracy", options->accuracy,
+      "--accuracy", request->accuracy,
       "relative error to reach, e.g. 1e-4: chooses cells, tolerance and, unless said, the model; "
       "says what was reached");
   std::vector<std::string> words;
   for (const auto& [word, of] : accuracy_words()) words.push_back(word);
   command
-      ->add_option("--accuracy-of", options->accuracy_of,
+      ->add_option("--accuracy-of", request->accuracy_of,
                    "what --accuracy is asked of; where the twist is imposed, twist means the moment")
       ->check(CLI::IsMember(words))
       ->capture_default_str();
-  command->add_flag("--plan", options->plan, "predict memory and time of what would be solved, and stop");
+  command->add_flag("--plan", request->plan, "predict memory and time of what would be solved, and stop");
   command->add_option(
-      "--fields", options->fields,
+      "--fields", request->fields,
       "write tractions, pressure, stick and, from a grid, slip: .h5, .csv or .vti; of a history the "
       "last step, or each to a file of its own where the name holds {step}");
-  command->add_option("--figure", options->figure,
+  command->add_option("--figure", request->figure,
                       "draw slip and stick, tractions and pressure: .svg, .pdf or .png");
   constexpr const char* kHidden = "";
-  command->add_option("--keep", options->keep, "folder that keeps the result")->group(kHidden);
-  command->add_option("--rounding", options->rounding, "upward | downward")->group(kHidden);
-  command->add_flag("--profile", options->profile, "tractions along two radii")->group(kHidden);
+  command->add_option("--keep", request->keep, "folder that keeps the result")->group(kHidden);
+  command->add_option("--rounding", request->rounding, "upward | downward")->group(kHidden);
+  command->add_flag("--profile", request->profile, "tractions along two radii")->group(kHidden);
   command->footer(
       "Example:\n  slipstick solve convergence/scenes/paper.toml --set load.moment_ratio=0.5 --json "
       "result.json --fields "
@@ -234,8 +235,9 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_solve_command(CLI
       "code 0: converged; 1: "
       "not, or the accuracy not reached, result written all the same; 2: bad input, or gross slip "
       "asked for, or --model exact where no exact answer is known.");
-  return
-      [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };
+  return [request](std::ostream& text, nlohmann::ordered_json& result) {
+    return run_solve(*request, text, result);
+  };
 }
 
 }  // namespace slipstick::convergence

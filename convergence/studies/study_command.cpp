@@ -17,7 +17,7 @@
 namespace slipstick::convergence {
 namespace {
 
-struct Options {
+struct StudyRequest {
   std::string study;
   std::vector<std::string> overrides;
   std::string output = "build/studies";
@@ -41,11 +41,11 @@ bool all_converged(const Json& result) {
   return true;
 }
 
-int run(const Options& options, std::ostream& text, Json& result) {
-  if (!options.figure.empty()) require_figure_format(options.figure);
-  const Study study = read_study(options.study, options.overrides);
-  const ProcessPool pool({.folder = options.output,
-                          .jobs = options.jobs,
+int run_study_request(const StudyRequest& request, std::ostream& text, Json& result) {
+  if (!request.figure.empty()) require_figure_format(request.figure);
+  const Study study = read_study(request.study, request.overrides);
+  const ProcessPool pool({.folder = request.output,
+                          .jobs = request.jobs,
                           .program = kOwnProgram,
                           .interrupted = Interrupts::seen});
   {
@@ -53,24 +53,24 @@ int run(const Options& options, std::ostream& text, Json& result) {
     result = run_study(study, pool);
   }
   text << study_text(result);
-  if (!options.figure.empty()) draw(options.figure, result);
+  if (!request.figure.empty()) draw(request.figure, result);
   return all_converged(result) ? 0 : 1;
 }
 
 }  // namespace
 
 std::function<int(std::ostream&, nlohmann::ordered_json&)> add_study_command(CLI::App& app) {
-  const auto options = std::make_shared<Options>();
+  const auto request = std::make_shared<StudyRequest>();
   CLI::App* const command = app.add_subcommand(
       "study", "Solve a scene on many meshes or to many tolerances; judge orders and errors");
-  command->add_option("study", options->study, "study file (TOML)")->required();
-  command->add_option("--set", options->overrides, "key=value: override a key of the scene, for all series")
+  command->add_option("study", request->study, "study file (TOML)")->required();
+  command->add_option("--set", request->overrides, "key=value: override a key of the scene, for all series")
       ->take_all()
       ->allow_extra_args(false);
-  command->add_option("--output", options->output, "folder that keeps finished solves")
+  command->add_option("--output", request->output, "folder that keeps finished solves")
       ->capture_default_str();
-  command->add_option("--figure", options->figure, "draw errors, orders and budget: .svg, .pdf or .png");
-  command->add_option("--jobs", options->jobs, "solves at a time; 0: one a processor, as memory allows")
+  command->add_option("--figure", request->figure, "draw errors, orders and budget: .svg, .pdf or .png");
+  command->add_option("--jobs", request->jobs, "solves at a time; 0: one a processor, as memory allows")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   command->footer(
@@ -78,8 +78,9 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_study_command(CLI
       "Finished solves are kept: repeating an interrupted command goes on from there.\nExit code 0: done; 1: "
       "some "
       "solve did not converge or failed, and is marked; 2: bad input.");
-  return
-      [options](std::ostream& text, nlohmann::ordered_json& result) { return run(*options, text, result); };
+  return [request](std::ostream& text, nlohmann::ordered_json& result) {
+    return run_study_request(*request, text, result);
+  };
 }
 
 }  // namespace slipstick::convergence

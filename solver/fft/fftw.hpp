@@ -14,6 +14,9 @@
 /// FFTW's C interface, owned and by precision.
 namespace slipstick::solver {
 
+/// As containers count.
+inline std::size_t count(Index n) { return static_cast<std::size_t>(n); }
+
 /// Complex lines that are transformed by one plan: from one value of a line to its next, and from one line to
 /// the next, where they are read and where they are written.
 struct FftwLines {

@@ -8,8 +8,6 @@
 namespace slipstick::solver {
 namespace {
 
-std::size_t count(Index n) { return static_cast<std::size_t>(n); }
-
 constexpr double kPi = std::numbers::pi;
 
 }  // namespace

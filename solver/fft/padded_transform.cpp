@@ -7,8 +7,6 @@
 namespace slipstick::solver {
 namespace {
 
-std::size_t count(Index n) { return static_cast<std::size_t>(n); }
-
 Index half_length(Index cells) { return fast_length(2 * cells - 1) / 2; }
 
 /// Products of finite numbers, without the checks for infinities of std::complex.

@@ -5,8 +5,7 @@
 namespace slipstick::solver {
 namespace {
 
-/// Bytes of a key or a value, and of a complaint, that a message shows: what a file holds may be endless.
-constexpr std::size_t kMaxShown = 200;
+/// Characters of a complaint that a message shows.
 constexpr std::size_t kMaxComplaint = 2000;
 
 /// A character of several bytes stays whole.

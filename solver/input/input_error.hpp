@@ -1,9 +1,13 @@
 #pragma once
 
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
 namespace slipstick::solver {
+
+/// Characters of what a file says that a message shows: a file may be endless.
+inline constexpr std::size_t kMaxShown = 200;
 
 /// Something the caller got wrong, with where it stands, what it says and what is allowed.
 class InputError : public std::invalid_argument {

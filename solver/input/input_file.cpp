@@ -66,9 +66,6 @@ class InputFile {
   int descriptor_;
 };
 
-/// Characters of what a file says.
-constexpr std::size_t kMaxShown = 200;
-
 }  // namespace
 
 void require_input_file(const std::filesystem::path& file, std::uintmax_t largest,

@@ -1,22 +1,84 @@
 #include "solver/newton/coefficients.hpp"
 
+#include <gsl/gsl_linalg.h>
+
 #include <Eigen/QR>
+#include <algorithm>
+#include <array>
+#include <limits>
 
 namespace slipstick::solver {
+namespace {
 
+using SmallRows =
+    Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor, kMaxConditions, kMaxConditions>;
+
+/// What GSL's functions take, on a matrix or vector of Eigen.
+struct GslMatrix {
+  explicit GslMatrix(SmallRows& of)
+      : view(gsl_matrix_view_array(of.data(), static_cast<std::size_t>(of.rows()),
+                                   static_cast<std::size_t>(of.cols()))) {}
+  operator gsl_matrix*() { return &view.matrix; }
+  gsl_matrix_view view;
+};
+struct GslVector {
+  explicit GslVector(Coefficients& of)
+      : view(gsl_vector_view_array(of.data(), static_cast<std::size_t>(of.size()))) {}
+  operator gsl_vector*() { return &view.vector; }
+  gsl_vector_view view;
+};
+
+struct FullQr {
+  SmallRows q, r;  ///< square; as the matrix
+};
+FullQr full_qr(const CoefficientMatrix& matrix) {
+  SmallRows factored = matrix;
+  Coefficients tau(std::min(matrix.rows(), matrix.cols()));
+  FullQr full{SmallRows(matrix.rows(), matrix.rows()), SmallRows(matrix.rows(), matrix.cols())};
+  GslMatrix a(factored), q(full.q), r(full.r);
+  GslVector scales(tau);
+  gsl_linalg_QR_decomp(a, scales);
+  gsl_linalg_QR_unpack(a, scales, q, r);
+  return full;
+}
+
+}  // namespace
+
+// By A P = Q diag(R, 0) Z, for which GSL wants no fewer rows than columns: rows of zeros make up for those
+// missing.
 Coefficients least_solution(const CoefficientMatrix& matrix, const Coefficients& right) {
-  return matrix.completeOrthogonalDecomposition().solve(right);
+  const Eigen::Index n = matrix.cols();
+  const Coefficients unknown = Coefficients::Constant(n, std::numeric_limits<double>::quiet_NaN());
+  const double largest = matrix.size() > 0 ? matrix.cwiseAbs().maxCoeff() : 0.0;
+  // GSL would end the program.
+  if (!matrix.allFinite()) return unknown;
+  if (largest == 0.0) return Coefficients::Zero(n);
+
+  const Eigen::Index m = std::max(matrix.rows(), n);
+  SmallRows factored = SmallRows::Zero(m, n);
+  factored.topRows(matrix.rows()) = matrix;
+  Coefficients b = Coefficients::Zero(m);
+  b.head(right.size()) = right;
+  Coefficients tau_q(n), tau_z(n), x(n), work(n), residual(m);
+  std::array<std::size_t, kMaxConditions> columns{};
+  gsl_permutation order{static_cast<std::size_t>(n), columns.data()};
+  GslMatrix a(factored);
+  GslVector q(tau_q), z(tau_z), space(work), from(b), to(x), left(residual);
+  // A pivot below is rounding.
+  const double tolerance = largest * std::numeric_limits<double>::epsilon() * static_cast<double>(n);
+  std::size_t rank = 0;
+  gsl_linalg_COD_decomp_e(a, q, z, &order, tolerance, &rank, space);
+  if (rank == 0) return unknown;  // numbers so large that their squares are infinite
+  gsl_linalg_COD_lssolve(a, q, z, &order, rank, from, to, left);
+  return x;
 }
 
 SmallQr small_qr(const CoefficientMatrix& matrix) {
-  const Eigen::HouseholderQR<CoefficientMatrix> factored(matrix);
-  return {factored.householderQ() * CoefficientMatrix::Identity(matrix.rows(), matrix.cols()),
-          factored.matrixQR().topRows(matrix.cols()).triangularView<Eigen::Upper>()};
+  const FullQr full = full_qr(matrix);
+  return {full.q.leftCols(matrix.cols()), full.r.topRows(matrix.cols())};
 }
 
-CoefficientMatrix orthonormal_basis(const Coefficients& vector) {
-  return Eigen::HouseholderQR<CoefficientMatrix>(vector).householderQ();
-}
+CoefficientMatrix orthonormal_basis(const Coefficients& vector) { return full_qr(vector).q; }
 
 void SmallCholesky::compute(const CoefficientMatrix& matrix) { factor_.compute(matrix); }
 
@@ -31,7 +93,7 @@ Eigen::VectorXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::Vector
 }
 
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix) {
-  return matrix.completeOrthogonalDecomposition().pseudoInverse();
+  return matrix.colPivHouseholderQr().solve(Eigen::MatrixXd::Identity(matrix.rows(), matrix.rows()));
 }
 
 }  // namespace slipstick::solver

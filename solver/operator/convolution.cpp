@@ -8,8 +8,6 @@
 namespace slipstick::solver {
 namespace {
 
-std::size_t count(Index n) { return static_cast<std::size_t>(n); }
-
 std::vector<Component> distinct_components(const BlockKernel& kernel) {
   const std::set<Component> distinct(kernel.components.begin(), kernel.components.end());
   return {distinct.begin(), distinct.end()};

@@ -29,7 +29,7 @@ std::vector<Index> columns(const PeriodicGrid& periodic) {
 
 /// Complex numbers times real ones.
 template <typename Real>
-void scale(Index count, const Real* __restrict p, Real* __restrict z) {
+void scale_complex(Index count, const Real* __restrict p, Real* __restrict z) {
   for (Index k = 0; k < count; ++k) {
     z[2 * k] *= p[k];
     z[2 * k + 1] *= p[k];
@@ -111,7 +111,7 @@ class PeriodicInverseSymbol final : public InverseSymbol<Real> {
       const Index f = negative ? periodic_.length1 - k : k;
       const Real* const p11 = table_.row(SymbolEntry::p11, f);
       if (fields_ == 1) {
-        scale(count, p11, transform_.row(0, k));
+        scale_complex(count, p11, transform_.row(0, k));
       } else {
         mix(count, Real(negative ? -1 : 1), p11, table_.row(SymbolEntry::p12, f),
             table_.row(SymbolEntry::p22, f), transform_.row(0, k), transform_.row(1, k));
@@ -128,13 +128,8 @@ class PeriodicInverseSymbol final : public InverseSymbol<Real> {
 };
 
 bool is_tangential(const BlockKernel& kernel) {
-  for (const bool tangential : {false, true}) {
-    const BlockKernel known = tangential ? tangential_kernel() : normal_kernel();
-    if (kernel.outputs == known.outputs && kernel.inputs == known.inputs &&
-        kernel.components == known.components) {
-      return tangential;
-    }
-  }
+  if (kernel == tangential_kernel()) return true;
+  if (kernel == normal_kernel()) return false;
   throw std::invalid_argument("only the normal and the tangential kernel have an inverse symbol");
 }
 

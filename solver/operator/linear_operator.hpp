@@ -18,6 +18,7 @@ struct BlockKernel {
   std::size_t outputs;
   std::size_t inputs;
   std::vector<Component> components;
+  bool operator==(const BlockKernel&) const = default;
 };
 
 /// u3 = K33 p; (u1, u2) = K (q1, q2); (u1, u2) = (K13, K23) p; K13 q1 + K23 q2, which is -u3 by shear.

@@ -10,19 +10,14 @@
 namespace slipstick::solver {
 namespace {
 
-std::size_t count(Index n) { return static_cast<std::size_t>(n); }
-
 Index groups(Index lines, Index group) { return (lines + group - 1) / group; }
-
-bool is_normal(const BlockKernel& kernel) { return kernel.components == normal_kernel().components; }
-bool is_tangential(const BlockKernel& kernel) { return kernel.components == tangential_kernel().components; }
 
 BlockKernel checked(BlockKernel kernel, const Grid& grid, bool diagonal) {
   if (!grid.quadrant) throw std::invalid_argument("a mirrored convolution needs the grid of a quadrant");
-  if (!is_normal(kernel) && !is_tangential(kernel)) {
+  if (kernel != normal_kernel() && kernel != tangential_kernel()) {
     throw std::invalid_argument("a mirrored convolution of another kernel than K33 or K11, K12, K22");
   }
-  if (diagonal && (!is_tangential(kernel) || grid.n1 != grid.n2 || grid.h1 != grid.h2)) {
+  if (diagonal && (kernel != tangential_kernel() || grid.n1 != grid.n2 || grid.h1 != grid.h2)) {
     throw std::invalid_argument("mirror images about the diagonal need torsion of a square of square cells");
   }
   return kernel;
@@ -30,7 +25,7 @@ BlockKernel checked(BlockKernel kernel, const Grid& grid, bool diagonal) {
 
 /// The components whose spectra are kept, in the order of the products.
 std::vector<Component> distinct_components(const BlockKernel& kernel, bool diagonal) {
-  if (is_normal(kernel)) return {Component::k33};
+  if (kernel == normal_kernel()) return {Component::k33};
   if (diagonal) return {Component::k11, Component::k12};
   return {Component::k11, Component::k12, Component::k22};
 }

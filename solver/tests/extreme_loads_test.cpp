@@ -23,13 +23,13 @@ using Eigen::ArrayXd;
 constexpr double kMaxApplications = 60.0;
 
 /// A friction bound on a grid of square cells, with cross contraction.
-struct Body {
+struct LoadedBody {
   std::string name;
   Grid grid;
   ArrayXd bound;
 };
 
-Body body(const std::string& name) {
+LoadedBody body(const std::string& name) {
   const Grid grid{32, 32, 1.0, 1.0};
   const ArrayXd x = cell_x1(grid);
   const ArrayXd y = cell_x2(grid);
@@ -84,7 +84,7 @@ class ExtremeLoads : public testing::TestWithParam<std::tuple<std::string, Load>
                    *problem.force, least_eigenvalue(elasticity_.pair, body_.grid.h1, body_.grid.h2));
   }
 
-  Body body_ = body(std::get<0>(GetParam()));
+  LoadedBody body_ = body(std::get<0>(GetParam()));
   Elasticity elasticity_{elastic_pair({2.0, 0.3}, {2.0, 0.3})};
 };
 

@@ -18,10 +18,6 @@ namespace {
 using Eigen::ArrayXd;
 using testing::HasSubstr;
 
-/// Gap over energy that steps are solved to, and what answers of the same discrete problem may differ by.
-constexpr double kGap = 1e-13;
-constexpr double kSame = 1e-9;
-
 /// What is kept of each step.
 std::vector<ModelSolution> history(const Scene& scene) {
   std::vector<ModelSolution> steps;

@@ -6,6 +6,13 @@
 
 namespace slipstick::solver {
 
+/// Of the certificate: gap over energy. The last Newton step, whose states stand, goes far below it.
+inline constexpr double kGap = 1e-13;
+/// Two answers of the same discrete problem, each with that gap, in the largest traction, in motions and in
+/// loads: the gap is of first order in the slip that is left in stick cells, so they agree to about its size
+/// times the contact's condition.
+inline constexpr double kSame = 1e-9;
+
 /// The case of Gradinaru and Spinu, Section 5, with its exact answers (Hertz; Jaeger's construction,
 /// evaluated to 30 digits): a sphere of 18 mm pressed by 1 kN on a half-space, both of steel.
 namespace paper {

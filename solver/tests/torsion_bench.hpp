@@ -5,6 +5,7 @@
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/paper_method.hpp"
 #include "solver/pressure.hpp"
+#include "solver/tests/fields.hpp"
 #include "solver/tests/paper_scene.hpp"
 
 namespace slipstick::solver {
@@ -13,11 +14,6 @@ namespace slipstick::solver {
 inline constexpr double kRounding = 1e-12;
 /// Stops the iteration where only rounding is left.
 inline constexpr double kTight = 1e-11;
-
-inline double largest(const Eigen::ArrayXd& values) { return values.abs().maxCoeff<Eigen::PropagateNaN>(); }
-inline double relative_difference(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) {
-  return largest(a - b) / largest(b);
-}
 
 inline TangentialProblem under_moment(const Eigen::ArrayXd& bound, double moment) {
   TangentialProblem problem;

@@ -18,13 +18,6 @@ using Eigen::ArrayXd;
 using testing::HasSubstr;
 using Pair = std::array<double, 2>;
 
-/// Of the certificate: gap over energy. The last Newton step, whose states stand, goes far below it.
-constexpr double kGap = 1e-13;
-/// Two answers of the same discrete problem, each with that gap, in the largest traction, in motions and in
-/// loads: the gap is of first order in the slip that is left in stick cells, so they agree to about its size
-/// times the contact's condition.
-constexpr double kSame = 1e-9;
-
 /// The paper's sphere over ten cells of contact radius, its axis where the test wants it.
 Scene sphere(const Pair& at_cells, Index cells = 40) {
   const double h = paper::kContactRadius / 10.0;

@@ -17,8 +17,8 @@
 namespace slipstick::bench {
 namespace {
 
-using testing::DoubleNear;
-using testing::ElementsAre;
+using ::testing::DoubleNear;
+using ::testing::ElementsAre;
 
 struct Samples {
   std::vector<double> base;

@@ -118,7 +118,7 @@ Json made_point(const std::string& method, double cells, double seconds, double 
   return point;
 }
 
-Json made_plane() {
+Json judged_plane() {
   Json wrong = made_point("paper", 256, 0.001, 1e-6);
   wrong["seconds"] = nullptr;
   wrong["not_timed"] = "twist error 0.06 above 0.001";
@@ -133,7 +133,7 @@ Json made_plane() {
 }
 
 TEST(PlaneJudgement, FindsTheEnvelopeAndWhatIsDominated) {
-  const Json plane = made_plane();
+  const Json plane = judged_plane();
   EXPECT_EQ(plane["scenes"][0]["envelope"]["twist"], Json({0, 1}));
   ASSERT_EQ(plane["dominated"].size(), 1U);
   EXPECT_EQ(plane["dominated"][0]["value"], "paper");
@@ -142,7 +142,7 @@ TEST(PlaneJudgement, FindsTheEnvelopeAndWhatIsDominated) {
 }
 
 TEST(PlaneJudgement, TellsTheTimeToEachErrorOrWhyThereIsNone) {
-  const Json plane = made_plane();
+  const Json plane = judged_plane();
   const auto time_to = [&](double error, const std::string& method) {
     for (const Json& row : plane["scenes"][0]["time_to"]) {
       if (row["error"] == error && row["method"] == method) return row;
@@ -157,7 +157,7 @@ TEST(PlaneJudgement, TellsTheTimeToEachErrorOrWhyThereIsNone) {
 }
 
 TEST(PlaneJudgement, ListsWrongRowsWithTheirReason) {
-  const Json plane = made_plane();
+  const Json plane = judged_plane();
   ASSERT_EQ(plane["not_timed"].size(), 1U);
   EXPECT_EQ(plane["not_timed"][0]["choice"]["cells"], 256.0);
   EXPECT_THAT(bench::plane_text(plane), HasSubstr("not timed (made): 256 x 256 cells"));

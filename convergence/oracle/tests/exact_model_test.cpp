@@ -29,7 +29,7 @@ constexpr double kTolerance = 1e-14;
 
 const std::vector<std::string> kBodies{"paper", "cone", "flat_punch"};
 
-solver::Scene scene(const std::string& name, std::vector<std::string> overrides = {}) {
+solver::Scene exact_scene(const std::string& name, std::vector<std::string> overrides = {}) {
   overrides.emplace_back("solver.model=exact");
   return solver::read_scene(std::string(SLIPSTICK_SCENES) + "/" + name + ".toml", overrides);
 }
@@ -47,7 +47,7 @@ const analytic::Profile& profile_of(const std::string& name) {
 TEST(ExactModel, GivesTheNumbersOfTheExactSolution) {
   for (const std::string& name : kBodies) {
     for (const double ratio : {0.1, 0.5, 0.9, 0.99}) {
-      const Json result = answer(scene(name, {"load.moment_ratio=" + std::to_string(ratio)}));
+      const Json result = answer(exact_scene(name, {"load.moment_ratio=" + std::to_string(ratio)}));
       const analytic::TorsionState state = analytic::from_moment_ratio(ratio, profile_of(name));
       EXPECT_EQ(number(result, "moment_ratio"), ratio) << name;
       EXPECT_EQ(number(result, "stick_ratio"), state.stick_ratio) << name;
@@ -65,10 +65,10 @@ TEST(ExactModel, GivesTheNumbersOfTheExactSolution) {
 
 TEST(ExactModel, AnswersForTheMomentAndForTheTwist) {
   for (const std::string& name : kBodies) {
-    const Json by_ratio = answer(scene(name, {"load.moment_ratio=0.7"}));
+    const Json by_ratio = answer(exact_scene(name, {"load.moment_ratio=0.7"}));
     for (const auto& [key, value] : {std::pair("load.moment", number(by_ratio, "moment")),
                                      std::pair("load.twist", number(by_ratio, "twist_angle"))}) {
-      solver::Scene other = scene(name);
+      solver::Scene other = exact_scene(name);
       other.steps[0].torsion = key == std::string("load.moment") ? solver::TorsionLoad(solver::Moment{value})
                                                                  : solver::Twist{value};
       const Json result = answer(other);
@@ -91,9 +91,9 @@ solver::Scene in_units(solver::Scene scene, double metre, double newton) {
 
 TEST(ExactModel, DoesNotKnowTheUnits) {
   for (const std::string& name : kBodies) {
-    const Json si = answer(scene(name));
+    const Json si = answer(exact_scene(name));
     for (const auto& [metre, newton] : {std::pair(1e3, 1.0), std::pair(1e9, 1e9), std::pair(1e-3, 1e-6)}) {
-      const Json other = answer(in_units(scene(name), metre, newton));
+      const Json other = answer(in_units(exact_scene(name), metre, newton));
       for (const char* key : {"stick_ratio", "moment_ratio", "twist"}) {
         EXPECT_EQ(number(other, key), number(si, key)) << name;  // these the load alone decides
       }
@@ -107,7 +107,7 @@ TEST(ExactModel, DoesNotKnowTheUnits) {
 
 TEST(ExactModel, SaysThatThereIsNoGrid) {
   for (const std::string& name : kBodies) {
-    const Json result = answer(scene(name));
+    const Json result = answer(exact_scene(name));
     EXPECT_EQ(result["status"], "converged");
     EXPECT_EQ(result["method"], "exact");
     EXPECT_EQ(result["model"]["left_out"][0]["what"], "the grid");
@@ -122,12 +122,12 @@ TEST(ExactModel, SaysThatThereIsNoGrid) {
     EXPECT_THAT(exact_text(result), AllOf(HasSubstr(name), HasSubstr("exact solution"), HasSubstr("twist"),
                                           HasSubstr("left out         the grid")));
   }
-  EXPECT_TRUE(answer(scene("paper"))["peak_pressure"].is_number());
-  EXPECT_EQ(answer(scene("cone"))["peak_pressure_reason"], "infinite");
+  EXPECT_TRUE(answer(exact_scene("paper"))["peak_pressure"].is_number());
+  EXPECT_EQ(answer(exact_scene("cone"))["peak_pressure_reason"], "infinite");
 }
 
 TEST(ExactModel, SaysThatTheScenesCouplingIsLeftOut) {
-  const Json result = answer(scene("dissimilar", {"contact.coupling=none"}));
+  const Json result = answer(exact_scene("dissimilar", {"contact.coupling=none"}));
   ASSERT_EQ(result["model"]["left_out"].size(), 2);
   EXPECT_EQ(result["model"]["left_out"][1]["what"], "K13, K23");
 }
@@ -139,17 +139,17 @@ TEST(ExactModel, IsRefusedWhereNoExactSolutionIsKnown) {
                                                         HasSubstr("solver.model = \"exact\""),
                                                         HasSubstr("auto, full"), HasSubstr(reason))));
   };
-  refused(scene("ellipse"), "ellipsoid");
-  refused(scene("dissimilar"), "coupling");
-  refused(scene("paper", {"contact.friction=0"}), "friction");
-  solver::Scene height_map = scene("paper");
+  refused(exact_scene("ellipse"), "ellipsoid");
+  refused(exact_scene("dissimilar"), "coupling");
+  refused(exact_scene("paper", {"contact.friction=0"}), "friction");
+  solver::Scene height_map = exact_scene("paper");
   height_map.surfaces.front().shape = solver::Shape::height_map;
   refused(height_map, "height_map");
 }
 
 TEST(ExactModel, RefusesALoadThatTheContactCannotCarry) {
   const auto refused = [](const std::string& load, const std::string& reason) {
-    EXPECT_THAT([&] { require_oracle(scene("cone", {load})); },
+    EXPECT_THAT([&] { require_oracle(exact_scene("cone", {load})); },
                 ThrowsMessage<solver::InputError>(AllOf(
                     HasSubstr("cone.toml"), HasSubstr(load.substr(0, load.find('='))), HasSubstr(reason))));
   };
@@ -159,7 +159,7 @@ TEST(ExactModel, RefusesALoadThatTheContactCannotCarry) {
 
 // The solver has no exact answers.
 TEST(ExactModel, IsNotForTheSolver) {
-  EXPECT_THAT([] { solver::solve(scene("paper")); },
+  EXPECT_THAT([] { solver::solve(exact_scene("paper")); },
               ThrowsMessage<solver::InputError>(AllOf(HasSubstr("solver.model"), HasSubstr("auto, full"))));
 }
 
@@ -182,7 +182,7 @@ class ExactFieldFile : public testing::Test {
 
 TEST_F(ExactFieldFile, HoldsPressureAndTractionsAtTheCellCentres) {
   for (const std::string& name : kBodies) {
-    const solver::Scene small = scene(name, {"grid.cells=[24,20]"});
+    const solver::Scene small = exact_scene(name, {"grid.cells=[24,20]"});
     const Oracle oracle = require_oracle(small);
     const std::vector<solver::Column> columns = sampled(small);
     const Eigen::ArrayXd& x1 = columns[0].values;
@@ -202,8 +202,9 @@ TEST_F(ExactFieldFile, HoldsPressureAndTractionsAtTheCellCentres) {
 
 // Dense summation would need 128 GiB for this grid, samples need none of it.
 TEST_F(ExactFieldFile, NeedsNoOperator) {
-  EXPECT_GT(sampled(scene("paper", {"grid.cells=[256,256]", "solver.operator=dense"})).front().values.size(),
-            40000);
+  EXPECT_GT(
+      sampled(exact_scene("paper", {"grid.cells=[256,256]", "solver.operator=dense"})).front().values.size(),
+      40000);
 }
 
 }  // namespace

@@ -58,7 +58,7 @@ double motion(const Oracle& oracle) {
 
 // What the program promises of first loading at 128 cells, the pressure solved on the same grid.
 constexpr double kMotionAt128 = 2e-4;
-constexpr double kTractionAt128 = 1e-2;  // L1
+constexpr double kStepTractionAt128 = 1e-2;  // L1
 // Twist, displacement and energy are off by the gap of either answer, 1e-8 of its energy; tractions by its
 // root, and in L2 by some six times that: waves of a cell's length are 30 to 60 times softer than the
 // contact.
@@ -90,7 +90,7 @@ void expect_every_reversal_as_good_as_the_first(const Scene& cycle) {
   }
   const Errors& at128 = fine.front().errors;
   EXPECT_LE(motion_error(at128), kMotionAt128);
-  EXPECT_LE(at128.traction.at_centres.l1, kTractionAt128);
+  EXPECT_LE(at128.traction.at_centres.l1, kStepTractionAt128);
   EXPECT_LE(std::abs(at128.dissipated), kMotionAt128);
   EXPECT_LE(std::abs(at128.stick_radius), 1e-3);
   EXPECT_LE(motion_error(at128), motion_error(coarse.front().errors) * std::pow(2.0, -1.5));
@@ -116,7 +116,7 @@ void expect_errors_of_first_loading(const Scene& scene, double cells_to_the_radi
     // Two or three branches of first loading, enlarged twice.
     EXPECT_LE(motion_error(errors) * motion(exact), 5.0 * kMotionAt128 * largest);
     EXPECT_LE(std::abs(errors.dissipated) * exact.dissipated, 5.0 * kMotionAt128 * first_lost);
-    EXPECT_LE(errors.traction.at_centres.l1, kTractionAt128);
+    EXPECT_LE(errors.traction.at_centres.l1, kStepTractionAt128);
     EXPECT_LE(std::abs(errors.stick_radius) * exact.stick_radius,
               0.5 * exact.contact_radius / cells_to_the_radius);
   }

@@ -20,7 +20,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 
 // Some roundings on the way from a scene's moduli to a number, and as many branches of a history.
-constexpr double kTolerance = 1e-13;
+constexpr double kHistoryTolerance = 1e-13;
 
 std::vector<OracleAnswer> answers(const Scene& scene) {
   const std::unique_ptr<ExactHistory> history = exact_history(scene);
@@ -40,15 +40,15 @@ std::vector<Oracle> oracles(const Scene& scene) {
 
 /// What pressure and shear carry: the integrals of p, |q| r and |q| over the contact, by the midpoint rule in
 /// r = a sin(t), which takes off what a flat punch's edge has too much.
-struct Carried {
+struct CarriedLoads {
   double load = 0.0;
   double moment = 0.0;
   double force = 0.0;
 };
-Carried carried_by(const Oracle& oracle) {
+CarriedLoads loads_carried_by(const Oracle& oracle) {
   constexpr int points = 4000;
   const double a = oracle.contact_radius;
-  Carried carried;
+  CarriedLoads carried;
   for (int i = 0; i < points; ++i) {
     const double t = std::numbers::pi / 2 * (i + 0.5) / points;
     const double r = a * std::sin(t);
@@ -60,21 +60,21 @@ Carried carried_by(const Oracle& oracle) {
   return carried;
 }
 // Fronts have vertical tangents in a few of the intervals: their size, 4e-4, to the power 1.5.
-constexpr double kQuadrature = 1e-5;
+constexpr double kQuadratureOverFronts = 1e-5;
 
 TEST(OracleHistory, TractionsOfTorsionCarryTheMoments) {
   for (const char* body : {"paper", "cone", "flat_punch"}) {
     const Scene scene = twisted(scene_of(body), {0.9, 0.2, -0.7, 0.3, 0.0});
     const std::vector<Oracle> exact = oracles(scene);
     for (std::size_t i = 0; i < exact.size(); ++i) {
-      const Carried carried = carried_by(exact[i]);
+      const CarriedLoads carried = loads_carried_by(exact[i]);
       const double limit = exact[i].moment_limit;
       EXPECT_NEAR(exact[i].moment / limit, *solver::value_if<solver::MomentRatio>(scene.steps[i].torsion),
-                  kTolerance)
+                  kHistoryTolerance)
           << body << i;
-      EXPECT_NEAR(carried.load / *scene.steps[i].normal, 1.0, kQuadrature) << body << i;
+      EXPECT_NEAR(carried.load / *scene.steps[i].normal, 1.0, kQuadratureOverFronts) << body << i;
       EXPECT_NEAR(carried.moment / limit, *solver::value_if<solver::MomentRatio>(scene.steps[i].torsion),
-                  kQuadrature)
+                  kQuadratureOverFronts)
           << body << i;
     }
   }
@@ -88,11 +88,11 @@ TEST(OracleHistory, AnEllipseFollowsTheNormalLoadAlone) {
   scene.steps[1].force = {10.0, 20.0};
   scene.steps[2].torsion = solver::Twist{-1e-4};
   const std::vector<Oracle> exact = oracles(scene);
-  EXPECT_NEAR(exact[1].contact_radius / exact[0].contact_radius, 2.0, kTolerance);
-  EXPECT_NEAR(exact[1].peak_pressure / exact[0].peak_pressure, 2.0, kTolerance);
-  EXPECT_NEAR(exact[1].approach / exact[0].approach, 4.0, kTolerance);
-  EXPECT_NEAR(exact[1].moment_limit / exact[0].moment_limit, 16.0, kTolerance);
-  EXPECT_NEAR(exact[1].axis_ratio / exact[0].axis_ratio, 1.0, kTolerance);
+  EXPECT_NEAR(exact[1].contact_radius / exact[0].contact_radius, 2.0, kHistoryTolerance);
+  EXPECT_NEAR(exact[1].peak_pressure / exact[0].peak_pressure, 2.0, kHistoryTolerance);
+  EXPECT_NEAR(exact[1].approach / exact[0].approach, 4.0, kHistoryTolerance);
+  EXPECT_NEAR(exact[1].moment_limit / exact[0].moment_limit, 16.0, kHistoryTolerance);
+  EXPECT_NEAR(exact[1].axis_ratio / exact[0].axis_ratio, 1.0, kHistoryTolerance);
   EXPECT_EQ(exact[2].contact_radius, exact[0].contact_radius);
   EXPECT_EQ(exact[2].twist_angle, -1e-4);
 }
@@ -109,11 +109,11 @@ TEST(OracleHistory, TractionsOfAForceCarryIt) {
                            {0.7 * normal, 0.0}});
     const std::vector<Oracle> exact = oracles(scene);
     for (std::size_t i = 0; i < exact.size(); ++i) {
-      const Carried carried = carried_by(exact[i]);
-      EXPECT_NEAR(carried.load / *scene.steps[i].normal, 1.0, kQuadrature) << body << i;
+      const CarriedLoads carried = loads_carried_by(exact[i]);
+      EXPECT_NEAR(carried.load / *scene.steps[i].normal, 1.0, kQuadratureOverFronts) << body << i;
       for (const int axis : {0, 1}) {
         EXPECT_NEAR(carried.force * exact[i].direction[axis] / friction,
-                    scene.steps[i].force[axis] / friction, kQuadrature)
+                    scene.steps[i].force[axis] / friction, kQuadratureOverFronts)
             << body << i;
         EXPECT_EQ(exact[i].force[axis], scene.steps[i].force[axis]);
       }
@@ -123,19 +123,19 @@ TEST(OracleHistory, TractionsOfAForceCarryIt) {
 
 void expect_the_same_state(const Oracle& a, const Oracle& b, double sign) {
   EXPECT_EQ(a.contact_radius, b.contact_radius);
-  EXPECT_NEAR(a.stick_radius / b.stick_radius, 1.0, kTolerance);
-  EXPECT_NEAR(a.dissipated, b.dissipated, kTolerance * std::abs(b.dissipated));
-  EXPECT_NEAR(a.moment, sign * b.moment, kTolerance * std::abs(b.moment_limit));
-  EXPECT_NEAR(a.twist_angle, sign * b.twist_angle, kTolerance * std::abs(b.twist_angle));
+  EXPECT_NEAR(a.stick_radius / b.stick_radius, 1.0, kHistoryTolerance);
+  EXPECT_NEAR(a.dissipated, b.dissipated, kHistoryTolerance * std::abs(b.dissipated));
+  EXPECT_NEAR(a.moment, sign * b.moment, kHistoryTolerance * std::abs(b.moment_limit));
+  EXPECT_NEAR(a.twist_angle, sign * b.twist_angle, kHistoryTolerance * std::abs(b.twist_angle));
   for (const int axis : {0, 1}) {
     EXPECT_NEAR(a.displacement[axis], sign * b.displacement[axis],
-                kTolerance * std::abs(b.displacement[axis]));
+                kHistoryTolerance * std::abs(b.displacement[axis]));
   }
   for (const double part : {0.1, 0.6, 0.95}) {
     const double r = part * a.contact_radius;
     const double along = a.direction[0] * b.direction[0] + a.direction[1] * b.direction[1];  // 0: torsion
     EXPECT_NEAR(a.traction(r), sign * (along == 0.0 ? 1.0 : along) * b.traction(r),
-                kTolerance * b.friction * b.reference_pressure);
+                kHistoryTolerance * b.friction * b.reference_pressure);
   }
 }
 
@@ -191,9 +191,9 @@ TEST(OracleHistory, AClosedCycleOfTorsionLosesItsLoop) {
     const double friction = 0.1 * 1000.0;
     const double loop = analytic::energy_lost_per_cycle(ratio) * friction * friction /
                         (shear_modulus * exact[0].contact_radius);
-    EXPECT_NEAR((exact[1].dissipated + exact[2].dissipated) / loop, 1.0, kTolerance);
-    EXPECT_NEAR((exact[3].dissipated + exact[4].dissipated) / loop, 1.0, kTolerance);
-    EXPECT_NEAR(exact[0].dissipated / loop, 0.25, kTolerance);
+    EXPECT_NEAR((exact[1].dissipated + exact[2].dissipated) / loop, 1.0, kHistoryTolerance);
+    EXPECT_NEAR((exact[3].dissipated + exact[4].dissipated) / loop, 1.0, kHistoryTolerance);
+    EXPECT_NEAR(exact[0].dissipated / loop, 0.25, kHistoryTolerance);
   }
 }
 
@@ -210,11 +210,12 @@ TEST(OracleHistory, AClosedCycleOfForceLosesItsLoop) {
   const double loop =
       1.8 * unit *
       (1.0 - std::pow(1.0 - x, 5.0 / 3.0) - 5.0 * x / 6.0 * (1.0 + std::pow(1.0 - x, 2.0 / 3.0)));
-  EXPECT_NEAR((exact[1].dissipated + exact[2].dissipated) / loop, 1.0, kTolerance);
-  EXPECT_NEAR(exact[0].dissipated / loop, 0.25, kTolerance);
+  EXPECT_NEAR((exact[1].dissipated + exact[2].dissipated) / loop, 1.0, kHistoryTolerance);
+  EXPECT_NEAR(exact[0].dissipated / loop, 0.25, kHistoryTolerance);
   const double displacement = 0.375 * unit / friction * (1.0 - std::pow(1.0 - x, 2.0 / 3.0));
-  EXPECT_NEAR(std::hypot(exact[0].displacement[0], exact[0].displacement[1]) / displacement, 1.0, kTolerance);
-  EXPECT_NEAR(exact[0].stick_radius / exact[0].contact_radius, std::cbrt(1.0 - x), kTolerance);
+  EXPECT_NEAR(std::hypot(exact[0].displacement[0], exact[0].displacement[1]) / displacement, 1.0,
+              kHistoryTolerance);
+  EXPECT_NEAR(exact[0].stick_radius / exact[0].contact_radius, std::cbrt(1.0 - x), kHistoryTolerance);
 }
 
 /// Against a rigid body G and E* are those of the other one alone.
@@ -225,12 +226,13 @@ TEST(OracleHistory, OneBodyMayBeRigid) {
   const double a = std::cbrt(0.75 * 1000.0 * 0.018 / 210e9);
   const double unit = 100.0 / (105e9 * a);  // mu W/(G a)
   const Oracle force = oracles(pushed(scene, {{1000.0, 50.0}})).front();
-  EXPECT_NEAR(force.contact_radius / a, 1.0, kTolerance);
+  EXPECT_NEAR(force.contact_radius / a, 1.0, kHistoryTolerance);
   EXPECT_NEAR(std::hypot(force.displacement[0], force.displacement[1]) /
                   (0.375 * unit * (1.0 - std::pow(0.5, 2.0 / 3.0))),
-              1.0, kTolerance);
+              1.0, kHistoryTolerance);
   const Oracle torsion = oracles(twisted(scene, {0.5})).front();
-  EXPECT_NEAR(torsion.twist_angle / (analytic::from_moment_ratio(0.5).twist * unit / a), 1.0, kTolerance);
+  EXPECT_NEAR(torsion.twist_angle / (analytic::from_moment_ratio(0.5).twist * unit / a), 1.0,
+              kHistoryTolerance);
 }
 
 /// The twists that a history of moments goes through bring back its moments.

@@ -26,7 +26,7 @@ constexpr Case kCases[] = {{"load.moment_ratio=0.1", 0.9693964204953627, 1.19724
                            {"load.moment_ratio=0.9", 0.4958950522157781, 2.361048651456917e-3},
                            {"load.moment_ratio=0.99", 0.2369661925296642, 4.413921104595224e-3}};
 // The published digits, and a few roundings on the way from a scene's moduli to the number.
-constexpr double kTolerance = 1e-14;
+constexpr double kOracleTolerance = 1e-14;
 
 solver::Scene paper(const std::vector<std::string>& overrides) {
   return solver::read_scene(SLIPSTICK_SCENES "/paper.toml", overrides);
@@ -40,11 +40,11 @@ TEST(Oracle, PaperCase) {
   for (const Case& c : kCases) {
     const OracleAnswer answer = find_oracle(paper({c.load}));
     ASSERT_TRUE(answer.oracle) << answer.reason;
-    EXPECT_NEAR(answer.oracle->contact_radius / kContactRadius, 1.0, kTolerance);
-    EXPECT_NEAR(answer.oracle->peak_pressure / kPeakPressure, 1.0, kTolerance);
-    EXPECT_NEAR(answer.oracle->moment_limit / kMomentLimit, 1.0, kTolerance);
-    EXPECT_NEAR(answer.oracle->state.stick_ratio / c.stick_ratio, 1.0, kTolerance) << c.load;
-    EXPECT_NEAR(answer.oracle->twist_angle / c.twist, 1.0, kTolerance) << c.load;
+    EXPECT_NEAR(answer.oracle->contact_radius / kContactRadius, 1.0, kOracleTolerance);
+    EXPECT_NEAR(answer.oracle->peak_pressure / kPeakPressure, 1.0, kOracleTolerance);
+    EXPECT_NEAR(answer.oracle->moment_limit / kMomentLimit, 1.0, kOracleTolerance);
+    EXPECT_NEAR(answer.oracle->state.stick_ratio / c.stick_ratio, 1.0, kOracleTolerance) << c.load;
+    EXPECT_NEAR(answer.oracle->twist_angle / c.twist, 1.0, kOracleTolerance) << c.load;
   }
 }
 
@@ -58,9 +58,9 @@ void expect_the_same_state_by_ratio_moment_and_twist(solver::Scene scene) {
   };
   for (const Oracle& other :
        {with_load("moment", by_ratio.moment), with_load("twist", by_ratio.twist_angle)}) {
-    EXPECT_NEAR(other.stick_radius / by_ratio.stick_radius, 1.0, kTolerance);
-    EXPECT_NEAR(other.twist_angle / by_ratio.twist_angle, 1.0, kTolerance);
-    EXPECT_NEAR(other.moment / by_ratio.moment, 1.0, kTolerance);
+    EXPECT_NEAR(other.stick_radius / by_ratio.stick_radius, 1.0, kOracleTolerance);
+    EXPECT_NEAR(other.twist_angle / by_ratio.twist_angle, 1.0, kOracleTolerance);
+    EXPECT_NEAR(other.moment / by_ratio.moment, 1.0, kOracleTolerance);
   }
 }
 
@@ -113,10 +113,10 @@ TEST(Oracle, ConeAndFlatPunch) {
   const Oracle cone = *find_oracle(body("/cone.toml", {"load.moment_ratio=0.5"})).oracle;
   const double cone_radius = std::sqrt(2.0 * 200.0 / (std::numbers::pi * effective_modulus * 0.01));
   EXPECT_EQ(cone.profile.get(), &analytic::cone_profile());
-  EXPECT_NEAR(cone.contact_radius / cone_radius, 1.0, kTolerance);
-  EXPECT_NEAR(cone.approach / (std::numbers::pi / 2 * 0.01 * cone_radius), 1.0, kTolerance);
-  EXPECT_NEAR(cone.moment_limit / (std::numbers::pi / 6 * 0.1 * 200.0 * cone_radius), 1.0, kTolerance);
-  EXPECT_NEAR(cone.moment / cone.moment_limit, 0.5, kTolerance);
+  EXPECT_NEAR(cone.contact_radius / cone_radius, 1.0, kOracleTolerance);
+  EXPECT_NEAR(cone.approach / (std::numbers::pi / 2 * 0.01 * cone_radius), 1.0, kOracleTolerance);
+  EXPECT_NEAR(cone.moment_limit / (std::numbers::pi / 6 * 0.1 * 200.0 * cone_radius), 1.0, kOracleTolerance);
+  EXPECT_NEAR(cone.moment / cone.moment_limit, 0.5, kOracleTolerance);
   EXPECT_EQ(cone.peak_pressure, HUGE_VAL);
   EXPECT_EQ(cone.pressure(0.0), HUGE_VAL);
   EXPECT_EQ(cone.traction(0.0), 0.0);
@@ -124,11 +124,11 @@ TEST(Oracle, ConeAndFlatPunch) {
   const Oracle punch = *find_oracle(body("/flat_punch.toml", {"load.moment_ratio=0.9"})).oracle;
   EXPECT_EQ(punch.profile.get(), &analytic::flat_punch_profile());
   EXPECT_EQ(punch.contact_radius, 5e-4);
-  EXPECT_NEAR(punch.approach / (1000.0 / (2.0 * effective_modulus * 5e-4)), 1.0, kTolerance);
-  EXPECT_NEAR(punch.moment_limit / (std::numbers::pi / 4 * 0.1 * 1000.0 * 5e-4), 1.0, kTolerance);
+  EXPECT_NEAR(punch.approach / (1000.0 / (2.0 * effective_modulus * 5e-4)), 1.0, kOracleTolerance);
+  EXPECT_NEAR(punch.moment_limit / (std::numbers::pi / 4 * 0.1 * 1000.0 * 5e-4), 1.0, kOracleTolerance);
   EXPECT_LT(punch.stick_radius, punch.contact_radius);
   EXPECT_EQ(punch.peak_pressure, HUGE_VAL);
-  EXPECT_NEAR(punch.pressure(0.0) / (1000.0 / (2.0 * std::numbers::pi * 5e-4 * 5e-4)), 1.0, kTolerance);
+  EXPECT_NEAR(punch.pressure(0.0) / (1000.0 / (2.0 * std::numbers::pi * 5e-4 * 5e-4)), 1.0, kOracleTolerance);
   EXPECT_EQ(punch.pressure(5e-4), 0.0);
   EXPECT_EQ(punch.traction(6e-4), 0.0);
 }
@@ -140,7 +140,7 @@ TEST(Oracle, FlatPunchSticksEverywhereAtFirst) {
     const Oracle punch = *find_oracle(body("/flat_punch.toml", {load})).oracle;
     EXPECT_EQ(punch.stick_radius, punch.contact_radius) << load;
     EXPECT_NEAR(punch.twist_angle, 3.0 * punch.moment / (16.0 * shear_modulus * std::pow(5e-4, 3)),
-                kTolerance * punch.twist_angle)
+                kOracleTolerance * punch.twist_angle)
         << load;
   }
 }
@@ -267,12 +267,12 @@ TEST(Oracle, PowerOfTwoIsASphere) {
   scene.surfaces = {{.shape = solver::Shape::power, .exponent = 2.0, .coefficient = 0.5 / 0.018}};
   const OracleAnswer power = find_oracle(scene);
   ASSERT_TRUE(power.oracle) << power.reason;
-  EXPECT_NEAR(power.oracle->contact_radius / sphere.contact_radius, 1.0, kTolerance);
-  EXPECT_NEAR(power.oracle->peak_pressure / sphere.peak_pressure, 1.0, kTolerance);
-  EXPECT_NEAR(power.oracle->approach / sphere.approach, 1.0, kTolerance);
-  EXPECT_NEAR(power.oracle->twist_angle / sphere.twist_angle, 1.0, kTolerance);
+  EXPECT_NEAR(power.oracle->contact_radius / sphere.contact_radius, 1.0, kOracleTolerance);
+  EXPECT_NEAR(power.oracle->peak_pressure / sphere.peak_pressure, 1.0, kOracleTolerance);
+  EXPECT_NEAR(power.oracle->approach / sphere.approach, 1.0, kOracleTolerance);
+  EXPECT_NEAR(power.oracle->twist_angle / sphere.twist_angle, 1.0, kOracleTolerance);
   const double r = 0.6 * sphere.contact_radius;
-  EXPECT_NEAR(power.oracle->pressure(r) / sphere.pressure(r), 1.0, kTolerance);
+  EXPECT_NEAR(power.oracle->pressure(r) / sphere.pressure(r), 1.0, kOracleTolerance);
 }
 
 /// Flat bodies press hardest off the axis: under r^4 by sqrt(1 - r^2) (1 + 2 r^2), most at r^2 = 1/2 (its
@@ -281,7 +281,7 @@ TEST(Oracle, FindsThePeakOffTheAxis) {
   solver::Scene scene = paper({});
   scene.surfaces = {{.shape = solver::Shape::power, .exponent = 4.0, .coefficient = 1e8}};
   const Oracle power = *find_oracle(scene).oracle;
-  EXPECT_NEAR(power.peak_pressure / power.pressure(0.0), std::sqrt(2.0), kTolerance);
+  EXPECT_NEAR(power.peak_pressure / power.pressure(0.0), std::sqrt(2.0), kOracleTolerance);
   const Oracle rounded = *find_oracle(body("/rounded_punch.toml", {})).oracle;
   double highest = 0.0;
   for (int i = 0; i <= 1000; ++i) {

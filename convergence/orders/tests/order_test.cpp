@@ -10,17 +10,17 @@
 namespace slipstick::convergence {
 namespace {
 
-constexpr double kRounding = 1e-12;  // of logarithms of numbers to 16 digits, over changes above 0.1
+constexpr double kLogRounding = 1e-12;  // of logarithms of numbers to 16 digits, over changes above 0.1
 using enum OrderVerdict;
 
 OrderVerdict verdict(const Meshes& errors, double expected) { return fit_order(errors, expected).verdict; }
 
 void expect_found(double order, const std::vector<double>& sizes) {
   const Order found = fit_order(power(order, sizes, -0.3), order);
-  EXPECT_NEAR(found.value, order, kRounding);
-  EXPECT_NEAR(found.low, order, kRounding);
-  EXPECT_NEAR(found.high, order, kRounding);
-  EXPECT_NEAR(found.constant, -0.3, kRounding);
+  EXPECT_NEAR(found.value, order, kLogRounding);
+  EXPECT_NEAR(found.low, order, kLogRounding);
+  EXPECT_NEAR(found.high, order, kLogRounding);
+  EXPECT_NEAR(found.constant, -0.3, kLogRounding);
   EXPECT_EQ(found.verdict, asymptotic) << found.why;
 }
 
@@ -37,7 +37,7 @@ TEST(Order, OfAPowerIsFound) {
 /// 97.5 % quantile of two degrees of freedom is 4.3026527.
 TEST(Order, IntervalIsStudents) {
   const Order found = fit_order(made({1.0, 0.5, 0.5, 0.25}), 0.6);
-  EXPECT_NEAR(found.value, 0.6, kRounding);
+  EXPECT_NEAR(found.value, 0.6, kLogRounding);
   const double half = 4.302652729911275 * std::sqrt(0.02);
   EXPECT_NEAR(found.low, 0.6 - half, 1e-9);
   EXPECT_NEAR(found.high, 0.6 + half, 1e-9);
@@ -67,7 +67,7 @@ TEST(Order, AMeshWithoutANoiseTakesNoPart) {
   errors[1].noise = std::nan("");
   const Order found = fit_order(errors, 1.0);
   EXPECT_EQ(found.sizes.size(), errors.size() - 1);
-  EXPECT_NEAR(found.value, 1.0, kRounding);
+  EXPECT_NEAR(found.value, 1.0, kLogRounding);
   EXPECT_NE(found.why.find("no noise is known"), std::string::npos) << found.why;
 }
 
@@ -141,7 +141,7 @@ TEST(Order, KnowsNoUnitsAndNoOrderOfMeshes) {
   std::ranges::reverse(other);
   std::swap(other[1], other[3]);
   const Order same = fit_order(other, 1.0);
-  EXPECT_NEAR(same.value, found.value, kRounding);
+  EXPECT_NEAR(same.value, found.value, kLogRounding);
   EXPECT_NEAR(same.low, found.low, 1e-10);
   EXPECT_NEAR(same.high, found.high, 1e-10);
   EXPECT_NEAR(same.constant / (-1e4 * found.constant * std::pow(1e6, found.value)), 1.0, 1e-10);
@@ -242,7 +242,7 @@ TEST(OrderVerdict, WithoutAnExpectedOrderIsPreasymptotic) {
   const Order found = fit_order(power(1.0), std::nan(""));
   EXPECT_EQ(found.verdict, preasymptotic);
   EXPECT_NE(found.why.find("no expected order"), std::string::npos) << found.why;
-  EXPECT_NEAR(found.value, 1.0, kRounding);
+  EXPECT_NEAR(found.value, 1.0, kLogRounding);
   EXPECT_EQ(verdict(made({1.0, 0.5, 0.5}), std::nan("")), floor);
 }
 

@@ -22,7 +22,7 @@ using testing::HasSubstr;
 
 const std::string kTwist = "twist_error";
 constexpr double kIteration = 1e-9;  ///< what stopping adds to each error
-constexpr double kRounding = 1e-13;
+constexpr double kJudgementRounding = 1e-13;
 
 Json solved(double error) {
   return {{"status", "converged"}, {"twist_error", error}, {"exact", {{"relative_uncertainty", 1e-15}}}};
@@ -46,7 +46,8 @@ class Judged : public testing::Test {
       const double error = 1e-3 * std::pow(mesh.grids.front().size / series_.meshes[0].grids.front().size, 2);
       at.grids = {solved(1.1 * error + kIteration), solved(0.9 * error + kIteration)};
       at.tightened = solved(1.1 * error);
-      if (mesh.rounded) at.rounded = {solved(1.1 * error + kRounding), solved(1.1 * error - kRounding)};
+      if (mesh.rounded)
+        at.rounded = {solved(1.1 * error + kJudgementRounding), solved(1.1 * error - kJudgementRounding)};
     }
   }
 
@@ -79,7 +80,7 @@ TEST_F(Judged, OfAllResultsSaysSo) {
   EXPECT_EQ(json["order"][kTwist]["verdict"], "asymptotic") << json["order"].dump(1);
   for (const Json& mesh : json["meshes"]) {
     EXPECT_EQ(mesh[kTwist]["grids"], 2);
-    EXPECT_NEAR(number(mesh, "noise"), kIteration + kRounding, 1e-3 * kIteration);
+    EXPECT_NEAR(number(mesh, "noise"), kIteration + kJudgementRounding, 1e-3 * kIteration);
   }
   expect_explained(json);
 }
@@ -91,7 +92,7 @@ TEST_F(Judged, AGridThatDiedLeavesTheOthersOfItsMesh) {
   EXPECT_EQ(mesh[kTwist]["grids"], 1);
   EXPECT_EQ(number(mesh, "mean"), results_[1].grids[0]["twist_error"]);
   EXPECT_TRUE(mesh[kTwist]["spread"].is_null());  // of one grid
-  EXPECT_NEAR(number(mesh, "noise"), kIteration + kRounding, 1e-3 * kIteration);
+  EXPECT_NEAR(number(mesh, "noise"), kIteration + kJudgementRounding, 1e-3 * kIteration);
   const Json& order = json["order"][kTwist];
   EXPECT_THAT(order["why"].get<std::string>(),
               HasSubstr("1 of 14 runs failed; the first (paper, this one): its "
@@ -186,8 +187,9 @@ TEST_F(Judged, AResultOfAnyGridTellsWhatThereIs) {
 TEST(Budget, IsNotKnownWhereAPartIsMissing) {
   const Json observed = solved(1e-3);
   const Json tightened = solved(0.9e-3);
-  const Json rounded = solved(0.9e-3 + kRounding);
-  EXPECT_NEAR(split_error(kTwist, observed, tightened, {rounded, tightened}).rounding, kRounding, 1e-18);
+  const Json rounded = solved(0.9e-3 + kJudgementRounding);
+  EXPECT_NEAR(split_error(kTwist, observed, tightened, {rounded, tightened}).rounding, kJudgementRounding,
+              1e-18);
   EXPECT_TRUE(std::isnan(split_error(kTwist, observed, tightened, {kKilled, rounded}).rounding));
   EXPECT_TRUE(std::isnan(split_error(kTwist, observed, tightened, {rounded, kKilled}).rounding));
   EXPECT_TRUE(std::isnan(split_error(kTwist, observed, tightened, {}).rounding));

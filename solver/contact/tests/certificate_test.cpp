@@ -12,15 +12,15 @@
 #include "solver/contact/paper_method.hpp"
 #include "solver/operator/direct.hpp"
 #include "solver/tests/dense_algebra.hpp"
+#include "solver/tests/limits.hpp"
 
 namespace slipstick::solver {
 namespace {
 
 using Eigen::ArrayXd;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 /// Sums of some tens of numbers of size 1.
-constexpr double kRounding = 1e-14;
+constexpr double kFewRoundings = 1e-14;
 
 // --- members ---
 
@@ -51,10 +51,10 @@ class CoulombState : public testing::Test {
 
 TEST_F(CoulombState, HasNoGap) {
   const Certificate c = certificate();
-  EXPECT_NEAR(c.gap, 0.0, kRounding);
+  EXPECT_NEAR(c.gap, 0.0, kFewRoundings);
   EXPECT_EQ(c.moment, 0.0);
-  EXPECT_NEAR(c.force, 0.0, kRounding);
-  EXPECT_NEAR(c.friction_bound, 0.0, kRounding);
+  EXPECT_NEAR(c.force, 0.0, kFewRoundings);
+  EXPECT_NEAR(c.friction_bound, 0.0, kFewRoundings);
 }
 
 TEST_F(CoulombState, WithSlipInAStickingCellHasAGap) {
@@ -63,34 +63,34 @@ TEST_F(CoulombState, WithSlipInAStickingCellHasAGap) {
   const double cell_gap = 0.2 * q_[kInner] + 0.1 * q_[16 + kInner] + std::hypot(0.2, 0.1);
   EXPECT_GT(cell_gap, 0.1);
   const Certificate c = certificate();
-  EXPECT_NEAR(c.gap, cell_gap / energy(), kRounding);
+  EXPECT_NEAR(c.gap, cell_gap / energy(), kFewRoundings);
   EXPECT_EQ(c.moment, 0.0);
-  EXPECT_NEAR(c.friction_bound, 0.0, kRounding);
+  EXPECT_NEAR(c.friction_bound, 0.0, kFewRoundings);
 }
 
 TEST_F(CoulombState, WithSlipInAnotherDirectionHasAGap) {
   std::swap(s_[kOuter], s_[16 + kOuter]);
   s_[kOuter] *= -1.0;  // turned by a right angle
-  EXPECT_NEAR(certificate().gap, 0.3 / energy(), kRounding);
+  EXPECT_NEAR(certificate().gap, 0.3 / energy(), kFewRoundings);
 }
 
 TEST_F(CoulombState, WithSlipAlongTheTractionHasTwiceThatGap) {
   s_[kOuter] *= -1.0;
   s_[16 + kOuter] *= -1.0;
-  EXPECT_NEAR(certificate().gap, 0.6 / energy(), kRounding);
+  EXPECT_NEAR(certificate().gap, 0.6 / energy(), kFewRoundings);
 }
 
 TEST_F(CoulombState, WithTractionBelowTheBoundInASlippingCellHasAGap) {
   bound_[kOuter] = 1.5;
-  EXPECT_NEAR(certificate().gap, 0.5 * 0.3 / energy(), kRounding);
-  EXPECT_NEAR(certificate().friction_bound, 0.0, kRounding);
+  EXPECT_NEAR(certificate().gap, 0.5 * 0.3 / energy(), kFewRoundings);
+  EXPECT_NEAR(certificate().friction_bound, 0.0, kFewRoundings);
 }
 
 TEST_F(CoulombState, WithTractionBeyondTheBoundSaysByHowMuch) {
   bound_[kInner] = 0.2;
   const Certificate c = certificate();
-  EXPECT_NEAR(c.friction_bound, 0.25, kRounding);
-  EXPECT_NEAR(c.gap, 0.0, kRounding);
+  EXPECT_NEAR(c.friction_bound, 0.25, kFewRoundings);
+  EXPECT_NEAR(c.gap, 0.0, kFewRoundings);
   EXPECT_EQ(c.moment, 0.0);
   bound_[kInner] = 0.0;  // traction outside the contact
   EXPECT_EQ(certificate().friction_bound, std::numeric_limits<double>::infinity());
@@ -99,17 +99,17 @@ TEST_F(CoulombState, WithTractionBeyondTheBoundSaysByHowMuch) {
 TEST_F(CoulombState, WithAnotherMomentSaysByHowMuchOfTheLimit) {
   moment_ *= 1.1;
   const Certificate c = certificate();
-  EXPECT_NEAR(c.moment, 0.1 / 1.1 * moment_ / norms(t_).sum(), kRounding);
-  EXPECT_NEAR(c.gap, 0.0, kRounding);
-  EXPECT_NEAR(c.friction_bound, 0.0, kRounding);
+  EXPECT_NEAR(c.moment, 0.1 / 1.1 * moment_ / norms(t_).sum(), kFewRoundings);
+  EXPECT_NEAR(c.gap, 0.0, kFewRoundings);
+  EXPECT_NEAR(c.friction_bound, 0.0, kFewRoundings);
 }
 
 TEST_F(CoulombState, WithAForceSaysItsPartOfTheFriction) {
   q_.head(16) += 0.1 * inner_;
   const Certificate c = certificate();
-  EXPECT_NEAR(c.force, 0.4 / 16.0, kRounding);
-  EXPECT_NEAR(c.moment, 0.0, kRounding);
-  EXPECT_NEAR(c.friction_bound, 0.0, kRounding);
+  EXPECT_NEAR(c.force, 0.4 / 16.0, kFewRoundings);
+  EXPECT_NEAR(c.moment, 0.0, kFewRoundings);
+  EXPECT_NEAR(c.friction_bound, 0.0, kFewRoundings);
 }
 
 TEST_F(CoulombState, WithANumberThatIsNonePassesNoBound) {
@@ -218,7 +218,7 @@ TEST_F(SmallProblem, HasPartialSlipAndItsMinimumHasNoGap) {
   EXPECT_LT(slipping, contact - 4);
   const Certificate c = certify_at(q_star_, kTwist);
   EXPECT_LE(std::abs(c.gap), 1e-11);
-  EXPECT_LE(c.friction_bound, kRounding);
+  EXPECT_LE(c.friction_bound, kFewRoundings);
 }
 
 /// energy(q) - energy(q*) among tractions of one moment, bounded from both sides whatever the twist that is
@@ -245,9 +245,9 @@ TEST_F(SmallProblem, GapBoundsTheEnergyErrorOfAnyFeasibleTraction) {
       for (const double twist : {0.0, 0.5 * kTwist, kTwist, 1.3 * kTwist}) {
         const Certificate c = certify_at(q, twist);
         EXPECT_LE(error, c.energy_error * energy(q) + 1e-12);
-        EXPECT_LE(c.energy_error, c.gap + kRounding);
+        EXPECT_LE(c.energy_error, c.gap + kFewRoundings);
         EXPECT_GE(c.gap, 0.0);
-        EXPECT_LE(c.friction_bound, kRounding);
+        EXPECT_LE(c.friction_bound, kFewRoundings);
       }
     }
   }

@@ -15,8 +15,8 @@ namespace {
 using Eigen::ArrayXd;
 
 /// An ellipse's friction bounds and whatever its torsion is compared with.
-struct EllipticBench {
-  EllipticBench(Index n1, Index n2, double h2 = 1.0)
+struct CoulombBench {
+  CoulombBench(Index n1, Index n2, double h2 = 1.0)
       : grid{n1, n2, 1.0, h2},
         bound((1.0 - (cell_x1(grid) / (0.5 * static_cast<double>(n1) - 1.3)).square() -
                (cell_x2(grid) / (h2 * (0.5 * static_cast<double>(n2) - 1.3))).square())
@@ -45,7 +45,7 @@ struct EllipticBench {
 };
 
 /// K q and the slip afresh, by direct summation.
-Certificate independent_certificate(const EllipticBench& bench, const TangentialSolution& solution,
+Certificate independent_certificate(const CoulombBench& bench, const TangentialSolution& solution,
                                     double moment) {
   const auto op = make_operator(OperatorKind::direct, bench.grid, tangential_kernel(), bench.elasticity.pair);
   ArrayXd u(solution.traction.size());
@@ -57,24 +57,24 @@ Certificate independent_certificate(const EllipticBench& bench, const Tangential
 
 // --- the certificate ---
 
-struct Shape {
+struct GridShape {
   Index n1;
   Index n2;
   double h2;
 };
-void PrintTo(const Shape& shape, std::ostream* stream) {
+void PrintTo(const GridShape& shape, std::ostream* stream) {
   *stream << shape.n1 << " x " << shape.n2 << ", h2 " << shape.h2;
 }
-class Certified : public testing::TestWithParam<std::tuple<Shape, double>> {};
+class Certified : public testing::TestWithParam<std::tuple<GridShape, double>> {};
 INSTANTIATE_TEST_SUITE_P(Contacts, Certified,
-                         testing::Combine(testing::Values(Shape{40, 40, 1.0}, Shape{41, 37, 1.0},
-                                                          Shape{48, 24, 1.0}, Shape{160, 8, 1.0},
-                                                          Shape{32, 32, 0.05}, Shape{5, 5, 1.0}),
+                         testing::Combine(testing::Values(GridShape{40, 40, 1.0}, GridShape{41, 37, 1.0},
+                                                          GridShape{48, 24, 1.0}, GridShape{160, 8, 1.0},
+                                                          GridShape{32, 32, 0.05}, GridShape{5, 5, 1.0}),
                                           testing::Values(0.01, 0.1, 0.5, 0.9, 0.99, 0.999)));
 
 TEST_P(Certified, ToTheToleranceAskedForByDirectSummation) {
   const auto [shape, moment_ratio] = GetParam();
-  const EllipticBench bench(shape.n1, shape.n2, shape.h2);
+  const CoulombBench bench(shape.n1, shape.n2, shape.h2);
   for (const double tolerance : {1e-8, 1e-12}) {
     const TangentialSolution solution = bench.solve(moment_ratio, tolerance);
     ASSERT_EQ(solution.status, Status::converged) << solution.message;
@@ -88,7 +88,7 @@ TEST_P(Certified, ToTheToleranceAskedForByDirectSummation) {
 
 /// What Coulomb's law says of each cell; certify() does not come into it.
 TEST(Coulomb, HoldsInEachCell) {
-  const EllipticBench bench(48, 24);
+  const CoulombBench bench(48, 24);
   const TangentialSolution solution = bench.solve(0.7, 1e-13);
   const ArrayXd slip = norms(solution.slip);
   const double largest_slip = slip.maxCoeff();
@@ -123,7 +123,7 @@ class AgainstProjectedGradient : public testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(MomentRatios, AgainstProjectedGradient, testing::Values(0.1, 0.5, 0.9, 0.99));
 
 TEST_P(AgainstProjectedGradient, TheMinimumIsTheSame) {
-  const EllipticBench bench(28, 16);
+  const CoulombBench bench(28, 16);
   const auto op = bench.elasticity.make(bench.grid, tangential_kernel());
   ProjectedGradientOptions options;
   options.tolerance = 1e-10;
@@ -139,7 +139,7 @@ TEST_P(AgainstProjectedGradient, TheMinimumIsTheSame) {
 // --- loads ---
 
 TEST(CoulombLoads, AMomentAndItsTwistAreOneState) {
-  const EllipticBench bench(32, 20);
+  const CoulombBench bench(32, 20);
   for (const double moment_ratio : {0.05, 0.5, 0.95}) {
     const TangentialSolution by_moment = bench.solve(moment_ratio, 1e-12);
     const TangentialSolution by_twist = bench.solve_twist(by_moment.twist, 1e-12);
@@ -151,7 +151,7 @@ TEST(CoulombLoads, AMomentAndItsTwistAreOneState) {
 }
 
 TEST(CoulombLoads, NoMomentNoTraction) {
-  const EllipticBench bench(20, 20);
+  const CoulombBench bench(20, 20);
   const TangentialSolution solution = bench.solve(0.0);
   EXPECT_EQ(solution.status, Status::converged) << solution.message;
   EXPECT_EQ(solution.traction.abs().maxCoeff(), 0.0);
@@ -160,7 +160,7 @@ TEST(CoulombLoads, NoMomentNoTraction) {
 }
 
 TEST(CoulombLoads, WithoutFrictionNothingIsCarried) {
-  const EllipticBench bench(12, 12);
+  const CoulombBench bench(12, 12);
   const TangentialSolution solution = solve_by_coulomb_method(
       bench.elasticity, bench.grid, under_twist(ArrayXd::Zero(bench.grid.cells()), 0.1));
   EXPECT_EQ(solution.status, Status::converged);
@@ -168,14 +168,14 @@ TEST(CoulombLoads, WithoutFrictionNothingIsCarried) {
 }
 
 TEST(CoulombLoads, GrossSlipIsRefusedWithTheLimit) {
-  const EllipticBench bench(12, 12);
+  const CoulombBench bench(12, 12);
   EXPECT_THROW(bench.solve(1.0), std::invalid_argument);
   EXPECT_THROW(bench.solve(std::nan("")), std::invalid_argument);
 }
 
 /// A twist has no limit: all but the middle slips.
 TEST(CoulombLoads, AHugeTwistNearlyReachesTheLimit) {
-  const EllipticBench bench(31, 31);
+  const CoulombBench bench(31, 31);
   const TangentialSolution solution = bench.solve_twist(100.0);
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   EXPECT_NEAR(bench.moment_of(solution) / bench.limit, 1.0, 1e-6);
@@ -184,7 +184,7 @@ TEST(CoulombLoads, AHugeTwistNearlyReachesTheLimit) {
 
 /// Friction and moment times a factor: tractions, displacements and twist times that factor.
 TEST(CoulombLoads, AreScaledByFriction) {
-  EllipticBench bench(24, 24);
+  CoulombBench bench(24, 24);
   const TangentialSolution one = bench.solve(0.6, 1e-12);
   bench.bound *= 1024.0;
   bench.limit *= 1024.0;
@@ -195,7 +195,7 @@ TEST(CoulombLoads, AreScaledByFriction) {
 
 /// The pressure's displacement (dissimilar bodies) enters as in Eq. (12): a rigid rotation in it is a twist.
 TEST(CoulombLoads, AnInitialRotationShiftsTheTwist) {
-  const EllipticBench bench(30, 22);
+  const CoulombBench bench(30, 22);
   TangentialProblem problem = under_moment(bench.bound, 0.6 * bench.limit);
   const TangentialSolution plain = bench.solve(0.6, 1e-12);
   problem.initial_displacement = 0.25 * rotation_field(bench.grid);
@@ -212,7 +212,7 @@ TEST(CoulombLoads, AnInitialRotationShiftsTheTwist) {
 /// The gap bounds the square of the traction's error in the energy's norm, and the twist's error is of that
 /// order: a small part of the gap, where a twist of first order would be of the order of its root.
 TEST(Twist, IsOfSecondOrder) {
-  const EllipticBench bench(48, 30);
+  const CoulombBench bench(48, 30);
   for (const double moment_ratio : {0.3, 0.8}) {
     const TangentialSolution exact = bench.solve(moment_ratio, 1e-13);
     for (const double tolerance : {1e-2, 1e-3, 1e-4, 1e-5, 1e-6}) {
@@ -226,7 +226,7 @@ TEST(Twist, IsOfSecondOrder) {
 }
 
 TEST(TangentStiffness, IsTheSlopeOfMomentOverTwist) {
-  const EllipticBench bench(40, 28);
+  const CoulombBench bench(40, 28);
   for (const double moment_ratio : {0.2, 0.7}) {
     const TangentialSolution at = bench.solve(moment_ratio, 1e-13);
     // So small a step changes no cell's state.

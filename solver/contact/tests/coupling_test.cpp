@@ -10,6 +10,8 @@
 #include "solver/contact/full_coupling.hpp"
 #include "solver/grid/mirror.hpp"
 #include "solver/model_solution.hpp"
+#include "solver/tests/fields.hpp"
+#include "solver/tests/limits.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
 /// Dissimilar bodies: pressure moves the surfaces along each other, shear opens and closes the gap.
@@ -19,7 +21,6 @@ namespace {
 using Eigen::ArrayXd;
 using std::numbers::pi;
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 /// Gap over energy that scenes are solved to, and what two answers of one discrete problem may differ by.
 constexpr double kGap = 1e-12;
 constexpr double kSame = 1e-8;
@@ -27,18 +28,6 @@ constexpr double kSame = 1e-8;
 const Material kRigid{kInfinity, 0.0};
 /// G = 1/2 and nu = 0 in units of Pa: Dundurs' beta is 1/2 under a rigid body.
 const Material kSpences{1.0, 0.0};
-
-ArrayXd random_field(Index size, unsigned seed) {
-  std::mt19937_64 generator(seed);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  return ArrayXd::NullaryExpr(size, [&] { return uniform(generator); });
-}
-
-ArrayXd applied(LinearOperator& op, const ArrayXd& traction) {
-  ArrayXd u(static_cast<Index>(op.outputs()) * op.grid().cells());
-  op.apply(traction, u);
-  return u;
-}
 
 ArrayXd applied(const BlockKernel& kernel, const Model& model, const ArrayXd& traction) {
   return applied(*make_operator(OperatorKind::direct, model.grid, kernel, model.pair), traction);

@@ -11,7 +11,7 @@ namespace {
 
 using Eigen::ArrayXd;
 
-constexpr double kRounding = 1e-13;
+constexpr double kRoundingOfErrata = 1e-13;
 
 class PrintedRotation : public testing::Test {
  protected:
@@ -41,22 +41,22 @@ TEST_F(PrintedRotation, IsAShearThatMovesNoPointAsARotationDoes) {
     const auto part = field.segment((component - 1) * cells_, cells_);
     return (part[next] - part[here]) / 0.1;
   };
-  EXPECT_NEAR(gradient(rotation_, 1, 2), -gradient(rotation_, 2, 1), kRounding);
-  EXPECT_NEAR(gradient(printed_, 1, 2), gradient(printed_, 2, 1), kRounding);
-  EXPECT_NEAR(gradient(printed_, 1, 2), 1.0, kRounding);
+  EXPECT_NEAR(gradient(rotation_, 1, 2), -gradient(rotation_, 2, 1), kRoundingOfErrata);
+  EXPECT_NEAR(gradient(printed_, 1, 2), gradient(printed_, 2, 1), kRoundingOfErrata);
+  EXPECT_NEAR(gradient(printed_, 1, 2), 1.0, kRoundingOfErrata);
 }
 
 TEST_F(PrintedRotation, InEquation9FindsNoMomentInATorsionalTraction) {
   const double moment = (torsion_ * rotation_).sum();
   EXPECT_GT(moment, 1.0);
-  EXPECT_NEAR((torsion_ * printed_).sum() / moment, 0.0, kRounding);
+  EXPECT_NEAR((torsion_ * printed_).sum() / moment, 0.0, kRoundingOfErrata);
 }
 
 TEST_F(PrintedRotation, InEquation16FindsNoTwistInARigidRotation) {
   constexpr double phi = 0.7;
   const ArrayXd u = phi * rotation_;
-  EXPECT_NEAR((u * rotation_).sum() / rotation_.square().sum(), phi, kRounding);
-  EXPECT_NEAR((u * printed_).sum() / printed_.square().sum(), 0.0, kRounding);
+  EXPECT_NEAR((u * rotation_).sum() / rotation_.square().sum(), phi, kRoundingOfErrata);
+  EXPECT_NEAR((u * printed_).sum() / printed_.square().sum(), 0.0, kRoundingOfErrata);
 }
 
 // Eqs. (16) and (25) as printed lack the sum in the denominator: what they give depends on the cell, and
@@ -67,7 +67,7 @@ TEST_F(PrintedRotation, InEquation16NeedsTheSumInTheDenominator) {
   const ArrayXd by_cell = numerator / (x1_.square() + x2_.square());
   EXPECT_GT(by_cell.maxCoeff(), 100.0 * by_cell.minCoeff());
   EXPECT_GT(by_cell.minCoeff(), 100.0 * phi);
-  EXPECT_NEAR(numerator / (x1_.square() + x2_.square()).sum(), phi, kRounding);
+  EXPECT_NEAR(numerator / (x1_.square() + x2_.square()).sum(), phi, kRoundingOfErrata);
 }
 
 }  // namespace

@@ -12,14 +12,12 @@
 
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/tangential_problem.hpp"
+#include "solver/tests/limits.hpp"
 
 namespace slipstick::solver {
 namespace {
 
 using Eigen::ArrayXd;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// The factor is a least value, so that what Newton's method leaves in the motion counts to second order;
 /// sums of some thousands of cells round by less.
@@ -28,7 +26,7 @@ constexpr double kRelative = 1e-12;
 /// times the contact's condition.
 constexpr double kMotion = 2e-7;
 
-struct Contact {
+struct LimitContact {
   Grid grid;
   ArrayXd bound;
 
@@ -38,26 +36,26 @@ struct Contact {
   double& operator()(Index i, Index j) { return bound[i * grid.n2 + j]; }
 };
 
-Contact empty(Index n1, Index n2, double h1 = 0.25, double h2 = 0.25) {
+LimitContact empty(Index n1, Index n2, double h1 = 0.25, double h2 = 0.25) {
   return {{n1, n2, h1, h2}, ArrayXd::Zero(n1 * n2)};
 }
 
-Contact hertz_disc(Index n) {
-  Contact disc = empty(n, n, 2.0 / static_cast<double>(n), 2.0 / static_cast<double>(n));
+LimitContact hertz_disc(Index n) {
+  LimitContact disc = empty(n, n, 2.0 / static_cast<double>(n), 2.0 / static_cast<double>(n));
   const ArrayXd r_square = cell_x1(disc.grid).square() + cell_x2(disc.grid).square();
   disc.bound = (1.0 - r_square).max(0.0).sqrt();
   return disc;
 }
 
-Contact ring(Index n) {
-  Contact ring = hertz_disc(n);
+LimitContact ring(Index n) {
+  LimitContact ring = hertz_disc(n);
   ring.bound = (ring.bound > 0.0 && ring.bound < 0.5).cast<double>();
   return ring;
 }
 
 /// No symmetry, a third of the cells in contact, one cell much stronger than the others if asked for.
-Contact rough(unsigned seed, double strongest = 1.0) {
-  Contact contact = empty(11, 8, 0.2, 0.3);
+LimitContact rough(unsigned seed, double strongest = 1.0) {
+  LimitContact contact = empty(11, 8, 0.2, 0.3);
   std::mt19937 random(seed);
   std::uniform_real_distribution<double> uniform;
   for (double& bound : contact.bound) {
@@ -67,7 +65,7 @@ Contact rough(unsigned seed, double strongest = 1.0) {
   return contact;
 }
 
-double friction_in(const Contact& contact, const RigidMotion& v) {
+double friction_in(const LimitContact& contact, const RigidMotion& v) {
   const ArrayXd v1 = v.delta1 - v.twist * cell_x2(contact.grid);
   const ArrayXd v2 = v.delta2 + v.twist * cell_x1(contact.grid);
   return (contact.bound * (v1.square() + v2.square()).sqrt()).sum();
@@ -103,16 +101,16 @@ void expect_centre(const LimitLoad& limit, double c1, double c2, double toleranc
 }
 
 TEST(LimitMoment, OfASymmetricContactIsTheOneAboutItsCentre) {
-  for (const Contact& contact : {hertz_disc(24), hertz_disc(25), ring(24), ring(25)}) {
+  for (const LimitContact& contact : {hertz_disc(24), hertz_disc(25), ring(24), ring(25)}) {
     expect_relative(contact.moment(), moment_limit(contact.grid, contact.bound));
     expect_centre(contact.limit({0.0, 0.0, 1.0}), 0.0, 0.0);
   }
 }
 
 TEST(LimitMoment, MovesWithTheContact) {
-  const Contact disc = hertz_disc(15);
+  const LimitContact disc = hertz_disc(15);
   const double h = disc.grid.h1;
-  Contact moved = empty(40, 31, h, h);
+  LimitContact moved = empty(40, 31, h, h);
   const Index i0 = 21, j0 = 3;
   for (Index i = 0; i < 15; ++i) {
     moved.bound.segment((i + i0) * 31 + j0, 15) = disc.bound.segment(i * 15, 15);
@@ -122,7 +120,7 @@ TEST(LimitMoment, MovesWithTheContact) {
 }
 
 TEST(LimitMoment, IsLessThanAboutAnyOtherCentre) {
-  const Contact contact = rough(3);
+  const LimitContact contact = rough(3);
   const LimitLoad limit = contact.limit({0.0, 0.0, 1.0});
   for (const double turn : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0}) {
     const double c1 = (*limit.centre)[0] + 1e-3 * std::cos(turn);
@@ -132,7 +130,7 @@ TEST(LimitMoment, IsLessThanAboutAnyOtherCentre) {
 }
 
 TEST(LimitMoment, OfTwoEqualCellsIsTheirForceTimesTheirDistance) {
-  Contact pair = empty(7, 5);
+  LimitContact pair = empty(7, 5);
   pair(0, 1) = pair(6, 4) = 3.0;
   const double distance = std::hypot(6 * 0.25, 3 * 0.25);
   expect_relative(pair.moment(), 3.0 * distance);
@@ -144,7 +142,7 @@ TEST(LimitMoment, OfTwoEqualCellsIsTheirForceTimesTheirDistance) {
 
 TEST(LimitMoment, OfAStrongAndAWeakCellTurnsAboutTheStrongOne) {
   for (const double weak : {0.5, 1e-3, 1e-12}) {
-    Contact pair = empty(7, 5);
+    LimitContact pair = empty(7, 5);
     pair(6, 4) = 1.0;
     pair(0, 1) = weak;
     expect_relative(pair.moment(), weak * std::hypot(6 * 0.25, 3 * 0.25));
@@ -153,7 +151,7 @@ TEST(LimitMoment, OfAStrongAndAWeakCellTurnsAboutTheStrongOne) {
 }
 
 TEST(LimitMoment, OfCellsOnALineTurnsAboutTheirMedian) {
-  Contact line = empty(9, 4);
+  LimitContact line = empty(9, 4);
   line(0, 2) = 1.0;
   line(3, 2) = 2.0;
   line(4, 2) = 0.5;
@@ -165,7 +163,7 @@ TEST(LimitMoment, OfCellsOnALineTurnsAboutTheirMedian) {
 // Along the line friction has no curvature, only kinks, and here two neighbours that both are medians.
 TEST(LimitMoment, OfManyCellsOnALineIsTheOneAboutTheirMedian) {
   for (const Index n : {16, 128, 512}) {
-    Contact line = empty(n, 2);
+    LimitContact line = empty(n, 2);
     for (Index i = 0; i < n; i += 2) line(i, 1) = static_cast<double>(i + 1);
     const ArrayXd x1 = cell_x1(line.grid);
     double least = kInfinity;
@@ -177,7 +175,7 @@ TEST(LimitMoment, OfManyCellsOnALineIsTheOneAboutTheirMedian) {
 TEST(LimitMoment, OfThreeEqualCellsTurnsAboutFermatsPoint) {
   // An equilateral triangle of side 2: the distances from the middle add up to sqrt(3) times the side.
   const double root3 = std::numbers::sqrt3;
-  Contact triangle = empty(3, 2, 1.0, root3);
+  LimitContact triangle = empty(3, 2, 1.0, root3);
   triangle(0, 0) = triangle(2, 0) = triangle(1, 1) = 1.0;
   expect_relative(triangle.moment(), 2.0 * root3);
   expect_centre(triangle.limit({0.0, 0.0, 1.0}), 0.0, triangle.grid.x2(0) + root3 / 3.0);
@@ -188,7 +186,7 @@ TEST(LimitMoment, OfThreeEqualCellsTurnsAboutFermatsPoint) {
 }
 
 TEST(LimitMoment, AboutAnImposedCentreIsTheSumAboutIt) {
-  const Contact contact = rough(5);
+  const LimitContact contact = rough(5);
   const LimitLoad limit = contact.limit({std::nullopt, std::nullopt, 1.0});
   expect_relative(limit.factor, moment_limit(contact.grid, contact.bound));
   EXPECT_EQ(limit.sliding.delta1, 0.0);
@@ -196,7 +194,7 @@ TEST(LimitMoment, AboutAnImposedCentreIsTheSumAboutIt) {
 }
 
 TEST(LimitMoment, WithOneTranslationImposedTurnsOnThatLine) {
-  const Contact contact = rough(6);
+  const LimitContact contact = rough(6);
   const LimitLoad limit = contact.limit({std::nullopt, 0.0, 1.0});
   EXPECT_EQ(limit.sliding.delta1, 0.0);
   const auto about = [&](double c1) { return friction_in(contact, {0.0, -c1, 1.0}); };
@@ -204,7 +202,7 @@ TEST(LimitMoment, WithOneTranslationImposedTurnsOnThatLine) {
 }
 
 TEST(LimitForce, IsAllOfTheFrictionIfTheBodyCannotTurn) {
-  const Contact contact = rough(7);
+  const LimitContact contact = rough(7);
   const LimitLoad limit = contact.limit({0.3, -0.4, std::nullopt});
   expect_relative(limit.factor, contact.sum() / 0.5);
   EXPECT_NEAR(limit.sliding.delta1, 0.3 / 0.25, kMotion);
@@ -214,7 +212,7 @@ TEST(LimitForce, IsAllOfTheFrictionIfTheBodyCannotTurn) {
 }
 
 TEST(LimitForce, IsAllOfTheFrictionThroughTheCentreOfASymmetricContact) {
-  for (const Contact& contact : {hertz_disc(24), hertz_disc(25), ring(25)}) {
+  for (const LimitContact& contact : {hertz_disc(24), hertz_disc(25), ring(25)}) {
     const LimitLoad limit = contact.limit({0.3, -0.4, 0.0});
     expect_relative(limit.factor, contact.sum() / 0.5);
     EXPECT_FALSE(limit.centre.has_value());
@@ -222,13 +220,13 @@ TEST(LimitForce, IsAllOfTheFrictionThroughTheCentreOfASymmetricContact) {
 }
 
 TEST(LimitForce, BesideTheCentreIsLess) {
-  const Contact contact = rough(7);
+  const LimitContact contact = rough(7);
   EXPECT_LT(contact.limit({0.3, -0.4, 0.0}).factor, 0.999 * contact.sum() / 0.5);
 }
 
 TEST(LimitLoad, OfADiscAndARingUnderForceAndMomentIsALeastSum) {
   // Turning centres lie on the axis across the force, by symmetry.
-  for (const Contact& contact : {hertz_disc(16), hertz_disc(17), ring(25)}) {
+  for (const LimitContact& contact : {hertz_disc(16), hertz_disc(17), ring(25)}) {
     for (const double force : {0.05, 1.0, 8.0}) {
       const auto friction = [&](double delta1) {
         return friction_in(contact, {delta1, 0.0, 1.0 - force * delta1});
@@ -241,7 +239,7 @@ TEST(LimitLoad, OfADiscAndARingUnderForceAndMomentIsALeastSum) {
 }
 
 TEST(LimitLoad, OfAnyContactIsALeastSum) {
-  const Contact contact = rough(8);
+  const LimitContact contact = rough(8);
   const double f1 = 0.7, f2 = -0.4, m = 0.5;
   const auto given_first = [&](double delta1) {
     const auto friction = [&](double delta2) {
@@ -255,7 +253,7 @@ TEST(LimitLoad, OfAnyContactIsALeastSum) {
 TEST(LimitLoad, IsBoundedFromBothSides) {
   for (const double strongest : {0.5, 2.0, 20.0}) {  // the last: turning about that cell
     for (unsigned seed = 0; seed < 20; ++seed) {
-      const Contact contact = rough(seed, strongest);
+      const LimitContact contact = rough(seed, strongest);
       for (const ImposedLoads& loads : {ImposedLoads{0.0, 0.0, 1.0}, ImposedLoads{0.3, -0.2, 1.0},
                                         ImposedLoads{1.0, std::nullopt, 0.1}, ImposedLoads{1.0, 1.0, 0.0}}) {
         const LimitLoad limit = contact.limit(loads);
@@ -268,7 +266,7 @@ TEST(LimitLoad, IsBoundedFromBothSides) {
 }
 
 TEST(LimitLoad, IsBalancedByTractionsAgainstTheSliding) {
-  const Contact contact = rough(9);
+  const LimitContact contact = rough(9);
   const double f1 = 0.3, f2 = -0.2, m = 1.0;
   const LimitLoad limit = contact.limit({f1, f2, m});
   const auto& [delta1, delta2, twist] = limit.sliding;
@@ -283,10 +281,10 @@ TEST(LimitLoad, IsBalancedByTractionsAgainstTheSliding) {
 }
 
 TEST(LimitLoad, ScalesWithLoadsFrictionAndLength) {
-  const Contact contact = rough(10);
+  const LimitContact contact = rough(10);
   const double factor = contact.limit({0.3, -0.2, 1.0}).factor;
   expect_relative(contact.limit({-3.0, 2.0, -10.0}).factor, factor / 10.0);
-  Contact other = contact;
+  LimitContact other = contact;
   other.bound *= 7e5;
   expect_relative(other.limit({0.3, -0.2, 1.0}).factor, 7e5 * factor);
   other = contact;
@@ -298,8 +296,8 @@ TEST(LimitLoad, ScalesWithLoadsFrictionAndLength) {
 }
 
 TEST(LimitLoad, TurnsWithContactAndLoads) {
-  const Contact contact = rough(11);
-  Contact turned = empty(8, 11, 0.3, 0.2);  // a quarter turn: (x1, x2) -> (-x2, x1)
+  const LimitContact contact = rough(11);
+  LimitContact turned = empty(8, 11, 0.3, 0.2);  // a quarter turn: (x1, x2) -> (-x2, x1)
   for (Index i = 0; i < 11; ++i) {
     for (Index j = 0; j < 8; ++j) turned(7 - j, i) = contact.bound[i * 8 + j];
   }
@@ -310,7 +308,7 @@ TEST(LimitLoad, TurnsWithContactAndLoads) {
 }
 
 TEST(LimitLoad, SurfaceIsConvex) {
-  const Contact contact = rough(12, 3.0);
+  const LimitContact contact = rough(12, 3.0);
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
   const auto at_the_limit = [&] {
@@ -324,7 +322,7 @@ TEST(LimitLoad, SurfaceIsConvex) {
 }
 
 TEST(LimitLoad, OfNoLoadIsInfinite) {
-  const Contact contact = rough(13);
+  const LimitContact contact = rough(13);
   for (const ImposedLoads& loads : {ImposedLoads{0.0, 0.0, 0.0}, ImposedLoads{std::nullopt, 0.0, 0.0},
                                     ImposedLoads{std::nullopt, std::nullopt, std::nullopt}}) {
     EXPECT_EQ(contact.limit(loads).factor, kInfinity);
@@ -333,7 +331,7 @@ TEST(LimitLoad, OfNoLoadIsInfinite) {
 }
 
 TEST(LimitLoad, OfOneCellIsItsForceAndNoMoment) {
-  Contact cell = empty(6, 5);
+  LimitContact cell = empty(6, 5);
   cell(1, 3) = 2.0;
   const double x1 = cell.grid.x1(1), x2 = cell.grid.x2(3);
   EXPECT_NEAR(cell.moment(), 0.0, kRelative * 2.0);
@@ -344,15 +342,15 @@ TEST(LimitLoad, OfOneCellIsItsForceAndNoMoment) {
 }
 
 TEST(LimitLoad, WithoutFrictionIsZero) {
-  const Contact contact = empty(6, 5);
+  const LimitContact contact = empty(6, 5);
   EXPECT_EQ(contact.limit({0.3, 0.4, 1.0}).factor, 0.0);
   EXPECT_EQ(contact.moment(), 0.0);
 }
 
 TEST(LimitLoad, RefusesWhatIsNoFrictionBoundAndNoLoad) {
-  const Contact contact = rough(14);
+  const LimitContact contact = rough(14);
   for (const double bad : {kNaN, kInfinity, -1.0}) {
-    Contact other = contact;
+    LimitContact other = contact;
     other(2, 2) = bad;
     EXPECT_THROW(other.limit({0.0, 0.0, 1.0}), std::invalid_argument);
   }

@@ -23,7 +23,7 @@ using std::numbers::pi;
 using testing::HasSubstr;
 
 /// Sums of some thousands of numbers round by less.
-constexpr double kRounding = 1e-12;
+constexpr double kPressureRounding = 1e-12;
 
 // --- spheres and ellipsoids on a grid ---
 
@@ -242,7 +242,7 @@ TEST_P(Complementarity, HoldsToTheToleranceAskedFor) {
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   const ArrayXd& p = solution.pressure;
   EXPECT_TRUE((p >= 0.0).all());
-  EXPECT_NEAR(p.sum() / total, 1.0, kRounding);
+  EXPECT_NEAR(p.sum() / total, 1.0, kPressureRounding);
 
   ArrayXd u(p.size());
   op->apply({p.data(), static_cast<std::size_t>(p.size())}, {u.data(), static_cast<std::size_t>(u.size())});

@@ -21,7 +21,7 @@ using Eigen::ArrayXd;
 using testing::HasSubstr;
 using testing::StartsWith;
 
-constexpr double kGap = 1e-10;
+constexpr double kGradientGap = 1e-10;
 
 ProjectedGradientOptions to_gap(double tolerance) {
   ProjectedGradientOptions options;
@@ -30,15 +30,15 @@ ProjectedGradientOptions to_gap(double tolerance) {
 }
 
 /// An elliptic contact, 1 to 0.6, of friction bound sqrt(1 - ...) on a grid that is wider than it.
-struct EllipticBench {
-  explicit EllipticBench(Index cells, OperatorKind kind = OperatorKind::dcfft)
+struct GradientBench {
+  explicit GradientBench(Index cells, OperatorKind kind = OperatorKind::dcfft)
       : grid{cells, cells, 2.2 / static_cast<double>(cells), 1.4 / static_cast<double>(cells)},
         bound(hertz_cell_averages({1.0, 0.6, 1.0}, grid)),
         t(rotation_field(grid)),
         op(make_operator(kind, grid, tangential_kernel(), elastic_pair({1.0, 0.3}, {1.0, 0.3}))),
         limit(moment_limit(grid, bound)) {}
 
-  TangentialSolution solve(const TangentialProblem& problem, double gap = kGap) const {
+  TangentialSolution solve(const TangentialProblem& problem, double gap = kGradientGap) const {
     return solve_by_projected_gradient(*op, problem, to_gap(gap));
   }
   double moment_of(const ArrayXd& q) const { return (q * t).sum(); }
@@ -59,7 +59,7 @@ struct EllipticBench {
 };
 
 /// Displacements as by a pressure on unlike bodies: towards the centre, a fifth of what torsion causes.
-ArrayXd inward(const EllipticBench& bench, double size = 0.3) {
+ArrayXd inward(const GradientBench& bench, double size = 0.3) {
   ArrayXd load(2 * bench.grid.cells());
   load << -size * cell_x1(bench.grid), -size * cell_x2(bench.grid);
   return load;
@@ -91,13 +91,13 @@ INSTANTIATE_TEST_SUITE_P(MomentRatios, Ellipse, testing::Values(0.1, 0.5, -0.5, 
 
 TEST_P(Ellipse, ObeysCoulombsLawInEveryCell) {
   for (const bool loaded : {false, true}) {
-    const EllipticBench bench(24);
+    const GradientBench bench(24);
     TangentialProblem problem = under_moment(bench.bound, GetParam() * bench.limit);
     if (loaded) problem.initial_displacement = inward(bench);
     const TangentialSolution solution = bench.solve(problem);
     ASSERT_EQ(solution.status, Status::converged) << solution.message;
     EXPECT_THAT(solution.message, testing::IsEmpty());
-    EXPECT_LE(bench.gap_of(solution), kGap);
+    EXPECT_LE(bench.gap_of(solution), kGradientGap);
     EXPECT_EQ(bench.gap_of(solution), solution.change);
     EXPECT_NEAR(bench.moment_of(solution.traction) / bench.limit, GetParam(), kRounding);
     EXPECT_GT(solution.stick.sum(), 0.0);
@@ -107,7 +107,7 @@ TEST_P(Ellipse, ObeysCoulombsLawInEveryCell) {
 }
 
 TEST_P(Ellipse, ReportsWhatItsTractionsCause) {
-  const EllipticBench bench(16);
+  const GradientBench bench(16);
   TangentialProblem problem = under_moment(bench.bound, GetParam() * bench.limit);
   problem.initial_displacement = inward(bench);
   const TangentialSolution solution = bench.solve(problem);
@@ -120,12 +120,12 @@ TEST_P(Ellipse, ReportsWhatItsTractionsCause) {
 }
 
 TEST_P(Ellipse, AnswersItsTwistWithItsMoment) {
-  const EllipticBench bench(24);
+  const GradientBench bench(24);
   const TangentialSolution by_moment = bench.solve(under_moment(bench.bound, GetParam() * bench.limit));
   const TangentialSolution by_twist = bench.solve(under_twist(bench.bound, by_moment.twist));
   ASSERT_EQ(by_twist.status, Status::converged) << by_twist.message;
   EXPECT_EQ(by_twist.twist, by_moment.twist);
-  EXPECT_LE(bench.gap_of(by_twist), kGap);
+  EXPECT_LE(bench.gap_of(by_twist), kGradientGap);
   EXPECT_NEAR(bench.moment_of(by_twist.traction) / by_moment.twist,
               bench.moment_of(by_moment.traction) / by_moment.twist,
               1e-6 * bench.limit / std::abs(by_moment.twist));
@@ -135,13 +135,13 @@ TEST_P(Ellipse, AnswersItsTwistWithItsMoment) {
 
 /// The gap bounds the energy's excess over the minimum, so that no admissible traction may be lower by more.
 TEST_P(Ellipse, HasTheLeastEnergy) {
-  const EllipticBench bench(16);
+  const GradientBench bench(16);
   TangentialProblem problem = under_moment(bench.bound, GetParam() * bench.limit);
   for (const double size : {0.0, 0.3}) {
     problem.initial_displacement = inward(bench, size);
     const TangentialSolution solution = bench.solve(problem);
     const double least = bench.energy(solution.traction, problem.initial_displacement);
-    const double slack = kGap * 0.5 * (solution.traction * solution.elastic_displacement).sum();
+    const double slack = kGradientGap * 0.5 * (solution.traction * solution.elastic_displacement).sum();
     std::mt19937 generator(7);
     std::normal_distribution<double> value;
     for (int trial = 0; trial < 50; ++trial) {
@@ -160,7 +160,7 @@ TEST_P(Ellipse, HasTheLeastEnergy) {
 
 /// The paper's method freezes slip directions; how far its energy is off, its own certificate bounds.
 TEST(EllipticContact, HasLessEnergyThanThePapersMethodLeaves) {
-  const EllipticBench bench(24);
+  const GradientBench bench(24);
   const ArrayXd no_load = ArrayXd::Zero(bench.t.size());
   const TangentialProblem problem = under_moment(bench.bound, 0.9 * bench.limit);
   const TangentialSolution solution = bench.solve(problem);
@@ -174,7 +174,7 @@ TEST(EllipticContact, HasLessEnergyThanThePapersMethodLeaves) {
 
 /// |q - q*|_K^2/2 is at most the gap: a looser solution differs from a tight one by no more.
 TEST(EllipticContact, IsAsNearAsItsGapPromises) {
-  const EllipticBench bench(24);
+  const GradientBench bench(24);
   const TangentialProblem problem = under_moment(bench.bound, 0.5 * bench.limit);
   const TangentialSolution tight = bench.solve(problem, 1e-12);
   ASSERT_EQ(tight.status, Status::converged) << tight.message;
@@ -191,8 +191,8 @@ TEST(EllipticContact, IsAsNearAsItsGapPromises) {
 TEST(Circle, TurnsAsThePapersMethodSays) {
   const Bench bench(24);
   for (const double ratio : {0.1, 0.5, 0.9}) {
-    const TangentialSolution solution =
-        solve_by_projected_gradient(*bench.op, under_moment(bench.bound, ratio * bench.limit), to_gap(kGap));
+    const TangentialSolution solution = solve_by_projected_gradient(
+        *bench.op, under_moment(bench.bound, ratio * bench.limit), to_gap(kGradientGap));
     ASSERT_EQ(solution.status, Status::converged) << solution.message;
     const TangentialSolution paper = bench.twist_by_moment(ratio);
     EXPECT_NEAR(solution.twist / paper.twist, 1.0, 1e-4);  // the frozen directions, a gap of 1e-6 or so
@@ -309,10 +309,10 @@ TEST(ProjectedGradientBreakdown, OfTooFewIterationsIsNamedWithItsNumbers) {
 }
 
 /// A linear operator of the test's own: a function of the cell and of how often it was called.
-class MadeUp final : public LinearOperator {
+class MadeUpOperator final : public LinearOperator {
  public:
   using Factor = std::function<double(std::size_t cell, long call)>;
-  MadeUp(const Grid& grid, Factor factor)
+  MadeUpOperator(const Grid& grid, Factor factor)
       : LinearOperator(grid, tangential_kernel()), factor_(std::move(factor)) {}
   std::size_t bytes() const override { return 0; }
 
@@ -329,12 +329,12 @@ TEST(ProjectedGradientBreakdown, OfNumbersThatAreNotFiniteIsNamed) {
   const TangentialProblem problem = under_moment(bench.bound, 0.5 * bench.limit);
   for (const double bad :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    MadeUp broken(bench.model.grid, [&](std::size_t, long) { return bad; });
+    MadeUpOperator broken(bench.model.grid, [&](std::size_t, long) { return bad; });
     const TangentialSolution solution = solve_by_projected_gradient(broken, problem);
     EXPECT_EQ(solution.status, Status::not_converged);
     EXPECT_THAT(solution.message, StartsWith("no step length: norm of K = "));
 
-    MadeUp late(bench.model.grid, [&](std::size_t, long call) { return call < 12 ? 1.0 : bad; });
+    MadeUpOperator late(bench.model.grid, [&](std::size_t, long call) { return call < 12 ? 1.0 : bad; });
     const TangentialSolution broke_later = solve_by_projected_gradient(late, problem, to_gap(1e300));
     EXPECT_EQ(broke_later.status, Status::not_converged);
     EXPECT_THAT(broke_later.message, StartsWith("not finite: gap = "));
@@ -345,7 +345,7 @@ TEST(ProjectedGradientBreakdown, OfNumbersThatAreNotFiniteIsNamed) {
 
 TEST(ProjectedGradientBreakdown, OfAnOperatorThatIsNotPositiveDefiniteIsNamed) {
   const Bench bench(16);
-  MadeUp indefinite(bench.model.grid, [](std::size_t, long) { return -1.0; });
+  MadeUpOperator indefinite(bench.model.grid, [](std::size_t, long) { return -1.0; });
   const TangentialSolution solution =
       solve_by_projected_gradient(indefinite, under_moment(bench.bound, 0.5 * bench.limit));
   EXPECT_EQ(solution.status, Status::not_converged);
@@ -358,7 +358,7 @@ TEST(Backtracking, MendsAStepThatIsTooLong) {
   const Grid grid{16, 16, 1.0, 1.0};
   const ArrayXd bound = ArrayXd::Ones(grid.cells());
   const std::size_t soft = 8 * 16 + 15;
-  MadeUp op(grid, [&](std::size_t i, long) { return i == soft ? 10.0 : 1.0; });
+  MadeUpOperator op(grid, [&](std::size_t i, long) { return i == soft ? 10.0 : 1.0; });
   const TangentialProblem problem = under_moment(bound, 0.5 * moment_limit(grid, bound));
   const TangentialSolution solution = solve_by_projected_gradient(op, problem, to_gap(1e-12));
   ASSERT_EQ(solution.status, Status::converged) << solution.message;

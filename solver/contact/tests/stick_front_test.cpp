@@ -14,6 +14,7 @@
 
 #include "solver/contact/projected_gradient.hpp"
 #include "solver/scene/hertz_pressure.hpp"
+#include "solver/tests/limits.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
 namespace slipstick::solver {
@@ -22,8 +23,6 @@ namespace {
 using Eigen::ArrayXd;
 using testing::HasSubstr;
 using testing::IsEmpty;
-
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// An ellipse of stick, and of contact `ring` times as large about the same centre, where the slip is
 /// d^(3/2) (1 + d/2) in directions that turn, d = sqrt((x/a)^2 + (y/b)^2) - 1.
@@ -94,26 +93,27 @@ Errors worst(const MadeUp& made_up, Index n, Index n2 = 0) {
   return errors;
 }
 
-struct Shape {
+struct MadeUpShape {
   const char* name;
   MadeUp made_up;
   double at_128;  ///< relative errors allowed
   double at_256;
 };
-inline void PrintTo(const Shape& shape, std::ostream* stream) { *stream << shape.name; }
-const Shape kShapes[] = {{"Circle", {}, 3e-5, 5e-6},
-                         {"OffCentre", {.x0 = 0.13, .y0 = -0.11}, 3e-5, 5e-6},
-                         {"Ellipse", {.a = 0.6, .b = 0.4}, 6e-5, 2e-5},
-                         {"TurnedEllipse", {.a = 0.6, .b = 0.4, .turned = 0.5, .x0 = 0.02}, 6e-5, 2e-5},
-                         {"SlenderEllipse", {.a = 0.7, .b = 0.25, .turned = 1.0, .ring = 1.35}, 3e-4, 7e-5}};
+inline void PrintTo(const MadeUpShape& shape, std::ostream* stream) { *stream << shape.name; }
+const MadeUpShape kShapes[] = {
+    {"Circle", {}, 3e-5, 5e-6},
+    {"OffCentre", {.x0 = 0.13, .y0 = -0.11}, 3e-5, 5e-6},
+    {"Ellipse", {.a = 0.6, .b = 0.4}, 6e-5, 2e-5},
+    {"TurnedEllipse", {.a = 0.6, .b = 0.4, .turned = 0.5, .x0 = 0.02}, 6e-5, 2e-5},
+    {"SlenderEllipse", {.a = 0.7, .b = 0.25, .turned = 1.0, .ring = 1.35}, 3e-4, 7e-5}};
 
-class MadeUpFront : public testing::TestWithParam<Shape> {};
+class MadeUpFront : public testing::TestWithParam<MadeUpShape> {};
 INSTANTIATE_TEST_SUITE_P(Shapes, MadeUpFront, testing::ValuesIn(kShapes),
                          [](const auto& shape) { return std::string(shape.param.name); });
 
 /// Of order 2.6 at least while the window, in cells, covers less and less of the ring; then jitter is left.
 TEST_P(MadeUpFront, IsFoundAtAHighOrder) {
-  const Shape& shape = GetParam();
+  const MadeUpShape& shape = GetParam();
   const Errors coarse = worst(shape.made_up, 64);
   const Errors fine = worst(shape.made_up, 128);
   const Errors finest = worst(shape.made_up, 256);

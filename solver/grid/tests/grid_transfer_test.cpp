@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "solver/grid/mirror.hpp"
+#include "solver/tests/fields.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -39,12 +40,6 @@ std::string name_of(const testing::TestParamInfo<std::tuple<Grid, bool>>& tested
 }
 INSTANTIATE_TEST_SUITE_P(Sizes, Transfer, testing::Combine(testing::ValuesIn(kGrids), testing::Bool()),
                          name_of);
-
-ArrayXd random_field(Index size, unsigned seed) {
-  std::mt19937_64 generator(seed);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  return ArrayXd::NullaryExpr(size, [&] { return uniform(generator); });
-}
 
 double largest_difference(const ArrayXd& a, const ArrayXd& b) {
   EXPECT_EQ(a.size(), b.size());

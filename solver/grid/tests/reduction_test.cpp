@@ -8,18 +8,14 @@
 #include <random>
 #include <vector>
 
+#include "solver/tests/fields.hpp"
+
 namespace slipstick::solver {
 namespace {
 
 using Eigen::ArrayXd;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-
-ArrayXd random_field(Index size, unsigned seed) {
-  std::mt19937_64 generator(seed);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  return ArrayXd::NullaryExpr(size, [&] { return uniform(generator); });
-}
 
 /// A bowl within a radius, zero beyond: what pressures look like.
 ArrayXd patch(const Grid& grid, double radius) {

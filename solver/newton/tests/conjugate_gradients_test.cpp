@@ -18,6 +18,7 @@
 #include "solver/newton/tangent_space.hpp"
 #include "solver/operator/direct.hpp"
 #include "solver/tests/dense_algebra.hpp"
+#include "solver/tests/fields.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -34,12 +35,6 @@ constexpr double kReduction = 1e-13;
 /// Of the solution then: the systems of some tens of unknowns have condition numbers of some hundreds.
 constexpr double kSolved = 1e-11;
 constexpr int kMany = 500;
-
-ArrayXd random_field(Index size, unsigned seed) {
-  std::mt19937_64 generator(seed);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  return ArrayXd::NullaryExpr(size, [&] { return uniform(generator); });
-}
 
 template <typename Field>
 std::array<const Field*, 1> one(const Field& condition) {
@@ -145,8 +140,8 @@ class TangentCg {
 };
 
 /// The operators of one grid, and the same problem as a dense one.
-struct Bench {
-  Bench(const Grid& grid, bool vectors, unsigned seed)
+struct CgBench {
+  CgBench(const Grid& grid, bool vectors, unsigned seed)
       : size((vectors ? 2 : 1) * grid.cells()),
         op(grid, vectors ? tangential_kernel() : normal_kernel(), kPair),
         symbol(make_inverse_symbol<double>(grid, vectors ? tangential_kernel() : normal_kernel(), kPair)),
@@ -193,7 +188,7 @@ struct Bench {
 
 class CgOn : public testing::TestWithParam<std::tuple<Grid, bool>> {
  protected:
-  Bench bench(unsigned seed) const { return {std::get<0>(GetParam()), std::get<1>(GetParam()), seed}; }
+  CgBench bench(unsigned seed) const { return {std::get<0>(GetParam()), std::get<1>(GetParam()), seed}; }
 };
 std::string name_of(const testing::TestParamInfo<std::tuple<Grid, bool>>& tested) {
   const auto& [grid, vectors] = tested.param;
@@ -206,7 +201,7 @@ INSTANTIATE_TEST_SUITE_P(Grids, CgOn,
 
 TEST_P(CgOn, SolvesWithoutACondition) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
-    Bench b = bench(seed);
+    CgBench b = bench(seed);
     const ArrayXd r = random_field(b.size, 10 + seed);
     b.cg.residual() = r;
     const CgSummary summary = b.cg.solve(b.space, kReduction, kMany);
@@ -219,7 +214,7 @@ TEST_P(CgOn, SolvesWithoutACondition) {
 
 TEST_P(CgOn, SolvesUnderACondition) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
-    Bench b = bench(seed);
+    CgBench b = bench(seed);
     const ArrayXd r = random_field(b.size, 20 + seed);
     const ArrayXd c = random_field(b.size, 30 + seed);
     ASSERT_TRUE(b.cg.precondition(b.space, one(c)));
@@ -233,7 +228,7 @@ TEST_P(CgOn, SolvesUnderACondition) {
 
 TEST_P(CgOn, SolvesUnderThreeConditions) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
-    Bench b = bench(seed);
+    CgBench b = bench(seed);
     const ArrayXd r = random_field(b.size, 24 + seed);
     const ArrayXd c = random_field(3 * b.size, 34 + seed);
     const std::array<ArrayXd, 3> fields{c.head(b.size), c.segment(b.size, b.size), c.tail(b.size)};
@@ -256,7 +251,7 @@ TEST_P(CgOn, SolvesUnderThreeConditions) {
 
 /// On the tangent space, whatever they are outside it.
 TEST_P(CgOn, KnowsConditionsThatDependOnEachOther) {
-  Bench b = bench(9);
+  CgBench b = bench(9);
   const ArrayXd c = random_field(2 * b.size, 52);
   const VectorXd across = random_field(b.size, 53).matrix();
   const std::array<ArrayXd, 3> fields{
@@ -270,7 +265,7 @@ TEST_P(CgOn, KnowsConditionsThatDependOnEachOther) {
 
 /// Wherever the iteration is stopped.
 TEST_P(CgOn, KeepsTheConditionThroughout) {
-  Bench b = bench(5);
+  CgBench b = bench(5);
   const ArrayXd c = random_field(b.size, 41);
   for (const int iterations : {1, 2, 3, 5, 9}) {
     b.cg.precondition(b.space, one(c));
@@ -285,7 +280,7 @@ TEST_P(CgOn, KeepsTheConditionThroughout) {
 /// Conjugate gradients from zero: c.(w - w_k) is (w - w_k).A (w - w_k) to the letter, the square of w's
 /// error.
 TEST_P(CgOn, FindsTheConditionsStiffnessToSecondOrder) {
-  Bench b = bench(6);
+  CgBench b = bench(6);
   const ArrayXd c = random_field(b.size, 51);
   const VectorXd w = b.inverse(c.matrix());
   const double exact = c.matrix().dot(w);
@@ -303,7 +298,7 @@ TEST_P(CgOn, FindsTheConditionsStiffnessToSecondOrder) {
 
 /// Unit fields show the whole matrix: projector (scale S scale + shift) projector with the inverse symbol S.
 TEST_P(CgOn, PreconditionerIsSymmetricAndDefiniteOnTheTangentSpace) {
-  Bench b = bench(7);
+  CgBench b = bench(7);
   MatrixXd symbol(b.size, b.size);
   MatrixXd preconditioner(b.size, b.size);
   for (Index i = 0; i < b.size; ++i) {
@@ -379,7 +374,7 @@ TEST(ProjectedCg, SolvesASystemOfEquationsUnderConstraints) {
 }
 
 TEST(Cg, KnowsAConditionOutsideTheTangentSpace) {
-  Bench b({4, 4, 1.0, 1.0}, true, 8);
+  CgBench b({4, 4, 1.0, 1.0}, true, 8);
   for (Index i = 0; i < 16; ++i) b.space.set(i, i != 5);
   ArrayXd c = ArrayXd::Zero(32);
   c[5] = c[21] = 1.0;
@@ -389,7 +384,7 @@ TEST(Cg, KnowsAConditionOutsideTheTangentSpace) {
 }
 
 TEST(Cg, HasNothingToDoWithoutAResidual) {
-  Bench b({4, 4, 1.0, 1.0}, true, 9);
+  CgBench b({4, 4, 1.0, 1.0}, true, 9);
   b.cg.residual() = ArrayXd::Zero(32);
   const CgSummary summary = b.cg.solve(b.space, 1e-10, kMany);
   EXPECT_EQ(summary.iterations, 0);
@@ -399,7 +394,7 @@ TEST(Cg, HasNothingToDoWithoutAResidual) {
 }
 
 TEST(Cg, AllocatesNothing) {
-  Bench b({6, 6, 1.0, 1.0}, true, 10);
+  CgBench b({6, 6, 1.0, 1.0}, true, 10);
   const ArrayXd c = random_field(72, 61);
   const ArrayXd r = random_field(72, 62);
   const long before = allocations();
@@ -411,19 +406,6 @@ TEST(Cg, AllocatesNothing) {
 }
 
 // --- breakdowns ---
-
-/// displacement = factor * traction
-class Multiple final : public LinearOperator {
- public:
-  Multiple(const Grid& grid, double factor) : LinearOperator(grid, tangential_kernel()), factor_(factor) {}
-  std::size_t bytes() const override { return 0; }
-
- private:
-  void do_apply(std::span<const double> traction, std::span<double> displacement) override {
-    for (std::size_t i = 0; i < traction.size(); ++i) displacement[i] = factor_ * traction[i];
-  }
-  double factor_;
-};
 
 CgSummary solve_with_multiple(double factor, double right) {
   const Grid grid{4, 4, 1.0, 1.0};
@@ -449,7 +431,7 @@ TEST(CgBreakdown, IsNamed) {
 
 TEST(CgInSinglePrecision, SolvesToItsRounding) {
   const Grid grid{12, 10, 1.0, 1.0};
-  Bench b(grid, true, 11);
+  CgBench b(grid, true, 11);
   const auto op = make_single_operator(grid, tangential_kernel(), kPair);
   const auto symbol = make_inverse_symbol<float>(grid, tangential_kernel(), kPair);
   TangentCg<float> cg(*op, *symbol, b.size, 1);

@@ -9,6 +9,7 @@
 
 #include "solver/allocations/allocations.hpp"
 #include "solver/operator/elasticity.hpp"
+#include "solver/tests/fields.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
 namespace slipstick::solver {
@@ -25,19 +26,6 @@ class Reversing final : public InverseSymbol<double> {
   }
   std::array<double, 2> diagonal() const override { return {1.0, 1.0}; }
   std::size_t bytes() const override { return 0; }
-};
-
-/// A multiple of the identity, which may be what no elastic body is.
-class Multiple final : public LinearOperator {
- public:
-  Multiple(const Grid& grid, double factor) : LinearOperator(grid, tangential_kernel()), factor_(factor) {}
-  std::size_t bytes() const override { return 0; }
-
- private:
-  void do_apply(std::span<const double> traction, std::span<double> displacement) override {
-    for (std::size_t i = 0; i < traction.size(); ++i) displacement[i] = factor_ * traction[i];
-  }
-  double factor_;
 };
 
 /// The sphere's contact in torsion, as a convex program.

@@ -12,14 +12,14 @@
 #include "solver/grid/grid.hpp"
 #include "solver/newton/admissible.hpp"
 #include "solver/newton/tests/project_with_moment.hpp"
+#include "solver/tests/limits.hpp"
 
 namespace slipstick::solver {
 namespace {
 
 using Eigen::ArrayXd;
 
-constexpr double kRounding = 1e-13;
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
+constexpr double kProjectionRounding = 1e-13;
 
 ArrayXd random_values(Index count, double low, double high, std::mt19937& generator) {
   std::uniform_real_distribution<double> value(low, high);
@@ -27,8 +27,8 @@ ArrayXd random_values(Index count, double low, double high, std::mt19937& genera
 }
 
 /// Vectors of all lengths below and above their bounds, a third of the cells out of contact.
-struct Case {
-  explicit Case(unsigned seed) : generator(seed) {
+struct ProjectionCase {
+  explicit ProjectionCase(unsigned seed) : generator(seed) {
     const ArrayXd chance = random_values(grid.cells(), 0.0, 1.0, generator);
     bound = (chance < 0.3).select(0.0, random_values(grid.cells(), 0.2, 3.0, generator));
     z = random_values(2 * grid.cells(), -4.0, 4.0, generator);
@@ -73,7 +73,7 @@ TEST(FrictionDiscs, CutLongerVectorsAndLeaveOthers) {
   ArrayXd expected(8);
   expected << 0.6, 0.3, 1.0, 0.0,  //
       0.8, 0.4, 0.0, 0.0;
-  EXPECT_LE((q - expected).abs().maxCoeff(), kRounding);
+  EXPECT_LE((q - expected).abs().maxCoeff(), kProjectionRounding);
   EXPECT_EQ(q[1], 0.3);
   q[1] = kNaN;
   FrictionDiscs(bound).project(q);
@@ -82,11 +82,11 @@ TEST(FrictionDiscs, CutLongerVectorsAndLeaveOthers) {
 
 TEST(Projection, IsAdmissible) {
   for (unsigned seed = 0; seed < 20; ++seed) {
-    const Case of(seed);
+    const ProjectionCase of(seed);
     for (const double ratio : kRatios) {
       const ArrayXd q = of.projected(ratio * of.limit);
-      EXPECT_LE(of.excess(q), kRounding);
-      EXPECT_NEAR(of.moment_of(q) / of.limit, ratio, kRounding);
+      EXPECT_LE(of.excess(q), kProjectionRounding);
+      EXPECT_NEAR(of.moment_of(q) / of.limit, ratio, kProjectionRounding);
     }
   }
 }
@@ -95,7 +95,7 @@ TEST(Projection, IsAdmissible) {
 /// its rim.
 TEST(Projection, FulfilsTheConditionsOfKarushKuhnAndTucker) {
   for (unsigned seed = 0; seed < 20; ++seed) {
-    const Case of(seed);
+    const ProjectionCase of(seed);
     for (const double ratio : kRatios) {
       double alpha = 0.0;
       const ArrayXd q = of.projected(ratio * of.limit, &alpha);
@@ -104,10 +104,10 @@ TEST(Projection, FulfilsTheConditionsOfKarushKuhnAndTucker) {
       const ArrayXd along = dot_products(pull, q);
       const ArrayXd size = norms(q);
       for (Index i = 0; i < of.bound.size(); ++i) {
-        if (size[i] < of.bound[i] * (1.0 - kRounding)) {
-          EXPECT_LE(norms(pull)[i], kRounding * scale);
+        if (size[i] < of.bound[i] * (1.0 - kProjectionRounding)) {
+          EXPECT_LE(norms(pull)[i], kProjectionRounding * scale);
         } else {
-          EXPECT_NEAR(along[i], norms(pull)[i] * size[i], kRounding * scale);
+          EXPECT_NEAR(along[i], norms(pull)[i] * size[i], kProjectionRounding * scale);
         }
       }
     }
@@ -116,14 +116,14 @@ TEST(Projection, FulfilsTheConditionsOfKarushKuhnAndTucker) {
 
 TEST(Projection, IsNearerThanOtherAdmissibleTractions) {
   for (unsigned seed = 0; seed < 20; ++seed) {
-    Case of(seed);
+    ProjectionCase of(seed);
     for (const double ratio : {-0.9, 0.0, 0.5}) {
       const ArrayXd q = of.projected(ratio * of.limit);
       const double distance = (q - of.z).matrix().norm();
       for (int trial = 0; trial < 20; ++trial) {
         const ArrayXd other = of.random_admissible(ratio * of.limit);
-        ASSERT_LE(of.excess(other), kRounding);
-        ASSERT_NEAR(of.moment_of(other) / of.limit, ratio, kRounding);
+        ASSERT_LE(of.excess(other), kProjectionRounding);
+        ASSERT_NEAR(of.moment_of(other) / of.limit, ratio, kProjectionRounding);
         EXPECT_LT(distance, (other - of.z).matrix().norm());
         // Nor does a little of the way there lead nearer.
         EXPECT_LE(distance, (q + 1e-3 * (other - q) - of.z).matrix().norm());
@@ -134,42 +134,43 @@ TEST(Projection, IsNearerThanOtherAdmissibleTractions) {
 
 TEST(Projection, LeavesWhatItHasProjected) {
   for (unsigned seed = 0; seed < 20; ++seed) {
-    const Case of(seed);
+    const ProjectionCase of(seed);
     for (const double ratio : {-0.9, 0.0, 0.5}) {
       const ArrayXd once = of.projected(ratio * of.limit);
       ArrayXd twice = once;
       const double alpha = project_with_moment(twice, of.bound, of.t, ratio * of.limit);
-      EXPECT_LE((twice - once).abs().maxCoeff(), kRounding);
-      EXPECT_NEAR(alpha, 0.0, kRounding);
+      EXPECT_LE((twice - once).abs().maxCoeff(), kProjectionRounding);
+      EXPECT_NEAR(alpha, 0.0, kProjectionRounding);
     }
   }
 }
 
 TEST(Projection, DoesNotDependOnTheGuess) {
-  const Case of(1);
+  const ProjectionCase of(1);
   double alpha = 0.0;
   const ArrayXd q = of.projected(0.7 * of.limit, &alpha);
   for (const double guess : {alpha, -1.0, 1e3, -1e9, kNaN, std::numeric_limits<double>::infinity()}) {
     ArrayXd other = of.z;
-    EXPECT_NEAR(project_with_moment(other, of.bound, of.t, 0.7 * of.limit, guess), alpha, kRounding);
-    EXPECT_LE((other - q).abs().maxCoeff(), kRounding);
+    EXPECT_NEAR(project_with_moment(other, of.bound, of.t, 0.7 * of.limit, guess), alpha,
+                kProjectionRounding);
+    EXPECT_LE((other - q).abs().maxCoeff(), kProjectionRounding);
   }
 }
 
 /// At gross slip the other way round every cell lies on its rim and turns nowhere: the moment is flat in
 /// alpha.
 TEST(Projection, LeavesGrossSlipTheOtherWayRound) {
-  Case of(2);
+  ProjectionCase of(2);
   of.z = -1e6 * of.t;
   double alpha = 0.0;
   const ArrayXd q = of.projected(0.5 * of.limit, &alpha);
   EXPECT_GT(alpha, 1e6 - 100.0);
   EXPECT_NEAR(of.moment_of(q) / of.limit, 0.5, 1e-9);  // alpha t + z cancel to 1e-16 of 1e6
-  EXPECT_LE(of.excess(q), kRounding);
+  EXPECT_LE(of.excess(q), kProjectionRounding);
 }
 
 TEST(Projection, OntoMomentsThatNothingCarriesFails) {
-  Case of(3);
+  ProjectionCase of(3);
   for (const double moment : {1.001 * of.limit, -1.1 * of.limit, kNaN}) {
     double alpha = 0.0;
     of.projected(moment, &alpha);
@@ -182,7 +183,7 @@ TEST(Projection, OntoMomentsThatNothingCarriesFails) {
 }
 
 TEST(Projection, OfWhatIsNotFiniteFails) {
-  Case of(4);
+  ProjectionCase of(4);
   Index at = 0;
   of.bound.maxCoeff(&at);
   of.z[at] = kNaN;

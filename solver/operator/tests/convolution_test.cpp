@@ -11,6 +11,7 @@
 #include <string>
 
 #include "solver/fft/padded_transform.hpp"
+#include "solver/tests/fields.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -18,7 +19,7 @@ namespace {
 using Complex = std::complex<double>;
 
 /// A few roundings in each of some ten stages, relative to the largest value.
-constexpr double kRounding = 1e-14;
+constexpr double kTransformRounding = 1e-14;
 constexpr double kSingleRounding = 1e-6;
 
 /// One cell, one row, one column; lengths whose padded half is odd, even, and longer than the grid.
@@ -30,12 +31,6 @@ const std::vector<Grid>& shapes() {
 }
 
 std::string name(const Grid& grid) { return std::to_string(grid.n1) + " x " + std::to_string(grid.n2); }
-
-Eigen::ArrayXd random_field(Index size, unsigned seed) {
-  std::mt19937_64 generator(seed);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  return Eigen::ArrayXd::NullaryExpr(size, [&] { return uniform(generator); });
-}
 
 template <typename Real>
 std::span<Real> span_of(Eigen::Array<Real, Eigen::Dynamic, 1>& field) {
@@ -76,7 +71,7 @@ TEST(PaddedTransform, IsThePlainSumAtEachFrequency) {
       }
     });
     EXPECT_EQ(transform.columns(), p2 / 2 + 1);
-    EXPECT_LE(worst, kRounding * static_cast<double>(grid.cells()));
+    EXPECT_LE(worst, kTransformRounding * static_cast<double>(grid.cells()));
   }
 }
 
@@ -92,7 +87,7 @@ TEST(PaddedTransform, ThereAndBackMultipliesByThePaddedSize) {
         transform.forward_rows(span_of(back));
         transform.through_columns(2, 2, [](Index, const auto&) {});
         transform.backward_rows(span_of(back));
-        EXPECT_LE((back / padded - fields).abs().maxCoeff(), kRounding);
+        EXPECT_LE((back / padded - fields).abs().maxCoeff(), kTransformRounding);
       }
     }
   }
@@ -116,7 +111,7 @@ TEST(Convolution, OfPrimeLengthsIsTheDirectSum) {
     Eigen::ArrayXd expected(computed.size());
     fft->apply(traction, computed);
     direct->apply(traction, expected);
-    EXPECT_LE((computed - expected).abs().maxCoeff(), 10.0 * kRounding * expected.abs().maxCoeff());
+    EXPECT_LE((computed - expected).abs().maxCoeff(), 10.0 * kTransformRounding * expected.abs().maxCoeff());
   }
 }
 

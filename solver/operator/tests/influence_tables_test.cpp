@@ -7,15 +7,10 @@
 
 #include "solver/operator/cell_integrals.hpp"
 #include "solver/operator/influence.hpp"
+#include "solver/operator/tests/components.hpp"
 
 namespace slipstick::solver {
 namespace {
-
-constexpr std::array kComponents{Component::k11, Component::k12, Component::k22,
-                                 Component::k13, Component::k23, Component::k33};
-
-/// What cell_integrals() promises, which influence_test.cpp holds against adaptive quadrature.
-constexpr double kPromised = 1e-13;
 
 /// Each component composed of the cell integrals (Johnson 1985, section 3.6), in kComponents' order.
 std::array<double, 6> composed(const ElasticPair& pair, const CellIntegrals& c) {

@@ -14,22 +14,19 @@
 #include <utility>
 
 #include "solver/operator/cell_integrals.hpp"
+#include "solver/operator/tests/components.hpp"
 
 namespace slipstick::solver {
 namespace {
 
 using std::numbers::pi;
 
-constexpr std::array kComponents{Component::k11, Component::k12, Component::k22,
-                                 Component::k13, Component::k23, Component::k33};
 /// h2/h1 of the cells under test.
 constexpr std::array kAspects{1.0, 2.0, 0.3, 5.0};
 constexpr HalfSpace kLower{1.0, 0.3};
 constexpr HalfSpace kUpper{2.5, 0.1};
 constexpr double kRigid = std::numeric_limits<double>::infinity();
 
-/// What cell_integrals() promises.
-constexpr double kPromised = 1e-13;
 /// Of the adaptive quadrature, which asks for 1e-13 in each of two dimensions.
 constexpr double kQuadrature = 1e-12;
 /// A few roundings.

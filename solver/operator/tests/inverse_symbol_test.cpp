@@ -12,6 +12,7 @@
 
 #include "solver/allocations/allocations.hpp"
 #include "solver/fft/fftw.hpp"
+#include "solver/tests/fields.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -21,7 +22,7 @@ using Eigen::ArrayXf;
 
 constexpr double kPi = std::numbers::pi;
 /// Relative to the largest value: transforms of up to 2^14 values round by a few eps.
-constexpr double kRounding = 1e-13;
+constexpr double kSymbolRounding = 1e-13;
 constexpr double kFloatRounding = 1e-6;
 
 /// Shear modulus 2 for both, so that S = 1, N = nu and C33 = 1 - nu.
@@ -37,17 +38,7 @@ ArrayXd applied(InverseSymbol<double>& symbol, ArrayXd field) {
   return field;
 }
 
-ArrayXd random_field(Index size, unsigned seed) {
-  std::mt19937_64 generator(seed);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  return ArrayXd::NullaryExpr(size, [&] { return uniform(generator); });
-}
-
-double relative_difference(const ArrayXd& a, const ArrayXd& b) {
-  return (a - b).abs().maxCoeff() / b.abs().maxCoeff();
-}
-
-struct Case {
+struct SymbolCase {
   std::string name;
   Grid grid;
   bool tangential;
@@ -58,14 +49,14 @@ struct Case {
   Index size() const { return (tangential ? 2 : 1) * grid.cells(); }
 };
 
-void PrintTo(const Case& tested, std::ostream* stream) { *stream << tested.name; }
+void PrintTo(const SymbolCase& tested, std::ostream* stream) { *stream << tested.name; }
 
-std::vector<Case> all_cases() {
+std::vector<SymbolCase> symbol_cases() {
   const std::vector<Grid> grids{{1, 1, 1.0, 1.0},   {1, 8, 1.0, 0.5},   {7, 1, 0.5, 1.0},
                                 {2, 3, 1e-3, 1e-3}, {16, 16, 1.0, 1.0}, {9, 15, 1.0, 1.0},
                                 {13, 17, 1.0, 2.0}, {37, 31, 1.0, 0.3}, {64, 48, 1.0, 1.5},
                                 {5, 128, 1.0, 1.0}, {9, 9, 2.0, 2.0},   {13, 13, 0.1, 0.1}};
-  std::vector<Case> cases;
+  std::vector<SymbolCase> cases;
   for (Grid grid : grids) {
     for (const bool quadrant : {false, true}) {
       grid.quadrant = quadrant;
@@ -94,7 +85,7 @@ ArrayXd symmetric(const ArrayXd& field, Index n) {
   return result;
 }
 
-class InverseSymbolOf : public testing::TestWithParam<Case> {
+class InverseSymbolOf : public testing::TestWithParam<SymbolCase> {
  protected:
   template <typename Real = double>
   std::unique_ptr<InverseSymbol<Real>> make() const {
@@ -108,16 +99,16 @@ class InverseSymbolOf : public testing::TestWithParam<Case> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Shapes, InverseSymbolOf, testing::ValuesIn(all_cases()),
+INSTANTIATE_TEST_SUITE_P(Shapes, InverseSymbolOf, testing::ValuesIn(symbol_cases()),
                          [](const auto& tested) { return tested.param.name; });
 
 /// Those on quadrants, and those of them that mirror at the diagonal.
 class QuadrantSymbol : public InverseSymbolOf {};
 class DiagonalSymbol : public InverseSymbolOf {};
 
-std::vector<Case> cases_with(bool diagonal) {
-  std::vector<Case> cases = all_cases();
-  std::erase_if(cases, [&](const Case& tested) {
+std::vector<SymbolCase> cases_with(bool diagonal) {
+  std::vector<SymbolCase> cases = symbol_cases();
+  std::erase_if(cases, [&](const SymbolCase& tested) {
     return !tested.grid.quadrant || (diagonal && tested.diagonal == Diagonal::no);
   });
   return cases;
@@ -134,7 +125,7 @@ TEST_P(InverseSymbolOf, IsSymmetricAndPositiveDefinite) {
   const ArrayXd y = random(2);
   const ArrayXd Px = applied(*symbol, x);
   const ArrayXd Py = applied(*symbol, y);
-  EXPECT_NEAR((x * Py).sum(), (y * Px).sum(), kRounding * std::sqrt((x * Px).sum() * (y * Py).sum()));
+  EXPECT_NEAR((x * Py).sum(), (y * Px).sum(), kSymbolRounding * std::sqrt((x * Px).sum() * (y * Py).sum()));
   EXPECT_GT((x * Px).sum(), 0.0);
   EXPECT_GT((y * Py).sum(), 0.0);
 }
@@ -157,7 +148,7 @@ TEST_P(InverseSymbolOf, IsLinearAndRemembersNothing) {
   const ArrayXd y = random(4);
   const ArrayXd Px = applied(*symbol, x);
   const ArrayXd separately = 2.5 * Px - 0.75 * applied(*symbol, y);
-  EXPECT_LE(relative_difference(applied(*symbol, 2.5 * x - 0.75 * y), separately), kRounding);
+  EXPECT_LE(relative_difference(applied(*symbol, 2.5 * x - 0.75 * y), separately), kSymbolRounding);
   EXPECT_TRUE((applied(*symbol, x) == Px).all());
 }
 
@@ -231,9 +222,9 @@ TEST(PlaneWave, IsMultipliedByTheInverseSymbol) {
     ArrayXd transverse(2 * grid.cells());
     transverse << -n2 * wave, n1 * wave;
     EXPECT_LE(relative_difference(applied(*tangential, longitudinal), xi / (1.0 - nu) * longitudinal),
-              kRounding);
-    EXPECT_LE(relative_difference(applied(*tangential, transverse), xi * transverse), kRounding);
-    EXPECT_LE(relative_difference(applied(*normal, wave), xi / (1.0 - nu) * wave), kRounding);
+              kSymbolRounding);
+    EXPECT_LE(relative_difference(applied(*tangential, transverse), xi * transverse), kSymbolRounding);
+    EXPECT_LE(relative_difference(applied(*normal, wave), xi / (1.0 - nu) * wave), kSymbolRounding);
   }
 }
 
@@ -243,11 +234,11 @@ TEST(ConstantField, IsMultipliedByHalfOfTheSmallestFrequency) {
   const double xi = 0.5 * 2.0 * kPi / (40.0 * 0.8);
   const ArrayXd ones = ArrayXd::Ones(2 * grid.cells());
   const auto tangential = make_inverse_symbol<double>(grid, tangential_kernel(), pair_of(0.3));
-  EXPECT_LE(relative_difference(applied(*tangential, ones), xi * ones), kRounding);
+  EXPECT_LE(relative_difference(applied(*tangential, ones), xi * ones), kSymbolRounding);
   const auto normal = make_inverse_symbol<double>(grid, normal_kernel(), pair_of(0.3));
   EXPECT_LE(
       relative_difference(applied(*normal, ones.head(grid.cells())), xi / 0.7 * ones.head(grid.cells())),
-      kRounding);
+      kSymbolRounding);
 }
 
 /// A twist of the form of a Gaussian, whose displacement by the true operator the inverse symbol turns back.
@@ -310,10 +301,10 @@ TEST(InverseSymbolDiagonal, IsTheMeanOfTheSymbol) {
     const Index factor = grid.quadrant ? 2 : 1;
     const Means expected = means(fast_length(factor * grid.n1), fast_length(factor * grid.n2), grid, nu);
     const auto tangential = make_inverse_symbol<double>(grid, tangential_kernel(), pair_of(nu))->diagonal();
-    EXPECT_NEAR(tangential[0], expected.p11, kRounding * expected.p11);
-    EXPECT_NEAR(tangential[1], expected.p22, kRounding * expected.p22);
+    EXPECT_NEAR(tangential[0], expected.p11, kSymbolRounding * expected.p11);
+    EXPECT_NEAR(tangential[1], expected.p22, kSymbolRounding * expected.p22);
     const auto normal = make_inverse_symbol<double>(grid, normal_kernel(), pair_of(nu))->diagonal();
-    EXPECT_NEAR(normal[0], expected.modulus / (1.0 - nu), kRounding * normal[0]);
+    EXPECT_NEAR(normal[0], expected.modulus / (1.0 - nu), kSymbolRounding * normal[0]);
     EXPECT_EQ(normal[0], normal[1]);
   }
 }
@@ -326,7 +317,7 @@ TEST(InverseSymbolDiagonal, IsTheActionOnAUnitImpulse) {
         ArrayXd impulse = ArrayXd::Zero(2 * grid.cells());
         impulse[f * grid.cells() + cell] = 1.0;
         const double expected = symbol->diagonal()[static_cast<std::size_t>(f)];
-        EXPECT_NEAR(applied(*symbol, impulse)[f * grid.cells() + cell], expected, kRounding * expected);
+        EXPECT_NEAR(applied(*symbol, impulse)[f * grid.cells() + cell], expected, kSymbolRounding * expected);
       }
     }
   }
@@ -359,7 +350,7 @@ TEST_P(QuadrantSymbol, IsThatOfTheWholeGrid) {
   const ArrayXd field = random(7);
   EXPECT_LE(
       relative_difference(mirrored(applied(*make(), field), grid), applied(*whole, mirrored(field, grid))),
-      kRounding);
+      kSymbolRounding);
 }
 
 TEST_P(DiagonalSymbol, KeepsTheSymmetryExactly) {
@@ -367,7 +358,7 @@ TEST_P(DiagonalSymbol, KeepsTheSymmetryExactly) {
   const ArrayXd result = applied(*make(), random(8));
   EXPECT_TRUE((result == symmetric(result, grid.n1)).all());
   const auto quadrant = make_inverse_symbol<double>(grid, GetParam().kernel(), pair_of(nu));
-  EXPECT_LE(relative_difference(result, applied(*quadrant, random(8))), kRounding);
+  EXPECT_LE(relative_difference(result, applied(*quadrant, random(8))), kSymbolRounding);
 }
 
 TEST(InverseSymbol, RefusesOtherKernelsAndSymmetries) {

@@ -14,6 +14,7 @@
 #include "solver/operator/convolution.hpp"
 #include "solver/operator/direct.hpp"
 #include "solver/operator/linear_operator.hpp"
+#include "solver/tests/fields.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -23,22 +24,7 @@ using Eigen::ArrayXd;
 constexpr std::array kKinds{OperatorKind::dcfft, OperatorKind::direct, OperatorKind::dense};
 /// Between the three ways to evaluate one operator, relative to the largest displacement: the sum over a row
 /// of up to 6,144 terms and the transforms round by a few hundred eps at most.
-constexpr double kAgreement = 1e-12;
-
-ElasticPair dissimilar_pair() { return elastic_pair({1.0, 0.3}, {2.5, 0.1}); }
-
-ArrayXd apply(LinearOperator& op, const ArrayXd& traction) {
-  ArrayXd displacement(static_cast<Index>(op.outputs()) * op.grid().cells());
-  op.apply({traction.data(), static_cast<std::size_t>(traction.size())},
-           {displacement.data(), static_cast<std::size_t>(displacement.size())});
-  return displacement;
-}
-
-ArrayXd random_field(Index size, unsigned seed) {
-  std::mt19937_64 generator(seed);
-  std::uniform_real_distribution<double> uniform(-1.0, 1.0);
-  return ArrayXd::NullaryExpr(size, [&] { return uniform(generator); });
-}
+constexpr double kOfThreeWays = 1e-12;
 
 /// As around a contact: nothing in the outer rows, and cells without traction between others.
 ArrayXd random_field_with_zero_rows(const Grid& grid, std::size_t fields, unsigned seed) {
@@ -51,10 +37,6 @@ ArrayXd random_field_with_zero_rows(const Grid& grid, std::size_t fields, unsign
   return field;
 }
 
-double relative_difference(const ArrayXd& a, const ArrayXd& b) {
-  return (a - b).abs().maxCoeff() / b.abs().maxCoeff();
-}
-
 /// Displacement of one cell by traction on another, by the offset between them and the component's parity.
 double coefficient(Component component, const Grid& grid, Index point, Index source) {
   const Index k1 = point / grid.n2 - source / grid.n2;
@@ -65,19 +47,19 @@ double coefficient(Component component, const Grid& grid, Index point, Index sou
   return sign * quadrant.back();
 }
 
-struct Case {
+struct OperatorCase {
   std::string name;
   Grid grid;
   BlockKernel kernel;
 };
 
-void PrintTo(const Case& tested, std::ostream* stream) { *stream << tested.name; }
+void PrintTo(const OperatorCase& tested, std::ostream* stream) { *stream << tested.name; }
 
-std::vector<Case> all_cases() {
+std::vector<OperatorCase> operator_cases() {
   const std::vector<Grid> grids{{1, 1, 1.0, 1.0},   {1, 7, 1.0, 1.0},   {7, 1, 0.5, 1.0},
                                 {16, 16, 1.0, 1.0}, {31, 33, 1.0, 0.3}, {64, 48, 1.0, 1.0},
                                 {13, 17, 1.0, 2.0}, {40, 9, 0.2, 1.0},  {2, 3, 1e-3, 1e-3}};
-  std::vector<Case> cases;
+  std::vector<OperatorCase> cases;
   for (const Grid& grid : grids) {
     const std::string shape = std::to_string(grid.n1) + "x" + std::to_string(grid.n2);
     cases.push_back({"normal_" + shape, grid, normal_kernel()});
@@ -87,7 +69,7 @@ std::vector<Case> all_cases() {
   return cases;
 }
 
-class Operator : public testing::TestWithParam<Case> {
+class Operator : public testing::TestWithParam<OperatorCase> {
  protected:
   std::unique_ptr<LinearOperator> make(OperatorKind kind, const OperatorOptions& options = {}) const {
     return make_operator(kind, GetParam().grid, GetParam().kernel, dissimilar_pair(), options);
@@ -97,15 +79,16 @@ class Operator : public testing::TestWithParam<Case> {
   }
 };
 
-INSTANTIATE_TEST_SUITE_P(Shapes, Operator, testing::ValuesIn(all_cases()),
+INSTANTIATE_TEST_SUITE_P(Shapes, Operator, testing::ValuesIn(operator_cases()),
                          [](const auto& tested) { return tested.param.name; });
 
 /// Traction and displacement in the same direction: all but the coupling.
 class SquareOperator : public Operator {};
 
-std::vector<Case> square_cases() {
-  std::vector<Case> cases = all_cases();
-  std::erase_if(cases, [](const Case& tested) { return tested.kernel.inputs != tested.kernel.outputs; });
+std::vector<OperatorCase> square_cases() {
+  std::vector<OperatorCase> cases = operator_cases();
+  std::erase_if(cases,
+                [](const OperatorCase& tested) { return tested.kernel.inputs != tested.kernel.outputs; });
   return cases;
 }
 
@@ -120,16 +103,16 @@ TEST_P(Operator, IsTheSameByFftDirectSumAndMatrix) {
   double worst = 0.0;
   for (const ArrayXd& traction : {random_traction(1), random_field_with_zero_rows(grid, kernel.inputs, 2),
                                   ArrayXd(ArrayXd::Ones(static_cast<Index>(kernel.inputs) * grid.cells()))}) {
-    const ArrayXd expected = apply(*dense, traction);
+    const ArrayXd expected = applied(*dense, traction);
     if (expected.abs().maxCoeff() ==
         0.0) {  // no traction at all, or coupling of one cell: nothing to compare with
-      EXPECT_EQ(apply(*fft, traction).abs().maxCoeff(), 0.0);
-      EXPECT_EQ(apply(*direct, traction).abs().maxCoeff(), 0.0);
+      EXPECT_EQ(applied(*fft, traction).abs().maxCoeff(), 0.0);
+      EXPECT_EQ(applied(*direct, traction).abs().maxCoeff(), 0.0);
       continue;
     }
     for (LinearOperator* const op : {fft.get(), direct.get()}) {
-      const double difference = relative_difference(apply(*op, traction), expected);
-      EXPECT_LE(difference, kAgreement);
+      const double difference = relative_difference(applied(*op, traction), expected);
+      EXPECT_LE(difference, kOfThreeWays);
       worst = std::max(worst, difference);
     }
   }
@@ -161,9 +144,9 @@ TEST_P(Operator, IsLinear) {
     const auto op = make(kind);
     const ArrayXd x = random_traction(3);
     const ArrayXd y = random_traction(4);
-    const ArrayXd separately = 2.5 * apply(*op, x) - 0.75 * apply(*op, y);
+    const ArrayXd separately = 2.5 * applied(*op, x) - 0.75 * applied(*op, y);
     if (separately.abs().maxCoeff() == 0.0) continue;
-    EXPECT_LE(relative_difference(apply(*op, 2.5 * x - 0.75 * y), separately), kAgreement);
+    EXPECT_LE(relative_difference(applied(*op, 2.5 * x - 0.75 * y), separately), kOfThreeWays);
   }
 }
 
@@ -172,16 +155,16 @@ TEST_P(SquareOperator, IsSymmetricAndPositiveDefinite) {
     const auto op = make(kind);
     const ArrayXd x = random_traction(5);
     const ArrayXd y = random_traction(6);
-    const ArrayXd Kx = apply(*op, x);
-    const ArrayXd Ky = apply(*op, y);
-    EXPECT_NEAR((x * Ky).sum(), (y * Kx).sum(), kAgreement * std::sqrt((x * Kx).sum() * (y * Ky).sum()));
+    const ArrayXd Kx = applied(*op, x);
+    const ArrayXd Ky = applied(*op, y);
+    EXPECT_NEAR((x * Ky).sum(), (y * Kx).sum(), kOfThreeWays * std::sqrt((x * Kx).sum() * (y * Ky).sum()));
     EXPECT_GT((x * Kx).sum(), 0.0);
     EXPECT_GT((y * Ky).sum(), 0.0);
     // Where an operator's spectrum is least: signs that alternate from cell to cell.
     ArrayXd rough(x.size());
     const Index n2 = op->grid().n2;
     for (Index i = 0; i < rough.size(); ++i) rough[i] = (i / n2 + i % n2) % 2 == 0 ? 1.0 : -1.0;
-    EXPECT_GT((rough * apply(*op, rough)).sum(), 0.0);
+    EXPECT_GT((rough * applied(*op, rough)).sum(), 0.0);
   }
 }
 
@@ -194,12 +177,12 @@ TEST_P(Operator, DoesNotWrapAround) {
     for (std::size_t b = 0; b < kernel.inputs; ++b) {
       ArrayXd traction = ArrayXd::Zero(static_cast<Index>(kernel.inputs) * cells);
       traction[static_cast<Index>(b) * cells + corner] = 1.0;
-      const ArrayXd displacement = apply(*op, traction);
+      const ArrayXd displacement = applied(*op, traction);
       for (std::size_t a = 0; a < kernel.outputs; ++a) {
         const Component component = kernel.components[a * kernel.inputs + b];
         const auto coefficients =
             influence_coefficients(component, dissimilar_pair(), grid.h1, grid.h2, grid.n1, grid.n2);
-        const double tolerance = kAgreement * displacement.abs().maxCoeff();
+        const double tolerance = kOfThreeWays * displacement.abs().maxCoeff();
         for (Index point = 0; point < cells; ++point) {
           const Index k1 = point / grid.n2 - corner / grid.n2;
           const Index k2 = point % grid.n2 - corner % grid.n2;
@@ -219,11 +202,11 @@ TEST_P(Operator, GivesTheSameBitsAgainAndWithTwoThreads) {
   for (const OperatorKind kind : kKinds) {
     const auto one = make(kind, {.threads = 1});
     const auto two = make(kind, {.threads = 2});
-    const ArrayXd first = apply(*one, traction);
-    apply(*one, other);  // must leave nothing behind
-    EXPECT_TRUE((apply(*one, traction) == first).all());
-    EXPECT_TRUE((apply(*two, traction) == first).all());
-    EXPECT_TRUE((apply(*two, traction) == first).all());
+    const ArrayXd first = applied(*one, traction);
+    applied(*one, other);  // must leave nothing behind
+    EXPECT_TRUE((applied(*one, traction) == first).all());
+    EXPECT_TRUE((applied(*two, traction) == first).all());
+    EXPECT_TRUE((applied(*two, traction) == first).all());
     EXPECT_EQ(one->applications(), 3);
   }
 }
@@ -286,14 +269,14 @@ TEST(Shift, OfTheTractionShiftsTheDisplacement) {
   };
   for (const OperatorKind kind : kKinds) {
     const auto op = make_operator(kind, grid, tangential_kernel(), dissimilar_pair());
-    const ArrayXd u = apply(*op, placed(0, 0));
-    const ArrayXd shifted = apply(*op, placed(16, 14));
+    const ArrayXd u = applied(*op, placed(0, 0));
+    const ArrayXd shifted = applied(*op, placed(16, 14));
     const double scale = u.abs().maxCoeff();
     for (Index f = 0; f < 2; ++f) {
       for (Index i = 0; i < 8; ++i) {
         for (Index j = 0; j < 6; ++j) {
           EXPECT_NEAR(u[f * grid.cells() + i * grid.n2 + j],
-                      shifted[f * grid.cells() + (16 + i) * grid.n2 + 14 + j], kAgreement * scale);
+                      shifted[f * grid.cells() + (16 + i) * grid.n2 + 14 + j], kOfThreeWays * scale);
         }
       }
     }
@@ -343,7 +326,7 @@ TEST(BondedPunch, TurnsAsReissnerAndSagociSay) {
     const double moment = (q * t).sum() * grid.cell_area();
     EXPECT_NEAR(moment / (16.0 / 3.0), 1.0, 4.0 * grid.h1 * grid.h1 / (a * a));
 
-    const ArrayXd u = apply(*op, q);
+    const ArrayXd u = applied(*op, q);
     const ArrayXd r = (cell_x1(grid).square() + cell_x2(grid).square()).sqrt();
     const ArrayXd inside = (r < 0.8 * a).cast<double>().replicate(2, 1);  // away from the edge's singularity
     const double error = std::sqrt((inside * (u - t)).square().sum() / (inside * t).square().sum());

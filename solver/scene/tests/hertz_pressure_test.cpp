@@ -16,7 +16,7 @@ using Eigen::ArrayXd;
 using std::numbers::pi;
 
 /// Sums of some thousands of numbers round by less.
-constexpr double kRounding = 1e-12;
+constexpr double kHertzRounding = 1e-12;
 
 TEST(HertzContact, OfEqualRadiiIsTheSpheres) {
   for (const double radius : {1e-3, 0.018, 5.0}) {
@@ -65,7 +65,7 @@ TEST(HertzAverages, SumToTheLoad) {
   const double load = 2.0 / 3.0 * pi * 1.3 * 0.6 * 2.0;
   for (const Grid& grid :
        {Grid{40, 40, 0.1, 0.05}, Grid{7, 9, 0.5, 0.3}, Grid{1, 1, 4.0, 4.0}, Grid{512, 512, 6e-3, 3e-3}}) {
-    EXPECT_NEAR(hertz_cell_averages(contact, grid).sum() * grid.cell_area() / load, 1.0, kRounding);
+    EXPECT_NEAR(hertz_cell_averages(contact, grid).sum() * grid.cell_area() / load, 1.0, kHertzRounding);
   }
 }
 
@@ -123,7 +123,7 @@ TEST(HertzAverages, OfACoarseCellAreTheMeanOfItsParts) {
     for (Index j = 0; j < coarse.n2; ++j) {
       double sum = 0.0;
       for (Index k = 0; k < 9; ++k) sum += of_fine[(3 * i + k / 3) * fine.n2 + 3 * j + k % 3];
-      EXPECT_NEAR(of_coarse[i * coarse.n2 + j], sum / 9.0, kRounding * contact.peak_pressure);
+      EXPECT_NEAR(of_coarse[i * coarse.n2 + j], sum / 9.0, kHertzRounding * contact.peak_pressure);
     }
   }
 }
@@ -144,7 +144,7 @@ TEST(HertzPressure, OfASceneIsThatOfItsContact) {
       press(scene).solution.pressure.maxCoeff() * press(scene).model.stress_unit / paper::kPeakPressure, 1.0,
       1e-3);  // centres half a cell off the middle: (h/a)^2/4
   scene.pressure = PressureModel::hertz_averaged;
-  EXPECT_NEAR(load(press(scene)) / paper::kLoad, 1.0, kRounding);
+  EXPECT_NEAR(load(press(scene)) / paper::kLoad, 1.0, kHertzRounding);
 }
 
 }  // namespace

@@ -8,13 +8,13 @@
 #include <random>
 #include <vector>
 
+#include "solver/tests/limits.hpp"
+
 namespace slipstick::solver {
 namespace {
 
 using Eigen::ArrayXd;
 using std::numbers::pi;
-
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 
 Roughness rough() {
   return {.seed = 7, .hurst = 0.8, .longest = 2.5, .shortest = 0.3, .rms_slope = 0.1, .period = 10.0};
@@ -27,7 +27,7 @@ Grid over_a_period(const Roughness& roughness, Index n) {
 }
 
 /// Sums of some hundred waves, each with a phase of up to 2 pi 33 in its argument.
-constexpr double kRounding = 1e3 * kEpsilon;
+constexpr double kHeightRounding = 1e3 * kEpsilon;
 
 /// The waves between a period and half of it, one by one: as many as one can write down.
 TEST(Roughness, IsASumOfWaves) {
@@ -53,13 +53,13 @@ TEST(Roughness, IsASumOfWaves) {
 TEST(Roughness, HasTheSlopeAskedFor) {
   const Roughness roughness = rough();
   const RoughnessSpectrum spectrum = measure_spectrum(roughness);
-  EXPECT_NEAR(spectrum.rms_slope / roughness.rms_slope, 1.0, kRounding);
+  EXPECT_NEAR(spectrum.rms_slope / roughness.rms_slope, 1.0, kHeightRounding);
 
   constexpr Index n = 400;
   const Grid grid = over_a_period(roughness, n);
   const ArrayXd z = roughness_heights(roughness, grid);
-  EXPECT_NEAR(z.mean(), 0.0, kRounding * spectrum.rms_height);
-  EXPECT_NEAR(std::sqrt(z.square().mean()) / spectrum.rms_height, 1.0, kRounding);
+  EXPECT_NEAR(z.mean(), 0.0, kHeightRounding * spectrum.rms_height);
+  EXPECT_NEAR(std::sqrt(z.square().mean()) / spectrum.rms_height, 1.0, kHeightRounding);
   double square_slope = 0.0;
   for (Index i = 0; i < n; ++i) {
     for (Index j = 0; j < n; ++j) {
@@ -106,7 +106,7 @@ TEST(Roughness, IsTheSameOnEveryMesh) {
   const double highest = on_fine.abs().maxCoeff();
   for (Index i = 0; i < 30; ++i) {
     for (Index j = 0; j < 30; ++j) {
-      EXPECT_NEAR(on_coarse[i * 30 + j], on_fine[(3 * i + 1) * 90 + 3 * j + 1], kRounding * highest);
+      EXPECT_NEAR(on_coarse[i * 30 + j], on_fine[(3 * i + 1) * 90 + 3 * j + 1], kHeightRounding * highest);
     }
   }
 }
@@ -122,7 +122,7 @@ TEST(Roughness, OfAnotherSeedHasTheSameSpectrum) {
   // Two of them are as good as independent: some 300 waves correlate by a part of 1/sqrt(300), weighted to
   // the long ones.
   EXPECT_LE(std::abs((one * other).sum()), 0.5 * std::sqrt(one.square().sum() * other.square().sum()));
-  EXPECT_NEAR(of_other.rms_height / of_one.rms_height, 1.0, kRounding);
+  EXPECT_NEAR(of_other.rms_height / of_one.rms_height, 1.0, kHeightRounding);
   ASSERT_EQ(of_other.rings.size(), of_one.rings.size());
   for (std::size_t i = 0; i < of_one.rings.size(); ++i) {
     EXPECT_NEAR(of_other.rings[i].power / of_one.rings[i].power, 1.0, 1e-9);
@@ -150,7 +150,7 @@ TEST(Roughness, ScalesWithItsUnit) {
   const ArrayXd heights = roughness_heights(roughness, grid);
   for (double* const length : {&roughness.longest, &roughness.shortest, &roughness.period}) *length *= 3.0;
   const ArrayXd scaled = roughness_heights(roughness, over_a_period(roughness, 20));
-  EXPECT_LE((scaled - 3.0 * heights).abs().maxCoeff(), kRounding * scaled.abs().maxCoeff());
+  EXPECT_LE((scaled - 3.0 * heights).abs().maxCoeff(), kHeightRounding * scaled.abs().maxCoeff());
 }
 
 }  // namespace

@@ -14,6 +14,7 @@
 #include "solver/model_solution.hpp"
 #include "solver/scene/roughness.hpp"
 #include "solver/scene/surface_geometry.hpp"
+#include "solver/tests/limits.hpp"
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/press.hpp"
 
@@ -23,7 +24,6 @@ namespace {
 using Eigen::ArrayXd;
 using std::numbers::pi;
 
-constexpr double kEpsilon = std::numeric_limits<double>::epsilon();
 /// Pressures of two solves that stop at their own iterates within a gap of 1e-10.
 constexpr double kSolved = 1e-9;
 

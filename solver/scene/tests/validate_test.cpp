@@ -9,6 +9,7 @@
 #include "solver/input/tests/complaint.hpp"
 #include "solver/scene/scene.hpp"
 #include "solver/solve.hpp"
+#include "solver/tests/limits.hpp"
 #include "solver/tests/paper_scene.hpp"
 
 namespace slipstick::solver {
@@ -21,7 +22,6 @@ struct Mistake {
   std::function<void(Scene&)> make;
 };
 
-const double kNaN = std::numeric_limits<double>::quiet_NaN();
 const double kInfinite = std::numeric_limits<double>::infinity();
 
 const Mistake kMistakes[] = {
