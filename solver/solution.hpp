@@ -58,9 +58,11 @@ struct Solution {
   SlipDirection slip_direction{};
   Resolution resolution;
 
-  double normal_load = 0.0;              ///< W, N: what the pressure carries
-  double peak_pressure = 0.0;            ///< Pa
-  double contact_radius = 0.0;           ///< m, see measure_contact_radius
+  double normal_load = 0.0;    ///< W, N: what the pressure carries
+  double peak_pressure = 0.0;  ///< Pa
+  /// m; of a Hertzian contact by the pressure's second moments, else of a circle with the contact cells'
+  /// area.
+  double contact_radius = 0.0;
   double contact_radius_counted = 0.0;   ///< m, of a circle with the contact cells' area
   double stick_radius = 0.0;             ///< m, of a circle with the stick area, sub-cell
   std::string stick_radius_note;         ///< why it is only counted, all or in part; empty if it is not

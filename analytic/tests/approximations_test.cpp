@@ -11,7 +11,7 @@
 #include <string>
 
 #include "analytic/paper_equations.hpp"
-#include "analytic/tests/limits.hpp"
+#include "analytic/tests/values.hpp"
 #include "analytic/torsion.hpp"
 
 namespace slipstick::analytic {

@@ -12,8 +12,8 @@
 
 #include "analytic/elliptic.hpp"
 #include "analytic/gsl.hpp"
-#include "analytic/tests/limits.hpp"
 #include "analytic/tests/quadrature.hpp"
+#include "analytic/tests/values.hpp"
 
 namespace slipstick::analytic::tangential {
 namespace {

@@ -11,8 +11,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "analytic/tests/limits.hpp"
 #include "analytic/tests/quadrature.hpp"
+#include "analytic/tests/values.hpp"
 
 namespace slipstick::analytic {
 namespace {

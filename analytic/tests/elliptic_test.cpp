@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "analytic/references/references.hpp"
-#include "analytic/tests/limits.hpp"
+#include "analytic/tests/values.hpp"
 
 namespace slipstick::analytic {
 namespace {

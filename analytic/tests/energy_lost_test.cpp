@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "analytic/cycle.hpp"
-#include "analytic/tests/limits.hpp"
 #include "analytic/tests/quadrature.hpp"
+#include "analytic/tests/values.hpp"
 
 namespace slipstick::analytic {
 namespace {

@@ -13,7 +13,7 @@
 
 #include "analytic/gsl.hpp"
 #include "analytic/references/references.hpp"
-#include "analytic/tests/limits.hpp"
+#include "analytic/tests/values.hpp"
 #include "analytic/torsion.hpp"
 
 namespace slipstick::analytic {
@@ -26,7 +26,6 @@ using ::testing::ThrowsMessage;
 
 constexpr double kFewRoundings = 1e-14;
 
-StickRadius at(double c) { return {.ratio = c, .complement = 1 - c}; }
 StickRadius before_edge(double complement) { return {.ratio = 1 - complement, .complement = complement}; }
 
 /// Everything from 1e-12 to 1 - 1e-12, where both c and 1 - c are exact enough.

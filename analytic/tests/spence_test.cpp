@@ -12,7 +12,7 @@
 
 #include "analytic/elliptic.hpp"
 #include "analytic/gsl.hpp"
-#include "analytic/tests/limits.hpp"
+#include "analytic/tests/values.hpp"
 
 namespace slipstick::analytic {
 namespace {

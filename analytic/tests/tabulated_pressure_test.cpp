@@ -20,6 +20,7 @@
 
 #include "analytic/gsl.hpp"
 #include "analytic/punch_superposition.hpp"
+#include "analytic/tests/values.hpp"
 #include "analytic/torsion.hpp"
 
 namespace slipstick::analytic {

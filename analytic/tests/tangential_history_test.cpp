@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "analytic/cattaneo_mindlin.hpp"
-#include "analytic/tests/limits.hpp"
 #include "analytic/tests/quadrature.hpp"
+#include "analytic/tests/values.hpp"
 
 namespace slipstick::analytic::tangential {
 namespace {

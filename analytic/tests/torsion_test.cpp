@@ -15,7 +15,7 @@
 
 #include "analytic/gsl.hpp"
 #include "analytic/references/replay.hpp"
-#include "analytic/tests/limits.hpp"
+#include "analytic/tests/values.hpp"
 
 namespace slipstick::analytic {
 namespace {
