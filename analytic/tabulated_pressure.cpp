@@ -359,13 +359,13 @@ double power_at(const Points& points, std::size_t i) {
 /// As the pressure may end where it is 0 at the edge: like the power that the last points follow, like that
 /// to which this tends, and like the square root by which smooth bodies part.
 std::vector<Points> other_endings(const Points& points) {
-  constexpr double kLeast = 0.1;  // nearly a step
+  constexpr double kMin = 0.1;  // nearly a step
   constexpr double kMax = 8;
   const std::size_t last = points.size() - 2;
   const double power = power_at(points, last);
   std::vector<Points> endings;
   for (const double p : {power, 2 * power - power_at(points, last - 1), 0.5})
-    endings.push_back(ending_like(std::clamp(p, kLeast, kMax), points));
+    endings.push_back(ending_like(std::clamp(p, kMin, kMax), points));
   return endings;
 }
 

@@ -31,8 +31,8 @@ TorsionState from_stick_ratio(double stick_ratio, const Profile& profile = hertz
 TorsionState from_stick_complement(double stick_complement, const Profile& profile = hertz_profile());
 TorsionState from_twist(double twist, const Profile& profile = hertz_profile());
 
-/// Circumferential shear traction q/(mu p0) at radius r/a in [0, 1], Eq. (1) with its factor mended; free of
-/// cancellation. Throws std::domain_error outside [0, 1], and where it is infinite (at the edge of a flat
+/// Circumferential shear traction q/(mu p0) at radius r/a in [0, 1], Eq. (1) with its factor corrected; free
+/// of cancellation. Throws std::domain_error outside [0, 1], and where it is infinite (at the edge of a flat
 /// punch).
 double traction(const TorsionState& state, double radius, const Profile& profile = hertz_profile());
 

@@ -6,7 +6,7 @@ from matplotlib.colors import LinearSegmentedColormap, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
-# Okabe and Ito (2008): told apart with any colour vision.
+# Okabe and Ito (2008): distinguished with any colour vision.
 BLUE, SKY, VERMILION = "#0072B2", "#56B4E9", "#D55E00"
 GREEN, PURPLE = "#009E73", "#CC79A7"
 BLACK, GREY = "#000000", "#8a8a8a"

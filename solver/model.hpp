@@ -61,7 +61,7 @@ void note_omissions(Model& model, const Scene& scene, const Reduction& part, boo
 Elasticity elasticity(const Scene& scene, const Model& model, const Reduction& part);
 
 /// Throws InputError for a height map that cannot be used, a surface that cannot touch, an extent that is
-/// missing or, as can be told before the solve, too small, and for cells that do not fit in memory.
+/// missing or, as is known before the solve, too small, and for cells that do not fit in memory.
 Model make_model(const Scene& scene);
 
 /// Memory that solving the scene takes, in bytes: operators, workspaces, fields.

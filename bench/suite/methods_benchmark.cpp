@@ -143,7 +143,7 @@ double gap(const Torsion& torsion, const solver::TangentialSolution& solution) {
 }
 
 /// Why a solution, or two of one problem, must not be timed. Each lies within its gap of the least energy,
-/// hence |q - q'|_K^2 <= (sqrt(gap) + sqrt(gap'))^2 |q|_K^2.
+/// so that |q - q'|_K^2 <= (sqrt(gap) + sqrt(gap'))^2 |q|_K^2.
 std::string invalid_reason(const Torsion& torsion, const solver::TangentialSolution& one,
                            const solver::TangentialSolution& other, double tolerance) {
   for (const auto* solution : {&one, &other}) {

@@ -15,7 +15,7 @@
 namespace slipstick::bench {
 
 /// The sum of an array, read from several places at a time, as one stream alone does not keep memory busy, in
-/// many partial sums, lest additions wait for each other.
+/// many partial sums, so that additions do not wait for each other.
 inline double sum(std::span<const double> values) {
   constexpr std::size_t kStreams = 8;
   constexpr std::size_t kAtATime = 8;

@@ -46,13 +46,13 @@ ExpectedOrder of_field(const std::string& quantity, Edge edge) {
 
 ExpectedOrder of_number(const std::string& quantity, const solver::Scene& scene) {
   if (quantity.starts_with("stick_radius_counted")) {
-    return {1.0, "an edge told by counting whole cells is known to a part of one"};
+    return {1.0, "an edge found by counting whole cells is known to a part of one"};
   }
   if (quantity.starts_with("stick_")) {
-    return {
-        1.0,
-        "told from the slip in the 24 cells beside the edge, at most: once the ring is wider, what the mesh "
-        "does there is a part of a cell; on coarser meshes the error falls faster"};
+    return {1.0,
+            "determined from the slip in the 24 cells beside the edge, at most: once the ring is wider, what "
+            "the mesh "
+            "does there is a part of a cell; on coarser meshes the error falls faster"};
   }
   if (edge_of(scene) == Edge::singular) {
     return {1.0,

@@ -27,8 +27,8 @@ struct Limit {
 ///
 /// The interval of the order is that of the linearised fit, with meshes - 3 degrees of freedom. Its verdict:
 /// as of fit_order(), where values that turn back are oscillatory, values of the finest meshes that are not
-/// told apart are a floor, and an order above the expected one that falls from the second finest three meshes
-/// to the finest three is preasymptotic. Throws as coarsest_first().
+/// distinguished are a floor, and an order above the expected one that falls from the second finest three
+/// meshes to the finest three is preasymptotic. Throws as coarsest_first().
 Limit least_squares_limit(const std::vector<MeshSample>& values, double expected);
 
 /// Richardson's extrapolation from the three finest meshes with the order p they show, whatever the ratios of

@@ -142,7 +142,7 @@ std::pair<OrderVerdict, std::string> obstacle(const Meshes& distinguished, const
   if (!is_distinguished(finest)) {
     return {OrderVerdict::floor,
             fmt::format("the finest error, {:.2g}, is lost in noise and scatter: less than {:.2g} cannot be "
-                        "told from zero",
+                        "distinguished from zero",
                         std::abs(finest.value), resolution(finest))};
   }
   if (distinguished.size() < kMinMeshes) return {};

@@ -33,7 +33,7 @@ constexpr double kTightestTolerance = 1e-14;
 constexpr double kMarginCells = 4.0;
 constexpr Index kMinCells = 16;
 /// Cells across the contact on the coarse grid that it is first looked at on: with fewer the extent is so
-/// much too large that the grids that follow would have no end, and how large the contact is cannot be told.
+/// much too large that the grids that follow would have no end, and the size of the contact is not known.
 constexpr double kMinAcross = 3.0;
 /// What is recommended in its place.
 constexpr double kWellAcross = 0.5 * static_cast<double>(kReferenceCells);

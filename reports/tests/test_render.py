@@ -299,9 +299,9 @@ class PageWithGaps(Folder):
         self.assertNotIn("<code>studies", page)
 
     def test_the_methods_are_told_apart(self):
-        plate = method_figures.methods(small_report(), self.folder)
-        self.assertIn("2.4° by the paper’s method", plate.message)
-        self.assertIn("1.0×10⁻⁷ of a degree by Newton’s method", plate.message)
+        entry = method_figures.methods(small_report(), self.folder)
+        self.assertIn("2.4° by the paper’s method", entry.message)
+        self.assertIn("1.0×10⁻⁷ of a degree by Newton’s method", entry.message)
         report = small_report()
         del report["methods"][0]["operator_applications"]
         with self.assertRaises(results.Unavailable):
@@ -376,10 +376,10 @@ class OneFigure(Folder):
             self.assertIn(words, message)
 
     def test_what_the_gallery_says(self):
-        plate = gallery_figure.gallery(self.report, self.folder)
-        self.assertIn("4 scenes, in all of which Coulomb’s law holds to gap / energy = 2.0×10⁻⁹.", plate.message)
-        self.assertIn("Of the 1 with an exact answer, half are within 4.0×10⁻² of it", plate.message)
-        panel = plate.figure.axes[0]
+        entry = gallery_figure.gallery(self.report, self.folder)
+        self.assertIn("4 scenes, in all of which Coulomb’s law holds to gap / energy = 2.0×10⁻⁹.", entry.message)
+        self.assertIn("Of the 1 with an exact answer, half are within 4.0×10⁻² of it", entry.message)
+        panel = entry.figure.axes[0]
         self.assertEqual([text.get_text() for text in panel.texts], ["67\u00a0% sticks"])
         slip, sticks = (image.get_array() for image in panel.images)
         self.assertEqual(slip.filled(-1).tolist(), [[-1, -1, 1]])  # of its largest value
@@ -395,8 +395,8 @@ class OneFigure(Folder):
         self.assert_unavailable(gallery_figure.gallery, "gallery-tube.h5 cannot be read")
 
     def test_error_map_is_the_difference_from_exact(self):
-        plate = figures.shear_components(self.report, self.folder)
-        error = plate.figure.axes[2].images[0].get_array()
+        entry = figures.shear_components(self.report, self.folder)
+        error = entry.figure.axes[2].images[0].get_array()
         self.assertAlmostEqual(float(error.max()), 0.02 / (FRICTION * PEAK), places=12)
 
 

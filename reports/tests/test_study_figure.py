@@ -268,9 +268,9 @@ class Script(unittest.TestCase):
 
     def test_message_stands_in_the_figure(self):
         words = " ".join(text.get_text().replace("\n", " ") for text in study_figure.standalone(study()).texts)
-        plate = study_figure.draw(study())
-        self.assertIn(plate.message, words)
-        self.assertIn("made_up. " + plate.details, words)
+        entry = study_figure.draw(study())
+        self.assertIn(entry.message, words)
+        self.assertIn("made_up. " + entry.details, words)
 
     def test_what_cannot_be_drawn_is_refused(self):
         for content, name, words in (("{", "a.svg", "study.json"), (json.dumps(study()), "a.gif", "allowed endings"),

@@ -20,7 +20,7 @@ struct TractionField {
 struct Certificate {
   /// sum(s.q + mu p |s|) / (q.Kq/2). Each term is non-negative where |q| <= mu p and zero only where
   /// Coulomb's law holds. Coulomb's law minimises the convex energy q.Kq/2 over the friction discs and the
-  /// given moment, hence |q - q*|_K^2/2 <= energy(q) - energy(q*) <= gap.
+  /// given moment, so that |q - q*|_K^2/2 <= energy(q) - energy(q*) <= gap.
   double gap;
   /// A sharper bound of (energy(q) - energy(q*)) / (q.Kq/2), of second order in what slip a stick cell has
   /// left: the sum over cells of the most that -s.d - k|d|^2/2 can be for |q + d| <= mu p, with q.Kq >= k
@@ -28,7 +28,7 @@ struct Certificate {
   /// of the displacement with the whole of mu p, it stays as small as ever.
   double energy_error;
   /// What rounding of displacements, slips and tractions may do to the gap, over q.Kq/2: no smaller gap can
-  /// be told from zero.
+  /// be distinguished from zero.
   double rounding;
   double moment;          ///< |t.q Delta - M| / M_lim
   double force;           ///< |sum of q - F/Delta| / sum of mu p

@@ -16,7 +16,7 @@ struct PaperOptions {
 
 /// The algorithm of Gradinaru and Spinu, Section 4, step by step, with the rotation field (-x2, x1) and the
 /// sums in the denominators that the print lacks. It goes on while some |q| is above mu p by more than the
-/// tolerance, which Eq. (26) may not see. Nothing else is mended: a cell that begins to slip keeps the
+/// tolerance, which Eq. (26) may not see. Nothing else is corrected: a cell that begins to slip keeps the
 /// direction its traction had then (Eqs. (22), (23)), so on contacts that are not circular the certificate of
 /// the result stays bad. With the twist imposed, the steps that find the twist and balance the moment fall
 /// away.

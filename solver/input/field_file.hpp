@@ -16,8 +16,8 @@ struct Column {
 };
 
 /// Reads columns by name from a CSV file (header line, one row a cell) or an HDF5 file (1-D datasets of equal
-/// length), told apart by the ending .csv or .h5/.hdf5. Throws InputError for a file that cannot be read, a
-/// missing column, and a value that is not a finite number (with its row).
+/// length), distinguished by the ending .csv or .h5/.hdf5. Throws InputError for a file that cannot be read,
+/// a missing column, and a value that is not a finite number (with its row).
 std::vector<Column> read_columns(const std::filesystem::path& file, const std::vector<std::string>& names);
 
 /// A matrix of heights: CSV without header, one line for each x1; or the 2-D HDF5 dataset "height". A point

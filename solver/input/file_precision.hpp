@@ -16,7 +16,7 @@ struct FilePrecision {
   }
 };
 
-/// Told from the values themselves: the fewest digits, and the fewest decimals, that give all of them.
+/// Determined from the values themselves: the fewest digits, and the fewest decimals, that give all of them.
 FilePrecision find_precision(const Eigen::ArrayXd& values);
 
 }  // namespace slipstick::solver

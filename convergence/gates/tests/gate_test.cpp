@@ -464,7 +464,7 @@ std::vector<Judgement> one_of_each() {
       judge(named(below("x", 1.0), "good"), solve_with("x", 0.5)),
       judge(named(below("x", 1.0), "bad <a> & \"b\" | c, d: 100 %"), solve_with("x", 4.0)),
       judge(with_status(named(below("x", 1.0), "known"), GateStatus::expected_failure), solve_with("x", 2.0)),
-      judge(with_status(named(below("x", 1.0), "mended"), GateStatus::expected_failure),
+      judge(with_status(named(below("x", 1.0), "repaired"), GateStatus::expected_failure),
             solve_with("x", 0.5)),
       judge(with_status(named(below("x", 1.0), "watched"), GateStatus::report_only), solve_with("x", 3.0)),
       refuse(named(below("x", 1.0), "unreadable"), "no\nsuch \x01 scene <here>"),
@@ -481,7 +481,7 @@ TEST(GateReport, TextExplainsWhatDoesNotPass) {
                           HasSubstr("likely to blame: discretisation"), HasSubstr("users read this number"),
                           HasSubstr("measured 1e-6, factor 10"),
                           HasSubstr("slipstick gate gates/some.toml --only 'bad <a> & \"b\" | c, d: 100 %'"),
-                          HasSubstr("slipstick gate gates/some.toml --only mended")));
+                          HasSubstr("slipstick gate gates/some.toml --only repaired")));
   EXPECT_THAT(
       text,
       HasSubstr("6 gates: 1 passed, 1 failed as expected, 1 reported, 1 refused, 1 passed unexpectedly, "
@@ -553,7 +553,7 @@ TEST(GateReport, MarkdownStaysBelow64kBWithTheWorstFirst) {
 TEST(GateReport, MarkdownHoldsEveryGateInItsOrderOfBadness) {
   const std::string text = gates_markdown(one_of_each());
   std::size_t last = 0;
-  for (const char* id : {"bad &lt;a>", "mended", "unreadable", "watched", "known", "| good |"}) {
+  for (const char* id : {"bad &lt;a>", "repaired", "unreadable", "watched", "known", "| good |"}) {
     const std::size_t at = text.find(id);
     ASSERT_NE(at, std::string::npos) << id;
     EXPECT_GT(at, last) << id;
@@ -614,13 +614,13 @@ TEST_F(GateProgram, ExitCodesSayWhatHappened) {
   const std::string good = write("good.toml", gate("good", loose));
   const std::string bad =
       write("bad.toml", gate("bad", tight) + gate("known", tight, "status = 'expected_failure'"));
-  const std::string mended = write("mended.toml", gate("mended", loose, "status = 'expected_failure'"));
+  const std::string repaired = write("repaired.toml", gate("repaired", loose, "status = 'expected_failure'"));
   const std::string refused = write("refused.toml", gate("refused", loose, "platform_spread = 1"));
   const std::string empty = write("empty.toml", "");
   EXPECT_EQ(run(good).exit_code, 0);
   EXPECT_EQ(run(good + " " + bad).exit_code, 1);
   EXPECT_EQ(run(bad + " --only known").exit_code, 0);
-  EXPECT_EQ(run(mended).exit_code, 1);
+  EXPECT_EQ(run(repaired).exit_code, 1);
   const ProgramRun tightened = run(refused);
   EXPECT_EQ(tightened.exit_code, 2);
   EXPECT_THAT(tightened.output, HasSubstr("tighter than its reference allows"));

@@ -282,7 +282,7 @@ TEST(Complementarity, HoldsOnAWavySurface) {
   }
 }
 
-/// A minimum, told by its energy alone: no other admissible pressure has less.
+/// A minimum, by its energy alone: no other admissible pressure has less.
 TEST(Complementarity, IsAMinimumOfTheEnergy) {
   const Model model = make_model(paper_scene(12, 0.5));
   const auto op = make_operator(OperatorKind::dense, model.grid, normal_kernel(), model.pair);
