@@ -1,6 +1,7 @@
 #include "solver/resolution.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -13,9 +14,10 @@ using Eigen::ArrayXd;
 /// The cells where a field is not zero.
 struct Area {
   double cells = 0.0;
-  double outline = 0.0;  ///< its length in sides of cells
-  double mean = 0.0;     ///< of the field
-  double edge = 0.0;     ///< of the field along the outline
+  double outline = 0.0;           ///< its length in sides of cells
+  std::array<double, 2> sides{};  ///< of cells that look along x1, x2
+  double mean = 0.0;              ///< of the field
+  double edge = 0.0;              ///< of the field along the outline
 };
 
 Area measure(const Grid& grid, const ArrayXd& field) {
@@ -24,19 +26,19 @@ Area measure(const Grid& grid, const ArrayXd& field) {
     for (Index j = 0; j < grid.n2; ++j, ++k) {
       const double value = field[k];
       if (value == 0.0) continue;
-      int sides = 0;
-      sides += i == 0 || field[k - grid.n2] == 0.0;
-      sides += i + 1 == grid.n1 || field[k + grid.n2] == 0.0;
-      sides += j == 0 || field[k - 1] == 0.0;
-      sides += j + 1 == grid.n2 || field[k + 1] == 0.0;
+      const int along1 =
+          (i == 0 || field[k - grid.n2] == 0.0) + (i + 1 == grid.n1 || field[k + grid.n2] == 0.0);
+      const int along2 = (j == 0 || field[k - 1] == 0.0) + (j + 1 == grid.n2 || field[k + 1] == 0.0);
       area.cells += 1.0;
       area.mean += value;
-      area.outline += sides;
-      area.edge += sides * value;
+      area.sides[0] += along1;
+      area.sides[1] += along2;
+      area.edge += (along1 + along2) * value;
     }
   }
   if (area.cells == 0.0) return area;
   area.mean /= area.cells;
+  area.outline = area.sides[0] + area.sides[1];
   area.edge /= area.outline;
   // A staircase is longer than the curve that it follows, by 4/pi in the mean over all directions.
   area.outline *= std::numbers::pi / 4.0;
@@ -84,9 +86,15 @@ Resolution resolution(const Grid& grid, const LoadStep& loads, const ArrayXd& st
   Resolution result;
   if (sticking.cells > 0.0) result.stick_width = 4.0 * sticking.cells / sticking.outline;
   if (slipping.cells > 0.0) result.slip_width = 2.0 * slipping.cells / slipping.outline;
-  const double cell = 0.5 * contact.outline / contact.cells;  // over the mean radius
+  // Over the radius along x1 and x2, and both in the mean.
+  const double cell1 = std::numbers::pi / 4.0 * contact.sides[0] / contact.cells;
+  const double cell2 = std::numbers::pi / 4.0 * contact.sides[1] / contact.cells;
+  const double cell = std::sqrt(0.5 * (cell1 * cell1 + cell2 * cell2));
   const double edge = std::min(1.0, contact.edge / contact.mean);
-  result.uncertainty = 0.5 * cell * cell + 0.25 * edge * edge * cell;
+  // Where all sticks up to the last cell, tractions rise towards the edge as if they had no bound.
+  constexpr double kSteeper = 5.0;
+  const double steep = result.slip_width < 1.0 ? kSteeper : 1.0;
+  result.uncertainty = 0.5 * steep * cell * cell + 0.25 * edge * edge * cell;
   const double missing = missing_twist(grid, loads);
   if (missing > 0.0) {
     result.uncertainty +=

@@ -12,6 +12,7 @@
 #include <utility>
 #include <vector>
 
+#include "analytic/cattaneo_mindlin.hpp"
 #include "analytic/cycle.hpp"
 #include "analytic/indentation.hpp"
 #include "analytic/named_profile.hpp"
@@ -241,7 +242,8 @@ class ForceHistory final : public ExactHistory {
         direction_(direction),
         load_(first_load),
         reference_(indentation_.pressed(load_)),
-        history_(analytic::SelfSimilarIndenter(exponent)) {}
+        indenter_(exponent),
+        history_(indenter_) {}
 
  private:
   OracleAnswer follow(const solver::Step& step) override {
@@ -255,7 +257,7 @@ class ForceHistory final : public ExactHistory {
     } catch (const std::domain_error& error) {
       return {std::nullopt, fmt::format("beyond the range of the exact solution: {}", error.what()), true};
     }
-    const analytic::tangential::HistoryState state = history_.state();
+    const analytic::tangential::HistoryState state = state_under(force / unit);
     const double a = reference_.contact_radius;
     const double length = unit / (indentation_.pair().shear * a);
     Oracle oracle = indentation_.pressed(*step.normal);
@@ -272,11 +274,24 @@ class ForceHistory final : public ExactHistory {
     return {oracle, ""};
   }
 
+  /// A first loading has all its digits, however small the force.
+  analytic::tangential::HistoryState state_under(double force) {
+    analytic::tangential::HistoryState state = history_.state();
+    const bool first = std::exchange(first_, false);
+    if (!first || state.normal_load != 1.0 || force == 0.0) return state;
+    const auto loaded = analytic::tangential::from_force_ratio(std::abs(force), indenter_);
+    state.displacement = std::copysign(loaded.displacement, force);
+    state.dissipated = 0.25 * analytic::tangential::energy_lost_per_cycle(loaded, indenter_);
+    return state;
+  }
+
   Indentation indentation_;
   std::array<double, 2> direction_;
   double load_;
   Oracle reference_;
+  analytic::SelfSimilarIndenter indenter_;
   analytic::tangential::TangentialHistory history_;
+  bool first_ = true;
   double dissipated_ = 0.0;
 };
 

@@ -144,6 +144,7 @@ class Batch {
     if (spec.rounding != Rounding::nearest) {
       words.insert(words.end(), {"--rounding", spec.rounding == Rounding::upward ? "upward" : "downward"});
     }
+    if (spec.variant != Variant::none) words.insert(words.end(), {"--variant", to_string(spec.variant)});
     if (!spec.fields.empty()) words.insert(words.end(), {"--fields", spec.fields});
     if (spec.profile) words.emplace_back("--profile");
     for (const std::string& assignment : spec.overrides) words.insert(words.end(), {"--set", assignment});

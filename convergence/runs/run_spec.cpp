@@ -32,8 +32,10 @@ std::string cache_key(const RunSpec& spec, const solver::Scene& scene) {
 }  // namespace
 
 PreparedRun prepare_run(const RunSpec& spec) {
-  PreparedRun run{
-      .spec = spec, .scene = solver::read_scene(spec.scene, spec.overrides), .cache_key = {}, .name = {}};
+  PreparedRun run{.spec = spec,
+                  .scene = seen_as(solver::read_scene(spec.scene, spec.overrides), spec.variant),
+                  .cache_key = {},
+                  .name = {}};
   run.cache_key = cache_key(spec, run.scene);
   run.name = fmt::format("{}-{:016x}", spec.scene.stem().string(), hash(run.cache_key));
   return run;
@@ -54,6 +56,7 @@ std::string run_text(const RunSpec& spec) {
   for (const std::string& assignment : spec.overrides) text += ", " + assignment;
   if (spec.rounding == Rounding::upward) text += ", rounded upward";
   if (spec.rounding == Rounding::downward) text += ", rounded downward";
+  if (spec.variant != Variant::none) text += ", " + to_string(spec.variant);
   return text;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "convergence/runs/variant.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace slipstick::convergence {
@@ -18,6 +19,7 @@ struct RunSpec {
   std::filesystem::path scene;
   std::vector<std::string> overrides = {};  ///< "key=value", as --set takes them
   Rounding rounding = Rounding::nearest;
+  Variant variant = Variant::none;
   std::filesystem::path fields = {};  ///< gets the fields of the last step; empty: none
   bool profile = false;               ///< the result has the tractions along two radii
 };

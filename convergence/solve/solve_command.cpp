@@ -42,6 +42,7 @@ struct SolveRequest {
   // Of the processes of a pool alone.
   std::string keep;
   std::string rounding;
+  std::string variant = "none";
   bool profile = false;
 };
 
@@ -169,6 +170,7 @@ RunSpec spec_of(const SolveRequest& request) {
                .profile = request.profile};
   if (request.rounding == "upward") spec.rounding = Rounding::upward;
   if (request.rounding == "downward") spec.rounding = Rounding::downward;
+  spec.variant = variant_of(request.variant);
   return spec;
 }
 
@@ -226,6 +228,7 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_solve_command(CLI
   constexpr const char* kHidden = "";
   command->add_option("--keep", request->keep, "folder that keeps the result")->group(kHidden);
   command->add_option("--rounding", request->rounding, "upward | downward")->group(kHidden);
+  command->add_option("--variant", request->variant, "how the contact is seen")->group(kHidden);
   command->add_flag("--profile", request->profile, "tractions along two radii")->group(kHidden);
   command->footer(
       "Example:\n  slipstick solve convergence/scenes/paper.toml --set load.moment_ratio=0.5 --json "

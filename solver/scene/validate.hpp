@@ -11,7 +11,7 @@ namespace slipstick::solver {
 
 inline const Range kRatio{"above -1 and below 1 (1 is gross slip)",
                           [](double x) { return x > -1.0 && x < 1.0; }};
-inline const Range kPoisson{"from 0 to 0.5", [](double x) { return x >= 0.0 && x <= 0.5; }};
+inline const Range kPoisson{"above -1, at most 0.5", [](double x) { return x > -1.0 && x <= 0.5; }};
 inline const Range kTolerance{"from 1e-15 to below 1", [](double x) { return x >= 1e-15 && x < 1.0; }};
 inline const Range kCells = whole(1, 65536);
 inline const Range kIterations = whole(1, 1e9);

@@ -97,6 +97,27 @@ TEST(OracleHistory, AnEllipseFollowsTheNormalLoadAlone) {
   EXPECT_EQ(exact[2].twist_angle, -1e-4);
 }
 
+// Under a small force f of the limit all sticks: the displacement goes with f, the energy lost with f^3
+// (Mindlin, Mason, Osmer and Deresiewicz 1952), up to parts of f.
+TEST(OracleHistory, ASmallForceHasAllItsDigits) {
+  for (const char* body : {"paper", "cone"}) {
+    Scene scene = without_contraction(scene_of(body));
+    const double normal = *scene.steps.front().normal;
+    const double limit = scene.friction * normal;
+    const auto under = [&](double force) {
+      return oracles(pushed(scene, {{normal, force * limit}})).front();
+    };
+    const Oracle least = under(1e-15);
+    const Oracle small = under(1e-10);
+    for (const int axis : {0, 1}) {
+      EXPECT_NEAR(least.displacement[axis], 1e-5 * small.displacement[axis],
+                  1e-9 * std::hypot(least.displacement[0], least.displacement[1]))
+          << body;
+    }
+    EXPECT_NEAR(least.dissipated / small.dissipated, 1e-15, 1e-24) << body;
+  }
+}
+
 TEST(OracleHistory, TractionsOfAForceCarryIt) {
   for (const char* body : {"paper", "cone", "flat_punch"}) {
     Scene scene = without_contraction(scene_of(body));

@@ -239,7 +239,7 @@ TEST_P(FarCells, GiveCoefficientsAsAccurate) {
     return std::abs(computed / expected - 1.0);
   };
   double worst = 0.0;
-  for (const double nu : {0.0, 0.3, 0.5}) {
+  for (const double nu : {-0.9, 0.0, 0.3, 0.5}) {
     const ElasticPair pair = elastic_pair({1.0 / (2.0 * pi), nu}, {kRigid, 0.0});  // 1/(2 pi G) = 1
     for (const auto& cell : {std::pair<Index, Index>{0, 0},
                              {0, 3},

@@ -60,11 +60,12 @@ std::vector<SymbolCase> symbol_cases() {
   for (Grid grid : grids) {
     for (const bool quadrant : {false, true}) {
       grid.quadrant = quadrant;
-      for (const double nu : {0.0, 0.3, 0.5}) {
+      for (const double nu : {-0.9, 0.0, 0.5}) {
         for (const bool tangential : {false, true}) {
           const std::string name = std::string(quadrant ? "quadrant_" : "grid_") + std::to_string(grid.n1) +
                                    "x" + std::to_string(grid.n2) + (tangential ? "_tangential" : "_normal") +
-                                   "_nu0" + std::to_string(std::lround(10 * nu));
+                                   (nu < 0.0 ? "_nu_minus0" : "_nu0") +
+                                   std::to_string(std::lround(std::abs(10 * nu)));
           cases.push_back({name, grid, tangential, nu});
           if (quadrant && tangential && grid.n1 == grid.n2) {
             cases.push_back({name + "_diagonal", grid, tangential, nu, Diagonal::yes});

@@ -1,0 +1,75 @@
+#include "convergence/hard/hard_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "convergence/hard/hard_run.hpp"
+#include "convergence/runs/interrupts.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+struct HardRequest {
+  std::vector<std::string> files;
+  std::vector<std::string> overrides;
+  std::string output = "build/hard";
+  std::string fields;
+  bool once = false;
+  int jobs = 0;
+};
+
+int run_hard(const HardRequest& request, std::ostream& text, Json& result) {
+  std::vector<HardCase> cases;
+  for (const std::string& file : request.files) {
+    for (HardCase& made : read_hard_cases(file)) {
+      made.run.overrides.insert(made.run.overrides.end(), request.overrides.begin(), request.overrides.end());
+      cases.push_back(std::move(made));
+    }
+  }
+  if (!request.fields.empty()) std::filesystem::create_directories(request.fields);
+  const ProcessPool pool({.folder = request.output,
+                          .jobs = request.jobs,
+                          .program = kOwnProgram,
+                          .interrupted = Interrupts::seen});
+  {
+    const Interrupts interrupts;
+    result = run_hard_cases(cases, {.variants = !request.once, .fields = request.fields}, pool);
+  }
+  text << hard_text(result);
+  return result["counts"]["wrong"] == 0 && result["counts"]["not_converged"] == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+std::function<int(std::ostream&, nlohmann::ordered_json&)> add_hard_command(CLI::App& app) {
+  const auto request = std::make_shared<HardRequest>();
+  CLI::App* const command = app.add_subcommand(
+      "hard", "Solve hard scenes by the hundred, each in several views; judge each answer");
+  command->add_option("files", request->files, "files of families of scenes (TOML)")->required();
+  command->add_option("--set", request->overrides, "key=value: override a key of all scenes")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->add_option("--output", request->output, "folder that keeps finished solves")
+      ->capture_default_str();
+  command->add_option("--fields", request->fields, "folder that gets the fields of each case (CSV)");
+  command->add_flag("--once", request->once,
+                    "solve each scene as it stands alone, not mirrored, turned, ...");
+  command->add_option("--jobs", request->jobs, "solves at a time; 0: one a processor, as memory allows")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command->footer(
+      "Example:\n  slipstick hard convergence/hard/*.toml --json hard.json\nFinished solves are kept: "
+      "repeating "
+      "an interrupted command goes on from there.\nExit code 0: every answer is certified or refused with a "
+      "reason; 1: some did not converge or are wrong, and are named; 2: bad input.");
+  return [request](std::ostream& text, nlohmann::ordered_json& result) {
+    return run_hard(*request, text, result);
+  };
+}
+
+}  // namespace slipstick::convergence

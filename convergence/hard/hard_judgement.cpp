@@ -1,0 +1,139 @@
+#include "convergence/hard/hard_judgement.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+
+namespace slipstick::convergence {
+namespace {
+
+/// What a certificate of an answer that is called converged may show.
+constexpr double kBalanced = 1e-8;
+/// Where nothing is said about the mesh, as of a contact that is not resolved at all.
+constexpr double kAnything = std::numeric_limits<double>::infinity();
+/// No mesh is better than its smallest errors.
+constexpr double kLeastUncertainty = 1e-6;
+
+double number(const Json& json, const char* path) {
+  const auto pointer = Json::json_pointer(path);
+  if (!json.contains(pointer) || !json[pointer].is_number()) return std::numeric_limits<double>::quiet_NaN();
+  return json[pointer].get<double>();
+}
+
+std::string text(const Json& json, const char* key) {
+  return json.contains(key) && json[key].is_string() ? json[key].get<std::string>() : "";
+}
+
+/// The certificate's members against what the tolerance promises; empty: all are kept.
+std::string broken_promise(const Json& result) {
+  const double gap = number(result, "/certificate/gap");
+  const double rounding = number(result, "/certificate/rounding");
+  const double tolerance = number(result, "/tolerance");
+  const double allowed = std::max(tolerance, std::isnan(rounding) ? 0.0 : rounding);
+  if (text(result, "method") != "paper" && !(gap <= allowed)) {
+    return fmt::format("its gap is {:.3g}, above {:.3g}", gap, allowed);
+  }
+  for (const char* member : {"moment", "force", "friction_bound"}) {
+    const double missed = number(result, (std::string("/certificate/") + member).c_str());
+    if (!(missed <= kBalanced)) return fmt::format("certificate.{} is {:.3g}", member, missed);
+  }
+  return "";
+}
+
+/// The largest error that the exact side knows of the contact's motion and load.
+double exact_error(const Json& result) {
+  double largest = std::numeric_limits<double>::quiet_NaN();
+  for (const char* path : {"/twist_error", "/moment_error", "/displacement_error"}) {
+    const double error = std::abs(number(result, path));
+    if (!(error <= largest)) largest = std::isnan(error) ? largest : error;
+  }
+  return largest;
+}
+
+/// Of a variant: what its number is of the first's.
+double factor(const char* path, Variant variant) {
+  constexpr double millimetres = 1e3;
+  const std::string name = path;
+  if (variant == Variant::mirrored || variant == Variant::exchanged) {
+    return name == "/twist_angle" || name == "/moment" ? -1.0 : 1.0;
+  }
+  if (variant != Variant::in_other_units) return 1.0;
+  return name == "/twist_angle" || name == "/normal_load" ? 1.0 : millimetres;
+}
+
+}  // namespace
+
+std::string to_string(HardVerdict verdict) {
+  constexpr std::array words{"certified", "refused", "not_converged", "wrong"};
+  return words[static_cast<std::size_t>(verdict)];
+}
+
+JudgedCase judge_alone(const Json& result) {
+  const std::string status = text(result, "status");
+  const std::string message = text(result, "message");
+  if (status == "refused" && !message.empty()) return {HardVerdict::refused, message, Json::object()};
+  if (status == "refused") return {HardVerdict::wrong, "refused without a reason", Json::object()};
+  if (status == "failed") return {HardVerdict::wrong, "it died: " + message, Json::object()};
+  Json numbers;
+  for (const char* key : {"operator_applications", "pressure_applications"})
+    numbers[key] = result.value(key, Json());
+  numbers["seconds"] = result.contains("seconds") ? result["seconds"]["total"] : Json();
+  if (status != "converged") return {HardVerdict::not_converged, message, numbers};
+
+  const double error = exact_error(result);
+  const double said = number(result, "/resolved/uncertainty");
+  const double uncertainty = std::isnan(said) ? kAnything : std::max(said, kLeastUncertainty);
+  set_number(numbers, "error", error, "no exact answer is known");
+  set_number(numbers, "uncertainty", uncertainty, "the result states none");
+  set_number(numbers, "gap", number(result, "/certificate/gap"), "none");
+  if (const std::string broken = broken_promise(result); !broken.empty()) {
+    return {HardVerdict::wrong, broken, numbers};
+  }
+  if (error > uncertainty) {
+    return {HardVerdict::wrong,
+            fmt::format("it is {:.3g} from the exact answer, and says {:.3g}", error, uncertainty), numbers};
+  }
+  return {HardVerdict::certified, "", numbers};
+}
+
+/// What a number is measured by where it is zero, or would be without rounding.
+double natural_size(const Json& result, const std::string& path) {
+  const double limit = number(result, "/moment_limit");
+  const double radius = number(result, "/contact_radius");
+  const double force = std::hypot(number(result, "/force/0"), number(result, "/force/1"));
+  const double shift = std::hypot(number(result, "/displacement/0"), number(result, "/displacement/1"));
+  const auto or_nothing = [](double size) { return std::isfinite(size) ? size : 0.0; };
+  const double energy = number(result, "/elastic_energy");
+  if (path == "/moment")
+    return or_nothing(force * radius) + or_nothing(energy * radius / number(result, "/approach"));
+  if (path != "/twist_angle") return 0.0;
+  return or_nothing(energy / limit) + or_nothing(shift / radius);
+}
+
+double same_answer(const Json& result) {
+  constexpr double kSame = 1e-6;
+  const double missing = number(result, "/limit/factor") - 1.0;
+  return missing > 0.0 ? kSame + number(result, "/tolerance") / missing : kSame;
+}
+
+double variant_difference(const Json& result, const Json& seen, Variant variant) {
+  double largest = 0.0;
+  for (const char* path :
+       {"/twist_angle", "/moment", "/moment_limit", "/normal_load", "/contact_radius", "/elastic_energy"}) {
+    const double first = number(result, path);
+    const double second = number(seen, path);
+    if (std::isnan(first) && std::isnan(second)) continue;
+    const double expected = factor(path, variant) * first;
+    const double scale = std::max({std::abs(expected), std::abs(second), natural_size(seen, path)});
+    const double difference = scale > 0.0 ? std::abs(second - expected) / scale : 0.0;
+    if (!(difference <= largest)) largest = difference;
+    if (std::isnan(largest)) return largest;
+  }
+  return largest;
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "convergence/results/result_parts.hpp"
+#include "convergence/runs/variant.hpp"
+
+namespace slipstick::convergence {
+
+/// How a hard case ends: solved, with a certificate and as near to what is known as it says; refused with a
+/// reason; not converged, and said so; or wrong: an answer that passes for right.
+enum class HardVerdict { certified, refused, not_converged, wrong };
+std::string to_string(HardVerdict verdict);
+
+struct JudgedCase {
+  HardVerdict verdict;
+  std::string reason;  ///< of all but certified
+  Json numbers;        ///< what the verdict rests on
+};
+
+/// A result by itself: its status, its certificate, and its distance from the exact answer, if there is one.
+JudgedCase judge_alone(const Json& result);
+
+/// Two answers to one discrete problem: how far one seen otherwise is from the first, relative; NaN where a
+/// number is missing.
+double variant_difference(const Json& result, const Json& seen, Variant variant);
+
+/// What equal problems may differ by, in the twist, the moment and energies: 1e-6, and next to the limit the
+/// tolerance over the part of the load that is missing to it, since the twist grows like the logarithm of
+/// that part.
+double same_answer(const Json& result);
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,196 @@
+#include "convergence/hard/hard_run.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <utility>
+
+#include "convergence/hard/hard_judgement.hpp"
+#include "convergence/results/provenance.hpp"
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+/// A case with its result and what was solved beside it.
+struct Trial {
+  const HardCase* hard = nullptr;
+  std::optional<solver::Scene> scene;  ///< missing where it cannot be read
+  Json result;
+  JudgedCase judged;
+  Json variants = Json::object();
+};
+
+/// Runs whose answers go back to the trials that asked.
+class Errands {
+ public:
+  void add(Trial& trial, RunSpec spec) {
+    try {
+      runs_.push_back(prepare_run(spec));
+      asked_.push_back({&trial, std::move(spec)});
+    } catch (const solver::InputError& error) {
+      refused_.push_back({&trial, std::move(spec), error.what()});
+    }
+  }
+  /// answer(trial, spec, result), for each; what cannot be read is refused.
+  template <typename Answer>
+  void run(const ProcessPool& pool, const Answer& answer) {
+    const std::vector<Json> results = pool.run_prepared(runs_);
+    for (std::size_t i = 0; i < results.size(); ++i) answer(*asked_[i].trial, asked_[i].spec, results[i]);
+    for (const auto& [trial, spec, why] : refused_) {
+      answer(*trial, spec, Json{{"status", "refused"}, {"message", why}});
+    }
+  }
+
+ private:
+  struct Asked {
+    Trial* trial;
+    RunSpec spec;
+  };
+  struct Refused {
+    Trial* trial;
+    RunSpec spec;
+    std::string why;
+  };
+  std::vector<PreparedRun> runs_;
+  std::vector<Asked> asked_;
+  std::vector<Refused> refused_;
+};
+
+/// The grid of a result, written out, with so many times its cells.
+std::vector<std::string> grid_of(const Json& result, int times) {
+  const auto cells = result["cells"].get<std::array<int, 2>>();
+  const auto size = result["cell_size"].get<std::array<double, 2>>();
+  return {fmt::format("grid.extent=[{:.17g},{:.17g}]", size[0] * cells[0], size[1] * cells[1]),
+          fmt::format("grid.cells=[{},{}]", times * cells[0], times * cells[1])};
+}
+
+bool has_given_grid(const solver::Scene& scene) {
+  return scene.pressure == solver::PressureModel::file ||
+         std::ranges::any_of(scene.surfaces, [](const solver::Surface& surface) {
+           return surface.shape == solver::Shape::height_map;
+         });
+}
+
+RunSpec seen(const Trial& trial, Variant variant) {
+  RunSpec spec = trial.hard->run;
+  spec.fields.clear();
+  spec.variant = variant;
+  if (has_given_grid(*trial.scene)) return spec;
+  for (std::string& key : grid_of(trial.result, 1)) spec.overrides.push_back(std::move(key));
+  return spec;
+}
+
+void turn_wrong(Trial& trial, std::string reason) {
+  if (trial.judged.verdict == HardVerdict::wrong) return;
+  trial.judged.verdict = HardVerdict::wrong;
+  trial.judged.reason = std::move(reason);
+}
+
+void look_otherwise(std::vector<Trial>& trials, const ProcessPool& pool) {
+  Errands errands;
+  for (Trial& trial : trials) {
+    if (trial.judged.verdict != HardVerdict::certified) continue;
+    for (const Variant variant : kVariants) {
+      if (const std::string reason = why_not(*trial.scene, variant); !reason.empty()) {
+        set_missing(trial.variants, to_string(variant), reason);
+      } else {
+        errands.add(trial, seen(trial, variant));
+      }
+    }
+  }
+  errands.run(pool, [](Trial& trial, const RunSpec& spec, const Json& result) {
+    const std::string name = to_string(spec.variant);
+    const std::string status = result["status"];
+    const double difference =
+        status == "converged" ? variant_difference(trial.result, result, spec.variant) : std::nan("");
+    set_number(trial.variants, name, difference, status);
+    if (!(difference <= same_answer(trial.result))) {
+      turn_wrong(trial, status == "converged"
+                            ? fmt::format("{} it differs by {:.3g}", name, difference)
+                            : fmt::format("{} it is {}: {}", name, status, result.value("message", "")));
+    }
+  });
+}
+
+Json row(const Trial& trial) {
+  Json row{{"family", trial.hard->family},
+           {"case", trial.hard->name},
+           {"set", trial.hard->run.overrides},
+           {"scene", trial.hard->run.scene.string()},
+           {"verdict", to_string(trial.judged.verdict)}};
+  if (!trial.judged.reason.empty()) row["reason"] = trial.judged.reason;
+  row.update(trial.judged.numbers);
+  if (!trial.variants.empty()) row["variants"] = trial.variants;
+  return row;
+}
+
+Json counts(const std::vector<Trial>& trials, const std::string& family) {
+  Json counts{{"certified", 0}, {"refused", 0}, {"not_converged", 0}, {"wrong", 0}};
+  for (const Trial& trial : trials) {
+    if (family.empty() || trial.hard->family == family) {
+      Json& count = counts[to_string(trial.judged.verdict)];
+      count = count.get<int>() + 1;
+    }
+  }
+  return counts;
+}
+
+}  // namespace
+
+Json run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& options, const ProcessPool& pool) {
+  std::vector<Trial> trials(cases.size());
+  Errands first;
+  for (std::size_t i = 0; i < cases.size(); ++i) {
+    trials[i].hard = &cases[i];
+    RunSpec spec = cases[i].run;
+    if (!options.fields.empty()) spec.fields = options.fields / fmt::format("{:05}.csv", i);
+    first.add(trials[i], std::move(spec));
+  }
+  first.run(pool, [](Trial& trial, const RunSpec& spec, const Json& result) {
+    trial.result = result;
+    trial.judged = judge_alone(result);
+    if (trial.judged.verdict == HardVerdict::certified) {
+      trial.scene = solver::read_scene(spec.scene, spec.overrides);
+    }
+  });
+  if (options.variants) look_otherwise(trials, pool);
+
+  Json json{{"counts", counts(trials, "")}, {"families", Json::object()}, {"rows", Json::array()}};
+  for (const Trial& trial : trials) {
+    const std::string& family = trial.hard->family;
+    if (!json["families"].contains(family)) {
+      json["families"][family] = {{"why", trial.hard->why}, {"counts", counts(trials, family)}};
+    }
+    json["rows"].push_back(row(trial));
+  }
+  json["provenance"] = provenance(1);
+  return json;
+}
+
+std::string hard_text(const Json& result) {
+  std::string text = fmt::format("  {:28} {:>9} {:>8} {:>13} {:>6}\n", "family", "certified", "refused",
+                                 "not converged", "wrong");
+  const auto line = [&](const std::string& name, const Json& counts) {
+    text += fmt::format("  {:28} {:>9} {:>8} {:>13} {:>6}\n", name, counts["certified"].get<int>(),
+                        counts["refused"].get<int>(), counts["not_converged"].get<int>(),
+                        counts["wrong"].get<int>());
+  };
+  for (const auto& [name, family] : result["families"].items()) line(name, family["counts"]);
+  line("all", result["counts"]);
+  for (const Json& row : result["rows"]) {
+    if (row["verdict"] != "wrong" && row["verdict"] != "not_converged") continue;
+    text += fmt::format("\n{}: {} {}\n  {}\n  again: slipstick solve {}", row["verdict"].get<std::string>(),
+                        row["family"].get<std::string>(), row["case"].get<std::string>(),
+                        row.value("reason", ""), row["scene"].get<std::string>());
+    for (const Json& assignment : row["set"])
+      text += fmt::format(" --set '{}'", assignment.get<std::string>());
+    text += "\n";
+  }
+  return text;
+}
+
+}  // namespace slipstick::convergence

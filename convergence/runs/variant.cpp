@@ -1,0 +1,178 @@
+#include "convergence/runs/variant.hpp"
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <utility>
+#include <variant>
+
+namespace slipstick::convergence {
+namespace {
+
+using solver::Scene;
+using solver::Shape;
+using solver::Surface;
+
+constexpr solver::Index kWiderBy = 4;
+constexpr double kMillimetres = 1e3;
+
+void reverse(solver::TorsionLoad& torsion) {
+  std::visit([](auto& load) { load.value = -load.value; }, torsion);
+}
+
+void mirror(Scene& scene) {
+  for (Surface& surface : scene.surfaces) {
+    surface.at[1] = -surface.at[1];
+    surface.angle = -surface.angle;
+  }
+  for (solver::Step& step : scene.steps) {
+    reverse(step.torsion);
+    step.force[1] = -step.force[1];
+    if (step.displacement) (*step.displacement)[1] = -(*step.displacement)[1];
+  }
+}
+
+std::array<double, 2> turned(const std::array<double, 2>& vector) { return {-vector[1], vector[0]}; }
+
+void turn(Scene& scene) {
+  for (Surface& surface : scene.surfaces) {
+    surface.at = turned(surface.at);
+    surface.angle += std::numbers::pi / 2.0;
+  }
+  for (solver::Step& step : scene.steps) {
+    step.force = turned(step.force);
+    if (step.displacement) step.displacement = turned(*step.displacement);
+  }
+  std::swap(scene.cells[0], scene.cells[1]);
+  if (scene.extent) std::swap((*scene.extent)[0], (*scene.extent)[1]);
+}
+
+void shift(Scene& scene) {
+  if (!scene.extent) throw std::invalid_argument("a shifted scene needs its extent");
+  std::array<double, 2> cell{};
+  for (std::size_t i = 0; i < 2; ++i) {
+    cell[i] = (*scene.extent)[i] / static_cast<double>(scene.cells[i]);
+    scene.cells[i] += 2 * kWiderBy;
+    (*scene.extent)[i] = cell[i] * static_cast<double>(scene.cells[i]);
+  }
+  for (Surface& surface : scene.surfaces) {
+    surface.at[0] += 2.0 * cell[0];
+    surface.at[1] -= cell[1];
+  }
+}
+
+/// Forces stay in N: stresses are in N/mm^2, moments in N mm.
+void measure_in_millimetres(Scene& scene) {
+  constexpr double of_stress = 1.0 / (kMillimetres * kMillimetres);
+  scene.upper.young_modulus *= of_stress;
+  scene.lower.young_modulus *= of_stress;
+  for (Surface& s : scene.surfaces) {
+    for (double* length : {&s.radius, &s.inner_radius, &s.radius_1, &s.radius_2, &s.flat_radius,
+                           &s.corner_radius, &s.spacing[0], &s.spacing[1], &s.roughness.longest,
+                           &s.roughness.shortest, &s.roughness.period, &s.at[0], &s.at[1]}) {
+      *length *= kMillimetres;
+    }
+    s.coefficient *= std::pow(kMillimetres, 1.0 - s.exponent);
+    s.heights *= kMillimetres;
+  }
+  for (solver::Step& step : scene.steps) {
+    if (auto* const moment = std::get_if<solver::Moment>(&step.torsion)) moment->value *= kMillimetres;
+    if (!step.displacement) continue;
+    for (double& along : *step.displacement) along *= kMillimetres;
+  }
+  if (scene.extent) {
+    for (double& side : *scene.extent) side *= kMillimetres;
+  }
+}
+
+/// What turns the upper body forth turns the lower one back.
+void exchange(Scene& scene) {
+  std::swap(scene.upper, scene.lower);
+  for (solver::Step& step : scene.steps) {
+    reverse(step.torsion);
+    for (double& along : step.force) along = -along;
+    if (!step.displacement) continue;
+    for (double& along : *step.displacement) along = -along;
+  }
+}
+
+bool acts_along_the_surface(const Scene& scene) {
+  for (const solver::Step& step : scene.steps) {
+    if (step.displacement || step.force[0] != 0.0 || step.force[1] != 0.0) return true;
+  }
+  return false;
+}
+
+}  // namespace
+
+std::string to_string(Variant variant) {
+  switch (variant) {
+    case Variant::none:
+      return "none";
+    case Variant::mirrored:
+      return "mirrored";
+    case Variant::turned:
+      return "turned";
+    case Variant::shifted:
+      return "shifted";
+    case Variant::in_other_units:
+      return "in_other_units";
+    case Variant::exchanged:
+      return "exchanged";
+    case Variant::two_threads:
+      return "two_threads";
+  }
+  return "";
+}
+
+Variant variant_of(const std::string& word) {
+  if (word == "none") return Variant::none;
+  for (const Variant variant : kVariants) {
+    if (word == to_string(variant)) return variant;
+  }
+  throw std::invalid_argument(word + " is no variant");
+}
+
+std::string why_not(const Scene& scene, Variant variant) {
+  if (variant == Variant::none || variant == Variant::two_threads) return "";
+  if (scene.pressure == solver::PressureModel::file) return "the pressure comes from a file";
+  if (variant == Variant::exchanged) return "";
+  if (variant == Variant::shifted && acts_along_the_surface(scene)) return "moments are about the origin";
+  if (variant == Variant::shifted && scene.pressure != solver::PressureModel::solved) {
+    return "the given pressure stands at the origin";
+  }
+  for (const Surface& surface : scene.surfaces) {
+    const bool drawn = surface.shape == Shape::roughness || surface.shape == Shape::height_map;
+    if (drawn && variant != Variant::in_other_units) return "the surface is drawn or read on its own axes";
+    if (surface.shape == Shape::height_map) return "the surface is read from a file";
+  }
+  return "";
+}
+
+Scene seen_as(Scene scene, Variant variant) {
+  switch (variant) {
+    case Variant::none:
+      break;
+    case Variant::mirrored:
+      mirror(scene);
+      break;
+    case Variant::turned:
+      turn(scene);
+      break;
+    case Variant::shifted:
+      shift(scene);
+      break;
+    case Variant::in_other_units:
+      measure_in_millimetres(scene);
+      break;
+    case Variant::exchanged:
+      exchange(scene);
+      break;
+    case Variant::two_threads:
+      scene.threads = 2;
+      break;
+  }
+  return scene;
+}
+
+}  // namespace slipstick::convergence
