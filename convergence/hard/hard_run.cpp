@@ -22,6 +22,7 @@ struct Trial {
   Json result;
   JudgedCase judged;
   Json variants = Json::object();
+  std::filesystem::path fields = {};
 };
 
 /// Runs whose answers go back to the trials that asked.
@@ -84,9 +85,10 @@ RunSpec seen(const Trial& trial, Variant variant) {
   return spec;
 }
 
-void turn_wrong(Trial& trial, std::string reason) {
-  if (trial.judged.verdict == HardVerdict::wrong) return;
-  trial.judged.verdict = HardVerdict::wrong;
+/// The worse of two verdicts stands, with its reason.
+void judge_too(Trial& trial, HardVerdict verdict, std::string reason) {
+  if (trial.judged.verdict >= verdict) return;
+  trial.judged.verdict = verdict;
   trial.judged.reason = std::move(reason);
 }
 
@@ -108,10 +110,11 @@ void look_otherwise(std::vector<Trial>& trials, const ProcessPool& pool) {
     const double difference =
         status == "converged" ? variant_difference(trial.result, result, spec.variant) : std::nan("");
     set_number(trial.variants, name, difference, status);
-    if (!(difference <= same_answer(trial.result))) {
-      turn_wrong(trial, status == "converged"
-                            ? fmt::format("{} it differs by {:.3g}", name, difference)
-                            : fmt::format("{} it is {}: {}", name, status, result.value("message", "")));
+    if (status != "converged") {
+      const HardVerdict verdict = status == "not_converged" ? HardVerdict::not_converged : HardVerdict::wrong;
+      judge_too(trial, verdict, fmt::format("{} it is {}: {}", name, status, result.value("message", "")));
+    } else if (!(difference <= same_answer(trial.result))) {
+      judge_too(trial, HardVerdict::wrong, fmt::format("{} it differs by {:.3g}", name, difference));
     }
   });
 }
@@ -124,6 +127,14 @@ Json row(const Trial& trial) {
            {"verdict", to_string(trial.judged.verdict)}};
   if (!trial.judged.reason.empty()) row["reason"] = trial.judged.reason;
   row.update(trial.judged.numbers);
+  if (!trial.fields.empty() && trial.result.contains("cells")) {
+    row["fields"] = trial.fields.string();
+    for (const char* key :
+         {"cells", "cell_size", "normal_load", "moment", "moment_limit", "force", "tolerance"}) {
+      row[key] = trial.result.value(key, Json());
+    }
+    row["rounding"] = trial.result["certificate"].value("rounding", Json());
+  }
   if (!trial.variants.empty()) row["variants"] = trial.variants;
   return row;
 }
@@ -147,7 +158,8 @@ Json run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& optio
   for (std::size_t i = 0; i < cases.size(); ++i) {
     trials[i].hard = &cases[i];
     RunSpec spec = cases[i].run;
-    if (!options.fields.empty()) spec.fields = options.fields / fmt::format("{:05}.csv", i);
+    if (!options.fields.empty()) trials[i].fields = options.fields / fmt::format("{:05}.csv", i);
+    spec.fields = trials[i].fields;
     first.add(trials[i], std::move(spec));
   }
   first.run(pool, [](Trial& trial, const RunSpec& spec, const Json& result) {

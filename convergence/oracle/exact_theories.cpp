@@ -267,7 +267,7 @@ class ForceHistory final : public ExactHistory {
     oracle.stick_radius = state.stick_radius * a;
     oracle.state.stick_ratio = state.stick_radius / state.contact_radius;
     oracle.dissipated = (state.dissipated - dissipated_) * unit * length;
-    dissipated_ = state.dissipated;
+    dissipated_ = history_.state().dissipated;
     oracle.direction = direction_;
     oracle.shear = [scale = indentation_.friction() * reference_.reference_pressure, history = history_,
                     a](double radius) { return scale * history.traction(radius / a); };

@@ -64,6 +64,15 @@ TEST_F(ProcessPoolTest, GivesWhatSolveGives) {
   }
 }
 
+TEST_F(ProcessPoolTest, ARefusedRunHasNoFieldsAndSaysWhy) {
+  const RunSpec spec{
+      .scene = kPaper, .overrides = {kCells, "grid.extent=[1e-4,1e-4]"}, .fields = folder_ / "none.csv"};
+  const Json refused = ProcessPool(options()).run(spec);
+  EXPECT_EQ(refused["status"], "refused");
+  EXPECT_THAT(refused["message"].get<std::string>(), testing::HasSubstr("grid.extent"));
+  EXPECT_FALSE(fs::exists(spec.fields));
+}
+
 TEST_F(ProcessPoolTest, ARunWithoutItsFieldsIsNotFinished) {
   RunSpec spec{.scene = kPaper, .overrides = {kCells}, .fields = folder_ / "fields.h5", .profile = true};
   const ProcessPool pool(options());
