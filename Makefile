@@ -7,13 +7,14 @@ BENCH_OPTIONS ?=
 REV ?= origin/main
 GATE_OPTIONS ?=
 SEARCH_OPTIONS ?=
+HARD_OPTIONS ?=
 SANITIZE ?=
 LINT_SINCE ?=
 # How many instructions a solve takes is gated where it is known of this compiler.
 INSTRUCTION_GATES = $(wildcard bench/gates/instructions-gcc-$(firstword $(subst ., ,$(shell c++ -dumpversion))).toml)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup configure build report test gate sanitize lint bench bench-against bench-trust references hardest \
+.PHONY: help setup configure build report test gate hard sanitize lint bench bench-against bench-trust references hardest \
   install clean
 
 help: ## show this list
@@ -50,6 +51,13 @@ gate: configure ## check the numbers that README.md promises, and counts of work
 	@$(BUILD)/bench/slipstick_work --instructions --json $(BUILD)/gates/work.json
 	@$(BUILD)/slipstick gate convergence/gates/quick.toml bench/gates/work.toml $(INSTRUCTION_GATES) --results $(BUILD)/gates \
 	  --output $(BUILD)/gates $(GATE_OPTIONS)
+
+hard: configure ## solve 600 hard scenes, each in several views; audit every one of them with NumPy (2 minutes)
+	$(call build,slipstick)
+	@python="$$(sed -n 's/^SLIPSTICK_PYTHON:[A-Z]*=//p' $(BUILD)/CMakeCache.txt)"; status=0; \
+	  $(BUILD)/slipstick hard convergence/hard/*.toml --output $(BUILD)/hard --fields $(BUILD)/hard/fields \
+	    --json $(BUILD)/hard/hard.json $(HARD_OPTIONS) || status=$$?; \
+	  [ $$status -gt 1 ] || "$$python" convergence/hard/audit.py $(BUILD)/hard/hard.json || status=1; exit $$status
 
 sanitize: setup ## run every test under the address and undefined-behaviour sanitizers (a part: SANITIZE="operators analytic")
 	@test -f build-asan-ubsan/build.ninja || cmake --preset asan-ubsan

@@ -174,6 +174,17 @@ class Results(unittest.TestCase):
         for file, twist, code in (("contact", 2.361048651456917e-3, 0), ("cgcontact", 2.21775472e-3, 1)):
             self.run_and_check("check", SCENES / "paper.toml", FIELDS / f"{file}-64-0.9.csv", *words, twist, code=code)
 
+    def test_hard(self):
+        family = (
+            '[[family]]\nname = "small"\nwhy = "made up"\nscene = "{}"\n[family.set]\ngrid.cells = [12, 12]\n'
+            '[[family.vary]]\nkey = "solver.max_iterations"\nvalues = [1, 1000]\n'
+            '[[family.vary]]\nkey = "load.moment_ratio"\nvalues = [0.5, 2.0]\n'
+        )
+        scenes = [SCENES / "paper.toml", SCENES / "spence.toml", SCENES / "rough_sphere.toml"]
+        files = [self.file(f"{scene.stem}-hard.toml", family.format(scene)) for scene in scenes]
+        self.run_and_check("hard", *files, "--output", self.folder / "hard", code=1)
+        self.run_and_check("hard", files[0], "--once", "--fields", self.folder / "fields", code=1)
+
     def test_study(self):
         self.run_and_check("study", self.file("study.toml", STUDY), "--output", self.folder / "study")
         scene = STUDY.replace("paper.toml", "ellipse.toml").replace("[8, 12, 16]", "[8, 12]")

@@ -79,9 +79,12 @@ JudgedCase judge_alone(const Json& result) {
   if (status == "refused") return {HardVerdict::wrong, "refused without a reason", Json::object()};
   if (status == "failed") return {HardVerdict::wrong, "it died: " + message, Json::object()};
   Json numbers;
-  for (const char* key : {"operator_applications", "pressure_applications"})
-    numbers[key] = result.value(key, Json());
-  numbers["seconds"] = result.contains("seconds") ? result["seconds"]["total"] : Json();
+  for (const char* key :
+       {"operator_applications", "pressure_applications", "seconds.total", "slip_direction.max"}) {
+    std::string path = std::string("/") + key;
+    std::replace(path.begin(), path.end(), '.', '/');
+    set_number(numbers, key, number(result, path.c_str()), "the result has none");
+  }
   if (status != "converged") return {HardVerdict::not_converged, message, numbers};
 
   const double error = exact_error(result);
@@ -89,7 +92,7 @@ JudgedCase judge_alone(const Json& result) {
   const double uncertainty = std::isnan(said) ? kAnything : std::max(said, kLeastUncertainty);
   set_number(numbers, "error", error, "no exact answer is known");
   set_number(numbers, "uncertainty", uncertainty, "the result states none");
-  set_number(numbers, "gap", number(result, "/certificate/gap"), "none");
+  set_number(numbers, "certificate.gap", number(result, "/certificate/gap"), "the result has none");
   if (const std::string broken = broken_promise(result); !broken.empty()) {
     return {HardVerdict::wrong, broken, numbers};
   }

@@ -127,13 +127,13 @@ Json row(const Trial& trial) {
            {"verdict", to_string(trial.judged.verdict)}};
   if (!trial.judged.reason.empty()) row["reason"] = trial.judged.reason;
   row.update(trial.judged.numbers);
-  if (!trial.fields.empty() && trial.result.contains("cells")) {
-    row["fields"] = trial.fields.string();
+  if (!trial.fields.empty() && trial.result.value("status", "") == "converged") {
+    Json& written = row["written"] = {{"fields", trial.fields.string()}};
     for (const char* key :
          {"cells", "cell_size", "normal_load", "moment", "moment_limit", "force", "tolerance"}) {
-      row[key] = trial.result.value(key, Json());
+      written[key] = trial.result[key];
     }
-    row["rounding"] = trial.result["certificate"].value("rounding", Json());
+    written["certificate.rounding"] = trial.result["certificate"]["rounding"];
   }
   if (!trial.variants.empty()) row["variants"] = trial.variants;
   return row;

@@ -1,0 +1,175 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <set>
+
+#include "convergence/hard/hard_case.hpp"
+#include "convergence/hard/hard_judgement.hpp"
+#include "convergence/programs/run_program.hpp"
+#include "convergence/runs/variant.hpp"
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::ElementsAre;
+using testing::HasSubstr;
+using testing::ThrowsMessage;
+
+class HardFile : public testing::Test {
+ protected:
+  HardFile() { fs::create_directories(folder_); }
+  ~HardFile() override { fs::remove_all(folder_); }
+
+  fs::path write(const std::string& families) const {
+    fs::path file = folder_ / "families.toml";
+    std::ofstream(file) << families;
+    return file;
+  }
+  static std::string family(const std::string& rest) {
+    return "[[family]]\nname = 'small'\nwhy = 'made up'\nscene = '" SLIPSTICK_SCENES "/paper.toml'\n" + rest;
+  }
+
+  fs::path folder_ = fs::path(testing::TempDir()) / ("slipstick-hard-" + std::to_string(getpid()));
+};
+
+TEST_F(HardFile, VariesItsKeysInAllCombinations) {
+  const auto cases = read_hard_cases(write(family(
+      "[family.set]\n\"grid.cells\" = [8, 8]\n"
+      "[[family.vary]]\nkey = 'contact.friction'\nvalues = [0.1, 0.2]\n"
+      "[[family.vary]]\nkey = 'solver.method'\nvalues = ['coulomb', 'paper', 'projected_gradient']\n")));
+  ASSERT_EQ(cases.size(), 6U);
+  std::set<std::string> names;
+  for (const HardCase& made : cases) names.insert(made.name);
+  EXPECT_EQ(names.size(), 6U);
+  EXPECT_THAT(cases[1].run.overrides,
+              ElementsAre(HasSubstr("grid.cells"), HasSubstr("contact.friction=0.1"), HasSubstr("paper")));
+}
+
+TEST_F(HardFile, NamesWhatIsWrong) {
+  const auto refused = [&](const std::string& text, const auto& message) {
+    const fs::path file = write(text);
+    EXPECT_THAT([&] { read_hard_cases(file); }, ThrowsMessage<solver::InputError>(message)) << text;
+  };
+  refused("", AllOf(HasSubstr("families.toml"), HasSubstr("[[family]]")));
+  refused("[[family]]\nname = 'a'\n", HasSubstr("why"));
+  refused(family("[[family.vary]]\nkey = 'a'\nvalues = []\n"), HasSubstr("values"));
+  refused(family("speed = 3\n"), HasSubstr("speed"));
+}
+
+solver::Scene scene_of(const std::string& name) {
+  return solver::read_scene(std::string(SLIPSTICK_SCENES) + "/" + name + ".toml");
+}
+
+// A mirror twice and the other side twice are the first view; so are four quarter turns, but for a full
+// angle.
+TEST(Variant, ComesBack) {
+  for (const char* name : {"turned_ellipse", "torsion_and_force", "off_centre", "imposed_displacement"}) {
+    const solver::Scene scene = scene_of(name);
+    for (const auto& [variant, times] :
+         {std::pair{Variant::mirrored, 2}, {Variant::exchanged, 2}, {Variant::turned, 4}}) {
+      solver::Scene seen = scene;
+      for (int i = 0; i < times; ++i) seen = seen_as(seen, variant);
+      const double angle = seen.surfaces[0].angle - scene.surfaces[0].angle;
+      EXPECT_NEAR(std::remainder(angle, 2.0 * std::numbers::pi), 0.0, 1e-14) << name;
+      EXPECT_EQ(seen.surfaces[0].at, scene.surfaces[0].at) << name;
+      EXPECT_EQ(seen.steps[0].force, scene.steps[0].force) << name;
+      EXPECT_EQ(seen.steps[0].displacement, scene.steps[0].displacement) << name;
+      EXPECT_EQ(seen.cells, scene.cells) << name;
+      EXPECT_EQ(seen.upper.young_modulus, scene.upper.young_modulus) << name;
+    }
+  }
+}
+
+TEST(Variant, IsRefusedWhereItWouldBeAnotherContact) {
+  EXPECT_NE(why_not(scene_of("rough_sphere"), Variant::turned), "");
+  EXPECT_EQ(why_not(scene_of("rough_sphere"), Variant::exchanged), "");
+  EXPECT_NE(why_not(scene_of("mindlin"), Variant::shifted), "");
+  EXPECT_EQ(why_not(scene_of("paper"), Variant::shifted), "");
+  EXPECT_THROW(seen_as(scene_of("paper"), Variant::shifted), std::invalid_argument);  // without its extent
+  EXPECT_THROW(variant_of("upside_down"), std::invalid_argument);
+}
+
+Json made_result(double error, double uncertainty, double gap = 1e-9) {
+  return {{"status", "converged"},
+          {"method", "coulomb"},
+          {"tolerance", 1e-8},
+          {"twist_error", error},
+          {"resolved", {{"uncertainty", uncertainty}}},
+          {"certificate",
+           {{"gap", gap}, {"rounding", 1e-14}, {"moment", 1e-15}, {"force", 0.0}, {"friction_bound", -1.0}}}};
+}
+
+TEST(HardJudgement, BelievesAnAnswerWithinWhatItSays) {
+  EXPECT_EQ(judge_alone(made_result(0.009, 0.01)).verdict, HardVerdict::certified);
+  EXPECT_EQ(judge_alone(made_result(-0.009, 0.01)).verdict, HardVerdict::certified);
+  for (const double error : {0.011, -0.011}) {
+    const JudgedCase judged = judge_alone(made_result(error, 0.01));
+    EXPECT_EQ(judged.verdict, HardVerdict::wrong);
+    EXPECT_THAT(judged.reason, AllOf(HasSubstr("0.011"), HasSubstr("0.01")));
+  }
+}
+
+TEST(HardJudgement, HoldsACertificateToItsPromise) {
+  EXPECT_EQ(judge_alone(made_result(0.0, 0.01, 2e-8)).verdict, HardVerdict::wrong);
+  Json result = made_result(0.0, 0.01, 2e-8);
+  result["certificate"]["rounding"] = 3e-8;  // no gap below can be computed
+  EXPECT_EQ(judge_alone(result).verdict, HardVerdict::certified);
+  for (const char* member : {"gap", "moment", "force", "friction_bound"}) {
+    for (const Json& bad : {Json(1e-6), Json()}) {
+      result = made_result(0.0, 0.01);
+      result["certificate"][member] = bad;
+      EXPECT_EQ(judge_alone(result).verdict, HardVerdict::wrong) << member << bad;
+    }
+  }
+}
+
+TEST(HardJudgement, TellsRefusedFromNotConvergedFromDead) {
+  EXPECT_EQ(judge_alone({{"status", "refused"}, {"message", "beyond the limit"}}).verdict,
+            HardVerdict::refused);
+  EXPECT_EQ(judge_alone({{"status", "refused"}, {"message", ""}}).verdict, HardVerdict::wrong);
+  EXPECT_EQ(judge_alone({{"status", "failed"}, {"message", "signal 9"}}).verdict, HardVerdict::wrong);
+  EXPECT_EQ(judge_alone({{"status", "not_converged"}, {"message", "rounding"}}).verdict,
+            HardVerdict::not_converged);
+}
+
+TEST(HardJudgement, ComparesSignsAndUnits) {
+  const Json first{{"twist_angle", 1e-3}, {"moment", 0.02}, {"moment_limit", 0.03}, {"contact_radius", 5e-4}};
+  Json seen = first;
+  EXPECT_EQ(variant_difference(first, seen, Variant::turned), 0.0);
+  EXPECT_EQ(variant_difference(first, seen, Variant::mirrored), 2.0);
+  seen["twist_angle"] = -1e-3;
+  seen["moment"] = -0.02;
+  EXPECT_EQ(variant_difference(first, seen, Variant::mirrored), 0.0);
+  seen = {{"twist_angle", 1e-3}, {"moment", 20.0}, {"moment_limit", 30.0}, {"contact_radius", 0.5}};
+  EXPECT_LE(variant_difference(first, seen, Variant::in_other_units), 1e-15);
+  seen["moment"] = nullptr;
+  EXPECT_TRUE(std::isnan(variant_difference(first, seen, Variant::in_other_units)));
+}
+
+TEST_F(HardFile, ProgramJudgesEachCaseAndItsViews) {
+  const fs::path file = write(family("[family.set]\n\"grid.cells\" = [12, 12]\n"
+                                     "[[family.vary]]\nkey = 'load.moment_ratio'\nvalues = [0.5, 2.0]\n") +
+                              family("[[family.vary]]\nkey = 'solver.max_iterations'\nvalues = [1]\n"));
+  const ProgramEnd end =
+      run_program({SLIPSTICK_PROGRAM, "hard", file, "--output", folder_ / "kept", "--json", "-", "--quiet"},
+                  {.captured = Captured::output});
+  EXPECT_EQ(end.code, 1);
+  const Json result = Json::parse(end.output);
+  EXPECT_EQ(result["counts"], Json({{"certified", 1}, {"refused", 1}, {"not_converged", 1}, {"wrong", 0}}));
+  const Json& views = result["rows"][0]["variants"];
+  for (const Variant variant : kVariants) EXPECT_LE(views[to_string(variant)], 1e-10) << to_string(variant);
+  EXPECT_THAT(result["rows"][1]["reason"].get<std::string>(), HasSubstr("gross slip"));
+}
+
+}  // namespace
+}  // namespace slipstick::convergence
