@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include "analytic/indentation.hpp"
@@ -90,6 +91,42 @@ TEST(Comparison, OfABodyOffTheOrigin) {
         EXPECT_NEAR(there.traction[component + to], here.traction[component + from],
                     1e-11 * here.traction.maxCoeff());
       }
+    }
+  }
+}
+
+/// A solution that is the exact one but for a part of one number shows that part, along either axis.
+TEST(Comparison, SeesEachComponentOfADisplacement) {
+  const solver::Scene mindlin = scene("/mindlin.toml", {"grid.cells=[24,24]", "load.force=[30.0, 40.0]"});
+  const Oracle oracle = *find_oracle(mindlin).oracle;
+  solver::Solution solution = solver::solve(mindlin);
+  solution.displacement = oracle.displacement;
+  EXPECT_EQ(compare(solution, oracle).displacement, 0.0);
+  const double length = std::hypot(oracle.displacement[0], oracle.displacement[1]);
+  for (const std::size_t along : {0, 1}) {
+    solution.displacement = oracle.displacement;
+    solution.displacement[along] += 1e-3 * length;
+    EXPECT_NEAR(compare(solution, oracle).displacement, 1e-3, 1e-12) << along;
+  }
+}
+
+/// A cell that is no number is the worst of all, wherever it stands.
+TEST(Comparison, ANumberThatIsNoneIsNotSkipped) {
+  const solver::Scene paper = scene("/paper.toml", {"grid.cells=[16,16]"});
+  const Oracle oracle = *find_oracle(paper).oracle;
+  const solver::Solution solution = solver::solve(paper);
+  for (const Eigen::Index cell : {8 * 16 + 8, 4 * 16 + 8, 8 * 16 + 12}) {
+    solver::Solution bad = solution;
+    bad.pressure[cell] = std::numeric_limits<double>::quiet_NaN();
+    const FieldError pressure = compare(bad, oracle).pressure;
+    for (const double error : {pressure.l1, pressure.l2, pressure.max})
+      EXPECT_TRUE(std::isnan(error)) << cell;
+    for (const Eigen::Index component : {0, 256}) {
+      bad = solution;
+      bad.traction[component + cell] = std::numeric_limits<double>::quiet_NaN();
+      const TractionError traction = compare(bad, oracle).traction;
+      EXPECT_TRUE(std::isnan(traction.at_centres.max)) << cell;
+      EXPECT_TRUE(std::isnan(traction.averaged.max)) << cell;
     }
   }
 }

@@ -44,6 +44,45 @@ std::vector<std::string> paths(const Json& result) {
   return found;
 }
 
+/// Whatever an answer depends on is in its key, so that no stale one is taken: the text of the scene and of
+/// each file that it reads, what is changed, how it is rounded and seen, what is asked for beside the result.
+TEST_F(ProcessPoolTest, AKeyHoldsAllThatAnAnswerDependsOn) {
+  const fs::path heights = folder_ / "heights.csv";
+  const fs::path scene = folder_ / "map.toml";
+  const auto write = [](const fs::path& file, const std::string& text) { std::ofstream(file) << text; };
+  const std::string flat = "0,0,0\n0,0,0\n0,0,";
+  write(heights, flat + "0\n");
+  const std::string body =
+      "name='map'\n[upper]\nshape='height_map'\nfile='heights.csv'\nspacing=[1e-5,1e-5]\nunit='um'\n"
+      "ends_at_grid_edge=true\nyoung_modulus=210e9\npoisson_ratio=0.3\n[lower]\nyoung_modulus=210e9\n"
+      "poisson_ratio=0.3\n[contact]\nfriction=0.1\n[load]\nnormal=10.0\nmoment_ratio=0.5\n";
+  write(scene, body);
+  const RunSpec spec{.scene = scene};
+  const std::string key = prepare_run(spec).cache_key;
+  EXPECT_EQ(prepare_run(spec).cache_key, key);
+  RunSpec other = spec;
+  other.overrides = {"contact.friction=0.2"};
+  EXPECT_NE(prepare_run(other).cache_key, key);
+  other = spec;
+  other.rounding = Rounding::upward;
+  EXPECT_NE(prepare_run(other).cache_key, key);
+  other = spec;
+  other.variant = Variant::exchanged;
+  EXPECT_NE(prepare_run(other).cache_key, key);
+  other = spec;
+  other.fields = folder_ / "fields.csv";
+  EXPECT_NE(prepare_run(other).cache_key, key);
+  other = spec;
+  other.profile = true;
+  EXPECT_NE(prepare_run(other).cache_key, key);
+  write(heights, flat + "0.001\n");
+  EXPECT_NE(prepare_run(spec).cache_key, key) << "the heights are other ones";
+  write(heights, flat + "0\n");
+  EXPECT_EQ(prepare_run(spec).cache_key, key);
+  write(scene, body + "# another text\n");
+  EXPECT_NE(prepare_run(spec).cache_key, key);
+}
+
 /// There is one way to solve a scene. What it asks for decides whether its result has steps, not how far the
 /// solve came.
 TEST_F(ProcessPoolTest, GivesWhatSolveGives) {

@@ -199,6 +199,16 @@ TEST(Budget, IsNotKnownWhereAPartIsMissing) {
   EXPECT_TRUE(std::isnan(without.rounding));
 }
 
+// Rounding up and down lean to either side: what it does is the larger of the two.
+TEST(Budget, TakesTheLargerOfTwoRoundings) {
+  const auto rounding = [](double up, double down) {
+    return split_error(kTwist, solved(1e-3), solved(0.9e-3), {solved(0.9e-3 + up), solved(0.9e-3 + down)})
+        .rounding;
+  };
+  EXPECT_NEAR(rounding(1e-9, -4e-9), 4e-9, 1e-18);
+  EXPECT_NEAR(rounding(-4e-9, 1e-9), 4e-9, 1e-18);
+}
+
 TEST(FailedRunsTest, CountsARunOnceAndKeepsTheFirst) {
   FailedRuns failed;
   failed.add("a", solved(1.0));
