@@ -37,7 +37,7 @@ std::vector<HardCase> read_family(SceneReader& reader, const std::string& at) {
   HardCase base;
   base.family = reader.text(at + "name");
   base.why = reader.text(at + "why");
-  base.run.scene = reader.path(at + "scene");
+  base.run.scene = reader.path(at + "scene").lexically_normal();
   base.run.overrides = reader.assignments(at + "set");
   std::vector<HardCase> cases{base};
   const std::size_t keys = reader.count(at + "vary");

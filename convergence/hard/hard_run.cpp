@@ -25,8 +25,8 @@ struct Trial {
   std::filesystem::path fields = {};
 };
 
-/// Runs whose answers go back to the trials that asked.
-class Errands {
+/// Runs whose answers go back to the trials that asked for them.
+class Batch {
  public:
   void add(Trial& trial, RunSpec spec) {
     try {
@@ -61,12 +61,12 @@ class Errands {
   std::vector<Refused> refused_;
 };
 
-/// The grid of a result, written out, with so many times its cells.
-std::vector<std::string> grid_of(const Json& result, int times) {
+/// The grid of a result, written out.
+std::vector<std::string> grid_of(const Json& result) {
   const auto cells = result["cells"].get<std::array<int, 2>>();
   const auto size = result["cell_size"].get<std::array<double, 2>>();
   return {fmt::format("grid.extent=[{:.17g},{:.17g}]", size[0] * cells[0], size[1] * cells[1]),
-          fmt::format("grid.cells=[{},{}]", times * cells[0], times * cells[1])};
+          fmt::format("grid.cells=[{},{}]", cells[0], cells[1])};
 }
 
 bool has_given_grid(const solver::Scene& scene) {
@@ -81,7 +81,7 @@ RunSpec seen(const Trial& trial, Variant variant) {
   spec.fields.clear();
   spec.variant = variant;
   if (has_given_grid(*trial.scene)) return spec;
-  for (std::string& key : grid_of(trial.result, 1)) spec.overrides.push_back(std::move(key));
+  for (std::string& key : grid_of(trial.result)) spec.overrides.push_back(std::move(key));
   return spec;
 }
 
@@ -92,19 +92,19 @@ void judge_too(Trial& trial, HardVerdict verdict, std::string reason) {
   trial.judged.reason = std::move(reason);
 }
 
-void look_otherwise(std::vector<Trial>& trials, const ProcessPool& pool) {
-  Errands errands;
+void judge_variants(std::vector<Trial>& trials, const ProcessPool& pool) {
+  Batch batch;
   for (Trial& trial : trials) {
     if (trial.judged.verdict != HardVerdict::certified) continue;
     for (const Variant variant : kVariants) {
       if (const std::string reason = why_not(*trial.scene, variant); !reason.empty()) {
         set_missing(trial.variants, to_string(variant), reason);
       } else {
-        errands.add(trial, seen(trial, variant));
+        batch.add(trial, seen(trial, variant));
       }
     }
   }
-  errands.run(pool, [](Trial& trial, const RunSpec& spec, const Json& result) {
+  batch.run(pool, [](Trial& trial, const RunSpec& spec, const Json& result) {
     const std::string name = to_string(spec.variant);
     const std::string status = result["status"];
     const double difference =
@@ -154,7 +154,7 @@ Json counts(const std::vector<Trial>& trials, const std::string& family) {
 
 Json run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& options, const ProcessPool& pool) {
   std::vector<Trial> trials(cases.size());
-  Errands first;
+  Batch first;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     trials[i].hard = &cases[i];
     RunSpec spec = cases[i].run;
@@ -169,7 +169,7 @@ Json run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& optio
       trial.scene = solver::read_scene(spec.scene, spec.overrides);
     }
   });
-  if (options.variants) look_otherwise(trials, pool);
+  if (options.variants) judge_variants(trials, pool);
 
   Json json{{"counts", counts(trials, "")}, {"families", Json::object()}, {"rows", Json::array()}};
   for (const Trial& trial : trials) {
