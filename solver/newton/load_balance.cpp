@@ -13,14 +13,15 @@ constexpr double kLoadRounding = 1e-14;
 /// Where rounding allows no better.
 constexpr double kPoorRounding = 1e-12;
 constexpr int kBracketIterations = 60;
-constexpr int kNewtonIterations = 100;
+constexpr int kNewtonIterations = 200;
 /// Parts of the majorant.
 constexpr double kMinDamping = 1e-12;
 constexpr double kMoreDamping = 100.0;
 /// Of a step, over the size of the field.
 constexpr double kMaxStride = 2.0;
-/// A step is good that halves what is missing, or brings this part of the decrease that its slope promises.
-constexpr double kGoodReduction = 0.5;
+/// A step is good that takes a twentieth off what is missing, or brings this part of the decrease that its
+/// slope promises. Next to the limit Newton's steps take off a quarter, and the decrease is lost in rounding.
+constexpr double kGoodReduction = 0.95;
 constexpr double kArmijo = 1e-4;
 
 }  // namespace
