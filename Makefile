@@ -70,7 +70,8 @@ lint: setup ## check format and clang-tidy's rules, 14 or later (of what changed
 	@test -f build-dev/build.ninja || cmake --preset dev
 	@cmake --build build-dev --target slipstick_commit
 	@git $(if $(LINT_SINCE),diff --name-only --diff-filter=d $(LINT_SINCE),ls-files) -- '*.cpp' \
-	  | xargs --no-run-if-empty -n 4 -P $$(nproc) clang-tidy -p build-dev --quiet
+	  | xargs --no-run-if-empty -n 4 -P $$(nproc) clang-tidy -p build-dev --quiet \
+	  --extra-arg=-Wno-unused-command-line-argument
 
 bench: configure ## time everything beside the error that it buys, and draw it
 	$(call build,slipstick slipstick_benchmarks)

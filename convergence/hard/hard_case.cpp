@@ -26,8 +26,9 @@ std::vector<HardCase> varied(const std::vector<HardCase>& cases, const std::stri
   for (const HardCase& made : cases) {
     for (const std::string& value : values) {
       HardCase& one = all.emplace_back(made);
-      one.name += (one.name.empty() ? "" : "-") + unquoted(value);
-      one.run.overrides.push_back(key + "=" + value);
+      if (!one.name.empty()) one.name += "-";
+      one.name += unquoted(value);
+      one.run.overrides.push_back(fmt::format("{}={}", key, value));
     }
   }
   return all;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <nlohmann/json.hpp>
 
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/results/result_parts.hpp"

@@ -48,7 +48,7 @@ FullQr full_qr(const CoefficientMatrix& matrix) {
 // missing.
 Coefficients least_solution(const CoefficientMatrix& matrix, const Coefficients& right) {
   const Eigen::Index n = matrix.cols();
-  const Coefficients unknown = Coefficients::Constant(n, std::numeric_limits<double>::quiet_NaN());
+  Coefficients unknown = Coefficients::Constant(n, std::numeric_limits<double>::quiet_NaN());
   const double largest = matrix.size() > 0 ? matrix.cwiseAbs().maxCoeff() : 0.0;
   // GSL would end the program.
   if (!matrix.allFinite()) return unknown;

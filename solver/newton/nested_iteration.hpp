@@ -6,6 +6,7 @@
 
 #include "solver/grid/grid_transfer.hpp"
 #include "solver/newton/natural_map_newton.hpp"
+#include "solver/operator/elasticity.hpp"
 
 namespace slipstick::solver {
 
