@@ -1,0 +1,191 @@
+// Fields with one thing wrong.
+
+#include "convergence/check/check.hpp"
+
+#include <fmt/ranges.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <ostream>
+
+#include "convergence/check/tests/checked_field.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/input/tests/complaint.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+// Loads of 32 to 64 cells across, where a mesh accounts for more.
+struct Coarse {
+  const char* scene;
+  int cells;
+  double ratio;
+};
+void PrintTo(const Coarse& coarse, std::ostream* stream) {
+  *stream << coarse.scene << ", " << coarse.cells << " cells, " << coarse.ratio << " of the limit";
+}
+
+class CheckCoarseBadField : public testing::TestWithParam<Coarse> {
+ protected:
+  std::vector<std::string> load(double factor = 1.0) const {
+    return {fmt::format("load.moment_ratio={}", GetParam().ratio * factor)};
+  }
+  solver::Scene scene_ = scene_of(GetParam().scene, GetParam().cells, load());
+  solver::Solution solution_ = solver::solve(scene_);
+  FieldRows rows_ = rows_of(solution_);
+};
+
+TEST_P(CheckCoarseBadField, MomentOnePercentOff) {
+  for (const double factor : {0.99, 1.01}) {
+    const Json result = find_bad(solved(scene_of(GetParam().scene, GetParam().cells, load(factor))), scene_,
+                                 HasSubstr("the moment is"));
+    EXPECT_TRUE(result["discrete"]["holds"].get<bool>());
+    EXPECT_THAT(why(result), HasSubstr("it solves its own grid's problem"));
+  }
+}
+
+TEST_P(CheckCoarseBadField, NormalLoadOnePercentOff) {
+  find_bad(with_stresses_times(rows_, 0.99), scene_, HasSubstr("the normal load is 1 % too low"));
+}
+
+TEST_P(CheckCoarseBadField, StoppedAtAGapOfOnePercent) {
+  solver::Solution stopped;
+  // A last step may take it further than was asked for.
+  for (const char* tolerance : {"1e-2", "2e-2", "4e-2", "8e-2"}) {
+    stopped = solver::solve(scene_of(
+        GetParam().scene, GetParam().cells,
+        {load()[0], "solver.method=projected_gradient", fmt::format("solver.tolerance={}", tolerance)}));
+    if (stopped.certificate.gap >= 3e-3) break;
+  }
+  ASSERT_GE(stopped.certificate.gap, 3e-3);
+  find_bad(rows_of(stopped), scene_, HasSubstr("an iteration stops too early"));
+}
+
+// The moment is as it should be, and so is every cell's bound. |q|/p tells.
+TEST_P(CheckCoarseBadField, FrictionTwoPercentLowUnderTheSameMoment) {
+  find_bad(solved(scene_of(GetParam().scene, GetParam().cells,
+                           {fmt::format("load.moment={}", solution_.moment), "contact.friction=0.098"})),
+           scene_,
+           AllOf(HasSubstr("the moment is right"), HasSubstr("|q|/p in the slip ring is 2 % too low"),
+                 HasSubstr("friction coefficient of 0.098 in place of 0.1")));
+}
+
+TEST_P(CheckCoarseBadField, OneQuadrantTwoPercentLow) {
+  find_bad(changed(rows_,
+                   [](FieldRow& r) {
+                     const double factor = r[0] > 0.0 && r[1] > 0.0 ? 0.98 : 1.0;
+                     r[3] *= factor, r[4] *= factor;
+                   }),
+           scene_, testing::_);
+}
+
+// The twist that is wrong is that which was given, and no sentence calls it right.
+TEST_P(CheckCoarseBadField, TwistOnePercentHigh) {
+  find_bad(rows_, scene_,
+           AllOf(HasSubstr("the twist is 1 % too high"), HasSubstr("not that of these tractions"),
+                 Not(HasSubstr("the twist is right"))),
+           1.01 * solution_.twist_angle);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, CheckCoarseBadField,
+                         testing::Values(Coarse{"paper", 64, 0.3}, Coarse{"paper", 32, 0.6},
+                                         Coarse{"ellipse", 64, 0.3}, Coarse{"cone", 32, 0.6}));
+
+class CheckBadField : public testing::Test {
+ protected:
+  solver::Scene scene_ = scene_of("paper", 48);
+  solver::Solution solution_ = solver::solve(scene_);
+  FieldRows rows_ = rows_of(solution_);
+};
+
+TEST_F(CheckBadField, AnotherFrictionCoefficient) {
+  find_bad(
+      with_tractions_times(rows_, 0.95), scene_,
+      AllOf(HasSubstr("moment is 5 % too low"), HasSubstr("friction coefficient of 0.095 in place of 0.1")));
+  for (const double factor : {1.05, 1.2}) {  // the second beyond what friction can carry
+    const Json result =
+        find_bad(with_tractions_times(rows_, factor), scene_,
+                 AllOf(HasSubstr("|q| exceeds mu p"),
+                       HasSubstr(fmt::format("friction coefficient of {:.4g}", 0.1 * factor))));
+    // Displacements and the twist that fits them grow with the tractions.
+    EXPECT_NEAR(result["twist_angle"].get<double>() / solution_.twist_angle, factor, 1e-3);
+  }
+}
+
+TEST_F(CheckBadField, OneCellBeyondFriction) {
+  FieldRows rows = rows_;
+  for (const std::size_t c : {3, 4}) rows[100][c] *= 1.01;
+  find_bad(rows, scene_, HasSubstr("|q| exceeds mu p by 1 %"));
+}
+
+// The normal contact's tolerance decides whether such a cell touches at all.
+TEST_F(CheckBadField, NotACellThatCarriesNextToNothing) {
+  FieldRows rows = rows_;
+  const double tiny = 1e-9 * rows[rows.size() / 2 + 15][2];
+  rows.push_back({rows[0][0], -rows[0][1] + (rows[1][1] - rows[0][1]), tiny, 0.0, 0.5 * tiny});
+  find_good(rows, scene_);
+}
+
+TEST_F(CheckBadField, TractionsTurnedByFiveDegrees) {
+  const double cosine = std::cos(5.0 * std::numbers::pi / 180.0);
+  const double sine = std::sin(5.0 * std::numbers::pi / 180.0);
+  find_bad(changed(rows_,
+                   [=](FieldRow& r) {
+                     r = {r[0], r[1], r[2], cosine * r[3] - sine * r[4], sine * r[3] + cosine * r[4]};
+                   }),
+           scene_, AllOf(HasSubstr("slip is not opposed to traction"), Not(HasSubstr("K12"))));
+}
+
+TEST_F(CheckBadField, LoadAndPressure) {
+  find_bad(with_stresses_times(rows_, 0.95), scene_, HasSubstr("the normal load is 5 % too low"));
+  solver::Scene scene = scene_;
+  scene.steps.front().torsion = solver::MomentRatio{0.85};
+  find_bad(rows_, scene, HasSubstr("the moment is 5.9 % too high"));
+}
+
+TEST_F(CheckBadField, Twists) {
+  const double twist = solution_.twist_angle;
+  find_bad(rows_, scene_, AllOf(HasSubstr("twist is 50 % too low"), HasSubstr("one body only")), 0.5 * twist);
+  find_bad(rows_, scene_, HasSubstr("twice the compliance"), 2.0 * twist);
+  find_bad(rows_, scene_, HasSubstr("degrees"), twist * 180.0 / std::numbers::pi);
+  find_bad(rows_, scene_, AllOf(HasSubstr("twist is 3 % too high"), HasSubstr("not that of these tractions")),
+           1.03 * twist);
+  EXPECT_EQ(check_rows(rows_, scene_, -twist)["verdict"], "good");  // a matter of convention, and said so
+}
+
+TEST_F(CheckBadField, StoppedTooEarly) {
+  solver::Scene scene =
+      scene_of("ellipse", 48, {"solver.method=projected_gradient", "solver.max_iterations=3"});
+  find_bad(solved(scene), scene, HasSubstr("an iteration stops too early"));
+}
+
+TEST_F(CheckBadField, OneCellMissing) {
+  FieldRows rows = rows_;
+  rows.erase(rows.begin() + static_cast<std::ptrdiff_t>(rows.size() / 2 + 15));
+  const Json result = check_rows(rows, scene_);
+  ASSERT_EQ(result["conventions"].size(), 1U);
+  EXPECT_THAT(result["conventions"][0].get<std::string>(), HasSubstr("carry nothing"));
+  EXPECT_EQ(result["contact_cells"], rows.size());
+}
+
+TEST_F(CheckBadField, NotJudged) {
+  FieldRows negative = rows_;
+  negative[6][2] = -1.0;
+  EXPECT_THAT(solver::complaint([&] { check_rows(negative, scene_); }),
+              AllOf(HasSubstr("row 7"), HasSubstr("pressure = -1"), HasSubstr("zero or positive")));
+  EXPECT_THROW(check_rows(with_tractions_times(rows_, 0.0), scene_), solver::InputError);
+  EXPECT_THROW(check_rows(rows_, scene_of("torsion_and_force")), solver::InputError);
+  solver::Scene frictionless = scene_;
+  frictionless.friction = 0.0;
+  EXPECT_THROW(check_rows(rows_, frictionless), solver::InputError);
+}
+
+}  // namespace
+}  // namespace slipstick::convergence

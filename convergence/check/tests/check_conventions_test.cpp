@@ -1,0 +1,126 @@
+// The same field in another program's conventions.
+
+#include "convergence/check/conventions.hpp"
+
+#include <fmt/ranges.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "convergence/check/tests/checked_field.hpp"
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::IsEmpty;
+
+class CheckConventions : public testing::Test {
+ protected:
+  solver::Scene scene_ = scene_of("ellipse", 32);
+  FieldRows rows_ = rows_of(solver::solve(scene_));
+  Json base_ = check_rows(rows_, scene_);
+
+  /// The same verdict and numbers as the field in this project's own conventions.
+  void expect_same(const FieldRows& rows, const std::vector<std::string>& notes) const {
+    const Json result = find_good(rows, scene_);
+    for (const char* key : {"twist_angle", "moment", "normal_load", "stick_radius", "contact_radius"}) {
+      EXPECT_NEAR(result[key].get<double>() / base_[key].get<double>(), 1.0, 1e-8) << key;
+    }
+    ASSERT_EQ(result["conventions"].size(), notes.size()) << result["conventions"];
+    for (std::size_t i = 0; i < notes.size(); ++i) {
+      EXPECT_THAT(result["conventions"][i].get<std::string>(), HasSubstr(notes[i]));
+    }
+  }
+};
+
+TEST_F(CheckConventions, OrderOfRows) { expect_same(shuffled(rows_), {}); }
+
+TEST_F(CheckConventions, SignsAndComponents) {
+  using std::swap;
+  expect_same(changed(rows_, [](FieldRow& r) { r[3] = -r[3], r[4] = -r[4]; }), {"tractions look reversed"});
+  expect_same(changed(rows_, [](FieldRow& r) { swap(r[3], r[4]); }), {"q1 and q2 look exchanged"});
+}
+
+// No frame and no body has it.
+TEST_F(CheckConventions, NoComponentIsReversedAlone) {
+  for (const std::size_t component : {3, 4}) {
+    const Json result = find_bad(changed(rows_, [=](FieldRow& r) { r[component] = -r[component]; }), scene_,
+                                 HasSubstr(fmt::format("q{} looks reversed alone", component - 2)));
+    EXPECT_TRUE(result["within_mesh"].get<bool>()) << why(result);  // all the rest is right
+    EXPECT_THAT(result["conventions"], IsEmpty());
+  }
+}
+
+TEST_F(CheckConventions, StandInTheFirstLineAndStrictTakesNone) {
+  const auto file =
+      write_rows(changed(rows_, [](FieldRow& r) { r[3] = -r[3], r[4] = -r[4], r[0] *= 1e3, r[1] *= 1e3; }));
+  const Json taken = check_field(scene_, file);
+  EXPECT_EQ(taken["verdict"], "good");
+  const std::string text = check_text(taken);
+  EXPECT_THAT(text.substr(0, text.find('\n')),
+              AllOf(HasSubstr("good (positions look like mm; tractions look reversed")));
+  const Json strict = check_field(scene_, file, {.strict = true});
+  EXPECT_EQ(strict["verdict"], "bad");
+  EXPECT_THAT(why(strict), AllOf(HasSubstr("positions look like mm"), HasSubstr("tractions look reversed")));
+  EXPECT_EQ(check_field(scene_, write_rows(rows_), {.strict = true})["verdict"], "good");
+}
+
+// Under a force a mirrored frame is not the other body: only the moment turns round.
+TEST(Check, ReadsALeftHandedFrame) {
+  const solver::Scene scene = scene_of("paper", 32, {"load.moment_ratio=0.5", "load.force=[30,20]"});
+  const FieldRows rows = changed(solved(scene), [](FieldRow& r) { r[1] = -r[1], r[4] = -r[4]; });
+  const Json result = find_good(rows, scene);
+  ASSERT_EQ(result["conventions"].size(), 1U);
+  EXPECT_THAT(result["conventions"][0].get<std::string>(), HasSubstr("left-handed"));
+}
+
+TEST_F(CheckConventions, Axes) {
+  using std::swap;
+  expect_same(changed(rows_, [](FieldRow& r) { swap(r[0], r[1]), swap(r[3], r[4]); }),
+              {"axes look exchanged"});
+  // Turned by 90 degrees: read with axes exchanged, which is a mirror, the moment turns the other way.
+  expect_same(changed(rows_,
+                      [](FieldRow& r) {
+                        r = {-r[1], r[0], r[2], -r[4], r[3]};
+                      }),
+              {"axes look exchanged", "tractions look reversed"});
+}
+
+TEST_F(CheckConventions, Units) {
+  const auto in = [&](double metre, double pascal) {
+    return changed(rows_, [=](FieldRow& r) {
+      r = {r[0] * metre, r[1] * metre, r[2] * pascal, r[3] * pascal, r[4] * pascal};
+    });
+  };
+  expect_same(in(1e3, 1.0), {"positions look like mm"});
+  expect_same(in(1.0, 1e-6), {"pressure and tractions look like MPa"});
+  expect_same(in(1e3, 1e-6), {"positions look like mm", "pressure and tractions look like MPa"});
+  expect_same(in(1e6, 1e-9), {"positions look like micrometres", "pressure and tractions look like GPa"});
+  EXPECT_THROW(check_rows(in(1e3, 3e-7), scene_), solver::InputError);
+}
+
+TEST_F(CheckConventions, OriginAndPartsOfACell) {
+  const double cell = base_["cell_size"][0];
+  const auto moved = [&](double by) {
+    return changed(rows_, [=](FieldRow& r) { r[0] += by, r[1] -= 0.5 * by; });
+  };
+  expect_same(moved(0.3 * cell), {});
+  expect_same(moved(40.0 * cell), {"moved there"});
+}
+
+TEST_F(CheckConventions, FewDigits) {
+  for (const int digits : {10, 6}) {
+    const Json result = check_field(scene_, write_rows(rows_, digits));
+    EXPECT_EQ(result["verdict"], "good") << digits << why(result);
+    EXPECT_NEAR(result["stick_cells"], base_["stick_cells"].get<double>(), 2.0);
+    EXPECT_LE(result["certificate"]["friction_bound"], 2e-5);
+  }
+}
+
+}  // namespace
+}  // namespace slipstick::convergence

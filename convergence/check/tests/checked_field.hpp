@@ -1,0 +1,78 @@
+#pragma once
+
+#include <fmt/ranges.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "convergence/check/check.hpp"
+#include "convergence/check/tests/written_field.hpp"
+#include "convergence/results/exact_result.hpp"
+
+/// Fields made for a scene, and what check finds in them.
+namespace slipstick::convergence {
+
+inline const std::string kScenes = SLIPSTICK_SCENES;
+inline const std::string kFields = SLIPSTICK_FIELDS;
+
+inline solver::Scene scene_of(const std::string& name, int cells = 32,
+                              std::vector<std::string> overrides = {}) {
+  const bool oblong = name == "ellipse";
+  overrides.push_back(fmt::format("grid.cells=[{},{}]", cells, oblong ? cells / 2 : cells));
+  return solver::read_scene(kScenes + "/" + name + ".toml", overrides);
+}
+
+inline Json check_rows(const FieldRows& rows, const solver::Scene& scene, std::optional<double> twist = {}) {
+  return check_field(scene, write_rows(rows), {.twist = twist});
+}
+
+inline FieldRows solved(const solver::Scene& scene) { return rows_of(solver::solve(scene)); }
+
+/// The exact field at cell centres.
+inline FieldRows sampled(const solver::Scene& scene) {
+  const std::filesystem::path file = temporary_file("exact.h5");
+  write_exact_fields(file, scene, require_oracle(scene));
+  return read_rows(file);
+}
+
+inline double allowed(const Json& result, const std::string& quantity) {
+  for (const Json& item : result["judged"]) {
+    if (item["quantity"] == quantity) return item["allowed"];
+  }
+  return NAN;
+}
+
+inline Json check_peer(const std::string& name, std::optional<double> twist = {}) {
+  return check_field(scene_of("paper"), kFields + "/" + name + "-64-0.9.csv", {.twist = twist});
+}
+
+inline std::string why(const Json& result) { return result["why"]; }
+
+inline Json find_good(const FieldRows& rows, const solver::Scene& scene, std::optional<double> twist = {}) {
+  Json result = check_rows(rows, scene, twist);
+  EXPECT_EQ(result["verdict"], "good") << scene.name << ", " << scene.cells[0] << " cells: " << why(result);
+  return result;
+}
+
+inline Json find_bad(const FieldRows& rows, const solver::Scene& scene,
+                     const testing::Matcher<std::string>& reason, std::optional<double> twist = {}) {
+  Json result = check_rows(rows, scene, twist);
+  EXPECT_EQ(result["verdict"], "bad") << why(result);
+  EXPECT_THAT(why(result), reason);
+  return result;
+}
+
+inline FieldRows with_tractions_times(const FieldRows& rows, double factor) {
+  return changed(rows, [=](FieldRow& r) { r[3] *= factor, r[4] *= factor; });
+}
+
+inline FieldRows with_stresses_times(const FieldRows& rows, double factor) {
+  return changed(rows, [=](FieldRow& r) { r[2] *= factor, r[3] *= factor, r[4] *= factor; });
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,155 @@
+// What a gate file may say.
+
+#include "convergence/gates/gate_reader.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "convergence/gates/tests/gate_folder.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/input/tests/complaint.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+using testing::Not;
+
+class GateFile : public GateFolder {
+ protected:
+  std::string complaint(const std::string& text) const {
+    return solver::complaint([&] { read_gates(write("bad.toml", text)); });
+  }
+};
+
+constexpr const char* kGate = R"(# gates of a test
+[[gate]]
+id = "first"
+scene = "scenes/paper.toml"
+set = { "load.moment_ratio" = 0.9, "grid.cells" = [256, 256], "contact.pressure" = "hertz" }
+quantity = "twist_error"
+below = 2e-5
+basis = "measured"
+)";
+
+TEST_F(GateFile, IsReadInFull) {
+  const std::vector<Gate> gates = read_gates(write("some.toml", std::string(kGate) + R"(
+[[gate]]
+id = "second"
+study = "order.toml"
+quantity = "series.hertz.order.twist_error.verdict"
+equals = "asymptotic"
+status = "report_only"
+reason = "to know"
+platform_spread = 0.1
+[[gate]]
+id = "third"
+scene = "/elsewhere/cone.toml"
+quantity = "iterations"
+above = 1
+below = 7
+basis = "counted"
+status = "expected_failure"
+)"));
+  ASSERT_EQ(gates.size(), 3);
+  EXPECT_EQ(gates[0].id, "first");
+  EXPECT_EQ(gates[0].line, 2);
+  EXPECT_EQ(gates[0].source, folder_ / "scenes/paper.toml");
+  EXPECT_EQ(gates[0].kind, GateSource::scene);
+  EXPECT_THAT(gates[0].overrides,
+              testing::UnorderedElementsAre("load.moment_ratio=0.9", "grid.cells=[256, 256]",
+                                            "contact.pressure='hertz'"));
+  EXPECT_EQ(gates[0].below, 2e-5);
+  EXPECT_EQ(gates[0].above, std::nullopt);
+  EXPECT_EQ(gates[0].status, GateStatus::active);
+  EXPECT_EQ(gates[1].line, 10);
+  EXPECT_EQ(gates[1].kind, GateSource::study);
+  EXPECT_EQ(gates[1].equals, "asymptotic");
+  EXPECT_EQ(gates[1].status, GateStatus::report_only);
+  EXPECT_EQ(gates[1].reason, "to know");
+  EXPECT_EQ(gates[1].platform_spread, 0.1);
+  EXPECT_EQ(gates[2].source, "/elsewhere/cone.toml");
+  EXPECT_EQ(gates[2].above, 1.0);
+  EXPECT_EQ(gates[2].below, 7.0);
+}
+
+TEST_F(GateFile, BadEntriesAreNamedWithTheirLine) {
+  const std::string good = kGate;
+  const auto with = [&](const std::string& line) { return good + line + "\n"; };
+  const auto without = [&](const std::string& key) {
+    const auto begin = good.find("\n" + key) + 1;
+    return good.substr(0, begin) + good.substr(good.find('\n', begin) + 1);
+  };
+  EXPECT_THAT(complaint(with("bellow = 1")), AllOf(HasSubstr("bad.toml:9"), HasSubstr("gate[0].bellow"),
+                                                   HasSubstr("nearest known one is gate[0].below")));
+  EXPECT_THAT(complaint(with("study = 'a.toml'")), HasSubstr("one of scene and study"));
+  EXPECT_THAT(complaint(without("scene")), HasSubstr("one of scene and study"));
+  EXPECT_THAT(complaint(without("id")), HasSubstr("gate[0].id"));
+  EXPECT_THAT(complaint(without("quantity")), HasSubstr("gate[0].quantity"));
+  EXPECT_THAT(complaint(without("below")), HasSubstr("below, above, both, or equals"));
+  EXPECT_THAT(complaint(without("basis")), AllOf(HasSubstr("gate[0].basis"), HasSubstr("active gate")));
+  EXPECT_THAT(complaint(without("basis") + "basis = ''\n"), HasSubstr("gate[0].basis"));
+  EXPECT_THAT(complaint(with("equals = 3")), HasSubstr("one or the other"));
+  EXPECT_THAT(complaint(with("above = 2e-5")), HasSubstr("less than below"));
+  EXPECT_THAT(complaint(without("below") + "below = -1\n"), HasSubstr("positive"));
+  EXPECT_THAT(complaint(without("below") + "below = nan\n"), HasSubstr("finite"));
+  EXPECT_THAT(complaint(with("status = 'off'")), AllOf(HasSubstr("\"off\""), HasSubstr("expected_failure")));
+  EXPECT_THAT(complaint(with("platform_spread = -1")), HasSubstr("platform_spread"));
+  EXPECT_THAT(complaint("[[gates]]\nid = 1\n"), HasSubstr("gates"));
+  EXPECT_THAT(complaint("[[gate]\n"), HasSubstr("bad.toml:1"));
+  EXPECT_EQ(complaint(with("status = 'report_only'")), "");
+  EXPECT_EQ(complaint(without("basis") + "status = 'report_only'\n"), "");
+}
+
+TEST_F(GateFile, NamesResultsBesideItOrInAFolder) {
+  const std::string file = write("gates.toml", std::string("made_by = 'make gate'\n") + kResultGate);
+  const Gate gate = read_gates(file).at(0);
+  EXPECT_EQ(gate.kind, GateSource::result);
+  EXPECT_EQ(gate.source, folder_ / "work.json");
+  EXPECT_EQ(gate.made_by, "make gate");
+  EXPECT_THAT(rerun_command(gate), Not(HasSubstr("--results")));
+  const Gate elsewhere = read_gates(file, "some where").at(0);
+  EXPECT_EQ(elsewhere.source, "some where/work.json");
+  EXPECT_THAT(rerun_command(elsewhere), HasSubstr("--results 'some where' --only counted"));
+}
+
+TEST_F(GateFile, ResultStandsAlone) {
+  const std::string good = kResultGate;
+  EXPECT_EQ(complaint(good), "");
+  EXPECT_THAT(complaint(good + "scene = 'a.toml'\n"), HasSubstr("one of scene and study"));
+  EXPECT_THAT(complaint(good + "study = 'a.toml'\n"), HasSubstr("one of scene and study"));
+  EXPECT_THAT(complaint(good + "set = { 'grid.cells' = [8, 8] }\n"),
+              AllOf(HasSubstr("gate[0].set"), HasSubstr("left out beside result")));
+}
+
+TEST_F(GateFile, BadOneSparesTheOthers) {
+  const std::string good = write("good.toml", kGate);
+  const std::string broken = write("broken.toml", "[[gate]]\nid = 3\n");
+  const std::string again = write("again.toml", kGate);
+  const GateFiles files = read_gate_files({broken, good, folder_ / "missing.toml", again});
+  ASSERT_EQ(files.gates.size(), 1);
+  EXPECT_EQ(files.gates[0].file, good);
+  ASSERT_EQ(files.unreadable.size(), 3);
+  EXPECT_THAT(files.unreadable[0].why, HasSubstr("broken.toml:2"));
+  EXPECT_THAT(files.unreadable[1].why, HasSubstr("missing.toml"));
+  EXPECT_THAT(files.unreadable[2].why,
+              AllOf(HasSubstr("again.toml:2"), HasSubstr("first"), HasSubstr("good.toml:2")));
+  EXPECT_EQ(exit_code(files.unreadable), 2);
+}
+
+TEST_F(GateFile, OnlyPicksByIdAndNamesTheNearest) {
+  const std::vector<Gate> gates = read_gates(write("good.toml", kGate));
+  EXPECT_EQ(select_gates(gates, {}).size(), 1);
+  EXPECT_EQ(select_gates(gates, {"first", "first"}).size(), 1);
+  for (const auto& ids : {std::vector<std::string>{"frist"}, {"first", "frist"}}) {
+    EXPECT_THAT(solver::complaint([&] { select_gates(gates, ids); }),
+                AllOf(HasSubstr("--only frist"), HasSubstr("nearest is first")));
+  }
+  EXPECT_THROW(select_gates({}, {"first"}), solver::InputError);
+}
+
+}  // namespace
+}  // namespace slipstick::convergence
