@@ -13,10 +13,8 @@ namespace {
 
 /// What a certificate of an answer that is called converged may show.
 constexpr double kBalanced = 1e-8;
-/// Where nothing is said about the mesh, as of a contact that is not resolved at all.
-constexpr double kAnything = std::numeric_limits<double>::infinity();
 /// No mesh is better than its smallest errors.
-constexpr double kLeastUncertainty = 1e-6;
+constexpr double kMinUncertainty = 1e-6;
 
 double number(const Json& json, const char* path) {
   const auto pointer = Json::json_pointer(path);
@@ -49,9 +47,18 @@ double exact_error(const Json& result) {
   double largest = std::numeric_limits<double>::quiet_NaN();
   for (const char* path : {"/twist_error", "/moment_error", "/displacement_error"}) {
     const double error = std::abs(number(result, path));
-    if (!(error <= largest)) largest = std::isnan(error) ? largest : error;
+    if (std::isnan(largest) || error > largest) largest = error;
   }
   return largest;
+}
+
+/// Infinite where a result says why its mesh resolves nothing; NaN where it says neither.
+double stated_uncertainty(const Json& result) {
+  const double said = number(result, "/resolved/uncertainty");
+  if (!std::isnan(said)) return std::max(said, kMinUncertainty);
+  const bool explained =
+      result.contains("resolved") && !text(result["resolved"], "uncertainty_reason").empty();
+  return explained ? std::numeric_limits<double>::infinity() : said;
 }
 
 /// Of a variant: what its number is of the first's.
@@ -88,14 +95,14 @@ JudgedCase judge_alone(const Json& result) {
   if (status != "converged") return {HardVerdict::not_converged, message, numbers};
 
   const double error = exact_error(result);
-  const double said = number(result, "/resolved/uncertainty");
-  const double uncertainty = std::isnan(said) ? kAnything : std::max(said, kLeastUncertainty);
+  const double uncertainty = stated_uncertainty(result);
   set_number(numbers, "error", error, "no exact answer is known");
-  set_number(numbers, "uncertainty", uncertainty, "the result states none");
+  set_number(numbers, "uncertainty", uncertainty, "no size: the stick area lies within a cell");
   set_number(numbers, "certificate.gap", number(result, "/certificate/gap"), "the result has none");
   if (const std::string broken = broken_promise(result); !broken.empty()) {
     return {HardVerdict::wrong, broken, numbers};
   }
+  if (std::isnan(uncertainty)) return {HardVerdict::wrong, "it states no uncertainty", numbers};
   if (error > uncertainty) {
     return {HardVerdict::wrong,
             fmt::format("it is {:.3g} from the exact answer, and says {:.3g}", error, uncertainty), numbers};

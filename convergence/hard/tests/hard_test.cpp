@@ -119,6 +119,20 @@ TEST(HardJudgement, BelievesAnAnswerWithinWhatItSays) {
   }
 }
 
+// An infinite uncertainty is one that is explained.
+TEST(HardJudgement, WantsAnUncertaintyOrWhyThereIsNone) {
+  Json result = made_result(3.0, 0.01);
+  result["resolved"] = {{"uncertainty", nullptr},
+                        {"uncertainty_reason", "the stick area lies within a cell"}};
+  EXPECT_EQ(judge_alone(result).verdict, HardVerdict::certified);
+  for (const Json& resolved : {Json::object(), Json({{"uncertainty", nullptr}})}) {
+    result["resolved"] = resolved;
+    EXPECT_EQ(judge_alone(result).verdict, HardVerdict::wrong);
+  }
+  result.erase("resolved");
+  EXPECT_EQ(judge_alone(result).verdict, HardVerdict::wrong);
+}
+
 TEST(HardJudgement, HoldsACertificateToItsPromise) {
   EXPECT_EQ(judge_alone(made_result(0.0, 0.01, 2e-8)).verdict, HardVerdict::wrong);
   Json result = made_result(0.0, 0.01, 2e-8);
