@@ -51,8 +51,7 @@ ExpectedOrder of_number(const std::string& quantity, const solver::Scene& scene)
   if (quantity.starts_with("stick_")) {
     return {1.0,
             "determined from the slip in the 24 cells beside the edge, at most: once the ring is wider, what "
-            "the mesh "
-            "does there is a part of a cell; on coarser meshes the error falls faster"};
+            "the mesh does there is a part of a cell; on coarser meshes the error falls faster"};
   }
   if (edge_of(scene) == Edge::singular) {
     return {1.0,

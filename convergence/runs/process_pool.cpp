@@ -77,8 +77,9 @@ Task make_task(const PreparedRun& run) {
 
 std::optional<Json> find(const ResultCache& cache, const PreparedRun& run) {
   std::optional<Json> found = cache.find(run.name, run.cache_key);
-  const bool has_fields = found && found->value("status", "") != "refused" && !run.spec.fields.empty();
-  return has_fields && !fs::exists(run.spec.fields) ? std::nullopt : std::move(found);
+  const fs::path& fields = run.spec.fields;
+  const bool refused = found && found->value("status", "") == "refused";
+  return refused || fields.empty() || fs::exists(fields) ? std::move(found) : std::nullopt;
 }
 
 Json not_computed(const char* status, const std::string& message, const RunSpec& spec) {

@@ -96,6 +96,21 @@ void exchange(Scene& scene) {
   }
 }
 
+void take_two_threads(Scene& scene) { scene.threads = 2; }
+
+struct View {
+  Variant variant;
+  const char* word;
+  void (*see)(Scene&);
+};
+constexpr std::array kViews{View{Variant::mirrored, "mirrored", mirror},
+                            View{Variant::turned, "turned", turn},
+                            View{Variant::shifted, "shifted", shift},
+                            View{Variant::in_other_units, "in_other_units", measure_in_millimetres},
+                            View{Variant::exchanged, "exchanged", exchange},
+                            View{Variant::two_threads, "two_threads", take_two_threads}};
+static_assert(kViews.size() == kVariants.size());
+
 bool acts_along_the_surface(const Scene& scene) {
   for (const solver::Step& step : scene.steps) {
     if (step.displacement || step.force[0] != 0.0 || step.force[1] != 0.0) return true;
@@ -106,30 +121,17 @@ bool acts_along_the_surface(const Scene& scene) {
 }  // namespace
 
 std::string to_string(Variant variant) {
-  switch (variant) {
-    case Variant::none:
-      return "none";
-    case Variant::mirrored:
-      return "mirrored";
-    case Variant::turned:
-      return "turned";
-    case Variant::shifted:
-      return "shifted";
-    case Variant::in_other_units:
-      return "in_other_units";
-    case Variant::exchanged:
-      return "exchanged";
-    case Variant::two_threads:
-      return "two_threads";
+  for (const View& view : kViews) {
+    if (view.variant == variant) return view.word;
   }
-  return "";
+  return "none";
 }
 
 Variant variant_of(const std::string& word) {
-  if (word == "none") return Variant::none;
-  for (const Variant variant : kVariants) {
-    if (word == to_string(variant)) return variant;
+  for (const View& view : kViews) {
+    if (view.word == word) return view.variant;
   }
+  if (word == to_string(Variant::none)) return Variant::none;
   throw std::invalid_argument(word + " is no variant");
 }
 
@@ -150,27 +152,8 @@ std::string why_not(const Scene& scene, Variant variant) {
 }
 
 Scene seen_as(Scene scene, Variant variant) {
-  switch (variant) {
-    case Variant::none:
-      break;
-    case Variant::mirrored:
-      mirror(scene);
-      break;
-    case Variant::turned:
-      turn(scene);
-      break;
-    case Variant::shifted:
-      shift(scene);
-      break;
-    case Variant::in_other_units:
-      measure_in_millimetres(scene);
-      break;
-    case Variant::exchanged:
-      exchange(scene);
-      break;
-    case Variant::two_threads:
-      scene.threads = 2;
-      break;
+  for (const View& view : kViews) {
+    if (view.variant == variant) view.see(scene);
   }
   return scene;
 }

@@ -60,7 +60,7 @@ std::vector<SymbolCase> symbol_cases() {
   for (Grid grid : grids) {
     for (const bool quadrant : {false, true}) {
       grid.quadrant = quadrant;
-      for (const double nu : {-0.9, 0.0, 0.5}) {
+      for (const double nu : {-0.9, 0.0, 0.3, 0.5}) {
         for (const bool tangential : {false, true}) {
           const std::string name = std::string(quadrant ? "quadrant_" : "grid_") + std::to_string(grid.n1) +
                                    "x" + std::to_string(grid.n2) + (tangential ? "_tangential" : "_normal") +
