@@ -8,6 +8,7 @@ from matplotlib.colors import Normalize
 
 import exact_figures
 import gallery_figure
+import hard_cases
 import maps
 import method_figures
 import studies
@@ -248,6 +249,7 @@ FIGURES = [
     ("figure-11", "Which approximation may be used", exact_figures.approximations),
     ("figure-12", "Other bodies, and cycles", exact_figures.bodies_and_cycles),
     ("figure-13", "The gallery", gallery_figure.gallery),
+    ("figure-14", "Hard scenes by each method", hard_cases.methods),
 ]
 
 

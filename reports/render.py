@@ -15,6 +15,7 @@ import jinja2  # noqa: E402
 from markupsafe import escape  # noqa: E402
 
 import figures  # noqa: E402
+import hard_cases  # noqa: E402
 import results  # noqa: E402
 import study_figure  # noqa: E402
 import style  # noqa: E402
@@ -76,6 +77,13 @@ def tabulate_gallery(report, data_dir, output):
         return {"unavailable": str(reason)}
 
 
+def map_hard_cases(report):
+    try:
+        return hard_cases.square_map(report)
+    except results.Unavailable as reason:
+        return {"unavailable": str(reason)}
+
+
 def render(data_dir, output):
     """Writes output/index.html and output/figures/ from data_dir/report.json and the field files beside it."""
     report = results.load(data_dir / "report.json")
@@ -91,7 +99,8 @@ def render(data_dir, output):
         loading=tabulate(report, "loading", tables.LOADING),
         mesh=tabulate(report, "mesh", tables.MESH),
         approximations=tabulate(report, "approximation_table", tables.APPROXIMATIONS),
-        nulls=results.nulls({key: part for key, part in report.items() if key != "studies"}),
+        hard=map_hard_cases(report),
+        nulls=results.nulls({key: part for key, part in report.items() if key not in ("studies", "hard")}),
         data=os.path.relpath(data_dir / "report.json", output) if data_dir.is_relative_to(output) else None)
     (output / "index.html").write_text(page, encoding="utf-8")
 

@@ -183,6 +183,8 @@ class Results(unittest.TestCase):
         scenes = [SCENES / "paper.toml", SCENES / "spence.toml", SCENES / "rough_sphere.toml"]
         files = [self.file(f"{scene.stem}-hard.toml", family.format(scene)) for scene in scenes]
         self.run_and_check("hard", *files, "--output", self.folder / "hard", code=1)
+        self.run_and_check("hard", *files, "--once", "--beside", "paper,projected_gradient", "--output",
+                           self.folder / "hard", code=1)
         self.run_and_check("hard", files[0], "--once", "--fields", self.folder / "fields", code=1)
 
     def test_study(self):

@@ -19,6 +19,7 @@ struct HardRequest {
   std::vector<std::string> overrides;
   std::string output = "build/hard";
   std::string fields;
+  std::vector<std::string> methods;
   bool once = false;
   int jobs = 0;
 };
@@ -38,7 +39,8 @@ int run_hard(const HardRequest& request, std::ostream& text, Json& result) {
                           .interrupted = Interrupts::seen});
   {
     const Interrupts interrupts;
-    result = run_hard_cases(cases, {.variants = !request.once, .fields = request.fields}, pool);
+    result = run_hard_cases(
+        cases, {.variants = !request.once, .methods = request.methods, .fields = request.fields}, pool);
   }
   text << hard_text(result);
   return result["counts"]["wrong"] == 0 && result["counts"]["not_converged"] == 0 ? 0 : 1;
@@ -59,6 +61,9 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_hard_command(CLI:
   command->add_option("--fields", request->fields, "folder that gets the fields of each case (CSV)");
   command->add_flag("--once", request->once,
                     "solve each scene as it stands alone, not mirrored, turned, ...");
+  command->add_option("--beside", request->methods, "methods that solve each scene too, to be compared")
+      ->delimiter(',')
+      ->check(CLI::IsMember({"coulomb", "projected_gradient", "paper"}));
   command->add_option("--jobs", request->jobs, "solves at a time; 0: one a processor, as memory allows")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);

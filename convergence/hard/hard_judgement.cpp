@@ -87,7 +87,7 @@ JudgedCase judge_alone(const Json& result) {
   if (status == "failed") return {HardVerdict::wrong, "it died: " + message, Json::object()};
   Json numbers;
   for (const char* key :
-       {"operator_applications", "pressure_applications", "seconds.total", "slip_direction.max"}) {
+       {"operator_applications", "pressure_applications", "seconds.total", "slip_direction.mean"}) {
     std::string path = std::string("/") + key;
     std::replace(path.begin(), path.end(), '.', '/');
     set_number(numbers, key, number(result, path.c_str()), "the result has none");

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "convergence/hard/hard_judgement.hpp"
+#include "convergence/hard/method_comparison.hpp"
 #include "convergence/results/provenance.hpp"
 #include "solver/input/input_error.hpp"
 
@@ -22,6 +23,7 @@ struct Trial {
   Json result;
   JudgedCase judged;
   Json variants = Json::object();
+  Json methods = Json::object();
   std::filesystem::path fields = {};
 };
 
@@ -60,6 +62,13 @@ class Batch {
   std::vector<Asked> asked_;
   std::vector<Refused> refused_;
 };
+
+Json verdict_json(const std::string& verdict, const std::string& reason, const Json& numbers) {
+  Json json{{"verdict", verdict}};
+  if (!reason.empty()) json["reason"] = reason;
+  if (!numbers.empty()) json.update(numbers);
+  return json;
+}
 
 /// The grid of a result, written out.
 std::vector<std::string> grid_of(const Json& result) {
@@ -119,14 +128,28 @@ void judge_variants(std::vector<Trial>& trials, const ProcessPool& pool) {
   });
 }
 
+void compare_methods(std::vector<Trial>& trials, const std::vector<std::string>& methods,
+                     const ProcessPool& pool) {
+  for (const std::string& method : methods) {
+    Batch batch;
+    for (Trial& trial : trials) {
+      RunSpec spec = trial.hard->run;
+      spec.overrides.push_back(fmt::format("solver.method=\"{}\"", method));
+      batch.add(trial, std::move(spec));
+    }
+    batch.run(pool, [&](Trial& trial, const RunSpec&, const Json& result) {
+      const ComparedAnswer compared = compare_answer(trial.result, result);
+      trial.methods[method] = verdict_json(to_string(compared.verdict), compared.reason, compared.numbers);
+    });
+  }
+}
+
 Json row(const Trial& trial) {
   Json row{{"family", trial.hard->family},
            {"case", trial.hard->name},
            {"set", trial.hard->run.overrides},
-           {"scene", trial.hard->run.scene.string()},
-           {"verdict", to_string(trial.judged.verdict)}};
-  if (!trial.judged.reason.empty()) row["reason"] = trial.judged.reason;
-  row.update(trial.judged.numbers);
+           {"scene", trial.hard->run.scene.string()}};
+  row.update(verdict_json(to_string(trial.judged.verdict), trial.judged.reason, trial.judged.numbers));
   if (!trial.fields.empty() && trial.result.value("status", "") == "converged") {
     Json& written = row["written"] = {{"fields", trial.fields.string()}};
     for (const char* key :
@@ -136,6 +159,7 @@ Json row(const Trial& trial) {
     written["certificate.rounding"] = trial.result["certificate"]["rounding"];
   }
   if (!trial.variants.empty()) row["variants"] = trial.variants;
+  if (!trial.methods.empty()) row["methods"] = trial.methods;
   return row;
 }
 
@@ -146,6 +170,16 @@ Json counts(const std::vector<Trial>& trials, const std::string& family) {
       Json& count = counts[to_string(trial.judged.verdict)];
       count = count.get<int>() + 1;
     }
+  }
+  return counts;
+}
+
+Json method_counts(const std::vector<Trial>& trials, const std::string& method) {
+  Json counts{
+      {"agrees", 0}, {"refused", 0}, {"not_converged", 0}, {"other_direction", 0}, {"other_answer", 0}};
+  for (const Trial& trial : trials) {
+    Json& count = counts[trial.methods[method]["verdict"].get<std::string>()];
+    count = count.get<int>() + 1;
   }
   return counts;
 }
@@ -170,8 +204,10 @@ Json run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& optio
     }
   });
   if (options.variants) judge_variants(trials, pool);
+  compare_methods(trials, options.methods, pool);
 
   Json json{{"counts", counts(trials, "")}, {"families", Json::object()}, {"rows", Json::array()}};
+  for (const std::string& method : options.methods) json["methods"][method] = method_counts(trials, method);
   for (const Trial& trial : trials) {
     const std::string& family = trial.hard->family;
     if (!json["families"].contains(family)) {
@@ -183,6 +219,21 @@ Json run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& optio
   return json;
 }
 
+namespace {
+
+std::string methods_text(const Json& methods) {
+  std::string text = fmt::format("\n  {:20} {:>8} {:>8} {:>13} {:>15} {:>12}\n", "other methods", "agrees",
+                                 "refused", "not converged", "other direction", "other answer");
+  for (const auto& [name, counts] : methods.items()) {
+    text += fmt::format("  {:20} {:>8} {:>8} {:>13} {:>15} {:>12}\n", name, counts["agrees"].get<int>(),
+                        counts["refused"].get<int>(), counts["not_converged"].get<int>(),
+                        counts["other_direction"].get<int>(), counts["other_answer"].get<int>());
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string hard_text(const Json& result) {
   std::string text = fmt::format("  {:28} {:>9} {:>8} {:>13} {:>6}\n", "family", "certified", "refused",
                                  "not converged", "wrong");
@@ -193,6 +244,7 @@ std::string hard_text(const Json& result) {
   };
   for (const auto& [name, family] : result["families"].items()) line(name, family["counts"]);
   line("all", result["counts"]);
+  if (result.contains("methods")) text += methods_text(result["methods"]);
   for (const Json& row : result["rows"]) {
     if (row["verdict"] != "wrong" && row["verdict"] != "not_converged") continue;
     text += fmt::format("\n{}: {} {}\n  {}\n  again: slipstick solve {}", row["verdict"].get<std::string>(),

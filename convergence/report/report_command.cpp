@@ -43,16 +43,15 @@ void draw(const fs::path& data, const fs::path& output) {
 }
 
 int run_report(const ReportRequest& request, std::ostream& text, nlohmann::ordered_json& result) {
-  const fs::path scenes = project_file("convergence/scenes");
-  const fs::path scene = request.scene.empty() ? scenes / "paper.toml" : fs::path(request.scene);
+  const fs::path inputs = project_file("convergence");
+  const fs::path scene = request.scene.empty() ? inputs / "scenes" / "paper.toml" : fs::path(request.scene);
   const fs::path output = request.output;
   const fs::path data = output / "data";
   const ProcessPool pool(
       {.folder = data / "points", .program = kOwnProgram, .interrupted = Interrupts::seen});
   {
     const Interrupts interrupts;
-    result = validate(scene, scenes, project_file("convergence/studies"),
-                      request.quick ? quick_validation() : full_validation(), data, pool);
+    result = validate(scene, inputs, request.quick ? quick_validation() : full_validation(), data, pool);
   }
   draw(data, output);
   text << "page: " << (output / "index.html").string() << '\n';

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <map>
 #include <numbers>
 #include <stdexcept>
@@ -12,6 +13,7 @@
 
 #include "analytic/paper_equations.hpp"
 #include "analytic/torsion.hpp"
+#include "convergence/hard/hard_run.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/report/exact_curves.hpp"
 #include "convergence/report/gallery.hpp"
@@ -184,6 +186,20 @@ Json study_results(const fs::path& scene_file, const fs::path& studies, Index mo
   return results;
 }
 
+/// The hard cases, or an even part of them, by each method.
+Json hard_results(const fs::path& folder, std::size_t step, const ProcessPool& pool) {
+  std::vector<fs::path> files;
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    if (entry.path().extension() == ".toml") files.push_back(entry.path());
+  }
+  std::ranges::sort(files);
+  std::vector<HardCase> all;
+  for (const fs::path& file : files) std::ranges::move(read_hard_cases(file), std::back_inserter(all));
+  std::vector<HardCase> shown;
+  for (std::size_t i = 0; i < all.size(); i += step) shown.push_back(std::move(all[i]));
+  return run_hard_cases(shown, {.variants = false, .methods = {"projected_gradient", "paper"}}, pool);
+}
+
 }  // namespace
 
 ValidationSize full_validation() {
@@ -192,7 +208,8 @@ ValidationSize full_validation() {
           .ellipse_cells = {64, 128, 256},
           .gallery_cells = {64, 128, 256},
           .moment_ratios = {0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99},
-          .study_cells = 512};
+          .study_cells = 512,
+          .hard_step = 1};
 }
 
 ValidationSize quick_validation() {
@@ -201,11 +218,13 @@ ValidationSize quick_validation() {
           .ellipse_cells = {32, 64},
           .gallery_cells = {16, 32, 64},
           .moment_ratios = {0.05, 0.2, 0.4, 0.6, 0.8, 0.95},
-          .study_cells = 64};
+          .study_cells = 64,
+          .hard_step = 10};
 }
 
-Json validate(const fs::path& scene_file, const fs::path& scenes, const fs::path& studies,
-              const ValidationSize& size, const fs::path& folder, const ProcessPool& pool) {
+Json validate(const fs::path& scene_file, const fs::path& inputs, const ValidationSize& size,
+              const fs::path& folder, const ProcessPool& pool) {
+  const fs::path scenes = inputs / "scenes";
   const solver::Scene scene = solver::read_scene(scene_file);
   if (scene.surfaces.front().shape != solver::Shape::sphere) {  // whose equations the paper's are
     throw solver::InputError(scene_file.string(), "upper.shape",
@@ -240,7 +259,8 @@ Json validate(const fs::path& scene_file, const fs::path& scenes, const fs::path
   for (const GalleryScene& shown : gallery_scenes()) {
     report["gallery"].push_back(gallery_row(shown, results.at("gallery-" + shown.stem)));
   }
-  report["studies"] = study_results(scene_file, studies, size.study_cells, pool);
+  report["studies"] = study_results(scene_file, inputs / "studies", size.study_cells, pool);
+  report["hard"] = hard_results(inputs / "hard", size.hard_step, pool);
   write_json_file(folder / "report.json", report);
   return report;
 }

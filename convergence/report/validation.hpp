@@ -19,19 +19,20 @@ struct ValidationSize {
   std::array<solver::Index, 3> gallery_cells;  ///< along the longer side
   std::vector<double> moment_ratios;           ///< of the loading curve
   solver::Index study_cells;                   ///< the finest mesh of the studies
+  std::size_t hard_step;                       ///< 1: all hard cases; 10: every tenth
 };
 ValidationSize full_validation();
 ValidationSize quick_validation();
 
 /// The paper's validation (its Section 5, Figs. 1-5) for a scene, computed and compared with the exact
-/// solution, beside it an elliptic contact, where the paper's method fails, the gallery, from the files in
-/// `scenes`, and the studies of the meshes and the tolerances, from the files in `studies`: fills `folder`
-/// with report.json and the fields that the page draws, and returns report.json's content. Throws InputError
-/// for a scene that has no exact solution to compare with; std::runtime_error where a run has no result, and
-/// as the pool does.
-nlohmann::ordered_json validate(const std::filesystem::path& scene_file, const std::filesystem::path& scenes,
-                                const std::filesystem::path& studies, const ValidationSize& size,
-                                const std::filesystem::path& folder, const ProcessPool& pool);
+/// solution, beside it an elliptic contact, where the paper's method fails, the gallery, the studies of the
+/// meshes and the tolerances, and the hard cases by each method, from the files in `inputs` (scenes/,
+/// studies/, hard/): fills `folder` with report.json and the fields that the page draws, and returns
+/// report.json's content. Throws InputError for a scene that has no exact solution to compare with;
+/// std::runtime_error where a run has no result, and as the pool does.
+nlohmann::ordered_json validate(const std::filesystem::path& scene_file, const std::filesystem::path& inputs,
+                                const ValidationSize& size, const std::filesystem::path& folder,
+                                const ProcessPool& pool);
 
 /// What is wrong in the paper's equations as printed, each with numbers as evidence, computed here or taken
 /// from the results of the paper's method on a circular and on elliptic contacts.

@@ -22,6 +22,7 @@ sys.path.insert(0, str(REPORTS))
 import exact_figures  # noqa: E402
 import figures  # noqa: E402
 import gallery_figure  # noqa: E402
+import hard_cases  # noqa: E402
 import method_figures  # noqa: E402
 import render  # noqa: E402
 import results  # noqa: E402
@@ -83,6 +84,27 @@ def gallery():
             gallery_row("rough", "none", None, None)]
 
 
+def hard():
+    def beside(**found):
+        return {"methods": {"paper": found}}
+
+    def row(case, verdict, **more):
+        return {"family": "moment", "case": case, "verdict": verdict} | more
+
+    return {
+        "families": {"moment": {"why": "next to <nothing>"}},
+        "rows": [
+            row("0.1", "certified", operator_applications=10, **beside(verdict="agrees", operator_applications=30)),
+            row("0.2", "certified", operator_applications=12,
+                **beside(verdict="other_direction", reason="turned by 3 degrees", operator_applications=31)),
+            row("0.3", "certified", operator_applications=14,
+                **beside(verdict="other_answer", reason="it differs by 0.4", difference=0.4, operator_applications=32)),
+            row("0.4", "certified", operator_applications=15, **beside(verdict="not_converged", reason="every cell slips")),
+            row("2.0", "refused", reason="beyond \"the\" limit", **beside(verdict="refused", reason="beyond it")),
+        ],
+    }
+
+
 def small_report():
     loads = (0.2, 0.5, 0.9)
     return {
@@ -110,6 +132,7 @@ def small_report():
         "cycle_energy": [{"moment_ratio": x, "energy": x**3 / (1 - x), "small_amplitude": x**3}
                          for x in (0.05, 0.1, 0.2, 0.5)],
         "gallery": gallery(),
+        "hard": hard(),
         "errata": [{"equation": "(0)", "printed": "a < b", "holds": "a > b", "shown": "by example"}],
     }
 
@@ -204,6 +227,18 @@ class WholePage(unittest.TestCase):
     def test_without_studies_nothing_speaks_of_them(self):
         self.assertNotIn("studies", self.page)
 
+    def test_map_of_hard_scenes(self):
+        part = self.page[self.page.index('id="hard"'):self.page.index('id="errata"')]
+        first, paper = re.findall("<td>(.*?)</td>", part)
+        marks = re.compile(r'<span class="square (\w+)" title="([^"]*)">')
+        self.assertEqual([verdict for verdict, _ in marks.findall(first)], ["right"] * 4 + ["refused"])
+        self.assertEqual([verdict for verdict, _ in marks.findall(paper)],
+                         ["right", "other_direction", "wrong", "not_converged", "refused"])
+        self.assertEqual(marks.findall(first)[4][1], "moment; 2.0; refused; beyond &#34;the&#34; limit")
+        self.assertEqual(marks.findall(paper)[2][1], "moment; 0.3; other answer; it differs by 0.4; 32 applications; "
+                         "4.0e-01 of the certified answer away")
+        self.assertIn("next to &lt;nothing&gt;", part)
+
     def test_text_of_the_data_is_escaped(self):
         self.assertIn("made &lt;up&gt;", self.page)
         self.assertIn("a &lt; b", self.page)
@@ -217,7 +252,7 @@ class WholePage(unittest.TestCase):
             ["0.9", "0.9", "−18\u00a0%", "−22\u00a0%", "−45\u00a0%", "−45\u00a0%", "+33\u00a0%"]])
 
     def test_table_of_the_gallery(self):
-        table = self.page[self.page.index('id="gallery"'):self.page.index('id="errata"')]
+        table = self.page[self.page.index('id="gallery"'):self.page.index('id="hard"')]
         cells = [re.findall("<td>(.*?)</td>", row) for row in re.findall("<tr>(.*?)</tr>", table)]
         self.assertEqual(cells[1], ["<a href=\"data/scenes/sphere.toml\">&lt;sphere&gt;</a>", "so &amp; so", "twist",
                                     "1.25\u00a0mrad", "1.2\u00a0mrad exact", "−4.0×10⁻²", "2.0×10⁻⁹", "20", "2",
@@ -363,6 +398,14 @@ class OneFigure(Folder):
         message = exact_figures.approximations(self.report, self.folder).message
         self.assertIn("Eq. (7) 0.050 (0.50), small moments 0.040 (0.40), no slip 0.020 (0.20)", message)
         self.assertIn("off by over 100&nbsp;%", message)
+
+    def test_hard_scenes_in_numbers(self):
+        entry = hard_cases.methods(small_report(), self.folder)
+        self.assertEqual(entry.message, "Of 5 hard scenes Newton’s method for Coulomb’s law certifies 4 and refuses 1 with a "
+                         "reason; 0 do not converge or are wrong. By the paper’s method 1 of 4 agree, 1 do not converge, in "
+                         "1 slip does not oppose traction, 1 have another answer.")
+        bars = [[bar.get_width() for bar in entry.figure.axes[0].patches[5 * i:5 * i + 5]] for i in (0, 1)]
+        self.assertEqual(bars, [[4, 1, 0, 0, 0], [1, 1, 1, 1, 1]])
 
     def test_law_that_holds_everywhere(self):
         for row in self.report["approximations"]:

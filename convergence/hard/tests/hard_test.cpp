@@ -185,5 +185,26 @@ TEST_F(HardFile, ProgramJudgesEachCaseAndItsViews) {
   EXPECT_THAT(result["rows"][1]["reason"].get<std::string>(), HasSubstr("gross slip"));
 }
 
+TEST_F(HardFile, ProgramComparesMethods) {
+  const fs::path file =
+      write(family("[family.set]\n\"grid.cells\" = [12, 12]\n"
+                   "[[family.vary]]\nkey = 'load.moment_ratio'\nvalues = [0.5, 2.0]\n"));
+  const ProgramEnd end =
+      run_program({SLIPSTICK_PROGRAM, "hard", file, "--once", "--beside", "projected_gradient", "--output",
+                   folder_ / "kept", "--json", "-", "--quiet"},
+                  {.captured = Captured::output});
+  EXPECT_EQ(end.code, 0);
+  const Json result = Json::parse(end.output);
+  EXPECT_EQ(result["methods"]["projected_gradient"], Json({{"agrees", 1},
+                                                           {"refused", 1},
+                                                           {"not_converged", 0},
+                                                           {"other_direction", 0},
+                                                           {"other_answer", 0}}));
+  const Json& beside = result["rows"][0]["methods"]["projected_gradient"];
+  EXPECT_EQ(beside["verdict"], "agrees");
+  EXPECT_GT(beside["difference"], 0.0);  // another method, not the first again
+  EXPECT_GT(beside["operator_applications"], result["rows"][0]["operator_applications"]);
+}
+
 }  // namespace
 }  // namespace slipstick::convergence
