@@ -49,7 +49,10 @@ test: configure ## run every test
 gate: configure ## check the numbers that README.md promises, and counts of work (GATE_OPTIONS="--junit FILE --summary FILE.md")
 	$(call build,slipstick slipstick_work)
 	@$(BUILD)/bench/slipstick_work --instructions --json $(BUILD)/gates/work.json
-	@$(BUILD)/slipstick gate convergence/gates/quick.toml bench/gates/work.toml $(INSTRUCTION_GATES) --results $(BUILD)/gates \
+	@digits() { $(BUILD)/slipstick digits convergence/scenes/paper.toml --set "grid.cells=[48,48]" \
+	    --set "load.moment_ratio=$$2" --output $(BUILD)/gates/digits --json "$(BUILD)/gates/$$1.json" --quiet; }; \
+	  digits digits 0.9 && digits digits-limit 0.999999 && digits digits-nothing 1e-9
+	@$(BUILD)/slipstick gate convergence/gates/quick.toml convergence/gates/digits.toml bench/gates/work.toml $(INSTRUCTION_GATES) --results $(BUILD)/gates \
 	  --output $(BUILD)/gates $(GATE_OPTIONS)
 
 hard: configure ## solve 600 hard scenes, each in several views; audit every one of them with NumPy (2 minutes)

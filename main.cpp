@@ -15,6 +15,7 @@
 #include "bench/compare/compare_command.hpp"
 #include "convergence/check/check_command.hpp"
 #include "convergence/gates/gate_command.hpp"
+#include "convergence/hard/digits_command.hpp"
 #include "convergence/hard/hard_command.hpp"
 #include "convergence/programs/run_program.hpp"
 #include "convergence/report/report_command.hpp"
@@ -49,8 +50,8 @@ int run(int argc, char** argv) {
       slipstick::analytic::add_exact_command(app),     slipstick::convergence::add_solve_command(app),
       slipstick::convergence::add_check_command(app),  slipstick::convergence::add_study_command(app),
       slipstick::convergence::add_gate_command(app),   slipstick::convergence::add_hard_command(app),
-      slipstick::convergence::add_report_command(app), slipstick::bench::add_bench_command(app),
-      slipstick::bench::add_compare_command(app)};
+      slipstick::convergence::add_digits_command(app), slipstick::convergence::add_report_command(app),
+      slipstick::bench::add_bench_command(app),        slipstick::bench::add_compare_command(app)};
   const auto subcommands = app.get_subcommands([](const CLI::App*) { return true; });
   std::string json_path;
   bool quiet = false;

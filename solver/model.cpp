@@ -194,7 +194,8 @@ Elasticity elasticity(const Scene& scene, const Model& model, const Reduction& p
           .threads = scene.threads,
           .precision = scene.precision,
           .diagonal = part.diagonal(),
-          .measure_plans = !scene.wisdom.empty()};
+          .measure_plans = !scene.wisdom.empty(),
+          .rounding_seed = static_cast<std::uint64_t>(scene.rounding_seed)};
 }
 
 namespace {

@@ -18,6 +18,7 @@
 #include "solver/input/input_error.hpp"
 #include "solver/load_step.hpp"
 #include "solver/model_solution.hpp"
+#include "solver/operator/random_rounding.hpp"
 #include "solver/pressure.hpp"
 
 namespace slipstick::solver {
@@ -185,6 +186,7 @@ LoadStep solve_in_sequence(ModelSolution& solution, const Scene& scene, const St
 void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, const Step* previous,
                 const ContactState& before, const Progress& progress, ContactState* after) {
   Stopwatch watch;
+  const KeptRounding rounding;  // what draws its own
   const Model& model = solution.model;
   const LoadStep loads = model.shear_coupling
                              ? solve_coupled(solution, scene, step, before, progress)

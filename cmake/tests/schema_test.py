@@ -187,6 +187,12 @@ class Results(unittest.TestCase):
                            self.folder / "hard", code=1)
         self.run_and_check("hard", files[0], "--once", "--fields", self.folder / "fields", code=1)
 
+    def test_digits(self):
+        words = ("--set", "grid.cells=[12,12]", "--samples", 3, "--output", self.folder / "digits")
+        self.run_and_check("digits", SCENES / "paper.toml", *words)
+        self.run_and_check("digits", SCENES / "paper.toml", *words, "--set", "solver.max_iterations=1", code=1)
+        self.run_and_check("digits", SCENES / "paper.toml", *words, "--set", "load.moment_ratio=-0.0")
+
     def test_study(self):
         self.run_and_check("study", self.file("study.toml", STUDY), "--output", self.folder / "study")
         scene = STUDY.replace("paper.toml", "ellipse.toml").replace("[8, 12, 16]", "[8, 12]")

@@ -1,6 +1,9 @@
 #include "solver/operator/elasticity.hpp"
 
 #include <type_traits>
+#include <utility>
+
+#include "solver/operator/random_rounding.hpp"
 
 namespace slipstick::solver {
 
@@ -24,7 +27,8 @@ std::unique_ptr<InverseSymbol<Real>> symbol_of(const Elasticity& elasticity, con
 }  // namespace
 
 std::unique_ptr<LinearOperator> Elasticity::make(const Grid& grid, const BlockKernel& kernel) const {
-  return make_operator(kind, grid, kernel, pair, options_of(*this, kernel));
+  auto op = make_operator(kind, grid, kernel, pair, options_of(*this, kernel));
+  return rounding_seed == 0 ? std::move(op) : rounded_at_random(std::move(op), kernel, rounding_seed);
 }
 
 template <>

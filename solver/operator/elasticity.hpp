@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -15,8 +16,9 @@ struct Elasticity {
   OperatorKind kind = OperatorKind::dcfft;
   int threads = 1;
   Precision precision = Precision::double_precision;
-  bool diagonal = false;       ///< see OperatorOptions; of the tangential operator
-  bool measure_plans = false;  ///< see OperatorOptions; of the preconditioner too
+  bool diagonal = false;            ///< see OperatorOptions; of the tangential operator
+  bool measure_plans = false;       ///< see OperatorOptions; of the preconditioner too
+  std::uint64_t rounding_seed = 0;  ///< 0: rounded to nearest; else at random, in double precision
 
   std::unique_ptr<LinearOperator> make(const Grid& grid, const BlockKernel& kernel) const;
 };

@@ -164,6 +164,8 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
   scene.max_iterations =
       static_cast<int>(reader.number_or("solver.max_iterations", scene.max_iterations, kIterations));
   scene.threads = static_cast<int>(reader.number_or("solver.threads", scene.threads, kThreads));
+  scene.rounding_seed =
+      static_cast<std::int64_t>(reader.number_or("solver.rounding_seed", 0.0, kRoundingSeeds));
   if (reader.has("solver.wisdom")) scene.wisdom = reader.path("solver.wisdom");
   reader.reject_unknown();
   validate(scene, [&](const std::string& key, const std::string& value, const std::string& allowed) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -88,6 +89,8 @@ struct Scene {
   double tolerance = 1e-8;
   int max_iterations = 5000;
   int threads = 1;
+  /// 0: to nearest; else rounding is random, drawn from the seed, to see which digits depend on it.
+  std::int64_t rounding_seed = 0;
   /// Transforms are planned by measurement and the plans kept in this file; empty: by estimate, which gives
   /// the same digits again.
   std::filesystem::path wisdom;

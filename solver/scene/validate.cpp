@@ -28,6 +28,7 @@ class Validation {
     require("solver.tolerance", scene_.tolerance, kTolerance);
     require("solver.max_iterations", scene_.max_iterations, kIterations);
     require("solver.threads", scene_.threads, kThreads);
+    require("solver.rounding_seed", static_cast<double>(scene_.rounding_seed), kRoundingSeeds);
     check_consistency();
   }
 

@@ -15,6 +15,7 @@ inline const Range kPoisson{"above -1, at most 0.5", [](double x) { return x > -
 inline const Range kTolerance{"from 1e-15 to below 1", [](double x) { return x >= 1e-15 && x < 1.0; }};
 inline const Range kCells = whole(1, 65536);
 inline const Range kIterations = whole(1, 1e9);
+inline const Range kRoundingSeeds = whole(0, 1e9);
 inline const Range kThreads = whole(1, 1024);
 /// Powers of a cell's size stay within double precision.
 inline const Range kExponent{"from 1 to 20", [](double x) { return x >= 1.0 && x <= 20.0; }};

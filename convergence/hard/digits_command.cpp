@@ -1,0 +1,65 @@
+#include "convergence/hard/digits_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <string>
+
+#include "convergence/hard/rounding_digits.hpp"
+#include "convergence/runs/interrupts.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+struct DigitsRequest {
+  RunSpec spec;
+  std::string output = "build/digits";
+  DigitsOptions options;
+  int jobs = 0;
+};
+
+int run_digits(const DigitsRequest& request, std::ostream& text, Json& result) {
+  const ProcessPool pool({.folder = request.output,
+                          .jobs = request.jobs,
+                          .program = kOwnProgram,
+                          .interrupted = Interrupts::seen});
+  {
+    const Interrupts interrupts;
+    result = rounding_digits(request.spec, request.options, pool);
+  }
+  text << digits_text(result);
+  return result["status"] == "converged" && result["not_converged"] == 0 ? 0 : 1;
+}
+
+}  // namespace
+
+std::function<int(std::ostream&, nlohmann::ordered_json&)> add_digits_command(CLI::App& app) {
+  const auto request = std::make_shared<DigitsRequest>();
+  CLI::App* const command =
+      app.add_subcommand("digits", "Which digits of an answer survive another rounding of every operation");
+  command->add_option("scene", request->spec.scene, "scene file (TOML)")->required();
+  command->add_option("--set", request->spec.overrides, "key=value: override a key of the scene")
+      ->take_all()
+      ->allow_extra_args(false);
+  command->add_option("--samples", request->options.samples, "solves that are rounded at random")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 10'000));
+  command->add_option("--seed", request->options.first_seed, "of the first of them")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 1'000'000));
+  command->add_option("--output", request->output, "folder that keeps finished solves")
+      ->capture_default_str();
+  command->add_option("--jobs", request->jobs, "solves at a time; 0: one a processor, as memory allows")
+      ->capture_default_str()
+      ->check(CLI::NonNegativeNumber);
+  command->footer(
+      "Example:\n  slipstick digits convergence/scenes/paper.toml --set grid.cells=[64,64]\nExit code 0: "
+      "done; "
+      "1: a solve did not converge; 2: bad input.");
+  return [request](std::ostream& text, nlohmann::ordered_json& result) {
+    return run_digits(*request, text, result);
+  };
+}
+
+}  // namespace slipstick::convergence
