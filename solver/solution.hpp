@@ -8,6 +8,7 @@
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/limit_load.hpp"
 #include "solver/grid/grid.hpp"
+#include "solver/newton/safeguards.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace slipstick::solver {
@@ -93,6 +94,7 @@ struct Solution {
   int iterations = 0;           ///< of the method that found the tractions
   double change = 0.0;          ///< what its stopping test saw last
   std::vector<GridWork> grids;  ///< its work, coarsest grid first
+  Safeguards safeguards;        ///< of the step: tractions and pressure, all grids
   int pressure_iterations = 0;
   double pressure_complementarity = 0.0;
 };

@@ -144,6 +144,7 @@ LoadStep solve_coupled(ModelSolution& solution, const Scene& scene, const Step& 
           [&](const ArrayXd& opening) {
             NormalSolution normal = find_pressure(scene, model, step, opening);
             solution.pressure_applications += finest_grid_applications(normal.grids);
+            solution.safeguards += normal.safeguards;
             return normal;
           },
       .solve_tractions =
@@ -152,6 +153,7 @@ LoadStep solve_coupled(ModelSolution& solution, const Scene& scene, const Step& 
             TangentialSolution found =
                 find_tractions(solution.model, scene, loads, pressure, state, progress);
             solution.operator_applications += finest_grid_applications(found.grids);
+            solution.safeguards += found.safeguards;
             return found;
           }};
   CoupledSolution coupled = solve_fully_coupled(elasticity(scene, model, whole), model.grid, problem);
@@ -171,6 +173,7 @@ LoadStep solve_in_sequence(ModelSolution& solution, const Scene& scene, const St
   if (previous == nullptr || previous->normal != step.normal) {
     solution.normal = find_pressure(scene, solution.model, step);
     solution.pressure_applications = finest_grid_applications(solution.normal.grids);
+    solution.safeguards += solution.normal.safeguards;
     require_contact_within_grid(scene, solution.model, step, solution.normal);
   }
   solution.seconds.pressure = watch.lap();
@@ -178,6 +181,7 @@ LoadStep solve_in_sequence(ModelSolution& solution, const Scene& scene, const St
   solution.tangential =
       find_tractions(solution.model, scene, loads, solution.normal.pressure, state, progress);
   solution.operator_applications = finest_grid_applications(solution.tangential.grids);
+  solution.safeguards += solution.tangential.safeguards;
   solution.seconds.traction = watch.lap();
   return loads;
 }
@@ -188,6 +192,7 @@ void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, c
   Stopwatch watch;
   const KeptRounding rounding;  // what draws its own
   const Model& model = solution.model;
+  solution.safeguards = {};
   const LoadStep loads = model.shear_coupling
                              ? solve_coupled(solution, scene, step, before, progress)
                              : solve_in_sequence(solution, scene, step, previous, before, progress);

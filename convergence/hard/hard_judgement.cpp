@@ -92,6 +92,7 @@ JudgedCase judge_alone(const Json& result) {
     std::replace(path.begin(), path.end(), '.', '/');
     set_number(numbers, key, number(result, path.c_str()), "the result has none");
   }
+  if (result.contains("safeguards")) numbers["safeguards"] = result["safeguards"];
   if (status != "converged") return {HardVerdict::not_converged, message, numbers};
 
   const double error = exact_error(result);

@@ -18,6 +18,15 @@ namespace {
 
 using solver::Solution;
 
+Json safeguards_json(const solver::Safeguards& safeguards) {
+  Json json{{"second_solves", safeguards.second_solves},
+            {"halvings", safeguards.halvings},
+            {"gradient_steps", safeguards.gradient_steps},
+            {"breakdowns", safeguards.breakdowns}};
+  if (!safeguards.breakdown.empty()) json["breakdown"] = safeguards.breakdown;
+  return json;
+}
+
 /// The work on each grid, coarsest first.
 Json grids_json(const std::vector<solver::GridWork>& grids) {
   Json rows = Json::array();
@@ -203,6 +212,7 @@ Json solve_result(const solver::Scene& scene, const Solution& solution, const Or
   add_state(json, scene, solution);
   add_counts(json, scene, solution);
   json["grids"] = grids_json(solution.grids);
+  json["safeguards"] = safeguards_json(solution.safeguards);
   json["pressure_iterations"] = solution.pressure_iterations;
   json["pressure_complementarity"] = solution.pressure_complementarity;
   json["tolerance"] = scene.tolerance;

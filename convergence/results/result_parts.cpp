@@ -130,12 +130,34 @@ std::string text_line(const std::string& label, const std::string& value) {
   return fmt::format("  {:<16} {}\n", label, value);
 }
 
+namespace {
+
+/// What a solve did beside plain steps; empty: nothing.
+std::string safeguards_text(const Json& r) {
+  if (!r.contains("safeguards")) return "";
+  std::string text;
+  for (const auto& [key, words] : {std::pair{"second_solves", "second linear solves"},
+                                   {"halvings", "halvings of a step"},
+                                   {"gradient_steps", "gradient steps"},
+                                   {"breakdowns", "breakdowns of conjugate gradients"}}) {
+    const int count = r["safeguards"][key].get<int>();
+    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, words);
+  }
+  if (r["safeguards"].contains("breakdown")) {
+    text += fmt::format(" (the first: {})", r["safeguards"]["breakdown"].get<std::string>());
+  }
+  return text;
+}
+
+}  // namespace
+
 std::string status_text(const Json& r) {
   std::string text = text_line(
       "status", fmt::format("{} ({} iterations, {} operator applications, {} s)",
                             r["status"].get<std::string>(), r["iterations"].get<int>(),
                             number_text(r["operator_applications"]), number_text(r["seconds"]["total"])));
   if (r.contains("message")) text += text_line("why", r["message"].get<std::string>());
+  if (const std::string taken = safeguards_text(r); !taken.empty()) text += text_line("safeguards", taken);
   return text;
 }
 

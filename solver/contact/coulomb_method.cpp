@@ -207,6 +207,7 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
   solution.change = nested.newton.gap;
   solution.iterations = nested.newton.iterations;
   solution.grids = std::move(nested.grids);
+  solution.safeguards = nested.safeguards;
   solution.bytes = nested.bytes;
   describe(solution, problem, nested);
   return solution;

@@ -81,6 +81,7 @@ NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& gr
   solution.load_error = std::abs(solution.pressure.sum() / problem.total_pressure - 1.0);
   solution.iterations = nested.newton.iterations;
   solution.grids = std::move(nested.grids);
+  solution.safeguards = nested.safeguards;
   solution.bytes = nested.bytes;
   return solution;
 }

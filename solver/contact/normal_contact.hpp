@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "solver/contact/certificate.hpp"
+#include "solver/newton/safeguards.hpp"
 #include "solver/operator/elasticity.hpp"
 
 namespace slipstick::solver {
@@ -32,6 +33,7 @@ struct NormalSolution {
   double load_error = 0.0;  ///< relative
   int iterations = 0;
   std::vector<GridWork> grids = {};  ///< work done, coarsest grid first
+  Safeguards safeguards = {};        ///< on all grids
   double bytes = 0.0;                ///< operators and workspaces on the finest grid
 };
 

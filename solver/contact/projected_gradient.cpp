@@ -18,6 +18,10 @@ namespace {
 using Eigen::ArrayXd;
 
 constexpr int kCheckEvery = 10;
+/// So many iterations without a gap that is so much below the least so far are the end: rounding hides it.
+/// Contacts 512 cells across need 170 for eight digits.
+constexpr int kPatience = 500;
+constexpr double kFallen = 0.9;
 constexpr int kPowerIterations = 6;
 constexpr double kMargin = 1.05;
 /// Below this part of a displacement, the difference of two is rounding.
@@ -65,6 +69,16 @@ class ProjectedGradient {
       if (energy_ < 0.0) return failure("indefinite operator: q.Kq/2", energy_);
       if (options_.progress) options_.progress(iteration_, gap_);
       if (gap_ <= options_.tolerance) return finish(Status::converged, "");
+      if (!(gap_ > kFallen * least_gap_)) {
+        least_gap_ = gap_;
+        progressed_ = iteration_;
+      } else if (iteration_ - progressed_ >= kPatience) {
+        return finish(
+            Status::not_converged,
+            fmt::format("no further progress: gap {:.3g} after {} iterations, {:.3g} after {}, asked "
+                        "for {:.3g}",
+                        least_gap_, progressed_, gap_, iteration_, options_.tolerance));
+      }
     }
     iteration_ = options_.max_iterations;
     return finish(Status::not_converged,
@@ -194,7 +208,9 @@ class ProjectedGradient {
   Coefficients alpha_ = Coefficients::Zero(1);
   double phi_ = 0.0, theta_ = 1.0;
   double energy_ = 0.0, gap_ = 0.0;
+  double least_gap_ = std::numeric_limits<double>::infinity();
   int iteration_ = 0;
+  int progressed_ = 0;  // when the least gap was reached
 };
 
 }  // namespace

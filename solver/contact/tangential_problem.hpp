@@ -8,6 +8,7 @@
 #include "solver/contact/limit_load.hpp"
 #include "solver/contact/normal_contact.hpp"
 #include "solver/grid/grid.hpp"
+#include "solver/newton/safeguards.hpp"
 #include "solver/operator/elasticity.hpp"
 
 namespace slipstick::solver {
@@ -42,6 +43,7 @@ struct TangentialSolution {
   /// That of a bonded circular punch is (16/3) G a_s^3.
   double tangent_stiffness = 0.0;
   std::vector<GridWork> grids = {};  ///< work done, coarsest grid first
+  Safeguards safeguards = {};        ///< of Coulomb's method, on all grids
   double bytes = 0.0;                ///< operators and workspaces on the finest grid
 };
 

@@ -73,6 +73,7 @@ template <AdmissibleSet Set, typename Real>
 NewtonSummary NaturalMapNewton<Set, Real>::run(ArrayXd& q, const Coefficients& multipliers,
                                                const NewtonOptions& options) {
   NewtonSummary summary;
+  safeguards_ = {};
   multipliers_ = multipliers.size() == balance_.count() ? multipliers : Coefficients::Zero(balance_.count());
   enter_admissible_set(q);
   double best_gap = std::numeric_limits<double>::infinity();
@@ -82,6 +83,7 @@ NewtonSummary NaturalMapNewton<Set, Real>::run(ArrayXd& q, const Coefficients& m
       return fail(summary, "no multiplier restores the load: it is not finite, or at its limit");
     summary.gap = relative_gap(q);
     summary.multipliers = multipliers_;
+    summary.safeguards = safeguards_;
     if (options.progress) options.progress(applications(), summary.gap);
     if (std::isnan(summary.gap)) return fail(summary, "an elastic energy that is not a positive number");
     if (summary.gap <= options.tolerance &&
@@ -212,9 +214,11 @@ bool NaturalMapNewton<Set, Real>::solve_linear(const ArrayXd& q, const LinearTar
     r_ -= work_.Ad;
   }
   const CgConstraints<Real> none;
-  return !projected_cg<Real>(map, inverse, has_tangents_ ? constraints_ : none, r_,
-                             {target.reduction, target.max_iterations}, work_, x_)
-              .broke_down();
+  const CgSummary solved = projected_cg<Real>(map, inverse, has_tangents_ ? constraints_ : none, r_,
+                                              {target.reduction, target.max_iterations}, work_, x_);
+  if (!solved.broke_down()) return true;
+  safeguards_ += {.breakdowns = 1, .breakdown = solved.message()};
+  return false;
 }
 
 /// The loads that cells bring which jump onto the face of their set.
@@ -257,12 +261,14 @@ bool NaturalMapNewton<Set, Real>::take_newton_step(ArrayXd& q, const LinearTarge
   write_trial(q, 1.0);
   bool restored = restore_along_tangents();
   if (!restored && has_tangents_ && balance_.count() > 0) {
+    ++safeguards_.second_solves;
     if (!solve_linear(q, target, -jump_loads(q))) return false;
     write_trial(q, 1.0);
     restored = restore_along_tangents();
   }
   for (int halvings = 0; halvings <= kMaxHalvings; ++halvings) {
     if (halvings > 0) {
+      ++safeguards_.halvings;
       write_trial(q, std::ldexp(1.0, -halvings));
       restored = restore_along_tangents();
     }
@@ -303,7 +309,9 @@ bool NaturalMapNewton<Set, Real>::take_gradient_step(ArrayXd& q) {
     Coefficients x = length * multipliers_;
     if (!balance_.solve(trial_, x)) continue;
     balance_.add(x, trial_);
-    if (accept_trial(q)) return true;
+    if (!accept_trial(q)) continue;
+    ++safeguards_.gradient_steps;
+    return true;
   }
   return false;
 }

@@ -13,6 +13,7 @@
 #include "solver/newton/conjugate_gradients.hpp"
 #include "solver/newton/convex_program.hpp"
 #include "solver/newton/load_balance.hpp"
+#include "solver/newton/safeguards.hpp"
 #include "solver/newton/tangent_space.hpp"
 
 namespace slipstick::solver {
@@ -34,6 +35,7 @@ struct NewtonSummary {
   /// where it is not known.
   CoefficientMatrix tangent_stiffness;
   int iterations = 0;
+  Safeguards safeguards;
 };
 
 /// Semismooth Newton method on the natural map q = P(q - rho (Kq + g - multipliers c)) of a convex program
@@ -124,6 +126,7 @@ class NaturalMapNewton {
   std::vector<const Field*> c_;  ///< those of the imposed conditions, then the given ones
   ArrayXd u_, y_, trial_, trial_u_;
   Coefficients multipliers_;  ///< of the imposed conditions
+  Safeguards safeguards_;     ///< of this run
   Index changed_ = 0;
   bool has_tangents_ = false;  ///< whether the constraints can be used
   bool energy_fell_ = false;   ///< in the last step, by more than its rounding

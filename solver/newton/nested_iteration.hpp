@@ -17,6 +17,7 @@ struct NestedSummary {
   Eigen::ArrayXd displacement;  ///< K q
   Eigen::ArrayXd slip;          ///< K q + g - multipliers c
   std::vector<GridWork> grids;  ///< coarsest first
+  Safeguards safeguards;        ///< of all grids
   double bytes = 0.0;           ///< operators and workspaces on the finest grid
 };
 
@@ -66,6 +67,7 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
     const Eigen::ArrayXd start = on_coarse.start();
     NestedSummary below = solve_nested_in<Real>(elasticity, coarse, on_coarse, coarse_options);
     result.grids = std::move(below.grids);
+    result.safeguards = below.safeguards;
     if (below.field.isFinite().all()) {
       result.field += prolong_to(grid, coarse, below.field - start, problem.parities());
     }
@@ -78,6 +80,7 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
   NaturalMapNewton<std::remove_const_t<decltype(admissible)>, Real> newton(
       admissible, program, *operators.op, operators.inner(), *operators.symbol);
   result.newton = newton.run(result.field, multipliers, options);
+  result.safeguards += result.newton.safeguards;
   result.displacement = newton.displacement();
   newton.write_slip(result.slip);
   result.grids.push_back(

@@ -308,6 +308,17 @@ TEST(ProjectedGradientBreakdown, OfTooFewIterationsIsNamedWithItsNumbers) {
   EXPECT_NEAR(bench.moment_of(solution.traction) / bench.limit, 0.5, kRounding);  // admissible all the same
 }
 
+// No gap is below the rounding of its displacements.
+TEST(ProjectedGradientBreakdown, OfProgressIsSeenLongBeforeTheLastIteration) {
+  const Bench bench(24);
+  const TangentialSolution solution =
+      solve_by_projected_gradient(*bench.op, under_moment(bench.bound, 0.5 * bench.limit), to_gap(1e-30));
+  EXPECT_EQ(solution.status, Status::not_converged);
+  EXPECT_THAT(solution.message, StartsWith("no further progress"));
+  EXPECT_LT(solution.change, 1e-12);
+  EXPECT_LT(solution.iterations, 2000);
+}
+
 /// A linear operator of the test's own: a function of the cell and of how often it was called.
 class MadeUpOperator final : public LinearOperator {
  public:

@@ -97,6 +97,9 @@ TEST_F(Newton, FallsBackOnTheGradientWhereTheLinearSolveFails) {
   EXPECT_TRUE(summary.converged) << summary.message;
   EXPECT_LE(summary.gap, 1e-4);
   EXPECT_NEAR(energy(q) / energy(q_), 1.0, 1e-4);
+  EXPECT_EQ(summary.safeguards.gradient_steps, summary.iterations);
+  EXPECT_EQ(summary.safeguards.breakdowns, summary.iterations);
+  EXPECT_THAT(summary.safeguards.breakdown, HasSubstr("square is -"));
 }
 
 TEST_F(Newton, SaysThatItsApplicationsWereTooFew) {
