@@ -8,6 +8,7 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -161,6 +162,53 @@ TEST(PlaneJudgement, ListsWrongRowsWithTheirReason) {
   ASSERT_EQ(plane["not_timed"].size(), 1U);
   EXPECT_EQ(plane["not_timed"][0]["choice"]["cells"], 256.0);
   EXPECT_THAT(bench::plane_text(plane), HasSubstr("not timed (made): 256 x 256 cells"));
+}
+
+/// A made point whose times have an interval.
+Json spread_point(const std::string& method, double low, double median, double high) {
+  Json point = made_point(method, 64, median, 1e-3);
+  point["seconds"]["low"] = low;
+  point["seconds"]["high"] = high;
+  return point;
+}
+
+Json judged_of(const std::vector<Json>& points) {
+  Json plane;
+  plane["quantities"] = {{{"name", "twist"}, {"label", "twist"}}};
+  plane["scenes"].push_back({{"name", "made"}, {"points", points}});
+  plane["scenes"][0]["exact"]["seconds"] = {{"low", 0.3}, {"median", 0.4}, {"high", 0.7}};
+  bench::judge_plane(plane);
+  return plane;
+}
+
+// The quickest by its median is neither that of the least low end nor that of the least high one.
+TEST(PlaneJudgement, GoesByMedians) {
+  const Json plane = judged_of({spread_point("coulomb", 0.5, 2.0, 2.1), spread_point("paper", 1.0, 1.5, 4.0),
+                                spread_point("projected_gradient", 0.4, 1.8, 1.9)});
+  const Json& scene = plane["scenes"][0];
+  EXPECT_EQ(scene["envelope"]["twist"], Json({1}));
+  for (const Json& row : scene["time_to"]) {
+    if (row["error"] != 1e-2) continue;
+    const std::map<std::string, double> medians{
+        {"any", 1.5}, {"coulomb", 2.0}, {"paper", 1.5}, {"projected_gradient", 1.8}, {"exact", 0.4}};
+    EXPECT_EQ(row["seconds"], medians.at(row["method"])) << row;
+  }
+  EXPECT_EQ(scene["time_to"].size(), 4U * 5U);
+  EXPECT_TRUE(plane["dominated"].empty());  // the intervals overlap
+}
+
+// Surely slower is what is slower at its low end than another at its high one; by how much, their medians
+// say.
+TEST(PlaneJudgement, IsSureOfWhatIntervalsTellApart) {
+  const auto dominated = [](double low_of_slower) {
+    return judged_of({spread_point("coulomb", 0.9, 1.0, 1.3),
+                      spread_point("paper", low_of_slower, 3.0, 3.1)})["dominated"];
+  };
+  EXPECT_TRUE(dominated(1.25).empty());
+  const Json found = dominated(1.35);
+  ASSERT_EQ(found.size(), 1U);
+  EXPECT_EQ(found[0]["value"], "paper");
+  EXPECT_EQ(found[0]["times_slower"]["median"], 3.0);
 }
 
 }  // namespace

@@ -202,8 +202,41 @@ TEST(ExpectedContact, OfATurnedEllipsoidIsTheEllipsesBox) {
 }
 
 TEST(ExpectedContact, HoldsAllBodiesSideBySide) {
-  const std::vector<Surface> bodies{moved(punch(1.0, 0.0), -3.0, 0.5), moved(punch(2.0, 0.0), 1.0, -2.0)};
-  EXPECT_EQ(expected_half_sides(bodies, Combine::nearest, 1.0, 1.0), (std::array{4.0, 4.0}));
+  const std::vector<Surface> bodies{moved(punch(1.0, 0.0), -3.0, 0.5), moved(punch(2.0, 0.0), 1.0, -2.5)};
+  EXPECT_EQ(expected_half_sides(bodies, Combine::nearest, 1.0, 1.0), (std::array{4.0, 4.5}));
+  EXPECT_EQ(half_sides_below(bodies, Combine::nearest, 0.1), (std::array{4.0, 4.5}));
+}
+
+/// Along the sides of the rectangle the gap of a body with two radii, turned and off the origin, is at least
+/// the depth, and on the far sides it comes down to it: on its own axes, along x1 at sqrt(2 R1 depth).
+TEST(GapBelowADepth, OfAnEllipsoidIsItsOwnLevelsBox) {
+  const double depth = 0.02;
+  for (const double angle : {0.0, 0.4, 2.0, -1.1, 0.5 * pi}) {
+    const Surface surface = moved(ellipsoid(4.0, 1.0, angle), 0.7, -0.2);
+    const auto [half_1, half_2] = half_sides_below({surface}, Combine::sum, depth);
+    double least_1 = HUGE_VAL;
+    double least_2 = HUGE_VAL;
+    for (int i = -2000; i <= 2000; ++i) {
+      least_1 = std::min(least_1, gap_at(surface, half_1, 1e-3 * i * half_2));
+      least_2 = std::min(least_2, gap_at(surface, 1e-3 * i * half_1, -half_2));
+    }
+    EXPECT_NEAR(least_1 / depth, 1.0, 1e-4) << angle;
+    EXPECT_NEAR(least_2 / depth, 1.0, 1e-4) << angle;
+  }
+  const auto own = half_sides_below({ellipsoid(4.0, 1.0, 0.0)}, Combine::sum, depth);
+  EXPECT_NEAR(own[0], 0.4, 10.0 * kEpsilon);
+  EXPECT_NEAR(own[1], 0.2, 10.0 * kEpsilon);
+}
+
+/// Of a sum the gap is larger than that of either, of the nearest it is that of one.
+TEST(GapBelowADepth, OfSeveralShapesIsTheNarrowestOrTheWidest) {
+  const std::vector<Surface> crossed{ellipsoid(4.0, 1.0, 0.0), ellipsoid(0.25, 2.25, 0.0)};
+  const auto sum = half_sides_below(crossed, Combine::sum, 0.02);
+  const auto nearest = half_sides_below(crossed, Combine::nearest, 0.02);
+  for (const auto& [found, along_1, along_2] : {std::tuple{sum, 0.1, 0.2}, {nearest, 0.4, 0.3}}) {
+    EXPECT_NEAR(found[0], along_1, 10.0 * kEpsilon);
+    EXPECT_NEAR(found[1], along_2, 10.0 * kEpsilon);
+  }
 }
 
 TEST(ExpectedContact, IsNotKnownOfSumsAndRoughness) {
