@@ -243,17 +243,33 @@ class WholePage(unittest.TestCase):
         self.assertIn("made &lt;up&gt;", self.page)
         self.assertIn("a &lt; b", self.page)
 
+    def rows(self, begin, end):
+        """The cells of the rows between two places."""
+        table = self.page[self.page.index(f'id="{begin}"'):self.page.index(f'id="{end}"')]
+        return [re.findall("<td>(.*?)</td>", row) for row in re.findall("<tr>(.*?)</tr>", table)]
+
+    def test_each_table_stands_under_its_heading(self):
+        loads, meshes = self.rows("loads", "mesh")[1:], self.rows("mesh", "gaps")[1:]
+        self.assertEqual([row[:2] for row in loads], [["0.2", "paper"], ["0.5", "paper"], ["0.9", "paper"]])
+        self.assertEqual([row[:3] for row in meshes],
+                         [[pressure, load, f"{cells}²"] for pressure in ("solved", "hertz") for load in ("0.5", "0.9")
+                          for cells in (4, 8, 16)])
+
+    def test_table_of_errata(self):
+        self.assertEqual(self.rows("errata", "scene"), [["(0)", "a &lt; b", "a &gt; b", "by example"]])
+        head = self.page[self.page.index('id="errata"'):self.page.index('id="scene"')]
+        self.assertEqual(re.findall('<th scope="col">(.*?)</th>', head),
+                         ["Equation", "As printed", "What holds", "How it shows"])
+
     def test_table_of_approximations(self):
-        table = self.page[self.page.index('id="approximations"'):self.page.index('id="loads"')]
-        cells = [re.findall("<td>(.*?)</td>", row) for row in re.findall("<tr>(.*?)</tr>", table)]
+        cells = self.rows("approximations", "loads")
         self.assertEqual(cells[1:], [
             ["0.2", "0.2", "−4\u00a0%", "−5\u00a0%", "−10\u00a0%", "−10\u00a0%", "+100\u00a0%"],
             ["0.5", "0.5", "−10\u00a0%", "−12\u00a0%", "−25\u00a0%", "−25\u00a0%", "+100\u00a0%"],
             ["0.9", "0.9", "−18\u00a0%", "−22\u00a0%", "−45\u00a0%", "−45\u00a0%", "+33\u00a0%"]])
 
     def test_table_of_the_gallery(self):
-        table = self.page[self.page.index('id="gallery"'):self.page.index('id="hard"')]
-        cells = [re.findall("<td>(.*?)</td>", row) for row in re.findall("<tr>(.*?)</tr>", table)]
+        cells = self.rows("gallery", "hard")
         self.assertEqual(cells[1], ["<a href=\"data/scenes/sphere.toml\">&lt;sphere&gt;</a>", "so &amp; so", "twist",
                                     "1.25\u00a0mrad", "1.2\u00a0mrad exact", "−4.0×10⁻²", "2.0×10⁻⁹", "20", "2",
                                     "256", "0.25"])
