@@ -1,0 +1,323 @@
+// Where the verdict turns: a right field with one thing wrong by a known amount, just below and just above
+// what docs/verify-your-solver.md allows.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <random>
+
+#include "convergence/check/examination.hpp"
+#include "convergence/check/tests/checked_field.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using testing::HasSubstr;
+
+constexpr double kBelow = 0.9;
+constexpr double kAbove = 1.1;
+
+/// What is said of one quantity.
+Json judgement(const Json& result, const std::string& quantity) {
+  for (const Json& item : result["judged"]) {
+    if (item["quantity"] == quantity) return item;
+  }
+  ADD_FAILURE() << "nothing is said of " << quantity;
+  return {};
+}
+
+/// A scene, its solution on its own grid and that as a field.
+struct RightField {
+  solver::Scene scene;
+  solver::Solution solution = solver::solve(scene);
+  FieldRows rows = rows_of(solution);
+
+  double of_cells(double cells) const { return cells / static_cast<double>(solution.contact_cells); }
+};
+
+const RightField& right_field() {
+  static const RightField field{scene_of("paper", 32)};
+  return field;
+}
+
+// 2/n with n contact cells, where the field solves its own grid's problem.
+TEST(CheckThreshold, OfNormalLoadsIsTheQuadrature) {
+  const RightField& field = right_field();
+  for (const double sign : {1.0, -1.0}) {
+    const auto off = [&](double times) {
+      return with_stresses_times(field.rows, 1.0 + sign * times * field.of_cells(2.0));
+    };
+    find_good(off(kBelow), field.scene);
+    find_bad(off(kAbove), field.scene, HasSubstr("the normal load"));
+  }
+}
+
+TEST(CheckThreshold, OfMomentsIsTheQuadrature) {
+  const RightField& field = right_field();
+  for (const double sign : {1.0, -1.0}) {
+    const auto off = [&](double times) {
+      const double ratio = 0.9 * (1.0 + sign * times * field.of_cells(2.0));
+      return solved(scene_of("paper", 32, {fmt::format("load.moment_ratio={}", ratio)}));
+    };
+    find_good(off(kBelow), field.scene);
+    find_bad(off(kAbove), field.scene, HasSubstr("the moment is"));
+  }
+}
+
+// In parts of mu W, which is 100 N.
+TEST(CheckThreshold, OfForcesIsTheQuadrature) {
+  const auto scene = [](double more) {
+    return scene_of("paper", 32, {"load.moment_ratio=0.5", fmt::format("load.force=[{}, 20]", 30.0 + more)});
+  };
+  const RightField field{scene(0.0)};
+  find_good(solved(scene(kBelow * field.of_cells(200.0))), field.scene);
+  find_bad(solved(scene(kAbove * field.of_cells(200.0))), field.scene, HasSubstr("the tangential force"));
+}
+
+TEST(CheckThreshold, OfTheTwistOfADiscreteSolutionIsTheQuadrature) {
+  const RightField& field = right_field();
+  for (const double sign : {1.0, -1.0}) {
+    const auto twist = [&](double times) {
+      return (1.0 + sign * times * field.of_cells(2.0)) * field.solution.twist_angle;
+    };
+    find_good(field.rows, field.scene, twist(kBelow));
+    find_bad(field.rows, field.scene, HasSubstr("the twist is"), twist(kAbove));
+  }
+}
+
+// One cell. The contact radius goes with the modulus to the power -1/3.
+TEST(CheckThreshold, OfTheContactRadiusIsOneCell) {
+  const RightField& field = right_field();
+  const double radius = find_oracle(field.scene).oracle->contact_radius;
+  const double cell = field.solution.grid.h1 / radius;
+  for (const double times : {kBelow, kAbove, -kBelow, -kAbove}) {
+    solver::Scene other = field.scene;
+    other.extent = {32.0 * field.solution.grid.h1, 32.0 * field.solution.grid.h2};
+    other.upper.young_modulus = other.lower.young_modulus *= std::pow(1.0 + times * cell, -3.0);
+    const Json item = judgement(check_rows(solved(other), field.scene), "contact_radius_error");
+    EXPECT_NEAR(item["allowed"].get<double>() / cell, 1.0, 1e-9);
+    EXPECT_EQ(item["holds"], std::abs(times) < 1.0) << item;
+  }
+}
+
+/// The rows with some of them changed: those whose |q|/(mu p) is in a range.
+FieldRows with_part(const RightField& field, double least, double most,
+                    const std::function<void(FieldRow&)>& change) {
+  return changed(field.rows, [&](FieldRow& row) {
+    const double part = std::hypot(row[3], row[4]) / (field.scene.friction * row[2]);
+    if (part >= least && part <= most) change(row);
+  });
+}
+
+void scale_tractions(FieldRow& row, double factor) { row[3] *= factor, row[4] *= factor; }
+
+constexpr double kSlipping = 1.0 - 1e-9;
+
+// A thousandth, in any one cell.
+TEST(CheckThreshold, OfTheFrictionBoundIsAThousandth) {
+  const RightField& field = right_field();
+  const auto largest = std::ranges::max_element(
+      field.rows, {}, [](const FieldRow& row) { return std::hypot(row[3], row[4]); });
+  const auto place = static_cast<std::size_t>(largest - field.rows.begin());
+  for (const double times : {kBelow, kAbove}) {
+    FieldRows rows = field.rows;
+    const double bound = field.scene.friction * rows[place][2];
+    scale_tractions(rows[place], (1.0 + times * 1e-3) * bound / std::hypot(rows[place][3], rows[place][4]));
+    const Json item = judgement(check_rows(rows, field.scene), "friction_bound");
+    EXPECT_NEAR(item["value"].get<double>(), times * 1e-3, 1e-6);
+    EXPECT_EQ(item["holds"], times < 1.0) << item;
+  }
+}
+
+// The median of the ring: a thousandth, and twice what right fields of this mesh show.
+TEST(CheckThreshold, OfFrictionIsAThousandthAndTheMesh) {
+  const RightField& field = right_field();
+  const double allowed_here = allowed(check_rows(field.rows, field.scene), "friction");
+  EXPECT_GE(allowed_here, 1e-3);
+  const solver::Scene finer = scene_of("paper", 64);
+  EXPECT_NEAR(allowed(check_rows(solved(finer), finer), "friction"), 1.1e-3, 0.1e-3);  // as in the guide
+  for (const double times : {kBelow, kAbove}) {
+    const Json item = judgement(
+        check_rows(with_part(field, kSlipping, 2.0,
+                             [&](FieldRow& row) { scale_tractions(row, 1.0 - times * allowed_here); }),
+                   field.scene),
+        "friction");
+    EXPECT_NEAR(item["value"].get<double>(), times * allowed_here, 1e-6);
+    EXPECT_EQ(item["holds"], times < 1.0) << item;
+  }
+}
+
+/// Whether the cell's column and row are together even: the squares of a chessboard.
+bool is_white(const FieldRow& row, const solver::Grid& grid) {
+  const auto whole = [](double x) { return static_cast<long>(std::lround(2.0 * x)) / 2; };
+  return (whole(row[0] / grid.h1 + 1000.0) + whole(row[1] / grid.h2 + 1000.0)) % 2 == 0;
+}
+
+void turn(FieldRow& row, double degrees) {
+  const double angle = degrees * std::numbers::pi / 180.0;
+  const auto [q1, q2] = std::pair(row[3], row[4]);
+  row[3] = std::cos(angle) * q1 - std::sin(angle) * q2;
+  row[4] = std::sin(angle) * q1 + std::cos(angle) * q2;
+}
+
+// A chessboard of turned tractions hardly moves the surface: slip stays where it was.
+TEST(CheckThreshold, OfSlipDirectionsIsATenthOfADegreeAndTheMesh) {
+  const RightField& field = right_field();
+  const Json right = check_rows(field.rows, field.scene);
+  const double mesh = right["yardstick"]["slip_direction"];
+  EXPECT_NEAR(allowed(right, "slip_direction"), 0.1 + 2.0 * mesh, 1e-6);
+  for (const double times : {kBelow, kAbove}) {
+    const double degrees = times * (0.1 + 2.0 * mesh);
+    const FieldRows rows = with_part(field, kSlipping, 2.0, [&](FieldRow& row) {
+      turn(row, is_white(row, field.solution.grid) ? degrees : -degrees);
+    });
+    const Json item = judgement(check_rows(rows, field.scene), "slip_direction");
+    EXPECT_EQ(item["holds"], times < 1.0) << item;
+  }
+}
+
+// In stick cells, where no bound is met, a chessboard is off by what it is made to be: so far are the
+// tractions from the right ones.
+TEST(CheckThreshold, OfTractionsIsTwiceWhatRightFieldsShow) {
+  const RightField& field = right_field();
+  const Json right = check_rows(field.rows, field.scene);
+  const double mesh = right["yardstick"]["mesh_error"];
+  EXPECT_NEAR(allowed(right, "tractions"), 2.0 * mesh, 1e-9);
+  double sum = 0.0;
+  for (const FieldRow& row : field.rows) sum += std::hypot(row[3], row[4]);
+  int sticking = 0;
+  with_part(field, 0.0, 0.8, [&](FieldRow&) { ++sticking; });
+  for (const double times : {kBelow, kAbove}) {
+    const double part = times * 2.0 * mesh;
+    const Json result = check_rows(with_part(field, 0.0, 0.8,
+                                             [&](FieldRow& row) {
+                                               const double size = part * sum / sticking;
+                                               row[3] += is_white(row, field.solution.grid) ? size : -size;
+                                             }),
+                                   field.scene);
+    const Json item = judgement(result, "tractions");
+    EXPECT_NEAR(item["value"].get<double>() / part, 1.0, 1e-2);
+    EXPECT_EQ(result["yardstick"]["distance"], item["value"]);
+    EXPECT_EQ(item["holds"], times < 1.0) << item;
+  }
+}
+
+// 1e-5 is what any iteration leaves, beside twice what right fields show: of constant cells no more than
+// 1e-3.
+TEST(CheckThreshold, OfTheGapIsTheIterationsAndTheMeshs) {
+  struct Gap {
+    double allowed;
+    double of_mesh;
+  };
+  const auto gap = [](const std::string& pressure, int cells) {
+    const solver::Scene scene = scene_of("paper", cells, {fmt::format("contact.pressure='{}'", pressure)});
+    const Json result = check_rows(solved(scene), scene);
+    EXPECT_EQ(result["yardstick"]["constant_cells"], pressure == "solved");
+    EXPECT_NEAR(result["discrete"]["allowed"].get<double>(), 1e-5, 1e-8);
+    return Gap{allowed(result, "gap"), result["yardstick"]["gap"]};
+  };
+  const Gap fine = gap("solved", 48);
+  EXPECT_LT(2.0 * fine.of_mesh, 0.5e-3);
+  EXPECT_NEAR(fine.allowed, 1e-5 + 2.0 * fine.of_mesh, 1e-8);
+  const Gap coarse = gap("solved", 16);
+  EXPECT_GT(2.0 * coarse.of_mesh, 2e-3);
+  EXPECT_NEAR(coarse.allowed, 1e-5 + 1e-3, 1e-8);
+  const Gap not_constant = gap("hertz", 16);
+  EXPECT_NEAR(not_constant.allowed, 1e-5 + 2.0 * not_constant.of_mesh, 1e-8);
+}
+
+/// The exact field's means over the cells, by the midpoints of 9 x 9 parts.
+FieldRows averaged(FieldRows rows, const Oracle& oracle) {
+  constexpr int kParts = 9;
+  const double h = std::abs(rows[1][1] - rows[0][1]);
+  for (FieldRow& row : rows) {
+    FieldRow mean{row[0], row[1], 0.0, 0.0, 0.0};
+    for (int k = 0; k < kParts * kParts; ++k) {
+      const double x1 = row[0] + h * ((k / kParts + 0.5) / kParts - 0.5);
+      const double x2 = row[1] + h * ((k % kParts + 0.5) / kParts - 0.5);
+      const double r = std::hypot(x1, x2);
+      const double shear = r < oracle.contact_radius ? oracle.shear(r) : 0.0;
+      mean[2] += oracle.pressure(r) / (kParts * kParts);
+      mean[3] -= shear * x2 / r / (kParts * kParts);
+      mean[4] += shear * x1 / r / (kParts * kParts);
+    }
+    row = mean;
+  }
+  return rows;
+}
+
+// The worse of two right fields, the samples at the cells' centres and the means over the cells, says what a
+// mesh accounts for. Of the exact ones they are what check measures by a solve on cells a third as large.
+TEST(CheckThreshold, OfTheMeshIsWhatExactFieldsShow) {
+  const solver::Scene& scene = right_field().scene;
+  const FieldRows at_centres = sampled(scene);
+  const Json one = check_rows(at_centres, scene);
+  const Json other = check_rows(averaged(at_centres, *find_oracle(scene).oracle), scene);
+  const auto worse = [&](const char* quantity) {
+    return std::max(judgement(one, quantity)["value"].get<double>(),
+                    judgement(other, quantity)["value"].get<double>());
+  };
+  const Json& mesh = one["yardstick"];
+  EXPECT_NEAR(mesh["mesh_error"].get<double>() / worse("tractions"), 1.0, 0.2);
+  EXPECT_NEAR(mesh["gap"].get<double>() / worse("gap"), 1.0, 0.2);
+  EXPECT_GE(mesh["slip_direction"].get<double>() / worse("slip_direction"), 1.0);
+  EXPECT_LE(mesh["slip_direction"].get<double>() / worse("slip_direction"), 2.5);
+}
+
+/// Degrees between the slip of the parts of a field's cells and the reverse of their tractions, where those
+/// slips that are given as parts of the largest displacement are turned by 90 degrees and all others are
+/// opposed to traction.
+double direction_with_turned(const GivenContact& contact, const std::vector<double>& parts, double least) {
+  const solver::Index cells = contact.pressure.size();
+  const double largest = solver::norms(contact.displacement).maxCoeff();
+  State state{.twist = 0.0, .displacement = {}, .slip = Eigen::ArrayXd::Zero(2 * cells), .gap = {}};
+  std::size_t turned = 0;
+  for (solver::Index cell = 0; cell < cells; ++cell) {
+    const std::array q{contact.traction[cell], contact.traction[cell + cells]};
+    const double size = std::hypot(q[0], q[1]);
+    if (!(size > 0.1 * contact.friction_bound.maxCoeff())) continue;
+    const bool turn = turned < parts.size();
+    const double slip = (turn ? parts[turned++] : 10.0 * least) * largest / size;
+    state.slip[cell] = turn ? -slip * q[1] : -slip * q[0];
+    state.slip[cell + cells] = turn ? slip * q[0] : -slip * q[1];
+  }
+  return noticeable_direction(contact, state, least).mean;
+}
+
+// Slips that are a smaller part of the displacements than the mesh leaves open of the tractions have no
+// direction to judge.
+TEST(CheckThreshold, OfSlipsThatCountIsWhatTheMeshLeavesOpen) {
+  const RightField& field = right_field();
+  const Examination e = examine(field.scene, write_rows(sampled(field.scene)), {});
+  const double least = e.reference.mesh.deviation.tractions;
+  EXPECT_LT(direction_with_turned(e.contact, {kBelow * least, 0.1 * least}, least), 1e-12);
+  EXPECT_GT(direction_with_turned(e.contact, {kAbove * least}, least), 0.01);
+  EXPECT_EQ(e.direction.mean, noticeable_direction(e.contact, e.fitted, least).mean);
+  for (const double other : {0.5, 2.0}) {
+    EXPECT_NE(e.direction.mean, noticeable_direction(e.contact, e.fitted, other * least).mean);
+  }
+}
+
+// The upper quartile of a normal distribution says how much noise |q| has, up to 0.3 %.
+TEST(CheckThreshold, OfNoiseIsThreeThousandths) {
+  const RightField& field = right_field();
+  for (const double noise : {1e-3, 2e-3, 1e-2}) {
+    std::mt19937 random(3);
+    std::normal_distribution<double> factor(1.0, noise);
+    const FieldRows rows = changed(field.rows, [&](FieldRow& row) { scale_tractions(row, factor(random)); });
+    const double found = check_rows(rows, field.scene)["yardstick"]["noise"];
+    if (noise > 3e-3) {
+      EXPECT_NEAR(found, 3e-3, 1e-9);
+    } else {
+      EXPECT_NEAR(found / noise, 1.0, 0.25);
+    }
+  }
+}
+
+}  // namespace
+}  // namespace slipstick::convergence
