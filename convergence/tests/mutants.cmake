@@ -73,3 +73,20 @@ mutant(pressure_at_corners
   REPLACE [[(((cell_x1(grid) + 0.5 * grid.h1) / contact.semi_axis_1).square() +
              ((cell_x2(grid) + 0.5 * grid.h2) / contact.semi_axis_2).square());]]
   GATES hertz-64-traction-l1 hertz-order-traction-l1 hertz-order-traction-l1-verdict)
+
+# Unloading that repeats first loading not quite twice as large.
+mutant(masing_less_than_twice
+  FILE analytic/cycle.cpp
+  FIND [[.weight = std::copysign(2, change)]]
+  REPLACE [[.weight = std::copysign(1.999, change)]]
+  GATES fretting_torsion-128-unloaded-twist)
+
+# The energy that a step's slip loses, against the pressure before the step.
+mutant(dissipated_against_the_old_pressure
+  FILE solver/model_solution.cpp
+  FIND [[solution.dissipated = (loads.problem.friction_bound * norms(tangential.slip)).sum() * unit;]]
+  REPLACE [[static ArrayXd bound;
+  if (bound.size() == 0) bound = loads.problem.friction_bound;
+  solution.dissipated = (bound * norms(tangential.slip)).sum() * unit;
+  bound = loads.problem.friction_bound;]]
+  GATES growing_load-128-released-dissipated)

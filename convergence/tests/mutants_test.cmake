@@ -1,5 +1,6 @@
 # cmake -D BUILD_DIR=... -D MUTANTS=<folder> -D PROGRAM=... -D GATES=<file> -D WORK_DIR=... -P mutants_test.cmake: builds
-# the mutants and runs the gates on each. The gates named for a mutant must fail; all must pass on the program itself.
+# the mutants and runs on each the gates that are named for it, which must fail; all of them must pass on the program
+# itself.
 cmake_minimum_required(VERSION 3.25)
 include("${CMAKE_CURRENT_LIST_DIR}/mutants.cmake")
 set(SECONDS_A_MUTANT 1200)  # then it hangs; a wrong problem may take its solver long
@@ -16,8 +17,8 @@ foreach(name IN LISTS mutants)
 endforeach()
 list(REMOVE_DUPLICATES gates)
 
-# Sets <result> to the ids of the gates that fail.
-function(failing_gates program folder result)
+# Sets <result> to the ids of those gates that fail.
+function(failing_gates program folder gates result)
   file(MAKE_DIRECTORY "${folder}")
   execute_process(
     COMMAND "${program}" gate "${GATES}" --only ${gates} --output "${folder}/points" --json "${folder}/gates.json" --quiet
@@ -41,14 +42,14 @@ function(failing_gates program folder result)
   set(${result} "${failing}" PARENT_SCOPE)
 endfunction()
 
-failing_gates("${PROGRAM}" "${WORK_DIR}/none" failing)
+failing_gates("${PROGRAM}" "${WORK_DIR}/none" "${gates}" failing)
 set(table "  no mutant: ${failing}\n")
 set(wrong "")
 if(failing)
   string(APPEND wrong "  without a mutant ${failing} fail\n")
 endif()
 foreach(name IN LISTS mutants)
-  failing_gates("${MUTANTS}/slipstick_mutant_${name}" "${WORK_DIR}/${name}" failing)
+  failing_gates("${MUTANTS}/slipstick_mutant_${name}" "${WORK_DIR}/${name}" "${mutant_${name}_GATES}" failing)
   string(APPEND table "  ${name}: ${failing}\n")
   foreach(gate IN LISTS mutant_${name}_GATES)
     if(NOT gate IN_LIST failing)

@@ -10,9 +10,12 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <numbers>
 #include <optional>
 #include <regex>
+#include <utility>
 
+#include "solver/scene/hertz_pressure.hpp"
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/scene_file.hpp"
 
@@ -80,6 +83,20 @@ TEST(CutOffContact, OfTwoSpheresSummedIsRefused) {
   EXPECT_THAT(refusal(two_spheres_summed(0.8e-3)), HasSubstr("grid.extent = [0.0008, 0.0008]"));
   const ModelSolution solution = solve_in_model_units(two_spheres_summed(1.1e-3));
   EXPECT_NEAR(solution.peak_pressure / paper::kPeakPressure, 1.0, 1e-3);
+}
+
+/// Two long bodies that add up to one with a contact some six times as long as wide, on a grid that is too
+/// short for it and wide enough.
+TEST(CutOffContact, OfALongBodyIsRefusedAlongEitherAxis) {
+  for (const bool along_x2 : {false, true}) {
+    const double angle = along_x2 ? 0.5 * std::numbers::pi : 0.0;
+    const Surface half{.shape = Shape::ellipsoid, .radius_1 = 0.32, .radius_2 = 0.02, .angle = angle};
+    Scene scene = scene_of({half, half}, {32, 32}, 1.0);
+    const HertzContact contact = hertz_contact(paper::kLoad, 0.16, 0.01, effective_modulus(scene));
+    scene.extent = {1.4 * contact.semi_axis_1, 6.0 * contact.semi_axis_2};
+    if (along_x2) std::swap((*scene.extent)[0], (*scene.extent)[1]);
+    EXPECT_THAT(refusal(scene), HasSubstr("beyond the grid's edge")) << along_x2;
+  }
 }
 
 TEST(CutOffContact, IsRefusedWithAnExtentThatIsEnough) {
