@@ -100,34 +100,6 @@ TEST(Comparison, SlowerByChanceIsUndecided) {
   EXPECT_EQ(exit_code(comparison), 2);
 }
 
-/// A benchmark of 6 and 6 repetitions, its new times `factor` times the base's but for one pair of all 36
-/// that stands the other way round: the chance of ranks as low (as high) is 2 / C(12, 6) = 2/924.
-TwoFiles all_but_one_pair(double factor, int others) {
-  std::vector<double> base;
-  std::vector<double> now;
-  for (int i = 0; i < 6; ++i) {
-    base.push_back(1.0 + 0.001 * i);
-    now.push_back(factor * (1.0 + 0.001 * i));
-  }
-  const bool quicker = factor < 1.0;
-  (quicker ? now.back() : now.front()) = quicker ? 1.0005 : 1.0045;
-  return run_of({timed("it", base)}, {timed("it", now)}, others);
-}
-
-// Holm (1979): of m benchmarks the least chance counts m times. 4 times 2/924 is below the level of 0.01, 5
-// times is above, though 2/924 itself is far below, and though 5/924, which separated samples had given,
-// would have done.
-TEST(Comparison, CorrectsChancesForTheirNumberWhicheverWayTimesChange) {
-  for (const double factor : {0.8, 1.25}) {
-    const ComparedBenchmark of_four = found(compare(all_but_one_pair(factor, 3)), "it");
-    EXPECT_NEAR(of_four.p_value, 8.0 / 924.0, 1e-12);
-    EXPECT_EQ(of_four.finding, factor < 1.0 ? Finding::quicker : Finding::slower);
-    const ComparedBenchmark of_five = found(compare(all_but_one_pair(factor, 4)), "it");
-    EXPECT_NEAR(of_five.p_value, 10.0 / 924.0, 1e-12);
-    EXPECT_EQ(of_five.finding, factor < 1.0 ? Finding::same : Finding::undecided);
-  }
-}
-
 // 10 and 10 repetitions reach 1 / 184756, 3 and 3 one in 20; 10 pairs one in 1024.
 TEST(Comparison, TooFewRepetitionsAreNoPass) {
   const Comparison comparison = compare(changed(2.0, 3));

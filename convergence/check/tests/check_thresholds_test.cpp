@@ -269,9 +269,9 @@ TEST(CheckThreshold, OfTheMeshIsWhatExactFieldsShow) {
   EXPECT_LE(mesh["slip_direction"].get<double>() / worse("slip_direction"), 2.5);
 }
 
-/// Degrees between the slip of the parts of a field's cells and the reverse of their tractions, where those
-/// slips that are given as parts of the largest displacement are turned by 90 degrees and all others are
-/// opposed to traction.
+/// Degrees between slip and the reverse of traction, in the mean, where as many cells as there are parts have
+/// a slip of this part of the largest displacement, across their traction, and all others one opposed to
+/// theirs.
 double direction_with_turned(const GivenContact& contact, const std::vector<double>& parts, double least) {
   const solver::Index cells = contact.pressure.size();
   const double largest = solver::norms(contact.displacement).maxCoeff();
