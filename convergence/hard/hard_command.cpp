@@ -39,8 +39,12 @@ int run_hard(const HardRequest& request, std::ostream& text, Json& result) {
                           .interrupted = Interrupts::seen});
   {
     const Interrupts interrupts;
-    result = run_hard_cases(
-        cases, {.variants = !request.once, .methods = request.methods, .fields = request.fields}, pool);
+    result = run_hard_cases(cases,
+                            {.variants = !request.once,
+                             .finer_meshes = !request.once,
+                             .methods = request.methods,
+                             .fields = request.fields},
+                            pool);
   }
   text << hard_text(result);
   return result["counts"]["wrong"] == 0 && result["counts"]["not_converged"] == 0 ? 0 : 1;
@@ -60,7 +64,7 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_hard_command(CLI:
       ->capture_default_str();
   command->add_option("--fields", request->fields, "folder that gets the fields of each case (CSV)");
   command->add_flag("--once", request->once,
-                    "solve each scene as it stands alone, not mirrored, turned, ...");
+                    "solve each scene as it stands alone, not mirrored, turned, on finer meshes, ...");
   command->add_option("--beside", request->methods, "methods that solve each scene too, to be compared")
       ->delimiter(',')
       ->check(CLI::IsMember({"coulomb", "projected_gradient", "paper"}));

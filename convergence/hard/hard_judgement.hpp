@@ -6,6 +6,7 @@
 
 #include "convergence/results/result_parts.hpp"
 #include "convergence/runs/variant.hpp"
+#include "solver/scene/scene.hpp"
 
 namespace slipstick::convergence {
 
@@ -22,6 +23,18 @@ struct JudgedCase {
 
 /// A result by itself: its status, its certificate, and its distance from the exact answer, if there is one.
 JudgedCase judge_alone(const Json& result);
+
+/// What a step leaves open and a result's uncertainty is of: the moment where the twist is imposed, the
+/// translation's size where forces alone act, else the twist. NaN where no tangential load is.
+double main_value(const solver::Step& step, const Json& result);
+
+/// A value beside those on twice and four times the cells.
+struct MeshReference {
+  double error;   ///< from the finest, relative to that
+  double change;  ///< between the finer two, likewise: how far the finest may be off itself
+  bool holds;     ///< the error is within the stated uncertainty and the change; 100 % claims nothing
+};
+MeshReference judge_by_finer(double value, double uncertainty, double twice, double four_times);
 
 /// Two answers to one discrete problem: how far one seen otherwise is from the first, relative; NaN where a
 /// number is missing.

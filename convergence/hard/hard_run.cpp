@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
@@ -70,12 +71,12 @@ Json verdict_json(const std::string& verdict, const std::string& reason, const J
   return json;
 }
 
-/// The grid of a result, written out.
-std::vector<std::string> grid_of(const Json& result) {
+/// The grid of a result, written out, or one with so many times the cells along each axis.
+std::vector<std::string> grid_of(const Json& result, int finer = 1) {
   const auto cells = result["cells"].get<std::array<int, 2>>();
   const auto size = result["cell_size"].get<std::array<double, 2>>();
   return {fmt::format("grid.extent=[{:.17g},{:.17g}]", size[0] * cells[0], size[1] * cells[1]),
-          fmt::format("grid.cells=[{},{}]", cells[0], cells[1])};
+          fmt::format("grid.cells=[{},{}]", finer * cells[0], finer * cells[1])};
 }
 
 bool has_given_grid(const solver::Scene& scene) {
@@ -126,6 +127,45 @@ void judge_variants(std::vector<Trial>& trials, const ProcessPool& pool) {
       judge_too(trial, HardVerdict::wrong, fmt::format("{} it differs by {:.3g}", name, difference));
     }
   });
+}
+
+/// Whether only finer meshes can say how far an answer is off.
+bool needs_finer_meshes(const Trial& trial) {
+  const Json& numbers = trial.judged.numbers;
+  return trial.judged.verdict == HardVerdict::certified && numbers["error"].is_null() &&
+         numbers["uncertainty"].is_number() && !has_given_grid(*trial.scene) &&
+         std::isfinite(main_value(trial.scene->steps.back(), trial.result));
+}
+
+/// Answers without an exact one are held to those on twice and four times the cells.
+void judge_by_finer_meshes(std::vector<Trial>& trials, const ProcessPool& pool) {
+  std::map<Trial*, std::vector<double>> found;
+  Batch batch;
+  for (Trial& trial : trials) {
+    if (!needs_finer_meshes(trial)) continue;
+    for (const int finer : {2, 4}) {
+      RunSpec spec = trial.hard->run;
+      for (std::string& key : grid_of(trial.result, finer)) spec.overrides.push_back(std::move(key));
+      batch.add(trial, std::move(spec));
+    }
+  }
+  batch.run(pool, [&](Trial& trial, const RunSpec&, const Json& result) {
+    const bool converged = result["status"] == "converged";
+    found[&trial].push_back(converged ? main_value(trial.scene->steps.back(), result) : std::nan(""));
+  });
+  for (const auto& [trial, finer] : found) {
+    Json& numbers = trial->judged.numbers;
+    const double uncertainty = numbers["uncertainty"];
+    const MeshReference reference = judge_by_finer(main_value(trial->scene->steps.back(), trial->result),
+                                                   uncertainty, finer[0], finer[1]);
+    set_number(numbers, "finer_meshes.error", reference.error, "a finer mesh has no answer");
+    set_number(numbers, "finer_meshes.change", reference.change, "a finer mesh has no answer");
+    if (!reference.holds) {
+      judge_too(*trial, HardVerdict::wrong,
+                fmt::format("it is {:.3g} from the answer on a finer mesh, and says {:.3g}", reference.error,
+                            uncertainty));
+    }
+  }
 }
 
 void compare_methods(std::vector<Trial>& trials, const std::vector<std::string>& methods,
@@ -204,6 +244,7 @@ Json run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& optio
     }
   });
   if (options.variants) judge_variants(trials, pool);
+  if (options.finer_meshes) judge_by_finer_meshes(trials, pool);
   compare_methods(trials, options.methods, pool);
 
   Json json{{"counts", counts(trials, "")}, {"families", Json::object()}, {"rows", Json::array()}};

@@ -10,7 +10,8 @@
 namespace slipstick::convergence {
 
 struct HardOptions {
-  bool variants = true;  ///< each scene is seen otherwise too
+  bool variants = true;      ///< each scene is seen otherwise too
+  bool finer_meshes = true;  ///< those without an exact answer are solved on finer meshes too
   /// Words of solver.method that solve each scene too, to be compared with the first answer.
   std::vector<std::string> methods = {};
   /// Gets a file of fields for each case that is solved; empty: none.

@@ -197,7 +197,8 @@ Json hard_results(const fs::path& folder, std::size_t step, const ProcessPool& p
   for (const fs::path& file : files) std::ranges::move(read_hard_cases(file), std::back_inserter(all));
   std::vector<HardCase> shown;
   for (std::size_t i = 0; i < all.size(); i += step) shown.push_back(std::move(all[i]));
-  return run_hard_cases(shown, {.variants = false, .methods = {"projected_gradient", "paper"}}, pool);
+  return run_hard_cases(
+      shown, {.variants = false, .finer_meshes = false, .methods = {"projected_gradient", "paper"}}, pool);
 }
 
 }  // namespace
