@@ -1,6 +1,7 @@
 """Figures of the exact solutions alone: one function a figure, as in figures.py."""
 
 import numpy as np
+from markupsafe import escape
 from matplotlib.ticker import LogLocator
 
 import style
@@ -91,9 +92,9 @@ def _draw_bodies(axis, bodies):
         label, colour = BODIES.get(name, (name, style.PURPLE))
         limit, full_stick = number(body, "moment_limit"), number(body, "full_stick")
         moment, twist = column(table, "moment"), column(table, "twist")
-        axis.plot(moment, twist, color=colour, label=label)
+        axis.plot(moment, twist, color=colour, label=style.verbatim(label))
         axis.axvline(limit, color=colour, linestyle=":", linewidth=1)
-        limits.append(f"{limit:.3f}&nbsp;μWa under a {label}")
+        limits.append(f"{limit:.3f}&nbsp;μWa under a {escape(label)}")
         if full_stick > 0:
             axis.plot(full_stick * limit, np.interp(full_stick * limit, moment, twist), "o", color=colour, zorder=3)
             limits[-1] += f", which sticks everywhere up to {full_stick:.3f} of that"

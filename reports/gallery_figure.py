@@ -1,6 +1,7 @@
 """The gallery: a small map of each scene, and what its table says."""
 
 import numpy as np
+from markupsafe import escape
 from matplotlib.cm import ScalarMappable
 from matplotlib.collections import LineCollection
 from matplotlib.colors import Normalize
@@ -46,7 +47,7 @@ def draw_scene(axis, scene, data_dir):
     low, high = cells.extent[[0, 2]], cells.extent[[1, 3]]
     middle, half = 0.5 * (low + high), (0.5 + MARGIN) * max(high - low)
     axis.set(xlim=middle[0] + half * np.array([-1, 1]), ylim=middle[1] + half * np.array([-1, 1]), aspect="equal")
-    axis.set_title(text(scene, "title"), fontsize=7, pad=2)
+    axis.set_title(style.verbatim(text(scene, "title")), fontsize=7, pad=2)
     axis.text(0.5, 0, f"{percent(np.mean(sticks))} sticks", transform=axis.transAxes, ha="center", va="top", fontsize=6,
               color=style.GREY)
 
@@ -63,4 +64,4 @@ def message(scenes):
         return sentence + "."
     worst = judged[int(np.argmax(errors))]
     return (f"{sentence}. Of the {len(judged)} with an exact answer, half are within {sci(np.median(errors))} of it; "
-            f"{text(worst, 'title')} is furthest off, by {percent(errors.max())}.")
+            f"{escape(text(worst, 'title'))} is furthest off, by {percent(errors.max())}.")

@@ -1,6 +1,7 @@
 """The speed-error plane that `slipstick bench` measured: what each choice costs, and the error that it buys."""
 
 import numpy as np
+from markupsafe import escape
 from matplotlib.lines import Line2D
 
 import style
@@ -107,7 +108,7 @@ def message(scene):
     if not found:
         raise Unavailable(f"“{text(scene, 'name')}” reaches none of the errors asked for")
     parts = [f"{power_of_ten(row['error'])} takes {milliseconds(number(row, 'seconds'))} "
-             f"({short(scene['points'][row['point']])})" for row in found]
+             f"({escape(short(scene['points'][row['point']]))})" for row in found]
     return f"At {LIMIT}{plain(number(scene, 'moment_ratio'))} a twist right to {'; '.join(parts)}."
 
 

@@ -156,9 +156,9 @@ def loads(result):
 def details(solved):
     """Name, loads, twist and certificate."""
     result = solved.result
-    parts = [text(result, "name")]
+    parts = [style.verbatim(text(result, "name"))]
     if result.get("steps"):
-        parts.append("end of step {} of {}".format(result["steps"][-1]["name"], len(result["steps"])))
+        parts.append("end of step {} of {}".format(style.verbatim(result["steps"][-1]["name"]), len(result["steps"])))
     if value(result, "cells"):
         parts.append("{} × {} cells".format(*value(result, "cells")))
     parts.append(f"normal load {plain(number(result, 'normal_load'))} N")

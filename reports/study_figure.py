@@ -121,7 +121,7 @@ def draw_budget(axis, series, quantity):
         axis.bar(where + (k - 1.5) * width, np.where(size > 0, size, np.nan), width, color=PART_COLOURS[part],
                  label=part)
     axis.set(yscale="log", ylabel="part of the error", xlabel="cells across the grid",
-             title=f"what the error of the {quantity_words(quantity)} is made of\n({series.label})")
+             title=f"what the error of the {quantity_words(quantity)} is made of\n({style.verbatim(series.label)})")
     axis.set_xticks(where, [str(study_result.across(row)) for row in table])
     axis.grid(False, axis="x")
     low, high = axis.get_ylim()
@@ -160,8 +160,8 @@ def draw_tolerance_errors(axis, series, quantity):
 def look_handles(series):
     colours, markers = study_result.told_by(series)
     black = {"color": style.BLACK} if colours else {}
-    return [Line2D([], [], color=colour, label=words) for words, colour in colours] + [
-        Line2D([], [], label=words, linestyle="", **(look | black)) for words, look in markers]
+    return [Line2D([], [], color=colour, label=style.verbatim(words)) for words, colour in colours] + [
+        Line2D([], [], label=style.verbatim(words), linestyle="", **(look | black)) for words, look in markers]
 
 
 def draw(study, head=0.0):
@@ -299,8 +299,8 @@ def details(series, quantities):
 
 
 def head_lines(study, drawn):
-    return (textwrap.wrap(drawn.message, int(11.5 * style.WIDTH)),
-            textwrap.wrap(f"{text(study, 'name')}. {drawn.details}", int(15 * style.WIDTH)))
+    return (textwrap.wrap(style.verbatim(drawn.message), int(11.5 * style.WIDTH)),
+            textwrap.wrap(style.verbatim(f"{text(study, 'name')}. {drawn.details}"), int(15 * style.WIDTH)))
 
 
 def standalone(study):

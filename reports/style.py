@@ -1,5 +1,7 @@
 """One look for every figure, and the same bytes for the same numbers."""
 
+import unicodedata
+
 import matplotlib
 import numpy as np
 from matplotlib.colors import LinearSegmentedColormap, ListedColormap
@@ -36,6 +38,11 @@ matplotlib.rcParams.update({
     "savefig.dpi": 220,
     "svg.hashsalt": "slipstick",
 })
+
+
+def verbatim(text):
+    """A text of the data, as matplotlib takes it to mean itself: no mathematics, nothing that an SVG may not hold."""
+    return "".join(" " if unicodedata.category(c) in ("Cc", "Cs") else c for c in text).replace("$", r"\$")
 
 
 def panels(rows, columns, height, **options):

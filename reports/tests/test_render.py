@@ -8,6 +8,7 @@ import sys
 import tempfile
 import unittest
 import warnings
+import xml.etree.ElementTree
 from contextlib import redirect_stderr
 from pathlib import Path
 from unittest.mock import patch
@@ -260,6 +261,30 @@ class WholePage(unittest.TestCase):
         head = self.page[self.page.index('id="errata"'):self.page.index('id="scene"')]
         self.assertEqual(re.findall('<th scope="col">(.*?)</th>', head),
                          ["Equation", "As printed", "What holds", "How it shows"])
+
+    def test_what_the_data_call_things_is_no_markup(self):
+        report = small_report()
+        evil = "<script>alert(1)</script>$\\frac{$\n"
+        for row in report["gallery"]:
+            row.update(title=evil, shows=evil)
+        report["bodies"][0]["profile"] = evil
+        report["scene"] = {"name": evil, "text": evil, "summary": [[evil, evil]]}
+        report["provenance"] = {"version": evil, evil: evil}
+        varied = study()
+        varied["name"] = evil
+        report["studies"] = [varied]
+        output = self.output / "evil"
+        write_data(output / "data", report)
+        drawn = [entry for entry in figures.FIGURES if entry[0] in ("figure-12", "figure-13")]
+        with patch.object(figures, "FIGURES", drawn):
+            result = run_render(output / "data", output, save_quickly)
+        self.assertEqual(result, (0, ""))
+        page = (output / "index.html").read_text(encoding="utf-8")
+        self.assertNotIn("<script", page)
+        self.assertGreater(page.count("&lt;script&gt;"), 8)
+        for figure in (output / "figures").glob("*.svg"):
+            xml.etree.ElementTree.parse(figure)
+            self.assertNotIn("<script", figure.read_text(encoding="utf-8"))
 
     def test_table_of_approximations(self):
         cells = self.rows("approximations", "loads")

@@ -6,6 +6,7 @@ import subprocess
 import sys
 import tempfile
 import unittest
+import xml.etree.ElementTree
 from contextlib import redirect_stderr
 from pathlib import Path
 
@@ -72,6 +73,16 @@ class Figure(unittest.TestCase):
         with redirect_stderr(io.StringIO()) as errors:
             exit_code = solve_figure.main(self.arguments(name))
         return exit_code, errors.getvalue()
+
+
+class Names(Figure):
+    def test_are_text_whatever_they_look_like(self):
+        """No mathematics, no markup, nothing that an SVG may not hold; a name may begin with a dash."""
+        self.write(*disc(9, 5), changes={"name": "<script>$\\frac{$ & \x01\x1b", "steps": [{"name": "$^"}]})
+        self.assertEqual(self.run_script("-x \"y'.svg"), (0, ""))
+        content = (self.folder / "-x \"y'.svg").read_text(encoding="utf-8")
+        xml.etree.ElementTree.fromstring(content)
+        self.assertNotIn("<script", content)
 
 
 class WhatItShows(Figure):
