@@ -17,6 +17,7 @@
 #include "convergence/gates/gate_command.hpp"
 #include "convergence/hard/digits_command.hpp"
 #include "convergence/hard/hard_command.hpp"
+#include "convergence/programs/output_options.hpp"
 #include "convergence/programs/run_program.hpp"
 #include "convergence/report/report_command.hpp"
 #include "convergence/results/markup.hpp"
@@ -76,6 +77,7 @@ int run(int argc, char** argv) {
     if (!subcommands[i]->parsed()) continue;
     int exit_code = kCouldNotJudge;
     try {
+      slipstick::convergence::require_inputs_kept(*subcommands[i]);
       exit_code = commands[i](text, result);
     } catch (const std::exception&) {
       if (!result.empty()) write_out();  // what was computed before the error is not lost

@@ -79,7 +79,7 @@ int survey(const BenchRequest& request, std::ostream& text, Json& result) {
                      .progress = [&](const std::string& point) { progress.finished(point, 1.0); }});
   convergence::write_json_file(data / "plane.json", plane);
   if (!request.accuracy_data.empty()) keep_accuracy_data(request.accuracy_data, plane);
-  convergence::run_report_script("speed_page.py", {data, "--output", folder},
+  convergence::run_report_script("speed_page.py", {"--output=" + folder.string(), "--", data},
                                  "the timings are in " + data.string());
   convergence::write_option_file("--output", data / "scaling.txt", scaling_text(laws));
   convergence::write_option_file("--output", data / "plane.txt", plane_text(plane));

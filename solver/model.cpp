@@ -1,7 +1,6 @@
 #include "solver/model.hpp"
 
 #include <fmt/core.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +9,7 @@
 
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/memory.hpp"
 #include "solver/scene/surface_geometry.hpp"
 
 namespace slipstick::solver {
@@ -22,6 +22,12 @@ using Eigen::ArrayXd;
 constexpr double kFieldsHeld = 24.0;
 /// Those that the paper's method holds besides.
 constexpr double kPaperFields = 20.0;
+/// Of the tangential problem and its solution, on the part of the grid where that is solved; of the step
+/// before, and of pressure and tractions that are solved in turn, on the whole of it.
+constexpr double kFieldsOfPart = 18.0;
+constexpr double kFieldsBefore = 18.0;
+/// The program and its libraries.
+constexpr double kProgramBytes = 24.0 * 0x1p20;
 /// Cells left free on each side of the expected contact where the scene does not give an extent.
 constexpr double kMarginCells = 2.0;
 /// With cells longer than so many times their width every method crawls.
@@ -120,16 +126,21 @@ ArrayXd make_gap(const Scene& scene, std::vector<Surface> surfaces, const Grid& 
   return gap;
 }
 
-double physical_memory() {
-  return static_cast<double>(sysconf(_SC_PHYS_PAGES)) * static_cast<double>(sysconf(_SC_PAGE_SIZE));
-}
+/// Of so little nobody asks whether it is there.
+constexpr double kLittleMemory = 0x1p26;
 
 void require_memory(const Scene& scene, const Grid& grid, double bytes) {
-  if (bytes < physical_memory()) return;
-  throw InputError(
+  if (!scene.memory_limit && bytes < kLittleMemory) return;
+  const double most = memory_within(scene.memory_limit);
+  if (bytes < most) return;
+  throw OutOfMemory(
       scene.source.string(), "grid.cells", fmt::format("[{}, {}]", grid.n1, grid.n2),
-      fmt::format("what fits in memory: this needs {:.3g} GiB with operator = \"{}\", the machine has {:.3g}",
-                  bytes / 0x1p30, to_string(scene.op), physical_memory() / 0x1p30));
+      fmt::format("what fits in memory: this needs {} with operator = \"{}\", and {} {}; {} less",
+                  bytes_text(bytes), to_string(scene.op), bytes_text(most),
+                  scene.memory_limit ? "are allowed (--memory-limit)" : "are there",
+                  scene.op == OperatorKind::dense    ? "fewer cells and operator = \"dcfft\" take"
+                  : scene.model == ModelChoice::full ? "fewer cells and model = \"auto\" take"
+                                                     : "fewer cells take"));
 }
 
 bool brings_translation(const Step& step) {
@@ -210,7 +221,9 @@ bool may_have_translations(const Scene& scene, const Model& model) {
 }  // namespace
 
 Memory predicted_memory(const Scene& scene, const Model& model) {
-  const double fields = kFieldsHeld * sizeof(double) * static_cast<double>(model.grid.cells());
+  const bool follows = scene.steps.size() > 1 || scene.cycles > 1 || model.shear_coupling;
+  const double fields = (kFieldsHeld + (follows ? kFieldsBefore : 0.0)) * sizeof(double) *
+                        static_cast<double>(model.grid.cells());
   const Grid& part = model.pressure_part.grid();
   const Elasticity on_part = elasticity(scene, model, model.pressure_part);
   const double normal = scene.pressure == PressureModel::solved ? predicted_normal_bytes(on_part, part) : 0.0;
@@ -226,11 +239,11 @@ Memory predicted_memory(const Scene& scene, const Model& model) {
     const double op = predicted_bytes(scene.op, grid, tangential_kernel(),
                                       {.threads = scene.threads, .diagonal = elastic.diagonal});
     return {std::max({normal, op, coupling}),
-            fields + kPaperFields * sizeof(double) * static_cast<double>(grid.cells())};
+            kProgramBytes + fields + kPaperFields * sizeof(double) * static_cast<double>(grid.cells())};
   }
   return {std::max({normal, predicted_coulomb_bytes(elastic, grid, may_have_translations(scene, model)),
                     coupling}),
-          fields};
+          kProgramBytes + fields + kFieldsOfPart * sizeof(double) * static_cast<double>(grid.cells())};
 }
 
 Model make_model(const Scene& scene) {

@@ -61,13 +61,13 @@ void note_omissions(Model& model, const Scene& scene, const Reduction& part, boo
 Elasticity elasticity(const Scene& scene, const Model& model, const Reduction& part);
 
 /// Throws InputError for a height map that cannot be used, a surface that cannot touch, an extent that is
-/// missing or, as is known before the solve, too small, and for cells that do not fit in memory.
+/// missing or, as is known before the solve, too small; OutOfMemory for cells that do not fit in memory.
 Model make_model(const Scene& scene);
 
-/// Memory that solving the scene takes, in bytes: operators, workspaces, fields.
+/// Memory that solving the scene takes, in bytes, at most: operators, workspaces, fields.
 struct Memory {
   double solver;  ///< operators and workspaces of the larger of the two problems, Solution::bytes
-  double fields;  ///< the model's and the solution's, on the whole grid
+  double fields;  ///< the model's and the solution's, and the program itself
   double total() const { return solver + fields; }
 };
 Memory predicted_memory(const Scene& scene, const Model& model);

@@ -12,6 +12,8 @@
 #include <vector>
 
 #include "convergence/check/check.hpp"
+#include "convergence/programs/output_options.hpp"
+#include "convergence/runs/run_spec.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/scene/scene.hpp"
 
@@ -25,7 +27,7 @@ struct CheckRequest {
   CheckOptions check;
 };
 
-int run_check(const CheckRequest& request, std::ostream& text, Json& result) {
+int run_check(const CLI::App& command, const CheckRequest& request, std::ostream& text, Json& result) {
   if (request.check.twist && !std::isfinite(*request.check.twist)) {
     throw solver::InputError(fmt::format("--twist {}", *request.check.twist),
                              "allowed: a finite number, in rad");
@@ -33,7 +35,9 @@ int run_check(const CheckRequest& request, std::ostream& text, Json& result) {
   if (const auto& tolerance = request.check.tolerance; tolerance && !(*tolerance > 0.0)) {
     throw solver::InputError("check", "--tolerance", fmt::format("{}", *tolerance), "larger than zero");
   }
-  result = check_field(solver::read_scene(request.scene, request.overrides), request.field, request.check);
+  const solver::Scene scene = solver::read_scene(request.scene, request.overrides);
+  require_inputs_kept(command, input_files(scene));
+  result = check_field(scene, request.field, request.check);
   text << check_text(result);
   return result["verdict"] == "good" ? 0 : 1;
 }
@@ -66,8 +70,8 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI
   command->footer(
       "Example:\n  slipstick check convergence/scenes/paper.toml tractions.csv --twist 2.361e-3\nExit code "
       "0: good; 1: bad; 2: cannot be judged. docs/verify-your-solver.md explains each number.");
-  return [request](std::ostream& text, nlohmann::ordered_json& result) {
-    return run_check(*request, text, result);
+  return [command, request](std::ostream& text, nlohmann::ordered_json& result) {
+    return run_check(*command, *request, text, result);
   };
 }
 

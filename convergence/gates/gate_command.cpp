@@ -11,7 +11,10 @@
 #include "convergence/gates/gate_reader.hpp"
 #include "convergence/gates/gate_report.hpp"
 #include "convergence/gates/gate_run.hpp"
+#include "convergence/programs/output_options.hpp"
 #include "convergence/runs/interrupts.hpp"
+#include "convergence/runs/memory_option.hpp"
+#include "convergence/studies/study.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
@@ -25,15 +28,37 @@ struct GateRequest {
   std::string output = "build/gates";
   std::string results;
   int jobs = 0;
+  MemoryOption memory;
   bool github = false;
 };
 
-int run_gates(const GateRequest& request, std::ostream& text, nlohmann::ordered_json& result) {
+/// A gate whose source cannot be read says so when it is judged.
+std::vector<std::filesystem::path> files_behind(const std::vector<Gate>& gates) {
+  std::vector<std::filesystem::path> files;
+  for (const Gate& gate : gates) {
+    files.push_back(gate.source);
+    if (gate.kind == GateSource::result) continue;
+    try {
+      const Study study = gate.kind == GateSource::study
+                              ? read_study(gate.source, gate.overrides)
+                              : Study{.scene = gate.source, .overrides = gate.overrides};
+      const auto of_scene = input_files(solver::read_scene(study.scene, study.overrides));
+      files.insert(files.end(), of_scene.begin(), of_scene.end());
+    } catch (const solver::InputError&) {
+    }
+  }
+  return files;
+}
+
+int run_gates(const CLI::App& command, const GateRequest& request, std::ostream& text,
+              nlohmann::ordered_json& result) {
   const GateFiles files = read_gate_files(request.files, request.results);
+  require_inputs_kept(command, files_behind(files.gates));
   std::vector<Judgement> judgements = files.unreadable;
   const Interrupts interrupts;
   const ProcessPool pool({.folder = request.output,
                           .jobs = request.jobs,
+                          .memory_limit = request.memory.limit(),
                           .program = kOwnProgram,
                           .interrupted = Interrupts::seen});
   const std::vector<Judgement> judged = run_gates(select_gates(files.gates, request.only), pool);
@@ -68,6 +93,7 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_gate_command(CLI:
   command->add_option("--jobs", request->jobs, "solves at a time; 0: one a processor")
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
+  request->memory.add_to(*command);
   command->footer(
       "Example:\n  slipstick gate convergence/gates/quick.toml --junit gates.xml --summary summary.md\n"
       "Exit code 0: all gates pass; 1: an active gate fails, or an expected failure passes; 2: something "
@@ -75,8 +101,8 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_gate_command(CLI:
       "not be judged, or no gate ran. Finished solves are kept: repeating an interrupted command goes on "
       "from "
       "there.");
-  return [request](std::ostream& text, nlohmann::ordered_json& result) {
-    return run_gates(*request, text, result);
+  return [command, request](std::ostream& text, nlohmann::ordered_json& result) {
+    return run_gates(*command, *request, text, result);
   };
 }
 

@@ -9,7 +9,10 @@
 #include <vector>
 
 #include "convergence/hard/hard_run.hpp"
+#include "convergence/programs/output_options.hpp"
 #include "convergence/runs/interrupts.hpp"
+#include "convergence/runs/memory_option.hpp"
+#include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -22,9 +25,26 @@ struct HardRequest {
   std::vector<std::string> methods;
   bool once = false;
   int jobs = 0;
+  MemoryOption memory;
 };
 
-int run_hard(const HardRequest& request, std::ostream& text, Json& result) {
+/// The fields' files are numbered: none of a scene's stands among them.
+void require_inputs_elsewhere(const CLI::App& command, const std::vector<HardCase>& cases,
+                              const std::filesystem::path& fields) {
+  for (const HardCase& made : cases) {
+    std::vector<std::filesystem::path> inputs;
+    try {
+      inputs = input_files(solver::read_scene(made.run.scene, made.run.overrides));
+    } catch (const solver::InputError&) {  // the case will be refused
+    }
+    require_inputs_kept(command, inputs);
+    for (const std::filesystem::path& input : inputs) {
+      if (!fields.empty()) require_input_kept("--fields", fields / input.filename(), {input});
+    }
+  }
+}
+
+int run_hard(const CLI::App& command, const HardRequest& request, std::ostream& text, Json& result) {
   std::vector<HardCase> cases;
   for (const std::string& file : request.files) {
     for (HardCase& made : read_hard_cases(file)) {
@@ -32,9 +52,11 @@ int run_hard(const HardRequest& request, std::ostream& text, Json& result) {
       cases.push_back(std::move(made));
     }
   }
+  require_inputs_elsewhere(command, cases, request.fields);
   if (!request.fields.empty()) std::filesystem::create_directories(request.fields);
   const ProcessPool pool({.folder = request.output,
                           .jobs = request.jobs,
+                          .memory_limit = request.memory.limit(),
                           .program = kOwnProgram,
                           .interrupted = Interrupts::seen});
   {
@@ -71,13 +93,14 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_hard_command(CLI:
   command->add_option("--jobs", request->jobs, "solves at a time; 0: one a processor, as memory allows")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
+  request->memory.add_to(*command);
   command->footer(
       "Example:\n  slipstick hard convergence/hard/*.toml --json hard.json\nFinished solves are kept: "
       "repeating "
       "an interrupted command goes on from there.\nExit code 0: every answer is certified or refused with a "
       "reason; 1: some did not converge or are wrong, and are named; 2: bad input.");
-  return [request](std::ostream& text, nlohmann::ordered_json& result) {
-    return run_hard(*request, text, result);
+  return [command, request](std::ostream& text, nlohmann::ordered_json& result) {
+    return run_hard(*command, *request, text, result);
   };
 }
 

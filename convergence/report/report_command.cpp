@@ -14,6 +14,9 @@
 #include "convergence/report/validation.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/interrupts.hpp"
+#include "convergence/runs/memory_option.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/input/input_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -24,6 +27,7 @@ struct ReportRequest {
   std::string scene;
   std::string output = "build/report";
   bool quick = false;
+  MemoryOption memory;
 };
 
 /// Whether the page is newer than all that it is made from.
@@ -39,7 +43,8 @@ bool is_current(const fs::path& page, const std::vector<fs::path>& sources) {
 
 void draw(const fs::path& data, const fs::path& output) {
   if (is_current(output / "index.html", {data, project_file("reports")})) return;
-  run_report_script("render.py", {data, "--output", output}, "the results are in " + data.string());
+  run_report_script("render.py", {"--output=" + output.string(), "--", data},
+                    "the results are in " + data.string());
 }
 
 int run_report(const ReportRequest& request, std::ostream& text, nlohmann::ordered_json& result) {
@@ -47,8 +52,13 @@ int run_report(const ReportRequest& request, std::ostream& text, nlohmann::order
   const fs::path scene = request.scene.empty() ? inputs / "scenes" / "paper.toml" : fs::path(request.scene);
   const fs::path output = request.output;
   const fs::path data = output / "data";
-  const ProcessPool pool(
-      {.folder = data / "points", .program = kOwnProgram, .interrupted = Interrupts::seen});
+  if (solver::lies_within(scene, data)) {  // the program's own scenes are copied there
+    throw solver::InputError(scene.string(), "lies in the page's data; allowed: a scene elsewhere");
+  }
+  const ProcessPool pool({.folder = data / "points",
+                          .memory_limit = request.memory.limit(),
+                          .program = kOwnProgram,
+                          .interrupted = Interrupts::seen});
   {
     const Interrupts interrupts;
     result = validate(scene, inputs, request.quick ? quick_validation() : full_validation(), data, pool);
@@ -73,6 +83,7 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_report_command(CL
   command->add_option("scene", request->scene, "scene file; left out: the paper's own case");
   command->add_option("--output", request->output, "folder for the page")->capture_default_str();
   command->add_flag("--quick", request->quick, "small grids: seconds instead of a minute");
+  request->memory.add_to(*command);
   command->footer(
       "Example:\n  slipstick report --output build/report\nFinished solves are kept: repeating an "
       "interrupted "

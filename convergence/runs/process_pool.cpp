@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 #include <list>
 #include <map>
 #include <new>
@@ -23,6 +22,7 @@
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/solve_scene.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/memory.hpp"
 #include "solver/model.hpp"
 
 namespace slipstick::convergence {
@@ -30,8 +30,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Part of the memory now available that runs may take: predictions are good to a few percent, and other
-/// programs live here too.
+/// Part of the memory now available that runs may take side by side: other programs live here too.
 constexpr double kMemoryPart = 0.7;
 /// An interrupt that comes just before the waiting begins is seen after it.
 constexpr int kLongestWait = 1000;  // ms
@@ -41,6 +40,7 @@ struct Task {
   const PreparedRun* run;
   std::string label;  ///< for a person
   double bytes = 0.0;
+  std::string refusal = {};  ///< why it is not even started; empty: it is
 };
 
 /// A task's process.
@@ -52,24 +52,16 @@ struct Worker {
   const Task* task;
 };
 
-/// Bytes that can be had without swapping; none known: as if there were enough.
-double available_memory() {
-  std::ifstream file("/proc/meminfo");
-  std::string key;
-  double kilobytes = 0.0;
-  while (file >> key >> kilobytes) {
-    if (key == "MemAvailable:") return 1024.0 * kilobytes;
-    file.ignore(80, '\n');
-  }
-  return INFINITY;
-}
-
-Task make_task(const PreparedRun& run) {
+Task make_task(const PreparedRun& run, std::optional<double> memory_limit) {
   Task task{&run, run.spec.scene.stem().string()};
+  solver::Scene scene = run.scene;
+  scene.memory_limit = memory_limit;
   try {
-    const solver::Model model = solver::make_model(run.scene);
+    const solver::Model model = solver::make_model(scene);
     task.label += fmt::format(" {} x {}", model.grid.n1, model.grid.n2);
-    task.bytes = predicted_memory(run.scene, model).total();
+    task.bytes = predicted_memory(scene, model).total();
+  } catch (const solver::OutOfMemory& error) {  // kept nowhere: with more memory it has an answer
+    task.refusal = error.what();
   } catch (const solver::InputError&) {  // the run itself will say so
   }
   return task;
@@ -135,8 +127,7 @@ class Batch {
  private:
   bool may_start() const {
     if (next_ == tasks_.size()) return false;
-    return running_.empty() ||
-           (running_.size() < jobs_ && bytes_ + tasks_[next_].bytes < kMemoryPart * memory_);
+    return running_.empty() || (running_.size() < jobs_ && bytes_ + tasks_[next_].bytes < shared_);
   }
 
   void start_next() {
@@ -149,6 +140,8 @@ class Batch {
     if (spec.variant != Variant::none) words.insert(words.end(), {"--variant", to_string(spec.variant)});
     if (!spec.fields.empty()) words.insert(words.end(), {"--fields", spec.fields});
     if (spec.profile) words.emplace_back("--profile");
+    // What is left now is less by what the others take.
+    if (std::isfinite(memory_)) words.insert(words.end(), {"--memory-limit", fmt::format("{:.0f}", memory_)});
     for (const std::string& assignment : spec.overrides) words.insert(words.end(), {"--set", assignment});
     words.insert(words.end(), {"--", spec.scene});
     running_.emplace_back(task, words, options_.program);
@@ -177,7 +170,9 @@ class Batch {
   std::size_t next_ = 0;
   std::list<Worker> running_;
   double bytes_ = 0.0;
-  double memory_ = available_memory();
+  /// One process may take all of the first, several together the second.
+  double memory_ = solver::memory_within(options_.memory_limit);
+  double shared_ = options_.memory_limit ? memory_ : kMemoryPart * memory_;
 };
 
 /// The scene solved, or why it cannot be.
@@ -186,6 +181,8 @@ Json solve(const PreparedRun& run) {
   SolvedScene solved;
   try {
     solved = solve_scene(run.scene, {.rounding = spec.rounding});
+  } catch (const solver::OutOfMemory&) {
+    throw;
   } catch (const solver::InputError& error) {
     return not_computed("refused", error.what(), spec);
   } catch (const std::bad_alloc&) {
@@ -204,8 +201,15 @@ std::vector<Json> ProcessPool::run_prepared(const std::vector<PreparedRun>& runs
   const ResultCache cache(options_.folder, options_.program);
   std::vector<Task> tasks;
   std::set<std::string> known;
+  std::map<std::string, std::string> refusals;
   for (const PreparedRun& run : runs) {
-    if (known.insert(run.name).second && !find(cache, run)) tasks.push_back(make_task(run));
+    if (!known.insert(run.name).second || find(cache, run)) continue;
+    Task task = make_task(run, options_.memory_limit);
+    if (task.refusal.empty()) {
+      tasks.push_back(std::move(task));
+    } else {
+      refusals[run.name] = task.refusal;
+    }
   }
   auto failures = Batch(std::move(tasks), options_).work();
   std::vector<Json> results;
@@ -213,7 +217,11 @@ std::vector<Json> ProcessPool::run_prepared(const std::vector<PreparedRun>& runs
     std::optional<Json> found = find(cache, run);
     std::string& failure = failures[run.name];
     if (failure.empty()) failure = "its result is not on disk";
-    results.push_back(found ? *std::move(found) : not_computed("failed", failure, run.spec));
+    if (const auto refused = refusals.find(run.name); refused != refusals.end()) {
+      results.push_back(not_computed("refused", refused->second, run.spec));
+    } else {
+      results.push_back(found ? *std::move(found) : not_computed("failed", failure, run.spec));
+    }
   }
   return results;
 }
@@ -226,8 +234,9 @@ std::vector<Json> ProcessPool::run(const std::vector<RunSpec>& specs) const {
 
 Json ProcessPool::run(const RunSpec& spec) const { return run(std::vector{spec}).front(); }
 
-void solve_and_keep(const RunSpec& spec, const fs::path& folder) {
-  const PreparedRun run = prepare_run(spec);
+void solve_and_keep(const RunSpec& spec, const fs::path& folder, std::optional<double> memory_limit) {
+  PreparedRun run = prepare_run(spec);
+  run.scene.memory_limit = memory_limit;
   const ResultCache cache(folder);
   cache.forget(run.name);
   cache.keep(run.name, run.cache_key, solve(run));

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,10 @@
 namespace slipstick::convergence {
 
 struct ProcessPoolOptions {
-  std::filesystem::path folder;        ///< keeps finished results, see ResultCache
-  int jobs = 0;                        ///< processes at a time; 0: one a processor
+  std::filesystem::path folder;  ///< keeps finished results, see ResultCache
+  int jobs = 0;                  ///< processes at a time; 0: one a processor
+  /// Bytes that all processes together may take; none: most of what the machine has left.
+  std::optional<double> memory_limit = {};
   std::filesystem::path program = {};  ///< the slipstick program, which solves
   /// Asked every second at least, and when a signal ends waiting: whether to stop.
   std::function<bool()> interrupted = {};
@@ -29,21 +32,26 @@ class ProcessPool {
   explicit ProcessPool(ProcessPoolOptions options);
 
   /// The results, in the order of the runs; equal runs are computed once. What a scene asks for and cannot
-  /// have, gross slip for one, is a result with status = "refused"; one whose process was killed or failed
-  /// has status = "failed"; both have a message and `run`, which says which it was. Throws InputError, before
-  /// anything is computed, for a scene that cannot be read; std::runtime_error where it was interrupted.
+  /// have, gross slip or memory for one, is a result with status = "refused"; one whose process was killed or
+  /// failed has status = "failed"; both have a message and `run`, which says which it was. Throws InputError,
+  /// before anything is computed, for a scene that cannot be read; std::runtime_error where it was
+  /// interrupted.
   std::vector<Json> run(const std::vector<RunSpec>& specs) const;
   std::vector<Json> run_prepared(const std::vector<PreparedRun>& runs) const;
 
   /// The same for one.
   Json run(const RunSpec& spec) const;
 
+  std::optional<double> memory_limit() const { return options_.memory_limit; }
+
  private:
   ProcessPoolOptions options_;
 };
 
 /// Solves the scene of a run and keeps its result in a folder; what the processes of a pool do. Throws
-/// std::runtime_error if a file cannot be written, or memory runs out.
-void solve_and_keep(const RunSpec& spec, const std::filesystem::path& folder);
+/// std::runtime_error if a file cannot be written, or memory runs out, OutOfMemory where a solve would take
+/// more than `memory_limit`.
+void solve_and_keep(const RunSpec& spec, const std::filesystem::path& folder,
+                    std::optional<double> memory_limit = {});
 
 }  // namespace slipstick::convergence

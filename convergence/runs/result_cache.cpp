@@ -25,7 +25,8 @@ std::string identify(const fs::path& program) {
 }  // namespace
 
 void write_json_file(const fs::path& file, const Json& json) {
-  const std::string content = json.dump(1) + "\n";
+  // Names of files need not be UTF-8; JSON is.
+  const std::string content = json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
   std::ifstream old(file);
   if (old && fs::is_regular_file(file) && std::string(std::istreambuf_iterator<char>(old), {}) == content)
     return;

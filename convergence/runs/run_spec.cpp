@@ -20,13 +20,17 @@ std::uint64_t hash(const std::string& text) {
 
 std::string cache_key(const RunSpec& spec, const solver::Scene& scene) {
   std::string text = read_text(spec.scene) + run_text(spec);
-  for (const solver::Surface& surface : scene.surfaces) {
-    if (!surface.file.empty()) text += read_text(surface.file);
-  }
-  if (!scene.pressure_file.empty()) text += read_text(scene.pressure_file);
+  const std::vector<std::filesystem::path> files = input_files(scene);
+  for (std::size_t i = 1; i < files.size(); ++i) text += read_text(files[i]);
   if (!spec.fields.empty()) text += "\nfields " + spec.fields.string();
   if (spec.profile) text += "\nprofile";
   return text;
+}
+
+/// As a file of JSON gives it back: tables and names of files may hold any bytes.
+std::string as_utf8(const std::string& bytes) {
+  const nlohmann::json text = bytes;
+  return nlohmann::json::parse(text.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
 }
 
 }  // namespace
@@ -36,9 +40,20 @@ PreparedRun prepare_run(const RunSpec& spec) {
                   .scene = seen_as(solver::read_scene(spec.scene, spec.overrides), spec.variant),
                   .cache_key = {},
                   .name = {}};
-  run.cache_key = cache_key(spec, run.scene);
-  run.name = fmt::format("{}-{:016x}", spec.scene.stem().string(), hash(run.cache_key));
+  require_writes_within(run.scene);  // overrides may come from a file
+  const std::string answer_depends_on = cache_key(spec, run.scene);
+  run.cache_key = as_utf8(answer_depends_on);
+  run.name = fmt::format("{}-{:016x}", spec.scene.stem().string(), hash(answer_depends_on));
   return run;
+}
+
+std::vector<std::filesystem::path> input_files(const solver::Scene& scene) {
+  std::vector<std::filesystem::path> files{scene.source};
+  for (const solver::Surface& surface : scene.surfaces) {
+    if (!surface.file.empty()) files.push_back(surface.file);
+  }
+  if (!scene.pressure_file.empty()) files.push_back(scene.pressure_file);
+  return files;
 }
 
 std::string read_text(const std::filesystem::path& file) {

@@ -37,6 +37,9 @@ struct PreparedRun {
 /// Throws InputError for a scene that cannot be read.
 PreparedRun prepare_run(const RunSpec& spec);
 
+/// The files that a scene is read from: its own, those of heights and pressures.
+std::vector<std::filesystem::path> input_files(const solver::Scene& scene);
+
 /// A whole file.
 std::string read_text(const std::filesystem::path& file);
 

@@ -16,9 +16,11 @@
 #include <vector>
 
 #include "convergence/oracle/oracle.hpp"
+#include "convergence/programs/output_options.hpp"
 #include "convergence/programs/solve_figure.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/result.hpp"
+#include "convergence/runs/memory_option.hpp"
 #include "convergence/runs/process_pool.hpp"
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/solve/accurate_solve.hpp"
@@ -39,6 +41,7 @@ struct SolveRequest {
   std::optional<double> accuracy;
   std::string accuracy_of = "twist";
   bool plan = false;
+  MemoryOption memory;
   // Of the processes of a pool alone.
   std::string keep;
   std::string rounding;
@@ -55,7 +58,9 @@ void show_progress(int iteration, double change) {
 solver::Scene read_scene(const SolveRequest& request) {
   std::vector<std::string> overrides = request.overrides;
   if (!request.model.empty()) overrides.push_back(fmt::format("solver.model=\"{}\"", request.model));
-  return solver::read_scene(request.scene, overrides);
+  solver::Scene scene = solver::read_scene(request.scene, overrides);
+  scene.memory_limit = request.memory.limit();
+  return scene;
 }
 
 /// Stands for the number of the step in the name of a file that is written for each step of a history.
@@ -174,14 +179,26 @@ RunSpec spec_of(const SolveRequest& request) {
   return spec;
 }
 
-int run_solve(const SolveRequest& request, std::ostream& text, Json& result) {
+/// No file of the scene is overwritten, by fields of a step either.
+void require_scene_kept(const CLI::App& command, const SolveRequest& request, const solver::Scene& scene) {
+  const std::vector<std::filesystem::path> inputs = input_files(scene);
+  require_inputs_kept(command, inputs);
+  if (!one_file_a_step(request.fields)) return;
+  const std::size_t steps = scene.steps.size() * static_cast<std::size_t>(scene.cycles);
+  for (std::size_t step = 1; step <= steps; ++step) {
+    require_input_kept("--fields", file_of_step(request.fields, step), inputs);
+  }
+}
+
+int run_solve(const CLI::App& command, const SolveRequest& request, std::ostream& text, Json& result) {
   if (!request.keep.empty()) {
-    solve_and_keep(spec_of(request), request.keep);
+    solve_and_keep(spec_of(request), request.keep, request.memory.limit());
     return 0;
   }
   if (!request.fields.empty()) solver::require_field_format(request.fields);
   if (!request.figure.empty()) require_figure_format(request.figure);
   const solver::Scene scene = read_scene(request);
+  require_scene_kept(command, request, scene);
   if (request.accuracy) return solve_accurately(scene, request, text, result);
   if (request.plan) {
     result["plan"] = plan_json(scene);
@@ -225,6 +242,7 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_solve_command(CLI
       "last step, or each to a file of its own where the name holds {step}");
   command->add_option("--figure", request->figure,
                       "draw slip and stick, tractions and pressure: .svg, .pdf or .png");
+  request->memory.add_to(*command);
   constexpr const char* kHidden = "";
   command->add_option("--keep", request->keep, "folder that keeps the result")->group(kHidden);
   command->add_option("--rounding", request->rounding, "upward | downward")->group(kHidden);
@@ -238,8 +256,8 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_solve_command(CLI
       "code 0: converged; 1: "
       "not, or the accuracy not reached, result written all the same; 2: bad input, or gross slip "
       "asked for, or --model exact where no exact answer is known.");
-  return [request](std::ostream& text, nlohmann::ordered_json& result) {
-    return run_solve(*request, text, result);
+  return [command, request](std::ostream& text, nlohmann::ordered_json& result) {
+    return run_solve(*command, *request, text, result);
   };
 }
 

@@ -106,7 +106,7 @@ std::vector<std::vector<Json>> take_tolerance_results(const Study& study, const 
 }  // namespace
 
 Json run_study(const Study& study, const ProcessPool& pool) {
-  std::vector<Series> all = make_series(study);
+  std::vector<Series> all = make_series(study, pool.memory_limit());
   FailedRuns failed;
   const auto results = solve_series(study, all, pool, failed);
   Json json;

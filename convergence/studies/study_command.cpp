@@ -8,10 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "convergence/programs/output_options.hpp"
 #include "convergence/programs/python_script.hpp"
 #include "convergence/programs/solve_figure.hpp"
 #include "convergence/programs/temporary_folder.hpp"
 #include "convergence/runs/interrupts.hpp"
+#include "convergence/runs/memory_option.hpp"
 #include "convergence/studies/study.hpp"
 
 namespace slipstick::convergence {
@@ -23,12 +25,13 @@ struct StudyRequest {
   std::string output = "build/studies";
   std::string figure;
   int jobs = 0;
+  MemoryOption memory;
 };
 
 void draw(const std::string& figure, const Json& result) {
   const TemporaryFolder folder;
-  std::ofstream(folder / "study.json") << result.dump() << '\n';
-  run_report_script("study_figure.py", {folder / "study.json", figure}, "the study is complete");
+  std::ofstream(folder / "study.json") << result.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  run_report_script("study_figure.py", {"--", folder / "study.json", figure}, "the study is complete");
 }
 
 bool all_converged(const Json& result) {
@@ -41,11 +44,14 @@ bool all_converged(const Json& result) {
   return true;
 }
 
-int run_study_request(const StudyRequest& request, std::ostream& text, Json& result) {
+int run_study_request(const CLI::App& command, const StudyRequest& request, std::ostream& text,
+                      Json& result) {
   if (!request.figure.empty()) require_figure_format(request.figure);
   const Study study = read_study(request.study, request.overrides);
+  require_inputs_kept(command, input_files(solver::read_scene(study.scene, study.overrides)));
   const ProcessPool pool({.folder = request.output,
                           .jobs = request.jobs,
+                          .memory_limit = request.memory.limit(),
                           .program = kOwnProgram,
                           .interrupted = Interrupts::seen});
   {
@@ -73,13 +79,14 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_study_command(CLI
   command->add_option("--jobs", request->jobs, "solves at a time; 0: one a processor, as memory allows")
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
+  request->memory.add_to(*command);
   command->footer(
       "Example:\n  slipstick study convergence/studies/paper_mesh.toml --figure study.svg --json study.json\n"
       "Finished solves are kept: repeating an interrupted command goes on from there.\nExit code 0: done; 1: "
       "some "
       "solve did not converge or failed, and is marked; 2: bad input.");
-  return [request](std::ostream& text, nlohmann::ordered_json& result) {
-    return run_study_request(*request, text, result);
+  return [command, request](std::ostream& text, nlohmann::ordered_json& result) {
+    return run_study_request(*command, *request, text, result);
   };
 }
 

@@ -34,6 +34,7 @@ Mesh make_mesh(const Study& study, const solver::Scene& of_series, const std::ve
     }
     own.push_back(cells_override(scene, *across));
     scene = solver::read_scene(study.scene, own);
+    scene.memory_limit = of_series.memory_limit;
   }
   const solver::Model model = solver::make_model(scene);
   const auto& [n1, n2, h1, h2, quadrant] = model.grid;
@@ -59,7 +60,7 @@ std::string without_quotes(std::string word) {
 
 }  // namespace
 
-std::vector<Series> make_series(const Study& study) {
+std::vector<Series> make_series(const Study& study, std::optional<double> memory_limit) {
   std::vector<Series> all(1);
   all.front().overrides = study.overrides;
   for (const auto& [key, values] : study.variations) {
@@ -78,7 +79,8 @@ std::vector<Series> make_series(const Study& study) {
     all = std::move(longer);
   }
   for (Series& series : all) {
-    const solver::Scene scene = solver::read_scene(study.scene, series.overrides);
+    solver::Scene scene = solver::read_scene(study.scene, series.overrides);
+    scene.memory_limit = memory_limit;
     if (series.name.empty()) series.name = scene.name;
     series.tolerance = study.tolerances.empty() ? scene.tolerance : study.tolerances.back();
     for (const Index across : study.cells)

@@ -41,8 +41,8 @@ struct MeshResults {
 };
 
 /// All combinations of the varied values, with their meshes. Throws InputError for a scene that cannot have
-/// them.
-std::vector<Series> make_series(const Study& study);
+/// them, OutOfMemory for one that would take more than `memory_limit`.
+std::vector<Series> make_series(const Study& study, std::optional<double> memory_limit = {});
 
 RunSpec make_run(const Study& study, const GridChoice& grid, double tolerance);
 

@@ -5,8 +5,10 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <iterator>
 #include <system_error>
 
 #include "solver/input/input_error.hpp"
@@ -78,6 +80,16 @@ std::string read_input_file(const std::filesystem::path& file, std::uintmax_t la
   const InputFile input(file, largest, allowed);
   input.require_regular();
   return input.read();
+}
+
+bool lies_within(const std::filesystem::path& file, const std::filesystem::path& folder) {
+  std::error_code error;
+  const auto whole = std::filesystem::weakly_canonical(std::filesystem::absolute(file), error);
+  if (error) return false;
+  const auto around = std::filesystem::weakly_canonical(std::filesystem::absolute(folder), error) / "";
+  // The folder's path ends with an empty part, which stands for whatever follows.
+  return !error && std::mismatch(whole.begin(), whole.end(), around.begin(), around.end()).second ==
+                       std::prev(around.end());
 }
 
 std::string shown(std::string_view text) {

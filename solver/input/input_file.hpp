@@ -26,6 +26,9 @@ void require_input_file(const std::filesystem::path& file, std::uintmax_t larges
 std::string read_input_file(const std::filesystem::path& file, std::uintmax_t largest,
                             const std::string& allowed);
 
+/// Whether a file lies in a folder or below, or would; links are followed.
+bool lies_within(const std::filesystem::path& file, const std::filesystem::path& folder);
+
 /// What a file says, as a message shows it: its beginning, bytes other than printable ASCII as \xNN.
 std::string shown(std::string_view text);
 

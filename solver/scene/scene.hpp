@@ -94,12 +94,19 @@ struct Scene {
   /// Transforms are planned by measurement and the plans kept in this file; empty: by estimate, which gives
   /// the same digits again.
   std::filesystem::path wisdom;
+  /// Bytes that solving it may take; none: what the machine has left. No key of the file: it says nothing of
+  /// the contact.
+  std::optional<double> memory_limit;
 };
 
 /// Reads a scene file (TOML); each override is "key=value" with a dotted key, applied before anything is
 /// checked. Relative paths in the scene are relative to the scene file. Throws InputError naming file, key,
 /// value and what is allowed.
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+/// Throws InputError where solving the scene would write a file outside of its folder: whoever hands on a
+/// scene must not choose where. read_scene() calls it for what the file itself says.
+void require_writes_within(const Scene& scene);
 
 /// Throws InputError, naming key, value and what is allowed, for a scene that cannot be solved as it stands,
 /// whoever built it. What only the solve can find (a contact wider than the grid, loads beyond the limit) is

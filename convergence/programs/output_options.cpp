@@ -1,0 +1,67 @@
+#include "convergence/programs/output_options.hpp"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <string>
+#include <string_view>
+#include <system_error>
+
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Those of all commands that name a file to be written.
+constexpr std::array<std::string_view, 6> kOutputs{"--json",    "--fields", "--figure",
+                                                   "--summary", "--junit",  "--accuracy-data"};
+/// What stands before a file's name in `exact --profile`.
+constexpr std::string_view kProfileFile = "file:";
+
+bool is_output(const CLI::Option& option) {
+  return std::ranges::find(kOutputs, option.get_name()) != kOutputs.end();
+}
+
+bool is_same_file(const fs::path& one, const fs::path& other) {
+  std::error_code error;
+  return fs::equivalent(one, other, error) && !error;
+}
+
+}  // namespace
+
+void require_input_kept(const std::string& option, const std::string& output,
+                        const std::vector<fs::path>& inputs) {
+  const auto same = [&](const fs::path& input) { return is_same_file(input, output); };
+  const auto overwritten = std::ranges::find_if(inputs, same);
+  if (overwritten == inputs.end()) return;
+  throw solver::InputError(
+      fmt::format("{} {}", option, output),
+      fmt::format("would overwrite {}, which is read; allowed: another file", overwritten->string()));
+}
+
+void require_inputs_kept(const CLI::App& command, const std::vector<fs::path>& inputs) {
+  for (const CLI::Option* const option : command.get_options()) {
+    if (!is_output(*option)) continue;
+    for (const std::string& output : option->results()) {
+      require_input_kept(option->get_name(), output, inputs);
+    }
+  }
+}
+
+void require_inputs_kept(const CLI::App& command) {
+  std::vector<fs::path> inputs;
+  for (const CLI::Option* const option : command.get_options()) {
+    if (is_output(*option)) continue;
+    for (const std::string& word : option->results()) {
+      inputs.emplace_back(word);
+      if (word.starts_with(kProfileFile)) inputs.emplace_back(word.substr(kProfileFile.size()));
+    }
+  }
+  require_inputs_kept(command, inputs);
+}
+
+}  // namespace slipstick::convergence

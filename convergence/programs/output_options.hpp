@@ -1,0 +1,24 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+namespace CLI {
+class App;
+}
+
+namespace slipstick::convergence {
+
+/// Throws InputError, naming the option and its file, where a command would write to one of the files that it
+/// reads, by this name or another (links, other spellings).
+void require_inputs_kept(const CLI::App& command, const std::vector<std::filesystem::path>& inputs);
+
+/// The same of one option and its file.
+void require_input_kept(const std::string& option, const std::string& output,
+                        const std::vector<std::filesystem::path>& inputs);
+
+/// The same for the files that the command line names.
+void require_inputs_kept(const CLI::App& command);
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,88 @@
+#include "solver/memory.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <limits>
+#include <string>
+
+namespace slipstick::solver {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The number behind a word that begins a line ("inactive_file 4096", "MemAvailable: 12 kB"), or infinity.
+double number_behind(const fs::path& file, const std::string& word) {
+  std::ifstream stream(file);
+  std::string found;
+  double number = 0.0;
+  while (stream >> found) {
+    if (found == word && stream >> number) return number;
+    stream.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  }
+  return INFINITY;
+}
+
+/// The number that a file holds; infinity where it holds a word, "max", or is missing.
+double number_in(const fs::path& file) {
+  std::ifstream stream(file);
+  double number = 0.0;
+  return stream >> number ? number : INFINITY;
+}
+
+/// The names that two versions of control groups have for the same.
+struct GroupFiles {
+  const char* limit;
+  const char* used;
+  const char* dropped;  ///< in memory.stat: copies of files, which give way
+};
+constexpr GroupFiles kVersion1{"memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"};
+constexpr GroupFiles kVersion2{"memory.max", "memory.current", "inactive_file"};
+
+/// What a group and those around it leave free. Inside a container a group's own folder is not seen, those
+/// around it are.
+double left_by_groups(const fs::path& mount, fs::path group, const GroupFiles& files) {
+  double least = INFINITY;
+  for (;; group = group.parent_path()) {
+    const fs::path folder = mount / group.relative_path();
+    const double limit = number_in(folder / files.limit);
+    const double used = number_in(folder / files.used);
+    const double dropped = number_behind(folder / "memory.stat", files.dropped);
+    if (std::isfinite(limit) && std::isfinite(used)) {
+      least = std::min(least, limit - used + (std::isfinite(dropped) ? dropped : 0.0));
+    }
+    if (!group.has_relative_path()) return least;
+  }
+}
+
+}  // namespace
+
+double available_memory(const fs::path& root) {
+  constexpr double kKilobyte = 1024.0;
+  double least = kKilobyte * number_behind(root / "proc/meminfo", "MemAvailable:");
+  std::ifstream groups(root / "proc/self/cgroup");  // lines "4:memory:/path", and "0::/path" of version 2
+  for (std::string line; std::getline(groups, line);) {
+    const auto first = line.find(':');
+    const auto second = line.find(':', first + 1);
+    if (second == std::string::npos) continue;
+    const std::string controllers = "," + line.substr(first + 1, second - first - 1) + ",";
+    const fs::path group = line.substr(second + 1);
+    const fs::path mount = root / "sys/fs/cgroup";
+    if (controllers == ",,") least = std::min(least, left_by_groups(mount, group, kVersion2));
+    if (controllers.find(",memory,") != std::string::npos) {
+      least = std::min(least, left_by_groups(mount / "memory", group, kVersion1));
+    }
+  }
+  return std::max(least, 0.0);
+}
+
+std::string bytes_text(double bytes) {
+  return bytes < 0x1p30 ? fmt::format("{:.3g} MiB", bytes / 0x1p20)
+                        : fmt::format("{:.3g} GiB", bytes / 0x1p30);
+}
+
+double memory_within(std::optional<double> limit) { return limit ? *limit : available_memory(); }
+
+}  // namespace slipstick::solver

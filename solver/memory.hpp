@@ -1,0 +1,28 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "solver/input/input_error.hpp"
+
+/// How much memory a solve may take.
+namespace slipstick::solver {
+
+/// What a scene asks for takes more memory than it may.
+class OutOfMemory : public InputError {
+ public:
+  using InputError::InputError;
+};
+
+/// Bytes that can be had without swapping: of the machine, and of each control group around this process that
+/// has a limit. Infinite where nothing says. `root` stands before /proc and /sys.
+double available_memory(const std::filesystem::path& root = "/");
+
+/// "512 MiB", "1.5 GiB": three digits.
+std::string bytes_text(double bytes);
+
+/// What may be taken: the limit, or what is available where there is none.
+double memory_within(std::optional<double> limit);
+
+}  // namespace slipstick::solver
