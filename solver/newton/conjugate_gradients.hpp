@@ -142,7 +142,9 @@ template <typename Real, LinearMap<Real> Map, LinearMap<Real> Preconditioner>
 CgSummary projected_cg(Map& map, Preconditioner& preconditioner, const CgConstraints<Real>& constraints,
                        CgField<Real>& r, const CgOptions& options, CgWorkspace<Real>& work,
                        CgField<Real>& x) {
-  auto& [d, Ad, y] = work;
+  CgField<Real>& d = work.d;
+  CgField<Real>& Ad = work.Ad;
+  CgField<Real>& y = work.y;
   CgSummary summary;
   // y = r preconditioned and within the constraints; r.y.
   const auto precondition = [&] {
