@@ -27,7 +27,8 @@ void draw_figure(const fs::path& figure, const Json& result,
   const fs::path fields = folder / "fields.h5";
   std::ofstream(json) << result.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
   write_fields(fields);
-  run_report_script("solve_figure.py", {"--output=" + figure.string(), json, fields}, "the result is complete");
+  run_report_script("solve_figure.py", {"--output=" + figure.string(), json, fields},
+                    "the result is complete");
 }
 
 }  // namespace slipstick::convergence
