@@ -27,7 +27,7 @@ constexpr double kPaperFields = 20.0;
 constexpr double kFieldsOfPart = 18.0;
 constexpr double kFieldsBefore = 18.0;
 /// The program and its libraries.
-constexpr double kProgramBytes = 24.0 * 0x1p20;
+constexpr double kProgramBytes = 26.0 * 0x1p20;
 /// Cells left free on each side of the expected contact where the scene does not give an extent.
 constexpr double kMarginCells = 2.0;
 /// With cells longer than so many times their width every method crawls.

@@ -56,6 +56,10 @@ void judge_scenes(const std::vector<Gate>& gates, const ProcessPool& pool, Judge
   const std::vector<Json> results = pool.run_prepared(runs);
   std::set<std::string> timed;
   for (std::size_t k = 0; k < places.size(); ++k) {
+    if (results[k].value("out_of_memory", false)) {
+      judgements[places[k]] = refuse(gates[places[k]], results[k]["message"]);
+      continue;
+    }
     Judgement judgement = judge(gates[places[k]], results[k]);
     if (timed.insert(runs[k].name).second) judgement.seconds = seconds_of(results[k]);
     judgement.dominant_error = find_dominant_error(judgement, runs[k], pool);

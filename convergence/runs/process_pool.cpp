@@ -201,14 +201,15 @@ std::vector<Json> ProcessPool::run_prepared(const std::vector<PreparedRun>& runs
   const ResultCache cache(options_.folder, options_.program);
   std::vector<Task> tasks;
   std::set<std::string> known;
-  std::map<std::string, std::string> refusals;
+  std::map<std::string, Json> refused;
   for (const PreparedRun& run : runs) {
     if (!known.insert(run.name).second || find(cache, run)) continue;
     Task task = make_task(run, options_.memory_limit);
     if (task.refusal.empty()) {
       tasks.push_back(std::move(task));
     } else {
-      refusals[run.name] = task.refusal;
+      refused[run.name] = not_computed("refused", task.refusal, run.spec);
+      refused[run.name]["out_of_memory"] = true;
     }
   }
   auto failures = Batch(std::move(tasks), options_).work();
@@ -217,11 +218,10 @@ std::vector<Json> ProcessPool::run_prepared(const std::vector<PreparedRun>& runs
     std::optional<Json> found = find(cache, run);
     std::string& failure = failures[run.name];
     if (failure.empty()) failure = "its result is not on disk";
-    if (const auto refused = refusals.find(run.name); refused != refusals.end()) {
-      results.push_back(not_computed("refused", refused->second, run.spec));
-    } else {
-      results.push_back(found ? *std::move(found) : not_computed("failed", failure, run.spec));
-    }
+    const bool is_refused = refused.contains(run.name);
+    results.push_back(found        ? *std::move(found)
+                      : is_refused ? refused[run.name]
+                                   : not_computed("failed", failure, run.spec));
   }
   return results;
 }

@@ -33,7 +33,8 @@ class ProcessPool {
 
   /// The results, in the order of the runs; equal runs are computed once. What a scene asks for and cannot
   /// have, gross slip or memory for one, is a result with status = "refused"; one whose process was killed or
-  /// failed has status = "failed"; both have a message and `run`, which says which it was. Throws InputError,
+  /// failed has status = "failed"; both have a message and `run`, which says which it was. One that would
+  /// take more memory than it may has out_of_memory = true beside it, and is not kept. Throws InputError,
   /// before anything is computed, for a scene that cannot be read; std::runtime_error where it was
   /// interrupted.
   std::vector<Json> run(const std::vector<RunSpec>& specs) const;
