@@ -5,6 +5,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <filesystem>
+#include <system_error>
 #include <utility>
 
 #include "solver/contact/coulomb_method.hpp"
@@ -143,6 +146,21 @@ void require_memory(const Scene& scene, const Grid& grid, double bytes) {
                                                      : "fewer cells take"));
 }
 
+/// A table's text is held as a whole while it is read.
+void require_memory_for_files(const Scene& scene) {
+  std::vector<std::filesystem::path> files{scene.pressure_file};
+  for (const Surface& surface : scene.surfaces) files.push_back(surface.file);
+  for (const std::filesystem::path& file : files) {
+    std::error_code error;
+    const std::uintmax_t size = file.empty() ? 0 : std::filesystem::file_size(file, error);
+    const auto bytes = static_cast<double>(size);
+    if (error || bytes < kLittleMemory || bytes < memory_within(scene.memory_limit)) continue;
+    throw OutOfMemory(file.string(),
+                      fmt::format("holds {}; allowed: what fits in memory, {}", bytes_text(bytes),
+                                  bytes_text(memory_within(scene.memory_limit))));
+  }
+}
+
 bool brings_translation(const Step& step) {
   return step.displacement || step.force != std::array<double, 2>{};
 }
@@ -248,6 +266,7 @@ Memory predicted_memory(const Scene& scene, const Model& model) {
 
 Model make_model(const Scene& scene) {
   const ElasticPair pair = elastic_pair(half_space(scene.lower), half_space(scene.upper));
+  require_memory_for_files(scene);
   const std::vector<Surface> surfaces = with_heights(scene.surfaces);
   const Grid grid = make_grid(scene, surfaces, pair.effective_modulus());
 

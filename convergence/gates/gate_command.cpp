@@ -39,9 +39,10 @@ std::vector<std::filesystem::path> files_behind(const std::vector<Gate>& gates) 
     files.push_back(gate.source);
     if (gate.kind == GateSource::result) continue;
     try {
-      const Study study = gate.kind == GateSource::study
-                              ? read_study(gate.source, gate.overrides)
-                              : Study{.scene = gate.source, .overrides = gate.overrides};
+      Study study;
+      study.scene = gate.source;
+      study.overrides = gate.overrides;
+      if (gate.kind == GateSource::study) study = read_study(gate.source, gate.overrides);
       const auto of_scene = input_files(solver::read_scene(study.scene, study.overrides));
       files.insert(files.end(), of_scene.begin(), of_scene.end());
     } catch (const solver::InputError&) {

@@ -68,5 +68,16 @@ TEST_F(SceneFile, MayTakeAllOfItsMemoryLimitAndNoMore) {
                     HasSubstr(bytes_text(needed)), HasSubstr("--memory-limit"), HasSubstr("fewer cells")));
 }
 
+TEST_F(SceneFile, NamesNoTableThatDoesNotFitInMemory) {
+  std::string text = kShortScene;
+  text.replace(text.find("shape"), text.find("young") - text.find("shape"),
+               "shape = \"height_map\"\nfile = \"heights.csv\"\nspacing = [1e-5, 1e-5]\n");
+  Scene scene = read(text.substr(0, text.find("[grid]")));
+  fs::resize_file(write("heights.csv", ""), 512U << 20);  // takes no room on the disk
+  scene.memory_limit = 100e6;
+  EXPECT_THAT(complaint([&] { make_model(scene); }),
+              AllOf(HasSubstr("heights.csv"), HasSubstr("512 MiB"), HasSubstr("95.4 MiB")));
+}
+
 }  // namespace
 }  // namespace slipstick::solver
