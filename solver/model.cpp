@@ -14,6 +14,7 @@
 #include "solver/input/input_error.hpp"
 #include "solver/memory.hpp"
 #include "solver/scene/surface_geometry.hpp"
+#include "solver/within_double.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -264,7 +265,9 @@ Memory predicted_memory(const Scene& scene, const Model& model) {
           kProgramBytes + fields + kFieldsOfPart * sizeof(double) * static_cast<double>(grid.cells())};
 }
 
-Model make_model(const Scene& scene) {
+namespace {
+
+Model build_model(const Scene& scene) {
   const ElasticPair pair = elastic_pair(half_space(scene.lower), half_space(scene.upper));
   require_memory_for_files(scene);
   const std::vector<Surface> surfaces = with_heights(scene.surfaces);
@@ -308,6 +311,12 @@ Model make_model(const Scene& scene) {
   }
   require_memory(scene, grid, predicted_memory(scene, model).total());
   return model;
+}
+
+}  // namespace
+
+Model make_model(const Scene& scene) {
+  return within_double(scene, [&] { return build_model(scene); });
 }
 
 }  // namespace slipstick::solver

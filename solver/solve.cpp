@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 #include <utility>
 
 #include "solver/contact/coulomb_method.hpp"
@@ -20,6 +22,7 @@
 #include "solver/model_solution.hpp"
 #include "solver/operator/random_rounding.hpp"
 #include "solver/pressure.hpp"
+#include "solver/within_double.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -248,6 +251,15 @@ void solve_steps(const Scene& scene, const Progress& progress, const AfterStep& 
   }
 }
 
+/// What has been solved without units may be beyond double precision in the scene's.
+void require_finite(const Solution& solution) {
+  const bool finite = std::isfinite(solution.twist_angle) && std::isfinite(solution.moment) &&
+                      solution.pressure.isFinite().all() && solution.traction.isFinite().all();
+  if (solution.status == Status::converged && !finite) {
+    throw std::domain_error("the answer in the scene's units");
+  }
+}
+
 void require_can_solve(const Scene& scene) {
   validate(scene);
   if (scene.model == ModelChoice::exact) {
@@ -273,10 +285,13 @@ Solution solve(const Scene& scene, const SolveOptions& options) {
   std::optional<Wisdom> wisdom;
   if (!scene.wisdom.empty()) wisdom.emplace(scene.wisdom);
   Solution result;
-  solve_steps(scene, options.progress, [&](ModelSolution& solution, bool last) {
-    if (!last && !options.on_step) return;
-    result = in_si(last ? std::move(solution) : ModelSolution(solution));
-    if (options.on_step) options.on_step(result);
+  within_double(scene, [&] {
+    solve_steps(scene, options.progress, [&](ModelSolution& solution, bool last) {
+      if (!last && !options.on_step) return;
+      result = in_si(last ? std::move(solution) : ModelSolution(solution));
+      require_finite(result);
+      if (options.on_step) options.on_step(result);
+    });
   });
   if (wisdom && !wisdom->save()) {
     result.message += fmt::format("{}solver.wisdom: {} could not be written",

@@ -11,6 +11,7 @@
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/model.hpp"
+#include "solver/within_double.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -46,9 +47,7 @@ void set_all_missing(Json& json, const std::vector<std::string>& keys, const std
   for (const std::string& key : keys) set_missing(json, key, reason);
 }
 
-}  // namespace
-
-Oracle require_oracle(const solver::Scene& scene) {
+Oracle find_required_oracle(const solver::Scene& scene) {
   const std::unique_ptr<ExactHistory> history = exact_history(scene);
   const std::string file = scene.source.string();
   OracleAnswer exact;
@@ -65,6 +64,12 @@ Oracle require_oracle(const solver::Scene& scene) {
     }
   }
   return *exact.oracle;
+}
+
+}  // namespace
+
+Oracle require_oracle(const solver::Scene& scene) {
+  return solver::within_double(scene, [&] { return find_required_oracle(scene); });
 }
 
 Json exact_result(const solver::Scene& scene, const Oracle& oracle, double seconds) {

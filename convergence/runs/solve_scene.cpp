@@ -6,6 +6,7 @@
 
 #include "convergence/results/result.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/within_double.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -27,7 +28,7 @@ class RoundingScope {
 }  // namespace
 
 SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& options) {
-  const std::unique_ptr<ExactHistory> history = exact_history(scene);
+  const auto history = solver::within_double(scene, [&] { return exact_history(scene); });
   SolvedScene solved;
   Json steps = Json::array();
   const auto on_step = [&](const solver::Solution& at) {
@@ -46,7 +47,8 @@ SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& opt
     }
     throw;
   }
-  solved.result = solve_result(scene, solved.solution, solved.exact);
+  solved.result =
+      solver::within_double(scene, [&] { return solve_result(scene, solved.solution, solved.exact); });
   if (has_history(scene)) add_steps(solved.result, std::move(steps));
   return solved;
 }

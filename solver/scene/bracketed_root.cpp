@@ -1,5 +1,6 @@
 #include "solver/scene/bracketed_root.hpp"
 
+#include <gsl/gsl_errno.h>
 #include <gsl/gsl_roots.h>
 
 #include <cmath>
@@ -13,9 +14,11 @@ double bracketed_root(const std::function<double(double)>& f, double low, double
   const double at_high = f(high);
   if (at_low == 0.0) return low;
   if (at_high == 0.0) return high;
-  // Said here: GSL's own handler would end the program.
-  if (!(at_low * at_high < 0.0))
-    throw std::domain_error("a bracket in which the function does not change sign");
+  if (!(std::signbit(at_low) != std::signbit(at_high) && std::isfinite(at_low) && std::isfinite(at_high))) {
+    throw std::domain_error("a bracket in which the function does not change sign, or is not finite");
+  }
+  // GSL's own handler would end the program.
+  [[maybe_unused]] static const auto handler = gsl_set_error_handler_off();
   gsl_function function;
   function.function = [](double x, void* data) {
     return (*static_cast<const std::function<double(double)>*>(data))(x);
@@ -27,7 +30,9 @@ double bracketed_root(const std::function<double(double)>& f, double low, double
   constexpr int kMaxIterations = 200;  // bisection alone would need about 60
   double root = gsl_root_fsolver_root(solver.get());
   for (int i = 0; i < kMaxIterations; ++i) {
-    gsl_root_fsolver_iterate(solver.get());
+    if (gsl_root_fsolver_iterate(solver.get()) != GSL_SUCCESS) {
+      throw std::domain_error("a function that is not finite everywhere in its bracket");
+    }
     const double last = root;
     root = gsl_root_fsolver_root(solver.get());
     const double lower = gsl_root_fsolver_x_lower(solver.get());

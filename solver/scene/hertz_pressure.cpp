@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <stdexcept>
 
 #include "solver/scene/bracketed_root.hpp"
 
@@ -20,9 +21,15 @@ struct Curvatures {
   double along_1;
   double along_2;
 };
+/// Of the axis ratio's square, within which Carlson's integral and its products stay in double precision.
+constexpr double kMinSquare = 1e-180;
 
 Curvatures direction_integrals(double axis_ratio) {
   const double square = axis_ratio * axis_ratio;
+  // Said here: beyond them GSL's own handler would end the program.
+  if (!(square > kMinSquare && square < 1.0 / kMinSquare)) {
+    throw std::domain_error("radii of an ellipsoid whose ratio is beyond all bounds");
+  }
   const auto carlson = [](double y, double z) { return gsl_sf_ellint_RD(0.0, y, z, GSL_PREC_DOUBLE); };
   return {2.0 / 3.0 * square * axis_ratio * carlson(1.0, square), 2.0 / 3.0 * carlson(1.0, 1.0 / square)};
 }

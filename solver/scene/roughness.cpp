@@ -6,6 +6,7 @@
 #include <map>
 #include <numbers>
 #include <random>
+#include <stdexcept>
 #include <tuple>
 
 #include "solver/fft/fftw.hpp"
@@ -151,6 +152,7 @@ RoughnessSpectrum measure_spectrum(const Roughness& roughness) {
     ring.number += images * number;
   }
 
+  if (rings.empty()) throw std::domain_error("a roughness without finite heights");
   RoughnessSpectrum spectrum{.rms_height = std::sqrt(square_height),
                              .rms_slope = std::sqrt(square_slope),
                              .hurst = 0.0,
