@@ -7,7 +7,9 @@
 #include <string>
 
 #include "convergence/hard/rounding_digits.hpp"
+#include "convergence/programs/output_options.hpp"
 #include "convergence/runs/interrupts.hpp"
+#include "convergence/runs/memory_option.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -17,11 +19,14 @@ struct DigitsRequest {
   std::string output = "build/digits";
   DigitsOptions options;
   int jobs = 0;
+  MemoryOption memory;
 };
 
-int run_digits(const DigitsRequest& request, std::ostream& text, Json& result) {
+int run_digits(const CLI::App& command, const DigitsRequest& request, std::ostream& text, Json& result) {
+  require_inputs_kept(command, input_files(solver::read_scene(request.spec.scene, request.spec.overrides)));
   const ProcessPool pool({.folder = request.output,
                           .jobs = request.jobs,
+                          .memory_limit = request.memory.limit(),
                           .program = kOwnProgram,
                           .interrupted = Interrupts::seen});
   {
@@ -57,8 +62,9 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_digits_command(CL
       "Example:\n  slipstick digits convergence/scenes/paper.toml --set grid.cells=[64,64]\nExit code 0: "
       "done; "
       "1: a solve did not converge; 2: bad input.");
-  return [request](std::ostream& text, nlohmann::ordered_json& result) {
-    return run_digits(*request, text, result);
+  request->memory.add_to(*command);
+  return [command, request](std::ostream& text, nlohmann::ordered_json& result) {
+    return run_digits(*command, *request, text, result);
   };
 }
 

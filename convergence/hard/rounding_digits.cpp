@@ -11,6 +11,7 @@
 
 #include "convergence/results/provenance.hpp"
 #include "convergence/results/quantity.hpp"
+#include "convergence/runs/failed_runs.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -62,6 +63,7 @@ Json rounding_digits(const RunSpec& spec, const DigitsOptions& options, const Pr
   }
   const std::vector<Json> results = pool.run(runs);
   const Json& nearest = results.front();
+  if (is_failed(nearest)) throw std::runtime_error(nearest["message"].get<std::string>());
   Json json{
       {"scene", spec.scene.string()},
       {"set", spec.overrides},
