@@ -8,14 +8,15 @@ REV ?= origin/main
 GATE_OPTIONS ?=
 SEARCH_OPTIONS ?=
 HARD_OPTIONS ?=
+MUTANT_OPTIONS ?=
 SANITIZE ?=
 LINT_SINCE ?=
 # How many instructions a solve takes is gated where it is known of this compiler.
 INSTRUCTION_GATES = $(wildcard bench/gates/instructions-gcc-$(firstword $(subst ., ,$(shell c++ -dumpversion))).toml)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup configure build report test gate hard sanitize lint bench bench-against bench-trust references hardest \
-  install clean
+.PHONY: help setup configure build report test gate hard mutants sanitize lint bench bench-against bench-trust references \
+  hardest install clean
 
 help: ## show this list
 	@echo "slipstick: make TARGET"
@@ -61,6 +62,10 @@ hard: configure ## solve 600 hard scenes, each in several views; audit every one
 	  $(BUILD)/slipstick hard convergence/hard/*.toml --output $(BUILD)/hard --fields $(BUILD)/hard/fields \
 	    --json $(BUILD)/hard/hard.json $(HARD_OPTIONS) || status=$$?; \
 	  [ $$status -gt 1 ] || "$$python" convergence/hard/audit.py $(BUILD)/hard/hard.json || status=1; exit $$status
+
+mutants: configure ## 240 small mistakes, made by rule: do tests and gates see them? (MUTANT_OPTIONS="--seed 2 --folder solver")
+	@python="$$(sed -n 's/^SLIPSTICK_PYTHON:[A-Z]*=//p' $(BUILD)/CMakeCache.txt)"; \
+	  "$$python" -B cmake/mutation/mutants.py $(MUTANT_OPTIONS)
 
 sanitize: setup ## run every test under the address and undefined-behaviour sanitizers (a part: SANITIZE="operators analytic")
 	@test -f build-asan-ubsan/build.ninja || cmake --preset asan-ubsan

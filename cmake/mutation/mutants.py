@@ -1,0 +1,219 @@
+#!/usr/bin/env python3
+"""Makes small mistakes in the sources by rule, one at a time, and lists those that neither the tests nor the gates see.
+
+Every C++ mutant is compiled into one build behind a switch; each runs against the test suites of its folder that reach
+it, the quickest first, and then against convergence/gates/quick.toml. Python mutants run against the tests of reports/.
+judged.toml says why some survivors are none. Exit code 0: all others are seen; 1: some are not; 2: nothing could be
+judged."""
+
+import argparse
+import json
+import random
+import sys
+import tomllib
+from collections import Counter, defaultdict
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import cpp_rules
+import mutated_build
+import python_rules
+import runs
+
+ROOT = Path(__file__).resolve().parents[2]
+FOLDERS = ("analytic", "solver", "convergence", "bench", "reports")
+# A mutant there could end other processes, or remove their files.
+DANGEROUS = ("solver/input/run_apart.cpp", "convergence/programs/run_program.cpp", "convergence/results/whole_file.cpp")
+# Programs that `make test` does not build: they check their own results.
+NOT_TESTED = ("bench/suite/", "bench/work/work_counts_program.cpp", "analytic/certified/hardest.cpp",
+              "analytic/certified/references.cpp", "analytic/certified/missing.cpp")
+SPARE = 1.7  # so many times the mutants are proposed: not all of them compile
+
+
+def sources(folder):
+    pattern = "*.py" if folder == "reports" else "**/*.cpp"
+    for path in sorted((ROOT / folder).glob(pattern)):
+        name = path.relative_to(ROOT).as_posix()
+        if "tests" not in path.parts and name not in DANGEROUS and not name.startswith(NOT_TESTED):
+            yield name, path.read_text()
+
+
+def sample(folder, count, chance):
+    """`count` mutations of a folder, (file, text, mutation), rule by rule in turn, no two at the same place."""
+    rules = python_rules if folder == "reports" else cpp_rules
+    by_rule = defaultdict(list)
+    for name, text in sources(folder):
+        for mutation in rules.proposals(text):
+            by_rule[mutation.rule].append((name, text, mutation))
+    for found in by_rule.values():
+        chance.shuffle(found)
+    taken, of_file = [], defaultdict(list)
+    while len(taken) < count and any(by_rule.values()):
+        for rule in sorted(by_rule):
+            while by_rule[rule]:
+                name, text, mutation = by_rule[rule].pop()
+                if folder == "reports" or not cpp_rules.overlaps(mutation, of_file[name]):
+                    of_file[name].append(mutation)
+                    taken.append((name, text, mutation))
+                    break
+    return taken[:count]
+
+
+def survivors(folder, file):
+    """The mutations of a folder that survived in an earlier report, (file, text, mutation)."""
+    survived = {(row["file"], row["rule"], row["before"], row["after"]) for row in json.loads(file.read_text())["mutants"]
+                if row["fate"] == "surviving"}
+    rules = python_rules if folder == "reports" else cpp_rules
+    return [(name, text, mutation) for name, text in sources(folder) for mutation in rules.proposals(text)
+            if (name, mutation.rule, *cpp_rules.lines(text, mutation)[1:]) in survived]
+
+
+def propose(options):
+    """Per folder, how many mutants are wanted, and mutants in the order in which they are taken."""
+    proposed, number = {}, 0
+    for i, folder in enumerate(options.folder):
+        wanted = options.count * (i + 1) // len(options.folder) - options.count * i // len(options.folder)
+        if options.again:
+            found = survivors(folder, options.again)
+            wanted = len(found)
+        else:
+            spare = 1 if folder == "reports" else SPARE
+            found = sample(folder, int(spare * wanted), random.Random(f"{options.seed} {folder}"))
+        proposed[folder] = wanted, [mutated_build.mutant_of(number + k, *each) for k, each in enumerate(found, 1)]
+        number += len(found)
+    return proposed
+
+
+def judge_cpp(mutants, build, options, say):
+    """{mutant: how it was seen}; "" survives, None is not reached."""
+    highest = max((each.number for each in mutants), default=0)
+    suites = {folder: list(runs.google_suites(build.build, folder)) for folder in {each.folder for each in mutants}}
+    gate = runs.gates(build.source, build.build)
+    with ThreadPoolExecutor(options.jobs) as pool:
+        everything = [suite for each in suites.values() for suite in each] + ([gate] if options.gates else [])
+        for suite, trouble in zip(everything, pool.map(lambda suite: runs.measure(suite, highest), everything)):
+            if trouble:
+                say(trouble)
+            if trouble and not suite.failing:
+                suite.reached = set()
+
+        def judge(mutant):
+            found = runs.killed_by(mutant, suites[mutant.folder])
+            if not found and options.gates and mutant.number in gate.reached:
+                found = runs.verdict(gate, mutant.number)
+            say(f"{mutant.file}:{mutant.line}: {found or 'survives'}")
+            return found
+
+        return dict(zip(mutants, pool.map(judge, mutants)))
+
+
+def judge_python(mutants, reports, options, say):
+    suites = list(runs.python_suites(reports))
+    with ThreadPoolExecutor(options.jobs) as pool:
+        for suite, trouble in zip(suites, pool.map(lambda each: runs.measure_python(each, reports, mutants), suites)):
+            if trouble:
+                say(trouble)
+                suite.reached = set()
+
+        def judge(mutant):
+            found = runs.python_killed_by(mutant, suites, reports)
+            say(f"{mutant.file}:{mutant.line}: {found or 'survives'}")
+            return found
+
+        return dict(zip(mutants, pool.map(judge, mutants)))
+
+
+def reasons():
+    """{(file, before, after): why a mutant is no hole}."""
+    table = tomllib.loads(Path(__file__).with_name("judged.toml").read_text())
+    return {(row["file"], row["before"], row["after"]): row["reason"] for row in table.get("mutant", [])}
+
+
+def fate_of(found, reason):
+    if found:
+        return "gates" if found.startswith("the gates") else "tests"
+    return "judged" if reason else "surviving"
+
+
+def report(judged, known):
+    """One row for each mutant, and how many of each folder met which fate."""
+    rows, totals = [], defaultdict(Counter)
+    for mutant, found in sorted(judged.items(), key=lambda each: (each[0].file, each[0].line)):
+        reason = known.get((mutant.file, mutant.before, mutant.after), "")
+        rows.append({"file": mutant.file, "line": mutant.line, "rule": mutant.mutation.rule, "before": mutant.before,
+                     "after": mutant.after, "fate": fate_of(found, reason), "seen_by": found or "",
+                     "reached": found is not None, "reason": reason})
+        totals[mutant.folder][rows[-1]["fate"]] += 1
+    return rows, {folder: dict(count) for folder, count in totals.items()}
+
+
+def print_report(rows, totals):
+    for row in rows:
+        if row["fate"] in ("judged", "surviving"):
+            fate = row["fate"] if row["reached"] else f"{row['fate']}, no test reaches it"
+            print(f"{row['file']}:{row['line']}: {row['rule']}, {fate}", f"  - {row['before']}", f"  + {row['after']}",
+                  *([f"  {row['reason']}"] if row["reason"] else []), sep="\n")
+    print(f"\n{'folder':12}{'made':>10}{'by tests':>10}{'by gates':>10}{'judged':>10}{'surviving':>10}")
+    for folder, count in list(totals.items()) + [("all", sum((Counter(each) for each in totals.values()), Counter()))]:
+        print(f"{folder:12}{sum(count.values()):10}" +
+              "".join(f"{count.get(each, 0):10}" for each in ("tests", "gates", "judged", "surviving")))
+
+
+def parse(arguments):
+    parser = argparse.ArgumentParser(description=__doc__.split("\n\n")[0])
+    parser.add_argument("--count", type=int, default=240, help="mutants, spread over the folders and rules (240)")
+    parser.add_argument("--seed", type=int, default=1, help="of the choice (1)")
+    parser.add_argument("--folder", action="append", choices=FOLDERS, help="these alone; may be repeated")
+    parser.add_argument("--no-gates", dest="gates", action="store_false", help="tests only: half a minute less a survivor")
+    parser.add_argument("--jobs", type=int, default=2, help="that many at a time (2)")
+    parser.add_argument("--work", type=Path, default=ROOT / "build-mutants", help="folder of the mutated build")
+    parser.add_argument("--json", type=Path, help="the report as JSON")
+    parser.add_argument("--again", type=Path, metavar="JSON", help="those that survived in this report, and no others")
+    parser.add_argument("--list", action="store_true", help="show the mutants that would be tried, and build nothing")
+    options = parser.parse_args(arguments)
+    options.folder = options.folder or list(FOLDERS)
+    if options.count < len(options.folder) or options.jobs < 1:
+        parser.error("--count must be at least the number of folders, --jobs at least 1")
+    return options
+
+
+def main(arguments):
+    options = parse(arguments)
+    known = reasons()
+    proposed = propose(options)
+    if options.list:
+        for _, mutants in proposed.values():
+            for each in mutants:
+                print(f"{each.file}:{each.line}: {each.mutation.rule}\n  - {each.before}\n  + {each.after}")
+        return 0
+
+    def say(line):
+        print(line, file=sys.stderr, flush=True)
+
+    build = mutated_build.MutatedBuild(ROOT, options.work.resolve())
+    judged = {}
+    try:
+        build.copy_sources()
+        cpp = [each for folder, (_, mutants) in proposed.items() if folder != "reports" for each in mutants]
+        if cpp:
+            build.write_mutants(cpp)
+            build.configure()
+            compiled = set(build.compile(cpp, options.jobs))
+            say(f"{len(compiled)} of {len(cpp)} C++ mutants compile")
+            taken = [each for wanted, mutants in proposed.values()
+                     for each in [each for each in mutants if each in compiled][:wanted]]
+            judged |= judge_cpp(taken, build, options, say)
+    except mutated_build.BuildFailed as trouble:
+        say(f"the mutants could not be built:\n{trouble}")
+        return 2
+    if "reports" in proposed:
+        judged |= judge_python(proposed["reports"][1], build.source / "reports", options, say)
+    rows, totals = report(judged, known)
+    if options.json:
+        options.json.write_text(json.dumps({"seed": options.seed, "totals": totals, "mutants": rows}, indent=1) + "\n")
+    print_report(rows, totals)
+    return 1 if any(row["fate"] == "surviving" for row in rows) else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,112 @@
+"""The rules that make mutants: each applies in made-up sources where it should, and nowhere else."""
+
+import sys
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "mutation"))
+
+import cpp_rules  # noqa: E402
+import python_rules  # noqa: E402
+
+
+def mutants(rules, text, rule):
+    """What becomes of the text by one rule."""
+    return {text[:each.start] + each.shown + text[each.end:] for each in rules.proposals(text) if each.rule == rule}
+
+
+def cpp(line, rule):
+    head, tail = "void f() {\n  ", "\n}\n"
+    return {text[len(head):-len(tail)] for text in mutants(cpp_rules, head + line + tail, rule)}
+
+
+def python(line, rule):
+    head = "def f(a, b):\n    "
+    return {text[len(head):] for text in mutants(python_rules, head + line, rule)}
+
+
+class Cpp(unittest.TestCase):
+    def test_a_comparison_is_turned_round_or_moved_by_its_boundary(self):
+        self.assertEqual(cpp("if (a < b) g();", "comparison"), {"if (a >= b) g();"})
+        self.assertEqual(cpp("if (a < b) g();", "boundary"), {"if (a <= b) g();"})
+        self.assertEqual(cpp("if (a == b) g();", "comparison"), {"if (a != b) g();"})
+
+    def test_arithmetic_changes_its_operator_or_loses_its_second_term(self):
+        self.assertEqual(cpp("x = a * b + c;", "arithmetic"), {"x = a / b + c;", "x = a * b - c;"})
+        self.assertEqual(cpp("x = f(a - b(c, d) * e) + g;", "term"), {"x = f(a) + g;", "x = f(a - b(c, d) * e);"})
+
+    def test_each_term_of_a_condition_is_dropped(self):
+        self.assertEqual(cpp("if (a && b(c, d) && !e) g();", "condition"),
+                         {"if (true && b(c, d) && !e) g();", "if (a && true && !e) g();", "if (a && b(c, d) && true) g();"})
+        self.assertEqual(cpp("const bool x = a || (b && c);", "condition"),
+                         {"const bool x = false || (b && c);", "const bool x = a || false;",
+                          "const bool x = a || (true && c);", "const bool x = a || (b && true);"})
+        self.assertEqual(cpp("return f(a) == \"b\" && c[0] == 'd';", "condition"),
+                         {"return true && c[0] == 'd';", 'return f(a) == "b" && true;'})
+
+    def test_a_sign_is_lost(self):
+        self.assertEqual(cpp("return -a - !b;", "sign"), {"return a - !b;", "return -a - b;"})
+        self.assertEqual(cpp("if (!b) g(-a);", "sign"), {"if (b) g(-a);", "if (!b) g(a);"})
+
+    def test_a_constant_grows_and_an_index_becomes_the_other(self):
+        line = "x = 0.5 * a[0] + 3 * b.x1;"
+        self.assertEqual(cpp(line, "constant"), {"x = 1.0 * a[0] + 3 * b.x1;", "x = 0.5 * a[0] + 4 * b.x1;"})
+        self.assertEqual(cpp(line, "index"), {"x = 0.5 * a[1] + 3 * b.x1;", "x = 0.5 * a[0] + 3 * b.x2;"})
+        self.assertEqual(cpp("x = 0.0; y = true;", "constant"), {"x = 1.0; y = true;", "x = 0.0; y = false;"})
+
+    def test_a_minimum_becomes_a_maximum_and_a_statement_is_left_out(self):
+        self.assertEqual(cpp("return std::min(a, b);", "extreme"), {"return std::max(a, b);"})
+        self.assertEqual(cpp("g(a);\n  x += h({1, 2});\n  int y = 3;\n  return y;", "statement"),
+                         {";\n  x += h({1, 2});\n  int y = 3;\n  return y;", "g(a);\n  ;\n  int y = 3;\n  return y;"})
+
+    def test_texts_comments_types_and_what_the_compiler_computes_are_left_alone(self):
+        for line in ('log("a < b + 1 && !c");', "g();  // a < b + 1", "/* a < b\n  c - 1 */ g();",
+                     "constexpr int x = 2 + 3;", "static_assert(2 + 2 == 4 && a);", "case 3:",
+                     "std::array<double, 3> x;", "using T = A<B<2>, 4>;",
+                     'log(R"(a < b + 1)");', "log('1');", "enum E { kOne = 1, kTwo = 2 };", "T* x; U& y; V&& z;"):
+            with self.subTest(line):
+                self.assertEqual({each.shown for each in cpp_rules.proposals(f"void f() {{\n  {line}\n}}\n")
+                                  if each.rule != "statement"}, set())
+        self.assertEqual(cpp_rules.proposals("#if A > 1 && B\n#define C \\\n  1 + 2\n#endif\n"), [])
+        self.assertEqual(cpp_rules.proposals("constexpr int f(int a) {\n  return a + 1;\n}\n"), [])
+
+    def test_what_follows_is_not_left_alone(self):
+        self.assertEqual(cpp("if constexpr (k > 1) x = a * b;", "arithmetic"), {"if constexpr (k > 1) x = a / b;"})
+        text = "template <int n = 1>\nint f(int a) {\n  return a * n;\n}\n"
+        self.assertEqual([each.shown for each in cpp_rules.proposals(text)], ["/"])
+
+    def test_all_mutants_stand_behind_switches_in_one_source_of_as_many_lines(self):
+        text = "bool f() {\n  return a < 2 &&\n         -b + c > 0.5;\n}\n"
+        taken = []
+        for each in cpp_rules.proposals(text):
+            if not cpp_rules.overlaps(each, taken):
+                taken.append(each)
+        mutated = cpp_rules.with_all(text, list(enumerate(taken, 1)))
+        self.assertEqual(mutated.count("\n"), text.count("\n"))
+        for number in range(1, len(taken) + 1):
+            self.assertRegex(mutated, rf"[({{]{number}[,)}}]")
+        self.assertEqual(cpp_rules.with_all(text, []), text)
+
+
+class Python(unittest.TestCase):
+    def test_each_rule_applies(self):
+        self.assertEqual(python("return a < b", "comparison"), {"return (a >= b)"})
+        self.assertEqual(python("return a < b", "boundary"), {"return (a <= b)"})
+        self.assertEqual(python("return a + b", "arithmetic"), {"return (a - b)"})
+        self.assertEqual(python("return a + b", "term"), {"return (a)"})
+        self.assertEqual(python("return a and b", "condition"), {"return (a)", "return (b)"})
+        self.assertEqual(python("return not a", "sign"), {"return (a)"})
+        self.assertEqual(python("return 2.0 * a", "constant"), {"return 4.0 * a"})
+        self.assertEqual(python("return a[0]", "index"), {"return (a[1])"})
+        self.assertEqual(python("return min(a, b)", "extreme"), {"return (max(a, b))"})
+        self.assertEqual(python("a.append(b)", "statement"), {"pass"})
+
+    def test_texts_and_what_is_drawn_with_are_left_alone(self):
+        for text in ('"""Two < 3."""\n', "SIZE = 3.5\n", "def f(a, b=2):\n    return a\n",
+                     "def f(a):\n    return f'{a + 1:.3f}'\n", "def f(a):\n    return {'width': 2}\n",
+                     "def f(a) -> 'b':\n    return draw(a, 3, linewidth=0.5)\n"):
+            self.assertEqual(python_rules.proposals(text), [], text)
+
+
+if __name__ == "__main__":
+    unittest.main()
