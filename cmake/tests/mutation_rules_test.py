@@ -1,10 +1,15 @@
 """The rules that make mutants: each applies in made-up sources where it should, and nowhere else."""
 
+import shutil
+import subprocess
 import sys
+import tempfile
 import unittest
 from pathlib import Path
 
-sys.path.insert(0, str(Path(__file__).resolve().parents[1] / "mutation"))
+MUTATION = Path(__file__).resolve().parents[1] / "mutation"
+SWITCH = MUTATION / "switch.hpp"
+sys.path.insert(0, str(MUTATION))
 
 import cpp_rules  # noqa: E402
 import python_rules  # noqa: E402
@@ -86,6 +91,36 @@ class Cpp(unittest.TestCase):
         for number in range(1, len(taken) + 1):
             self.assertRegex(mutated, rf"[({{]{number}[,)}}]")
         self.assertEqual(cpp_rules.with_all(text, []), text)
+
+
+class Switch(unittest.TestCase):
+    SOURCE = """#include <algorithm>
+#include <cstdio>
+int main(int a, char**) {
+  std::printf("%d ", a < 1);
+  std::printf("%d ", a == 1 && !(a / 3));
+  std::printf("%g ", -a * 0.5 - a);
+  std::printf("%d", std::min(a, 7));
+}
+"""
+    # What the program writes, started without arguments, when this stands in the place of that.
+    WRITTEN = {"": "0 1 -1.5 1", "<=": "1 1 -1.5 1", "!=": "0 0 -1.5 1", "*": "0 0 -1.5 1", "+": "0 1 0.5 1",
+               "/": "0 1 -3 1", "std::max": "0 1 -1.5 7", "1.0": "0 1 -2 1"}
+
+    @unittest.skipUnless(shutil.which("c++"), "no compiler")
+    def test_one_program_does_what_each_mutant_would(self):
+        chosen = [each for each in cpp_rules.proposals(self.SOURCE) if each.shown and each.shown in self.WRITTEN]
+        self.assertEqual({each.shown for each in chosen} | {""}, set(self.WRITTEN))
+        with tempfile.TemporaryDirectory() as folder:
+            source, program, reached = (Path(folder, name) for name in ("mutated.cpp", "program", "reached"))
+            source.write_text(f'#include "{SWITCH}"\n' + cpp_rules.with_all(self.SOURCE, list(enumerate(chosen, 1))))
+            subprocess.run(["c++", "-std=c++20", source, "-o", program], check=True)
+            for number, shown in enumerate([""] + [each.shown for each in chosen]):
+                run = subprocess.run([program], capture_output=True, text=True, env={"SLIPSTICK_MUTANT": str(number)})
+                self.assertEqual(run.stdout, self.WRITTEN[shown], shown)
+            reached.write_bytes(bytes(len(chosen) + 1))
+            subprocess.run([program], capture_output=True, env={"SLIPSTICK_REACHED": str(reached)})
+            self.assertEqual(list(reached.read_bytes()), [0] + [1] * len(chosen))
 
 
 class Python(unittest.TestCase):
