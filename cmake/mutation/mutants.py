@@ -91,11 +91,9 @@ def judge_cpp(mutants, build, options, say):
     gate = runs.gates(build.source, build.build)
     with ThreadPoolExecutor(options.jobs) as pool:
         everything = [suite for each in suites.values() for suite in each] + ([gate] if options.gates else [])
-        for suite, trouble in zip(everything, pool.map(lambda suite: runs.measure(suite, highest), everything)):
+        for trouble in pool.map(lambda suite: runs.measure(suite, highest, options.seconds), everything):
             if trouble:
                 say(trouble)
-            if trouble and not suite.failing:
-                suite.reached = set()
 
         def judge(mutant):
             found = runs.killed_by(mutant, suites[mutant.folder])
@@ -110,10 +108,9 @@ def judge_cpp(mutants, build, options, say):
 def judge_python(mutants, reports, options, say):
     suites = list(runs.python_suites(reports))
     with ThreadPoolExecutor(options.jobs) as pool:
-        for suite, trouble in zip(suites, pool.map(lambda each: runs.measure_python(each, reports, mutants), suites)):
+        for trouble in pool.map(lambda each: runs.measure_python(each, reports, mutants, options.seconds), suites):
             if trouble:
                 say(trouble)
-                suite.reached = set()
 
         def judge(mutant):
             found = runs.python_killed_by(mutant, suites, reports)
@@ -165,6 +162,7 @@ def parse(arguments):
     parser.add_argument("--seed", type=int, default=1, help="of the choice (1)")
     parser.add_argument("--folder", action="append", choices=FOLDERS, help="these alone; may be repeated")
     parser.add_argument("--no-gates", dest="gates", action="store_false", help="tests only: half a minute less a survivor")
+    parser.add_argument("--seconds", type=float, help="leave out what takes longer without a mutant: a first look")
     parser.add_argument("--jobs", type=int, default=2, help="that many at a time (2)")
     parser.add_argument("--work", type=Path, default=ROOT / "build-mutants", help="folder of the mutated build")
     parser.add_argument("--json", type=Path, help="the report as JSON")

@@ -16,7 +16,7 @@ from pathlib import Path
 # A mutant hangs when its test takes so many times the test's own time, and so many seconds more.
 TIMES, MORE_SECONDS = 5, 20
 BYTES = 8 << 30  # of address space, and
-FILE_BYTES = 1 << 30
+FILE_BYTES = 8 << 30
 PROGRAMS = {"analytic": ("analytic/analytic_tests", "analytic/certified/certified_tests"),
             "solver": ("solver/solver_tests", "solver/operators_tests"),
             "convergence": ("convergence/convergence_tests",), "bench": ("bench/bench_tests", "bench/work_counts_tests")}
@@ -79,18 +79,22 @@ def gates(source, build):
     return Suite("the gates", words)
 
 
-def measure(suite, mutants):
-    """Runs a suite without a mutant: what it reaches, how long it takes, what fails anyway."""
+def measure(suite, mutants, limit=None):
+    """Runs a suite without a mutant: what it reaches, how long it takes, what fails anyway. Says what is left out."""
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
         reached = Path(folder, "reached")
         reached.write_bytes(bytes(mutants + 1))
         words = [word for word in suite.words(folder) if word != "--gtest_fail_fast"]
         start = time.monotonic()
-        code, output = run(words, folder, SLIPSTICK_REACHED=str(reached))
+        code, output = run(words, folder, limit, SLIPSTICK_REACHED=str(reached))
         suite.seconds = time.monotonic() - start
         suite.reached = {number for number, byte in enumerate(reached.read_bytes()) if byte}
+    if code is None:
+        suite.reached = set()
+        return f"{suite.name} takes more than {limit:g} s and is left out"
     suite.failing = tuple(sorted(set(re.findall(r"^\[  FAILED  \] (\S+?)(?:,| \()", output, re.MULTILINE))))
     if code != 0 and not suite.failing:
+        suite.reached = set()
         return f"{suite.name} fails without a mutant and is left out:\n{output[-2000:]}"
     return f"{', '.join(suite.failing)}: fails without a mutant and is left out" if suite.failing else ""
 
@@ -145,17 +149,21 @@ def python_suites(reports):
             yield Suite(f"{test.stem}.{name}", [sys.executable, "-B", Path("tests", test.name), "--failfast", name])
 
 
-def measure_python(suite, reports, mutants):
+def measure_python(suite, reports, mutants, limit=None):
     test, name = reports / suite.command[2], suite.command[4]
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
         result = Path(folder, "lines.json")
         start = time.monotonic()
-        code, output = run([sys.executable, "-B", "-c", TRACED, str(reports), str(result), str(test), name], folder)
+        code, output = run([sys.executable, "-B", "-c", TRACED, str(reports), str(result), str(test), name], folder, limit)
         suite.seconds = time.monotonic() - start
         lines = {tuple(each) for each in json.loads(result.read_text())} if result.is_file() else set()
+    if code is None:
+        return f"{suite.name} takes more than {limit:g} s and is left out"
+    if code != 0:
+        return f"{suite.name} fails without a mutant and is left out:\n{output[-2000:]}"
     suite.reached = {each.number for each in mutants
                      if any((str(reports.parent / each.file), line) in lines for line in each.lines)}
-    return "" if code == 0 else f"{suite.name} fails without a mutant and is left out:\n{output[-2000:]}"
+    return ""
 
 
 def python_killed_by(mutant, suites, reports):

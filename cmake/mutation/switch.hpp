@@ -34,12 +34,12 @@ struct Switch {
     close(descriptor);
   }
 };
-inline const Switch kSwitch;
 
 inline bool on(int mutant) {
-  if (kSwitch.reached != nullptr && static_cast<std::size_t>(mutant) < kSwitch.mutants)
-    kSwitch.reached[mutant] = 1;
-  return kSwitch.mutant == mutant;
+  static const Switch chosen;  // when it is first asked for: objects of other units may be made before main
+  if (chosen.reached != nullptr && static_cast<std::size_t>(mutant) < chosen.mutants)
+    chosen.reached[mutant] = 1;
+  return chosen.mutant == mutant;
 }
 
 /// An Eigen expression is evaluated, since its type says what is computed.

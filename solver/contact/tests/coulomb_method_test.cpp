@@ -3,8 +3,10 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <random>
+#include <string>
 
 #include "solver/contact/projected_gradient.hpp"
 #include "solver/tests/torsion_bench.hpp"
@@ -171,6 +173,32 @@ TEST(CoulombLoads, GrossSlipIsRefusedWithTheLimit) {
   const CoulombBench bench(12, 12);
   EXPECT_THROW(bench.solve(1.0), std::invalid_argument);
   EXPECT_THROW(bench.solve(std::nan("")), std::invalid_argument);
+}
+
+TEST(CoulombLoads, ThatAreNoNumbersAreRefused) {
+  const CoulombBench bench(12, 12);
+  for (const auto& pair : {std::array{std::nan(""), 0.0}, std::array{0.0, std::nan("")}}) {
+    TangentialProblem forced = under_twist(bench.bound, 0.1);
+    forced.force = pair;
+    EXPECT_THROW(solve_by_coulomb_method(bench.elasticity, bench.grid, forced), std::invalid_argument);
+    TangentialProblem moved = under_twist(bench.bound, 0.1);
+    moved.displacement = pair;
+    EXPECT_THROW(solve_by_coulomb_method(bench.elasticity, bench.grid, moved), std::invalid_argument);
+  }
+}
+
+TEST(CoulombWork, ThatDoesNotSufficeIsSaidWithTheGapThatIsLeft) {
+  const CoulombBench bench(24, 24);
+  const TangentialProblem problem = under_moment(bench.bound, 0.5 * bench.limit);
+  CoulombOptions options;
+  options.tolerance = 1e-12;
+  options.max_applications = 2;
+  const TangentialSolution cut = solve_by_coulomb_method(bench.elasticity, bench.grid, problem, options);
+  EXPECT_EQ(cut.status, Status::not_converged);
+  EXPECT_NE(cut.message.find(fmt::format("gap / energy {:.3g}, asked for 1e-12", cut.change)),
+            std::string::npos)
+      << cut.message;
+  EXPECT_EQ(bench.solve(0.5).message, "");
 }
 
 /// A twist has no limit: all but the middle slips.

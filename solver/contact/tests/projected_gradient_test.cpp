@@ -158,6 +158,17 @@ TEST_P(Ellipse, HasTheLeastEnergy) {
   }
 }
 
+/// Without a moment: the surfaces slip by what the pressure moves them, unless tractions hold them.
+TEST(EllipticContact, IsNotWithoutTractionWhereThePressureMovesTheSurfaces) {
+  const GradientBench bench(16);
+  TangentialProblem problem = under_moment(bench.bound, 0.0);
+  problem.initial_displacement = inward(bench);
+  for (const TangentialSolution& solution :
+       {bench.solve(problem), solve_by_paper_method(*bench.op, problem, to_tolerance(1e-10))}) {
+    EXPECT_FALSE(solution.status == Status::converged && (solution.traction == 0.0).all());
+  }
+}
+
 /// The paper's method freezes slip directions; how far its energy is off, its own certificate bounds.
 TEST(EllipticContact, HasLessEnergyThanThePapersMethodLeaves) {
   const GradientBench bench(24);

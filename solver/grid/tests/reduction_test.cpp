@@ -174,6 +174,14 @@ TEST(Trimming, KeepsTheOriginInTheMiddle) {
   EXPECT_FALSE(Reduction(kOblong, contact, contact).quadrant());
 }
 
+TEST(Trimming, LooksAtEveryRowOfAnOblongGrid) {
+  ArrayXd contact = ArrayXd::Zero(kOblong.cells());
+  contact[cell(kOblong, kOblong.n1 - 1, 0)] = 1.0;
+  const Reduction part(kOblong, contact);
+  expect_grid(part.grid(), kOblong);
+  EXPECT_EQ(part.restricted(contact).sum(), 1.0);
+}
+
 TEST(Trimming, LeavesAFullGridAlone) {
   ArrayXd contact = ArrayXd::Zero(kOblong.cells());
   contact[0] = 1.0;

@@ -51,6 +51,13 @@ TEST_F(Tables, AreCountedAndReadByIndex) {
   steps.reject_unknown();
 }
 
+TEST_F(Tables, HoldListsOfAnyLength) {
+  SceneReader lists = reader("sizes = [1, 2.5, 4]\nnames = [\"a\", \"b\"]\n");
+  EXPECT_THAT(lists.numbers("sizes", kFinite), testing::ElementsAre(1.0, 2.5, 4.0));
+  EXPECT_THAT(lists.list("names"), testing::SizeIs(2));
+  EXPECT_THAT(lists.list("others"), testing::IsEmpty());
+}
+
 TEST_F(Tables, AreReadAsOverridesOfAnotherFile) {
   SceneReader steps = reader(
       "[[step]]\n[[step]]\nword = 1\n  set = { \"load.force\" = [1e-8, 2.0], load.name = \"a b\", on = true "
