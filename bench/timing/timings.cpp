@@ -135,7 +135,6 @@ using Names = std::set<std::string>;
 /// Of rows without run_type an aggregate is what is called after another row, or after nothing, if a mean and
 /// a deviation are called so.
 bool is_old_aggregate(const Reader& row, const Names& names) {
-  if (row.has("rms") || row.has("real_coefficient")) return true;
   const std::string name = row.text("name");
   for (const char* ending : {"_mean", "_median", "_stddev", "_cv", "_BigO", "_RMS"}) {
     if (!name.ends_with(ending)) continue;

@@ -97,6 +97,17 @@ TEST(InvalidReason, IsGivenForATwistThatIsSixPercentTooSmall) {
   EXPECT_THAT(bench::invalid_reason(scene, solution, errors), HasSubstr("traction error"));
 }
 
+/// At 48 cells the mesh alone accounts for less than a fifth.
+TEST(InvalidReason, LeavesRoomForTheToleranceThatWasAskedFor) {
+  solver::Scene scene = solver::read_scene(kPaper, {"grid.cells=[48,48]"});
+  const solver::Solution solution = solver::solve(scene);
+  convergence::Errors errors = convergence::compare(solution, *convergence::find_oracle(scene).oracle);
+  errors.traction.at_centres.l2 = 0.2;
+  EXPECT_THAT(bench::invalid_reason(scene, solution, errors), HasSubstr("traction error"));
+  scene.tolerance = 0.04;
+  EXPECT_EQ(bench::invalid_reason(scene, solution, errors), "");
+}
+
 TEST(PlaneScene, GoesOnFromKeptPoints) {
   const convergence::TemporaryFolder folder;
   const bench::PlaneOptions options{.scene = kPaper, .output = folder / "kept"};

@@ -120,6 +120,12 @@ TEST(Timings, OldAggregatesAreToldByTheirNames) {
   EXPECT_THAT(names(aggregates), ElementsAre("sort"));
   EXPECT_THAT(aggregates.benchmarks[0].timings, IsEmpty());
   EXPECT_FALSE(has_times(aggregates.benchmarks[0]));
+  // Of a fit over sizes there is no benchmark that its rows are called after.
+  const Timings fitted = parse(file_with(
+      row("sort/8") +
+      R"(, {"name": "sort_BigO", "real_coefficient": 2, "time_unit": "ns"}, {"name": "sort_RMS", "rms": 0.1})"));
+  EXPECT_THAT(names(fitted),
+              testing::Not(testing::AnyOf(testing::Contains("sort_BigO"), testing::Contains("sort_RMS"))));
 }
 
 TEST(Timings, TwoBenchmarksOfOneNameStayTwo) {
