@@ -469,6 +469,10 @@ class OneFigure(Folder):
         self.assertEqual(slip.filled(-1).tolist(), [[-1, -1, 1]])  # of its largest value
         self.assertEqual(sticks.filled(0).tolist(), [[1, 1, 0]])
 
+    def test_gallery_draws_slip_over_its_largest_value(self):
+        entry = gallery_figure.gallery(self.report, self.folder)
+        self.assertEqual(np.nanmax(entry.figure.axes[0].images[0].get_array()), 1.0)
+
     def test_gallery_owns_up_to_what_did_not_converge(self):
         self.report["gallery"][1]["status"] = "not_converged"
         self.assertIn("3 scenes, in all of which", gallery_figure.gallery(self.report, self.folder).message)
