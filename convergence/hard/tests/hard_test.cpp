@@ -90,6 +90,20 @@ TEST(Variant, ComesBack) {
   }
 }
 
+TEST(Variant, ShiftsByWholeCellsOfTheSameSize) {
+  solver::Scene scene = scene_of("paper");
+  scene.cells = {64, 48};
+  scene.extent = {1.0e-3, 2.4e-3};
+  const solver::Scene seen = seen_as(scene, Variant::shifted);
+  for (std::size_t i = 0; i < 2; ++i) {
+    const double cell = (*scene.extent)[i] / static_cast<double>(scene.cells[i]);
+    EXPECT_NEAR((*seen.extent)[i] / static_cast<double>(seen.cells[i]) / cell, 1.0, 1e-14);
+    const double cells = (seen.surfaces[0].at[i] - scene.surfaces[0].at[i]) / cell;
+    EXPECT_NEAR(cells, std::round(cells), 1e-12);
+    EXPECT_GT(std::abs(cells), 0.5);
+  }
+}
+
 TEST(Variant, IsRefusedWhereItWouldBeAnotherContact) {
   EXPECT_NE(why_not(scene_of("rough_sphere"), Variant::turned), "");
   EXPECT_EQ(why_not(scene_of("rough_sphere"), Variant::exchanged), "");

@@ -32,6 +32,16 @@ TEST(Order, OfAPowerIsFound) {
   }
 }
 
+TEST(Order, ThatIsUncertainOnOneSideAgreesWithNothing) {
+  const auto verdict_of = [](double low, double high) {
+    const Order order{.value = 2.0, .low = low, .high = high, .constant = 1.0, .verdict = floor, .why = {}};
+    return judged_by_interval(order, 2.0).verdict;
+  };
+  EXPECT_EQ(verdict_of(1.6, 2.4), asymptotic);
+  EXPECT_EQ(verdict_of(1.4, 2.1), preasymptotic);
+  EXPECT_EQ(verdict_of(1.9, 2.6), preasymptotic);
+}
+
 /// Least squares by hand: log errors 0, -1, -1, -2 at log sizes 0, -1, -2, -3 (base 2) lie about a line of
 /// slope 0.6 with squared residuals 0.2, so that the slope's standard error is sqrt(0.2/2/5), and Student's
 /// 97.5 % quantile of two degrees of freedom is 4.3026527.
