@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
@@ -20,7 +21,7 @@
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/run_program.hpp"
 #include "convergence/report/report_command.hpp"
-#include "convergence/results/markup.hpp"
+#include "convergence/results/output.hpp"
 #include "convergence/solve/solve_command.hpp"
 #include "convergence/studies/study_command.hpp"
 
@@ -35,11 +36,19 @@ using Command = std::function<int(std::ostream&, Json&)>;
 void write_json(const std::string& path, const Json& result) {
   // Names of files need not be UTF-8; JSON is.
   const std::string text = result.dump(2, ' ', false, Json::error_handler_t::replace);
-  if (path == "-") {
-    std::cout << text << '\n';
-    return;
-  }
+  if (path == "-") return slipstick::convergence::write_standard_output(text + "\n");
   slipstick::convergence::write_option_file("--json", path, text + "\n");
+}
+
+void complain(const std::exception& error) { std::cerr << "slipstick: " << error.what() << '\n'; }
+
+/// Writes beside an error that is said in any case.
+void keep(const std::function<void()>& write) {
+  try {
+    write();
+  } catch (const std::exception& error) {
+    complain(error);
+  }
 }
 
 int run(int argc, char** argv) {
@@ -64,23 +73,35 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? 0 : kCouldNotJudge;
+    const int exit_code = app.exit(error) == 0 ? 0 : kCouldNotJudge;
+    slipstick::convergence::write_standard_output("");
+    return exit_code;
   }
 
   std::ostringstream text;
   Json result;
+  const auto write_text = [&] {
+    if (!quiet && json_path != "-") slipstick::convergence::write_standard_output(text.str());
+  };
+  // The file first: who reads the text may leave, and so end this process.
   const auto write_out = [&] {
-    if (!quiet && json_path != "-") std::cout << text.str();
-    if (!json_path.empty() && !result.empty()) write_json(json_path, result);
+    try {
+      if (!json_path.empty() && !result.empty()) write_json(json_path, result);
+    } catch (const std::exception&) {
+      keep(write_text);
+      throw;
+    }
+    write_text();
   };
   for (std::size_t i = 0; i < commands.size(); ++i) {
     if (!subcommands[i]->parsed()) continue;
+    slipstick::convergence::require_inputs_kept(*subcommands[i]);
+    if (json_path != "-") slipstick::convergence::require_output("--json", json_path);
     int exit_code = kCouldNotJudge;
     try {
-      slipstick::convergence::require_inputs_kept(*subcommands[i]);
       exit_code = commands[i](text, result);
     } catch (const std::exception&) {
-      if (!result.empty()) write_out();  // what was computed before the error is not lost
+      if (!result.empty()) keep(write_out);  // what was computed before the error is not lost
       throw;
     }
     write_out();
@@ -92,11 +113,13 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  slipstick::convergence::hold_standard_streams();
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error like a full disk
   try {
     slipstick::convergence::obey_tie(argc, argv);
     return run(argc, argv);
   } catch (const std::exception& error) {
-    std::cerr << "slipstick: " << error.what() << '\n';
+    complain(error);
     return kCouldNotJudge;
   }
 }

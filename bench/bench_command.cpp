@@ -18,12 +18,14 @@
 #include "bench/plane/speed_error.hpp"
 #include "bench/scaling/scaling_result.hpp"
 #include "convergence/programs/python_script.hpp"
-#include "convergence/results/markup.hpp"
+#include "convergence/programs/run_program.hpp"
+#include "convergence/results/output.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/progress.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/input/whole_file.hpp"
 
 namespace slipstick::bench {
 namespace {
@@ -38,7 +40,7 @@ constexpr const char* kCompared =
     "^(application/(direct|dcfft[a-z_]*)|influence/tangential|setup/dcfft[a-z_]*|normal/solve|solve/[a-z_]+)"
     "/cells:(64|256)(/permille:900)?$|^exact/.*/hertz$";
 /// A survey's: repetitions for intervals.
-constexpr RunLength kSurveyLength{.seconds = 0.02, .repetitions = 7};
+const RunLength kSurveyLength{.seconds = 0.02, .repetitions = 7, .tied_by = convergence::kOwnProgram};
 
 struct BenchRequest {
   std::string program = SLIPSTICK_BENCHMARK_PROGRAM;
@@ -65,6 +67,7 @@ void keep_accuracy_data(const std::string& file, const Json& plane) {
 int survey(const BenchRequest& request, std::ostream& text, Json& result) {
   const fs::path folder = request.output;
   const fs::path data = folder / "data";
+  convergence::require_output("--accuracy-data", request.accuracy_data);
   result = run_survey(request.program, list_benchmarks(request.program, request.filter), kSurveyLength,
                       data / "finished");
   convergence::write_json_file(data / "timings.json", result);
@@ -90,14 +93,16 @@ int survey(const BenchRequest& request, std::ostream& text, Json& result) {
 /// Two builds or two methods in interleaved pairs.
 int compare_ab(const BenchRequest& request, std::ostream& text, Json& result) {
   const bool builds = request.pair.empty();
+  const fs::path folder = request.output;
+  solver::make_folder(folder);
+  solver::require_writable(folder);
   const auto pairs = builds ? two_builds(request.against, request.program,
                                          request.filter.empty() ? kCompared : request.filter)
                             : two_methods(request.program, request.pair[0], request.pair[1]);
-  ABRunResult found = run_ab(pairs, request.rounds, {.effect = request.effect});
+  ABRunResult found =
+      run_ab(pairs, request.rounds, {.effect = request.effect}, {.tied_by = convergence::kOwnProgram});
   found.report.base = builds ? request.against : request.pair[0];
   found.report.now = builds ? request.program : request.pair[1];
-  const fs::path folder = request.output;
-  fs::create_directories(folder);
   convergence::write_json_file(folder / "base.json", found.files[0]);
   convergence::write_json_file(folder / "new.json", found.files[1]);
   convergence::write_json_file(folder / "comparison.json", comparison_json(found.report));

@@ -20,6 +20,7 @@ import results  # noqa: E402
 import study_figure  # noqa: E402
 import style  # noqa: E402
 import tables  # noqa: E402
+from whole_file import write_whole  # noqa: E402
 
 HERE = Path(__file__).parent
 
@@ -102,7 +103,7 @@ def render(data_dir, output):
         hard=map_hard_cases(report),
         nulls=results.nulls({key: part for key, part in report.items() if key not in ("studies", "hard")}),
         data=os.path.relpath(data_dir / "report.json", output) if data_dir.is_relative_to(output) else None)
-    (output / "index.html").write_text(page, encoding="utf-8")
+    write_whole(output / "index.html", page.encode())
 
 
 def main(words=None):
@@ -114,6 +115,9 @@ def main(words=None):
         render(arguments.data_dir.resolve(), arguments.output.resolve())
     except results.InputError as error:
         print(f"render.py: {error}", file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(f"render.py: {error.filename or arguments.output}: cannot be written: {error.strerror}", file=sys.stderr)
         return 2
     return 0
 

@@ -220,7 +220,7 @@ def main(words=None):
         print(f"solve_figure.py: {error}", file=sys.stderr)
         return 2
     except OSError as error:
-        print(f"solve_figure.py: {arguments.output}: {error.strerror}", file=sys.stderr)
+        print(f"solve_figure.py: {arguments.output}: cannot be written: {error.strerror}", file=sys.stderr)
         return 2
     return 0
 

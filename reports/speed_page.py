@@ -16,6 +16,7 @@ import results  # noqa: E402
 import scaling_figure  # noqa: E402
 import speed_tables  # noqa: E402
 from render import HERE, draw_entry  # noqa: E402
+from whole_file import write_whole  # noqa: E402
 from wording import plain  # noqa: E402
 
 NAME = "figure-{}"
@@ -52,7 +53,7 @@ def render(data, output):
         crossovers=tabulate(speed_tables.crossovers, scaling),
         not_timed=plane.get("not_timed", []),
         provenance=plane.get("provenance", {}))
-    (output / "index.html").write_text(page, encoding="utf-8")
+    write_whole(output / "index.html", page.encode())
 
 
 def main():
@@ -64,6 +65,9 @@ def main():
         render(arguments.data.resolve(), arguments.output.resolve())
     except results.InputError as error:
         print(f"speed_page.py: {error}", file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(f"speed_page.py: {error.filename or arguments.output}: cannot be written: {error.strerror}", file=sys.stderr)
         return 2
     return 0
 

@@ -327,7 +327,7 @@ def main(words=None):
         print(f"study_figure.py: {error}", file=sys.stderr)
         return 2
     except OSError as error:
-        print(f"study_figure.py: {arguments.figure}: {error.strerror}", file=sys.stderr)
+        print(f"study_figure.py: {arguments.figure}: cannot be written: {error.strerror}", file=sys.stderr)
         return 2
     return 0
 

@@ -1,5 +1,6 @@
 """One look for every figure, and the same bytes for the same numbers."""
 
+import io
 import unicodedata
 
 import matplotlib
@@ -7,6 +8,8 @@ import numpy as np
 from matplotlib.colors import LinearSegmentedColormap, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
+
+from whole_file import write_whole
 
 # Okabe and Ito (2008): distinguished with any colour vision.
 BLUE, SKY, VERMILION = "#0072B2", "#56B4E9", "#D55E00"
@@ -81,7 +84,9 @@ FORMATS = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {}}
 
 def write(figure, path):
     """Writes one file, of the kind that its ending says: one of FORMATS."""
-    figure.savefig(path, metadata=FORMATS[path.suffix])
+    drawn = io.BytesIO()
+    figure.savefig(drawn, format=path.suffix[1:], metadata=FORMATS[path.suffix])
+    write_whole(path, drawn.getvalue())
 
 
 def save(figure, stem):

@@ -85,12 +85,13 @@ SessionFiles run_session(const std::vector<InterleavedPair>& pairs, int rounds, 
   return files;
 }
 
-ABRunResult run_ab(const std::vector<InterleavedPair>& pairs, int rounds, const ComparisonRules& rules) {
-  SessionFiles files = run_session(pairs, rounds);
+ABRunResult run_ab(const std::vector<InterleavedPair>& pairs, int rounds, const ComparisonRules& rules,
+                   const RunLength& length) {
+  SessionFiles files = run_session(pairs, rounds, length);
   const auto again = [&](const std::vector<std::string>& names) {
     std::vector<InterleavedPair> suspicious = pairs;
     std::erase_if(suspicious, [&](const InterleavedPair& pair) { return !contains(names, pair.name); });
-    return timings_of(run_session(suspicious, 2 * rounds));
+    return timings_of(run_session(suspicious, 2 * rounds, length));
   };
   return {compare_twice(timings_of(files), rules, again), std::move(files)};
 }

@@ -65,7 +65,7 @@ nlohmann::ordered_json run_benchmark(const fs::path& program, const std::string&
                    fmt::format("--benchmark_out={}", out.string()), "--benchmark_out_format=json",
                    fmt::format("--benchmark_min_time={}", length.seconds),
                    fmt::format("--benchmark_repetitions={}", length.repetitions)},
-                  {.captured = Captured::everything});
+                  {.captured = Captured::everything, .tied_by = length.tied_by});
   if (end.code != 0) {
     throw std::runtime_error(fmt::format("{}: benchmark {} {}", program.string(), name, end.trouble));
   }

@@ -12,6 +12,8 @@ namespace slipstick::bench {
 struct RunLength {
   double seconds = 0.05;  ///< at least, of what is timed
   int repetitions = 1;
+  /// See convergence::ProgramOptions: no run outlasts who started it.
+  std::filesystem::path tied_by = {};
 };
 
 /// What --benchmark_filter takes to run these benchmarks and no other.

@@ -3,7 +3,7 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <cstdio>
+#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <ostream>
@@ -14,7 +14,7 @@
 #include "bench/compare/comparison.hpp"
 #include "bench/compare/comparison_report.hpp"
 #include "bench/compare/second_run.hpp"
-#include "convergence/results/markup.hpp"
+#include "convergence/results/output.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::bench {
@@ -66,10 +66,12 @@ ComparisonRules rules_of(const CompareRequest& request) {
 
 int run_compare(const CompareRequest& request, std::ostream& text, nlohmann::ordered_json& result) {
   const ComparisonRules rules = rules_of(request);
+  convergence::require_output("--summary", request.summary);
+  convergence::require_output("--junit", request.junit);
   const TwoTimings first{read_timings(request.base), read_timings(request.now)};
   const auto again = [&](const std::vector<std::string>& names) {
-    fmt::print(stderr, "slipstick: {} benchmark{} again: {}\n", names.size(), names.size() == 1 ? "" : "s",
-               request.rerun);
+    std::cerr << fmt::format("slipstick: {} benchmark{} again: {}\n", names.size(),
+                             names.size() == 1 ? "" : "s", request.rerun);
     return TwoTimings{first.base, run_again(request.rerun, names)};
   };
   const ComparisonReport report =

@@ -5,7 +5,6 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
 #include <iostream>
 #include <nlohmann/json.hpp>
 #include <numeric>
@@ -16,8 +15,10 @@
 
 #include "bench/work/work_counts_cases.hpp"
 #include "bench/work/work_counts_instructions.hpp"
+#include "convergence/results/output.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/results/result_parts.hpp"
+#include "solver/input/whole_file.hpp"
 
 namespace {
 
@@ -91,15 +92,11 @@ void add_instructions(Json& counts, const std::vector<WorkCase>& cases, bool wan
 }
 
 void write(const std::string& path, const Json& result) {
-  if (path == "-") {
-    std::cout << result.dump(2) << '\n';
-    return;
-  }
+  const std::string text = result.dump(2) + "\n";
+  if (path == "-") return slipstick::convergence::write_standard_output(text);
   const std::filesystem::path folder = std::filesystem::path(path).parent_path();
-  if (!folder.empty()) std::filesystem::create_directories(folder);
-  std::ofstream file(path);
-  file << result.dump(2) << '\n';
-  if (!file.flush()) throw std::invalid_argument(fmt::format("--json {}: cannot be written", path));
+  if (!folder.empty()) slipstick::solver::make_folder(folder);
+  slipstick::convergence::write_option_file("--json", path, text);
 }
 
 void run(const Options& options) {

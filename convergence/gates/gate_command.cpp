@@ -12,6 +12,7 @@
 #include "convergence/gates/gate_report.hpp"
 #include "convergence/gates/gate_run.hpp"
 #include "convergence/programs/output_options.hpp"
+#include "convergence/results/output.hpp"
 #include "convergence/runs/interrupts.hpp"
 #include "convergence/runs/memory_option.hpp"
 #include "convergence/studies/study.hpp"
@@ -53,6 +54,8 @@ std::vector<std::filesystem::path> files_behind(const std::vector<Gate>& gates) 
 
 int run_gates(const CLI::App& command, const GateRequest& request, std::ostream& text,
               nlohmann::ordered_json& result) {
+  require_output("--junit", request.junit);
+  require_output("--summary", request.summary);
   const GateFiles files = read_gate_files(request.files, request.results);
   require_inputs_kept(command, files_behind(files.gates));
   std::vector<Judgement> judgements = files.unreadable;

@@ -1,7 +1,6 @@
 #include "convergence/hard/hard_command.hpp"
 
 #include <CLI/CLI.hpp>
-#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <ostream>
@@ -13,6 +12,7 @@
 #include "convergence/runs/interrupts.hpp"
 #include "convergence/runs/memory_option.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/input/whole_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -53,7 +53,7 @@ int run_hard(const CLI::App& command, const HardRequest& request, std::ostream& 
     }
   }
   require_inputs_elsewhere(command, cases, request.fields);
-  if (!request.fields.empty()) std::filesystem::create_directories(request.fields);
+  if (!request.fields.empty()) solver::make_folder(request.fields);
   const ProcessPool pool({.folder = request.output,
                           .jobs = request.jobs,
                           .memory_limit = request.memory.limit(),

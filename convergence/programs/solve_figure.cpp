@@ -2,13 +2,13 @@
 
 #include <algorithm>
 #include <array>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "convergence/programs/python_script.hpp"
 #include "convergence/programs/temporary_folder.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/input/whole_file.hpp"
 
 namespace slipstick::convergence {
 namespace fs = std::filesystem;
@@ -18,6 +18,7 @@ void require_figure_format(const fs::path& figure) {
   if (std::ranges::find(kEndings, figure.extension()) == kEndings.end()) {
     throw solver::InputError("--figure", figure.string() + ": allowed endings: .svg, .pdf, .png");
   }
+  solver::require_place_for(figure);
 }
 
 void draw_figure(const fs::path& figure, const Json& result,
@@ -25,7 +26,7 @@ void draw_figure(const fs::path& figure, const Json& result,
   const TemporaryFolder folder;
   const fs::path json = folder / "result.json";
   const fs::path fields = folder / "fields.h5";
-  std::ofstream(json) << result.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  solver::write_whole_file(json, result.dump(-1, ' ', false, Json::error_handler_t::replace));
   write_fields(fields);
   run_report_script("solve_figure.py", {"--output=" + figure.string(), json, fields},
                     "the result is complete");

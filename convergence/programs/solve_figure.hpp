@@ -7,7 +7,7 @@
 
 namespace slipstick::convergence {
 
-/// Throws InputError unless the ending is one that a figure can have.
+/// Throws InputError unless the ending is one that a figure can have, and its folder exists.
 void require_figure_format(const std::filesystem::path& figure);
 
 /// Draws slip and stick, tractions and pressure of a result; write_fields writes its cells to the file it is

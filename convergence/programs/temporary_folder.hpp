@@ -2,10 +2,13 @@
 
 #include <stdlib.h>
 
+#include <cerrno>
 #include <filesystem>
-#include <stdexcept>
 #include <string>
 #include <system_error>
+
+#include "solver/input/input_error.hpp"
+#include "solver/input/whole_file.hpp"
 
 namespace slipstick::convergence {
 
@@ -14,7 +17,7 @@ class TemporaryFolder {
  public:
   TemporaryFolder() {
     std::string name = std::filesystem::temp_directory_path() / "slipstick-XXXXXX";
-    if (mkdtemp(name.data()) == nullptr) throw std::runtime_error(name + ": cannot be made");
+    if (mkdtemp(name.data()) == nullptr) throw solver::InputError(name, solver::why_not_written(errno));
     path_ = name;
   }
   ~TemporaryFolder() {

@@ -22,6 +22,7 @@
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/studies/study.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/input/whole_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -173,6 +174,15 @@ Json summary(const solver::Scene& scene, const Oracle& oracle) {
   });
 }
 
+/// Files that have the same content already keep their time.
+void copy_scenes(const fs::path& from, const fs::path& to) {
+  for (const auto& entry : fs::directory_iterator(from)) {
+    const fs::path copy = to / entry.path().filename();
+    const std::string text = read_text(entry.path());
+    if (!fs::is_regular_file(copy) || read_text(copy) != text) solver::write_whole_file(copy, text);
+  }
+}
+
 /// The studies of meshes and tolerances, of the scene at hand, up to so many cells.
 Json study_results(const fs::path& scene_file, const fs::path& studies, Index most, const ProcessPool& pool) {
   Json results = Json::array();
@@ -235,7 +245,7 @@ Json validate(const fs::path& scene_file, const fs::path& inputs, const Validati
   if (!exact.oracle) {
     throw solver::InputError(scene_file.string(), "the page compares with exact values: " + exact.reason);
   }
-  fs::create_directories(folder);
+  solver::make_folder(folder / "scenes");
   const auto results = solve_all(page_runs(scene_file, scenes, size, folder), pool);
 
   Json report;
@@ -255,7 +265,7 @@ Json validate(const fs::path& scene_file, const fs::path& inputs, const Validati
   for (const char* section : {"loading", "mesh", "methods"}) report[section] = results.at(section);
   report["ellipse"] = without_errors(results.at("ellipse"));
   report["errata"] = errata(results.at("errata").front(), by_method(report["ellipse"], "paper"));
-  fs::copy(scenes, folder / "scenes", fs::copy_options::recursive | fs::copy_options::update_existing);
+  copy_scenes(scenes, folder / "scenes");
   report["gallery"] = Json::array();
   for (const GalleryScene& shown : gallery_scenes()) {
     report["gallery"].push_back(gallery_row(shown, results.at("gallery-" + shown.stem)));

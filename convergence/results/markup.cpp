@@ -5,10 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <cstring>
-#include <stdexcept>
-
-#include "convergence/results/whole_file.hpp"
-#include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
 
@@ -62,15 +58,6 @@ std::string markdown_cell(std::string_view text) {
     }
   }
   return escaped;
-}
-
-void write_option_file(const std::string& option, const std::string& path, const std::string& text) {
-  if (path.empty()) return;
-  try {
-    write_whole_file(path, text);
-  } catch (const std::runtime_error&) {
-    throw solver::InputError(fmt::format("{} {}", option, path), "cannot be written");
-  }
 }
 
 }  // namespace slipstick::convergence

@@ -20,8 +20,4 @@ std::string shell_word(const std::string& text);
 /// Text in a cell of a Markdown table.
 std::string markdown_cell(std::string_view text);
 
-/// Writes the file that an option names; without a path does nothing. Throws InputError naming option and
-/// path where it cannot be written.
-void write_option_file(const std::string& option, const std::string& path, const std::string& text);
-
 }  // namespace slipstick::convergence

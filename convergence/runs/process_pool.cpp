@@ -6,12 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <fstream>
+#include <iostream>
 #include <list>
 #include <map>
 #include <new>
 #include <numeric>
 #include <optional>
-#include <set>
 #include <stdexcept>
 #include <string_view>
 #include <thread>
@@ -22,6 +23,7 @@
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/solve_scene.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/input/whole_file.hpp"
 #include "solver/memory.hpp"
 #include "solver/model.hpp"
 
@@ -34,6 +36,8 @@ namespace fs = std::filesystem;
 constexpr double kMemoryPart = 0.7;
 /// An interrupt that comes just before the waiting begins is seen after it.
 constexpr int kLongestWait = 1000;  // ms
+/// The exit code of a process whose result, or the fields beside it, could not be written.
+constexpr int kNotKept = 3;
 
 /// A run that is not on disk yet.
 struct Task {
@@ -68,10 +72,7 @@ Task make_task(const PreparedRun& run, std::optional<double> memory_limit) {
 }
 
 std::optional<Json> find(const ResultCache& cache, const PreparedRun& run) {
-  std::optional<Json> found = cache.find(run.name, run.cache_key);
-  const fs::path& fields = run.spec.fields;
-  const bool refused = found && found->value("status", "") == "refused";
-  return refused || fields.empty() || fs::exists(fields) ? std::move(found) : std::nullopt;
+  return cache.find(run.name, run.cache_key, run.spec.fields);
 }
 
 Json not_computed(const char* status, const std::string& message, const RunSpec& spec) {
@@ -90,41 +91,50 @@ std::string failure_of(const ProgramEnd& end) {
 /// The processes of some tasks, largest first.
 class Batch {
  public:
-  Batch(std::vector<Task> tasks, const ProcessPoolOptions& options)
+  Batch(std::vector<Task> tasks, const ResultCache& cache, const ProcessPoolOptions& options)
       : options_(options),
+        cache_(cache),
         tasks_(std::move(tasks)),
         jobs_(options.jobs > 0 ? static_cast<std::size_t>(options.jobs)
                                : std::max(1U, std::thread::hardware_concurrency())) {
     std::ranges::stable_sort(tasks_, std::greater<>(), &Task::bytes);
   }
 
-  /// Why results are missing, by their names.
-  std::map<std::string, std::string> work() {
+  /// The results, by their names. Each is read when its process ends: another program may share the folder.
+  std::map<std::string, Json> work() {
     Progress progress(tasks_.size(),
                       std::accumulate(tasks_.begin(), tasks_.end(), 0.0,
                                       [](double sum, const Task& task) { return sum + task.bytes; }));
-    std::map<std::string, std::string> failures;
+    std::map<std::string, Json> results;
     while (next_ < tasks_.size() || !running_.empty()) {
       while (may_start()) start_next();
       for (Worker& worker : take_ended()) {
         const Task& task = *worker.task;
-        const std::string failure = failure_of(worker.program.wait());
+        const ProgramEnd end = worker.program.wait();
+        if (end.code == kNotKept) stop(progress, failure_of(end));
         progress.finished(task.label, task.bytes);
-        if (failure.empty()) continue;
-        failures[task.run->name] = failure;
-        fmt::print(stderr, "slipstick: {}: {}\n", run_text(task.run->spec), failure);
+        results[task.run->name] = result_of(*task.run, failure_of(end));
       }
-      if (options_.interrupted && options_.interrupted()) {
-        throw std::runtime_error(
-            fmt::format("interrupted: {} points are done and kept in {}; the same command goes on "
-                        "from there",
-                        progress.text(), options_.folder.string()));
-      }
+      if (options_.interrupted && options_.interrupted()) stop(progress, "interrupted");
     }
-    return failures;
+    return results;
   }
 
  private:
+  [[noreturn]] void stop(const Progress& progress, const std::string& why) const {
+    throw std::runtime_error(
+        fmt::format("{}: {} points are done and kept in {}; the same command goes on from there", why,
+                    progress.text(), options_.folder.string()));
+  }
+
+  Json result_of(const PreparedRun& run, std::string failure) const {
+    std::optional<Json> found = failure.empty() ? find(cache_, run) : std::nullopt;
+    if (found) return *std::move(found);
+    if (failure.empty()) failure = "its result is not on disk";
+    std::cerr << fmt::format("slipstick: {}: {}\n", run_text(run.spec), failure);
+    return not_computed("failed", failure, run.spec);
+  }
+
   bool may_start() const {
     if (next_ == tasks_.size()) return false;
     return running_.empty() || (running_.size() < jobs_ && bytes_ + tasks_[next_].bytes < shared_);
@@ -165,6 +175,7 @@ class Batch {
   }
 
   const ProcessPoolOptions& options_;
+  const ResultCache& cache_;
   std::vector<Task> tasks_;
   std::size_t jobs_;
   std::size_t next_ = 0;
@@ -175,7 +186,7 @@ class Batch {
   double shared_ = options_.memory_limit ? memory_ : kMemoryPart * memory_;
 };
 
-/// The scene solved, or why it cannot be.
+/// Solves the scene and writes its fields; or why it cannot be solved.
 Json solve(const PreparedRun& run) {
   const RunSpec& spec = run.spec;
   SolvedScene solved;
@@ -200,29 +211,28 @@ ProcessPool::ProcessPool(ProcessPoolOptions options) : options_(std::move(option
 std::vector<Json> ProcessPool::run_prepared(const std::vector<PreparedRun>& runs) const {
   const ResultCache cache(options_.folder, options_.program);
   std::vector<Task> tasks;
-  std::set<std::string> known;
-  std::map<std::string, Json> refused;
+  std::map<std::string, Json> known;
   for (const PreparedRun& run : runs) {
-    if (!known.insert(run.name).second || find(cache, run)) continue;
+    const auto [place, is_new] = known.try_emplace(run.name);
+    if (!is_new) continue;
+    std::optional<Json> found = find(cache, run);
+    if (found) {
+      place->second = *std::move(found);
+      continue;
+    }
     Task task = make_task(run, options_.memory_limit);
     if (task.refusal.empty()) {
       tasks.push_back(std::move(task));
     } else {
-      refused[run.name] = not_computed("refused", task.refusal, run.spec);
-      refused[run.name]["out_of_memory"] = true;
+      place->second = not_computed("refused", task.refusal, run.spec);
+      place->second["out_of_memory"] = true;
     }
   }
-  auto failures = Batch(std::move(tasks), options_).work();
+  if (!tasks.empty()) solver::require_writable(options_.folder);
+  for (auto& [name, result] : Batch(std::move(tasks), cache, options_).work())
+    known[name] = std::move(result);
   std::vector<Json> results;
-  for (const PreparedRun& run : runs) {
-    std::optional<Json> found = find(cache, run);
-    std::string& failure = failures[run.name];
-    if (failure.empty()) failure = "its result is not on disk";
-    const bool is_refused = refused.contains(run.name);
-    results.push_back(found        ? *std::move(found)
-                      : is_refused ? refused[run.name]
-                                   : not_computed("failed", failure, run.spec));
-  }
+  for (const PreparedRun& run : runs) results.push_back(known[run.name]);
   return results;
 }
 
@@ -234,12 +244,19 @@ std::vector<Json> ProcessPool::run(const std::vector<RunSpec>& specs) const {
 
 Json ProcessPool::run(const RunSpec& spec) const { return run(std::vector{spec}).front(); }
 
-void solve_and_keep(const RunSpec& spec, const fs::path& folder, std::optional<double> memory_limit) {
+int solve_and_keep(const RunSpec& spec, const fs::path& folder, std::optional<double> memory_limit) {
   PreparedRun run = prepare_run(spec);
   run.scene.memory_limit = memory_limit;
-  const ResultCache cache(folder);
-  cache.forget(run.name);
-  cache.keep(run.name, run.cache_key, solve(run));
+  try {
+    const ResultCache cache(folder);
+    cache.keep(run.name, run.cache_key, solve(run), spec.fields);
+    return 0;
+  } catch (const solver::OutOfMemory&) {
+    throw;
+  } catch (const solver::InputError& error) {  // of the scene it is part of the result
+    std::cerr << fmt::format("slipstick: {}\n", error.what());
+    return kNotKept;
+  }
 }
 
 }  // namespace slipstick::convergence

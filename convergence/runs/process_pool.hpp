@@ -35,8 +35,9 @@ class ProcessPool {
   /// have, gross slip or memory for one, is a result with status = "refused"; one whose process was killed or
   /// failed has status = "failed"; both have a message and `run`, which says which it was. One that would
   /// take more memory than it may has out_of_memory = true beside it, and is not kept. Throws InputError,
-  /// before anything is computed, for a scene that cannot be read; std::runtime_error where it was
-  /// interrupted.
+  /// before anything is computed, for a scene that cannot be read and a folder that cannot be made;
+  /// std::runtime_error where it was interrupted, or a result or its fields could not be written: then the
+  /// rest would be in vain.
   std::vector<Json> run(const std::vector<RunSpec>& specs) const;
   std::vector<Json> run_prepared(const std::vector<PreparedRun>& runs) const;
 
@@ -49,10 +50,10 @@ class ProcessPool {
   ProcessPoolOptions options_;
 };
 
-/// Solves the scene of a run and keeps its result in a folder; what the processes of a pool do. Throws
-/// std::runtime_error if a file cannot be written, or memory runs out, OutOfMemory where a solve would take
-/// more than `memory_limit`.
-void solve_and_keep(const RunSpec& spec, const std::filesystem::path& folder,
-                    std::optional<double> memory_limit = {});
+/// Solves the scene of a run and keeps its result in a folder; what the processes of a pool do. Returns their
+/// exit code: not 0 where a file cannot be written, and standard error says so. Throws std::runtime_error if
+/// memory runs out, OutOfMemory where a solve would take more than `memory_limit`.
+int solve_and_keep(const RunSpec& spec, const std::filesystem::path& folder,
+                   std::optional<double> memory_limit = {});
 
 }  // namespace slipstick::convergence

@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 #include <unistd.h>
 
+#include <iostream>
+
 namespace slipstick::convergence {
 
 void Progress::finished(const std::string& label, double weight) {
@@ -15,8 +17,9 @@ void Progress::finished(const std::string& label, double weight) {
   if (!terminal && !last && now - said_ < std::chrono::seconds(10)) return;
   said_ = now;
   const double seconds = std::chrono::duration<double>(now - start_).count();
-  fmt::print(stderr, "{}[{}/{}] {}, about {:.0f} s left{}", terminal ? "\r\033[K" : "", done_, total_, label,
-             spent_ > 0.0 ? seconds / spent_ * left_ : 0.0, terminal && !last ? "" : "\n");
+  std::cerr << fmt::format("{}[{}/{}] {}, about {:.0f} s left{}", terminal ? "\r\033[K" : "", done_, total_,
+                           label, spent_ > 0.0 ? seconds / spent_ * left_ : 0.0,
+                           terminal && !last ? "" : "\n");
 }
 
 std::string Progress::text() const { return fmt::format("{} of {}", done_, total_); }

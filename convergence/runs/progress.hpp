@@ -7,6 +7,7 @@
 namespace slipstick::convergence {
 
 /// Says on standard error how far work is: one line on a terminal, rewritten; elsewhere a line now and then.
+/// Where nobody can read it, nothing.
 class Progress {
  public:
   /// weight: of all the work together, in the unit in which its parts are given.

@@ -3,11 +3,14 @@
 #include <fmt/core.h>
 
 #include <fstream>
-#include <iterator>
+#include <ios>
 #include <nlohmann/json.hpp>
 #include <utility>
+#include <vector>
 
-#include "convergence/results/whole_file.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/input/input_file.hpp"
+#include "solver/input/whole_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -22,36 +25,80 @@ std::string identify(const fs::path& program) {
   return fmt::format("{} bytes, written {}", fs::file_size(program), written.time_since_epoch().count());
 }
 
+/// The bytes of a regular file, if there is one.
+std::optional<std::string> bytes_of(const fs::path& file, std::uintmax_t largest) {
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return std::nullopt;
+  try {
+    return solver::read_input_file(file, largest, "a regular file");
+  } catch (const solver::InputError&) {
+    return std::nullopt;
+  }
+}
+
+/// On one line. Names of files need not be UTF-8; JSON is.
+std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+/// A file that belongs to a result, by its content.
+std::string file_text(const fs::path& file) {
+  std::error_code error;
+  std::ifstream stream;
+  if (fs::is_regular_file(file, error)) stream.open(file, std::ios::binary);
+  if (!stream.is_open()) return "missing";
+  std::vector<char> block(std::size_t{1} << 20);
+  std::uintmax_t size = 0;
+  std::uint64_t sum = checksum({});
+  do {
+    stream.read(block.data(), static_cast<std::streamsize>(block.size()));
+    const auto read = static_cast<std::size_t>(stream.gcount());
+    sum = checksum({block.data(), read}, sum);
+    size += read;
+  } while (stream);
+  return fmt::format("{} bytes, {:016x}", size, sum);
+}
+
+/// What is kept of a result; `checksum` is that of all the rest.
+Json entry(const std::string& program, const std::string& cache_key, const Json& result,
+           const fs::path& beside) {
+  Json kept{{"program", program}, {"cache_key", cache_key}, {"result", result}};
+  if (!beside.empty()) kept["beside"] = file_text(beside);
+  kept["checksum"] = fmt::format("{:016x}", checksum(text_of(kept)));
+  return kept;
+}
+
 }  // namespace
+
+std::uint64_t checksum(std::string_view bytes, std::uint64_t of_before) {
+  constexpr std::uint64_t kPrime = 1099511628211ULL;
+  for (const char byte : bytes) of_before = (of_before ^ static_cast<unsigned char>(byte)) * kPrime;
+  return of_before;
+}
 
 void write_json_file(const fs::path& file, const Json& json) {
   // Names of files need not be UTF-8; JSON is.
   const std::string content = json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
-  std::ifstream old(file);
-  if (old && fs::is_regular_file(file) && std::string(std::istreambuf_iterator<char>(old), {}) == content)
-    return;
-  write_whole_file(file, content);
+  if (bytes_of(file, solver::kLargestTable) != content) solver::write_whole_file(file, content);
 }
 
 ResultCache::ResultCache(fs::path folder, const fs::path& program)
     : folder_(std::move(folder)), program_(identify(program)) {
-  fs::create_directories(folder_);
+  solver::make_folder(folder_);
 }
 
-std::optional<Json> ResultCache::find(const std::string& name, const std::string& cache_key) const {
-  std::ifstream stream(file(name));
-  const Json found = stream && fs::is_regular_file(file(name)) ? Json::parse(stream, nullptr, false) : Json();
-  const bool finished = found.is_object() && found.value("program", "") == program_ &&
-                        found.value("cache_key", "") == cache_key && found.contains("result");
-  return finished ? std::optional(found["result"]) : std::nullopt;
+std::optional<Json> ResultCache::find(const std::string& name, const std::string& cache_key,
+                                      const fs::path& beside) const {
+  const auto bytes = bytes_of(file(name), solver::kLargestJson);
+  Json found = bytes ? Json::parse(*bytes, nullptr, false) : Json();
+  if (!found.is_object() || !found.contains("result") || !found["result"].is_object()) return std::nullopt;
+  if (text_of(found) != text_of(entry(program_, cache_key, found["result"], beside))) return std::nullopt;
+  return std::move(found["result"]);
 }
 
-void ResultCache::keep(const std::string& name, const std::string& cache_key, const Json& result) const {
-  write_json_file(file(name), {{"program", program_}, {"cache_key", cache_key}, {"result", result}});
-}
-
-void ResultCache::forget(const std::string& name) const {
-  if (fs::is_regular_file(file(name))) fs::remove(file(name));
+void ResultCache::keep(const std::string& name, const std::string& cache_key, const Json& result,
+                       const fs::path& beside) const {
+  std::error_code stays;  // the folder is the cache's own: a link or a pipe in a result's place is damage
+  if (!fs::is_regular_file(fs::symlink_status(file(name), stays))) fs::remove(file(name), stays);
+  write_json_file(file(name), entry(program_, cache_key, result, beside));
 }
 
 Json ResultCache::find_or_compute(const std::string& name, const std::string& cache_key,

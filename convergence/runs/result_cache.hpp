@@ -1,10 +1,12 @@
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 
 #include "convergence/programs/run_program.hpp"
 
@@ -12,21 +14,22 @@ namespace slipstick::convergence {
 
 /// Finished results on disk, one file each, so that none is computed twice: a command that was interrupted
 /// goes on where it stopped. A result counts as finished if it was computed from the same cache key, which is
-/// everything that it depends on, by the same program. Several processes may share a folder.
+/// everything that it depends on, by the same program, and if nothing in it has changed since. Several
+/// processes may share a folder: they keep equal results.
 class ResultCache {
  public:
-  /// program: the executable that computes, by its size and when it was written.
+  /// program: the executable that computes, by its size and when it was written. Throws InputError for a
+  /// folder that cannot be made.
   explicit ResultCache(std::filesystem::path folder, const std::filesystem::path& program = kOwnProgram);
 
-  /// The result of a name, which is its file's without ending, if it is on disk.
-  std::optional<nlohmann::ordered_json> find(const std::string& name, const std::string& cache_key) const;
+  /// The result of a name, which is its file's without ending, if it is on disk. beside: a file that belongs
+  /// to it, and that has to be the one that was there when it was kept; empty: none.
+  std::optional<nlohmann::ordered_json> find(const std::string& name, const std::string& cache_key,
+                                             const std::filesystem::path& beside = {}) const;
 
-  /// Throws std::runtime_error if the result cannot be written.
-  void keep(const std::string& name, const std::string& cache_key,
-            const nlohmann::ordered_json& result) const;
-
-  /// So that a kill while it is computed again leaves nothing that looks finished.
-  void forget(const std::string& name) const;
+  /// Throws InputError if the result cannot be written.
+  void keep(const std::string& name, const std::string& cache_key, const nlohmann::ordered_json& result,
+            const std::filesystem::path& beside = {}) const;
 
   /// The result from disk, or computed and then written. Throws as keep().
   nlohmann::ordered_json find_or_compute(const std::string& name, const std::string& cache_key,
@@ -38,6 +41,10 @@ class ResultCache {
   std::filesystem::path folder_;
   std::string program_;  ///< identifies the executable
 };
+
+/// Of bytes by which nobody wants to deceive: Fowler, Noll and Vo's hash (FNV-1a, 64 bits). of_before: that
+/// of those before them.
+std::uint64_t checksum(std::string_view bytes, std::uint64_t of_before = 14695981039346656037ULL);
 
 /// Writes JSON as write_whole_file() does; a file that has this content already keeps its time.
 void write_json_file(const std::filesystem::path& file, const nlohmann::ordered_json& json);

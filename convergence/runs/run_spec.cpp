@@ -4,19 +4,12 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
-#include <cstdint>
 
+#include "convergence/runs/result_cache.hpp"
 #include "solver/input/input_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
-
-/// FNV-1a.
-std::uint64_t hash(const std::string& text) {
-  std::uint64_t value = 14695981039346656037ULL;
-  for (const char c : text) value = (value ^ static_cast<unsigned char>(c)) * 1099511628211ULL;
-  return value;
-}
 
 std::string cache_key(const RunSpec& spec, const solver::Scene& scene) {
   std::string text = read_text(spec.scene) + run_text(spec);
@@ -43,7 +36,7 @@ PreparedRun prepare_run(const RunSpec& spec) {
   require_writes_within(run.scene);  // overrides may come from a file
   const std::string answer_depends_on = cache_key(spec, run.scene);
   run.cache_key = as_utf8(answer_depends_on);
-  run.name = fmt::format("{}-{:016x}", spec.scene.stem().string(), hash(answer_depends_on));
+  run.name = fmt::format("{}-{:016x}", spec.scene.stem().string(), checksum(answer_depends_on));
   return run;
 }
 

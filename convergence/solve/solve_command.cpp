@@ -8,6 +8,7 @@
 #include <chrono>
 #include <filesystem>
 #include <functional>
+#include <iostream>
 #include <memory>
 #include <optional>
 #include <ostream>
@@ -19,6 +20,7 @@
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/solve_figure.hpp"
 #include "convergence/results/exact_result.hpp"
+#include "convergence/results/output.hpp"
 #include "convergence/results/result.hpp"
 #include "convergence/runs/memory_option.hpp"
 #include "convergence/runs/process_pool.hpp"
@@ -52,7 +54,7 @@ struct SolveRequest {
 /// One line on a terminal, rewritten; nothing elsewhere.
 void show_progress(int iteration, double change) {
   if (isatty(STDERR_FILENO) != 0)
-    fmt::print(stderr, "\r\033[Kiteration {}, change {:.1e}\r", iteration, change);
+    std::cerr << fmt::format("\r\033[Kiteration {}, change {:.1e}\r", iteration, change);
 }
 
 solver::Scene read_scene(const SolveRequest& request) {
@@ -192,13 +194,13 @@ void require_scene_kept(const CLI::App& command, const SolveRequest& request, co
 
 int run_solve(const CLI::App& command, const SolveRequest& request, std::ostream& text, Json& result) {
   if (!request.keep.empty()) {
-    solve_and_keep(spec_of(request), request.keep, request.memory.limit());
-    return 0;
+    return solve_and_keep(spec_of(request), request.keep, request.memory.limit());
   }
   if (!request.fields.empty()) solver::require_field_format(request.fields);
   if (!request.figure.empty()) require_figure_format(request.figure);
   const solver::Scene scene = read_scene(request);
   require_scene_kept(command, request, scene);
+  require_output("--fields", request.fields);
   if (request.accuracy) return solve_accurately(scene, request, text, result);
   if (request.plan) {
     result["plan"] = plan_json(scene);

@@ -1,7 +1,6 @@
 #include "convergence/studies/study_command.hpp"
 
 #include <CLI/CLI.hpp>
-#include <fstream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <ostream>
@@ -15,6 +14,7 @@
 #include "convergence/runs/interrupts.hpp"
 #include "convergence/runs/memory_option.hpp"
 #include "convergence/studies/study.hpp"
+#include "solver/input/whole_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -30,7 +30,8 @@ struct StudyRequest {
 
 void draw(const std::string& figure, const Json& result) {
   const TemporaryFolder folder;
-  std::ofstream(folder / "study.json") << result.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+  solver::write_whole_file(folder / "study.json",
+                           result.dump(-1, ' ', false, Json::error_handler_t::replace));
   run_report_script("study_figure.py", {"--", folder / "study.json", figure}, "the study is complete");
 }
 

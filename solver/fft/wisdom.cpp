@@ -5,14 +5,13 @@
 #include <unistd.h>
 
 #include <cstdlib>
-#include <fstream>
 #include <memory>
-#include <system_error>
 #include <utility>
 
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
 #include "solver/input/run_apart.hpp"
+#include "solver/input/whole_file.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -78,15 +77,12 @@ Wisdom::~Wisdom() { forget(); }
 bool Wisdom::save() const {
   const std::string text = known();
   if (text == read_) return true;
-  const fs::path temporary = fmt::format("{}.{}", file_.string(), getpid());
-  std::ofstream stream(temporary);
-  stream << text;
-  stream.close();
-  std::error_code error;
-  if (stream) fs::rename(temporary, file_, error);
-  if (stream && !error) return true;
-  fs::remove(temporary, error);
-  return false;
+  try {
+    write_whole_file(file_, text);
+  } catch (const InputError&) {
+    return false;
+  }
+  return true;
 }
 
 }  // namespace slipstick::solver

@@ -1,22 +1,22 @@
 #include "solver/input/field_file.hpp"
 
 #include <fmt/core.h>
-#include <fmt/os.h>
 #include <fmt/ranges.h>
 #include <hdf5.h>
-#include <hdf5_hl.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <cstdlib>
-#include <fstream>
 #include <limits>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 
 #include "solver/input/dataset_reader.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
+#include "solver/input/whole_file.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -35,29 +35,50 @@ constexpr std::size_t kMaxColumns = 65536;
 /// Written by some programs at the beginning of a text.
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-/// A new HDF5 file.
-class Hdf5File {
+/// A handle of the library.
+class Handle {
  public:
-  explicit Hdf5File(const path& file) : file_(file) {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the library's own messages stay off the terminal
-    id_ = H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, H5P_DEFAULT);
-    if (id_ < 0) throw InputError(file.string(), "cannot be written");
+  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {
+    if (id_ < 0) throw std::runtime_error("HDF5 refuses to make a file in memory");
   }
-  ~Hdf5File() { H5Fclose(id_); }
-  Hdf5File(const Hdf5File&) = delete;
-  Hdf5File& operator=(const Hdf5File&) = delete;
-
-  void write(const std::string& name, const ArrayXd& values) {
-    const auto size = static_cast<hsize_t>(values.size());
-    if (H5LTmake_dataset_double(id_, name.c_str(), 1, &size, values.data()) < 0) {
-      throw InputError(fmt::format("{}: dataset {}", file_.string(), name), "cannot be written");
-    }
-  }
+  ~Handle() { close_(id_); }
+  Handle(const Handle&) = delete;
+  Handle& operator=(const Handle&) = delete;
+  operator hid_t() const { return id_; }
 
  private:
-  path file_;
-  hid_t id_ = -1;
+  hid_t id_;
+  herr_t (*close_)(hid_t);
 };
+
+/// The bytes of an HDF5 file, made in memory: a disk that is full is no matter of the library's, which keeps
+/// what it could not write and crashes over it when the process ends.
+std::vector<char> hdf5_image(const std::vector<Column>& columns) {
+  constexpr std::size_t kBlock = std::size_t{1} << 16;  // beside the values, for names and their tree
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);          // the library's own messages stay off the terminal
+  const auto rows = static_cast<hsize_t>(columns.front().values.size());
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_fapl_core(access, kBlock + columns.size() * rows * sizeof(double), false);
+  const Handle file(H5Fcreate("fields", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
+  const Handle space(H5Screate_simple(1, &rows, nullptr), H5Sclose);
+  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation, false);  // the same numbers, the same bytes
+  for (const Column& column : columns) {
+    const Handle dataset(
+        H5Dcreate2(file, column.name.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, creation, H5P_DEFAULT),
+        H5Dclose);
+    if (H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, column.values.data()) < 0) {
+      throw std::runtime_error(fmt::format("dataset {}: HDF5 cannot write it", column.name));
+    }
+  }
+  H5Fflush(file, H5F_SCOPE_LOCAL);
+  std::vector<char> image(
+      static_cast<std::size_t>(std::max<ssize_t>(H5Fget_file_image(file, nullptr, 0), 0)));
+  if (image.empty() || H5Fget_file_image(file, image.data(), image.size()) < 0) {
+    throw std::runtime_error("HDF5 gives no image of a file in memory");
+  }
+  return image;
+}
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kAround = " \t\r\"";
@@ -192,41 +213,37 @@ std::vector<Column> read_hdf5_columns(const path& file, const std::vector<std::s
   return columns;
 }
 
-void write_csv(const path& file, const std::vector<Column>& columns) {
-  std::ofstream stream(file);
+void write_csv(std::FILE* file, const std::vector<Column>& columns) {
   std::vector<std::string> names;
   names.reserve(columns.size());
   for (const Column& column : columns) names.push_back(column.name);
-  stream << fmt::format("{}\n", fmt::join(names, ","));
+  fmt::print(file, "{}\n", fmt::join(names, ","));
   for (Index row = 0; row < columns.front().values.size(); ++row) {
     const char* separator = "";
     for (const Column& column : columns) {
-      stream << fmt::format("{}{:.17g}", std::exchange(separator, ","), column.values[row]);
+      fmt::print(file, "{}{:.17g}", std::exchange(separator, ","), column.values[row]);
     }
-    stream << '\n';
+    fmt::print(file, "\n");
   }
-  if (!stream.flush()) throw InputError(file.string(), "cannot be written");
 }
 
 /// VTK's x runs fastest, this project's x2 does.
-void write_vti(const path& file, const Grid& grid, const std::vector<Column>& columns) {
-  std::ofstream stream(file);
-  stream
-      << "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
-      << fmt::format(
+void write_vti(std::FILE* file, const Grid& grid, const std::vector<Column>& columns) {
+  fmt::print(file,
+             "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"0.1\" "
+             "byte_order=\"LittleEndian\">\n"
              "<ImageData WholeExtent=\"0 {0} 0 {1} 0 0\" Origin=\"{2:.17g} {3:.17g} 0\" "
              "Spacing=\"{4:.17g} {5:.17g} 1\">\n<Piece Extent=\"0 {0} 0 {1} 0 0\">\n<CellData>\n",
              grid.n1, grid.n2, grid.x1(0) - 0.5 * grid.h1, grid.x2(0) - 0.5 * grid.h2, grid.h1, grid.h2);
   for (const Column& column : columns) {
-    stream << fmt::format("<DataArray type=\"Float64\" Name=\"{}\" format=\"ascii\">\n", column.name);
+    fmt::print(file, "<DataArray type=\"Float64\" Name=\"{}\" format=\"ascii\">\n", column.name);
     for (Index j = 0; j < grid.n2; ++j) {
-      for (Index i = 0; i < grid.n1; ++i) stream << fmt::format("{:.17g} ", column.values[i * grid.n2 + j]);
-      stream << '\n';
+      for (Index i = 0; i < grid.n1; ++i) fmt::print(file, "{:.17g} ", column.values[i * grid.n2 + j]);
+      fmt::print(file, "\n");
     }
-    stream << "</DataArray>\n";
+    fmt::print(file, "</DataArray>\n");
   }
-  stream << "</CellData>\n</Piece>\n</ImageData>\n</VTKFile>\n";
-  if (!stream.flush()) throw InputError(file.string(), "cannot be written");
+  fmt::print(file, "</CellData>\n</Piece>\n</ImageData>\n</VTKFile>\n");
 }
 
 std::vector<Column> kept_rows(const std::vector<Column>& columns, const ArrayXd& keep) {
@@ -277,12 +294,12 @@ void write_fields(const path& file, const Grid& grid, const std::vector<Column>&
                   const ArrayXd& keep) {
   require_field_format(file);
   if (file.extension() == ".vti") {
-    write_vti(file, grid, columns);
+    write_whole_file(file, [&](std::FILE* stream) { write_vti(stream, grid, columns); });
   } else if (is_hdf5(file)) {
-    Hdf5File hdf5(file);
-    for (const Column& column : kept_rows(columns, keep)) hdf5.write(column.name, column.values);
+    const std::vector<char> image = hdf5_image(kept_rows(columns, keep));
+    write_whole_file(file, {image.data(), image.size()});
   } else {
-    write_csv(file, kept_rows(columns, keep));
+    write_whole_file(file, [&](std::FILE* stream) { write_csv(stream, kept_rows(columns, keep)); });
   }
 }
 

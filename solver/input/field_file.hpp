@@ -28,7 +28,8 @@ Eigen::ArrayXXd read_height_map(const std::filesystem::path& file);
 void require_field_format(const std::filesystem::path& file);
 
 /// Writes columns over all cells of a grid: .csv and .h5 get the rows where `keep` is not zero; .vti (VTK
-/// image data, for ParaView) gets all cells. Throws InputError if it cannot write.
+/// image data, for ParaView) gets all cells. The file is the old one or the whole new one, and the same
+/// numbers give the same bytes. Throws InputError if it cannot write.
 void write_fields(const std::filesystem::path& file, const Grid& grid, const std::vector<Column>& columns,
                   const Eigen::ArrayXd& keep);
 

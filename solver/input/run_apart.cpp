@@ -13,6 +13,10 @@
 #include <fstream>
 #include <stdexcept>
 
+#ifdef __linux__
+#include <sys/prctl.h>
+#endif
+
 namespace slipstick::solver {
 namespace {
 
@@ -47,6 +51,9 @@ void send_all(int descriptor, const char* bytes, std::size_t size) {
 
 /// What the new process does. It leaves without the old one's clean-up: buffers and handlers are not its own.
 [[noreturn]] void be_apart(const std::function<void(const Send&)>& work, int to) {
+#ifdef __linux__
+  prctl(PR_SET_PDEATHSIG, SIGKILL);  // whoever waits for this may be killed
+#endif
   for (const int deadly : {SIGSEGV, SIGBUS, SIGABRT, SIGXCPU, SIGPIPE}) std::signal(deadly, SIG_DFL);
   limit(RLIMIT_CORE, 0);
   limit(RLIMIT_CPU, kSeconds);

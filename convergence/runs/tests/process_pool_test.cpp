@@ -4,9 +4,13 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 #include <fstream>
 #include <stdexcept>
+#include <thread>
+
+#include "convergence/runs/result_cache.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -119,13 +123,57 @@ TEST_F(ProcessPoolTest, ARunWithoutItsFieldsIsNotFinished) {
   EXPECT_GT(fs::file_size(spec.fields), 1000U);
   EXPECT_FALSE(first["profile"].empty());
   EXPECT_EQ(pool.run(spec)["seconds"], first["seconds"]);  // no two runs take the same time
+  const std::string fields = read_text(spec.fields);
+  fs::resize_file(spec.fields, fields.size() / 2);
+  const Json second = pool.run(spec);
+  EXPECT_NE(second["seconds"], first["seconds"]) << "half of its fields were there";
+  EXPECT_EQ(second["twist_angle"], first["twist_angle"]);
+  EXPECT_TRUE(read_text(spec.fields) == fields);
   fs::remove(spec.fields);
-  EXPECT_NE(pool.run(spec)["seconds"], first["seconds"]);
-  EXPECT_TRUE(fs::exists(spec.fields));
+  EXPECT_NE(pool.run(spec)["seconds"], second["seconds"]);
+  EXPECT_TRUE(read_text(spec.fields) == fields);
   spec.profile = false;
   EXPECT_FALSE(pool.run(spec).contains("profile"));
-  spec.fields = folder_ / "no/such/folder/fields.h5";
-  EXPECT_EQ(pool.run(spec)["status"], "failed");
+}
+
+/// Who cannot write need not go on: it says what cannot be written, and what is finished stays so.
+TEST_F(ProcessPoolTest, StopsWhereAResultCannotBeWritten) {
+  const ProcessPool pool(options());
+  const RunSpec done{.scene = kPaper, .overrides = {kCells}};
+  const Json first = pool.run(done);
+  const auto complaint = [&](const RunSpec& spec) -> std::string {
+    try {
+      pool.run(spec);
+    } catch (const std::runtime_error& error) {
+      return error.what();
+    }
+    return "";
+  };
+  const fs::path lost = folder_ / "no/such/folder/fields.h5";
+  EXPECT_THAT(complaint({.scene = kPaper, .overrides = {kCells}, .fields = lost}),
+              testing::AllOf(testing::HasSubstr(lost.string() + ": cannot be written"),
+                             testing::HasSubstr("the same command goes on from there")));
+  const RunSpec blocked{.scene = kPaper, .overrides = {"grid.cells=[12,12]"}};
+  const fs::path point = folder_ / "points" / (prepare_run(blocked).name + ".json");
+  fs::create_directories(point / "in the way");
+  EXPECT_THAT(complaint(blocked), testing::HasSubstr(point.string() + ": cannot be written"));
+  fs::remove_all(point);
+  EXPECT_EQ(complaint(blocked), "");
+  EXPECT_EQ(pool.run(done)["seconds"], first["seconds"]) << "it was solved again";
+}
+
+/// Two programs share a folder: one that computes what the other has finished does not take it away.
+TEST_F(ProcessPoolTest, AFinishedResultStaysWhileAnotherProgramComputesIt) {
+  const RunSpec slow{.scene = kPaper, .overrides = {"grid.cells=[256,256]", "solver.operator=\"direct\""}};
+  const PreparedRun run = prepare_run(slow);
+  const ResultCache cache(folder_ / "points", SLIPSTICK_PROGRAM);
+  cache.keep(run.name, run.cache_key, {{"status", "converged"}});
+  {
+    const Program other({SLIPSTICK_PROGRAM, "solve", "--keep", folder_ / "points", "--set", slow.overrides[0],
+                         "--set", slow.overrides[1], "--", slow.scene});
+    std::this_thread::sleep_for(std::chrono::milliseconds(300));
+  }
+  EXPECT_EQ(ProcessPool(options()).run(slow), Json({{"status", "converged"}}));
 }
 
 void handle(int) {}

@@ -1,15 +1,21 @@
 #include "convergence/runs/result_cache.hpp"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <fstream>
+#include <functional>
+#include <iterator>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 namespace slipstick::convergence {
 namespace {
 
 using Json = nlohmann::ordered_json;
+namespace fs = std::filesystem;
 
 class ResultCacheTest : public testing::Test {
  protected:
@@ -39,18 +45,69 @@ TEST_F(ResultCacheTest, AnotherKeyIsComputed) {
   EXPECT_EQ(computed_, 2);
 }
 
+/// Whatever lies where a result was kept, it is computed again, and kept.
 TEST_F(ResultCacheTest, ADamagedPointIsComputedAgain) {
+  const fs::path point = folder_ / "point.json";
   ask("a");
-  std::ofstream(folder_ / "point.json") << "{ \"cache_key\": ";
-  ask("a");
-  EXPECT_EQ(computed_, 2);
+  std::ifstream stream(point);
+  const std::string good{std::istreambuf_iterator<char>(stream), {}};
+  const auto of_wrong_kind = [&](const char* key, const Json& value) {
+    Json json = Json::parse(good);
+    json[key] = value;
+    return json.dump();
+  };
+  std::string flipped = good;
+  flipped.replace(flipped.find("0.1"), 3, "0.2");
+  for (const std::string& bad :
+       {std::string(), good.substr(0, good.size() / 2), std::string("\x7f\0\xff", 3), flipped,
+        std::string("[1, 2]"), std::string("3"), of_wrong_kind("program", 3),
+        of_wrong_kind("cache_key", nullptr), of_wrong_kind("result", nullptr),
+        of_wrong_kind("result", "text"), of_wrong_kind("result", Json::object()),
+        of_wrong_kind("checksum", 3), std::string(100'000, '[')}) {
+    std::ofstream(point) << bad;
+    computed_ = 0;
+    EXPECT_EQ(ask("a")["value"], 0.1);
+    EXPECT_EQ(ask("a")["value"], 0.1);
+    EXPECT_EQ(computed_, 1) << bad.substr(0, 80);
+  }
 }
 
-/// So that a kill while it is computed anew leaves nothing that says finished.
-TEST_F(ResultCacheTest, WhatIsForgottenIsNotFinished) {
-  ask("a");
-  ResultCache(folder_).forget("point");
-  EXPECT_FALSE(ResultCache(folder_).find("point", "a").has_value());
+/// Nobody waits for a pipe, and the results of links are not written elsewhere.
+TEST_F(ResultCacheTest, WhatIsNoFileIsReplaced) {
+  const fs::path point = folder_ / "point.json";
+  const std::vector<std::function<void()>> others{
+      [&] { fs::create_directory(point); }, [&] { ASSERT_EQ(mkfifo(point.c_str(), 0600), 0); },
+      [&] { fs::create_symlink("/dev/null", point); }, [&] { fs::create_symlink("nowhere", point); }};
+  for (const auto& put : others) {
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    put();
+    computed_ = 0;
+    ask("a");
+    ask("a");
+    EXPECT_EQ(computed_, 1);
+    EXPECT_TRUE(fs::is_regular_file(fs::symlink_status(point)));
+    EXPECT_EQ(std::distance(fs::directory_iterator(folder_), {}), 1);
+  }
+}
+
+/// A file that belongs to a result has to be the one that was there when it was kept.
+TEST_F(ResultCacheTest, IsNotFinishedWithoutWhatLiesBeside) {
+  const fs::path beside = folder_ / "fields.h5";
+  const ResultCache cache(folder_);
+  const auto write = [&](const std::string& text) { std::ofstream(beside) << text; };
+  const auto finished = [&] { return cache.find("point", "a", beside).has_value(); };
+  write("all of it");
+  cache.keep("point", "a", {{"value", 0.1}}, beside);
+  EXPECT_TRUE(finished());
+  for (const char* damaged : {"all", "", "all of ix"}) {
+    write(damaged);
+    EXPECT_FALSE(finished()) << damaged;
+  }
+  fs::remove(beside);
+  EXPECT_FALSE(finished());
+  write("all of it");
+  EXPECT_TRUE(finished());
 }
 
 TEST_F(ResultCacheTest, AnotherProgramComputesAgain) {

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+/// What the program's commands hand out: files that options name, and standard output.
+namespace slipstick::convergence {
+
+/// Throws InputError, naming the option, where no file can be written at the path; an empty path is none. To
+/// be asked before a long solve.
+void require_output(const std::string& option, const std::string& path);
+
+/// Writes the file that an option names, as solver::write_whole_file() does; without a path does nothing.
+/// Throws InputError naming option and path where it cannot be written.
+void write_option_file(const std::string& option, const std::string& path, const std::string& text);
+
+/// Makes the numbers of standard input, output and error those of no other file where they are closed: what
+/// is written to a closed standard output fails. To be called first.
+void hold_standard_streams();
+
+/// Throws InputError where the text cannot be written, with the system's reason.
+void write_standard_output(std::string_view text);
+
+}  // namespace slipstick::convergence

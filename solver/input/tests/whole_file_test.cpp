@@ -1,0 +1,285 @@
+#include "solver/input/whole_file.hpp"
+
+#include <fcntl.h>
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <signal.h>
+#include <sys/file.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <array>
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <functional>
+#include <iterator>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "solver/input/field_file.hpp"
+#include "solver/input/tests/complaint.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+namespace fs = std::filesystem;
+
+/// A disk on which a file may have so many bytes, for as long as this lives. Nothing is to be printed
+/// meanwhile: standard output may be a file.
+class SmallDisk {
+ public:
+  explicit SmallDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit small{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &small);
+  }
+  ~SmallDisk() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+  SmallDisk(const SmallDisk&) = delete;
+  SmallDisk& operator=(const SmallDisk&) = delete;
+
+ private:
+  void (*handler_)(int);
+  rlimit before_{};
+};
+
+class WholeFile : public testing::Test {
+ protected:
+  WholeFile() { fs::create_directories(folder_); }
+  ~WholeFile() override { fs::remove_all(folder_); }
+
+  static std::string text(const fs::path& file) {
+    std::ifstream stream(file);
+    return {std::istreambuf_iterator<char>(stream), {}};
+  }
+  std::ptrdiff_t files() const { return std::distance(fs::directory_iterator(folder_), {}); }
+
+  /// The exit code of a process of its own that does this, and leaves as programs do.
+  template <typename Work>
+  static int exit_code_of(const Work& work) {
+    std::fflush(nullptr);  // what is not yet printed would be so twice
+    const pid_t child = fork();
+    if (child == 0) std::exit(work());
+    int status = 0;
+    waitpid(child, &status, 0);
+    return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+  }
+
+  fs::path folder_ = fs::path(testing::TempDir()) / ("slipstick-whole-file-" + std::to_string(getpid()));
+  fs::path file_ = folder_ / "result.json";
+};
+
+TEST_F(WholeFile, IsWrittenAndWrittenAnew) {
+  write_whole_file(file_, "old");
+  write_whole_file(file_, "new");
+  EXPECT_EQ(text(file_), "new");
+  EXPECT_EQ(files(), 1);
+}
+
+/// A reader that looks all the while sees the old text or the new one; a writer that is killed leaves either.
+TEST_F(WholeFile, IsOldOrNewWheneverTheWriterIsKilled) {
+  const std::string old(1 << 16, 'o');
+  const std::string fresh(1 << 16, 'n');
+  write_whole_file(file_, old);
+  for (int trial = 0; trial < 10; ++trial) {
+    const pid_t writer = fork();
+    if (writer == 0) {
+      for (;;) {
+        write_whole_file(file_, fresh);
+        write_whole_file(file_, old);
+      }
+    }
+    for (int look = 0; look <= trial; ++look) {
+      const std::string seen = text(file_);
+      EXPECT_TRUE(seen == old || seen == fresh);
+    }
+    kill(writer, SIGKILL);
+    waitpid(writer, nullptr, 0);
+    const std::string left = text(file_);
+    EXPECT_TRUE(left == old || left == fresh);
+  }
+  write_whole_file(file_, fresh);
+  EXPECT_EQ(files(), 1) << "drafts of the killed are left";
+}
+
+TEST_F(WholeFile, DraftsGoWithTheirWriterOnly) {
+  const fs::path dead = file_.string() + ".part-0123abcd";
+  const fs::path living = file_.string() + ".part-4567abcd";
+  const fs::path no_draft = file_.string() + ".part-2.txt";
+  for (const fs::path& other : {dead, living, no_draft}) std::ofstream(other) << "half";
+  const int writer = open(living.c_str(), O_WRONLY);
+  flock(writer, LOCK_EX);
+  write_whole_file(file_, "whole");
+  close(writer);
+  EXPECT_FALSE(fs::exists(dead));
+  EXPECT_TRUE(fs::exists(living));
+  EXPECT_TRUE(fs::exists(no_draft));
+}
+
+/// Nobody has asked yet how its writer ended, as in a container whose first process never does.
+TEST_F(WholeFile, ADraftOfTheKilledGoesAtOnce) {
+  std::array<int, 2> ends{};
+  ASSERT_EQ(pipe(ends.data()), 0);
+  const pid_t writer = fork();
+  if (writer == 0) {
+    write_whole_file(file_, [&](std::FILE*) {
+      if (write(ends[1], "+", 1) == 1) pause();
+    });
+  }
+  char begun = 0;
+  EXPECT_EQ(read(ends[0], &begun, 1), 1);
+  EXPECT_EQ(files(), 1);
+  kill(writer, SIGKILL);
+  siginfo_t end{};
+  waitid(P_PID, static_cast<id_t>(writer), &end, WEXITED | WNOWAIT);
+  write_whole_file(file_, "whole");
+  EXPECT_EQ(files(), 1);
+  waitpid(writer, nullptr, 0);
+  close(ends[0]);
+  close(ends[1]);
+}
+
+TEST_F(WholeFile, KeepsItsPermissions) {
+  write_whole_file(file_, "old");
+  fs::permissions(file_, fs::perms::owner_read | fs::perms::owner_write);
+  write_whole_file(file_, "new");
+  EXPECT_EQ(fs::status(file_).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+}
+
+/// What is no plain file is not put aside for one.
+TEST_F(WholeFile, WritesThroughLinksAndToDevices) {
+  const fs::path link = folder_ / "link";
+  fs::create_symlink(fs::path("result.json"), link);
+  write_whole_file(link, "text");
+  EXPECT_TRUE(fs::is_symlink(link));
+  EXPECT_EQ(text(file_), "text");
+  write_whole_file("/dev/null", "text");
+  EXPECT_TRUE(fs::is_character_file("/dev/null"));
+}
+
+/// Whatever is full or wrong: the old file stays, behind a link too, and no draft.
+TEST_F(WholeFile, OfWhichOnlyAPartCanBeWrittenIsTheOldOne) {
+  const fs::path link = folder_ / "link";
+  write_whole_file(file_, "old");
+  fs::create_symlink(file_, link);
+  for (const fs::path& name : {file_, link, folder_ / "new.json"}) {
+    std::string said;
+    {
+      const SmallDisk disk(1 << 12);
+      said = complaint([&] { write_whole_file(name, std::string(1 << 20, 'n')); });
+    }
+    EXPECT_THAT(said, AllOf(HasSubstr(name.string()), HasSubstr("File too large"), HasSubstr("make room")));
+    EXPECT_THROW(write_whole_file(name, [](std::FILE*) { throw std::runtime_error("none to write"); }),
+                 std::runtime_error);
+    EXPECT_EQ(text(file_), "old");
+    EXPECT_EQ(files(), 2);
+  }
+}
+
+TEST_F(WholeFile, AFullDeviceIsSaid) {
+  if (!fs::exists("/dev/full")) GTEST_SKIP() << "only Linux has a full device";
+  EXPECT_THAT(complaint([] { write_whole_file("/dev/full", "text"); }),
+              AllOf(HasSubstr("/dev/full: cannot be written: No space left"), HasSubstr("make room")));
+}
+
+/// In a container of its own, where this process's number is nobody's, another may take the draft away.
+TEST_F(WholeFile, IsWrittenAgainWhereItsDraftWasTakenAway) {
+  int times = 0;
+  write_whole_file(file_, [&](std::FILE* stream) {
+    if (++times == 1) fs::remove_all(folder_), fs::create_directories(folder_);
+    std::fputs("whole", stream);
+  });
+  EXPECT_EQ(text(file_), "whole");
+  EXPECT_EQ(times, 2);
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(WholeFile, MayHaveTheLongestName) {
+  const fs::path longest = folder_ / std::string(255, 'n');
+  write_whole_file(longest, "text");
+  EXPECT_EQ(text(longest), "text");
+  EXPECT_EQ(files(), 1);
+}
+
+TEST_F(WholeFile, WhatCannotBeWrittenIsNamed) {
+  const fs::path lost = folder_ / "nowhere" / "file";
+  const std::vector<std::function<void(const fs::path&)>> calls{
+      [](const fs::path& file) { write_whole_file(file, "text"); }, require_place_for};
+  for (const auto& call : calls) {
+    EXPECT_THAT(complaint([&] { call(folder_); }),
+                AllOf(HasSubstr(folder_.string() + ": cannot be written: Is a directory"),
+                      HasSubstr("name a file in that folder")));
+    EXPECT_THAT(
+        complaint([&] { call(lost); }),
+        AllOf(HasSubstr(lost.string() + ": cannot be written: No such file"), HasSubstr("make its folder")));
+  }
+  EXPECT_EQ(files(), 0);
+  std::ofstream(file_) << "no folder";
+  EXPECT_THAT(complaint([&] { make_folder(file_ / "under"); }), HasSubstr((file_ / "under").string()));
+}
+
+/// Of a folder that may not be written to, which root does not notice.
+TEST_F(WholeFile, AReadOnlyFolderIsSaid) {
+  constexpr uid_t kNobody = 65534;
+  fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read |
+                               fs::perms::others_exec);
+  const int code = exit_code_of([&] {
+    if (geteuid() == 0 && setuid(kNobody) != 0) return 77;
+    const bool said =
+        complaint([&] { write_whole_file(file_, "text"); }).find("Permission denied") != std::string::npos;
+    const bool foreseen =
+        complaint([&] { require_place_for(file_); }).find("Permission denied") != std::string::npos &&
+        complaint([&] { require_writable(folder_); }).find("Permission denied") != std::string::npos;
+    return said && foreseen ? 0 : 1;
+  });
+  fs::permissions(folder_, fs::perms::owner_all);
+  if (code == 77) GTEST_SKIP() << "root here cannot become another user";
+  EXPECT_EQ(code, 0);
+  EXPECT_EQ(files(), 0);
+}
+
+/// Fields of each kind, and plans: a process that could not write them says so and ends as it should. HDF5
+/// crashes at the end over what it could not write.
+TEST_F(WholeFile, FieldsAreWholeOrTheOldOnes) {
+  const Grid grid{32, 32, 0.5, 0.25};
+  const std::vector<Column> columns{{"x1", cell_x1(grid)}, {"x2", cell_x2(grid)}};
+  const Eigen::ArrayXd all = Eigen::ArrayXd::Ones(32 * 32);
+  for (const char* name : {"fields.csv", "fields.h5", "fields.hdf5", "fields.vti"}) {
+    const fs::path file = folder_ / name;
+    write_fields(file, grid, {columns[0]}, all);
+    const std::string old = text(file);
+    const int code = exit_code_of([&] {
+      const SmallDisk disk(1 << 12);
+      return complaint([&] { write_fields(file, grid, columns, all); }).find(name) != std::string::npos ? 0
+                                                                                                        : 1;
+    });
+    EXPECT_EQ(code, 0) << name;
+    EXPECT_TRUE(text(file) == old) << name;
+    fs::remove(file);
+    EXPECT_EQ(files(), 0) << name;
+  }
+}
+
+/// No time is in the file, of which HDF5 keeps the second.
+TEST_F(WholeFile, EqualFieldsAreEqualBytes) {
+  const Grid grid{4, 2, 0.5, 0.25};
+  const fs::path fields = folder_ / "fields.h5";
+  write_fields(fields, grid, {{"x1", cell_x1(grid)}}, Eigen::ArrayXd::Ones(8));
+  const std::string before = text(fields);
+  std::this_thread::sleep_for(std::chrono::milliseconds(1100));
+  write_fields(fields, grid, {{"x1", cell_x1(grid)}}, Eigen::ArrayXd::Ones(8));
+  EXPECT_TRUE(text(fields) == before);
+}
+
+}  // namespace
+}  // namespace slipstick::solver

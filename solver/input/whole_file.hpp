@@ -1,0 +1,34 @@
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <string_view>
+
+/// The one way in which files are written.
+namespace slipstick::solver {
+
+/// Writes a file so that it is either the old one or the whole new one, whenever this process is killed or
+/// the machine stops: `write` fills a draft beside it, which goes to the disk and then takes its place. A
+/// link stays one; what is no plain file, /dev/stdout for one, is written to as it is. Drafts of the same
+/// file that killed processes left go. Throws InputError where it cannot be written, with the file, the
+/// system's reason and what to do; the file is then the old one.
+void write_whole_file(const std::filesystem::path& file, const std::function<void(std::FILE*)>& write);
+void write_whole_file(const std::filesystem::path& file, std::string_view content);
+
+/// Makes a folder and those above it. Throws as above.
+void make_folder(const std::filesystem::path& folder);
+
+/// Throws as above for a folder that is missing or read-only.
+void require_writable(const std::filesystem::path& folder);
+
+/// Throws as above where no file can be written: for a folder, and in one that is missing or read-only. To be
+/// asked before a long solve.
+void require_place_for(const std::filesystem::path& file);
+
+/// "cannot be written: No space left on device; ...": what a number of the system (errno) says, and what to
+/// do.
+std::string why_not_written(int error);
+
+}  // namespace slipstick::solver
