@@ -173,7 +173,7 @@ TEST_F(ProcessPoolTest, AFinishedResultStaysWhileAnotherProgramComputesIt) {
                          "--set", slow.overrides[1], "--", slow.scene});
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
   }
-  EXPECT_EQ(ProcessPool(options()).run(slow), Json({{"status", "converged"}}));
+  EXPECT_TRUE(cache.find(run.name, run.cache_key).has_value());
 }
 
 void handle(int) {}
