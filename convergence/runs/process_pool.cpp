@@ -128,8 +128,7 @@ class Batch {
   }
 
   Json result_of(const PreparedRun& run, std::string failure) const {
-    std::optional<Json> found = failure.empty() ? find(cache_, run) : std::nullopt;
-    if (found) return *std::move(found);
+    if (std::optional<Json> found = find(cache_, run)) return *std::move(found);
     if (failure.empty()) failure = "its result is not on disk";
     std::cerr << fmt::format("slipstick: {}: {}\n", run_text(run.spec), failure);
     return not_computed("failed", failure, run.spec);
