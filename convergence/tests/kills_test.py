@@ -176,6 +176,7 @@ def try_kind(command, kind, kills, random_numbers, tally):
     command.clear()
     done = 0
     while done < kills:
+        complain(f"{kind}: kill {done + 1} of {kills}, {tally.faults()} faults so far")
         begin = time.monotonic()
         parent = command.start()
         try:
