@@ -140,10 +140,22 @@ finally:
 """
 
 
+CLASSES = """
+import importlib, sys, unittest
+sys.path.insert(0, "tests")
+for found in vars(importlib.import_module(sys.argv[1])).values():
+    if isinstance(found, type) and issubclass(found, unittest.TestCase) and found.__module__ == sys.argv[1]:
+        if unittest.defaultTestLoader.getTestCaseNames(found):
+            print(found.__name__)
+"""
+
+
 def python_suites(reports):
     """Each class of tests."""
     for test in sorted((reports / "tests").glob("test_*.py")):
-        for name in re.findall(r"^class (\w+)\(.*TestCase\)", test.read_text(), re.MULTILINE):
+        listing = subprocess.run([sys.executable, "-B", "-c", CLASSES, test.stem], cwd=reports, capture_output=True,
+                                 text=True, check=True).stdout
+        for name in listing.split():
             yield Suite(f"{test.stem}.{name}", [sys.executable, "-B", Path("tests", test.name), "--failfast", name])
 
 
