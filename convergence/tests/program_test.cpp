@@ -142,12 +142,31 @@ TEST(Program, BadScenesAreExitCode2AndSayWhatIsAllowed) {
   EXPECT_EQ(run("exact --moment-ratio 0.5 --twist 0.1").exit_code, 2);
 }
 
+/// A link to a device that is full: that shows while writing, after the solve.
+fs::path full_device(const std::string& name) {
+  fs::path link = temporary(name);
+  fs::remove(link);
+  fs::create_symlink("/dev/full", link);
+  return link;
+}
+
 TEST(Program, ResultIsNotLostWhenTheFieldsCannotBeWritten) {
   const fs::path file = temporary("kept.json");
-  const ProgramRun out = run(solve("paper") + " --fields /no/such/folder/f.h5 --json " + file.string());
+  const fs::path full = full_device("full.csv");
+  const ProgramRun out = run(solve("paper") + " --fields " + full.string() + " --json " + file.string());
   EXPECT_EQ(out.exit_code, 2);
-  EXPECT_THAT(out.output, HasSubstr("/no/such/folder/f.h5"));
+  EXPECT_THAT(out.output, HasSubstr(full.string()));
   EXPECT_EQ(json::parse(std::ifstream(file))["status"], "converged");
+}
+
+TEST(Program, WhatHasNoPlaceIsRefusedBeforeTheSolve) {
+  const fs::path file = temporary("refused.json");
+  for (const std::string option : {"--fields /no/such/folder/f.h5", "--figure /no/such/folder/f.svg"}) {
+    const ProgramRun out = run(solve("paper") + " " + option + " --json " + file.string());
+    EXPECT_EQ(out.exit_code, 2);
+    EXPECT_THAT(out.output, HasSubstr(option.substr(option.find(' ') + 1)));
+    EXPECT_FALSE(fs::exists(file)) << option;
+  }
 }
 
 TEST(Program, FigureIsWrittenBesideTheResult) {
@@ -171,7 +190,8 @@ TEST(Program, FigureOfAnUnknownKindIsRefusedBeforeTheSolve) {
 
 TEST(Program, ResultIsNotLostWhenTheFigureCannotBeWritten) {
   const fs::path file = temporary("kept-without-figure.json");
-  const ProgramRun out = run(solve("paper") + " --figure /no/such/folder/f.svg --json " + file.string());
+  const fs::path full = full_device("full.svg");
+  const ProgramRun out = run(solve("paper") + " --figure " + full.string() + " --json " + file.string());
   EXPECT_EQ(out.exit_code, 2);
   EXPECT_THAT(out.output, AllOf(HasSubstr("moment"), HasSubstr("the result is complete, but")));
   EXPECT_EQ(json::parse(std::ifstream(file))["status"], "converged");
