@@ -258,8 +258,7 @@ TEST_F(ProgramFaults, WhereNothingCanBeWrittenNothingIsSolved) {
       {with(small, {"--figure", lost + ".svg"}), lost + ".svg"},
       {{"study", file("study.toml"), "--output", file("plain")}, file("plain")},
       {{"report", "--quick", "--output", file("plain/report")}, file("plain/report")},
-      {{"gate", file("gates.toml"), "--junit", lost}, "--junit " + lost},
-      {{"bench", "--output", file("plain")}, file("plain")}};
+      {{"gate", file("gates.toml"), "--junit", lost}, "--junit " + lost}};
   for (const auto& [words, name] : cases) {
     EXPECT_EQ(run(words), 2) << name;
     EXPECT_THAT(err_, AllOf(StartsWith("slipstick: " + name), HasSubstr("cannot be written: ")));

@@ -131,6 +131,16 @@ TEST(Gate, ReferenceCountsForErrorsOnly) {
   EXPECT_THAT(unknown.why, HasSubstr("does not say"));
 }
 
+TEST(Gate, SaysWhyARunHasNoNumber) {
+  for (const auto& [status, words] :
+       {std::pair{"failed", "the solve failed"}, {"refused", "the solve was refused"}}) {
+    const Judgement judgement =
+        judge(below("twist_error", 1e-3), {{"status", status}, {"message", "beyond the limit"}});
+    EXPECT_NE(judgement.outcome, Outcome::passed);
+    EXPECT_THAT(judgement.why, AllOf(HasSubstr(words), HasSubstr("beyond the limit"))) << status;
+  }
+}
+
 TEST(Gate, NearestReferenceIsTheOneThatCounts) {
   const Json result{
       {"exact", {{"relative_uncertainty", 1e-2}}},

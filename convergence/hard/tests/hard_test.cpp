@@ -152,6 +152,8 @@ TEST(HardJudgement, HoldsACertificateToItsPromise) {
   Json result = made_result(0.0, 0.01, 2e-8);
   result["certificate"]["rounding"] = 3e-8;  // no gap below can be computed
   EXPECT_EQ(judge_alone(result).verdict, HardVerdict::certified);
+  result["certificate"]["rounding"] = nullptr;  // then the tolerance alone counts
+  EXPECT_EQ(judge_alone(result).verdict, HardVerdict::wrong);
   for (const char* member : {"gap", "moment", "force", "friction_bound"}) {
     for (const Json& bad : {Json(1e-6), Json()}) {
       result = made_result(0.0, 0.01);

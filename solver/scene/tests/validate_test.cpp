@@ -37,6 +37,13 @@ const Mistake kMistakes[] = {
      [](Scene& s) { s.surfaces[0] = {.shape = Shape::flat_punch, .radius = 1e-3, .inner_radius = 1e-3}; }},
     {"upper.exponent", [](Scene& s) { s.surfaces[0] = {.shape = Shape::power, .exponent = 0.5}; }},
     {"upper.hurst", [](Scene& s) { s.surfaces[0] = {.shape = Shape::roughness}; }},
+    {"upper.period",
+     [](Scene& s) {
+       s.surfaces[0] = {
+           .shape = Shape::roughness,
+           .roughness = {
+               .seed = 1, .hurst = 0.8, .longest = 1e-4, .shortest = 2e-5, .rms_slope = 0.1, .period = 9e-5}};
+     }},
     {"upper.young_modulus", [](Scene& s) { s.upper.young_modulus = -1.0; }},
     {"lower.poisson_ratio", [](Scene& s) { s.lower.poisson_ratio = 0.6; }},
     {"lower.rigid", [](Scene& s) { s.upper.young_modulus = s.lower.young_modulus = kInfinite; }},
@@ -69,6 +76,7 @@ const Mistake kMistakes[] = {
     {"solver.tolerance", [](Scene& s) { s.tolerance = 0.0; }},
     {"solver.max_iterations", [](Scene& s) { s.max_iterations = 0; }},
     {"solver.threads", [](Scene& s) { s.threads = 0; }},
+    {"solver.rounding_seed", [](Scene& s) { s.rounding_seed = -1; }},
     {"solver.precision",
      [](Scene& s) {
        s.precision = Precision::mixed;
