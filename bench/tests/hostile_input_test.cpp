@@ -30,6 +30,7 @@
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/scene/scene.hpp"
+#include "solver/tests/scene_file.hpp"
 
 namespace slipstick {
 namespace {
@@ -41,22 +42,6 @@ using testing::HasSubstr;
 using testing::Not;
 
 const std::vector<std::string> kColumns{"x1", "x2", "pressure", "q1", "q2"};
-const std::string kGoodScene = R"([upper]
-shape = "sphere"
-radius = 0.018
-young_modulus = 210e9
-poisson_ratio = 0.3
-[lower]
-young_modulus = 210e9
-poisson_ratio = 0.3
-[contact]
-friction = 0.1
-[load]
-normal = 1000.0
-moment_ratio = 0.9
-[grid]
-cells = [8, 8]
-)";
 const std::string kGoodStudy = "scene = \"scene.toml\"\ncells = [8, 12]\n";
 const std::string kGoodGates =
     "[[gate]]\nid = \"a\"\nscene = \"scene.toml\"\nquantity = \"twist_error\"\nbelow = 1.0\nbasis = \"b\"\n";
@@ -108,7 +93,7 @@ std::ostream& operator<<(std::ostream& out, const Reader& reader) { return out <
 solver::Scene sphere() {
   const convergence::TemporaryFolder folder;
   const fs::path file = folder / "sphere.toml";
-  std::ofstream(file) << kGoodScene;
+  std::ofstream(file) << solver::kShortScene;
   return solver::read_scene(file);
 }
 
@@ -129,7 +114,7 @@ void judge_result(const fs::path& file) {
 }
 
 std::vector<Reader> readers() {
-  return {{"scene.toml", kGoodScene, [](const auto& file) { solver::read_scene(file); }},
+  return {{"scene.toml", solver::kShortScene, [](const auto& file) { solver::read_scene(file); }},
           {"study.toml", kGoodStudy, [](const auto& file) { convergence::read_study(file); }},
           {"gates.toml", kGoodGates, [](const auto& file) { convergence::read_gates(file); }, true, true},
           {"cases.toml", kGoodCases, [](const auto& file) { convergence::read_hard_cases(file); }},
@@ -276,7 +261,7 @@ std::string with(std::string text, const std::string& from, const std::string& t
 
 std::vector<Damage> damages() {
   const auto scene = [](const char* what, const char* from, const char* to, std::vector<std::string> says) {
-    return Damage{"scene.toml", what, with(kGoodScene, from, to), std::move(says)};
+    return Damage{"scene.toml", what, with(solver::kShortScene, from, to), std::move(says)};
   };
   const auto columns = [](const char* what, const char* to, std::vector<std::string> says) {
     return Damage{"columns.csv", what, with(kGoodColumns, "0,1e-4,1e9,1e7,0", to), std::move(says)};
@@ -290,11 +275,11 @@ std::vector<Damage> damages() {
       scene("overflow", "0.018", "1e400", {":3"}),
       scene("a unit", "0.018", "\"18 mm\"", {"upper.radius = ", "18 mm", "a number"}),
       scene("negative", "0.018", "-1", {"upper.radius = -1", "positive"}),
-      scene("huge grid", "[8, 8]", "[1000000, 1000000]", {"grid.cells", "1000000", "65536"}),
-      scene("no grid", "[8, 8]", "[0, 8]", {"grid.cells", "whole number from 1"}),
-      scene("shape of a list", "[8, 8]", "[8, 8, 8]", {"grid.cells", "two numbers"}),
+      scene("huge grid", "[32, 32]", "[1000000, 1000000]", {"grid.cells", "1000000", "65536"}),
+      scene("no grid", "[32, 32]", "[0, 8]", {"grid.cells", "whole number from 1"}),
+      scene("shape of a list", "[32, 32]", "[8, 8, 8]", {"grid.cells", "two numbers"}),
       scene("unknown key", "normal", "nomral", {"load.nomral", "load.normal"}),
-      scene("missing key", "normal = 1000.0\n", "", {"load.normal", "missing"}),
+      scene("missing key", "normal = 1000\n", "", {"load.normal", "missing"}),
       scene("unknown word", "\"sphere\"", "\"spere\"", {"upper.shape = \"spere\"", "sphere"}),
       scene("a table for a number", "0.018", "{ a = 1 }", {"upper.radius", "a number"}),
       scene("twice", "radius = 0.018", "radius = 1\nradius = 2", {":4"}),
@@ -360,7 +345,7 @@ TEST(HostileText, IsRefusedWithKeyValueAndWhatIsAllowed) {
 TEST(HostileText, DoesNotReachTheTerminalAsCommands) {
   const convergence::TemporaryFolder folder;
   const fs::path file = folder / "scene.toml";
-  std::ofstream(file) << with(kGoodScene, "\"sphere\"", "\"\\u001b]0;title\\u0007\"");
+  std::ofstream(file) << with(solver::kShortScene, "\"sphere\"", "\"\\u001b]0;title\\u0007\"");
   const std::string said = complaint_of(readers().front(), file);
   EXPECT_THAT(said, AllOf(HasSubstr("\\x1b]0;title"), Not(HasSubstr("\x1b")), Not(HasSubstr("\x07"))));
 }

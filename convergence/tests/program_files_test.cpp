@@ -15,6 +15,7 @@
 #include "convergence/programs/temporary_folder.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/run_spec.hpp"
+#include "solver/tests/scene_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -22,23 +23,6 @@ namespace {
 namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
-
-constexpr const char* kSmallScene = R"([upper]
-shape = "sphere"
-radius = 0.018
-young_modulus = 210e9
-poisson_ratio = 0.3
-[lower]
-young_modulus = 210e9
-poisson_ratio = 0.3
-[contact]
-friction = 0.1
-[load]
-normal = 1000.0
-moment_ratio = 0.5
-[grid]
-cells = [12, 12]
-)";
 
 /// Works in a folder of its own, so that names are as short, and as odd, as users have them.
 class ProgramFiles : public testing::Test {
@@ -74,7 +58,7 @@ class ProgramFiles : public testing::Test {
 };
 
 TEST_F(ProgramFiles, ResultsNeverOverwriteAFileOfTheCommandLine) {
-  write("scene.toml", kSmallScene);
+  write("scene.toml", solver::kShortScene);
   write("study.toml", "scene = \"scene.toml\"\ncells = [8, 12]\n");
   write("cases.toml", "[[family]]\nname = \"f\"\nwhy = \"w\"\nscene = \"scene.toml\"\n");
   write("gates.toml",
@@ -97,7 +81,7 @@ TEST_F(ProgramFiles, ResultsNeverOverwriteAFileOfTheCommandLine) {
 
 TEST_F(ProgramFiles, ResultsNeverOverwriteAFileThatAnotherNames) {
   write("pressure.csv", "x1,x2,pressure\n0,0,1e9\n");
-  write("scene.toml", std::string(kSmallScene) + "extent = [1e-3, 1e-3]\n");
+  write("scene.toml", std::string(solver::kShortScene) + "extent = [1e-3, 1e-3]\n");
   const std::vector<std::string> words{"solve",   "scene.toml",
                                        "--set",   "contact.pressure=file",
                                        "--set",   "contact.pressure_file=pressure.csv",
@@ -119,7 +103,7 @@ TEST_F(ProgramFiles, ResultsNeverOverwriteAFileThatAnotherNames) {
 }
 
 TEST_F(ProgramFiles, ResultsNeverOverwriteAnInputByAnotherName) {
-  write("scene.toml", kSmallScene);
+  write("scene.toml", solver::kShortScene);
   fs::create_directory("below");
   fs::create_symlink("scene.toml", "link.json");
   fs::create_hard_link("scene.toml", "hard.json");
@@ -134,7 +118,7 @@ TEST_F(ProgramFiles, ScenesDoNotChooseWhereIsWritten) {
   fs::create_directories("scenes/below");
   fs::create_directory_symlink("../outside", "scenes/link");
   const auto scene_with = [](const std::string& wisdom) {
-    write("scenes/scene.toml", std::string(kSmallScene) + "[solver]\nwisdom = \"" + wisdom + "\"\n");
+    write("scenes/scene.toml", std::string(solver::kShortScene) + "[solver]\nwisdom = \"" + wisdom + "\"\n");
   };
   for (const std::string& wisdom : {std::string("../outside/w"), std::string("link/w"),
                                     fs::absolute("outside/w").string(), std::string("below/../../w")}) {
@@ -149,7 +133,7 @@ TEST_F(ProgramFiles, ScenesDoNotChooseWhereIsWritten) {
   EXPECT_EQ(run({"solve", "scenes/scene.toml"}).code, 0);
   EXPECT_TRUE(fs::exists("scenes/below/w"));
   // What a study says of a scene's keys is from a file as well.
-  write("scenes/scene.toml", kSmallScene);
+  write("scenes/scene.toml", solver::kShortScene);
   write("study.toml",
         "scene = \"scenes/scene.toml\"\ncells = [8, 12]\nset = { \"solver.wisdom\" = \"../outside/w\" }\n");
   const ProgramEnd end = run({"study", "study.toml"});
@@ -160,7 +144,7 @@ TEST_F(ProgramFiles, ScenesDoNotChooseWhereIsWritten) {
 
 TEST_F(ProgramFiles, NamesMayHoldAnything) {
   const std::string odd = "-a b\n'c\" $x `y` <z>&{} \xff";
-  write(odd + ".toml", kSmallScene);
+  write(odd + ".toml", solver::kShortScene);
   ProgramEnd end = run({"solve", "--json=" + odd + ".json", "--fields=" + odd + ".csv", "--", odd + ".toml"});
   EXPECT_EQ(end.code, 0) << end.output;
   EXPECT_TRUE(nlohmann::json::accept(read(odd + ".json")));
@@ -169,7 +153,7 @@ TEST_F(ProgramFiles, NamesMayHoldAnything) {
   // TOML is UTF-8.
   const std::string said = "-a b\n'c\" $x `y` <z>&{} \u00ff";
   const std::string in_toml = "-a b\\n'c\\\" $x `y` <z>&{} \u00ff";
-  write(said + ".toml", kSmallScene);
+  write(said + ".toml", solver::kShortScene);
   write(said + "-study.toml",
         "scene = \"" + in_toml + ".toml\"\ncells = [8, 12]\nquantities = [\"twist_error\"]\n");
   end = run({"study", "--output=" + odd, "--json=" + odd + ".json", "--", said + "-study.toml"});
@@ -185,7 +169,7 @@ TEST_F(ProgramFiles, NamesMayHoldAnything) {
 // What a result is kept under holds the scene's name and whole tables, which need not be UTF-8; JSON is.
 TEST_F(ProgramFiles, ResultsOfScenesWithAnyNameAreFoundAgain) {
   const std::string scene = "caf\xe9.toml";
-  write(scene, kSmallScene);
+  write(scene, solver::kShortScene);
   const PreparedRun run = prepare_run({.scene = scene});
   const ResultCache cache("runs");
   cache.keep(run.name, run.cache_key, nlohmann::ordered_json{{"name", "caf\xe9"}});
