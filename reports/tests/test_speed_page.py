@@ -18,7 +18,7 @@ import speed_page  # noqa: E402
 import speed_tables  # noqa: E402
 import style  # noqa: E402
 from results import Unavailable  # noqa: E402
-from test_render import save_nothing, save_quickly  # noqa: E402
+from made_report import save_nothing, save_quickly  # noqa: E402
 
 DENSE, DCFFT = "application/dense", "application/dcfft"
 

@@ -1,0 +1,187 @@
+"""A small made-up data set that a page is drawn from, and pages drawn from it for tests."""
+
+import io
+import json
+import sys
+import tempfile
+import unittest
+import warnings
+from contextlib import redirect_stderr
+from pathlib import Path
+from unittest.mock import patch
+
+import h5py
+import numpy as np
+from matplotlib.backends.backend_svg import FigureCanvasSVG
+
+REPORTS = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(REPORTS))
+
+import render  # noqa: E402
+import style  # noqa: E402
+
+RADIUS, PEAK, FRICTION = 2.0, 3.0, 0.5
+
+
+def solve_result(load, cells, pressure="solved", method="paper"):
+    error = 1.0 / cells**2
+    return {
+        "method": method, "pressure": pressure, "moment_ratio": load, "cells": [cells, cells], "friction": FRICTION,
+        "stick_ratio": 1 - load, "twist": load, "twist_error": error, "stick_radius_error": -error,
+        "traction_error": {"l1": error, "l2": 2 * error, "max": 3 * error},
+        "exact": {"stick_ratio": 1 - load, "twist": load},
+        "iterations": 7, "operator_applications": 14, "certificate": {"gap": 1e-5 * (1 + load)},
+        "slip_direction": {"mean": 2.4 if method == "paper" else 1e-7},
+        "seconds": {"setup": 0.1, "pressure": 0.2, "traction": 0.3, "total": 1e-4 * cells**2},
+    }
+
+
+def profile(load):
+    points = [{"radius": r, "value": 1 + r, "printed": 2 * (1 + r)} for r in (0.0, 0.25, 0.5, 0.75, 1.0)]
+    cells = [{"radius": r, "value": 1.01 + r, "exact": 1 + r, "error": 0.01} for r in (0.2, 0.6, 0.9)]
+    return {"moment_ratio": load, "stick_ratio": 0.5, "exact": points, "computed": cells,
+            "fields": f"fields-{load}.h5", "result": solve_result(load, 4)}
+
+
+def approximation(load):
+    """Errors that grow with the load, so that 1 % and 10 % are reached at known ones."""
+    def law(error):
+        return {"twist": load * (1 + error), "error": error}
+    return {"moment_ratio": load, "moment": 0.5 * load, "twist": load, "equation_7": law(-0.2 * load),
+            "small_moments": law(-0.25 * load), "no_slip": law(-0.5 * load), "dem": law(-0.5 * load),
+            "dem_moment": {"moment": min(load, 0.6), "error": min(load, 0.6) / (0.5 * load) - 1 if load else 0.0}}
+
+
+def body(profile, limit, full_stick):
+    loads = (0.0, 0.5, 0.9, 0.999)
+    return {"profile": profile, "moment_limit": limit, "full_stick": full_stick,
+            "rows": [{"moment_ratio": x, "moment": limit * x, "stick_ratio": 1 - x, "twist": x} for x in loads]}
+
+
+def gallery_row(scene, basis, reference, error, status="converged"):
+    row = {"scene": scene, "title": f"<{scene}>", "shows": "so & so", "quantity": "twist", "unit": "rad",
+           "value": 1.25e-3, "reference": reference, "basis": basis, "error": error, "status": status,
+           "gap": 2e-9, "operator_applications": 20.4, "seconds": 0.25, "steps": 2, "cells": [256, 128],
+           "cell_size": [RADIUS / 2, RADIUS / 2], "fields": f"gallery-{scene}.h5"}
+    for key in ("reference", "error"):
+        if row[key] is None:
+            row[f"{key}_reason"] = "not known"
+    return row
+
+
+def gallery():
+    return [gallery_row("sphere", "exact", 1.2e-3, -0.04), gallery_row("tube", "extrapolated", 1.26e-3, 2e-3),
+            gallery_row("odd", "finest mesh", 1.25e-3, None) | {"uncertainty": 3e-4},
+            gallery_row("rough", "none", None, None)]
+
+
+def hard():
+    def beside(**found):
+        return {"methods": {"paper": found}}
+
+    def row(case, verdict, **more):
+        return {"family": "moment", "case": case, "verdict": verdict} | more
+
+    return {
+        "families": {"moment": {"why": "next to <nothing>"}},
+        "rows": [
+            row("0.1", "certified", operator_applications=10, **beside(verdict="agrees", operator_applications=30)),
+            row("0.2", "certified", operator_applications=12,
+                **beside(verdict="other_direction", reason="turned by 3 degrees", operator_applications=31)),
+            row("0.3", "certified", operator_applications=14,
+                **beside(verdict="other_answer", reason="it differs by 0.4", difference=0.4, operator_applications=32)),
+            row("0.4", "certified", operator_applications=15, **beside(verdict="not_converged", reason="every cell slips")),
+            row("2.0", "refused", reason="beyond \"the\" limit", **beside(verdict="refused", reason="beyond it")),
+        ],
+    }
+
+
+def small_report():
+    loads = (0.2, 0.5, 0.9)
+    return {
+        "provenance": {"version": "0.0.0", "commit": "none", "cpu": "made <up>", "threads": 1},
+        "scene": {"name": "made up", "text": "name = \"made up\"", "summary": [["Sphere radius", "18 mm"]]},
+        "contact": {"radius": RADIUS, "peak_pressure": PEAK, "approach": 1.0, "moment_limit": 1.0},
+        "loading_cells": 4,
+        "curve": [{"moment_ratio": x, "stick_ratio": 1 - x, "stick_complement": x, "twist": x, "equation_7": 0.9 * x,
+                   "equation_7_error": -0.1} for x in loads],
+        "profiles": [profile(0.5), profile(0.9)],
+        "loading": [solve_result(load, 4) for load in loads],
+        "mesh": [solve_result(load, cells, pressure) for pressure in ("solved", "hertz") for load in (0.5, 0.9)
+                 for cells in (4, 8, 16)],
+        "methods": [solve_result(loads[-1], cells, method=method) for method in ("coulomb", "paper")
+                    for cells in (4, 8)],
+        "ellipse": [solve_result(loads[-1], cells, method=method) for method in ("coulomb", "paper")
+                    for cells in (4, 8)],
+        "equation_5_digits": [{"stick_complement": 10.0**-i, "relative_error": 10.0**(2 * i - 16)} for i in range(7)],
+        "approximations": [approximation(x) for x in (0.0, *loads)],
+        "approximation_table": [approximation(x) for x in loads],
+        "bodies": [body("hertz", 0.6, 0.0), body("cone", 0.5, 0.0), body("flat_punch", 0.8, 0.85)],
+        "loop": {"turning_points": [0.8, -0.8, 0.8],
+                 "rows": [{"moment_ratio": x, "moment": 0.6 * x, "twist": twist, "dissipated": 0.1} for x, twist in
+                          ((0.0, 0.0), (0.8, 0.4), (0.0, 0.1), (-0.8, -0.4), (0.0, -0.1), (0.8, 0.4))]},
+        "cycle_energy": [{"moment_ratio": x, "energy": x**3 / (1 - x), "small_amplitude": x**3}
+                         for x in (0.05, 0.1, 0.2, 0.5)],
+        "gallery": gallery(),
+        "hard": hard(),
+        "errata": [{"equation": "(0)", "printed": "a < b", "holds": "a > b", "shown": "by example"}],
+    }
+
+
+def write_fields(path, q1_shift=0.02):
+    """The twelve cells of a 4 x 4 grid that lie in the unit circle."""
+    centre = RADIUS * np.array([-0.75, -0.25, 0.25, 0.75])
+    x1, x2 = (x.ravel() for x in np.meshgrid(centre, centre))
+    inside = np.hypot(x1, x2) < RADIUS
+    x1, x2 = x1[inside], x2[inside]
+    with h5py.File(path, "w") as file:
+        for name, values in {"x1": x1, "x2": x2, "q1": -x2 + q1_shift, "q2": x1, "q1_exact": -x2,
+                             "q2_exact": x1}.items():
+            file[name] = values
+
+
+def write_contact(path):
+    """Two cells that stick beside one that slips."""
+    with h5py.File(path, "w") as file:
+        for name, values in {"x1": [0.0, 1.0, 2.0], "x2": [0.0, 0.0, 0.0], "stick": [1.0, 1.0, 0.0],
+                             "slip1": [1e-9, 0.0, 3.0], "slip2": [0.0, 0.0, 4.0]}.items():
+            file[name] = values
+
+
+def write_data(folder, report):
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "report.json").write_text(json.dumps(report))
+    for entry in report["profiles"]:
+        write_fields(folder / entry["fields"])
+    for scene in report["gallery"]:
+        write_contact(folder / scene["fields"])
+    (folder / "scenes").mkdir(exist_ok=True)
+    (folder / "scenes" / "sphere.toml").write_text("name = 'sphere'")
+
+
+def run_render(data_dir, output, save=style.save):
+    """Exit code, and what it says; `save` writes the figures. A warning is an error."""
+    with redirect_stderr(io.StringIO()) as errors, patch.object(style, "save", save), warnings.catch_warnings():
+        for kind in (UserWarning, RuntimeWarning):
+            warnings.simplefilter("error", kind)
+        exit_code = render.main([str(data_dir), "--output", str(output)])
+    return exit_code, errors.getvalue()
+
+
+def save_quickly(figure, stem):
+    """Draws it once, as SVG, not laid out and without minor ticks: a quarter of the work."""
+    figure.set_layout_engine("none")
+    for axis in figure.axes:
+        axis.minorticks_off()
+    FigureCanvasSVG(figure).print_svg(stem.with_suffix(".svg"))
+
+
+def save_nothing(figure, stem):
+    """For tests of the page's text."""
+
+
+class Folder(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)

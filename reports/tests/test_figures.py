@@ -1,0 +1,109 @@
+"""Figures of the page one by one: what they say in numbers, and that they are honest about what is missing."""
+
+import unittest
+
+import numpy as np
+from made_report import FRICTION, PEAK, Folder, small_report, write_data, write_fields
+
+import exact_figures
+import figures
+import gallery_figure
+import hard_cases
+import method_figures
+import results
+
+
+class OneFigure(Folder):
+    def setUp(self):
+        super().setUp()
+        self.report = small_report()
+        write_data(self.folder, self.report)
+
+    def assert_unavailable(self, draw, words):
+        with self.assertRaisesRegex(results.Unavailable, words):
+            draw(self.report, self.folder)
+
+    def test_missing_key(self):
+        del self.report["loading"][2]["twist_error"]
+        self.assert_unavailable(figures.twist, "twist_error.*missing")
+
+    def test_only_nulls(self):
+        for row in self.report["loading"]:
+            row.update(certificate=None, certificate_reason="not asked for")
+        self.assert_unavailable(method_figures.certificate, "certificate.gap.*null in every row: not asked for")
+
+    def test_null_where_the_message_quotes_it(self):
+        self.report["loading"][2].update(twist_error=None, twist_error_reason="no exact answer")
+        self.assertIn("the computed twist is not available", figures.twist(self.report, self.folder).message)
+
+    def test_field_with_nan(self):
+        write_fields(self.folder / "fields-0.9.h5", q1_shift=np.nan)
+        self.assert_unavailable(figures.shear_components, "fields-0.9.h5: “q1”.*not numbers")
+
+    def test_field_file_missing_or_damaged(self):
+        (self.folder / "fields-0.9.h5").unlink()
+        self.assert_unavailable(figures.traction_norm, "fields-0.9.h5 cannot be read")
+        (self.folder / "fields-0.9.h5").write_text("no HDF5")
+        self.assert_unavailable(figures.traction_norm, "fields-0.9.h5 cannot be read")
+
+    def test_missing_cycles(self):
+        for key in ("loop", "cycle_energy"):
+            self.report = small_report()
+            del self.report[key]
+            self.assert_unavailable(exact_figures.bodies_and_cycles, f"{key}.*missing")
+
+    def test_how_far_each_law_holds(self):
+        message = exact_figures.approximations(self.report, self.folder).message
+        self.assertIn("Eq. (7) 0.050 (0.50), small moments 0.040 (0.40), no slip 0.020 (0.20)", message)
+        self.assertIn("off by over 100&nbsp;%", message)
+
+    def test_hard_scenes_in_numbers(self):
+        entry = hard_cases.methods(small_report(), self.folder)
+        self.assertEqual(entry.message, "Of 5 hard scenes Newton’s method for Coulomb’s law certifies 4 and refuses 1 with a "
+                         "reason; 0 do not converge or are wrong. By the paper’s method 1 of 4 agree, 1 do not converge, in "
+                         "1 slip does not oppose traction, 1 have another answer.")
+        bars = [[bar.get_width() for bar in entry.figure.axes[0].patches[5 * i:5 * i + 5]] for i in (0, 1)]
+        self.assertEqual(bars, [[4, 1, 0, 0, 0], [1, 1, 1, 1, 1]])
+
+    def test_law_that_holds_everywhere(self):
+        for row in self.report["approximations"]:
+            row["equation_7"]["error"] = 0.001 * row["moment_ratio"]
+        self.assertIn("Eq. (7) 0.90 (0.90)", exact_figures.approximations(self.report, self.folder).message)
+
+    def test_bodies_and_cycles_in_numbers(self):
+        message = exact_figures.bodies_and_cycles(self.report, self.folder).message
+        for words in ("0.600&nbsp;μWa under a sphere", "flat punch, which sticks everywhere up to 0.850 of that",
+                      "keeps 25\u00a0% of its twist", "amplitude of 0.10&nbsp;M", "2 times as large"):
+            self.assertIn(words, message)
+
+    def test_what_the_gallery_says(self):
+        entry = gallery_figure.gallery(self.report, self.folder)
+        self.assertIn("4 scenes, in all of which Coulomb’s law holds to gap / energy = 2.0×10⁻⁹.", entry.message)
+        self.assertIn("Of the 1 with an exact answer, half are within 4.0×10⁻² of it", entry.message)
+        panel = entry.figure.axes[0]
+        self.assertEqual([text.get_text() for text in panel.texts], ["67\u00a0% sticks"])
+        slip, sticks = (image.get_array() for image in panel.images)
+        self.assertEqual(slip.filled(-1).tolist(), [[-1, -1, 1]])  # of its largest value
+        self.assertEqual(sticks.filled(0).tolist(), [[1, 1, 0]])
+
+    def test_gallery_draws_slip_over_its_largest_value(self):
+        entry = gallery_figure.gallery(self.report, self.folder)
+        self.assertEqual(np.nanmax(entry.figure.axes[0].images[0].get_array()), 1.0)
+
+    def test_gallery_owns_up_to_what_did_not_converge(self):
+        self.report["gallery"][1]["status"] = "not_converged"
+        self.assertIn("3 scenes, in all of which", gallery_figure.gallery(self.report, self.folder).message)
+        self.assertIn("1 more did not converge", gallery_figure.gallery(self.report, self.folder).message)
+
+    def test_gallery_without_its_fields(self):
+        (self.folder / "gallery-tube.h5").unlink()
+        self.assert_unavailable(gallery_figure.gallery, "gallery-tube.h5 cannot be read")
+
+    def test_error_map_is_the_difference_from_exact(self):
+        entry = figures.shear_components(self.report, self.folder)
+        error = entry.figure.axes[2].images[0].get_array()
+        self.assertAlmostEqual(float(error.max()), 0.02 / (FRICTION * PEAK), places=12)
+
+
+if __name__ == "__main__":
+    unittest.main()
