@@ -12,7 +12,7 @@ from pathlib import Path
 import jsonschema
 
 PROGRAM, ROOT = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
-SCENES, FIELDS = ROOT / "convergence/scenes", ROOT / "convergence/check/tests/fields"
+SCENES, FIELDS = ROOT / "convergence/scenes", ROOT / "convergence/check/fields"
 SCHEMAS = {path.name.split(".")[0]: json.loads(path.read_text()) for path in (ROOT / "docs/schema").glob("*.json")}
 
 STUDY = f"""

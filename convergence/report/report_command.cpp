@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "convergence/programs/python_script.hpp"
+#include "convergence/report/headline.hpp"
 #include "convergence/report/validation.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/interrupts.hpp"
@@ -64,7 +65,7 @@ int run_report(const ReportRequest& request, std::ostream& text, nlohmann::order
     result = validate(scene, inputs, request.quick ? quick_validation() : full_validation(), data, pool);
   }
   draw(data, output);
-  text << "page: " << (output / "index.html").string() << '\n';
+  text << headline_text(result["headline"]) << "page: " << (output / "index.html").string() << '\n';
   int exit_code = 0;
   for (const auto& study : result["studies"]) {
     const std::string failures = failed_runs_text(study);

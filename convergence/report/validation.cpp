@@ -13,10 +13,15 @@
 
 #include "analytic/paper_equations.hpp"
 #include "analytic/torsion.hpp"
+#include "convergence/gates/gate_reader.hpp"
+#include "convergence/gates/gate_report.hpp"
+#include "convergence/gates/gate_run.hpp"
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/report/exact_curves.hpp"
 #include "convergence/report/gallery.hpp"
+#include "convergence/report/headline.hpp"
+#include "convergence/report/peers.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/result_cache.hpp"
@@ -102,6 +107,8 @@ Sections page_runs(const fs::path& scene, const fs::path& scenes, const Validati
     }
   }
   add("errata", {size.loading_cells, "solved", kMethodsRatio, "paper"});
+  runs["cycle"].push_back({.scene = scenes / "torsion_loop.toml",
+                           .overrides = {fmt::format("grid.cells=[{0},{0}]", size.loading_cells)}});
   for (const GalleryScene& shown : gallery_scenes()) {
     runs["gallery-" + shown.stem] = gallery_runs(shown, scenes, size.gallery_cells, folder);
   }
@@ -147,6 +154,25 @@ Json without_errors(const std::vector<Json>& results) {
     }
   }
   return rows;
+}
+
+/// A cycle of the moment, step by step, computed beside exact.
+Json cycle(const Json& result) {
+  Json rows = Json::array();
+  for (const Json& step : result["steps"]) {
+    rows.push_back({{"moment_ratio", step["moment_ratio"]},
+                    {"twist", step["twist"]},
+                    {"exact", step["exact"]["twist"]},
+                    {"dissipated", step["dissipated"]}});
+  }
+  return {{"cells", result["cells"]}, {"rows", std::move(rows)}};
+}
+
+/// What the page in a folder said first, before it is written anew; null where there is none to read.
+Json earlier_headline(const fs::path& file) {
+  if (!fs::is_regular_file(file)) return {};
+  const Json report = Json::parse(read_text(file), nullptr, false);
+  return report.is_object() && report.contains("headline") ? report["headline"] : Json{};
 }
 
 /// The rows of one method.
@@ -220,7 +246,8 @@ ValidationSize full_validation() {
           .gallery_cells = {64, 128, 256},
           .moment_ratios = {0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99},
           .study_cells = 512,
-          .hard_step = 1};
+          .hard_step = 1,
+          .gates = true};
 }
 
 ValidationSize quick_validation() {
@@ -230,7 +257,8 @@ ValidationSize quick_validation() {
           .gallery_cells = {16, 32, 64},
           .moment_ratios = {0.05, 0.2, 0.4, 0.6, 0.8, 0.95},
           .study_cells = 64,
-          .hard_step = 10};
+          .hard_step = 10,
+          .gates = false};
 }
 
 Json validate(const fs::path& scene_file, const fs::path& inputs, const ValidationSize& size,
@@ -272,6 +300,10 @@ Json validate(const fs::path& scene_file, const fs::path& inputs, const Validati
   }
   report["studies"] = study_results(scene_file, inputs / "studies", size.study_cells, pool);
   report["hard"] = hard_results(inputs / "hard", size.hard_step, pool);
+  report["cycle"] = cycle(results.at("cycle").front());
+  report["peers"] = judge_peers(inputs);
+  if (size.gates) report["gates"] = gates_json(run_gates(read_gates(inputs / "gates" / "quick.toml"), pool));
+  report["headline"] = with_changes(headline(report), earlier_headline(folder / "report.json"));
   write_json_file(folder / "report.json", report);
   return report;
 }

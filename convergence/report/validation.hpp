@@ -20,16 +20,18 @@ struct ValidationSize {
   std::vector<double> moment_ratios;           ///< of the loading curve
   solver::Index study_cells;                   ///< the finest mesh of the studies
   std::size_t hard_step;                       ///< 1: all hard cases; 10: every tenth
+  bool gates;                                  ///< convergence/gates/quick.toml is run too
 };
 ValidationSize full_validation();
 ValidationSize quick_validation();
 
 /// The paper's validation (its Section 5, Figs. 1-5) for a scene, computed and compared with the exact
 /// solution, beside it an elliptic contact, where the paper's method fails, the gallery, the studies of the
-/// meshes and the tolerances, and the hard cases by each method, from the files in `inputs` (scenes/,
-/// studies/, hard/): fills `folder` with report.json and the fields that the page draws, and returns
-/// report.json's content. Throws InputError for a scene that has no exact solution to compare with;
-/// std::runtime_error where a run has no result, and as the pool does.
+/// meshes and the tolerances, the hard cases by each method, other programs' fields and the accuracy gates,
+/// from the files in `inputs` (scenes/, studies/, hard/, check/fields/, gates/): fills `folder` with
+/// report.json and the fields that the page draws, and returns report.json's content. Throws InputError for a
+/// scene that has no exact solution to compare with; std::runtime_error where a run has no result, and as the
+/// pool does.
 nlohmann::ordered_json validate(const std::filesystem::path& scene_file, const std::filesystem::path& inputs,
                                 const ValidationSize& size, const std::filesystem::path& folder,
                                 const ProcessPool& pool);

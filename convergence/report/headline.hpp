@@ -1,0 +1,25 @@
+#pragma once
+
+#include <nlohmann/json_fwd.hpp>
+#include <string>
+
+/// What the page says first, from what the rest of it holds.
+namespace slipstick::convergence {
+
+/// The verdict and what it rests on, of a report with "mesh", "hard", "studies", "peers" and, unless they
+/// were left out, "gates": `verdict` is good where every active gate holds and no hard case, study or known
+/// field ends wrong, else bad; `counts` and `numbers` hold what a person remembers, `lines` the same in
+/// sentences.
+nlohmann::ordered_json headline(const nlohmann::ordered_json& report);
+
+/// Sentences on what differs from an earlier headline: none where only times do.
+nlohmann::ordered_json changes(const nlohmann::ordered_json& now, const nlohmann::ordered_json& before);
+
+/// The headline beside an earlier one, which may be null: `since` says which page that was and `changes` what
+/// is different now. What an earlier page said of its own predecessor stays where nothing is different.
+nlohmann::ordered_json with_changes(nlohmann::ordered_json now, const nlohmann::ordered_json& before);
+
+/// For a person, ten lines at most.
+std::string headline_text(const nlohmann::ordered_json& headline);
+
+}  // namespace slipstick::convergence
