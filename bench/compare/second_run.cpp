@@ -16,10 +16,11 @@ using solver::InputError;
 
 constexpr std::string_view kPlace = "{filter}";
 
-std::string with_filter(std::string command, const std::string& filter, const std::string& option) {
+std::string with_filter(const std::string& line, const std::string& filter, const std::string& option) {
   const std::string word = convergence::shell_word(filter);
+  std::string command = " " + line;  // so that something stands before every place
   for (std::size_t at = command.find(kPlace); at != std::string::npos; at = command.find(kPlace, at)) {
-    const std::string around = command.substr(at == 0 ? 0 : at - 1, kPlace.size() + 2);
+    const std::string around = command.substr(at - 1, kPlace.size() + 2);
     if (around.find_first_of("'\"") != std::string::npos) {
       throw InputError(option, "write {filter} without quotes: it comes with its own");
     }

@@ -14,6 +14,8 @@ namespace slipstick::bench {
 namespace {
 
 namespace fs = std::filesystem;
+using ::testing::AllOf;
+using ::testing::Contains;
 using ::testing::HasSubstr;
 using testing::made_program;
 
@@ -50,6 +52,14 @@ TEST_F(ProgramBench, SaysWhenThereAreTooFewRounds) {
   const auto result = ab_run(1.5, "--rounds 3");
   EXPECT_EQ(result.exit_code, 2) << result.output;
   EXPECT_THAT(result.output, HasSubstr("too few"));
+}
+
+TEST_F(ProgramBench, ComparesTheSecondOfTwoMethodsWithTheFirst) {
+  const fs::path program = made_program(folder_ / "", "both", "f\\ng\\n", 1.0);
+  const auto result = run_program_with(fmt::format("bench --pair f g --program {} --output {} --rounds 2",
+                                                   program.string(), (folder_ / "out").string()));
+  EXPECT_THAT(result.output, AllOf(HasSubstr("g against f, "), HasSubstr("g over f")));
+  EXPECT_THAT(testing::lines_of(folder_ / "log"), AllOf(Contains("both ^(f)$"), Contains("both ^(g)$")));
 }
 
 TEST_F(ProgramBench, RefusesWhatItCannotDo) {

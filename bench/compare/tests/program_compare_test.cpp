@@ -66,7 +66,9 @@ TEST_F(ProgramCompare, ExitCodeSaysWhatWasFound) {
                                    HasSubstr("slower (p "), HasSubstr("2 benchmarks: 1 same, 1 slower"),
                                    HasSubstr("one run only"), HasSubstr("--rerun")));
   EXPECT_EQ(run(files(0.8)).exit_code, 0);
-  EXPECT_EQ(run(files(1.2) + " --effect 30%").exit_code, 0);
+  const ProgramRun rules = run(files(1.2) + " --effect 30% --level 0.02");
+  EXPECT_EQ(rules.exit_code, 0);
+  EXPECT_THAT(rules.output, HasSubstr("30 % or more, by chance in 2 of 100"));
   EXPECT_EQ(run(files(1.06) + " --effect 0.05").exit_code, 1);
   EXPECT_EQ(run(files(1.2) + " --level 1e-9").exit_code, 2);  // too few repetitions for that
 }
@@ -162,9 +164,20 @@ TEST_F(ProgramCompare, ASecondRunThatTellsNothingLeavesItUndecided) {
   const ProgramRun other = run(files(1.2) + " --rerun 'echo hello'");
   EXPECT_EQ(other.exit_code, 2);
   EXPECT_THAT(other.output, HasSubstr("Google Benchmark"));
-  const ProgramRun quoted = run(files(1.2) + " --rerun 'program --benchmark_filter=\"{filter}\"'");
-  EXPECT_EQ(quoted.exit_code, 2);
-  EXPECT_THAT(quoted.output, HasSubstr("without quotes"));
+}
+
+// The filter comes with quotes of its own; what else is quoted is the caller's.
+TEST_F(ProgramCompare, TheFilterStandsWithoutQuotes) {
+  for (const char* command :
+       {"p --f=\"{filter}\"", "\"{filter}\"", "\"{filter} \"", "\" {filter}\"", "{filter}\""}) {
+    const ProgramRun quoted = run(files(1.2) + fmt::format(" --rerun '{}'", command));
+    EXPECT_EQ(quoted.exit_code, 2) << command;
+    EXPECT_THAT(quoted.output, HasSubstr("without quotes")) << command;
+  }
+  for (const char* command : {"{filter} \"\"", "\"\" {filter} \"\"", "{filter}"}) {
+    EXPECT_THAT(run(files(1.2) + fmt::format(" --rerun '{}'", command)).output, HasSubstr("ended with"))
+        << command;
+  }
 }
 
 TEST_F(ProgramCompare, WritesJson) {

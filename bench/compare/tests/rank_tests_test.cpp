@@ -207,17 +207,24 @@ TEST(SignedRank, CountsAllSigns) {
   }
 }
 
-TEST(SignedRank, NormalBeyondCounting) {
-  const std::size_t n = 61;
-  std::vector<double> chances(n * (n + 1) / 2 + 1, 0.0);  // by counting, here
+/// Chances that signed ranks 1 to n sum to t or less, by t, by counting.
+std::vector<double> counted_signed_ranks(std::size_t n) {
+  std::vector<double> chances(n * (n + 1) / 2 + 1, 0.0);
   chances[0] = 1.0;
   for (std::size_t rank = 1; rank <= n; ++rank) {
     for (std::size_t s = chances.size(); s-- > 0;) {
       chances[s] = 0.5 * (chances[s] + (s >= rank ? chances[s - rank] : 0.0));
     }
   }
+  std::partial_sum(chances.begin(), chances.end(), chances.begin());
+  return chances;
+}
+
+TEST(SignedRank, NormalBeyondCounting) {
+  const std::size_t n = 61;
+  const std::vector<double> counted = counted_signed_ranks(n);
   for (const std::size_t t : {945U, 800U, 700U, 600U, 540U}) {
-    const double exact = std::accumulate(chances.begin(), chances.begin() + static_cast<int>(t) + 1, 0.0);
+    const double exact = counted[t];
     EXPECT_GT(signed_rank_shift(differences_with(t, n)).p_negative, 0.99 * exact) << t;
     EXPECT_LT(signed_rank_shift(differences_with(t, n)).p_negative, (t > 690 ? 1.01 : 1.2) * exact) << t;
   }
@@ -226,6 +233,8 @@ TEST(SignedRank, NormalBeyondCounting) {
 TEST(SignedRank, OneSignHasTheLeastChance) {
   EXPECT_DOUBLE_EQ(least_signed_rank_chance(10), 1.0 / 1024.0);
   EXPECT_DOUBLE_EQ(signed_rank_shift(differences_with(55, 10)).p_positive, 1.0 / 1024.0);
+  const std::size_t most = kMaxCounted * (kMaxCounted + 1) / 2;  // of as many as are counted
+  EXPECT_DOUBLE_EQ(signed_rank_shift(differences_with(most, kMaxCounted)).p_positive, std::exp2(-60.0));
   EXPECT_DOUBLE_EQ(signed_rank_shift(std::vector<double>(5, 0.0)).p_positive, 1.0);
   EXPECT_DOUBLE_EQ(signed_rank_shift(std::vector<double>(5, 0.0)).p_negative, 1.0);
 }
@@ -245,6 +254,29 @@ TEST(HodgesLehmann, IntervalIsInfiniteWhereNoneReaches95Percent) {
   const Shift four = rank_sum_shift(std::vector{1.0, 2.0, 3.0, 4.0}, std::vector{11.0, 12.0, 13.0, 14.0});
   EXPECT_DOUBLE_EQ(four.low, 7.0);
   EXPECT_DOUBLE_EQ(four.high, 13.0);
+}
+
+// As many means of two are beyond either end as sums of ranks stay in the tail: so the normal distribution
+// has it too, where it is taken.
+TEST(HodgesLehmann, IntervalBeyondCountingIsTheOneThatCountingGives) {
+  const std::size_t n = kMaxCounted + 1;
+  std::mt19937_64 generator(10);
+  std::normal_distribution<double> normal;
+  std::vector<double> differences(n);
+  for (double& x : differences) x = normal(generator);
+  const Shift shift = signed_rank_shift(differences);
+  std::ptrdiff_t below = 0;
+  std::ptrdiff_t above = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    for (std::size_t j = i; j < n; ++j) {
+      const double mean = 0.5 * (differences[i] + differences[j]);
+      below += mean <= shift.low ? 1 : 0;
+      above += mean >= shift.high ? 1 : 0;
+    }
+  }
+  const std::vector<double> counted = counted_signed_ranks(n);
+  EXPECT_EQ(below, std::ranges::upper_bound(counted, 0.025) - counted.begin());
+  EXPECT_EQ(above, below);
 }
 
 /// Out of so many, within three standard deviations.
