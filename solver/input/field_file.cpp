@@ -203,11 +203,10 @@ std::vector<Column> read_hdf5_columns(const path& file, const std::vector<std::s
                        fmt::format("dataset {} has {} values; allowed: {}, as {}", name, values.size(),
                                    columns.front().values.size(), names.front()));
     }
-    for (Index row = 0; row < values.size(); ++row) {
-      if (!std::isfinite(values[row])) {
-        throw InputError(file.string(), fmt::format("dataset {}, row {}: {}; allowed: a finite number", name,
-                                                    row, values[row]));
-      }
+    const auto bad = std::ranges::find_if_not(values, [](double value) { return std::isfinite(value); });
+    if (bad != values.end()) {
+      throw InputError(file.string(), fmt::format("dataset {}, row {}: {}; allowed: a finite number", name,
+                                                  bad - values.begin(), *bad));
     }
   }
   return columns;

@@ -191,13 +191,13 @@ void NaturalMapNewton<Set, Real>::write_residual(const ArrayXd& q) {
   r_ = -trial_u_.template cast<Real>();
 }
 
-/// wanted: the part that is to be left of the gap.
+/// wanted: the part that is to be left of the gap. applications_left: one at least.
 template <AdmissibleSet Set, typename Real>
 typename NaturalMapNewton<Set, Real>::LinearTarget NaturalMapNewton<Set, Real>::linear_target(
     double wanted, long applications_left) const {
   return {
       changed_ == 0 ? std::clamp(kPartOfWanted * wanted, kTightReduction, kLooseReduction) : kLooseReduction,
-      static_cast<int>(std::clamp<long>(applications_left, 1, kInnerIterations))};
+      static_cast<int>(std::min<long>(applications_left, kInnerIterations))};
 }
 
 /// loads: of the solution; empty: none. False where conjugate gradients broke down.
@@ -284,7 +284,7 @@ bool NaturalMapNewton<Set, Real>::restore_along_tangents() {
   Coefficients x = Coefficients::Zero(balance_.count());
   const auto tangents = constraints_.preconditioned();
   std::array<const Field*, kMaxConditions> directions{};
-  for (std::size_t k = 0; k < tangents.size(); ++k) directions[k] = &tangents[k];
+  std::ranges::transform(tangents, directions.begin(), [](const Field& tangent) { return &tangent; });
   if (!balance_.template solve_along<Field>(trial_, std::span(directions).first(tangents.size()), x))
     return false;
   for (std::size_t k = 0; k < tangents.size(); ++k) {

@@ -144,6 +144,13 @@ TEST(StickFront, InNarrowRingsBeatsCounting) {
   }
 }
 
+TEST(StickFront, IsFittedOnAllRaysOfARingOfNearlyFourCells) {
+  const StickFront front = sample({.ring = 1.12}, 128).front();  // 3.8 cells
+  EXPECT_THAT(front.why_counted, IsEmpty());
+  EXPECT_EQ(front.fitted, 1.0);
+  EXPECT_LT(std::abs(front.radius - 0.5), std::abs(front.counted_radius - 0.5));
+}
+
 /// Slip in a wide ring round few cells bends too much for the straight line that would have to do.
 TEST(StickFront, OnCoarseMeshesIsNoWorseThanCounting) {
   const Errors errors = worst({.ring = 1.55}, 32);
