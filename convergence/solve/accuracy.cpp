@@ -61,6 +61,8 @@ void require_contact_seen(const Scene& scene, double pressed, double cells_acros
           cells_across / kWellAcross, scene.extent ? "or left out" : "given", kReferenceCells, pressed));
 }
 
+Index longer_side(const Scene& scene) { return std::max(scene.cells[0], scene.cells[1]); }
+
 std::string shortest(double value) { return fmt::format("{:g}", value); }
 
 Index multiple_of_four(double cells) { return 4 * static_cast<Index>(std::ceil(cells / 4.0 - 1e-9)); }
@@ -121,7 +123,7 @@ bool answers_exactly(const Scene& scene, AccuracyOf of) {
 }
 
 Scene with_cells(Scene scene, Index longer) {
-  const Index own = std::max(scene.cells[0], scene.cells[1]);
+  const Index own = longer_side(scene);
   for (Index& cells : scene.cells) {
     cells = std::max<Index>(
         2, 2 * std::lround(0.5 * static_cast<double>(longer * cells) / static_cast<double>(own)));
@@ -199,7 +201,7 @@ double predicted_seconds(const Scene& scene, const ContactOnGrid& contact) {
   if (scene.method != solver::Method::coulomb || scene.op != solver::OperatorKind::dcfft) {
     return std::numeric_limits<double>::quiet_NaN();
   }
-  const double across = cells_across(contact, std::max(scene.cells[0], scene.cells[1]));
+  const double across = cells_across(contact, longer_side(scene));
   const auto steps = static_cast<double>(scene.steps.size()) * scene.cycles;
   return steps * work_of(accuracy_data(), across, scene.tolerance) * application_seconds(scene);
 }

@@ -269,6 +269,23 @@ TEST(CheckThreshold, OfTheMeshIsWhatExactFieldsShow) {
   EXPECT_LE(mesh["slip_direction"].get<double>() / worse("slip_direction"), 2.5);
 }
 
+// What samples of an exact field miss of a force, in parts of mu W, and of the normal load.
+TEST(CheckThreshold, OfLoadsIsWhatExactFieldsMiss) {
+  const solver::Scene scene = scene_of("mindlin", 32);
+  const FieldRows rows = sampled(scene);
+  const Examination e = examine(scene, write_rows(rows), {});
+  double force = 0.0;
+  double normal = 0.0;
+  for (const FieldRow& row : rows) normal += row[2], force += row[3];
+  const double area = std::pow(rows[1][1] - rows[0][1], 2);
+  const solver::Step& load = scene.steps.front();
+  const double missed_normal = std::abs(area * normal / *load.normal - 1.0);
+  const double missed_force =
+      std::abs(area * force - e.exact.oracle->force[0]) / (scene.friction * *load.normal);
+  EXPECT_NEAR(e.reference.mesh.loads.normal / missed_normal, 1.0, 0.5);
+  EXPECT_NEAR(e.reference.mesh.loads.force / missed_force, 1.0, 0.5);
+}
+
 /// Degrees between slip and the reverse of traction, in the mean, where as many cells as there are parts have
 /// a slip of this part of the largest displacement, across their traction, and all others one opposed to
 /// theirs.

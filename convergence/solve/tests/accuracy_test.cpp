@@ -2,6 +2,7 @@
 
 #include "convergence/solve/accuracy.hpp"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -147,6 +148,41 @@ TEST(AccuracyChoice, CountsCellsAcrossTheContactNotTheGrid) {
     EXPECT_GE(across, 49.0);
     EXPECT_LE(across, 56.0);
   }
+}
+
+// An extent that is given stays, so that twice the cells are twice as many across. Without one a few stay
+// free whatever their number.
+TEST(AccuracyChoice, ScalesTheContactWithTheCellsOfAGivenExtent) {
+  const ContactOnGrid given = convergence::contact_on_grid(scene("paper", {"grid.extent=[1.2e-3,2e-3]"}));
+  EXPECT_NEAR(cells_across(given, 256) / cells_across(given, 64), 4.0, 1e-12);
+  const ContactOnGrid free = convergence::contact_on_grid(scene("paper"));
+  EXPECT_GT(cells_across(free, 256) / cells_across(free, 64), 4.0 * (1.0 + 2.0 / 64.0));
+}
+
+// Of a grid that stands in a file.
+TEST(AccuracyChoice, KnowsTheCellsAcrossAGridThatIsGiven) {
+  solver::Scene at = scene("paper", {"grid.cells=[24,12]", "grid.extent=[2e-3,1e-3]"});
+  at.pressure = solver::PressureModel::file;
+  at.steps.front().normal.reset();
+  const ContactOnGrid contact = convergence::contact_on_grid(at);
+  EXPECT_DOUBLE_EQ(cells_across(contact, 24), contact.cells_across);
+}
+
+// As a solve refuses it: else a mesh would be chosen for a part of the contact.
+TEST(AccuracyChoice, IsRefusedWhereTheContactGoesOnBeyondTheExtent) {
+  const solver::Scene cut = scene("patches", {"grid.extent=[1.4e-3,0.7e-3]"});
+  EXPECT_THROW(convergence::contact_on_grid(cut), solver::InputError);
+  EXPECT_NO_THROW(convergence::contact_on_grid(scene("patches")));
+}
+
+TEST(Accuracy, SaysWhichGridWouldDoInstead) {
+  const solver::Scene oblong = scene("paper", {"grid.extent=[2e-3,1e-3]", "grid.cells=[128,64]"});
+  const Json accuracy = convergence::exact_accuracy(oblong, {1e-2});
+  const Json& cells = accuracy["grid_instead"]["cells"];
+  EXPECT_EQ(cells[0].get<int>(), 2 * cells[1].get<int>());
+  EXPECT_THAT(
+      convergence::accuracy_text({{"accuracy", accuracy}}),
+      HasSubstr(fmt::format("it would take {} x {} cells", cells[0].get<int>(), cells[1].get<int>())));
 }
 
 TEST(Accuracy, IsReachedOnGridsOfThePapersScene) {

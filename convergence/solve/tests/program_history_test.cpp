@@ -8,6 +8,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 
 #include "convergence/programs/tests/program_run.hpp"
@@ -112,6 +113,16 @@ TEST_F(ProgramHistory, HasALineAndAResultForEachStep) {
   for (const char* key : {"twist_angle", "moment", "dissipated", "twist_error", "stick_radius", "limit"}) {
     EXPECT_EQ(result[key], result["steps"][2][key]) << key;  // the whole is the last step's
   }
+}
+
+TEST_F(ProgramHistory, ShowsTheSizeOfTheForce) {
+  const Run run =
+      solve("[[step]]\nname = \"pull\"\nforce = [30.0, 40.0]\n[[step]]\nforce = [0.0, 0.0]\n", "");
+  const std::string line = run.output.substr(run.output.find("\n  pull ") + 1);
+  std::istringstream words(line);
+  std::string name, normal, moment, force;
+  words >> name >> normal >> moment >> force;
+  EXPECT_EQ(force, "50") << line;
 }
 
 TEST_F(ProgramHistory, CyclesRepeatTheSteps) {

@@ -1,10 +1,13 @@
 // What a result says of its mesh, against the exact answer.
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <vector>
 
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/results/result.hpp"
@@ -45,6 +48,19 @@ TEST_P(Resolved, UncertaintyIsOfTheErrorsSizeAndLargeOnesAreWarnedOf) {
       EXPECT_TRUE(warned || error < kSize * solver::kPoorlyResolved);
       EXPECT_FALSE(warned && ratio < 0.9);
     }
+  }
+}
+
+// From the middle out along an axis and a diagonal, whose first cell is the same one.
+TEST(Profile, HasTheMiddleCellOnce) {
+  for (const int cells : {16, 17}) {
+    const solver::Scene scene = solver::read_scene(std::string(SLIPSTICK_SCENES) + "/paper.toml",
+                                                   {fmt::format("grid.cells=[{0},{0}]", cells)});
+    std::vector<double> radii;
+    for (const Json& row : profile_json(solver::solve(scene), find_oracle(scene)))
+      radii.push_back(row["radius"]);
+    ASSERT_GT(radii.size(), 5U);
+    EXPECT_EQ(std::ranges::count(radii, std::ranges::min(radii)), 1) << cells;
   }
 }
 
