@@ -215,8 +215,7 @@ Json study_results(const fs::path& scene_file, const fs::path& studies, Index mo
   for (const char* file : {"paper_mesh.toml", "paper_tolerance.toml"}) {
     Study study = read_study(studies / file);
     study.scene = scene_file;
-    for (Index& cells : study.cells) cells = std::min(cells, most);
-    study.cells.erase(std::unique(study.cells.begin(), study.cells.end()), study.cells.end());
+    study.cells = up_to(study.cells, most);
     results.push_back(run_study(study, pool));
   }
   return results;
@@ -238,6 +237,12 @@ Json hard_results(const fs::path& folder, std::size_t step, const ProcessPool& p
 }
 
 }  // namespace
+
+std::vector<Index> up_to(std::vector<Index> cells, Index most) {
+  for (Index& each : cells) each = std::min(each, most);
+  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
+  return cells;
+}
 
 ValidationSize full_validation() {
   return {.loading_cells = 128,

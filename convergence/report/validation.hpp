@@ -25,6 +25,9 @@ struct ValidationSize {
 ValidationSize full_validation();
 ValidationSize quick_validation();
 
+/// A study's meshes, rising, without those that are finer than `most`; this one in their place.
+std::vector<solver::Index> up_to(std::vector<solver::Index> cells, solver::Index most);
+
 /// The paper's validation (its Section 5, Figs. 1-5) for a scene, computed and compared with the exact
 /// solution, beside it an elliptic contact, where the paper's method fails, the gallery, the studies of the
 /// meshes and the tolerances, the hard cases by each method, other programs' fields and the accuracy gates,
