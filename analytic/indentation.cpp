@@ -58,9 +58,7 @@ double corner_share(double b_over_s) {
 double corner_reach(double flat) {
   constexpr double kMargin = 1e-9;
   const auto excess = [flat](double s) { return s * s * s * (1 - 0.75 * corner_share(flat / s)) - 1; };
-  const double s = gsl::root(excess, 1 - kMargin, std::cbrt(2.0) + kMargin);
-  const double slope = 3 * s * (s - flat / 2 * std::atan2(s, flat));
-  return s - excess(s) / slope;
+  return gsl::root(excess, 1 - kMargin, std::cbrt(2.0) + kMargin);
 }
 
 /// Short over long semi-axis of the contact of a gap with radii of curvature in the given ratio (>= 1).
