@@ -119,16 +119,6 @@ TEST(LimitMoment, MovesWithTheContact) {
   expect_centre(moved.limit({0.0, 0.0, 1.0}), moved.grid.x1(i0 + 7), moved.grid.x2(j0 + 7));
 }
 
-TEST(LimitMoment, IsKnownAsWellFarFromTheGridsCentre) {
-  const LimitContact contact = rough(3);
-  const auto centre = *contact.limit({0.0, 0.0, 1.0}).centre;
-  constexpr Index kFar = 3000;
-  LimitContact at_the_end = empty(kFar, 8, 0.2, 0.3);
-  at_the_end.bound.tail(contact.bound.size()) = contact.bound;
-  expect_relative(at_the_end.moment(), contact.moment());
-  expect_centre(at_the_end.limit({0.0, 0.0, 1.0}), centre[0] + 0.5 * 0.2 * (kFar - 11), centre[1]);
-}
-
 TEST(LimitMoment, IsLessThanAboutAnyOtherCentre) {
   const LimitContact contact = rough(3);
   const LimitLoad limit = contact.limit({0.0, 0.0, 1.0});
