@@ -7,7 +7,7 @@ from matplotlib.ticker import LogLocator
 import style
 from figure_entry import LIMIT, LOAD_LABEL, TWIST_LABEL, FigureEntry
 from results import Unavailable, column, nearest, number, rows, text, value
-from wording import percent, plain, rounded_down
+from wording import percent, plain, rounded_down, sci
 
 LAWS = {"equation_7": ("Eq. (7)", dict(color=style.VERMILION, linestyle="--")),
         "small_moments": ("small moments", dict(color=style.PURPLE, linestyle="-.")),
@@ -27,7 +27,7 @@ def approximations(report, data_dir):
     figure, (left, right) = style.panels(1, 2, 4.0)
     figure.get_layout_engine().set(wspace=0.06)
     left.plot(exact, load, color=style.BLACK, label="exact", zorder=3)
-    sentences = []
+    numbers = []
     for key, (label, look) in LAWS.items():
         error = np.abs(column(table, f"{key}.error"))
         if key == "dem":
@@ -38,7 +38,7 @@ def approximations(report, data_dir):
         bounds = [_load_within(load, error, bound) for bound in (0.01, 0.1)]
         right.plot(bounds, (0.01, 0.1), "o", color=look["color"], markeredgecolor=style.BLACK, markersize=4, zorder=4,
                    clip_on=False)
-        sentences.append("{} {} ({})".format(label, *map(rounded_down, bounds)))
+        numbers.append((f"{label}: within 1&nbsp;% (10&nbsp;%) up to", "{} ({})".format(*map(rounded_down, bounds))))
     left.axhline(1, color=style.GREY, linestyle=":", zorder=1)
     left.annotate(f"DEM cap, {percent(cap - 1)} above all\nthat the sphere can carry", (0.98, cap), xytext=(0, 6),
                   xycoords=left.get_yaxis_transform(), textcoords="offset points", ha="right", va="bottom")
@@ -50,9 +50,7 @@ def approximations(report, data_dir):
     right.set(xlabel=LOAD_LABEL, ylabel="error of the twist, |law/exact − 1|", xlim=(0, 1), ylim=(1e-4, 1))
     style.legend_on_top(figure, left.get_legend_handles_labels()[0], 3)
     return FigureEntry(
-        f"Up to this part of M<sub>lim</sub> the twist is right within 1&nbsp;% (10&nbsp;%): {', '.join(sentences)}. "
-        f"The moment of the DEM law is off by over {rounded_down(100 * abs(dem_error[worst]))}&nbsp;% at "
-        f"{LIMIT}{load[worst]:.2g}, and its cap lies {percent(cap - 1)} above M<sub>lim</sub>.",
+        f"No simple law holds next to the limit, and discrete element codes carry {percent(cap - 1)} more than the sphere can.",
         "<em>Eq. (7)</em> is the paper’s. <em>Small moments</em>: the exact law to second order, "
         "(3/16)&nbsp;M&nbsp;+&nbsp;(9/64)&nbsp;M² with M in μWa. <em>No slip</em>: the contact is bonded and the twist "
         "grows in proportion, (3/16)&nbsp;M (Reissner and Sagoci, 1944). <em>DEM</em>: codes that follow many grains, "
@@ -62,7 +60,9 @@ def approximations(report, data_dir):
         "error reaches 1&nbsp;% and 10&nbsp;%.",
         "Left, moment against twist: the exact curve bends towards the limiting moment, three laws reach it at finite "
         "twists, and that of discrete element codes goes straight up to a cap above it. Right, the error of the twist "
-        "by each law against moment, on a log scale.", figure)
+        "by each law against moment, on a log scale.", figure,
+        [*numbers, (f"moment of the DEM law off at {LIMIT}{load[worst]:.2g}, by over",
+                    f"{rounded_down(100 * abs(dem_error[worst]))}&nbsp;%")])
 
 
 def bodies_and_cycles(report, data_dir):
@@ -72,20 +72,44 @@ def bodies_and_cycles(report, data_dir):
     within, far, ratio = _draw_cycle_energy(axes[2], rows(report, "cycle_energy"))
     style.legend_on_top(figure, [handle for axis in axes for handle in axis.get_legend_handles_labels()[0]], 3)
     return FigureEntry(
-        f"The whole contact slips at {', '.join(limits)}. A sphere twisted up to {LIMIT}{plain(peak)} keeps "
-        f"{percent(residual)} of its twist when the moment is taken away. The cube law for the energy lost in a cycle "
-        f"is right within 10&nbsp;% up to an amplitude of {rounded_down(within)}&nbsp;M<sub>lim</sub>; at "
-        f"{far:.2g}&nbsp;M<sub>lim</sub> the loss is {ratio:.2g} times as large.",
+        f"Each body slips as a whole at a moment of its own; a sphere twisted to {LIMIT}{plain(peak)} keeps "
+        f"{percent(residual)} of its twist.",
         "All of it is exact, under a constant W. After a reversal the twist follows the curve of first loading "
         "enlarged twice (Masing’s rule); where the inner loop closes, the contact has forgotten it and goes on along "
         "the outer one. For small amplitudes the energy lost grows with the cube of the moment (Deresiewicz, 1954).",
         "Three panels. Twist against moment for sphere, cone and flat punch, each growing without bound at its own "
         "limiting moment. A hysteresis loop of the sphere with a smaller loop in it. Energy lost in a cycle against "
-        "amplitude on log-log axes, rising above the dashed cube law at large amplitudes.", figure)
+        "amplitude on log-log axes, rising above the dashed cube law at large amplitudes.", figure,
+        [*limits, ("cube law of the energy lost: within 10&nbsp;% up to", f"{rounded_down(within)}&nbsp;M<sub>lim</sub>"),
+         (f"energy lost over that law at {far:.2g}&nbsp;M<sub>lim</sub>", f"{ratio:.2g}")])
+
+
+def computed_cycle(report, data_dir):
+    """Computed points on the exact loop, and their distance from it over the largest twist."""
+    loop, table = rows(value(report, "loop"), "rows"), rows(value(report, "cycle"), "rows")
+    figure, (left, right) = style.panels(1, 2, 3.8, width_ratios=[3, 2])
+    left.plot(column(loop, "moment_ratio"), column(loop, "twist"), color=style.BLACK, label="exact, by Masing’s rule")
+    load, twist, exact = (column(table, key) for key in ("moment_ratio", "twist", "exact"))
+    left.plot(load, twist, "s", color=style.GREEN, label="computed, one point a step", zorder=3)
+    left.set(xlabel=LOAD_LABEL, ylabel=TWIST_LABEL, xlim=(-1, 1))
+    error = np.abs(twist - exact) / np.abs(exact).max()
+    right.semilogy(np.arange(1, len(error) + 1), np.where(error > 0, error, np.nan), "s", color=style.GREEN)
+    right.set(xlabel="step", ylabel="|computed − exact| over the largest twist")
+    style.whole_decades(right)
+    style.legend_on_top(figure, left.get_legend_handles_labels()[0], 2)
+    across = rows(value(report, "cycle"), "cells")[0]
+    return FigureEntry(
+        f"The computed loop is the exact one to {sci(error.max())} of its largest twist, inner loop and all.",
+        f"{across} cells a side, {len(error)} steps, pressure solved on the same grid. Each branch is the curve of first "
+        "loading enlarged twice; where the inner loop closes, the contact goes on along the outer one.",
+        "Left, twist against moment: a hysteresis loop with a smaller one in it, computed points on the exact curve. Right, "
+        "their distance from it, step by step, on a log scale.", figure,
+        [("largest distance, over the largest twist", sci(error.max())), ("steps", str(len(error))),
+         ("energy lost in the last step, J", sci(number(table[-1], "dissipated")))])
 
 
 def _draw_bodies(axis, bodies):
-    """Twist and load of each body; returns the limiting moments in words."""
+    """Twist and load of each body; returns the limiting moments, as numbers of a FigureEntry."""
     limits, ends = [], []
     for body in bodies:
         name, table = text(body, "profile"), rows(body, "rows")
@@ -94,10 +118,10 @@ def _draw_bodies(axis, bodies):
         moment, twist = column(table, "moment"), column(table, "twist")
         axis.plot(moment, twist, color=colour, label=style.verbatim(label))
         axis.axvline(limit, color=colour, linestyle=":", linewidth=1)
-        limits.append(f"{limit:.3f}&nbsp;μWa under a {escape(label)}")
+        limits.append((f"limit moment, {escape(label)}", f"{limit:.3f}&nbsp;μWa"))
         if full_stick > 0:
             axis.plot(full_stick * limit, np.interp(full_stick * limit, moment, twist), "o", color=colour, zorder=3)
-            limits[-1] += f", which sticks everywhere up to {full_stick:.3f} of that"
+            limits.append((f"{escape(label)}: sticks everywhere up to", f"{full_stick:.3f}&nbsp;M<sub>lim</sub>"))
         ends.append(twist[-1])
     axis.plot([], [], ":", color=style.GREY, label="limiting moment")
     axis.plot([], [], "o", color=style.GREY, label="end of full stick")

@@ -3,6 +3,8 @@
 Errors against the exact solution come with the data; here they are only drawn.
 """
 
+from dataclasses import dataclass
+
 import numpy as np
 from matplotlib.colors import Normalize
 
@@ -11,9 +13,10 @@ import gallery_figure
 import hard_cases
 import maps
 import method_figures
+import peers_figure
 import studies
 import style
-from figure_entry import LIMIT, LOAD_LABEL, TWIST_LABEL, FigureEntry
+from figure_entry import LIMIT, LIMIT_WORDS, LOAD_LABEL, TWIST_LABEL, FigureEntry
 from results import Fields, column, nearest, number, rows, text, value
 from wording import percent, plain, sci, seconds
 
@@ -37,14 +40,14 @@ def shear_components(report, data_dir):
     figure.colorbar(bottom, ax=axes[1, :], label="error over $\\mu p_0$", extend="min", pad=0.02)
     load, largest, turned = _load(profile), np.nanmax(errors), np.nanmax(np.abs(computed[1] + computed[0].T))
     return FigureEntry(
-        f"At {LIMIT}{load} each shear component is within {sci(largest)} μp₀ of the exact one in every "
-        f"cell; half of the cells are within {sci(np.nanmedian(errors))} μp₀.",
+        f"Each shear component is within {sci(largest)} μp₀ of the exact one in every cell.",
         f"The circle is the exact edge of the stick area, a<sub>s</sub>/a = {stick_ratio:.4f}. The colours of the "
-        "errors are logarithmic. That one component is the other turned by 90°, as the paper observes, holds here to "
-        f"{sci(turned)} μp₀. The paper divides by p₀ alone; to compare, multiply by the friction coefficient "
+        "errors are logarithmic. The paper observes that one component is the other turned by 90°. The paper divides by p₀ alone; to compare, multiply by the friction coefficient "
         f"μ&nbsp;=&nbsp;{plain(number(profile, 'result.friction'))}.",
         f"Four maps over the contact circle at {load} of the limiting moment: the computed components q1 and q2, each "
-        "antisymmetric about one axis, and below them the absolute error of each.", figure)
+        "antisymmetric about one axis, and below them the absolute error of each.", figure,
+        [(LIMIT_WORDS, load), ("largest error, μp₀", sci(largest)), ("median error, μp₀", sci(np.nanmedian(errors))),
+         ("one component against the other turned, μp₀", sci(turned))], [text(profile, "fields")])
 
 
 def traction_norm(report, data_dir):
@@ -65,18 +68,19 @@ def traction_norm(report, data_dir):
     load, worst = _load(profile), np.unravel_index(np.nanargmax(error), error.shape)
     place = np.hypot(*(fields.extent[0] + (np.array(worst) + 0.5) * fields.cell))
     return FigureEntry(
-        f"The norm of the traction is off by at most {sci(error[worst])} μp₀, in a cell at r/a = {place:.3f}; "
-        f"half of the cells are within {sci(np.nanmedian(error))} μp₀.",
-        f"{LIMIT}{load}. Inside the circle r = a<sub>s</sub> = {stick_ratio:.4f} a the surfaces stick, "
+        f"The traction is furthest off, by {sci(error[worst])} μp₀, in a cell at r/a = {place:.3f}.",
+        f"Inside the circle r = a<sub>s</sub> = {stick_ratio:.4f} a the surfaces stick, "
         "outside it they slip and |q| = μp.",
         f"Two maps over the contact circle at {load} of the limiting moment: a ring of high traction around the stick "
-        "area, and the absolute error of the norm.", figure)
+        "area, and the absolute error of the norm.", figure,
+        [(LIMIT_WORDS, load), ("largest error, μp₀", sci(error[worst])), ("median error, μp₀", sci(np.nanmedian(error)))],
+        [text(profile, "fields")])
 
 
 def radial_profiles(report, data_dir):
     profiles = rows(report, "profiles")
     figure, axes = style.with_error_panel(len(profiles))
-    sentences = []
+    medians = []
     for (top, bottom), profile in zip(axes.T, profiles):
         exact, cells = rows(profile, "exact"), rows(profile, "computed")
         radius, stick_ratio = column(cells, "radius"), number(profile, "stick_ratio")
@@ -93,20 +97,21 @@ def radial_profiles(report, data_dir):
             axis.axvline(stick_ratio, color=style.GREY, linewidth=0.8, linestyle=":")
         top.set_title(f"$M/M_\\mathrm{{lim}}$ = {_load(profile)}, $a_s/a$ = {stick_ratio:.4f}")
         bottom.set_xlabel("radius $r/a$")
-        sentences.append(f"{sci(np.nanmedian(error))} at {LIMIT}{_load(profile)}")
+        medians.append((f"median error at {LIMIT}{_load(profile)}, μp₀", sci(np.nanmedian(error))))
     axes[0, 0].set(ylabel="traction $q/(\\mu p_0)$", xlim=(0, 1), ylim=(0, None))
     axes[1, 0].set_ylabel("|error| over $\\mu p_0$")
     style.whole_decades(axes[1, 0])
     style.legend_on_top(figure, axes[0, 0].get_legend_handles_labels()[0], 3)
     factor = max(_printed_over_exact(profile) for profile in profiles)
     return FigureEntry(
-        f"The computed tractions lie on the exact curve (median error over μp₀: {', '.join(sentences)}); the stick "
-        f"branch of Eq. (1), taken as printed, is {factor:.4f} times too large.",
+        f"The computed tractions lie on the exact curve; where it sticks, Eq. (1) as printed is {factor:.4f} times too "
+        "large.",
         "π/2 = 1.5708: the printed branch lacks the factor 2/π and so jumps at the stick edge (dotted line), where the "
         "traction is continuous. The exact curve meets that edge with a vertical tangent, which no grid of cells can "
         "follow.",
         "Traction against radius at two loads: computed points on the exact curve, and the printed Eq. (1) as a dashed "
-        "curve well above it in the stick area; below, the absolute error of each cell on a log scale.", figure)
+        "curve well above it in the stick area; below, the absolute error of each cell on a log scale.", figure,
+        medians, [text(profile, "fields") for profile in profiles])
 
 
 def stick_radius(report, data_dir):
@@ -114,21 +119,21 @@ def stick_radius(report, data_dir):
     figure, axes = style.with_error_panel()
     top, bottom = axes[:, 0]
     top.plot(column(curve, "moment_ratio"), column(curve, "stick_ratio"), color=style.BLACK, label="exact")
-    sentences = []
+    numbers = []
     for table, label, look in _by_method(report):
         load, error = column(table, "moment_ratio"), np.abs(column(table, "stick_radius_error"))
         top.plot(load, column(table, "stick_ratio"), linestyle="", label=f"computed, {label}", **look)
         bottom.plot(load, error, linestyle="", **look)
-        sentences.append(f"{sci(np.nanmax(error))} (median {sci(np.nanmedian(error))}) by {label}")
+        numbers += [(f"largest error, {label}", sci(np.nanmax(error))), (f"median error, {label}", sci(np.nanmedian(error)))]
     top.set(ylabel="stick radius $a_s/a$", xlim=(0, 1), ylim=(0, 1.03))
     bottom.set(ylabel="|computed/exact − 1|", xlabel=LOAD_LABEL)
     style.whole_decades(bottom)
     style.legend_on_top(figure, top.get_legend_handles_labels()[0], 3)
     return FigureEntry(
-        f"Largest relative error of the computed stick radius over all loads: {'; '.join(sentences)}.",
+        f"The computed stick radius is on the exact curve, off by at most {numbers[0][1]}.",
         f"{_cells(report)} The error is relative to the stick radius itself, which vanishes at the right end.",
         "Stick radius against moment: computed points on the exact falling curve, and their relative error below.",
-        figure)
+        figure, numbers)
 
 
 def twist(report, data_dir):
@@ -141,12 +146,12 @@ def twist(report, data_dir):
     bottom.plot(load, formula_error, "--", color=style.VERMILION)
     loads = column(rows(report, "loading"), "moment_ratio")
     high = loads[nearest(loads, 0.9)]
-    sentences = []
+    numbers = []
     for table, label, look in _by_method(report):
         computed_load, error = column(table, "moment_ratio"), np.abs(column(table, "twist_error"))
         top.plot(computed_load, column(table, "twist"), linestyle="", label=f"computed, {label}", zorder=3, **look)
         bottom.plot(computed_load, error, linestyle="", **look)
-        sentences.append(f"{sci(error[nearest(computed_load, high)])} by {label}")
+        numbers.append((f"computed, {label}", sci(error[nearest(computed_load, high)])))
     top.set(ylabel=TWIST_LABEL, xlim=(0, 1),
             ylim=(0, 1.1 * max(np.nanmax(column(table, "twist")) for table, *_ in _by_method(report))))
     bottom.set(ylabel="|value/exact − 1|", xlabel=LOAD_LABEL)
@@ -154,12 +159,13 @@ def twist(report, data_dir):
     style.whole_decades(bottom)
     style.legend_on_top(figure, top.get_legend_handles_labels()[0], 2)
     return FigureEntry(
-        f"At {LIMIT}{plain(high)} the error of the computed twist is {'; '.join(sentences)}; that of Eq. (7), the curve "
-        f"that the paper compares with, is {percent(formula_error[nearest(load, high)])}.",
+        f"At {LIMIT}{plain(high)} Eq. (7), with which the paper compares, is off by "
+        f"{percent(formula_error[nearest(load, high)])}; the error of the computed twist is {numbers[0][1]}.",
         "Eq. (7) is an approximation for small moments, printed as an equality. The “few percent” that the paper "
         f"puts down to discretisation are Eq. (7) itself. {_cells(report)}",
         "Twist against moment: computed points on the exact curve, with Eq. (7) falling below it at high moments; in "
-        "the error panel Eq. (7) lies orders of magnitude above the computed points.", figure)
+        "the error panel Eq. (7) lies orders of magnitude above the computed points.", figure,
+        [(f"error at {LIMIT}{plain(high)}: Eq. (7)", sci(formula_error[nearest(load, high)])), *numbers])
 
 
 def convergence(report, data_dir):
@@ -178,17 +184,17 @@ def convergence(report, data_dir):
     style.legend_on_top(figure, studies.handles(runs) + guides, 3)
     finest = [(study, study.table[-1]) for study in runs if study.pressure == "solved"] or [
         (study, study.table[-1]) for study in runs]
-    sentences = [f"{LIMIT}{study.load}: twist {_sci_at(row, 'twist_error')}, traction "
-                 f"{_sci_at(row, 'traction_error.l1')} in L1, stick radius {_sci_at(row, 'stick_radius_error')}"
-                 for study, row in finest]
+    numbers = [(f"{title}, {LIMIT}{study.load}", _sci_at(row, path)) for study, row in finest for path, title in quantities]
+    study, row = finest[-1]
     return FigureEntry(
-        f"Errors left at the finest mesh with the {finest[0][0].name} "
-        f"({finest[0][0].cells[-1]:.0f} cells a side): {'; '.join(sentences)}.",
+        f"At {study.cells[-1]:.0f} cells a side and {LIMIT}{study.load} the twist is off by {_sci_at(row, 'twist_error')}, "
+        f"the traction by {_sci_at(row, 'traction_error.l1')}.",
         "Grey lines fall as the cell size (order 1) and as its square (order 2). Norms are relative to that of the "
         "exact solution. The twist answers to the contact as a whole and so can converge faster than the traction "
         "in its cells.",
         "Three log-log panels of relative error against cells for twist, traction and stick radius, one line for each "
-        "pressure and load, with guides of slope one and two.", figure)
+        "pressure and load, with guides of slope one and two.", figure,
+        [(f"error left with the {study.name}: {words}", found) for words, found in numbers])
 
 
 def cost(report, data_dir):
@@ -203,15 +209,16 @@ def cost(report, data_dir):
         axis.margins(0.12)
     axes[0].set_ylabel("relative error")
     style.legend_on_top(figure, studies.handles(runs), 2)
-    sentences = [f"{study.name}: {seconds(number(study.table[-1], 'seconds.total'))} s for "
-                 f"{_sci_at(study.table[-1], 'twist_error')}" for study in runs if study.load == runs[-1].load]
+    shown = [(study.name, seconds(number(study.table[-1], "seconds.total")), _sci_at(study.table[-1], "twist_error"))
+             for study in runs if study.load == runs[-1].load]
     return FigureEntry(
-        f"What the twist costs at {runs[0].cells[-1]:.0f} cells a side and {LIMIT}{runs[-1].load}: "
-        f"{'; '.join(sentences)}.",
+        f"{shown[0][1]} s buy a twist that is right to {shown[0][2]}.",
         "Down and left is better. The numbers beside one line are its cells a side; the other lines have the same "
         "meshes in the same order. Times are of one run on the machine named at the foot of the page.",
         "Two log-log panels of relative error against time, for twist and traction, one line for each pressure and "
-        "load, points from coarse to fine meshes.", figure)
+        "load, points from coarse to fine meshes.", figure,
+        [(f"{name}: {runs[0].cells[-1]:.0f} cells a side, {LIMIT}{runs[-1].load}", f"{time} s for {error}")
+         for name, time, error in shown])
 
 
 def equation_5_digits(report, data_dir):
@@ -225,32 +232,54 @@ def equation_5_digits(report, data_dir):
     axis.set(xlabel="$1 - a_s/a$   (towards full stick →)", ylabel="relative error of the moment")
     style.legend_on_top(figure, axis.get_legend_handles_labels()[0], 2)
     samples = [nearest(np.log(complement), np.log(wanted)) for wanted in (1e-2, 1e-4, 1e-6)]
-    sentences = [f"{sci(error[i])} at 1&nbsp;−&nbsp;c&nbsp;=&nbsp;{sci(complement[i])}" for i in samples]
     return FigureEntry(
-        f"Eq. (5) is right, but as c = a<sub>s</sub>/a tends to 1 its terms cancel: relative error "
-        f"{', '.join(sentences)}.",
+        "Eq. (5) is right, but its terms cancel: it loses its digits as the stick radius nears the contact radius.",
         "Its terms stay of the size of the limiting moment while their sum, the moment, goes to zero. The exact "
         "solution used on this page is written as an integral of a positive function and keeps its digits.",
         "Relative error of Eq. (5) against one minus the stick ratio on log-log axes, rising steadily to the right.",
-        figure)
+        figure, [(f"error at 1&nbsp;−&nbsp;a<sub>s</sub>/a&nbsp;=&nbsp;{sci(complement[i])}", sci(error[i])) for i in samples])
 
 
-FIGURES = [
-    ("figure-1", "The two shear components (the paper’s Fig. 1)", shear_components),
-    ("figure-2", "The norm of the shear tractions (the paper’s Fig. 2)", traction_norm),
-    ("figure-3", "Radial profiles (the paper’s Fig. 3)", radial_profiles),
-    ("figure-4", "Stick radius and load (the paper’s Fig. 4)", stick_radius),
-    ("figure-5", "Twist and load (the paper’s Fig. 5)", twist),
-    ("figure-6", "Convergence with the mesh", convergence),
-    ("figure-7", "What accuracy costs", cost),
-    ("figure-8", "Where Eq. (5) loses its digits", equation_5_digits),
-    ("figure-9", "What the stopping test leaves", method_figures.certificate),
-    ("figure-10", "Methods compared", method_figures.methods),
-    ("figure-11", "Which approximation may be used", exact_figures.approximations),
-    ("figure-12", "Other bodies, and cycles", exact_figures.bodies_and_cycles),
-    ("figure-13", "The gallery", gallery_figure.gallery),
-    ("figure-14", "Hard scenes by each method", hard_cases.methods),
+@dataclass
+class Section:
+    """A question, what one has to know to read the answer (HTML), and the figures that answer it: (name, title, draw)."""
+    name: str
+    question: str
+    figures: list
+
+
+LEAD = ("twist", "Twist and load (the paper’s Fig. 5)", twist)
+SECTIONS = [
+    Section("right", "Is the paper right?", [
+        ("shear-components", "The two shear components (the paper’s Fig. 1)", shear_components),
+        ("traction-norm", "The norm of the shear tractions (the paper’s Fig. 2)", traction_norm),
+        ("radial-profiles", "Radial profiles (the paper’s Fig. 3)", radial_profiles),
+        ("stick-radius", "Stick radius and load (the paper’s Fig. 4)", stick_radius),
+        ("equation-5", "Where Eq. (5) loses its digits", equation_5_digits),
+        ("methods", "The paper’s method and others", method_figures.methods),
+    ]),
+    Section("errors", "How fast do errors fall?", [
+        ("convergence", "Convergence with the mesh", convergence),
+    ]),
+    Section("cost", "What does an error cost?", [
+        ("cost", "Error against time", cost),
+    ]),
+    Section("bodies", "What if it is not a sphere?", [
+        ("slip-maps", "Where it sticks and how it slips", gallery_figure.slip_maps),
+        ("gallery-maps", "The gallery", gallery_figure.gallery),
+        ("bodies-and-cycles", "Other bodies, and cycles", exact_figures.bodies_and_cycles),
+        ("cycle", "A cycle, computed step by step", exact_figures.computed_cycle),
+        ("approximations", "Which approximation may be used", exact_figures.approximations),
+    ]),
+    Section("hard", "Where does it break?", [
+        ("hard-cases", "Hard scenes by each method", hard_cases.methods),
+        ("gap", "What the stopping test leaves", method_figures.certificate),
+    ]),
+    Section("peers", "How do other programs do?", [
+        ("peers", "Fields of other programs, judged", peers_figure.peers),
+    ]),
 ]
+FIGURES = [LEAD, *(figure for section in SECTIONS for figure in section.figures)]
 
 
 def _load(profile):

@@ -9,7 +9,7 @@ from matplotlib.colors import Normalize
 import style
 from cells import Cells
 from figure_entry import FigureEntry
-from results import number, rows, text, value
+from results import Unavailable, number, rows, text, value
 from wording import percent, sci
 
 ACROSS = 6  # panels in a row
@@ -30,8 +30,47 @@ def gallery(report, data_dir):
     return FigureEntry(
         message(scenes),
         "Each panel shows the contact at the end of the scene’s last step, with the share of it that sticks; "
-        "panels are not to one scale. Numbers are in the <a href=\"#gallery\">table</a>.",
-        f"{len(scenes)} small maps of contacts, one a scene: what sticks in blue, slip in shades of orange.", figure)
+        "panels are not to one scale.",
+        f"{len(scenes)} small maps of contacts, one a scene: what sticks in blue, slip in shades of orange.", figure,
+        sources=[text(scene, "fields") for scene in scenes])
+
+
+SHOWN = ("paper", "ellipse", "unequal_patches", "rough_sphere")
+
+
+def slip_maps(report, data_dir):
+    """Stick and slip of four contacts with an arrow where a cell slips."""
+    scenes = {value(scene, "scene"): scene for scene in rows(report, "gallery")}
+    shown = [scenes[name] for name in SHOWN if name in scenes]
+    if not shown:
+        raise Unavailable("the gallery has none of the scenes that are shown here")
+    figure, axes = style.panels(1, len(shown), 2.5, squeeze=False)
+    for axis, scene in zip(axes.flat, shown):
+        axis.axis("off")
+        draw_arrows(axis, draw_scene(axis, scene, data_dir))
+    return FigureEntry(
+        "The middle sticks, the rest slips around the point about which the contact turns; a rough contact sticks in spots.",
+        "Blue sticks, orange slips, darker where it slips further; arrows show the way in which the indenter slips over the "
+        "half-space. Panels are not to one scale.",
+        f"{len(shown)} maps of contacts ({', '.join(text(scene, 'title') for scene in shown)}): stick areas in blue and "
+        "arrows of slip around them.", figure, [(escape(text(scene, "title")), _turn(scene)) for scene in shown],
+        [text(scene, "fields") for scene in shown])
+
+
+def _turn(scene):
+    return f"{escape(text(scene, 'quantity'))} {number(scene, 'value'):.4g} {escape(text(scene, 'unit'))}"
+
+
+def draw_arrows(axis, cells):
+    slip = np.stack([cells.columns["slip1"], cells.columns["slip2"]])
+    length = np.hypot(*slip)
+    slips = (cells.columns["stick"] == 0) & (length > 1e-3 * length.max())
+    if not slips.any():
+        return
+    shown = cells.thinned(slips)
+    along = slip[:, shown] / length[shown] * cells.spacing() * 0.9
+    axis.quiver(*cells.positions[:, shown], *along, angles="xy", scale_units="xy", scale=1, pivot="mid", width=0.006,
+                headwidth=4, color=style.BLACK)
 
 
 def draw_scene(axis, scene, data_dir):
@@ -50,6 +89,7 @@ def draw_scene(axis, scene, data_dir):
     axis.set_title(style.verbatim(text(scene, "title")), fontsize=7, pad=2)
     axis.text(0.5, 0, f"{percent(np.mean(sticks))} sticks", transform=axis.transAxes, ha="center", va="top", fontsize=6,
               color=style.GREY)
+    return cells
 
 
 def message(scenes):

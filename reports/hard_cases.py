@@ -66,25 +66,25 @@ def methods(report, data_dir):
                 ylim=(0, 1.1 * len(answers[FIRST])))
     handles = [bars.barh(0, 0, color=colour, label=words) for words, colour, _ in VERDICTS.values()]
     style.legend_on_top(figure, handles, 2)
-    return FigureEntry(*_texts(counts, len(answers[FIRST])), figure)
+    message, details, alt, numbers = _texts(counts, len(answers[FIRST]))
+    return FigureEntry(message, details, alt, figure, numbers)
 
 
 def _texts(counts, total):
-    """Message, details and what stands for the figure where it is not seen."""
+    """Message, details, what stands for the figure where it is not seen, and numbers."""
     first = counts[FIRST]
-    others = {method: f" By {_name(method)} {found['right']} of {total - found['refused']} agree, "
-                      f"{found['not_converged']} do not converge, in {found['other_direction']} slip does not oppose "
-                      f"traction, {found['wrong']} have another answer." for method, found in counts.items()}
+    numbers = [(f"{_name(method)}: {words}", str(found[verdict])) for method, found in counts.items()
+               for verdict, (words, _, _) in VERDICTS.items() if found[verdict]]
     message = (f"Of {total} hard scenes {_name(FIRST)} certifies {first['right']} and refuses {first['refused']} with a "
-               f"reason; {first['not_converged'] + first['wrong']} do not converge or are wrong.{others.get('paper', '')}")
+               f"reason; {first['not_converged'] + first['wrong']} do not converge or are wrong.")
     details = (
-        f"{others.get('projected_gradient', '').strip()} The scenes: loads next to nothing and next to the limit, ugly "
+        f"The scenes: loads next to nothing and next to the limit, ugly "
         "contacts, extreme materials, odd grids. An answer agrees within 1&nbsp;% of twist, moment and energy of the "
         "certified one on the same grid; slip does not oppose traction where its mean angle is above one degree and costs "
-        "more than 10⁻⁶ of the energy. <a href=\"#hard\">The map</a> shows each scene.")
+        "more than 10⁻⁶ of the energy. <a href=\"#map\">The map</a> shows each scene.")
     alt = (f"Bars of {total} scenes, one for each method, by how they end, and beside them the number of scenes solved "
            "right against applications of the operator.")
-    return message, details, alt
+    return message, details, alt, numbers
 
 
 def _name(method):

@@ -1,0 +1,49 @@
+"""What `check` says of fields that other programs computed."""
+
+import numpy as np
+
+import style
+from figure_entry import FigureEntry
+from results import column, rows, text, value
+from wording import sci
+
+QUANTITIES = {"normal_load_error": "normal load", "contact_radius_error": "contact radius",
+              "moment_limit_error": "limit moment", "moment_error": "moment", "force": "tangential force",
+              "twist": "twist", "tractions": "tractions", "friction": "friction coefficient",
+              "friction_bound": "friction bound", "slip_direction": "slip direction", "gap": "gap of Coulomb’s law"}
+LOOKS = ({"color": style.GREEN, "marker": "s"}, {"color": style.VERMILION, "marker": "o"},
+         {"color": style.BLUE, "marker": "^"})
+LEAST = 1e-6  # of what is allowed: smaller values stand there
+
+
+def peers(report, data_dir):
+    programs = rows(report, "peers")
+    figure, axis = style.panels(1, 1, 3.6)
+    names = [QUANTITIES.get(text(row, "quantity"), text(row, "quantity")) for row in rows(programs[0], "judged")]
+    for program, look in zip(programs, LOOKS):
+        judged = rows(program, "judged")
+        over = np.abs(column(judged, "value")) / column(judged, "allowed")
+        axis.plot(np.maximum(over, LEAST), np.arange(len(judged)), linestyle="", label=f"{text(program, 'program')}: "
+                  f"{text(program, 'verdict')}", **look)
+    axis.axvspan(1, axis.get_xlim()[1] * 1e3, color=style.VERMILION, alpha=0.08, linewidth=0)
+    axis.axvline(1, color=style.BLACK, linewidth=0.8)
+    most = max(np.nanmax(np.abs(column(rows(each, "judged"), "value")) / column(rows(each, "judged"), "allowed"))
+               for each in programs)
+    axis.set(xscale="log", xlim=(0.6 * LEAST, max(30.0, 3 * most)), yticks=range(len(names)), yticklabels=names,
+             xlabel="error over what the mesh allows   (wrong right of the line →)")
+    axis.invert_yaxis()
+    style.legend_on_top(figure, axis.get_legend_handles_labels()[0], len(programs))
+    bad = [text(each, "program") for each in programs if text(each, "verdict") == "bad"]
+    right = all(row["holds"] for each in programs for row in each["judged"] if row["quantity"] == "moment_error")
+    return FigureEntry(
+        (f"{' and '.join(bad)} carries the right moment, yet its twist, tractions and slip directions are wrong."
+         if bad and right else f"{len(programs) - len(bad)} of {len(programs)} fields are right within their mesh."),
+        "Tractions that other programs wrote for the paper’s sphere at 0.9 of the limit moment, 64 cells across the contact. "
+        "What is allowed is what the mesh leaves open, measured on fields that are known to be right; slip directions are "
+        f"in degrees. Values below {sci(LEAST)} of it stand there.",
+        "Errors of each judged quantity over what is allowed, on a log scale, one row a quantity and one marker a program.",
+        figure, [(f"{text(each, 'program')}: {words}", sci(abs(found))) for each in programs
+                 for words, found in (("twist error", value(each, "twist_error")),
+                                      ("traction error, L2", value(each, "traction_error.l2")),
+                                      ("gap / energy", value(each, "certificate.gap"))) if found is not None],
+        [])
