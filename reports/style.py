@@ -5,6 +5,9 @@ import unicodedata
 
 import matplotlib
 import numpy as np
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.backends.backend_pdf import FigureCanvasPdf
+from matplotlib.backends.backend_svg import FigureCanvasSVG
 from matplotlib.colors import LinearSegmentedColormap, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
@@ -80,12 +83,15 @@ def whole_decades(axis):
 
 # What to leave out of each kind of file so that equal numbers give equal files: the date.
 FORMATS = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {}}
+CANVASES = {".svg": FigureCanvasSVG, ".pdf": FigureCanvasPdf, ".png": FigureCanvasAgg}
 
 
 def write(figure, path):
-    """Writes one file, of the kind that its ending says: one of FORMATS."""
-    drawn = io.BytesIO()
-    figure.savefig(drawn, format=path.suffix[1:], metadata=FORMATS[path.suffix])
+    """Writes one file, of the kind that its ending says: one of FORMATS. By the canvas itself, which lays out while it
+    draws: Figure.savefig draws all of it once more before."""
+    drawn, kind = io.BytesIO(), path.suffix[1:]
+    figure.set_dpi(matplotlib.rcParams["savefig.dpi"])
+    getattr(CANVASES[path.suffix](figure), f"print_{kind}")(drawn, metadata=FORMATS[path.suffix])
     write_whole(path, drawn.getvalue())
 
 
