@@ -297,7 +297,7 @@ def _cells(report):
 
 def _floor(report):
     errors = np.abs(np.concatenate([column(table, "twist_error") for table, *_ in _by_method(report)]))
-    return min(1e-6, 0.3 * np.nanmin(errors[errors > 0], initial=1e-6))
+    return 0.3 * np.min(errors[errors > 0], initial=1e-6)
 
 
 def _by_method(report):

@@ -85,7 +85,8 @@ def draw_scene(axis, scene, data_dir):
                                        rasterized=True))
     low, high = cells.extent[[0, 2]], cells.extent[[1, 3]]
     middle, half = 0.5 * (low + high), (0.5 + MARGIN) * max(high - low)
-    axis.set(xlim=middle[0] + half * np.array([-1, 1]), ylim=middle[1] + half * np.array([-1, 1]), aspect="equal")
+    (left, bottom), (right, top) = middle - half, middle + half
+    axis.set(xlim=(left, right), ylim=(bottom, top), aspect="equal")
     axis.set_title(style.verbatim(text(scene, "title")), fontsize=7, pad=2)
     axis.text(0.5, 0, f"{percent(np.mean(sticks))} sticks", transform=axis.transAxes, ha="center", va="top", fontsize=6,
               color=style.GREY)

@@ -46,6 +46,50 @@ class OneFigure(Folder):
         (self.folder / "fields-0.9.h5").write_text("no HDF5")
         self.assert_unavailable(figures.traction_norm, "fields-0.9.h5 cannot be read")
 
+    def test_twist_errors_stand_above_the_floor_of_their_panel(self):
+        for row, error in zip(self.report["loading"], (0.0, 1e-9, None)):
+            row.update(twist_error=error, twist_error_reason="no exact answer")
+        self.assertAlmostEqual(1e9 * figures.twist(self.report, self.folder).figure.axes[1].get_ylim()[0], 0.3)
+
+    def assert_meshes_are_named(self, figure, cells):
+        for axis in figure.axes:
+            self.assertEqual([label.get_text() for label in axis.get_xticklabels()], cells)
+            self.assertEqual(axis.get_xlabel(), "cells across the grid")
+
+    def test_methods_are_drawn_against_the_cells(self):
+        figure = method_figures.methods(self.report, self.folder).figure
+        self.assert_meshes_are_named(figure, ["4", "8"])
+        for axis, found in zip(figure.axes, (14, 0.3, 1e-7)):
+            drawn = {line.get_label(): line for line in axis.lines}
+            self.assertEqual(set(drawn), {"Newton’s method for Coulomb’s law", "the paper’s method"})
+            line = drawn["Newton’s method for Coulomb’s law"]
+            self.assertEqual((list(line.get_xdata()), list(line.get_ydata())), ([4, 8], [found, found]))
+
+    def test_convergence_speaks_of_the_pressure_solved_where_there_is_one(self):
+        entry = figures.convergence(self.report, self.folder)
+        self.assert_meshes_are_named(entry.figure, ["4", "8", "16"])
+        self.assertEqual([axis.get_ylabel() for axis in entry.figure.axes], ["relative error", "", ""])
+        self.assertEqual([text.get_text() for text in entry.figure.legends[0].get_texts()], [
+            "pressure solved on the same grid", "Hertz pressure at cell centres", "$M/M_\\mathrm{lim}$ = 0.5",
+            "$M/M_\\mathrm{lim}$ = 0.9", "order 1", "order 2"])
+        at_16 = ": twist 3.9×10⁻³, traction 3.9×10⁻³ in L1, stick radius 3.9×10⁻³"
+        errors = "; ".join(f"M/M<sub>lim</sub>&nbsp;=&nbsp;{load}{at_16}" for load in (0.5, 0.9))
+        self.assertEqual(entry.message, "Errors left at the finest mesh with the pressure solved on the same grid "
+                         f"(16 cells a side): {errors}.")
+        self.report["mesh"] = [row for row in self.report["mesh"] if row["pressure"] == "hertz"]
+        self.assertEqual(figures.convergence(self.report, self.folder).message, "Errors left at the finest mesh with the "
+                         f"Hertz pressure at cell centres (16 cells a side): {errors}.")
+
+    def test_cost_has_the_meshes_beside_the_points_of_one_line(self):
+        axes = figures.cost(self.report, self.folder).figure.axes
+        self.assertEqual([axis.get_ylabel() for axis in axes], ["relative error", ""])
+        for axis in axes:
+            numbers = {note.get_text(): note.xy for note in axis.texts}
+            self.assertEqual(list(numbers), ["4", "8", "16"])
+            for cells, (time, error) in numbers.items():
+                self.assertAlmostEqual(time, 1e-4 * int(cells)**2)
+                self.assertAlmostEqual(error, 1 / int(cells)**2)
+
     def test_missing_cycles(self):
         for key in ("loop", "cycle_energy"):
             self.report = small_report()
@@ -70,6 +114,26 @@ class OneFigure(Folder):
             row["equation_7"]["error"] = 0.001 * row["moment_ratio"]
         self.assertIn("Eq. (7) 0.90 (0.90)", exact_figures.approximations(self.report, self.folder).message)
 
+    def test_laws_that_are_beyond_a_bound_at_once_or_come_back(self):
+        for row, equation_7, no_slip in zip(self.report["approximations"], (0.02, 0.03, 0.04, 0.05),
+                                            (0.0, 0.008, 0.012, 0.009)):
+            row["equation_7"]["error"], row["no_slip"]["error"] = equation_7, no_slip
+        message = exact_figures.approximations(self.report, self.folder).message
+        self.assertIn("Eq. (7) 0 (0.90)", message)
+        self.assertIn("no slip 0.35 (0.90)", message)  # 0.2 + 0.3 (10 - 8)/(12 - 8)
+
+    def test_each_law_is_drawn_by_its_own_twists(self):
+        left, right = exact_figures.approximations(self.report, self.folder).figure.axes
+        loads = [row["moment_ratio"] for row in self.report["approximations"]]
+        drawn = {line.get_label(): line for line in left.lines}
+        for key, label in (("equation_7", "Eq. (7)"), ("small_moments", "small moments"), ("no_slip", "no slip")):
+            self.assertEqual(list(drawn[label].get_xdata()), [row[key]["twist"] for row in self.report["approximations"]])
+            self.assertEqual(list(drawn[label].get_ydata()), loads)
+        self.assertEqual(list(drawn["exact"].get_xdata()), loads)
+        errors = [line.get_ydata() for line in right.lines if len(line.get_xdata()) == len(loads)]
+        np.testing.assert_allclose(errors[0], [np.nan, *(0.2 * load for load in loads[1:])])  # no zero on a log scale
+        self.assertEqual(right.get_yscale(), "log")
+
     def test_bodies_and_cycles_in_numbers(self):
         message = exact_figures.bodies_and_cycles(self.report, self.folder).message
         for words in ("0.600&nbsp;μWa under a sphere", "flat punch, which sticks everywhere up to 0.850 of that",
@@ -85,6 +149,22 @@ class OneFigure(Folder):
         slip, sticks = (image.get_array() for image in panel.images)
         self.assertEqual(slip.filled(-1).tolist(), [[-1, -1, 1]])  # of its largest value
         self.assertEqual(sticks.filled(0).tolist(), [[1, 1, 0]])
+
+    def test_gallery_has_the_whole_contact_in_the_middle_of_a_square(self):
+        panel = gallery_figure.gallery(self.report, self.folder).figure.axes[0]
+        (left, right), (low, high) = panel.get_xlim(), panel.get_ylim()
+        self.assertEqual(list(panel.images[0].get_extent()), [-0.5, 2.5, -0.5, 0.5])
+        np.testing.assert_allclose([left + right, low + high], [2, 0], atol=1e-12)
+        self.assertAlmostEqual(right - left, high - low)
+        self.assertTrue(3 < right - left < 1.25 * 3)
+
+    def test_gallery_of_more_than_a_row(self):
+        one = gallery_figure.gallery(self.report, self.folder).figure
+        self.report["gallery"] *= 2
+        two = gallery_figure.gallery(self.report, self.folder).figure
+        self.assertEqual(sum(bool(axis.images) for axis in two.axes), 8)
+        self.assertGreater(one.get_figheight(), gallery_figure.PANEL_HEIGHT)  # the scale of colours takes the rest
+        self.assertAlmostEqual(two.get_figheight() - one.get_figheight(), gallery_figure.PANEL_HEIGHT)
 
     def test_gallery_draws_slip_over_its_largest_value(self):
         entry = gallery_figure.gallery(self.report, self.folder)

@@ -12,6 +12,7 @@ from pathlib import Path
 
 import h5py
 import numpy as np
+from matplotlib.quiver import QuiverKey
 
 REPORTS = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPORTS))
@@ -120,6 +121,36 @@ class WhatItShows(Figure):
         self.assertTrue(np.all(arrows.X > np.mean(disc(64, 64)[0]) * 1e6))
         self.assertLessEqual(len(arrows.U), ARROWS_ALONG**2)
         self.assertEqual([solve_figure.round_down(x) for x in (1e-9, 1.9, 3.0, 0.07)], [1e-9, 1.0, 2.0, 0.05])
+
+    def test_key_of_the_arrows_stands_above_their_panel(self):
+        self.write(*disc(9, 5), slip2=3e-9 * (disc(9, 5)[0] > disc(9, 5)[0].mean()))
+        solved = self.solved()
+        keys = [child for child in solve_figure.draw(solved).axes[0].get_children() if isinstance(child, QuiverKey)]
+        self.assertEqual([(key.U, key.text.get_text()) for key in keys], [(2e-9, "2 nm")])
+        self.assertTrue(0 < (keys[0].Y - 1) * solved.panel_height < 0.2)  # inches
+
+    def test_traction_however_small(self):
+        x1, x2 = disc(8, 8)
+        self.write(x1, x2, q2=np.full(x1.size, -0.5))
+        self.assertEqual([bar.get_ylabel() for bar in solve_figure.draw(self.solved()).axes[3:]],
+                         ["slip, nm", "|q|, Pa", "p, MPa"])
+        self.write(x1, x2, q2=np.zeros(x1.size))
+        axes = solve_figure.draw(self.solved()).axes
+        self.assertEqual([bar.get_ylabel() for bar in axes[3:]], ["slip, nm", "p, MPa"])
+        self.assertEqual([text.get_text() for text in axes[1].texts], ["no tangential traction"])
+
+    def test_words_stand_above_the_panels_one_below_the_other(self):
+        self.write(*disc(9, 5))
+        figure = solve_figure.draw(self.solved())
+        (_, _, _, panels), height = figure.get_layout_engine().get()["rect"], figure.get_figheight()
+        message, details = figure.texts
+        self.assertIn("of the contact sticks", message.get_text())
+        self.assertIn("gap/energy", details.get_text())
+        for words in figure.texts:
+            self.assertTrue(0 < words.get_position()[0] < 0.1)
+        top, below = (words.get_position()[1] for words in figure.texts)
+        self.assertTrue(panels < below < top < 1)
+        self.assertGreater((top - below) * height, message.get_size() / 72)  # inches
 
     def test_message_and_details(self):
         self.write(*disc(8, 8))

@@ -9,6 +9,8 @@ from contextlib import redirect_stderr
 from pathlib import Path
 from unittest.mock import patch
 
+from matplotlib.text import Text
+
 REPORTS = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPORTS))
 
@@ -85,6 +87,35 @@ class Figures(unittest.TestCase):
         message = plane_figure.draw(scene()).message
         self.assertIn("10⁻² takes 1 ms (Newton, 16² cells, tolerance 10⁻⁴)", message)
         self.assertNotIn("10⁻⁵", message)
+
+    def test_plane_speaks_of_the_twist_by_the_best_of_all(self):
+        best = scene()["time_to"][:3]
+        others = [best[1] | {"method": "coulomb", "seconds": 0.5}, best[1] | {"quantity": "stick_radius", "seconds": 0.25}]
+        self.assertEqual(plane_figure.draw(scene(time_to=best + others)).message,
+                         "At M/M<sub>lim</sub>&nbsp;=&nbsp;0.9 a twist right to 10⁻² takes 1 ms (Newton, 16² cells, tolerance "
+                         "10⁻⁴); 10⁻⁴ takes 10 ms (Newton, 64² cells, tolerance 10⁻⁴).")
+
+    def test_plane_has_errors_against_times(self):
+        figure = plane_figure.draw(scene()).figure
+        self.assertEqual([axis.get_ylabel() for axis in figure.axes], ["relative error", "", ""])
+        self.assertIn("time of a whole solve, s (one thread)", [text.get_text() for text in figure.findobj(Text)])
+        self.assertEqual([axis.get_title() for axis in figure.axes], [title for _, title in plane_figure.PANELS])
+        for axis, times in zip(figure.axes, (1, 10, 1)):
+            self.assertEqual((axis.get_xscale(), axis.get_yscale()), ("log", "log"))
+            points = {(*line.get_xdata(), *line.get_ydata()) for line in axis.lines[:-1]}
+            self.assertEqual(points, {(1e-3, times * 1e-2), (1e-2, times * 1e-4), (0.1, times * 1e-4)})
+            self.assertEqual(list(axis.lines[-1].get_xdata()), [1e-3, 1e-2])  # the envelope
+        self.assertEqual([text.get_text() for text in figure.legends[0].get_texts()], [
+            "Newton’s method for Coulomb’s law", "full model", "envelope: nothing is quicker and as good"])
+
+    def test_plane_points_at_the_exact_answer(self):
+        for axis in plane_figure.draw(scene()).figure.axes:
+            arrow, words = axis.texts[-2:]
+            self.assertEqual(words.get_text(), "exact: 2.0×10⁻¹⁴")
+            self.assertEqual(arrow.xy, (5e-4, axis.get_ylim()[0]))
+            self.assertLess(axis.get_xlim()[0], 5e-4)
+        for axis in plane_figure.draw(scene(exact=None)).figure.axes:
+            self.assertEqual([note.get_text() for note in axis.texts], ["16²", "64²"])
 
     def test_wrong_points_are_counted_and_not_drawn(self):
         self.assertIn("their results are wrong: 1.", plane_figure.draw(scene()).details)

@@ -70,6 +70,11 @@ def tolerance_study():
     return study(series={"coulomb": one("coulomb", 0.0), "paper": one("paper", 1e-4)})
 
 
+def said(by, content):
+    series = study_result.read(content)
+    return by(series, study_result.main_quantities(series))
+
+
 def axes_of(figure):
     return [axis for axis in figure.get_axes() if axis.axison]
 
@@ -77,6 +82,11 @@ def axes_of(figure):
 class Errors(unittest.TestCase):
     def panel(self, content=None):
         return axes_of(study_figure.draw(content or study()).figure)[0]
+
+    def panel_alone(self, content=None):
+        axis = style.Figure().subplots()
+        study_figure.errors_panel(axis, study_result.read(content or study()), "twist_error")
+        return axis
 
     def test_points_are_the_sizes_of_the_errors(self):
         solved = [line for line in self.panel().lines if line.get_color() == style.BLUE and line.get_marker() == "o"]
@@ -132,6 +142,40 @@ class Errors(unittest.TestCase):
         with_bar, without = self.panel(content).get_ylim(), self.panel().get_ylim()
         self.assertEqual(with_bar, without)
 
+    def test_every_bar_ends_above_zero(self):
+        content = study(series={"one": series("coulomb", "solved")})
+        for mesh, times in zip(content["series"]["one"]["meshes"], (0.1, 0.5, 1.0, 2.0)):
+            mesh["twist_error"]["spread"] = times * abs(mesh["twist_error"]["mean"])
+        ends = [segment[:, 1] for bars in self.panel_alone(content).containers for bar in bars.lines[2]
+                for segment in bar.get_segments()]
+        self.assertEqual(len(ends), len(CELLS))
+        for low, high in ends:
+            self.assertTrue(0 < low < high)
+
+    def test_the_size_of_the_errors_does_not_move_their_points(self):
+        def heights(scale):
+            content = study()
+            for one in content["series"].values():
+                for mesh in one["meshes"]:
+                    mesh["twist_error"]["mean"] *= scale
+            axis = self.panel_alone(content)
+            return np.log(10 * scale / np.array([8**2, 16**2]) / axis.get_ylim()[0]) / np.log(np.divide(*axis.get_ylim()))
+
+        np.testing.assert_allclose(heights(1e-6), heights(1.0))
+
+    def test_points_and_guides_take_most_of_their_panel(self):
+        low, high = np.log(self.panel_alone().get_ylim())
+        least, most = np.log([1 / 64**2, 10 / 8**2])
+        self.assertLess(most + np.log(4), high)  # the guides begin at four times the largest error
+        self.assertGreater(least - low, 0.5 * 4 * 0.055 * (high - low))  # half of a legend of four entries
+        self.assertGreater(most - least, 0.5 * (high - low))
+
+    def test_more_entries_of_the_legend_have_more_room_below_the_points(self):
+        few = study(series=dict(list(study()["series"].items())[:2]))
+        (low_of_few, high_of_few), (low, high) = self.panel_alone(few).get_ylim(), self.panel_alone().get_ylim()
+        self.assertLess(low, low_of_few)
+        self.assertEqual(high, high_of_few)
+
     def test_a_spread_that_is_not_known_has_no_bar(self):
         content = study()
         for one in content["series"].values():
@@ -181,6 +225,23 @@ class Budget(unittest.TestCase):
         self.assertIn("On 1 of 4 meshes other parts of the error of the twist are above a tenth of the mesh’s, most of "
                       "all the iteration.", study_figure.draw(content).message)
 
+    def test_a_tenth_is_not_above_a_tenth(self):
+        for iteration, words in ((0.1, "The mesh makes at least 1.0×10¹ times"), (0.095, "The mesh makes at least"),
+                                 (0.11, "On 4 of 4 meshes")):
+            content = study()
+            for one in content["series"].values():
+                for row in one["budget"]:
+                    row.update(discretisation=1.0, iteration=iteration, reference=0.0, rounding=0.0)
+            self.assertIn(words, said(study_figure.message, content))
+
+    def test_details_say_how_many_grids_a_mesh_has_at_most(self):
+        content = study()
+        for one in content["series"].values():
+            one["meshes"][-1]["grids"] = 1
+        details = said(study_figure.details, content)
+        self.assertIn("Points are means over 3 grids", details)
+        self.assertIn("Cells of 15.6 to 125 mm.", details)
+
     def test_table_adds_up(self):
         label, table = tables.study_budget(study())
         self.assertEqual(label, "Newton’s method for Coulomb’s law, pressure solved on the same grid")
@@ -210,6 +271,10 @@ class Tolerances(unittest.TestCase):
         content = tolerance_study()
         del content["series"]["paper"]
         self.assertEqual(study_figure.draw(content).message, "Every tolerance that was asked for is reached.")
+
+    def test_details_name_the_mesh(self):
+        self.assertEqual(said(study_figure.details, tolerance_study()), "Tolerances on a mesh of 64 cells across. The part of "
+                         "an error that is due to stopping there is its change as the iteration goes on.")
 
     def test_one_mesh_has_no_table_of_orders(self):
         self.assertIsNone(tables.study_orders(tolerance_study()))
