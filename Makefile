@@ -3,6 +3,7 @@
 BUILD := build
 PREFIX ?= /usr/local
 REPORT_OPTIONS ?=
+FULL ?=
 BENCH_OPTIONS ?=
 REV ?= origin/main
 GATE_OPTIONS ?=
@@ -38,9 +39,9 @@ endef
 build: configure ## build everything, the program is build/slipstick
 	$(call build,all)
 
-report: configure ## run the validation and the studies, write the page (REPORT_OPTIONS="--quick")
+report: configure ## run everything that the page shows and write it (FULL=1: finer meshes; REPORT_OPTIONS="--quick")
 	$(call build,slipstick)
-	@$(BUILD)/slipstick report --output $(BUILD)/report $(REPORT_OPTIONS)
+	@$(BUILD)/slipstick report --output $(BUILD)/report --benchmarks $(BUILD)/benchmarks $(if $(FULL),--full) $(REPORT_OPTIONS)
 	@echo "The page: $(CURDIR)/$(BUILD)/report/index.html"
 
 test: configure ## run every test

@@ -12,17 +12,27 @@ import packages
 packages.require("numpy", "matplotlib", "jinja2", "h5py")
 
 import jinja2  # noqa: E402
-from markupsafe import escape  # noqa: E402
+from markupsafe import Markup, escape  # noqa: E402
 
 import figures  # noqa: E402
 import hard_cases  # noqa: E402
+import plane_figure  # noqa: E402
 import results  # noqa: E402
 import study_figure  # noqa: E402
 import style  # noqa: E402
 import tables  # noqa: E402
 from whole_file import write_whole  # noqa: E402
+from wording import plain, typeset  # noqa: E402
 
 HERE = Path(__file__).parent
+
+
+def inline(svg, alt):
+    """An SVG as it stands in a page: as wide as its place, named for those who do not see it."""
+    svg = re.sub(r"<metadata>.*?</metadata>", "", svg[svg.index("<svg"):] if "<svg" in svg else "", flags=re.DOTALL)
+    head = f'<svg role="img" aria-label="{escape(alt)}"'
+    return Markup(re.sub(r'^<svg[^>]*?(viewBox="[^"]*")[^>]*>',
+                         lambda tag: f'{head} {tag[1]} xmlns:xlink="http://www.w3.org/1999/xlink">', svg))
 
 
 def draw_entry(name, title, draw, folder):
@@ -30,16 +40,26 @@ def draw_entry(name, title, draw, folder):
     entry = {"name": name, "title": title}
     try:
         drawn = draw()
-        style.save(drawn.figure, folder / name)
-        entry.update(message=drawn.message, details=drawn.details, alt=drawn.alt)
+        svg = style.save(drawn.figure, folder / name) or ""
+        entry.update(message=drawn.message, details=drawn.details, numbers=drawn.numbers, sources=drawn.sources,
+                     svg=inline(svg, drawn.alt), csv=(folder / f"{name}.csv").exists())
     except results.Unavailable as reason:
         entry["unavailable"] = str(reason)
         print(f"render.py: {name} is not available: {reason}", file=sys.stderr)
     return entry
 
 
-def draw_all(report, data_dir, folder):
-    return [draw_entry(name, title, lambda: draw(report, data_dir), folder) for name, title, draw in figures.FIGURES]
+def show_sections(report, data_dir, folder):
+    """The lead figure, and the sections with theirs, numbered as they stand on the page."""
+    numbered = iter(range(1, 1000))
+
+    def draw(figures_of):
+        return [draw_entry(name, title, lambda: make(report, data_dir), folder) | {"number": next(numbered)}
+                for name, title, make in figures_of]
+
+    lead, = draw([figures.LEAD])
+    return lead, {section.name: {"question": section.question, "figures": draw(section.figures)}
+                  for section in figures.SECTIONS}
 
 
 def show_studies(report, folder):
@@ -56,6 +76,16 @@ def show_studies(report, folder):
                          budget={"table": budget}, budget_series=series)
         entries.append(entry)
     return entries
+
+
+def show_speed(benchmarks, folder):
+    """What `slipstick bench` measured: a figure for each scene of its plane; none where it has not been run."""
+    plane = benchmarks / "plane.json" if benchmarks else None
+    if plane is None or not plane.is_file():
+        return []
+    return [draw_entry(f"plane-{k}", f"Speed against error at M/M_lim = {plain(results.number(scene, 'moment_ratio'))}",
+                       lambda: plane_figure.draw(scene), folder)
+            for k, scene in enumerate(results.rows(results.load(plane), "scenes"), 1)]
 
 
 def tabulate(report, name, columns):
@@ -85,24 +115,33 @@ def map_hard_cases(report):
         return {"unavailable": str(reason)}
 
 
-def render(data_dir, output):
-    """Writes output/index.html and output/figures/ from data_dir/report.json and the field files beside it."""
+def render(data_dir, output, benchmarks=None):
+    """Writes output/index.html and output/figures/ from data_dir/report.json and the field files beside it, and from
+    benchmarks/plane.json where there is one."""
     report = results.load(data_dir / "report.json")
     folder = output / "figures"
     folder.mkdir(parents=True, exist_ok=True)
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True,
                                      lstrip_blocks=True)
+    environment.filters["typeset"] = typeset
+    lead, sections = show_sections(report, data_dir, folder)
     page = environment.get_template("page.html.j2").render(
         report=report,
-        figures=draw_all(report, data_dir, folder),
+        lead=lead,
+        sections=sections,
+        headline=report.get("headline"),
+        remembered=tables.remembered(report),
         studies=show_studies(report, folder),
+        speed=show_speed(benchmarks, folder),
+        gates=tabulate(report, "gates.gates", tables.GATES),
+        peers=tabulate(report, "peers", tables.PEERS),
         gallery=tabulate_gallery(report, data_dir, output),
         loading=tabulate(report, "loading", tables.LOADING),
         mesh=tabulate(report, "mesh", tables.MESH),
         approximations=tabulate(report, "approximation_table", tables.APPROXIMATIONS),
         hard=map_hard_cases(report),
-        nulls=results.nulls({key: part for key, part in report.items() if key not in ("studies", "hard")}),
-        data=os.path.relpath(data_dir / "report.json", output) if data_dir.is_relative_to(output) else None)
+        nulls=results.nulls({key: part for key, part in report.items() if key not in ("studies", "hard", "headline", "gates", "peers")}),
+        data=os.path.relpath(data_dir, output) if data_dir.is_relative_to(output) else None)
     write_whole(output / "index.html", page.encode())
 
 
@@ -110,9 +149,10 @@ def main(words=None):
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("data_dir", type=Path, help="folder with report.json and its field files")
     parser.add_argument("--output", type=Path, required=True, help="folder for index.html and figures/")
+    parser.add_argument("--benchmarks", type=Path, help="folder with plane.json, of `slipstick bench`")
     arguments = parser.parse_args(words)
     try:
-        render(arguments.data_dir.resolve(), arguments.output.resolve())
+        render(arguments.data_dir.resolve(), arguments.output.resolve(), arguments.benchmarks)
     except results.InputError as error:
         print(f"render.py: {error}", file=sys.stderr)
         return 2

@@ -12,6 +12,7 @@ from matplotlib.colors import LinearSegmentedColormap, ListedColormap
 from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
+import figure_data
 from whole_file import write_whole
 
 # Okabe and Ito (2008): distinguished with any colour vision.
@@ -86,17 +87,28 @@ FORMATS = {".svg": {"Date": None}, ".pdf": {"CreationDate": None}, ".png": {}}
 CANVASES = {".svg": FigureCanvasSVG, ".pdf": FigureCanvasPdf, ".png": FigureCanvasAgg}
 
 
-def write(figure, path):
-    """Writes one file, of the kind that its ending says: one of FORMATS. By the canvas itself, which lays out while it
-    draws: Figure.savefig draws all of it once more before."""
-    drawn, kind = io.BytesIO(), path.suffix[1:]
+def draw(figure, kind):
+    """The bytes of a file of a kind, one of FORMATS. By the canvas itself, which lays out while it draws: Figure.savefig
+    draws all of it once more before."""
+    drawn = io.BytesIO()
     figure.set_dpi(matplotlib.rcParams["savefig.dpi"])
-    getattr(CANVASES[path.suffix](figure), f"print_{kind}")(drawn, metadata=FORMATS[path.suffix])
-    write_whole(path, drawn.getvalue())
+    getattr(CANVASES[kind](figure), f"print_{kind[1:]}")(drawn, metadata=FORMATS[kind])
+    return drawn.getvalue()
+
+
+def write(figure, path):
+    """Writes one file, of the kind that its ending says: one of FORMATS."""
+    write_whole(path, draw(figure, path.suffix))
 
 
 def save(figure, stem):
-    """Writes stem.svg and stem.pdf, laid out once for both: that takes as long as the rest. Nothing moves afterwards."""
-    for suffix in (".svg", ".pdf"):
-        write(figure, stem.with_suffix(suffix))
-        figure.set_layout_engine("none")
+    """Writes stem.svg, stem.pdf and, but for mere maps, the numbers drawn as stem.csv; returns the SVG. Laid out once for
+    all: that takes as long as the rest. Nothing moves afterwards."""
+    svg = figure_data.with_words(figure, draw(figure, ".svg").decode())
+    write_whole(stem.with_suffix(".svg"), svg.encode())
+    figure.set_layout_engine("none")
+    write(figure, stem.with_suffix(".pdf"))
+    numbers = figure_data.csv_of(figure)
+    if numbers:
+        write_whole(stem.with_suffix(".csv"), numbers.encode())
+    return svg

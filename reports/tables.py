@@ -65,6 +65,42 @@ APPROXIMATIONS = [
     ("DEM moment at the exact twist", "dem_moment.error", signed_percent),
 ]
 
+GATES = [
+    ("gate", "id", _text),
+    ("outcome", "outcome", _text),
+    ("quantity", "quantity", _text),
+    ("value", "value", lambda found: sci(found) if isinstance(found, float) else str(found)),
+    ("part of its bound", "factor", lambda part: f"{100 * part:.0f}\N{NO-BREAK SPACE}%"),
+    ("why it matters", "reason", _text),
+]
+
+PEERS = [
+    ("program", "program", _text),
+    ("verdict", "verdict", _text),
+    ("cells", "cells", _cells),
+    ("moment error", "moment_error", sci),
+    ("twist error", "twist_error", sci),
+    ("traction error L2", "traction_error.l2", sci),
+    ("slip direction, degrees", "slip_direction.mean", sci),
+    ("gap / energy", "certificate.gap", sci),
+    ("why", "why", typeset),
+]
+
+
+def remembered(report):
+    """The four numbers that stand first: (number, what it is, of what)."""
+    try:
+        numbers = value(report, "headline.numbers")
+        across = _cells(value(numbers, "cells"))
+        of = Markup("{} cells, M/M<sub>lim</sub>&nbsp;=&nbsp;{}").format(across, plain(value(numbers, "moment_ratio")))
+        return [(_or_dash(value(numbers, key), write), words, of) for key, words, write in (
+            ("twist_error", "error of the twist", sci), ("stick_radius_error", "error of the stick radius", sci),
+            ("gap", "gap in Coulomb’s law, over the energy", sci),
+            ("seconds", "time of the solve", lambda time: f"{seconds(time)}\N{NO-BREAK SPACE}s"))]
+    except Unavailable:
+        return []
+
+
 UNITS = {"rad": ANGLES, "m": LENGTHS, "N m": MOMENTS, "J": ENERGIES}
 
 GALLERY_HEAD = ["scene", "what it shows", "judged by", "computed", "reference", "error", "gap / energy",

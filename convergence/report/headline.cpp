@@ -61,9 +61,8 @@ std::string joined(const Json& words) {
 }
 
 std::string gates_line(const Json& gates) {
-  if (gates.is_null()) return "gates: left out of a quick page; make gate runs them";
-  std::string line =
-      fmt::format("gates: {} of {} pass", gates["passed"].get<int>(), gates["total"].get<int>());
+  if (gates.is_null()) return "left out of a quick page; make gate runs them";
+  std::string line = fmt::format("{} of {} pass", gates["passed"].get<int>(), gates["total"].get<int>());
   if (const int expected = gates["expected_failures"]; expected > 0) {
     line += fmt::format(", {} fails as it should", expected);
   }
@@ -76,7 +75,7 @@ std::string gates_line(const Json& gates) {
 }
 
 std::string hard_line(const Json& hard) {
-  return fmt::format("hard cases: {} of {} certified, {} refused with a reason, {} not converged, {} wrong",
+  return fmt::format("{} of {} certified, {} refused with a reason, {} not converged, {} wrong",
                      hard["certified"].get<int>(), hard["total"].get<int>(), hard["refused"].get<int>(),
                      hard["not_converged"].get<int>(), hard["wrong"].get<int>());
 }
@@ -86,17 +85,16 @@ std::string numbers_line(const Json& numbers) {
     return numbers[key].is_number() ? fmt::format(fmt::runtime(look), numbers[key].get<double>())
                                     : std::string("unknown");
   };
-  return fmt::format(
-      "paper's sphere, M/M_lim = {}, {} x {} cells: twist off by {}, stick radius by {}, gap {}, {} s",
-      text("moment_ratio", "{}"), numbers["cells"][0].get<int>(), numbers["cells"][1].get<int>(),
-      text("twist_error", "{:.1e}"), text("stick_radius_error", "{:.1e}"), text("gap", "{:.1e}"),
-      text("seconds", "{:.2g}"));
+  return fmt::format("M/M_lim = {}, {} x {} cells: twist off by {}, stick radius by {}, gap {}, {} s",
+                     text("moment_ratio", "{}"), numbers["cells"][0].get<int>(),
+                     numbers["cells"][1].get<int>(), text("twist_error", "{:.1e}"),
+                     text("stick_radius_error", "{:.1e}"), text("gap", "{:.1e}"), text("seconds", "{:.2g}"));
 }
 
 std::string peers_line(const Json& peers) {
-  std::string line = "other programs:";
+  std::string line;
   for (const Json& peer : peers) {
-    line += fmt::format("{} {} is {}", peer == peers.front() ? "" : ",", peer["program"].get<std::string>(),
+    line += fmt::format("{}{} is {}", line.empty() ? "" : ", ", peer["program"].get<std::string>(),
                         peer["verdict"].get<std::string>());
     if (peer["verdict"] != peer["expected"])
       line += fmt::format(" (known to be {})", peer["expected"].get<std::string>());
@@ -164,10 +162,12 @@ Json headline(const Json& report) {
     good = good && peer["verdict"] == peer["expected"];
   }
   const Json numbers = remembered(report["mesh"]);
-  Json lines = Json::array({gates_line(counts["gates"]), hard_line(counts["hard"])});
-  if (failed > 0) lines.push_back(fmt::format("studies: {} have runs that failed", failed));
-  if (!report["peers"].empty()) lines.push_back(peers_line(report["peers"]));
-  if (!numbers.empty()) lines.push_back(numbers_line(numbers));
+  Json lines = Json::array();
+  const auto add = [&](const char* what, const std::string& line) { lines.push_back({what, line}); };
+  add("Gates", gates_line(counts["gates"]));
+  add("Hard cases", hard_line(counts["hard"]));
+  if (failed > 0) add("Studies", fmt::format("{} have runs that failed", failed));
+  if (!report["peers"].empty()) add("Other programs", peers_line(report["peers"]));
   return {{"verdict", good && failed == 0 ? "good" : "bad"},
           {"commit", report["provenance"]["commit"]},
           {"lines", lines},
@@ -204,17 +204,22 @@ Json with_changes(Json now, const Json& before) {
 
 std::string headline_text(const Json& headline) {
   constexpr std::size_t kShownChanges = 3;
-  std::string text = headline["verdict"] == "good" ? "all is well\n" : "NOT all is well\n";
-  for (const Json& line : headline["lines"]) text += "  " + line.get<std::string>() + '\n';
-  const Json& found = headline["changes"];
+  std::string text = headline["verdict"] == "good" ? "All is well\n" : "NOT all is well\n";
+  const auto add = [&](const std::string& what, const std::string& line) {
+    text += fmt::format("  {:<15} {}\n", what, line);
+  };
+  for (const Json& line : headline["lines"]) add(line[0].get<std::string>(), line[1].get<std::string>());
+  if (const Json& numbers = headline["numbers"]; !numbers.empty())
+    add("Paper's sphere", numbers_line(numbers));
   if (headline["since"].is_null()) return text;
   const std::string since = headline["since"].get<std::string>().substr(0, 12);
-  if (found.empty()) return text + fmt::format("  nothing changed since the page of commit {}\n", since);
+  const Json& found = headline["changes"];
+  if (found.empty()) add("Changes", fmt::format("none since the page of commit {}", since));
   for (std::size_t i = 0; i < std::min(found.size(), kShownChanges); ++i) {
-    text += fmt::format("  since the page of commit {}: {}\n", since, found[i].get<std::string>());
+    add(i == 0 ? "Changes" : "",
+        fmt::format("since the page of commit {}: {}", since, found[i].get<std::string>()));
   }
-  if (found.size() > kShownChanges)
-    text += fmt::format("  and {} changes more\n", found.size() - kShownChanges);
+  if (found.size() > kShownChanges) add("", fmt::format("and {} more", found.size() - kShownChanges));
   return text;
 }
 

@@ -8,8 +8,8 @@ namespace slipstick::convergence {
 
 /// The verdict and what it rests on, of a report with "mesh", "hard", "studies", "peers" and, unless they
 /// were left out, "gates": `verdict` is good where every active gate holds and no hard case, study or known
-/// field ends wrong, else bad; `counts` and `numbers` hold what a person remembers, `lines` the same in
-/// sentences.
+/// field ends wrong, else bad; `counts` and `numbers` hold what a person remembers, `lines` says it in words,
+/// in pairs of what and how.
 nlohmann::ordered_json headline(const nlohmann::ordered_json& report);
 
 /// Sentences on what differs from an earlier headline: none where only times do.

@@ -27,7 +27,9 @@ namespace fs = std::filesystem;
 struct ReportRequest {
   std::string scene;
   std::string output = "build/report";
+  std::string benchmarks = "build/benchmarks";
   bool quick = false;
+  bool full = false;
   MemoryOption memory;
 };
 
@@ -42,9 +44,18 @@ bool is_current(const fs::path& page, const std::vector<fs::path>& sources) {
   return true;
 }
 
-void draw(const fs::path& data, const fs::path& output) {
-  if (is_current(output / "index.html", {data, project_file("reports")})) return;
-  run_report_script("render.py", {"--output=" + output.string(), "--", data},
+/// What the user asked for: seconds, a page, or the long form.
+ValidationSize size_of(const ReportRequest& request) {
+  if (request.quick) return quick_validation();
+  return request.full ? full_validation() : page_validation();
+}
+
+void draw(const fs::path& data, const fs::path& benchmarks, const fs::path& output) {
+  std::vector<fs::path> sources{data, project_file("reports")};
+  if (fs::is_directory(benchmarks)) sources.push_back(benchmarks);
+  if (is_current(output / "index.html", sources)) return;
+  run_report_script("render.py",
+                    {"--output=" + output.string(), "--benchmarks=" + benchmarks.string(), "--", data},
                     "the results are in " + data.string());
 }
 
@@ -62,9 +73,9 @@ int run_report(const ReportRequest& request, std::ostream& text, nlohmann::order
                           .interrupted = Interrupts::seen});
   {
     const Interrupts interrupts;
-    result = validate(scene, inputs, request.quick ? quick_validation() : full_validation(), data, pool);
+    result = validate(scene, inputs, size_of(request), data, pool);
   }
-  draw(data, output);
+  draw(data, fs::path(request.benchmarks) / "data", output);
   text << headline_text(result["headline"]) << "page: " << (output / "index.html").string() << '\n';
   int exit_code = 0;
   for (const auto& study : result["studies"]) {
@@ -83,7 +94,13 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_report_command(CL
   CLI::App* const command = app.add_subcommand("report", "Run the paper's validation and draw the page");
   command->add_option("scene", request->scene, "scene file; left out: the paper's own case");
   command->add_option("--output", request->output, "folder for the page")->capture_default_str();
-  command->add_flag("--quick", request->quick, "small grids: seconds instead of a minute");
+  CLI::Option* const quick =
+      command->add_flag("--quick", request->quick, "small grids, no gates: seconds instead of minutes");
+  command->add_flag("--full", request->full, "finer meshes: some minutes more")->excludes(quick);
+  command
+      ->add_option("--benchmarks", request->benchmarks,
+                   "folder that `slipstick bench` wrote; the page shows its times where there are some")
+      ->capture_default_str();
   request->memory.add_to(*command);
   command->footer(
       "Example:\n  slipstick report --output build/report\nFinished solves are kept: repeating an "

@@ -244,15 +244,24 @@ std::vector<Index> up_to(std::vector<Index> cells, Index most) {
   return cells;
 }
 
-ValidationSize full_validation() {
+ValidationSize page_validation() {
   return {.loading_cells = 128,
           .mesh_cells = {32, 64, 128, 256},
           .ellipse_cells = {64, 128, 256},
           .gallery_cells = {64, 128, 256},
           .moment_ratios = {0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99},
-          .study_cells = 512,
+          .study_cells = 256,
           .hard_step = 1,
           .gates = true};
+}
+
+ValidationSize full_validation() {
+  ValidationSize size = page_validation();
+  size.mesh_cells.push_back(512);
+  size.ellipse_cells.push_back(512);
+  size.gallery_cells = {128, 256, 512};
+  size.study_cells = 512;
+  return size;
 }
 
 ValidationSize quick_validation() {

@@ -22,8 +22,9 @@ struct ValidationSize {
   std::size_t hard_step;                       ///< 1: all hard cases; 10: every tenth
   bool gates;                                  ///< convergence/gates/quick.toml is run too
 };
-ValidationSize full_validation();
-ValidationSize quick_validation();
+ValidationSize quick_validation();  ///< seconds: is everything there?
+ValidationSize page_validation();   ///< a minute or two
+ValidationSize full_validation();   ///< finer meshes
 
 /// A study's meshes, rising, without those that are finer than `most`; this one in their place.
 std::vector<solver::Index> up_to(std::vector<solver::Index> cells, solver::Index most);
