@@ -17,7 +17,7 @@ INSTRUCTION_GATES = $(wildcard bench/gates/instructions-gcc-$(firstword $(subst 
 
 .DEFAULT_GOAL := help
 .PHONY: help setup configure build report test gate hard mutants sanitize lint bench bench-against bench-trust references \
-  hardest install clean
+  hardest docs install clean
 
 help: ## show this list
 	@echo "slipstick: make TARGET"
@@ -99,6 +99,12 @@ references: configure ## make the table of proven values anew (2 minutes; needs 
 hardest: configure ## look for harder inputs of the exact functions (SEARCH_OPTIONS="--seed 2 --samples 1000")
 	$(call build,slipstick_references)
 	@$(BUILD)/analytic/certified/slipstick_references search --folder analytic/references/hardest $(SEARCH_OPTIONS)
+
+docs: ## make the documentation's site, build/site/index.html (needs MkDocs)
+	@command -v mkdocs > /dev/null || \
+	  { echo "make docs: mkdocs is missing. On Debian or Ubuntu: apt-get install --no-install-recommends mkdocs" >&2; exit 2; }
+	@mkdocs build --strict --quiet --config-file docs/site/mkdocs.yml --site-dir "$(abspath $(BUILD))/site"
+	@echo "The documentation: $(abspath $(BUILD))/site/index.html"
 
 install: configure ## install under PREFIX (default /usr/local)
 	$(call build,slipstick)

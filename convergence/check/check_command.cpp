@@ -69,7 +69,7 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI
                     "good only in the scene's own conventions: m, Pa, tractions on the lower body");
   command->footer(
       "Example:\n  slipstick check convergence/scenes/paper.toml tractions.csv --twist 2.361e-3\nExit code "
-      "0: good; 1: bad; 2: cannot be judged. docs/verify-your-solver.md explains each number.");
+      "0: good; 1: bad; 2: cannot be judged. docs/guides/verify-your-solver.md explains each number.");
   return [command, request](std::ostream& text, nlohmann::ordered_json& result) {
     return run_check(*command, *request, text, result);
   };

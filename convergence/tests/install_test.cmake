@@ -8,8 +8,8 @@ endfunction()
 
 file(REMOVE_RECURSE ${WORK_DIR})
 run(${CMAKE_COMMAND} --install ${BUILD_DIR} --prefix ${WORK_DIR}/prefix)
-# The consumer is the program of docs/use-from-cpp.md.
-file(READ ${CMAKE_CURRENT_LIST_DIR}/../../docs/use-from-cpp.md page)
+# The consumer is the program of docs/guides/use-from-cpp.md.
+file(READ ${CMAKE_CURRENT_LIST_DIR}/../../docs/guides/use-from-cpp.md page)
 string(REGEX MATCH "```cpp\n([^`]*)```" snippet "${page}")
 file(WRITE ${WORK_DIR}/source/consumer.cpp "${CMAKE_MATCH_1}")
 file(COPY ${CMAKE_CURRENT_LIST_DIR}/consumer/CMakeLists.txt DESTINATION ${WORK_DIR}/source)

@@ -1,5 +1,5 @@
 // Where the verdict turns: a right field with one thing wrong by a known amount, just below and just above
-// what docs/verify-your-solver.md allows.
+// what docs/guides/verify-your-solver.md allows.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

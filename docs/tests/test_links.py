@@ -1,0 +1,95 @@
+"""test_links.py SOURCE_DIR [MKDOCS]: every relative link and anchor of README.md and docs/**/*.md leads somewhere, and the
+site builds without a warning and asks nothing of other servers, where MkDocs is installed."""
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+import unicodedata
+import unittest
+from urllib.parse import unquote
+
+sys.path.insert(0, str(pathlib.Path(__file__).parent))
+from pages import line_of, pages, relative, without_blocks
+
+ROOT = pathlib.Path(sys.argv[1]).resolve()
+MKDOCS = sys.argv[2] if len(sys.argv) > 2 else ""
+LINK = re.compile(r"!?\[(?:[^\[\]]|\[[^\]]*\])*\]\(\s*<?([^)\s>]+)>?(?:\s+\"[^\"]*\")?\s*\)|\b(?:href|src)=\"([^\"]+)\"", re.S)
+
+
+def plain(heading):
+    """The heading's words, without the marks of code, emphasis and links."""
+    return re.sub(r"<[^>]*>|[`*]|\[([^\]]*)\]\([^)]*\)", lambda match: match.group(1) or "", heading).strip()
+
+
+def forge_anchor(heading):
+    return re.sub(r"[^\w\- ]", "", plain(heading).lower()).replace(" ", "-")
+
+
+def site_anchor(heading):
+    ascii_only = unicodedata.normalize("NFKD", plain(heading)).encode("ascii", "ignore").decode()
+    return re.sub(r"[-\s]+", "-", re.sub(r"[^\w\s-]", "", ascii_only).strip().lower())
+
+
+def anchors(page):
+    """What #anchors of a page work on a forge and on the site alike."""
+    headings = re.findall(r"^#{1,6} (.*)$", without_blocks(page.read_text()), re.M)
+    return {forge_anchor(heading) for heading in headings if forge_anchor(heading) == site_anchor(heading)}
+
+
+def broken_links(page):
+    text = without_blocks(page.read_text())
+    for match in LINK.finditer(text):
+        target = unquote(match.group(1) or match.group(2))
+        if re.match(r"[a-z]+:", target):
+            continue
+        where = f"{relative(page, ROOT)}:{line_of(text, match.start())}: {target}"
+        path, _, anchor = target.partition("#")
+        file = (page.parent / path).resolve() if path else page
+        if not file.is_relative_to(ROOT):
+            yield f"{where}: outside of the project"
+        elif not file.exists():
+            yield f"{where}: no such file"
+        elif page.parent != ROOT and not file.is_relative_to(ROOT / "docs"):
+            yield f"{where}: the site holds docs/ alone; name the file as code"
+        elif anchor and (file.suffix != ".md" or anchor not in anchors(file)):
+            yield f"{where}: no heading of this name, on a forge and on the site"
+
+
+class LinksTest(unittest.TestCase):
+    def test_lead_somewhere(self):
+        broken = [line for page in pages(ROOT) for line in broken_links(page)]
+        self.assertFalse(broken, "\n" + "\n".join(broken))
+
+    def test_index_leads_to_every_guide(self):
+        index = (ROOT / "docs/index.md").read_text()
+        missing = [path.name for path in (ROOT / "docs/guides").glob("*.md") if f"(guides/{path.name})" not in index]
+        self.assertFalse(missing)
+
+    @unittest.skipUnless(MKDOCS, "MkDocs is not installed")
+    def test_site_builds_strictly_and_asks_nothing_of_others(self):
+        with tempfile.TemporaryDirectory() as folder:
+            result = subprocess.run(
+                [MKDOCS, "build", "--strict", "--quiet", "--config-file", ROOT / "docs/site/mkdocs.yml", "--site-dir", folder],
+                capture_output=True, text=True)
+            self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+            site = pathlib.Path(folder)
+            self.assertTrue((site / "guides/verify-your-solver.html").is_file())
+            asked = re.compile(r"<(?:script|link|img|iframe)\b[^>]*\b(?:src|href)=[\"']?((?:https?:)?//[^\"' >]+)|"
+                               r"@import[^;]*(?:https?:)?//|url\([\"']?(?:https?:)?//")
+            found = [f"{path.relative_to(site)}: {match.group()}" for path in [*site.rglob("*.html"), *site.rglob("*.css")]
+                     for match in asked.finditer(path.read_text())]
+            self.assertFalse(found)
+
+
+class ReadmeTest(unittest.TestCase):
+    def test_shows_the_two_commands_and_a_figure_on_the_first_screen(self):
+        lines = (ROOT / "README.md").read_text().splitlines()
+        self.assertLessEqual(len(lines), 180)
+        screen = "\n".join(lines[:40])
+        for wanted in ["make report", "make test", "![Twist against load"]:
+            self.assertIn(wanted, screen)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
