@@ -1,5 +1,6 @@
-"""test_links.py SOURCE_DIR [MKDOCS]: every relative link and anchor of README.md and docs/**/*.md leads somewhere, and the
-site builds without a warning and asks nothing of other servers, where MkDocs is installed."""
+"""test_links.py SOURCE_DIR [MKDOCS]: every relative link and anchor of README.md, CONTRIBUTING.md and docs/**/*.md leads
+somewhere, every file, function and test that they name exists, and the site builds without a warning and asks nothing of
+other servers, where MkDocs is installed."""
 import pathlib
 import re
 import subprocess
@@ -14,6 +15,7 @@ from pages import line_of, pages, relative, without_blocks
 
 ROOT = pathlib.Path(sys.argv[1]).resolve()
 MKDOCS = sys.argv[2] if len(sys.argv) > 2 else ""
+PAGES = [*pages(ROOT), ROOT / "CONTRIBUTING.md"]
 LINK = re.compile(r"!?\[(?:[^\[\]]|\[[^\]]*\])*\]\(\s*<?([^)\s>]+)>?(?:\s+\"[^\"]*\")?\s*\)|\b(?:href|src)=\"([^\"]+)\"", re.S)
 
 
@@ -58,7 +60,7 @@ def broken_links(page):
 
 class LinksTest(unittest.TestCase):
     def test_lead_somewhere(self):
-        broken = [line for page in pages(ROOT) for line in broken_links(page)]
+        broken = [line for page in PAGES for line in broken_links(page)]
         self.assertFalse(broken, "\n" + "\n".join(broken))
 
     def test_index_leads_to_every_guide(self):
@@ -80,6 +82,39 @@ class LinksTest(unittest.TestCase):
             found = [f"{path.relative_to(site)}: {match.group()}" for path in [*site.rglob("*.html"), *site.rglob("*.css")]
                      for match in asked.finditer(path.read_text())]
             self.assertFalse(found)
+
+
+class NamesTest(unittest.TestCase):
+    def test_files_in_backquotes_exist(self):
+        folders = {path.name for path in ROOT.iterdir() if path.is_dir() and not path.name.startswith(("build", "."))}
+        missing = []
+        for page in PAGES:
+            text = without_blocks(page.read_text())
+            for span in re.finditer(r"`([a-z]+)(/[\w./*-]*)`", text):
+                if span[1] in folders and not list(ROOT.glob(span[1] + span[2].rstrip("/"))):
+                    missing.append(f"{relative(page, ROOT)}:{line_of(text, span.start())}: {span[0]}")
+        self.assertFalse(missing, "\n" + "\n".join(missing))
+
+    def test_functions_and_tests_of_the_equations_exist(self):
+        rows = re.findall(r"^\| (\([^|]*) \|([^|]*)\|([^|]*)\|", (ROOT / "docs/theory.md").read_text(), re.M)
+        self.assertEqual({number for row in rows for number in equations(row[0])}, set(range(1, 27)))
+        sources = "".join(path.read_text() for folder in ["analytic", "solver"] for path in sorted((ROOT / folder).rglob("*.[ch]pp")))
+        missing = []
+        for equation, functions, tests in rows:
+            for name in re.findall(r"`([\w:/.]+)`", functions):
+                known = (ROOT / name).is_file() or list((ROOT / "analytic").glob(name)) if "." in name else \
+                    re.search(rf"\b{name.rpartition(':')[2]}\b", sources)
+                missing += [] if known else [f"{equation}: {name}"]
+            for suite, test in re.findall(r"`(\w+)\.(\w*)", tests):
+                known = re.search(rf"\bTEST(_[FP])?\(\s*{suite},\s*{test}", sources)
+                missing += [] if known else [f"{equation}: {suite}.{test}"]
+        self.assertFalse(missing)
+
+
+def equations(text):
+    """The numbers in '(10), (11)' or '(14)–(16)'."""
+    ends = [int(number) for number in re.findall(r"\((\d+)\)", text)]
+    return range(ends[0], ends[-1] + 1)
 
 
 class ReadmeTest(unittest.TestCase):
