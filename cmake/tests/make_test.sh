@@ -43,4 +43,11 @@ check references slipstick_references
 check install slipstick
 check build all
 
+PATH="$folder/programs" "$(command -v make)" BUILD="$build" docs > "$folder/output" 2>&1
+expect "make docs fails without MkDocs" test $? = 2
+expect "make docs says what is missing" says "mkdocs is missing"
+ln -s cmake "$folder/programs/mkdocs"
+check docs ""
+expect "make docs is strict" grep --quiet "build --strict" "$CALLS"
+
 conclude
