@@ -63,10 +63,12 @@ class LinksTest(unittest.TestCase):
         broken = [line for page in PAGES for line in broken_links(page)]
         self.assertFalse(broken, "\n" + "\n".join(broken))
 
-    def test_index_leads_to_every_guide(self):
-        index = (ROOT / "docs/index.md").read_text()
-        missing = [path.name for path in (ROOT / "docs/guides").glob("*.md") if f"(guides/{path.name})" not in index]
-        self.assertFalse(missing)
+    def test_index_and_menu_lead_to_every_page(self):
+        docs = ROOT / "docs"
+        index = (docs / "index.md").read_text()
+        self.assertFalse([path.name for path in (docs / "guides").glob("*.md") if f"(guides/{path.name})" not in index])
+        menu = set(re.findall(r": (\S+\.md)$", (docs / "site/mkdocs.yml").read_text(), re.M))
+        self.assertEqual({path.relative_to(docs).as_posix() for path in docs.rglob("*.md")} - menu, set())
 
     @unittest.skipUnless(MKDOCS, "MkDocs is not installed")
     def test_site_builds_strictly_and_asks_nothing_of_others(self):
