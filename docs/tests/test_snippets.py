@@ -28,7 +28,7 @@ class PagesTest(unittest.TestCase):
         print(f"{sum(page.ran for page in runs)} snippets run, {len(left)} not run:", *left, sep="\n  ")
         print(f"{used.ru_utime + used.ru_stime:.1f} s of processor time")
         problems = [problem for page in runs for problem in page.problems]
-        self.assertFalse(problems, "\n" + "\n".join(problems))
+        self.assertEqual("\n".join(problems), "")
 
     def test_every_command_in_a_sentence_exists(self):
         problems = []
@@ -39,7 +39,7 @@ class PagesTest(unittest.TestCase):
                 if re.match(r"(build/)?slipstick [a-z]|make [a-z]", words):
                     problems += [f"{relative(page, ROOT)}:{line_of(text, span.start())}: {problem}"
                                  for problem in CHECKOUT.command_problems(words)]
-        self.assertFalse(problems, "\n" + "\n".join(problems))
+        self.assertEqual("\n".join(problems), "")
 
 
 class RunnerTest(unittest.TestCase):
