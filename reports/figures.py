@@ -262,7 +262,7 @@ SECTIONS = [
         ("convergence", "Convergence with the mesh", convergence),
     ]),
     Section("cost", "What does an error cost?", [
-        ("cost", "Error against time", cost),
+        ("error-against-time", "Error against time", cost),
     ]),
     Section("bodies", "What if it is not a sphere?", [
         ("slip-maps", "Where it sticks and how it slips", gallery_figure.slip_maps),
@@ -276,7 +276,7 @@ SECTIONS = [
         ("gap", "What the stopping test leaves", method_figures.certificate),
     ]),
     Section("peers", "How do other programs do?", [
-        ("peers", "Fields of other programs, judged", peers_figure.peers),
+        ("known-fields", "Fields of other programs, judged", peers_figure.peers),
     ]),
 ]
 FIGURES = [LEAD, *(figure for section in SECTIONS for figure in section.figures)]

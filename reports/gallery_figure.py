@@ -14,6 +14,7 @@ from wording import percent, sci
 
 ACROSS = 6  # panels in a row
 PANEL_HEIGHT = 1.42  # inches, with its two lines of text
+ARROWS = 18  # along the longer side of a contact
 MARGIN = 0.06  # around the contact, of its longer side
 
 
@@ -44,9 +45,10 @@ def slip_maps(report, data_dir):
     shown = [scenes[name] for name in SHOWN if name in scenes]
     if not shown:
         raise Unavailable("the gallery has none of the scenes that are shown here")
-    figure, axes = style.panels(1, len(shown), 2.5, squeeze=False)
-    for axis, scene in zip(axes.flat, shown):
+    figure, axes = style.panels(-(-len(shown) // 2), 2, 3.4 * -(-len(shown) // 2), squeeze=False)
+    for axis in axes.flat:
         axis.axis("off")
+    for axis, scene in zip(axes.flat, shown):
         draw_arrows(axis, draw_scene(axis, scene, data_dir))
     return FigureEntry(
         "The middle sticks, the rest slips around the point about which the contact turns; a rough contact sticks in spots.",
@@ -67,9 +69,9 @@ def draw_arrows(axis, cells):
     slips = (cells.columns["stick"] == 0) & (length > 1e-3 * length.max())
     if not slips.any():
         return
-    shown = cells.thinned(slips)
-    along = slip[:, shown] / length[shown] * cells.spacing() * 0.9
-    axis.quiver(*cells.positions[:, shown], *along, angles="xy", scale_units="xy", scale=1, pivot="mid", width=0.006,
+    shown = cells.thinned(slips, ARROWS)
+    along = slip[:, shown] / length[shown] * cells.spacing(ARROWS) * 0.9
+    axis.quiver(*cells.positions[:, shown], *along, angles="xy", scale_units="xy", scale=1, pivot="mid", width=0.004,
                 headwidth=4, color=style.BLACK)
 
 

@@ -212,7 +212,7 @@ std::string headline_text(const Json& headline) {
   if (const Json& numbers = headline["numbers"]; !numbers.empty())
     add("Paper's sphere", numbers_line(numbers));
   if (headline["since"].is_null()) return text;
-  const std::string since = headline["since"].get<std::string>().substr(0, 12);
+  const std::string since = headline["since"];
   const Json& found = headline["changes"];
   if (found.empty()) add("Changes", fmt::format("none since the page of commit {}", since));
   for (std::size_t i = 0; i < std::min(found.size(), kShownChanges); ++i) {

@@ -70,7 +70,7 @@ def gallery_row(scene, basis, reference, error, status="converged"):
 
 
 def gallery():
-    return [gallery_row("sphere", "exact", 1.2e-3, -0.04), gallery_row("tube", "extrapolated", 1.26e-3, 2e-3),
+    return [gallery_row("paper", "exact", 1.2e-3, -0.04), gallery_row("tube", "extrapolated", 1.26e-3, 2e-3),
             gallery_row("odd", "finest mesh", 1.25e-3, None) | {"uncertainty": 3e-4},
             gallery_row("rough", "none", None, None)]
 
@@ -94,6 +94,15 @@ def hard():
             row("2.0", "refused", reason="beyond \"the\" limit", **beside(verdict="refused", reason="beyond it")),
         ],
     }
+
+
+def peer(program, verdict, over):
+    """A field of another program; `over`: its errors over what is allowed."""
+    judged = [{"quantity": name, "value": -over * allowed if name == "twist" else over * allowed, "allowed": allowed,
+               "holds": over <= 1 or name == "moment_error"} for name, allowed in (("moment_error", 1e-3), ("twist", 1e-2))]
+    return {"program": program, "file": "x.csv", "expected": verdict, "verdict": verdict, "why": f"it <is> {verdict}",
+            "cells": [8, 8], "twist_error": -0.01 * over, "moment_error": 1e-3, "traction_error": {"l2": 0.5},
+            "certificate": {"gap": 1e-5}, "slip_direction": {"mean": 1.5}, "judged": judged}
 
 
 def small_report():
@@ -124,6 +133,15 @@ def small_report():
                          for x in (0.05, 0.1, 0.2, 0.5)],
         "gallery": gallery(),
         "hard": hard(),
+        "cycle": {"cells": [4, 4], "rows": [{"moment_ratio": x, "twist": 1.01 * twist, "exact": twist, "dissipated": 0.1}
+                                            for x, twist in ((0.8, 0.4), (0.0, 0.1), (-0.8, -0.4))]},
+        "peers": [peer("ONE", "good", 0.1), peer("TWO", "bad", 30.0)],
+        "gates": {"gates": [{"id": "a-gate", "outcome": "passed", "quantity": "twist_error", "value": 1e-5, "factor": 0.5,
+                             "reason": "it <matters>"}]},
+        "headline": {"verdict": "good", "commit": "none", "lines": [["Gates", "1 of 1 pass"], ["Hard", "a < b"]],
+                     "numbers": {"moment_ratio": 0.9, "cells": [16, 16], "twist_error": 3e-3, "stick_radius_error": -2e-3,
+                                 "gap": 1e-9, "seconds": 0.125},
+                     "since": "0123456789abcdef", "changes": ["hard certified: 2 before, 1 now"]},
         "errata": [{"equation": "(0)", "printed": "a < b", "holds": "a > b", "shown": "by example"}],
     }
 
@@ -156,7 +174,7 @@ def write_data(folder, report):
     for scene in report["gallery"]:
         write_contact(folder / scene["fields"])
     (folder / "scenes").mkdir(exist_ok=True)
-    (folder / "scenes" / "sphere.toml").write_text("name = 'sphere'")
+    (folder / "scenes" / "paper.toml").write_text("name = 'sphere'")
 
 
 def run_render(data_dir, output, save=style.save):
@@ -174,6 +192,7 @@ def save_quickly(figure, stem):
     for axis in figure.axes:
         axis.minorticks_off()
     FigureCanvasSVG(figure).print_svg(stem.with_suffix(".svg"))
+    return stem.with_suffix(".svg").read_text(encoding="utf-8")
 
 
 def save_nothing(figure, stem):

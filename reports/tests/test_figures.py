@@ -10,6 +10,7 @@ import figures
 import gallery_figure
 import hard_cases
 import method_figures
+import peers_figure
 import results
 
 
@@ -72,13 +73,12 @@ class OneFigure(Folder):
         self.assertEqual([text.get_text() for text in entry.figure.legends[0].get_texts()], [
             "pressure solved on the same grid", "Hertz pressure at cell centres", "$M/M_\\mathrm{lim}$ = 0.5",
             "$M/M_\\mathrm{lim}$ = 0.9", "order 1", "order 2"])
-        at_16 = ": twist 3.9×10⁻³, traction 3.9×10⁻³ in L1, stick radius 3.9×10⁻³"
-        errors = "; ".join(f"M/M<sub>lim</sub>&nbsp;=&nbsp;{load}{at_16}" for load in (0.5, 0.9))
-        self.assertEqual(entry.message, "Errors left at the finest mesh with the pressure solved on the same grid "
-                         f"(16 cells a side): {errors}.")
+        self.assertEqual(entry.message, "At 16 cells a side and M/M<sub>lim</sub>&nbsp;=&nbsp;0.9 the twist is off by "
+                         "3.9×10⁻³, the traction by 3.9×10⁻³.")
+        self.assertEqual(len(entry.numbers), 6)
+        self.assertIn("pressure solved on the same grid", entry.numbers[0][0])
         self.report["mesh"] = [row for row in self.report["mesh"] if row["pressure"] == "hertz"]
-        self.assertEqual(figures.convergence(self.report, self.folder).message, "Errors left at the finest mesh with the "
-                         f"Hertz pressure at cell centres (16 cells a side): {errors}.")
+        self.assertIn("Hertz pressure at cell centres", figures.convergence(self.report, self.folder).numbers[0][0])
 
     def test_cost_has_the_meshes_beside_the_points_of_one_line(self):
         axes = figures.cost(self.report, self.folder).figure.axes
@@ -97,30 +97,30 @@ class OneFigure(Folder):
             self.assert_unavailable(exact_figures.bodies_and_cycles, f"{key}.*missing")
 
     def test_how_far_each_law_holds(self):
-        message = exact_figures.approximations(self.report, self.folder).message
-        self.assertIn("Eq. (7) 0.050 (0.50), small moments 0.040 (0.40), no slip 0.020 (0.20)", message)
-        self.assertIn("off by over 100&nbsp;%", message)
+        numbers = [number for _, number in exact_figures.approximations(self.report, self.folder).numbers]
+        self.assertEqual(numbers[:3], ["0.050 (0.50)", "0.040 (0.40)", "0.020 (0.20)"])
+        self.assertEqual(numbers[-1], "100&nbsp;%")
 
     def test_hard_scenes_in_numbers(self):
         entry = hard_cases.methods(small_report(), self.folder)
         self.assertEqual(entry.message, "Of 5 hard scenes Newton’s method for Coulomb’s law certifies 4 and refuses 1 with a "
-                         "reason; 0 do not converge or are wrong. By the paper’s method 1 of 4 agree, 1 do not converge, in "
-                         "1 slip does not oppose traction, 1 have another answer.")
+                         "reason; 0 do not converge or are wrong.")
+        self.assertEqual([number for words, number in entry.numbers if "paper" in words], ["1"] * 5)
         bars = [[bar.get_width() for bar in entry.figure.axes[0].patches[5 * i:5 * i + 5]] for i in (0, 1)]
         self.assertEqual(bars, [[4, 1, 0, 0, 0], [1, 1, 1, 1, 1]])
 
     def test_law_that_holds_everywhere(self):
         for row in self.report["approximations"]:
             row["equation_7"]["error"] = 0.001 * row["moment_ratio"]
-        self.assertIn("Eq. (7) 0.90 (0.90)", exact_figures.approximations(self.report, self.folder).message)
+        self.assertEqual(exact_figures.approximations(self.report, self.folder).numbers[0][1], "0.90 (0.90)")
 
     def test_laws_that_are_beyond_a_bound_at_once_or_come_back(self):
         for row, equation_7, no_slip in zip(self.report["approximations"], (0.02, 0.03, 0.04, 0.05),
                                             (0.0, 0.008, 0.012, 0.009)):
             row["equation_7"]["error"], row["no_slip"]["error"] = equation_7, no_slip
-        message = exact_figures.approximations(self.report, self.folder).message
-        self.assertIn("Eq. (7) 0 (0.90)", message)
-        self.assertIn("no slip 0.35 (0.90)", message)  # 0.2 + 0.3 (10 - 8)/(12 - 8)
+        numbers = [number for _, number in exact_figures.approximations(self.report, self.folder).numbers]
+        self.assertEqual(numbers[0], "0 (0.90)")
+        self.assertEqual(numbers[2], "0.35 (0.90)")  # 0.2 + 0.3 (10 - 8)/(12 - 8)
 
     def test_each_law_is_drawn_by_its_own_twists(self):
         left, right = exact_figures.approximations(self.report, self.folder).figure.axes
@@ -135,10 +135,32 @@ class OneFigure(Folder):
         self.assertEqual(right.get_yscale(), "log")
 
     def test_bodies_and_cycles_in_numbers(self):
-        message = exact_figures.bodies_and_cycles(self.report, self.folder).message
-        for words in ("0.600&nbsp;μWa under a sphere", "flat punch, which sticks everywhere up to 0.850 of that",
-                      "keeps 25\u00a0% of its twist", "amplitude of 0.10&nbsp;M", "2 times as large"):
-            self.assertIn(words, message)
+        entry = exact_figures.bodies_and_cycles(self.report, self.folder)
+        self.assertIn("keeps 25\u00a0% of its twist", entry.message)
+        numbers = dict(entry.numbers)
+        self.assertEqual(numbers["limit moment, sphere"], "0.600&nbsp;μWa")
+        self.assertEqual(numbers["flat punch: sticks everywhere up to"], "0.850&nbsp;M<sub>lim</sub>")
+        self.assertEqual(list(numbers.values())[-2:], ["0.10&nbsp;M<sub>lim</sub>", "2"])
+
+    def test_computed_cycle_in_numbers(self):
+        entry = exact_figures.computed_cycle(self.report, self.folder)
+        self.assertEqual(entry.numbers[0][1], "1.0×10⁻²")  # of the largest twist, 0.4
+        exact, computed = entry.figure.axes[0].lines
+        self.assertEqual(computed.get_xdata().tolist(), [0.8, 0.0, -0.8])
+        self.assertTrue(np.allclose(entry.figure.axes[1].lines[0].get_ydata(), [0.01, 0.0025, 0.01]))
+
+    def test_known_fields_stand_on_their_side_of_the_line(self):
+        entry = peers_figure.peers(self.report, self.folder)
+        self.assertEqual(entry.message, "TWO carries the right moment, yet its twist, tractions and slip directions are wrong.")
+        one, two = entry.figure.axes[0].lines[:2]
+        self.assertTrue(np.allclose(one.get_xdata(), 0.1) and np.allclose(two.get_xdata(), 30.0))
+        self.assertLess(two.get_xdata().max(), entry.figure.axes[0].get_xlim()[1])
+
+    def test_arrows_of_slip(self):
+        entry = gallery_figure.slip_maps(self.report, self.folder)
+        arrows = entry.figure.axes[0].collections[-1]
+        self.assertTrue(np.allclose(np.hypot(arrows.U, arrows.V), np.hypot(arrows.U, arrows.V)[0]))
+        self.assertAlmostEqual(float(arrows.V[0] / arrows.U[0]), 4.0 / 3.0)
 
     def test_what_the_gallery_says(self):
         entry = gallery_figure.gallery(self.report, self.folder)
