@@ -11,12 +11,14 @@ SEARCH_OPTIONS ?=
 HARD_OPTIONS ?=
 MUTANT_OPTIONS ?=
 SANITIZE ?=
+SANITIZER ?= asan-ubsan
+COMPILER ?=
 LINT_SINCE ?=
 # How many instructions a solve takes is gated where it is known of this compiler.
 INSTRUCTION_GATES = $(wildcard bench/gates/instructions-gcc-$(firstword $(subst ., ,$(shell c++ -dumpversion))).toml)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup configure build report test gate hard mutants sanitize lint bench bench-against bench-trust references \
+.PHONY: help setup configure build report test gate hard mutants sanitize coverage lint bench bench-against bench-trust references \
   hardest docs install clean
 
 help: ## show this list
@@ -68,11 +70,19 @@ mutants: configure ## 240 small mistakes, made by rule: do tests and gates see t
 	@python="$$(sed -n 's/^SLIPSTICK_PYTHON:[A-Z]*=//p' $(BUILD)/CMakeCache.txt)"; \
 	  "$$python" -B cmake/mutation/mutants.py $(MUTANT_OPTIONS)
 
-sanitize: setup ## run every test under the address and undefined-behaviour sanitizers (a part: SANITIZE="operators analytic")
-	@test -f build-asan-ubsan/build.ninja || cmake --preset asan-ubsan
-	@cmake --build build-asan-ubsan --target $(if $(SANITIZE),$(SANITIZE:%=%_tests),tests)
-	@ctest --test-dir build-asan-ubsan --output-on-failure -j$$(nproc) \
+SANITIZED = build-$(SANITIZER)$(addprefix -,$(COMPILER))
+sanitize: setup ## run every test under the address and undefined-behaviour sanitizers (SANITIZER=tsan: threads; COMPILER=clang++; a part: SANITIZE="operators analytic")
+	@test -f $(SANITIZED)/build.ninja || cmake --preset $(SANITIZER) -B $(SANITIZED) $(addprefix -DCMAKE_CXX_COMPILER=,$(COMPILER))
+	@cmake --build $(SANITIZED) --target $(if $(SANITIZE),$(SANITIZE:%=%_tests),tests)
+	@ctest --test-dir $(SANITIZED) --output-on-failure -j$$(nproc) \
 	  $(if $(SANITIZE),-R "^($$(echo $(SANITIZE) | tr ' ' '|'))_tests",-E '^(reports|docs)')
+
+coverage: setup ## which lines of analytic, solver and convergence do the tests run? At least 95 % (needs lcov)
+	@command -v lcov >/dev/null || { echo "make coverage: lcov is missing; on Debian: apt-get install lcov" >&2; exit 2; }
+	@test -f build-coverage/build.ninja || cmake --preset coverage
+	@cmake --build build-coverage --target tests
+	@ctest --test-dir build-coverage --output-on-failure -j$$(nproc) -E '^(reports|docs)'
+	@cmake/coverage build-coverage 95
 
 lint: setup ## check format and clang-tidy's rules, 14 or later (of what changed alone: LINT_SINCE=origin/main)
 	@git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run --Werror
