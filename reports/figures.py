@@ -178,10 +178,10 @@ def convergence(report, data_dir):
         for study in runs:
             axis.plot(study.cells, np.abs(column(study.table, path)), **study.look)
         style.whole_decades(axis)
-        guides = studies.slope_guides(axis)
+        studies.slope_triangles(axis)
         studies.cell_ticks(axis, runs)
     axes[0].set_ylabel("relative error")
-    style.legend_on_top(figure, studies.handles(runs) + guides, 3)
+    style.legend_on_top(figure, studies.handles(runs), 3)
     finest = [(study, study.table[-1]) for study in runs if study.pressure == "solved"] or [
         (study, study.table[-1]) for study in runs]
     numbers = [(f"{title}, {LIMIT}{study.load}", _sci_at(row, path)) for study, row in finest for path, title in quantities]
@@ -189,11 +189,11 @@ def convergence(report, data_dir):
     return FigureEntry(
         f"At {study.cells[-1]:.0f} cells a side and {LIMIT}{study.load} the twist is off by {_sci_at(row, 'twist_error')}, "
         f"the traction by {_sci_at(row, 'traction_error.l1')}.",
-        "Grey lines fall as the cell size (order 1) and as its square (order 2). Norms are relative to that of the "
+        "Grey triangles fall as the cell size (order 1) and as its square (order 2). Norms are relative to that of the "
         "exact solution. The twist answers to the contact as a whole and so can converge faster than the traction "
         "in its cells.",
         "Three log-log panels of relative error against cells for twist, traction and stick radius, one line for each "
-        "pressure and load, with guides of slope one and two.", figure,
+        "pressure and load, with triangles of slope one and two.", figure,
         [(f"error left with the {study.name}: {words}", found) for words, found in numbers])
 
 

@@ -18,6 +18,7 @@ import figures  # noqa: E402
 import hard_cases  # noqa: E402
 import plane_figure  # noqa: E402
 import results  # noqa: E402
+import scaling_figure  # noqa: E402
 import study_figure  # noqa: E402
 import style  # noqa: E402
 import tables  # noqa: E402
@@ -79,13 +80,15 @@ def show_studies(report, folder):
 
 
 def show_speed(benchmarks, folder):
-    """What `slipstick bench` measured: a figure for each scene of its plane; none where it has not been run."""
-    plane = benchmarks / "plane.json" if benchmarks else None
-    if plane is None or not plane.is_file():
+    """What `slipstick bench` measured: how times grow and cross, and the plane of each scene; none where it has not run."""
+    if benchmarks is None or not all((benchmarks / name).is_file() for name in ("scaling.json", "plane.json")):
         return []
-    return [draw_entry(f"plane-{k}", f"Speed against error at M/M_lim = {plain(results.number(scene, 'moment_ratio'))}",
-                       lambda: plane_figure.draw(scene), folder)
-            for k, scene in enumerate(results.rows(results.load(plane), "scenes"), 1)]
+    scaling, plane = (results.load(benchmarks / name) for name in ("scaling.json", "plane.json"))
+    title, growth = scaling_figure.FIGURES[0]
+    return [draw_entry("growth", title, lambda: growth(scaling), folder),
+            *(draw_entry(f"plane-{k}", f"Speed against error at M/M_lim = {plain(results.number(scene, 'moment_ratio'))}",
+                         lambda: plane_figure.draw(scene), folder)
+              for k, scene in enumerate(results.rows(plane, "scenes"), 1))]
 
 
 def tabulate(report, name, columns):
@@ -117,7 +120,7 @@ def map_hard_cases(report):
 
 def render(data_dir, output, benchmarks=None):
     """Writes output/index.html and output/figures/ from data_dir/report.json and the field files beside it, and from
-    benchmarks/plane.json where there is one."""
+    benchmarks/scaling.json and plane.json where they are there."""
     report = results.load(data_dir / "report.json")
     folder = output / "figures"
     folder.mkdir(parents=True, exist_ok=True)
@@ -149,7 +152,7 @@ def main(words=None):
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("data_dir", type=Path, help="folder with report.json and its field files")
     parser.add_argument("--output", type=Path, required=True, help="folder for index.html and figures/")
-    parser.add_argument("--benchmarks", type=Path, help="folder with plane.json, of `slipstick bench`")
+    parser.add_argument("--benchmarks", type=Path, help="folder with scaling.json and plane.json, of `slipstick bench`")
     arguments = parser.parse_args(words)
     try:
         render(arguments.data_dir.resolve(), arguments.output.resolve(), arguments.benchmarks)

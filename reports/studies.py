@@ -57,14 +57,19 @@ def handles(studies):
     return pressures + loads
 
 
-def slope_guides(axis):
-    """Lines of order 1 and 2 from the upper left corner of the axes."""
+def slope_triangles(axis):
+    """Triangles of order 1 and 2 in the upper right corner, which falling errors leave free: from one apex down to twice
+    the cells, with the order beside each."""
     (left, right), (bottom, top) = axis.get_xlim(), axis.get_ylim()
-    cells = np.array([left, right])
-    lines = [axis.plot(cells, top * (cells / left) ** -order, look, color=style.GREY, linewidth=0.8, zorder=1,
-                       label=f"order {order}")[0] for order, look in ((1, ":"), (2, "-."))]
+    end = right / 1.35
+    apex = top / 1.6
+    for order in (1, 2):
+        foot = apex * 2.0**-order
+        axis.add_line(Line2D([end / 2, end, end, end / 2], [apex, foot, apex, apex], color=style.GREY, linewidth=0.8, zorder=1,
+                             linestyle="-" if order == 1 else (0, (4, 2))))
+        axis.annotate(str(order), (end, foot), xytext=(2, 0), textcoords="offset points", va="bottom", fontsize=7.5,
+                      color=style.GREY)
     axis.set(xlim=(left, right), ylim=(bottom, top))
-    return lines
 
 
 def cell_ticks(axis, studies):

@@ -72,7 +72,14 @@ class OneFigure(Folder):
         self.assertEqual([axis.get_ylabel() for axis in entry.figure.axes], ["relative error", "", ""])
         self.assertEqual([text.get_text() for text in entry.figure.legends[0].get_texts()], [
             "pressure solved on the same grid", "Hertz pressure at cell centres", "$M/M_\\mathrm{lim}$ = 0.5",
-            "$M/M_\\mathrm{lim}$ = 0.9", "order 1", "order 2"])
+            "$M/M_\\mathrm{lim}$ = 0.9"])
+        for axis in entry.figure.axes:
+            triangles = [line for line in axis.lines if len(line.get_xdata()) == 4]
+            self.assertEqual([note.get_text() for note in axis.texts], ["1", "2"])
+            for order, line in zip((1, 2), triangles):
+                (x0, x1), (y0, y1) = line.get_xdata()[:2], line.get_ydata()[:2]
+                self.assertAlmostEqual(np.log(y0 / y1) / np.log(x1 / x0), order)
+                self.assertTrue(axis.get_ylim()[0] < y1 and y0 < axis.get_ylim()[1] and x1 < axis.get_xlim()[1])
         self.assertEqual(entry.message, "At 16 cells a side and M/M<sub>lim</sub>&nbsp;=&nbsp;0.9 the twist is off by "
                          "3.9×10⁻³, the traction by 3.9×10⁻³.")
         self.assertEqual(len(entry.numbers), 6)

@@ -15,6 +15,7 @@ REPORTS = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(REPORTS))
 
 import plane_figure  # noqa: E402
+import render  # noqa: E402
 import scaling_figure  # noqa: E402
 import speed_page  # noqa: E402
 import speed_tables  # noqa: E402
@@ -121,6 +122,19 @@ class Figures(unittest.TestCase):
         self.assertIn("their results are wrong: 1.", plane_figure.draw(scene()).details)
         with self.assertRaises(Unavailable):
             plane_figure.draw(scene(points=[POINTS[3]]))
+
+
+class OnThePageOfAll(unittest.TestCase):
+    def test_stands_there_where_it_was_measured(self):
+        with tempfile.TemporaryDirectory() as name, patch.object(style, "save", save_nothing):
+            folder = Path(name)
+            self.assertEqual(render.show_speed(None, folder), [])
+            (folder / "plane.json").write_text(json.dumps(plane()))
+            self.assertEqual(render.show_speed(folder, folder), [])
+            (folder / "scaling.json").write_text(json.dumps(scaling()))
+            growth, one = render.show_speed(folder, folder)
+        self.assertIn("Convolution overtakes", growth["message"])
+        self.assertIn("a twist right to 10⁻² takes 1 ms", one["message"])
 
 
 class Tables(unittest.TestCase):
