@@ -19,7 +19,7 @@ INSTRUCTION_GATES = $(wildcard bench/gates/instructions-gcc-$(firstword $(subst 
 
 .DEFAULT_GOAL := help
 .PHONY: help setup configure build report test gate hard mutants sanitize coverage lint bench bench-against bench-trust references \
-  hardest docs install clean
+  reference hardest docs install clean
 
 help: ## show this list
 	@echo "slipstick: make TARGET"
@@ -115,6 +115,9 @@ docs: ## make the documentation's site, build/site/index.html (needs MkDocs)
 	  { echo "make docs: mkdocs is missing. On Debian or Ubuntu: apt-get install --no-install-recommends mkdocs" >&2; exit 2; }
 	@mkdocs build --strict --quiet --config-file docs/site/mkdocs.yml --site-dir "$(abspath $(BUILD))/site"
 	@echo "The documentation: $(abspath $(BUILD))/site/index.html"
+
+reference: configure ## write the pages of docs/reference that are made from the program; the C++ reference, with doxygen
+	$(call build,reference)
 
 install: configure ## install under PREFIX (default /usr/local)
 	$(call build,slipstick)

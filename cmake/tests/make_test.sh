@@ -41,6 +41,7 @@ check gate "slipstick slipstick_work"
 check bench "slipstick slipstick_benchmarks"
 check references slipstick_references
 check install slipstick
+check reference reference
 check build all
 
 PATH="$folder/programs" "$(command -v make)" BUILD="$build" docs > "$folder/output" 2>&1

@@ -53,12 +53,12 @@ void read_result_source(SceneReader& reader, const std::string& at, const std::f
 }
 
 void read_bounds(SceneReader& reader, const std::string& at, Gate& gate) {
-  gate.below = reader.find_number(at + "below", solver::kFinite);
-  gate.above = reader.find_number(at + "above", solver::kFinite);
+  gate.below = reader.find_number(at + "below");
+  gate.above = reader.find_number(at + "above");
   if (reader.has(at + "equals")) {
     if (gate.below || gate.above) reader.fail(at + "equals", "beside below or above", "one or the other");
-    gate.equals = reader.is_text(at + "equals") ? Json(reader.text(at + "equals"))
-                                                : Json(reader.number(at + "equals", solver::kFinite));
+    gate.equals =
+        reader.is_text(at + "equals") ? Json(reader.text(at + "equals")) : Json(reader.number(at + "equals"));
   } else if (!gate.below && !gate.above) {
     reader.fail(at + "below", "(missing)", "below, above, both, or equals");
   }
@@ -85,12 +85,12 @@ Gate read_gate(SceneReader& reader, const std::filesystem::path& file,
   gate.file = file;
   gate.line = reader.line(table);
   gate.id = required_text(reader, at + "id");
-  gate.status = reader.choice_or(at + "status", GateStatus::active, kStatuses);
+  gate.status = reader.choice_or(at + "status", gate.status, kStatuses);
   read_source(reader, at, gate);
   if (gate.kind == GateSource::result) read_result_source(reader, at, results_folder, gate);
   gate.quantity = required_text(reader, at + "quantity");
   read_bounds(reader, at, gate);
-  gate.platform_spread = reader.number_or(at + "platform_spread", 0.0, solver::kNotNegative);
+  gate.platform_spread = reader.number_or(at + "platform_spread", gate.platform_spread);
   gate.reason = reader.text_or(at + "reason", "");
   gate.basis = reader.text_or(at + "basis", "");
   if (gate.status == GateStatus::active && gate.basis.empty()) {
@@ -113,8 +113,51 @@ void claim_ids(const std::vector<Gate>& gates, std::map<std::string, std::string
 
 }  // namespace
 
+const solver::SettingKeys& gate_keys() {
+  using solver::KeyType;
+  constexpr const char* kOne = "one of scene, study, result is required";
+  constexpr const char* kBound = "one of below, above, equals is required";
+  static const solver::SettingKeys keys{
+      {"made_by",
+       KeyType::text,
+       "",
+       "none",
+       {},
+       "Command that makes the results which gates of the file name; known beside such gates alone."},
+      {"gate", KeyType::tables, "", solver::kRequired, {}, "Tables `[[gate]]`, one for each gate."},
+      {"gate.id",
+       KeyType::text,
+       "",
+       solver::kRequired,
+       {},
+       "Names the gate; no other gate of the run has it."},
+      {"gate.status", KeyType::word, "", solver::word_of(kStatuses, Gate{}.status), solver::one_of(kStatuses),
+       "Whether failing fails the run, passing does, or neither."},
+      {"gate.scene", KeyType::file, "", kOne, {}, "Scene file (TOML) that is solved, relative to this file."},
+      {"gate.study", KeyType::file, "", kOne, {}, "Study file (TOML) that is run."},
+      {"gate.result", KeyType::file, "", kOne, {}, "Result file (JSON) of any program, taken as it is."},
+      {"gate.set", KeyType::table, "", "none", {}, "Keys of the scene that differ from its file."},
+      {"gate.quantity",
+       KeyType::text,
+       "",
+       solver::kRequired,
+       {},
+       "Path of a number in the result, as --json writes it: steps[3].traction_error.averaged.l2."},
+      {"gate.below", KeyType::number, "the quantity's", kBound, solver::kFinite,
+       "Bound that the number stays below; alone, of its size; with above, of the signed value."},
+      {"gate.above", KeyType::number, "the quantity's", kBound, solver::kFinite,
+       "Bound that it stays above."},
+      {"gate.equals", KeyType::number, "the quantity's", kBound, solver::kFinite,
+       "The number, or in quotes the word, that it is to be; in place of the bounds."},
+      {"gate.platform_spread", KeyType::number, "the quantity's", fmt::format("{:g}", Gate{}.platform_spread),
+       solver::kNotNegative, "By how much machines and compilers differ."},
+      {"gate.basis", KeyType::text, "", "required of an active gate", {}, "Where the bound comes from."},
+      {"gate.reason", KeyType::text, "", "none", {}, "What the gate is for."}};
+  return keys;
+}
+
 std::vector<Gate> read_gates(const std::filesystem::path& file, const std::filesystem::path& results_folder) {
-  SceneReader reader(file, {});
+  SceneReader reader(file, {}, gate_keys());
   std::vector<Gate> gates;
   const std::size_t count = reader.count("gate");
   for (std::size_t i = 0; i < count; ++i) gates.push_back(read_gate(reader, file, results_folder, i));

@@ -5,8 +5,12 @@
 #include <vector>
 
 #include "convergence/gates/gate.hpp"
+#include "solver/input/setting_key.hpp"
 
 namespace slipstick::convergence {
+
+/// Every key that a gate file may have; read_gates() reads by it.
+const solver::SettingKeys& gate_keys();
 
 /// What several gate files hold, and what is wrong with those that cannot be read: one bad file does not
 /// spoil the others.

@@ -58,8 +58,32 @@ std::vector<HardCase> read_family(SceneReader& reader, const std::string& at) {
 
 }  // namespace
 
+const solver::SettingKeys& hard_keys() {
+  using solver::KeyType;
+  static const solver::SettingKeys keys{
+      {"family",
+       KeyType::tables,
+       "",
+       solver::kRequired,
+       {},
+       "Tables `[[family]]`: a scene with keys that vary."},
+      {"family.name", KeyType::text, "", solver::kRequired, {}, "Names the family."},
+      {"family.why", KeyType::text, "", solver::kRequired, {}, "What makes it hard."},
+      {"family.scene", KeyType::file, "", solver::kRequired, {}, "Scene file (TOML), relative to this file."},
+      {"family.set", KeyType::table, "", "none", {}, "Keys of the scene that differ from its file."},
+      {"family.vary",
+       KeyType::tables,
+       "",
+       "none",
+       {},
+       "Tables `[[family.vary]]`: every combination of their values is a case."},
+      {"family.vary.key", KeyType::text, "", solver::kRequired, {}, "The key of the scene that varies."},
+      {"family.vary.values", KeyType::values, "", solver::kRequired, {}, "The values that it takes."}};
+  return keys;
+}
+
 std::vector<HardCase> read_hard_cases(const std::filesystem::path& file) {
-  SceneReader reader(file, {});
+  SceneReader reader(file, {}, hard_keys());
   std::vector<HardCase> cases;
   const std::size_t families = reader.count("family");
   if (families == 0) reader.fail("family", "(missing)", "[[family]] tables");

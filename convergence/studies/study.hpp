@@ -6,6 +6,7 @@
 
 #include "convergence/runs/process_pool.hpp"
 #include "solver/grid/grid.hpp"
+#include "solver/input/setting_key.hpp"
 
 namespace slipstick::convergence {
 
@@ -28,6 +29,9 @@ struct Study {
   std::vector<Variation> variations;
   std::vector<std::string> quantities;  ///< paths into a result; empty: all that have an expected order
 };
+
+/// Every key that a study file may have; read_study() reads by it.
+const solver::SettingKeys& study_keys();
 
 /// overrides: as --set takes them, applied to the scene after the study's own. Throws InputError naming file,
 /// key, value and what is allowed.

@@ -24,7 +24,7 @@ constexpr double kMaxSolves = 10'000.0;
 
 std::vector<Index> read_cells(SceneReader& reader) {
   std::vector<Index> cells;
-  for (const double number : reader.numbers("cells", solver::whole(kMinCells, kMaxCells))) {
+  for (const double number : reader.numbers("cells")) {
     cells.push_back(static_cast<Index>(number));
   }
   std::sort(cells.begin(), cells.end());
@@ -72,8 +72,47 @@ void require_finite(const std::filesystem::path& file, const Study& study) {
 
 }  // namespace
 
+const solver::SettingKeys& study_keys() {
+  using solver::KeyType;
+  static const solver::SettingKeys keys{
+      {"name", KeyType::text, "", "the file's name", {}, "Heads what is printed."},
+      {"scene",
+       KeyType::file,
+       "",
+       solver::kRequired,
+       {},
+       "Scene file (TOML), relative to the study's folder."},
+      {"set", KeyType::table, "", "none", {}, "Keys of the scene that differ from its file."},
+      {"cells", KeyType::numbers, "", "the scene's own grid", solver::whole(kMinCells, kMaxCells),
+       "Cells along the longer side, a mesh each."},
+      {"shifts", KeyType::number, "", fmt::format("{}", Study{}.shifts), solver::whole(1.0, kMaxShifts),
+       "Grids of each mesh, whose cells lie differently under the edges: mean and spread in place of noise."},
+      {"tolerances", KeyType::numbers, "", "the scene's own", solver::kPositive,
+       "Tolerances to which each mesh is solved."},
+      {"vary",
+       KeyType::tables,
+       "",
+       "none",
+       {},
+       "Tables `[[vary]]`: every combination is a series of its own."},
+      {"vary.key",
+       KeyType::text,
+       "",
+       solver::kRequired,
+       {},
+       "The key of the scene that varies; not grid.cells, not solver.tolerance."},
+      {"vary.values", KeyType::values, "", solver::kRequired, {}, "The values that it takes."},
+      {"quantities",
+       KeyType::texts,
+       "",
+       "all that have an expected order",
+       {},
+       "Paths into a result, as of a gate's quantity."}};
+  return keys;
+}
+
 Study read_study(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  SceneReader reader(file, {});
+  SceneReader reader(file, {}, study_keys());
   Study study;
   study.source = file;
   study.name = reader.text_or("name", file.stem().string());
@@ -81,8 +120,8 @@ Study read_study(const std::filesystem::path& file, const std::vector<std::strin
   study.overrides = reader.assignments("set");
   study.overrides.insert(study.overrides.end(), overrides.begin(), overrides.end());
   study.cells = read_cells(reader);
-  study.shifts = static_cast<int>(reader.number_or("shifts", 1.0, solver::whole(1.0, kMaxShifts)));
-  study.tolerances = reader.numbers("tolerances", solver::kPositive);
+  study.shifts = static_cast<int>(reader.number_or("shifts", study.shifts));
+  study.tolerances = reader.numbers("tolerances");
   std::sort(study.tolerances.begin(), study.tolerances.end(), std::greater<>());
   study.variations = read_variations(reader);
   study.quantities = read_quantities(reader);

@@ -5,8 +5,11 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
+#include <map>
 #include <sstream>
+#include <stdexcept>
 
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
@@ -151,22 +154,27 @@ toml::table* table_below(toml::table& table, const std::string& part) {
 
 }  // namespace
 
-Range whole(double low, double high) {
-  return {fmt::format("a whole number from {:g} to {:g}", low, high),
-          [low, high](double x) { return x >= low && x <= high && x == std::floor(x); }};
-}
-
 struct SceneReader::Questions {
   toml::table root;
+  std::map<std::string, Range> keys;
   std::set<std::string> known;
+
+  const Range& range(const std::string& key) const {
+    const auto found = keys.find(without_indices(key));
+    if (found == keys.end()) throw std::logic_error(fmt::format("the table of keys has no {}", key));
+    return found->second;
+  }
   toml::node_view<toml::node> node(const std::string& key) {
+    if (!keys.empty()) range(key);
     known.insert(key);
     return root.at_path(key);
   }
 };
 
-SceneReader::SceneReader(const std::filesystem::path& file, const std::vector<std::string>& overrides)
-    : file_(file), toml_(new Questions{parse(read_text(file), file.string()), {}}) {
+SceneReader::SceneReader(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+                         const SettingKeys& keys)
+    : file_(file), toml_(new Questions{parse(read_text(file), file.string()), {}, {}}) {
+  for (const SettingKey& key : keys) toml_->keys.emplace(key.name, key.allowed);
   for (const std::string& assignment : overrides) apply_override(assignment);
 }
 
@@ -212,6 +220,8 @@ void SceneReader::prefer_overridden(const std::vector<std::string>& alternatives
     toml_->root.at_path(key.substr(0, dot)).as_table()->erase(key.substr(dot + 1));
   }
 }
+
+const Range& SceneReader::range_of(const std::string& key) const { return toml_->range(key); }
 
 std::string SceneReader::where(const std::string& key) const {
   if (overridden_.contains(key)) return "--set";

@@ -1,50 +1,25 @@
 #pragma once
 
 #include <array>
-#include <cmath>
 #include <filesystem>
-#include <functional>
 #include <memory>
 #include <optional>
 #include <set>
-#include <stdexcept>
 #include <string>
-#include <utility>
 #include <vector>
+
+#include "solver/input/setting_key.hpp"
 
 namespace slipstick::solver {
 
-/// Words as scene files have them, each with its meaning.
-template <typename Value>
-using Words = std::vector<std::pair<std::string, Value>>;
-
-template <typename Value>
-std::string word_of(const Words<Value>& words, Value value) {
-  for (const auto& [word, meaning] : words) {
-    if (meaning == value) return word;
-  }
-  throw std::logic_error("a value without a word");
-}
-
-/// What a number may be, in words and as a test; the test is false for NaN.
-struct Range {
-  std::string words;
-  std::function<bool(double)> contains;
-};
-
-inline const Range kPositive{"positive and finite", [](double x) { return x > 0.0 && std::isfinite(x); }};
-inline const Range kNotNegative{"zero or positive, finite",
-                                [](double x) { return x >= 0.0 && std::isfinite(x); }};
-inline const Range kFinite{"finite", [](double x) { return std::isfinite(x); }};
-/// Whole numbers from low to high.
-Range whole(double low, double high);
-
 /// A TOML file whose keys are asked for one by one, by dotted path; an index picks one of an array of tables,
-/// as in step[1].twist. Each question says what is allowed; reject_unknown() at the end finds the keys that
-/// nobody asked for. Throws InputError.
+/// as in step[1].twist. What is allowed stands in the table of all keys; where it depends on other keys, the
+/// question says it. reject_unknown() at the end finds the keys that nobody asked for. Throws InputError; and
+/// std::logic_error for a question that the table does not know, unless that is empty.
 class SceneReader {
  public:
-  SceneReader(const std::filesystem::path& file, const std::vector<std::string>& overrides);
+  SceneReader(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+              const SettingKeys& keys = {});
 
   /// Where one of several keys that exclude each other is overridden, those that the file has instead are
   /// dropped.
@@ -59,12 +34,22 @@ class SceneReader {
   /// Tables in the array of tables under a key; none where the key is missing.
   std::size_t count(const std::string& key);
   std::optional<double> find_number(const std::string& key, const Range& range);
+  std::optional<double> find_number(const std::string& key) { return find_number(key, range_of(key)); }
   double number(const std::string& key, const Range& range);
+  double number(const std::string& key) { return number(key, range_of(key)); }
   double number_or(const std::string& key, double otherwise, const Range& range);
+  double number_or(const std::string& key, double otherwise) {
+    return number_or(key, otherwise, range_of(key));
+  }
   std::optional<std::array<double, 2>> find_pair(const std::string& key, const Range& range);
+  std::optional<std::array<double, 2>> find_pair(const std::string& key) {
+    return find_pair(key, range_of(key));
+  }
   std::array<double, 2> pair(const std::string& key, const Range& range);
+  std::array<double, 2> pair(const std::string& key) { return pair(key, range_of(key)); }
   /// All numbers of a list, at least one; none where the key is missing.
   std::vector<double> numbers(const std::string& key, const Range& range);
+  std::vector<double> numbers(const std::string& key) { return numbers(key, range_of(key)); }
   /// The elements of a list, at least one, as TOML writes them; none where the key is missing.
   std::vector<std::string> list(const std::string& key);
   bool flag_or(const std::string& key, bool otherwise);
@@ -99,11 +84,12 @@ class SceneReader {
   [[noreturn]] void fail_unknown(const std::string& key) const;
   [[noreturn]] void fail_choice(const std::string& key, const std::string& word,
                                 const std::vector<std::string>& allowed) const;
+  const Range& range_of(const std::string& key) const;
   void apply_override(const std::string& assignment);
   std::string where(const std::string& key) const;
 
   std::filesystem::path file_;
-  struct Questions;  ///< the parsed file, and the keys that were asked for
+  struct Questions;  ///< the parsed file, the table of keys, and those that were asked for
   std::shared_ptr<Questions> toml_;
   std::set<std::string> overridden_;
 };

@@ -9,29 +9,13 @@
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
 #include "solver/input/toml_reader.hpp"
+#include "solver/scene/scene_keys.hpp"
 #include "solver/scene/surface_geometry.hpp"
 #include "solver/scene/surface_reader.hpp"
 #include "solver/scene/validate.hpp"
 
 namespace slipstick::solver {
 namespace {
-
-const Words<PressureModel> kPressureModels{{"solved", PressureModel::solved},
-                                           {"hertz", PressureModel::hertz},
-                                           {"hertz_averaged", PressureModel::hertz_averaged},
-                                           {"file", PressureModel::file}};
-const Words<Coupling> kCouplings{{"auto", Coupling::automatic},
-                                 {"none", Coupling::none},
-                                 {"pressure", Coupling::pressure},
-                                 {"full", Coupling::full}};
-const Words<OperatorKind> kOperators{
-    {"dcfft", OperatorKind::dcfft}, {"direct", OperatorKind::direct}, {"dense", OperatorKind::dense}};
-const Words<Method> kMethods{{"coulomb", Method::coulomb},
-                             {"projected_gradient", Method::projected_gradient},
-                             {"paper", Method::paper}};
-const Words<ModelChoice> kModels{
-    {"auto", ModelChoice::automatic}, {"full", ModelChoice::full}, {"exact", ModelChoice::exact}};
-const Words<Precision> kPrecisions{{"double", Precision::double_precision}, {"mixed", Precision::mixed}};
 
 Material read_material(SceneReader& reader, const std::string& body) {
   if (reader.flag_or(body + ".rigid", false)) {
@@ -41,17 +25,16 @@ Material read_material(SceneReader& reader, const std::string& body) {
     }
     return {std::numeric_limits<double>::infinity(), 0.0};
   }
-  return {reader.number(body + ".young_modulus", kPositive),
-          reader.number(body + ".poisson_ratio", kPoisson)};
+  return {reader.number(body + ".young_modulus"), reader.number(body + ".poisson_ratio")};
 }
 
 /// What a table says of the torsion; what it does not say is as before.
 void read_torsion(SceneReader& reader, const std::string& table, std::optional<TorsionLoad>& torsion) {
   const std::vector<std::string> keys{table + ".moment_ratio", table + ".moment", table + ".twist"};
   reader.prefer_overridden(keys);
-  const auto ratio = reader.find_number(keys[0], kRatio);
-  const auto moment = reader.find_number(keys[1], kFinite);
-  const auto twist = reader.find_number(keys[2], kFinite);
+  const auto ratio = reader.find_number(keys[0]);
+  const auto moment = reader.find_number(keys[1]);
+  const auto twist = reader.find_number(keys[2]);
   if (ratio.has_value() + moment.has_value() + twist.has_value() > 1) {
     reader.fail(moment ? keys[1] : keys[2], "(with another torsion load beside it)",
                 fmt::format("exactly one of {}", fmt::join(keys, ", ")));
@@ -64,8 +47,8 @@ void read_torsion(SceneReader& reader, const std::string& table, std::optional<T
 /// Likewise of forces, or displacements in their place.
 void read_translation(SceneReader& reader, const std::string& table, Step& step) {
   reader.prefer_overridden({table + ".force", table + ".displacement"});
-  const auto force = reader.find_pair(table + ".force", kFinite);
-  const auto displacement = reader.find_pair(table + ".displacement", kFinite);
+  const auto force = reader.find_pair(table + ".force");
+  const auto displacement = reader.find_pair(table + ".displacement");
   if (force && displacement) {
     reader.fail(table + ".displacement", "(with a force beside it)", "one of force, displacement");
   }
@@ -83,7 +66,7 @@ struct ReadStep {
 void read_loads(SceneReader& reader, const std::string& table, ReadStep& read) {
   Step& step = read.step;
   step.key = table;
-  if (const auto normal = reader.find_number(table + ".normal", kPositive)) step.normal = normal;
+  if (const auto normal = reader.find_number(table + ".normal")) step.normal = normal;
   read_torsion(reader, table, read.torsion);
   read_translation(reader, table, step);
 }
@@ -107,7 +90,7 @@ std::vector<Step> read_steps(SceneReader& reader, bool needs_normal) {
   if (read.empty()) read.push_back(load);
   std::vector<Step> steps;
   for (auto& [step, torsion] : read) {
-    if (needs_normal && !step.normal) reader.number(step.key + ".normal", kPositive);  // says what is missing
+    if (needs_normal && !step.normal) reader.number(step.key + ".normal");  // says what is missing
     const bool translated = step.displacement || step.force != std::array<double, 2>{};
     if (!torsion && count == 0 && !translated) {
       reader.fail("load.moment_ratio", "(missing)",
@@ -122,7 +105,7 @@ std::vector<Step> read_steps(SceneReader& reader, bool needs_normal) {
 
 std::array<Index, 2> read_cells(SceneReader& reader, const std::vector<Surface>& surfaces) {
   if (find_height_map(surfaces) != nullptr && !reader.has("grid.cells")) return {0, 0};  // as many as samples
-  const auto cells = reader.pair("grid.cells", kCells);
+  const auto cells = reader.pair("grid.cells");
   return {static_cast<Index>(cells[0]), static_cast<Index>(cells[1])};
 }
 
@@ -141,39 +124,38 @@ std::string to_string(Method method) { return word_of(kMethods, method); }
 std::string to_string(Precision precision) { return word_of(kPrecisions, precision); }
 
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  SceneReader reader(file, overrides);
+  SceneReader reader(file, overrides, scene_keys());
   Scene scene;
   scene.source = file;
   scene.name = reader.text_or("name", file.stem().string());
   scene.surfaces = read_surfaces(reader);
   if (scene.surfaces.size() > 1) scene.combine = read_combine(reader);
-  scene.ends_at_grid_edge = reader.flag_or("upper.ends_at_grid_edge", false);
+  scene.ends_at_grid_edge = reader.flag_or("upper.ends_at_grid_edge", scene.ends_at_grid_edge);
   scene.upper = read_material(reader, "upper");
   scene.lower = read_material(reader, "lower");
 
-  scene.friction = reader.number("contact.friction", kNotNegative);
-  scene.pressure = reader.choice_or("contact.pressure", PressureModel::solved, kPressureModels);
+  scene.friction = reader.number("contact.friction");
+  scene.pressure = reader.choice_or("contact.pressure", scene.pressure, kPressureModels);
   if (scene.pressure == PressureModel::file) scene.pressure_file = reader.path("contact.pressure_file");
-  scene.coupling = reader.choice_or("contact.coupling", Coupling::automatic, kCouplings);
+  scene.coupling = reader.choice_or("contact.coupling", scene.coupling, kCouplings);
 
   scene.steps = read_steps(reader, scene.pressure != PressureModel::file);
   if (scene.steps.size() > 1 || reader.has("cycles")) {
-    scene.cycles = static_cast<int>(reader.number_or("cycles", 1, cycles_of(scene.steps.size())));
+    scene.cycles = static_cast<int>(reader.number_or("cycles", scene.cycles, cycles_of(scene.steps.size())));
   }
 
   scene.cells = read_cells(reader, scene.surfaces);
-  scene.extent = reader.find_pair("grid.extent", kPositive);
+  scene.extent = reader.find_pair("grid.extent");
 
   scene.method = reader.choice_or("solver.method", scene.method, kMethods);
   scene.model = reader.choice_or("solver.model", scene.model, kModels);
   scene.precision = reader.choice_or("solver.precision", scene.precision, kPrecisions);
-  scene.op = reader.choice_or("solver.operator", OperatorKind::dcfft, kOperators);
-  scene.tolerance = reader.number_or("solver.tolerance", scene.tolerance, kTolerance);
-  scene.max_iterations =
-      static_cast<int>(reader.number_or("solver.max_iterations", scene.max_iterations, kIterations));
-  scene.threads = static_cast<int>(reader.number_or("solver.threads", scene.threads, kThreads));
-  scene.rounding_seed =
-      static_cast<std::int64_t>(reader.number_or("solver.rounding_seed", 0.0, kRoundingSeeds));
+  scene.op = reader.choice_or("solver.operator", scene.op, kOperators);
+  scene.tolerance = reader.number_or("solver.tolerance", scene.tolerance);
+  scene.max_iterations = static_cast<int>(reader.number_or("solver.max_iterations", scene.max_iterations));
+  scene.threads = static_cast<int>(reader.number_or("solver.threads", scene.threads));
+  scene.rounding_seed = static_cast<std::int64_t>(
+      reader.number_or("solver.rounding_seed", static_cast<double>(scene.rounding_seed)));
   if (reader.has("solver.wisdom")) {
     scene.wisdom = reader.path("solver.wisdom");
     if (!reader.is_overridden("solver.wisdom")) require_writes_within(scene);

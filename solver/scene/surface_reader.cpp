@@ -5,29 +5,18 @@
 #include <cmath>
 #include <cstdint>
 
-#include "solver/scene/roughness.hpp"
+#include "solver/scene/scene_keys.hpp"
 #include "solver/scene/validate.hpp"
 
 namespace slipstick::solver {
 namespace {
 
-const Words<Shape> kShapes{
-    {"sphere", Shape::sphere},         {"ellipsoid", Shape::ellipsoid},         {"cone", Shape::cone},
-    {"flat_punch", Shape::flat_punch}, {"rounded_punch", Shape::rounded_punch}, {"power", Shape::power},
-    {"height_map", Shape::height_map}, {"roughness", Shape::roughness}};
-const Words<Combine> kCombinations{{"sum", Combine::sum}, {"nearest", Combine::nearest}};
-/// Each in m.
-const Words<double> kHeightUnits{{"m", 1.0}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}};
-
-/// Whole numbers that TOML readers and double precision have alike; one more and its neighbour would be one.
-const Range kSeed = whole(0, 0x1p53 - 1.0);
-
 Roughness read_roughness(SceneReader& reader, const std::string& table) {
   Roughness roughness;
-  roughness.seed = static_cast<std::uint64_t>(reader.number(table + ".seed", kSeed));
-  roughness.hurst = reader.number(table + ".hurst", kHurst);
-  roughness.rms_slope = reader.number(table + ".rms_slope", kPositive);
-  const double longest = reader.number(table + ".longest", kPositive);
+  roughness.seed = static_cast<std::uint64_t>(reader.number(table + ".seed"));
+  roughness.hurst = reader.number(table + ".hurst");
+  roughness.rms_slope = reader.number(table + ".rms_slope");
+  const double longest = reader.number(table + ".longest");
   roughness.longest = longest;
   roughness.period = reader.number_or(table + ".period", 4.0 * longest, period_for(longest));
   roughness.shortest = reader.number(table + ".shortest", shortest_for(longest, roughness.period));
@@ -36,14 +25,15 @@ Roughness read_roughness(SceneReader& reader, const std::string& table) {
 
 /// Parameters of a shape that has an axis.
 void read_body(SceneReader& reader, const std::string& table, Surface& surface) {
-  const auto positive = [&](const char* key) { return reader.number(table + key, kPositive); };
+  const auto positive = [&](const char* key) { return reader.number(table + key); };
   switch (surface.shape) {
     case Shape::sphere:
       surface.radius = positive(".radius");
       break;
     case Shape::flat_punch: {
       const double radius = surface.radius = positive(".radius");
-      surface.inner_radius = reader.number_or(table + ".inner_radius", 0.0, inner_radius_below(radius));
+      surface.inner_radius =
+          reader.number_or(table + ".inner_radius", surface.inner_radius, inner_radius_below(radius));
       break;
     }
     case Shape::ellipsoid:
@@ -58,15 +48,15 @@ void read_body(SceneReader& reader, const std::string& table, Surface& surface) 
       surface.corner_radius = positive(".corner_radius");
       break;
     case Shape::power:
-      surface.exponent = reader.number(table + ".exponent", kExponent);
+      surface.exponent = reader.number(table + ".exponent");
       surface.coefficient = positive(".coefficient");
       break;
     case Shape::height_map:
     case Shape::roughness:
       throw std::logic_error("a surface without an axis");
   }
-  surface.at = reader.find_pair(table + ".at", kFinite).value_or(surface.at);
-  surface.angle = reader.number_or(table + ".angle", surface.angle, kFinite);
+  surface.at = reader.find_pair(table + ".at").value_or(surface.at);
+  surface.angle = reader.number_or(table + ".angle", surface.angle);
 }
 
 Surface read_surface(SceneReader& reader, const std::string& table) {
@@ -74,7 +64,7 @@ Surface read_surface(SceneReader& reader, const std::string& table) {
   surface.shape = reader.choice(table + ".shape", kShapes);
   if (surface.shape == Shape::height_map) {
     surface.file = reader.path(table + ".file");
-    surface.spacing = reader.pair(table + ".spacing", kPositive);
+    surface.spacing = reader.pair(table + ".spacing");
     surface.height_unit = reader.choice_or(table + ".unit", surface.height_unit, kHeightUnits);
   } else if (surface.shape == Shape::roughness) {
     surface.roughness = read_roughness(reader, table);

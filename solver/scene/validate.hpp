@@ -20,6 +20,8 @@ inline const Range kThreads = whole(1, 1024);
 /// Powers of a cell's size stay within double precision.
 inline const Range kExponent{"from 1 to 20", [](double x) { return x >= 1.0 && x <= 20.0; }};
 inline const Range kHurst{"above 0, at most 1", [](double x) { return x > 0.0 && x <= 1.0; }};
+/// Whole numbers that TOML readers and double precision have alike; one more and its neighbour would be one.
+inline const Range kSeeds = whole(0, 0x1p53 - 1.0);
 Range inner_radius_below(double radius);
 Range period_for(double longest);
 Range shortest_for(double longest, double period);

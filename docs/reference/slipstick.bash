@@ -1,0 +1,44 @@
+# bash completion of slipstick, written by `make reference` from the program's own options.
+# In zsh: autoload -U +X bashcompinit && bashcompinit, then source this file.
+_slipstick() {
+  local current="${COMP_WORDS[COMP_CWORD]}" previous="${COMP_WORDS[COMP_CWORD - 1]}"
+  local words=""
+  COMPREPLY=()
+  if [ "$COMP_CWORD" -eq 1 ]; then
+    words="exact solve check study gate hard digits report bench compare --help --version"
+  else
+    case "${COMP_WORDS[1]} $previous" in
+      "exact --moment-ratio" | "exact --moment-deficit" | "exact --stick-ratio" | "exact --stick-complement" | "exact --twist" | "exact --history" | "exact --points" | "exact --unload-to" | "exact --certified" | "exact --radius" | "exact --profile" | "exact --normal-load" | "exact --effective-modulus" | "exact --shape" | "exact --friction" | "exact --shear-modulus" | "exact --json") return ;;
+      "exact "*) [[ $current != -* ]] || words="--moment-ratio --moment-deficit --stick-ratio --stick-complement --twist --history --help --points --unload-to --certified --radius --profile --normal-load --effective-modulus --shape --friction --shear-modulus --json --quiet" ;;
+      "solve --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
+      "solve --accuracy-of") words="twist traction stick_radius" ;;
+      "solve --model" | "solve --accuracy" | "solve --fields" | "solve --figure" | "solve --memory-limit" | "solve --json") return ;;
+      "solve "*) [[ $current != -* ]] || words="--help --set --model --accuracy --accuracy-of --plan --fields --figure --memory-limit --json --quiet" ;;
+      "check --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
+      "check --twist" | "check --tolerance" | "check --json") return ;;
+      "check "*) [[ $current != -* ]] || words="--help --set --twist --discrete --tolerance --strict --json --quiet" ;;
+      "study --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
+      "study --output" | "study --figure" | "study --jobs" | "study --memory-limit" | "study --json") return ;;
+      "study "*) [[ $current != -* ]] || words="--help --set --output --figure --jobs --memory-limit --json --quiet" ;;
+      "gate --only" | "gate --junit" | "gate --summary" | "gate --output" | "gate --results" | "gate --jobs" | "gate --memory-limit" | "gate --json") return ;;
+      "gate "*) [[ $current != -* ]] || words="--help --only --junit --summary --github --output --results --jobs --memory-limit --json --quiet" ;;
+      "hard --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
+      "hard --beside") words="coulomb projected_gradient paper" ;;
+      "hard --output" | "hard --fields" | "hard --jobs" | "hard --memory-limit" | "hard --json") return ;;
+      "hard "*) [[ $current != -* ]] || words="--help --set --output --fields --once --beside --jobs --memory-limit --json --quiet" ;;
+      "digits --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
+      "digits --samples" | "digits --seed" | "digits --output" | "digits --jobs" | "digits --memory-limit" | "digits --json") return ;;
+      "digits "*) [[ $current != -* ]] || words="--help --set --samples --seed --output --jobs --memory-limit --json --quiet" ;;
+      "report --output" | "report --memory-limit" | "report --json") return ;;
+      "report "*) [[ $current != -* ]] || words="--help --output --quick --memory-limit --json --quiet" ;;
+      "bench --program" | "bench --output" | "bench --filter" | "bench --accuracy-data" | "bench --against" | "bench --pair" | "bench --rounds" | "bench --effect" | "bench --json") return ;;
+      "bench "*) [[ $current != -* ]] || words="--help --program --output --filter --quick --accuracy-data --against --pair --rounds --effect --json --quiet" ;;
+      "compare --effect" | "compare --level" | "compare --rerun" | "compare --summary" | "compare --junit" | "compare --json") return ;;
+      "compare "*) [[ $current != -* ]] || words="--help --effect --level --same-machine --debug-library --rerun --summary --junit --json --quiet" ;;
+    esac
+  fi
+  [ -z "$words" ] || COMPREPLY=($(compgen -W "$words" -- "$current"))
+}
+_slipstick_keys="name= cycles= upper.shape= upper.radius= upper.inner_radius= upper.radius_1= upper.radius_2= upper.slope= upper.flat_radius= upper.corner_radius= upper.exponent= upper.coefficient= upper.at= upper.angle= upper.file= upper.spacing= upper.unit= upper.seed= upper.hurst= upper.rms_slope= upper.longest= upper.shortest= upper.period= upper.combine= upper.ends_at_grid_edge= upper.rigid= upper.young_modulus= upper.poisson_ratio= lower.rigid= lower.young_modulus= lower.poisson_ratio= contact.friction= contact.pressure= contact.pressure_file= contact.coupling= load.normal= load.moment_ratio= load.moment= load.twist= load.force= load.displacement= grid.cells= grid.extent= solver.method= solver.operator= solver.tolerance= solver.max_iterations= solver.model= solver.precision= solver.threads= solver.rounding_seed= solver.wisdom="
+# Where it finds no word, a file.
+complete -o default -F _slipstick slipstick

@@ -1,0 +1,213 @@
+#include "solver/scene/scene_keys.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "solver/scene/roughness.hpp"
+#include "solver/scene/validate.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+constexpr KeyType kNumber = KeyType::number;
+constexpr KeyType kWord = KeyType::word;
+/// Of keys that hold neither numbers nor words.
+const Range kAny{};
+const std::vector<std::string> kWithAxis{"sphere", "ellipsoid",  "cone",
+                                         "power",  "flat_punch", "rounded_punch"};
+
+std::string shown(double number) { return fmt::format("{:g}", number); }
+std::string shown(const std::array<double, 2>& pair) { return fmt::format("[{:g}, {:g}]", pair[0], pair[1]); }
+
+/// What depends on another key is allowed as these words say; the reader asks with the numbers.
+Range depending(const std::string& words) { return {words, nullptr}; }
+
+/// Of [upper], or of each [[upper.shape]].
+void add_shape(SettingKeys& keys, const std::string& table) {
+  const Surface surface;
+  const std::string at = table + ".";
+  const std::vector<std::string> rough{"roughness"};
+  const std::vector<std::string> map{"height_map"};
+  const SettingKeys shape{
+      {at + "shape", kWord, "", kRequired, one_of(kShapes),
+       "The shape of the indenter's surface; in `[upper]` either this word or tables `[[upper.shape]]`."},
+      {at + "radius",
+       kNumber,
+       "m",
+       kRequired,
+       kPositive,
+       "Radius of the sphere, or of the punch's face.",
+       {"sphere", "flat_punch"}},
+      {at + "inner_radius",
+       kNumber,
+       "m",
+       shown(surface.inner_radius),
+       depending(inner_radius_below(1.0).words),
+       "Radius of the hole that makes the punch an annulus.",
+       {"flat_punch"}},
+      {at + "radius_1",
+       kNumber,
+       "m",
+       kRequired,
+       kPositive,
+       "Radius of curvature along the ellipsoid's first axis.",
+       {"ellipsoid"}},
+      {at + "radius_2",
+       kNumber,
+       "m",
+       kRequired,
+       kPositive,
+       "Radius of curvature along its second axis.",
+       {"ellipsoid"}},
+      {at + "slope", kNumber, "", kRequired, kPositive, "Gap over radius.", {"cone"}},
+      {at + "flat_radius", kNumber, "m", kRequired, kPositive, "Radius of the flat face.", {"rounded_punch"}},
+      {at + "corner_radius",
+       kNumber,
+       "m",
+       kRequired,
+       kPositive,
+       "Radius of curvature beyond the face, where the gap is (r - flat_radius)^2/(2 corner_radius).",
+       {"rounded_punch"}},
+      {at + "exponent", kNumber, "", kRequired, kExponent, "The gap is coefficient r^exponent.", {"power"}},
+      {at + "coefficient",
+       kNumber,
+       "m^(1 - exponent)",
+       kRequired,
+       kPositive,
+       "Factor of that power.",
+       {"power"}},
+      {at + "at", KeyType::pair, "m", shown(surface.at), kFinite, "Where the shape's axis stands.",
+       kWithAxis},
+      {at + "angle", kNumber, "rad", shown(surface.angle), kFinite,
+       "From x1 to the shape's first axis, positive towards x2.", kWithAxis},
+      {at + "file", KeyType::file, "", kRequired, kAny,
+       "Heights, one a cell, larger where further away: a CSV matrix with a line for each x1, or the HDF5 "
+       "dataset `height`.",
+       map},
+      {at + "spacing", KeyType::pair, "m", kRequired, kPositive, "Distance of the file's samples.", map},
+      {at + "unit", kWord, "", word_of(kHeightUnits, surface.height_unit), one_of(kHeightUnits),
+       "Unit of the file's heights.", map},
+      {at + "seed", kNumber, "", kRequired, kSeeds, "Draws the phases of the random surface.", rough},
+      {at + "hurst", kNumber, "", kRequired, kHurst,
+       "Hurst's exponent: the power of a wave vector k goes like |k|^(-2 (1 + hurst)).", rough},
+      {at + "rms_slope", kNumber, "", kRequired, kPositive,
+       "Root mean square of the gradient's length, over a period.", rough},
+      {at + "longest", kNumber, "m", kRequired, kPositive, "Longest wavelength.", rough},
+      {at + "shortest", kNumber, "m", kRequired,
+       depending(fmt::format("from a {:g}th of the period, to half of longest", kMaxWaves)),
+       "Shortest wavelength.", rough},
+      {at + "period", kNumber, "m", "4 times longest", depending("at least longest, finite"),
+       "After so much the surface repeats itself.", rough}};
+  keys.insert(keys.end(), shape.begin(), shape.end());
+}
+
+void add_body(SettingKeys& keys, const std::string& table) {
+  const std::string at = table + ".";
+  const SettingKeys body{
+      {at + "rigid", KeyType::flag, "", "false", kAny,
+       "Whether the body is rigid: then it has neither of the next two keys. One body may be."},
+      {at + "young_modulus", kNumber, "Pa", kRequired, kPositive, "Young's modulus."},
+      {at + "poisson_ratio", kNumber, "", kRequired, kPoisson, "Poisson's ratio."}};
+  keys.insert(keys.end(), body.begin(), body.end());
+}
+
+/// Of [load], or of each [[step]], which leaves what it does not say as it was.
+void add_loads(SettingKeys& keys, const std::string& table, bool is_step) {
+  const std::string at = table + ".";
+  const auto first = [&](const std::string& otherwise) { return is_step ? "as before" : otherwise; };
+  const SettingKeys loads{
+      {at + "normal", kNumber, "N", first(kRequired), kPositive,
+       "Normal load; of a pressure from a file it may be left out."},
+      {at + "moment_ratio", kNumber, "", first("0 beside a force, a displacement or steps; else required"),
+       kRatio, "Moment over the limit moment of this pressure and mesh. One of this and the next two."},
+      {at + "moment", kNumber, "N m", first("none"), kFinite, "Moment about the grid's origin."},
+      {at + "twist", kNumber, "rad", first("none"), kFinite,
+       "Twist imposed in place of the moment, since the first step."},
+      {at + "force", KeyType::pair, "N", first("[0, 0]"), kFinite,
+       "Tangential force on the indenter. One of this and the next."},
+      {at + "displacement", KeyType::pair, "m", first("none"), kFinite,
+       "Displacement imposed in place of the force, since the first step."}};
+  keys.insert(keys.end(), loads.begin(), loads.end());
+}
+
+void add_contact(SettingKeys& keys, const Scene& scene) {
+  const SettingKeys contact{
+      {"contact.friction", kNumber, "", kRequired, kNotNegative, "Coefficient of friction."},
+      {"contact.pressure", kWord, "", word_of(kPressureModels, scene.pressure), one_of(kPressureModels),
+       "Where the pressure comes from: solved on the same grid, Hertz's at cell centres, Hertz's averaged "
+       "over each cell, a file."},
+      {"contact.pressure_file", KeyType::file, "", "required with pressure = \"file\"", kAny,
+       "Columns x1, x2 (m), pressure (Pa), one row for each contact cell: .csv or .h5. Known with pressure = "
+       "\"file\" alone."},
+      {"contact.coupling", kWord, "", word_of(kCouplings, scene.coupling), one_of(kCouplings),
+       "Of dissimilar bodies: the pressure's tangential displacement where they are dissimilar (auto); "
+       "nothing; that displacement; also the shear's normal displacement."}};
+  keys.insert(keys.end(), contact.begin(), contact.end());
+}
+
+void add_grid_and_solver(SettingKeys& keys, const Scene& scene) {
+  const SettingKeys solver{
+      {"grid.cells", KeyType::pair, "", "required; of a height map as many as its samples", kCells,
+       "Cells along x1 and x2."},
+      {"grid.extent", KeyType::pair, "m", "the expected contact and two cells around it", kPositive,
+       "Lengths of the grid's sides; left out beside a height map, required with a pressure from a file."},
+      {"solver.method", kWord, "", word_of(kMethods, scene.method), one_of(kMethods),
+       "Newton's method on the convex program; accelerated projected gradients; the paper's algorithm as "
+       "published."},
+      {"solver.operator", kWord, "", word_of(kOperators, scene.op), one_of(kOperators),
+       "Convolution by FFT, direct summation, a dense matrix: the same numbers."},
+      {"solver.tolerance", kNumber, "", shown(scene.tolerance), kTolerance,
+       "Gap over energy at which a solve stops; of the paper's method Eq. (26) over the sum of mu p."},
+      {"solver.max_iterations", kNumber, "", shown(scene.max_iterations), kIterations,
+       "Iterations after which a solve gives up."},
+      {"solver.model", kWord, "", word_of(kModels, scene.model), one_of(kModels),
+       "Leave out what symmetry and the contact's size allow; nothing; the grid itself, where the scene has "
+       "an exact answer."},
+      {"solver.precision", kWord, "", word_of(kPrecisions, scene.precision), one_of(kPrecisions),
+       "Of inner iterations; the certificate is of double precision always."},
+      {"solver.threads", kNumber, "", shown(scene.threads), kThreads, "Threads of one solve."},
+      {"solver.rounding_seed", kNumber, "", shown(static_cast<double>(scene.rounding_seed)), kRoundingSeeds,
+       "0: to nearest; else every operation is rounded at random, drawn from this seed."},
+      {"solver.wisdom", KeyType::file, "", "none: transforms are planned by estimate", kAny,
+       "File in the scene's folder or below that keeps measured plans of FFTW; it is read and written."}};
+  keys.insert(keys.end(), solver.begin(), solver.end());
+}
+
+SettingKeys make_scene_keys() {
+  const Scene scene;
+  SettingKeys keys{{"name", KeyType::text, "", "the file's name", kAny, "Heads what is printed."},
+                   {"cycles", kNumber, "", shown(scene.cycles), depending(cycles_of(1).words),
+                    "How often all steps are gone through; the limit is of steps times cycles."}};
+  add_shape(keys, "upper");
+  keys.push_back({"upper.combine", kWord, "", word_of(kCombinations, scene.combine), one_of(kCombinations),
+                  "How several shapes make one surface: their gaps add up, or each point has the nearest. "
+                  "Known with two or more tables `[[upper.shape]]` alone."});
+  keys.push_back({"upper.ends_at_grid_edge", KeyType::flag, "", "false", kAny,
+                  "Whether the body itself ends at the edge of the grid, so that its contact may reach it."});
+  add_body(keys, "upper");
+  add_shape(keys, "upper.shape");
+  add_body(keys, "lower");
+  add_contact(keys, scene);
+  add_loads(keys, "load", false);
+  keys.push_back({"step", KeyType::tables, "", "the loads of `[load]`, at once",
+                  depending(fmt::format("at most {} tables", kMaxSteps)),
+                  "Tables `[[step]]`: a history, whose steps are solved one after another."});
+  keys.push_back(
+      {"step.name", KeyType::text, "", "the step's number", kAny, "Names the step in the result."});
+  add_loads(keys, "step", true);
+  add_grid_and_solver(keys, scene);
+  return keys;
+}
+
+}  // namespace
+
+const SettingKeys& scene_keys() {
+  static const SettingKeys keys = make_scene_keys();
+  return keys;
+}
+
+}  // namespace slipstick::solver
