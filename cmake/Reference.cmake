@@ -1,5 +1,19 @@
-# The target reference: pages of docs/reference that are made from the program itself. They are committed, and a test
-# holds them to the program.
+# The target reference: pages of docs/reference that are made from the program itself, which are committed, and the C++
+# reference of the public headers by doxygen, where that is installed (build/docs/cpp/html).
+find_program(SLIPSTICK_DOXYGEN doxygen)
+mark_as_advanced(SLIPSTICK_DOXYGEN)
+if(SLIPSTICK_DOXYGEN)
+  configure_file(docs/Doxyfile.in docs/Doxyfile @ONLY)
+  set(doxygen ${SLIPSTICK_DOXYGEN} ${PROJECT_BINARY_DIR}/docs/Doxyfile)
+  add_custom_target(doxygen COMMAND ${doxygen} COMMENT "Writing docs/cpp/html" VERBATIM)
+  if(SLIPSTICK_TESTS)
+    add_test(NAME front_door.doxygen COMMAND ${doxygen})
+    set_tests_properties(front_door.doxygen PROPERTIES TIMEOUT ${SLIPSTICK_TEST_HANGS})
+  endif()
+else()
+  set(doxygen ${CMAKE_COMMAND} -E echo "LEFT OUT: the C++ reference, because doxygen is not installed")
+endif()
 add_custom_target(reference
   COMMAND slipstick reference ${PROJECT_SOURCE_DIR}/docs/reference
+  COMMAND ${doxygen}
   COMMENT "Writing docs/reference" VERBATIM)
