@@ -18,6 +18,7 @@
 #include "convergence/gates/gate_command.hpp"
 #include "convergence/hard/digits_command.hpp"
 #include "convergence/hard/hard_command.hpp"
+#include "convergence/programs/command_word.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/run_program.hpp"
 #include "convergence/reference/reference_command.hpp"
@@ -72,6 +73,7 @@ int run(int argc, char** argv) {
     subcommand->add_flag("--quiet", quiet, "print no result text");
   }
 
+  slipstick::convergence::require_command(app, argc, argv);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -6,7 +6,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <filesystem>
-#include <functional>
+#include <set>
 #include <sstream>
 
 namespace slipstick::convergence {
@@ -130,6 +130,27 @@ std::string names_of(const std::vector<OptionText>& options) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
+/// What may follow the word before, within a command: an option's words, the keys of a scene, files, options.
+std::string completion_cases(const CommandText& command) {
+  std::string cases;
+  std::string with_files;
+  for (const OptionText& option : command.options) {
+    if (option.value.empty()) continue;
+    const std::string place = fmt::format("\"{} {}\"", command.name, names_of({option}));
+    if (option.name == "--set") {
+      cases +=
+          fmt::format("      {}) words=\"$_slipstick_keys\"; compopt -o nospace 2>/dev/null ;;\n", place);
+    } else if (!option.words.empty()) {
+      cases += fmt::format("      {}) words=\"{}\" ;;\n", place, fmt::join(option.words, " "));
+    } else {
+      with_files += (with_files.empty() ? "" : " | ") + place;
+    }
+  }
+  if (!with_files.empty()) cases += fmt::format("      {}) return ;;\n", with_files);
+  return cases + fmt::format("      \"{} \"*) [[ $current != -* ]] || words=\"{}\" ;;\n", command.name,
+                             names_of(command.options));
+}
+
 }  // namespace
 
 std::vector<CommandText> command_texts(const CLI::App& app) {
@@ -194,8 +215,8 @@ std::string commands_manual(const std::vector<CommandText>& commands, const std:
 
 std::string commands_completion(const std::vector<CommandText>& commands,
                                 const std::vector<std::string>& scene_keys) {
-  std::vector<std::string> names;
-  for (const CommandText& command : commands) names.push_back(command.name);
+  std::string names;
+  for (const CommandText& command : commands) names += command.name + " ";
   std::string script = fmt::format(
       "# bash completion of slipstick, written by `make reference` from the program's own options.\n"
       "# In zsh: autoload -U +X bashcompinit && bashcompinit, then source this file.\n"
@@ -204,37 +225,18 @@ std::string commands_completion(const std::vector<CommandText>& commands,
       "  local words=\"\"\n"
       "  COMPREPLY=()\n"
       "  if [ \"$COMP_CWORD\" -eq 1 ]; then\n"
-      "    words=\"{} --help --version\"\n"
+      "    words=\"{}--help --version\"\n"
       "  else\n"
       "    case \"${{COMP_WORDS[1]}} $previous\" in\n",
-      fmt::join(names, " "));
-  for (const CommandText& command : commands) {
-    std::string with_files;
-    for (const OptionText& option : command.options) {
-      if (option.value.empty()) continue;
-      const std::string place = fmt::format("\"{} {}\"", command.name, names_of({option}));
-      if (option.name == "--set") {
-        script +=
-            fmt::format("      {}) words=\"$_slipstick_keys\"; compopt -o nospace 2>/dev/null ;;\n", place);
-      } else if (!option.words.empty()) {
-        script += fmt::format("      {}) words=\"{}\" ;;\n", place, fmt::join(option.words, " "));
-      } else {
-        with_files += (with_files.empty() ? "" : " | ") + place;
-      }
-    }
-    if (!with_files.empty()) script += fmt::format("      {}) return ;;\n", with_files);
-    script += fmt::format("      \"{} \"*) [[ $current != -* ]] || words=\"{}\" ;;\n", command.name,
-                          names_of(command.options));
-  }
-  std::vector<std::string> keys;
-  for (const std::string& key : scene_keys) keys.push_back(key + "=");
+      names);
+  for (const CommandText& command : commands) script += completion_cases(command);
   return script + fmt::format(
                       "    esac\n  fi\n"
                       "  [ -z \"$words\" ] || COMPREPLY=($(compgen -W \"$words\" -- \"$current\"))\n}}\n"
-                      "_slipstick_keys=\"{}\"\n"
+                      "_slipstick_keys=\"{}=\"\n"
                       "# Where it finds no word, a file.\n"
                       "complete -o default -F _slipstick slipstick\n",
-                      fmt::join(keys, " "));
+                      fmt::join(scene_keys, "= "));
 }
 
 }  // namespace slipstick::convergence

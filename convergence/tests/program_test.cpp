@@ -53,6 +53,12 @@ TEST(Program, BadCommandLineIsExitCode2) {
   EXPECT_EQ(run("solve --no-such-option").exit_code, 2);
 }
 
+TEST(Program, NamesTheNearestCommand) {
+  const ProgramRun misspelt = run("slove scene.toml");
+  EXPECT_EQ(misspelt.exit_code, 2);
+  EXPECT_THAT(misspelt.output, AllOf(HasSubstr("slove"), HasSubstr("the nearest is solve")));
+}
+
 TEST(Program, SolveWritesEveryKeyOfTheContract) {
   const ProgramRun out = run(solve("paper") + " --json -");
   ASSERT_EQ(out.exit_code, 0) << out.output;
