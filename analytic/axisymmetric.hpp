@@ -57,6 +57,7 @@ class Profile {
   virtual double stick_traction(StickRadius stick, double radius, double inward) const = 0;
 
  protected:
+  /// What the functions of the same names return.
   struct Constants {
     std::string name;
     std::string reference_pressure;

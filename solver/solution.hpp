@@ -32,6 +32,7 @@ struct Resolution {
 };
 inline constexpr double kPoorlyResolved = 0.1;
 
+/// What the parts of a solve took, by the wall clock.
 struct Seconds {
   double setup = 0.0;
   double pressure = 0.0;

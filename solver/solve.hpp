@@ -7,6 +7,7 @@
 
 namespace slipstick::solver {
 
+/// Who is told how a solve goes on.
 struct SolveOptions {
   /// Called now and then with the iterations or applications so far and what the method's stopping test sees.
   std::function<void(int iteration, double change)> progress;

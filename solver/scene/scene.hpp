@@ -14,6 +14,7 @@
 
 namespace slipstick::solver {
 
+/// An elastic body, or a rigid one.
 struct Material {
   double young_modulus = 0.0;  ///< Pa; infinite: rigid
   double poisson_ratio = 0.0;
@@ -39,9 +40,11 @@ enum class ModelChoice { automatic, full, exact };
 struct MomentRatio {
   double value = 0.0;  ///< M over the limit of this pressure and mesh
 };
+/// The moment itself.
 struct Moment {
   double value = 0.0;  ///< N m
 };
+/// The rotation is imposed, and the moment follows.
 struct Twist {
   double value = 0.0;  ///< rad, since the first step
 };
