@@ -4,4 +4,4 @@ from mkdocs.structure.files import Files
 
 def on_files(files, config):
     return Files([file for file in files
-                  if not file.src_uri.startswith("tests/") and not file.src_uri.endswith((".py", ".yml", "CMakeLists.txt"))])
+                  if not file.src_uri.startswith(("tests/", "extend/examples/")) and not file.src_uri.endswith((".py", ".yml", ".1", ".bash", ".in", "CMakeLists.txt"))])
