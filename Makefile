@@ -18,8 +18,8 @@ LINT_SINCE ?=
 INSTRUCTION_GATES = $(wildcard bench/gates/instructions-gcc-$(firstword $(subst ., ,$(shell c++ -dumpversion))).toml)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup configure build report test gate hard mutants sanitize coverage lint bench bench-against bench-trust references \
-  reference hardest docs install clean
+.PHONY: help setup configure build report report-pdf test gate hard mutants sanitize coverage lint bench bench-against \
+  bench-trust references reference hardest docs install clean
 
 help: ## show this list
 	@echo "slipstick: make TARGET"
@@ -41,10 +41,14 @@ endef
 build: configure ## build everything, the program is build/slipstick
 	$(call build,all)
 
-report: configure ## run everything that the page shows and write it (FULL=1: finer meshes; REPORT_OPTIONS="--quick")
+report: configure ## compute all that the page shows and write it (FULL=1: finer meshes; REPORT_OPTIONS="--quick")
 	$(call build,slipstick)
 	@$(BUILD)/slipstick report --output $(BUILD)/report --benchmarks $(BUILD)/benchmarks $(if $(FULL),--full) $(REPORT_OPTIONS)
 	@echo "The page: $(CURDIR)/$(BUILD)/report/index.html"
+
+report-pdf: configure ## print the page that `make report` wrote into build/report/report.pdf (needs Chromium)
+	@"$$(sed -n 's/^SLIPSTICK_PYTHON:[A-Z]*=//p' $(BUILD)/CMakeCache.txt)" -B reports/pdf.py $(BUILD)/report/index.html \
+	  --output $(BUILD)/report/report.pdf
 
 test: configure ## run every test
 	$(call build,tests)
@@ -71,7 +75,7 @@ mutants: configure ## 240 small mistakes, made by rule: do tests and gates see t
 	  "$$python" -B cmake/mutation/mutants.py $(MUTANT_OPTIONS)
 
 SANITIZED = build-$(SANITIZER)$(addprefix -,$(COMPILER))
-sanitize: setup ## run every test under the address and undefined-behaviour sanitizers (SANITIZER=tsan: threads; COMPILER=clang++; a part: SANITIZE="operators analytic")
+sanitize: setup ## run every test under sanitizers (SANITIZER=tsan: threads; COMPILER=clang++; a part: SANITIZE="operators analytic")
 	@test -f $(SANITIZED)/build.ninja || cmake --preset $(SANITIZER) -B $(SANITIZED) $(addprefix -DCMAKE_CXX_COMPILER=,$(COMPILER))
 	@cmake --build $(SANITIZED) --target $(if $(SANITIZE),$(SANITIZE:%=%_tests),tests)
 	@ctest --test-dir $(SANITIZED) --output-on-failure -j$$(nproc) \

@@ -1,12 +1,15 @@
 // Sorts a table by the column whose heading is pressed: numbers by their value, texts by the alphabet, dashes last.
 const superscript = "⁰¹²³⁴⁵⁶⁷⁸⁹";
+const scale = { M: 1e6, k: 1e3, m: 1e-3, µ: 1e-6, n: 1e-9, p: 1e-12 };
+const written = /^[±+]?(-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)(?:×10(⁻?)([⁰¹²³⁴⁵⁶⁷⁸⁹]+))?(?:\s([Mkmµnp])?(?:rad|N m|m|Pa|J|s)\b)?/;
 function valueOf(cell) {
   const text = cell.textContent.trim();
   if (text === "" || text === "–") return null;
-  const plain = text.replace(/−/g, "-").replace(/^[±+]/, "").replace(/²$/, "").replace(/×10(⁻?)([⁰¹²³⁴⁵⁶⁷⁸⁹]+)/,
-    (all, sign, digits) => "e" + (sign ? "-" : "") + [...digits].map(digit => superscript.indexOf(digit)).join(""));
-  const number = parseFloat(plain);
-  return /^-?[\d.]/.test(plain) && !Number.isNaN(number) ? number : text;
+  const found = text.replace(/−/g, "-").match(written);
+  if (!found) return text;
+  const [, mantissa, sign, digits = "", prefix] = found;
+  const power = [...digits].map(digit => superscript.indexOf(digit)).join("") || 0;
+  return mantissa * 10 ** (sign ? -power : +power) * (scale[prefix] ?? 1);
 }
 function compare(one, other) {
   if (typeof one === typeof other) return typeof one === "number" ? one - other : one.localeCompare(other);
