@@ -164,8 +164,8 @@ class Browser:
         return base64.b64decode(self.call("Page.captureScreenshot", captureBeyondViewport=whole, **(
             {"clip": dict(self.call("Page.getLayoutMetrics")["cssContentSize"], scale=1)} if whole else {}))["data"])
 
-    def pdf(self, paper=A4, margin=0.4):
-        """The page as it is printed; lengths in inches."""
+    def pdf(self, paper=A4, margin=0.4, pages=""):
+        """The page as it is printed, all of it or a range as "2-5"; lengths in inches."""
         edges = {f"margin{edge}": margin for edge in ("Top", "Bottom", "Left", "Right")}
         return base64.b64decode(self.call("Page.printToPDF", printBackground=True, paperWidth=paper[0],
-                                          paperHeight=paper[1], **edges)["data"])
+                                          paperHeight=paper[1], pageRanges=pages, **edges)["data"])

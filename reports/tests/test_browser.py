@@ -166,10 +166,13 @@ class Page(unittest.TestCase):
     def test_prints_on_a4(self):
         content = self.browser.pdf()
         self.assertTrue(content.startswith(b"%PDF"))
-        self.assertGreater(pdf.count_pages(content), 0)
-        for width, height in pdf.paper_sizes(content):
-            self.assertAlmostEqual(width, 210, delta=1)
-            self.assertAlmostEqual(height, 297, delta=1)
+        last = pdf.count_pages(content)
+        self.assertEqual(pdf.count_pages(self.browser.pdf(pages=str(last))), 1)
+        with self.assertRaises(browser.BrowserError, msg="there is no page after the last"):
+            self.browser.pdf(pages=str(last + 1))
+        (width, height), = pdf.paper_sizes(content)
+        self.assertAlmostEqual(width, 210, delta=1)
+        self.assertAlmostEqual(height, 297, delta=1)
 
 
 if __name__ == "__main__":
