@@ -162,6 +162,16 @@ def rigid_motion(residual, x, y, within):
     return motion, left
 
 
+def moved(elastic, coupling, fields):
+    """Tangential displacements by tractions, and by the pressure where that counts."""
+    u1 = elastic.displacement("11", fields["q1"]) + elastic.displacement("12", fields["q2"])
+    u2 = elastic.displacement("12", fields["q1"]) + elastic.displacement("22", fields["q2"])
+    if coupling != "none":
+        u1 = u1 + elastic.displacement("13", fields["pressure"])
+        u2 = u2 + elastic.displacement("23", fields["pressure"])
+    return u1, u2
+
+
 def audit(row, folder):
     """What is measured of one case, by name."""
     scene = scene_of(row, folder)
@@ -205,11 +215,11 @@ def audit(row, folder):
     size = max(np.abs(u1[contact]).max(), np.abs(u2[contact]).max())
     if size == 0.0:  # one cell that carries nothing: there is no slip
         found["slip"] = max(np.abs(fields["slip1"]).max(), np.abs(fields["slip2"]).max()) / h[0]
-    elif not history:
-        moved1, moved2 = u1, u2
-        if coupling != "none":
-            moved1 = u1 + elastic.displacement("13", p)
-            moved2 = u2 + elastic.displacement("23", p)
+    else:
+        moved1, moved2 = moved(elastic, coupling, fields)
+        if "before" in row:  # a step's slip is measured from the state before
+            before = fields_of(folder / row["before"], n, h)
+            moved1, moved2 = (now - then for now, then in zip((moved1, moved2), moved(elastic, coupling, before)))
         size = max(size, np.abs(moved1[contact]).max())
         motion, left = rigid_motion((moved1 - fields["slip1"], moved2 - fields["slip2"]), x, y, contact)
         found["slip"] = max(np.abs(left[0][contact]).max(), np.abs(left[1][contact]).max()) / size

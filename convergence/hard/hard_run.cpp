@@ -197,6 +197,9 @@ Json row(const Trial& trial) {
       written[key] = trial.result[key];
     }
     written["certificate.rounding"] = trial.result["certificate"]["rounding"];
+    if (trial.result.contains("steps") && trial.result["steps"].size() > 1) {
+      written["before"] = step_before_file(trial.fields).string();
+    }
   }
   if (!trial.variants.empty()) row["variants"] = trial.variants;
   if (!trial.methods.empty()) row["methods"] = trial.methods;
@@ -234,6 +237,7 @@ Json run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& optio
     RunSpec spec = cases[i].run;
     if (!options.fields.empty()) trials[i].fields = options.fields / fmt::format("{:05}.csv", i);
     spec.fields = trials[i].fields;
+    spec.step_before = !spec.fields.empty();
     first.add(trials[i], std::move(spec));
   }
   first.run(pool, [](Trial& trial, const RunSpec& spec, const Json& result) {

@@ -149,6 +149,7 @@ class Batch {
     if (spec.variant != Variant::none) words.insert(words.end(), {"--variant", to_string(spec.variant)});
     if (!spec.fields.empty()) words.insert(words.end(), {"--fields", spec.fields});
     if (spec.profile) words.emplace_back("--profile");
+    if (spec.step_before) words.emplace_back("--step-before");
     // What is left now is less by what the others take.
     if (std::isfinite(memory_)) words.insert(words.end(), {"--memory-limit", fmt::format("{:.0f}", memory_)});
     for (const std::string& assignment : spec.overrides) words.insert(words.end(), {"--set", assignment});
@@ -189,8 +190,14 @@ class Batch {
 Json solve(const PreparedRun& run) {
   const RunSpec& spec = run.spec;
   SolvedScene solved;
+  std::optional<solver::Solution> latest;
+  std::optional<solver::Solution> before;
+  const auto on_step = [&](const solver::Solution& at, const OracleAnswer&) {
+    if (!spec.step_before) return;
+    before = std::exchange(latest, at);
+  };
   try {
-    solved = solve_scene(run.scene, {.rounding = spec.rounding});
+    solved = solve_scene(run.scene, {.on_step = on_step, .rounding = spec.rounding});
   } catch (const solver::OutOfMemory&) {
     throw;
   } catch (const solver::InputError& error) {
@@ -199,6 +206,7 @@ Json solve(const PreparedRun& run) {
     throw std::runtime_error("memory ran out");
   }
   if (!spec.fields.empty()) write_solution_fields(spec.fields, solved.solution, solved.exact);
+  if (!spec.fields.empty() && before) write_solution_fields(step_before_file(spec.fields), *before, {});
   if (spec.profile) solved.result["profile"] = profile_json(solved.solution, solved.exact);
   return std::move(solved.result);
 }

@@ -17,6 +17,7 @@ std::string cache_key(const RunSpec& spec, const solver::Scene& scene) {
   for (std::size_t i = 1; i < files.size(); ++i) text += read_text(files[i]);
   if (!spec.fields.empty()) text += "\nfields " + spec.fields.string();
   if (spec.profile) text += "\nprofile";
+  if (spec.step_before) text += "\nstep before";
   return text;
 }
 
@@ -57,6 +58,13 @@ std::string cells_override(const solver::Scene& scene, solver::Index across) {
   const solver::Index longer = std::max(scene.cells[0], scene.cells[1]);
   return fmt::format("grid.cells=[{},{}]", across * scene.cells[0] / longer,
                      across * scene.cells[1] / longer);
+}
+
+std::filesystem::path step_before_file(const std::filesystem::path& fields) {
+  std::filesystem::path name = fields.stem();
+  name += "-before";
+  name += fields.extension();
+  return fields.parent_path() / name;
 }
 
 std::string run_text(const RunSpec& spec) {

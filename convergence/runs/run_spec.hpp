@@ -21,7 +21,9 @@ struct RunSpec {
   Rounding rounding = Rounding::nearest;
   Variant variant = Variant::none;
   std::filesystem::path fields = {};  ///< gets the fields of the last step; empty: none
-  bool profile = false;               ///< the result has the tractions along two radii
+  /// Of a history, a file beside gets those of the step before, from which the last one's slip is measured.
+  bool step_before = false;
+  bool profile = false;  ///< the result has the tractions along two radii
 };
 
 /// A run whose scene has been read.
@@ -45,6 +47,9 @@ std::string read_text(const std::filesystem::path& file);
 
 /// The override that gives a grid so many cells along its longer side, in the shape of the scene's own.
 std::string cells_override(const solver::Scene& scene, solver::Index across);
+
+/// The file that gets the fields of the step before the last: NAME-before.csv beside NAME.csv.
+std::filesystem::path step_before_file(const std::filesystem::path& fields);
 
 /// A run for a person: "paper, grid.cells=[96,96], rounded downward".
 std::string run_text(const RunSpec& spec);

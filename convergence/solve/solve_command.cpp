@@ -49,6 +49,7 @@ struct SolveRequest {
   std::string rounding;
   std::string variant = "none";
   bool profile = false;
+  bool step_before = false;
 };
 
 /// One line on a terminal, rewritten; nothing elsewhere.
@@ -174,6 +175,7 @@ RunSpec spec_of(const SolveRequest& request) {
   RunSpec spec{.scene = request.scene,
                .overrides = request.overrides,
                .fields = request.fields,
+               .step_before = request.step_before,
                .profile = request.profile};
   if (request.rounding == "upward") spec.rounding = Rounding::upward;
   if (request.rounding == "downward") spec.rounding = Rounding::downward;
@@ -250,6 +252,8 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_solve_command(CLI
   command->add_option("--rounding", request->rounding, "upward | downward")->group(kHidden);
   command->add_option("--variant", request->variant, "how the contact is seen")->group(kHidden);
   command->add_flag("--profile", request->profile, "tractions along two radii")->group(kHidden);
+  command->add_flag("--step-before", request->step_before, "fields of the step before the last too")
+      ->group(kHidden);
   command->footer(
       "Example:\n  slipstick solve convergence/scenes/paper.toml --set load.moment_ratio=0.5 --json "
       "result.json --fields "

@@ -26,6 +26,16 @@ load.force = [60.0, 20.0]
 """
 
 
+HISTORY = f"""
+[[family]]
+name = "loop"
+why = "made for the test"
+scene = "{HARD.parent}/scenes/growing_load.toml"
+[family.set]
+grid.cells = [14, 12]
+"""
+
+
 def solve_hard(folder, files, *options):
     """The result of the hard cases of some files, with their fields."""
     command = [PROGRAM, "hard", *files, "--once", "--quiet", "--output", folder / "kept", "--fields", folder / "fields"]
@@ -64,6 +74,21 @@ class Audit(unittest.TestCase):
 
     def findings(self, row):
         return {key for key, found in audit.audit(row, self.folder).items() if not found <= audit.ALLOWED[key]}
+
+    def test_sees_a_wrong_number_in_the_last_step_of_a_history(self):
+        (self.folder / "loop.toml").write_text(HISTORY)
+        row = solve_hard(self.folder, [self.folder / "loop.toml"])["rows"][0]
+        self.assertEqual(row["verdict"], "certified")
+        self.assertIn("slip", audit.audit(row, self.folder))
+        self.assertEqual(self.findings(row), set())
+        for file in (Path(row["written"]["fields"]), Path(row["written"]["before"])):
+            good = file.read_text()
+            names, *lines = good.strip().split("\n")
+            words, at = lines[5].split(","), names.split(",").index("q1")
+            words[at] = repr(1.001 * float(words[at]) + 1.0)
+            file.write_text("\n".join([names, *lines[:5], ",".join(words), *lines[6:]]) + "\n")
+            self.assertIn("slip", self.findings(row), file)
+            file.write_text(good)
 
     def test_sees_a_field_in_which_one_number_is_wrong(self):
         (self.folder / "small.toml").write_text(FAMILY)
