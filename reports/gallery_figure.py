@@ -52,8 +52,8 @@ def slip_maps(report, data_dir):
         draw_arrows(axis, draw_scene(axis, scene, data_dir))
     return FigureEntry(
         "The middle sticks, the rest slips around the point about which the contact turns; a rough contact sticks in spots.",
-        "Blue sticks, orange slips, darker where it slips further; arrows show the way in which the indenter slips over the "
-        "half-space. Panels are not to one scale.",
+        "Blue sticks, orange slips, darker where it slips further. Arrows show how the half-space’s surface slips relative to "
+        "the indenter’s, which turns counterclockwise: friction on the half-space opposes them. Panels are not to one scale.",
         f"{len(shown)} maps of contacts ({', '.join(text(scene, 'title') for scene in shown)}): stick areas in blue and "
         "arrows of slip around them.", figure, [(escape(text(scene, "title")), _turn(scene)) for scene in shown],
         [text(scene, "fields") for scene in shown])
