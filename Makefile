@@ -85,7 +85,7 @@ coverage: setup ## which lines of analytic, solver and convergence do the tests 
 	@command -v lcov >/dev/null || { echo "make coverage: lcov is missing; on Debian: apt-get install lcov" >&2; exit 2; }
 	@test -f build-coverage/build.ninja || cmake --preset coverage
 	@cmake --build build-coverage --target tests
-	@ctest --test-dir build-coverage --output-on-failure -j$$(nproc) -E '^(reports|docs)'
+	@GTEST_FILTER='-Memory.Predicted*' ctest --test-dir build-coverage --output-on-failure -j$$(nproc) -E '^(reports|docs)'
 	@cmake/coverage build-coverage 95
 
 lint: setup ## check format and clang-tidy's rules, 14 or later (of what changed alone: LINT_SINCE=origin/main)
