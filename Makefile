@@ -86,6 +86,7 @@ coverage: setup ## which lines of analytic, solver and convergence do the tests 
 	@test -f build-coverage/build.ninja || cmake --preset coverage
 	@cmake --build build-coverage --target tests
 	@GTEST_FILTER='-Memory.Predicted*' ctest --test-dir build-coverage --output-on-failure -j$$(nproc) -E '^(reports|docs)'
+	@build-coverage/slipstick report --quick --output build-coverage/report
 	@cmake/coverage build-coverage 95
 
 lint: setup ## check format and clang-tidy's rules, 14 or later (of what changed alone: LINT_SINCE=origin/main)
