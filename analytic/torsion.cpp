@@ -68,6 +68,7 @@ template <class Function>
 double solve(double value, double start, double high, Function f) {
   constexpr double kConverged = 1e-9;  // in ln x; the error left is of the order of its square
   constexpr int kMaxSteps = 200;       // four are usual
+  constexpr int kStraight = 20;  // later every other step halves: a bumpy table may send Newton to and fro
   if (value == 0) return 0;
   double low = 0;
   double x = start < high ? start : high / 2;
@@ -77,7 +78,8 @@ double solve(double value, double start, double high, Function f) {
     double next = x * std::exp(step);
     if (std::abs(step) <= kConverged || next == x) return next;
     (sample.value < value ? low : high) = x;
-    if (!(next > low && next < high)) next = low > 0 ? std::sqrt(low) * std::sqrt(high) : high / 16;
+    const bool astray = !(next > low && next < high) || (i >= kStraight && i % 2 == 0);
+    if (astray) next = low > 0 ? std::sqrt(low) * std::sqrt(high) : high / 16;
     x = next;
   }
   throw std::runtime_error(fmt::format("no root found for {}: last at {}", value, x));
