@@ -7,6 +7,7 @@
 #include <limits>
 #include <stdexcept>
 
+#include "analytic/pressure_table.hpp"
 #include "analytic/punch_superposition.hpp"
 
 namespace slipstick::analytic {

@@ -4,17 +4,12 @@
 
 #include <algorithm>
 #include <array>
-#include <charconv>
 #include <cmath>
 #include <cstddef>
-#include <cstdint>
-#include <filesystem>
-#include <fstream>
 #include <functional>
 #include <numbers>
 #include <stdexcept>
 #include <string_view>
-#include <system_error>
 #include <utility>
 
 #include "analytic/gsl.hpp"
@@ -28,13 +23,6 @@ using std::numbers::pi;
 /// Below this stick radius the squares of what is as small leave the range of a double; all functions have
 /// long become their leading terms in c, and c^3 has all but underflowed.
 constexpr double kSmallestRatio = 1e-100;
-/// Bytes of a table: a hundred times what resolves any pressure.
-constexpr std::uintmax_t kLargestTable = std::uintmax_t{1} << 20;
-/// Characters of a line that a message shows.
-constexpr std::size_t kMaxShown = 200;
-/// Written by some programs at the beginning of a text.
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
 using Points = std::vector<PressurePoint>;
 
 /// p between two knots, by the distance s from the outer one: there, at the edge, p may tend to zero.
@@ -250,14 +238,12 @@ class Tabulated final : public Profile {
   double moment_;
 };
 
-using Where = std::function<std::string(std::size_t)>;
-
 [[noreturn]] void refuse(const std::string& where, std::string_view what, double value,
                          std::string_view allowed) {
   throw std::invalid_argument(fmt::format("{}: {} = {}; allowed: {}", where, what, value, allowed));
 }
 
-void check_points(const std::string& name, const Points& points, const Where& where) {
+void check_points(const std::string& name, const Points& points, const PointPlace& where) {
   for (std::size_t i = 0; i < points.size(); ++i) {
     const auto [radius, pressure] = points[i];
     if (i == 0 && radius != 0) refuse(where(i), "radius", radius, "0 at the first point");
@@ -278,7 +264,7 @@ void check_points(const std::string& name, const Points& points, const Where& wh
 }
 
 /// Where H does not decrease the tractions of a circle that sticks would exceed friction within it.
-void check_that_a_circle_sticks(const Tabulated& profile, const Points& points, const Where& where) {
+void check_that_a_circle_sticks(const Tabulated& profile, const Points& points, const PointPlace& where) {
   constexpr std::size_t kMax = 200;  // more checks would say little and cost more than the profile
   const std::size_t step = 1 + points.size() / kMax;
   for (std::size_t i = 1; i + 1 < points.size(); i += step) {
@@ -398,7 +384,10 @@ std::vector<std::vector<Points>> other_points(const Points& points) {
   return groups;
 }
 
-TabulatedProfile make_profile(const std::string& name, Points points, const Where& where) {
+}  // namespace
+
+TabulatedProfile tabulated_profile(const std::string& name, std::vector<PressurePoint> points,
+                                   const PointPlace& where) {
   check_points(name, points, where);
   const double a = points.back().radius;
   const double peak =
@@ -421,57 +410,9 @@ TabulatedProfile make_profile(const std::string& name, Points points, const Wher
   return table;
 }
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kSpace = " \t\r";
-  const auto first = text.find_first_not_of(kSpace);
-  if (first == std::string_view::npos) return {};
-  return text.substr(first, text.find_last_not_of(kSpace) - first + 1);
-}
-
-double parse_number(std::string_view text, std::string_view what, const std::string& where) {
-  double value = 0;
-  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), value);
-  if (error != std::errc() || end != text.data() + text.size())
-    throw std::invalid_argument(
-        fmt::format("{}: {} = {}; allowed: a number", where, what, text.substr(0, kMaxShown)));
-  return value;
-}
-
-PressurePoint parse_point(std::string_view line, const std::string& where) {
-  const auto comma = line.find(',');
-  if (comma == std::string_view::npos || line.find(',', comma + 1) != std::string_view::npos)
-    throw std::invalid_argument(
-        fmt::format("{}: {}; allowed: radius,pressure", where, line.substr(0, kMaxShown)));
-  return {.radius = parse_number(trimmed(line.substr(0, comma)), "radius", where),
-          .pressure = parse_number(trimmed(line.substr(comma + 1)), "pressure", where)};
-}
-
-bool is_header(std::string_view line) {
-  const auto comma = line.find(',');
-  return comma != std::string_view::npos && trimmed(line.substr(0, comma)) == "radius" &&
-         trimmed(line.substr(comma + 1)) == "pressure";
-}
-
-/// Folders, devices and pipes have no size.
-std::ifstream open_table(const std::string& file) {
-  std::error_code error;
-  const std::uintmax_t size = std::filesystem::file_size(file, error);
-  std::ifstream stream;
-  if (!error && size <= kLargestTable) stream.open(file);
-  if (!stream.is_open()) {
-    const std::string reason = size > kLargestTable && !error ? "it is larger"
-                               : error                        ? error.message()
-                                                              : "permission denied";
-    throw std::invalid_argument(fmt::format("{}: cannot be read ({}); allowed: a CSV file of at most {} MiB",
-                                            file, reason, kLargestTable >> 20));
-  }
-  return stream;
-}
-
-}  // namespace
-
 TabulatedProfile tabulated_profile(const std::string& name, const std::vector<PressurePoint>& points) {
-  return make_profile(name, points, [&](std::size_t i) { return fmt::format("{}, point {}", name, i + 1); });
+  return tabulated_profile(name, points,
+                           [&](std::size_t i) { return fmt::format("{}, point {}", name, i + 1); });
 }
 
 std::vector<double> interpolation_errors(
@@ -495,23 +436,6 @@ std::vector<double> interpolation_errors(
     for (std::size_t i = 0; i < values.size(); ++i) errors[i] += kSafety * largest[i];
   }
   return errors;
-}
-
-TabulatedProfile read_tabulated_profile(const std::string& file) {
-  std::ifstream stream = open_table(file);
-  Points points;
-  std::vector<std::size_t> lines;
-  std::size_t number = 0;
-  const auto at_line = [&](std::size_t line) { return fmt::format("{}:{}", file, line); };
-  for (std::string text; std::getline(stream, text);) {
-    ++number;
-    if (number == 1 && text.starts_with(kByteOrderMark)) text.erase(0, kByteOrderMark.size());
-    const std::string_view line = trimmed(text);
-    if (line.empty() || line.front() == '#' || (points.empty() && is_header(line))) continue;
-    points.push_back(parse_point(line, at_line(number)));
-    lines.push_back(number);
-  }
-  return make_profile(file, std::move(points), [&](std::size_t i) { return at_line(lines[i]); });
 }
 
 }  // namespace slipstick::analytic

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <functional>
 #include <memory>
 #include <string>
@@ -39,6 +40,13 @@ struct TabulatedProfile {
 /// pressure that rises outwards too much).
 TabulatedProfile tabulated_profile(const std::string& name, const std::vector<PressurePoint>& points);
 
+/// What a message calls a point, by its index: a line of a file.
+using PointPlace = std::function<std::string(std::size_t)>;
+
+/// The same for points that have names of their own.
+TabulatedProfile tabulated_profile(const std::string& name, std::vector<PressurePoint> points,
+                                   const PointPlace& where);
+
 /// How far numbers that come from a table may be from those of the pressure meant. `numbers` makes them from
 /// a profile and its mean pressure (the same count each time). An estimate, no proof: of each number twice
 /// the sum, over the stretches, of the largest change that an alternative there makes; sizes are added, so
@@ -48,10 +56,5 @@ TabulatedProfile tabulated_profile(const std::string& name, const std::vector<Pr
 std::vector<double> interpolation_errors(
     const TabulatedProfile& table,
     const std::function<std::vector<double>(const Profile&, double mean_pressure)>& numbers);
-
-/// From a CSV file: a radius and a pressure a line, perhaps under the header `radius,pressure`; empty lines
-/// and lines that begin with # do not count. Throws as above with file and line, and for a file that cannot
-/// be read.
-TabulatedProfile read_tabulated_profile(const std::string& file);
 
 }  // namespace slipstick::analytic

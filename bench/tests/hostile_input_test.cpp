@@ -17,7 +17,7 @@
 #include <string>
 #include <vector>
 
-#include "analytic/tabulated_pressure.hpp"
+#include "analytic/pressure_table.hpp"
 #include "bench/timing/timings.hpp"
 #include "convergence/check/check.hpp"
 #include "convergence/gates/gate_reader.hpp"
