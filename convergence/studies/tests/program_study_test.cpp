@@ -12,6 +12,7 @@
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -71,12 +72,20 @@ class ProgramStudy : public testing::Test {
     return files;
   }
 
+  struct ProcessState {
+    char state = 'X';  ///< that of one that is gone
+    pid_t parent = 0;
+  };
+  static ProcessState state_of(pid_t process) {
+    ProcessState found;
+    const std::string stat = slipstick::file_text("/proc/" + std::to_string(process) + "/stat");
+    if (!stat.empty()) std::istringstream(stat.substr(stat.rfind(')') + 1)) >> found.state >> found.parent;
+    return found;
+  }
+
   /// Of several that run one after the other, the last.
   bool killed_before_it_finished(pid_t worker, std::size_t workers) const {
-    const auto state = [&] {
-      const std::string stat = slipstick::file_text("/proc/" + std::to_string(worker) + "/stat");
-      return stat.empty() ? 'X' : stat[stat.rfind(')') + 2];
-    };
+    const auto state = [&] { return state_of(worker).state; };
     kill(worker, SIGSTOP);
     while (state() != 'T' && state() != 'Z' && state() != 'X') std::this_thread::yield();
     const bool finished_before = finished().size() >= workers;
@@ -132,7 +141,8 @@ TEST_F(ProgramStudy, AKilledWorkerIsNamedAndTheOthersAreJudged) {
     std::size_t workers = 0;
     ASSERT_TRUE(slipstick::comes_true([&] {
       for (const pid_t process : processes()) {
-        if (process == study || process == worker) continue;
+        // A worker is the study's child; children of its own are those of a sanitizer that looks for leaks.
+        if (process == worker || state_of(process).parent != study) continue;
         worker = process;
         if (++workers >= victim && killed_before_it_finished(worker, workers)) return true;
       }
