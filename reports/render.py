@@ -2,6 +2,7 @@
 """Draws the figures and writes the page from what `slipstick report` computed."""
 
 import argparse
+import itertools
 import os
 import re
 import sys
@@ -52,7 +53,7 @@ def draw_entry(name, title, draw, folder):
 
 def show_sections(report, data_dir, folder):
     """The lead figure, and the sections with theirs, numbered as they stand on the page."""
-    numbered = iter(range(1, 1000))
+    numbered = itertools.count(1)
 
     def draw(figures_of):
         return [draw_entry(name, title, lambda: make(report, data_dir), folder) | {"number": next(numbered)}

@@ -169,6 +169,9 @@ class Page(unittest.TestCase):
         for words in ("Convolution overtakes", "10\N{NO-BREAK SPACE}ms: 64² cells", "twist error 0.5 above 0.1", "made up", "figure-3.svg"):
             self.assertIn(words, page)
         self.assertNotIn("Not available", page)
+        self.assertIn('<p class="see">Convolution overtakes', page)  # above its figure
+        self.assertIn("<th scope=\"col\"><button", page)
+        self.assertIn("aria-sort", page[page.index("<script>"):])  # what the buttons do
 
     def test_stands_where_a_part_is_missing(self):
         page = self.render(save_nothing, scaling=scaling(families=[], crossovers=[]), plane=plane())
