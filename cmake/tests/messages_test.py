@@ -43,7 +43,7 @@ def literals(text):
 
 
 def fragment(literal):
-    """The longest piece between placeholders, if it is several words."""
+    """The longest piece without a value in it, if it is several words."""
     pieces = [piece.strip() for piece in re.split(r"\{[^{}]*\}", literal)]
     longest = max(pieces, key=len)
     return longest if len(longest) >= SHORTEST and " " in longest else ""

@@ -25,12 +25,14 @@ Json remembered(const Json& meshes) {
     if (shown && (finest == nullptr || row["cells"][0] > (*finest)["cells"][0])) finest = &row;
   }
   if (finest == nullptr) return Json::object();
-  return {{"moment_ratio", kShownRatio},
-          {"cells", (*finest)["cells"]},
-          {"twist_error", (*finest)["twist_error"]},
-          {"stick_radius_error", (*finest)["stick_radius_error"]},
-          {"gap", (*finest)["certificate"]["gap"]},
-          {"seconds", (*finest)["seconds"]["total"]}};
+  Json found{{"moment_ratio", kShownRatio}, {"cells", (*finest)["cells"]}};
+  for (const std::string key : {"twist_error", "stick_radius_error"}) {
+    found[key] = (*finest)[key];
+    if (found[key].is_null()) found[key + "_reason"] = (*finest)[key + "_reason"];
+  }
+  found["gap"] = (*finest)["certificate"]["gap"];
+  found["seconds"] = (*finest)["seconds"]["total"];
+  return found;
 }
 
 /// The passing gate that is nearest to its bound: {id, factor}; null where none has a bound in numbers.

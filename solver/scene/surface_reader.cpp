@@ -25,31 +25,31 @@ Roughness read_roughness(SceneReader& reader, const std::string& table) {
 
 /// Parameters of a shape that has an axis.
 void read_body(SceneReader& reader, const std::string& table, Surface& surface) {
-  const auto positive = [&](const char* key) { return reader.number(table + key); };
+  const auto parameter = [&](const char* key) { return reader.number(table + key); };
   switch (surface.shape) {
     case Shape::sphere:
-      surface.radius = positive(".radius");
+      surface.radius = parameter(".radius");
       break;
     case Shape::flat_punch: {
-      const double radius = surface.radius = positive(".radius");
+      const double radius = surface.radius = parameter(".radius");
       surface.inner_radius =
           reader.number_or(table + ".inner_radius", surface.inner_radius, inner_radius_below(radius));
       break;
     }
     case Shape::ellipsoid:
-      surface.radius_1 = positive(".radius_1");
-      surface.radius_2 = positive(".radius_2");
+      surface.radius_1 = parameter(".radius_1");
+      surface.radius_2 = parameter(".radius_2");
       break;
     case Shape::cone:
-      surface.slope = positive(".slope");
+      surface.slope = parameter(".slope");
       break;
     case Shape::rounded_punch:
-      surface.flat_radius = positive(".flat_radius");
-      surface.corner_radius = positive(".corner_radius");
+      surface.flat_radius = parameter(".flat_radius");
+      surface.corner_radius = parameter(".corner_radius");
       break;
     case Shape::power:
       surface.exponent = reader.number(table + ".exponent");
-      surface.coefficient = positive(".coefficient");
+      surface.coefficient = parameter(".coefficient");
       break;
     case Shape::height_map:
     case Shape::roughness:

@@ -14,26 +14,13 @@ sys.path.insert(0, str(HARD))
 import audit  # noqa: E402
 
 PROGRAM = Path(sys.argv.pop(1)).resolve()
-FAMILY = f"""
-[[family]]
-name = "small"
-why = "made for the test"
-scene = "{HARD.parent}/scenes/dissimilar.toml"
-[family.set]
-grid.cells = [14, 12]
-solver.tolerance = 1e-10
-load.force = [60.0, 20.0]
-"""
 
 
-HISTORY = f"""
-[[family]]
-name = "loop"
-why = "made for the test"
-scene = "{HARD.parent}/scenes/growing_load.toml"
-[family.set]
-grid.cells = [14, 12]
-"""
+def family(scene, *settings):
+    """A file of one case: a scene of the repository on a small grid."""
+    lines = ["[[family]]", 'name = "small"', 'why = "made for the test"', f'scene = "{HARD.parent}/scenes/{scene}.toml"',
+             "[family.set]", "grid.cells = [14, 12]", *settings]
+    return "\n".join(lines) + "\n"
 
 
 def solve_hard(folder, files, *options):
@@ -76,7 +63,7 @@ class Audit(unittest.TestCase):
         return {key for key, found in audit.audit(row, self.folder).items() if not found <= audit.ALLOWED[key]}
 
     def test_sees_a_wrong_number_in_the_last_step_of_a_history(self):
-        (self.folder / "loop.toml").write_text(HISTORY)
+        (self.folder / "loop.toml").write_text(family("growing_load"))
         row = solve_hard(self.folder, [self.folder / "loop.toml"])["rows"][0]
         self.assertEqual(row["verdict"], "certified")
         self.assertIn("slip", audit.audit(row, self.folder))
@@ -91,7 +78,8 @@ class Audit(unittest.TestCase):
             file.write_text(good)
 
     def test_sees_a_field_in_which_one_number_is_wrong(self):
-        (self.folder / "small.toml").write_text(FAMILY)
+        (self.folder / "small.toml").write_text(
+            family("dissimilar", "solver.tolerance = 1e-10", "load.force = [60.0, 20.0]"))
         row = solve_hard(self.folder, [self.folder / "small.toml"])["rows"][0]
         self.assertEqual(row["verdict"], "certified")
         self.assertEqual(self.findings(row), set())
