@@ -16,6 +16,7 @@
 #include "solver/contact/projected_gradient.hpp"
 #include "solver/fft/wisdom.hpp"
 #include "solver/grid/mirror.hpp"
+#include "solver/grid/threads.hpp"
 #include "solver/grid_edge.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/load_step.hpp"
@@ -228,6 +229,7 @@ void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, c
 /// Step by step, until one does not converge. after_step may take the solution's fields where it is the last.
 using AfterStep = std::function<void(ModelSolution& solution, bool last)>;
 void solve_steps(const Scene& scene, const Progress& progress, const AfterStep& after_step) {
+  const ThreadPool threads(scene.threads);
   Stopwatch watch;
   ModelSolution solution;
   solution.model = make_model(scene);

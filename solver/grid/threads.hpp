@@ -1,5 +1,6 @@
 #pragma once
 
+#include <memory>
 #include <thread>
 #include <vector>
 
@@ -7,18 +8,51 @@
 
 namespace slipstick::solver {
 
+/// Threads that wait for work as long as this object lives: those of one solve. Loops on the thread that made
+/// it are shared out to them; a loop that asks for more than there are starts its own.
+class ThreadPool {
+ public:
+  /// threads: in all, with the one that makes the pool. A pool within another one takes its place for a time.
+  explicit ThreadPool(int threads);
+  ~ThreadPool();
+  ThreadPool(const ThreadPool&) = delete;
+  ThreadPool& operator=(const ThreadPool&) = delete;
+
+  /// Threads that the loops of the calling thread may use: those of its pool, or itself alone.
+  static int available();
+
+  /// What each thread does, by its number.
+  struct Job {
+    void (*call)(const void* work, int thread);
+    const void* work;
+    void operator()(int thread) const { call(work, thread); }
+  };
+  /// The job on so many threads at the same time, the last on the calling one. It must not throw.
+  static void run(int threads, Job job);
+
+ private:
+  struct Shared;
+  void work(int thread);
+
+  std::unique_ptr<Shared> shared_;
+  std::vector<std::jthread> others_;
+  ThreadPool* outer_;
+};
+
 /// Cuts [0, count) into as many contiguous parts as there are threads and calls work(thread, first, last) on
 /// each at the same time, the last part on the calling thread. The parts do not depend on timing, so results
-/// do not either. With one thread it allocates nothing. The work must not throw.
+/// do not either. In a pool, or with one thread, it allocates nothing. The work must not throw.
 template <typename Work>
 void in_parts(int threads, Index count, const Work& work) {
-  const auto bound = [&](int part) { return count * part / threads; };
-  std::vector<std::jthread> others;
-  for (int thread = 0; thread + 1 < threads; ++thread) {
-    others.emplace_back(
-        [&work, thread, first = bound(thread), last = bound(thread + 1)] { work(thread, first, last); });
+  const auto part = [&](int thread) {
+    work(thread, count * thread / threads, count * (thread + 1) / threads);
+  };
+  if (threads <= 1) {
+    work(0, Index(0), count);
+    return;
   }
-  work(threads - 1, bound(threads - 1), count);
+  const auto call = [](const void* with, int thread) { (*static_cast<const decltype(part)*>(with))(thread); };
+  ThreadPool::run(threads, {call, &part});
 }
 
 }  // namespace slipstick::solver

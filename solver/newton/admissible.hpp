@@ -25,6 +25,7 @@ concept AdmissibleSet = requires(const Set& set, const Eigen::ArrayXd& s, Eigen:
                                  const std::array<double, 2>& mean, TangentSpace<double>& space) {
   { Set::kComponents } -> std::convertible_to<Index>;  // values a cell: 1 or 2
   { set.cells() } -> std::same_as<Index>;
+  { set.sweep() } -> std::same_as<const Sweep&>;                  // over those whose set is not zero alone
   {set.project(q)};                                               // the nearest admissible q
   { set.gap(q, s) } -> std::same_as<double>;                      // bounds the energy above its least
   { set.gap_rounding(s, s) } -> std::same_as<double>;             // what rounding may do to the gap
@@ -38,9 +39,10 @@ class PositivePressures {
   static constexpr Index kComponents = 1;
 
   /// reachable: 1 where the bodies can touch, 0 elsewhere.
-  explicit PositivePressures(const Eigen::ArrayXd& reachable) : reachable_(reachable) {}
+  explicit PositivePressures(const Eigen::ArrayXd& reachable) : reachable_(reachable), sweep_(reachable) {}
 
   Index cells() const { return reachable_.size(); }
+  const Sweep& sweep() const { return sweep_; }
 
   void project(Eigen::ArrayXd& p) const { p = reachable_ * p.max(0.0); }
 
@@ -66,6 +68,7 @@ class PositivePressures {
 
  private:
   const Eigen::ArrayXd& reachable_;
+  Sweep sweep_;
 };
 
 /// Tractions within Coulomb's bound: |q_i| <= mu p_i.
@@ -73,9 +76,10 @@ class FrictionDiscs {
  public:
   static constexpr Index kComponents = 2;
 
-  explicit FrictionDiscs(const Eigen::ArrayXd& bound) : bound_(bound) {}
+  explicit FrictionDiscs(const Eigen::ArrayXd& bound) : bound_(bound), sweep_(bound) {}
 
   Index cells() const { return bound_.size(); }
+  const Sweep& sweep() const { return sweep_; }
 
   void project(Eigen::ArrayXd& q) const;
 
@@ -105,6 +109,7 @@ class FrictionDiscs {
 
  private:
   const Eigen::ArrayXd& bound_;
+  Sweep sweep_;
 };
 
 }  // namespace slipstick::solver

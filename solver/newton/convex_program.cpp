@@ -4,25 +4,35 @@ namespace slipstick::solver {
 
 using Eigen::ArrayXd;
 
-double ConvexProgram::energy(const ArrayXd& q, const ArrayXd& u) const {
-  double sum = 0.5 * (q * u).sum();
-  if (g != nullptr) sum += (q * *g).sum();
-  for (const auto& [c, multiplier] : given) sum -= multiplier * (q * *c).sum();
+double ConvexProgram::energy(Index first, Index last, const ArrayXd& q, const ArrayXd& u) const {
+  const Index n = last - first;
+  double sum = 0.5 * (q.segment(first, n) * u.segment(first, n)).sum();
+  if (g != nullptr) sum += (q.segment(first, n) * g->segment(first, n)).sum();
+  for (const auto& [c, multiplier] : given) {
+    sum -= multiplier * (q.segment(first, n) * c->segment(first, n)).sum();
+  }
   return sum;
 }
 
-void ConvexProgram::descend(const ArrayXd& q, const ArrayXd& u, double length, ArrayXd& y) const {
-  y = q - length * u;
-  if (g != nullptr) y -= length * *g;
-  for (const auto& [c, multiplier] : given) y += (length * multiplier) * *c;
+void ConvexProgram::descend(Index first, Index last, const ArrayXd& q, const ArrayXd& u, double length,
+                            ArrayXd& y) const {
+  const Index n = last - first;
+  auto part = y.segment(first, n);
+  part = q.segment(first, n) - length * u.segment(first, n);
+  if (g != nullptr) part -= length * g->segment(first, n);
+  for (const auto& [c, multiplier] : given) part += (length * multiplier) * c->segment(first, n);
 }
 
-void ConvexProgram::write_slip(const ArrayXd& u, const Coefficients& multipliers, ArrayXd& s) const {
-  s = u;
-  if (g != nullptr) s += *g;
-  for (const auto& [c, multiplier] : given) s -= multiplier * *c;
-  for (std::size_t k = 0; k < imposed.size(); ++k)
-    s -= multipliers[static_cast<Eigen::Index>(k)] * *imposed[k].c;
+void ConvexProgram::write_slip(Index first, Index last, const ArrayXd& u, const Coefficients& multipliers,
+                               ArrayXd& s) const {
+  const Index n = last - first;
+  auto part = s.segment(first, n);
+  part = u.segment(first, n);
+  if (g != nullptr) part += g->segment(first, n);
+  for (const auto& [c, multiplier] : given) part -= multiplier * c->segment(first, n);
+  for (std::size_t k = 0; k < imposed.size(); ++k) {
+    part -= multipliers[static_cast<Index>(k)] * imposed[k].c->segment(first, n);
+  }
 }
 
 }  // namespace slipstick::solver

@@ -21,15 +21,18 @@ struct ConvexProgram {
 
   std::size_t conditions() const { return imposed.size() + given.size(); }
 
-  /// Of q with the displacement u = K q; the imposed conditions' part, which is constant, left out.
-  double energy(const Eigen::ArrayXd& q, const Eigen::ArrayXd& u) const;
+  /// The part of the values [first, last) in the energy of q with the displacement u = K q; the imposed
+  /// conditions' part, which is constant, left out.
+  double energy(Index first, Index last, const Eigen::ArrayXd& q, const Eigen::ArrayXd& u) const;
 
-  /// y = q - length * gradient at u = K q, without the imposed conditions' part.
-  void descend(const Eigen::ArrayXd& q, const Eigen::ArrayXd& u, double length, Eigen::ArrayXd& y) const;
+  /// y = q - length * gradient at u = K q in the values [first, last), without the imposed conditions' part.
+  void descend(Index first, Index last, const Eigen::ArrayXd& q, const Eigen::ArrayXd& u, double length,
+               Eigen::ArrayXd& y) const;
 
-  /// The gradient at u = K q, the slip of a contact: s = u + g - sum of multiplier_k c_k. multipliers: of the
-  /// imposed conditions.
-  void write_slip(const Eigen::ArrayXd& u, const Coefficients& multipliers, Eigen::ArrayXd& s) const;
+  /// The gradient at u = K q, the slip of a contact, in the values [first, last): s = u + g - sum of
+  /// multiplier_k c_k. multipliers: of the imposed conditions.
+  void write_slip(Index first, Index last, const Eigen::ArrayXd& u, const Coefficients& multipliers,
+                  Eigen::ArrayXd& s) const;
 };
 
 }  // namespace slipstick::solver

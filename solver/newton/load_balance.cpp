@@ -41,7 +41,14 @@ LoadBalance<Set>::LoadBalance(const Set& set, const std::vector<Condition>& cond
 
 template <class Set>
 void LoadBalance<Set>::add(const Coefficients& x, Eigen::ArrayXd& y) const {
-  for (Eigen::Index k = 0; k < load_.size(); ++k) y += x[k] * field(k);
+  const Eigen::Index cells = set_.cells();
+  set_.sweep().each([&](Eigen::Index first, Eigen::Index last) {
+    for (Eigen::Index k = 0; k < load_.size(); ++k) {
+      for (Eigen::Index start = first; start < y.size(); start += cells) {
+        y.segment(start, last - first) += x[k] * field(k).segment(start, last - first);
+      }
+    }
+  });
 }
 
 template <class Set>

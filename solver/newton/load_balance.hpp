@@ -18,6 +18,15 @@ struct LoadsAlong {
   /// Sum of |P(y + sum of x_l w_l)|^2, where cells may carry a load against each other; else 0.
   double carried = 0.0;
   double square = 0.0;  ///< sum of |y + sum of x_l w_l|^2, in each cell at least its bound's
+
+  LoadsAlong& operator+=(const LoadsAlong& other) {
+    load += other.load;
+    slope += other.slope;
+    potential += other.potential;
+    carried += other.carried;
+    square += other.square;
+    return *this;
+  }
 };
 
 /// A linear condition on a field: c.q = load. c is not owned.
@@ -40,7 +49,7 @@ class LoadBalance {
   /// How often the set has been asked for its loads: passes over all cells.
   long evaluations() const { return evaluations_; }
 
-  /// y += sum of x_k c_k
+  /// y += sum of x_k c_k in the cells whose set is not zero alone
   void add(const Coefficients& x, Eigen::ArrayXd& y) const;
 
   /// Along the conditions' own fields, from the guess x on, or from where y would do without the set if that

@@ -9,7 +9,7 @@ namespace slipstick::solver {
 
 /// Some steps towards A w = c for each condition; returns c_k.w_l, d(load)/d(multiplier) of the linear
 /// problem. Its error is of second order in that of w.
-template <typename Real, LinearMap<Real> Map, LinearMap<Real> Preconditioner>
+template <typename Real, LinearMap<Real> Map, SplitMap<Real> Preconditioner>
 CoefficientMatrix tangent_stiffness(Map& map, Preconditioner& preconditioner, CgFields<Real> conditions,
                                     int iterations, CgWorkspace<Real>& work, CgField<Real>& r,
                                     std::span<CgField<Real>> w) {
@@ -20,7 +20,7 @@ CoefficientMatrix tangent_stiffness(Map& map, Preconditioner& preconditioner, Cg
                        w[k]);
   }
   const CoefficientMatrix products =
-      CgConstraints<Real>::products_with(conditions, w.first(conditions.size()));
+      CgConstraints<Real>::products_with(map.cells(), conditions, w.first(conditions.size()));
   return 0.5 * (products + products.transpose());
 }
 
@@ -30,11 +30,15 @@ CoefficientMatrix tangent_stiffness(Map& map, Preconditioner& preconditioner, Cg
 template <typename Real>
 std::optional<Coefficients> multiplier_correction(const CoefficientMatrix& stiffness,
                                                   std::span<const CgField<Real>> w, const CgField<Real>& r,
-                                                  Index count) {
+                                                  const Sweep& cells, Index count) {
   const SmallCholesky factor(CoefficientMatrix(stiffness.topLeftCorner(count, count)));
   if (!factor.is_definite()) return std::nullopt;
   Coefficients products(count);
-  for (Index k = 0; k < count; ++k) products[k] = dot(r, w[static_cast<std::size_t>(k)]);
+  for (Index k = 0; k < count; ++k) {
+    products[k] = cells.sum<double>([&](Index first, Index last, double& sum) {
+      sum += dot(cells.size(), first, last, r, w[static_cast<std::size_t>(k)]);
+    });
+  }
   return Coefficients(-factor.solve(products));
 }
 

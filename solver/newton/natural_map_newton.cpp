@@ -59,9 +59,10 @@ NaturalMapNewton<Set, Real>::NaturalMapNewton(const Set& set, const ConvexProgra
       space_(Set::kComponents, set.cells()),
       balance_(set, program.imposed),
       u_(size()),
-      y_(size()),
-      trial_(size()),
+      y_(ArrayXd::Zero(size())),
+      trial_(ArrayXd::Zero(size())),
       trial_u_(size()) {
+  space_.free = set.sweep();
   for (const Condition& condition : program.imposed) add_condition(*condition.c);
   for (const auto& given : program.given) add_condition(*given.c);
   if constexpr (!std::is_same_v<Real, double>) {
@@ -142,12 +143,52 @@ void NaturalMapNewton<Set, Real>::enter_admissible_set(ArrayXd& q) {
   if (balance_.solve(q, x)) balance_.add(x, q);
   set_.project(q);
   op_.apply(q, u_);
+  energy_ = energy(q, u_);
+}
+
+template <AdmissibleSet Set, typename Real>
+template <typename Work>
+void NaturalMapNewton<Set, Real>::each(const Work& work) const {
+  set_.sweep().each([&](Index first, Index last) {
+    for (Index start = 0; start < size(); start += set_.cells()) work(start + first, start + last);
+  });
+}
+
+template <AdmissibleSet Set, typename Real>
+template <typename Work>
+double NaturalMapNewton<Set, Real>::sum(const Work& work) const {
+  return set_.sweep().template sum<double>([&](Index first, Index last, double& sum) {
+    for (Index start = 0; start < size(); start += set_.cells()) sum += work(start + first, start + last);
+  });
+}
+
+template <AdmissibleSet Set, typename Real>
+double NaturalMapNewton<Set, Real>::energy(const ArrayXd& q, const ArrayXd& u) const {
+  return sum([&](Index first, Index last) { return program_.energy(first, last, q, u); });
+}
+
+template <AdmissibleSet Set, typename Real>
+void NaturalMapNewton<Set, Real>::write_slip(ArrayXd& s) const {
+  each([&](Index first, Index last) { program_.write_slip(first, last, u_, multipliers_, s); });
+}
+
+template <AdmissibleSet Set, typename Real>
+Eigen::ArrayXd NaturalMapNewton<Set, Real>::slip() const {
+  ArrayXd s = ArrayXd::Zero(size());
+  write_slip(s);
+  return s;
+}
+
+/// y = q - length * gradient, without the imposed conditions' part.
+template <AdmissibleSet Set, typename Real>
+void NaturalMapNewton<Set, Real>::descend(const ArrayXd& q, double length, ArrayXd& y) const {
+  each([&](Index first, Index last) { program_.descend(first, last, q, u_, length, y); });
 }
 
 /// The multipliers by the natural map, and y = q - rho s.
 template <AdmissibleSet Set, typename Real>
 bool NaturalMapNewton<Set, Real>::find_state(const ArrayXd& q) {
-  program_.descend(q, u_, rho_, y_);
+  descend(q, rho_, y_);
   Coefficients x = rho_ * multipliers_;
   if (!balance_.solve(y_, x)) return false;
   multipliers_ = x / rho_;
@@ -157,8 +198,10 @@ bool NaturalMapNewton<Set, Real>::find_state(const ArrayXd& q) {
 
 template <AdmissibleSet Set, typename Real>
 double NaturalMapNewton<Set, Real>::relative_gap(const ArrayXd& q) {
-  const double elastic = 0.5 * (q * u_).sum();
-  write_slip(trial_u_);
+  const double elastic = sum([&](Index first, Index last) {
+    program_.write_slip(first, last, u_, multipliers_, trial_u_);
+    return 0.5 * (q.segment(first, last - first) * u_.segment(first, last - first)).sum();
+  });
   const double gap = set_.gap(q, trial_u_);
   if (gap == 0.0) return 0.0;
   return elastic >= 0.0 ? gap / elastic : std::numeric_limits<double>::quiet_NaN();
@@ -167,7 +210,10 @@ double NaturalMapNewton<Set, Real>::relative_gap(const ArrayXd& q) {
 /// Of the gap that relative_gap() has just found.
 template <AdmissibleSet Set, typename Real>
 bool NaturalMapNewton<Set, Real>::is_certified(double gap, double tolerance, const ArrayXd& q) const {
-  const double rounding = set_.gap_rounding(trial_u_, u_) / (0.5 * (q * u_).sum());
+  const double elastic = sum([&](Index first, Index last) {
+    return 0.5 * (q.segment(first, last - first) * u_.segment(first, last - first)).sum();
+  });
+  const double rounding = set_.gap_rounding(trial_u_, u_) / elastic;
   return solver::is_certified(gap, rounding, tolerance);
 }
 
@@ -175,20 +221,21 @@ template <AdmissibleSet Set, typename Real>
 void NaturalMapNewton<Set, Real>::linearise() {
   changed_ = set_.linearise(y_, rho_, mean_, space_);
   TangentPreconditioner<Real> map = preconditioner();
-  has_tangents_ = constraints_.prepare(map, imposed());
+  has_tangents_ = constraints_.prepare(map, imposed(), work_.y);
 }
 
 /// Right-hand side -(s + stiffness q), of which the tangent space sees the turning part of q.
 template <AdmissibleSet Set, typename Real>
 void NaturalMapNewton<Set, Real>::write_residual(const ArrayXd& q) {
-  write_slip(trial_u_);
-  if (Set::kComponents == 2) {
-    const Index n = set_.cells();
-    const auto& stiffness = space_.stiffness.template cast<double>();
-    trial_u_.head(n) += stiffness * q.head(n);
-    trial_u_.tail(n) += stiffness * q.tail(n);
-  }
-  r_ = -trial_u_.template cast<Real>();
+  each([&](Index first, Index last) {
+    const Index n = last - first;
+    program_.write_slip(first, last, u_, multipliers_, trial_u_);
+    auto s = trial_u_.segment(first, n);
+    if (Set::kComponents == 2) {
+      s += space_.stiffness.segment(first % set_.cells(), n).template cast<double>() * q.segment(first, n);
+    }
+    r_.segment(first, n) = -s.template cast<Real>();
+  });
 }
 
 /// wanted: the part that is to be left of the gap. applications_left: one at least.
@@ -211,7 +258,9 @@ bool NaturalMapNewton<Set, Real>::solve_linear(const ArrayXd& q, const LinearTar
   if (loads.size() > 0) {
     constraints_.add_with_values(loads, x_);
     map.apply(x_, work_.Ad);
-    r_ -= work_.Ad;
+    each([&](Index first, Index last) {
+      r_.segment(first, last - first) -= work_.Ad.segment(first, last - first);
+    });
   }
   const CgConstraints<Real> none;
   const CgSummary solved = projected_cg<Real>(map, inverse, has_tangents_ ? constraints_ : none, r_,
@@ -228,7 +277,10 @@ Coefficients NaturalMapNewton<Set, Real>::jump_loads(const ArrayXd& q) {
   set_.add_jump(y_, q, trial_);
   Coefficients loads(balance_.count());
   for (Eigen::Index k = 0; k < loads.size(); ++k) {
-    loads[k] = (*program_.imposed[static_cast<std::size_t>(k)].c * trial_).sum();
+    const ArrayXd& c = *program_.imposed[static_cast<std::size_t>(k)].c;
+    loads[k] = sum([&](Index first, Index last) {
+      return (c.segment(first, last - first) * trial_.segment(first, last - first)).sum();
+    });
   }
   return loads;
 }
@@ -238,10 +290,11 @@ template <AdmissibleSet Set, typename Real>
 bool NaturalMapNewton<Set, Real>::accept_trial(ArrayXd& q) {
   set_.project(trial_);
   op_.apply(trial_, trial_u_);
-  const double before = program_.energy(q, u_);
-  const double after = program_.energy(trial_, trial_u_);
+  const double before = energy_;
+  const double after = energy(trial_, trial_u_);
   if (!(after <= before + kEnergyRounding * std::abs(before))) return false;
   energy_fell_ = after < before - kEnergyRounding * std::abs(before);
+  energy_ = after;
   q.swap(trial_);
   u_.swap(trial_u_);
   return true;
@@ -250,9 +303,14 @@ bool NaturalMapNewton<Set, Real>::accept_trial(ArrayXd& q) {
 /// trial = q and this part of the linear solution and of the jumps.
 template <AdmissibleSet Set, typename Real>
 void NaturalMapNewton<Set, Real>::write_trial(const ArrayXd& q, double length) {
-  trial_ = x_.template cast<double>();
+  each([&](Index first, Index last) {
+    trial_.segment(first, last - first) = x_.segment(first, last - first).template cast<double>();
+  });
   set_.add_jump(y_, q, trial_);
-  trial_ = q + length * trial_;
+  each([&](Index first, Index last) {
+    auto trial = trial_.segment(first, last - first);
+    trial = q.segment(first, last - first) + length * trial;
+  });
 }
 
 template <AdmissibleSet Set, typename Real>
@@ -287,9 +345,12 @@ bool NaturalMapNewton<Set, Real>::restore_along_tangents() {
   std::ranges::transform(tangents, directions.begin(), [](const Field& tangent) { return &tangent; });
   if (!balance_.template solve_along<Field>(trial_, std::span(directions).first(tangents.size()), x))
     return false;
-  for (std::size_t k = 0; k < tangents.size(); ++k) {
-    trial_ += x[static_cast<Index>(k)] * tangents[k].template cast<double>();
-  }
+  each([&](Index first, Index last) {
+    for (std::size_t k = 0; k < tangents.size(); ++k) {
+      trial_.segment(first, last - first) +=
+          x[static_cast<Index>(k)] * tangents[k].segment(first, last - first).template cast<double>();
+    }
+  });
   return true;
 }
 
@@ -305,7 +366,7 @@ template <AdmissibleSet Set, typename Real>
 bool NaturalMapNewton<Set, Real>::take_gradient_step(ArrayXd& q) {
   for (int halvings = 0; halvings <= kMaxGradientHalvings; halvings += 2) {
     const double length = std::ldexp(rho_, -halvings);
-    program_.descend(q, u_, length, trial_);
+    descend(q, length, trial_);
     Coefficients x = length * multipliers_;
     if (!balance_.solve(trial_, x)) continue;
     balance_.add(x, trial_);
@@ -331,7 +392,7 @@ bool NaturalMapNewton<Set, Real>::refine(const ArrayXd& q, double tolerance, New
   if (balance_.count() == 0) return true;
   write_residual(q);
   const auto correction =
-      multiplier_correction<Real>(summary.tangent_stiffness, tangents_, r_, balance_.count());
+      multiplier_correction<Real>(summary.tangent_stiffness, tangents_, r_, space_.free, balance_.count());
   if (!correction) return true;
   const Coefficients first_order = multipliers_;
   multipliers_ += *correction;

@@ -66,8 +66,8 @@ class NaturalMapNewton {
   /// K q of the last q.
   const ArrayXd& displacement() const { return u_; }
 
-  /// s = u + g - multipliers c of the last q.
-  void write_slip(ArrayXd& s) const { program_.write_slip(u_, multipliers_, s); }
+  /// u + g - multipliers c of the last q, in the cells whose set is not zero alone; zero in others.
+  ArrayXd slip() const;
 
   long applications() const;
 
@@ -88,8 +88,17 @@ class NaturalMapNewton {
   TangentOperator<Real> tangent_operator() { return {inner_, space_}; }
   TangentPreconditioner<Real> preconditioner() { return {symbol_, space_}; }
 
+  /// work(first, last) for the values of the cells that may carry something, and the sum of what it returns.
+  template <typename Work>
+  void each(const Work& work) const;
+  template <typename Work>
+  double sum(const Work& work) const;
+
   void add_condition(const ArrayXd& c);
   void enter_admissible_set(ArrayXd& q);
+  double energy(const ArrayXd& q, const ArrayXd& u) const;
+  void write_slip(ArrayXd& s) const;
+  void descend(const ArrayXd& q, double length, ArrayXd& y) const;
   bool find_state(const ArrayXd& q);
   double relative_gap(const ArrayXd& q);
   bool is_certified(double gap, double tolerance, const ArrayXd& q) const;
@@ -126,6 +135,7 @@ class NaturalMapNewton {
   std::vector<const Field*> c_;  ///< those of the imposed conditions, then the given ones
   ArrayXd u_, y_, trial_, trial_u_;
   Coefficients multipliers_;  ///< of the imposed conditions
+  double energy_ = 0.0;       ///< of q
   Safeguards safeguards_;     ///< of this run
   Index changed_ = 0;
   bool has_tangents_ = false;  ///< whether the constraints can be used

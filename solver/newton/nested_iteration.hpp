@@ -82,7 +82,7 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
   result.newton = newton.run(result.field, multipliers, options);
   result.safeguards += result.newton.safeguards;
   result.displacement = newton.displacement();
-  newton.write_slip(result.slip);
+  result.slip = newton.slip();
   result.grids.push_back(
       {grid.n1, grid.n2, newton.applications(), result.newton.iterations, result.newton.gap});
   result.bytes = operators.bytes() + newton.bytes(static_cast<double>(grid.cells()), program.conditions());

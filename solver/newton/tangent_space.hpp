@@ -4,7 +4,7 @@
 #include <cmath>
 #include <span>
 
-#include "solver/grid/grid.hpp"
+#include "solver/grid/sweep.hpp"
 #include "solver/operator/inverse_symbol.hpp"
 #include "solver/operator/linear_operator.hpp"
 
@@ -61,46 +61,44 @@ struct TangentSpace {
     shift[cell] = static_cast<Real>(alpha * along * low * mean);
   }
 
-  /// y = projector * scale * r
-  void restrict_to(const Field& r, Field& y) const {
+  /// Finds the cells where something is free, after these were set.
+  void find_free() {
+    const bool vectors = components() == 2;
+    free.assign(a11.size(), [&](Index i) { return a11[i] != Real(0) || (vectors && a22[i] != Real(0)); });
+  }
+
+  /// z = projector * scale * r, in some cells
+  void restrict_to(Index first, Index last, const Field& r, Field& z) const {
     const Index n = a11.size();
     if (components() == 1) {
-      y = a11 * r;
+      for (Index i = first; i < last; ++i) z[i] = r[i];
       return;
     }
-    for (Index i = 0; i < n; ++i) {
+    for (Index i = first; i < last; ++i) {
       const Real r1 = scale[i] * r[i];
       const Real r2 = scale[i] * r[i + n];
-      y[i] = a11[i] * r1 + a12[i] * r2;
-      y[i + n] = a12[i] * r1 + a22[i] * r2;
+      z[i] = a11[i] * r1 + a12[i] * r2;
+      z[i + n] = a12[i] * r1 + a22[i] * r2;
     }
   }
 
-  /// y = projector * (scale * y + shift * projector * r). Projected once only, what rounding leaves of the
-  /// part of r across the lines would enter r.y to first order, and no residual could fall below the root of
-  /// its rounding.
-  void complete(const Field& r, Field& y) const {
+  /// y = projector * (scale * z + shift * projector * r), in some cells. Projected once only, what rounding
+  /// leaves of the part of r across the lines would enter r.y to first order, and no residual could fall
+  /// below the root of its rounding.
+  void complete(Index first, Index last, const Field& z, const Field& r, Field& y) const {
     const Index n = a11.size();
     if (components() == 1) {
-      y *= a11;
+      for (Index i = first; i < last; ++i) y[i] = z[i];
       return;
     }
-    for (Index i = 0; i < n; ++i) {
+    for (Index i = first; i < last; ++i) {
       const Real r1 = a11[i] * r[i] + a12[i] * r[i + n];
       const Real r2 = a12[i] * r[i] + a22[i] * r[i + n];
-      const Real y1 = scale[i] * y[i] + shift[i] * r1;
-      const Real y2 = scale[i] * y[i + n] + shift[i] * r2;
+      const Real y1 = scale[i] * z[i] + shift[i] * r1;
+      const Real y2 = scale[i] * z[i + n] + shift[i] * r2;
       y[i] = a11[i] * y1 + a12[i] * y2;
       y[i + n] = a12[i] * y1 + a22[i] * y2;
     }
-  }
-
-  /// Kd += stiffness * d
-  void add_stiffness(const Field& d, Field& Kd) const {
-    const Index n = a11.size();
-    if (components() == 1) return;
-    Kd.head(n) += stiffness * d.head(n);
-    Kd.tail(n) += stiffness * d.tail(n);
   }
 
   static double bytes(Index components, double cells) {
@@ -110,30 +108,54 @@ struct TangentSpace {
   Field a11, a12, a22;  ///< the projector, symmetric
   Field stiffness;      ///< lambda = |s|/(mu p) in slip cells
   Field scale, shift;   ///< of the preconditioner
+  Sweep free;           ///< over the cells where the projector is not zero
 };
 
-/// The linearised problem's matrix, K + stiffness. Fields outside the tangent space are not taken out.
+/// The linearised problem's matrix, K + stiffness, on the tangent space.
 template <typename Real>
 struct TangentOperator {
+  using Field = typename TangentSpace<Real>::Field;
+
   Operator<Real>& op;
   const TangentSpace<Real>& space;
 
-  void apply(const typename TangentSpace<Real>::Field& d, typename TangentSpace<Real>::Field& Kd) {
+  const Sweep& cells() const { return space.free; }
+
+  /// Kd in the cells that are free; d is zero in others. Returns d.Kd.
+  double apply(const Field& d, Field& Kd) {
     op.apply(d, Kd);
-    space.add_stiffness(d, Kd);
+    const Index n = space.a11.size();
+    const auto& stiffness = space.stiffness;
+    return space.free.template sum<double>([&](Index first, Index last, double& sum) {
+      if (space.components() == 1) {
+        for (Index i = first; i < last; ++i) sum += static_cast<double>(d[i]) * static_cast<double>(Kd[i]);
+        return;
+      }
+      for (Index i = first; i < last; ++i) {
+        Kd[i] += stiffness[i] * d[i];
+        Kd[i + n] += stiffness[i] * d[i + n];
+        sum += static_cast<double>(d[i]) * static_cast<double>(Kd[i]) +
+               static_cast<double>(d[i + n]) * static_cast<double>(Kd[i + n]);
+      }
+    });
   }
 };
 
 /// Its preconditioner; what it returns lies in the tangent space.
 template <typename Real>
 struct TangentPreconditioner {
+  using Field = typename TangentSpace<Real>::Field;
+
   InverseSymbol<Real>& symbol;
   const TangentSpace<Real>& space;
 
-  void apply(const typename TangentSpace<Real>::Field& r, typename TangentSpace<Real>::Field& y) {
-    space.restrict_to(r, y);
-    symbol.apply(std::span(y.data(), static_cast<std::size_t>(y.size())));
-    space.complete(r, y);
+  const Sweep& cells() const { return space.free; }
+
+  /// The three parts of y = M r, of which the first and the last go cell by cell.
+  void load(Index first, Index last, const Field& r, Field& z) const { space.restrict_to(first, last, r, z); }
+  void transform(Field& z) { symbol.apply(std::span(z.data(), static_cast<std::size_t>(z.size()))); }
+  void store(Index first, Index last, const Field& r, const Field& z, Field& y) const {
+    space.complete(first, last, z, r, y);
   }
 };
 

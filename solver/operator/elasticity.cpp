@@ -21,7 +21,7 @@ std::unique_ptr<InverseSymbol<Real>> symbol_of(const Elasticity& elasticity, con
                                                const BlockKernel& kernel) {
   return make_inverse_symbol<Real>(grid, kernel, elasticity.pair,
                                    options_of(elasticity, kernel).diagonal ? Diagonal::yes : Diagonal::no,
-                                   elasticity.measure_plans);
+                                   elasticity.measure_plans, elasticity.threads);
 }
 
 }  // namespace
@@ -63,7 +63,8 @@ double GridOperators<Real>::predicted_bytes(const Elasticity& elasticity, const 
   const OperatorOptions options = options_of(elasticity, kernel);
   const double inner = std::is_same_v<Real, double> ? 0.0 : predicted_single_bytes(grid, kernel, options);
   return solver::predicted_bytes(elasticity.kind, grid, kernel, options) + inner +
-         predicted_inverse_symbol_bytes<Real>(grid, kernel, options.diagonal ? Diagonal::yes : Diagonal::no);
+         predicted_inverse_symbol_bytes<Real>(grid, kernel, options.diagonal ? Diagonal::yes : Diagonal::no,
+                                              options.threads);
 }
 
 template struct GridOperators<double>;

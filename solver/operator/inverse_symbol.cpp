@@ -57,28 +57,28 @@ void mix(Index count, Real sign, const Real* __restrict p11, const Real* __restr
 template <typename Real>
 class PeriodicInverseSymbol final : public InverseSymbol<Real> {
  public:
-  PeriodicInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair, bool measure_plans)
+  PeriodicInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair, bool measure_plans,
+                        int threads)
       : grid_(grid),
         periodic_(padded(grid)),
         fields_(tangential ? 2 : 1),
         diagonal_(mean_inverse_symbol(periodic_, pair, tangential)),
         table_(periodic_, pair, entries(tangential), columns(periodic_),
                1.0 / (static_cast<double>(periodic_.length1) * static_cast<double>(periodic_.length2))),
-        transform_(periodic_.length1, periodic_.length2, fields_, planning(measure_plans)) {}
+        transform_(periodic_.length1, periodic_.length2, fields_, threads, planning(measure_plans)) {}
 
   void apply(std::span<Real> field) override {
     if (static_cast<Index>(field.size()) != fields_ * grid_.cells()) {
       throw std::invalid_argument("inverse symbol applied to a field of another size");
     }
-    for (Index f = 0; f < fields_; ++f) {
-      load(f, field.data() + f * grid_.cells());
-      transform_.forward(f);
-    }
-    multiply();
-    for (Index f = 0; f < fields_; ++f) {
-      transform_.backward(f);
-      store(f, field.data() + f * grid_.cells());
-    }
+    const Index rows = periodic_.length1;
+    in_parts(transform_.threads(), fields_ * rows, [&](int, Index first, Index last) {
+      for (Index i = first; i < last; ++i) load(i / rows, i % rows, field.data());
+    });
+    transform_.through_columns(fields_, [&](Index first, Index count) { multiply(first, count); });
+    in_parts(transform_.threads(), fields_ * grid_.n1, [&](int, Index first, Index last) {
+      for (Index i = first; i < last; ++i) store(i / grid_.n1, i % grid_.n1, field.data());
+    });
   }
 
   std::array<double, 2> diagonal() const override { return diagonal_; }
@@ -91,30 +91,35 @@ class PeriodicInverseSymbol final : public InverseSymbol<Real> {
   }
 
  private:
-  void load(Index f, const Real* values) {
-    for (Index i = 0; i < periodic_.length1; ++i) {
-      Real* const row = transform_.row(f, i);
-      const Index cells = i < grid_.n1 ? grid_.n2 : 0;
-      if (cells > 0) std::copy_n(values + i * grid_.n2, cells, row);
-      std::fill(row + cells, row + periodic_.length2, Real(0));
+  /// Row i of a field forward; rows past the grid's last are zero.
+  void load(Index f, Index i, const Real* fields) {
+    Real* const row = transform_.row(f, i);
+    if (i >= grid_.n1) {
+      std::fill_n(row, transform_.row_stride(), Real(0));
+      return;
     }
+    std::copy_n(fields + (f * grid_.n1 + i) * grid_.n2, grid_.n2, row);
+    std::fill(row + grid_.n2, row + periodic_.length2, Real(0));
+    transform_.forward_row(f, i);
   }
 
-  void store(Index f, Real* values) {
-    for (Index i = 0; i < grid_.n1; ++i) std::copy_n(transform_.row(f, i), grid_.n2, values + i * grid_.n2);
+  void store(Index f, Index i, Real* fields) {
+    transform_.backward_row(f, i);
+    std::copy_n(transform_.row(f, i), grid_.n2, fields + (f * grid_.n1 + i) * grid_.n2);
   }
 
-  void multiply() {
-    const Index count = periodic_.length2 / 2 + 1;
+  /// In so many columns from the first one on.
+  void multiply(Index first, Index count) {
     for (Index k = 0; k < periodic_.length1; ++k) {
       const bool negative = 2 * k > periodic_.length1;
       const Index f = negative ? periodic_.length1 - k : k;
-      const Real* const p11 = table_.row(SymbolEntry::p11, f);
+      const Real* const p11 = table_.row(SymbolEntry::p11, f) + first;
       if (fields_ == 1) {
-        scale_complex(count, p11, transform_.row(0, k));
+        scale_complex(count, p11, transform_.row(0, k) + 2 * first);
       } else {
-        mix(count, Real(negative ? -1 : 1), p11, table_.row(SymbolEntry::p12, f),
-            table_.row(SymbolEntry::p22, f), transform_.row(0, k), transform_.row(1, k));
+        mix(count, Real(negative ? -1 : 1), p11, table_.row(SymbolEntry::p12, f) + first,
+            table_.row(SymbolEntry::p22, f) + first, transform_.row(0, k) + 2 * first,
+            transform_.row(1, k) + 2 * first);
       }
     }
   }
@@ -145,30 +150,34 @@ void check_diagonal(const Grid& grid, bool tangential, Diagonal diagonal) {
 template <typename Real>
 std::unique_ptr<InverseSymbol<Real>> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel,
                                                          const ElasticPair& pair, Diagonal diagonal,
-                                                         bool measure_plans) {
+                                                         bool measure_plans, int threads) {
   const bool tangential = is_tangential(kernel);
   check_diagonal(grid, tangential, diagonal);
   if (grid.quadrant) {
-    return std::make_unique<MirroredInverseSymbol<Real>>(grid, tangential, pair, diagonal, measure_plans);
+    return std::make_unique<MirroredInverseSymbol<Real>>(grid, tangential, pair, diagonal, measure_plans,
+                                                         threads);
   }
-  return std::make_unique<PeriodicInverseSymbol<Real>>(grid, tangential, pair, measure_plans);
+  return std::make_unique<PeriodicInverseSymbol<Real>>(grid, tangential, pair, measure_plans, threads);
 }
 
 template <typename Real>
-double predicted_inverse_symbol_bytes(const Grid& grid, const BlockKernel& kernel, Diagonal diagonal) {
+double predicted_inverse_symbol_bytes(const Grid& grid, const BlockKernel& kernel, Diagonal diagonal,
+                                      int threads) {
   const bool tangential = is_tangential(kernel);
   check_diagonal(grid, tangential, diagonal);
-  const Index size = grid.quadrant ? MirroredInverseSymbol<Real>::predicted_size(grid, tangential, diagonal)
-                                   : PeriodicInverseSymbol<Real>::predicted_size(grid, tangential);
+  const Index size = grid.quadrant
+                         ? MirroredInverseSymbol<Real>::predicted_size(grid, tangential, diagonal, threads)
+                         : PeriodicInverseSymbol<Real>::predicted_size(grid, tangential);
   return static_cast<double>(sizeof(Real)) * static_cast<double>(size);
 }
 
 template std::unique_ptr<InverseSymbol<double>> make_inverse_symbol<double>(const Grid&, const BlockKernel&,
                                                                             const ElasticPair&, Diagonal,
-                                                                            bool);
+                                                                            bool, int);
 template std::unique_ptr<InverseSymbol<float>> make_inverse_symbol<float>(const Grid&, const BlockKernel&,
-                                                                          const ElasticPair&, Diagonal, bool);
-template double predicted_inverse_symbol_bytes<double>(const Grid&, const BlockKernel&, Diagonal);
-template double predicted_inverse_symbol_bytes<float>(const Grid&, const BlockKernel&, Diagonal);
+                                                                          const ElasticPair&, Diagonal, bool,
+                                                                          int);
+template double predicted_inverse_symbol_bytes<double>(const Grid&, const BlockKernel&, Diagonal, int);
+template double predicted_inverse_symbol_bytes<float>(const Grid&, const BlockKernel&, Diagonal, int);
 
 }  // namespace slipstick::solver

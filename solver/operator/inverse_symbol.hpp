@@ -44,11 +44,11 @@ template <typename Real>
 std::unique_ptr<InverseSymbol<Real>> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel,
                                                          const ElasticPair& pair,
                                                          Diagonal diagonal = Diagonal::no,
-                                                         bool measure_plans = false);
+                                                         bool measure_plans = false, int threads = 1);
 
 /// What bytes() of it will be.
 template <typename Real>
 double predicted_inverse_symbol_bytes(const Grid& grid, const BlockKernel& kernel,
-                                      Diagonal diagonal = Diagonal::no);
+                                      Diagonal diagonal = Diagonal::no, int threads = 1);
 
 }  // namespace slipstick::solver

@@ -138,7 +138,7 @@ void mix_with_other_half(Index count, const Real* __restrict p11, const Real* __
 
 template <typename Real>
 MirroredInverseSymbol<Real>::MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair,
-                                                   Diagonal diagonal, bool measure_plans)
+                                                   Diagonal diagonal, bool measure_plans, int threads)
     : grid_(grid),
       tangential_(tangential),
       symmetric_(diagonal == Diagonal::yes),
@@ -148,8 +148,9 @@ MirroredInverseSymbol<Real>::MirroredInverseSymbol(const Grid& grid, bool tangen
       diagonal_(mean_inverse_symbol(mirrored(grid), pair, tangential)),
       table_(mirrored(grid), pair, entries(tangential, diagonal == Diagonal::yes), columns(t2_),
              0.5 / (static_cast<double>(t1_) * static_cast<double>(t2_))),
-      transform_(t1_, t2_, tangential ? 2 : 1, planning(measure_plans)),
-      coefficients_(static_cast<std::size_t>(coefficient_size(half_, tangential_ && !symmetric_))),
+      transform_(t1_, t2_, tangential ? 2 : 1, threads, planning(measure_plans)),
+      scratch_(coefficient_size(half_, tangential_ && !symmetric_)),
+      coefficients_(static_cast<std::size_t>(threads * scratch_)),
       twiddles_(static_cast<std::size_t>(twiddle_size(t1_, half_))) {
   fill_twiddles();
 }
@@ -170,14 +171,15 @@ std::size_t MirroredInverseSymbol<Real>::bytes() const {
 }
 
 template <typename Real>
-Index MirroredInverseSymbol<Real>::predicted_size(const Grid& grid, bool tangential, Diagonal diagonal) {
+Index MirroredInverseSymbol<Real>::predicted_size(const Grid& grid, bool tangential, Diagonal diagonal,
+                                                  int threads) {
   const bool symmetric = diagonal == Diagonal::yes;
   const Index t1 = transform_length(grid.n1);
   const Index t2 = transform_length(grid.n2);
   const Index half = t2 / 2 + 1;
   const auto tables = static_cast<Index>(entries(tangential, symmetric).size());
   return tables * (t1 + 1) * 2 * half + PlaneTransform<Real>::size(t1, t2, tangential ? 2 : 1) +
-         coefficient_size(half, tangential && !symmetric) + twiddle_size(t1, half);
+         threads * coefficient_size(half, tangential && !symmetric) + twiddle_size(t1, half);
 }
 
 template <typename Real>
@@ -187,38 +189,45 @@ void MirroredInverseSymbol<Real>::apply(std::span<Real> field) {
     throw std::invalid_argument("inverse symbol applied to a field of another size");
   }
   const Index transformed = tangential_ && !symmetric_ ? 2 : 1;
-  for (Index f = 0; f < transformed; ++f) {
-    load(f, field.data() + f * cells);
-    transform_.forward(f);
-  }
+  const int threads = transform_.threads();
+  in_parts(threads, transformed * t1_, [&](int, Index first, Index last) {
+    for (Index i = first; i < last; ++i) load(i / t1_, i % t1_, field.data() + i / t1_ * cells);
+  });
+  for (Index f = 0; f < transformed; ++f) transform_.forward_columns(f);
   symmetric_ ? multiply_symmetric() : multiply();
-  for (Index f = 0; f < transformed; ++f) {
-    const Index result = symmetric_ ? 1 : f;
-    transform_.backward(result);
-    store(result, field.data() + f * cells);
-  }
-  if (symmetric_) store_transposed(field.data());
-}
-
-template <typename Real>
-void MirroredInverseSymbol<Real>::load(Index f, const Real* values) {
-  for (Index i = 0; i < t1_; ++i) {
-    Real* const row = transform_.row(f, reordered(i, t1_));
-    if (i < grid_.n1) {
-      const auto [even, odd] = signs(f, i);
-      reorder(values + i * grid_.n2, grid_.n2, even, odd, t2_, row);
-    } else {
-      std::fill_n(row, t2_, Real(0));
+  const Index result = symmetric_ ? 1 : 0;
+  for (Index f = 0; f < transformed; ++f) transform_.backward_columns(result + f);
+  in_parts(threads, transformed * grid_.n1, [&](int, Index first, Index last) {
+    for (Index i = first; i < last; ++i) {
+      const Index f = i / grid_.n1;
+      store(result + f, i % grid_.n1, field.data() + f * cells);
     }
+  });
+  if (!symmetric_) return;
+  in_parts(threads, grid_.n1,
+           [&](int, Index first, Index last) { store_transposed(field.data(), first, last); });
+}
+
+/// Sample i of a field, and forward.
+template <typename Real>
+void MirroredInverseSymbol<Real>::load(Index f, Index i, const Real* values) {
+  const Index k = reordered(i, t1_);
+  Real* const row = transform_.row(f, k);
+  if (i >= grid_.n1) {
+    std::fill_n(row, transform_.row_stride(), Real(0));
+    return;
   }
+  const auto [even, odd] = signs(f, i);
+  reorder(values + i * grid_.n2, grid_.n2, even, odd, t2_, row);
+  transform_.forward_row(f, k);
 }
 
 template <typename Real>
-void MirroredInverseSymbol<Real>::store(Index f, Real* values) {
-  for (Index i = 0; i < grid_.n1; ++i) {
-    const auto [even, odd] = signs(symmetric_ ? 0 : f, i);
-    restore(transform_.row(f, reordered(i, t1_)), grid_.n2, even, odd, t2_, values + i * grid_.n2);
-  }
+void MirroredInverseSymbol<Real>::store(Index f, Index i, Real* values) {
+  const Index k = reordered(i, t1_);
+  const auto [even, odd] = signs(symmetric_ ? 0 : f, i);
+  transform_.backward_row(f, k);
+  restore(transform_.row(f, k), grid_.n2, even, odd, t2_, values + i * grid_.n2);
 }
 
 /// q1 is odd in x2 and q2 in x1: their samples at odd places take the other sign there.
@@ -231,14 +240,14 @@ std::array<Real, 2> MirroredInverseSymbol<Real>::signs(Index f, Index i) const {
 }
 
 template <typename Real>
-typename MirroredInverseSymbol<Real>::Coefficients MirroredInverseSymbol<Real>::coefficients(Index f) {
-  Real* const first = coefficients_.data() + 4 * f * half_;
+auto MirroredInverseSymbol<Real>::coefficients(int thread, Index f) -> Coefficients {
+  Real* const first = scratch(thread) + 4 * f * half_;
   return {first, first + half_, first + 2 * half_, first + 3 * half_};
 }
 
 template <typename Real>
-void MirroredInverseSymbol<Real>::separate(Index f, Index k1) {
-  const Coefficients to = coefficients(f);
+void MirroredInverseSymbol<Real>::separate(int thread, Index f, Index k1) {
+  const Coefficients to = coefficients(thread, f);
   const Real* const c1 = twiddles_.data();
   const Real* const c2 = c1 + 2 * (t1_ / 2 + 1);
   const Real* const near = transform_.row(f, k1);
@@ -248,10 +257,10 @@ void MirroredInverseSymbol<Real>::separate(Index f, Index k1) {
 }
 
 template <typename Real>
-void MirroredInverseSymbol<Real>::join(const Coefficients& from, Index f, Index k1) {
+void MirroredInverseSymbol<Real>::join(int thread, const Coefficients& from, Index f, Index k1) {
   // Rows 0 and t1/2 are their own partners: what is written twice goes elsewhere once.
   const bool alone = k1 == 0 || 2 * k1 == t1_;
-  Real* const unused = coefficients_.data() + coefficient_size(half_, tangential_ && !symmetric_) - 2 * half_;
+  Real* const unused = scratch(thread) + scratch_ - 2 * half_;
   const Real* const c1 = twiddles_.data();
   const Real* const c2 = c1 + 2 * (t1_ / 2 + 1);
   Real* const near = transform_.row(f, k1);
@@ -261,22 +270,30 @@ void MirroredInverseSymbol<Real>::join(const Coefficients& from, Index f, Index 
 }
 
 template <typename Real>
+template <typename Work>
+void MirroredInverseSymbol<Real>::for_row_pairs(const Work& work) {
+  in_parts(transform_.threads(), t1_ / 2 + 1, [&](int thread, Index first, Index last) {
+    for (Index k1 = first; k1 < last; ++k1) work(thread, k1);
+  });
+}
+
+template <typename Real>
 void MirroredInverseSymbol<Real>::multiply() {
   const Index fields = tangential_ ? 2 : 1;
-  for (Index k1 = 0; 2 * k1 <= t1_; ++k1) {
-    for (Index f = 0; f < fields; ++f) separate(f, k1);
-    multiply_rows(k1);
-    for (Index f = 0; f < fields; ++f) join(coefficients(f), f, k1);
-  }
+  for_row_pairs([&](int thread, Index k1) {
+    for (Index f = 0; f < fields; ++f) separate(thread, f, k1);
+    multiply_rows(thread, k1);
+    for (Index f = 0; f < fields; ++f) join(thread, coefficients(thread, f), f, k1);
+  });
 }
 
 /// Cosines of the frequencies k of p; sines of t - k, which for the odd coordinate of q1 and of q2 is k: so
 /// q1's cs has the frequencies of q2's sc, and so on.
 template <typename Real>
-void MirroredInverseSymbol<Real>::multiply_rows(Index k1) {
+void MirroredInverseSymbol<Real>::multiply_rows(int thread, Index k1) {
   const auto low = [&](SymbolEntry entry) { return table_.row(entry, k1); };
   const auto high = [&](SymbolEntry entry) { return table_.row(entry, t1_ - k1); };
-  const Coefficients x = coefficients(0);
+  const Coefficients x = coefficients(thread, 0);
   if (!tangential_) {
     scale(half_, low(SymbolEntry::p11), x.cc);
     scale(half_, low(SymbolEntry::p11) + half_, x.cs);
@@ -288,7 +305,7 @@ void MirroredInverseSymbol<Real>::multiply_rows(Index k1) {
     mix(half_, row(SymbolEntry::p11) + column, row(SymbolEntry::p12) + column, row(SymbolEntry::p22) + column,
         x1, x2);
   };
-  const Coefficients y = coefficients(1);
+  const Coefficients y = coefficients(thread, 1);
   multiply_pair(low, 0, x.cs, y.sc);
   multiply_pair(low, half_, x.cc, y.ss);
   multiply_pair(high, 0, x.ss, y.cc);
@@ -299,27 +316,27 @@ void MirroredInverseSymbol<Real>::multiply_rows(Index k1) {
 /// place of the transform.
 template <typename Real>
 void MirroredInverseSymbol<Real>::multiply_symmetric() {
-  const Coefficients x = coefficients(0);
-  for (Index k1 = 0; 2 * k1 <= t1_; ++k1) {
-    separate(0, k1);
+  for_row_pairs([&](int thread, Index k1) {
+    const Coefficients x = coefficients(thread, 0);
+    separate(thread, 0, k1);
     Real* const low = transform_.row(0, k1);
     std::copy_n(x.cs, half_, low);
     std::copy_n(x.cc, half_, low + half_);
-    if (k1 == 0 || 2 * k1 == t1_) continue;
+    if (k1 == 0 || 2 * k1 == t1_) return;
     Real* const high = transform_.row(0, t1_ - k1);
     std::copy_n(x.ss, half_, high);
     std::copy_n(x.sc, half_, high + half_);
-  }
-  for (Index k1 = 0; 2 * k1 <= t1_; ++k1) {
-    multiply_symmetric_rows(k1);
-    join(x, 1, k1);
-  }
+  });
+  for_row_pairs([&](int thread, Index k1) {
+    multiply_symmetric_rows(thread, k1);
+    join(thread, coefficients(thread, 0), 1, k1);
+  });
 }
 
 /// Rows and columns hold the frequencies k, and t - k after them (rows: before the end).
 template <typename Real>
-void MirroredInverseSymbol<Real>::multiply_symmetric_rows(Index k1) {
-  const Coefficients to = coefficients(0);
+void MirroredInverseSymbol<Real>::multiply_symmetric_rows(int thread, Index k1) {
+  const Coefficients to = coefficients(thread, 0);
   const Index step = transform_.row_stride();
   const auto mix_row = [&](Index f1, Index column, Index other_column, Real* out) {
     const Real* const other =
@@ -339,16 +356,16 @@ void MirroredInverseSymbol<Real>::multiply_symmetric_rows(Index k1) {
   mix_row(t1_ - k1, half_, half_ + k1, to.sc);
 }
 
-/// The second component, from the first.
+/// The second component, from these rows of the first.
 template <typename Real>
-void MirroredInverseSymbol<Real>::store_transposed(Real* field) const {
+void MirroredInverseSymbol<Real>::store_transposed(Real* field, Index first_row, Index last_row) const {
   constexpr Index kBlock = 32;  // rows whose columns are read together, while they are in cache
   const Index n = grid_.n1;
   Real* const second = field + grid_.cells();
-  for (Index first_row = 0; first_row < n; first_row += kBlock) {
-    const Index last_row = std::min(first_row + kBlock, n);
+  for (Index first = first_row; first < last_row; first += kBlock) {
+    const Index last = std::min(first + kBlock, last_row);
     for (Index j = 0; j < n; ++j) {
-      for (Index i = first_row; i < last_row; ++i) second[j * n + i] = -field[i * n + j];
+      for (Index i = first; i < last; ++i) second[j * n + i] = -field[i * n + j];
     }
   }
 }

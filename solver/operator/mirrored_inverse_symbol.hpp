@@ -25,12 +25,12 @@ class MirroredInverseSymbol final : public InverseSymbol<Real> {
  public:
   /// With Diagonal::yes only the first component is transformed, of which the second is minus the transpose.
   MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair, Diagonal diagonal,
-                        bool measure_plans);
+                        bool measure_plans, int threads);
 
   void apply(std::span<Real> field) override;
   std::array<double, 2> diagonal() const override { return diagonal_; }
   std::size_t bytes() const override;
-  static Index predicted_size(const Grid& grid, bool tangential, Diagonal diagonal);
+  static Index predicted_size(const Grid& grid, bool tangential, Diagonal diagonal, int threads);
 
  private:
   /// half_ values each, k2 = 0..t2/2, of the transform of reordered samples along x1 and x2: by cosines (c)
@@ -42,19 +42,24 @@ class MirroredInverseSymbol final : public InverseSymbol<Real> {
     Real* ss;
   };
 
-  Coefficients coefficients(Index f);
+  /// Of each thread and field, and after them a row that is thrown away.
+  Real* scratch(int thread) { return coefficients_.data() + thread * scratch_; }
+  Coefficients coefficients(int thread, Index f);
   void fill_twiddles();
   /// By which samples at even and odd places of row i are to be multiplied.
   std::array<Real, 2> signs(Index f, Index i) const;
-  void load(Index f, const Real* values);
-  void store(Index f, Real* values);
-  void separate(Index f, Index k1);
-  void join(const Coefficients& from, Index f, Index k1);
+  void load(Index f, Index i, const Real* values);
+  void store(Index f, Index i, Real* values);
+  void separate(int thread, Index f, Index k1);
+  void join(int thread, const Coefficients& from, Index f, Index k1);
+  /// work(thread, k1) for the rows k1 = 0..t1/2, with each of which goes t1 - k1.
+  template <typename Work>
+  void for_row_pairs(const Work& work);
   void multiply();
-  void multiply_rows(Index k1);
+  void multiply_rows(int thread, Index k1);
   void multiply_symmetric();
-  void multiply_symmetric_rows(Index k1);
-  void store_transposed(Real* field) const;
+  void multiply_symmetric_rows(int thread, Index k1);
+  void store_transposed(Real* field, Index first_row, Index last_row) const;
 
   Grid grid_;
   bool tangential_;
@@ -65,8 +70,9 @@ class MirroredInverseSymbol final : public InverseSymbol<Real> {
   std::array<double, 2> diagonal_;
   SymbolTable<Real> table_;  ///< columns 0..t2/2, then t2 - 0..t2/2
   PlaneTransform<Real> transform_;
-  FftwBuffer<Real> coefficients_;  ///< of each field, and a row that is thrown away
-  FftwBuffer<Real> twiddles_;      ///< cos and sin of pi k/(2 t1), k = 0..t1/2, then those of pi k/(2 t2)
+  Index scratch_;  ///< values that each thread has of the next
+  FftwBuffer<Real> coefficients_;
+  FftwBuffer<Real> twiddles_;  ///< cos and sin of pi k/(2 t1), k = 0..t1/2, then those of pi k/(2 t2)
 };
 
 }  // namespace slipstick::solver
