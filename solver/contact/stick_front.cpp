@@ -126,9 +126,7 @@ class FrontFinder {
     if (stick_cells_ < kMinStickCells) return fmt::format("only {} cells stick", stick_cells_);
     find_centroid();
     cast_rays();
-    if (!star_shaped()) return "the stick area is not one patch that its centroid sees all of";
-    gather_slipping_cells();
-    return "";
+    return gather_slipping_cells() ? "" : "the stick area is not one patch that its centroid sees all of";
   }
 
   void fit(StickFront& front) {
@@ -189,7 +187,7 @@ class FrontFinder {
   void cast_rays() {
     double longest = 1.0;
     for_contact_cells([&](Index i, Index j) {
-      if (sticks(i, j)) longest = std::max(longest, polar(i, j).r);
+      if (sticks(i, j)) longest = std::max(longest, radius_of(i, j));
     });
     rays_ = 4 * static_cast<Index>(std::ceil(0.25 * kTurn * longest));  // no answer changes by a quarter turn
     counted_.resize(rays_);
@@ -198,7 +196,7 @@ class FrontFinder {
       const double c = std::cos(angle(ray));
       const double s = std::sin(angle(ray));
       const auto march = [&](double r, const auto& inside) {
-        while (inside(std::lround(centre_i_ + r * c), std::lround(centre_j_ + r * s))) r += kMarch;
+        while (inside(nearest(centre_i_ + r * c), nearest(centre_j_ + r * s))) r += kMarch;
         return r;
       };
       const double front = march(0.0, [&](Index i, Index j) { return sticks(i, j); });
@@ -216,26 +214,18 @@ class FrontFinder {
     return a + (at - below) * (values[(ray + 1) % rays_] - a);
   }
 
-  struct Polar {
-    double r;
-    double theta;  ///< 0 to a turn
-  };
-  Polar polar(Index i, Index j) const {
+  /// The cell, or -1 and less: a ray leaves the grid by one cell at a time.
+  static Index nearest(double at) { return static_cast<Index>(at + 1.5) - 1; }
+
+  /// From the centroid: the distance, and the angle from 0 to a turn.
+  double radius_of(Index i, Index j) const {
     const double x = static_cast<double>(i) - centre_i_;
     const double y = static_cast<double>(j) - centre_j_;
-    const double theta = std::atan2(y, x);
-    return {std::hypot(x, y), theta < 0.0 ? theta + kTurn : theta};
+    return std::sqrt(x * x + y * y);
   }
-
-  /// Whether every cell is on the side of the counted front that its state says.
-  bool star_shaped() const {
-    bool all = true;
-    for_contact_cells([&](Index i, Index j) {
-      const auto [r, theta] = polar(i, j);
-      const double beyond = r - between_rays(counted_, theta);
-      if (sticks(i, j) ? beyond > kStaircase : beyond < -kStaircase) all = false;
-    });
-    return all;
+  double angle_of(Index i, Index j) const {
+    const double theta = std::atan2(static_cast<double>(j) - centre_j_, static_cast<double>(i) - centre_i_);
+    return theta < 0.0 ? theta + kTurn : theta;
   }
 
   struct SlippingCell {
@@ -244,16 +234,26 @@ class FrontFinder {
     double psi;
   };
 
-  /// Those that some window may take, by angle.
-  void gather_slipping_cells() {
+  /// Those that some window may take, by angle. False if a cell is not on the side of the counted front that
+  /// its state says. Cells far from the front need no angle.
+  bool gather_slipping_cells() {
+    const double nearest_front = counted_.minCoeff();
+    const double farthest_front = counted_.maxCoeff();
+    bool star_shaped = true;
     for_contact_cells([&](Index i, Index j) {
-      const auto [r, theta] = polar(i, j);
-      if (sticks(i, j) || r > between_rays(counted_, theta) + kFarthest) return;
+      const double r = radius_of(i, j);
+      const bool stuck = sticks(i, j);
+      if (stuck ? r <= nearest_front : r > farthest_front + kFarthest) return;
+      const double theta = angle_of(i, j);
+      const double beyond = r - between_rays(counted_, theta);
+      if (stuck ? beyond > kStaircase : beyond < -kStaircase) star_shaped = false;
+      if (stuck || beyond > kFarthest) return;
       const double s1 = slip_[i * grid_.n2 + j];
       const double s2 = slip_[i * grid_.n2 + j + grid_.cells()];
       slipping_.push_back({theta, r, std::cbrt(s1 * s1 + s2 * s2)});
     });
     std::ranges::sort(slipping_, {}, &SlippingCell::theta);
+    return star_shaped;
   }
 
   /// Means over seven rays, which take the staircase off the counted front.

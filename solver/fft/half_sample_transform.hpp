@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "solver/fft/fftw.hpp"
-#include "solver/fft/packet.hpp"
+#include "solver/grid/packet.hpp"
 
 namespace slipstick::solver {
 

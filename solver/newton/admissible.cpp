@@ -4,10 +4,21 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/grid/packet.hpp"
+
 namespace slipstick::solver {
 
 using Eigen::ArrayXd;
 using Eigen::ArrayXf;
+
+using Pair = Packet<double>::Vector;
+
+/// One component of a field in two cells, and zero for a second one that is past the last.
+template <typename Real>
+Pair pair(const Real* from, bool both) {
+  return Pair{static_cast<double>(from[0]), both ? static_cast<double>(from[1]) : 0.0};
+}
+static Pair both(double value) { return Pair{value, value}; }
 
 template <int M, typename Direction>
 LoadsAlong<M> PositivePressures::loads_along(const ArrayXd& y, const std::array<const Direction*, M>& w,
@@ -17,17 +28,21 @@ LoadsAlong<M> PositivePressures::loads_along(const ArrayXd& y, const std::array<
   const auto* const direction = w[0]->data();
   const double* const field = c[0]->data();
   return sweep_.sum<LoadsAlong<M>>([&](Index first, Index last, LoadsAlong<M>& sum) {
-    double load = 0.0;
-    double slope = 0.0;
-    for (Index i = first; i < last; ++i) {
-      const auto along = static_cast<double>(direction[i]);
-      const double p = y[i] + x[0] * along;
-      const double free = p > 0.0 ? field[i] : 0.0;
+    Pair load{};
+    Pair slope{};
+    const Pair x_1 = both(x[0]);
+    const auto add = [&](Index i, bool both_cells) {
+      const Pair along = pair(direction + i, both_cells);
+      const Pair p = pair(y.data() + i, both_cells) + x_1 * along;
+      const Pair free = p > 0.0 ? pair(field + i, both_cells) : both(0.0);
       load += free * p;
       slope += free * along;
-    }
-    sum.load[0] += load;
-    sum.slope(0, 0) += slope;
+    };
+    Index i = first;
+    for (; i + 1 < last; i += 2) add(i, true);
+    if (i < last) add(i, false);
+    sum.load[0] += load[0] + load[1];
+    sum.slope(0, 0) += slope[0] + slope[1];
   });
 }
 
@@ -84,52 +99,76 @@ void FrictionDiscs::project(ArrayXd& q) const {
   });
 }
 
+/// The sums of LoadsAlong, two cells at a time.
+template <int M>
+struct LoadsOfPairs {
+  std::array<Pair, M> load{};
+  std::array<std::array<Pair, M>, M> slope{};
+  Pair potential{}, carried{}, square{};
+
+  /// z: y + sum of x_l w_l; w, c: the directions and the conditions' fields there; all by component.
+  void add(Pair bound, const std::array<Pair, 2>& z, const std::array<std::array<Pair, 2>, M>& w,
+           const std::array<std::array<Pair, 2>, M>& c) {
+    // P(z) = factor z, and its derivative takes out what is along z where that is cut to the bound.
+    const Pair z_z = z[0] * z[0] + z[1] * z[1];
+    const Pair bound_2 = bound * bound;
+    const auto cut = z_z > bound_2;
+    const Pair length_2 = cut ? z_z : both(1.0);
+    const Pair length{std::sqrt(length_2[0]), std::sqrt(length_2[1])};
+    const Pair factor = cut ? bound / length : both(1.0);
+    const Pair along = cut ? factor / length_2 : both(0.0);
+    for (std::size_t k = 0; k < M; ++k) {
+      const Pair c_z = c[k][0] * z[0] + c[k][1] * z[1];
+      load[k] += factor * c_z;
+      const Pair out = along * c_z;
+      const Pair derivative1 = factor * c[k][0] - out * z[0];
+      const Pair derivative2 = factor * c[k][1] - out * z[1];
+      for (std::size_t l = 0; l < M; ++l) slope[k][l] += derivative1 * w[l][0] + derivative2 * w[l][1];
+    }
+    potential += cut ? bound * (length - both(0.5) * bound) : both(0.5) * z_z;
+    carried += cut ? bound_2 : z_z;
+    square += cut ? z_z : bound_2;
+  }
+
+  void add_to(LoadsAlong<M>& sum) const {
+    for (std::size_t k = 0; k < M; ++k) {
+      const auto row = static_cast<int>(k);
+      sum.load[row] += load[k][0] + load[k][1];
+      for (std::size_t l = 0; l < M; ++l)
+        sum.slope(row, static_cast<int>(l)) += slope[k][l][0] + slope[k][l][1];
+    }
+    sum.potential += potential[0] + potential[1];
+    sum.carried += carried[0] + carried[1];
+    sum.square += square[0] + square[1];
+  }
+};
+
 template <int M, typename Direction>
 LoadsAlong<M> FrictionDiscs::loads_along(const ArrayXd& y, const std::array<const Direction*, M>& w,
                                          const Eigen::Vector<double, M>& x,
                                          const std::array<const ArrayXd*, M>& c) const {
   const Index n = cells();
-  std::array<const typename Direction::Scalar*, M> directions;
-  std::array<const double*, M> fields;
-  for (std::size_t k = 0; k < M; ++k) {
-    directions[k] = w[k]->data();
-    fields[k] = c[k]->data();
-  }
-  return sweep_.sum<LoadsAlong<M>>([&](Index first, Index last, LoadsAlong<M>& total) {
-    LoadsAlong<M> sum;
-    std::array<std::array<double, 2>, M> along{};
-    std::array<std::array<double, 2>, M> weight{};
-    for (Index i = first; i < last; ++i) {
-      const double bound = bound_[i];
-      double z1 = y[i];
-      double z2 = y[i + n];
+  return sweep_.sum<LoadsAlong<M>>([&](Index first, Index last, LoadsAlong<M>& sum) {
+    LoadsOfPairs<M> part;
+    std::array<std::array<Pair, 2>, M> directions;
+    std::array<std::array<Pair, 2>, M> fields;
+    const auto add = [&](Index i, bool both_cells) {
+      std::array<Pair, 2> z{pair(y.data() + i, both_cells), pair(y.data() + i + n, both_cells)};
       for (std::size_t k = 0; k < M; ++k) {
-        along[k] = {static_cast<double>(directions[k][i]), static_cast<double>(directions[k][i + n])};
-        weight[k] = {fields[k][i], fields[k][i + n]};
-        z1 += x[static_cast<int>(k)] * along[k][0];
-        z2 += x[static_cast<int>(k)] * along[k][1];
-      }
-      // P(z) = factor z, and its derivative takes out what is along z where that is cut to the bound.
-      const double square = z1 * z1 + z2 * z2;
-      const bool cut = square > bound * bound;
-      const double size = cut ? std::sqrt(square) : bound;
-      const double factor = cut ? bound / size : 1.0;
-      const double across = cut ? 1.0 / square : 0.0;
-      for (std::size_t k = 0; k < M; ++k) {
-        const auto row = static_cast<int>(k);
-        const double c_z = weight[k][0] * z1 + weight[k][1] * z2;
-        sum.load[row] += factor * c_z;
-        for (std::size_t l = 0; l < M; ++l) {
-          const double slope = weight[k][0] * along[l][0] + weight[k][1] * along[l][1] -
-                               c_z * (along[l][0] * z1 + along[l][1] * z2) * across;
-          sum.slope(row, static_cast<int>(l)) += factor * slope;
+        const Pair x_k = both(x[static_cast<int>(k)]);
+        for (const std::size_t component : {0, 1}) {
+          const Index at = i + static_cast<Index>(component) * n;
+          directions[k][component] = pair(w[k]->data() + at, both_cells);
+          fields[k][component] = pair(c[k]->data() + at, both_cells);
+          z[component] += x_k * directions[k][component];
         }
       }
-      sum.potential += cut ? bound * (size - 0.5 * bound) : 0.5 * square;
-      sum.carried += std::min(square, bound * bound);
-      sum.square += std::max(square, bound * bound);
-    }
-    total += sum;
+      part.add(pair(bound_.data() + i, both_cells), z, directions, fields);
+    };
+    Index i = first;
+    for (; i + 1 < last; i += 2) add(i, true);
+    if (i < last) add(i, false);
+    part.add_to(sum);
   });
 }
 

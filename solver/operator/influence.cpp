@@ -82,8 +82,11 @@ std::vector<std::vector<double>> influence_tables(std::span<const Component> com
                                                   Index m2, int threads) {
   std::vector<std::vector<double>> tables;
   for (std::size_t c = 0; c < components.size(); ++c) tables.emplace_back(static_cast<std::size_t>(m1 * m2));
-  // Square cells: what lies below the diagonal mirrors what lies above.
-  const Index mirrored = h1 == h2 ? std::min(m1, m2) : 0;
+  // Rows are integrated in groups, so that mirrored ones are written by whole cache lines.
+  constexpr Index kGroup = 8;
+  // Square cells: what lies below the diagonal mirrors what lies above, in whole groups, so that no value is
+  // written by two of them.
+  const Index mirrored = h1 == h2 ? std::min(m1, m2) / kGroup * kGroup : 0;
   const auto set_rows = [&](std::vector<CellRow>& rows, Index begin) {
     const Index end = std::min(begin + static_cast<Index>(rows.size()), m1);
     const Index first = end <= mirrored ? begin : 0;
@@ -106,9 +109,7 @@ std::vector<std::vector<double>> influence_tables(std::span<const Component> com
       });
     }
   };
-  // Groups of rows, so that mirrored ones are written by whole cache lines; from both ends, so that threads
-  // share the triangle evenly.
-  constexpr Index kGroup = 8;
+  // From both ends, so that threads share the triangle evenly.
   const Index groups = (m1 + kGroup - 1) / kGroup;
   in_parts(threads, (groups + 1) / 2, [&](int, Index begin, Index end) {
     std::vector<CellRow> rows(kGroup, CellRow(m2));

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
+#include <type_traits>
 #include <vector>
 
 #include "solver/fft/plane_transform.hpp"
@@ -75,7 +76,10 @@ class PeriodicInverseSymbol final : public InverseSymbol<Real> {
     in_parts(transform_.threads(), fields_ * rows, [&](int, Index first, Index last) {
       for (Index i = first; i < last; ++i) load(i / rows, i % rows, field.data());
     });
-    transform_.through_columns(fields_, [&](Index first, Index count) { multiply(first, count); });
+    transform_.through_columns(fields_, [&](Index first, Index count) {
+      using Whole = std::integral_constant<Index, PlaneTransform<Real>::kColumns>;
+      count == Whole::value ? multiply(first, Whole()) : multiply(first, count);
+    });
     in_parts(transform_.threads(), fields_ * grid_.n1, [&](int, Index first, Index last) {
       for (Index i = first; i < last; ++i) store(i / grid_.n1, i % grid_.n1, field.data());
     });
@@ -109,7 +113,8 @@ class PeriodicInverseSymbol final : public InverseSymbol<Real> {
   }
 
   /// In so many columns from the first one on.
-  void multiply(Index first, Index count) {
+  template <typename Count>
+  void multiply(Index first, Count count) {
     for (Index k = 0; k < periodic_.length1; ++k) {
       const bool negative = 2 * k > periodic_.length1;
       const Index f = negative ? periodic_.length1 - k : k;

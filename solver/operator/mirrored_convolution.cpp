@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -83,8 +84,9 @@ FftwBuffer<Real> MirroredConvolution<Real>::kernel_spectrum(Component component,
   const Index h1 = along1_.frequencies();
   const Index h2 = along2_.frequencies();
   const bool odd = component == Component::k12;
-  std::vector<double> values =
-      influence_coefficients(component, pair, this->grid().h1, this->grid().h2, h1 + 1, h2 + 1);
+  std::vector<double> values = std::move(influence_tables(std::span(&component, 1), pair, this->grid().h1,
+                                                          this->grid().h2, h1 + 1, h2 + 1, threads_)
+                                             .front());
   transform_kernel(values, h1, h2, odd);
   const double scale = 1.0 / (4.0 * static_cast<double>(h1) * static_cast<double>(h2));
   // Where the field is odd, its row 0 is that of frequency h. K12's transform is zero at 0 and at h.

@@ -22,6 +22,21 @@ std::array<double, 6> composed(const ElasticPair& pair, const CellIntegrals& c) 
           -0.5 * half * pair.mismatch * c.y,       half * pair.normal_compliance * (c.xx + c.yy)};
 }
 
+/// Square cells are mirrored about the diagonal in groups of rows, one of which crosses it here: no value may
+/// be written by two threads.
+TEST(InfluenceTables, AreTheSameBitsOnAnyNumberOfThreads) {
+  const ElasticPair pair = elastic_pair({1.0, 0.3}, {2.5, 0.1});
+  for (const auto& [m1, m2] : {std::pair<Index, Index>{77, 21}, {21, 77}, {61, 61}, {93, 42}}) {
+    const auto alone = influence_tables(kComponents, pair, 1.0, 1.0, m1, m2, 1);
+    for (int round = 0; round < 5; ++round) {
+      for (const int threads : {2, 3, 5}) {
+        EXPECT_EQ(influence_tables(kComponents, pair, 1.0, 1.0, m1, m2, threads), alone)
+            << m1 << " x " << m2 << ", threads " << threads;
+      }
+    }
+  }
+}
+
 /// Of any shape: square cells are mirrored about the diagonal, and threads share the rows.
 TEST(InfluenceTables, HoldTheIntegralsOfEachOffset) {
   const ElasticPair pair = elastic_pair({1.0, 0.3}, {2.5, 0.1});
