@@ -290,7 +290,8 @@ Model build_model(const Scene& scene) {
   model.pair = {.shear_compliance = 1.0,
                 .poisson_compliance = to_dimensionless(pair.poisson_compliance, compliance_unit),
                 .normal_compliance = to_dimensionless(pair.normal_compliance, compliance_unit),
-                .mismatch = to_dimensionless(pair.mismatch, compliance_unit)};
+                .mismatch = to_dimensionless(pair.mismatch, compliance_unit),
+                .cell_traction = scene.cell_traction};
   model.friction = scene.friction;
   if (const auto load = largest_normal(scene)) {
     model.normal_load = to_dimensionless(*load, model.force_unit());

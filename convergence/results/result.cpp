@@ -203,6 +203,7 @@ Json solve_result(const solver::Scene& scene, const Solution& solution, const Or
   add_status(json, solution);
   json["method"] = to_string(scene.method);
   json["operator"] = to_string(scene.op);
+  json["cell_traction"] = to_string(scene.cell_traction);
   json["precision"] = to_string(scene.precision);
   json["pressure"] = to_string(scene.pressure);
   json["model"] = model_json(solution.left_out);

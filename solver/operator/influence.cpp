@@ -1,6 +1,7 @@
 #include "solver/operator/influence.hpp"
 
 #include <algorithm>
+#include <cstdlib>
 #include <numbers>
 #include <stdexcept>
 
@@ -35,6 +36,27 @@ void with_formula(Component component, const ElasticPair& pair, const Use& use) 
       return use([=](const CellIntegrals& c) { return normal * (c.xx + c.yy); });
   }
   throw std::logic_error("unknown component");
+}
+
+/// Of the second difference, along one axis, that is taken off a coefficient: a cell's mean of a field is the
+/// value at its centre and so much of that.
+constexpr double kSecondDifference = 1.0 / 24.0;
+
+/// Of smooth cell tractions, from a table of constant ones that has one row and one column more.
+std::vector<double> corrected(const std::vector<double>& constant, Parity sign, Index m1, Index m2) {
+  const auto at = [&](Index k1, Index k2) {
+    const int factor = (k1 < 0 ? sign.x1 : 1) * (k2 < 0 ? sign.x2 : 1);
+    return factor * constant[static_cast<std::size_t>(std::abs(k1) * (m2 + 1) + std::abs(k2))];
+  };
+  std::vector<double> smooth;
+  smooth.reserve(static_cast<std::size_t>(m1 * m2));
+  for (Index k1 = 0; k1 < m1; ++k1) {
+    for (Index k2 = 0; k2 < m2; ++k2) {
+      const double around = at(k1 + 1, k2) + at(k1 - 1, k2) + at(k1, k2 + 1) + at(k1, k2 - 1);
+      smooth.push_back(at(k1, k2) - kSecondDifference * (around - 4.0 * at(k1, k2)));
+    }
+  }
+  return smooth;
 }
 
 /// The same cell with the axes exchanged.
@@ -80,6 +102,15 @@ Parity parity(Component component) {
 std::vector<std::vector<double>> influence_tables(std::span<const Component> components,
                                                   const ElasticPair& pair, double h1, double h2, Index m1,
                                                   Index m2, int threads) {
+  if (pair.cell_traction == CellTraction::smooth) {
+    ElasticPair constant = pair;
+    constant.cell_traction = CellTraction::constant;
+    auto smooth = influence_tables(components, constant, h1, h2, m1 + 1, m2 + 1, threads);
+    for (std::size_t c = 0; c < components.size(); ++c) {
+      smooth[c] = corrected(smooth[c], parity(components[c]), m1, m2);
+    }
+    return smooth;
+  }
   std::vector<std::vector<double>> tables;
   for (std::size_t c = 0; c < components.size(); ++c) tables.emplace_back(static_cast<std::size_t>(m1 * m2));
   // Rows are integrated in groups, so that mirrored ones are written by whole cache lines.

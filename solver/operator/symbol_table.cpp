@@ -11,6 +11,14 @@ double frequency(Index f, Index length, double h) {
   return 2.0 * std::numbers::pi * static_cast<double>(f) / (static_cast<double>(length) * h);
 }
 
+/// What second differences multiply a symbol by: 1 - the sum of theirs/24.
+double sharpening(const PeriodicGrid& grid, const ElasticPair& pair, double xi1, double xi2) {
+  if (pair.cell_traction == CellTraction::constant) return 1.0;
+  const double s1 = std::sin(0.5 * xi1 * grid.h1);
+  const double s2 = std::sin(0.5 * xi2 * grid.h2);
+  return 1.0 + (s1 * s1 + s2 * s2) / 6.0;
+}
+
 }  // namespace
 
 double PeriodicGrid::xi1(Index f) const { return frequency(f, length1, h1); }
@@ -21,12 +29,13 @@ std::array<double, 3> inverse_symbol(const PeriodicGrid& grid, const ElasticPair
   const bool zero = f1 == 0 && f2 == 0;
   const double xi1 = grid.xi1(f1);
   const double xi2 = grid.xi2(f2);
-  const double modulus = zero ? 0.5 * std::min(grid.xi1(1), grid.xi2(1)) : std::hypot(xi1, xi2);
+  const double length = zero ? 0.5 * std::min(grid.xi1(1), grid.xi2(1)) : std::hypot(xi1, xi2);
+  const double modulus = length / sharpening(grid, pair, xi1, xi2);
   if (!tangential) return {modulus / pair.normal_compliance, 0.0, 0.0};
   const double transverse = modulus / pair.shear_compliance;
   if (zero) return {transverse, 0.0, transverse};
-  const double n1 = xi1 / modulus;
-  const double n2 = xi2 / modulus;
+  const double n1 = xi1 / length;
+  const double n2 = xi2 / length;
   const double excess =
       transverse * pair.poisson_compliance / (pair.shear_compliance - pair.poisson_compliance);
   const bool nyquist = 2 * f1 == grid.length1 || 2 * f2 == grid.length2;

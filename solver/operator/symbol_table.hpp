@@ -30,7 +30,7 @@ enum class SymbolEntry : std::size_t { p11, p12, p22 };
 /// Boussinesq: 1/r becomes 2 pi/|xi|, and r_i r_j/r^3 becomes 2 pi (I - n n^T)/|xi|). The first has the
 /// inverse |xi| (I + N/(S - N) n n^T)/S. At zero frequency half of the smallest frequency stands in for |xi|
 /// and the term in n n^T, which has no direction there, is left out; p12 is zero on the Nyquist frequencies,
-/// which stand for both signs of xi.
+/// which stand for both signs of xi. Of smooth cell tractions it is divided by what those multiply K's by.
 std::array<double, 3> inverse_symbol(const PeriodicGrid& grid, const ElasticPair& pair, bool tangential,
                                      Index f1, Index f2);
 

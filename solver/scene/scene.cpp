@@ -121,6 +121,7 @@ void require_writes_within(const Scene& scene) {
 std::string to_string(PressureModel model) { return word_of(kPressureModels, model); }
 std::string to_string(OperatorKind kind) { return word_of(kOperators, kind); }
 std::string to_string(Method method) { return word_of(kMethods, method); }
+std::string to_string(CellTraction traction) { return word_of(kCellTractions, traction); }
 std::string to_string(Precision precision) { return word_of(kPrecisions, precision); }
 
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
@@ -149,6 +150,7 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
 
   scene.method = reader.choice_or("solver.method", scene.method, kMethods);
   scene.model = reader.choice_or("solver.model", scene.model, kModels);
+  scene.cell_traction = reader.choice_or("solver.cell_traction", scene.cell_traction, kCellTractions);
   scene.precision = reader.choice_or("solver.precision", scene.precision, kPrecisions);
   scene.op = reader.choice_or("solver.operator", scene.op, kOperators);
   scene.tolerance = reader.number_or("solver.tolerance", scene.tolerance);

@@ -88,6 +88,7 @@ struct Scene {
   Method method = Method::coulomb;
   ModelChoice model = ModelChoice::automatic;
   OperatorKind op = OperatorKind::dcfft;
+  CellTraction cell_traction = CellTraction::constant;
   Precision precision = Precision::double_precision;
   double tolerance = 1e-8;
   int max_iterations = 5000;
@@ -120,6 +121,7 @@ void validate(const Scene& scene);
 std::string to_string(PressureModel model);
 std::string to_string(OperatorKind kind);
 std::string to_string(Method method);
+std::string to_string(CellTraction traction);
 std::string to_string(Precision precision);
 
 }  // namespace slipstick::solver

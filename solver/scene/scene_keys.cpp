@@ -167,6 +167,11 @@ void add_grid_and_solver(SettingKeys& keys, const Scene& scene) {
       {"solver.model", kWord, "", word_of(kModels, scene.model), one_of(kModels),
        "Leave out what symmetry and the contact's size allow; nothing; the grid itself, where the scene has "
        "an exact answer."},
+      {"solver.cell_traction", kWord, "", word_of(kCellTractions, scene.cell_traction),
+       one_of(kCellTractions),
+       "What a cell's number stands for: traction that is constant over the cell; or the value at its centre "
+       "of one that is smooth, which leaves smaller errors, of contacts whose pressure falls to zero at their "
+       "edge."},
       {"solver.precision", kWord, "", word_of(kPrecisions, scene.precision), one_of(kPrecisions),
        "Of inner iterations; the certificate is of double precision always."},
       {"solver.threads", kNumber, "", shown(scene.threads), kThreads, "Threads of one solve."},

@@ -33,5 +33,7 @@ inline const Words<ModelChoice> kModels{
     {"auto", ModelChoice::automatic}, {"full", ModelChoice::full}, {"exact", ModelChoice::exact}};
 inline const Words<Precision> kPrecisions{{"double", Precision::double_precision},
                                           {"mixed", Precision::mixed}};
+inline const Words<CellTraction> kCellTractions{{"constant", CellTraction::constant},
+                                                {"smooth", CellTraction::smooth}};
 
 }  // namespace slipstick::solver

@@ -174,6 +174,8 @@ std::vector<Case> cases() {
       {"ellipsoid_hertz_averaged", with(ellipsoid, hertz_averaged), true, false},
       {"hertz_at_centres", with(sphere, [](Scene& scene) { scene.pressure = PressureModel::hertz; }), true,
        true},
+      {"smooth_cells", with(sphere, [](Scene& scene) { scene.cell_traction = CellTraction::smooth; }), true,
+       true},
       {"mixed_precision", with(sphere, [](Scene& scene) { scene.precision = Precision::mixed; }), true, true},
       {"punch", punch, true, true}};
   for (Case& each : list) each.scene.tolerance = 1e-12;
