@@ -163,18 +163,19 @@ double cells_across(const ContactOnGrid& contact, Index cells) {
          (contact.longer - contact.margin);
 }
 
+InputError out_of_reach(const Scene& scene, const AccuracyTarget& target, double least) {
+  return {fmt::format("--accuracy {}", shortest(target.error)),
+          fmt::format("allowed on a grid: {:.2g} or more for the {}, which {} cells across the contact "
+                      "are expected to reach; where a scene has an exact answer: any, with --model exact",
+                      least, accuracy_quantity(scene, target.of).name, kMaxCellsAcross)};
+}
+
 AccuracyChoice choose_grid(const Scene& scene, const ContactOnGrid& contact, const AccuracyTarget& target,
                            bool estimated) {
   const AccuracyData data = accuracy_data();
   const double error = mesh_error(target, estimated);
   const double least = error_with(data, target.of, kMaxCellsAcross) * target.error / error;
-  if (!(target.error >= least)) {
-    throw InputError(
-        fmt::format("--accuracy {}", shortest(target.error)),
-        fmt::format("allowed on a grid: {:.2g} or more for the {}, which {} cells across the contact "
-                    "are expected to reach; where a scene has an exact answer: any, with --model exact",
-                    least, accuracy_quantity(scene, target.of).name, kMaxCellsAcross));
-  }
+  if (!(target.error >= least)) throw out_of_reach(scene, target, least);
   const Needed needed = needed_for(data, target.of, error);
   AccuracyChoice choice{.cells = cells_for(contact, needed.cells_across),
                         .tolerance = std::max(needed.tolerance, kTightestTolerance)};
@@ -184,8 +185,7 @@ AccuracyChoice choose_grid(const Scene& scene, const ContactOnGrid& contact, con
 
 std::optional<AccuracyChoice> refined(const Scene& scene, const ContactOnGrid& contact,
                                       const AccuracyTarget& target, const AccuracyChoice& before,
-                                      double reached) {
-  const double order = falling_order(accuracy_data(), target.of);
+                                      double reached, double order) {
   const double suggested = kRefinementMargin * std::pow(reached / target.error, 1.0 / order);
   const double across = cells_across(contact, before.cells);
   if (!(suggested * across <= kMaxCellsAcross)) return std::nullopt;

@@ -5,6 +5,7 @@
 
 #include "convergence/results/result_parts.hpp"
 #include "convergence/solve/measured_accuracy.hpp"
+#include "solver/input/input_error.hpp"
 #include "solver/scene/scene.hpp"
 
 /// How a wanted accuracy is reached: mesh and tolerance from measured data, what they will cost, and the way
@@ -60,16 +61,19 @@ void require_reachable(const solver::Scene& scene, const AccuracyTarget& target)
 /// Whether the exact side answers with this quantity.
 bool answers_exactly(const solver::Scene& scene, AccuracyOf of);
 
+/// What is said of an error that no grid reaches. least: what the finest would.
+solver::InputError out_of_reach(const solver::Scene& scene, const AccuracyTarget& target, double least);
+
 /// On a grid. estimated: its error will be estimated from two meshes, with a safety factor that the mesh has
 /// to make up for. Throws InputError, with what is reachable, where the data say that no grid gets there.
 AccuracyChoice choose_grid(const solver::Scene& scene, const ContactOnGrid& contact,
                            const AccuracyTarget& target, bool estimated);
 
-/// The next choice after one that left too large an error; none where what the error suggests is finer than
-/// kMaxCellsAcross, or the next mesh does not fit in memory.
+/// The next choice after one that left too large an error, which falls in that order of the cell size; none
+/// where what the error suggests is finer than kMaxCellsAcross, or the next mesh does not fit in memory.
 std::optional<AccuracyChoice> refined(const solver::Scene& scene, const ContactOnGrid& contact,
                                       const AccuracyTarget& target, const AccuracyChoice& before,
-                                      double reached);
+                                      double reached, double order);
 
 /// Predicted seconds of a solve on this machine: measured work times an application's seconds here. NaN for
 /// methods and operators that were not measured.

@@ -22,14 +22,37 @@ using solver::Scene;
 /// answer, but not its twist.
 bool is_estimated(const Scene& scene, AccuracyOf of) { return !answers_exactly(scene, of); }
 
-Scene chosen_scene(const Scene& scene, const AccuracyChoice& choice) {
+/// How a scene's answer is made: on which meshes, and whether it is a mean over shifted grids.
+struct Approach {
+  ContactOnGrid contact;
+  bool shifted;
+  double stick_ratio;  ///< of shifted grids
+};
+
+Approach approach_to(const Scene& scene, const AccuracyTarget& target) {
+  const bool shifted = takes_shifted_grids(scene, target.of);
+  return {contact_on_grid(scene), shifted, shifted ? coarse_stick_ratio(scene) : 0.0};
+}
+
+AccuracyChoice first_choice(const Scene& scene, const Approach& approach, const AccuracyTarget& target) {
+  return approach.shifted ? choose_shifted(scene, approach.contact, target, approach.stick_ratio)
+                          : choose_grid(scene, approach.contact, target, is_estimated(scene, target.of));
+}
+
+Scene chosen_scene(const Scene& scene, const Approach& approach, const AccuracyChoice& choice) {
   Scene chosen = with_cells(scene, choice.cells);
   chosen.tolerance = choice.tolerance;
+  if (approach.shifted) chosen.cell_traction = solver::CellTraction::smooth;
   return chosen;
 }
 
 /// A second solve on half as many cells along each side, where the error is estimated from it.
 constexpr double kWithCoarserSolve = 1.25;
+
+double solves_of(const Scene& scene, const Approach& approach, AccuracyOf of) {
+  if (approach.shifted) return kShiftedGrids;
+  return is_estimated(scene, of) ? kWithCoarserSolve : 1.0;
+}
 
 const std::string kNoFinerMesh =
     fmt::format("a mesh that would is finer than {} cells across the contact, or does not fit in memory",
@@ -53,53 +76,90 @@ Json account(const Scene& scene, const AccuracyTarget& target) {
   return json;
 }
 
-Json attempt_json(const SolvedScene& answer, const Scene& scene, const ReachedError& reached,
-                  double seconds) {
-  Json json{{"cells", answer.result["cells"]}, {"tolerance", scene.tolerance}};
-  set_number(json, "error", reached.error, reached.why);
+/// One attempt: its answer, and what is known of its error.
+struct Attempt {
+  SolvedScene answer;
+  ReachedError reached;
+  double uncertainty;  ///< of a mean over shifted grids; NaN of another answer
+  Json grids;          ///< likewise; else null
+
+  /// NaN never is.
+  bool within(double error) const {
+    return reached.error <= error && (std::isnan(uncertainty) || uncertainty <= error);
+  }
+  /// What the next mesh has to lower.
+  double to_lower() const { return std::fmax(reached.error, uncertainty); }
+};
+
+Attempt attempt(const Scene& scene, const Approach& approach, AccuracyOf of, const GridSolve& solve) {
+  if (!approach.shifted) {
+    Attempt made{.answer = solve(scene), .reached = {}, .uncertainty = NAN, .grids = {}};
+    made.reached = reached_error(scene, made.answer.solution, made.answer.result, of);
+    return made;
+  }
+  ShiftedMean mean = mean_over_shifted_grids(scene, accuracy_quantity(scene, of), approach.stick_ratio,
+                                             approach.contact, solve);
+  ReachedError reached{mean.uncertainty, "estimated", mean.why};
+  if (std::isfinite(mean.uncertainty) && std::isfinite(mean.error)) {
+    reached = {std::abs(mean.error), "exact",
+               fmt::format("the mean of {} grids against the exact answer", mean.grids.size())};
+  }
+  return {std::move(mean.answer), reached, mean.uncertainty, std::move(mean.grids)};
+}
+
+Json attempt_json(const Attempt& made, const Scene& scene, double seconds) {
+  Json json{{"cells", made.answer.result["cells"]}, {"tolerance", scene.tolerance}};
+  set_number(json, "error", made.reached.error, made.reached.why);
   json["seconds"] = seconds;
+  if (!made.grids.is_null()) json["grids"] = made.grids;
   return json;
 }
 
 }  // namespace
 
-Scene scene_for(const Scene& scene, const AccuracyTarget& target) {
-  if (scene.model == solver::ModelChoice::exact) return scene;
-  return chosen_scene(scene,
-                      choose_grid(scene, contact_on_grid(scene), target, is_estimated(scene, target.of)));
+Json accuracy_plan(const Scene& scene, const AccuracyTarget& target) {
+  if (scene.model == solver::ModelChoice::exact) return plan_json(scene);
+  const Approach approach = approach_to(scene, target);
+  Json plan = plan_json(chosen_scene(scene, approach, first_choice(scene, approach, target)));
+  if (!approach.shifted) return plan;
+  plan["grids"] = kShiftedGrids;
+  if (plan["seconds"].is_number()) plan["seconds"] = kShiftedGrids * plan["seconds"].get<double>();
+  return plan;
 }
 
 AccurateAnswer solve_to_accuracy(const Scene& scene, const AccuracyTarget& target, const GridSolve& solve) {
-  const ContactOnGrid contact = contact_on_grid(scene);
-  const bool estimated = is_estimated(scene, target.of);
-  std::optional<AccuracyChoice> choice = choose_grid(scene, contact, target, estimated);
+  const Approach approach = approach_to(scene, target);
+  const double order = approach.shifted ? kShiftedOrder : falling_order(accuracy_data(), target.of);
+  std::optional<AccuracyChoice> choice = first_choice(scene, approach, target);
   AccurateAnswer found{.answer = {}, .accuracy = account(scene, target)};
-  const double predicted = predicted_seconds(chosen_scene(scene, *choice), contact);
+  const double predicted = predicted_seconds(chosen_scene(scene, approach, *choice), approach.contact);
   Json attempts = Json::array();
-  ReachedError reached{};
+  Attempt made{};
   std::string stopped = fmt::format("{} refinements did not get there", kMaxRefinements);
-  for (int attempt = 0; attempt <= kMaxRefinements; ++attempt) {
-    const Scene chosen = chosen_scene(scene, *choice);
+  for (int refinement = 0; refinement <= kMaxRefinements; ++refinement) {
+    const Scene chosen = chosen_scene(scene, approach, *choice);
     const auto start = std::chrono::steady_clock::now();
-    found.answer = solve(chosen);
-    reached = reached_error(chosen, found.answer.solution, found.answer.result, target.of);
+    made = attempt(chosen, approach, target.of, solve);
     const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-    attempts.push_back(attempt_json(found.answer, chosen, reached, seconds));
-    found.reached = reached.error <= target.error;
+    attempts.push_back(attempt_json(made, chosen, seconds));
+    found.reached = made.within(target.error);
     if (found.reached) break;
-    choice = refined(scene, contact, target, *choice, reached.error);
+    choice = refined(scene, approach.contact, target, *choice, made.to_lower(), order);
     if (!choice) {
-      stopped = std::isfinite(reached.error) ? kNoFinerMesh : reached.why;
+      stopped = std::isfinite(made.reached.error) ? kNoFinerMesh : made.reached.why;
       break;
     }
   }
   if (!found.reached) found.accuracy["not_reached"] = stopped;
-  set_number(found.accuracy, "reached", reached.error, reached.why);
-  found.accuracy.update({{"how", reached.how}, {"why", reached.why}, {"attempts", std::move(attempts)}});
-  set_number(found.accuracy, "predicted_seconds", predicted * (estimated ? kWithCoarserSolve : 1.0),
+  set_number(found.accuracy, "reached", made.reached.error, made.reached.why);
+  found.accuracy.update(
+      {{"how", made.reached.how}, {"why", made.reached.why}, {"attempts", std::move(attempts)}});
+  if (approach.shifted) set_number(found.accuracy, "uncertainty", made.uncertainty, made.reached.why);
+  set_number(found.accuracy, "predicted_seconds", predicted * solves_of(scene, approach, target.of),
              "measured for method = \"coulomb\" with operator = \"dcfft\" alone");
   found.accuracy["replaced"] = {{"cells", scene.cells}, {"tolerance", scene.tolerance}};
   if (const std::string note = note_on(scene); !note.empty()) found.accuracy["note"] = note;
+  found.answer = std::move(made.answer);
   return found;
 }
 
@@ -119,7 +179,7 @@ Json exact_accuracy(const Scene& scene, const AccuracyTarget& target) {
   Scene on_grid = scene;
   on_grid.model = solver::ModelChoice::automatic;
   try {
-    json["grid_instead"] = plan_json(scene_for(on_grid, target));
+    json["grid_instead"] = accuracy_plan(on_grid, target);
   } catch (const InputError& error) {
     set_missing(json, "grid_instead", error.what());
   }
@@ -132,6 +192,10 @@ std::string accuracy_text(const Json& result) {
       "accuracy", fmt::format("{} of the {}, {} wanted ({}: {})", short_text(accuracy["reached"]),
                               accuracy["quantity"].get<std::string>(), number_text(accuracy["wanted"]),
                               accuracy["how"].get<std::string>(), accuracy["why"].get<std::string>()));
+  if (accuracy.contains("uncertainty")) {
+    text += text_line("uncertainty", fmt::format("{} of it (95 %), the mean of {} grids",
+                                                 short_text(accuracy["uncertainty"]), kShiftedGrids));
+  }
   if (accuracy.contains("not_reached")) {
     text += text_line("not reached", accuracy["not_reached"].get<std::string>());
   }

@@ -1,35 +1,35 @@
 #pragma once
 
-#include <functional>
 #include <nlohmann/json.hpp>
 #include <string>
 
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/solve/accuracy.hpp"
+#include "convergence/solve/shifted_grids.hpp"
 
 /// Solves until a wanted accuracy is reached.
 namespace slipstick::convergence {
 
-using GridSolve = std::function<SolvedScene(const solver::Scene&)>;
-
 /// The last attempt, and the account of all.
 struct AccurateAnswer {
   SolvedScene answer;
-  Json accuracy;  ///< {wanted, quantity, reached, how, why, model, attempts, predicted_seconds, replaced,
-                  ///< note}
+  Json accuracy;  ///< {wanted, quantity, reached, how, why, uncertainty, attempts, predicted_seconds,
+                  ///< replaced, note}
   bool reached = false;
 };
 
 /// Refinements after the first attempt.
 inline constexpr int kMaxRefinements = 3;
 
-/// Chooses, solves, determines the error, refines. The scene's cells and tolerance are replaced. Throws
-/// InputError as choose_grid() and solve().
+/// Chooses, solves, determines the error, refines. Of the twist of a smooth contact each attempt is the mean
+/// over shifted grids, which is reached once its uncertainty and, where it is known, its error are small
+/// enough. The scene's cells and tolerance are replaced. Throws InputError as choose_grid() and solve().
 AccurateAnswer solve_to_accuracy(const solver::Scene& scene, const AccuracyTarget& target,
                                  const GridSolve& solve);
 
-/// The scene as it would be solved first.
-solver::Scene scene_for(const solver::Scene& scene, const AccuracyTarget& target);
+/// Of the first attempt, as plan_json(); of a mean over shifted grids with how many they are, `grids`, and
+/// the time of all.
+Json accuracy_plan(const solver::Scene& scene, const AccuracyTarget& target);
 
 /// The account of an exact answer: its own uncertainty, and what a grid would have cost. Throws InputError
 /// where that uncertainty is above the target.

@@ -151,7 +151,7 @@ int solve_accurately(solver::Scene scene, const SolveRequest& request, std::ostr
   scene = model_chosen(std::move(scene), request, target.of);
   require_reachable(scene, target);
   if (request.plan) {
-    result["plan"] = plan_json(scene_for(scene, target));
+    result["plan"] = accuracy_plan(scene, target);
     text << plan_text(result);
     return 0;
   }

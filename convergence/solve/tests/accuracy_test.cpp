@@ -194,7 +194,7 @@ TEST(Accuracy, IsReachedOnGridsOfThePapersScene) {
       EXPECT_EQ(result["accuracy"]["reached"], std::abs(result["twist_error"].get<double>()));
       EXPECT_EQ(result["accuracy"]["how"], "exact");
       EXPECT_EQ(result["accuracy"]["wanted"], wanted);
-      EXPECT_EQ(result["accuracy"]["attempts"].size(), 1U);  // such loads are in the data
+      EXPECT_LE(result["accuracy"]["attempts"].size(), 2U);  // such loads are those that meshes are chosen by
       EXPECT_EQ(result["accuracy"]["attempts"].back()["cells"], result["cells"]);
       EXPECT_GT(result["accuracy"]["predicted_seconds"].get<double>(), 0.0);
     }
@@ -274,7 +274,10 @@ TEST(Accuracy, IsEstimatedFromTheDifferenceWhereContactsAreNotSmooth) {
   EXPECT_LE(estimate, 5.0 * errors.traction.averaged.l2);
 }
 
-/// Solves whose errors are made: 100 over the cells squared.
+/// A twist that one mesh and another estimate: its tractions are no roots at the edge.
+solver::Scene punch() { return scene("flat_punch"); }
+
+/// Solves whose errors are made.
 convergence::SolvedScene made_answer(const solver::Scene& at, double constant, double order) {
   convergence::SolvedScene answer;
   answer.solution.status = solver::Status::converged;
@@ -285,7 +288,7 @@ convergence::SolvedScene made_answer(const solver::Scene& at, double constant, d
 
 TEST(Accuracy, IsReachedByRefiningWhereTheFirstMeshIsTooCoarse) {
   const auto found = convergence::solve_to_accuracy(
-      scene("paper"), {1e-3}, [](const solver::Scene& at) { return made_answer(at, 100.0, 2.0); });
+      punch(), {1e-3}, [](const solver::Scene& at) { return made_answer(at, 100.0, 2.0); });
   EXPECT_TRUE(found.reached);
   EXPECT_GE(found.accuracy["attempts"].size(), 2U);
   EXPECT_LE(found.accuracy["reached"].get<double>(), 1e-3);
@@ -298,7 +301,7 @@ TEST(Accuracy, IsReachedByRefiningWhereTheFirstMeshIsTooCoarse) {
 
 TEST(Accuracy, IsGivenUpAfterThreeRefinements) {
   const auto found = convergence::solve_to_accuracy(
-      scene("paper"), {1e-2}, [](const solver::Scene& at) { return made_answer(at, 0.02, 0.0); });
+      punch(), {1e-2}, [](const solver::Scene& at) { return made_answer(at, 0.02, 0.0); });
   EXPECT_FALSE(found.reached);
   EXPECT_EQ(found.accuracy["attempts"].size(), 4U);
   EXPECT_DOUBLE_EQ(found.accuracy["reached"], 0.02);
@@ -306,19 +309,19 @@ TEST(Accuracy, IsGivenUpAfterThreeRefinements) {
 
 TEST(Accuracy, IsGivenUpWhereNoMeshThatMayBeChosenGetsThere) {
   const auto found = convergence::solve_to_accuracy(
-      scene("paper"), {1e-2}, [](const solver::Scene& at) { return made_answer(at, 0.99, 0.0); });
+      punch(), {1e-2}, [](const solver::Scene& at) { return made_answer(at, 0.99, 0.0); });
   EXPECT_FALSE(found.reached);
   EXPECT_LE(found.accuracy["attempts"].size(), 4U);
   EXPECT_LE(found.accuracy["attempts"].back()["cells"][0].get<double>(), convergence::kMaxCellsAcross + 8.0);
   const auto at_once = convergence::solve_to_accuracy(
-      scene("paper"), {1e-5}, [](const solver::Scene& at) { return made_answer(at, 0.99, 0.0); });
+      punch(), {1e-5}, [](const solver::Scene& at) { return made_answer(at, 0.99, 0.0); });
   EXPECT_EQ(at_once.accuracy["attempts"].size(), 1U);
   EXPECT_THAT(at_once.accuracy["not_reached"].get<std::string>(), HasSubstr("finer than 2048"));
 }
 
 TEST(Accuracy, ThatIsNoNumberIsNeverReached) {
   int solves = 0;
-  const auto found = convergence::solve_to_accuracy(scene("paper"), {1e-2}, [&](const solver::Scene& at) {
+  const auto found = convergence::solve_to_accuracy(punch(), {1e-2}, [&](const solver::Scene& at) {
     ++solves;
     convergence::SolvedScene answer = made_answer(at, 1.0, 1.0);
     answer.solution.status = solver::Status::not_converged;

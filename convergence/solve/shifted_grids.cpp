@@ -1,0 +1,192 @@
+#include "convergence/solve/shifted_grids.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "convergence/orders/expected_order.hpp"
+#include "convergence/results/quantity.hpp"
+#include "convergence/results/result.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/model.hpp"
+#include "solver/solve.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using solver::InputError;
+using solver::Scene;
+
+/// Scatter (standard deviation) of the twist over such grids of the paper's sphere, with so many cells across
+/// the contact, where stick area and slip ring are wide; it grows by these powers where either is small.
+constexpr double kScatter = 1.9e-5;
+constexpr double kScatterAcross = 128.0;
+constexpr double kSmallStick = 0.5;
+constexpr double kSmallStickPower = 1.5;
+constexpr double kNarrowSlip = 0.25;
+constexpr double kNarrowSlipPower = 0.75;
+constexpr double kLeastPart = 0.02;
+/// The mean errs by less than so much of the scatter, the found or the expected one, whichever is larger: in
+/// more than 95 of 100 random scenes (convergence/solve/tests/coverage_test.cpp). The tip of a cone always
+/// stands on a cell's corner: its part of the error is not averaged. And edges are no sharp fronts on meshes
+/// that have fewer than kWellStuck cells across the stick area or kWellSlipping across the slip ring.
+constexpr double kOfScatter = 0.35;
+constexpr double kOfScatterOfTips = 0.7;
+constexpr double kOfScatterUnresolved = 1.5;
+constexpr double kWellStuck = 16.0;
+constexpr double kWellSlipping = 5.0;
+/// The mesh is chosen for so much less than is wanted, since scenes differ.
+constexpr double kSafety = 1.25;
+/// Meshes are tried from so many cells across on, each finer by so much.
+constexpr double kMinAcrossShifted = 12.0;
+constexpr double kFiner = 1.02;
+/// What iterations may leave, as gap over energy: over the wanted error, and the most and least.
+constexpr double kToleranceOfError = 0.1;
+constexpr double kLoosest = 1e-4;
+constexpr double kTightest = 1e-14;
+/// Of the coarse grid; and the least stick radius in cells by which grids are spread, so that none is much
+/// coarser than the others.
+constexpr solver::Index kCoarseCells = 40;
+constexpr double kLeastStickCells = 4.0;
+
+double expected_scatter(double across, double stick_ratio) {
+  const double stick = std::max(stick_ratio, kLeastPart);
+  const double slip = std::max(1.0 - stick_ratio, kLeastPart);
+  const double harder = std::max(
+      {1.0, std::pow(kSmallStick / stick, kSmallStickPower), std::pow(kNarrowSlip / slip, kNarrowSlipPower)});
+  return kScatter * harder * std::pow(kScatterAcross / across, kShiftedOrder);
+}
+
+bool has_tip(const Scene& scene) {
+  constexpr double kSmoothExponent = 2.0;
+  return std::ranges::any_of(scene.surfaces, [](const solver::Surface& surface) {
+    return surface.shape == solver::Shape::cone ||
+           (surface.shape == solver::Shape::power && surface.exponent < kSmoothExponent);
+  });
+}
+
+/// Uncertainty over scatter. Widths of stick area and slip ring in cells.
+double part_of_scatter(const Scene& scene, double stick_width, double slip_width) {
+  const bool sharp = stick_width >= kWellStuck && slip_width >= kWellSlipping;
+  if (!sharp) return kOfScatterUnresolved;
+  return has_tip(scene) ? kOfScatterOfTips : kOfScatter;
+}
+
+double expected_uncertainty(const Scene& scene, double across, double stick_ratio) {
+  return part_of_scatter(scene, stick_ratio * across, 0.5 * (1.0 - stick_ratio) * across) *
+         expected_scatter(across, stick_ratio);
+}
+
+/// The scene's grid, and larger ones of as many cells.
+std::vector<Scene> shifted(const Scene& scene, double stick_cells) {
+  const solver::Grid grid = solver::make_model(scene).grid_in_m();
+  const double growth = 1.0 / (kShiftedGrids * std::max(stick_cells, kLeastStickCells));
+  std::vector<Scene> scenes(kShiftedGrids, scene);
+  for (int k = 0; k < kShiftedGrids; ++k) {
+    const double scale = 1.0 + growth * k;
+    scenes[static_cast<std::size_t>(k)].extent = {scale * grid.h1 * static_cast<double>(grid.n1),
+                                                  scale * grid.h2 * static_cast<double>(grid.n2)};
+  }
+  return scenes;
+}
+
+struct Moments {
+  double mean = 0.0;
+  double deviation = 0.0;
+};
+
+Moments moments_of(const std::vector<double>& values) {
+  const auto count = static_cast<double>(values.size());
+  Moments moments;
+  for (const double value : values) moments.mean += value / count;
+  for (const double value : values) moments.deviation += (value - moments.mean) * (value - moments.mean);
+  moments.deviation = std::sqrt(moments.deviation / (count - 1.0));
+  return moments;
+}
+
+void scale_number(Json& json, const char* key, double factor) {
+  if (json.contains(key) && json[key].is_number()) json[key] = factor * json[key].get<double>();
+}
+
+/// The number itself, and its form without dimension.
+void put_mean(Json& json, const AccuracyQuantity& quantity, double mean, double error) {
+  const double factor = mean / number_at(json, quantity.value);
+  scale_number(json, quantity.value == "moment" ? "moment_ratio" : "twist", factor);
+  json[quantity.value] = mean;
+  if (std::isfinite(error)) json[quantity.error] = error;
+}
+
+}  // namespace
+
+bool takes_shifted_grids(const Scene& scene, AccuracyOf of) {
+  constexpr double kOrderOfRootEdges = 2.0;
+  return of == AccuracyOf::twist && scene.pressure == solver::PressureModel::solved &&
+         !scene.ends_at_grid_edge && expected_order("twist_angle", scene).value == kOrderOfRootEdges;
+}
+
+double coarse_stick_ratio(const Scene& scene) {
+  try {
+    const solver::Solution coarse = solver::solve(with_cells(scene, kCoarseCells));
+    const double ratio = coarse.stick_radius / coarse.contact_radius;
+    return ratio >= 0.0 && ratio <= 1.0 ? ratio : kSmallStick;
+  } catch (const InputError&) {
+    return kSmallStick;  // the mesh that counts may do better, or says it again
+  }
+}
+
+AccuracyChoice choose_shifted(const Scene& scene, const ContactOnGrid& contact, const AccuracyTarget& target,
+                              double stick_ratio) {
+  const double aim = target.error / kSafety;
+  const double least = kSafety * expected_uncertainty(scene, kMaxCellsAcross, stick_ratio);
+  if (!(target.error >= least)) throw out_of_reach(scene, target, least);
+  double across = kMinAcrossShifted;
+  while (across < kMaxCellsAcross && expected_uncertainty(scene, across, stick_ratio) > aim) across *= kFiner;
+  AccuracyChoice choice{.cells = cells_for(contact, std::min(across, kMaxCellsAcross)),
+                        .tolerance = std::clamp(kToleranceOfError * target.error, kTightest, kLoosest)};
+  solver::make_model(with_cells(scene, choice.cells));  // says what does not fit in memory
+  return choice;
+}
+
+ShiftedMean mean_over_shifted_grids(const Scene& scene, const AccuracyQuantity& quantity, double stick_ratio,
+                                    const ContactOnGrid& contact, const GridSolve& solve) {
+  const double radius = 0.5 * cells_across(contact, std::max(scene.cells[0], scene.cells[1]));
+  const std::vector<Scene> scenes = shifted(scene, stick_ratio * radius);
+  constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
+  ShiftedMean found{
+      .answer = {}, .error = unknown, .uncertainty = unknown, .why = {}, .grids = Json::array()};
+  std::vector<double> values;
+  std::vector<double> errors;
+  // The smallest cells come last, so that what a solve writes beside its result is theirs.
+  for (auto grid = scenes.rbegin(); grid != scenes.rend(); ++grid) {
+    found.answer = solve(*grid);
+    const solver::Solution& solution = found.answer.solution;
+    if (solution.status != solver::Status::converged) {
+      found.why = solution.message;
+      return found;
+    }
+    values.push_back(number_at(found.answer.result, quantity.value));
+    errors.push_back(number_at(found.answer.result, quantity.error));
+    found.grids.push_back({{"extent", *grid->extent}, {"value", values.back()}});
+  }
+  const Moments moments = moments_of(values);
+  found.error = moments_of(errors).mean;
+  const solver::Resolution& resolved = found.answer.solution.resolution;
+  const double part = part_of_scatter(scene, resolved.stick_width, resolved.slip_width);
+  const double scatter = moments.deviation / std::abs(moments.mean);
+  found.uncertainty = part * std::max(scatter, expected_scatter(2.0 * radius, stick_ratio));
+  found.why = fmt::format("{} times the scatter of the {} grids whose mean it is, {:.2g}", part,
+                          values.size(), scatter);
+  put_mean(found.answer.result, quantity, moments.mean, found.error);
+  if (found.answer.result.contains("steps")) {
+    put_mean(found.answer.result["steps"].back(), quantity, moments.mean, found.error);
+  }
+  return found;
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "convergence/runs/solve_scene.hpp"
+#include "convergence/solve/accuracy.hpp"
+
+/// One number from several grids. The error of one grid is the staircase of its cells along the edges of
+/// contact and stick area: it changes its sign as the cells are shifted under them, so that a mean over
+/// shifted grids is far better than each of them, and their scatter says how good it is. With smooth cell
+/// tractions (solver::CellTraction) nothing else is left that matters: no extrapolation is needed.
+namespace slipstick::convergence {
+
+using GridSolve = std::function<SolvedScene(const solver::Scene&)>;
+
+/// Grids of a mean. The stick radius in cells, of them all, is spread evenly over one cell, the period of its
+/// staircase.
+inline constexpr int kShiftedGrids = 4;
+/// The order in which the mean's uncertainty falls with the cell size, measured on the paper's sphere.
+inline constexpr double kShiftedOrder = 2.5;
+
+/// Whether the quantity is a number of a contact whose pressure is solved, falls to zero at its edge, and
+/// whose grid may be any.
+bool takes_shifted_grids(const solver::Scene& scene, AccuracyOf of);
+
+/// Stick radius over contact radius, from a coarse grid; a half where that cannot say.
+double coarse_stick_ratio(const solver::Scene& scene);
+
+/// The mesh on which the mean is expected to have the wanted uncertainty. Throws InputError, with what is
+/// reachable, where none does, and where it does not fit in memory.
+AccuracyChoice choose_shifted(const solver::Scene& scene, const ContactOnGrid& contact,
+                              const AccuracyTarget& target, double stick_ratio);
+
+/// The mean over grids of so many cells and of growing extent.
+struct ShiftedMean {
+  SolvedScene answer;  ///< of the grid with the smallest cells; its result has the mean for its own value
+  double error;        ///< of the mean, against the exact answer; NaN where there is none
+  /// Relative, covers the error in at least 95 of 100 scenes; NaN where a grid did not converge.
+  double uncertainty;
+  std::string why;  ///< what the uncertainty was made from, or which grid did not converge
+  Json grids;       ///< [{extent, value}], in the order of their solves
+};
+ShiftedMean mean_over_shifted_grids(const solver::Scene& scene, const AccuracyQuantity& quantity,
+                                    double stick_ratio, const ContactOnGrid& contact, const GridSolve& solve);
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,88 @@
+// Whether the uncertainty of a mean over shifted grids holds, on random scenes whose exact answers are known.
+
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "convergence/solve/accurate_solve.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/scene/scene.hpp"
+
+namespace {
+
+using namespace slipstick;
+
+/// Spheres, cones, punches with round corners and powers of the radius.
+class RandomScenes {
+ public:
+  solver::Scene next() {
+    const int shape = std::uniform_int_distribution(0, 3)(random_);
+    const char* const file = shape == 1 ? "cone" : shape == 2 ? "rounded_punch" : "paper";
+    const double poisson = uniform(0.0, 0.49);
+    solver::Scene scene = solver::read_scene(
+        std::filesystem::path(SLIPSTICK_SCENES) / fmt::format("{}.toml", file),
+        {set("load.moment_ratio", moment_ratio()), set("upper.poisson_ratio", poisson),
+         set("lower.poisson_ratio", poisson), set("contact.friction", uniform(0.05, 1.0))});
+    scene.steps.front().normal = *scene.steps.front().normal * uniform(0.5, 2.0);
+    if (shape == 0) scene.surfaces.front().radius *= uniform(0.3, 3.0);
+    if (shape == 3) {
+      constexpr double height = 7e-6;
+      constexpr double radius = 5e-4;
+      solver::Surface& surface = scene.surfaces.front();
+      surface.shape = solver::Shape::power;
+      surface.exponent = uniform(1.3, 4.0);
+      surface.coefficient = height * std::pow(radius, -surface.exponent);
+    }
+    return scene;
+  }
+  double wanted() { return std::pow(10.0, uniform(-3.3, -2.0)); }
+
+ private:
+  static std::string set(const std::string& key, double value) {
+    return fmt::format("{}={:.17g}", key, value);
+  }
+  double uniform(double from, double to) { return std::uniform_real_distribution(from, to)(random_); }
+  /// Little slip, both, little stick.
+  double moment_ratio() {
+    const int part = std::uniform_int_distribution(0, 2)(random_);
+    if (part == 0) return std::pow(10.0, uniform(-1.0, -0.3));
+    return part == 1 ? uniform(0.3, 0.95) : 1.0 - std::pow(10.0, uniform(-2.0, -0.5));
+  }
+
+  std::mt19937 random_{1};
+};
+
+/// With SLIPSTICK_TEST_ALL set ten times as many, as each night.
+TEST(AccuracyCoverage, UncertaintiesHoldInNineteenOfTwentyScenes) {
+  const int scenes = std::getenv("SLIPSTICK_TEST_ALL") != nullptr ? 200 : 20;
+  RandomScenes random;
+  int held = 0;
+  std::string missed;
+  for (int i = 0; i < scenes; ++i) {
+    const solver::Scene scene = random.next();
+    const double wanted = random.wanted();
+    const convergence::AccurateAnswer found = convergence::solve_to_accuracy(
+        scene, {wanted}, [](const solver::Scene& at) { return convergence::solve_scene(at); });
+    ASSERT_TRUE(found.reached) << i << ": " << found.accuracy["not_reached"];
+    const auto error = found.accuracy["reached"].get<double>();
+    const auto uncertainty = found.accuracy["uncertainty"].get<double>();
+    ASSERT_EQ(found.accuracy["how"], "exact");
+    if (error <= uncertainty) {
+      ++held;
+    } else {
+      missed += fmt::format("{}: {} of the limit, {:.2g} wanted, error {:.2g} > {:.2g}\n", i,
+                            *solver::value_if<solver::MomentRatio>(scene.steps.front().torsion), wanted,
+                            error, uncertainty);
+    }
+  }
+  EXPECT_GE(held, scenes * 19 / 20) << missed;
+  RecordProperty("missed", missed);
+}
+
+}  // namespace

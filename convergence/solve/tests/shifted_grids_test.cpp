@@ -1,0 +1,139 @@
+// Means over shifted grids: on made answers, and of the paper's sphere.
+
+#include "convergence/solve/shifted_grids.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "convergence/programs/tests/program_run.hpp"
+#include "convergence/solve/accurate_solve.hpp"
+#include "solver/scene/scene.hpp"
+#include "solver/solve.hpp"
+
+namespace {
+
+using namespace slipstick;
+using convergence::AccuracyOf;
+using convergence::Json;
+using convergence::kShiftedGrids;
+using testing::HasSubstr;
+
+solver::Scene shifted_scene(const std::string& name, const std::vector<std::string>& overrides = {}) {
+  return solver::read_scene(std::filesystem::path(SLIPSTICK_SCENES) / (name + ".toml"), overrides);
+}
+
+const convergence::AccuracyQuantity kTwist{"twist", "twist_error", "twist_angle"};
+
+/// A twist of 2 with an error that goes up and down with the place of a front in its cell.
+struct Staircase {
+  double front;   ///< m, its radius
+  double height;  ///< of the error
+  std::vector<double> phases = {};
+
+  convergence::SolvedScene operator()(const solver::Scene& at) {
+    convergence::SolvedScene answer;
+    answer.solution.status = solver::Status::converged;
+    answer.solution.resolution = {.stick_width = 50.0, .slip_width = 20.0, .uncertainty = 0.0};
+    const double cells = front * static_cast<double>(at.cells[0]) / (*at.extent)[0];
+    phases.push_back(cells - std::floor(cells));
+    const double error = height * std::sin(2.0 * M_PI * cells);
+    answer.result = {{"twist_angle", 2.0 * (1.0 + error)}, {"twist_error", error}, {"twist", 1.0 + error}};
+    return answer;
+  }
+};
+
+TEST(ShiftedGrids, SpreadTheFrontEvenlyOverACell) {
+  const solver::Scene scene = shifted_scene("paper", {"grid.cells=[96,96]"});
+  const convergence::ContactOnGrid contact = convergence::contact_on_grid(scene);
+  for (const double ratio : {0.9, 0.5, 0.25}) {
+    Staircase stairs{.front = ratio * 0.48909732465087485e-3, .height = 0.0};
+    mean_over_shifted_grids(scene, kTwist, ratio, contact, std::ref(stairs));
+    ASSERT_EQ(stairs.phases.size(), static_cast<std::size_t>(kShiftedGrids));
+    for (std::size_t k = 1; k < stairs.phases.size(); ++k) {
+      const double step = std::remainder(stairs.phases[k] - stairs.phases[k - 1], 1.0);
+      EXPECT_NEAR(step, 1.0 / kShiftedGrids, 0.05);
+    }
+  }
+}
+
+// The answer that is handed on has the mean in it, in both of its forms.
+TEST(ShiftedGrids, LeaveNothingOfAStaircaseOfOnePeriodInTheirMean) {
+  const solver::Scene scene = shifted_scene("paper", {"grid.cells=[96,96]"});
+  const convergence::ContactOnGrid contact = convergence::contact_on_grid(scene);
+  const convergence::ShiftedMean mean = mean_over_shifted_grids(
+      scene, kTwist, 0.5, contact, Staircase{.front = 0.5 * 0.48909732465087485e-3, .height = 1e-3});
+  EXPECT_LE(std::abs(mean.error), 1e-4);
+  EXPECT_NEAR(mean.uncertainty, 0.35 * 1e-3 * std::sqrt(2.0 / 3.0), 5e-5);  // of a sine, on four points
+  EXPECT_DOUBLE_EQ(mean.answer.result["twist_angle"].get<double>(), 2.0 * (1.0 + mean.error));
+  EXPECT_DOUBLE_EQ(mean.answer.result["twist"].get<double>(), 1.0 + mean.error);
+  EXPECT_DOUBLE_EQ(mean.answer.result["twist_error"].get<double>(), mean.error);
+  ASSERT_EQ(mean.grids.size(), static_cast<std::size_t>(kShiftedGrids));
+  EXPECT_GT(mean.grids[0]["extent"][0], mean.grids[3]["extent"][0]);  // the finest last
+}
+
+// Grids that agree by luck do not know more than grids of such cells do.
+TEST(ShiftedGrids, AreNoBetterThanSuchMeshesWhereTheyAgree) {
+  const auto uncertainty = [](const char* cells) {
+    const solver::Scene scene = shifted_scene("paper", {cells});
+    return mean_over_shifted_grids(scene, kTwist, 0.5, convergence::contact_on_grid(scene),
+                                   Staircase{.front = 1e-4, .height = 0.0})
+        .uncertainty;
+  };
+  EXPECT_GT(uncertainty("grid.cells=[64,64]"), 4.0 * uncertainty("grid.cells=[128,128]"));
+  EXPECT_GT(uncertainty("grid.cells=[128,128]"), 1e-6);
+}
+
+TEST(ShiftedGrids, ThatDoNotAllConvergeGiveNoMean) {
+  const solver::Scene scene = shifted_scene("paper");
+  int solves = 0;
+  const auto mean = mean_over_shifted_grids(
+      scene, kTwist, 0.5, convergence::contact_on_grid(scene), [&](const solver::Scene& at) {
+        convergence::SolvedScene answer = Staircase{.front = 1e-4, .height = 0.0}(at);
+        if (++solves == 2) answer.solution.status = solver::Status::not_converged;
+        return answer;
+      });
+  EXPECT_EQ(solves, 2);
+  EXPECT_TRUE(std::isnan(mean.uncertainty));
+}
+
+TEST(ShiftedGrids, AreForNumbersOfContactsThatEndSmoothlyOnGridsThatAreFree) {
+  const auto take = [](const char* name, const std::vector<std::string>& overrides = {},
+                       AccuracyOf of = AccuracyOf::twist) {
+    return takes_shifted_grids(shifted_scene(name, overrides), of);
+  };
+  for (const char* name : {"paper", "ellipse", "cone", "off_centre", "fretting_torsion"})
+    EXPECT_TRUE(take(name));
+  for (const char* name : {"flat_punch", "rough_sphere", "honed_surface"}) EXPECT_FALSE(take(name));
+  EXPECT_FALSE(take("paper", {"contact.pressure=\"hertz\""}));
+  EXPECT_FALSE(take("paper", {"upper.ends_at_grid_edge=true"}));
+  EXPECT_FALSE(take("paper", {}, AccuracyOf::traction));
+  EXPECT_FALSE(take("paper", {}, AccuracyOf::stick_radius));
+}
+
+// What shifting the grids, and smooth cell tractions, are for: an error far below that of one grid.
+TEST(ShiftedGrids, ReachFiveDigitsOfThePapersTwistOnSmallGrids) {
+  for (const char* ratio : {"0.5", "0.9"}) {
+    const ProgramRun out = run_program_with(std::string("solve ") + SLIPSTICK_SCENES +
+                                            "/paper.toml --model auto --accuracy 1e-5 " +
+                                            "--set load.moment_ratio=" + ratio + " --json -");
+    EXPECT_EQ(out.exit_code, 0) << out.output;
+    const Json result = Json::parse(out.output, nullptr, false);
+    EXPECT_LE(std::abs(result["twist_error"].get<double>()), 1e-5);
+    EXPECT_LE(result["cells"][0], 200);
+    EXPECT_EQ(result["cell_traction"], "smooth");
+    EXPECT_EQ(result["accuracy"]["attempts"][0]["grids"].size(), static_cast<std::size_t>(kShiftedGrids));
+    EXPECT_LE(result["accuracy"]["uncertainty"].get<double>(), 1e-5);
+  }
+  const ProgramRun text =
+      run_program_with(std::string("solve ") + SLIPSTICK_SCENES + "/ellipse.toml --accuracy 1e-3");
+  EXPECT_THAT(text.output, HasSubstr("uncertainty"));
+  EXPECT_THAT(text.output, HasSubstr("of the 4 grids whose mean it is"));
+}
+
+}  // namespace
