@@ -236,10 +236,12 @@ Json plan_json(const Scene& scene) {
 std::string plan_text(const Json& result) {
   const Json& plan = result["plan"];
   if (plan["cells"].is_null()) return text_line("plan", plan["cells_reason"].get<std::string>());
-  return text_line(
-      "plan", fmt::format("{} x {} cells, {} unknowns, {} bytes, about {} s", plan["cells"][0].get<int>(),
-                          plan["cells"][1].get<int>(), number_text(plan["unknowns"]),
-                          number_text(plan["bytes"]), short_text(plan["seconds"])));
+  const std::string grids =
+      plan.contains("grids") ? fmt::format("{} grids of ", plan["grids"].get<int>()) : "";
+  return text_line("plan", fmt::format("{}{} x {} cells, {} unknowns, {} bytes, about {} s", grids,
+                                       plan["cells"][0].get<int>(), plan["cells"][1].get<int>(),
+                                       number_text(plan["unknowns"]), number_text(plan["bytes"]),
+                                       short_text(plan["seconds"])));
 }
 
 }  // namespace slipstick::convergence

@@ -25,13 +25,15 @@ bool is_estimated(const Scene& scene, AccuracyOf of) { return !answers_exactly(s
 /// How a scene's answer is made: on which meshes, and whether it is a mean over shifted grids.
 struct Approach {
   ContactOnGrid contact;
+  bool smooth;  ///< cell tractions
   bool shifted;
   double stick_ratio;  ///< of shifted grids
 };
 
 Approach approach_to(const Scene& scene, const AccuracyTarget& target) {
   const bool shifted = takes_shifted_grids(scene, target.of);
-  return {contact_on_grid(scene), shifted, shifted ? coarse_stick_ratio(scene) : 0.0};
+  return {contact_on_grid(scene), gains_by_smooth_cells(scene, target.of), shifted,
+          shifted ? coarse_stick_ratio(scene) : 0.0};
 }
 
 AccuracyChoice first_choice(const Scene& scene, const Approach& approach, const AccuracyTarget& target) {
@@ -42,7 +44,7 @@ AccuracyChoice first_choice(const Scene& scene, const Approach& approach, const 
 Scene chosen_scene(const Scene& scene, const Approach& approach, const AccuracyChoice& choice) {
   Scene chosen = with_cells(scene, choice.cells);
   chosen.tolerance = choice.tolerance;
-  if (approach.shifted) chosen.cell_traction = solver::CellTraction::smooth;
+  if (approach.smooth) chosen.cell_traction = solver::CellTraction::smooth;
   return chosen;
 }
 

@@ -124,10 +124,14 @@ void put_mean(Json& json, const AccuracyQuantity& quantity, double mean, double 
 
 }  // namespace
 
-bool takes_shifted_grids(const Scene& scene, AccuracyOf of) {
+bool gains_by_smooth_cells(const Scene& scene, AccuracyOf of) {
   constexpr double kOrderOfRootEdges = 2.0;
-  return of == AccuracyOf::twist && scene.pressure == solver::PressureModel::solved &&
+  return of != AccuracyOf::traction && scene.pressure == solver::PressureModel::solved &&
          !scene.ends_at_grid_edge && expected_order("twist_angle", scene).value == kOrderOfRootEdges;
+}
+
+bool takes_shifted_grids(const Scene& scene, AccuracyOf of) {
+  return of == AccuracyOf::twist && gains_by_smooth_cells(scene, of);
 }
 
 double coarse_stick_ratio(const Scene& scene) {

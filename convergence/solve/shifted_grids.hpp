@@ -21,7 +21,11 @@ inline constexpr int kShiftedGrids = 4;
 inline constexpr double kShiftedOrder = 2.5;
 
 /// Whether the quantity is a number of a contact whose pressure is solved, falls to zero at its edge, and
-/// whose grid may be any.
+/// whose grid may be any: what smooth cell tractions make more accurate on the same mesh.
+bool gains_by_smooth_cells(const solver::Scene& scene, AccuracyOf of);
+
+/// Whether it is also one whose error is the staircase alone: a twist, or the moment by an imposed one. The
+/// stick radius keeps an error of its own, since it is fitted to the slip beside its edge.
 bool takes_shifted_grids(const solver::Scene& scene, AccuracyOf of);
 
 /// Stick radius over contact radius, from a coarse grid; a half where that cannot say.

@@ -170,7 +170,8 @@ void add_grid_and_solver(SettingKeys& keys, const Scene& scene) {
       {"solver.cell_traction", kWord, "", word_of(kCellTractions, scene.cell_traction),
        one_of(kCellTractions),
        "What a cell's number stands for: traction that is constant over the cell; or the value at its centre "
-       "of one that is smooth, which leaves smaller errors, of contacts whose pressure falls to zero at their "
+       "of one that is smooth, which leaves smaller errors, of contacts whose pressure falls to zero at "
+       "their "
        "edge."},
       {"solver.precision", kWord, "", word_of(kPrecisions, scene.precision), one_of(kPrecisions),
        "Of inner iterations; the certificate is of double precision always."},

@@ -114,6 +114,8 @@ TEST(ShiftedGrids, AreForNumbersOfContactsThatEndSmoothlyOnGridsThatAreFree) {
   EXPECT_FALSE(take("paper", {"upper.ends_at_grid_edge=true"}));
   EXPECT_FALSE(take("paper", {}, AccuracyOf::traction));
   EXPECT_FALSE(take("paper", {}, AccuracyOf::stick_radius));
+  EXPECT_TRUE(gains_by_smooth_cells(shifted_scene("paper"), AccuracyOf::stick_radius));
+  EXPECT_FALSE(gains_by_smooth_cells(shifted_scene("flat_punch"), AccuracyOf::stick_radius));
 }
 
 // What shifting the grids, and smooth cell tractions, are for: an error far below that of one grid.
