@@ -111,8 +111,11 @@ LoadStep load_step(const Scene& scene, const Model& model, const Step& step, con
   impose_turning(problem, model, step, loads.moment_limit, before.motion);
   if (translations) impose_translation(problem, model, step, before.motion);
   loads.limit = limit_of(problem, model.grid);
-  if (!(loads.limit.factor > 1.0)) refuse(scene, model, step, loads);
   return loads;
+}
+
+void require_carried(const Scene& scene, const Model& model, const Step& step, const LoadStep& loads) {
+  if (!loads.carried()) refuse(scene, model, step, loads);
 }
 
 }  // namespace slipstick::solver

@@ -22,11 +22,14 @@ struct LoadStep {
   TangentialProblem problem;
   double moment_limit;  ///< over the cell area, without force
   LimitLoad limit;      ///< of the loads that the step imposes
+
+  bool carried() const { return limit.factor > 1.0; }
 };
 
-/// The change that a step of a scene brings to a contact under its pressure, on the model's grid. Throws
-/// InputError for gross slip, with what the contact carries and how it would slide.
+/// The change that a step of a scene brings to a contact under its pressure, on the model's grid.
 LoadStep load_step(const Scene& scene, const Model& model, const Step& step, const Eigen::ArrayXd& pressure,
                    const ContactState& before);
 
+/// Throws InputError for gross slip, with what the contact carries and how it would slide.
+void require_carried(const Scene& scene, const Model& model, const Step& step, const LoadStep& loads);
 }  // namespace slipstick::solver

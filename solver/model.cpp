@@ -27,9 +27,11 @@ constexpr double kFieldsHeld = 24.0;
 /// Those that the paper's method holds besides.
 constexpr double kPaperFields = 20.0;
 /// Of the tangential problem and its solution, on the part of the grid where that is solved; of the step
-/// before, and of pressure and tractions that are solved in turn, on the whole of it.
+/// before, or of the turn before, on the whole of it.
 constexpr double kFieldsOfPart = 18.0;
 constexpr double kFieldsBefore = 18.0;
+/// Of pressure and tractions solved in turn besides, on the whole grid: Anderson's combination and guesses.
+constexpr double kFieldsOfTurns = 22.0;
 /// The program and its libraries.
 constexpr double kProgramBytes = 26.0 * 0x1p20;
 /// Cells left free on each side of the expected contact where the scene does not give an extent.
@@ -241,7 +243,8 @@ bool may_have_translations(const Scene& scene, const Model& model) {
 
 Memory predicted_memory(const Scene& scene, const Model& model) {
   const bool follows = scene.steps.size() > 1 || scene.cycles > 1 || model.shear_coupling;
-  const double fields = (kFieldsHeld + (follows ? kFieldsBefore : 0.0)) * sizeof(double) *
+  const double turns = model.shear_coupling ? kFieldsOfTurns : 0.0;
+  const double fields = (kFieldsHeld + (follows ? kFieldsBefore : 0.0) + turns) * sizeof(double) *
                         static_cast<double>(model.grid.cells());
   const Grid& part = model.pressure_part.grid();
   const Elasticity on_part = elasticity(scene, model, model.pressure_part);

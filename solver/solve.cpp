@@ -36,6 +36,8 @@ using Eigen::ArrayXd;
 constexpr double kLoadRounding = 1e-12;
 /// and the gap, in which they cancel, so much of the energy.
 constexpr double kGapRounding = 1e-13;
+/// A mismatch below this, over the shear compliance, is the rounding of bodies that are alike.
+constexpr double kAlike = 1e-14;
 
 class Stopwatch {
  public:
@@ -71,13 +73,16 @@ void expand(TangentialSolution& solution, const Reduction& part) {
   if (part.quadrant()) solution.tangent_stiffness *= 4.0;
 }
 
+/// gap: over the energy, that is enough for Coulomb's method; 0: as the scene asks.
 TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduction& part,
-                            const TangentialProblem& problem, const Progress& progress) {
+                            const TangentialProblem& problem, const Progress& progress, double gap) {
   const Elasticity elastic = elasticity(scene, model, part);
   if (scene.method == Method::coulomb) {
-    return solve_by_coulomb_method(
-        elastic, part.grid(), problem,
-        {.tolerance = scene.tolerance, .max_applications = scene.max_iterations, .progress = progress});
+    return solve_by_coulomb_method(elastic, part.grid(), problem,
+                                   {.tolerance = std::max(scene.tolerance, gap),
+                                    .max_applications = scene.max_iterations,
+                                    .refine_motion = gap == 0.0,
+                                    .progress = progress});
   }
   const auto op = elastic.make(part.grid(), tangential_kernel());
   TangentialSolution solution =
@@ -96,13 +101,15 @@ TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduct
   return solution;
 }
 
-/// Tractions under a pressure that is known.
+/// Tractions under a pressure that is known. goal: of a turn under full coupling.
 TangentialSolution find_tractions(Model& model, const Scene& scene, const LoadStep& loads,
                                   const ArrayXd& pressure, const ContactState& before,
-                                  const Progress& progress) {
+                                  const Progress& progress, const TurnGoal& goal = {}) {
   const Reduction part = traction_part(scene, model, pressure, before.pressure);
   note_omissions(model, scene, part, loads.problem.force || loads.problem.displacement);
-  TangentialSolution solution = solve_on(scene, model, part, reduced(loads.problem, part), progress);
+  TangentialProblem problem = reduced(loads.problem, part);
+  problem.guess = part.restricted(goal.guess);
+  TangentialSolution solution = solve_on(scene, model, part, problem, progress, goal.gap);
   expand(solution, part);
   return solution;
 }
@@ -143,19 +150,22 @@ LoadStep solve_coupled(ModelSolution& solution, const Scene& scene, const Step& 
   const CoupledProblem problem{
       .gap = model.gap,
       .traction = state.traction.size() > 0 ? state.traction : ArrayXd::Zero(2 * model.grid.cells()),
+      .friction = model.friction,
       .tolerance = scene.tolerance,
       .solve_pressure =
-          [&](const ArrayXd& opening) {
-            NormalSolution normal = find_pressure(scene, model, step, opening);
+          [&](const ArrayXd& opening, const TurnGoal& goal) {
+            NormalSolution normal = find_pressure(scene, model, step, opening, goal);
             solution.pressure_applications += finest_grid_applications(normal.grids);
             solution.safeguards += normal.safeguards;
             return normal;
           },
       .solve_tractions =
-          [&](const ArrayXd& pressure) {
+          [&](const ArrayXd& pressure, const TurnGoal& goal) {
             loads = load_step(scene, model, step, pressure, state);
+            if (goal.gap > 0.0 && !loads.carried()) return TangentialSolution{};
+            require_carried(scene, model, step, loads);
             TangentialSolution found =
-                find_tractions(solution.model, scene, loads, pressure, state, progress);
+                find_tractions(solution.model, scene, loads, pressure, state, progress, goal);
             solution.operator_applications += finest_grid_applications(found.grids);
             solution.safeguards += found.safeguards;
             return found;
@@ -182,6 +192,7 @@ LoadStep solve_in_sequence(ModelSolution& solution, const Scene& scene, const St
   }
   solution.seconds.pressure = watch.lap();
   LoadStep loads = load_step(scene, solution.model, step, solution.normal.pressure, state);
+  require_carried(scene, solution.model, step, loads);
   solution.tangential =
       find_tractions(solution.model, scene, loads, solution.normal.pressure, state, progress);
   solution.operator_applications = finest_grid_applications(solution.tangential.grids);
@@ -197,7 +208,7 @@ void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, c
   const KeptRounding rounding;  // what draws its own
   const Model& model = solution.model;
   solution.safeguards = {};
-  const LoadStep loads = model.shear_coupling
+  const LoadStep loads = model.shear_coupling && std::abs(model.pair.mismatch) > kAlike
                              ? solve_coupled(solution, scene, step, before, progress)
                              : solve_in_sequence(solution, scene, step, previous, before, progress);
   const TangentialSolution& tangential = solution.tangential;

@@ -87,6 +87,7 @@ class TangentialOnGrid {
   static std::span<const Parity> parities() { return kTorsionParities; }
   FrictionDiscs admissible() const { return FrictionDiscs(problem_.friction_bound); }
   ArrayXd start() const { return problem_.start; }
+  ArrayXd guess() const { return problem_.guess; }
 
   ConvexProgram program(LinearOperator& op) {
     reference_ = problem_.initial_displacement;
@@ -112,6 +113,7 @@ class TangentialOnGrid {
     TangentialProblem problem = problem_;
     problem.friction_bound = restrict_to(coarse, grid, problem_.friction_bound);
     problem.start = restrict_to(coarse, grid, problem_.start);
+    problem.guess = {};
     if (problem_.initial_displacement.size() > 0) {
       problem.initial_displacement = restrict_to(coarse, grid, problem_.initial_displacement);
     }
@@ -187,7 +189,9 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
                                            const TangentialProblem& problem, const CoulombOptions& options) {
   require_valid(problem, grid);
   if ((problem.friction_bound == 0.0).all()) return unloaded(grid);
-  NewtonOptions newton{.tolerance = options.tolerance, .max_applications = options.max_applications};
+  NewtonOptions newton{.tolerance = options.tolerance,
+                       .max_applications = options.max_applications,
+                       .refine_multipliers = options.refine_motion};
   if (options.progress) {
     newton.progress = [&](long applications, double gap) {
       options.progress(static_cast<int>(applications), gap);

@@ -2,10 +2,13 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <array>
 #include <limits>
 #include <utility>
 
 #include "solver/newton/admissible.hpp"
+#include "solver/newton/anderson.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -13,9 +16,17 @@ namespace {
 using Eigen::ArrayXd;
 
 constexpr int kMaxTurns = 100;
-/// The gap has to fall by this part of the step in a turn, or the next ones are more careful.
+/// The gap has to fall by this part of the step below the largest of so many turns before, or the next ones
+/// are more careful: it may rise for a turn or two on its way.
 constexpr double kProgress = 0.1;
+constexpr std::size_t kLastGaps = 3;
 constexpr double kMinStep = 1.0 / 64.0;
+constexpr double kUnknown = std::numeric_limits<double>::infinity();
+/// Gap that is enough in the first turn, and in the others as a part of the one that the last has left.
+constexpr double kFirstGap = 1e-2;
+constexpr double kPartOfGap = 0.03;
+/// Changes that are combined.
+constexpr int kDepth = 4;
 
 /// Complementarity gap of a pressure under an opening besides its own, over p.Kp/2.
 class Complementarity {
@@ -36,10 +47,100 @@ class Complementarity {
   std::unique_ptr<LinearOperator> op_;
   ArrayXd reachable_, height_, u_;
 };
+/// The turns of one solve, each from the last one's pressure and tractions.
+class Turns {
+ public:
+  Turns(const Elasticity& elasticity, const Grid& grid, const CoupledProblem& problem)
+      : problem_(problem),
+        opening_by_(elasticity, grid),
+        complementarity_(elasticity, grid, problem.gap),
+        opening_(opening_by_(problem.traction)) {}
 
-bool converged(const CoupledSolution& solution) {
-  return solution.normal.status == Status::converged && solution.tangential.status == Status::converged;
-}
+  CoupledSolution run() {
+    double step = 1.0;
+    double wanted = kFirstGap;
+    for (solution_.turns = 1;; ++solution_.turns) {
+      // What fails roughly solved, as a load that a rough pressure does not carry, may not do so in full.
+      if (!take(wanted) && !take(0.0)) return std::move(solution_);
+      const double largest = std::ranges::max(last_gaps_);
+      measure();
+      if (gap_ <= problem_.tolerance && (!finish() || gap_ <= problem_.tolerance))
+        return std::move(solution_);
+      if (!(gap_ <= (1.0 - kProgress * step) * largest)) step *= 0.5;
+      std::ranges::rotate(last_gaps_, last_gaps_.begin() + 1);
+      last_gaps_.back() = gap_;
+      if (!(step >= kMinStep) || solution_.turns == kMaxTurns) break;
+      advance(step);
+      wanted = kPartOfGap * gap_;
+    }
+    return unsettled();
+  }
+
+ private:
+  bool converged() const {
+    return solution_.normal.status == Status::converged && solution_.tangential.status == Status::converged;
+  }
+
+  /// gap: over the energy, that is enough for each of the two; 0: as well as is asked for.
+  bool take(double gap) {
+    solution_.normal = problem_.solve_pressure(opening_, {gap, pressure_});
+    solution_.tangential = problem_.solve_tractions(solution_.normal.pressure, {gap, traction_guess()});
+    return converged();
+  }
+
+  /// Tractions that slip keep to their circles.
+  ArrayXd traction_guess() const {
+    if (traction_.size() == 0) return {};
+    const ArrayXd size = norms(traction_);
+    const ArrayXd onto =
+        (slips_ && size > 0.0).select(problem_.friction * solution_.normal.pressure / size, 1.0);
+    return onto.replicate(2, 1) * traction_;
+  }
+
+  /// How far the opening is from that of the last tractions, and the pressure from one under that.
+  void measure() {
+    change_ = opening_by_(solution_.tangential.traction) - opening_;
+    gap_ = complementarity_(solution_.normal.pressure, opening_ + change_);
+    solution_.normal.complementarity = gap_;
+  }
+
+  /// The tractions in full, under a pressure that is good enough.
+  bool finish() {
+    const ArrayXd guess = solution_.tangential.traction;
+    solution_.tangential = problem_.solve_tractions(solution_.normal.pressure, {0.0, guess});
+    measure();
+    return converged();
+  }
+
+  CoupledSolution unsettled() {
+    solution_.normal.status = Status::not_converged;
+    solution_.normal.message = fmt::format(
+        "pressure and shear drive each other apart: complementarity gap {:.3g} after {} turns, asked for "
+        "{:.3g}; "
+        "contact.coupling = \"pressure\" leaves the shear's effect on the pressure out",
+        gap_, solution_.turns, problem_.tolerance);
+    return std::move(solution_);
+  }
+
+  /// To the opening of the next turn, and its guesses.
+  void advance(double step) {
+    acceleration_.advance(opening_, change_, step);
+    pressure_ = std::move(solution_.normal.pressure);
+    traction_ = std::move(solution_.tangential.traction);
+    slips_ = solution_.tangential.stick == 0.0;
+  }
+
+  const CoupledProblem& problem_;
+  ShearOpening opening_by_;
+  Complementarity complementarity_;
+  Anderson acceleration_{kDepth};
+  ArrayXd opening_, change_;
+  ArrayXd pressure_, traction_;  ///< guesses; empty in the first turn
+  Eigen::Array<bool, Eigen::Dynamic, 1> slips_;
+  double gap_ = kUnknown;
+  std::array<double, kLastGaps> last_gaps_{kUnknown, kUnknown, kUnknown};
+  CoupledSolution solution_;
+};
 
 }  // namespace
 
@@ -54,31 +155,7 @@ ArrayXd ShearOpening::operator()(const ArrayXd& traction) {
 
 CoupledSolution solve_fully_coupled(const Elasticity& elasticity, const Grid& grid,
                                     const CoupledProblem& problem) {
-  ShearOpening opening_by(elasticity, grid);
-  Complementarity complementarity(elasticity, grid, problem.gap);
-  ArrayXd opening = opening_by(problem.traction);
-  double gap = std::numeric_limits<double>::infinity();
-  double step = 1.0;
-  CoupledSolution solution;
-  for (solution.turns = 1; solution.turns <= kMaxTurns; ++solution.turns) {
-    solution.normal = problem.solve_pressure(opening);
-    solution.tangential = problem.solve_tractions(solution.normal.pressure);
-    if (!converged(solution)) return solution;
-    const ArrayXd change = opening_by(solution.tangential.traction) - opening;
-    const double last = std::exchange(gap, complementarity(solution.normal.pressure, opening + change));
-    solution.normal.complementarity = gap;
-    if (gap <= problem.tolerance) return solution;
-    if (!(gap <= (1.0 - kProgress * step) * last)) step *= 0.5;
-    if (!(step >= kMinStep)) break;
-    opening += step * change;
-  }
-  solution.normal.status = Status::not_converged;
-  solution.normal.message = fmt::format(
-      "pressure and shear drive each other apart: complementarity gap {:.3g} after {} turns, asked for "
-      "{:.3g}; "
-      "contact.coupling = \"pressure\" leaves the shear's effect on the pressure out",
-      gap, solution.turns, problem.tolerance);
-  return solution;
+  return Turns(elasticity, grid, problem).run();
 }
 
 }  // namespace slipstick::solver

@@ -21,13 +21,20 @@ class ShearOpening {
   std::unique_ptr<LinearOperator> op_;
 };
 
+/// What a turn asks of one of the two problems.
+struct TurnGoal {
+  double gap = 0.0;           ///< over the energy, that is enough; 0: as well as it can be asked for
+  Eigen::ArrayXd guess = {};  ///< a field near the answer; empty: none
+};
+
 /// The two problems that are solved in turns, each with the other's answer, on the whole grid.
 struct CoupledProblem {
   Eigen::ArrayXd gap;       ///< undeformed; infinite where the bodies cannot touch
   Eigen::ArrayXd traction;  ///< guess, 2*cells
+  double friction;          ///< mu
   double tolerance;         ///< on the complementarity gap
-  std::function<NormalSolution(const Eigen::ArrayXd& opening)> solve_pressure;
-  std::function<TangentialSolution(const Eigen::ArrayXd& pressure)> solve_tractions;
+  std::function<NormalSolution(const Eigen::ArrayXd& opening, const TurnGoal&)> solve_pressure;
+  std::function<TangentialSolution(const Eigen::ArrayXd& pressure, const TurnGoal&)> solve_tractions;
 };
 
 struct CoupledSolution {
@@ -37,9 +44,11 @@ struct CoupledSolution {
 };
 
 /// Panagiotopoulos' method (1975): pressure under the opening by shear, tractions under that pressure, and
-/// again, until the pressure's complementarity gap holds with the opening of the last tractions. Where the
-/// gap does not fall, the opening follows by half, a quarter, ... of its change. A pressure that does not
-/// settle is a status with its reason.
+/// again, until the pressure's complementarity gap holds with the opening of the last tractions. Each turn
+/// starts from the last ones, is solved no better than its part of the gap, and ends in Anderson's
+/// combination of them; the last tractions are solved as well as is asked for. Where the gap does not fall,
+/// the opening follows by half, a quarter, ... of its change. A pressure that does not settle is a status
+/// with its reason.
 CoupledSolution solve_fully_coupled(const Elasticity& elasticity, const Grid& grid,
                                     const CoupledProblem& problem);
 

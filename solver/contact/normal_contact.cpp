@@ -20,13 +20,17 @@ constexpr std::array<Parity, 1> kPressureParities{{{1, 1}}};
 class PressureOnGrid {
  public:
   /// reachable: 1 where the bodies can touch; height: the undeformed gap there, 0 elsewhere.
-  PressureOnGrid(ArrayXd reachable, ArrayXd height, double total_pressure)
-      : reachable_(std::move(reachable)), height_(std::move(height)), total_pressure_(total_pressure) {}
+  PressureOnGrid(ArrayXd reachable, ArrayXd height, double total_pressure, ArrayXd guess = {})
+      : reachable_(std::move(reachable)),
+        height_(std::move(height)),
+        total_pressure_(total_pressure),
+        guess_(std::move(guess)) {}
 
   static BlockKernel kernel() { return normal_kernel(); }
   static std::span<const Parity> parities() { return kPressureParities; }
   PositivePressures admissible() const { return PositivePressures(reachable_); }
   ArrayXd start() const { return ArrayXd::Zero(reachable_.size()); }
+  ArrayXd guess() const { return guess_; }
   ConvexProgram program(LinearOperator&) const {
     return {.g = &height_, .imposed = {{&reachable_, total_pressure_}}};
   }
@@ -44,6 +48,7 @@ class PressureOnGrid {
   ArrayXd reachable_;
   ArrayXd height_;
   double total_pressure_;
+  ArrayXd guess_;
 };
 
 void require_valid(const NormalProblem& problem, const Grid& grid) {
@@ -66,8 +71,11 @@ NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& gr
                                     const NormalProblem& problem, const NormalOptions& options) {
   require_valid(problem, grid);
   const ArrayXd reachable = problem.gap.isFinite().cast<double>();
-  const PressureOnGrid contact(reachable, (reachable > 0.0).select(problem.gap, 0.0), problem.total_pressure);
-  const NewtonOptions newton{.tolerance = options.tolerance, .max_applications = options.max_applications};
+  const PressureOnGrid contact(reachable, (reachable > 0.0).select(problem.gap, 0.0), problem.total_pressure,
+                               problem.guess);
+  const NewtonOptions newton{.tolerance = options.tolerance,
+                             .max_applications = options.max_applications,
+                             .refine_multipliers = options.refine_approach};
   NestedSummary nested = solve_nested(elasticity, grid, contact, newton);
   NormalSolution solution;
   solution.status = nested.newton.converged ? Status::converged : Status::not_converged;

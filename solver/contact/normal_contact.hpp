@@ -13,12 +13,14 @@ namespace slipstick::solver {
 /// Frictionless contact under a given load: minimise p.Kp/2 + p.h over p >= 0 with sum of p given. All
 /// quantities in one consistent set of units; u3 = K33 p.
 struct NormalProblem {
-  Eigen::ArrayXd gap;     ///< undeformed gap h of each cell; infinite where the bodies cannot touch
-  double total_pressure;  ///< load over cell area
+  Eigen::ArrayXd gap;         ///< undeformed gap h of each cell; infinite where the bodies cannot touch
+  double total_pressure;      ///< load over cell area
+  Eigen::ArrayXd guess = {};  ///< a pressure near the answer; empty: found from coarser grids
 };
 
 struct NormalOptions {
-  double tolerance = 1e-10;  ///< on the complementarity gap
+  double tolerance = 1e-10;     ///< on the complementarity gap
+  bool refine_approach = true;  ///< to second order, at some applications more
   long max_applications = 2000;
 };
 

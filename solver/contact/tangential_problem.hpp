@@ -25,6 +25,7 @@ struct TangentialProblem {
   std::optional<std::array<double, 2>> force = {};
   std::optional<std::array<double, 2>> displacement = {};
   Eigen::ArrayXd start = {};  ///< tractions of the state before, 2*cells; empty: none
+  Eigen::ArrayXd guess = {};  ///< tractions near the answer, 2*cells; empty: found from coarser grids
 };
 
 struct TangentialSolution {

@@ -87,7 +87,7 @@ NewtonSummary NaturalMapNewton<Set, Real>::run(ArrayXd& q, const Coefficients& m
     summary.safeguards = safeguards_;
     if (options.progress) options.progress(applications(), summary.gap);
     if (std::isnan(summary.gap)) return fail(summary, "an elastic energy that is not a positive number");
-    if (summary.gap <= options.tolerance &&
+    if (summary.gap <= options.tolerance && summary.iterations >= options.least_iterations &&
         (!options.refine_multipliers || refine(q, options.tolerance, summary))) {
       summary.converged = true;
       return summary;

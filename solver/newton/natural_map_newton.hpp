@@ -23,6 +23,8 @@ struct NewtonOptions {
   long max_applications = 1000;  ///< of the operator
   /// Whether the multipliers and the tangent stiffness are wanted to second order, at some applications more.
   bool refine_multipliers = true;
+  /// At least: a step gives each cell its state, which a start that is good enough may not have.
+  int least_iterations = 0;
   std::function<void(long applications, double gap)> progress = {};
 };
 

@@ -46,18 +46,21 @@ concept NestedProblem = requires(Problem problem, const Grid& grid, LinearOperat
   { problem.admissible() } -> AdmissibleSet;
   { problem.program(op) } -> std::same_as<ConvexProgram>;      // refers to the problem's own fields
   { problem.start() } -> std::same_as<Eigen::ArrayXd>;         // known in full
+  { problem.guess() } -> std::same_as<Eigen::ArrayXd>;         // near the answer; empty: by coarser grids
   { problem.coarsened(grid, grid) } -> std::same_as<Problem>;  // from the grid to the coarse one
 };
 
-/// Solves from the coarsest grid up, inner iterations in the precision Real. From coarse grids only the
-/// change from start() is taken: start() itself is known in full.
+/// Solves from the coarsest grid up, or from a guess, inner iterations in the precision Real. From coarse
+/// grids only the change from start() is taken: start() itself is known in full.
 template <typename Real, NestedProblem Problem>
 NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Problem problem,
                               const NewtonOptions& options) {
   NestedSummary result;
   Coefficients multipliers;
-  result.field = problem.start();
-  if (can_coarsen(grid)) {
+  result.field = problem.guess();
+  const bool guessed = result.field.size() > 0;
+  if (!guessed) result.field = problem.start();
+  if (!guessed && can_coarsen(grid)) {
     const Grid coarse = coarser(grid);
     NewtonOptions coarse_options = options;
     coarse_options.tolerance = std::max(options.tolerance, coarse_tolerance(coarse));
@@ -79,7 +82,9 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
   const ConvexProgram program = problem.program(*operators.op);
   NaturalMapNewton<std::remove_const_t<decltype(admissible)>, Real> newton(
       admissible, program, *operators.op, operators.inner(), *operators.symbol);
-  result.newton = newton.run(result.field, multipliers, options);
+  NewtonOptions on_grid = options;
+  on_grid.least_iterations = guessed ? 1 : 0;
+  result.newton = newton.run(result.field, multipliers, on_grid);
   result.safeguards += result.newton.safeguards;
   result.displacement = newton.displacement();
   result.slip = newton.slip();
