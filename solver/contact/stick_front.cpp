@@ -134,6 +134,7 @@ class FrontFinder {
     Index fitted = 0;
     for (int pass = 0; pass < kPasses; ++pass) {
       reference_ = smoothed(r);
+      for (SlippingCell& cell : slipping_) cell.reference = cell.rays.of(reference_);
       r = counted_;
       fitted = 0;
       for (Index ray = 0; ray < rays_; ++ray) {
@@ -206,12 +207,16 @@ class FrontFinder {
   }
 
   /// Values on the rays, linear in the angle between them.
-  double between_rays(const ArrayXd& values, double theta) const {
+  struct BetweenRays {
+    Index below, above;
+    double part;
+    double of(const ArrayXd& values) const { return values[below] + part * (values[above] - values[below]); }
+  };
+  BetweenRays between_rays(double theta) const {
     const double at = theta / kTurn * static_cast<double>(rays_) - 0.5;
     const double below = std::floor(at);
     const auto ray = static_cast<Index>(below) + rays_;
-    const double a = values[ray % rays_];
-    return a + (at - below) * (values[(ray + 1) % rays_] - a);
+    return {ray % rays_, (ray + 1) % rays_, at - below};
   }
 
   /// The cell, or -1 and less: a ray leaves the grid by one cell at a time.
@@ -232,6 +237,8 @@ class FrontFinder {
     double theta;
     double r;
     double psi;
+    BetweenRays rays;
+    double reference;  ///< the reference front at this angle
   };
 
   /// Those that some window may take, by angle. False if a cell is not on the side of the counted front that
@@ -245,12 +252,13 @@ class FrontFinder {
       const bool stuck = sticks(i, j);
       if (stuck ? r <= nearest_front : r > farthest_front + kFarthest) return;
       const double theta = angle_of(i, j);
-      const double beyond = r - between_rays(counted_, theta);
+      const BetweenRays rays = between_rays(theta);
+      const double beyond = r - rays.of(counted_);
       if (stuck ? beyond > kStaircase : beyond < -kStaircase) star_shaped = false;
       if (stuck || beyond > kFarthest) return;
       const double s1 = slip_[i * grid_.n2 + j];
       const double s2 = slip_[i * grid_.n2 + j + grid_.cells()];
-      slipping_.push_back({theta, r, std::cbrt(s1 * s1 + s2 * s2)});
+      slipping_.push_back({theta, r, std::cbrt(s1 * s1 + s2 * s2), rays, 0.0});
     });
     std::ranges::sort(slipping_, {}, &SlippingCell::theta);
     return star_shaped;
@@ -279,7 +287,7 @@ class FrontFinder {
       const double middle = angle(ray) + turn;
       auto cell = std::ranges::lower_bound(slipping_, middle - half, {}, &SlippingCell::theta);
       for (; cell != slipping_.end() && cell->theta <= middle + half; ++cell) {
-        const double straight = cell->r * front / between_rays(reference_, cell->theta);
+        const double straight = cell->r * front / cell->reference;
         if (straight - front < depth.from || straight - front > depth.to) continue;
         samples.push_back({straight - front, (cell->theta - middle) * front, cell->psi});
       }
