@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -33,13 +34,39 @@ FieldError field_error(const ArrayXd& difference, const ArrayXd& exact, const Ar
   return field_error(difference * part, exact);
 }
 
-/// The exact shear traction in an oracle's units, as a vector at a place measured from the axis.
-class ExactShear {
+/// A function of the radius, found once at each: mirror images of a cell have its own, to the last bit.
+template <typename Function>
+class ByRadius {
  public:
-  explicit ExactShear(const Oracle& oracle) : oracle_(oracle) {}
+  explicit ByRadius(Function function) : function_(std::move(function)) {}
+  double operator()(double radius) {
+    const auto [place, is_new] = found_.try_emplace(radius);
+    if (is_new) place->second = function_(radius);
+    return place->second;
+  }
 
-  /// Tabulates the neighbourhoods of both edges, in which many values are asked for.
-  ExactShear(const Oracle& oracle, double reach, double step) : ExactShear(oracle) {
+ private:
+  Function function_;
+  std::unordered_map<double, double> found_;
+};
+
+/// The exact shear traction in an oracle's units, as a vector at a place measured from the axis; size: its
+/// size at a radius.
+template <typename Size>
+std::array<double, 2> shear_at(const Oracle& oracle, double y1, double y2, Size&& size_at) {
+  const double radius = std::hypot(y1, y2);
+  const double size = size_at(radius);
+  if (oracle.direction != std::array<double, 2>{}) {
+    return {size * oracle.direction[0], size * oracle.direction[1]};
+  }
+  if (radius == 0.0) return {0.0, 0.0};  // the axis carries no traction
+  return {-size * (y2 / radius), size * (y1 / radius)};
+}
+
+/// The size of the exact shear traction near its edges, where many values are asked for.
+class ShearBesideEdges {
+ public:
+  ShearBesideEdges(const Oracle& oracle, double reach, double step) : oracle_(oracle) {
     for (const double edge : {oracle.stick_radius, oracle.contact_radius}) {
       if (!std::isfinite(edge)) continue;
       // No value is taken on the edge itself, where it may be infinite.
@@ -52,25 +79,7 @@ class ExactShear {
     }
   }
 
-  std::array<double, 2> at(double y1, double y2) const {
-    const double radius = std::hypot(y1, y2);
-    const double size = value(radius);
-    if (oracle_.direction != std::array<double, 2>{}) {
-      return {size * oracle_.direction[0], size * oracle_.direction[1]};
-    }
-    if (radius == 0.0) return {0.0, 0.0};  // the axis carries no traction
-    return {-size * (y2 / radius), size * (y1 / radius)};
-  }
-
- private:
-  /// Values at equal steps, straight lines between them.
-  struct Table {
-    double start;
-    double step;
-    std::vector<double> values;
-  };
-
-  double value(double radius) const {
+  double operator()(double radius) const {
     for (const Table& table : tables_) {
       const double place = (radius - table.start) / table.step;
       if (!(place >= 0.0) || !(place + 1.0 < static_cast<double>(table.values.size()))) continue;
@@ -80,6 +89,14 @@ class ExactShear {
     }
     return oracle_.traction(radius);
   }
+
+ private:
+  /// Values at equal steps, straight lines between them.
+  struct Table {
+    double start;
+    double step;
+    std::vector<double> values;
+  };
 
   const Oracle& oracle_;
   std::vector<Table> tables_;
@@ -106,25 +123,24 @@ constexpr double kTableSteps = 64.0;
 
 /// Averages over the cells near an edge, values at the centres elsewhere, where the two differ by h^2/24
 /// times the traction's second derivatives. 2*cells, Pa.
-ArrayXd averaged_traction(const Oracle& oracle, const solver::Grid& grid, const Places& at) {
+ArrayXd averaged_traction(const Oracle& oracle, const solver::Grid& grid, const Places& at,
+                          const ArrayXd& at_centres) {
   const Index cells = at.radius.size();
   const double h1 = grid.h1;
   const double h2 = grid.h2;
   const double diagonal = std::hypot(h1, h2);
-  const ExactShear everywhere(oracle);
-  const ExactShear beside_edges(oracle, 2.0 * diagonal, std::min(h1, h2) / kTableSteps);
+  const ShearBesideEdges beside_edges(oracle, 2.0 * diagonal, std::min(h1, h2) / kTableSteps);
   const auto is_near = [&](double radius, double edge) { return std::abs(radius - edge) < diagonal; };
-  ArrayXd field(2 * cells);
+  constexpr int points = kPointsAcross;
+  ArrayXd field = at_centres;
   for (Index i = 0; i < cells; ++i) {
-    const bool near =
-        is_near(at.radius[i], oracle.stick_radius) || is_near(at.radius[i], oracle.contact_radius);
-    const int points = near ? kPointsAcross : 1;
-    const ExactShear& shear = near ? beside_edges : everywhere;
+    if (!is_near(at.radius[i], oracle.stick_radius) && !is_near(at.radius[i], oracle.contact_radius))
+      continue;
     std::array<double, 2> sum{};
     for (int k = 0; k < points * points; ++k) {
       const double part1 = (k / points + 0.5) / points - 0.5;
       const double part2 = (k % points + 0.5) / points - 0.5;
-      const auto [q1, q2] = shear.at(at.y1[i] + part1 * h1, at.y2[i] + part2 * h2);
+      const auto [q1, q2] = shear_at(oracle, at.y1[i] + part1 * h1, at.y2[i] + part2 * h2, beside_edges);
       sum[0] += q1;
       sum[1] += q2;
     }
@@ -148,23 +164,27 @@ ArrayXd band(const ArrayXd& radius, double edge, double width) {
 
 ExactFields exact_fields(const Oracle& oracle, const solver::Grid& grid) {
   const Places at = places(oracle, grid);
-  const ExactShear shear(oracle);
+  ByRadius pressure([&](double radius) { return oracle.pressure(radius); });
+  ByRadius shear([&](double radius) { return oracle.traction(radius); });
   const Index cells = at.radius.size();
   ExactFields exact{at.radius, ArrayXd(cells), ArrayXd(2 * cells)};
   for (Index i = 0; i < cells; ++i) {
-    exact.pressure[i] = oracle.pressure(at.radius[i]);
-    const auto [q1, q2] = shear.at(at.y1[i], at.y2[i]);
+    exact.pressure[i] = pressure(at.radius[i]);
+    const auto [q1, q2] = shear_at(oracle, at.y1[i], at.y2[i], shear);
     exact.traction[i] = q1;
     exact.traction[i + cells] = q2;
   }
   return exact;
 }
 
-TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, const solver::Grid& grid) {
+namespace {
+
+TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, const solver::Grid& grid,
+                             const ExactFields& fields) {
   if (!oracle.shear) return unknown_tractions();
-  const ArrayXd at_centres = exact_fields(oracle, grid).traction;
+  const ArrayXd& at_centres = fields.traction;
   const Places at = places(oracle, grid);
-  const ArrayXd averaged = averaged_traction(oracle, grid, at);
+  const ArrayXd averaged = averaged_traction(oracle, grid, at, at_centres);
   const ArrayXd exact = solver::norms(averaged);
   const ArrayXd difference = solver::norms(traction - averaged);
   const double width = kEdgeBand * std::sqrt(grid.cell_area());
@@ -184,14 +204,24 @@ TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, cons
   };
 }
 
-FieldError pressure_error(const ArrayXd& pressure, const Oracle& oracle, const solver::Grid& grid) {
-  const ArrayXd exact = exact_fields(oracle, grid).pressure;
+FieldError pressure_error(const ArrayXd& pressure, const ArrayXd& exact) {
   const auto finite = exact.isFinite();
   const ArrayXd difference = (pressure - exact).abs();
   return field_error(finite.select(difference, 0.0), finite.select(exact, 0.0));
 }
 
+}  // namespace
+
+TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, const solver::Grid& grid) {
+  return traction_error(traction, oracle, grid, exact_fields(oracle, grid));
+}
+
+FieldError pressure_error(const ArrayXd& pressure, const Oracle& oracle, const solver::Grid& grid) {
+  return pressure_error(pressure, exact_fields(oracle, grid).pressure);
+}
+
 Errors compare(const solver::Solution& solution, const Oracle& oracle) {
+  const ExactFields exact = exact_fields(oracle, solution.grid);
   return {
       .twist = relative_error(solution.twist_angle, oracle.twist_angle),
       .moment = relative_error(solution.moment, oracle.moment),
@@ -204,8 +234,8 @@ Errors compare(const solver::Solution& solution, const Oracle& oracle) {
       .stick_radius_counted = relative_error(solution.stick_radius_counted, oracle.stick_radius),
       .contact_radius = relative_error(solution.contact_radius, oracle.contact_radius),
       .peak_pressure = relative_error(solution.peak_pressure, oracle.peak_pressure),
-      .traction = traction_error(solution.traction, oracle, solution.grid),
-      .pressure = pressure_error(solution.pressure, oracle, solution.grid),
+      .traction = traction_error(solution.traction, oracle, solution.grid, exact),
+      .pressure = pressure_error(solution.pressure, exact.pressure),
   };
 }
 
