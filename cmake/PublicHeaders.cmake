@@ -4,6 +4,7 @@ set(SLIPSTICK_PUBLIC_HEADERS
   solver/scene/scene.hpp          # what to solve: validate(), read_scene()
   solver/scene/surface.hpp        # shapes of the indenter
   solver/solve.hpp                # Scene in, Solution out
+  solver/cache/solve_cache.hpp    # what solves of one size share
   solver/solution.hpp             # fields and numbers, SI
   solver/contact/certificate.hpp  # how far tractions, anyone's, are from Coulomb's law
   solver/contact/limit_load.hpp   # what a contact carries before all of it slides

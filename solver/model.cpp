@@ -227,7 +227,8 @@ Elasticity elasticity(const Scene& scene, const Model& model, const Reduction& p
           .precision = scene.precision,
           .diagonal = part.diagonal(),
           .measure_plans = !scene.wisdom.empty(),
-          .rounding_seed = static_cast<std::uint64_t>(scene.rounding_seed)};
+          .rounding_seed = static_cast<std::uint64_t>(scene.rounding_seed),
+          .cache = model.cache};
 }
 
 namespace {

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "solver/cache/solve_cache.hpp"
 #include "solver/grid/reduction.hpp"
 #include "solver/operator/elasticity.hpp"
 #include "solver/scene/hertz_pressure.hpp"
@@ -43,6 +45,7 @@ struct Model : Dimensionless {
   bool forces;              ///< some step brings a tangential force or displacement
   Reduction pressure_part;  ///< of the grid, on which the pressure is found
   std::vector<Omission> left_out;
+  std::shared_ptr<SolveCache> cache = {};  ///< of its operators; empty: none
 };
 
 /// Whether the contact's translations are unknowns: not where the contact is its own image under half a turn

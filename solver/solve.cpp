@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <limits>
 #include <optional>
@@ -38,18 +37,6 @@ constexpr double kLoadRounding = 1e-12;
 constexpr double kGapRounding = 1e-13;
 /// A mismatch below this, over the shear compliance, is the rounding of bodies that are alike.
 constexpr double kAlike = 1e-14;
-
-class Stopwatch {
- public:
-  /// Seconds since the last call, or since construction.
-  double lap() {
-    const auto now = std::chrono::steady_clock::now();
-    return std::chrono::duration<double>(now - std::exchange(start_, now)).count();
-  }
-
- private:
-  std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
-};
 
 /// The problem on a part of the grid. A quadrant carries a quarter of the moment.
 TangentialProblem reduced(const TangentialProblem& problem, const Reduction& part) {
@@ -182,7 +169,7 @@ LoadStep solve_coupled(ModelSolution& solution, const Scene& scene, const Step& 
 
 LoadStep solve_in_sequence(ModelSolution& solution, const Scene& scene, const Step& step,
                            const Step* previous, const ContactState& state, const Progress& progress) {
-  Stopwatch watch;
+  Stopwatch watch(solution.model.cache.get());
   solution.pressure_applications = 0.0;
   if (previous == nullptr || previous->normal != step.normal) {
     solution.normal = find_pressure(scene, solution.model, step);
@@ -204,7 +191,7 @@ LoadStep solve_in_sequence(ModelSolution& solution, const Scene& scene, const St
 /// after: filled in, unless null.
 void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, const Step* previous,
                 const ContactState& before, const Progress& progress, ContactState* after) {
-  Stopwatch watch;
+  Stopwatch watch(solution.model.cache.get());
   const KeptRounding rounding;  // what draws its own
   const Model& model = solution.model;
   solution.safeguards = {};
@@ -239,12 +226,21 @@ void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, c
 
 /// Step by step, until one does not converge. after_step may take the solution's fields where it is the last.
 using AfterStep = std::function<void(ModelSolution& solution, bool last)>;
-void solve_steps(const Scene& scene, const Progress& progress, const AfterStep& after_step) {
+void solve_steps(const Scene& scene, const Progress& progress, std::shared_ptr<SolveCache> cache,
+                 const AfterStep& after_step) {
   const ThreadPool threads(scene.threads);
-  Stopwatch watch;
+  Stopwatch watch(cache.get());
   ModelSolution solution;
   solution.model = make_model(scene);
   solution.predicted_bytes = predicted_memory(scene, solution.model).total();
+  const bool repeats = scene.steps.size() > 1 || scene.cycles > 1 || solution.model.shear_coupling;
+  if (!cache && repeats) cache = std::make_shared<SolveCache>();
+  if (cache) {
+    const double room =
+        scene.memory_limit.value_or(std::numeric_limits<double>::infinity()) - solution.predicted_bytes;
+    cache->begin_solve(scene.rounding_seed == 0 ? room : 0.0);  // rounding changes with every application
+  }
+  solution.model.cache = cache;
   solution.seconds.setup = watch.lap();
   ContactState state;
   const Step* previous = nullptr;
@@ -257,6 +253,7 @@ void solve_steps(const Scene& scene, const Progress& progress, const AfterStep& 
       solve_step(solution, scene, step, previous, state, progress, last ? nullptr : &after);
       state = std::move(after);
       const bool failed = solution.status != Status::converged;
+      if (last || failed) solution.model.cache = nullptr;
       after_step(solution, last || failed);
       if (failed) return;
       previous = &step;
@@ -286,7 +283,7 @@ ModelSolution solve_in_model_units(const Scene& scene,
                                    const std::function<void(const ModelSolution&)>& on_step) {
   require_can_solve(scene);
   ModelSolution result;
-  solve_steps(scene, {}, [&](ModelSolution& solution, bool last) {
+  solve_steps(scene, {}, {}, [&](ModelSolution& solution, bool last) {
     if (on_step) on_step(solution);
     if (last) result = std::move(solution);
   });
@@ -299,7 +296,7 @@ Solution solve(const Scene& scene, const SolveOptions& options) {
   if (!scene.wisdom.empty()) wisdom.emplace(scene.wisdom);
   Solution result;
   within_double(scene, [&] {
-    solve_steps(scene, options.progress, [&](ModelSolution& solution, bool last) {
+    solve_steps(scene, options.progress, options.cache, [&](ModelSolution& solution, bool last) {
       if (!last && !options.on_step) return;
       result = in_si(last ? std::move(solution) : ModelSolution(solution));
       require_finite(result);

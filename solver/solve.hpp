@@ -1,18 +1,23 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 
+#include "solver/cache/solve_cache.hpp"
 #include "solver/scene/scene.hpp"
 #include "solver/solution.hpp"
 
 namespace slipstick::solver {
 
-/// Who is told how a solve goes on.
+/// Who is told how a solve goes on, and what it shares with others.
 struct SolveOptions {
   /// Called now and then with the iterations or applications so far and what the method's stopping test sees.
   std::function<void(int iteration, double change)> progress;
   /// Called at the end of each step of a history.
   std::function<void(const Solution&)> on_step = {};
+  /// What solves of one size share; empty: each step shares with the next. Changes no digit: seconds are
+  /// those that the solve takes by itself.
+  std::shared_ptr<SolveCache> cache = {};
 };
 
 /// Solves a scene, step by step; returns the last one, or the first that did not converge. Throws InputError

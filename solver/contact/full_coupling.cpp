@@ -44,7 +44,7 @@ class Complementarity {
   }
 
  private:
-  std::unique_ptr<LinearOperator> op_;
+  Cached<LinearOperator> op_;
   ArrayXd reachable_, height_, u_;
 };
 /// The turns of one solve, each from the last one's pressure and tractions.

@@ -18,7 +18,7 @@ class ShearOpening {
   Eigen::ArrayXd operator()(const Eigen::ArrayXd& traction);
 
  private:
-  std::unique_ptr<LinearOperator> op_;
+  Cached<LinearOperator> op_;
 };
 
 /// What a turn asks of one of the two problems.

@@ -67,9 +67,10 @@ double predicted_normal_bytes(const Elasticity& elasticity, const Grid& grid) {
   return predicted_nested_bytes<PositivePressures>(elasticity, grid, normal_kernel(), 1);
 }
 
-NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& grid,
-                                    const NormalProblem& problem, const NormalOptions& options) {
-  require_valid(problem, grid);
+namespace {
+
+NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& grid,
+                                   const NormalProblem& problem, const NormalOptions& options) {
   const ArrayXd reachable = problem.gap.isFinite().cast<double>();
   const PressureOnGrid contact(reachable, (reachable > 0.0).select(problem.gap, 0.0), problem.total_pressure,
                                problem.guess);
@@ -92,6 +93,26 @@ NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& gr
   solution.safeguards = nested.safeguards;
   solution.bytes = nested.bytes;
   return solution;
+}
+
+}  // namespace
+
+NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& grid,
+                                    const NormalProblem& problem, const NormalOptions& options) {
+  require_valid(problem, grid);
+  CacheKey key = elasticity.key("pressure", grid);
+  key.add({problem.gap.data(), static_cast<std::size_t>(problem.gap.size())}).add(problem.total_pressure);
+  key.add(options.tolerance).add(options.max_applications);
+  const Cached<NormalSolution> solution(
+      elasticity.usable_cache(), std::move(key),
+      [&] {
+        return std::make_unique<NormalSolution>(find_normal_contact(elasticity, grid, problem, options));
+      },
+      [](const NormalSolution& found) {
+        return static_cast<double>(sizeof found) +
+               sizeof(double) * static_cast<double>(found.pressure.size());
+      });
+  return *solution;
 }
 
 }  // namespace slipstick::solver

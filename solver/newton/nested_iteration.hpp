@@ -77,11 +77,11 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
     multipliers = below.newton.multipliers;
   }
 
-  GridOperators<Real> operators(elasticity, grid, problem.kernel());
+  const auto operators = elasticity.make_all<Real>(grid, problem.kernel());
   const auto admissible = problem.admissible();
-  const ConvexProgram program = problem.program(*operators.op);
+  const ConvexProgram program = problem.program(*operators->op);
   NaturalMapNewton<std::remove_const_t<decltype(admissible)>, Real> newton(
-      admissible, program, *operators.op, operators.inner(), *operators.symbol);
+      admissible, program, *operators->op, operators->inner(), *operators->symbol);
   NewtonOptions on_grid = options;
   on_grid.least_iterations = guessed ? 1 : 0;
   result.newton = newton.run(result.field, multipliers, on_grid);
@@ -90,7 +90,7 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
   result.slip = newton.slip();
   result.grids.push_back(
       {grid.n1, grid.n2, newton.applications(), result.newton.iterations, result.newton.gap});
-  result.bytes = operators.bytes() + newton.bytes(static_cast<double>(grid.cells()), program.conditions());
+  result.bytes = operators->bytes() + newton.bytes(static_cast<double>(grid.cells()), program.conditions());
   return result;
 }
 

@@ -24,21 +24,63 @@ std::unique_ptr<InverseSymbol<Real>> symbol_of(const Elasticity& elasticity, con
                                    elasticity.measure_plans, elasticity.threads);
 }
 
+std::unique_ptr<LinearOperator> new_operator(const Elasticity& elasticity, const Grid& grid,
+                                             const BlockKernel& kernel) {
+  auto op = make_operator(elasticity.kind, grid, kernel, elasticity.pair, options_of(elasticity, kernel));
+  return elasticity.rounding_seed == 0 ? std::move(op)
+                                       : rounded_at_random(std::move(op), kernel, elasticity.rounding_seed);
+}
+
+CacheKey with_kernel(CacheKey key, const BlockKernel& kernel) {
+  key.add(kernel.outputs).add(kernel.inputs);
+  for (const Component component : kernel.components) key.add(component);
+  return key;
+}
+
 }  // namespace
 
-std::unique_ptr<LinearOperator> Elasticity::make(const Grid& grid, const BlockKernel& kernel) const {
-  auto op = make_operator(kind, grid, kernel, pair, options_of(*this, kernel));
-  return rounding_seed == 0 ? std::move(op) : rounded_at_random(std::move(op), kernel, rounding_seed);
+std::shared_ptr<SolveCache> Elasticity::usable_cache() const {
+  return measure_plans || rounding_seed != 0 ? nullptr : cache;
 }
+
+CacheKey Elasticity::key(const char* what, const Grid& grid) const {
+  CacheKey all(what);
+  all.add(pair.shear_compliance).add(pair.poisson_compliance).add(pair.normal_compliance).add(pair.mismatch);
+  all.add(kind).add(threads).add(precision).add(diagonal);
+  return all.add(grid.n1).add(grid.n2).add(grid.h1).add(grid.h2).add(grid.quadrant);
+}
+
+Cached<LinearOperator> Elasticity::make(const Grid& grid, const BlockKernel& kernel) const {
+  Cached<LinearOperator> op(
+      usable_cache(), with_kernel(key("operator", grid), kernel),
+      [&] { return new_operator(*this, grid, kernel); },
+      [](const LinearOperator& made) { return static_cast<double>(made.bytes()); });
+  op->restart_count();
+  return op;
+}
+
+template <typename Real>
+Cached<GridOperators<Real>> Elasticity::make_all(const Grid& grid, const BlockKernel& kernel) const {
+  Cached<GridOperators<Real>> operators(
+      usable_cache(), with_kernel(key("grid operators", grid), kernel),
+      [&] { return std::make_unique<GridOperators<Real>>(*this, grid, kernel); },
+      [](const GridOperators<Real>& made) { return made.bytes(); });
+  operators->op->restart_count();
+  operators->inner().restart_count();
+  return operators;
+}
+
+template Cached<GridOperators<double>> Elasticity::make_all(const Grid&, const BlockKernel&) const;
+template Cached<GridOperators<float>> Elasticity::make_all(const Grid&, const BlockKernel&) const;
 
 template <>
 GridOperators<double>::GridOperators(const Elasticity& elasticity, const Grid& grid,
                                      const BlockKernel& kernel)
-    : op(elasticity.make(grid, kernel)), symbol(symbol_of<double>(elasticity, grid, kernel)) {}
+    : op(new_operator(elasticity, grid, kernel)), symbol(symbol_of<double>(elasticity, grid, kernel)) {}
 
 template <>
 GridOperators<float>::GridOperators(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel)
-    : op(elasticity.make(grid, kernel)),
+    : op(new_operator(elasticity, grid, kernel)),
       single(make_single_operator(grid, kernel, elasticity.pair, options_of(elasticity, kernel))),
       symbol(symbol_of<float>(elasticity, grid, kernel)) {}
 

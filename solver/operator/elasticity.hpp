@@ -4,10 +4,14 @@
 #include <memory>
 #include <vector>
 
+#include "solver/cache/solve_cache.hpp"
 #include "solver/operator/inverse_symbol.hpp"
 #include "solver/operator/linear_operator.hpp"
 
 namespace slipstick::solver {
+
+template <typename Real>
+struct GridOperators;
 
 /// How displacements follow from tractions on whatever grid a method asks for: the elastic pair and the way
 /// to evaluate its operators.
@@ -16,11 +20,20 @@ struct Elasticity {
   OperatorKind kind = OperatorKind::dcfft;
   int threads = 1;
   Precision precision = Precision::double_precision;
-  bool diagonal = false;            ///< see OperatorOptions; of the tangential operator
-  bool measure_plans = false;       ///< see OperatorOptions; of the preconditioner too
-  std::uint64_t rounding_seed = 0;  ///< 0: rounded to nearest; else at random, in double precision
+  bool diagonal = false;                   ///< see OperatorOptions; of the tangential operator
+  bool measure_plans = false;              ///< see OperatorOptions; of the preconditioner too
+  std::uint64_t rounding_seed = 0;         ///< 0: rounded to nearest; else at random, in double precision
+  std::shared_ptr<SolveCache> cache = {};  ///< for operators that are needed again; empty: none
 
-  std::unique_ptr<LinearOperator> make(const Grid& grid, const BlockKernel& kernel) const;
+  /// The cache, for what is the same whenever it is made: not so with measured plans and random rounding.
+  std::shared_ptr<SolveCache> usable_cache() const;
+  /// A key of these displacements on a grid.
+  CacheKey key(const char* what, const Grid& grid) const;
+
+  /// An operator that has not been applied yet.
+  Cached<LinearOperator> make(const Grid& grid, const BlockKernel& kernel) const;
+  template <typename Real>
+  Cached<GridOperators<Real>> make_all(const Grid& grid, const BlockKernel& kernel) const;
 };
 
 /// One grid's operators: in double precision for residuals, in Real for inner iterations (the same object

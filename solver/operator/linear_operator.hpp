@@ -61,6 +61,7 @@ class Operator {
   std::size_t outputs() const { return kernel_.outputs; }
   /// Applications so far.
   long applications() const { return applications_; }
+  void restart_count() { applications_ = 0; }
   /// Memory held for coefficients and workspace.
   virtual std::size_t bytes() const = 0;
 

@@ -1,0 +1,51 @@
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cstdlib>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "solver/fft/fftw.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+/// FFTW's own description.
+std::string text(fftw_plan plan) {
+  const FftwPlan<double> owned(plan);
+  return std::unique_ptr<char, decltype(&std::free)>(fftw_sprint_plan(owned.get()), std::free).get();
+}
+
+/// The plans of an operator and of its preconditioner for lines of a length.
+std::vector<std::string> plans(int n) {
+  FftwBuffer<double> buffer(static_cast<std::size_t>(40 * n + 4 * (n + 16) * (n + 16)));
+  auto* const in = buffer.complex();
+  auto* const out = in + 10 * n;
+  const FftwPlane plane{{n, n}, {n, n + 2}, {n, n / 2 + 1}};
+  const std::array along{fftw_iodim{n + 1, n + 1, n + 1}, fftw_iodim{n + 1, 1, 1}};
+  const std::array even{FFTW_REDFT00, FFTW_REDFT00};
+  return {text(Fftw<double>::plan(n, in, out, FFTW_FORWARD, FFTW_ESTIMATE)),
+          text(Fftw<double>::plan_lines({n, 4, 1, n, 4, 1}, in, out, FFTW_FORWARD, FFTW_ESTIMATE)),
+          text(Fftw<double>::plan_lines({n, 4, 4, 1, 1, n}, in, out, FFTW_BACKWARD, FFTW_ESTIMATE)),
+          text(Fftw<double>::plan_plane_forward(plane, buffer.data(), in, FFTW_ESTIMATE)),
+          text(Fftw<double>::plan_plane_backward(plane, in, buffer.data(), FFTW_ESTIMATE)),
+          text(fftw_plan_guru_r2r(2, along.data(), 0, nullptr, buffer.data(), buffer.data(), even.data(),
+                                  FFTW_ESTIMATE))};
+}
+
+/// That a process which has planned much gets the same bits as a new one rests on this: an estimated plan
+/// does not depend on what was planned before.
+TEST(EstimatedPlans, DoNotDependOnThoseBefore) {
+  constexpr std::array lengths{8, 12, 20, 36, 54, 64, 70, 128, 162};
+  std::vector<std::vector<std::string>> alone;
+  for (const int n : lengths) {
+    fftw_forget_wisdom();
+    alone.push_back(plans(n));
+  }
+  for (std::size_t i = lengths.size(); i-- > 0;) EXPECT_EQ(plans(lengths[i]), alone[i]) << lengths[i];
+  for (std::size_t i = 0; i < lengths.size(); ++i) EXPECT_EQ(plans(lengths[i]), alone[i]) << lengths[i];
+}
+
+}  // namespace
+}  // namespace slipstick::solver
