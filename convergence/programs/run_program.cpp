@@ -3,6 +3,7 @@
 #include <fcntl.h>
 #include <fmt/core.h>
 #include <spawn.h>
+#include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -61,12 +62,19 @@ Program::Program(const std::vector<std::string>& words, const ProgramOptions& op
   for (std::string& word : all) arguments.push_back(word.data());
   arguments.push_back(nullptr);
   std::array<int, 2> ends{-1, -1};
-  if (options.captured != Captured::nothing && pipe2(ends.data(), O_CLOEXEC) != 0) {
-    throw std::runtime_error(fmt::format("no pipe: {}", std::strerror(errno)));
-  }
+  std::array<int, 2> feed{-1, -1};
+  const bool pipes = options.captured == Captured::nothing || pipe2(ends.data(), O_CLOEXEC) == 0;
   output_ = ends[0];
+  // A socket, since writing to one whose reader has ended need not end this process.
+  if (!pipes || (options.fed && socketpair(AF_UNIX, SOCK_STREAM | SOCK_CLOEXEC, 0, feed.data()) != 0)) {
+    const std::string why = std::strerror(errno);
+    for (int& end : ends) close_descriptor(end);
+    throw std::runtime_error(fmt::format("no pipe: {}", why));
+  }
+  input_ = feed[0];
   posix_spawn_file_actions_t actions;
   posix_spawn_file_actions_init(&actions);
+  if (input_ >= 0) posix_spawn_file_actions_adddup2(&actions, feed[1], STDIN_FILENO);
   if (output_ >= 0) {
     posix_spawn_file_actions_adddup2(&actions, ends[1], STDOUT_FILENO);
     if (options.captured == Captured::everything) {
@@ -75,7 +83,8 @@ Program::Program(const std::vector<std::string>& words, const ProgramOptions& op
   }
   const int error = posix_spawnp(&process_, arguments[0], &actions, nullptr, arguments.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (ends[1] >= 0) close(ends[1]);
+  close_descriptor(ends[1]);
+  close_descriptor(feed[1]);
   if (error == 0) return;
   process_ = -1;
   end_ = not_started(error);
@@ -83,13 +92,22 @@ Program::Program(const std::vector<std::string>& words, const ProgramOptions& op
 
 Program::~Program() {
   if (process_ > 0) kill(process_, SIGKILL);
-  close_output();
+  close_descriptor(output_);
   wait();
 }
 
-void Program::close_output() {
-  if (output_ >= 0) close(output_);
-  output_ = -1;
+void Program::close_descriptor(int& descriptor) {
+  if (descriptor >= 0) close(descriptor);
+  descriptor = -1;
+}
+
+void Program::feed(std::string_view text) {
+  while (!text.empty()) {
+    const ssize_t size = send(input_, text.data(), text.size(), MSG_NOSIGNAL);
+    if (size < 0 && errno == EINTR) continue;
+    if (size < 0) return;
+    text.remove_prefix(static_cast<std::size_t>(size));
+  }
 }
 
 bool Program::read_on() {
@@ -98,11 +116,12 @@ bool Program::read_on() {
   const ssize_t size = read(output_, buffer.data(), buffer.size());
   if (size < 0 && errno == EINTR) return false;
   if (size > 0) end_.output.append(buffer.data(), static_cast<std::size_t>(size));
-  if (size <= 0) close_output();
+  if (size <= 0) close_descriptor(output_);
   return size <= 0;
 }
 
 ProgramEnd Program::wait() {
+  end_feed();
   while (!read_on()) {
   }
   if (process_ <= 0) return end_;

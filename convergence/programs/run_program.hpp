@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 /// The one way in which other programs are started: by posix_spawn(), without a shell.
@@ -18,6 +19,7 @@ enum class Captured { nothing, output, everything };
 
 struct ProgramOptions {
   Captured captured = Captured::nothing;
+  bool fed = false;  ///< its standard input is what feed() gives; else this program's own
   /// The slipstick program, through which another is started that must not outlive this process, however that
   /// ends: on Linux the kernel kills it then. Elsewhere, or where this is empty, it is only of this process's
   /// group, so that what reaches the group ends it too.
@@ -48,13 +50,22 @@ class Program {
   /// Waits for more captured output. Returns whether that was all.
   bool read_on();
 
+  /// What was captured so far.
+  const std::string& captured() const { return end_.output; }
+  void forget_captured() { end_.output.clear(); }
+
+  /// Writes to its standard input; in vain where it has ended. Then no more will come.
+  void feed(std::string_view text);
+  void end_feed() { close_descriptor(input_); }
+
   /// Waits for its end.
   ProgramEnd wait();
 
  private:
-  void close_output();
+  static void close_descriptor(int& descriptor);
 
   pid_t process_ = -1;
+  int input_ = -1;
   int output_ = -1;
   ProgramEnd end_;
 };

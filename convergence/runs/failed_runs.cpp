@@ -9,6 +9,10 @@
 
 namespace slipstick::convergence {
 
+Json not_computed(const std::string& status, const std::string& message, const RunSpec& spec) {
+  return {{"status", status}, {"message", message}, {"run", run_text(spec)}};
+}
+
 bool is_failed(const Json& result) {
   const std::string status = result.value("status", "");
   return status == "failed" || status == "refused";

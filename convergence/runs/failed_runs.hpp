@@ -5,8 +5,12 @@
 #include <string>
 
 #include "convergence/results/result_parts.hpp"
+#include "convergence/runs/run_spec.hpp"
 
 namespace slipstick::convergence {
+
+/// What stands for the result of a run that has none; see ProcessPool::run().
+Json not_computed(const std::string& status, const std::string& message, const RunSpec& spec);
 
 /// Whether a run has no result: its process died, or what it was asked for cannot be had.
 bool is_failed(const Json& result);

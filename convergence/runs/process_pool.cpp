@@ -10,7 +10,6 @@
 #include <iostream>
 #include <list>
 #include <map>
-#include <new>
 #include <numeric>
 #include <optional>
 #include <stdexcept>
@@ -18,10 +17,10 @@
 #include <thread>
 #include <utility>
 
-#include "convergence/results/result.hpp"
+#include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/progress.hpp"
 #include "convergence/runs/result_cache.hpp"
-#include "convergence/runs/solve_scene.hpp"
+#include "convergence/runs/worker.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/whole_file.hpp"
 #include "solver/memory.hpp"
@@ -36,8 +35,6 @@ namespace fs = std::filesystem;
 constexpr double kMemoryPart = 0.7;
 /// An interrupt that comes just before the waiting begins is seen after it.
 constexpr int kLongestWait = 1000;  // ms
-/// The exit code of a process whose result, or the fields beside it, could not be written.
-constexpr int kNotKept = 3;
 
 /// A run that is not on disk yet.
 struct Task {
@@ -45,15 +42,6 @@ struct Task {
   std::string label;  ///< for a person
   double bytes = 0.0;
   std::string refusal = {};  ///< why it is not even started; empty: it is
-};
-
-/// A task's process.
-struct Worker {
-  Worker(const Task& of, const std::vector<std::string>& words, const fs::path& tied_by)
-      : program(words, {.captured = Captured::everything, .tied_by = tied_by}), task(&of) {}
-
-  Program program;
-  const Task* task;
 };
 
 Task make_task(const PreparedRun& run, std::optional<double> memory_limit) {
@@ -75,10 +63,6 @@ std::optional<Json> find(const ResultCache& cache, const PreparedRun& run) {
   return cache.find(run.name, run.cache_key, run.spec.fields);
 }
 
-Json not_computed(const char* status, const std::string& message, const RunSpec& spec) {
-  return {{"status", status}, {"message", message}, {"run", run_text(spec)}};
-}
-
 /// What a process that failed says, or how it ended; empty where nothing speaks against its result.
 std::string failure_of(const ProgramEnd& end) {
   constexpr std::string_view kName = "slipstick: ";
@@ -88,7 +72,11 @@ std::string failure_of(const ProgramEnd& end) {
   return end.code == 0 ? "" : "its process " + end.trouble;
 }
 
-/// The processes of some tasks, largest first.
+/// A run that needs more has a worker to itself, so that it begins with all the memory that it may take and
+/// gives all of it back; what starting a process takes is little beside it.
+constexpr double kMostOfMany = 128.0 * 0x1p20;
+
+/// The work on some tasks, largest first.
 class Batch {
  public:
   Batch(std::vector<Task> tasks, const ResultCache& cache, const ProcessPoolOptions& options)
@@ -97,26 +85,29 @@ class Batch {
         tasks_(std::move(tasks)),
         jobs_(options.jobs > 0 ? static_cast<std::size_t>(options.jobs)
                                : std::max(1U, std::thread::hardware_concurrency())) {
-    std::ranges::stable_sort(tasks_, std::greater<>(), &Task::bytes);
+    std::ranges::stable_sort(tasks_, {}, [](const Task& task) {
+      // Solves that are rounded alike share what they make.
+      return std::pair(-task.bytes, static_cast<int>(task.run->spec.rounding));
+    });
   }
 
-  /// The results, by their names. Each is read when its process ends: another program may share the folder.
+  /// The results, by their names. Each is read when its run is finished: another program may share the
+  /// folder.
   std::map<std::string, Json> work() {
     Progress progress(tasks_.size(),
                       std::accumulate(tasks_.begin(), tasks_.end(), 0.0,
                                       [](double sum, const Task& task) { return sum + task.bytes; }));
     std::map<std::string, Json> results;
-    while (next_ < tasks_.size() || !running_.empty()) {
+    while (next_ < tasks_.size() || busy_ > 0) {
       while (may_start()) start_next();
-      for (Worker& worker : take_ended()) {
-        const Task& task = *worker.task;
-        const ProgramEnd end = worker.program.wait();
-        if (end.code == kNotKept) stop(progress, failure_of(end));
-        progress.finished(task.label, task.bytes);
-        results[task.run->name] = result_of(*task.run, failure_of(end));
+      for (const auto& [task, failure] : take_finished(progress)) {
+        progress.finished(task->label, task->bytes);
+        results[task->run->name] = result_of(*task->run, failure);
       }
       if (options_.interrupted && options_.interrupted()) stop(progress, "interrupted");
     }
+    for (Hand& hand : hands_) hand.worker.let_end();
+    for (Hand& hand : hands_) hand.worker.wait();
     return results;
   }
 
@@ -134,44 +125,60 @@ class Batch {
     return not_computed("failed", failure, run.spec);
   }
 
+  /// A worker and what it does; null: it waits.
+  struct Hand {
+    Hand(const ProcessPoolOptions& options, std::optional<double> memory_limit)
+        : worker(options.program, options.folder, memory_limit) {}
+    Worker worker;
+    const Task* task = nullptr;
+  };
+  struct Finished {
+    const Task* task;
+    std::string failure;  ///< empty: none
+  };
+
   bool may_start() const {
     if (next_ == tasks_.size()) return false;
-    return running_.empty() || (running_.size() < jobs_ && bytes_ + tasks_[next_].bytes < shared_);
+    return busy_ == 0 || (busy_ < jobs_ && bytes_ + tasks_[next_].bytes < shared_);
   }
 
   void start_next() {
-    const Task& task = tasks_[next_++];
-    const RunSpec& spec = task.run->spec;
-    std::vector<std::string> words{options_.program, "solve", "--keep", options_.folder};
-    if (spec.rounding != Rounding::nearest) {
-      words.insert(words.end(), {"--rounding", spec.rounding == Rounding::upward ? "upward" : "downward"});
-    }
-    if (spec.variant != Variant::none) words.insert(words.end(), {"--variant", to_string(spec.variant)});
-    if (!spec.fields.empty()) words.insert(words.end(), {"--fields", spec.fields});
-    if (spec.profile) words.emplace_back("--profile");
-    if (spec.step_before) words.emplace_back("--step-before");
     // What is left now is less by what the others take.
-    if (std::isfinite(memory_)) words.insert(words.end(), {"--memory-limit", fmt::format("{:.0f}", memory_)});
-    for (const std::string& assignment : spec.overrides) words.insert(words.end(), {"--set", assignment});
-    words.insert(words.end(), {"--", spec.scene});
-    running_.emplace_back(task, words, options_.program);
-    bytes_ += task.bytes;
+    const auto limit = std::isfinite(memory_) ? std::optional(memory_) : std::nullopt;
+    auto hand = std::ranges::find(hands_, nullptr, &Hand::task);
+    if (hand == hands_.end()) hand = hands_.emplace(hand, options_, limit);
+    hand->task = &tasks_[next_++];
+    hand->worker.start(hand->task->run->spec);
+    bytes_ += hand->task->bytes;
+    ++busy_;
   }
 
-  /// Waits for workers to end, or for an interrupt.
-  std::list<Worker> take_ended() {
+  /// Waits for runs to be finished, or for an interrupt.
+  std::vector<Finished> take_finished(const Progress& progress) {
     std::vector<pollfd> outputs;
-    for (const Worker& worker : running_) outputs.push_back({worker.program.output(), POLLIN, 0});
-    std::list<Worker> ended;
-    if (poll(outputs.data(), outputs.size(), kLongestWait) <= 0) return ended;
-    auto worker = running_.begin();
+    for (const Hand& hand : hands_) outputs.push_back({hand.worker.output(), POLLIN, 0});
+    std::vector<Finished> finished;
+    if (poll(outputs.data(), outputs.size(), kLongestWait) <= 0) return finished;
+    auto next = hands_.begin();
     for (const pollfd& output : outputs) {
-      const auto here = worker++;
-      if (output.revents == 0 || !here->program.read_on()) continue;
-      bytes_ -= here->task->bytes;
-      ended.splice(ended.end(), running_, here);
+      const auto hand = next++;
+      if (output.revents == 0) continue;
+      const Worker::Said said = hand->worker.next();
+      if (said == Worker::Said::more) continue;
+      const Task* const task = std::exchange(hand->task, nullptr);
+      std::string failure;
+      if (said == Worker::Said::ended || task == nullptr || task->bytes > kMostOfMany) {
+        const ProgramEnd end = hand->worker.wait();
+        failure = failure_of(end);
+        hands_.erase(hand);
+        if (end.code == kNotKept) stop(progress, failure);
+      }
+      if (task == nullptr) continue;  // it ended while it waited: nothing is lost
+      bytes_ -= task->bytes;
+      --busy_;
+      finished.push_back({task, std::move(failure)});
     }
-    return ended;
+    return finished;
   }
 
   const ProcessPoolOptions& options_;
@@ -179,37 +186,13 @@ class Batch {
   std::vector<Task> tasks_;
   std::size_t jobs_;
   std::size_t next_ = 0;
-  std::list<Worker> running_;
-  double bytes_ = 0.0;
-  /// One process may take all of the first, several together the second.
+  std::list<Hand> hands_;
+  std::size_t busy_ = 0;
+  double bytes_ = 0.0;  ///< of what runs
+  /// One run may take all of the first, several together the second.
   double memory_ = solver::memory_within(options_.memory_limit);
   double shared_ = options_.memory_limit ? memory_ : kMemoryPart * memory_;
 };
-
-/// Solves the scene and writes its fields; or why it cannot be solved.
-Json solve(const PreparedRun& run) {
-  const RunSpec& spec = run.spec;
-  SolvedScene solved;
-  std::optional<solver::Solution> latest;
-  std::optional<solver::Solution> before;
-  const auto on_step = [&](const solver::Solution& at, const OracleAnswer&) {
-    if (!spec.step_before) return;
-    before = std::exchange(latest, at);
-  };
-  try {
-    solved = solve_scene(run.scene, {.on_step = on_step, .rounding = spec.rounding});
-  } catch (const solver::OutOfMemory&) {
-    throw;
-  } catch (const solver::InputError& error) {
-    return not_computed("refused", error.what(), spec);
-  } catch (const std::bad_alloc&) {
-    throw std::runtime_error("memory ran out");
-  }
-  if (!spec.fields.empty()) write_solution_fields(spec.fields, solved.solution, solved.exact);
-  if (!spec.fields.empty() && before) write_solution_fields(step_before_file(spec.fields), *before, {});
-  if (spec.profile) solved.result["profile"] = profile_json(solved.solution, solved.exact);
-  return std::move(solved.result);
-}
 
 }  // namespace
 
@@ -250,20 +233,5 @@ std::vector<Json> ProcessPool::run(const std::vector<RunSpec>& specs) const {
 }
 
 Json ProcessPool::run(const RunSpec& spec) const { return run(std::vector{spec}).front(); }
-
-int solve_and_keep(const RunSpec& spec, const fs::path& folder, std::optional<double> memory_limit) {
-  PreparedRun run = prepare_run(spec);
-  run.scene.memory_limit = memory_limit;
-  try {
-    const ResultCache cache(folder);
-    cache.keep(run.name, run.cache_key, solve(run), spec.fields);
-    return 0;
-  } catch (const solver::OutOfMemory&) {
-    throw;
-  } catch (const solver::InputError& error) {  // of the scene it is part of the result
-    std::cerr << fmt::format("slipstick: {}\n", error.what());
-    return kNotKept;
-  }
-}
 
 }  // namespace slipstick::convergence

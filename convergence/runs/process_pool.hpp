@@ -50,10 +50,4 @@ class ProcessPool {
   ProcessPoolOptions options_;
 };
 
-/// Solves the scene of a run and keeps its result in a folder; what the processes of a pool do. Returns their
-/// exit code: not 0 where a file cannot be written, and standard error says so. Throws std::runtime_error if
-/// memory runs out, OutOfMemory where a solve would take more than `memory_limit`.
-int solve_and_keep(const RunSpec& spec, const std::filesystem::path& folder,
-                   std::optional<double> memory_limit = {});
-
 }  // namespace slipstick::convergence

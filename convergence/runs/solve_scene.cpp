@@ -39,7 +39,8 @@ SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& opt
   };
   try {
     const RoundingScope scope(options.rounding);
-    solved.solution = solver::solve(scene, {.progress = options.progress, .on_step = on_step});
+    solved.solution =
+        solver::solve(scene, {.progress = options.progress, .on_step = on_step, .cache = options.cache});
   } catch (const solver::InputError& error) {
     if (!steps.empty() && options.incomplete != nullptr) {
       *options.incomplete = {{"name", scene.name}, {"status", "not_converged"}, {"message", error.what()}};

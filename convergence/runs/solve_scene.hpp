@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 
 #include "convergence/oracle/oracle.hpp"
@@ -27,6 +28,8 @@ struct SolveSceneOptions {
   Rounding rounding = Rounding::nearest;
   /// Gets the result of a history that an InputError ends after its first step; it is thrown all the same.
   Json* incomplete = nullptr;
+  /// See solver::SolveOptions.
+  std::shared_ptr<solver::SolveCache> cache = {};
 };
 
 /// The one way in which a scene is solved on its grid and compared with its exact answer, by whichever

@@ -23,8 +23,9 @@
 #include "convergence/results/output.hpp"
 #include "convergence/results/result.hpp"
 #include "convergence/runs/memory_option.hpp"
-#include "convergence/runs/process_pool.hpp"
+#include "convergence/runs/run_spec.hpp"
 #include "convergence/runs/solve_scene.hpp"
+#include "convergence/runs/worker.hpp"
 #include "convergence/solve/accurate_solve.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
@@ -44,12 +45,7 @@ struct SolveRequest {
   std::string accuracy_of = "twist";
   bool plan = false;
   MemoryOption memory;
-  // Of the processes of a pool alone.
-  std::string keep;
-  std::string rounding;
-  std::string variant = "none";
-  bool profile = false;
-  bool step_before = false;
+  std::string keep;  ///< of the workers of a pool alone
 };
 
 /// One line on a terminal, rewritten; nothing elsewhere.
@@ -171,18 +167,6 @@ int solve_accurately(solver::Scene scene, const SolveRequest& request, std::ostr
   return answer.reached ? 0 : 1;
 }
 
-RunSpec spec_of(const SolveRequest& request) {
-  RunSpec spec{.scene = request.scene,
-               .overrides = request.overrides,
-               .fields = request.fields,
-               .step_before = request.step_before,
-               .profile = request.profile};
-  if (request.rounding == "upward") spec.rounding = Rounding::upward;
-  if (request.rounding == "downward") spec.rounding = Rounding::downward;
-  spec.variant = variant_of(request.variant);
-  return spec;
-}
-
 /// No file of the scene is overwritten, by fields of a step either.
 void require_scene_kept(const CLI::App& command, const SolveRequest& request, const solver::Scene& scene) {
   const std::vector<std::filesystem::path> inputs = input_files(scene);
@@ -195,9 +179,7 @@ void require_scene_kept(const CLI::App& command, const SolveRequest& request, co
 }
 
 int run_solve(const CLI::App& command, const SolveRequest& request, std::ostream& text, Json& result) {
-  if (!request.keep.empty()) {
-    return solve_and_keep(spec_of(request), request.keep, request.memory.limit());
-  }
+  if (!request.keep.empty()) return serve_runs(request.keep, request.memory.limit());
   if (!request.fields.empty()) solver::require_field_format(request.fields);
   if (!request.figure.empty()) require_figure_format(request.figure);
   const solver::Scene scene = read_scene(request);
@@ -248,11 +230,7 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_solve_command(CLI
                       "draw slip and stick, tractions and pressure: .svg, .pdf or .png");
   request->memory.add_to(*command);
   constexpr const char* kHidden = "";
-  command->add_option("--keep", request->keep, "folder that keeps the result")->group(kHidden);
-  command->add_option("--rounding", request->rounding, "upward | downward")->group(kHidden);
-  command->add_option("--variant", request->variant, "how the contact is seen")->group(kHidden);
-  command->add_flag("--profile", request->profile, "tractions along two radii")->group(kHidden);
-  command->add_flag("--step-before", request->step_before, "fields of the step before the last too")
+  command->add_option("--keep", request->keep, "folder that keeps the results of runs from standard input")
       ->group(kHidden);
   command->footer(
       "Example:\n  slipstick solve convergence/scenes/paper.toml --set load.moment_ratio=0.5 --json "

@@ -11,6 +11,7 @@
 #include <thread>
 
 #include "convergence/runs/result_cache.hpp"
+#include "convergence/runs/worker.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -107,6 +108,36 @@ TEST_F(ProcessPoolTest, GivesWhatSolveGives) {
   }
 }
 
+/// A worker solves many runs: what came before leaves no trace in a result.
+TEST_F(ProcessPoolTest, ARunDoesNotDependOnThoseBeforeIt) {
+  const auto without_times = [](Json result) {
+    for (const char* key : {"seconds", "provenance", "peak_bytes"}) result.erase(key);
+    return result;
+  };
+  const fs::path planned = folder_ / "planned.toml";
+  fs::copy_file(kPaper, planned);
+  const std::vector<RunSpec> specs{
+      {.scene = kPaper, .overrides = {kCells}},
+      {.scene = kPaper, .overrides = {kCells}, .rounding = Rounding::upward},
+      {.scene = kPaper, .overrides = {kCells, "load.moment_ratio=0.3"}},
+      {.scene = kPaper, .overrides = {kCells, "grid.extent=[1e-4,1e-4]"}},  // refused
+      {.scene = planned, .overrides = {kCells, "solver.wisdom='wisdom'"}},
+      {.scene = kPaper, .overrides = {kCells, "load.moment_ratio=0.3"}, .variant = Variant::mirrored},
+      {.scene = kPaper, .overrides = {kCells, "solver.precision='mixed'"}},
+      {.scene = history(5000)},
+      {.scene = kPaper, .overrides = {kCells, "load.moment_ratio=0.9"}, .rounding = Rounding::downward},
+      {.scene = kPaper, .overrides = {kCells, "load.moment_ratio=0.4"}}};
+  ProcessPoolOptions together = options();
+  together.jobs = 1;
+  const std::vector<Json> results = ProcessPool(together).run(specs);
+  for (std::size_t i = 0; i < specs.size(); ++i) {
+    if (i == 4) continue;  // measured plans have bits of their own
+    ProcessPoolOptions apart = options();
+    apart.folder = folder_ / "apart" / std::to_string(i);
+    EXPECT_EQ(without_times(results[i]), without_times(ProcessPool(apart).run(specs[i]))) << i;
+  }
+}
+
 TEST_F(ProcessPoolTest, ARefusedRunHasNoFieldsAndSaysWhy) {
   const RunSpec spec{
       .scene = kPaper, .overrides = {kCells, "grid.extent=[1e-4,1e-4]"}, .fields = folder_ / "none.csv"};
@@ -169,8 +200,8 @@ TEST_F(ProcessPoolTest, AFinishedResultStaysWhileAnotherProgramComputesIt) {
   const ResultCache cache(folder_ / "points", SLIPSTICK_PROGRAM);
   cache.keep(run.name, run.cache_key, {{"status", "converged"}});
   {
-    const Program other({SLIPSTICK_PROGRAM, "solve", "--keep", folder_ / "points", "--set", slow.overrides[0],
-                         "--set", slow.overrides[1], "--", slow.scene});
+    Worker other(SLIPSTICK_PROGRAM, folder_ / "points", {});
+    other.start(slow);
     std::this_thread::sleep_for(std::chrono::milliseconds(300));
   }
   EXPECT_TRUE(cache.find(run.name, run.cache_key).has_value());
