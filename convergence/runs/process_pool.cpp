@@ -76,6 +76,10 @@ std::string failure_of(const ProgramEnd& end) {
 /// gives all of it back; what starting a process takes is little beside it.
 constexpr double kMostOfMany = 128.0 * 0x1p20;
 
+/// Whether a run needs a worker to itself. What FFTW plans while numbers are rounded at random is no other
+/// run's.
+bool is_alone(const Task& task) { return task.bytes > kMostOfMany || task.run->scene.rounding_seed != 0; }
+
 /// The work on some tasks, largest first.
 class Batch {
  public:
@@ -86,7 +90,7 @@ class Batch {
         jobs_(options.jobs > 0 ? static_cast<std::size_t>(options.jobs)
                                : std::max(1U, std::thread::hardware_concurrency())) {
     std::ranges::stable_sort(tasks_, {}, [](const Task& task) {
-      // Solves that are rounded alike share what they make.
+      // One worker takes runs that are rounded alike.
       return std::pair(-task.bytes, static_cast<int>(task.run->spec.rounding));
     });
   }
@@ -106,8 +110,7 @@ class Batch {
       }
       if (options_.interrupted && options_.interrupted()) stop(progress, "interrupted");
     }
-    for (Hand& hand : hands_) hand.worker.let_end();
-    for (Hand& hand : hands_) hand.worker.wait();
+    end_waiting();
     return results;
   }
 
@@ -127,10 +130,13 @@ class Batch {
 
   /// A worker and what it does; null: it waits.
   struct Hand {
-    Hand(const ProcessPoolOptions& options, std::optional<double> memory_limit)
-        : worker(options.program, options.folder, memory_limit) {}
+    Hand(const ProcessPoolOptions& options, std::optional<double> memory_limit, const Task* first)
+        : worker(options.program, options.folder, memory_limit),
+          task(first),
+          rounding(first->run->spec.rounding) {}
     Worker worker;
-    const Task* task = nullptr;
+    const Task* task;
+    Rounding rounding;  ///< of all its runs: FFTW remembers plans, which it chose by rounded costs
   };
   struct Finished {
     const Task* task;
@@ -145,12 +151,25 @@ class Batch {
   void start_next() {
     // What is left now is less by what the others take.
     const auto limit = std::isfinite(memory_) ? std::optional(memory_) : std::nullopt;
-    auto hand = std::ranges::find(hands_, nullptr, &Hand::task);
-    if (hand == hands_.end()) hand = hands_.emplace(hand, options_, limit);
-    hand->task = &tasks_[next_++];
-    hand->worker.start(hand->task->run->spec);
-    bytes_ += hand->task->bytes;
+    const Task* const task = &tasks_[next_++];
+    auto hand = std::ranges::find_if(hands_, [&](const Hand& other) {
+      return other.task == nullptr && other.rounding == task->run->spec.rounding && !is_alone(*task);
+    });
+    if (hand == hands_.end()) {
+      end_waiting();
+      hand = hands_.emplace(hands_.end(), options_, limit, task);
+    }
+    hand->task = task;
+    hand->worker.start(task->run->spec);
+    bytes_ += task->bytes;
     ++busy_;
+  }
+
+  void end_waiting() {
+    hands_.remove_if([](Hand& hand) {
+      if (hand.task == nullptr) hand.worker.wait();
+      return hand.task == nullptr;
+    });
   }
 
   /// Waits for runs to be finished, or for an interrupt.
@@ -167,7 +186,7 @@ class Batch {
       if (said == Worker::Said::more) continue;
       const Task* const task = std::exchange(hand->task, nullptr);
       std::string failure;
-      if (said == Worker::Said::ended || task == nullptr || task->bytes > kMostOfMany) {
+      if (said == Worker::Said::ended || task == nullptr || is_alone(*task)) {
         const ProgramEnd end = hand->worker.wait();
         failure = failure_of(end);
         hands_.erase(hand);

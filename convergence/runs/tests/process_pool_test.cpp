@@ -135,7 +135,12 @@ TEST_F(ProcessPoolTest, ARunDoesNotDependOnThoseBeforeIt) {
       {.scene = kPaper, .overrides = {kCells, "solver.precision='mixed'"}},
       {.scene = history(5000)},
       {.scene = kPaper, .overrides = {kCells, "load.moment_ratio=0.9"}, .rounding = Rounding::downward},
-      {.scene = kPaper, .overrides = {kCells, "load.moment_ratio=0.4"}}};
+      {.scene = kPaper, .overrides = {kCells, "load.moment_ratio=0.4"}},
+      {.scene = kPaper, .overrides = {"grid.cells=[96,96]", "load.moment_ratio=0.5"}},
+      {.scene = kPaper,
+       .overrides = {"grid.cells=[96,96]", "load.moment_ratio=0.5"},
+       .rounding = Rounding::downward},
+      {.scene = kPaper, .overrides = {kCells, "solver.rounding_seed=7"}}};
   ProcessPoolOptions together = options();
   together.jobs = 1;
   const std::vector<Json> results = ProcessPool(together).run(specs);
