@@ -102,7 +102,8 @@ NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& gr
   require_valid(problem, grid);
   CacheKey key = elasticity.key("pressure", grid);
   key.add({problem.gap.data(), static_cast<std::size_t>(problem.gap.size())}).add(problem.total_pressure);
-  key.add(options.tolerance).add(options.max_applications);
+  key.add({problem.guess.data(), static_cast<std::size_t>(problem.guess.size())});
+  key.add(options.tolerance).add(options.max_applications).add(options.refine_approach);
   const Cached<NormalSolution> solution(
       elasticity.usable_cache(), std::move(key),
       [&] {

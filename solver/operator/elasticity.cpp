@@ -46,7 +46,7 @@ std::shared_ptr<SolveCache> Elasticity::usable_cache() const {
 CacheKey Elasticity::key(const char* what, const Grid& grid) const {
   CacheKey all(what);
   all.add(pair.shear_compliance).add(pair.poisson_compliance).add(pair.normal_compliance).add(pair.mismatch);
-  all.add(kind).add(threads).add(precision).add(diagonal);
+  all.add(pair.cell_traction).add(kind).add(threads).add(precision).add(diagonal);
   return all.add(grid.n1).add(grid.n2).add(grid.h1).add(grid.h2).add(grid.quadrant);
 }
 
