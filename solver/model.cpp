@@ -226,6 +226,7 @@ Elasticity elasticity(const Scene& scene, const Model& model, const Reduction& p
           .threads = scene.threads,
           .precision = scene.precision,
           .diagonal = part.diagonal(),
+          .at_edge = scene.ends_at_grid_edge,
           .measure_plans = !scene.wisdom.empty(),
           .rounding_seed = static_cast<std::uint64_t>(scene.rounding_seed),
           .cache = model.cache};

@@ -13,11 +13,17 @@ namespace {
 using Eigen::ArrayXd;
 
 /// rho over the mean of the inverse symbol. Smaller is more careful about changing cells' states; between
-/// 0.1 and 0.3 makes no difference, 1 overshoots.
+/// 0.1 and 0.3 makes no difference to tractions, 1 overshoots; many small contact spots want it small.
 constexpr double kRho = 0.2;
+constexpr double kRhoOfPressure = 0.1;
 /// The inner residual falls by this while states change, and by what the tolerance needs once they stand, as
 /// this part of it.
 constexpr double kLooseReduction = 0.1;
+/// Of pressures, whose states change all over a rough surface: more is lost on a state that will not last.
+constexpr double kLooseReductionOfPressure = 0.5;
+/// Times the root of the part of the free cells that have changed: as far as a pressure's state can be
+/// trusted.
+constexpr double kDistrust = 3.0;
 constexpr double kTightReduction = 1e-4;
 constexpr double kPartOfWanted = 0.3;
 constexpr int kInnerIterations = 40;
@@ -27,6 +33,10 @@ constexpr int kPatience = 8;
 /// Of a Newton step, and of a gradient step of length rho, before it is given up.
 constexpr int kMaxHalvings = 6;
 constexpr int kMaxGradientHalvings = 30;
+/// A step ends where its energy is least if that is within these parts of it: closer to its end it is taken
+/// in full, so that cells reach the faces of their sets.
+constexpr double kLeastPart = 1e-3;
+constexpr double kNearlyAll = 0.9;
 /// Energies are compared up to their rounding.
 constexpr double kEnergyRounding = 1e-13;
 
@@ -50,13 +60,14 @@ NaturalMapNewton<Set, Real>::NaturalMapNewton(const Set& set, const ConvexProgra
       inner_(inner),
       symbol_(symbol),
       mean_(symbol.diagonal()),
-      rho_(kRho * 0.5 * (mean_[0] + mean_[1])),
+      rho_((kIsScalar ? kRhoOfPressure : kRho) * 0.5 * (mean_[0] + mean_[1])),
       work_(size()),
       tangents_(program.conditions(), Field(size())),
       constraints_(tangents_),
       r_(size()),
       x_(size()),
       space_(Set::kComponents, set.cells()),
+      extension_(kIsScalar ? op.grid() : Grid{}),
       balance_(set, program.imposed),
       u_(size()),
       y_(ArrayXd::Zero(size())),
@@ -124,7 +135,8 @@ double NaturalMapNewton<Set, Real>::bytes(double cells, std::size_t conditions) 
   const auto fields = static_cast<double>(conditions);
   const double rounded = std::is_same_v<Real, double> ? 0.0 : fields;
   return kDoubleFields * sizeof(double) * values + (kRealFields + fields + rounded) * sizeof(Real) * values +
-         TangentSpace<Real>::bytes(Set::kComponents, cells);
+         TangentSpace<Real>::bytes(Set::kComponents, cells) +
+         (kIsScalar ? Extension<Real>::bytes(cells) : 0.0);
 }
 
 /// A condition's field in the precision of the inner iteration.
@@ -220,6 +232,7 @@ bool NaturalMapNewton<Set, Real>::is_certified(double gap, double tolerance, con
 template <AdmissibleSet Set, typename Real>
 void NaturalMapNewton<Set, Real>::linearise() {
   changed_ = set_.linearise(y_, rho_, mean_, space_);
+  if (kIsScalar) extension_.prepare(space_.a11);
   TangentPreconditioner<Real> map = preconditioner();
   has_tangents_ = constraints_.prepare(map, imposed(), work_.y);
 }
@@ -242,9 +255,15 @@ void NaturalMapNewton<Set, Real>::write_residual(const ArrayXd& q) {
 template <AdmissibleSet Set, typename Real>
 typename NaturalMapNewton<Set, Real>::LinearTarget NaturalMapNewton<Set, Real>::linear_target(
     double wanted, long applications_left) const {
-  return {
-      changed_ == 0 ? std::clamp(kPartOfWanted * wanted, kTightReduction, kLooseReduction) : kLooseReduction,
-      static_cast<int>(std::min<long>(applications_left, kInnerIterations))};
+  const auto iterations = static_cast<int>(std::min<long>(applications_left, kInnerIterations));
+  double reduction = kPartOfWanted * wanted;
+  if constexpr (kIsScalar) {
+    const auto free_cells = static_cast<double>(std::max<Index>(space_.free.count(), 1));
+    reduction = std::max(reduction, kDistrust * std::sqrt(static_cast<double>(changed_) / free_cells));
+    return {std::clamp(reduction, kTightReduction, kLooseReductionOfPressure), iterations};
+  }
+  if (changed_ > 0) reduction = kLooseReduction;
+  return {std::clamp(reduction, kTightReduction, kLooseReduction), iterations};
 }
 
 /// loads: of the solution; empty: none. False where conjugate gradients broke down.
@@ -285,13 +304,39 @@ Coefficients NaturalMapNewton<Set, Real>::jump_loads(const ArrayXd& q) {
   return loads;
 }
 
+/// The part of the way from q to the trial at which the energy is least, wherever that is: it is quadratic,
+/// of slope s.(trial - q), and y = q - rho s.
+template <AdmissibleSet Set, typename Real>
+double NaturalMapNewton<Set, Real>::least_energy_at(const ArrayXd& q) const {
+  const double slope = sum([&](Index first, Index last) {
+    const Index n = last - first;
+    return ((q.segment(first, n) - y_.segment(first, n)) * (trial_.segment(first, n) - q.segment(first, n)))
+        .sum();
+  });
+  const double curvature = sum([&](Index first, Index last) {
+    const Index n = last - first;
+    return ((trial_.segment(first, n) - q.segment(first, n)) *
+            (trial_u_.segment(first, n) - u_.segment(first, n)))
+        .sum();
+  });
+  return -slope / (rho_ * curvature);
+}
+
 /// Whether the energy fell; then q and its displacement are the new ones.
 template <AdmissibleSet Set, typename Real>
 bool NaturalMapNewton<Set, Real>::accept_trial(ArrayXd& q) {
   set_.project(trial_);
   op_.apply(trial_, trial_u_);
   const double before = energy_;
-  const double after = energy(trial_, trial_u_);
+  double after = energy(trial_, trial_u_);
+  const bool lower = after <= before + kEnergyRounding * std::abs(before);
+  if (const double part = kIsScalar || !lower ? least_energy_at(q) : 1.0;
+      part > kLeastPart && part < kNearlyAll) {
+    if (!lower) ++safeguards_.halvings;
+    trial_ = q + part * (trial_ - q);
+    trial_u_ = u_ + part * (trial_u_ - u_);
+    after = energy(trial_, trial_u_);
+  }
   if (!(after <= before + kEnergyRounding * std::abs(before))) return false;
   energy_fell_ = after < before - kEnergyRounding * std::abs(before);
   energy_ = after;

@@ -48,8 +48,10 @@ struct NewtonSummary {
 /// is projected onto the admissible set and the loads restored along the tangent fields (K + stiffness)^-1 c,
 /// which disturb the multipliers alone. Near gross slip these fields bring the loads back to second order
 /// only, and cannot make up for what cells bring that jump onto their circles; where they fail the linear
-/// problem is solved again with the jumps' loads taken out of it. The step is halved until the energy falls;
-/// where even that fails, steps of the projected gradient take over, which always descend.
+/// problem is solved again with the jumps' loads taken out of it. Where the energy is less before the step's
+/// end than there, the step ends at its least, which costs nothing: the set is convex. Where it does not fall
+/// at all the step is halved; where even that fails, steps of the projected gradient take over, which always
+/// descend.
 ///
 /// Compiled for both sets and both precisions of the inner iteration.
 template <AdmissibleSet Set, typename Real>
@@ -78,6 +80,7 @@ class NaturalMapNewton {
 
  private:
   using Field = CgField<Real>;
+  static constexpr bool kIsScalar = Set::kComponents == 1;
   struct LinearTarget {
     double reduction;  ///< of the residual
     int max_iterations;
@@ -88,7 +91,9 @@ class NaturalMapNewton {
     return std::span(c_).first(static_cast<std::size_t>(balance_.count()));
   }
   TangentOperator<Real> tangent_operator() { return {inner_, space_}; }
-  TangentPreconditioner<Real> preconditioner() { return {symbol_, space_}; }
+  TangentPreconditioner<Real> preconditioner() {
+    return {symbol_, space_, kIsScalar ? &extension_ : nullptr};
+  }
 
   /// work(first, last) for the values of the cells that may carry something, and the sum of what it returns.
   template <typename Work>
@@ -109,6 +114,7 @@ class NaturalMapNewton {
   LinearTarget linear_target(double wanted, long applications_left) const;
   bool solve_linear(const ArrayXd& q, const LinearTarget& target, const Coefficients& loads = {});
   Coefficients jump_loads(const ArrayXd& q);
+  double least_energy_at(const ArrayXd& q) const;
   bool accept_trial(ArrayXd& q);
   void write_trial(const ArrayXd& q, double length);
   bool take_newton_step(ArrayXd& q, const LinearTarget& target);
@@ -132,6 +138,7 @@ class NaturalMapNewton {
   CgConstraints<Real> constraints_;  ///< by the former
   Field r_, x_;                      ///< of the linear problem: residual, solution
   TangentSpace<Real> space_;
+  Extension<Real> extension_;  ///< of scalars
   LoadBalance<Set> balance_;
   std::vector<Field> rounded_;   ///< the conditions' fields, unless they are in this precision already
   std::vector<const Field*> c_;  ///< those of the imposed conditions, then the given ones

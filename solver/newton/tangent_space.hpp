@@ -5,6 +5,7 @@
 #include <span>
 
 #include "solver/grid/sweep.hpp"
+#include "solver/newton/extension.hpp"
 #include "solver/operator/inverse_symbol.hpp"
 #include "solver/operator/linear_operator.hpp"
 
@@ -148,12 +149,17 @@ struct TangentPreconditioner {
 
   InverseSymbol<Real>& symbol;
   const TangentSpace<Real>& space;
+  Extension<Real>* extension = nullptr;
 
   const Sweep& cells() const { return space.free; }
 
   /// The three parts of y = M r, of which the first and the last go cell by cell.
   void load(Index first, Index last, const Field& r, Field& z) const { space.restrict_to(first, last, r, z); }
-  void transform(Field& z) { symbol.apply(std::span(z.data(), static_cast<std::size_t>(z.size()))); }
+  void transform(Field& z) {
+    if (extension != nullptr) extension->extend(z);
+    symbol.apply(std::span(z.data(), static_cast<std::size_t>(z.size())));
+    if (extension != nullptr) extension->gather(z);
+  }
   void store(Index first, Index last, const Field& r, const Field& z, Field& y) const {
     space.complete(first, last, z, r, y);
   }

@@ -21,7 +21,7 @@ std::unique_ptr<InverseSymbol<Real>> symbol_of(const Elasticity& elasticity, con
                                                const BlockKernel& kernel) {
   return make_inverse_symbol<Real>(grid, kernel, elasticity.pair,
                                    options_of(elasticity, kernel).diagonal ? Diagonal::yes : Diagonal::no,
-                                   elasticity.measure_plans, elasticity.threads);
+                                   elasticity.measure_plans, elasticity.threads, elasticity.at_edge);
 }
 
 std::unique_ptr<LinearOperator> new_operator(const Elasticity& elasticity, const Grid& grid,
@@ -46,7 +46,7 @@ std::shared_ptr<SolveCache> Elasticity::usable_cache() const {
 CacheKey Elasticity::key(const char* what, const Grid& grid) const {
   CacheKey all(what);
   all.add(pair.shear_compliance).add(pair.poisson_compliance).add(pair.normal_compliance).add(pair.mismatch);
-  all.add(pair.cell_traction).add(kind).add(threads).add(precision).add(diagonal);
+  all.add(pair.cell_traction).add(kind).add(threads).add(precision).add(diagonal).add(at_edge);
   return all.add(grid.n1).add(grid.n2).add(grid.h1).add(grid.h2).add(grid.quadrant);
 }
 
@@ -106,7 +106,7 @@ double GridOperators<Real>::predicted_bytes(const Elasticity& elasticity, const 
   const double inner = std::is_same_v<Real, double> ? 0.0 : predicted_single_bytes(grid, kernel, options);
   return solver::predicted_bytes(elasticity.kind, grid, kernel, options) + inner +
          predicted_inverse_symbol_bytes<Real>(grid, kernel, options.diagonal ? Diagonal::yes : Diagonal::no,
-                                              options.threads);
+                                              options.threads, elasticity.at_edge);
 }
 
 template struct GridOperators<double>;

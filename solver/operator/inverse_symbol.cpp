@@ -13,8 +13,12 @@
 namespace slipstick::solver {
 namespace {
 
-PeriodicGrid padded(const Grid& grid) {
-  return {fast_length(grid.n1), fast_length(grid.n2), grid.h1, grid.h2};
+/// Cells at least between opposite edges that fields reach; more bring nothing.
+constexpr Index kMargin = 2;
+
+PeriodicGrid padded(const Grid& grid, bool at_edge) {
+  const Index margin = at_edge ? kMargin : 0;
+  return {fast_length(grid.n1 + margin), fast_length(grid.n2 + margin), grid.h1, grid.h2};
 }
 
 std::vector<SymbolEntry> entries(bool tangential) {
@@ -59,9 +63,9 @@ template <typename Real>
 class PeriodicInverseSymbol final : public InverseSymbol<Real> {
  public:
   PeriodicInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair, bool measure_plans,
-                        int threads)
+                        int threads, bool at_edge)
       : grid_(grid),
-        periodic_(padded(grid)),
+        periodic_(padded(grid, at_edge)),
         fields_(tangential ? 2 : 1),
         diagonal_(mean_inverse_symbol(periodic_, pair, tangential)),
         table_(periodic_, pair, entries(tangential), columns(periodic_),
@@ -88,8 +92,8 @@ class PeriodicInverseSymbol final : public InverseSymbol<Real> {
   std::array<double, 2> diagonal() const override { return diagonal_; }
   std::size_t bytes() const override { return table_.bytes() + transform_.bytes(); }
 
-  static Index predicted_size(const Grid& grid, bool tangential) {
-    const auto [length1, length2, h1, h2] = padded(grid);
+  static Index predicted_size(const Grid& grid, bool tangential, bool at_edge) {
+    const auto [length1, length2, h1, h2] = padded(grid, at_edge);
     return (tangential ? 3 : 1) * (length1 / 2 + 1) * (length2 / 2 + 1) +
            PlaneTransform<Real>::size(length1, length2, tangential ? 2 : 1);
   }
@@ -155,34 +159,35 @@ void check_diagonal(const Grid& grid, bool tangential, Diagonal diagonal) {
 template <typename Real>
 std::unique_ptr<InverseSymbol<Real>> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel,
                                                          const ElasticPair& pair, Diagonal diagonal,
-                                                         bool measure_plans, int threads) {
+                                                         bool measure_plans, int threads, bool at_edge) {
   const bool tangential = is_tangential(kernel);
   check_diagonal(grid, tangential, diagonal);
   if (grid.quadrant) {
     return std::make_unique<MirroredInverseSymbol<Real>>(grid, tangential, pair, diagonal, measure_plans,
                                                          threads);
   }
-  return std::make_unique<PeriodicInverseSymbol<Real>>(grid, tangential, pair, measure_plans, threads);
+  return std::make_unique<PeriodicInverseSymbol<Real>>(grid, tangential, pair, measure_plans, threads,
+                                                       at_edge);
 }
 
 template <typename Real>
 double predicted_inverse_symbol_bytes(const Grid& grid, const BlockKernel& kernel, Diagonal diagonal,
-                                      int threads) {
+                                      int threads, bool at_edge) {
   const bool tangential = is_tangential(kernel);
   check_diagonal(grid, tangential, diagonal);
   const Index size = grid.quadrant
                          ? MirroredInverseSymbol<Real>::predicted_size(grid, tangential, diagonal, threads)
-                         : PeriodicInverseSymbol<Real>::predicted_size(grid, tangential);
+                         : PeriodicInverseSymbol<Real>::predicted_size(grid, tangential, at_edge);
   return static_cast<double>(sizeof(Real)) * static_cast<double>(size);
 }
 
 template std::unique_ptr<InverseSymbol<double>> make_inverse_symbol<double>(const Grid&, const BlockKernel&,
                                                                             const ElasticPair&, Diagonal,
-                                                                            bool, int);
+                                                                            bool, int, bool);
 template std::unique_ptr<InverseSymbol<float>> make_inverse_symbol<float>(const Grid&, const BlockKernel&,
                                                                           const ElasticPair&, Diagonal, bool,
-                                                                          int);
-template double predicted_inverse_symbol_bytes<double>(const Grid&, const BlockKernel&, Diagonal, int);
-template double predicted_inverse_symbol_bytes<float>(const Grid&, const BlockKernel&, Diagonal, int);
+                                                                          int, bool);
+template double predicted_inverse_symbol_bytes<double>(const Grid&, const BlockKernel&, Diagonal, int, bool);
+template double predicted_inverse_symbol_bytes<float>(const Grid&, const BlockKernel&, Diagonal, int, bool);
 
 }  // namespace slipstick::solver

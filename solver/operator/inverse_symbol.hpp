@@ -14,7 +14,9 @@ enum class Diagonal { no, yes };
 /// Preconditioner for conjugate gradients with an influence operator: the inverse of its Fourier symbol on
 /// the half-space, |xi|/C33 for the normal and |xi|/S (I + N/(S - N) n n^T), n = xi/|xi|, for the tangential
 /// kernel (S and N the pair's shear and Poisson compliances, C33 its normal compliance), as a periodic
-/// convolution on the grid itself, which is padded with zeros only where its lengths are not fast ones.
+/// convolution on the grid itself, which is padded with zeros only where its lengths are not fast ones, or
+/// where fields reach its edge: without zeros between them opposite edges would be neighbours, which takes
+/// conjugate gradients on a full grid twice as many steps.
 /// Self-adjoint and positive definite: at zero frequency, where the symbol vanishes, half of the smallest
 /// frequency stands in for |xi|, without the term in n n^T; on the Nyquist rows and columns, where it would
 /// not be Hermitian, the cross term is left out. Errors are those of the transforms, a few eps of the largest
@@ -39,16 +41,18 @@ class InverseSymbol {
 
 /// The kernel is the normal or the tangential one; others throw std::invalid_argument, as does Diagonal::yes
 /// where the grid is no quadrant that its diagonal halves or the kernel not tangential. measure_plans: see
-/// OperatorOptions.
+/// OperatorOptions. at_edge: whether fields reach the edge of a whole grid.
 template <typename Real>
 std::unique_ptr<InverseSymbol<Real>> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel,
                                                          const ElasticPair& pair,
                                                          Diagonal diagonal = Diagonal::no,
-                                                         bool measure_plans = false, int threads = 1);
+                                                         bool measure_plans = false, int threads = 1,
+                                                         bool at_edge = false);
 
 /// What bytes() of it will be.
 template <typename Real>
 double predicted_inverse_symbol_bytes(const Grid& grid, const BlockKernel& kernel,
-                                      Diagonal diagonal = Diagonal::no, int threads = 1);
+                                      Diagonal diagonal = Diagonal::no, int threads = 1,
+                                      bool at_edge = false);
 
 }  // namespace slipstick::solver

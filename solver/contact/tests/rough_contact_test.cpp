@@ -1,0 +1,103 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+
+#include "solver/contact/normal_contact.hpp"
+#include "solver/operator/influence.hpp"
+#include "solver/scene/roughness.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+
+constexpr double kModulus = 1.0;  // E*
+constexpr double kSlope = 0.1;
+
+/// A square body with a self-affine face down to waves of four cells, whose contact may reach its edges.
+struct RoughFace {
+  explicit RoughFace(Index cells)
+      : grid{cells, cells, 1.0, 1.0},
+        gap(roughness_heights({.seed = 1,
+                               .hurst = 0.8,
+                               .longest = 0.25 * static_cast<double>(cells),
+                               .shortest = 4.0,
+                               .rms_slope = kSlope,
+                               .period = static_cast<double>(cells)},
+                              grid)) {
+    gap -= gap.minCoeff();
+  }
+
+  /// Under a mean pressure, in units of E* times the slope.
+  NormalSolution pressed(double pressure) const {
+    return solve_normal_contact(elasticity, grid, {gap, load(pressure)});
+  }
+  double load(double pressure) const {
+    return pressure * kModulus * kSlope * static_cast<double>(grid.cells());
+  }
+
+  Elasticity elasticity{.pair = elastic_pair({0.7 * kModulus, 0.3}, {0.7 * kModulus, 0.3}), .at_edge = true};
+  Grid grid;
+  ArrayXd gap;
+};
+
+/// The aim is 40 and its bound 60 of them, on any mesh.
+constexpr double kMostApplications = 60.0;
+constexpr double kTolerance = 1e-10;
+constexpr double kRounding = 1e-12;
+
+TEST(RoughContact, TakesFewApplicationsAtAnyContactFraction) {
+  const RoughFace face(128);
+  const auto op = face.elasticity.make(face.grid, normal_kernel());
+  ArrayXd u(face.grid.cells());
+  double last = 0.0;
+  for (const double pressure : {0.0005, 0.005, 0.03, 0.1, 0.25, 0.45, 0.8, 1.5, 3.0, 8.0}) {
+    SCOPED_TRACE(pressure);
+    const NormalSolution found = face.pressed(pressure);
+    EXPECT_EQ(found.status, Status::converged) << found.message;
+    EXPECT_LE(finest_grid_applications(found.grids), kMostApplications);
+    const ArrayXd& p = found.pressure;
+    op->apply(p, u);
+    const ArrayXd opening = u + face.gap;
+    EXPECT_GE(p.minCoeff(), 0.0);
+    EXPECT_NEAR(p.sum() / face.load(pressure), 1.0, kRounding);
+    EXPECT_LE((p * (opening - opening.minCoeff())).sum(), (kTolerance + kRounding) * 0.5 * (p * u).sum());
+    const auto fraction = static_cast<double>((p > 0.0).count()) / static_cast<double>(face.grid.cells());
+    EXPECT_GT(fraction, last);
+    if (last == 0.0) {
+      EXPECT_LT(fraction, 0.003);
+    }
+    last = fraction;
+  }
+  EXPECT_EQ(last, 1.0);
+}
+
+/// Then there is no inequality left: K p + h is the approach everywhere.
+TEST(RoughContact, FullContactIsALinearSystem) {
+  const RoughFace face(16);
+  const auto op = face.elasticity.make(face.grid, normal_kernel());
+  const Index n = face.grid.cells();
+  Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(n + 1, n + 1);
+  ArrayXd column(n);
+  for (Index j = 0; j < n; ++j) {
+    const ArrayXd unit = Eigen::VectorXd::Unit(n, j).array();
+    op->apply(unit, column);
+    matrix.col(j).head(n) = column;
+    matrix(n, j) = 1.0;
+    matrix(j, n) = -1.0;
+  }
+  const double pressure = 8.0;
+  Eigen::VectorXd right(n + 1);
+  right << -face.gap.matrix(), face.load(pressure);
+  const Eigen::VectorXd exact = matrix.partialPivLu().solve(right);
+  const NormalSolution found = face.pressed(pressure);
+  ASSERT_TRUE((exact.head(n).array() > 0.0).all());
+  // The gap is of first order in what is left of the residual, so the pressure's error is of its size.
+  constexpr double kError = 1e-8;
+  EXPECT_LT((found.pressure - exact.head(n).array()).abs().maxCoeff(), kError * exact.head(n).maxCoeff());
+  EXPECT_NEAR(found.approach / exact[n], 1.0, kError);
+}
+
+}  // namespace
+}  // namespace slipstick::solver

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <Eigen/Core>
+
+#include "solver/grid/grid.hpp"
+
+namespace slipstick::solver {
+
+/// Continues a field smoothly from the cells that are free into those beside them, and its adjoint.
+///
+/// With S the operator's inverse on the whole plane, the inverse on the free cells alone is the least of E^T
+/// S E over all E that leave a field as it is there. E = 0 elsewhere, as a projector has it, cuts residuals
+/// off at the edges of the free cells and answers them several times too strongly; a decaying mean of what is
+/// near by comes close.
+template <typename Real>
+class Extension {
+ public:
+  using Field = Eigen::Array<Real, Eigen::Dynamic, 1>;
+
+  /// Of scalar fields on a grid. Nothing is free.
+  explicit Extension(const Grid& grid);
+
+  /// free: 1 in the cells that are, 0 elsewhere.
+  void prepare(const Field& free);
+  /// y, zero where no cell is free: its continuation is added there. Allocates nothing.
+  void extend(Field& y);
+  /// The adjoint: to y in the free cells it adds what it has where extend() writes. Allocates nothing.
+  void gather(Field& y);
+
+  static double bytes(double cells) { return 2.0 * sizeof(Real) * cells; }
+
+ private:
+  template <typename Row>
+  void spread(const Field& in, const Row& take_row);
+
+  Grid grid_;
+  Field weight_;  ///< of the sum near by; 0 in the free cells
+  Field work_;
+  Field column_sums_;  ///< of a row, with a margin
+};
+
+extern template class Extension<double>;
+extern template class Extension<float>;
+
+}  // namespace slipstick::solver
