@@ -64,10 +64,10 @@ struct Fftw<double> {
                                   plane.reals.data(), 1, 0, flags);
   }
   static Plan plan_row_forward(int length, double* in, Complex* out, unsigned flags) {
-    return fftw_plan_dft_r2c_1d(length, in, out, flags);
+    return fftw_plan_many_dft_r2c(1, &length, 1, in, nullptr, 1, 0, out, nullptr, 1, 0, flags);
   }
   static Plan plan_row_backward(int length, Complex* in, double* out, unsigned flags) {
-    return fftw_plan_dft_c2r_1d(length, in, out, flags);
+    return fftw_plan_many_dft_c2r(1, &length, 1, in, nullptr, 1, 0, out, nullptr, 1, 0, flags);
   }
   static void execute(Plan plan, double* in, Complex* out) { fftw_execute_dft_r2c(plan, in, out); }
   static void execute(Plan plan, Complex* in, double* out) { fftw_execute_dft_c2r(plan, in, out); }
@@ -98,10 +98,10 @@ struct Fftw<float> {
                                    plane.reals.data(), 1, 0, flags);
   }
   static Plan plan_row_forward(int length, float* in, Complex* out, unsigned flags) {
-    return fftwf_plan_dft_r2c_1d(length, in, out, flags);
+    return fftwf_plan_many_dft_r2c(1, &length, 1, in, nullptr, 1, 0, out, nullptr, 1, 0, flags);
   }
   static Plan plan_row_backward(int length, Complex* in, float* out, unsigned flags) {
-    return fftwf_plan_dft_c2r_1d(length, in, out, flags);
+    return fftwf_plan_many_dft_c2r(1, &length, 1, in, nullptr, 1, 0, out, nullptr, 1, 0, flags);
   }
   static void execute(Plan plan, float* in, Complex* out) { fftwf_execute_dft_r2c(plan, in, out); }
   static void execute(Plan plan, Complex* in, float* out) { fftwf_execute_dft_c2r(plan, in, out); }

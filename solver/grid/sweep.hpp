@@ -9,8 +9,8 @@
 namespace slipstick::solver {
 
 /// Those cells of a grid that a loop visits, as intervals of neighbours: cells that carry no traction cost
-/// nothing. The cells are cut into a fixed number of parts, about equal in size, which the threads of the
-/// pool share; sums are taken part by part and then in their order. So no result depends on the number of
+/// nothing. The cells are cut into parts, by their number alone and about equal in size, which the threads of
+/// the pool share; sums are taken part by part and then in their order. So no result depends on the number of
 /// threads.
 class Sweep {
  public:
@@ -35,7 +35,7 @@ class Sweep {
   /// not throw.
   template <typename Work>
   void each(const Work& work) const {
-    in_parts(threads(), kParts, [&](int, Index first, Index last) {
+    in_parts(threads(), parts_, [&](int, Index first, Index last) {
       for (Index i = begin_[at(first)]; i < begin_[at(last)]; ++i) {
         work(intervals_[at(i)].first, intervals_[at(i)].last);
       }
@@ -45,18 +45,20 @@ class Sweep {
   /// The sum of what work(first, last, sum) adds to `sum`, which begins as Sum().
   template <typename Sum, typename Work>
   Sum sum(const Work& work) const {
-    std::array<Sum, kParts> sums{};
-    in_parts(threads(), kParts, [&](int, Index first, Index last) {
-      for (Index part = first; part < last; ++part) {
-        Sum sum{};
-        for (Index i = begin_[at(part)]; i < begin_[at(part + 1)]; ++i) {
-          work(intervals_[at(i)].first, intervals_[at(i)].last, sum);
-        }
-        sums[at(part)] = sum;
+    const auto sum_of = [&](Index part) {
+      Sum sum{};
+      for (Index i = begin_[at(part)]; i < begin_[at(part + 1)]; ++i) {
+        work(intervals_[at(i)].first, intervals_[at(i)].last, sum);
       }
+      return sum;
+    };
+    if (parts_ == 1) return sum_of(0);
+    std::array<Sum, kMostParts> sums;
+    in_parts(threads(), parts_, [&](int, Index first, Index last) {
+      for (Index part = first; part < last; ++part) sums[at(part)] = sum_of(part);
     });
     Sum total = sums.front();
-    for (std::size_t part = 1; part < sums.size(); ++part) total += sums[part];
+    for (Index part = 1; part < parts_; ++part) total += sums[at(part)];
     return total;
   }
 
@@ -65,17 +67,19 @@ class Sweep {
     Index first;
     Index last;
   };
-  static constexpr Index kParts = 64;
-  /// Fewer cells are not worth a second thread.
-  static constexpr Index kFew = 4096;
+  static constexpr Index kMostParts = 64;
+  /// Of a part, at least; where there are fewer than some such parts a second thread is not worth it.
+  static constexpr Index kCellsOfPart = 512;
+  static constexpr Index kFew = 8 * kCellsOfPart;
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
   int threads() const { return count_ < kFew ? 1 : ThreadPool::available(); }
 
   std::vector<Interval> intervals_;
-  std::array<Index, kParts + 1> begin_{};  ///< the first interval of each part
+  std::array<Index, kMostParts + 1> begin_{};  ///< the first interval of each part
   Index size_ = 0;
   Index count_ = 0;
+  Index parts_ = 1;
 };
 
 template <typename Contains>
@@ -83,6 +87,7 @@ void Sweep::assign(Index cells, const Contains& contains) {
   size_ = cells;
   count_ = 0;
   for (Index cell = 0; cell < cells; ++cell) count_ += contains(cell) ? 1 : 0;
+  parts_ = std::clamp<Index>(count_ / kCellsOfPart, 1, kMostParts);
   intervals_.clear();
   Index visited = 0;
   Index part = 0;
@@ -93,7 +98,7 @@ void Sweep::assign(Index cells, const Contains& contains) {
       continue;
     }
     // A part that is full ends here, and with it an interval.
-    while (part < kParts && visited * kParts >= part * count_) {
+    while (part < parts_ && visited * parts_ >= part * count_) {
       begin_[at(part++)] = static_cast<Index>(intervals_.size());
       inside = false;
     }
@@ -102,7 +107,7 @@ void Sweep::assign(Index cells, const Contains& contains) {
     intervals_.back().last = cell + 1;
     ++visited;
   }
-  for (; part <= kParts; ++part) begin_[at(part)] = static_cast<Index>(intervals_.size());
+  for (; part <= parts_; ++part) begin_[at(part)] = static_cast<Index>(intervals_.size());
 }
 
 }  // namespace slipstick::solver
