@@ -40,7 +40,8 @@ TEST(Sweep, VisitsEachOfItsCellsOnce) {
         EXPECT_EQ(sweep.size(), cells);
         EXPECT_EQ(sweep.count(), (field != 0.0).count());
         const std::vector<int> counts = visits(sweep);
-        for (Index i = 0; i < cells; ++i) EXPECT_EQ(counts[static_cast<std::size_t>(i)], field[i] != 0.0) << i;
+        for (Index i = 0; i < cells; ++i)
+          EXPECT_EQ(counts[static_cast<std::size_t>(i)], field[i] != 0.0) << i;
       }
     }
   }
