@@ -102,18 +102,38 @@ class ShearBesideEdges {
   std::vector<Table> tables_;
 };
 
-/// Places of the cell centres in metres, measured from the axis.
-struct Places {
-  ArrayXd y1;
-  ArrayXd y2;
-  ArrayXd radius;  ///< as the oracle measures it
-};
+/// A grid about the axis has mirror images of each cell of its first quadrant, in which exact fields are
+/// equal but for signs: those are found once. A grid about another place has none.
+class Images {
+ public:
+  Images(const Oracle& oracle, const solver::Grid& grid)
+      : n1_(grid.n1),
+        n2_(grid.n2),
+        mirrored_(oracle.centre == std::array<double, 2>{} && oracle.axis_ratio == 1.0 && !grid.quadrant),
+        turns_(oracle.direction == std::array<double, 2>{}) {}
 
-Places places(const Oracle& oracle, const solver::Grid& grid) {
-  const ArrayXd y1 = solver::cell_x1(grid) - oracle.centre[0];
-  const ArrayXd y2 = solver::cell_x2(grid) - oracle.centre[1];
-  return {y1, y2, y1.binaryExpr(y2, [&](double a, double b) { return oracle.radius(a, b); })};
-}
+  Index rows() const { return mirrored_ ? (n1_ + 1) / 2 : n1_; }
+  Index columns() const { return mirrored_ ? (n2_ + 1) / 2 : n2_; }
+
+  /// visit(image, sign1, sign2) for a cell of the first rows() and columns() and each of its images.
+  template <typename Visit>
+  void each(Index i, Index j, const Visit& visit) const {
+    visit(i * n2_ + j, 1.0, 1.0);
+    if (!mirrored_) return;
+    const double sign = turns_ ? -1.0 : 1.0;
+    const Index k = n1_ - 1 - i;
+    const Index l = n2_ - 1 - j;
+    visit(k * n2_ + j, 1.0, sign);
+    visit(i * n2_ + l, sign, 1.0);
+    visit(k * n2_ + l, sign, sign);
+  }
+
+ private:
+  Index n1_;
+  Index n2_;
+  bool mirrored_;
+  bool turns_;  ///< tractions go round the axis, as (-x2, x1) does
+};
 
 /// Averages are taken over so many points of a cell along each side. An edge of the traction is a square
 /// root, of whose difference between centre and average this leaves about (1/12)^(3/2), 2 %.
@@ -121,31 +141,41 @@ constexpr int kPointsAcross = 12;
 /// Steps of the tables of the exact traction near its edges, a cell: finer than the points.
 constexpr double kTableSteps = 64.0;
 
+/// The mean over a cell of the exact traction, whose size at a radius is given. y1, y2: of its centre.
+template <typename Size>
+std::array<double, 2> mean_over_cell(const Oracle& oracle, const solver::Grid& grid, double y1, double y2,
+                                     const Size& size_at) {
+  constexpr int points = kPointsAcross;
+  std::array<double, 2> sum{};
+  for (int k = 0; k < points * points; ++k) {
+    const double part1 = (k / points + 0.5) / points - 0.5;
+    const double part2 = (k % points + 0.5) / points - 0.5;
+    const auto [q1, q2] = shear_at(oracle, y1 + part1 * grid.h1, y2 + part2 * grid.h2, size_at);
+    sum[0] += q1;
+    sum[1] += q2;
+  }
+  return {sum[0] / (points * points), sum[1] / (points * points)};
+}
+
 /// Averages over the cells near an edge, values at the centres elsewhere, where the two differ by h^2/24
 /// times the traction's second derivatives. 2*cells, Pa.
-ArrayXd averaged_traction(const Oracle& oracle, const solver::Grid& grid, const Places& at,
-                          const ArrayXd& at_centres) {
-  const Index cells = at.radius.size();
-  const double h1 = grid.h1;
-  const double h2 = grid.h2;
-  const double diagonal = std::hypot(h1, h2);
-  const ShearBesideEdges beside_edges(oracle, 2.0 * diagonal, std::min(h1, h2) / kTableSteps);
-  const auto is_near = [&](double radius, double edge) { return std::abs(radius - edge) < diagonal; };
-  constexpr int points = kPointsAcross;
-  ArrayXd field = at_centres;
-  for (Index i = 0; i < cells; ++i) {
-    if (!is_near(at.radius[i], oracle.stick_radius) && !is_near(at.radius[i], oracle.contact_radius))
-      continue;
-    std::array<double, 2> sum{};
-    for (int k = 0; k < points * points; ++k) {
-      const double part1 = (k / points + 0.5) / points - 0.5;
-      const double part2 = (k % points + 0.5) / points - 0.5;
-      const auto [q1, q2] = shear_at(oracle, at.y1[i] + part1 * h1, at.y2[i] + part2 * h2, beside_edges);
-      sum[0] += q1;
-      sum[1] += q2;
+ArrayXd averaged_traction(const Oracle& oracle, const solver::Grid& grid, const ExactFields& at_centres) {
+  const double diagonal = std::hypot(grid.h1, grid.h2);
+  const ShearBesideEdges beside_edges(oracle, 2.0 * diagonal, std::min(grid.h1, grid.h2) / kTableSteps);
+  ArrayXd field = at_centres.traction;
+  const Images images(oracle, grid);
+  for (Index i = 0; i < images.rows(); ++i) {
+    for (Index j = 0; j < images.columns(); ++j) {
+      const double radius = at_centres.radius[i * grid.n2 + j];
+      const auto is_near = [&](double edge) { return std::abs(radius - edge) < diagonal; };
+      if (!is_near(oracle.stick_radius) && !is_near(oracle.contact_radius)) continue;
+      const auto [q1, q2] = mean_over_cell(oracle, grid, grid.x1(i) - oracle.centre[0],
+                                           grid.x2(j) - oracle.centre[1], beside_edges);
+      images.each(i, j, [&, q1 = q1, q2 = q2](Index image, double sign1, double sign2) {
+        field[image] = sign1 * q1;
+        field[image + grid.cells()] = sign2 * q2;
+      });
     }
-    field[i] = sum[0] / (points * points);
-    field[i + cells] = sum[1] / (points * points);
   }
   return field;
 }
@@ -163,16 +193,25 @@ ArrayXd band(const ArrayXd& radius, double edge, double width) {
 }  // namespace
 
 ExactFields exact_fields(const Oracle& oracle, const solver::Grid& grid) {
-  const Places at = places(oracle, grid);
-  ByRadius pressure([&](double radius) { return oracle.pressure(radius); });
+  ByRadius pressure_at([&](double radius) { return oracle.pressure(radius); });
   ByRadius shear([&](double radius) { return oracle.traction(radius); });
-  const Index cells = at.radius.size();
-  ExactFields exact{at.radius, ArrayXd(cells), ArrayXd(2 * cells)};
-  for (Index i = 0; i < cells; ++i) {
-    exact.pressure[i] = pressure(at.radius[i]);
-    const auto [q1, q2] = shear_at(oracle, at.y1[i], at.y2[i], shear);
-    exact.traction[i] = q1;
-    exact.traction[i + cells] = q2;
+  const Index cells = grid.cells();
+  ExactFields exact{ArrayXd(cells), ArrayXd(cells), ArrayXd(2 * cells)};
+  const Images images(oracle, grid);
+  for (Index i = 0; i < images.rows(); ++i) {
+    for (Index j = 0; j < images.columns(); ++j) {
+      const double y1 = grid.x1(i) - oracle.centre[0];
+      const double y2 = grid.x2(j) - oracle.centre[1];
+      const double radius = oracle.radius(y1, y2);
+      const double pressure = pressure_at(radius);
+      const auto [q1, q2] = shear_at(oracle, y1, y2, shear);
+      images.each(i, j, [&, q1 = q1, q2 = q2](Index image, double sign1, double sign2) {
+        exact.radius[image] = radius;
+        exact.pressure[image] = pressure;
+        exact.traction[image] = sign1 * q1;
+        exact.traction[image + cells] = sign2 * q2;
+      });
+    }
   }
   return exact;
 }
@@ -183,17 +222,16 @@ TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, cons
                              const ExactFields& fields) {
   if (!oracle.shear) return unknown_tractions();
   const ArrayXd& at_centres = fields.traction;
-  const Places at = places(oracle, grid);
-  const ArrayXd averaged = averaged_traction(oracle, grid, at, at_centres);
+  const ArrayXd averaged = averaged_traction(oracle, grid, fields);
   const ArrayXd exact = solver::norms(averaged);
   const ArrayXd difference = solver::norms(traction - averaged);
   const double width = kEdgeBand * std::sqrt(grid.cell_area());
   const bool slips = oracle.stick_radius < oracle.contact_radius;
   const ArrayXd stick_edge =
-      slips ? band(at.radius, oracle.stick_radius, width) : ArrayXd::Zero(at.radius.size());
-  const ArrayXd contact_edge = (1.0 - stick_edge) * band(at.radius, oracle.contact_radius, width);
+      slips ? band(fields.radius, oracle.stick_radius, width) : ArrayXd::Zero(fields.radius.size());
+  const ArrayXd contact_edge = (1.0 - stick_edge) * band(fields.radius, oracle.contact_radius, width);
   const ArrayXd rest = 1.0 - stick_edge - contact_edge;
-  const ArrayXd sticks = (at.radius < oracle.stick_radius).cast<double>();
+  const ArrayXd sticks = (fields.radius < oracle.stick_radius).cast<double>();
   return {
       .at_centres = field_error(solver::norms(traction - at_centres), solver::norms(at_centres)),
       .averaged = field_error(difference, exact),

@@ -29,6 +29,8 @@ constexpr double kWidestAngle = 0.4;
 constexpr double kFarthest = 24.0;  // cells further from the front than this take part in no fit
 constexpr double kLargestShift = 2.0;
 constexpr int kPasses = 4;  // each measures from the front that the last one has found
+constexpr double kBesideQuadrant =
+    kWidestAngle + 0.1;  // of a quadrant's rays, cells that a fit or a check needs
 
 /// What part of the slip ring is fitted on a ray, from the front, and by which degree in the distance.
 struct Window {
@@ -117,6 +119,12 @@ class FrontFinder {
     return bound_.isFinite().all() && stick_.isFinite().all() && slip_in_contact.isFinite().all();
   }
 
+  double slip_square(Index cell) const {
+    const double s1 = slip_[cell];
+    const double s2 = slip_[cell + grid_.cells()];
+    return s1 * s1 + s2 * s2;
+  }
+
   double radius(double cells) const { return std::sqrt(cells * grid_.cell_area() / std::numbers::pi); }
 
   /// Prepares the rays; or says why there are none.
@@ -125,6 +133,7 @@ class FrontFinder {
     if (stick_cells_ == static_cast<double>((bound_ > 0.0).count())) return "everything sticks";
     if (stick_cells_ < kMinStickCells) return fmt::format("only {} cells stick", stick_cells_);
     find_centroid();
+    mirrored_ = is_mirrored();
     cast_rays();
     return gather_slipping_cells() ? "" : "the stick area is not one patch that its centroid sees all of";
   }
@@ -137,11 +146,11 @@ class FrontFinder {
       for (SlippingCell& cell : slipping_) cell.reference = cell.rays.of(reference_);
       r = counted_;
       fitted = 0;
-      for (Index ray = 0; ray < rays_; ++ray) {
+      for (Index ray = 0; ray < (mirrored_ ? rays_ / 4 : rays_); ++ray) {
         const double shift = fitted_root(samples_near(ray), ring(ray).degree);
         if (!(std::abs(shift) <= kLargestShift)) continue;
-        r[ray] = reference_[ray] + shift;
-        ++fitted;
+        for (const Index image : images(ray)) r[image] = reference_[ray] + shift;
+        fitted += static_cast<Index>(images(ray).size());
       }
     }
     if (fitted > 0) front.radius = radius(0.5 * r.square().sum() * kTurn / static_cast<double>(rays_));
@@ -178,6 +187,30 @@ class FrontFinder {
       centre_i_ += static_cast<double>(i) / stick_cells_;
       centre_j_ += static_cast<double>(j) / stick_cells_;
     });
+  }
+
+  /// Whether both axes are mirrors of all fields, to the last bit: of a front that was solved as a quadrant,
+  /// a quarter of the rays says all.
+  bool is_mirrored() const {
+    const auto alike = [&](Index a, Index b) {
+      return bound_[a] == bound_[b] && stick_[a] == stick_[b] && slip_square(a) == slip_square(b);
+    };
+    for (Index i = 0; i < grid_.n1; ++i) {
+      for (Index j = 0; j < grid_.n2; ++j) {
+        const Index cell = i * grid_.n2 + j;
+        if (bound_[cell] > 0.0 && !(alike(cell, (grid_.n1 - 1 - i) * grid_.n2 + j) &&
+                                    alike(cell, i * grid_.n2 + grid_.n2 - 1 - j))) {
+          return false;
+        }
+      }
+    }
+    return true;
+  }
+
+  /// The ray, and its mirror images where there are some.
+  std::vector<Index> images(Index ray) const {
+    if (!mirrored_) return {ray};
+    return {ray, rays_ / 2 - 1 - ray, rays_ / 2 + ray, rays_ - 1 - ray};
   }
 
   double angle(Index ray) const {
@@ -252,13 +285,12 @@ class FrontFinder {
       const bool stuck = sticks(i, j);
       if (stuck ? r <= nearest_front : r > farthest_front + kFarthest) return;
       const double theta = angle_of(i, j);
+      if (mirrored_ && theta > 0.25 * kTurn + kBesideQuadrant && theta < kTurn - kBesideQuadrant) return;
       const BetweenRays rays = between_rays(theta);
       const double beyond = r - rays.of(counted_);
       if (stuck ? beyond > kStaircase : beyond < -kStaircase) star_shaped = false;
       if (stuck || beyond > kFarthest) return;
-      const double s1 = slip_[i * grid_.n2 + j];
-      const double s2 = slip_[i * grid_.n2 + j + grid_.cells()];
-      slipping_.push_back({theta, r, std::cbrt(s1 * s1 + s2 * s2), rays, 0.0});
+      slipping_.push_back({theta, r, std::cbrt(slip_square(i * grid_.n2 + j)), rays, 0.0});
     });
     std::ranges::sort(slipping_, {}, &SlippingCell::theta);
     return star_shaped;
@@ -301,6 +333,7 @@ class FrontFinder {
   const ArrayXd& stick_;
   double stick_cells_ = 0.0;
   double centre_i_ = 0.0, centre_j_ = 0.0;  // centroid of the stick area
+  bool mirrored_ = false;
   Index rays_ = 0;
   ArrayXd counted_, edge_;  // on each ray, where stick and contact end
   ArrayXd reference_;       // a smooth front, from which the windows are measured

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/compare/comparison.hpp"
 #include "bench/timing/timings.hpp"
 
 /// Timings with a known answer, by seeded draws.
@@ -60,6 +61,10 @@ struct TwoFiles {
   Timings base;
   Timings now;
 };
+
+inline Comparison compare(const TwoFiles& run, const ComparisonRules& rules = {}) {
+  return compare(run.base, run.now, rules);
+}
 
 /// Two files of equal benchmarks, but that the first `slower` ones take `factor` times as long in the new
 /// one.

@@ -177,6 +177,30 @@ TEST_P(MadeUpFront, TurnsWithTheContact) {
 
 // --- where it is counted ---
 
+/// Of fields with two mirror axes a quarter of the rays is fitted: one last bit of one cell, and all are.
+TEST(StickFront, OfAQuarterOfTheRaysIsThatOfAll) {
+  for (const Index n : {96, 97}) {
+    for (const double ring : {1.6, 1.3, 1.12}) {
+      Fields mirrored = sample({.a = 0.6, .b = 0.45, .ring = ring}, n);
+      for (Index i = 0; i < n * n; ++i) {
+        const Index image = std::min(i / n, n - 1 - i / n) * n + std::min(i % n, n - 1 - i % n);
+        for (const Index component : {Index{0}, n * n}) {
+          mirrored.slip[i + component] = mirrored.slip[image + component];
+        }
+      }
+      Fields nearly = mirrored;
+      Index slipping = 0;
+      while (nearly.slip[slipping] == 0.0) ++slipping;
+      nearly.slip[slipping] *= 1.0 + 1e-15;
+      const StickFront quarter = mirrored.front();
+      const StickFront whole = nearly.front();
+      EXPECT_NEAR(quarter.radius / whole.radius, 1.0, 1e-12) << n << ' ' << ring;
+      EXPECT_EQ(quarter.fitted, whole.fitted);
+      EXPECT_EQ(quarter.why_counted, whole.why_counted);
+    }
+  }
+}
+
 TEST(StickFront, IsCountedWhereTheRingHoldsTooFewCells) {
   const Fields fields = sample({.ring = 1.05}, 64);  // 0.8 cells
   const StickFront front = fields.front();

@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "solver/allocations/allocations.hpp"
-#include "solver/newton/multiplier_refinement.hpp"
 #include "solver/newton/tangent_space.hpp"
+#include "solver/newton/tests/tangent_cg.hpp"
 #include "solver/operator/direct.hpp"
 #include "solver/tests/dense_algebra.hpp"
 #include "solver/tests/fields.hpp"
@@ -85,60 +85,6 @@ MatrixXd basis(const TangentSpace<double>& space) {
   for (Index k = 0; k < result.cols(); ++k) result.col(k) = columns[static_cast<std::size_t>(k)];
   return result;
 }
-
-/// Solves on a tangent space, with everything that the iteration needs.
-template <typename Real>
-class TangentCg {
- public:
-  using Field = CgField<Real>;
-
-  TangentCg(Operator<Real>& op, InverseSymbol<Real>& symbol, Index size, std::size_t conditions)
-      : op_(op),
-        symbol_(symbol),
-        r_(size),
-        x_(size),
-        work_(size),
-        w_(conditions, Field(size)),
-        constraints_(w_) {}
-
-  Field& residual() { return r_; }
-  const Field& solution() const { return x_; }
-  const Field& tangent(std::size_t k) const { return w_[k]; }
-
-  bool precondition(const TangentSpace<Real>& space, CgFields<Real> conditions) {
-    TangentPreconditioner<Real> inverse{symbol_, space};
-    return constraints_.prepare(inverse, conditions, work_.y);
-  }
-  CgSummary solve(const TangentSpace<Real>& space, double reduction, int max_iterations) {
-    return run(space, {}, reduction, max_iterations);
-  }
-  /// Under the conditions of the last precondition().
-  CgSummary solve_constrained(const TangentSpace<Real>& space, double reduction, int max_iterations) {
-    return run(space, constraints_, reduction, max_iterations);
-  }
-  CoefficientMatrix solve_for_conditions(const TangentSpace<Real>& space, CgFields<Real> conditions,
-                                         int iterations) {
-    TangentOperator<Real> map{op_, space};
-    TangentPreconditioner<Real> inverse{symbol_, space};
-    return tangent_stiffness<Real>(map, inverse, conditions, iterations, work_, r_, std::span(w_));
-  }
-
- private:
-  CgSummary run(const TangentSpace<Real>& space, const CgConstraints<Real>& constraints, double reduction,
-                int max_iterations) {
-    TangentOperator<Real> map{op_, space};
-    TangentPreconditioner<Real> inverse{symbol_, space};
-    x_.setZero();
-    return projected_cg<Real>(map, inverse, constraints, r_, {reduction, max_iterations}, work_, x_);
-  }
-
-  Operator<Real>& op_;
-  InverseSymbol<Real>& symbol_;
-  Field r_, x_;
-  CgWorkspace<Real> work_;
-  std::vector<Field> w_;
-  CgConstraints<Real> constraints_;
-};
 
 /// The operators of one grid, and the same problem as a dense one.
 struct CgBench {
@@ -460,62 +406,6 @@ TEST(CgInSinglePrecision, SolvesToItsRounding) {
   EXPECT_EQ(cg.solve_constrained(space, 1e-6, kMany).message(), "");
   const VectorXd exact = b.constrained(r.matrix(), c.cast<double>().matrix());
   EXPECT_LE((cg.solution().cast<double>().matrix() - exact).norm(), 1e-5 * exact.norm());
-}
-
-// --- how good the preconditioner is ---
-
-/// A circle of radius a that sticks within a/2; beyond, traction turns, so that cells move along radii,
-/// against a stiffness that grows like slip, (r - c)^1.5, over a pressure that ends like a root.
-template <typename Function>
-void for_each_slipping(const Grid& grid, TangentSpace<double>& space, const Function& function) {
-  const double a = 0.5 * static_cast<double>(grid.n1) - 1.0;
-  for (Index i = 0; i < grid.n1; ++i) {
-    for (Index j = 0; j < grid.n2; ++j) {
-      const double x1 = grid.x1(i) / a;
-      const double x2 = grid.x2(j) / a;
-      const double r = std::hypot(x1, x2);
-      const Index cell = i * grid.n2 + j;
-      if (r >= 1.0 || r <= 0.5) {
-        space.set(cell, r < 1.0);
-      } else {
-        function(cell, x1 / r, x2 / r, a * 4.0 * std::pow(r - 0.5, 1.5) / std::sqrt(1.0 - r * r));
-      }
-    }
-  }
-}
-
-int iterations_needed(Index cells, bool two_terms) {
-  const Grid grid{cells, cells, 1.0, 1.0};
-  const auto op = make_operator(OperatorKind::dcfft, grid, tangential_kernel(), kPair);
-  const auto symbol = make_inverse_symbol<double>(grid, tangential_kernel(), kPair);
-  const std::array<double, 2> means = symbol->diagonal();
-  TangentSpace<double> space(2, grid.cells());
-  for_each_slipping(grid, space, [&](Index cell, double f1, double f2, double stiffness) {
-    const double mean = f1 * f1 * means[0] + f2 * f2 * means[1];
-    space.set_line(cell, f1, f2, stiffness, mean);
-    if (two_terms) return;
-    space.scale[cell] = 1.0 / std::sqrt(1.0 + stiffness * mean);
-    space.shift[cell] = 0.0;
-  });
-  space.find_free();
-  TangentCg<double> cg(*op, *symbol, 2 * grid.cells(), 0);
-  cg.residual() = random_field(2 * grid.cells(), 91);
-  const CgSummary summary = cg.solve(space, 1e-6, 1000);
-  EXPECT_EQ(summary.message(), "");
-  return summary.iterations;
-}
-
-/// One term alone is wrong by the ratio of the largest to the smallest wave number where cells slip far: the
-/// finer the grid the worse.
-TEST(TwoTermPreconditioner, NeedsHardlyMoreIterationsOnFinerGrids) {
-  const int coarse = iterations_needed(32, true);
-  const int fine = iterations_needed(128, true);
-  const int one_term = iterations_needed(128, false);
-  RecordProperty("two_terms_32", coarse);
-  RecordProperty("two_terms_128", fine);
-  RecordProperty("one_term_128", one_term);
-  EXPECT_LE(fine, coarse + 3);
-  EXPECT_LT(2 * fine, one_term);
 }
 
 }  // namespace
