@@ -89,7 +89,7 @@ ArrayXd continued_gap(const Scene& scene, const Model& model, const Grid& larger
 /// Displacement that opens the gap, by the pressure and, unless it is empty, a traction.
 ArrayXd opening(const Model& model, const Scene& scene, const Grid& grid, const ArrayXd& pressure,
                 const ArrayXd& traction) {
-  const Elasticity elastic{.pair = model.pair, .threads = scene.threads};
+  const Elasticity elastic{.pair = model.pair, .threads = model.threads};
   const bool pressed_only = traction.size() == 0;
   const Reduction part = pressed_only && scene.model != ModelChoice::full
                              ? Reduction(grid, pressure, ArrayXd::Ones(grid.cells()))

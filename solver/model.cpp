@@ -8,6 +8,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <system_error>
+#include <thread>
 #include <utility>
 
 #include "solver/contact/coulomb_method.hpp"
@@ -223,7 +224,7 @@ void note_omissions(Model& model, const Scene& scene, const Reduction& part, boo
 Elasticity elasticity(const Scene& scene, const Model& model, const Reduction& part) {
   return {.pair = model.pair,
           .kind = scene.op,
-          .threads = scene.threads,
+          .threads = model.threads,
           .precision = scene.precision,
           .diagonal = part.diagonal(),
           .at_edge = scene.ends_at_grid_edge,
@@ -257,11 +258,11 @@ Memory predicted_memory(const Scene& scene, const Model& model) {
   const Grid& grid = whole ? model.grid : part;
   const Elasticity elastic = whole ? elasticity(scene, model, Reduction(model.grid)) : on_part;
   const double coupling = model.pressure_coupling
-                              ? predicted_bytes(scene.op, grid, coupling_kernel(), {.threads = scene.threads})
+                              ? predicted_bytes(scene.op, grid, coupling_kernel(), {.threads = model.threads})
                               : 0.0;
   if (scene.method == Method::paper) {
     const double op = predicted_bytes(scene.op, grid, tangential_kernel(),
-                                      {.threads = scene.threads, .diagonal = elastic.diagonal});
+                                      {.threads = model.threads, .diagonal = elastic.diagonal});
     return {std::max({normal, op, coupling}),
             kProgramBytes + fields + kPaperFields * sizeof(double) * static_cast<double>(grid.cells())};
   }
@@ -271,6 +272,15 @@ Memory predicted_memory(const Scene& scene, const Model& model) {
 }
 
 namespace {
+
+/// A thread that has fewer cells waits for the others about as long as it works.
+constexpr Index kCellsOfThread = Index{1} << 17;
+
+int threads_for(const Scene& scene, const Grid& part) {
+  if (scene.threads > 0) return scene.threads;
+  const Index processors = std::max(1U, std::thread::hardware_concurrency());
+  return static_cast<int>(std::clamp<Index>(part.cells() / kCellsOfThread, 1, processors));
+}
 
 Model build_model(const Scene& scene) {
   const ElasticPair pair = elastic_pair(half_space(scene.lower), half_space(scene.upper));
@@ -309,6 +319,7 @@ Model build_model(const Scene& scene) {
   model.pressure_part = reducible(scene)
                             ? Reduction(model.grid, model.gap, model.gap.isFinite().cast<double>())
                             : Reduction(model.grid);
+  model.threads = threads_for(scene, model.pressure_part.grid());
 
   if (const auto radii = hertzian_radii(surfaces); radii && model.normal_load) {
     model.hertz =

@@ -44,6 +44,7 @@ struct Model : Dimensionless {
   bool shear_coupling;      ///< K31, K32 enter, beside K13 and K23
   bool forces;              ///< some step brings a tangential force or displacement
   Reduction pressure_part;  ///< of the grid, on which the pressure is found
+  int threads;              ///< that solve it
   std::vector<Omission> left_out;
   std::shared_ptr<SolveCache> cache = {};  ///< of its operators; empty: none
 };

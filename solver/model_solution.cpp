@@ -93,6 +93,7 @@ Solution in_si(ModelSolution solution) {
   const Model& model = solution.model;
   solution.grid = model.grid_in_m();
   solution.friction = model.friction;
+  solution.threads = model.threads;
   solution.shear_modulus = model.stress_unit;
   const auto in_unit = [](ArrayXd& field, double unit) {
     field *= unit;

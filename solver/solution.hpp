@@ -90,6 +90,7 @@ struct Solution {
   double pressure_applications = 0.0;  ///< likewise of the normal operator
   double bytes = 0.0;                  ///< operators and workspaces of the larger of the two problems
   double predicted_bytes = 0.0;        ///< of all that the solve holds, said before it
+  int threads = 1;
   Seconds seconds;
 
   int iterations = 0;           ///< of the method that found the tractions

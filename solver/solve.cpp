@@ -228,10 +228,10 @@ void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, c
 using AfterStep = std::function<void(ModelSolution& solution, bool last)>;
 void solve_steps(const Scene& scene, const Progress& progress, std::shared_ptr<SolveCache> cache,
                  const AfterStep& after_step) {
-  const ThreadPool threads(scene.threads);
   Stopwatch watch(cache.get());
   ModelSolution solution;
   solution.model = make_model(scene);
+  const ThreadPool threads(solution.model.threads);
   solution.predicted_bytes = predicted_memory(scene, solution.model).total();
   const bool repeats = scene.steps.size() > 1 || scene.cycles > 1 || solution.model.shear_coupling;
   if (!cache && repeats) cache = std::make_shared<SolveCache>();

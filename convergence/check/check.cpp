@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <vector>
@@ -185,7 +186,7 @@ Json check_field(const solver::Scene& scene, const std::filesystem::path& file, 
   json["yardstick"] = reference_json(e);
   json["judged"] = judged_json(verdict.judged);
   if (verdict.diagnosis) json["diagnosis"] = diagnosis_json(*verdict.diagnosis);
-  json["provenance"] = provenance(scene.threads);
+  json["provenance"] = provenance(std::max(1, scene.threads));
   return json;
 }
 

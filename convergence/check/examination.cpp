@@ -65,7 +65,7 @@ Examination examine(const solver::Scene& scene, const std::filesystem::path& fil
   const solver::Model model = solver::make_model(scene);
   const OracleAnswer exact = find_oracle(scene);
   const Interpretation read = in_own_conventions(read_foreign_field(file), scene, model, exact);
-  const GivenContact contact = make_given_contact(read.field, model, scene.threads);
+  const GivenContact contact = make_given_contact(read.field, model, model.threads);
 
   std::vector<std::string> conventions = read.conventions;
   std::optional<double> twist = given_twist;

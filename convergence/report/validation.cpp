@@ -291,7 +291,7 @@ Json validate(const fs::path& scene_file, const fs::path& inputs, const Validati
   const auto results = solve_all(page_runs(scene_file, scenes, size, folder), pool);
 
   Json report;
-  report["provenance"] = provenance(scene.threads);
+  report["provenance"] = provenance(std::max(1, scene.threads));
   report["scene"] = {
       {"name", scene.name}, {"text", read_text(scene_file)}, {"summary", summary(scene, *exact.oracle)}};
   report["contact"] = {{"radius", exact.oracle->contact_radius},

@@ -227,7 +227,7 @@ Json solve_result(const solver::Scene& scene, const Solution& solution, const Or
   json["solver_bytes"] = solution.bytes;
   json["predicted_bytes"] = solution.predicted_bytes;
   json["peak_bytes"] = peak_bytes();
-  json["provenance"] = provenance(scene.threads);
+  json["provenance"] = provenance(solution.threads);
   return json;
 }
 

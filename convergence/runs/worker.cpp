@@ -120,6 +120,7 @@ int serve_runs(const fs::path& folder, std::optional<double> memory_limit) {
   while (const std::optional<RunSpec> spec = next_run(std::cin)) {
     PreparedRun run = prepare_run(*spec);
     run.scene.memory_limit = memory_limit;
+    if (run.scene.threads == 0) run.scene.threads = 1;  // its processor is one of those that solve
     try {
       const ResultCache cache(folder);
       cache.keep(run.name, run.cache_key, solve(run, shared), spec->fields);

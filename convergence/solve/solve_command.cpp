@@ -27,6 +27,7 @@
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/runs/worker.hpp"
 #include "convergence/solve/accurate_solve.hpp"
+#include "solver/cache/solve_cache.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/toml_reader.hpp"
@@ -90,14 +91,17 @@ int answer_exactly(const solver::Scene& scene, const SolveRequest& request, std:
 }
 
 /// Solves, and writes the fields of each step where they go to a file of its own.
-SolvedScene find_on_grid(const solver::Scene& scene, const SolveRequest& request, Json& result) {
+/// cache: null, or what several grids share.
+SolvedScene find_on_grid(const solver::Scene& scene, const SolveRequest& request, Json& result,
+                         const std::shared_ptr<solver::SolveCache>& cache = {}) {
   std::size_t step = 0;
   const auto on_step = [&](const solver::Solution& at, const OracleAnswer& exact) {
     ++step;
     if (!one_file_a_step(request.fields)) return;
     write_solution_fields(file_of_step(request.fields, step), at, exact);
   };
-  return solve_scene(scene, {.progress = show_progress, .on_step = on_step, .incomplete = &result});
+  return solve_scene(scene,
+                     {.progress = show_progress, .on_step = on_step, .incomplete = &result, .cache = cache});
 }
 
 void write_answer(const SolvedScene& answer, const SolveRequest& request, std::ostream& text) {
@@ -158,8 +162,10 @@ int solve_accurately(solver::Scene scene, const SolveRequest& request, std::ostr
     text << accuracy_text(result);
     return 0;
   }
-  const AccurateAnswer answer = solve_to_accuracy(
-      scene, target, [&](const solver::Scene& chosen) { return find_on_grid(chosen, request, result); });
+  const auto cache = std::make_shared<solver::SolveCache>();
+  const AccurateAnswer answer = solve_to_accuracy(scene, target, [&](const solver::Scene& chosen) {
+    return find_on_grid(chosen, request, result, cache);
+  });
   result = answer.answer.result;
   result["accuracy"] = answer.accuracy;
   write_answer(answer.answer, request, text);

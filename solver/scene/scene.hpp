@@ -92,7 +92,7 @@ struct Scene {
   Precision precision = Precision::double_precision;
   double tolerance = 1e-8;
   int max_iterations = 5000;
-  int threads = 1;
+  int threads = 0;  ///< of one solve; 0: as its cells are worth it, up to one a processor
   /// 0: to nearest; else rounding is random, drawn from the seed, to see which digits depend on it.
   std::int64_t rounding_seed = 0;
   /// Transforms are planned by measurement and the plans kept in this file; empty: by estimate, which gives

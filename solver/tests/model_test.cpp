@@ -3,7 +3,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <thread>
 
 #include "solver/pressure.hpp"
 #include "solver/tests/paper_scene.hpp"
@@ -175,6 +177,22 @@ TEST(Model, IsDimensionless) {
   EXPECT_NEAR(model.hertz->peak_pressure * model.stress_unit / paper::kPeakPressure, 1.0, kModelRounding);
   // The contact and a margin of two cells fill the grid.
   EXPECT_NEAR(40.0 * model.length_unit, 2.0 * paper::kContactRadius + 4.0 * model.length_unit, 1e-15);
+}
+
+/// Few cells, of which a quadrant has a quarter, are left to one thread; who asks for some gets them.
+TEST(Model, HasThreadsThatAreWorthTheirCells) {
+  const auto threads = [](Index cells, ModelChoice choice, int asked) {
+    Scene scene = paper_scene(cells, 0.5);
+    scene.model = choice;
+    scene.threads = asked;
+    return make_model(scene).threads;
+  };
+  const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+  EXPECT_EQ(threads(256, ModelChoice::full, 0), 1);
+  EXPECT_EQ(threads(512, ModelChoice::full, 0), std::min(2, processors));
+  EXPECT_EQ(threads(512, ModelChoice::automatic, 0), 1);
+  EXPECT_EQ(threads(64, ModelChoice::automatic, 3), 3);
+  EXPECT_EQ(threads(512, ModelChoice::full, 1), 1);
 }
 
 TEST(Model, SaysWhatItLeavesOut) {

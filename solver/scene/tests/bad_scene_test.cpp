@@ -257,7 +257,7 @@ std::vector<BadScene> bad_scenes() {
        {},
        {"solver.method = \"magic\"", "paper"}},
       {"unknown_model", "model = \"auto\"", "model = \"some\"", {}, {"solver.model = \"some\"", "auto"}},
-      {"no_threads", "threads = 2", "threads = 0", {}, {"solver.threads = 0", "a whole number from 1"}},
+      {"no_threads", "threads = 2", "threads = -1", {}, {"solver.threads = -1", "a whole number from 0"}},
       {"no_iterations",
        "max_iterations = 70",
        "max_iterations = 0",

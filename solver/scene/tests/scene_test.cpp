@@ -44,7 +44,7 @@ TEST_F(SceneFile, NeedsNoMoreThanTheProblem) {
   EXPECT_EQ(scene.op, OperatorKind::dcfft);
   EXPECT_FALSE(scene.extent);
   EXPECT_EQ(scene.tolerance, 1e-8);
-  EXPECT_EQ(scene.threads, 1);
+  EXPECT_EQ(scene.threads, 0);
   EXPECT_EQ(scene.steps[0].normal, 1000.0);  // written as a whole number
 }
 

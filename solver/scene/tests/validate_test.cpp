@@ -75,7 +75,7 @@ const Mistake kMistakes[] = {
      }},
     {"solver.tolerance", [](Scene& s) { s.tolerance = 0.0; }},
     {"solver.max_iterations", [](Scene& s) { s.max_iterations = 0; }},
-    {"solver.threads", [](Scene& s) { s.threads = 0; }},
+    {"solver.threads", [](Scene& s) { s.threads = -1; }},
     {"solver.rounding_seed", [](Scene& s) { s.rounding_seed = -1; }},
     {"solver.precision",
      [](Scene& s) {
