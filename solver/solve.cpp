@@ -57,7 +57,6 @@ void expand(TangentialSolution& solution, const Reduction& part) {
     *field = part.expanded(*field, torsion_symmetry());
   }
   solution.stick = part.expanded(solution.stick, normal_symmetry());
-  if (part.quadrant()) solution.tangent_stiffness *= 4.0;
 }
 
 /// gap: over the energy, that is enough for Coulomb's method; 0: as the scene asks.

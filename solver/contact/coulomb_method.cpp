@@ -38,19 +38,11 @@ struct Conditions {
     if (problem.twist) given.push_back(Motion::twist);
   }
 
-  /// Among the imposed ones, or among all, the imposed ones first; empty: not there.
-  std::optional<Index> among_imposed(Motion motion) const { return position(imposed, motion); }
-  std::optional<Index> among_all(Motion motion) const {
-    std::vector<Motion> all = imposed;
-    all.insert(all.end(), given.begin(), given.end());
-    return position(all, motion);
-  }
-
- private:
-  static std::optional<Index> position(const std::vector<Motion>& motions, Motion motion) {
-    const auto found = std::ranges::find(motions, motion);
-    if (found == motions.end()) return std::nullopt;
-    return found - motions.begin();
+  /// Among the imposed ones; empty: not there.
+  std::optional<Index> among_imposed(Motion motion) const {
+    const auto found = std::ranges::find(imposed, motion);
+    if (found == imposed.end()) return std::nullopt;
+    return found - imposed.begin();
   }
 };
 
@@ -148,18 +140,6 @@ void describe_motion(TangentialSolution& solution, const NewtonSummary& newton,
   solution.twist = motion(Motion::twist);
 }
 
-/// dM/dphi. Where forces are imposed, the translations answer.
-double turning_stiffness(const CoefficientMatrix& stiffness, const TangentialProblem& problem) {
-  if (stiffness.rows() == 0) return 0.0;
-  const Conditions conditions(problem);
-  const Index turn = *conditions.among_all(Motion::twist);
-  if (!problem.force) return stiffness(turn, turn);
-  const Index push = *conditions.among_all(Motion::delta1);
-  const Coefficients coupled = stiffness.block<2, 1>(push, turn);
-  const CoefficientMatrix pushed = stiffness.block<2, 2>(push, push);
-  return stiffness(turn, turn) - coupled.dot(SmallCholesky(pushed).solve(coupled));
-}
-
 /// Slip where the bodies touch, and the stick area: where the tractions stay within their bound.
 void describe(TangentialSolution& solution, const TangentialProblem& problem, const NestedSummary& nested) {
   const ArrayXd& bound = problem.friction_bound;
@@ -205,7 +185,6 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
                                    nested.newton.gap, options.tolerance);
   }
   describe_motion(solution, nested.newton, problem);
-  solution.tangent_stiffness = turning_stiffness(nested.newton.tangent_stiffness, problem);
   solution.traction = std::move(nested.field);
   solution.elastic_displacement = std::move(nested.displacement);
   solution.change = nested.newton.gap;

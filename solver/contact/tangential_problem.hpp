@@ -40,9 +40,6 @@ struct TangentialSolution {
   std::array<double, 2> displacement{};  ///< delta_1, delta_2
   double change = 0.0;                   ///< what the method's stopping test saw last
   int iterations = 0;
-  /// dM/dphi over the cell area under the given forces or translations (Coulomb's method; 0: not computed).
-  /// That of a bonded circular punch is (16/3) G a_s^3.
-  double tangent_stiffness = 0.0;
   std::vector<GridWork> grids = {};  ///< work done, coarsest grid first
   Safeguards safeguards = {};        ///< of Coulomb's method, on all grids
   double bytes = 0.0;                ///< operators and workspaces on the finest grid

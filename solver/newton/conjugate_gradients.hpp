@@ -30,8 +30,9 @@ struct CgOptions {
 struct CgSummary {
   CgStatus status = CgStatus::reduced;
   int iterations = 0;
-  double reduction = 1.0;   ///< reached
-  double breakdown_at = 0;  ///< the curvature, or the square, that ended an iteration which broke down
+  double reduction = 1.0;    ///< reached
+  double breakdown_at = 0;   ///< the curvature, or the square, that ended an iteration which broke down
+  Coefficients multipliers;  ///< of the constraints' conditions: as the residual that is left has them
 
   bool broke_down() const { return status == CgStatus::indefinite || status == CgStatus::not_finite; }
   /// The breakdown with its number; empty: none.
@@ -152,6 +153,15 @@ class CgConstraints {
     return factor_.solve(Eigen::Map<const Eigen::VectorXd>(products.conditions.data(), count()));
   }
 
+  /// The same of a residual that is not preconditioned.
+  Coefficients multipliers(const Sweep& cells, const CgField<Real>& r) const {
+    return multipliers(cells.sum<CgProducts>([&](Index first, Index last, CgProducts& sum) {
+      for (std::size_t k = 0; k < count_; ++k) {
+        sum.conditions[k] += dot(cells.size(), first, last, preconditioned_[k], r);
+      }
+    }));
+  }
+
   /// Takes it out of r and of the preconditioned y, in some cells.
   void take_out(Index cells, Index first, Index last, const Coefficients& multipliers, CgField<Real>& r,
                 CgField<Real>& y) const {
@@ -195,10 +205,11 @@ class CgConstraints {
   SmallCholesky factor_;
 };
 
-/// Preconditioned conjugate gradients for A x = r + sum of multiplier_k c_k with the constraints' c_k.x as x
+/// Preconditioned conjugate gradients for A x = r - sum of multiplier_k c_k with the constraints' c_k.x as x
 /// has them at the start. r: the residual of x, its start; overwritten by what is left. Stops when r has
-/// fallen by `reduction`. Each iteration applies both maps once and sweeps over the cells four times, twice
-/// of them within the maps. Allocates nothing.
+/// fallen by `reduction`. The multipliers that are found go up with each iteration's residual: they are wrong
+/// by its part that the preconditioner and the exact inverse see differently. Each iteration applies both
+/// maps once and sweeps over the cells four times, twice of them within the maps. Allocates nothing.
 template <typename Real, LinearMap<Real> Map, SplitMap<Real> Preconditioner>
 CgSummary projected_cg(Map& map, Preconditioner& preconditioner, const CgConstraints<Real>& constraints,
                        CgField<Real>& r, const CgOptions& options, CgWorkspace<Real>& work,
@@ -208,6 +219,7 @@ CgSummary projected_cg(Map& map, Preconditioner& preconditioner, const CgConstra
   CgField<Real>& y = work.y;
   const Sweep& cells = map.cells();
   CgSummary summary;
+  summary.multipliers = constraints.multipliers(CgProducts{});
   Coefficients multipliers;
   // y = r preconditioned; r.y once both are within the constraints.
   const auto precondition = [&] {
@@ -222,6 +234,7 @@ CgSummary projected_cg(Map& map, Preconditioner& preconditioner, const CgConstra
     for (Index k = 0; k < multipliers.size(); ++k) {
       square -= multipliers[k] * products.conditions[static_cast<std::size_t>(k)];
     }
+    summary.multipliers += multipliers;
     return square;
   };
   // r and y within the constraints; the next direction.
@@ -264,6 +277,7 @@ CgSummary projected_cg(Map& map, Preconditioner& preconditioner, const CgConstra
     });
     // What is left of a residual that is not asked for is not measured.
     if (options.reduction == 0.0 && summary.iterations == options.max_iterations) {
+      summary.multipliers += constraints.multipliers(cells, r);
       summary.status = CgStatus::iterations;
       break;
     }

@@ -19,8 +19,6 @@ struct ConvexProgram {
   };
   std::vector<Given> given = {};
 
-  std::size_t conditions() const { return imposed.size() + given.size(); }
-
   /// The part of the values [first, last) in the energy of q with the displacement u = K q; the imposed
   /// conditions' part, which is constant, left out.
   double energy(Index first, Index last, const Eigen::ArrayXd& q, const Eigen::ArrayXd& u) const;

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "solver/newton/multiplier_refinement.hpp"
-
 namespace slipstick::solver {
 namespace {
 
@@ -27,8 +25,8 @@ constexpr double kDistrust = 3.0;
 constexpr double kTightReduction = 1e-4;
 constexpr double kPartOfWanted = 0.3;
 constexpr int kInnerIterations = 40;
-/// Steps towards the tangent field at the end; each brings it nearer by about 5.
-constexpr int kTangentIterations = 3;
+/// Of the linear problem that refines the multipliers at the end; each brings them nearer by about 5.
+constexpr int kRefiningIterations = 2;
 constexpr int kPatience = 8;
 /// Of a Newton step, and of a gradient step of length rho, before it is given up.
 constexpr int kMaxHalvings = 6;
@@ -62,7 +60,7 @@ NaturalMapNewton<Set, Real>::NaturalMapNewton(const Set& set, const ConvexProgra
       mean_(symbol.diagonal()),
       rho_((kIsScalar ? kRhoOfPressure : kRho) * 0.5 * (mean_[0] + mean_[1])),
       work_(size()),
-      tangents_(program.conditions(), Field(size())),
+      tangents_(program.imposed.size(), Field(size())),
       constraints_(tangents_),
       r_(size()),
       x_(size()),
@@ -75,7 +73,6 @@ NaturalMapNewton<Set, Real>::NaturalMapNewton(const Set& set, const ConvexProgra
       trial_u_(size()) {
   space_.free = set.sweep();
   for (const Condition& condition : program.imposed) add_condition(*condition.c);
-  for (const auto& given : program.given) add_condition(*given.c);
   if constexpr (!std::is_same_v<Real, double>) {
     for (const Field& field : rounded_) c_.push_back(&field);
   }
@@ -234,7 +231,7 @@ void NaturalMapNewton<Set, Real>::linearise() {
   changed_ = set_.linearise(y_, rho_, mean_, space_);
   if (kIsScalar) extension_.prepare(space_.a11);
   TangentPreconditioner<Real> map = preconditioner();
-  has_tangents_ = constraints_.prepare(map, imposed(), work_.y);
+  has_tangents_ = constraints_.prepare(map, c_, work_.y);
 }
 
 /// Right-hand side -(s + stiffness q), of which the tangent space sees the turning part of q.
@@ -422,25 +419,21 @@ bool NaturalMapNewton<Set, Real>::take_gradient_step(ArrayXd& q) {
   return false;
 }
 
-/// The multipliers to second order: those of a Newton step along the tangent fields w, from w.(s +
-/// stiffness q) and w.c. False if the gap at those multipliers is above the tolerance: then another step is
-/// due.
+/// The multipliers to second order: those of a Newton step that keeps the loads. False if the gap at those
+/// multipliers is above the tolerance: then another step is due.
 template <AdmissibleSet Set, typename Real>
 bool NaturalMapNewton<Set, Real>::refine(const ArrayXd& q, double tolerance, NewtonSummary& summary) {
   linearise();
-  summary.tangent_stiffness = CoefficientMatrix();
-  if (!has_tangents_) return true;
+  if (!has_tangents_ || balance_.count() == 0) return true;
+  write_residual(q);
+  x_.setZero();
   TangentOperator<Real> map = tangent_operator();
   TangentPreconditioner<Real> inverse = preconditioner();
-  summary.tangent_stiffness =
-      tangent_stiffness<Real>(map, inverse, c_, kTangentIterations, work_, r_, std::span(tangents_));
-  if (balance_.count() == 0) return true;
-  write_residual(q);
-  const auto correction =
-      multiplier_correction<Real>(summary.tangent_stiffness, tangents_, r_, space_.free, balance_.count());
-  if (!correction) return true;
+  const CgSummary step =
+      projected_cg<Real>(map, inverse, constraints_, r_, {0.0, kRefiningIterations}, work_, x_);
+  if (step.broke_down()) return true;
   const Coefficients first_order = multipliers_;
-  multipliers_ += *correction;
+  multipliers_ -= step.multipliers;
   const double gap = relative_gap(q);
   if (gap <= tolerance) {
     summary.gap = gap;

@@ -21,7 +21,7 @@ namespace slipstick::solver {
 struct NewtonOptions {
   double tolerance = 1e-8;       ///< on gap / (q.Kq/2); see is_certified()
   long max_applications = 1000;  ///< of the operator
-  /// Whether the multipliers and the tangent stiffness are wanted to second order, at some applications more.
+  /// Whether the multipliers are wanted to second order, at some applications more.
   bool refine_multipliers = true;
   /// At least: a step gives each cell its state, which a start that is good enough may not have.
   int least_iterations = 0;
@@ -33,9 +33,6 @@ struct NewtonSummary {
   std::string message;                                    ///< why not
   double gap = std::numeric_limits<double>::quiet_NaN();  ///< over q.Kq/2
   Coefficients multipliers;                               ///< of the imposed conditions
-  /// d(load)/d(multiplier) at the solution, of the imposed conditions and after them the given ones; empty
-  /// where it is not known.
-  CoefficientMatrix tangent_stiffness;
   int iterations = 0;
   Safeguards safeguards;
 };
@@ -87,9 +84,6 @@ class NaturalMapNewton {
   };
 
   Index size() const { return Set::kComponents * set_.cells(); }
-  std::span<const Field* const> imposed() const {
-    return std::span(c_).first(static_cast<std::size_t>(balance_.count()));
-  }
   TangentOperator<Real> tangent_operator() { return {inner_, space_}; }
   TangentPreconditioner<Real> preconditioner() {
     return {symbol_, space_, kIsScalar ? &extension_ : nullptr};
@@ -133,15 +127,14 @@ class NaturalMapNewton {
   std::array<double, 2> mean_;
   double rho_;
   CgWorkspace<Real> work_;
-  std::vector<Field>
-      tangents_;  ///< c preconditioned, or once the multipliers are refined (K + stiffness)^-1 c
-  CgConstraints<Real> constraints_;  ///< by the former
-  Field r_, x_;                      ///< of the linear problem: residual, solution
+  std::vector<Field> tangents_;  ///< c preconditioned
+  CgConstraints<Real> constraints_;
+  Field r_, x_;  ///< of the linear problem: residual, solution
   TangentSpace<Real> space_;
   Extension<Real> extension_;  ///< of scalars
   LoadBalance<Set> balance_;
   std::vector<Field> rounded_;   ///< the conditions' fields, unless they are in this precision already
-  std::vector<const Field*> c_;  ///< those of the imposed conditions, then the given ones
+  std::vector<const Field*> c_;  ///< those of the imposed conditions
   ArrayXd u_, y_, trial_, trial_u_;
   Coefficients multipliers_;  ///< of the imposed conditions
   double energy_ = 0.0;       ///< of q

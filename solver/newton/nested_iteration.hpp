@@ -90,7 +90,7 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
   result.slip = newton.slip();
   result.grids.push_back(
       {grid.n1, grid.n2, newton.applications(), result.newton.iterations, result.newton.gap});
-  result.bytes = operators->bytes() + newton.bytes(static_cast<double>(grid.cells()), program.conditions());
+  result.bytes = operators->bytes() + newton.bytes(static_cast<double>(grid.cells()), program.imposed.size());
   return result;
 }
 

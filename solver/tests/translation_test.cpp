@@ -315,32 +315,6 @@ TEST(FullModel, TurnsASymmetricContactAsTheReducedOne) {
   EXPECT_LE(relative_difference(full.tangential.traction, reduced.tangential.traction), kSame);
 }
 
-/// dM/dphi with the forces, or the translations, held.
-TEST(TangentStiffness, IsThatOfTheLoadsHeld) {
-  for (const bool by_displacement : {false, true}) {
-    Scene scene = sphere({4.0, 2.0}, 36);
-    scene.steps[0].force = {40.0, 10.0};
-    const ModelSolution middle = solved(scene);
-    if (by_displacement) {
-      scene.steps[0].force = {};
-      scene.steps[0].displacement = middle.displacement;
-    }
-    const ModelSolution found = solved(scene);
-    std::array<double, 2> moments{};
-    const double step = 1e-5 * middle.twist_angle;
-    for (const int side : {0, 1}) {
-      scene.steps[0].torsion = Twist{middle.twist_angle + (side == 0 ? -step : step)};
-      moments[static_cast<std::size_t>(side)] = solved(scene).moment;
-    }
-    const double expected = (moments[1] - moments[0]) / (2.0 * step);
-    const double unit = found.model.grid.cell_area() * found.model.moment_unit();
-    // Three steps of conjugate gradients find it to 1e-3 or so.
-    EXPECT_NEAR(found.tangential.tangent_stiffness * unit / expected, 1.0, 2e-3) << by_displacement;
-    RecordProperty(by_displacement ? "displacement_held" : "force_held",
-                   std::to_string(found.tangential.tangent_stiffness * unit / expected - 1.0));
-  }
-}
-
 // --- several patches ---
 
 TEST(TwoPatches, TurnAboutAPointBetweenThem) {

@@ -253,19 +253,6 @@ TEST(Twist, IsOfSecondOrder) {
   }
 }
 
-TEST(TangentStiffness, IsTheSlopeOfMomentOverTwist) {
-  const CoulombBench bench(40, 28);
-  for (const double moment_ratio : {0.2, 0.7}) {
-    const TangentialSolution at = bench.solve(moment_ratio, 1e-13);
-    // So small a step changes no cell's state.
-    const double step = 1e-7 * at.twist;
-    const TangentialSolution up = bench.solve_twist(at.twist + step, 1e-15);
-    const TangentialSolution down = bench.solve_twist(at.twist - step, 1e-15);
-    const double slope = (bench.moment_of(up) - bench.moment_of(down)) / (2.0 * step);
-    EXPECT_NEAR(at.tangent_stiffness / slope, 1.0, 2e-5);
-  }
-}
-
 // --- work ---
 
 class Work : public testing::TestWithParam<std::tuple<Index, double>> {};

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "solver/newton/conjugate_gradients.hpp"
-#include "solver/newton/multiplier_refinement.hpp"
 #include "solver/newton/tangent_space.hpp"
 
 namespace slipstick::solver {
@@ -39,12 +38,6 @@ class TangentCg {
   /// Under the conditions of the last precondition().
   CgSummary solve_constrained(const TangentSpace<Real>& space, double reduction, int max_iterations) {
     return run(space, constraints_, reduction, max_iterations);
-  }
-  CoefficientMatrix solve_for_conditions(const TangentSpace<Real>& space, CgFields<Real> conditions,
-                                         int iterations) {
-    TangentOperator<Real> map{op_, space};
-    TangentPreconditioner<Real> inverse{symbol_, space};
-    return tangent_stiffness<Real>(map, inverse, conditions, iterations, work_, r_, std::span(w_));
   }
 
  private:
