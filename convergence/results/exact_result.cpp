@@ -116,7 +116,7 @@ std::string exact_text(const Json& r) {
          status_text(r) + state_text(r) + model_text(r);
 }
 
-void write_exact_fields(const std::filesystem::path& file, const solver::Scene& scene, const Oracle& oracle) {
+GridColumns exact_columns(const solver::Scene& scene, const Oracle& oracle) {
   if (!oracle.shear) {
     throw solver::InputError(
         scene.source.string(), "solver.model", "\"exact\"",
@@ -128,12 +128,17 @@ void write_exact_fields(const std::filesystem::path& file, const solver::Scene& 
   const solver::Grid grid = solver::make_model(sampled).grid_in_m();
   const solver::Index cells = grid.cells();
   const ExactFields fields = exact_fields(oracle, grid);
-  const std::vector<solver::Column> columns{
+  std::vector<solver::Column> columns{
       {"x1", solver::cell_x1(grid)},       {"x2", solver::cell_x2(grid)},
       {"pressure", fields.pressure},       {"q1", fields.traction.head(cells)},
       {"q2", fields.traction.tail(cells)}, {"stick", (fields.radius < oracle.stick_radius).cast<double>()},
   };
-  solver::write_fields(file, grid, columns, fields.pressure);
+  return {.grid = grid, .columns = std::move(columns), .pressure = fields.pressure};
+}
+
+void write_exact_fields(const std::filesystem::path& file, const solver::Scene& scene, const Oracle& oracle) {
+  const GridColumns fields = exact_columns(scene, oracle);
+  solver::write_fields(file, fields.grid, fields.columns, fields.pressure);
 }
 
 }  // namespace slipstick::convergence

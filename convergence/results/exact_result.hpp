@@ -1,10 +1,13 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/results/result_parts.hpp"
+#include "solver/input/field_file.hpp"
 #include "solver/scene/scene.hpp"
 
 /// What `solve` gives where a scene asks for the exact answer, solver.model = "exact": the keys of a solve on
@@ -21,10 +24,20 @@ Json exact_result(const solver::Scene& scene, const Oracle& oracle, double secon
 /// The same for a person: a few lines.
 std::string exact_text(const Json& result);
 
-/// Writes pressure, tractions and stick at the cell centres of the scene's grid, with the columns of a solve
-/// on a grid but its slips, which have no closed form. A cone's pressure is infinite on the axis, where an
-/// odd number of cells has a centre. Throws InputError for an answer without tractions, a grid that does not
-/// fit in memory and a file that cannot be written.
+/// Fields at the cell centres of a grid, in m.
+struct GridColumns {
+  solver::Grid grid;
+  std::vector<solver::Column> columns;
+  Eigen::ArrayXd pressure;
+};
+
+/// Pressure, tractions and stick at the cell centres of the scene's grid, with the columns of a solve on a
+/// grid but its slips, which have no closed form. A cone's pressure is infinite on the axis, where an odd
+/// number of cells has a centre. Throws InputError for an answer without tractions and a grid that does not
+/// fit in memory.
+GridColumns exact_columns(const solver::Scene& scene, const Oracle& oracle);
+
+/// Writes these, where there is pressure. Throws InputError for a file that cannot be written too.
 void write_exact_fields(const std::filesystem::path& file, const solver::Scene& scene, const Oracle& oracle);
 
 }  // namespace slipstick::convergence

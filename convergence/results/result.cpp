@@ -359,8 +359,7 @@ std::string solve_text(const Json& r) {
   return r.contains("steps") ? text + steps_text(r) : text;
 }
 
-void write_solution_fields(const std::filesystem::path& file, const Solution& solution,
-                           const OracleAnswer& exact) {
+std::vector<solver::Column> solution_columns(const Solution& solution, const OracleAnswer& exact) {
   const solver::Index cells = solution.grid.cells();
   std::vector<solver::Column> columns{
       {"x1", solver::cell_x1(solution.grid)},
@@ -378,7 +377,12 @@ void write_solution_fields(const std::filesystem::path& file, const Solution& so
     columns.push_back({"q1_exact", fields.traction.head(cells)});
     columns.push_back({"q2_exact", fields.traction.tail(cells)});
   }
-  solver::write_fields(file, solution.grid, columns, solution.pressure);
+  return columns;
+}
+
+void write_solution_fields(const std::filesystem::path& file, const Solution& solution,
+                           const OracleAnswer& exact) {
+  solver::write_fields(file, solution.grid, solution_columns(solution, exact), solution.pressure);
 }
 
 Json profile_json(const solver::Solution& solution, const OracleAnswer& answer) {

@@ -2,9 +2,11 @@
 
 #include <filesystem>
 #include <string>
+#include <vector>
 
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/results/result_parts.hpp"
+#include "solver/input/field_file.hpp"
 #include "solver/solve.hpp"
 
 namespace slipstick::convergence {
@@ -29,8 +31,11 @@ std::string solve_text(const Json& result);
 /// {radius (r/a), value, exact, error}; none where the exact tractions are not known.
 Json profile_json(const solver::Solution& solution, const OracleAnswer& exact);
 
-/// Writes tractions, pressure, slip, stick and the energy dissipated (J/m^2) of a solution (and the exact
-/// traction, where known) over its cells; slip and dissipated of its step.
+/// Tractions, pressure, slip, stick and the energy dissipated (J/m^2) of a solution (and the exact traction,
+/// where known) over its cells; slip and dissipated of its step.
+std::vector<solver::Column> solution_columns(const solver::Solution& solution, const OracleAnswer& exact);
+
+/// Writes these, where there is pressure.
 void write_solution_fields(const std::filesystem::path& file, const solver::Solution& solution,
                            const OracleAnswer& exact);
 

@@ -23,14 +23,6 @@ constexpr std::size_t kMisspelling = 3;
 /// Parts of a dotted key. No key that is read has more than five; keys nest 256 deep at most.
 constexpr std::size_t kMaxKeyParts = 32;
 
-std::string read_text(const std::filesystem::path& file) {
-  const std::string text = read_input_file(file, kLargestSettings, "a TOML file");
-  if (text.find('\0') != std::string::npos) {
-    throw InputError(file.string(), "is a binary file; allowed: a TOML file");
-  }
-  return text;
-}
-
 /// Tables in tables end one another recursively: keys of a million parts would overrun the stack. What counts
 /// are words with dots between, wherever they stand (quoted ones may hold blanks), those of the tables in
 /// braces around them among them.
@@ -82,6 +74,9 @@ void require_short_keys(const std::string& text, const std::string& file) {
 }
 
 toml::table parse(const std::string& text, const std::string& file) {
+  if (text.find('\0') != std::string::npos) {
+    throw InputError(file, "is a binary file; allowed: a TOML file");
+  }
   require_short_keys(text, file);
   try {
     return toml::parse(text, file);
@@ -154,6 +149,10 @@ toml::table* table_below(toml::table& table, const std::string& part) {
 
 }  // namespace
 
+SettingsText settings_of(const std::filesystem::path& file) {
+  return {.text = read_input_file(file, kLargestSettings, "a TOML file"), .file = file};
+}
+
 struct SceneReader::Questions {
   toml::table root;
   std::map<std::string, Range> keys;
@@ -173,7 +172,11 @@ struct SceneReader::Questions {
 
 SceneReader::SceneReader(const std::filesystem::path& file, const std::vector<std::string>& overrides,
                          const SettingKeys& keys)
-    : file_(file), toml_(new Questions{parse(read_text(file), file.string()), {}, {}}) {
+    : SceneReader(settings_of(file), overrides, keys) {}
+
+SceneReader::SceneReader(const SettingsText& settings, const std::vector<std::string>& overrides,
+                         const SettingKeys& keys)
+    : file_(settings.file), toml_(new Questions{parse(settings.text, settings.file.string()), {}, {}}) {
   for (const SettingKey& key : keys) toml_->keys.emplace(key.name, key.allowed);
   for (const std::string& assignment : overrides) apply_override(assignment);
 }

@@ -12,6 +12,14 @@
 
 namespace slipstick::solver {
 
+/// What a TOML file says, or might: `file` is what messages call it and where its relative paths begin.
+struct SettingsText {
+  std::string text;
+  std::filesystem::path file;
+};
+/// What a file says. Throws InputError where it cannot be read.
+SettingsText settings_of(const std::filesystem::path& file);
+
 /// A TOML file whose keys are asked for one by one, by dotted path; an index picks one of an array of tables,
 /// as in step[1].twist. What is allowed stands in the table of all keys; where it depends on other keys, the
 /// question says it. reject_unknown() at the end finds the keys that nobody asked for. Throws InputError; and
@@ -19,6 +27,8 @@ namespace slipstick::solver {
 class SceneReader {
  public:
   SceneReader(const std::filesystem::path& file, const std::vector<std::string>& overrides,
+              const SettingKeys& keys = {});
+  SceneReader(const SettingsText& settings, const std::vector<std::string>& overrides,
               const SettingKeys& keys = {});
 
   /// Where one of several keys that exclude each other is overridden, those that the file has instead are

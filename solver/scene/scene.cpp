@@ -124,8 +124,9 @@ std::string to_string(Method method) { return word_of(kMethods, method); }
 std::string to_string(CellTraction traction) { return word_of(kCellTractions, traction); }
 std::string to_string(Precision precision) { return word_of(kPrecisions, precision); }
 
-Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
-  SceneReader reader(file, overrides, scene_keys());
+namespace {
+
+Scene read_scene(SceneReader& reader, const std::filesystem::path& file) {
   Scene scene;
   scene.source = file;
   scene.name = reader.text_or("name", file.stem().string());
@@ -167,6 +168,19 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
     reader.fail(key, value, allowed);
   });
   return scene;
+}
+
+}  // namespace
+
+Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides) {
+  SceneReader reader(file, overrides, scene_keys());
+  return read_scene(reader, file);
+}
+
+Scene read_scene_text(const std::string& text, const std::filesystem::path& file,
+                      const std::vector<std::string>& overrides) {
+  SceneReader reader(SettingsText{text, file}, overrides, scene_keys());
+  return read_scene(reader, file);
 }
 
 }  // namespace slipstick::solver

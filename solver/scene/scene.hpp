@@ -108,6 +108,10 @@ struct Scene {
 /// value and what is allowed.
 Scene read_scene(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
+/// The same of text that is no file: `file` is what messages call it and where its relative paths begin.
+Scene read_scene_text(const std::string& text, const std::filesystem::path& file,
+                      const std::vector<std::string>& overrides = {});
+
 /// Throws InputError where solving the scene would write a file outside of its folder: whoever hands on a
 /// scene must not choose where. read_scene() calls it for what the file itself says.
 void require_writes_within(const Scene& scene);
