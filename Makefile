@@ -19,7 +19,7 @@ INSTRUCTION_GATES = $(wildcard bench/gates/instructions-gcc-$(firstword $(subst 
 
 .DEFAULT_GOAL := help
 .PHONY: help setup configure build report report-pdf test gate hard mutants sanitize coverage lint bench bench-against \
-  bench-trust references reference hardest docs install clean
+  bench-trust references reference hardest docs install python clean
 
 help: ## show this list
 	@echo "slipstick: make TARGET"
@@ -124,8 +124,12 @@ docs: ## make the documentation's site, build/site/index.html (needs MkDocs)
 reference: configure ## write the pages of docs/reference that are made from the program; the C++ reference, with doxygen
 	$(call build,reference)
 
+python: configure ## the Python package, in build/python (pip install . makes a wheel instead)
+	$(call build,slipstick_python)
+	@echo "To use it: PYTHONPATH=$(CURDIR)/$(BUILD)/python python3 -c 'import slipstick'"
+
 install: configure ## install under PREFIX (default /usr/local)
-	$(call build,slipstick)
+	$(call build,slipstick slipstick_c)
 	@cmake --install $(BUILD) --prefix "$(abspath $(PREFIX))"
 
 clean: ## remove what was built

@@ -40,7 +40,8 @@ expect "make test ends with the test runner's words" test "$(tail -n 1 "$folder/
 check gate "slipstick slipstick_work"
 check bench "slipstick slipstick_benchmarks"
 check references slipstick_references
-check install slipstick
+check install "slipstick slipstick_c"
+check python slipstick_python
 check reference reference
 check build all
 

@@ -3,7 +3,7 @@
 A comment above a block says what a reader need not see:
     <!-- not run: REASON -->      its commands are held to the Makefile and to --help instead
     <!-- exit code: 1 -->         what the block ends with, if not 0
-    <!-- needs: NAME -->          not run where there is no Python package of this name (Arb: no certified digits)
+    <!-- needs: NAME -->          not run where there is no program or Python package of this name (Arb: no certified digits)
     <!-- around: CODE @@ CODE --> what stands around it where it is a part of a program
 A file is written where the text before its block ends with its name in backquotes and a colon.
 """
@@ -71,21 +71,27 @@ class Checkout:
     def make_scratch(self, folder):
         """A checkout as a reader has it, without what would let a block write into the sources' top folder."""
         folder.mkdir(parents=True)
-        for name in ["analytic", "bench", "convergence", "cmake", "docs", "reports", "solver", "Makefile"]:
+        for name in ["analytic", "bench", "c", "convergence", "cmake", "docs", "reports", "solver", "Makefile"]:
             (folder / name).symlink_to(self.root / name)
         (folder / "build/bench").mkdir(parents=True)
         (folder / "build/slipstick").symlink_to(self.program)
         benchmarks = self.program.parent / "bench/slipstick_benchmarks"
         (folder / "build/bench/slipstick_benchmarks").symlink_to(benchmarks)
+        build = self.program.parent
+        for name in ["c", "python"]:
+            (folder / "build" / name).symlink_to(build / name)
         (folder / "programs").mkdir()
         python = folder / "programs/python3"
         python.write_text(f"#!/bin/sh\nexec {shlex.quote(str(self.python))} -B \"$@\"\n")
         python.chmod(0o755)
-        return {**os.environ, "PATH": f"{folder}/programs:{os.environ['PATH']}", "MPLBACKEND": "agg"}
+        return {**os.environ, "PATH": f"{folder}/programs:{os.environ['PATH']}", "MPLBACKEND": "agg",
+                "PYTHONPATH": f"{build}/python"}
 
     @functools.lru_cache(maxsize=None)
     def has(self, need):
-        """Whether Python can import it, or the program proves digits (Arb)."""
+        """Whether it is a program, or Python can import it, or the program proves digits (Arb)."""
+        if shutil.which(need):
+            return True
         certified = [self.program, "exact", "--moment-ratio", "0.5", "--certified", "15"]
         words = certified if need == "Arb" else [self.python, "-c", f"import {need}"]
         return subprocess.run(words, capture_output=True).returncode == 0
@@ -161,7 +167,7 @@ class PageRun:
                 return [f"{block.file} is a file of the project: no block writes it"]
             file.parent.mkdir(parents=True, exist_ok=True)
             file.write_text(block.code)
-            if file.suffix in (".toml", ".json", ".csv") and not any(
+            if file.suffix in (".toml", ".json", ".csv", ".c", ".f90", ".jl") and not any(
                     file.name in other.code for other in blocks if other is not block):
                 return [f"{block.file} is written, but no block uses it"]
         self.ran += 1
@@ -184,7 +190,14 @@ class PageRun:
         code = block.around.replace("@@", block.code)
         return self.execute(block, [self.checkout.python, "-B", "-c", code], environment)
 
+    def run_fortran(self, block, _):
+        return [] if block.file else ["say the name of this file before it"]
+
+    run_julia = run_fortran
+
     def run_c(self, block, environment, compiler=("cc", "-std=c11"), suffix="c"):
+        if block.file:
+            return []  # commands compile it
         if not shutil.which(compiler[0]):
             self.ran -= 1
             return self.leave(block, f"{compiler[0]} is not installed")

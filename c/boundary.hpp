@@ -1,0 +1,36 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+
+#include "c/slipstick.h"
+
+/// Where C++ ends: every function of slipstick.h does its work inside guarded().
+namespace slipstick::c {
+
+/// Thrown where the caller asked for an end.
+struct Stopped {};
+
+/// What slipstick_message() gives to the calling thread from now on, cut to its length. Does not allocate.
+void set_message(const char* message) noexcept;
+const char* message() noexcept;
+
+/// The status of the exception being handled, which becomes the message.
+int status_of_exception() noexcept;
+
+/// The status that the work returns, or that of what it throws.
+template <class Work>
+int guarded(const Work& work) noexcept {
+  try {
+    return work();
+  } catch (...) {
+    return status_of_exception();
+  }
+}
+
+/// Throws std::invalid_argument naming the argument where it is null.
+inline void require(const void* argument, const char* name) {
+  if (argument == nullptr) throw std::invalid_argument(std::string(name) + " = NULL; allowed: a pointer");
+}
+
+}  // namespace slipstick::c

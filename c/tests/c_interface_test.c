@@ -1,0 +1,341 @@
+/* Calls every function of slipstick.h as a program in C does. What it holds are facts of the theory, and what
+ * the header promises. */
+#define _POSIX_C_SOURCE 200809L
+
+#include <math.h>
+#include <pthread.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+#include "slipstick.h"
+
+static int failures = 0;
+
+static void check(int holds, const char* what) {
+  if (holds) return;
+  ++failures;
+  printf("fails: %s (message: %s)\n", what, slipstick_message());
+}
+
+static int near(double value, double expected, double relative) {
+  return fabs(value - expected) <= relative * fabs(expected);
+}
+
+static int says(const char* words) { return strstr(slipstick_message(), words) != NULL; }
+
+static const double kPi = 3.14159265358979323846;
+static const char* const kProfiles[] = {"hertz", "cone", "flat_punch", "power:1.5", "rounded_punch:0.5"};
+enum { kProfileCount = 5, kPoints = 4000 };
+
+static double one(const char* profile, int given, double value, int wanted) {
+  double result = NAN;
+  check(slipstick_exact(profile, given, 1, &value, wanted, &result) == SLIPSTICK_OK, "an exact state");
+  return result;
+}
+
+/* Lubkin (1951), Reissner and Sagoci (1944): limits that have a closed form. */
+static void test_limits(void) {
+  slipstick_profile hertz;
+  check(slipstick_exact_profile("hertz", &hertz) == SLIPSTICK_OK, "the constants of a profile");
+  check(near(hertz.moment_limit, 3 * kPi / 16, 1e-15), "a sphere spins at 3 pi/16 mu W a");
+  check(near(hertz.load, 2 * kPi / 3, 1e-15), "Hertz's load is 2/3 pi a^2 p0");
+  const double ratio = 1e-9;
+  const double twist = one("hertz", SLIPSTICK_MOMENT_RATIO, ratio, SLIPSTICK_TWIST);
+  const double moment = one("hertz", SLIPSTICK_MOMENT_RATIO, ratio, SLIPSTICK_MOMENT);
+  check(near(twist / moment, 3.0 / 16, 1e-8), "at rest the contact is a bonded punch");
+  slipstick_profile punch;
+  slipstick_exact_profile("flat_punch", &punch);
+  check(near(punch.full_stick, 8 / (3 * kPi), 1e-15), "a flat punch sticks up to 2/3 mu W a");
+  slipstick_indentation contact;
+  const double radius = 0.018, load = 1000, modulus = 115e9;
+  check(slipstick_exact_indentation("hertz", load, modulus, 1, &radius, &contact) == SLIPSTICK_OK,
+        "a contact in m");
+  check(near(pow(contact.contact_radius, 3), 3 * load * radius / (4 * modulus), 1e-13), "Hertz's radius");
+  check(near(contact.approach, contact.contact_radius * contact.contact_radius / radius, 1e-13),
+        "Hertz's approach");
+  check(near(contact.reference_pressure, 1.5 * load / (kPi * pow(contact.contact_radius, 2)), 1e-13),
+        "Hertz's peak");
+}
+
+/* Every way to name a state leads to the same one, and dM/dphi is the slope that it says. */
+static void test_states(const char* profile) {
+  double ratios[3] = {0.9, 0.95, 0.999};
+  slipstick_state states[3];
+  check(slipstick_exact_states(profile, SLIPSTICK_MOMENT_RATIO, 3, ratios, states) == SLIPSTICK_OK, "states");
+  for (int i = 0; i < 3; ++i) {
+    const double names[5] = {states[i].moment_ratio, states[i].moment_deficit, states[i].stick_ratio,
+                             states[i].stick_complement, states[i].twist};
+    for (int given = 0; given < 5; ++given)
+      for (int wanted = 0; wanted < 5; ++wanted)
+        check(near(one(profile, given, names[given], wanted), names[wanted], 1e-10),
+              "each names the same state");
+    const double step = 1e-5;
+    const double low = one(profile, SLIPSTICK_TWIST, states[i].twist * (1 - step), SLIPSTICK_MOMENT);
+    const double high = one(profile, SLIPSTICK_TWIST, states[i].twist * (1 + step), SLIPSTICK_MOMENT);
+    check(near((high - low) / (2 * step * states[i].twist), states[i].tangent_stiffness, 1e-6),
+          "the tangent");
+  }
+  check(
+      slipstick_exact(profile, SLIPSTICK_MOMENT_RATIO, 3, ratios, SLIPSTICK_TWIST, ratios) == SLIPSTICK_OK &&
+          ratios[2] == states[2].twist,
+      "results may replace the values");
+}
+
+/* Pressure carries the load, tractions the moment; outside the stick area they are the pressure. */
+static void test_fields(const char* profile) {
+  static double radii[kPoints], weights[kPoints], pressure[kPoints], traction[kPoints], turned[kPoints];
+  for (int i = 0; i < kPoints; ++i) { /* r = sin t, for what is infinite at the edge */
+    const double t = kPi / 2 * (i + 0.5) / kPoints;
+    radii[i] = sin(t);
+    weights[i] = kPi / 2 / kPoints * cos(t);
+  }
+  slipstick_profile constants;
+  slipstick_exact_profile(profile, &constants);
+  check(slipstick_exact_pressure(profile, kPoints, radii, pressure) == SLIPSTICK_OK, "pressures");
+  check(slipstick_exact_traction(profile, SLIPSTICK_MOMENT_RATIO, 0.95, kPoints, radii, traction) ==
+            SLIPSTICK_OK,
+        "tractions");
+  const double loads[2] = {0.95, -0.95};
+  check(slipstick_exact_history_traction(profile, 2, loads, kPoints, radii, turned) == SLIPSTICK_OK,
+        "turned back");
+  const double stick = one(profile, SLIPSTICK_MOMENT_RATIO, 0.95, SLIPSTICK_STICK_RATIO);
+  double load = 0, moment = 0;
+  int slides = 1, mirrored = 1;
+  for (int i = 0; i < kPoints; ++i) {
+    load += 2 * kPi * radii[i] * pressure[i] * weights[i];
+    moment += 2 * kPi * radii[i] * radii[i] * traction[i] * weights[i];
+    if (radii[i] > stick) slides = slides && traction[i] == pressure[i];
+    mirrored = mirrored && fabs(traction[i] + turned[i]) <= 1e-12 * (1 + fabs(traction[i]));
+  }
+  check(near(load, constants.load, 1e-3), "the pressure carries the load");
+  check(near(moment / constants.load, 0.95 * constants.moment_limit, 1e-3), "the tractions carry the moment");
+  check(slides, "outside the stick area the traction is mu p");
+  check(mirrored, "a full reversal mirrors the tractions");
+}
+
+/* Masing's rule, exact here (Deresiewicz 1954). */
+static void test_histories(const char* profile) {
+  const double m = 0.95;
+  const double moments[3] = {m, -m, m};
+  slipstick_cycle_state states[3], curve[31];
+  check(slipstick_exact_history(profile, 3, moments, states) == SLIPSTICK_OK, "a history");
+  check(near(states[1].twist, -states[0].twist, 1e-12), "a full reversal turns the twist round");
+  check(near(states[2].twist, states[0].twist, 1e-12), "the loop closes");
+  check(near(states[2].dissipated - states[0].dissipated,
+             one(profile, SLIPSTICK_MOMENT_RATIO, m, SLIPSTICK_ENERGY_LOST), 1e-10),
+        "a cycle loses the area of its loop");
+  check(slipstick_exact_curve(profile, 3, moments, 10, curve) == SLIPSTICK_OK, "a curve");
+  check(curve[0].twist == 0 && curve[30].twist == states[2].twist,
+        "it runs from no load to the last turning point");
+}
+
+static void test_refusals(void) {
+  double values[3] = {0.5, 1.0, 0.5}, results[3] = {7, 7, 7};
+  check(slipstick_exact("hertz", 0, 3, values, SLIPSTICK_TWIST, results) == SLIPSTICK_BAD_INPUT &&
+            says("values[1]: M/M_lim = 1 is gross slip; allowed: 0 <= M/M_lim < 1"),
+        "gross slip is refused, with its place");
+  check(results[0] != 7 && results[1] == 7 && results[2] == 7, "results after it are as they were");
+  values[1] = NAN;
+  check(slipstick_exact("hertz", 0, 3, values, SLIPSTICK_TWIST, results) == SLIPSTICK_BAD_INPUT,
+        "NaN is refused");
+  check(slipstick_exact("hertz", 5, 1, values, 0, results) == SLIPSTICK_BAD_INPUT && says("given = 5"),
+        "given");
+  check(slipstick_exact("hertz", 0, 1, values, 8, results) == SLIPSTICK_BAD_INPUT && says("wanted = 8"),
+        "wanted");
+  check(slipstick_exact("sphere", 0, 1, values, 0, results) == SLIPSTICK_BAD_INPUT && says("\"sphere\""),
+        "profile");
+  check(slipstick_exact(NULL, 0, 1, values, 0, results) == SLIPSTICK_BAD_INPUT && says("profile = NULL"),
+        "no profile");
+  check(slipstick_exact("hertz", 0, 1, NULL, 0, results) == SLIPSTICK_BAD_INPUT && says("values = NULL"),
+        "no values");
+  check(slipstick_exact("hertz", 0, 1, values, 0, NULL) == SLIPSTICK_BAD_INPUT && says("results = NULL"),
+        "no results");
+  check(slipstick_exact("hertz", 0, 0, NULL, 0, NULL) == SLIPSTICK_OK, "an empty array may be NULL");
+  values[0] = 1.5;
+  check(slipstick_exact_pressure("hertz", 1, values, results) == SLIPSTICK_BAD_INPUT &&
+            says("radii[0]: r/a = 1.5"),
+        "a radius beyond the edge");
+  check(slipstick_exact_curve("hertz", 0, NULL, 0, NULL) == SLIPSTICK_BAD_INPUT, "a curve into nothing");
+}
+
+static const char* const kScene =
+    "[upper]\nshape = \"sphere\"\nradius = 0.018\nyoung_modulus = 210e9\npoisson_ratio = 0.3\n"
+    "[lower]\nyoung_modulus = 210e9\npoisson_ratio = 0.3\n[contact]\nfriction = 0.1\n"
+    "[load]\nnormal = 1000.0\nmoment_ratio = 0.9\n[grid]\ncells = [48, 48]\n";
+
+static slipstick_solution* solved(int status, double accuracy, size_t count, const char* const* overrides) {
+  slipstick_solution* solution = NULL;
+  check(slipstick_solve(kScene, "made.toml", count, overrides, accuracy, NULL, NULL, &solution) == status,
+        "a solve");
+  check((solution != NULL) == (status <= SLIPSTICK_NOT_CONVERGED), "there is a solution where it says so");
+  return solution;
+}
+
+static double number(const slipstick_solution* solution, const char* path) {
+  double value = NAN;
+  check(slipstick_solution_number(solution, path, &value) == SLIPSTICK_OK, path);
+  return value;
+}
+
+static const double* field(const slipstick_solution* solution, const char* name, size_t expected) {
+  const double* values = NULL;
+  size_t count = 0;
+  check(slipstick_solution_field(solution, name, &values, &count) == SLIPSTICK_OK && count == expected, name);
+  return values;
+}
+
+static void test_solution(void) {
+  slipstick_solution* solution = solved(SLIPSTICK_OK, 0, 0, NULL);
+  const char* exact_model[] = {"solver.model=exact"};
+  slipstick_solution* exact = solved(SLIPSTICK_OK, 0, 1, exact_model);
+  check(near(number(solution, "twist_angle"), number(exact, "twist_angle"), 1e-3),
+        "the grid's twist is the exact one");
+  check(number(solution, "certificate.gap") <= 1e-8, "Coulomb's law holds");
+  size_t cells[2];
+  double size[2];
+  check(slipstick_solution_grid(solution, cells, size) == SLIPSTICK_OK && cells[0] == 48 && cells[1] == 48,
+        "cells");
+  const size_t count = cells[0] * cells[1];
+  const double* x1 = field(solution, "x1", count);
+  const double* x2 = field(solution, "x2", count);
+  const double* p = field(solution, "pressure", count);
+  const double* q1 = field(solution, "q1", count);
+  const double* q2 = field(solution, "q2", count);
+  const double* q1_exact = field(exact, "q1", count);
+  double load = 0, moment = 0, difference = 0, sum = 0;
+  for (size_t i = 0; i < count; ++i) {
+    load += p[i] * size[0] * size[1];
+    moment += (x1[i] * q2[i] - x2[i] * q1[i]) * size[0] * size[1];
+    difference += fabs(q1[i] - q1_exact[i]);
+    sum += fabs(q1_exact[i]);
+  }
+  check(near(load, 1000, 1e-9), "the pressure carries 1000 N");
+  check(near(moment, number(solution, "moment"), 1e-9), "the tractions carry the moment");
+  check(difference < 0.02 * sum, "the tractions are the exact ones");
+  check(strstr(slipstick_solution_json(solution), "\"status\": \"converged\"") != NULL, "JSON");
+  check(strstr(slipstick_solution_text(solution), "moment limit") != NULL ||
+            strstr(slipstick_solution_text(solution), "of the limit") != NULL,
+        "text");
+  size_t names = 0;
+  while (slipstick_solution_field_name(solution, names) != NULL) ++names;
+  check(names == 11 && strcmp(slipstick_solution_field_name(solution, 0), "x1") == 0, "fields have names");
+  check(slipstick_solution_write(solution, "c_interface_test.csv") == SLIPSTICK_OK, "fields become a file");
+  FILE* written = fopen("c_interface_test.csv", "r");
+  char line[256] = "";
+  check(written != NULL && fgets(line, sizeof line, written) != NULL &&
+            strncmp(line, "x1,x2,pressure,q1,q2", 20) == 0,
+        "with a header");
+  if (written != NULL) fclose(written);
+  remove("c_interface_test.csv");
+
+  double value = 0;
+  check(slipstick_solution_number(solution, "twist_angel", &value) == SLIPSTICK_BAD_INPUT && isnan(value) &&
+            says("twist_angel"),
+        "a number that does not exist");
+  check(slipstick_solution_number(exact, "twist_error", &value) == SLIPSTICK_BAD_INPUT &&
+            says("this is the exact answer"),
+        "a number that is missing says why");
+  const double* none = NULL;
+  size_t nothing = 0;
+  check(slipstick_solution_field(solution, "q3", &none, &nothing) == SLIPSTICK_BAD_INPUT &&
+            says("allowed: x1, x2"),
+        "a field that does not exist");
+  check(slipstick_solution_write(solution, "fields.txt") == SLIPSTICK_BAD_INPUT,
+        "a format that does not exist");
+  slipstick_solution_free(solution);
+  slipstick_solution_free(exact);
+  slipstick_solution_free(NULL);
+}
+
+static int stop_at_once(int iteration, double change, void* user) {
+  check(iteration >= 0 && !(change < 0), "progress");
+  ++*(int*)user;
+  return 1;
+}
+
+static void test_ends(void) {
+  int calls = 0;
+  slipstick_solution* solution = NULL;
+  check(slipstick_solve(kScene, NULL, 0, NULL, 0, stop_at_once, &calls, &solution) == SLIPSTICK_STOPPED &&
+            calls == 1 && solution == NULL,
+        "the caller may stop a solve");
+  const char* hurried[] = {"solver.max_iterations=1"};
+  solution = solved(SLIPSTICK_NOT_CONVERGED, 0, 1, hurried);
+  check(strlen(slipstick_message()) > 0, "it says why it did not converge");
+  slipstick_solution_free(solution);
+  const char* slipping[] = {"load.moment_ratio=1.5"};
+  solved(SLIPSTICK_BAD_INPUT, 0, 1, slipping);
+  check(says("moment_ratio"), "gross slip is refused");
+  const char* unknown[] = {"contact.frictoin=0.2"};
+  solved(SLIPSTICK_BAD_INPUT, 0, 1, unknown);
+  check(says("contact.friction"), "the nearest key is named");
+  check(slipstick_solve("[upper]\nshape = \"shpere\"\n", "mine.toml", 0, NULL, 0, NULL, NULL, &solution) ==
+                SLIPSTICK_BAD_INPUT &&
+            says("mine.toml:2") && solution == NULL,
+        "a text's errors have its name and line");
+  check(
+      slipstick_solve(NULL, "no_such_scene.toml", 0, NULL, 0, NULL, NULL, &solution) == SLIPSTICK_BAD_INPUT &&
+          says("no_such_scene.toml: cannot be read"),
+      "a file that is missing");
+  check(slipstick_solve(kScene, NULL, 0, NULL, 0, NULL, NULL, NULL) == SLIPSTICK_BAD_INPUT,
+        "nowhere to put it");
+  const char* on_grid[] = {"solver.model=auto"};
+  solution = solved(SLIPSTICK_OK, 1e-3, 1, on_grid);
+  check(fabs(number(solution, "twist_error")) <= 1e-3 && number(solution, "accuracy.reached") <= 1e-3,
+        "an accuracy is reached");
+  slipstick_solution_free(solution);
+  solved(SLIPSTICK_BAD_INPUT, 2.0, 0, NULL);
+}
+
+enum { kThreads = 4 };
+static const char* const kLoads[kThreads] = {"load.moment_ratio=0.2", "load.moment_ratio=0.5",
+                                             "load.moment_ratio=0.9", "load.moment_ratio=2"};
+
+/* Twists of three loads; the fourth is refused, and its words are its thread's alone. */
+static void* solve_one(void* place) {
+  const size_t index = (size_t)((double*)place)[0];
+  double* const twist = (double*)place + 1;
+  slipstick_solution* solution = NULL;
+  const int status = slipstick_solve(kScene, NULL, 1, &kLoads[index], 0, NULL, NULL, &solution);
+  *twist = NAN;
+  if (status == SLIPSTICK_OK) slipstick_solution_number(solution, "twist_angle", twist);
+  if (status == SLIPSTICK_BAD_INPUT) *twist = says("moment_ratio") ? -1 : -2;
+  if (status == SLIPSTICK_OK && strlen(slipstick_message()) > 0) *twist = -3;
+  slipstick_solution_free(solution);
+  return NULL;
+}
+
+static void test_threads(void) {
+  double alone[kThreads][2], together[kThreads][2];
+  pthread_t threads[kThreads];
+  for (size_t i = 0; i < kThreads; ++i) {
+    alone[i][0] = together[i][0] = (double)i;
+    pthread_create(&threads[i], NULL, solve_one, alone[i]);
+    pthread_join(threads[i], NULL);
+  }
+  for (size_t i = 0; i < kThreads; ++i) pthread_create(&threads[i], NULL, solve_one, together[i]);
+  for (size_t i = 0; i < kThreads; ++i) {
+    pthread_join(threads[i], NULL);
+    check(together[i][1] == alone[i][1], "solves side by side give the same bits");
+  }
+  check(alone[0][1] > 0 && alone[1][1] > alone[0][1] && alone[2][1] > alone[1][1],
+        "twists rise with the moment");
+  check(alone[3][1] == -1, "a message belongs to its thread");
+}
+
+int main(void) {
+  check(strlen(slipstick_version()) >= 5, "a version");
+  test_limits();
+  for (int i = 0; i < kProfileCount; ++i) {
+    test_states(kProfiles[i]);
+    test_fields(kProfiles[i]);
+    test_histories(kProfiles[i]);
+  }
+  test_refusals();
+  test_solution();
+  test_ends();
+  test_threads();
+  if (failures == 0) puts("all holds");
+  return failures == 0 ? 0 : 1;
+}

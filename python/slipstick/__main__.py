@@ -1,0 +1,4 @@
+"""python -m slipstick: the program."""
+from ._program import main
+
+main()

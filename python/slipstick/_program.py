@@ -1,0 +1,50 @@
+"""The program that comes with the package: what judges (check, gate, study) is done by it, and its JSON is the result."""
+import json
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from ._library import PROGRAM
+from .errors import Failure, InputError
+
+_MESSAGE = "slipstick: "
+
+
+def run(command: str, *words: str | os.PathLike[str], progress: Callable[[str], object] | None = None) -> dict[str, Any]:
+    """The result of a command that could judge, good or bad. progress is called with each line that says how far it is.
+    Ctrl-C ends the program too; what it finished stays where it keeps it."""
+    with tempfile.TemporaryDirectory() as folder:
+        output = Path(folder) / "result.json"
+        process = subprocess.Popen(
+            [os.fspath(PROGRAM), command, *map(os.fspath, words), "--quiet", "--json", os.fspath(output)],
+            stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
+        said = []
+        try:
+            assert process.stderr is not None
+            for line in process.stderr:
+                if line.startswith(_MESSAGE) or said:
+                    said.append(line.removeprefix(_MESSAGE))
+                elif progress is not None:
+                    progress(line.strip())
+            code = process.wait()
+        except BaseException:
+            process.send_signal(signal.SIGINT)
+            process.wait()
+            raise
+        finally:
+            process.stderr.close()
+        if code in (0, 1) or (code == 2 and not said and output.exists()):  # of gates, some of which were refused
+            result: dict[str, Any] = json.loads(output.read_text())
+            return result
+    message = "".join(said).strip() or f"slipstick {command} ended with {code}"
+    raise (InputError if code == 2 else Failure)(message)
+
+
+def main() -> None:
+    """The program itself, as `slipstick` on the command line."""
+    os.execv(PROGRAM, ["slipstick", *sys.argv[1:]])

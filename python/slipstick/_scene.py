@@ -1,0 +1,85 @@
+"""Scenes as Python has them: the name of a file, text (TOML), or a dict."""
+import os
+import re
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from .errors import InputError
+
+#: A str with a line break in it is text, any other one the name of a file.
+Scene = str | os.PathLike[str] | Mapping[str, Any]
+
+
+def toml_value(value: Any) -> str:
+    """A value as TOML has it."""
+    if isinstance(value, np.ndarray | np.generic):
+        value = value.tolist()
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int):
+        return str(value)
+    if isinstance(value, float):
+        return repr(value)
+    if isinstance(value, str | os.PathLike):
+        return _quoted(os.fspath(value))
+    if isinstance(value, Mapping):
+        return "{" + ", ".join(f"{_key(name)} = {toml_value(part)}" for name, part in value.items()) + "}"
+    if isinstance(value, Sequence):
+        return "[" + ", ".join(toml_value(part) for part in value) + "]"
+    raise InputError(f"{value!r}: allowed: numbers, texts, true and false, lists and dicts of them")
+
+
+def toml_text(scene: Mapping[str, Any]) -> str:
+    """A dict of tables as a TOML file.
+
+    >>> print(toml_text({"name": "mine", "load": {"normal": 10.0}, "step": [{"moment_ratio": 0.5}]}))
+    name = "mine"
+    [load]
+    normal = 10.0
+    [[step]]
+    moment_ratio = 0.5
+    """
+    lines = []
+    tables = []
+    for name, value in scene.items():
+        rows = value if isinstance(value, list | tuple) and value and isinstance(value[0], Mapping) else None
+        if isinstance(value, Mapping):
+            tables.append((f"[{_key(name)}]", value))
+        elif rows is not None:
+            tables += [(f"[[{_key(name)}]]", row) for row in rows]
+        else:
+            lines.append(f"{_key(name)} = {toml_value(value)}")
+    for head, table in tables:
+        lines += [head, *(f"{_key(name)} = {toml_value(value)}" for name, value in table.items())]
+    return "\n".join(lines)
+
+
+def text_of(scene: Scene) -> tuple[str | None, str]:
+    """A scene's text, None where it is a file, and the name under which messages speak of it."""
+    if isinstance(scene, Mapping):
+        return toml_text(scene), "scene"
+    if isinstance(scene, str) and "\n" in scene:
+        return scene, "scene"
+    return None, os.fspath(scene)
+
+
+def assignments(overrides: Mapping[str, Any]) -> list[str]:
+    """Keyword arguments as --set has them: load__moment_ratio=0.5 is "load.moment_ratio=0.5".
+
+    >>> assignments({"load__moment_ratio": 0.5, "grid.cells": (48, 48)})
+    ['load.moment_ratio=0.5', 'grid.cells=[48, 48]']
+    """
+    return [f"{name.replace('__', '.')}={toml_value(value)}" for name, value in overrides.items()]
+
+
+def _key(name: Any) -> str:
+    return name if re.fullmatch(r"[A-Za-z0-9_-]+", str(name)) else _quoted(str(name))
+
+
+def _quoted(text: str) -> str:
+    escaped = "".join(
+        f"\\u{ord(letter):04x}" if letter < " " or letter == "\x7f" else "\\" + letter if letter in '"\\' else letter
+        for letter in text)
+    return f'"{escaped}"'

@@ -1,0 +1,260 @@
+"""Exact states of an axisymmetric contact in torsion, over arrays and without a grid.
+
+Everything is dimensionless: lengths over the contact radius a, moments over mu W a (friction, normal load, radius), the
+twist as G a^2 phi/(mu W) with 1/G = 1/G_1 + 1/G_2 of the two bodies, tractions over mu p0, pressures over p0, energies
+over (mu W)^2/(G a). `contact_of` gives a and p0 in SI units.
+
+A profile is the contact's pressure: "hertz" (sphere), "cone", "flat_punch", "power:N" (gap like r^N), "rounded_punch:B"
+(flat out to B = b/a), "file:P.csv" (columns radius, pressure).
+
+A state is named by exactly one of
+    moment_ratio      M/M_lim, in [0, 1)
+    moment_deficit    1 - M/M_lim, in (0, 1]: the digits near the limit
+    stick_ratio       a_s/a, in (0, 1]
+    stick_complement  1 - a_s/a, in [0, 1): the digits of a narrow slip ring
+    twist             G a^2 phi/(mu W), from 0
+which may be numbers or arrays; a result has the argument's shape. Out of range, or NaN, is an InputError.
+"""
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _library
+from .errors import InputError
+
+Values = npt.ArrayLike | None
+_GIVEN = ("moment_ratio", "moment_deficit", "stick_ratio", "stick_complement", "twist")
+_WANTED = (*_GIVEN, "moment", "tangent_stiffness", "energy_lost")
+
+
+def _named(names: dict[str, Values]) -> tuple[int, npt.ArrayLike]:
+    """Which quantity names the state, and its values."""
+    given = [(name, values) for name, values in names.items() if values is not None]
+    if len(given) != 1:
+        raise InputError(f"{len(given)} of {', '.join(names)} are given; allowed: exactly one")
+    name, values = given[0]
+    return _GIVEN.index(name), values
+
+
+def _find(wanted: str, profile: str, names: dict[str, Values]) -> Any:
+    given, values = _named(names)
+    array = _library.doubles(values)
+    results = np.empty_like(array)
+    _library.checked(_library.function("exact")(
+        _library.encoded(profile), given, array.size, _library.address(array), _WANTED.index(wanted),
+        _library.address(results)))
+    return results if results.ndim else float(results)
+
+
+def twist(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_ratio: Values = None,
+          stick_complement: Values = None, profile: str = "hertz") -> Any:
+    """The twist G a^2 phi/(mu W) of first loading.
+
+    >>> round(twist(0.5), 12)
+    0.073705510231
+    >>> twist([0.0, 0.9]).round(6)
+    array([0.      , 0.228093])
+    >>> twist(1.0)
+    Traceback (most recent call last):
+    slipstick.errors.InputError: values[0]: M/M_lim = 1 is gross slip; allowed: 0 <= M/M_lim < 1
+    """
+    return _find("twist", profile, {"moment_ratio": moment_ratio, "moment_deficit": moment_deficit,
+                                    "stick_ratio": stick_ratio, "stick_complement": stick_complement})
+
+
+def moment_ratio(twist: Values = None, *, moment_deficit: Values = None, stick_ratio: Values = None,
+                 stick_complement: Values = None, profile: str = "hertz") -> Any:
+    """M/M_lim of first loading.
+
+    >>> round(moment_ratio(twist=0.1), 12) < 1
+    True
+    """
+    return _find("moment_ratio", profile, {"twist": twist, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
+                                           "stick_complement": stick_complement})
+
+
+def moment(twist: Values = None, *, moment_ratio: Values = None, moment_deficit: Values = None,
+           stick_ratio: Values = None, stick_complement: Values = None, profile: str = "hertz") -> Any:
+    """The moment M/(mu W a): the contact's law, for codes that ask for the moment at a twist.
+
+    At rest it is that of a bonded contact, 16/3 times the twist:
+
+    >>> round(moment(1e-9) / 1e-9, 6)
+    5.333333
+    """
+    return _find("moment", profile, {"twist": twist, "moment_ratio": moment_ratio, "moment_deficit": moment_deficit,
+                                     "stick_ratio": stick_ratio, "stick_complement": stick_complement})
+
+
+def stick_ratio(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_complement: Values = None,
+                twist: Values = None, profile: str = "hertz") -> Any:
+    """The stick radius over the contact radius, a_s/a.
+
+    >>> round(stick_ratio(0.9), 6)
+    0.495895
+    """
+    return _find("stick_ratio", profile, {"moment_ratio": moment_ratio, "moment_deficit": moment_deficit,
+                                          "stick_complement": stick_complement, "twist": twist})
+
+
+def tangent_stiffness(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_ratio: Values = None,
+                      stick_complement: Values = None, twist: Values = None, profile: str = "hertz") -> Any:
+    """(dM/dphi)/(G a^3) on going on: 16/3 (a_s/a)^3."""
+    return _find("tangent_stiffness", profile, {
+        "moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
+        "stick_complement": stick_complement, "twist": twist})
+
+
+def energy_lost(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_ratio: Values = None,
+                stick_complement: Values = None, twist: Values = None, profile: str = "hertz") -> Any:
+    """Energy lost in a cycle between M and -M, over (mu W)^2/(G a).
+
+    For small moments that of a sphere goes like (3/16) M^3:
+
+    >>> m = 1e-4
+    >>> round(energy_lost(m) / (3 / 16 * moment(moment_ratio=m)**3), 3)
+    1.0
+    """
+    return _find("energy_lost", profile, {
+        "moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
+        "stick_complement": stick_complement, "twist": twist})
+
+
+def states(moment_ratio: Values = None, *, moment_deficit: Values = None, stick_ratio: Values = None,
+           stick_complement: Values = None, twist: Values = None, profile: str = "hertz") -> np.recarray:
+    """All numbers of first loading at once, as an array of records with moment_ratio, moment_deficit, stick_ratio,
+    stick_complement, twist, moment and tangent_stiffness; pandas.DataFrame takes it as it is.
+
+    >>> found = states([0.1, 0.9])
+    >>> bool(found.moment_ratio[1] == 0.9 and found.twist[1] > found.twist[0])
+    True
+    """
+    given, values = _named({"moment_ratio": moment_ratio, "moment_deficit": moment_deficit, "stick_ratio": stick_ratio,
+                            "stick_complement": stick_complement, "twist": twist})
+    array = _library.doubles(values)
+    found = np.empty(array.shape, _library.STATE)
+    _library.checked(_library.function("exact_states")(
+        _library.encoded(profile), given, array.size, _library.address(array), _library.address(found)))
+    return found.view(np.recarray)
+
+
+def traction(radius: npt.ArrayLike, moment_ratio: float | None = None, *, moment_deficit: float | None = None,
+             stick_ratio: float | None = None, stick_complement: float | None = None, twist: float | None = None,
+             history: Sequence[float] | None = None, profile: str = "hertz") -> Any:
+    """The traction q/(mu p0) around the axis at radii r/a in [0, 1]: of one state of first loading, or signed, after a
+    `history` of moments M/M_lim.
+
+    Beyond the stick radius it is the pressure, and a full reversal turns it round:
+
+    >>> bool(traction(0.8, 0.9) == pressure(0.8) and traction(0.8, history=[0.9, -0.9]) == -pressure(0.8))
+    True
+    """
+    radii = _library.doubles(radius)
+    results = np.empty_like(radii)
+    names: dict[str, Values] = {"moment_ratio": moment_ratio, "moment_deficit": moment_deficit,
+                                "stick_ratio": stick_ratio, "stick_complement": stick_complement, "twist": twist}
+    if history is not None and all(value is None for value in names.values()):
+        moments = _library.doubles(history).ravel()
+        status = _library.function("exact_history_traction")(
+            _library.encoded(profile), moments.size, _library.address(moments), radii.size, _library.address(radii),
+            _library.address(results))
+    else:
+        given, value = _named({**names, "history": history})
+        status = _library.function("exact_traction")(
+            _library.encoded(profile), given, float(np.asarray(value)), radii.size, _library.address(radii),
+            _library.address(results))
+    _library.checked(status)
+    return results if results.ndim else float(results)
+
+
+def pressure(radius: npt.ArrayLike, profile: str = "hertz") -> Any:
+    """The pressure p/p0 at radii r/a in [0, 1]; infinite where the profile's is.
+
+    >>> pressure([0.0, 0.6, 1.0])
+    array([1. , 0.8, 0. ])
+    """
+    radii = _library.doubles(radius)
+    results = np.empty_like(radii)
+    _library.checked(_library.function("exact_pressure")(
+        _library.encoded(profile), radii.size, _library.address(radii), _library.address(results)))
+    return results if results.ndim else float(results)
+
+
+def history(moment_ratios: npt.ArrayLike, profile: str = "hertz") -> np.recarray:
+    """The states after each of the moments M/M_lim in (-1, 1) that a contact under constant normal load goes through,
+    from none: moment_ratio, moment, twist, stick_ratio (front of the newest slip), tangent_stiffness, dissipated.
+
+    >>> loop = history([0.5, -0.5, 0.5])
+    >>> bool(abs(loop.twist[1] + loop.twist[0]) < 1e-15 and loop.dissipated[2] > loop.dissipated[1])
+    True
+    """
+    moments = _library.doubles(moment_ratios).ravel()
+    found = np.empty(moments.shape, _library.CYCLE_STATE)
+    _library.checked(_library.function("exact_history")(
+        _library.encoded(profile), moments.size, _library.address(moments), _library.address(found)))
+    return found.view(np.recarray)
+
+
+def curve(turning_points: npt.ArrayLike, points_per_branch: int = 50, profile: str = "hertz") -> np.recarray:
+    """The curve through these turning points M/M_lim, for drawing: the unloaded state, and so many on each branch.
+
+    >>> len(curve([0.9, -0.9], points_per_branch=10))
+    21
+    """
+    turning = _library.doubles(turning_points).ravel()
+    points = int(points_per_branch)
+    if points < 1:
+        raise InputError(f"points_per_branch = {points}; allowed: 1 or more")
+    found = np.empty(turning.size * points + 1, _library.CYCLE_STATE)
+    _library.checked(_library.function("exact_curve")(
+        _library.encoded(profile), turning.size, _library.address(turning), points, _library.address(found)))
+    return found.view(np.recarray)
+
+
+@dataclass(frozen=True)
+class Profile:
+    """What a profile needs beside its shape."""
+
+    load: float  #: W/(p0 a^2)
+    moment_limit: float  #: M_lim/(mu W a)
+    full_stick: float  #: M/M_lim up to which nothing slips
+
+
+def profile_named(profile: str = "hertz") -> Profile:
+    """A profile's constants.
+
+    >>> round(profile_named("hertz").moment_limit / np.pi, 6)  # 3/16
+    0.1875
+    """
+    found = _library.Profile()
+    _library.checked(_library.function("exact_profile")(_library.encoded(profile), _library.byref(found)))
+    return Profile(found.load, found.moment_limit, found.full_stick)
+
+
+@dataclass(frozen=True)
+class Contact:
+    """The contact that a normal load makes, in SI units."""
+
+    radius: float  #: a, m
+    approach: float  #: m
+    reference_pressure: float  #: p0, Pa
+
+
+def contact_of(load: float, effective_modulus: float, shape: npt.ArrayLike, profile: str = "hertz") -> Contact:
+    """The frictionless contact under a load in N of bodies with 1/E* = sum (1 - nu_i^2)/E_i, in Pa.
+
+    shape: "hertz": the sphere's radius, m; "cone": slope; "flat_punch": radius, m; "power:N": the gap's coefficient,
+    m^(1-N); "rounded_punch": flat radius and corner radius, m.
+
+    >>> round(contact_of(1000.0, 115.4e9, 0.018).radius * 1e3, 4)  # mm
+    0.4891
+    """
+    lengths = _library.doubles(shape).ravel()
+    found = _library.Indentation()
+    _library.checked(_library.function("exact_indentation")(
+        _library.encoded(profile), load, effective_modulus, lengths.size, _library.address(lengths),
+        _library.byref(found)))
+    return Contact(found.contact_radius, found.approach, found.reference_pressure)

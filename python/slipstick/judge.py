@@ -1,0 +1,130 @@
+"""What judges: fields of other programs, gates, studies."""
+import os
+import tempfile
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._program import run
+from ._scene import Scene, assignments, text_of
+from .errors import InputError
+from .result import Result
+
+_COLUMNS = ("x1", "x2", "pressure", "q1", "q2")
+Path_ = str | os.PathLike[str]
+Progress = Callable[[str], object] | None
+
+
+class Check(Result):
+    """A verdict on a field: `verdict` ("good" or "bad"), `why` in one sentence, and each error that it rests on."""
+
+    @property
+    def good(self) -> bool:
+        return bool(self["verdict"] == "good")
+
+
+class Gates(Result):
+    """What gates say: `gates`, a row each, `counts` by outcome, and whether all hold: none that failed was expected to
+    hold, and none was refused."""
+
+    @property
+    def passed(self) -> bool:
+        return bool(self["exit_code"] == 0)
+
+
+class Study(Result):
+    """A study: its runs, orders of convergence and error budget."""
+
+
+@contextmanager
+def _files(scene: Scene, field: Path_ | Mapping[str, npt.ArrayLike] | None = None) -> Iterator[list[str]]:
+    """The names of files that hold the scene and the field, made for as long as they are needed."""
+    with tempfile.TemporaryDirectory() as folder:
+        text, name = text_of(scene)
+        if text is not None:
+            name = os.path.join(folder, "scene.toml")
+            Path(name).write_text(text)
+        names = [name]
+        if isinstance(field, Mapping):
+            names.append(_written(field, os.path.join(folder, "field.csv")))
+        elif field is not None:
+            names.append(os.fspath(field))
+        yield names
+
+
+def _written(field: Mapping[str, npt.ArrayLike], file: str) -> str:
+    missing = [name for name in _COLUMNS if name not in field]
+    if missing:
+        raise InputError(f"the field has no {', '.join(missing)}; allowed: arrays {', '.join(_COLUMNS)}")
+    columns = [np.asarray(field[name], dtype=np.float64).ravel() for name in _COLUMNS]
+    if len({column.size for column in columns}) > 1:
+        raise InputError(f"the field's arrays have {', '.join(str(column.size) for column in columns)} values; "
+                         "allowed: one a cell in each")
+    cells = np.column_stack(columns)
+    cells = cells[(cells[:, 2:] != 0).any(axis=1)]
+    np.savetxt(file, cells, fmt="%.17g", delimiter=",", header=",".join(_COLUMNS), comments="")
+    return file
+
+
+def check(scene: Scene, field: Path_ | Mapping[str, npt.ArrayLike], *, twist: float | None = None,
+          tolerance: float | None = None, discrete: bool = False, strict: bool = False, **overrides: Any) -> Check:
+    """Judges tractions that any program computed for a scene: docs/guides/verify-your-solver.md explains each number.
+
+    field: a file (.csv, .h5) or arrays by name: x1, x2 (m, cell centres), pressure, q1, q2 (Pa), one number a cell; the
+    fields of a Solution are such arrays. twist: rad, that the program reported. tolerance: the error that is allowed, in
+    place of what the mesh leaves open. discrete: good only if it solves its own grid's problem. strict: good only in the
+    scene's own units and signs. overrides as of solve(). Relative paths in a scene that is no file begin nowhere: write
+    them in full.
+    """
+    options: list[str] = []
+    if twist is not None:
+        options += ["--twist", repr(float(twist))]
+    if tolerance is not None:
+        options += ["--tolerance", repr(float(tolerance))]
+    options += ["--discrete"] * discrete + ["--strict"] * strict
+    options += _set(overrides)
+    with _files(scene, getattr(field, "fields", field)) as files:
+        return Check(run("check", *files, *options))
+
+
+def gate(files: Path_ | Iterable[Path_], *, only: Iterable[str] = (), output: Path_ | None = None,
+         results: Path_ | None = None, jobs: int = 0, progress: Progress = None) -> Gates:
+    """Runs gates: numbers with bounds that they must keep (docs/guides/gate-your-ci.md).
+
+    files: gate files. only: the ids of those to run. output: a folder that keeps finished solves (left out: none does).
+    results: the folder of the result files that gates name. jobs: solves at a time, 0: one a processor.
+    """
+    names = [files] if isinstance(files, str | os.PathLike) else list(files)
+    options = ["--only", *only] if (only := list(only)) else []
+    if results is not None:
+        options += ["--results", os.fspath(results)]
+    with _kept(output) as folder:
+        return Gates(run("gate", *names, *options, "--output", folder, "--jobs", str(jobs), progress=progress))
+
+
+def study(file: Path_, *, output: Path_ | None = None, jobs: int = 0, progress: Progress = None,
+          **overrides: Any) -> Study:
+    """Solves a scene on many meshes or to many tolerances, and judges orders and errors (docs/reference/study.md).
+
+    file: a study file. output: a folder that keeps finished solves, from which the same call goes on (left out: none
+    does). jobs: solves at a time, 0: one a processor. overrides replace keys of the scene, as of solve().
+    """
+    with _kept(output) as folder:
+        return Study(run("study", file, *_set(overrides), "--output", folder, "--jobs", str(jobs), progress=progress))
+
+
+def _set(overrides: Mapping[str, Any]) -> list[str]:
+    return [word for assignment in assignments(overrides) for word in ("--set", assignment)]
+
+
+@contextmanager
+def _kept(output: Path_ | None) -> Iterator[str]:
+    if output is not None:
+        yield os.fspath(output)
+        return
+    with tempfile.TemporaryDirectory() as folder:
+        yield folder

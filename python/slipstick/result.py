@@ -1,0 +1,85 @@
+"""Results as the program writes them (docs/reference/results.md), with attributes."""
+import copy
+import html
+from collections.abc import Iterator, Mapping
+from typing import Any
+
+
+def _wrapped(value: Any) -> Any:
+    if isinstance(value, dict):
+        return Result(value)
+    if isinstance(value, list):
+        return [_wrapped(part) for part in value]
+    return value
+
+
+class Result(Mapping[str, Any]):
+    """A JSON object: result.certificate.gap is result["certificate"]["gap"]. A number that does not exist is None, and
+    `reason` says why. SI units, angles in rad.
+
+    >>> result = Result({"twist": 0.1, "certificate": {"gap": None, "gap_reason": "nothing slips"}})
+    >>> result.twist, result.certificate.gap, result.certificate.reason("gap")
+    (0.1, None, 'nothing slips')
+    >>> result.twits
+    Traceback (most recent call last):
+    AttributeError: the result has no twits; it has: twist, certificate
+    """
+
+    def __init__(self, data: dict[str, Any]) -> None:
+        self._data = data
+
+    def __getitem__(self, key: str) -> Any:
+        return _wrapped(self._data[key])
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._data)
+
+    def __len__(self) -> int:
+        return len(self._data)
+
+    def __getattr__(self, name: str) -> Any:
+        if name.startswith("_") or name not in self._data:
+            raise AttributeError(f"the result has no {name}; it has: {', '.join(self.__dict__.get('_data', {}))}")
+        return self[name]
+
+    def __dir__(self) -> list[str]:
+        return [*super().__dir__(), *self._data]
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(f'{key}={value!r}' for key, value in self._numbers())})"
+
+    def _repr_html_(self) -> str:
+        rows = "".join(f"<tr><th>{html.escape(key)}</th><td>{html.escape(_shown(value))}</td></tr>"
+                       for key, value in self._numbers())
+        return f"<table>{rows}</table>"
+
+    def _numbers(self) -> list[tuple[str, Any]]:
+        """What fits on a line: no lists of tables, no tables."""
+        return [(key, value) for key, value in self._data.items()
+                if not isinstance(value, dict) and not key.endswith("_reason")
+                and not (isinstance(value, list) and value and isinstance(value[0], dict | list))]
+
+    def reason(self, key: str) -> str | None:
+        """Why there is no such number; None where there is one."""
+        return self._data.get(f"{key}_reason")
+
+    def to_dict(self) -> dict[str, Any]:
+        """A copy of the whole result, as dicts and lists."""
+        return copy.deepcopy(self._data)
+
+    def to_frame(self, key: str | None = None) -> Any:
+        """A list of the result (its only one, or that under the key: steps, rows, gates) as a pandas.DataFrame, one row
+        each; names of nested numbers are joined by dots. Needs pandas."""
+        import pandas
+
+        lists = {name: value for name, value in self._data.items()
+                 if isinstance(value, list) and value and isinstance(value[0], dict)}
+        if key is None and len(lists) == 1:
+            key = next(iter(lists))
+        if key not in lists:
+            raise KeyError(f"{key}; allowed: {', '.join(lists) or 'none, the result has no table'}")
+        return pandas.json_normalize(lists[key])
+
+
+def _shown(value: Any) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else "-" if value is None else str(value)

@@ -1,0 +1,161 @@
+"""Scenes, solved on a grid or exactly."""
+import ctypes
+import json
+import os
+import signal
+import threading
+import warnings
+import weakref
+from collections.abc import Callable, Iterator, Mapping
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from . import _library
+from ._scene import Scene, assignments, text_of
+from .errors import NotConvergedWarning
+from .result import Result
+
+
+class _Handle:
+    """A solution of the library, freed with the last one that holds it."""
+
+    def __init__(self, pointer: int) -> None:
+        self.pointer = pointer
+        weakref.finalize(self, _library.function("solution_free"), pointer)
+
+
+class Fields(Mapping[str, npt.NDArray[np.float64]]):
+    """The fields of a solution by name: x1, x2 (m), pressure, q1, q2 (Pa, on the lower body), slip1, slip2 (m, of the
+    last step), stick (1 or 0), dissipated (J/m^2), q1_exact, q2_exact (where known). Arrays of cells[0] x cells[1] that
+    lie where the library has them, not to be written to; each keeps the solution alive."""
+
+    def __init__(self, handle: _Handle) -> None:
+        self._handle = handle
+        cells, size = (ctypes.c_size_t * 2)(), (ctypes.c_double * 2)()
+        _library.checked(_library.function("solution_grid")(handle.pointer, cells, size))
+        self._shape = (cells[0], cells[1])
+
+    def __getitem__(self, name: str) -> npt.NDArray[np.float64]:
+        if name not in tuple(self):
+            raise KeyError(f"{name}; allowed: {', '.join(self) or 'none, there are no fields'}")
+        values, count = ctypes.POINTER(ctypes.c_double)(), ctypes.c_size_t()
+        _library.checked(_library.function("solution_field")(
+            self._handle.pointer, name.encode(), _library.byref(values), _library.byref(count)))
+        memory = (ctypes.c_double * count.value).from_address(ctypes.addressof(values.contents))
+        memory.handle = self._handle  # type: ignore[attr-defined]
+        field = np.frombuffer(memory, np.float64).reshape(self._shape)
+        field.flags.writeable = False
+        return field
+
+    def __iter__(self) -> Iterator[str]:
+        index = 0
+        while (name := _library.function("solution_field_name")(self._handle.pointer, index)) is not None:
+            yield name.decode()
+            index += 1
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+    def __repr__(self) -> str:
+        return f"Fields({', '.join(self)}: {self._shape[0]} x {self._shape[1]})"
+
+
+class Solution(Result):
+    """A scene's answer: the numbers of its result as attributes (docs/reference/results.md), its fields, its text."""
+
+    def __init__(self, pointer: int, message: str) -> None:
+        self._handle = _Handle(pointer)
+        super().__init__(json.loads(_library.function("solution_json")(pointer)))
+        self.message = message
+        """Why it is not to be trusted; empty where it converged and reached the accuracy asked for."""
+        self.fields = Fields(self._handle)
+
+    @property
+    def converged(self) -> bool:
+        """Whether it is to be trusted."""
+        return not self.message and self["status"] == "converged"
+
+    @property
+    def text(self) -> str:
+        """The result as the program prints it."""
+        return _library.function("solution_text")(self._handle.pointer).decode(errors="replace")
+
+    def write(self, file: str | os.PathLike[str]) -> None:
+        """Writes all fields where there is pressure: .csv, .h5 or .vti."""
+        _library.checked(_library.function("solution_write")(self._handle.pointer, _library.encoded(os.fspath(file))))
+
+    def fields_frame(self) -> Any:
+        """The fields where there is pressure as a pandas.DataFrame, one row a cell. Needs pandas."""
+        import pandas
+
+        frame = pandas.DataFrame({name: field.ravel() for name, field in self.fields.items()})
+        return frame[frame.pressure != 0]
+
+
+class _Progress:
+    """What the library calls. An exception must not cross it: it waits, and the solve stops."""
+
+    def __init__(self, progress: Callable[[int, float], object] | None) -> None:
+        self.progress = progress
+        self.error: BaseException | None = None
+        self.function = _library.PROGRESS(self._called)
+
+    def _called(self, iteration: int, change: float, _: int | None) -> int:
+        if self.error is None and self.progress is not None:
+            try:
+                self.progress(iteration, change)
+            except BaseException as error:  # noqa: BLE001
+                self.error = error
+        return 0 if self.error is None else 1
+
+    def interrupt(self, *_: object) -> None:
+        self.error = KeyboardInterrupt()
+
+
+def solve(scene: Scene, *, accuracy: float = 0.0, progress: Callable[[int, float], object] | None = None,
+          **overrides: Any) -> Solution:
+    """Solves a scene: the name of its file, its text (a str of several lines) or a dict of its tables.
+
+    overrides replace keys of the scene, with two underscores for the dot: load__moment_ratio=0.5. accuracy asks for a
+    relative error of the twist; cells, tolerance and model are then chosen. progress(iteration, change) is called now and
+    then; what it raises ends the solve, and so does Ctrl-C. Other threads run on meanwhile, and may solve too.
+
+    Raises InputError for what the scene got wrong; a solution that did not converge, or not to the accuracy, comes with a
+    NotConvergedWarning.
+
+    >>> sphere = {"upper": {"shape": "sphere", "radius": 0.018, "young_modulus": 210e9, "poisson_ratio": 0.3},
+    ...           "lower": {"young_modulus": 210e9, "poisson_ratio": 0.3}, "contact": {"friction": 0.1},
+    ...           "load": {"normal": 1000.0, "moment_ratio": 0.9}, "grid": {"cells": [48, 48]}}
+    >>> solution = solve(sphere, load__moment_ratio=0.5)
+    >>> solution.converged, round(solution.twist_angle * 1e3, 2), abs(solution.twist_error) < 1e-3  # mrad
+    (True, 0.76, True)
+    >>> solution.fields["pressure"].shape
+    (48, 48)
+    """
+    text, name = text_of(scene)
+    words = [_library.encoded(word) for word in assignments(overrides)]
+    called = _Progress(progress)
+    pointer = ctypes.c_void_p()
+    in_main = threading.current_thread() is threading.main_thread()
+    # A handler that raised could do so inside the library's callback, where Python drops it: this one notes it.
+    before = signal.signal(signal.SIGINT, called.interrupt) if in_main else None
+    try:
+        status = _library.function("solve")(
+            None if text is None else _library.encoded(text), _library.encoded(name), len(words),
+            (ctypes.c_char_p * len(words))(*words), accuracy, called.function, None, _library.byref(pointer))
+        message = _library.message() if status != _library.OK else ""
+    finally:
+        if in_main:
+            signal.signal(signal.SIGINT, before or signal.SIG_DFL)
+    if called.error is not None:
+        if pointer.value:
+            _library.function("solution_free")(pointer)
+        raise called.error
+    _library.checked(status)
+    assert pointer.value is not None
+    solution = Solution(pointer.value, message)
+    if not solution.converged:
+        warnings.warn(message, NotConvergedWarning, stacklevel=2)
+    return solution

@@ -1,0 +1,103 @@
+"""slipstick.check, gate and study: verdicts that theory gives, and what goes wrong."""
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+import slipstick
+from scenes import SPHERE
+from slipstick._scene import toml_text
+
+GATE = """
+[[gate]]
+id = "twist"
+scene = "scene.toml"
+quantity = "twist_error"
+below = {}
+basis = "made up"
+"""
+
+
+def exact_field():
+    """The exact tractions of the scene at the cell centres of its grid."""
+    return dict(slipstick.solve(SPHERE, solver__model="exact").fields)
+
+
+class CheckTest(unittest.TestCase):
+    def test_good(self):
+        solution = slipstick.solve(SPHERE)
+        for field in (solution, solution.fields, exact_field()):
+            verdict = slipstick.check(SPHERE, field)
+            self.assertTrue(verdict.good, verdict.why)
+        self.assertTrue(slipstick.check(SPHERE, solution, twist=solution.twist_angle, discrete=True).good)
+
+    def test_bad(self):
+        field = exact_field()
+        field["q1"], field["q2"] = 0.8 * field["q1"], 0.8 * field["q2"]  # carries 0.72 of the limit, not 0.9
+        verdict = slipstick.check(SPHERE, field)
+        self.assertEqual((verdict.good, verdict.verdict), (False, "bad"))
+        self.assertIn("moment", verdict.why)
+        self.assertAlmostEqual(verdict.moment_error, -0.2, delta=0.01)
+        self.assertIn("<th>verdict</th><td>bad</td>", verdict._repr_html_())
+
+    def test_options_and_overrides_arrive(self):
+        field = exact_field()
+        self.assertFalse(slipstick.check(SPHERE, field, tolerance=1e-9).good)
+        self.assertFalse(slipstick.check(SPHERE, field, load__moment_ratio=0.5).good)
+        self.assertFalse(slipstick.check(SPHERE, field, twist=1.0).good)
+
+    def test_refusals(self):
+        field = exact_field()
+        with self.assertRaisesRegex(slipstick.InputError, "the field has no q2"):
+            slipstick.check(SPHERE, {name: field[name] for name in ("x1", "x2", "pressure", "q1")})
+        with self.assertRaisesRegex(slipstick.InputError, "allowed: one a cell in each"):
+            slipstick.check(SPHERE, field | {"q2": np.zeros(3)})
+        with self.assertRaisesRegex(slipstick.InputError, "^nowhere.csv: cannot be read"):
+            slipstick.check(SPHERE, "nowhere.csv")
+        with self.assertRaisesRegex(slipstick.InputError, "contact.friction = -1"):
+            slipstick.check(SPHERE, field, contact__friction=-1.0)
+
+
+class FilesTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        (self.folder / "scene.toml").write_text(toml_text(SPHERE))
+
+    def test_gates(self):
+        file = self.folder / "gates.toml"
+        file.write_text(GATE.format(1e-2))
+        gates = slipstick.gate(file, output=self.folder / "kept")
+        self.assertTrue(gates.passed)
+        self.assertLess(abs(gates.gates[0].value), 1e-2)
+        self.assertTrue(any((self.folder / "kept").iterdir()))
+        file.write_text(GATE.format(1e-7))
+        self.assertFalse(slipstick.gate([file]).passed)
+        file.write_text(GATE.format('"small"'))
+        self.assertFalse(slipstick.gate(file).passed)
+        with self.assertRaises(slipstick.InputError):
+            slipstick.gate(self.folder / "none.toml", only=["twist"])
+
+    def test_study(self):
+        file = self.folder / "study.toml"
+        file.write_text('name = "small"\nscene = "scene.toml"\ncells = [16, 24, 32]\nshifts = 1\n')
+        study = slipstick.study(file, load__moment_ratio=0.5)
+        rows = [row for series in study.series.values() for row in series.rows]
+        self.assertEqual(sorted(row.cells[0] for row in rows), [16, 24, 32])
+        errors = [abs(row["twist_error"]) for row in rows]
+        self.assertLess(max(errors), 0.05)
+
+
+class MachineryTest(unittest.TestCase):
+    def test_frames(self):
+        try:
+            import pandas  # noqa: F401
+        except ImportError:
+            self.skipTest("pandas is not installed")
+        result = slipstick.Result({"rows": [{"a": 1, "b": {"c": 2}}, {"a": 3, "b": {"c": 4}}]})
+        self.assertEqual(list(result.to_frame()["b.c"]), [2, 4])
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,200 @@
+"""slipstick.solve: facts, fields without copies, progress, Ctrl-C, what goes wrong."""
+import copy
+import gc
+import json
+import os
+import signal
+import tempfile
+import threading
+import time
+import unittest
+import warnings
+from concurrent.futures import ThreadPoolExecutor
+from pathlib import Path
+
+import numpy as np
+import slipstick
+from scenes import SPHERE
+
+
+class SolveTest(unittest.TestCase):
+    def test_numbers_and_fields_agree(self):
+        solution = slipstick.solve(SPHERE)
+        self.assertTrue(solution.converged)
+        fields, area = solution.fields, np.prod(solution.cell_size)
+        self.assertEqual(fields["pressure"].shape, (48, 48))
+        self.assertAlmostEqual(fields["pressure"].sum() * area, 1000.0, places=6)
+        moment = (fields["x1"] * fields["q2"] - fields["x2"] * fields["q1"]).sum() * area
+        self.assertAlmostEqual(moment / solution.moment, 1, places=9)
+        self.assertLess(abs(solution.twist_error), 1e-3)
+        self.assertLessEqual(solution.certificate.gap, 1e-8)
+        self.assertTrue((np.diff(fields["x1"][:, 0]) > 0).all() and (np.diff(fields["x2"][0]) > 0).all())
+        exact = slipstick.exact.twist(0.9)
+        self.assertAlmostEqual(solution.twist / exact, 1, delta=1e-3)
+
+    def test_scene_as_dict_text_and_file_is_one_scene(self):
+        from slipstick._scene import toml_text
+        text = toml_text(SPHERE)
+        with tempfile.TemporaryDirectory() as folder:
+            file = Path(folder) / "mine.toml"
+            file.write_text(text)
+            twists = {slipstick.solve(scene, load__moment_ratio=0.4).twist_angle
+                      for scene in (SPHERE, text, file, str(file))}
+        self.assertEqual(len(twists), 1)
+
+    def test_overrides(self):
+        scene = copy.deepcopy(SPHERE)
+        scene["load"]["moment_ratio"] = 0.3
+        scene["grid"]["cells"] = [24, 24]
+        self.assertEqual(slipstick.solve(scene).twist_angle,
+                         slipstick.solve(SPHERE, load__moment_ratio=np.float64(0.3), grid__cells=np.array([24, 24])).twist_angle)
+        self.assertEqual(slipstick.solve(scene).twist_angle,
+                         slipstick.solve(SPHERE, **{"load.moment_ratio": 0.3, "grid.cells": (24, 24)}).twist_angle)
+
+    def test_exact_model_and_accuracy(self):
+        exact = slipstick.solve(SPHERE, solver__model="exact")
+        self.assertEqual(exact.method, "exact")
+        self.assertEqual(sorted(exact.fields), ["pressure", "q1", "q2", "stick", "x1", "x2"])
+        self.assertAlmostEqual(exact.twist, slipstick.exact.twist(0.9), delta=1e-14)
+        self.assertIsNone(exact.twist_error)
+        self.assertIn("exact", exact.reason("twist_error"))
+        close = slipstick.solve(SPHERE, accuracy=1e-3, solver__model="auto")
+        self.assertLessEqual(close.accuracy.reached, 1e-3)
+        self.assertLessEqual(abs(close.twist_angle / exact.twist_angle - 1), 1e-3)
+
+    def test_history(self):
+        scene = {name: part for name, part in SPHERE.items() if name != "load"}
+        scene["step"] = [{"name": "on", "normal": 1000.0, "moment_ratio": 0.8}, {"name": "back", "moment_ratio": -0.8}]
+        solution = slipstick.solve(scene)
+        self.assertEqual([step.name for step in solution.steps], ["on", "back"])
+        self.assertAlmostEqual(solution.steps[1].twist_angle / solution.steps[0].twist_angle, -1, delta=1e-6)
+
+    def test_fields_outlive_the_solution_and_are_no_copies(self):
+        solution = slipstick.solve(SPHERE)
+        pressure = solution.fields["pressure"]
+        self.assertEqual(pressure.ctypes.data, solution.fields["pressure"].ctypes.data)
+        self.assertFalse(pressure.flags.owndata or pressure.flags.writeable)
+        total = pressure.sum()
+        del solution
+        gc.collect()
+        others = [slipstick.solve(SPHERE, load__normal=500.0 + i) for i in range(3)]  # would reuse the memory
+        self.assertEqual(pressure.sum(), total)
+        self.assertEqual(len(others), 3)
+
+    def test_result(self):
+        solution = slipstick.solve(SPHERE)
+        plain = solution.to_dict()
+        json.dumps(plain)
+        plain["certificate"]["gap"] = 7
+        self.assertLess(solution.certificate.gap, 1)
+        self.assertIn("converged", solution.text)
+        html = solution._repr_html_()
+        self.assertIn("<th>twist_angle</th>", html)
+        self.assertNotIn("_reason", html)
+        named = slipstick.solve(SPHERE | {"name": "<script>"})
+        self.assertIn("&lt;script&gt;", named._repr_html_())
+        self.assertIn("twist_angle", dir(solution))
+        with self.assertRaises(AttributeError):
+            solution.twist_angel
+        with self.assertRaises(KeyError):
+            solution.fields["q3"]
+
+    def test_write(self):
+        with tempfile.TemporaryDirectory() as folder:
+            solution = slipstick.solve(SPHERE)
+            solution.write(Path(folder) / "fields.csv")
+            header = (Path(folder) / "fields.csv").read_text().splitlines()[0].split(",")
+            self.assertEqual(header, list(solution.fields))
+            with self.assertRaisesRegex(slipstick.InputError, "allowed: .h5"):
+                solution.write(Path(folder) / "fields.doc")
+
+    def test_frames(self):
+        try:
+            import pandas  # noqa: F401
+        except ImportError:
+            self.skipTest("pandas is not installed")
+        frame = slipstick.solve(SPHERE).fields_frame()
+        self.assertTrue((frame.pressure > 0).all())
+
+
+class WrongTest(unittest.TestCase):
+    def test_messages_are_those_of_the_program(self):
+        for words, overrides in [("contact.friction = -1", {"contact__friction": -1.0}),
+                                 ("the nearest known one is contact.friction", {"contact__frictoin": 0.1}),
+                                 ("load.moment_ratio = 1.5", {"load__moment_ratio": 1.5})]:
+            with self.assertRaises(slipstick.InputError) as caught:
+                slipstick.solve(SPHERE, **overrides)
+            self.assertIn(words, str(caught.exception))
+        with self.assertRaisesRegex(slipstick.InputError, "nowhere.toml: cannot be read"):
+            slipstick.solve("nowhere.toml")
+        with self.assertRaisesRegex(slipstick.InputError, "scene:2: upper.shape"):
+            slipstick.solve('[upper]\nshape = "shpere"\n')
+        with self.assertRaisesRegex(slipstick.InputError, "allowed: numbers, texts"):
+            slipstick.solve({"upper": {"shape": object()}})
+
+    def test_not_converged_is_a_warning(self):
+        with warnings.catch_warnings(record=True) as caught:
+            warnings.simplefilter("always")
+            solution = slipstick.solve(SPHERE, solver__max_iterations=1)
+        self.assertFalse(solution.converged)
+        self.assertEqual([(each.category, str(each.message)) for each in caught],
+                         [(slipstick.NotConvergedWarning, solution.message)])
+        self.assertGreater(len(solution.message), 10)
+
+
+class ProgressTest(unittest.TestCase):
+    def test_progress_is_told(self):
+        seen = []
+        slipstick.solve(SPHERE, progress=lambda iteration, change: seen.append((iteration, change)))
+        self.assertGreater(len(seen), 1)
+        self.assertLess(seen[-1][1], seen[0][1])
+
+    def test_what_progress_raises_ends_the_solve(self):
+        def stop(iteration, change):
+            raise ZeroDivisionError("mine")
+
+        with self.assertRaisesRegex(ZeroDivisionError, "mine"):
+            slipstick.solve(SPHERE, progress=stop)
+        self.assertTrue(slipstick.solve(SPHERE).converged)
+
+    def test_ctrl_c(self):
+        before = signal.getsignal(signal.SIGINT)
+        started = threading.Event()
+
+        def strike():
+            started.wait()
+            os.kill(os.getpid(), signal.SIGINT)
+
+        striker = threading.Thread(target=strike)
+        striker.start()
+
+        def seen(iteration, change):
+            started.set()
+            striker.join()
+
+        with self.assertRaises(KeyboardInterrupt):
+            slipstick.solve(SPHERE, progress=seen)
+        self.assertIs(signal.getsignal(signal.SIGINT), before)
+
+    def test_ctrl_c_while_nothing_is_watched(self):
+        """A long history, and no progress function: the signal ends it all the same, long before its end."""
+        scene = {name: part for name, part in SPHERE.items() if name != "load"}
+        scene["step"] = [{"normal": 1000.0, "moment_ratio": 0.8}, {"moment_ratio": -0.8}]
+        scene["cycles"] = 2000
+        timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
+        timer.start()
+        start = time.monotonic()
+        with self.assertRaises(KeyboardInterrupt):
+            slipstick.solve(scene)
+        print(f"ended after {time.monotonic() - start:.2f} s")
+
+    def test_threads(self):
+        loads = [0.1 * i for i in range(1, 9)]
+        alone = [slipstick.solve(SPHERE, load__moment_ratio=load).twist_angle for load in loads]
+        with ThreadPoolExecutor(4) as pool:
+            together = list(pool.map(lambda load: slipstick.solve(SPHERE, load__moment_ratio=load).twist_angle, loads))
+        self.assertEqual(alone, together)
+
+
+if __name__ == "__main__":
+    unittest.main()
