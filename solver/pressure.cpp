@@ -70,7 +70,8 @@ NormalSolution given(const Eigen::ArrayXd& pressure) {
 
 /// On the part of the grid that the model leaves; the answer is on the whole one.
 NormalSolution solved_pressure(const Scene& scene, const Model& model, double normal_load,
-                               const Eigen::ArrayXd& opening, const TurnGoal& goal) {
+                               const Eigen::ArrayXd& opening, const TurnGoal& goal,
+                               const std::function<void(int, double)>& progress) {
   // Shear opens the gap as it likes.
   const Reduction part = opening.size() > 0 ? Reduction(model.grid) : model.pressure_part;
   const double images = part.quadrant() ? 4.0 : 1.0;
@@ -81,7 +82,8 @@ NormalSolution solved_pressure(const Scene& scene, const Model& model, double no
                             .total_pressure = normal_load / model.grid.cell_area() / images,
                             .guess = part.restricted(goal.guess)},
                            {.tolerance = std::max(std::min(kPressureTolerance, scene.tolerance), goal.gap),
-                            .refine_approach = goal.gap == 0.0});
+                            .refine_approach = goal.gap == 0.0,
+                            .progress = progress});
   if (part.diagonal()) solution.pressure = symmetrised(part.grid(), solution.pressure);
   solution.pressure = part.expanded(solution.pressure, normal_symmetry());
   if (scene.model != ModelChoice::full && !model.forces && is_half_turn_symmetric(model.grid, model.gap)) {
@@ -99,10 +101,12 @@ HertzContact under_part_of_load(const HertzContact& contact, double part) {
 }  // namespace
 
 NormalSolution find_pressure(const Scene& scene, const Model& model, const Step& step,
-                             const Eigen::ArrayXd& opening, const TurnGoal& goal) {
+                             const Eigen::ArrayXd& opening, const TurnGoal& goal,
+                             const std::function<void(int, double)>& progress) {
   if (scene.pressure == PressureModel::file) return given(pressure_from_file(scene, model));
   const double load = to_dimensionless(*step.normal, model.force_unit());
-  if (scene.pressure == PressureModel::solved) return solved_pressure(scene, model, load, opening, goal);
+  if (scene.pressure == PressureModel::solved)
+    return solved_pressure(scene, model, load, opening, goal, progress);
   const HertzContact hertz = under_part_of_load(*model.hertz, load / *model.normal_load);
   return given(scene.pressure == PressureModel::hertz ? hertz_at_centres(hertz, model.grid)
                                                       : hertz_cell_averages(hertz, model.grid));

@@ -140,7 +140,7 @@ LoadStep solve_coupled(ModelSolution& solution, const Scene& scene, const Step& 
       .tolerance = scene.tolerance,
       .solve_pressure =
           [&](const ArrayXd& opening, const TurnGoal& goal) {
-            NormalSolution normal = find_pressure(scene, model, step, opening, goal);
+            NormalSolution normal = find_pressure(scene, model, step, opening, goal, progress);
             solution.pressure_applications += finest_grid_applications(normal.grids);
             solution.safeguards += normal.safeguards;
             return normal;
@@ -171,7 +171,7 @@ LoadStep solve_in_sequence(ModelSolution& solution, const Scene& scene, const St
   Stopwatch watch(solution.model.cache.get());
   solution.pressure_applications = 0.0;
   if (previous == nullptr || previous->normal != step.normal) {
-    solution.normal = find_pressure(scene, solution.model, step);
+    solution.normal = find_pressure(scene, solution.model, step, {}, {}, progress);
     solution.pressure_applications = finest_grid_applications(solution.normal.grids);
     solution.safeguards += solution.normal.safeguards;
     require_contact_within_grid(scene, solution.model, step, solution.normal);

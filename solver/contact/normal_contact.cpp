@@ -76,7 +76,8 @@ NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& gri
                                problem.guess);
   const NewtonOptions newton{.tolerance = options.tolerance,
                              .max_applications = options.max_applications,
-                             .refine_multipliers = options.refine_approach};
+                             .refine_multipliers = options.refine_approach,
+                             .progress = options.progress};
   NestedSummary nested = solve_nested(elasticity, grid, contact, newton);
   NormalSolution solution;
   solution.status = nested.newton.converged ? Status::converged : Status::not_converged;

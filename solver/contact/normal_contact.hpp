@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -22,6 +23,7 @@ struct NormalOptions {
   double tolerance = 1e-10;     ///< on the complementarity gap
   bool refine_approach = true;  ///< to second order, at some applications more
   long max_applications = 2000;
+  std::function<void(long applications, double gap)> progress = {};  ///< on the finest grid
 };
 
 struct NormalSolution {
