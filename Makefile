@@ -79,13 +79,13 @@ sanitize: setup ## run every test under sanitizers (SANITIZER=tsan: threads; COM
 	@test -f $(SANITIZED)/build.ninja || cmake --preset $(SANITIZER) -B $(SANITIZED) $(addprefix -DCMAKE_CXX_COMPILER=,$(COMPILER))
 	@cmake --build $(SANITIZED) --target $(if $(SANITIZE),$(SANITIZE:%=%_tests),tests)
 	@ctest --test-dir $(SANITIZED) --output-on-failure -j$$(nproc) \
-	  $(if $(SANITIZE),-R "^($$(echo $(SANITIZE) | tr ' ' '|'))_tests",-E '^(reports|docs)')
+	  $(if $(SANITIZE),-R "^($$(echo $(SANITIZE) | tr ' ' '|'))_tests",-E '^(reports|docs|python)')
 
 coverage: setup ## which lines of analytic, solver and convergence do the tests run? At least 95 % (needs lcov)
 	@command -v lcov >/dev/null || { echo "make coverage: lcov is missing; on Debian: apt-get install lcov" >&2; exit 2; }
 	@test -f build-coverage/build.ninja || cmake --preset coverage
 	@cmake --build build-coverage --target tests
-	@GTEST_FILTER='-Memory.Predicted*' ctest --test-dir build-coverage --output-on-failure -j$$(nproc) -E '^(reports|docs)'
+	@GTEST_FILTER='-Memory.Predicted*' ctest --test-dir build-coverage --output-on-failure -j$$(nproc) -E '^(reports|docs|python)'
 	@build-coverage/slipstick report --quick --output build-coverage/report
 	@cmake/coverage build-coverage 95
 

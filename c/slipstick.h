@@ -121,8 +121,9 @@ int slipstick_exact_indentation(const char* profile, double load, double effecti
 
 /* Scenes, solved on a grid or exactly. */
 
-/* Called now and then by the thread that solves: iterations so far, and what the method's stopping test sees.
- * Not zero: the solve stops. It must not leave by an exception or longjmp. */
+/* Called now and then by the thread that solves, for the pressure and then for the tractions: iterations or
+ * applications so far, and what the stopping test sees. Not zero: the solve stops. It must not leave by an
+ * exception or longjmp. */
 typedef int (*slipstick_progress)(int iteration, double change, void* user);
 
 /* A scene's answer. */

@@ -13,7 +13,11 @@ Scene = str | os.PathLike[str] | Mapping[str, Any]
 
 
 def toml_value(value: Any) -> str:
-    """A value as TOML has it."""
+    """A value as TOML has it.
+
+    >>> print(toml_value([True, 2, 1e-3, float("inf"), "a", {"b": np.arange(2)}]))
+    [true, 2, 0.001, inf, "a", {b = [0, 1]}]
+    """
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, bool):

@@ -1,4 +1,4 @@
-"""What judges: fields of other programs, gates, studies."""
+"""What the program does: it judges fields of other programs, gates and studies, and more."""
 import os
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -115,6 +115,15 @@ def study(file: Path_, *, output: Path_ | None = None, jobs: int = 0, progress: 
     """
     with _kept(output) as folder:
         return Study(run("study", file, *_set(overrides), "--output", folder, "--jobs", str(jobs), progress=progress))
+
+
+def command(name: str, *words: Path_, progress: Progress = None) -> Result:
+    """Any command of the program with its options, as on the command line (docs/reference/commands.md), and its result.
+
+    >>> command("exact", "--profile", "cone", "--stick-ratio", "1").moment_ratio
+    0.0
+    """
+    return Result(run(name, *words, progress=progress))
 
 
 def _set(overrides: Mapping[str, Any]) -> list[str]:

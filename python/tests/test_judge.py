@@ -1,13 +1,18 @@
 """slipstick.check, gate and study: verdicts that theory gives, and what goes wrong."""
+import os
+import signal
 import tempfile
+import threading
+import time
 import unittest
 from pathlib import Path
 
 import numpy as np
+import scenes
 import slipstick
-from scenes import SPHERE
 from slipstick._scene import toml_text
 
+SPHERE = scenes.SPHERE | {"grid": {"cells": [32, 32]}}
 GATE = """
 [[gate]]
 id = "twist"
@@ -45,6 +50,17 @@ class CheckTest(unittest.TestCase):
         self.assertFalse(slipstick.check(SPHERE, field, tolerance=1e-9).good)
         self.assertFalse(slipstick.check(SPHERE, field, load__moment_ratio=0.5).good)
         self.assertFalse(slipstick.check(SPHERE, field, twist=1.0).good)
+        in_mpa = {name: values * (1e-6 if name in ("pressure", "q1", "q2") else 1) for name, values in field.items()}
+        self.assertTrue(slipstick.check(SPHERE, in_mpa).good)
+        self.assertFalse(slipstick.check(SPHERE, in_mpa, strict=True).good)
+        rounded = field | {"q1": field["q1"] * 1.0001, "q2": field["q2"] * 1.0001}  # within the mesh, but no solution on it
+        self.assertTrue(slipstick.check(SPHERE, rounded).good)
+        self.assertFalse(slipstick.check(SPHERE, rounded, discrete=True).good)
+
+    def test_cells_that_carry_a_traction_without_pressure_are_seen(self):
+        field = exact_field()
+        field["q1"] = field["q1"] + 1e8 * (field["pressure"] == 0)
+        self.assertFalse(slipstick.check(SPHERE, field).good)
 
     def test_refusals(self):
         field = exact_field()
@@ -76,8 +92,11 @@ class FilesTest(unittest.TestCase):
         self.assertFalse(slipstick.gate([file]).passed)
         file.write_text(GATE.format('"small"'))
         self.assertFalse(slipstick.gate(file).passed)
-        with self.assertRaises(slipstick.InputError):
-            slipstick.gate(self.folder / "none.toml", only=["twist"])
+        with self.assertRaisesRegex(slipstick.InputError, "thrust"):
+            slipstick.gate(file, only=["thrust"])
+        file.write_text(GATE.format(1e-2) + GATE.format(1e-7).replace('"twist"', '"tight"'))
+        self.assertEqual([gate.outcome for gate in slipstick.gate(file).gates], ["passed", "failed"])
+        self.assertEqual([gate.id for gate in slipstick.gate(file, only=["tight"]).gates], ["tight"])
 
     def test_study(self):
         file = self.folder / "study.toml"
@@ -87,6 +106,28 @@ class FilesTest(unittest.TestCase):
         self.assertEqual(sorted(row.cells[0] for row in rows), [16, 24, 32])
         errors = [abs(row["twist_error"]) for row in rows]
         self.assertLess(max(errors), 0.05)
+
+    def test_a_study_goes_on_after_ctrl_c(self):
+        file, kept = self.folder / "study.toml", self.folder / "kept"
+        cells = list(range(16, 272, 4))  # for minutes, were it not stopped
+        file.write_text(f'name = "long"\nscene = "scene.toml"\ncells = {cells}\nshifts = 4\n')
+
+        def strike():
+            while not any(kept.glob("**/*.json")):
+                time.sleep(0.01)
+            os.kill(os.getpid(), signal.SIGINT)
+
+        striker = threading.Thread(target=strike)
+        striker.start()
+        with self.assertRaises(KeyboardInterrupt):
+            slipstick.study(file, output=kept, jobs=1)
+        striker.join()
+        with self.assertRaises(ChildProcessError):  # nothing is left running
+            os.waitpid(-1, os.WNOHANG)
+        file.write_text(f'name = "long"\nscene = "scene.toml"\ncells = {cells[:3]}\nshifts = 1\n')
+        said = []
+        self.assertEqual(slipstick.study(file, output=kept, progress=said.append).failed_runs.count, 0)
+        self.assertIn("[", said[-1])
 
 
 class MachineryTest(unittest.TestCase):

@@ -42,6 +42,11 @@ class SolveTest(unittest.TestCase):
                       for scene in (SPHERE, text, file, str(file))}
         self.assertEqual(len(twists), 1)
 
+    def test_texts_arrive_as_they_are(self):
+        for name in ('in "quotes"', "back\\slash", "two\nlines\ttab", "µ\x7f", "a = [b]"):
+            self.assertEqual(slipstick.solve(SPHERE | {"name": name}).name, name)
+        self.assertEqual(slipstick.solve(SPHERE, name="[1, 2]").name, "[1, 2]")
+
     def test_overrides(self):
         scene = copy.deepcopy(SPHERE)
         scene["load"]["moment_ratio"] = 0.3
@@ -148,6 +153,14 @@ class ProgressTest(unittest.TestCase):
         slipstick.solve(SPHERE, progress=lambda iteration, change: seen.append((iteration, change)))
         self.assertGreater(len(seen), 1)
         self.assertLess(seen[-1][1], seen[0][1])
+
+    def test_the_pressure_is_part_of_it(self):
+        def calls(**overrides):
+            seen = []
+            slipstick.solve(SPHERE, progress=lambda *at: seen.append(at), **overrides)
+            return len(seen)
+
+        self.assertGreater(calls(), calls(contact__pressure="hertz"))
 
     def test_what_progress_raises_ends_the_solve(self):
         def stop(iteration, change):
