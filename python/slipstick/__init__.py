@@ -8,12 +8,12 @@ slipstick.study    orders of convergence and error budgets
 slipstick.command  any other command of the program
 """
 from . import exact
-from ._library import function as _function
+from ._library import text as _text
 from .errors import Failure, InputError, NotConvergedWarning
 from .judge import Check, Gates, Study, check, command, gate, study
 from .result import Result
 from .solution import Fields, Solution, solve
 
-__version__: str = _function("version")().decode()
+__version__: str = _text("version")
 __all__ = ["exact", "solve", "check", "gate", "study", "command", "Solution", "Fields", "Result", "Check", "Gates", "Study",
            "InputError", "Failure", "NotConvergedWarning", "__version__"]

@@ -64,8 +64,14 @@ def function(name: str) -> Any:
     return getattr(_LIBRARY, f"slipstick_{name}")
 
 
+def text(name: str, *arguments: Any) -> str:
+    """What the C function slipstick_NAME says."""
+    said: bytes = function(name)(*arguments)
+    return said.decode(errors="replace")
+
+
 def message() -> str:
-    return function("message")().decode(errors="replace")
+    return text("message")
 
 
 def checked(status: int) -> int:
@@ -98,4 +104,4 @@ def encoded(text: str) -> bytes:
 
 
 __all__ = ["OK", "NOT_CONVERGED", "STOPPED", "PROGRESS", "PROGRAM", "Profile", "Indentation", "STATE", "CYCLE_STATE",
-           "function", "message", "checked", "doubles", "address", "encoded", "byref"]
+           "function", "text", "message", "checked", "doubles", "address", "encoded", "byref"]

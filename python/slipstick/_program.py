@@ -21,11 +21,11 @@ def run(command: str, *words: str | os.PathLike[str], progress: Callable[[str], 
     with tempfile.TemporaryDirectory() as folder:
         output = Path(folder) / "result.json"
         process = subprocess.Popen(
-            [os.fspath(PROGRAM), command, *map(os.fspath, words), "--quiet", "--json", os.fspath(output)],
+            [os.fspath(PROGRAM), command, *(os.fspath(word) for word in words), "--quiet", "--json", os.fspath(output)],
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
-        said = []
+        assert process.stderr is not None
+        said: list[str] = []
         try:
-            assert process.stderr is not None
             for line in process.stderr:
                 if line.startswith(_MESSAGE) or said:
                     said.append(line.removeprefix(_MESSAGE))

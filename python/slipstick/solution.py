@@ -45,7 +45,7 @@ class Fields(Mapping[str, npt.NDArray[np.float64]]):
             self._handle.pointer, name.encode(), _library.byref(values), _library.byref(count)))
         memory = (ctypes.c_double * count.value).from_address(ctypes.addressof(values.contents))
         memory.handle = self._handle  # type: ignore[attr-defined]
-        field = np.frombuffer(memory, np.float64).reshape(self._shape)
+        field: npt.NDArray[np.float64] = np.frombuffer(memoryview(memory), np.float64).reshape(self._shape)
         field.flags.writeable = False
         return field
 
@@ -67,7 +67,7 @@ class Solution(Result):
 
     def __init__(self, pointer: int, message: str) -> None:
         self._handle = _Handle(pointer)
-        super().__init__(json.loads(_library.function("solution_json")(pointer)))
+        super().__init__(json.loads(_library.text("solution_json", pointer)))
         self.message = message
         """Why it is not to be trusted; empty where it converged and reached the accuracy asked for."""
         self.fields = Fields(self._handle)
@@ -80,7 +80,7 @@ class Solution(Result):
     @property
     def text(self) -> str:
         """The result as the program prints it."""
-        return _library.function("solution_text")(self._handle.pointer).decode(errors="replace")
+        return _library.text("solution_text", self._handle.pointer)
 
     def write(self, file: str | os.PathLike[str]) -> None:
         """Writes all fields where there is pressure: .csv, .h5 or .vti."""

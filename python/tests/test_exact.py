@@ -90,6 +90,7 @@ class RefusalsTest(unittest.TestCase):
         self.assert_refused("2 of ", exact.traction, 0.5, 0.5, history=[0.1])
         self.assert_refused("radii[0]: r/a = 2", exact.traction, 2.0, 0.5)
         self.assert_refused("points_per_branch = 0", exact.curve, [0.5], 0)
+        self.assert_refused("points_per_branch = -5", exact.curve, [0.5], -5)
         self.assert_refused("moment_ratios[1]", exact.history, [0.5, -2.0])
         self.assert_refused("zero byte", exact.twist, 0.5, profile="hertz\0cone")
         self.assertTrue(issubclass(InputError, ValueError))

@@ -11,6 +11,7 @@ import unittest
 import warnings
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import slipstick
@@ -166,8 +167,12 @@ class ProgressTest(unittest.TestCase):
         def stop(iteration, change):
             raise ZeroDivisionError("mine")
 
-        with self.assertRaisesRegex(ZeroDivisionError, "mine"):
+        called, watched = slipstick.solution._Progress._called, []
+        watch = mock.patch.object(slipstick.solution._Progress, "_called",
+                                  lambda self, *at: watched.append(at) or called(self, *at))
+        with watch, self.assertRaisesRegex(ZeroDivisionError, "mine"):
             slipstick.solve(SPHERE, progress=stop)
+        self.assertEqual(len(watched), 1)  # the library does not go on
         self.assertTrue(slipstick.solve(SPHERE).converged)
 
     def test_ctrl_c(self):
