@@ -8,6 +8,8 @@
 #include <stdexcept>
 #include <string_view>
 
+#include "analytic/gsl.hpp"
+
 namespace slipstick::analytic {
 
 namespace {
@@ -114,6 +116,18 @@ StickRadius stick_from_deficit(double deficit, const Profile& profile) {
   }));
 }
 
+/// By x = -ln c, in which H grows with the slope -c H'.
+StickRadius stick_beyond(double x) { return {.ratio = std::exp(-x), .complement = -std::expm1(-x)}; }
+
+/// H(c) - H(1), c = exp(-x). A little above a singular edge's H(1) the difference would lose its digits; the
+/// slope's integral keeps them.
+double twist_beyond_stick(double x, const Profile& profile) {
+  constexpr double kSmall = 0.1;
+  const double h = profile.twist_integral(stick_beyond(x));
+  if (h >= (1 + kSmall) * profile.edge()) return h - profile.edge();
+  return gsl::gauss_legendre([&](double y) { return profile.twist_slope(stick_beyond(y)); }, 0, x);
+}
+
 /// Where there is slip, or no load.
 TorsionState state_under(MomentShare share, const Profile& profile) {
   constexpr double kNearLimit = 0.3;  // of what slip adds; 1 - c is there no small difference
@@ -172,16 +186,13 @@ TorsionState from_twist(double twist, const Profile& profile) {
     state.twist = twist;
     return state;
   }
-  // H grows like -ln c, in which its slope is -c H'.
-  const auto stick = [](double x) {
-    return StickRadius{.ratio = std::exp(-x), .complement = -std::expm1(-x)};
-  };
   const double value = 2 * profile.load() * (twist - stuck);
   const StickRadius full{.ratio = 1, .complement = 0};
-  const StickRadius c = stick(solve(value, value / profile.twist_slope(full), -std::log(kMin), [&](double x) {
-    const double h = profile.twist_integral(stick(x)) - profile.edge();
-    return Sample{.value = h, .power = x * profile.twist_slope(stick(x)) / h};
-  }));
+  const StickRadius c =
+      stick_beyond(solve(value, value / profile.twist_slope(full), -std::log(kMin), [&](double x) {
+        const double h = twist_beyond_stick(x, profile);
+        return Sample{.value = h, .power = x * profile.twist_slope(stick_beyond(x)) / h};
+      }));
   TorsionState state = state_at(c, profile);
   state.twist = twist;
   return state;

@@ -113,6 +113,19 @@ TEST(Torsion, GoesRoundBetweenAllArguments) {
   }
 }
 
+/// H grows by pi/4 (1 - c) there, and the twist by that over 4 pi.
+TEST(Torsion, KeepsItsDigitsALittleBeyondFullStick) {
+  const Profile& punch = flat_punch_profile();
+  const double stuck = from_stick_ratio(1, punch).twist;
+  for (double beyond = 1e-3; beyond > 1e-13; beyond /= 3) {
+    const double twist = stuck + beyond;
+    const double exact_beyond = twist - stuck;
+    EXPECT_LE(relative_error(from_twist(twist, punch).stick_complement, 16 * exact_beyond),
+              1e-13 + 16 * exact_beyond)
+        << beyond;
+  }
+}
+
 TEST(Torsion, CarriesTheArgumentItself) {
   EXPECT_EQ(from_moment_ratio(0.3).moment_ratio, 0.3);
   EXPECT_EQ(from_moment_deficit(1e-12).moment_deficit, 1e-12);
