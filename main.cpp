@@ -18,6 +18,7 @@
 #include "convergence/gates/gate_command.hpp"
 #include "convergence/hard/digits_command.hpp"
 #include "convergence/hard/hard_command.hpp"
+#include "convergence/laws/law_command.hpp"
 #include "convergence/programs/command_word.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/run_program.hpp"
@@ -59,12 +60,12 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
 
   const std::vector<Command> commands{
-      slipstick::analytic::add_exact_command(app),       slipstick::convergence::add_solve_command(app),
-      slipstick::convergence::add_check_command(app),    slipstick::convergence::add_study_command(app),
-      slipstick::convergence::add_gate_command(app),     slipstick::convergence::add_hard_command(app),
-      slipstick::convergence::add_digits_command(app),   slipstick::convergence::add_report_command(app),
-      slipstick::bench::add_bench_command(app),          slipstick::bench::add_compare_command(app),
-      slipstick::convergence::add_reference_command(app)};
+      slipstick::analytic::add_exact_command(app),     slipstick::convergence::add_solve_command(app),
+      slipstick::convergence::add_check_command(app),  slipstick::convergence::add_law_command(app),
+      slipstick::convergence::add_study_command(app),  slipstick::convergence::add_gate_command(app),
+      slipstick::convergence::add_hard_command(app),   slipstick::convergence::add_digits_command(app),
+      slipstick::convergence::add_report_command(app), slipstick::bench::add_bench_command(app),
+      slipstick::bench::add_compare_command(app),      slipstick::convergence::add_reference_command(app)};
   const auto subcommands = app.get_subcommands([](const CLI::App*) { return true; });
   std::string json_path;
   bool quiet = false;

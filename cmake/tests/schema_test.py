@@ -174,6 +174,10 @@ class Results(unittest.TestCase):
         for file, twist, code in (("contact", 2.361048651456917e-3, 0), ("cgcontact", 2.21775472e-3, 1)):
             self.run_and_check("check", SCENES / "paper.toml", FIELDS / f"{file}-64-0.9.csv", *words, twist, code=code)
 
+    def test_law(self):
+        self.run_and_check("law", SCENES / "paper.toml", "--limit-loads", 3)
+        self.run_and_check("law", "--profile", "flat_punch", "--elements", 3)
+
     def test_hard(self):
         family = (
             '[[family]]\nname = "small"\nwhy = "made up"\nscene = "{}"\n[family.set]\ngrid.cells = [12, 12]\n'

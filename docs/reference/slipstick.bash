@@ -5,7 +5,7 @@ _slipstick() {
   local words=""
   COMPREPLY=()
   if [ "$COMP_CWORD" -eq 1 ]; then
-    words="exact solve check study gate hard digits report bench compare --help --version"
+    words="exact solve check law study gate hard digits report bench compare --help --version"
   else
     case "${COMP_WORDS[1]} $previous" in
       "exact --moment-ratio" | "exact --moment-deficit" | "exact --stick-ratio" | "exact --stick-complement" | "exact --twist" | "exact --history" | "exact --points" | "exact --unload-to" | "exact --certified" | "exact --radius" | "exact --profile" | "exact --normal-load" | "exact --effective-modulus" | "exact --shape" | "exact --friction" | "exact --shear-modulus" | "exact --json") return ;;
@@ -17,6 +17,9 @@ _slipstick() {
       "check --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "check --twist" | "check --tolerance" | "check --json") return ;;
       "check "*) [[ $current != -* ]] || words="--help --set --twist --discrete --tolerance --strict --json --quiet" ;;
+      "law --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
+      "law --profile" | "law --write" | "law --error" | "law --table-error" | "law --element-error" | "law --elements" | "law --limit-loads" | "law --json") return ;;
+      "law "*) [[ $current != -* ]] || words="--help --set --profile --write --error --table-error --element-error --elements --limit-loads --json --quiet" ;;
       "study --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "study --output" | "study --figure" | "study --jobs" | "study --memory-limit" | "study --json") return ;;
       "study "*) [[ $current != -* ]] || words="--help --set --output --figure --jobs --memory-limit --json --quiet" ;;

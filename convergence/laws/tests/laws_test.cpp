@@ -1,0 +1,322 @@
+// Contact laws against the exact law, at points that no fit has seen.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+#include "analytic/cycle.hpp"
+#include "analytic/elliptic.hpp"
+#include "analytic/named_profile.hpp"
+#include "analytic/torsion.hpp"
+#include "convergence/laws/contact_law.hpp"
+#include "convergence/laws/program_parameters.hpp"
+#include "convergence/oracle/oracle.hpp"
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using analytic::Profile;
+using analytic::TorsionState;
+using testing::HasSubstr;
+
+const std::vector<const Profile*> kLawProfiles{&analytic::hertz_profile(), &analytic::cone_profile(),
+                                               &analytic::flat_punch_profile()};
+
+/// Twists from rest to a little short of the last one, spread evenly and, near either end, by powers.
+std::vector<double> twists_to(double last, int count) {
+  std::vector<double> twists;
+  for (int i = 0; i < count / 2; ++i) {
+    const double part = (i + 0.5) / (count / 2);
+    twists.push_back(last * part);
+    twists.push_back(last * std::pow(10.0, -9.0 * part));
+  }
+  return twists;
+}
+
+void expect_law_within(const Profile& profile, double error, int count) {
+  const TwistLaw law = fit_twist_law(profile, error);
+  double moment_error = 0.0;
+  double twist_error = 0.0;
+  for (const double t : twists_to(law.last_twist, count)) {
+    const TorsionState state = analytic::from_twist(t, profile);
+    moment_error = std::max(moment_error, std::abs(law.moment_ratio_at(t) / state.moment_ratio - 1.0));
+    if (state.moment_deficit < 1e-15 / error) continue;  // an ulp of m costs more than the error
+    twist_error = std::max(twist_error, std::abs(law.twist_at(state.moment_ratio) / t - 1.0));
+  }
+  EXPECT_LE(moment_error, error) << profile.name();
+  EXPECT_LE(twist_error, error) << profile.name();
+}
+
+TEST(TwistLaw, IsWithinItsStatedError) {
+  for (const Profile* profile : kLawProfiles) {
+    expect_law_within(*profile, 1e-6, 10000);
+    for (const double error : {1e-2, 1e-10}) expect_law_within(*profile, error, 1000);
+  }
+  expect_law_within(*analytic::find_profile("rounded_punch:0.5").profile, 1e-3, 50);
+}
+
+TEST(TwistLaw, KnowsWhatACycleLoses) {
+  for (const Profile* profile : kLawProfiles) {
+    const TwistLaw law = fit_twist_law(*profile, 1e-6);
+    for (double deficit = 0.999; deficit > 1e-10; deficit *= 0.83) {
+      const TorsionState state = analytic::from_moment_deficit(deficit, *profile);
+      const double all = 4.0 * state.moment * state.twist;
+      EXPECT_NEAR(law.loss_factor_at(state.moment_ratio),
+                  analytic::energy_lost_per_cycle(state, *profile) / all, 1e-6)
+          << profile->name() << " at " << deficit;
+    }
+  }
+}
+
+TEST(TwistLaw, EndsAtTheLimit) {
+  const TwistLaw law = fit_twist_law(analytic::hertz_profile(), 1e-6);
+  EXPECT_EQ(law.moment_ratio_at(2.0 * law.last_twist), 1.0);
+  EXPECT_EQ(law.moment_ratio_at(-2.0 * law.last_twist), -1.0);
+  EXPECT_EQ(law.moment_ratio_at(0.0), 0.0);
+  EXPECT_EQ(law.twist_at(1.0), INFINITY);
+  EXPECT_EQ(law.twist_at(-1.5), -INFINITY);
+  EXPECT_TRUE(std::isnan(law.loss_factor_at(1.0)));
+  EXPECT_EQ(law.moment_ratio_at(-0.1), -law.moment_ratio_at(0.1));
+}
+
+TEST(TwistLaw, RefusesErrorsOutOfRange) {
+  for (const double error : {0.0, 1e-12, 0.1, std::nan("")}) {
+    EXPECT_THROW(fit_twist_law(analytic::hertz_profile(), error), std::domain_error) << error;
+  }
+}
+
+/// m of first loading, between the rows.
+double interpolated(const StateTable& table, double twist) {
+  const auto above = std::find_if(table.rows.begin() + 1, table.rows.end() - 1,
+                                  [&](const TorsionState& row) { return row.twist >= twist; });
+  const TorsionState& low = *(above - 1);
+  const double part = (twist - low.twist) / (above->twist - low.twist);
+  return std::min(1.0, part) * (above->moment_ratio - low.moment_ratio) + low.moment_ratio;
+}
+
+TEST(StateTable, IsWithinItsErrorAndNoFinerThanThat) {
+  for (const Profile* profile : kLawProfiles) {
+    for (const double error : {1e-2, 1e-5}) {
+      const StateTable table = tabulate(*profile, error);
+      double largest = 0.0;
+      for (const double t : twists_to(2.0 * table.rows.back().twist, 2000)) {
+        const double exact = analytic::from_twist(t, *profile).moment_ratio;
+        largest = std::max(largest, std::abs(interpolated(table, t) - exact));
+      }
+      EXPECT_LE(largest, error * (1.0 + 1e-6)) << profile->name();
+      EXPECT_GE(largest, 0.9 * error) << profile->name();
+    }
+  }
+}
+
+TEST(ParallelElements, AreWithinTheirErrorOnFirstLoading) {
+  for (const Profile* profile : kLawProfiles) {
+    for (const double error : {0.1, 1e-2, 1e-4}) {
+      const ParallelElements found = parallel_elements(*profile, error);
+      double slip = 0.0;
+      for (const JenkinsElement& element : found.elements) {
+        EXPECT_GT(element.stiffness, 0.0);
+        slip += element.slip;
+      }
+      EXPECT_NEAR(slip, 1.0, 1e-12);
+      double largest = 0.0;
+      for (const double t : twists_to(1.0, 4000)) {
+        const double exact = analytic::from_twist(t, *profile).moment_ratio;
+        largest = std::max(largest, std::abs(found.moment_ratio_at(t) - exact));
+      }
+      EXPECT_LE(largest, error * (1.0 + 1e-6)) << profile->name();
+      EXPECT_GE(largest, 0.9 * error) << profile->name();
+    }
+  }
+}
+
+/// Springs and sliders one by one, without Masing's rule.
+class Sliders {
+ public:
+  explicit Sliders(const ParallelElements& of) : of_(of), carried_(of.elements.size(), 0.0) {}
+  double turn_by(double twist) {
+    double sum = 0.0;
+    for (std::size_t i = 0; i < carried_.size(); ++i) {
+      const auto& [stiffness, slip] = of_.elements[i];
+      sum += carried_[i] = std::clamp(carried_[i] + stiffness * twist, -slip, slip);
+    }
+    return sum;
+  }
+
+ private:
+  const ParallelElements& of_;
+  std::vector<double> carried_;
+};
+
+TEST(ParallelElements, FollowLoopsWithinThreeTimesThat) {
+  for (const Profile* profile : kLawProfiles) {
+    const ParallelElements found = parallel_elements(*profile, 1e-2);
+    for (const double m : {0.3, 0.7, 0.95, 0.999}) {
+      const auto curve = analytic::loading_curve({m, -m, m}, 100, *profile);
+      Sliders sliders(found);
+      double at = 0.0;
+      for (const auto& state : curve) {
+        EXPECT_NEAR(sliders.turn_by(state.twist - at), state.moment_ratio, 3.0 * found.error)
+            << profile->name() << " at " << state.moment_ratio;
+        at = state.twist;
+      }
+    }
+  }
+}
+
+TEST(ParallelElements, GiveMoreForMore) {
+  double before = 1.0;
+  for (const int count : {1, 2, 4, 8, 16}) {
+    const ParallelElements found = parallel_elements(analytic::hertz_profile(), count);
+    EXPECT_EQ(found.elements.size(), static_cast<std::size_t>(count));
+    EXPECT_LT(found.error, 0.5 * before);
+    before = found.error;
+  }
+  EXPECT_THROW(parallel_elements(analytic::hertz_profile(), 0), std::domain_error);
+  EXPECT_THROW(parallel_elements(analytic::hertz_profile(), 1e-6), std::domain_error);
+}
+
+/// Force and moment of a turning sphere's contact by a sum over rings and angles.
+LimitLoad summed(double centre) {
+  constexpr int kRings = 1000;
+  constexpr int kAngles = 240;
+  LimitLoad load{centre, 0.0, 0.0};
+  double weight = 0.0;
+  for (int i = 0; i < kRings; ++i) {
+    const double x = (i + 0.5) / kRings;  // r^2
+    const double r = std::sqrt(x);
+    const double p = std::sqrt(1.0 - x);
+    for (int k = 0; k < kAngles; ++k) {
+      const double angle = 2.0 * std::numbers::pi * (k + 0.5) / kAngles;
+      const double along = centre - r * std::cos(angle);
+      const double speed = std::hypot(along, r * std::sin(angle));
+      load.force += p * along / speed;
+      load.moment += p * (x - centre * r * std::cos(angle)) / speed;
+      weight += p;
+    }
+  }
+  return {centre, load.force / weight, load.moment / weight / (3.0 * std::numbers::pi / 16.0)};
+}
+
+TEST(LimitSurface, IsTheSumOfFrictionAboutAPoint) {
+  const LimitSurface surface = limit_surface(analytic::hertz_profile(), 9);
+  EXPECT_NEAR(surface.loads.front().moment, 1.0, 1e-12);
+  EXPECT_NEAR(surface.loads.front().force, 0.0, 1e-12);
+  EXPECT_NEAR(surface.loads.back().force, 1.0, 1e-12);
+  EXPECT_NEAR(surface.loads.back().moment, 0.0, 1e-12);
+  for (std::size_t i = 1; i + 1 < surface.loads.size(); ++i) {
+    const LimitLoad& load = surface.loads[i];
+    const LimitLoad sum = summed(load.centre);
+    EXPECT_NEAR(load.force, sum.force, 1e-4) << load.centre;
+    EXPECT_NEAR(load.moment, sum.moment, 1e-4) << load.centre;
+  }
+}
+
+/// Motion by motion: no load on the surface exceeds the support of a motion at which it is not the load.
+TEST(LimitSurface, IsConvexWithItsMotionsAsNormals) {
+  for (const Profile* profile : kLawProfiles) {
+    const LimitSurface surface = limit_surface(*profile, 17);
+    const double arm = profile->moment_limit();
+    for (const LimitLoad& load : surface.loads) {
+      if (std::isinf(load.centre)) continue;
+      const double support = load.force * load.centre + load.moment * arm;
+      for (const LimitLoad& other : surface.loads) {
+        EXPECT_LE(other.force * load.centre + other.moment * arm, support * (1.0 + 1e-9)) << profile->name();
+      }
+    }
+  }
+}
+
+TEST(LimitSurface, LiesWithinItsGap) {
+  const Profile& profile = analytic::hertz_profile();
+  const LimitSurface coarse = limit_surface(profile, 9);
+  double largest = 0.0;
+  for (const LimitLoad& load : limit_surface(profile, 129).loads) {
+    double beyond_chord = 0.0;
+    for (std::size_t i = 1; i < coarse.loads.size(); ++i) {
+      const LimitLoad& one = coarse.loads[i - 1];
+      const LimitLoad& other = coarse.loads[i];
+      const double force = other.force - one.force;
+      const double moment = other.moment - one.moment;
+      const double chord = (one.force * moment - one.moment * force);
+      const double across = (load.force * moment - load.moment * force);
+      const bool between = one.force * load.moment <= one.moment * load.force + 1e-12 &&
+                           other.force * load.moment >= other.moment * load.force - 1e-12;
+      if (between) beyond_chord = across / chord - 1.0;
+    }
+    EXPECT_GE(beyond_chord, -1e-9);
+    largest = std::max(largest, beyond_chord);
+  }
+  EXPECT_LE(largest, coarse.gap);
+  EXPECT_GE(largest, 0.2 * coarse.gap);
+}
+
+TEST(ProgramParameters, NoSpringWithACapIsBetter) {
+  for (const Profile* profile : kLawProfiles) {
+    const ContactLaw law = make_contact_law({"x", {profile, [](const Profile*) {}}, {}}, {.limit_loads = 3});
+    const auto error_of = [&](double stiffness) {
+      double largest = 0.0;
+      std::vector<double> twists = twists_to(1.5, 1000);
+      twists.push_back(1.0 / stiffness);
+      for (const double t : twists) {
+        largest = std::max(
+            largest, std::abs(std::min(1.0, stiffness * t) - analytic::from_twist(t, *profile).moment_ratio));
+      }
+      return largest;
+    };
+    const SpringAndCap& best = law.best_spring;
+    EXPECT_NEAR(error_of(best.stiffness), best.error, 1e-4);
+    EXPECT_GE(error_of(0.95 * best.stiffness), best.error);
+    EXPECT_GE(error_of(1.05 * best.stiffness), best.error);
+    EXPECT_NEAR(error_of(law.rest_spring.stiffness), law.rest_spring.error, 1e-4);
+  }
+}
+
+solver::Scene paper_scene(const std::vector<std::string>& overrides = {}) {
+  return solver::read_scene(SLIPSTICK_SCENES "/paper.toml", overrides);
+}
+
+/// Pressure E (depth)/R over the sphere's shallow cap.
+TEST(ProgramParameters, DrakesSphereCarriesTheLoadAndTheExactLimit) {
+  const ContactLaw law = make_contact_law(law_contact(paper_scene()), {.limit_loads = 3});
+  const DrakeHydroelastic drake = drake_hydroelastic(law).value();
+  const double sphere = 0.018;
+  const double a = drake.contact_radius;
+  double load = 0.0;
+  double limit = 0.0;
+  constexpr int kRings = 100000;
+  for (int i = 0; i < kRings; ++i) {
+    const double r = a * (i + 0.5) / kRings;
+    const double ring = 2.0 * std::numbers::pi * r * a / kRings;
+    const double p = drake.modulus * (a * a - r * r) / (2.0 * sphere) / sphere;
+    load += p * ring;
+    limit += drake.mu_dynamic * p * r * ring;
+  }
+  EXPECT_NEAR(load, 1000.0, 1e-5);
+  EXPECT_NEAR(limit / law.limit_moment(), 1.0, 1e-8);
+}
+
+TEST(LawContact, IsTheScenesInSi) {
+  const ContactLaw law = make_contact_law(law_contact(paper_scene({"load.normal=500"})), {.limit_loads = 3});
+  const OracleAnswer exact = find_oracle(paper_scene({"load.normal=500"}));
+  EXPECT_NEAR(law.limit_moment() / exact.oracle->moment_limit, 1.0, 1e-13);
+  EXPECT_NEAR(law.law.twist_at(0.9) * law.rotation_unit() / exact.oracle->twist_angle, 1.0, 1e-6);
+}
+
+TEST(LawContact, SaysWhyThereIsNone) {
+  try {
+    law_contact(solver::read_scene(SLIPSTICK_SCENES "/ellipse.toml"));
+    FAIL();
+  } catch (const solver::InputError& error) {
+    EXPECT_THAT(error.what(), HasSubstr("ellipsoid"));
+  }
+}
+
+}  // namespace
+}  // namespace slipstick::convergence

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "analytic/axisymmetric.hpp"
+#include "convergence/laws/chebyshev.hpp"
+
+namespace slipstick::convergence {
+
+/// Moment and rotation of an axisymmetric contact in torsion, as polynomials with a stated error.
+/// Dimensionless as analytic/torsion.hpp: the rotation as t = G a^2 phi/(mu W), the moment as m = M/M_lim.
+/// Near the limit t grows like the logarithm of 1 - m; in l = -ln(1 - m) both ways are smooth from rest to
+/// limit: l/t is fitted over t, and t/l over l.
+///
+/// Relative errors of m and t are at most `error`, and what an ulp of the argument costs, where 1 - m is at
+/// least kLastDeficit; a larger rotation carries the limit moment. What a cycle between m and -m loses is 4 M
+/// phi (phi that of m) times a factor whose error is at most `error`. After a reversal Masing's rule gives
+/// the moment, with errors up to three times that of first loading.
+struct TwistLaw {
+  double moment_limit;             ///< M_lim/(mu W a)
+  double full_stick;               ///< m up to which nothing slips: the law is linear there
+  double error;                    ///< stated
+  double last_twist;               ///< t where 1 - m is kLastDeficit
+  PiecewiseChebyshev logarithm;    ///< l/t over t
+  PiecewiseChebyshev twist;        ///< t/l over l
+  PiecewiseChebyshev loss_factor;  ///< over l
+
+  double moment_ratio_at(double twist) const;        ///< m; any finite t
+  double twist_at(double moment_ratio) const;        ///< t; |m| beyond 1 - kLastDeficit: infinite
+  double loss_factor_at(double moment_ratio) const;  ///< |m| at most 1 - kLastDeficit, else NaN
+};
+
+/// dM/dphi over G a^3 while everything sticks: exact, and the same for each profile.
+inline constexpr double kStiffness = 16.0 / 3.0;
+
+/// 1 - m where the fit ends.
+inline constexpr double kLastDeficit = 1e-12;
+
+/// The errors that may be asked for.
+inline constexpr double kMinLawError = 1e-11;
+inline constexpr double kMaxLawError = 1e-2;
+
+/// Throws std::domain_error for an error out of range, or that the profile does not let polynomials reach.
+TwistLaw fit_twist_law(const analytic::Profile& profile, double error);
+
+}  // namespace slipstick::convergence
