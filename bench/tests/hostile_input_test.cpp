@@ -23,6 +23,8 @@
 #include "convergence/gates/gate_reader.hpp"
 #include "convergence/gates/gate_run.hpp"
 #include "convergence/hard/hard_case.hpp"
+#include "convergence/loops/check_loop.hpp"
+#include "convergence/loops/loop_record.hpp"
 #include "convergence/programs/temporary_folder.hpp"
 #include "convergence/programs/tests/program_run.hpp"
 #include "convergence/studies/study.hpp"
@@ -79,6 +81,22 @@ std::string good_field() {
   return text;
 }
 
+/// A sphere that is twisted there and back, all of it sticking.
+std::string good_loop() {
+  std::string text = "time,moment,rotation\n";
+  for (int i = 0; i <= 30; ++i) {
+    const double twist = 1e-5 * (i <= 15 ? i : 30 - i);
+    text += fmt::format("{},{},{}\n", i, 25.0 * twist, twist);
+  }
+  return text;
+}
+
+std::string good_json_loop() {
+  std::string twists = "0";
+  for (int i = 1; i <= 30; ++i) twists += fmt::format(",{}", 1e-5 * (i <= 15 ? i : 30 - i));
+  return fmt::format("{{\"rotation\": [{0}], \"moment\": [{0}]}}", twists);
+}
+
 /// What reads a kind of file.
 struct Reader {
   std::string file;  ///< a name, with the ending that belongs to it
@@ -122,6 +140,9 @@ std::vector<Reader> readers() {
           {"columns.csv", kGoodColumns, [](const auto& file) { solver::read_columns(file, kColumns); }},
           {"field.csv", good_field(),
            [scene = sphere()](const auto& file) { convergence::check_field(scene, file); }},
+          {"loop.csv", good_loop(),
+           [scene = sphere()](const auto& file) { convergence::check_loop(scene, file, {0.01}); }},
+          {"loop.json", good_json_loop(), [](const auto& file) { convergence::read_loop(file); }},
           {"profile.csv", good_profile(),
            [](const auto& file) { analytic::read_tabulated_profile(file.string()); }},
           {"result.json", kGoodResult, judge_result},
@@ -310,6 +331,12 @@ std::vector<Damage> damages() {
       field("a cell twice", "8.15e-5,8.15e-5,1e9,0,1", {"row 33"}),
       field("off the grid", "8.2e-5,8e-5,1e9,0,1", {"row"}),
       field("far away", "0,1e200,1e9,0,1", {"allowed"}),
+      {"loop.csv", "NaN", with(good_loop(), "1,0.00025", "1,nan"), {":3", "nan", "finite"}},
+      {"loop.csv", "time that stands", with(good_loop(), "\n2,", "\n1,"), {"row 3", "time = 1", "later"}},
+      {"loop.csv", "no rotation", with(good_loop(), "rotation", "height"), {"no rotation", "twist"}},
+      {"loop.json", "a word", with(good_json_loop(), "[0,", "[\"a\","), {"rotation", "a list of numbers"}},
+      {"loop.json", "overflow", with(good_json_loop(), "[0,", "[1e400,"), {"is not JSON"}},
+      {"loop.json", "ragged", with(good_json_loop(), "[0,", "[0,0,"), {"equally many"}},
       {"profile.csv", "NaN", with(good_profile(), "0,2", "0,nan"), {":2", "nan"}},
       {"profile.csv", "infinite", with(good_profile(), "0,2", "0,inf"), {":2", "inf"}},
       {"profile.csv", "overflow", with(good_profile(), "0,2", "0,1e400"), {":2", "allowed"}},

@@ -174,6 +174,18 @@ class Results(unittest.TestCase):
         for file, twist, code in (("contact", 2.361048651456917e-3, 0), ("cgcontact", 2.21775472e-3, 1)):
             self.run_and_check("check", SCENES / "paper.toml", FIELDS / f"{file}-64-0.9.csv", *words, twist, code=code)
 
+    def test_check_of_a_loop(self):
+        curve = self.run_program("exact", "--history", "0.8,-0.8,0.8")["curve"]
+        units = self.run_program("law", SCENES / "paper.toml", "--limit-loads", 3)["units"]
+        for factor, code in ((1.0, 0), (1.3, 1)):
+            rows = "".join(f"{factor * point['moment'] * units['moment_unit']},{point['twist'] * units['rotation_unit']}\n"
+                           for point in curve)
+            loop = self.file("loop.csv", "moment,rotation\n" + rows)
+            self.follows(self.run_program("check", SCENES / "paper.toml", loop, code=code), "loop")
+        line = "".join(f"{1e-3 * i},{1e-5 * i}\n" for i in range(30))  # nothing turns back
+        loop = self.file("line.csv", "moment,rotation\n" + line)
+        self.follows(self.run_program("check", SCENES / "paper.toml", loop, code=1), "loop")
+
     def test_law(self):
         self.run_and_check("law", SCENES / "paper.toml", "--limit-loads", 3)
         self.run_and_check("law", "--profile", "flat_punch", "--elements", 3)

@@ -12,6 +12,9 @@
 #include <vector>
 
 #include "convergence/check/check.hpp"
+#include "convergence/loops/check_loop.hpp"
+#include "convergence/loops/loop_judgement.hpp"
+#include "convergence/loops/loop_record.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "solver/input/input_error.hpp"
@@ -37,8 +40,20 @@ int run_check(const CLI::App& command, const CheckRequest& request, std::ostream
   }
   const solver::Scene scene = solver::read_scene(request.scene, request.overrides);
   require_inputs_kept(command, input_files(scene));
-  result = check_field(scene, request.field, request.check);
-  text << check_text(result);
+  if (is_loop_file(request.field)) {
+    if (request.check.twist || request.check.discrete) {
+      throw solver::InputError(request.field,
+                               "is a loop; --twist and --discrete are for a field of tractions; allowed: "
+                               "without them");
+    }
+    result = check_loop(
+        scene, request.field,
+        {.tolerance = request.check.tolerance.value_or(kLoopTolerance), .strict = request.check.strict});
+    text << loop_text(result);
+  } else {
+    result = check_field(scene, request.field, request.check);
+    text << check_text(result);
+  }
   return result["verdict"] == "good" ? 0 : 1;
 }
 
@@ -46,11 +61,14 @@ int run_check(const CLI::App& command, const CheckRequest& request, std::ostream
 
 std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI::App& app) {
   const auto request = std::make_shared<CheckRequest>();
-  CLI::App* const command = app.add_subcommand("check", "Judge a traction field that any program computed");
+  CLI::App* const command =
+      app.add_subcommand("check", "Judge a traction field or a loop that any program computed");
   command->add_option("scene", request->scene, "scene file (TOML) that the program solved")->required();
   command
-      ->add_option("field", request->field,
-                   "columns x1, x2 (m), pressure, q1, q2 (Pa), one row for each contact cell: .csv or .h5")
+      ->add_option(
+          "field", request->field,
+          "columns x1, x2 (m), pressure, q1, q2 (Pa), one row for each contact cell: .csv or .h5; or a "
+          "loop: moment (N m), rotation (rad), and perhaps time, normal_load: .csv or .json")
       ->required();
   command
       ->add_option("--set", request->overrides,
@@ -64,7 +82,8 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI
       "good only if it solves its own grid's problem, of constant cells, up to iteration error");
   command->add_option(
       "--tolerance", request->check.tolerance,
-      "error of loads, twist and tractions that is allowed, in place of what the mesh leaves open");
+      "error of loads, twist and tractions that is allowed, in place of what the mesh leaves open; of a "
+      "loop's moment, root mean square, in place of 0.01");
   command->add_flag("--strict", request->check.strict,
                     "good only in the scene's own conventions: m, Pa, tractions on the lower body");
   command->footer(

@@ -1,0 +1,153 @@
+#include "convergence/loops/loop_record.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include "solver/input/field_file.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/input/input_file.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using solver::InputError;
+
+const std::vector<std::string> kMomentNames{"moment", "torque"};
+const std::vector<std::string> kRotationNames{"rotation", "twist", "angle", "twist_angle"};
+const std::vector<std::string> kTimeNames{"time", "t"};
+const std::vector<std::string> kLoadNames{"normal_load", "normal_force"};
+
+/// The one of these names that is there; empty: none.
+std::string present(const std::vector<std::string>& there, const std::vector<std::string>& names) {
+  for (const std::string& name : names) {
+    if (std::ranges::find(there, name) != there.end()) return name;
+  }
+  return "";
+}
+
+/// The names in a table's first line, as far as one of columns goes.
+std::vector<std::string> csv_names(const std::filesystem::path& file) {
+  constexpr std::size_t kLongestLine = 65536;
+  std::string text(kLongestLine, '\0');
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(text.data(), static_cast<std::streamsize>(kLongestLine));
+  text.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
+  std::istringstream cells(text.substr(0, text.find_first_of("\r\n")));
+  std::vector<std::string> names;
+  for (std::string cell; std::getline(cells, cell, ',');) {
+    std::erase_if(cell, [](char c) { return c == ' ' || c == '\t' || c == '"' || (c & 0x80) != 0; });
+    names.push_back(cell);
+  }
+  return names;
+}
+
+std::vector<double> csv_column(const std::filesystem::path& file, const std::string& name) {
+  const Eigen::ArrayXd values = solver::read_columns(file, {name}).front().values;
+  return {values.begin(), values.end()};
+}
+
+std::vector<double> json_list(const std::filesystem::path& file, const nlohmann::json& json,
+                              const std::string& name) {
+  std::vector<double> values;
+  const nlohmann::json& list = json[name];
+  const bool are_numbers =
+      list.is_array() && std::ranges::all_of(list, [](const nlohmann::json& v) { return v.is_number(); });
+  if (!are_numbers) throw InputError(file.string(), name, "...", "a list of numbers");
+  for (const nlohmann::json& value : list) values.push_back(value.get<double>());
+  return values;
+}
+
+template <class Column>
+LoopRecord collect(const std::filesystem::path& file, const std::vector<std::string>& there,
+                   const Column& column) {
+  const auto required = [&](const std::vector<std::string>& names) {
+    const std::string name = present(there, names);
+    if (name.empty()) {
+      throw InputError(file.string(), fmt::format("has no {}; allowed names: {}; it has: {}", names.front(),
+                                                  fmt::join(names, ", "),
+                                                  solver::shown(fmt::format("{}", fmt::join(there, ", ")))));
+    }
+    return column(name);
+  };
+  const auto optional = [&](const std::vector<std::string>& names) {
+    const std::string name = present(there, names);
+    return name.empty() ? std::vector<double>() : column(name);
+  };
+  return {file, optional(kTimeNames), required(kMomentNames), required(kRotationNames), optional(kLoadNames)};
+}
+
+LoopRecord read_json(const std::filesystem::path& file) {
+  nlohmann::json json;
+  try {
+    json = nlohmann::json::parse(solver::read_input_file(file, solver::kLargestJson, "a loop (JSON)"));
+  } catch (const nlohmann::json::exception& error) {
+    throw InputError(file.string(), fmt::format("is not JSON ({})", error.what()));
+  }
+  std::vector<std::string> names;
+  if (json.is_object()) {
+    for (const auto& item : json.items()) names.push_back(item.key());
+  }
+  return collect(file, names, [&](const std::string& name) { return json_list(file, json, name); });
+}
+
+void require_sound(const LoopRecord& loop) {
+  const std::string file = loop.file.string();
+  const std::size_t rows = loop.moment.size();
+  for (const std::vector<double>* column : {&loop.rotation, &loop.time, &loop.normal_load}) {
+    if (!column->empty() && column->size() != rows) {
+      throw InputError(
+          file, fmt::format("its lists have {} and {} values; allowed: equally many", rows, column->size()));
+    }
+  }
+  if (rows < kMinLoopRows) {
+    throw InputError(file,
+                     fmt::format("{} rows are too few for a loop; allowed: at least {}", rows, kMinLoopRows));
+  }
+  for (std::size_t row = 1; row < loop.time.size(); ++row) {
+    if (!(loop.time[row] > loop.time[row - 1])) {
+      throw InputError(file, fmt::format("row {}: time = {}; allowed: later than the row before", row + 1,
+                                         loop.time[row]));
+    }
+  }
+  for (std::size_t row = 0; row < loop.normal_load.size(); ++row) {
+    if (!(loop.normal_load[row] > 0.0)) {
+      throw InputError(file, fmt::format("row {}: normal_load = {}; allowed: larger than zero", row + 1,
+                                         loop.normal_load[row]));
+    }
+  }
+  const auto is_zero = [](const std::vector<double>& values) {
+    return std::ranges::all_of(values, [](double value) { return value == 0.0; });
+  };
+  if (is_zero(loop.moment) || is_zero(loop.rotation)) {
+    throw InputError(file, "moment or rotation is zero everywhere: there is no loop to judge");
+  }
+}
+
+}  // namespace
+
+bool is_loop_file(const std::filesystem::path& file) {
+  if (file.extension() == ".json") return true;
+  if (file.extension() != ".csv" || !std::filesystem::is_regular_file(file)) return false;
+  const std::vector<std::string> names = csv_names(file);
+  const bool is_field = !present(names, {"x1"}).empty();
+  return !is_field && !present(names, kMomentNames).empty() && !present(names, kRotationNames).empty();
+}
+
+LoopRecord read_loop(const std::filesystem::path& file) {
+  solver::require_input_file(file, solver::kLargestTable, "a loop (CSV or JSON)");
+  LoopRecord loop =
+      file.extension() == ".json"
+          ? read_json(file)
+          : collect(file, csv_names(file), [&](const std::string& name) { return csv_column(file, name); });
+  require_sound(loop);
+  return loop;
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,356 @@
+"""loop_check_test.py PROGRAM SCENES: loops of the paper's sphere, made here by laws right and wrong, and what slipstick check
+says of them. The exact law is Lubkin's, by its parametric form and arithmetic-geometric means; nothing of the program's."""
+
+import json
+import math
+import random
+import subprocess
+import sys
+import tempfile
+import unittest
+from bisect import bisect_left
+from pathlib import Path
+
+PROGRAM, SCENES = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
+
+# The scene of the paper, in SI units.
+FRICTION, LOAD, RADIUS, YOUNG, POISSON = 0.1, 1000.0, 0.018, 210e9, 0.3
+G = YOUNG / (2 * (1 + POISSON)) / 2
+
+
+def contact_radius(load):
+    return (3 * load * RADIUS * (1 - POISSON**2) * 2 / (4 * YOUNG))**(1 / 3)
+
+
+def limit_moment(load):
+    return 3 * math.pi / 16 * FRICTION * load * contact_radius(load)
+
+
+def elliptic(c):
+    """K and E of modulus sqrt(1 - c^2)."""
+    a, b, sum_, power = 1.0, c, 0.5 * (1 - c * c), 1.0
+    while abs(a - b) > 1e-15 * a:
+        a, b, gap = (a + b) / 2, math.sqrt(a * b), (a - b) / 2
+        sum_ += power * gap * gap
+        power *= 2
+    k = math.pi / (2 * a)
+    return k, k * (1 - sum_)
+
+
+def make_curve(points=4000):
+    """t = G a^2 phi/(mu W) and M/M_lim of first loading by the stick radius c: t = 3 (K - E)/(4 pi), dM = (8/3) c^2 E dc
+    by Simpson's rule, over pi^2/8."""
+    def slope(c):
+        return 8 / 3 * c * c * elliptic(c)[1]
+    x = [(i / points)**2 for i in range(points)] + [0.999999]  # 1 - c
+    t, m = [0.0], [0.0]
+    for one, other in zip(x, x[1:]):
+        k, e = elliptic(1 - other)
+        step = (other - one) / 6 * (slope(1 - one) + 4 * slope(1 - (one + other) / 2) + slope(1 - other))
+        t.append(3 / (4 * math.pi) * (k - e))
+        m.append(m[-1] + step / (math.pi**2 / 8))
+    return t, m
+
+
+T, M = make_curve()
+
+
+def exact(t):
+    """M/M_lim at t, odd."""
+    size = min(abs(t), T[-1])
+    k = min(max(bisect_left(T, size), 1), len(T) - 1)
+    return math.copysign(M[k - 1] + (M[k] - M[k - 1]) * (size - T[k - 1]) / (T[k] - T[k - 1]), t)
+
+
+def equation_7(t):
+    """The paper's Eq. (7) for the moment, up to the limit."""
+    cap = 3 * math.pi / 16
+    low, high = 0.0, cap
+    def twist(moment):
+        root = math.sqrt(1 - 1.5 * moment)
+        return (1 - root) * (3 - root) / 8
+    if abs(t) >= twist(cap):
+        return math.copysign(1.0, t)
+    for _ in range(50):
+        middle = (low + high) / 2
+        low, high = (middle, high) if twist(middle) < abs(t) else (low, middle)
+    return math.copysign(low / cap, t)
+
+
+STIFFNESS = 16 / 3 / (3 * math.pi / 16)
+
+
+def spring(t):
+    return min(max(STIFFNESS * t, -1), 1)
+
+
+def drive(amplitudes=(0.25, 0.25, 0.25), rows=150, shape="triangle"):
+    """(time, t): there and back between each amplitude and its negative, one second a branch."""
+    ends = [0.0] + [sign * a for a in amplitudes for sign in (1, -1)] + [amplitudes[-1]]
+    out = []
+    for k, (one, other) in enumerate(zip(ends, ends[1:])):
+        for i in range(rows):
+            part = i / rows
+            part = part if shape == "triangle" else (1 - math.cos(math.pi * part)) / 2
+            out.append((k + i / rows, one + (other - one) * part))
+    return out + [(len(ends) - 1.0, ends[-1])]
+
+
+def masing(path, loading, branch=None):
+    """Moments for rotations between equal and opposite ends: first loading, then branches from each end."""
+    branch = branch or (lambda change: 2 * loading(change / 2))
+    twists = [t for _, t in path]
+    moments, start, sign = [], None, 0
+    for i, t in enumerate(twists):
+        going = (t > twists[i - 1]) - (t < twists[i - 1]) if i else 0
+        if going and sign and going != sign:
+            start = (twists[i - 1], moments[-1])
+        sign = going or sign
+        moments.append(loading(t) if start is None else start[1] + branch(t - start[0]))
+    return moments
+
+
+class Loops(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = Path(cls.temporary.name)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.temporary.cleanup()
+
+    def write(self, path, moments, load=LOAD, noise=0.0, seed=1, time=True, moment_unit=1.0, rotation_unit=1.0):
+        """Rows of time, moment, rotation in SI units, or in others."""
+        draw = random.Random(seed)
+        rotation = FRICTION * load / (G * contact_radius(load)**2) / rotation_unit
+        moment = limit_moment(load) / moment_unit
+        t_max, m_max = max(abs(t) for _, t in path), max(map(abs, moments))
+        rows = []
+        for (when, t), m in zip(path, moments):
+            t += noise * t_max * draw.gauss(0, 1)
+            m += noise * m_max * draw.gauss(0, 1)
+            rows.append(([when] if time else []) + [m * moment, t * rotation])
+        return rows
+
+    def check(self, rows, *words, columns=None, scene="paper", code=None):
+        columns = columns or (["time"] if len(rows[0]) == 3 else []) + ["moment", "rotation"]
+        file = self.folder / "loop.csv"
+        file.write_text(",".join(columns) + "\n" + "".join(",".join(map(repr, row)) + "\n" for row in rows))
+        return self.judge(file, *words, scene=scene, code=code)
+
+    def judge(self, file, *words, scene="paper", code=None):
+        words = ["check", SCENES / f"{scene}.toml", file, "--json", "-", *words]
+        run = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True)
+        self.assertIn(run.returncode, (0, 1) if code is None else (code,), run.stderr)
+        if run.returncode == 2:
+            return run.stderr
+        result = json.loads(run.stdout)
+        self.assertEqual(result["verdict"], "good" if run.returncode == 0 else "bad")
+        return result
+
+    def assert_named(self, rows, law, *sentence, **more):
+        result = self.check(rows, **more)
+        self.assertEqual((result["verdict"], result["loads"][0].get("law")), ("bad", law), result["why"])
+        for words in sentence:
+            self.assertIn(words, result["why"])
+        return result["loads"][0]
+
+    def test_exact_loops_are_good(self):
+        for amplitudes in ((0.25, 0.25), (0.05, 0.05), (0.05, 0.1, 0.2), (0.6, 0.6)):
+            path = drive(amplitudes)
+            if len(set(amplitudes)) > 1:  # growing: each new end lies on first loading
+                moments = self.growing(path)
+            else:
+                moments = masing(path, exact)
+            for seed in range(3):
+                result = self.check(self.write(path, moments, noise=1e-3 if seed else 0, seed=seed))
+                self.assertEqual(result["verdict"], "good", (amplitudes, seed, result["why"]))
+
+    @staticmethod
+    def growing(path):
+        """Branches until they leave the largest rotation so far."""
+        twists, moments, start, largest, sign = [t for _, t in path], [], None, 0.0, 0
+        for i, t in enumerate(twists):
+            going = (t > twists[i - 1]) - (t < twists[i - 1]) if i else 0
+            if going and sign and going != sign:
+                start = (twists[i - 1], moments[-1])
+            sign = going or sign
+            inside = start is not None and abs(t) <= largest
+            largest = max(largest, abs(t))
+            moments.append(start[1] + 2 * exact((t - start[0]) / 2) if inside else exact(t))
+        return moments
+
+    def test_numbers_are_those_of_the_loop(self):
+        path = drive((0.25, 0.25))
+        load = self.check(self.write(path, masing(path, exact)))["loads"][0]
+        self.assertEqual(load["reversals"], 4)
+        self.assertLess(load["residual"], 2e-4)
+        self.assertLess(load["masing_error"], 2e-3)
+        for key, within in (("stiffness", 1e-3), ("largest_moment", 1e-3), ("presliding", 1e-2), ("recovered", 1e-2)):
+            self.assertAlmostEqual(load[key]["value"] / load[key]["exact"], 1, delta=within, msg=key)
+        rotation = FRICTION * LOAD / (G * contact_radius(LOAD)**2)
+        self.assertAlmostEqual(load["largest_moment"]["value"] / (exact(0.25) * limit_moment(LOAD)), 1, 6)
+        half = T[bisect_left(M, 0.5)] * rotation
+        self.assertAlmostEqual(load["presliding"]["value"] / half, 1, 2)
+        steps = [0.25 * i / 2000 for i in range(2001)]
+        work = sum(0.25 / 2000 * (exact(one) + exact(other)) / 2 for one, other in zip(steps, steps[1:]))
+        lost = (8 * work - 4 * exact(0.25) * 0.25) * limit_moment(LOAD) * rotation
+        self.assertAlmostEqual(load["areas"][0]["value"] / lost, 1, 3)
+        self.assertTrue(all(abs(area["value"] / area["exact"] - 1) < 1e-3 for area in load["areas"]))
+        self.assertGreater(len(load["areas"]), 0)
+
+    def noisy(self, path, moments, **more):
+        return self.write(path, moments, noise=1e-3, **more)
+
+    def test_spring_with_the_exact_limit(self):
+        path = drive((0.4, 0.4))
+        moments = masing(path, lambda t: min(max(0.44 * STIFFNESS * t, -1), 1))
+        self.assert_named(self.noisy(path, moments), "spring_and_cap", "slips at the limit", "without partial slip",
+                          "0.44 of the exact")
+
+    def test_cap_of_a_uniform_pressure(self):
+        cap = 2 / 3 / (3 * math.pi / 16)
+        path = drive((0.3, 0.3))
+        moments = masing(path, lambda t: min(max(STIFFNESS * t, -cap), cap))
+        self.assert_named(self.noisy(path, moments), "spring_and_cap", "slips at 1.13 of the limit: uniform pressure assumed")
+        path = drive((1.0, 1.0))
+        moments = [cap * m for m in masing(path, lambda t: exact(t / cap))]
+        self.assert_named(self.noisy(path, moments), "limit", "slips at 1.13 of the limit: uniform pressure assumed")
+
+    def test_equation_7(self):
+        path = drive((0.25, 0.25))
+        self.assert_named(self.noisy(path, masing(path, equation_7)), "equation_7", "Eq. (7)")
+
+    def test_regularised_velocity_law(self):
+        for shape in (math.tanh, lambda x: min(max(x, -1), 1)):
+            path = drive((0.25, 0.25), shape="cosine")
+            rates = [(after[1] - before[1]) / (after[0] - before[0]) for before, after in zip(path, path[1:])]
+            half = 0.3 * math.atanh(0.5) if shape is math.tanh else 0.15
+            moments = [shape(rate / 0.3) for rate in rates] + [0.0]
+            self.assert_named(self.noisy(path, moments), "regularised", "creeps below the limit, at", "regularised friction")
+            rate = half * FRICTION * LOAD / (G * contact_radius(LOAD)**2) * 1e3
+            why = self.check(self.write(path, moments))["why"]
+            said = float(why.split("at ")[1].split(" mrad")[0])
+            self.assertAlmostEqual(said / rate, 1, delta=0.1)
+
+    def test_no_masing(self):
+        path = drive((0.25, 0.25))
+        self.assert_named(self.noisy(path, [exact(t) for _, t in path]), "elastic", "no energy is lost")
+        path = drive((0.1,))[:301]
+        moments = masing(path, exact, exact)
+        self.assert_named(self.noisy(path, moments), "not_enlarged", "not enlarged twice", "Masing")
+        path = drive((0.25,))[:250]
+        moments = masing(path, exact, lambda change: STIFFNESS * change)
+        self.assert_named(self.noisy(path, moments), "unloads_without_slip", "without slip", "Masing")
+
+    def test_one_body_rigid(self):
+        path = drive((0.25, 0.25))
+        self.assert_named(self.noisy(path, masing(path, lambda t: exact(2 * t))), "stiffness", "one body only")
+
+    def test_factor_2(self):
+        path = drive((0.25, 0.25))
+        self.assert_named(self.noisy(path, [2 * m for m in masing(path, exact)]), "factor", "2.00 times", "counted twice")
+
+    def test_rigid(self):
+        path = drive((0.25, 0.25))
+        moments = masing(path, lambda t: min(max(1e6 * t, -1), 1))
+        self.assert_named(self.noisy(path, moments), "rigid", "no presliding: the law is rigid")
+
+    def test_normal_load_that_drifts(self):
+        """The load falls by a quarter: limit like W^(4/3), rotations like W^(1/3)."""
+        path = drive((0.25, ) * 6)
+        loads = [1 - 0.25 * i / (len(path) - 1) for i in range(len(path))]
+        moments = [w**(4 / 3) * m for w, m in
+                   zip(loads, masing([(when, t / w**(1 / 3)) for (when, t), w in zip(path, loads)], exact))]
+        self.assert_named(self.noisy(path, moments), "normal_load_drifts", "the normal load drifts: by -2")
+
+    def test_limit_that_depends_on_the_rate(self):
+        """Each cycle ten times as slow as the one before, with a limit 10 % higher."""
+        moments, path, when = [], [], 0.0
+        for cycle in range(3):
+            one, scale = drive((0.4,)), 1.1**cycle
+            moments += [scale * m for m in masing(one, lambda t: exact(t / scale))][150:450] if cycle else \
+                [m for m in masing(one, exact)]
+            rows = one[150:450] if cycle else one
+            for i, (_, t) in enumerate(rows):
+                when += 10.0**cycle / 150
+                path.append((when, t))
+        self.assert_named(self.noisy(path, moments), "rate_dependent_limit", "-9 %", "ten times the rate")
+
+    def test_other_limit_and_stiffness(self):
+        path = drive((0.3, 0.3))
+        moments = [0.68 * m for m in masing(path, lambda t: exact(t * 1.5 / 0.68))]
+        self.assert_named(self.noisy(path, moments), "limit_and_stiffness", "slips at 0.68", "1.50 of the exact")
+
+    def test_unknown_law(self):
+        path = drive((0.25, 0.25))
+        moments = masing(path, lambda t: math.copysign(abs(exact(t))**3, t))
+        result = self.check(self.write(path, moments))
+        self.assertEqual((result["verdict"], result["loads"][0]["law"]), ("bad", None))
+        self.assertIn("none of the laws", result["why"])
+
+    def test_loads(self):
+        """Several loads: the limit goes like W^(4/3), and of a radius that does not grow like W."""
+        path, rows, wrong = drive((0.5,)), [], []
+        for load in (500.0, 1000.0, 2000.0):
+            one = self.write(path, masing(path, exact), load=load, time=False)
+            rows += [row + [load] for row in one]
+            fixed = load / LOAD / (limit_moment(load) / limit_moment(LOAD))
+            wrong += [[row[0] * fixed, row[1], load] for row in one]
+        columns = ["moment", "rotation", "normal_load"]
+        result = self.check(rows, columns=columns)
+        self.assertEqual(result["verdict"], "good", result["why"])
+        self.assertAlmostEqual(result["load_exponent"]["value"], 4 / 3, 2)
+        self.assertAlmostEqual(result["load_exponent"]["exact"], 4 / 3, 3)
+        result = self.check(wrong, columns=columns)
+        self.assertEqual(result["verdict"], "bad")
+        self.assertIn("to the power 1.00, not 1.33: a contact radius that does not grow", result["why"])
+
+    def test_units_and_signs(self):
+        path = drive((0.25, 0.25))
+        moments = masing(path, exact)
+        for note, more in (("N mm", {"moment_unit": 1e-3}), ("degrees", {"rotation_unit": math.pi / 180}),
+                           ("mrad", {"rotation_unit": 1e-3}), ("other body", {"moment_unit": -1})):
+            rows = self.write(path, moments, **more)
+            result = self.check(rows)
+            self.assertEqual(result["verdict"], "good", result["why"])
+            self.assertIn(note, " ".join(result["conventions"]))
+            result = self.check(rows, "--strict")
+            self.assertEqual(result["verdict"], "bad")
+            self.assertIn(note, result["why"])
+        self.assertEqual(self.check(self.write(path, moments), "--strict")["conventions"], [])
+
+    def test_json_and_other_names(self):
+        path = drive((0.25, 0.25))
+        rows = self.write(path, masing(path, exact))
+        file = self.folder / "loop.json"
+        columns = dict(zip(("time", "torque", "twist_angle"), map(list, zip(*rows))))
+        file.write_text(json.dumps(columns))
+        self.assertEqual(self.judge(file)["verdict"], "good")
+        self.assertEqual(self.check(rows, columns=["t", "torque", "angle"])["verdict"], "good")
+
+    def test_tolerance(self):
+        path = drive((0.25, 0.25))
+        rows = self.write(path, [1.03 * m for m in masing(path, exact)])
+        self.assertEqual(self.check(rows)["verdict"], "bad")
+        self.assertEqual(self.check(rows, "--tolerance", 0.05)["verdict"], "good")
+
+    def test_bad_input(self):
+        path = drive((0.25, 0.25))
+        rows = self.write(path, masing(path, exact))
+        self.assertIn("20", self.check(rows[:19], code=2))
+        self.assertIn("later", self.check(rows[:30] + rows[10:30], code=2))
+        self.assertIn("finite", self.check(rows[:30] + [[1e3, float("nan"), 0.0]], code=2))
+        self.assertIn("zero everywhere", self.check([[i, 0.0, 1e-3 * i] for i in range(30)], code=2))
+        self.assertIn("ellipsoid", self.check(rows, scene="ellipse", code=2))
+        self.assertIn("--twist", self.check(rows, "--twist", 1e-3, code=2))
+        file = self.folder / "loop.json"
+        for text, words in (("{", "not JSON"), ("[1]", "has no moment"), ('{"moment": 1, "rotation": [1]}', "a list"),
+                            (json.dumps({"moment": [1] * 30, "rotation": [1] * 31}), "equally many")):
+            file.write_text(text)
+            self.assertIn(words, self.judge(file, code=2))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
