@@ -17,6 +17,7 @@
 #include "solver/grid/mirror.hpp"
 #include "solver/grid/threads.hpp"
 #include "solver/grid_edge.hpp"
+#include "solver/history_state.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/load_step.hpp"
 #include "solver/model_solution.hpp"
@@ -223,10 +224,35 @@ void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, c
   solution.seconds.total = solution.seconds.setup + watch.lap();
 }
 
+/// What a resumed history has of the step before. Throws std::invalid_argument for a state of another scene.
+void take_up(ModelSolution& solution, ContactState& state, const HistoryState& resumed, const Scene& scene) {
+  const Index cells = solution.model.grid.cells();
+  const ContactState& at = resumed.contact;
+  if (resumed.finished == 0 ||
+      resumed.finished >= scene.steps.size() * static_cast<std::size_t>(scene.cycles) ||
+      at.pressure.size() != cells || at.traction.size() != 2 * cells ||
+      (at.slip.size() != 0 && at.slip.size() != 2 * cells)) {
+    throw std::invalid_argument("the state of a history is not one of this scene");
+  }
+  state = at;
+  solution.normal = resumed.normal;
+  solution.normal.pressure = at.pressure;
+}
+
+/// Hands on where the history stands.
+void hand_on(const SolveOptions& options, std::size_t finished, ContactState& state,
+             const NormalSolution& normal) {
+  if (!options.on_state) return;
+  HistoryState at{finished, std::move(state), normal};
+  at.normal.pressure.resize(0);
+  options.on_state(at);
+  state = std::move(at.contact);
+}
+
 /// Step by step, until one does not converge. after_step may take the solution's fields where it is the last.
 using AfterStep = std::function<void(ModelSolution& solution, bool last)>;
-void solve_steps(const Scene& scene, const Progress& progress, std::shared_ptr<SolveCache> cache,
-                 const AfterStep& after_step) {
+void solve_steps(const Scene& scene, const SolveOptions& options, const AfterStep& after_step) {
+  std::shared_ptr<SolveCache> cache = options.cache;
   Stopwatch watch(cache.get());
   ModelSolution solution;
   solution.model = make_model(scene);
@@ -242,21 +268,24 @@ void solve_steps(const Scene& scene, const Progress& progress, std::shared_ptr<S
   solution.model.cache = cache;
   solution.seconds.setup = watch.lap();
   ContactState state;
-  const Step* previous = nullptr;
-  for (int cycle = 1; cycle <= scene.cycles; ++cycle) {
-    for (const Step& step : scene.steps) {
-      if (previous != nullptr) solution.seconds = {};
-      solution.cycle = cycle;
-      const bool last = cycle == scene.cycles && &step == &scene.steps.back();
-      ContactState after;
-      solve_step(solution, scene, step, previous, state, progress, last ? nullptr : &after);
-      state = std::move(after);
-      const bool failed = solution.status != Status::converged;
-      if (last || failed) solution.model.cache = nullptr;
-      after_step(solution, last || failed);
-      if (failed) return;
-      previous = &step;
-    }
+  if (options.resumed) take_up(solution, state, *options.resumed, scene);
+  const std::size_t of_cycle = scene.steps.size();
+  const std::size_t all = of_cycle * static_cast<std::size_t>(scene.cycles);
+  const std::size_t first = options.resumed ? options.resumed->finished : 0;
+  for (std::size_t k = first; k < all; ++k) {
+    const Step& step = scene.steps[k % of_cycle];
+    const Step* const previous = k > 0 ? &scene.steps[(k - 1) % of_cycle] : nullptr;
+    if (k > first) solution.seconds = {};
+    solution.cycle = static_cast<int>(k / of_cycle) + 1;
+    const bool last = k + 1 == all;
+    ContactState after;
+    solve_step(solution, scene, step, previous, state, options.progress, last ? nullptr : &after);
+    state = std::move(after);
+    const bool failed = solution.status != Status::converged;
+    if (last || failed) solution.model.cache = nullptr;
+    after_step(solution, last || failed);
+    if (failed) return;
+    if (!last) hand_on(options, k + 1, state, solution.normal);
   }
 }
 
@@ -282,7 +311,7 @@ ModelSolution solve_in_model_units(const Scene& scene,
                                    const std::function<void(const ModelSolution&)>& on_step) {
   require_can_solve(scene);
   ModelSolution result;
-  solve_steps(scene, {}, {}, [&](ModelSolution& solution, bool last) {
+  solve_steps(scene, {}, [&](ModelSolution& solution, bool last) {
     if (on_step) on_step(solution);
     if (last) result = std::move(solution);
   });
@@ -295,7 +324,7 @@ Solution solve(const Scene& scene, const SolveOptions& options) {
   if (!scene.wisdom.empty()) wisdom.emplace(scene.wisdom);
   Solution result;
   within_double(scene, [&] {
-    solve_steps(scene, options.progress, options.cache, [&](ModelSolution& solution, bool last) {
+    solve_steps(scene, options, [&](ModelSolution& solution, bool last) {
       if (!last && !options.on_step) return;
       result = in_si(last ? std::move(solution) : ModelSolution(solution));
       require_finite(result);

@@ -9,6 +9,8 @@
 
 namespace slipstick::solver {
 
+struct HistoryState;
+
 /// Who is told how a solve goes on, and what it shares with others.
 struct SolveOptions {
   /// Called now and then with the iterations or applications so far and what the method's stopping test sees.
@@ -18,6 +20,11 @@ struct SolveOptions {
   /// What solves of one size share; empty: each step shares with the next. Changes no digit: seconds are
   /// those that the solve takes by itself.
   std::shared_ptr<SolveCache> cache = {};
+  /// Called at the end of each step that another follows, with what that one needs.
+  std::function<void(const HistoryState&)> on_state = {};
+  /// The history goes on from here: such a state of the same scene. The answer has the digits that it would
+  /// have had without the break. Empty: from the first step.
+  std::shared_ptr<const HistoryState> resumed = {};
 };
 
 /// Solves a scene, step by step; returns the last one, or the first that did not converge. Throws InputError

@@ -110,11 +110,11 @@ class Results(unittest.TestCase):
         self.assertEqual(run.returncode, code, f"{' '.join(words)}: {run.stderr}")
         return parse(out.read_text()) if out.exists() else None
 
-    def run_and_check(self, *words, code=0):
+    def run_and_check(self, *words, code=0, schema=""):
         result = self.run_program(*words, code=code)
         with self.subTest(command=" ".join(map(str, words))):
             self.assertIsNotNone(result, "nothing was written")
-            self.follows(result, words[0])
+            self.follows(result, schema or words[0])
         return result
 
     def solve(self, scene, *words, cells="[32,32]", code=0):
@@ -220,6 +220,10 @@ class Results(unittest.TestCase):
         study = f'name = "far"\nscene = "{scene}"\ncells = [8]\n[[vary]]\nkey = "load.moment"\nvalues = [0.01, 1.0]\n'
         result = self.run_and_check("study", self.file("far.toml", study), "--output", self.folder / "far", code=1)
         self.assertGreater(result["failed_runs"]["count"], 0)
+
+    def test_shard(self):
+        self.run_and_check("study", self.file("study.toml", STUDY), "--shard", "2/3", "--output", self.folder / "shard",
+                           schema="shard")
 
     def test_gate(self):
         gates = [("passes", "twist_error", "below = 1e-2"), ("fails", "twist_error", "below = 1e-6"),

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -15,6 +16,7 @@
 #include "convergence/results/output.hpp"
 #include "convergence/runs/interrupts.hpp"
 #include "convergence/runs/memory_option.hpp"
+#include "convergence/runs/shard_option.hpp"
 #include "convergence/studies/study.hpp"
 #include "solver/input/input_error.hpp"
 
@@ -30,6 +32,7 @@ struct GateRequest {
   std::string results;
   int jobs = 0;
   MemoryOption memory;
+  ShardOption shards;
   bool github = false;
 };
 
@@ -54,6 +57,7 @@ std::vector<std::filesystem::path> files_behind(const std::vector<Gate>& gates) 
 
 int run_gates(const CLI::App& command, const GateRequest& request, std::ostream& text,
               nlohmann::ordered_json& result) {
+  const std::optional<Shard> shard = request.shards.shard();
   require_output("--junit", request.junit);
   require_output("--summary", request.summary);
   const GateFiles files = read_gate_files(request.files, request.results);
@@ -64,8 +68,16 @@ int run_gates(const CLI::App& command, const GateRequest& request, std::ostream&
                           .jobs = request.jobs,
                           .memory_limit = request.memory.limit(),
                           .program = kOwnProgram,
+                          .joined = request.shards.merged(),
                           .interrupted = Interrupts::seen});
-  const std::vector<Judgement> judged = run_gates(select_gates(files.gates, request.only), pool);
+  const std::vector<Gate> gates = select_gates(files.gates, request.only);
+  if (shard) {
+    result = run_shard(gate_runs(gates, pool), *shard, pool);
+    text << shard_text(result);
+    return is_complete(result) ? 0 : 1;
+  }
+  if (!request.shards.merged().empty()) require_finished(gate_runs(gates, pool), pool);
+  const std::vector<Judgement> judged = run_gates(gates, pool);
   judgements.insert(judgements.end(), judged.begin(), judged.end());
 
   result = gates_json(judgements);
@@ -98,6 +110,7 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_gate_command(CLI:
       ->check(CLI::NonNegativeNumber)
       ->capture_default_str();
   request->memory.add_to(*command);
+  request->shards.add_to(*command, {"--junit", "--summary", "--github"});
   command->footer(
       "Example:\n  slipstick gate convergence/gates/quick.toml --junit gates.xml --summary summary.md\n"
       "Exit code 0: all gates pass; 1: an active gate fails, or an expected failure passes; 2: something "

@@ -122,6 +122,22 @@ void judge_results(const std::vector<Gate>& gates, Judgements& judgements) {
 
 }  // namespace
 
+std::vector<PreparedRun> gate_runs(const std::vector<Gate>& gates, const ProcessPool& pool) {
+  std::vector<PreparedRun> runs;
+  for (const Gate& gate : gates) {
+    if (gate.kind == GateSource::result) continue;
+    try {
+      std::vector<RunSpec> specs{{.scene = gate.source, .overrides = gate.overrides}};
+      if (gate.kind == GateSource::study) {
+        specs = study_runs(read_study(gate.source, gate.overrides), pool.memory_limit());
+      }
+      for (const RunSpec& spec : specs) runs.push_back(prepare_run(spec));
+    } catch (const InputError&) {  // its gate is refused when it is judged
+    }
+  }
+  return runs;
+}
+
 std::vector<Judgement> run_gates(const std::vector<Gate>& gates, const ProcessPool& pool) {
   Judgements judgements(gates.size());
   judge_scenes(gates, pool, judgements);

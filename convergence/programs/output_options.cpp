@@ -17,8 +17,8 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Those of all commands that name a file to be written.
-constexpr std::array<std::string_view, 7> kOutputs{"--json",  "--fields",        "--figure", "--summary",
-                                                   "--junit", "--accuracy-data", "--write"};
+constexpr std::array<std::string_view, 8> kOutputs{"--json",  "--fields",        "--figure", "--summary",
+                                                   "--junit", "--accuracy-data", "--write",  "--checkpoint"};
 /// What stands before a file's name in `exact --profile`.
 constexpr std::string_view kProfileFile = "file:";
 

@@ -63,6 +63,31 @@ std::optional<Json> find(const ResultCache& cache, const PreparedRun& run) {
   return cache.find(run.name, run.cache_key, run.spec.fields);
 }
 
+/// The folder of finished results, and those that it joins.
+class JoinedCaches {
+ public:
+  explicit JoinedCaches(const ProcessPoolOptions& options) : own_(options.folder, options.program) {
+    for (const fs::path& folder : options.joined) others_.push_back(own_.in(folder));
+  }
+
+  const ResultCache& own() const { return own_; }
+
+  std::optional<Json> find_or_join(const PreparedRun& run) const {
+    if (std::optional<Json> found = find(own_, run)) return found;
+    for (const ResultCache& other : others_) {
+      std::optional<Json> found = find(other, run);
+      if (!found) continue;
+      own_.keep(run.name, run.cache_key, *found, run.spec.fields);
+      return found;
+    }
+    return std::nullopt;
+  }
+
+ private:
+  ResultCache own_;
+  std::vector<ResultCache> others_;
+};
+
 /// What a process that failed says, or how it ended; empty where nothing speaks against its result.
 std::string failure_of(const ProgramEnd& end) {
   constexpr std::string_view kName = "slipstick: ";
@@ -218,13 +243,13 @@ class Batch {
 ProcessPool::ProcessPool(ProcessPoolOptions options) : options_(std::move(options)) {}
 
 std::vector<Json> ProcessPool::run_prepared(const std::vector<PreparedRun>& runs) const {
-  const ResultCache cache(options_.folder, options_.program);
+  const JoinedCaches caches(options_);
   std::vector<Task> tasks;
   std::map<std::string, Json> known;
   for (const PreparedRun& run : runs) {
     const auto [place, is_new] = known.try_emplace(run.name);
     if (!is_new) continue;
-    std::optional<Json> found = find(cache, run);
+    std::optional<Json> found = caches.find_or_join(run);
     if (found) {
       place->second = *std::move(found);
       continue;
@@ -238,7 +263,7 @@ std::vector<Json> ProcessPool::run_prepared(const std::vector<PreparedRun>& runs
     }
   }
   if (!tasks.empty()) solver::require_writable(options_.folder);
-  for (auto& [name, result] : Batch(std::move(tasks), cache, options_).work())
+  for (auto& [name, result] : Batch(std::move(tasks), caches.own(), options_).work())
     known[name] = std::move(result);
   std::vector<Json> results;
   for (const PreparedRun& run : runs) results.push_back(known[run.name]);
@@ -249,6 +274,15 @@ std::vector<Json> ProcessPool::run(const std::vector<RunSpec>& specs) const {
   std::vector<PreparedRun> runs;
   for (const RunSpec& spec : specs) runs.push_back(prepare_run(spec));
   return run_prepared(runs);
+}
+
+std::vector<PreparedRun> ProcessPool::missing(const std::vector<PreparedRun>& runs) const {
+  const JoinedCaches caches(options_);
+  std::vector<PreparedRun> missing;
+  for (const PreparedRun& run : runs) {
+    if (!caches.find_or_join(run)) missing.push_back(run);
+  }
+  return missing;
 }
 
 Json ProcessPool::run(const RunSpec& spec) const { return run(std::vector{spec}).front(); }

@@ -18,6 +18,8 @@ struct ProcessPoolOptions {
   /// Bytes that all processes together may take; none: most of what the machine has left.
   std::optional<double> memory_limit = {};
   std::filesystem::path program = {};  ///< the slipstick program, which solves
+  /// Other folders of finished results: what is found there is not solved, but kept in `folder` too.
+  std::vector<std::filesystem::path> joined = {};
   /// Asked every second at least, and when a signal ends waiting: whether to stop.
   std::function<bool()> interrupted = {};
 };
@@ -44,7 +46,11 @@ class ProcessPool {
   /// The same for one.
   Json run(const RunSpec& spec) const;
 
+  /// Those of the runs whose result is neither in the folder nor in one that it joins.
+  std::vector<PreparedRun> missing(const std::vector<PreparedRun>& runs) const;
+
   std::optional<double> memory_limit() const { return options_.memory_limit; }
+  const std::filesystem::path& folder() const { return options_.folder; }
 
  private:
   ProcessPoolOptions options_;

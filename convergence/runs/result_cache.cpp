@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <bit>
 #include <fstream>
 #include <ios>
 #include <nlohmann/json.hpp>
@@ -18,12 +19,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-std::string identify(const fs::path& program) {
-  std::error_code error;
-  const auto written = fs::last_write_time(program, error);
-  if (error) return "unknown program";
-  return fmt::format("{} bytes, written {}", fs::file_size(program), written.time_since_epoch().count());
-}
+constexpr std::uint64_t kPrime = 1099511628211ULL;
 
 /// The bytes of a regular file, if there is one.
 std::optional<std::string> bytes_of(const fs::path& file, std::uintmax_t largest) {
@@ -69,9 +65,32 @@ Json entry(const std::string& program, const std::string& cache_key, const Json&
 }  // namespace
 
 std::uint64_t checksum(std::string_view bytes, std::uint64_t of_before) {
-  constexpr std::uint64_t kPrime = 1099511628211ULL;
   for (const char byte : bytes) of_before = (of_before ^ static_cast<unsigned char>(byte)) * kPrime;
   return of_before;
+}
+
+std::uint64_t checksum_of_word(std::uint64_t word, std::uint64_t of_before) {
+  return (std::rotl(of_before, 31) ^ word) * kPrime;
+}
+
+std::string program_identity(const fs::path& program) {
+  std::ifstream stream(program, std::ios::binary);
+  if (!stream.is_open()) return "unknown program";
+  std::vector<std::uint64_t> words(std::size_t{1} << 17);
+  std::uintmax_t size = 0;
+  std::uint64_t sum = checksum({});
+  do {
+    stream.read(reinterpret_cast<char*>(words.data()),
+                static_cast<std::streamsize>(words.size() * sizeof(words[0])));
+    const auto read = static_cast<std::size_t>(stream.gcount());
+    for (std::size_t i = 0; i < read / sizeof(words[0]); ++i) {
+      sum = checksum_of_word(words[i], sum);
+    }
+    const std::size_t whole = read - read % sizeof(words[0]);
+    sum = checksum({reinterpret_cast<const char*>(words.data()) + whole, read - whole}, sum);
+    size += read;
+  } while (stream);
+  return fmt::format("{} bytes, {:016x}", size, sum);
 }
 
 void write_json_file(const fs::path& file, const Json& json) {
@@ -81,8 +100,15 @@ void write_json_file(const fs::path& file, const Json& json) {
 }
 
 ResultCache::ResultCache(fs::path folder, const fs::path& program)
-    : folder_(std::move(folder)), program_(identify(program)) {
+    : folder_(std::move(folder)), program_(program_identity(program)) {
   solver::make_folder(folder_);
+}
+
+ResultCache ResultCache::in(fs::path folder) const {
+  ResultCache other(*this);
+  other.folder_ = std::move(folder);
+  solver::make_folder(other.folder_);
+  return other;
 }
 
 std::optional<Json> ResultCache::find(const std::string& name, const std::string& cache_key,

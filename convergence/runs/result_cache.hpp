@@ -18,9 +18,12 @@ namespace slipstick::convergence {
 /// processes may share a folder: they keep equal results.
 class ResultCache {
  public:
-  /// program: the executable that computes, by its size and when it was written. Throws InputError for a
-  /// folder that cannot be made.
+  /// program: the executable that computes, by its content: a copy on another machine is the same one. Throws
+  /// InputError for a folder that cannot be made.
   explicit ResultCache(std::filesystem::path folder, const std::filesystem::path& program = kOwnProgram);
+
+  /// That of the same program in another folder. Throws as above.
+  ResultCache in(std::filesystem::path folder) const;
 
   /// The result of a name, which is its file's without ending, if it is on disk. beside: a file that belongs
   /// to it, and that has to be the one that was there when it was kept; empty: none.
@@ -45,6 +48,12 @@ class ResultCache {
 /// Of bytes by which nobody wants to deceive: Fowler, Noll and Vo's hash (FNV-1a, 64 bits). of_before: that
 /// of those before them.
 std::uint64_t checksum(std::string_view bytes, std::uint64_t of_before = 14695981039346656037ULL);
+
+/// The same, of eight bytes at once: another sum than that of the bytes.
+std::uint64_t checksum_of_word(std::uint64_t word, std::uint64_t of_before);
+
+/// An executable by its content, the same for every copy of it.
+std::string program_identity(const std::filesystem::path& program);
 
 /// Writes JSON as write_whole_file() does; a file that has this content already keeps its time.
 void write_json_file(const std::filesystem::path& file, const nlohmann::ordered_json& json);

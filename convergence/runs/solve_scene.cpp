@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "convergence/results/result.hpp"
+#include "solver/history_state.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/within_double.hpp"
 
@@ -31,16 +32,26 @@ SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& opt
   const auto history = solver::within_double(scene, [&] { return exact_history(scene); });
   SolvedScene solved;
   Json steps = Json::array();
-  const auto on_step = [&](const solver::Solution& at) {
+  solver::SolveOptions to_solver{.progress = options.progress, .cache = options.cache};
+  if (options.resumed) {
+    steps = options.resumed->results;
+    to_solver.resumed = options.resumed->state;
+    for (std::size_t k = 0; k < to_solver.resumed->finished; ++k) {
+      solved.exact = history->advance(scene.steps[k % scene.steps.size()]);
+    }
+  }
+  to_solver.on_step = [&](const solver::Solution& at) {
     const RoundingScope scope(Rounding::nearest);
     solved.exact = history->advance(at.loads);
     if (has_history(scene)) steps.push_back(step_result(scene, at, solved.exact));
     if (options.on_step) options.on_step(at, solved.exact);
   };
+  if (options.on_state) {
+    to_solver.on_state = [&](const solver::HistoryState& state) { options.on_state(state, steps); };
+  }
   try {
     const RoundingScope scope(options.rounding);
-    solved.solution =
-        solver::solve(scene, {.progress = options.progress, .on_step = on_step, .cache = options.cache});
+    solved.solution = solver::solve(scene, to_solver);
   } catch (const solver::InputError& error) {
     if (!steps.empty() && options.incomplete != nullptr) {
       *options.incomplete = {{"name", scene.name}, {"status", "not_converged"}, {"message", error.what()}};

@@ -19,6 +19,12 @@ struct SolvedScene {
   Json result;
 };
 
+/// What is finished of a history: where it stands, and the results of its steps.
+struct FinishedSteps {
+  std::shared_ptr<const solver::HistoryState> state;
+  Json results;
+};
+
 struct SolveSceneOptions {
   /// See solver::SolveOptions.
   std::function<void(int iteration, double change)> progress = {};
@@ -30,6 +36,10 @@ struct SolveSceneOptions {
   Json* incomplete = nullptr;
   /// See solver::SolveOptions.
   std::shared_ptr<solver::SolveCache> cache = {};
+  /// Called at the end of each step that another follows, with the results so far.
+  std::function<void(const solver::HistoryState&, const Json& steps)> on_state = {};
+  /// See solver::SolveOptions; null: from the first step.
+  std::shared_ptr<const FinishedSteps> resumed = {};
 };
 
 /// The one way in which a scene is solved on its grid and compared with its exact answer, by whichever

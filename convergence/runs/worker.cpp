@@ -117,13 +117,14 @@ ProgramEnd Worker::wait() {
 
 int serve_runs(const fs::path& folder, std::optional<double> memory_limit) {
   const auto shared = std::make_shared<solver::SolveCache>();
+  std::optional<ResultCache> cache;
   while (const std::optional<RunSpec> spec = next_run(std::cin)) {
     PreparedRun run = prepare_run(*spec);
     run.scene.memory_limit = memory_limit;
     if (run.scene.threads == 0) run.scene.threads = 1;  // its processor is one of those that solve
     try {
-      const ResultCache cache(folder);
-      cache.keep(run.name, run.cache_key, solve(run, shared), spec->fields);
+      if (!cache) cache.emplace(folder);
+      cache->keep(run.name, run.cache_key, solve(run, shared), spec->fields);
     } catch (const solver::OutOfMemory&) {
       throw;
     } catch (const solver::InputError& error) {  // of the scene it is part of the result

@@ -27,7 +27,9 @@
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/runs/worker.hpp"
 #include "convergence/solve/accurate_solve.hpp"
+#include "convergence/solve/checkpoint.hpp"
 #include "solver/cache/solve_cache.hpp"
+#include "solver/history_state.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/toml_reader.hpp"
@@ -45,6 +47,8 @@ struct SolveRequest {
   std::optional<double> accuracy;
   std::string accuracy_of = "twist";
   bool plan = false;
+  std::string checkpoint;
+  bool resume = false;
   MemoryOption memory;
   std::string keep;  ///< of the workers of a pool alone
 };
@@ -55,10 +59,14 @@ void show_progress(int iteration, double change) {
     std::cerr << fmt::format("\r\033[Kiteration {}, change {:.1e}\r", iteration, change);
 }
 
-solver::Scene read_scene(const SolveRequest& request) {
+std::vector<std::string> overrides_of(const SolveRequest& request) {
   std::vector<std::string> overrides = request.overrides;
   if (!request.model.empty()) overrides.push_back(fmt::format("solver.model=\"{}\"", request.model));
-  solver::Scene scene = solver::read_scene(request.scene, overrides);
+  return overrides;
+}
+
+solver::Scene read_scene(const SolveRequest& request) {
+  solver::Scene scene = solver::read_scene(request.scene, overrides_of(request));
   scene.memory_limit = request.memory.limit();
   return scene;
 }
@@ -90,6 +98,39 @@ int answer_exactly(const solver::Scene& scene, const SolveRequest& request, std:
   return 0;
 }
 
+/// Where the history stands in the checkpoint that is to be gone on from; null: at its first step. Throws
+/// InputError for a file that nobody said may be replaced.
+std::shared_ptr<const FinishedSteps> finished_in(const Checkpoint& checkpoint, const SolveRequest& request) {
+  if (!request.resume && std::filesystem::exists(checkpoint.file())) {
+    throw solver::InputError("--checkpoint " + request.checkpoint,
+                             "is there already; allowed: --resume, to go on from it, or another file");
+  }
+  std::shared_ptr<const FinishedSteps> finished = checkpoint.read();
+  if (finished) {
+    std::cerr << fmt::format("slipstick: goes on after step {}, from {}\n", finished->state->finished,
+                             request.checkpoint);
+  }
+  return finished;
+}
+
+/// Solves a history that leaves checkpoints.
+SolvedScene solve_on(const solver::Scene& scene, const SolveRequest& request, SolveSceneOptions options,
+                     std::size_t& step) {
+  if (request.checkpoint.empty()) return solve_scene(scene, options);
+  if (scene.rounding_seed != 0) {
+    throw solver::InputError(scene.source.string(), "solver.rounding_seed",
+                             std::to_string(scene.rounding_seed),
+                             "left out beside --checkpoint: what is drawn after a break is drawn anew");
+  }
+  const Checkpoint checkpoint(request.checkpoint,
+                              prepare_run({.scene = request.scene, .overrides = overrides_of(request)}));
+  PacedCheckpoint paced(checkpoint);
+  options.resumed = finished_in(checkpoint, request);
+  if (options.resumed) step = options.resumed->state->finished;
+  options.on_state = [&](const solver::HistoryState& state, const Json& steps) { paced.offer(state, steps); };
+  return solve_scene(scene, options);
+}
+
 /// Solves, and writes the fields of each step where they go to a file of its own.
 /// cache: null, or what several grids share.
 SolvedScene find_on_grid(const solver::Scene& scene, const SolveRequest& request, Json& result,
@@ -100,8 +141,9 @@ SolvedScene find_on_grid(const solver::Scene& scene, const SolveRequest& request
     if (!one_file_a_step(request.fields)) return;
     write_solution_fields(file_of_step(request.fields, step), at, exact);
   };
-  return solve_scene(scene,
-                     {.progress = show_progress, .on_step = on_step, .incomplete = &result, .cache = cache});
+  return solve_on(scene, request,
+                  {.progress = show_progress, .on_step = on_step, .incomplete = &result, .cache = cache},
+                  step);
 }
 
 void write_answer(const SolvedScene& answer, const SolveRequest& request, std::ostream& text) {
@@ -191,6 +233,7 @@ int run_solve(const CLI::App& command, const SolveRequest& request, std::ostream
   const solver::Scene scene = read_scene(request);
   require_scene_kept(command, request, scene);
   require_output("--fields", request.fields);
+  require_output("--checkpoint", request.checkpoint);
   if (request.accuracy) return solve_accurately(scene, request, text, result);
   if (request.plan) {
     result["plan"] = plan_json(scene);
@@ -232,6 +275,16 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_solve_command(CLI
       "--fields", request->fields,
       "write tractions, pressure, stick and, from a grid, slip: .h5, .csv or .vti; of a history the "
       "last step, or each to a file of its own where the name holds {step}");
+  command
+      ->add_option("--checkpoint", request->checkpoint,
+                   "of a history: keep where it stands in this file (HDF5), after its first step and then as "
+                   "often as that costs 1 % of the time")
+      ->excludes(command->get_option("--accuracy"));
+  command
+      ->add_flag("--resume", request->resume,
+                 "go on from the file that --checkpoint names, where it is there; the result is that of a "
+                 "history without a break")
+      ->needs(command->get_option("--checkpoint"));
   command->add_option("--figure", request->figure,
                       "draw slip and stick, tractions and pressure: .svg, .pdf or .png");
   request->memory.add_to(*command);

@@ -20,7 +20,7 @@ constexpr int kMaxTightenings = 2;
 class Batch {
  public:
   Batch(const ProcessPool& pool, FailedRuns& failed) : pool_(pool), failed_(failed) {}
-  void add(RunSpec run) { runs_.push_back(std::move(run)); }
+  std::vector<RunSpec>& runs() { return runs_; }
   void run() {
     results_ = pool_.run(runs_);
     for (std::size_t i = 0; i < runs_.size(); ++i) failed_.add(run_text(runs_[i]), results_[i]);
@@ -35,14 +35,13 @@ class Batch {
   std::size_t taken_ = 0;
 };
 
-void add_runs(const Study& study, const Series& series, Batch& batch) {
+void add_runs(const Study& study, const Series& series, std::vector<RunSpec>& runs) {
   for (const Mesh& mesh : series.meshes) {
-    for (const GridChoice& grid : mesh.grids) batch.add(make_run(study, grid, series.tolerance));
+    for (const GridChoice& grid : mesh.grids) runs.push_back(make_run(study, grid, series.tolerance));
     const BudgetRuns parts =
         budget_runs(make_run(study, mesh.grids.front(), series.tolerance), series.tolerance);
-    batch.add(parts.tightened);
-    if (!mesh.rounded) continue;
-    for (const RunSpec& rounded : parts.rounded) batch.add(rounded);
+    runs.push_back(parts.tightened);
+    if (mesh.rounded) runs.insert(runs.end(), parts.rounded.begin(), parts.rounded.end());
   }
 }
 
@@ -66,7 +65,7 @@ std::vector<std::vector<MeshResults>> solve_series(const Study& study, std::vect
   for (int pass = 0; pass <= kMaxTightenings; ++pass) {
     Batch batch(pool, failed);
     for (std::size_t i = 0; i < all.size(); ++i) {
-      if (open[i]) add_runs(study, all[i], batch);
+      if (open[i]) add_runs(study, all[i], batch.runs());
     }
     batch.run();
     bool any = false;
@@ -86,10 +85,11 @@ std::vector<std::vector<MeshResults>> solve_series(const Study& study, std::vect
 }
 
 /// The tolerances that the study varies, and one tighter than all that stands for none.
-void add_tolerance_runs(const Study& study, const Series& series, Batch& batch) {
+void add_tolerance_runs(const Study& study, const Series& series, std::vector<RunSpec>& runs) {
   for (const Mesh& mesh : series.meshes) {
-    for (const double tolerance : study.tolerances) batch.add(make_run(study, mesh.grids.front(), tolerance));
-    batch.add(make_run(study, mesh.grids.front(), kTightening * study.tolerances.back()));
+    const GridChoice& grid = mesh.grids.front();
+    for (const double tolerance : study.tolerances) runs.push_back(make_run(study, grid, tolerance));
+    runs.push_back(make_run(study, grid, kTightening * study.tolerances.back()));
   }
 }
 
@@ -103,7 +103,18 @@ std::vector<std::vector<Json>> take_tolerance_results(const Study& study, const 
   return by_mesh;
 }
 
+bool varies_tolerance(const Study& study) { return study.tolerances.size() > 1; }
+
 }  // namespace
+
+std::vector<RunSpec> study_runs(const Study& study, std::optional<double> memory_limit) {
+  std::vector<RunSpec> runs;
+  for (const Series& series : make_series(study, memory_limit)) {
+    add_runs(study, series, runs);
+    if (varies_tolerance(study)) add_tolerance_runs(study, series, runs);
+  }
+  return runs;
+}
 
 Json run_study(const Study& study, const ProcessPool& pool) {
   std::vector<Series> all = make_series(study, pool.memory_limit());
@@ -117,9 +128,9 @@ Json run_study(const Study& study, const ProcessPool& pool) {
   for (std::size_t i = 0; i < all.size(); ++i) {
     json["series"][all[i].name] = judge_series(study, all[i], results[i]);
   }
-  if (study.tolerances.size() > 1) {
+  if (varies_tolerance(study)) {
     Batch batch(pool, failed);
-    for (const Series& series : all) add_tolerance_runs(study, series, batch);
+    for (const Series& series : all) add_tolerance_runs(study, series, batch.runs());
     batch.run();
     for (std::size_t i = 0; i < all.size(); ++i) {
       const auto by_mesh = take_tolerance_results(study, all[i], batch);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -36,6 +37,10 @@ const solver::SettingKeys& study_keys();
 /// overrides: as --set takes them, applied to the scene after the study's own. Throws InputError naming file,
 /// key, value and what is allowed.
 Study read_study(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
+
+/// What a study solves whatever comes out; tighter tolerances, where iterations show in the results, follow
+/// from these. Throws as make_series().
+std::vector<RunSpec> study_runs(const Study& study, std::optional<double> memory_limit = {});
 
 /// Solves, fits and judges: rows, orders, extrapolated values and budgets of each series, under
 /// result["series"][name]; the name joins the varied values with "-", or is the scene's where nothing varies.

@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -13,6 +14,7 @@
 #include "convergence/programs/temporary_folder.hpp"
 #include "convergence/runs/interrupts.hpp"
 #include "convergence/runs/memory_option.hpp"
+#include "convergence/runs/shard_option.hpp"
 #include "convergence/studies/study.hpp"
 #include "solver/input/whole_file.hpp"
 
@@ -26,6 +28,7 @@ struct StudyRequest {
   std::string figure;
   int jobs = 0;
   MemoryOption memory;
+  ShardOption shards;
 };
 
 void draw(const std::string& figure, const Json& result) {
@@ -45,8 +48,23 @@ bool all_converged(const Json& result) {
   return true;
 }
 
+std::vector<PreparedRun> prepared_runs(const Study& study, const ProcessPool& pool) {
+  std::vector<PreparedRun> runs;
+  for (const RunSpec& run : study_runs(study, pool.memory_limit())) runs.push_back(prepare_run(run));
+  return runs;
+}
+
+int run_study_shard(const Study& study, const Shard& shard, const ProcessPool& pool, std::ostream& text,
+                    Json& result) {
+  const Interrupts interrupts;
+  result = run_shard(prepared_runs(study, pool), shard, pool);
+  text << shard_text(result);
+  return is_complete(result) ? 0 : 1;
+}
+
 int run_study_request(const CLI::App& command, const StudyRequest& request, std::ostream& text,
                       Json& result) {
+  const std::optional<Shard> shard = request.shards.shard();
   if (!request.figure.empty()) require_figure_format(request.figure);
   const Study study = read_study(request.study, request.overrides);
   require_inputs_kept(command, input_files(solver::read_scene(study.scene, study.overrides)));
@@ -54,9 +72,12 @@ int run_study_request(const CLI::App& command, const StudyRequest& request, std:
                           .jobs = request.jobs,
                           .memory_limit = request.memory.limit(),
                           .program = kOwnProgram,
+                          .joined = request.shards.merged(),
                           .interrupted = Interrupts::seen});
+  if (shard) return run_study_shard(study, *shard, pool, text, result);
   {
     const Interrupts interrupts;
+    if (!request.shards.merged().empty()) require_finished(prepared_runs(study, pool), pool);
     result = run_study(study, pool);
   }
   text << study_text(result);
@@ -81,6 +102,7 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_study_command(CLI
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   request->memory.add_to(*command);
+  request->shards.add_to(*command, {"--figure"});
   command->footer(
       "Example:\n  slipstick study convergence/studies/paper_mesh.toml --figure study.svg --json study.json\n"
       "Finished solves are kept: repeating an interrupted command goes on from there.\nExit code 0: done; 1: "

@@ -12,8 +12,8 @@ _slipstick() {
       "exact "*) [[ $current != -* ]] || words="--moment-ratio --moment-deficit --stick-ratio --stick-complement --twist --history --help --points --unload-to --certified --radius --profile --normal-load --effective-modulus --shape --friction --shear-modulus --json --quiet" ;;
       "solve --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "solve --accuracy-of") words="twist traction stick_radius" ;;
-      "solve --model" | "solve --accuracy" | "solve --fields" | "solve --figure" | "solve --memory-limit" | "solve --json") return ;;
-      "solve "*) [[ $current != -* ]] || words="--help --set --model --accuracy --accuracy-of --plan --fields --figure --memory-limit --json --quiet" ;;
+      "solve --model" | "solve --accuracy" | "solve --fields" | "solve --checkpoint" | "solve --figure" | "solve --memory-limit" | "solve --json") return ;;
+      "solve "*) [[ $current != -* ]] || words="--help --set --model --accuracy --accuracy-of --plan --fields --checkpoint --resume --figure --memory-limit --json --quiet" ;;
       "check --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "check --twist" | "check --tolerance" | "check --json") return ;;
       "check "*) [[ $current != -* ]] || words="--help --set --twist --discrete --tolerance --strict --json --quiet" ;;
@@ -21,10 +21,10 @@ _slipstick() {
       "law --profile" | "law --write" | "law --error" | "law --table-error" | "law --element-error" | "law --elements" | "law --limit-loads" | "law --json") return ;;
       "law "*) [[ $current != -* ]] || words="--help --set --profile --write --error --table-error --element-error --elements --limit-loads --json --quiet" ;;
       "study --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
-      "study --output" | "study --figure" | "study --jobs" | "study --memory-limit" | "study --json") return ;;
-      "study "*) [[ $current != -* ]] || words="--help --set --output --figure --jobs --memory-limit --json --quiet" ;;
-      "gate --only" | "gate --junit" | "gate --summary" | "gate --output" | "gate --results" | "gate --jobs" | "gate --memory-limit" | "gate --json") return ;;
-      "gate "*) [[ $current != -* ]] || words="--help --only --junit --summary --github --output --results --jobs --memory-limit --json --quiet" ;;
+      "study --output" | "study --figure" | "study --jobs" | "study --memory-limit" | "study --shard" | "study --merge" | "study --json") return ;;
+      "study "*) [[ $current != -* ]] || words="--help --set --output --figure --jobs --memory-limit --shard --merge --json --quiet" ;;
+      "gate --only" | "gate --junit" | "gate --summary" | "gate --output" | "gate --results" | "gate --jobs" | "gate --memory-limit" | "gate --shard" | "gate --merge" | "gate --json") return ;;
+      "gate "*) [[ $current != -* ]] || words="--help --only --junit --summary --github --output --results --jobs --memory-limit --shard --merge --json --quiet" ;;
       "hard --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "hard --beside") words="coulomb projected_gradient paper" ;;
       "hard --output" | "hard --fields" | "hard --jobs" | "hard --memory-limit" | "hard --json") return ;;

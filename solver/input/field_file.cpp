@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
-#include <hdf5.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,6 +13,7 @@
 #include <utility>
 
 #include "solver/input/dataset_reader.hpp"
+#include "solver/input/dataset_writer.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
 #include "solver/input/whole_file.hpp"
@@ -34,51 +34,6 @@ constexpr Index kMaxHeights = Index{1} << 26;
 constexpr std::size_t kMaxColumns = 65536;
 /// Written by some programs at the beginning of a text.
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-
-/// A handle of the library.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {
-    if (id_ < 0) throw std::runtime_error("HDF5 refuses to make a file in memory");
-  }
-  ~Handle() { close_(id_); }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  operator hid_t() const { return id_; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
-/// The bytes of an HDF5 file, made in memory: a disk that is full is no matter of the library's, which keeps
-/// what it could not write and crashes over it when the process ends.
-std::vector<char> hdf5_image(const std::vector<Column>& columns) {
-  constexpr std::size_t kBlock = std::size_t{1} << 16;  // beside the values, for names and their tree
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);          // the library's own messages stay off the terminal
-  const auto rows = static_cast<hsize_t>(columns.front().values.size());
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_fapl_core(access, kBlock + columns.size() * rows * sizeof(double), false);
-  const Handle file(H5Fcreate("fields", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
-  const Handle space(H5Screate_simple(1, &rows, nullptr), H5Sclose);
-  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_obj_track_times(creation, false);  // the same numbers, the same bytes
-  for (const Column& column : columns) {
-    const Handle dataset(
-        H5Dcreate2(file, column.name.c_str(), H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, creation, H5P_DEFAULT),
-        H5Dclose);
-    if (H5Dwrite(dataset, H5T_NATIVE_DOUBLE, H5S_ALL, H5S_ALL, H5P_DEFAULT, column.values.data()) < 0) {
-      throw std::runtime_error(fmt::format("dataset {}: HDF5 cannot write it", column.name));
-    }
-  }
-  H5Fflush(file, H5F_SCOPE_LOCAL);
-  std::vector<char> image(
-      static_cast<std::size_t>(std::max<ssize_t>(H5Fget_file_image(file, nullptr, 0), 0)));
-  if (image.empty() || H5Fget_file_image(file, image.data(), image.size()) < 0) {
-    throw std::runtime_error("HDF5 gives no image of a file in memory");
-  }
-  return image;
-}
 
 std::string_view trimmed(std::string_view text) {
   constexpr std::string_view kAround = " \t\r\"";
@@ -295,8 +250,7 @@ void write_fields(const path& file, const Grid& grid, const std::vector<Column>&
   if (file.extension() == ".vti") {
     write_whole_file(file, [&](std::FILE* stream) { write_vti(stream, grid, columns); });
   } else if (is_hdf5(file)) {
-    const std::vector<char> image = hdf5_image(kept_rows(columns, keep));
-    write_whole_file(file, {image.data(), image.size()});
+    write_datasets(file, kept_rows(columns, keep));
   } else {
     write_whole_file(file, [&](std::FILE* stream) { write_csv(stream, kept_rows(columns, keep)); });
   }

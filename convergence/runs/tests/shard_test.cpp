@@ -1,0 +1,66 @@
+#include "convergence/runs/shard.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+#include <vector>
+
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+TEST(Shard, IsCountedFromOne) {
+  const Shard shard = read_shard("2/4");
+  EXPECT_EQ(shard.index, 2U);
+  EXPECT_EQ(shard.count, 4U);
+  EXPECT_EQ(read_shard("1/1").count, 1U);
+  for (const char* word : {"0/3", "4/3", "x", "", "1", "1/", "/3", "1/0", "-1/3", "1/3/", "1.5/3", " 1/3",
+                           "1/99999999999999999999"}) {
+    try {
+      read_shard(word);
+      ADD_FAILURE() << word;
+    } catch (const solver::InputError& error) {
+      EXPECT_THAT(error.what(), testing::AllOf(testing::HasSubstr(std::string("--shard ") + word),
+                                               testing::HasSubstr("from 1/N to N/N")));
+    }
+  }
+}
+
+/// Graham (1969): dealt from the largest down, no part has more than 4/3 of what the best split leaves the
+/// fullest one, which is at least the mean and at least the largest.
+TEST(Shard, CostsAreDealtEvenly) {
+  const std::vector<std::vector<double>> lists{
+      {}, {1.0}, {1, 4, 16, 64, 256}, {5, 5, 4, 4, 3, 3, 3}, std::vector<double>(100, 2.0)};
+  for (const std::vector<double>& costs : lists) {
+    for (const std::size_t count : {1U, 2U, 3U, 7U}) {
+      const std::vector<std::size_t> shards = deal(costs, count);
+      ASSERT_EQ(shards.size(), costs.size());
+      std::vector<double> sums(count, 0.0);
+      for (std::size_t i = 0; i < costs.size(); ++i) sums.at(shards[i] - 1) += costs[i];
+      const double total = std::accumulate(costs.begin(), costs.end(), 0.0);
+      const double largest = costs.empty() ? 0.0 : *std::ranges::max_element(costs);
+      EXPECT_LE(*std::ranges::max_element(sums),
+                std::max(largest, 4.0 / 3.0 * std::max(largest, total / static_cast<double>(count))));
+    }
+  }
+}
+
+TEST(Shard, FinerMeshesAndMoreStepsCostMore) {
+  const auto cost = [](const char* scene, std::vector<std::string> overrides) {
+    return predicted_cost(
+        prepare_run({.scene = std::string(SLIPSTICK_SCENES) + scene, .overrides = std::move(overrides)}));
+  };
+  const double coarse = cost("/paper.toml", {"grid.cells=[256,256]"});
+  const double fine = cost("/paper.toml", {"grid.cells=[512,512]"});
+  EXPECT_GT(fine, 2.0 * coarse);
+  EXPECT_GT(cost("/torsion_loop.toml", {"grid.cells=[256,256]"}), 2.0 * coarse);
+  // What no machine holds has a cost too.
+  EXPECT_GT(cost("/paper.toml", {"grid.cells=[60000,60000]"}), fine);
+}
+
+}  // namespace
+}  // namespace slipstick::convergence

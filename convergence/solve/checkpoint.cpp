@@ -1,0 +1,160 @@
+#include "convergence/solve/checkpoint.hpp"
+
+#include <fmt/core.h>
+
+#include <bit>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "convergence/programs/run_program.hpp"
+#include "convergence/runs/result_cache.hpp"
+#include "solver/history_state.hpp"
+#include "solver/input/dataset_reader.hpp"
+#include "solver/input/dataset_writer.hpp"
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using solver::ContactState;
+using solver::HistoryState;
+using solver::InputError;
+using solver::NormalSolution;
+
+constexpr const char* kFormat = "slipstick history 1";
+/// Most of the time that may go into writing.
+constexpr double kPart = 0.01;
+/// Values of a dataset: those of the largest grid that is solved, twice.
+constexpr Eigen::Index kMaxValues = Eigen::Index{1} << 33;
+
+Json normal_json(const NormalSolution& normal) {
+  Json grids = Json::array();
+  for (const solver::GridWork& at : normal.grids) {
+    grids.push_back({at.n1, at.n2, at.applications, at.iterations, at.gap});
+  }
+  const solver::Safeguards& safeguards = normal.safeguards;
+  return {{"converged", normal.status == solver::Status::converged},
+          {"message", normal.message},
+          {"approach", normal.approach},
+          {"complementarity", normal.complementarity},
+          {"load_error", normal.load_error},
+          {"iterations", normal.iterations},
+          {"grids", std::move(grids)},
+          {"safeguards",
+           {safeguards.second_solves, safeguards.halvings, safeguards.gradient_steps, safeguards.breakdowns,
+            safeguards.breakdown}},
+          {"bytes", normal.bytes}};
+}
+
+NormalSolution normal_of(const Json& json) {
+  NormalSolution normal;
+  normal.status =
+      json.at("converged").get<bool>() ? solver::Status::converged : solver::Status::not_converged;
+  normal.message = json.at("message");
+  normal.approach = json.at("approach");
+  normal.complementarity = json.at("complementarity");
+  normal.load_error = json.at("load_error");
+  normal.iterations = json.at("iterations");
+  for (const Json& at : json.at("grids")) {
+    normal.grids.push_back({at.at(0), at.at(1), at.at(2), at.at(3), at.at(4)});
+  }
+  const Json& safeguards = json.at("safeguards");
+  normal.safeguards = {safeguards.at(0), safeguards.at(1), safeguards.at(2), safeguards.at(3),
+                       safeguards.at(4)};
+  normal.bytes = json.at("bytes");
+  return normal;
+}
+
+/// Of the bits of all numbers and of the text: a file that was changed is no longer the history's.
+std::string sum_of(const ContactState& contact, const std::string& text) {
+  std::uint64_t sum = checksum(text);
+  for (const Eigen::ArrayXd* const field : {&contact.pressure, &contact.traction, &contact.slip}) {
+    for (const double value : *field) sum = checksum_of_word(std::bit_cast<std::uint64_t>(value), sum);
+  }
+  return fmt::format("{:016x}", sum);
+}
+
+/// One line; names of files need not be UTF-8, JSON is.
+std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
+
+std::string as_text(const Eigen::ArrayXd& bytes) {
+  std::string text;
+  for (const double byte : bytes) text += static_cast<char>(static_cast<unsigned char>(byte));
+  return text;
+}
+
+Eigen::ArrayXd numbers_in(const std::filesystem::path& file, const std::string& name) {
+  return solver::read_datasets(file, {name}, 1, kMaxValues).front().reshaped();
+}
+
+}  // namespace
+
+Checkpoint::Checkpoint(std::filesystem::path file, const PreparedRun& run)
+    : file_(std::move(file)), scene_(run.name), program_(program_identity(kOwnProgram)) {}
+
+std::shared_ptr<const FinishedSteps> Checkpoint::read() const {
+  if (!std::filesystem::exists(file_)) return nullptr;
+  const std::string text = as_text(numbers_in(file_, "history"));
+  const InputError damaged(file_.string(),
+                           "is no whole checkpoint; allowed: one that --checkpoint wrote, or "
+                           "another file, to begin at the first step");
+  const Json json = Json::parse(text, nullptr, false);
+  if (!json.is_object() || json.value("format", "") != kFormat) throw damaged;
+  if (json.value("scene", "") != scene_) {
+    throw InputError(file_.string(),
+                     "is the checkpoint of another scene, or of this one with other keys, --set "
+                     "or input files; allowed: the same, or another file, to begin at the first "
+                     "step");
+  }
+  if (json.value("program", "") != program_) {
+    throw InputError(file_.string(),
+                     "is the checkpoint of another build of slipstick, whose digits may differ; "
+                     "allowed: that build, or another file, to begin at the first step");
+  }
+  HistoryState state;
+  Json steps;
+  try {
+    state.contact.pressure = numbers_in(file_, "pressure");
+    state.contact.traction = numbers_in(file_, "traction");
+    if (json.at("has_slip").get<bool>()) state.contact.slip = numbers_in(file_, "slip");
+    if (as_text(numbers_in(file_, "checksum")) != sum_of(state.contact, text)) throw damaged;
+    const Json& motion = json.at("motion");
+    state.contact.motion = {motion.at(0), motion.at(1), motion.at(2)};
+    state.finished = json.at("finished");
+    state.normal = normal_of(json.at("normal"));
+    steps = json.at("steps");
+  } catch (const Json::exception&) {
+    throw damaged;
+  }
+  return std::make_shared<const FinishedSteps>(
+      FinishedSteps{std::make_shared<const HistoryState>(std::move(state)), std::move(steps)});
+}
+
+void Checkpoint::write(const HistoryState& state, const Json& steps) const {
+  const ContactState& contact = state.contact;
+  const std::string text =
+      text_of({{"format", kFormat},
+               {"scene", scene_},
+               {"program", program_},
+               {"finished", state.finished},
+               {"motion", {contact.motion.delta1, contact.motion.delta2, contact.motion.twist}},
+               {"normal", normal_json(state.normal)},
+               {"has_slip", contact.slip.size() > 0},
+               {"steps", steps}});
+  std::vector<solver::Column> columns{{"pressure", contact.pressure}, {"traction", contact.traction}};
+  if (contact.slip.size() > 0) columns.push_back({"slip", contact.slip});
+  write_datasets(file_, columns, {{"history", text}, {"checksum", sum_of(contact, text)}});
+}
+
+void PacedCheckpoint::offer(const HistoryState& state, const Json& steps) {
+  const auto start = Clock::now();
+  if (written_ != Clock::time_point{} && kPart * (start - written_) < took_) return;
+  checkpoint_.write(state, steps);
+  written_ = Clock::now();
+  took_ = written_ - start;
+}
+
+}  // namespace slipstick::convergence

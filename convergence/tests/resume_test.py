@@ -1,0 +1,131 @@
+#!/usr/bin/env python3
+"""resume_test.py PROGRAM: a history that is killed, between steps or in one, goes on from its checkpoint to the result
+that it would have had; a checkpoint that is not its own is refused."""
+
+import json
+import os
+import random
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+from kills_test import SCENE, without_times
+
+PROGRAM = Path(sys.argv[1]).resolve()
+SCENES = SCENE.parent
+PATIENCE = 120  # seconds, longer than anything here takes on any machine
+
+
+class ResumeTest(unittest.TestCase):
+    def setUp(self):
+        self.folder = Path(tempfile.mkdtemp(prefix="slipstick-resume-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        self.checkpoint = self.folder / "history.h5"
+
+    def words(self, scene, *words, program=PROGRAM):
+        return list(map(str, [program, "solve", SCENES / f"{scene}.toml", "--json", "result.json", "--fields",
+                              "step{step}.h5", *words]))
+
+    def run_program(self, *arguments, code=0, **options):
+        end = subprocess.run(self.words(*arguments, **options), cwd=self.folder, capture_output=True, text=True)
+        self.assertEqual(end.returncode, code, end.stdout + end.stderr)
+        return end.stderr
+
+    def kept(self):
+        return self.checkpoint.stat().st_ino if self.checkpoint.exists() else 0
+
+    def killed(self, words, delay):
+        """Kills the solve so long after it has written its next checkpoint; False: it ended before."""
+        before = self.kept()
+        child = subprocess.Popen(words, cwd=self.folder, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        end = time.monotonic() + PATIENCE
+        while self.kept() == before and child.poll() is None and time.monotonic() < end:
+            time.sleep(0.0005)
+        time.sleep(delay)
+        child.send_signal(signal.SIGKILL)
+        return child.wait() == -signal.SIGKILL
+
+    def answer(self):
+        fields = {path.name: path.read_bytes() for path in self.folder.glob("step*.h5")}
+        return json.dumps(without_times(json.loads((self.folder / "result.json").read_text()))), fields
+
+    def clear(self):
+        for path in self.folder.iterdir():
+            path.unlink()
+
+    def assert_goes_on(self, scene, *options):
+        """Killed as soon as a checkpoint is there, between two steps, and later, in one."""
+        self.run_program(scene, *options)
+        whole = self.answer()
+        random_numbers = random.Random(1)
+        words = (scene, *options, "--checkpoint", self.checkpoint, "--resume")
+        kills = 0
+        for longest in (0.0, 0.1):
+            self.clear()
+            for _ in range(2):
+                if not self.killed(self.words(*words), random_numbers.uniform(0.0, longest)):
+                    break
+                kills += 1
+            said = self.run_program(*words)
+            self.assertEqual(self.answer(), whole)
+            if kills:
+                self.assertRegex(said, r"goes on after step \d+, from ")
+            self.assertEqual(list(self.folder.glob("*.part*")), [])
+        self.assertGreater(kills, 1)
+
+    def test_growing_load(self):
+        self.assert_goes_on("growing_load", "--set", "grid.cells=[64,64]")
+
+    def test_full_coupling(self):
+        self.assert_goes_on("spence_sphere", "--set", "grid.cells=[32,32]")
+
+    def test_cycles(self):
+        self.assert_goes_on("fretting_torsion", "--set", "grid.cells=[48,48]", "--set", "cycles=2")
+
+    def test_what_is_not_its_checkpoint_is_refused(self):
+        small = ("growing_load", "--set", "grid.cells=[16,16]")
+        keep = ("--checkpoint", self.checkpoint)
+        self.run_program(*small, *keep)
+        good = self.checkpoint.read_bytes()
+        self.assertIn("is there already; allowed: --resume", self.run_program(*small, *keep, code=2))
+        resume = (*keep, "--resume")
+        other = "is the checkpoint of another scene, or of this one with other keys"
+        self.assertIn(other, self.run_program(*small, "--set", "contact.friction=0.2", *resume, code=2))
+        self.assertIn(other, self.run_program("fretting_torsion", *resume, code=2))
+        program = shutil.copy(PROGRAM, self.folder / "other")
+        with open(program, "ab") as file:
+            file.write(b"x")
+        self.assertIn("another build of slipstick", self.run_program(*small, *resume, program=program, code=2))
+        for place in range(2048, len(good), len(good) // 3):  # wherever values or text lie: refused, or not read
+            self.checkpoint.write_bytes(good[:place] + bytes([good[place] ^ 0x10]) + good[place + 1:])
+            end = subprocess.run(self.words(*small, *resume), cwd=self.folder, capture_output=True, text=True)
+            self.assertIn(end.returncode, (0, 2), end.stderr)
+            if end.returncode == 0:
+                self.assertEqual(self.result_of(small), self.answer()[0])
+        for damaged in (b"", b"no HDF5", good[: len(good) // 2]):
+            self.checkpoint.write_bytes(damaged)
+            self.assertIn("history.h5", self.run_program(*small, *resume, code=2))
+        self.checkpoint.write_bytes(good)
+        self.run_program(*small, *resume)
+
+    def result_of(self, small):
+        self.run_program(*small)
+        return self.answer()[0]
+
+    def test_options(self):
+        small = ("growing_load", "--set", "grid.cells=[16,16]")
+        self.assertIn("requires", self.run_program(*small, "--resume", code=2))
+        self.assertIn("excludes", self.run_program(*small, "--checkpoint", "a.h5", "--accuracy", 0.1, code=2))
+        self.assertIn("would overwrite", self.run_program(*small, "--checkpoint", SCENES / "growing_load.toml", code=2))
+        self.assertIn("cannot be written", self.run_program(*small, "--checkpoint", "no/where.h5", code=2))
+        drawn = ("--set", "solver.rounding_seed=1", "--checkpoint", "a.h5")
+        self.assertIn("left out beside --checkpoint", self.run_program(*small, *drawn, code=2))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1], verbosity=2)

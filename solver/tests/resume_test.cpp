@@ -1,0 +1,112 @@
+#include <gtest/gtest.h>
+
+#include <bit>
+#include <cstdint>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "solver/history_state.hpp"
+#include "solver/solve.hpp"
+#include "solver/tests/scene_file.hpp"
+
+/// Histories that break off and go on.
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+
+class Resumed : public SceneFile {
+ protected:
+  struct Broken {};
+
+  /// Loads that leave nothing out of the state: more and less normal load, the same twice, turns back, and
+  /// forces.
+  std::string steps(const std::string& head) const {
+    return head +
+           "[[step]]\nname = \"on\"\nmoment_ratio = 0.5\n[[step]]\nname = \"more\"\nnormal = 1300\n"
+           "[[step]]\nname = \"back\"\nmoment_ratio = -0.4\n[[step]]\nname = \"push\"\nforce = [20, 10]\n"
+           "[[step]]\nname = \"less\"\nnormal = 900\n";
+  }
+
+  static void expect_same_bits(const ArrayXd& one, const ArrayXd& other, const std::string& what) {
+    ASSERT_EQ(one.size(), other.size()) << what;
+    for (Index i = 0; i < one.size(); ++i) {
+      ASSERT_EQ(std::bit_cast<std::uint64_t>(one[i]), std::bit_cast<std::uint64_t>(other[i])) << what << i;
+    }
+  }
+
+  static void expect_same(const Solution& one, const Solution& other, const std::string& at) {
+    EXPECT_EQ(one.status, other.status) << at;
+    EXPECT_EQ(one.message, other.message) << at;
+    EXPECT_EQ(one.cycle, other.cycle) << at;
+    EXPECT_EQ(one.loads.name, other.loads.name) << at;
+    EXPECT_EQ(one.twist_angle, other.twist_angle) << at;
+    EXPECT_EQ(one.displacement, other.displacement) << at;
+    EXPECT_EQ(one.approach, other.approach) << at;
+    EXPECT_EQ(one.dissipated, other.dissipated) << at;
+    EXPECT_EQ(one.operator_applications, other.operator_applications) << at;
+    EXPECT_EQ(one.pressure_applications, other.pressure_applications) << at;
+    EXPECT_EQ(one.pressure_iterations, other.pressure_iterations) << at;
+    EXPECT_EQ(one.bytes, other.bytes) << at;
+    expect_same_bits(one.pressure, other.pressure, at + ", pressure ");
+    expect_same_bits(one.traction, other.traction, at + ", traction ");
+    expect_same_bits(one.slip, other.slip, at + ", slip ");
+    expect_same_bits(one.stick, other.stick, at + ", stick ");
+  }
+
+  /// Breaks off after each step but the last, at once or in the middle of the next, and goes on from there.
+  static void expect_goes_on_alike(const Scene& scene) {
+    std::vector<Solution> whole;
+    solve(scene, {.progress = {}, .on_step = [&](const Solution& at) { whole.push_back(at); }});
+    ASSERT_EQ(whole.back().status, Status::converged) << whole.back().message;
+    for (std::size_t k = 1; k < whole.size(); ++k) {
+      std::shared_ptr<const HistoryState> left;
+      const auto keep = [&](const HistoryState& state) {
+        left = std::make_shared<const HistoryState>(state);
+        if (k % 2 == 0 && state.finished == k) throw Broken{};
+      };
+      const auto in_a_step = [&](int, double) {
+        if (left && left->finished == k) throw Broken{};
+      };
+      EXPECT_THROW(solve(scene, {.progress = in_a_step, .on_state = keep}), Broken);
+      ASSERT_EQ(left->finished, k);
+      std::vector<Solution> rest;
+      solve(scene,
+            {.progress = {}, .on_step = [&](const Solution& at) { rest.push_back(at); }, .resumed = left});
+      ASSERT_EQ(rest.size(), whole.size() - k);
+      for (std::size_t i = 0; i < rest.size(); ++i) {
+        expect_same(rest[i], whole[k + i],
+                    "from " + std::to_string(k) + ", step " + std::to_string(k + i + 1));
+      }
+    }
+  }
+};
+
+TEST_F(Resumed, GivesTheSameBitsOverCycles) {
+  expect_goes_on_alike(read("cycles = 2\n" + steps(kShortScene), {"grid.cells=[16,16]"}));
+}
+
+TEST_F(Resumed, GivesTheSameBitsOfDissimilarBodies) {
+  std::string text = kShortScene;
+  text.replace(text.rfind("poisson_ratio = 0.3"), 19, "poisson_ratio = 0.1");
+  expect_goes_on_alike(read(steps(text), {"contact.coupling=full", "grid.cells=[16,16]"}));
+  expect_goes_on_alike(read(steps(text), {"contact.coupling=pressure", "grid.cells=[16,16]"}));
+}
+
+TEST_F(Resumed, AStateOfAnotherSceneIsRefused) {
+  const Scene scene = read(steps(kShortScene), {"grid.cells=[16,16]"});
+  std::shared_ptr<HistoryState> left;
+  solve(scene, {.progress = {},
+                .on_state = [&](const HistoryState& at) { left = std::make_shared<HistoryState>(at); }});
+  EXPECT_THROW(solve(read(steps(kShortScene), {"grid.cells=[12,12]"}), {.progress = {}, .resumed = left}),
+               std::invalid_argument);
+  for (const std::size_t finished : {0U, 5U, 6U}) {
+    left->finished = finished;
+    EXPECT_THROW(solve(scene, {.progress = {}, .resumed = left}), std::invalid_argument) << finished;
+  }
+}
+
+}  // namespace
+}  // namespace slipstick::solver
