@@ -84,8 +84,8 @@ class ResumeTest(unittest.TestCase):
     def test_full_coupling(self):
         self.assert_goes_on("spence_sphere", "--set", "grid.cells=[32,32]")
 
-    def test_cycles(self):
-        self.assert_goes_on("fretting_torsion", "--set", "grid.cells=[48,48]", "--set", "cycles=2")
+    def test_slip_that_goes_on_from_step_to_step(self):
+        self.assert_goes_on("torsion_loop", "--set", "grid.cells=[32,32]")
 
     def test_what_is_not_its_checkpoint_is_refused(self):
         small = ("growing_load", "--set", "grid.cells=[16,16]")

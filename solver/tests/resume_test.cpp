@@ -25,7 +25,8 @@ class Resumed : public SceneFile {
   /// forces.
   std::string steps(const std::string& head) const {
     return head +
-           "[[step]]\nname = \"on\"\nmoment_ratio = 0.5\n[[step]]\nname = \"more\"\nnormal = 1300\n"
+           "[[step]]\nname = \"on\"\nmoment_ratio = 0.5\n[[step]]\nname = \"further\"\nmoment_ratio = "
+           "0.7\n[[step]]\nname = \"more\"\nnormal = 1300\n"
            "[[step]]\nname = \"back\"\nmoment_ratio = -0.4\n[[step]]\nname = \"push\"\nforce = [20, 10]\n"
            "[[step]]\nname = \"less\"\nnormal = 900\n";
   }
@@ -45,6 +46,8 @@ class Resumed : public SceneFile {
     EXPECT_EQ(one.twist_angle, other.twist_angle) << at;
     EXPECT_EQ(one.displacement, other.displacement) << at;
     EXPECT_EQ(one.approach, other.approach) << at;
+    EXPECT_EQ(one.stick_radius, other.stick_radius) << at;
+    EXPECT_EQ(one.certificate.gap, other.certificate.gap) << at;
     EXPECT_EQ(one.dissipated, other.dissipated) << at;
     EXPECT_EQ(one.operator_applications, other.operator_applications) << at;
     EXPECT_EQ(one.pressure_applications, other.pressure_applications) << at;
@@ -56,12 +59,35 @@ class Resumed : public SceneFile {
     expect_same_bits(one.stick, other.stick, at + ", stick ");
   }
 
+  static void expect_same(const HistoryState& one, const HistoryState& other, const std::string& at) {
+    EXPECT_EQ(one.finished, other.finished) << at;
+    EXPECT_EQ(one.contact.motion.twist, other.contact.motion.twist) << at;
+    EXPECT_EQ(one.normal.approach, other.normal.approach) << at;
+    expect_same_bits(one.contact.pressure, other.contact.pressure, at + ", pressure before ");
+    expect_same_bits(one.contact.traction, other.contact.traction, at + ", traction before ");
+    expect_same_bits(one.contact.slip, other.contact.slip, at + ", slip before ");
+  }
+
+  /// The ends of steps, and the states handed on from each to the next.
+  struct Steps {
+    std::vector<Solution> ends;
+    std::vector<HistoryState> states;
+  };
+  static Steps solve_all(const Scene& scene, const std::shared_ptr<const HistoryState>& from) {
+    Steps steps;
+    solve(scene, {.progress = {},
+                  .on_step = [&](const Solution& at) { steps.ends.push_back(at); },
+                  .on_state = [&](const HistoryState& at) { steps.states.push_back(at); },
+                  .resumed = from});
+    return steps;
+  }
+
   /// Breaks off after each step but the last, at once or in the middle of the next, and goes on from there.
   static void expect_goes_on_alike(const Scene& scene) {
-    std::vector<Solution> whole;
-    solve(scene, {.progress = {}, .on_step = [&](const Solution& at) { whole.push_back(at); }});
-    ASSERT_EQ(whole.back().status, Status::converged) << whole.back().message;
-    for (std::size_t k = 1; k < whole.size(); ++k) {
+    const Steps whole = solve_all(scene, nullptr);
+    ASSERT_EQ(whole.ends.back().status, Status::converged) << whole.ends.back().message;
+    ASSERT_EQ(whole.states.size() + 1, whole.ends.size());
+    for (std::size_t k = 1; k < whole.ends.size(); ++k) {
       std::shared_ptr<const HistoryState> left;
       const auto keep = [&](const HistoryState& state) {
         left = std::make_shared<const HistoryState>(state);
@@ -72,13 +98,12 @@ class Resumed : public SceneFile {
       };
       EXPECT_THROW(solve(scene, {.progress = in_a_step, .on_state = keep}), Broken);
       ASSERT_EQ(left->finished, k);
-      std::vector<Solution> rest;
-      solve(scene,
-            {.progress = {}, .on_step = [&](const Solution& at) { rest.push_back(at); }, .resumed = left});
-      ASSERT_EQ(rest.size(), whole.size() - k);
-      for (std::size_t i = 0; i < rest.size(); ++i) {
-        expect_same(rest[i], whole[k + i],
-                    "from " + std::to_string(k) + ", step " + std::to_string(k + i + 1));
+      const Steps rest = solve_all(scene, left);
+      ASSERT_EQ(rest.ends.size(), whole.ends.size() - k);
+      for (std::size_t i = 0; i < rest.ends.size(); ++i) {
+        const std::string at = "from " + std::to_string(k) + ", step " + std::to_string(k + i + 1);
+        expect_same(rest.ends[i], whole.ends[k + i], at);
+        if (i < rest.states.size()) expect_same(rest.states[i], whole.states[k + i], at);
       }
     }
   }
@@ -102,7 +127,7 @@ TEST_F(Resumed, AStateOfAnotherSceneIsRefused) {
                 .on_state = [&](const HistoryState& at) { left = std::make_shared<HistoryState>(at); }});
   EXPECT_THROW(solve(read(steps(kShortScene), {"grid.cells=[12,12]"}), {.progress = {}, .resumed = left}),
                std::invalid_argument);
-  for (const std::size_t finished : {0U, 5U, 6U}) {
+  for (const std::size_t finished : {0U, 6U, 7U}) {
     left->finished = finished;
     EXPECT_THROW(solve(scene, {.progress = {}, .resumed = left}), std::invalid_argument) << finished;
   }
