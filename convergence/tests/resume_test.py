@@ -79,13 +79,13 @@ class ResumeTest(unittest.TestCase):
         self.assertGreater(kills, 1)
 
     def test_growing_load(self):
-        self.assert_goes_on("growing_load", "--set", "grid.cells=[64,64]")
+        self.assert_goes_on("growing_load", "--set", "grid.cells=[48,48]")
 
     def test_full_coupling(self):
         self.assert_goes_on("spence_sphere", "--set", "grid.cells=[32,32]")
 
     def test_slip_that_goes_on_from_step_to_step(self):
-        self.assert_goes_on("torsion_loop", "--set", "grid.cells=[32,32]")
+        self.assert_goes_on("torsion_loop", "--set", "grid.cells=[16,16]")
 
     def test_what_is_not_its_checkpoint_is_refused(self):
         small = ("growing_load", "--set", "grid.cells=[16,16]")
