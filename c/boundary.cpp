@@ -20,6 +20,13 @@ void set_message(const char* message) noexcept {
 
 const char* message() noexcept { return last_message.data(); }
 
+PlainNumbers::PlainNumbers() noexcept {
+  static const locale_t plain = newlocale(LC_NUMERIC_MASK, "C", nullptr);
+  before_ = uselocale(plain);
+}
+
+PlainNumbers::~PlainNumbers() { uselocale(before_); }
+
 int status_of_exception() noexcept {
   try {
     throw;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <locale.h>
+
 #include <stdexcept>
 #include <string>
 
@@ -18,9 +20,22 @@ const char* message() noexcept;
 /// The status of the exception being handled, which becomes the message.
 int status_of_exception() noexcept;
 
+/// As long as it lives, the calling thread reads numbers as C writes them, whatever the caller's locale.
+class PlainNumbers {
+ public:
+  PlainNumbers() noexcept;
+  ~PlainNumbers();
+  PlainNumbers(const PlainNumbers&) = delete;
+  PlainNumbers& operator=(const PlainNumbers&) = delete;
+
+ private:
+  locale_t before_;
+};
+
 /// The status that the work returns, or that of what it throws.
 template <class Work>
 int guarded(const Work& work) noexcept {
+  const PlainNumbers plain;
   try {
     return work();
   } catch (...) {

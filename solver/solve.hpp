@@ -13,7 +13,8 @@ struct HistoryState;
 
 /// Who is told how a solve goes on, and what it shares with others.
 struct SolveOptions {
-  /// Called now and then with the iterations or applications so far and what the method's stopping test sees.
+  /// Called now and then, for the pressure and then for the tractions, with the iterations or applications so
+  /// far and what the stopping test sees. What it throws ends the solve.
   std::function<void(int iteration, double change)> progress;
   /// Called at the end of each step of a history.
   std::function<void(const Solution&)> on_step = {};

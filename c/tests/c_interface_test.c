@@ -2,6 +2,7 @@
  * the header promises. */
 #define _POSIX_C_SOURCE 200809L
 
+#include <locale.h>
 #include <math.h>
 #include <pthread.h>
 #include <stdio.h>
@@ -325,6 +326,26 @@ static void test_threads(void) {
   check(alone[3][1] == -1, "a message belongs to its thread");
 }
 
+/* A program that writes 1,5 reads the same profiles, where this machine has a language that does. */
+static void test_locale(void) {
+  static const char* const kCommas[] = {"de_DE.UTF-8", "fr_FR.UTF-8", "es_ES.UTF-8", "it_IT.UTF-8",
+                                        "nl_NL.UTF-8"};
+  const double plain = one("power:1.5", SLIPSTICK_MOMENT_RATIO, 0.5, SLIPSTICK_TWIST);
+  for (size_t i = 0; i < sizeof kCommas / sizeof *kCommas; ++i) {
+    if (setlocale(LC_ALL, kCommas[i]) == NULL) continue;
+    char text[8];
+    snprintf(text, sizeof text, "%.1f", 1.5);
+    check(strcmp(text, "1,5") == 0, "a locale with commas");
+    check(one("power:1.5", SLIPSTICK_MOMENT_RATIO, 0.5, SLIPSTICK_TWIST) == plain,
+          "numbers in a name are plain");
+    snprintf(text, sizeof text, "%.1f", 1.5);
+    check(strcmp(text, "1,5") == 0, "the caller's locale is as it was");
+    setlocale(LC_ALL, "C");
+    return;
+  }
+  puts("no locale with commas is installed: not tried");
+}
+
 int main(void) {
   check(strlen(slipstick_version()) >= 5, "a version");
   test_limits();
@@ -337,6 +358,7 @@ int main(void) {
   test_solution();
   test_ends();
   test_threads();
+  test_locale();
   if (failures == 0) puts("all holds");
   return failures == 0 ? 0 : 1;
 }
