@@ -68,7 +68,8 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI
       ->add_option(
           "field", request->field,
           "columns x1, x2 (m), pressure, q1, q2 (Pa), one row for each contact cell: .csv or .h5; or a "
-          "loop: moment (N m), rotation (rad), and perhaps time, normal_load: .csv or .json")
+          "loop: moment (N m), rotation (rad), or force (N), displacement (m), and perhaps time, "
+          "normal_load: .csv or .json")
       ->required();
   command
       ->add_option("--set", request->overrides,

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "convergence/laws/contact_law.hpp"
+#include "convergence/loops/loop_contact.hpp"
 #include "convergence/loops/loop_judgement.hpp"
 #include "convergence/loops/loop_record.hpp"
 #include "convergence/results/provenance.hpp"
@@ -19,44 +20,16 @@ namespace {
 
 const std::string kNotShown = "the loop does not show it";
 
-/// Of the polynomials that stand for the exact law here: far below what a loop is judged by.
-constexpr double kLawError = 1e-5;
-
 /// A contact under one normal load, and the loop in its units.
 struct LoopUnderLoad {
-  LawContact contact;
-  LoopContact law;
+  LoopContact contact;
   LoopPath path;
 };
 
-double compliance(const solver::Material& body) { return (1.0 + body.poisson_ratio) / body.young_modulus; }
-
-solver::Scene under(const solver::Scene& scene, double normal_load) {
-  solver::Scene other = scene;
-  other.steps.front().normal = normal_load;
-  return other;
-}
-
-LoopContact loop_contact(const solver::Scene& scene, const LawContact& contact) {
-  constexpr double kMore = 1.001;
-  const double load = contact.units->normal_load;
-  const double larger = law_contact(under(scene, kMore * load)).units->contact_radius;
-  const TwistLaw law = fit_twist_law(*contact.profile, kLawError);
-  const double pair = compliance(scene.upper) + compliance(scene.lower);
-  return {.loading = [law](double t) { return law.moment_ratio_at(t); },
-          .stiffness = kStiffness / law.moment_limit,
-          .moment_limit = law.moment_limit,
-          .radius_exponent = std::log(larger / contact.units->contact_radius) / std::log(kMore),
-          .one_body_upper = pair / compliance(scene.upper),
-          .one_body_lower = pair / compliance(scene.lower),
-          .rotation_unit = contact.units->rotation(),
-          .is_sphere = contact.profile->name() == "hertz"};
-}
-
 /// How a record's units and signs differ from the scene's.
 struct LoopConventions {
-  double moment = 1.0;    ///< N m of one unit
-  double rotation = 1.0;  ///< rad of one unit
+  double load = 1.0;    ///< N m, or N, of one unit
+  double motion = 1.0;  ///< rad, or m, of one unit
   std::vector<std::string> notes;
 };
 
@@ -64,14 +37,14 @@ struct UnitName {
   double size;
   const char* name;
 };
-constexpr std::array kMomentUnits{UnitName{1e-3, "N mm"}, UnitName{1e-6, "mN mm, or uN m"},
-                                  UnitName{1e3, "kN m"}};
-constexpr std::array kRotationUnits{UnitName{std::numbers::pi / 180.0, "degrees"}, UnitName{1e-3, "mrad"},
-                                    UnitName{1e-6, "urad"}};
+const std::vector<UnitName> kMomentUnits{{1e-3, "N mm"}, {1e-6, "mN mm, or uN m"}, {1e3, "kN m"}};
+const std::vector<UnitName> kRotationUnits{
+    {std::numbers::pi / 180.0, "degrees"}, {1e-3, "mrad"}, {1e-6, "urad"}};
+const std::vector<UnitName> kForceUnits{{1e-3, "mN"}, {1e3, "kN"}};
+const std::vector<UnitName> kLengthUnits{{1e-3, "mm"}, {1e-6, "um"}, {1e-9, "nm"}};
 
 /// The unit in which a ratio is nearest to 1, where it is far from that in the scene's unit and near in this.
-template <class Units>
-void choose_unit(const Units& units, double ratio, const char* what, double& unit,
+void choose_unit(const std::vector<UnitName>& units, double ratio, const char* what, double& unit,
                  std::vector<std::string>& notes) {
   constexpr double kFar = 10.0;
   const auto distance = [&](double size) { return std::abs(std::log(ratio * size)); };
@@ -89,26 +62,31 @@ double largest(const std::vector<double>& values) {
   return size;
 }
 
-/// The moment's unit by its size over the limit, the rotation's by the stiffness of the first rows, the sign
-/// by which way the moment turns at first.
-LoopConventions find_conventions(const LoopRecord& loop, const LawContact& contact, double limit) {
+/// The load's unit by its size over the limit, the motion's by the stiffness of the first rows, the sign by
+/// which way the load goes at first.
+LoopConventions find_conventions(const LoopRecord& loop, const LoopContact& contact) {
   LoopConventions found;
-  choose_unit(kMomentUnits, largest(loop.moment) / limit, "moment", found.moment, found.notes);
+  choose_unit(loop.of_force ? kForceUnits : kMomentUnits, largest(loop.load) / contact.limit,
+              contact.words.load, found.load, found.notes);
   double above = 0.0;
   double below = 0.0;
-  const double enough = largest(loop.moment) / 3.0;
-  for (std::size_t row = 0; row < loop.moment.size(); ++row) {
-    if (std::abs(loop.moment[row]) > enough && below > 0.0) break;
-    above += loop.moment[row] * loop.rotation[row];
-    below += loop.rotation[row] * loop.rotation[row];
+  const double enough = largest(loop.load) / 3.0;
+  for (std::size_t row = 0; row < loop.load.size(); ++row) {
+    if (std::abs(loop.load[row]) > enough && below > 0.0) break;
+    above += loop.load[row] * loop.motion[row];
+    below += loop.motion[row] * loop.motion[row];
   }
   if (!(below > 0.0)) return found;
-  const double rest = kStiffness * contact.units->moment() / contact.units->rotation();
-  const double softness = rest * below / (found.moment * std::abs(above));  // 1: rad, 57: degrees
-  if (softness > 1.0) choose_unit(kRotationUnits, softness, "rotation", found.rotation, found.notes);
+  const double rest = contact.stiffness * contact.limit / contact.motion_unit;
+  const double softness = rest * below / (found.load * std::abs(above));  // 1: rad, 57: degrees
+  if (softness > 1.0) {
+    choose_unit(loop.of_force ? kLengthUnits : kRotationUnits, softness, contact.words.motion, found.motion,
+                found.notes);
+  }
   if (above < 0.0) {
-    found.moment = -found.moment;
-    found.notes.emplace_back("the moment is that on the other body, or the rotation the other way round");
+    found.load = -found.load;
+    found.notes.push_back(fmt::format("the {} is that on the other body, or the {} the other way round",
+                                      contact.words.load, contact.words.motion));
   }
   return found;
 }
@@ -117,14 +95,12 @@ LoopConventions find_conventions(const LoopRecord& loop, const LawContact& conta
 constexpr std::size_t kMaxPathRows = 2000;
 
 LoopPath make_path(const LoopRecord& loop, std::size_t from, std::size_t to,
-                   const LoopConventions& conventions, const LawContact& contact) {
-  const double limit = contact.units->moment() * contact.profile->moment_limit();
+                   const LoopConventions& conventions, const LoopContact& contact) {
   const std::size_t step = (to - from + kMaxPathRows - 1) / kMaxPathRows;
   LoopPath path;
   const auto add = [&](std::size_t row) {
-    path.twist.push_back((loop.rotation[row] - loop.rotation[from]) * conventions.rotation /
-                         contact.units->rotation());
-    path.moment.push_back(loop.moment[row] * conventions.moment / limit);
+    path.twist.push_back((loop.motion[row] - loop.motion[from]) * conventions.motion / contact.motion_unit);
+    path.moment.push_back(loop.load[row] * conventions.load / contact.limit);
     if (!loop.time.empty()) {
       path.time.push_back((loop.time[row] - loop.time[from]) / (loop.time[to - 1] - loop.time[from]));
     }
@@ -143,7 +119,7 @@ struct LoadRows {
 };
 std::vector<LoadRows> rows_by_load(const LoopRecord& loop, double scene_load) {
   constexpr double kSameLoad = 0.02;
-  if (loop.normal_load.empty()) return {{0, loop.moment.size(), scene_load}};
+  if (loop.normal_load.empty()) return {{0, loop.load.size(), scene_load}};
   std::vector<LoadRows> groups{{0, 1, loop.normal_load[0]}};
   for (std::size_t row = 1; row < loop.normal_load.size(); ++row) {
     if (std::abs(loop.normal_load[row] / groups.back().normal_load - 1.0) > kSameLoad) {
@@ -171,9 +147,9 @@ Json number_json(const LoopNumber& number, double unit) {
 }
 
 Json under_load_json(const LoopUnderLoad& loop, const LoopJudgement& judgement) {
-  const double rotation = loop.contact.units->rotation();
-  const double moment = loop.contact.units->moment() * loop.law.moment_limit;
-  Json json{{"normal_load", loop.contact.units->normal_load},
+  const double motion = loop.contact.motion_unit;
+  const double limit = loop.contact.limit;
+  Json json{{"normal_load", loop.contact.normal_load},
             {"verdict", judgement.good ? "good" : "bad"},
             {"why", judgement.why}};
   if (judgement.law.empty()) {
@@ -183,15 +159,14 @@ Json under_load_json(const LoopUnderLoad& loop, const LoopJudgement& judgement) 
   }
   json["rows"] = loop.path.twist.size();
   json["reversals"] = loop.path.turns.size() - 2;
-  json["moment_limit"] = moment;
+  json["limit"] = limit;
   set_number(json, "residual", judgement.residual, "not a number");
-  json["stiffness"] = number_json(judgement.stiffness, moment / rotation);
-  json["largest_moment"] = number_json(judgement.largest_moment, moment);
-  json["presliding"] = number_json(judgement.presliding, rotation);
+  json["stiffness"] = number_json(judgement.stiffness, limit / motion);
+  json["largest_load"] = number_json(judgement.largest_load, limit);
+  json["presliding"] = number_json(judgement.presliding, motion);
   json["recovered"] = number_json(judgement.recovered, 1.0);
   json["areas"] = Json::array();
-  for (const LoopNumber& area : judgement.areas)
-    json["areas"].push_back(number_json(area, moment * rotation));
+  for (const LoopNumber& area : judgement.areas) json["areas"].push_back(number_json(area, limit * motion));
   set_number(json, "masing_error", judgement.masing_error, kNotShown);
   json["tried"] = Json::array();
   for (const LoopHypothesis& law : judgement.fitted) {
@@ -216,9 +191,8 @@ LoadExponent load_exponent(const std::vector<LoopUnderLoad>& loops) {
   double y_mean = 0.0;
   std::vector<std::pair<double, double>> points;
   for (const LoopUnderLoad& loop : loops) {
-    const double limit = loop.contact.units->moment() * loop.law.moment_limit;
-    points.emplace_back(std::log(loop.contact.units->normal_load),
-                        std::log(limit * largest(loop.path.moment)));
+    points.emplace_back(std::log(loop.contact.normal_load),
+                        std::log(loop.contact.limit * largest(loop.path.moment)));
     x_mean += points.back().first / static_cast<double>(loops.size());
     y_mean += points.back().second / static_cast<double>(loops.size());
   }
@@ -228,13 +202,13 @@ LoadExponent load_exponent(const std::vector<LoopUnderLoad>& loops) {
     above += (x - x_mean) * (y - y_mean);
     below += (x - x_mean) * (x - x_mean);
   }
-  return {above / below, 1.0 + loops.front().law.radius_exponent};
+  return {above / below, loops.front().contact.limit_exponent};
 }
 
 /// Whether all of these slide, so that their largest moments are limits.
 bool all_slide(const std::vector<LoopUnderLoad>& loops) {
   return std::ranges::all_of(loops, [](const LoopUnderLoad& loop) {
-    const std::vector<double> exact = follow(loop.path, masing_law(loop.law.loading));
+    const std::vector<double> exact = follow(loop.path, masing_law(loop.contact.loading));
     return largest(exact) > 0.95;
   });
 }
@@ -242,27 +216,26 @@ bool all_slide(const std::vector<LoopUnderLoad>& loops) {
 }  // namespace
 
 Json check_loop(const solver::Scene& scene, const std::filesystem::path& file, const LoopOptions& options) {
-  const LawContact scene_contact = law_contact(scene);
+  law_contact(scene);  // or why there is none, before the loop is read
   const LoopRecord record = read_loop(file);
-  const double limit = scene_contact.units->moment() * scene_contact.profile->moment_limit();
-  const LoopConventions conventions = find_conventions(record, scene_contact, limit);
+  const auto contact_under = record.of_force ? force_contact : torsion_contact;
+  const double scene_load = *scene.steps.front().normal;
+  const LoopConventions conventions = find_conventions(record, contact_under(scene, scene_load));
   std::vector<LoopUnderLoad> loops;
-  for (const auto& [from, to, load] : rows_by_load(record, scene_contact.units->normal_load)) {
-    const solver::Scene loaded = under(scene, load);
-    const LawContact contact = law_contact(loaded);
-    loops.push_back(
-        {contact, loop_contact(loaded, contact), make_path(record, from, to, conventions, contact)});
+  for (const auto& [from, to, load] : rows_by_load(record, scene_load)) {
+    const LoopContact contact = contact_under(scene, load);
+    loops.push_back({contact, make_path(record, from, to, conventions, contact)});
   }
   bool good = !(options.strict && !conventions.notes.empty());
   std::string why = good ? "" : conventions.notes.front();
   Json loads = Json::array();
   for (const LoopUnderLoad& loop : loops) {
-    const LoopJudgement judgement = judge_loop(loop.path, loop.law, options.tolerance);
+    const LoopJudgement judgement = judge_loop(loop.path, loop.contact, options.tolerance);
     if (why.empty() || (good && !judgement.good)) why = judgement.why;
     good = good && judgement.good;
     loads.push_back(under_load_json(loop, judgement));
   }
-  Json json{{"name", scene.name}, {"loop", file.string()}};
+  Json json{{"name", scene.name}, {"loop", file.string()}, {"of", record.of_force ? "force" : "torsion"}};
   json["verdict"] = "";
   json["why"] = "";
   json["conventions"] = conventions.notes;
@@ -286,6 +259,9 @@ Json check_loop(const solver::Scene& scene, const std::filesystem::path& file, c
 }
 
 std::string loop_text(const Json& r) {
+  const bool of_force = r["of"] == "force";
+  const char* const load_unit = of_force ? "N" : "N m";
+  const char* const motion_unit = of_force ? "m" : "rad";
   const auto beside = [](const Json& number, const char* unit) {
     return fmt::format("{} {} (exact {})", number_text(number["value"]), unit, number_text(number["exact"]));
   };
@@ -297,15 +273,17 @@ std::string loop_text(const Json& r) {
     text +=
         text_line("normal load", fmt::format("{} N, {} rows, {} reversals", number_text(load["normal_load"]),
                                              load["rows"].get<int>(), load["reversals"].get<int>()));
-    text += text_line("stiffness",
-                      beside(load["stiffness"], "N m/rad") + ", up to a third of the largest moment");
-    text += text_line("moment", fmt::format("{}, of the limit {} N m", beside(load["largest_moment"], "N m"),
-                                            number_text(load["moment_limit"])));
-    text += text_line("presliding", beside(load["presliding"], "rad at half of the limit"));
-    text += text_line("recovered", beside(load["recovered"], "of the rotation"));
+    text += text_line("stiffness", beside(load["stiffness"], of_force ? "N/m" : "N m/rad") +
+                                       ", up to a third of the largest load");
+    text += text_line(of_force ? "force" : "moment",
+                      fmt::format("{}, of the limit {} {}", beside(load["largest_load"], load_unit),
+                                  number_text(load["limit"]), load_unit));
+    text += text_line("presliding", beside(load["presliding"], motion_unit) + " at half of the limit");
+    text += text_line("recovered",
+                      beside(load["recovered"], of_force ? "of the displacement" : "of the rotation"));
     for (const Json& area : load["areas"]) text += text_line("energy lost", beside(area, "J in a loop"));
     text += text_line("Masing's rule",
-                      fmt::format("{} of the largest moment off", short_text(load["masing_error"])));
+                      fmt::format("{} of the largest load off", short_text(load["masing_error"])));
   }
   return text;
 }

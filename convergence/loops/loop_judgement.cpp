@@ -93,7 +93,7 @@ bool areas_hold(const LoopJudgement& judgement, const LoopPath& path, double tol
 std::string percent_off(double residual) { return fmt::format("{:.2g} %", 100.0 * residual); }
 
 /// The law that is wrong, or that none is known.
-void explain(LoopJudgement& judgement, double tolerance) {
+void explain(LoopJudgement& judgement, const char* load, double tolerance) {
   constexpr double kExplained = 0.5;  // of the exact law's residual, at most
   const LoopHypothesis& likely = most_likely(judgement.fitted);
   const bool explains = likely.residual <= std::max(2.0 * tolerance, 0.02) &&
@@ -101,12 +101,12 @@ void explain(LoopJudgement& judgement, double tolerance) {
   if (explains) {
     judgement.law = likely.name;
     judgement.why =
-        fmt::format("{} (the moment is {} off the exact law in the mean, {} off this one)", likely.sentence,
+        fmt::format("{} (the {} is {} off the exact law in the mean, {} off this one)", likely.sentence, load,
                     percent_off(judgement.residual), percent_off(likely.residual));
     return;
   }
   judgement.why = fmt::format(
-      "the moment is {} off the exact law in the mean, and none of the laws that were tried explains it",
+      "the {} is {} off the exact law in the mean, and none of the laws that were tried explains it", load,
       percent_off(judgement.residual));
 }
 
@@ -119,7 +119,7 @@ LoopJudgement judge_loop(const LoopPath& path, const LoopContact& contact, doubl
                           .law = "",
                           .residual = residual(path, exact),
                           .stiffness = {slope_at_rest(path, path.moment), slope_at_rest(path, exact)},
-                          .largest_moment = {largest_of(path.moment), largest_of(exact)},
+                          .largest_load = {largest_of(path.moment), largest_of(exact)},
                           .presliding = {presliding_of(path, path.moment), presliding_of(path, exact)},
                           .recovered = {recovered_part(path, path.moment), recovered_part(path, exact)},
                           .areas = {},
@@ -131,11 +131,11 @@ LoopJudgement judge_loop(const LoopPath& path, const LoopContact& contact, doubl
   judgement.good = judgement.residual <= tolerance && areas_hold(judgement, path, tolerance);
   if (!judgement.good) {
     judgement.fitted = fit_loop_laws(path, contact);
-    explain(judgement, tolerance);
+    explain(judgement, contact.words.load, tolerance);
     return judgement;
   }
   judgement.law = "exact";
-  judgement.why = fmt::format("follows the exact law: the moment is {} off in the mean{}",
+  judgement.why = fmt::format("follows the exact law: the {} is {} off in the mean{}", contact.words.load,
                               percent_off(judgement.residual),
                               areas.empty() ? ""
                                             : fmt::format(", the energy lost in {} {} is right", areas.size(),

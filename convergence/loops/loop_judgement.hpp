@@ -21,7 +21,7 @@ struct LoopJudgement {
   std::string law;                ///< the name of the one that explains it; empty: none that was tried
   double residual;                ///< of the exact law
   LoopNumber stiffness;           ///< dm/dt over the first third of the largest moment
-  LoopNumber largest_moment;      ///< m
+  LoopNumber largest_load;        ///< m
   LoopNumber presliding;          ///< t at half of the limit, on first loading
   LoopNumber recovered;           ///< part of the rotation that the first unloading to no moment gives back
   std::vector<LoopNumber> areas;  ///< of closed loops

@@ -1,24 +1,12 @@
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
+#include "convergence/loops/loop_contact.hpp"
 #include "convergence/loops/loop_path.hpp"
 
 namespace slipstick::convergence {
-
-/// The contact that a loop is held to.
-struct LoopContact {
-  std::function<double(double)> loading;  ///< m at t: the exact law, odd
-  double stiffness;                       ///< dm/dt at rest
-  double moment_limit;                    ///< M_lim/(mu W a)
-  double radius_exponent;                 ///< of the contact radius in the normal load
-  double one_body_upper;                  ///< stiffness with the lower body rigid, over the pair's; and
-  double one_body_lower;                  ///< with the upper one; infinite where that is rigid itself
-  double rotation_unit;                   ///< rad of t = 1
-  bool is_sphere;                         ///< of which the paper's Eq. (7) speaks
-};
 
 /// A law that simulators have, fitted to a loop.
 struct LoopHypothesis {

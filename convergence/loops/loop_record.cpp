@@ -21,6 +21,8 @@ using solver::InputError;
 
 const std::vector<std::string> kMomentNames{"moment", "torque"};
 const std::vector<std::string> kRotationNames{"rotation", "twist", "angle", "twist_angle"};
+const std::vector<std::string> kForceNames{"force", "tangential_force"};
+const std::vector<std::string> kDisplacementNames{"displacement"};
 const std::vector<std::string> kTimeNames{"time", "t"};
 const std::vector<std::string> kLoadNames{"normal_load", "normal_force"};
 
@@ -30,6 +32,12 @@ std::string present(const std::vector<std::string>& there, const std::vector<std
     if (std::ranges::find(there, name) != there.end()) return name;
   }
   return "";
+}
+
+/// Whether there are forces and displacements, and no moments.
+bool is_of_force(const std::vector<std::string>& there) {
+  return present(there, kMomentNames).empty() && !present(there, kForceNames).empty() &&
+         !present(there, kDisplacementNames).empty();
 }
 
 /// The names in a table's first line, as far as one of columns goes.
@@ -80,7 +88,13 @@ LoopRecord collect(const std::filesystem::path& file, const std::vector<std::str
     const std::string name = present(there, names);
     return name.empty() ? std::vector<double>() : column(name);
   };
-  return {file, optional(kTimeNames), required(kMomentNames), required(kRotationNames), optional(kLoadNames)};
+  const bool of_force = is_of_force(there);
+  return {file,
+          of_force,
+          optional(kTimeNames),
+          required(of_force ? kForceNames : kMomentNames),
+          required(of_force ? kDisplacementNames : kRotationNames),
+          optional(kLoadNames)};
 }
 
 LoopRecord read_json(const std::filesystem::path& file) {
@@ -99,8 +113,8 @@ LoopRecord read_json(const std::filesystem::path& file) {
 
 void require_sound(const LoopRecord& loop) {
   const std::string file = loop.file.string();
-  const std::size_t rows = loop.moment.size();
-  for (const std::vector<double>* column : {&loop.rotation, &loop.time, &loop.normal_load}) {
+  const std::size_t rows = loop.load.size();
+  for (const std::vector<double>* column : {&loop.motion, &loop.time, &loop.normal_load}) {
     if (!column->empty() && column->size() != rows) {
       throw InputError(
           file, fmt::format("its lists have {} and {} values; allowed: equally many", rows, column->size()));
@@ -125,8 +139,8 @@ void require_sound(const LoopRecord& loop) {
   const auto is_zero = [](const std::vector<double>& values) {
     return std::ranges::all_of(values, [](double value) { return value == 0.0; });
   };
-  if (is_zero(loop.moment) || is_zero(loop.rotation)) {
-    throw InputError(file, "moment or rotation is zero everywhere: there is no loop to judge");
+  if (is_zero(loop.load) || is_zero(loop.motion)) {
+    throw InputError(file, "load or motion is zero everywhere: there is no loop to judge");
   }
 }
 
@@ -137,7 +151,8 @@ bool is_loop_file(const std::filesystem::path& file) {
   if (file.extension() != ".csv" || !std::filesystem::is_regular_file(file)) return false;
   const std::vector<std::string> names = csv_names(file);
   const bool is_field = !present(names, {"x1"}).empty();
-  return !is_field && !present(names, kMomentNames).empty() && !present(names, kRotationNames).empty();
+  const bool of_torsion = !present(names, kMomentNames).empty() && !present(names, kRotationNames).empty();
+  return !is_field && (of_torsion || is_of_force(names));
 }
 
 LoopRecord read_loop(const std::filesystem::path& file) {
