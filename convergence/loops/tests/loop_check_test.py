@@ -183,6 +183,23 @@ class Loops(unittest.TestCase):
             moments.append(start[1] + 2 * exact((t - start[0]) / 2) if inside else exact(t))
         return moments
 
+    def test_minor_loops(self):
+        """Loops within loops, by springs and sliders side by side, which know no rule of branches."""
+        corners = [0.3 * (i / 300)**2 for i in range(301)]
+        slopes = [(exact(other) - exact(one)) / (other - one) for one, other in zip(corners, corners[1:])] + [0.0]
+        sliders = [[0.0, one - other, (one - other) * at] for one, other, at in zip(slopes, slopes[1:], corners[1:])]
+        ends, twists = [0.0, 0.25, 0.05, 0.15, -0.25, 0.1, -0.05, 0.2, -0.25], [0.0]
+        for one, other in zip(ends, ends[1:]):
+            twists += [one + (other - one) * i / 80 for i in range(1, 81)]
+        moments = [0.0]
+        for before, t in zip(twists, twists[1:]):
+            for slider in sliders:
+                slider[0] = min(max(slider[0] + slider[1] * (t - before), -slider[2]), slider[2])
+            moments.append(sum(slider[0] for slider in sliders))
+        result = self.check(self.write(list(enumerate(twists)), moments))
+        self.assertEqual(result["verdict"], "good", result["why"])
+        self.assertLess(result["loads"][0]["residual"], 5e-4)
+
     def test_numbers_are_those_of_the_loop(self):
         path = drive((0.25, 0.25))
         load = self.check(self.write(path, masing(path, exact)))["loads"][0]
@@ -316,6 +333,26 @@ class Loops(unittest.TestCase):
         self.assertEqual((result["verdict"], result["loads"][0]["law"]), ("bad", "spring_and_cap"))
         result = self.check(rows([1.5 * m for m in masing(path, mindlin)]), columns=columns, scene="mindlin")
         self.assertIn("all forces are 1.50 times", result["why"])
+
+    def test_loops_of_the_solver(self):
+        """Solved on a grid, which knows nothing of the exact law: torsion, and a force where Mindlin's law is nearly exact."""
+        loads = [i / 10 for i in range(1, 10)] + [0.9 - 0.18 * i for i in range(1, 11)] + [-0.9 + 0.18 * i for i in range(1, 11)]
+        scene = "".join(line + "\n" for line in (SCENES / "paper.toml").read_text().splitlines()
+                        if not line.startswith("moment_ratio")) + "\n"
+        for kind, key, value in (("torsion", "moment_ratio", "{}"), ("force", "force", "[{}, 0.0]")):
+            scale = FRICTION * LOAD if kind == "force" else 1
+            steps = "".join(f"[[step]]\n{key} = {value.format(scale * load)}\n" for load in loads)
+            (self.folder / "loop.toml").write_text(scene + steps)
+            words = ["solve", self.folder / "loop.toml", "--set", "grid.cells=[24,24]", "--json", "-"]
+            solved = json.loads(subprocess.run([PROGRAM, *words], capture_output=True, text=True, check=True).stdout)["steps"]
+            if kind == "torsion":
+                rows = [[0.0, 0.0]] + [[step["moment"], step["twist_angle"]] for step in solved]
+                result = self.check(rows, columns=["moment", "rotation"])
+            else:
+                rows = [[0.0, 0.0]] + [[step["force"][0], step["displacement"][0]] for step in solved]
+                result = self.check(rows, columns=["force", "displacement"])
+            self.assertEqual((result["of"], result["verdict"]), (kind, "good"), result["why"])
+            self.assertLess(result["loads"][0]["residual"], 2e-3)
 
     def test_loads(self):
         """Several loads: the limit goes like W^(4/3), and of a radius that does not grow like W."""
