@@ -16,6 +16,7 @@
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/orders/expected_order.hpp"
 #include "convergence/results/quantity.hpp"
+#include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/studies/budget.hpp"
 #include "solver/input/input_error.hpp"
@@ -50,12 +51,15 @@ class StudyTest : public testing::Test {
   ProcessPool pool_{{.folder = folder_ / "points", .program = SLIPSTICK_PROGRAM}};
 };
 
-/// A program that the cache takes for slipstick, and that dies.
-fs::path dying_program(const fs::path& file) {
+/// A program that dies, to which the results belong that slipstick has kept in a folder.
+fs::path dying_program(const fs::path& file, const fs::path& kept) {
   std::ofstream(file) << "#!/bin/sh\nkill -KILL $$\n";
   fs::permissions(file, fs::perms::owner_all);
-  fs::resize_file(file, fs::file_size(SLIPSTICK_PROGRAM));
-  fs::last_write_time(file, fs::last_write_time(SLIPSTICK_PROGRAM));
+  const ResultCache cache(kept, file);
+  for (const auto& point : fs::directory_iterator(kept)) {
+    const Json entry = Json::parse(std::ifstream(point.path()));
+    cache.keep(point.path().stem().string(), entry["cache_key"], entry["result"]);
+  }
   return file;
 }
 
@@ -127,7 +131,8 @@ TEST_F(StudyTest, ARunThatDiedIsSaid) {
   ASSERT_EQ(total, files(folder_ / "points"));
   std::vector<fs::path> points;
   for (const auto& entry : fs::directory_iterator(folder_ / "points")) points.push_back(entry.path());
-  const ProcessPool deadly({.folder = folder_ / "points", .program = dying_program(folder_ / "dying")});
+  const ProcessPool deadly(
+      {.folder = folder_ / "points", .program = dying_program(folder_ / "dying", folder_ / "points")});
   for (const fs::path& point : points) {
     fs::rename(point, folder_ / "kept");
     const Json result = run_study(meshes, deadly);
