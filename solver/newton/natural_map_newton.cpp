@@ -14,17 +14,6 @@ using Eigen::ArrayXd;
 /// 0.1 and 0.3 makes no difference to tractions, 1 overshoots; many small contact spots want it small.
 constexpr double kRho = 0.2;
 constexpr double kRhoOfPressure = 0.1;
-/// The inner residual falls by this while states change, and by what the tolerance needs once they stand, as
-/// this part of it.
-constexpr double kLooseReduction = 0.1;
-/// Of pressures, whose states change all over a rough surface: more is lost on a state that will not last.
-constexpr double kLooseReductionOfPressure = 0.5;
-/// Times the root of the part of the free cells that have changed: as far as a pressure's state can be
-/// trusted.
-constexpr double kDistrust = 3.0;
-constexpr double kTightReduction = 1e-4;
-constexpr double kPartOfWanted = 0.3;
-constexpr int kInnerIterations = 40;
 /// Of the linear problem that refines the multipliers at the end; each brings them nearer by about 5.
 constexpr int kRefiningIterations = 2;
 constexpr int kPatience = 8;
@@ -101,7 +90,7 @@ NewtonSummary NaturalMapNewton<Set, Real>::run(ArrayXd& q, const Coefficients& m
       return summary;
     }
     const bool settled = summary.iterations > 0 && !energy_fell_;
-    if (settled && summary.gap > options.tolerance && is_certified(summary.gap, options.tolerance, q)) {
+    if (settled && summary.gap > options.tolerance && is_certified(summary.gap, options.tolerance)) {
       return stop(q, options, summary, "rounding");
     }
     without_progress = summary.gap < best_gap || energy_fell_ ? 0 : without_progress + 1;
@@ -112,8 +101,10 @@ NewtonSummary NaturalMapNewton<Set, Real>::run(ArrayXd& q, const Coefficients& m
                   fmt::format("no convergence within {} operator applications", options.max_applications));
     }
     linearise();
-    const LinearTarget target =
-        linear_target(options.tolerance / summary.gap, options.max_applications - applications());
+    const double wanted = options.tolerance / summary.gap;
+    const long left = options.max_applications - applications();
+    const LinearTarget target = kIsScalar ? target_of_pressure(wanted, left, changed_, space_.free.count())
+                                          : target_of_tractions(wanted, left, changed_);
     if (!take_newton_step(q, target) && !take_gradient_step(q)) {
       return stop(q, options, summary, "rounding: no step lowers the energy");
     }
@@ -207,23 +198,19 @@ bool NaturalMapNewton<Set, Real>::find_state(const ArrayXd& q) {
 
 template <AdmissibleSet Set, typename Real>
 double NaturalMapNewton<Set, Real>::relative_gap(const ArrayXd& q) {
-  const double elastic = sum([&](Index first, Index last) {
+  elastic_ = sum([&](Index first, Index last) {
     program_.write_slip(first, last, u_, multipliers_, trial_u_);
     return 0.5 * (q.segment(first, last - first) * u_.segment(first, last - first)).sum();
   });
   const double gap = set_.gap(q, trial_u_);
   if (gap == 0.0) return 0.0;
-  return elastic >= 0.0 ? gap / elastic : std::numeric_limits<double>::quiet_NaN();
+  return elastic_ >= 0.0 ? gap / elastic_ : std::numeric_limits<double>::quiet_NaN();
 }
 
 /// Of the gap that relative_gap() has just found.
 template <AdmissibleSet Set, typename Real>
-bool NaturalMapNewton<Set, Real>::is_certified(double gap, double tolerance, const ArrayXd& q) const {
-  const double elastic = sum([&](Index first, Index last) {
-    return 0.5 * (q.segment(first, last - first) * u_.segment(first, last - first)).sum();
-  });
-  const double rounding = set_.gap_rounding(trial_u_, u_) / elastic;
-  return solver::is_certified(gap, rounding, tolerance);
+bool NaturalMapNewton<Set, Real>::is_certified(double gap, double tolerance) const {
+  return solver::is_certified(gap, set_.gap_rounding(trial_u_, u_) / elastic_, tolerance);
 }
 
 template <AdmissibleSet Set, typename Real>
@@ -246,21 +233,6 @@ void NaturalMapNewton<Set, Real>::write_residual(const ArrayXd& q) {
     }
     r_.segment(first, n) = -s.template cast<Real>();
   });
-}
-
-/// wanted: the part that is to be left of the gap. applications_left: one at least.
-template <AdmissibleSet Set, typename Real>
-typename NaturalMapNewton<Set, Real>::LinearTarget NaturalMapNewton<Set, Real>::linear_target(
-    double wanted, long applications_left) const {
-  const auto iterations = static_cast<int>(std::min<long>(applications_left, kInnerIterations));
-  double reduction = kPartOfWanted * wanted;
-  if constexpr (kIsScalar) {
-    const auto free_cells = static_cast<double>(std::max<Index>(space_.free.count(), 1));
-    reduction = std::max(reduction, kDistrust * std::sqrt(static_cast<double>(changed_) / free_cells));
-    return {std::clamp(reduction, kTightReduction, kLooseReductionOfPressure), iterations};
-  }
-  if (changed_ > 0) reduction = kLooseReduction;
-  return {std::clamp(reduction, kTightReduction, kLooseReduction), iterations};
 }
 
 /// loads: of the solution; empty: none. False where conjugate gradients broke down.
@@ -452,7 +424,7 @@ NewtonSummary NaturalMapNewton<Set, Real>::stop(const ArrayXd& q, const NewtonOp
                                                 NewtonSummary& summary, const std::string& why) {
   if (options.refine_multipliers) refine(q, summary.gap, summary);
   summary.gap = relative_gap(q);
-  summary.converged = is_certified(summary.gap, options.tolerance, q);
+  summary.converged = is_certified(summary.gap, options.tolerance);
   return summary.converged ? summary : fail(summary, why);
 }
 

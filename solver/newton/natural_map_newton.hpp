@@ -12,6 +12,7 @@
 #include "solver/newton/admissible.hpp"
 #include "solver/newton/conjugate_gradients.hpp"
 #include "solver/newton/convex_program.hpp"
+#include "solver/newton/linear_target.hpp"
 #include "solver/newton/load_balance.hpp"
 #include "solver/newton/safeguards.hpp"
 #include "solver/newton/tangent_space.hpp"
@@ -78,10 +79,6 @@ class NaturalMapNewton {
  private:
   using Field = CgField<Real>;
   static constexpr bool kIsScalar = Set::kComponents == 1;
-  struct LinearTarget {
-    double reduction;  ///< of the residual
-    int max_iterations;
-  };
 
   Index size() const { return Set::kComponents * set_.cells(); }
   TangentOperator<Real> tangent_operator() { return {inner_, space_}; }
@@ -102,10 +99,9 @@ class NaturalMapNewton {
   void descend(const ArrayXd& q, double length, ArrayXd& y) const;
   bool find_state(const ArrayXd& q);
   double relative_gap(const ArrayXd& q);
-  bool is_certified(double gap, double tolerance, const ArrayXd& q) const;
+  bool is_certified(double gap, double tolerance) const;
   void linearise();
   void write_residual(const ArrayXd& q);
-  LinearTarget linear_target(double wanted, long applications_left) const;
   bool solve_linear(const ArrayXd& q, const LinearTarget& target, const Coefficients& loads = {});
   Coefficients jump_loads(const ArrayXd& q);
   double least_energy_at(const ArrayXd& q) const;
@@ -138,6 +134,7 @@ class NaturalMapNewton {
   ArrayXd u_, y_, trial_, trial_u_;
   Coefficients multipliers_;  ///< of the imposed conditions
   double energy_ = 0.0;       ///< of q
+  double elastic_ = 0.0;      ///< its q.u/2, as relative_gap() found it
   Safeguards safeguards_;     ///< of this run
   Index changed_ = 0;
   bool has_tangents_ = false;  ///< whether the constraints can be used
