@@ -23,7 +23,7 @@ SCENE = Path(__file__).parents[1] / "scenes" / "paper.toml"
 
 def without_times(tree):
     if isinstance(tree, dict):
-        return {key: without_times(value) for key, value in tree.items() if key not in TIMES}
+        return {key: without_times(value) for key, value in tree.items() if key.partition(".")[0] not in TIMES}
     return [without_times(value) for value in tree] if isinstance(tree, list) else tree
 
 
