@@ -160,6 +160,11 @@ class Results(unittest.TestCase):
         self.run_and_check(*words, "--plan")
         self.run_and_check("solve", SCENES / "paper.toml", "--plan")
 
+    def test_uncertainty(self):
+        words = ["--uncertain", "friction=5%", "young_modulus=2%"]
+        for more in ([], ["--model", "exact"]):
+            self.assertEqual(len(self.solve("paper", *more, *words)["uncertainty"]["inputs"]), 3)
+
     def test_failures(self):
         self.assertEqual(self.solve("paper", "--set", "solver.max_iterations=1", code=1)["status"], "not_converged")
         self.assertIsNone(self.run_program("solve", SCENES / "paper.toml", "--set", "load.moment_ratio=1.5", code=2))

@@ -28,6 +28,7 @@
 #include "convergence/runs/worker.hpp"
 #include "convergence/solve/accurate_solve.hpp"
 #include "convergence/solve/checkpoint.hpp"
+#include "convergence/solve/uncertainty.hpp"
 #include "solver/cache/solve_cache.hpp"
 #include "solver/history_state.hpp"
 #include "solver/input/field_file.hpp"
@@ -46,6 +47,7 @@ struct SolveRequest {
   std::string model;
   std::optional<double> accuracy;
   std::string accuracy_of = "twist";
+  std::vector<std::string> uncertain;
   bool plan = false;
   std::string checkpoint;
   bool resume = false;
@@ -215,6 +217,19 @@ int solve_accurately(solver::Scene scene, const SolveRequest& request, std::ostr
   return answer.reached ? 0 : 1;
 }
 
+void add_uncertainty(const std::vector<UncertainInput>& uncertain, const SolveRequest& request,
+                     std::ostream& text, Json& result) {
+  result["uncertainty"] = uncertainty_json(result, uncertain, [&](const std::vector<std::string>& changed) {
+    std::vector<std::string> overrides = overrides_of(request);
+    overrides.insert(overrides.end(), changed.begin(), changed.end());
+    solver::Scene scene = solver::read_scene(request.scene, overrides);
+    scene.memory_limit = request.memory.limit();
+    if (scene.model == solver::ModelChoice::exact) return exact_result(scene, require_oracle(scene), 0);
+    return solve_scene(scene).result;
+  });
+  text << uncertainty_text(result);
+}
+
 /// No file of the scene is overwritten, by fields of a step either.
 void require_scene_kept(const CLI::App& command, const SolveRequest& request, const solver::Scene& scene) {
   const std::vector<std::filesystem::path> inputs = input_files(scene);
@@ -240,8 +255,12 @@ int run_solve(const CLI::App& command, const SolveRequest& request, std::ostream
     text << plan_text(result);
     return 0;
   }
+  const std::vector<UncertainInput> uncertain =
+      uncertain_inputs(request.scene, request.overrides, request.uncertain);
   const bool exact = scene.model == solver::ModelChoice::exact;
-  return (exact ? answer_exactly : solve_on_grid)(scene, request, text, result);
+  const int code = (exact ? answer_exactly : solve_on_grid)(scene, request, text, result);
+  if (!uncertain.empty() && code == 0) add_uncertainty(uncertain, request, text, result);
+  return code;
 }
 
 }  // namespace
@@ -270,7 +289,13 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_solve_command(CLI
                    "what --accuracy is asked of; where the twist is imposed, twist means the moment")
       ->check(CLI::IsMember(words))
       ->capture_default_str();
-  command->add_flag("--plan", request->plan, "predict memory and time of what would be solved, and stop");
+  command
+      ->add_option("--uncertain", request->uncertain,
+                   "key=P%: standard uncertainties of the scene's numbers, e.g. friction=5% "
+                   "young_modulus=2%; says what they make of each output, beside the numerical error")
+      ->excludes(command->get_option("--accuracy"));
+  command->add_flag("--plan", request->plan, "predict memory and time of what would be solved, and stop")
+      ->excludes(command->get_option("--uncertain"));
   command->add_option(
       "--fields", request->fields,
       "write tractions, pressure, stick and, from a grid, slip: .h5, .csv or .vti; of a history the "

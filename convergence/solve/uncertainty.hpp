@@ -1,0 +1,41 @@
+#pragma once
+
+#include <filesystem>
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "convergence/results/result_parts.hpp"
+
+/// What uncertain inputs make of a result, to first order: inputs vary independently of each other.
+namespace slipstick::convergence {
+
+/// A number of a scene that is known to so much.
+struct UncertainInput {
+  std::string key;  ///< contact.friction, say
+  double value;     ///< what the scene says
+  double relative;  ///< standard uncertainty over the value
+};
+
+/// Reads "key=5%". A key without its table stands for all numbers of that name in upper, lower, contact and
+/// load. Throws InputError for keys that are no numbers of the scene, or zero, and for other percentages than
+/// those above 0 and below 100.
+std::vector<UncertainInput> uncertain_inputs(const std::filesystem::path& scene,
+                                             const std::vector<std::string>& overrides,
+                                             const std::vector<std::string>& words);
+
+/// The result of the scene with these overrides too. Throws InputError where there is none.
+using SolveWith = std::function<Json(const std::vector<std::string>& overrides)>;
+
+/// Each output's standard uncertainty, the part of each input and the numerical error, all relative, and a
+/// sentence that says which matters. Derivatives are central differences: of an exact answer over two steps
+/// of some 0.1 %, extrapolated, which leaves 1e-10 of them; of solves on a grid over one step of 2 %, of
+/// which the mesh's scatter is a small part. Steps shrink where the loads would be beyond the limit. Throws
+/// InputError where all steps are.
+Json uncertainty_json(const Json& result, const std::vector<UncertainInput>& inputs, const SolveWith& solve);
+
+/// The same for a person: one line an output, and the sentence.
+std::string uncertainty_text(const Json& result);
+
+}  // namespace slipstick::convergence
