@@ -86,21 +86,23 @@ class ProgramStudy : public testing::Test {
 
   /// Kills the only worker of a study in the middle of a run, once so many others are finished.
   bool killed_after(std::size_t runs, pid_t study) const {
-    constexpr int kLooks = 3;  // a worker that computes whenever one looks is not waiting for a run
+    // A worker that computes whenever one looks, so long after its last run, is not between two runs.
+    constexpr int kLooks = 15;
+    const std::size_t kept = finished().size();
     pid_t worker = 0;
     for (int look = 0; look < kLooks; ++look) {
       for (const pid_t process : processes()) {
         // A worker is the study's child; children of its own are those of a sanitizer that looks for leaks.
         if (state_of(process).parent == study) worker = process;
       }
-      if (worker == 0 || finished().size() < runs || state_of(worker).state != 'R') return false;
-      runs = std::max(runs, finished().size());
+      if (worker == 0 || kept < runs || finished().size() != kept || state_of(worker).state != 'R')
+        return false;
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
     }
     kill(worker, SIGSTOP);
     const auto state = [&] { return state_of(worker).state; };
     while (state() != 'T' && state() != 'Z' && state() != 'X') std::this_thread::yield();
-    const bool in_a_run = finished().size() == runs;
+    const bool in_a_run = finished().size() == kept;
     kill(worker, in_a_run ? SIGKILL : SIGCONT);
     return in_a_run;
   }
