@@ -5,10 +5,10 @@ import pathlib
 import re
 import sys
 
-TOPS = ("analytic", "bench", "c", "convergence", "solver")
+TOPS = ("analytic", "bench", "convergence", "solver")
 MOST_UNITS = 12
 LARGER = {"analytic": 20}  # flat: each unit is one theory
-OTHER_SIDE = {"analytic": ("solver", "convergence", "bench", "c"), "solver": ("analytic", "convergence", "bench", "c")}
+OTHER_SIDE = {"analytic": ("solver", "convergence", "bench"), "solver": ("analytic", "convergence", "bench")}
 
 
 def read_arrows(file):

@@ -51,7 +51,7 @@ def fragment(literal):
 
 def messages(root):
     """(place, fragment) of each message in the sources."""
-    tops = ("analytic", "bench", "c", "convergence", "python", "reports", "solver")
+    tops = ("analytic", "bench", "convergence", "python", "reports", "solver")
     files = [file for top in tops for ending in ("cpp", "hpp", "py") for file in (root / top).rglob("*." + ending)]
     for file in sorted(files) + [root / "main.cpp"]:
         path = file.relative_to(root)

@@ -71,14 +71,15 @@ class Checkout:
     def make_scratch(self, folder):
         """A checkout as a reader has it, without what would let a block write into the sources' top folder."""
         folder.mkdir(parents=True)
-        for name in ["analytic", "bench", "c", "convergence", "cmake", "docs", "reports", "solver", "Makefile"]:
+        for name in ["analytic", "bench", "convergence", "cmake", "docs", "reports", "solver", "Makefile"]:
             (folder / name).symlink_to(self.root / name)
         (folder / "build/bench").mkdir(parents=True)
         (folder / "build/slipstick").symlink_to(self.program)
         benchmarks = self.program.parent / "bench/slipstick_benchmarks"
         (folder / "build/bench/slipstick_benchmarks").symlink_to(benchmarks)
         build = self.program.parent
-        for name in ["c", "python"]:
+        (folder / "build/convergence").mkdir()
+        for name in ["convergence/c_interface", "python"]:
             (folder / "build" / name).symlink_to(build / name)
         (folder / "programs").mkdir()
         python = folder / "programs/python3"

@@ -10,7 +10,7 @@ import slipstick
 from slipstick import _library
 
 ROOT = pathlib.Path(__file__).parents[2]
-HEADER = re.sub(r"/\*.*?\*/", "", (ROOT / "c/slipstick.h").read_text(), flags=re.S)
+HEADER = re.sub(r"/\*.*?\*/", "", (ROOT / "convergence/c_interface/slipstick.h").read_text(), flags=re.S)
 
 
 def kind(parameter):

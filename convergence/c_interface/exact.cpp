@@ -10,7 +10,7 @@
 #include "analytic/cycle.hpp"
 #include "analytic/named_profile.hpp"
 #include "analytic/torsion.hpp"
-#include "c/boundary.hpp"
+#include "convergence/c_interface/boundary.hpp"
 
 namespace slipstick::c {
 namespace {

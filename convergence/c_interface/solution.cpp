@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "c/boundary.hpp"
+#include "convergence/c_interface/boundary.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/quantity.hpp"
 #include "convergence/results/result.hpp"

@@ -5,7 +5,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "c/slipstick.h"
+#include "convergence/c_interface/slipstick.h"
 
 /// Where C++ ends: every function of slipstick.h does its work inside guarded().
 namespace slipstick::c {

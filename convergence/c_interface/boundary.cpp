@@ -1,4 +1,4 @@
-#include "c/boundary.hpp"
+#include "convergence/c_interface/boundary.hpp"
 
 #include <algorithm>
 #include <array>
