@@ -67,7 +67,7 @@ class Turns {
       if (gap_ <= problem_.tolerance && (!finish() || gap_ <= problem_.tolerance))
         return std::move(solution_);
       if (!(gap_ <= (1.0 - kProgress * step) * largest)) step *= 0.5;
-      std::ranges::rotate(last_gaps_, last_gaps_.begin() + 1);
+      std::rotate(last_gaps_.begin(), last_gaps_.begin() + 1, last_gaps_.end());
       last_gaps_.back() = gap_;
       if (!(step >= kMinStep) || solution_.turns == kMaxTurns) break;
       advance(step);

@@ -59,20 +59,6 @@ Cached<LinearOperator> Elasticity::make(const Grid& grid, const BlockKernel& ker
   return op;
 }
 
-template <typename Real>
-Cached<GridOperators<Real>> Elasticity::make_all(const Grid& grid, const BlockKernel& kernel) const {
-  Cached<GridOperators<Real>> operators(
-      usable_cache(), with_kernel(key("grid operators", grid), kernel),
-      [&] { return std::make_unique<GridOperators<Real>>(*this, grid, kernel); },
-      [](const GridOperators<Real>& made) { return made.bytes(); });
-  operators->op->restart_count();
-  operators->inner().restart_count();
-  return operators;
-}
-
-template Cached<GridOperators<double>> Elasticity::make_all(const Grid&, const BlockKernel&) const;
-template Cached<GridOperators<float>> Elasticity::make_all(const Grid&, const BlockKernel&) const;
-
 template <>
 GridOperators<double>::GridOperators(const Elasticity& elasticity, const Grid& grid,
                                      const BlockKernel& kernel)
@@ -93,6 +79,20 @@ template <>
 Operator<float>& GridOperators<float>::inner() {
   return *single;
 }
+
+template <typename Real>
+Cached<GridOperators<Real>> Elasticity::make_all(const Grid& grid, const BlockKernel& kernel) const {
+  Cached<GridOperators<Real>> operators(
+      usable_cache(), with_kernel(key("grid operators", grid), kernel),
+      [&] { return std::make_unique<GridOperators<Real>>(*this, grid, kernel); },
+      [](const GridOperators<Real>& made) { return made.bytes(); });
+  operators->op->restart_count();
+  operators->inner().restart_count();
+  return operators;
+}
+
+template Cached<GridOperators<double>> Elasticity::make_all(const Grid&, const BlockKernel&) const;
+template Cached<GridOperators<float>> Elasticity::make_all(const Grid&, const BlockKernel&) const;
 
 template <typename Real>
 double GridOperators<Real>::bytes() const {
