@@ -3,12 +3,15 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <csignal>
 #include <functional>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "analytic/exact_command.hpp"
@@ -27,6 +30,7 @@
 #include "convergence/results/output.hpp"
 #include "convergence/solve/solve_command.hpp"
 #include "convergence/studies/study_command.hpp"
+#include "solver/grid/ranks.hpp"
 
 namespace {
 
@@ -43,7 +47,12 @@ void write_json(const std::string& path, const Json& result) {
   slipstick::convergence::write_option_file("--json", path, text + "\n");
 }
 
-void complain(const std::exception& error) { std::cerr << "slipstick: " << error.what() << '\n'; }
+using slipstick::solver::Ranks;
+
+/// Ranks that fail, fail alike: one of them says so.
+void complain(const std::exception& error) {
+  if (Ranks::first()) std::cerr << "slipstick: " << error.what() << '\n';
+}
 
 /// Writes beside an error that is said in any case.
 void keep(const std::function<void()>& write) {
@@ -78,7 +87,9 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const int exit_code = app.exit(error) == 0 ? 0 : kCouldNotJudge;
+    std::ostringstream unsaid;
+    const int left = Ranks::first() ? app.exit(error) : app.exit(error, unsaid, unsaid);
+    const int exit_code = left == 0 ? 0 : kCouldNotJudge;
     slipstick::convergence::write_standard_output("");
     return exit_code;
   }
@@ -86,12 +97,13 @@ int run(int argc, char** argv) {
   std::ostringstream text;
   Json result;
   const auto write_text = [&] {
-    if (!quiet && json_path != "-") slipstick::convergence::write_standard_output(text.str());
+    if (!quiet && Ranks::first() && json_path != "-")
+      slipstick::convergence::write_standard_output(text.str());
   };
   // The file first: who reads the text may leave, and so end this process.
   const auto write_out = [&] {
     try {
-      if (!json_path.empty() && !result.empty()) write_json(json_path, result);
+      if (!json_path.empty() && Ranks::first() && !result.empty()) write_json(json_path, result);
     } catch (const std::exception&) {
       keep(write_text);
       throw;
@@ -122,7 +134,19 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error like a full disk
   try {
     slipstick::convergence::obey_tie(argc, argv);
-    return run(argc, argv);
+    // Other commands do not share their work: of them each process does all.
+    std::optional<Ranks> ranks;
+    if (std::find(argv + 1, argv + argc, std::string_view("solve")) != argv + argc) ranks.emplace();
+    int exit_code = kCouldNotJudge;
+    std::string failure;
+    try {
+      exit_code = run(argc, argv);
+    } catch (const std::exception& error) {
+      complain(error);
+      failure = error.what();
+    }
+    Ranks::end(exit_code, failure);
+    return exit_code;
   } catch (const std::exception& error) {
     complain(error);
     return kCouldNotJudge;

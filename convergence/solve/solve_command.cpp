@@ -31,6 +31,7 @@
 #include "convergence/solve/uncertainty.hpp"
 #include "solver/cache/solve_cache.hpp"
 #include "solver/history_state.hpp"
+#include "solver/grid/ranks.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/toml_reader.hpp"
@@ -57,7 +58,7 @@ struct SolveRequest {
 
 /// One line on a terminal, rewritten; nothing elsewhere.
 void show_progress(int iteration, double change) {
-  if (isatty(STDERR_FILENO) != 0)
+  if (isatty(STDERR_FILENO) != 0 && solver::Ranks::first())
     std::cerr << fmt::format("\r\033[Kiteration {}, change {:.1e}\r", iteration, change);
 }
 
@@ -85,6 +86,7 @@ std::string file_of_step(std::string file, std::size_t step) {
 /// The files asked for beside the result; write_fields writes the cells to the file it is given.
 void write_files(const SolveRequest& request, const Json& result,
                  const std::function<void(const std::filesystem::path&)>& write_fields) {
+  if (!solver::Ranks::first()) return;
   if (!request.fields.empty() && !one_file_a_step(request.fields)) write_fields(request.fields);
   if (!request.figure.empty()) draw_figure(request.figure, result, write_fields);
 }
@@ -140,7 +142,7 @@ SolvedScene find_on_grid(const solver::Scene& scene, const SolveRequest& request
   std::size_t step = 0;
   const auto on_step = [&](const solver::Solution& at, const OracleAnswer& exact) {
     ++step;
-    if (!one_file_a_step(request.fields)) return;
+    if (!one_file_a_step(request.fields) || !solver::Ranks::first()) return;
     write_solution_fields(file_of_step(request.fields, step), at, exact);
   };
   return solve_on(scene, request,
@@ -241,11 +243,28 @@ void require_scene_kept(const CLI::App& command, const SolveRequest& request, co
   }
 }
 
+/// Throws InputError for what several ranks cannot share.
+void require_shared_by_ranks(const SolveRequest& request, const solver::Scene& scene) {
+  if (request.accuracy) {
+    throw solver::InputError("--accuracy", "not on several ranks; allowed: cells that the scene names");
+  }
+  if (!scene.wisdom.empty()) {
+    throw solver::InputError("solver.wisdom", "not on several ranks; allowed: no file, plans that are estimated");
+  }
+  if (scene.rounding_seed != 0) {
+    throw solver::InputError("solver.rounding_seed", "not on several ranks; allowed: 0");
+  }
+  if (scene.op != solver::OperatorKind::dcfft) {
+    throw solver::InputError("solver.operator", "not on several ranks; allowed there: \"dcfft\"");
+  }
+}
+
 int run_solve(const CLI::App& command, const SolveRequest& request, std::ostream& text, Json& result) {
   if (!request.keep.empty()) return serve_runs(request.keep, request.memory.limit());
   if (!request.fields.empty()) solver::require_field_format(request.fields);
   if (!request.figure.empty()) require_figure_format(request.figure);
   const solver::Scene scene = read_scene(request);
+  if (solver::Ranks::number() > 1) require_shared_by_ranks(request, scene);
   require_scene_kept(command, request, scene);
   require_output("--fields", request.fields);
   require_output("--checkpoint", request.checkpoint);

@@ -119,7 +119,8 @@ class Cached {
   ~Cached() {
     if (!cache_ || !found_.thing || std::uncaught_exceptions() > 0) return;  // in the middle of some work
     try {
-      cache_->keep(std::move(key_), std::move(found_), bytes_(**this));
+      const double bytes = bytes_(**this);  // before what it stands in is moved
+      cache_->keep(std::move(key_), std::move(found_), bytes);
     } catch (const std::bad_alloc&) {  // then it is made again
     }
   }

@@ -62,7 +62,8 @@ std::optional<double> given_of(const TangentialProblem& problem, Motion motion) 
 class TangentialOnGrid {
  public:
   TangentialOnGrid(const Grid& grid, TangentialProblem problem)
-      : problem_(std::move(problem)),
+      : row_(grid.n2),
+        problem_(std::move(problem)),
         contact_((problem_.friction_bound > 0.0).cast<double>()),
         fields_{ArrayXd(), ArrayXd(), contact_.replicate(2, 1) * rotation_field(grid)} {
     const Index cells = contact_.size();
@@ -77,7 +78,7 @@ class TangentialOnGrid {
 
   static BlockKernel kernel() { return tangential_kernel(); }
   static std::span<const Parity> parities() { return kTorsionParities; }
-  FrictionDiscs admissible() const { return FrictionDiscs(problem_.friction_bound); }
+  FrictionDiscs admissible() const { return FrictionDiscs(problem_.friction_bound, row_); }
   ArrayXd start() const { return problem_.start; }
   ArrayXd guess() const { return problem_.guess; }
 
@@ -119,6 +120,7 @@ class TangentialOnGrid {
  private:
   const ArrayXd& field(Motion motion) const { return fields_[static_cast<std::size_t>(motion)]; }
 
+  Index row_;
   TangentialProblem problem_;
   ArrayXd contact_;                ///< 1 where tractions may be
   std::array<ArrayXd, 3> fields_;  ///< by Motion: (1, 0) and (0, 1), empty where not modelled, and (-x2, x1)

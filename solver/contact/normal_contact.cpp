@@ -19,16 +19,17 @@ constexpr std::array<Parity, 1> kPressureParities{{{1, 1}}};
 /// The normal problem on one grid, as solve_nested() asks for it.
 class PressureOnGrid {
  public:
-  /// reachable: 1 where the bodies can touch; height: the undeformed gap there, 0 elsewhere.
-  PressureOnGrid(ArrayXd reachable, ArrayXd height, double total_pressure, ArrayXd guess = {})
-      : reachable_(std::move(reachable)),
+  /// row: cells of one; reachable: 1 where the bodies can touch; height: the undeformed gap there, 0 elsewhere.
+  PressureOnGrid(Index row, ArrayXd reachable, ArrayXd height, double total_pressure, ArrayXd guess = {})
+      : row_(row),
+        reachable_(std::move(reachable)),
         height_(std::move(height)),
         total_pressure_(total_pressure),
         guess_(std::move(guess)) {}
 
   static BlockKernel kernel() { return normal_kernel(); }
   static std::span<const Parity> parities() { return kPressureParities; }
-  PositivePressures admissible() const { return PositivePressures(reachable_); }
+  PositivePressures admissible() const { return PositivePressures(reachable_, row_); }
   ArrayXd start() const { return ArrayXd::Zero(reachable_.size()); }
   ArrayXd guess() const { return guess_; }
   ConvexProgram program(LinearOperator&) const {
@@ -40,11 +41,12 @@ class PressureOnGrid {
     const ArrayXd part = restrict_to(coarse, grid, reachable_);
     const ArrayXd height = restrict_to(coarse, grid, height_);
     const ArrayXd reachable = (part >= std::min(0.5, part.maxCoeff())).cast<double>();
-    return {reachable, (reachable > 0.0).select(height / part.max(0.25 * part.maxCoeff()), 0.0),
+    return {coarse.n2, reachable, (reachable > 0.0).select(height / part.max(0.25 * part.maxCoeff()), 0.0),
             total_pressure_ * grid.cell_area() / coarse.cell_area()};
   }
 
  private:
+  Index row_;
   ArrayXd reachable_;
   ArrayXd height_;
   double total_pressure_;
@@ -72,7 +74,7 @@ namespace {
 NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& grid,
                                    const NormalProblem& problem, const NormalOptions& options) {
   const ArrayXd reachable = problem.gap.isFinite().cast<double>();
-  const PressureOnGrid contact(reachable, (reachable > 0.0).select(problem.gap, 0.0), problem.total_pressure,
+  const PressureOnGrid contact(grid.n2, reachable, (reachable > 0.0).select(problem.gap, 0.0), problem.total_pressure,
                                problem.guess);
   const NewtonOptions newton{.tolerance = options.tolerance,
                              .max_applications = options.max_applications,

@@ -40,7 +40,7 @@ template <typename Real>
 std::size_t PaddedTransform<Real>::predicted_bytes(const Grid& grid, std::size_t fields, int threads) {
   const Index m2 = half_length(grid.n2);
   const Index stride1 = stride(half_length(grid.n1));
-  const std::size_t columns = fields * count((m2 + 1) * stride1);
+  const std::size_t columns = fields * field_size(grid, m2 + 1, stride1);
   const std::size_t scratch =
       static_cast<std::size_t>(threads) * count(scratch_size(fields, stride1, stride(m2)));
   return sizeof(Complex) * (columns + scratch + count(grid.n1 + grid.n2)) + sizeof(Real) * count(grid.n2);
@@ -66,7 +66,18 @@ PaddedTransform<Real>::PaddedTransform(const Grid& grid, std::size_t fields, int
       twiddle1_(twiddles<Real>(grid.n1, m1_)),
       twiddle2_(twiddles<Real>(grid.n2, m2_)),
       zero_row_(count(grid.n2)),
-      columns_(2 * fields * count(columns() * stride1_)) {
+      own_groups_(own_groups(grid)),
+      field_size_(field_size(grid, columns(), stride1_)),
+      column_stride_(stride1_),
+      column_step_(stride1_),
+      group_step_(kRows),
+      columns_(2 * fields * field_size_) {
+  if (Ranks::number() > 1) {
+    ranks_.emplace(shared_matrix(grid));
+    column_stride_ = groups() * kRows;
+    column_step_ = kRows;
+    group_step_ = columns() * kRows;
+  }
   const Index size = scratch_size(fields, stride1_, stride2_);
   for (int thread = 0; thread < threads; ++thread) scratch_.emplace_back(2 * count(size));
   const auto plan = [&](Index length, Index out, int direction) {
@@ -87,7 +98,52 @@ void PaddedTransform<Real>::execute(const FftwPlan<Real>& plan, Complex* in, Com
 
 template <typename Real>
 auto PaddedTransform<Real>::column(std::size_t field, Index column) -> Complex* {
-  return as_complex(columns_) + (static_cast<Index>(field) * columns() + column) * stride1_;
+  return as_complex(columns_) + static_cast<Index>(field * field_size_) + column * column_stride_;
+}
+
+template <typename Real>
+auto PaddedTransform<Real>::rows_of(std::size_t field, Index column, Index group) -> Complex* {
+  return as_complex(columns_) + static_cast<Index>(field * field_size_) + column * column_step_ +
+         (group - own_groups_.first) * group_step_;
+}
+
+template <typename Real>
+std::size_t PaddedTransform<Real>::field_size(const Grid& grid, Index columns, Index stride1) {
+  if (Ranks::number() == 1) return count(columns * stride1);
+  return count(shared_matrix(grid).size() / 2);
+}
+
+/// A group of rows in a column is an entry.
+template <typename Real>
+auto PaddedTransform<Real>::shared_matrix(const Grid& grid) -> typename RankTranspose<Real>::Shape {
+  static_assert(RowBands::kRows % kRows == 0);
+  return {(grid.n1 + kRows - 1) / kRows, RowBands(grid.n1).rows_of_rank() / kRows, half_length(grid.n2) + 1,
+          2 * kRows};
+}
+
+template <typename Real>
+Share PaddedTransform<Real>::own_groups(const Grid& grid) {
+  const Share rows = RowBands(grid.n1).own_rows();
+  return {(rows.first + kRows - 1) / kRows, (rows.last + kRows - 1) / kRows};
+}
+
+template <typename Real>
+Share PaddedTransform<Real>::own_columns(const Grid& grid) {
+  return shared_matrix(grid).own_columns();
+}
+
+template <typename Real>
+void PaddedTransform<Real>::to_columns(std::size_t fields) {
+  for (std::size_t field = 0; field < fields; ++field) {
+    ranks_->to_columns(columns_.data() + 2 * field * field_size_);
+  }
+}
+
+template <typename Real>
+void PaddedTransform<Real>::to_rows(std::size_t fields) {
+  for (std::size_t field = 0; field < fields; ++field) {
+    ranks_->to_rows(columns_.data() + 2 * field * field_size_);
+  }
 }
 
 template <typename Real>
@@ -96,16 +152,17 @@ auto PaddedTransform<Real>::spectrum_of(int thread) -> Spectrum {
   return {{start, start + 2 * stride1_}, {start + stride1_, start + 3 * stride1_}};
 }
 
-/// work(thread, field, first row, where the field starts among its values) for all groups of kRows rows.
+/// work(thread, field, first row, where the field starts among its values) for all groups of kRows rows that
+/// this rank has.
 template <typename Real>
 template <typename Work>
 void PaddedTransform<Real>::in_groups(std::size_t values, const Work& work) {
-  const Index groups = (grid_.n1 + kRows - 1) / kRows;
+  const Index groups = own_groups_.count();
   const Index fields = static_cast<Index>(values) / grid_.cells();
   in_parts(threads_, fields * groups, [&](int thread, Index first, Index last) {
     for (Index group = first; group < last; ++group) {
       const Index field = group / groups;
-      work(thread, count(field), group % groups * kRows, field * grid_.cells());
+      work(thread, count(field), (own_groups_.first + group % groups) * kRows, field * grid_.cells());
     }
   });
 }
@@ -155,9 +212,10 @@ void PaddedTransform<Real>::forward_group(int thread, std::size_t field, Index f
 template <typename Real>
 void PaddedTransform<Real>::separate(std::size_t field, Index first_row, const Complex* spectra) {
   constexpr Real half(0.5);
+  const Index group = first_row / kRows;
   const auto separate_column = [&](Index to, Index k, Index mirrored, const Complex* pairs) {
-    Complex* const out = column(field, to) + first_row;
-    __builtin_prefetch(column(field, std::min(to + kAhead, columns() - 1)) + first_row, 1);
+    Complex* const out = rows_of(field, to, group);
+    __builtin_prefetch(rows_of(field, std::min(to + kAhead, columns() - 1), group), 1);
     for (Index r = 0; r < kRows; r += 2) {
       const Complex z = pairs[r * stride2_ + k];
       const Complex y = pairs[r * stride2_ + mirrored];
@@ -176,9 +234,10 @@ void PaddedTransform<Real>::separate(std::size_t field, Index first_row, const C
 /// The contrary of separate().
 template <typename Real>
 void PaddedTransform<Real>::join(std::size_t field, Index first_row, Complex* spectra) {
+  const Index group = first_row / kRows;
   const auto join_column = [&](Index from, Index k, Index mirrored, Complex* pairs) {
-    const Complex* const in = column(field, from) + first_row;
-    __builtin_prefetch(column(field, std::min(from + kAhead, columns() - 1)) + first_row);
+    const Complex* const in = rows_of(field, from, group);
+    __builtin_prefetch(rows_of(field, std::min(from + kAhead, columns() - 1), group));
     for (Index r = 0; r < kRows; r += 2) {
       const Complex x = in[r];
       const Complex y = in[r + 1];
@@ -219,9 +278,17 @@ void PaddedTransform<Real>::forward_column(int thread, std::size_t field, Index 
   const Spectrum spectrum = spectrum_of(thread);
   Complex* const values = column(field, column_index);
   Complex* const odd = turned(thread);
+  // A row without another to go with it leaves rounding where that would stand.
+  std::fill(values + grid_.n1, values + groups() * kRows, Complex());
   for (Index i = 0; i < grid_.n1; ++i) odd[i] = times(values[i], twiddle1_[count(i)]);
   std::fill(odd + grid_.n1, odd + m1_, Complex());
-  execute(column_forward_, values, spectrum.even[field]);
+  Complex* even = values;
+  if (ranks_) {
+    even = padded(thread);
+    std::copy_n(values, grid_.n1, even);
+    std::fill(even + grid_.n1, even + m1_, Complex());
+  }
+  execute(column_forward_, even, spectrum.even[field]);
   execute(column_forward_, odd, spectrum.odd[field]);
 }
 
@@ -230,10 +297,13 @@ void PaddedTransform<Real>::backward_column(int thread, std::size_t field, Index
   const Spectrum spectrum = spectrum_of(thread);
   Complex* const values = column(field, column_index);
   Complex* const odd = turned(thread);
-  execute(column_backward_, spectrum.even[field], values);
+  Complex* const even = ranks_ ? padded(thread) : values;
+  execute(column_backward_, spectrum.even[field], even);
   execute(column_backward_, spectrum.odd[field], odd);
-  for (Index i = 0; i < grid_.n1; ++i) values[i] += times_conjugate(odd[i], twiddle1_[count(i)]);
-  std::fill(values + grid_.n1, values + m1_, Complex());  // what the next forward transform counts on
+  for (Index i = 0; i < grid_.n1; ++i) even[i] += times_conjugate(odd[i], twiddle1_[count(i)]);
+  if (ranks_) std::copy_n(even, grid_.n1, values);
+  const Index end = ranks_ ? column_stride_ : std::max(m1_, groups() * kRows);
+  std::fill(values + grid_.n1, values + end, Complex());  // what the next transform counts on
 }
 
 template class PaddedTransform<double>;

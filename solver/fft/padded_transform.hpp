@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <complex>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "solver/fft/fftw.hpp"
+#include "solver/fft/rank_transpose.hpp"
 #include "solver/grid/threads.hpp"
 
 namespace slipstick::solver {
@@ -21,6 +23,10 @@ namespace slipstick::solver {
 ///
 /// Rows go through in pairs, as real and imaginary parts of one sequence. Columns lie transposed, so that
 /// each is read from memory once, carried forward, changed and carried back in cache.
+///
+/// Each of several ranks carries its own rows of the fields and its share of the columns; between the two
+/// passes the plane goes from rank to rank, the half of it that is not zero. The values have the same bits on
+/// any number of ranks.
 template <typename Real>
 class PaddedTransform {
  public:
@@ -42,16 +48,19 @@ class PaddedTransform {
   Index padded2() const { return 2 * m2_; }
   /// Frequencies along x2 that hold all of a real field, m2 + 1: first the even ones, then the odd ones.
   Index columns() const { return m2_ + 1; }
+  /// Those of this rank.
+  static Share own_columns(const Grid& grid);
 
-  /// From the fields' n1*n2 values each to their columns, and back.
+  /// From the fields' n1*n2 values each to their columns, and back: this rank's rows of them.
   void forward_rows(std::span<const Real> fields);
   void backward_rows(std::span<Real> fields);
 
   /// The first `inputs` columns forward, work(column, spectrum), the first `outputs` columns back, for all
-  /// columns; on several threads at the same time.
+  /// columns of this rank, numbered from 0; on several threads at the same time.
   template <typename Work>
   void through_columns(std::size_t inputs, std::size_t outputs, const Work& work) {
-    in_parts(threads_, columns(), [&](int thread, Index first, Index last) {
+    if (ranks_) to_columns(inputs);
+    in_parts(threads_, own_columns(grid_).count(), [&](int thread, Index first, Index last) {
       const Spectrum spectrum = spectrum_of(thread);
       for (Index column = first; column < last; ++column) {
         for (std::size_t field = 0; field < inputs; ++field) forward_column(thread, field, column);
@@ -59,6 +68,7 @@ class PaddedTransform {
         for (std::size_t field = 0; field < outputs; ++field) backward_column(thread, field, column);
       }
     });
+    if (ranks_) to_rows(outputs);
   }
 
  private:
@@ -68,17 +78,29 @@ class PaddedTransform {
   /// set.
   static Index stride(Index length) { return ((length + kRows - 1) / kRows | 1) * kRows; }
   /// Of one thread: a group of rows before and after its transform; or the two halves of each field's column
-  /// and one that is being turned.
+  /// and one that is being turned, and on several ranks one that is being padded.
   static Index scratch_size(std::size_t fields, Index stride1, Index stride2) {
-    return std::max(2 * kRows * stride2, (2 * static_cast<Index>(fields) + 1) * stride1);
+    const Index turned_and_padded = Ranks::number() > 1 ? 2 : 1;
+    return std::max(2 * kRows * stride2, (2 * static_cast<Index>(fields) + turned_and_padded) * stride1);
   }
 
   template <typename Work>
   void in_groups(std::size_t values, const Work& work);
   Spectrum spectrum_of(int thread);
+  Index groups() const { return (grid_.n1 + kRows - 1) / kRows; }
+  /// What goes from rank to rank, and of that the rows of this one.
+  static typename RankTranspose<Real>::Shape shared_matrix(const Grid& grid);
+  static Share own_groups(const Grid& grid);
+  /// Complex numbers that a field takes.
+  static std::size_t field_size(const Grid& grid, Index columns, Index stride1);
   Complex* column(std::size_t field, Index column);
+  /// Where a group of rows stands in a column between the passes.
+  Complex* rows_of(std::size_t field, Index column, Index group);
+  void to_columns(std::size_t fields);
+  void to_rows(std::size_t fields);
   Complex* scratch(int thread) { return as_complex(scratch_[static_cast<std::size_t>(thread)]); }
   Complex* turned(int thread) { return scratch(thread) + 2 * static_cast<Index>(fields_) * stride1_; }
+  Complex* padded(int thread) { return turned(thread) + stride1_; }
   static Complex* as_complex(FftwBuffer<Real>& buffer) { return reinterpret_cast<Complex*>(buffer.data()); }
 
   void forward_group(int thread, std::size_t field, Index first_row, const Real* values);
@@ -94,12 +116,18 @@ class PaddedTransform {
   int threads_;
   Index m1_;
   Index m2_;
-  Index stride1_;                  ///< from column to column
+  Index stride1_;                  ///< from half a column's spectrum to the next
   Index stride2_;                  ///< from half a row's spectrum to the next
   std::vector<Complex> twiddle1_;  ///< w^j along x1, j < n1
   std::vector<Complex> twiddle2_;
   std::vector<Real> zero_row_;
-  FftwBuffer<Real> columns_;               ///< of all fields, stride1_ from one to the next
+  std::optional<RankTranspose<Real>> ranks_;  ///< where there are several
+  Share own_groups_;                          ///< of kRows rows
+  std::size_t field_size_;
+  Index column_stride_;                    ///< from column to column while columns are carried
+  Index column_step_;                      ///< and while rows are
+  Index group_step_;                       ///< then from group to group of a column's rows
+  FftwBuffer<Real> columns_;               ///< of all fields
   std::vector<FftwBuffer<Real>> scratch_;  ///< for each thread
   FftwPlan<Real> row_forward_;
   FftwPlan<Real> row_backward_;

@@ -1,14 +1,39 @@
 #pragma once
 
 #include <algorithm>
+#include <vector>
 
 #include "solver/fft/fftw.hpp"
+#include "solver/fft/rank_transpose.hpp"
 #include "solver/grid/threads.hpp"
 
 namespace slipstick::solver {
 
-/// Real fields of n1 x n2 values that are Fourier transformed in place: a workspace, the plans for it. Rows
-/// go one by one, columns a cache line of them at a time; on so many threads, with the same result on any.
+/// Fields of n1 x n2 values, of whose rows so many hold samples and the others are zero: sample i stands in row
+/// place(i, n1). whole: all rows are kept, for what is done with the whole plane; on one rank alone.
+struct PlaneShape {
+  Index n1;
+  Index n2;
+  Index fields;
+  Index samples;
+  Index (*place)(Index i, Index n1) = [](Index i, Index) { return i; };
+  bool whole = false;
+};
+
+/// Some columns of the fields' complex numbers: row k has those from the first one on.
+template <typename Real>
+struct PlaneColumns {
+  Real* start;
+  Index row_stride;
+  Index field_stride;
+  Index first;
+  Index count;
+  Real* row(Index field, Index k) const { return start + field * field_stride + k * row_stride; }
+};
+
+/// Real fields that are Fourier transformed: a workspace, the plans for it. Rows go one by one and in place,
+/// columns a cache line of them at a time; on so many threads, with the same result on any. Each of several
+/// ranks carries its own rows of samples and its share of the columns.
 template <typename Real>
 class PlaneTransform {
  public:
@@ -16,94 +41,192 @@ class PlaneTransform {
   static constexpr Index kColumns = 64 / static_cast<Index>(2 * sizeof(Real));
 
   /// planner_flags: FFTW's.
-  PlaneTransform(Index n1, Index n2, Index fields, int threads, unsigned planner_flags)
-      : n1_(n1),
+  PlaneTransform(const PlaneShape& shape, int threads, unsigned planner_flags)
+      : shape_(shape),
         threads_(threads),
-        row_stride_(padded_row(n2)),
-        columns_(n2 / 2 + 1),
-        buffer_(static_cast<std::size_t>(size(n1, n2, fields))) {
+        row_stride_(row_stride(shape.n2)),
+        columns_(shape.n2 / 2 + 1),
+        own_samples_(own_samples(shape)),
+        field_size_(field_size(shape)),
+        buffer_(count(shape.fields * field_size_)),
+        ranks_(shared_matrix(shape)) {
     auto* const spectrum = buffer_.complex();
-    const int length = static_cast<int>(n2);
+    const int length = static_cast<int>(shape.n2);
     row_forward_ =
         FftwPlan<Real>(Fftw<Real>::plan_row_forward(length, buffer_.data(), spectrum, planner_flags));
     row_backward_ =
         FftwPlan<Real>(Fftw<Real>::plan_row_backward(length, spectrum, buffer_.data(), planner_flags));
-    const int step = static_cast<int>(row_stride_ / 2);
-    const FftwLines lines{static_cast<int>(n1), static_cast<int>(kColumns), step, 1, step, 1};
+    for (int thread = 0; !shape.whole && thread < threads; ++thread) {
+      scratch_.emplace_back(count(scratch_size(shape)));
+    }
+    const int step = static_cast<int>(shape.whole ? row_stride_ / 2 : kColumns);
+    auto* const columns = shape.whole ? spectrum : scratch_.front().complex();
+    const FftwLines lines{static_cast<int>(shape.n1), static_cast<int>(kColumns), step, 1, step, 1};
     column_forward_ =
-        FftwPlan<Real>(Fftw<Real>::plan_lines(lines, spectrum, spectrum, FFTW_FORWARD, planner_flags));
+        FftwPlan<Real>(Fftw<Real>::plan_lines(lines, columns, columns, FFTW_FORWARD, planner_flags));
     column_backward_ =
-        FftwPlan<Real>(Fftw<Real>::plan_lines(lines, spectrum, spectrum, FFTW_BACKWARD, planner_flags));
+        FftwPlan<Real>(Fftw<Real>::plan_lines(lines, columns, columns, FFTW_BACKWARD, planner_flags));
   }
 
   int threads() const { return threads_; }
 
-  /// Row i of a field's n2 values, or of its n2/2 + 1 complex numbers: each its real, then its imaginary
-  /// part.
-  Real* row(Index field, Index i) { return buffer_.data() + (field * n1_ + i) * row_stride_; }
-  void forward_row(Index field, Index i) {
-    Fftw<Real>::execute(row_forward_.get(), row(field, i), spectrum(field, i));
-  }
-  void backward_row(Index field, Index i) {
-    Fftw<Real>::execute(row_backward_.get(), spectrum(field, i), row(field, i));
+  /// The samples whose rows this rank carries.
+  const Share& own_samples() const { return own_samples_; }
+  static Share own_samples(const PlaneShape& shape) { return RowBands(shape.samples).own_rows(); }
+  /// Columns that it does.
+  static Share own_columns(const PlaneShape& shape) {
+    const Share batches = shared_matrix(shape).own_columns();
+    const Index columns = shape.n2 / 2 + 1;
+    return {std::min(batches.first * kColumns, columns), std::min(batches.last * kColumns, columns)};
   }
 
-  /// The fields' columns forward, a cache line of them at a time, work(first, count) on the complex numbers
-  /// [first, first + count) of each row, and back.
-  template <typename Work>
-  void through_columns(Index fields, const Work& work) {
-    in_parts(threads_, batches(), [&](int, Index begin, Index end) {
-      for (Index batch = begin; batch < end; ++batch) {
-        for (Index field = 0; field < fields; ++field) forward_columns(field, batch);
-        work(batch * kColumns, std::min(kColumns, columns_ - batch * kColumns));
-        for (Index field = 0; field < fields; ++field) backward_columns(field, batch);
+  /// Row of sample i: n2 values, or n2/2 + 1 complex numbers, each its real, then its imaginary part.
+  Real* sample(Index field, Index i) {
+    return row(field, shape_.whole ? shape_.place(i, shape_.n1) : i - own_samples_.first);
+  }
+  void forward_sample(Index field, Index i) {
+    Real* const values = sample(field, i);
+    Fftw<Real>::execute(row_forward_.get(), values, numbers(values));
+  }
+  void backward_sample(Index field, Index i) {
+    Real* const values = sample(field, i);
+    Fftw<Real>::execute(row_backward_.get(), numbers(values), values);
+  }
+  /// Of a whole plane the rows without samples, in which transforms write.
+  void clear_others(Index field) {
+    in_parts(threads_, shape_.n1 - shape_.samples, [&](int, Index begin, Index end) {
+      for (Index i = shape_.samples + begin; i < shape_.samples + end; ++i) {
+        std::fill_n(row(field, shape_.place(i, shape_.n1)), row_stride_, Real(0));
       }
     });
   }
-  /// All columns of a field.
+
+  /// A row of those that are kept.
+  Real* row(Index field, Index k) { return buffer_.data() + field * field_size_ + k * row_stride_; }
+  /// All columns of a whole plane.
+  PlaneColumns<Real> all_columns() { return {buffer_.data(), row_stride_, field_size_, 0, columns_}; }
+
+  /// This rank's columns of the fields forward, a cache line of them at a time, work(thread, these), and back;
+  /// not of a whole plane.
+  template <typename Work>
+  void through_columns(Index fields, const Work& work) {
+    for (Index field = 0; field < fields; ++field) ranks_.to_columns(buffer_.data() + field * field_size_);
+    const Share own = shared_matrix(shape_).own_columns();
+    in_parts(threads_, own.count(), [&](int thread, Index begin, Index end) {
+      Real* const scratch = scratch_[count(thread)].data();
+      const Index size = 2 * kColumns * shape_.n1;
+      for (Index batch = begin; batch < end; ++batch) {
+        for (Index field = 0; field < fields; ++field) {
+          read_batch(this->batch(field, batch), scratch + field * size);
+          Fftw<Real>::execute(column_forward_.get(), numbers(scratch + field * size),
+                              numbers(scratch + field * size));
+        }
+        const Index first = (own.first + batch) * kColumns;
+        work(thread, PlaneColumns<Real>{scratch, 2 * kColumns, size, first,
+                                        std::min(kColumns, columns_ - first)});
+        for (Index field = 0; field < fields; ++field) {
+          Fftw<Real>::execute(column_backward_.get(), numbers(scratch + field * size),
+                              numbers(scratch + field * size));
+          write_batch(scratch + field * size, this->batch(field, batch));
+        }
+      }
+    });
+    for (Index field = 0; field < fields; ++field) ranks_.to_rows(buffer_.data() + field * field_size_);
+  }
+  /// All columns of a field of a whole plane.
   void forward_columns(Index field) {
-    in_parts(threads_, batches(), [&](int, Index begin, Index end) {
+    in_parts(threads_, batches(shape_), [&](int, Index begin, Index end) {
       for (Index batch = begin; batch < end; ++batch) forward_columns(field, batch);
     });
   }
   /// n1 n2 times the inverse of forward, with the rows.
   void backward_columns(Index field) {
-    in_parts(threads_, batches(), [&](int, Index begin, Index end) {
+    in_parts(threads_, batches(shape_), [&](int, Index begin, Index end) {
       for (Index batch = begin; batch < end; ++batch) backward_columns(field, batch);
     });
   }
 
-  /// Reals from one row to the next.
-  Index row_stride() const { return row_stride_; }
-  std::size_t bytes() const { return buffer_.bytes(); }
+  std::size_t bytes() const {
+    std::size_t sum = buffer_.bytes();
+    for (const FftwBuffer<Real>& scratch : scratch_) sum += scratch.bytes();
+    return sum;
+  }
   /// Reals in the workspace.
-  static Index size(Index n1, Index n2, Index fields) { return fields * n1 * padded_row(n2); }
+  static Index size(const PlaneShape& shape, int threads) {
+    return shape.fields * field_size(shape) + (shape.whole ? 0 : threads * scratch_size(shape));
+  }
+  /// Reals from one row to the next: on one rank an odd number of cache lines, so that a column is spread over
+  /// the cache whatever its length.
+  Index row_stride() const { return row_stride_; }
 
  private:
-  /// An odd number of cache lines, so that a column is spread over the cache whatever its length.
-  static Index padded_row(Index n2) {
-    constexpr Index line = 64 / static_cast<Index>(sizeof(Real));
-    const Index lines = (2 * (n2 / 2 + 1) + line - 1) / line;
-    return (lines + 1 - lines % 2) * line;
+  static constexpr Index kLine = 64 / static_cast<Index>(sizeof(Real));  ///< reals in a cache line
+  /// Rows lie where the processor does not look ahead: they are asked for by hand, so many before their turn.
+  static constexpr Index kAhead = 12;
+
+  static Index batches(const PlaneShape& shape) { return (shape.n2 / 2 + kColumns) / kColumns; }
+  static Index row_stride(Index n2) {
+    const Index lines = (n2 / 2 + kColumns) / kColumns;
+    return (Ranks::number() > 1 ? lines : lines | 1) * kLine;
   }
-  typename Fftw<Real>::Complex* spectrum(Index field, Index i) {
-    return reinterpret_cast<typename Fftw<Real>::Complex*>(row(field, i));
+  /// What goes from rank to rank: a cache line is an entry.
+  static typename RankTranspose<Real>::Shape shared_matrix(const PlaneShape& shape) {
+    return {shape.samples, RowBands(shape.samples).rows_of_rank(), batches(shape), 2 * kColumns};
   }
-  Index batches() const { return (columns_ + kColumns - 1) / kColumns; }
+  static Index field_size(const PlaneShape& shape) {
+    if (Ranks::number() == 1) return (shape.whole ? shape.n1 : shape.samples) * row_stride(shape.n2);
+    return shared_matrix(shape).size();
+  }
+  static Index scratch_size(const PlaneShape& shape) { return shape.fields * 2 * kColumns * shape.n1; }
+
+  /// Where a batch of this rank's columns has the first of its samples, and how far it is to the next one: on
+  /// one rank where rows are, on several where they have been carried.
+  Real* batch(Index field, Index batch) {
+    const bool carried = Ranks::number() > 1;
+    return row(field, 0) + batch * (carried ? shape_.samples : 1) * kLine;
+  }
+  Index sample_step() const { return Ranks::number() > 1 ? kLine : row_stride_; }
+
+  /// Samples between there and where they are transformed.
+  void read_batch(const Real* from, Real* columns) const {
+    const Index step = sample_step();
+    for (Index i = 0; i < shape_.samples; ++i) {
+      __builtin_prefetch(from + (i + kAhead) * step);
+      std::copy_n(from + i * step, kLine, columns + shape_.place(i, shape_.n1) * kLine);
+    }
+    for (Index i = shape_.samples; i < shape_.n1; ++i) {
+      std::fill_n(columns + shape_.place(i, shape_.n1) * kLine, kLine, Real(0));
+    }
+  }
+  void write_batch(const Real* columns, Real* to) const {
+    const Index step = sample_step();
+    for (Index i = 0; i < shape_.samples; ++i) {
+      __builtin_prefetch(to + (i + kAhead) * step, 1);
+      std::copy_n(columns + shape_.place(i, shape_.n1) * kLine, kLine, to + i * step);
+    }
+  }
+
+  static typename Fftw<Real>::Complex* numbers(Real* row) {
+    return reinterpret_cast<typename Fftw<Real>::Complex*>(row);
+  }
   void forward_columns(Index field, Index batch) {
-    auto* const columns = spectrum(field, 0) + batch * kColumns;
+    auto* const columns = numbers(row(field, 0)) + batch * kColumns;
     Fftw<Real>::execute(column_forward_.get(), columns, columns);
   }
   void backward_columns(Index field, Index batch) {
-    auto* const columns = spectrum(field, 0) + batch * kColumns;
+    auto* const columns = numbers(row(field, 0)) + batch * kColumns;
     Fftw<Real>::execute(column_backward_.get(), columns, columns);
   }
 
-  Index n1_;
+  PlaneShape shape_;
   int threads_;
   Index row_stride_;
   Index columns_;
+  Share own_samples_;
+  Index field_size_;  ///< reals from one field to the next
   FftwBuffer<Real> buffer_;
+  RankTranspose<Real> ranks_;
+  std::vector<FftwBuffer<Real>> scratch_;  ///< for each thread: columns while they are transformed
   FftwPlan<Real> row_forward_;
   FftwPlan<Real> row_backward_;
   FftwPlan<Real> column_forward_;

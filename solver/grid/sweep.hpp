@@ -4,21 +4,22 @@
 #include <array>
 #include <vector>
 
+#include "solver/grid/ranks.hpp"
 #include "solver/grid/threads.hpp"
 
 namespace slipstick::solver {
 
 /// Those cells of a grid that a loop visits, as intervals of neighbours: cells that carry no traction cost
-/// nothing. The cells are cut into parts, by their number alone and about equal in size, which the threads of
-/// the pool share; sums are taken part by part and then in their order. So no result depends on the number of
-/// threads.
+/// nothing. Sums are taken in bands of rows, see RowBands, and then in their order, whatever the threads of the
+/// pool and the ranks of the run that share the bands: so no result depends on the number of either.
 class Sweep {
  public:
   /// None yet.
   Sweep() = default;
-  /// Cells where a field, one value a cell, is not zero.
+  /// Cells where a field, one value a cell, is not zero. row: cells of a row, which ranks share; 0: every rank
+  /// visits all cells.
   template <typename Field>
-  explicit Sweep(const Field& field) {
+  explicit Sweep(const Field& field, Index row = 0) : row_(row) {
     assign(field.size(), [&](Index cell) { return field[cell] != 0; });
   }
 
@@ -26,39 +27,56 @@ class Sweep {
   template <typename Contains>
   void assign(Index cells, const Contains& contains);
 
-  /// Cells of the grid, and those that are visited.
+  /// Cells of the grid, and those that are visited, by all ranks together.
   Index size() const { return size_; }
   Index count() const { return count_; }
   std::size_t bytes() const { return intervals_.capacity() * sizeof(Interval); }
+
+  /// All cells of this rank's rows.
+  Share own_cells() const { return own_; }
 
   /// work(first, last) for each interval [first, last) of cells; several threads at the same time. It must
   /// not throw.
   template <typename Work>
   void each(const Work& work) const {
-    in_parts(threads(), parts_, [&](int, Index first, Index last) {
-      for (Index i = begin_[at(first)]; i < begin_[at(last)]; ++i) {
+    const Index parts = threads();
+    in_parts(threads(), parts, [&](int, Index first, Index last) {
+      for (Index i = begin_[cut(first, parts)]; i < begin_[cut(last, parts)]; ++i) {
         work(intervals_[at(i)].first, intervals_[at(i)].last);
       }
+    });
+  }
+
+  /// work(first, last) for all cells of this rank's rows, in as many parts as there are threads.
+  template <typename Work>
+  void each_own(const Work& work) const {
+    in_parts(threads(), own_.count(), [&](int, Index first, Index last) {
+      if (first < last) work(own_.first + first, own_.first + last);
     });
   }
 
   /// The sum of what work(first, last, sum) adds to `sum`, which begins as Sum().
   template <typename Sum, typename Work>
   Sum sum(const Work& work) const {
-    const auto sum_of = [&](Index part) {
+    const auto sum_of = [&](Index band) {
       Sum sum{};
-      for (Index i = begin_[at(part)]; i < begin_[at(part + 1)]; ++i) {
+      for (Index i = begin_[at(band)]; i < begin_[at(band + 1)]; ++i) {
         work(intervals_[at(i)].first, intervals_[at(i)].last, sum);
       }
       return sum;
     };
-    if (parts_ == 1) return sum_of(0);
-    std::array<Sum, kMostParts> sums;
-    in_parts(threads(), parts_, [&](int, Index first, Index last) {
-      for (Index part = first; part < last; ++part) sums[at(part)] = sum_of(part);
+    if (bands_ == 1 && !shared()) return sum_of(0);
+    std::array<Sum, RowBands::kMost> sums;
+    const Index parts = threads();
+    in_parts(threads(), parts, [&](int, Index first, Index last) {
+      const std::size_t end = cut(last, parts);
+      for (std::size_t band = cut(first, parts); band < end; ++band) {
+        sums[band] = sum_of(static_cast<Index>(band));
+      }
     });
+    if (shared()) Ranks::gather_shares(std::span(sums).first(at(bands_)));
     Sum total = sums.front();
-    for (Index part = 1; part < parts_; ++part) total += sums[at(part)];
+    for (Index band = 1; band < bands_; ++band) total += sums[at(band)];
     return total;
   }
 
@@ -67,47 +85,82 @@ class Sweep {
     Index first;
     Index last;
   };
-  static constexpr Index kMostParts = 64;
-  /// Of a part, at least; where there are fewer than some such parts a second thread is not worth it.
-  static constexpr Index kCellsOfPart = 512;
-  static constexpr Index kFew = 8 * kCellsOfPart;
+  /// Of a band, at least, where rows do not say; with fewer than some such bands a second thread is not worth it.
+  static constexpr Index kCellsOfBand = 512;
+  static constexpr Index kFew = 8 * kCellsOfBand;
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-  int threads() const { return count_ < kFew ? 1 : ThreadPool::available(); }
+  bool shared() const { return row_ > 0 && Ranks::number() > 1; }
+  RowBands bands() const { return row_ > 0 ? RowBands(size_ / row_) : RowBands(size_, kCellsOfBand); }
+  int threads() const { return visited_ < kFew ? 1 : ThreadPool::available(); }
+  /// The first band of a part, or past the last one: as many cells of a band are visited as its rows have of
+  /// them, and each part gets about as many.
+  std::size_t cut(Index part, Index parts) const {
+    const auto first = before_.begin() + own_bands_.first;
+    const auto last = before_.begin() + own_bands_.last;
+    if (part == 0) return at(own_bands_.first);
+    if (part == parts) return at(own_bands_.last);
+    return at(std::lower_bound(first, last, visited_ * part / parts) - before_.begin());
+  }
 
   std::vector<Interval> intervals_;
-  std::array<Index, kMostParts + 1> begin_{};  ///< the first interval of each part
+  std::array<Index, RowBands::kMost + 1> begin_{};   ///< the first interval of each band
+  std::array<Index, RowBands::kMost + 1> before_{};  ///< cells of this rank visited before each
+  Index row_ = 0;
   Index size_ = 0;
   Index count_ = 0;
-  Index parts_ = 1;
+  Index visited_ = 0;  ///< by this rank
+  Index bands_ = 1;
+  Share own_{0, 0};
+  Share own_bands_{0, 1};
 };
+
+/// A field of any number of components: zero in this rank's rows.
+template <typename Field>
+void clear(const Sweep& cells, Field& field) {
+  cells.each_own([&](Index first, Index last) {
+    for (Index start = 0; start < field.size(); start += cells.size()) {
+      field.segment(start + first, last - first).setZero();
+    }
+  });
+}
 
 template <typename Contains>
 void Sweep::assign(Index cells, const Contains& contains) {
   size_ = cells;
-  count_ = 0;
-  for (Index cell = 0; cell < cells; ++cell) count_ += contains(cell) ? 1 : 0;
-  parts_ = std::clamp<Index>(count_ / kCellsOfPart, 1, kMostParts);
+  const RowBands bands = this->bands();
+  const Index of_row = std::max<Index>(row_, 1);
+  bands_ = std::max<Index>(bands.count(), 1);
+  own_bands_ = shared() ? bands.own() : Share{0, bands_};
   intervals_.clear();
-  Index visited = 0;
-  Index part = 0;
-  bool inside = false;
-  for (Index cell = 0; cell < cells; ++cell) {
-    if (!contains(cell)) {
-      inside = false;
-      continue;
+  visited_ = 0;
+  begin_.fill(0);
+  before_.fill(0);
+  own_ = {shared() ? bands.own_rows().first * of_row : 0, shared() ? bands.own_rows().last * of_row : cells};
+  for (Index band = own_bands_.first; band < own_bands_.last; ++band) {
+    const Share rows = bands.rows(band);
+    begin_[at(band)] = static_cast<Index>(intervals_.size());
+    before_[at(band)] = visited_;
+    bool inside = false;
+    for (Index cell = rows.first * of_row; cell < rows.last * of_row; ++cell) {
+      if (!contains(cell)) {
+        inside = false;
+        continue;
+      }
+      if (!inside) intervals_.push_back({cell, cell});
+      inside = true;
+      intervals_.back().last = cell + 1;
+      ++visited_;
     }
-    // A part that is full ends here, and with it an interval.
-    while (part < parts_ && visited * parts_ >= part * count_) {
-      begin_[at(part++)] = static_cast<Index>(intervals_.size());
-      inside = false;
-    }
-    if (!inside) intervals_.push_back({cell, cell});
-    inside = true;
-    intervals_.back().last = cell + 1;
-    ++visited;
   }
-  for (; part <= parts_; ++part) begin_[at(part)] = static_cast<Index>(intervals_.size());
+  for (Index band = own_bands_.last; band <= RowBands::kMost; ++band) {
+    begin_[at(band)] = static_cast<Index>(intervals_.size());
+    before_[at(band)] = visited_;
+  }
+  count_ = visited_;
+  if (!shared()) return;
+  count_ = 0;
+  for (const double visited : Ranks::of_each(static_cast<double>(visited_))) count_ += static_cast<Index>(visited);
 }
 
 }  // namespace slipstick::solver

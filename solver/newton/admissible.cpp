@@ -46,6 +46,13 @@ LoadsAlong<M> PositivePressures::loads_along(const ArrayXd& y, const std::array<
   });
 }
 
+void PositivePressures::project(ArrayXd& p) const {
+  sweep_.each_own([&](Index first, Index last) {
+    auto part = p.segment(first, last - first);
+    part = reachable_.segment(first, last - first) * part.max(0.0);
+  });
+}
+
 double PositivePressures::gap(const ArrayXd& p, const ArrayXd& opening) const {
   struct Lowest {
     double value = std::numeric_limits<double>::infinity();
@@ -88,7 +95,7 @@ void PositivePressures::add_jump(const ArrayXd& z, const ArrayXd& p, ArrayXd& st
 
 void FrictionDiscs::project(ArrayXd& q) const {
   const Index n = cells();
-  in_parts(ThreadPool::available(), n, [&](int, Index first, Index last) {
+  sweep_.each_own([&](Index first, Index last) {
     for (Index i = first; i < last; ++i) {
       const double size = std::sqrt(q[i] * q[i] + q[i + n] * q[i + n]);
       if (!(size > bound_[i])) continue;
@@ -202,10 +209,14 @@ double FrictionDiscs::energy_error(const ArrayXd& q, const ArrayXd& slip, double
 
 double FrictionDiscs::gap_rounding(const ArrayXd& slip, const ArrayXd& displacement) const {
   constexpr double kUnits = 16.0;  // of transforms, and of loads, which are balanced to 1e-14
-  const Index n = cells();
-  const auto size = [n](const ArrayXd& v) { return (v.head(n).square() + v.tail(n).square()).sqrt(); };
-  return kUnits * std::numeric_limits<double>::epsilon() *
-         (bound_ * (size(slip) + 2.0 * size(displacement))).sum();
+  const double sum = sweep_.sum<double>([&](Index first, Index last, double& part) {
+    const Index count = last - first;
+    const auto size = [&](const ArrayXd& v) {
+      return (v.segment(first, count).square() + v.segment(first + cells(), count).square()).sqrt();
+    };
+    part += (bound_.segment(first, count) * (size(slip) + 2.0 * size(displacement))).sum();
+  });
+  return kUnits * std::numeric_limits<double>::epsilon() * sum;
 }
 
 template <typename Real>

@@ -38,13 +38,14 @@ class PositivePressures {
  public:
   static constexpr Index kComponents = 1;
 
-  /// reachable: 1 where the bodies can touch, 0 elsewhere.
-  explicit PositivePressures(const Eigen::ArrayXd& reachable) : reachable_(reachable), sweep_(reachable) {}
+  /// reachable: 1 where the bodies can touch, 0 elsewhere. row: see Sweep.
+  explicit PositivePressures(const Eigen::ArrayXd& reachable, Index row = 0)
+      : reachable_(reachable), sweep_(reachable, row) {}
 
   Index cells() const { return reachable_.size(); }
   const Sweep& sweep() const { return sweep_; }
 
-  void project(Eigen::ArrayXd& p) const { p = reachable_ * p.max(0.0); }
+  void project(Eigen::ArrayXd& p) const;
 
   template <int M, typename Direction>
   LoadsAlong<M> loads_along(const Eigen::ArrayXd& y, const std::array<const Direction*, M>& w,
@@ -76,7 +77,8 @@ class FrictionDiscs {
  public:
   static constexpr Index kComponents = 2;
 
-  explicit FrictionDiscs(const Eigen::ArrayXd& bound) : bound_(bound), sweep_(bound) {}
+  /// row: see Sweep.
+  explicit FrictionDiscs(const Eigen::ArrayXd& bound, Index row = 0) : bound_(bound), sweep_(bound, row) {}
 
   Index cells() const { return bound_.size(); }
   const Sweep& sweep() const { return sweep_; }

@@ -111,10 +111,10 @@ class CgConstraints {
     std::ranges::copy(conditions, conditions_.begin());
     const Sweep& cells = preconditioner.cells();
     for (std::size_t k = 0; k < count_; ++k) {
-      z.setZero();
+      clear(cells, z);
       cells.each([&](Index first, Index last) { preconditioner.load(first, last, *conditions[k], z); });
       preconditioner.transform(z);
-      preconditioned_[k].setZero();
+      clear(cells, preconditioned_[k]);
       cells.each([&](Index first, Index last) {
         preconditioner.store(first, last, *conditions[k], z, preconditioned_[k]);
       });
@@ -177,11 +177,16 @@ class CgConstraints {
   }
 
   /// x += the combination of preconditioned conditions with these values of c_k.x.
-  void add_with_values(const Coefficients& values, CgField<Real>& x) const {
+  void add_with_values(const Sweep& cells, const Coefficients& values, CgField<Real>& x) const {
     const Coefficients parts = factor_.solve(values);
-    for (Index k = 0; k < parts.size(); ++k) {
-      x += static_cast<Real>(parts[k]) * preconditioned_[static_cast<std::size_t>(k)];
-    }
+    cells.each([&](Index first, Index last) {
+      for (Index k = 0; k < parts.size(); ++k) {
+        const auto& w = preconditioned_[static_cast<std::size_t>(k)];
+        for (Index start = first; start < x.size(); start += cells.size()) {
+          x.segment(start, last - first) += static_cast<Real>(parts[k]) * w.segment(start, last - first);
+        }
+      }
+    });
   }
 
   /// Each condition preconditioned.
@@ -248,11 +253,11 @@ CgSummary projected_cg(Map& map, Preconditioner& preconditioner, const CgConstra
     });
   };
 
-  y.setZero();
+  clear(cells, y);
   cells.each([&](Index first, Index last) { preconditioner.load(first, last, r, y); });
   double square = precondition();
   const double first_square = square;
-  d.setZero();
+  clear(cells, d);
   turn(0);
   while (square > 0.0) {
     if (summary.iterations == options.max_iterations) {
@@ -267,7 +272,7 @@ CgSummary projected_cg(Map& map, Preconditioner& preconditioner, const CgConstra
       return summary;
     }
     const auto step = static_cast<Real>(square / curvature);
-    y.setZero();
+    clear(cells, y);
     cells.each([&](Index first, Index last) {
       for (Index start = first; start < x.size(); start += cells.size()) {
         x.segment(start, last - first) += step * d.segment(start, last - first);

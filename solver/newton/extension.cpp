@@ -17,17 +17,20 @@ constexpr double kFade = 0.5;
 template <typename Real>
 Extension<Real>::Extension(const Grid& grid)
     : grid_(grid),
-      weight_(Field::Zero(grid.cells())),
+      weight_(grid.cells()),
       work_(grid.cells()),
       column_sums_(Field::Zero(grid.n2 + 2 * kReach)) {}
 
 /// Row by row the sum over neighbours of a field, which is zero beyond the grid.
 template <typename Real>
 template <typename Row>
-void Extension<Real>::spread(const Field& in, const Row& take_row) {
+void Extension<Real>::spread(Field& in, const Row& take_row) {
+  const RowBands bands(grid_.n1);
+  Ranks::gather_beside(std::span<Real>(in.data(), static_cast<std::size_t>(in.size())), grid_.n1,
+                       bands.rows_of_rank(), kReach);
   const auto row = [&](Index i) { return in.segment(i * grid_.n2, grid_.n2); };
   auto inner = column_sums_.segment(kReach, grid_.n2);
-  for (Index i = 0; i < grid_.n1; ++i) {
+  for (Index i = bands.own_rows().first; i < bands.own_rows().last; ++i) {
     inner = row(i);
     for (Index k = 1; k <= kReach; ++k) {
       const auto weight = static_cast<Real>(kNeighbours[static_cast<std::size_t>(k - 1)]);
@@ -42,7 +45,7 @@ void Extension<Real>::spread(const Field& in, const Row& take_row) {
 }
 
 template <typename Real>
-void Extension<Real>::prepare(const Field& free) {
+void Extension<Real>::prepare(Field& free) {
   spread(free, [&](Index first, const auto& sums) {
     const auto is_free = free.segment(first, grid_.n2);
     weight_.segment(first, grid_.n2) = (Real(1) - is_free) / (sums + static_cast<Real>(kFade));
@@ -54,12 +57,18 @@ void Extension<Real>::extend(Field& y) {
   spread(y, [&](Index first, const auto& sums) {
     work_.segment(first, grid_.n2) = weight_.segment(first, grid_.n2) * sums;
   });
-  y += work_;
+  const Share rows = RowBands(grid_.n1).own_rows();
+  const Index first = rows.first * grid_.n2;
+  const Index count = rows.count() * grid_.n2;
+  y.segment(first, count) += work_.segment(first, count);
 }
 
 template <typename Real>
 void Extension<Real>::gather(Field& y) {
-  work_ = weight_ * y;
+  const Share rows = RowBands(grid_.n1).own_rows();
+  const Index start = rows.first * grid_.n2;
+  const Index count = rows.count() * grid_.n2;
+  work_.segment(start, count) = weight_.segment(start, count) * y.segment(start, count);
   spread(work_, [&](Index first, const auto& sums) { y.segment(first, grid_.n2) += sums; });
 }
 

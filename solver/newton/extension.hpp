@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "solver/grid/grid.hpp"
+#include "solver/grid/ranks.hpp"
 
 namespace slipstick::solver {
 
@@ -17,11 +17,12 @@ class Extension {
  public:
   using Field = Eigen::Array<Real, Eigen::Dynamic, 1>;
 
-  /// Of scalar fields on a grid. Nothing is free.
+  /// Of scalar fields on a grid.
   explicit Extension(const Grid& grid);
 
-  /// free: 1 in the cells that are, 0 elsewhere.
-  void prepare(const Field& free);
+  /// free: 1 in the cells that are, 0 elsewhere. Of several ranks each knows its own rows, and gets those beside
+  /// them in whatever is given to it.
+  void prepare(Field& free);
   /// y, zero where no cell is free: its continuation is added there. Allocates nothing.
   void extend(Field& y);
   /// The adjoint: to y in the free cells it adds what it has where extend() writes. Allocates nothing.
@@ -31,7 +32,7 @@ class Extension {
 
  private:
   template <typename Row>
-  void spread(const Field& in, const Row& take_row);
+  void spread(Field& in, const Row& take_row);
 
   Grid grid_;
   Field weight_;  ///< of the sum near by; 0 in the free cells

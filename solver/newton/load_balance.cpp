@@ -35,8 +35,18 @@ LoadBalance<Set>::LoadBalance(const Set& set, const std::vector<Condition>& cond
   }
   majorant_.resize(load_.size(), load_.size());
   for (Eigen::Index k = 0; k < load_.size(); ++k) {
-    for (Eigen::Index l = 0; l < load_.size(); ++l) majorant_(k, l) = (field(k) * field(l)).sum();
+    for (Eigen::Index l = 0; l < load_.size(); ++l) majorant_(k, l) = product(field(k), field(l));
   }
+}
+
+/// In the cells whose set is not zero alone.
+template <class Set>
+double LoadBalance<Set>::product(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) const {
+  return set_.sweep().template sum<double>([&](Eigen::Index first, Eigen::Index last, double& sum) {
+    for (Eigen::Index start = first; start < a.size(); start += set_.cells()) {
+      sum += (a.segment(start, last - first) * b.segment(start, last - first)).sum();
+    }
+  });
 }
 
 template <class Set>
@@ -56,7 +66,7 @@ bool LoadBalance<Set>::solve(const Eigen::ArrayXd& y, Coefficients& x) const {
   const std::span<const Eigen::ArrayXd* const> c(c_);
   if (solve_along(y, c, x, true)) return true;
   Coefficients missing = load_;
-  for (Eigen::Index k = 0; k < load_.size(); ++k) missing[k] -= (field(k) * y).sum();
+  for (Eigen::Index k = 0; k < load_.size(); ++k) missing[k] -= product(field(k), y);
   x = least_solution(majorant_, missing);
   return solve_along(y, c, x, true);
 }

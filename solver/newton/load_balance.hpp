@@ -65,6 +65,7 @@ class LoadBalance {
  private:
   const Eigen::ArrayXd& field(Eigen::Index k) const { return *c_[static_cast<std::size_t>(k)]; }
 
+  double product(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) const;
   template <typename Direction>
   bool solve_along(const Eigen::ArrayXd& y, std::span<const Direction* const> w, Coefficients& x,
                    bool own) const;

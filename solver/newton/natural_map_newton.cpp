@@ -49,18 +49,20 @@ NaturalMapNewton<Set, Real>::NaturalMapNewton(const Set& set, const ConvexProgra
       mean_(symbol.diagonal()),
       rho_((kIsScalar ? kRhoOfPressure : kRho) * 0.5 * (mean_[0] + mean_[1])),
       work_(size()),
-      tangents_(program.imposed.size(), Field(size())),
+      tangents_(program.imposed.size()),
       constraints_(tangents_),
       r_(size()),
       x_(size()),
-      space_(Set::kComponents, set.cells()),
+      space_(Set::kComponents, set.sweep()),
       extension_(kIsScalar ? op.grid() : Grid{}),
       balance_(set, program.imposed),
       u_(size()),
-      y_(ArrayXd::Zero(size())),
-      trial_(ArrayXd::Zero(size())),
+      y_(size()),
+      trial_(size()),
       trial_u_(size()) {
-  space_.free = set.sweep();
+  for (Field& tangent : tangents_) tangent.resize(size());
+  clear(set.sweep(), y_);
+  clear(set.sweep(), trial_);
   for (const Condition& condition : program.imposed) add_condition(*condition.c);
   if constexpr (!std::is_same_v<Real, double>) {
     for (const Field& field : rounded_) c_.push_back(&field);
@@ -142,7 +144,7 @@ void NaturalMapNewton<Set, Real>::enter_admissible_set(ArrayXd& q) {
   Coefficients x = Coefficients::Zero(balance_.count());
   if (balance_.solve(q, x)) balance_.add(x, q);
   set_.project(q);
-  op_.apply(q, u_);
+  op_.apply_own(q, u_);
   energy_ = energy(q, u_);
 }
 
@@ -150,6 +152,14 @@ template <AdmissibleSet Set, typename Real>
 template <typename Work>
 void NaturalMapNewton<Set, Real>::each(const Work& work) const {
   set_.sweep().each([&](Index first, Index last) {
+    for (Index start = 0; start < size(); start += set_.cells()) work(start + first, start + last);
+  });
+}
+
+template <AdmissibleSet Set, typename Real>
+template <typename Work>
+void NaturalMapNewton<Set, Real>::each_own(const Work& work) const {
+  set_.sweep().each_own([&](Index first, Index last) {
     for (Index start = 0; start < size(); start += set_.cells()) work(start + first, start + last);
   });
 }
@@ -174,7 +184,8 @@ void NaturalMapNewton<Set, Real>::write_slip(ArrayXd& s) const {
 
 template <AdmissibleSet Set, typename Real>
 Eigen::ArrayXd NaturalMapNewton<Set, Real>::slip() const {
-  ArrayXd s = ArrayXd::Zero(size());
+  ArrayXd s(size());
+  clear(set_.sweep(), s);
   write_slip(s);
   return s;
 }
@@ -242,9 +253,9 @@ bool NaturalMapNewton<Set, Real>::solve_linear(const ArrayXd& q, const LinearTar
   write_residual(q);
   TangentOperator<Real> map = tangent_operator();
   TangentPreconditioner<Real> inverse = preconditioner();
-  x_.setZero();
+  clear(set_.sweep(), x_);
   if (loads.size() > 0) {
-    constraints_.add_with_values(loads, x_);
+    constraints_.add_with_values(space_.free, loads, x_);
     map.apply(x_, work_.Ad);
     each([&](Index first, Index last) {
       r_.segment(first, last - first) -= work_.Ad.segment(first, last - first);
@@ -261,7 +272,7 @@ bool NaturalMapNewton<Set, Real>::solve_linear(const ArrayXd& q, const LinearTar
 /// The loads that cells bring which jump onto the face of their set.
 template <AdmissibleSet Set, typename Real>
 Coefficients NaturalMapNewton<Set, Real>::jump_loads(const ArrayXd& q) {
-  trial_.setZero();
+  clear(set_.sweep(), trial_);
   set_.add_jump(y_, q, trial_);
   Coefficients loads(balance_.count());
   for (Eigen::Index k = 0; k < loads.size(); ++k) {
@@ -295,15 +306,18 @@ double NaturalMapNewton<Set, Real>::least_energy_at(const ArrayXd& q) const {
 template <AdmissibleSet Set, typename Real>
 bool NaturalMapNewton<Set, Real>::accept_trial(ArrayXd& q) {
   set_.project(trial_);
-  op_.apply(trial_, trial_u_);
+  op_.apply_own(trial_, trial_u_);
   const double before = energy_;
   double after = energy(trial_, trial_u_);
   const bool lower = after <= before + kEnergyRounding * std::abs(before);
   if (const double part = kIsScalar || !lower ? least_energy_at(q) : 1.0;
       part > kLeastPart && part < kNearlyAll) {
     if (!lower) ++safeguards_.halvings;
-    trial_ = q + part * (trial_ - q);
-    trial_u_ = u_ + part * (trial_u_ - u_);
+    each_own([&](Index first, Index last) {
+      const Index n = last - first;
+      trial_.segment(first, n) = q.segment(first, n) + part * (trial_.segment(first, n) - q.segment(first, n));
+      trial_u_.segment(first, n) = u_.segment(first, n) + part * (trial_u_.segment(first, n) - u_.segment(first, n));
+    });
     after = energy(trial_, trial_u_);
   }
   if (!(after <= before + kEnergyRounding * std::abs(before))) return false;
@@ -398,7 +412,7 @@ bool NaturalMapNewton<Set, Real>::refine(const ArrayXd& q, double tolerance, New
   linearise();
   if (!has_tangents_ || balance_.count() == 0) return true;
   write_residual(q);
-  x_.setZero();
+  clear(set_.sweep(), x_);
   TangentOperator<Real> map = tangent_operator();
   TangentPreconditioner<Real> inverse = preconditioner();
   const CgSummary step =

@@ -61,7 +61,8 @@ class NaturalMapNewton {
   NaturalMapNewton(const Set& set, const ConvexProgram& program, LinearOperator& op, Operator<Real>& inner,
                    InverseSymbol<Real>& symbol);
 
-  /// Improves q, any field of the right size, until its certificate holds.
+  /// Improves q, any field of the right size, until its certificate holds. Of several ranks each improves its
+  /// own rows; so with what the others return.
   /// multipliers: guesses of those of the imposed conditions, or empty.
   NewtonSummary run(ArrayXd& q, const Coefficients& multipliers, const NewtonOptions& options);
 
@@ -89,6 +90,9 @@ class NaturalMapNewton {
   /// work(first, last) for the values of the cells that may carry something, and the sum of what it returns.
   template <typename Work>
   void each(const Work& work) const;
+  /// For those of all cells of this rank.
+  template <typename Work>
+  void each_own(const Work& work) const;
   template <typename Work>
   double sum(const Work& work) const;
 

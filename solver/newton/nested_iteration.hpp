@@ -88,6 +88,9 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
   result.safeguards += result.newton.safeguards;
   result.displacement = newton.displacement();
   result.slip = newton.slip();
+  for (Eigen::ArrayXd* const field : {&result.field, &result.displacement, &result.slip}) {
+    gather(grid, std::span(field->data(), static_cast<std::size_t>(field->size())));
+  }
   result.grids.push_back(
       {grid.n1, grid.n2, newton.applications(), result.newton.iterations, result.newton.gap});
   result.bytes = operators->bytes() + newton.bytes(static_cast<double>(grid.cells()), program.imposed.size());

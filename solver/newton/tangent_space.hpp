@@ -27,15 +27,21 @@ template <typename Real>
 struct TangentSpace {
   using Field = Eigen::Array<Real, Eigen::Dynamic, 1>;
 
-  /// Of vectors (2 components) or scalars (1), on so many cells. Nothing is free: a linearisation counts the
-  /// cells that change.
-  TangentSpace(Index components, Index cells)
-      : a11(Field::Zero(cells)),
-        a12(Field::Zero(components == 2 ? cells : 0)),
-        a22(a12),
-        stiffness(a12),
-        scale(a12),
-        shift(a12) {}
+  /// Of vectors (2 components) or scalars (1), on the grid of some cells that may carry traction. Nothing is
+  /// free: a linearisation counts the cells that change.
+  TangentSpace(Index components, const Sweep& cells)
+      : a11(cells.size()),
+        a12(components == 2 ? cells.size() : 0),
+        a22(a12.size()),
+        stiffness(a12.size()),
+        scale(a12.size()),
+        shift(a12.size()),
+        free(cells) {
+    for (Field* const field : {&a11, &a12, &a22, &stiffness, &scale, &shift}) clear(cells, *field);
+  }
+
+  /// On so many cells, none of which may carry any.
+  TangentSpace(Index components, Index cells) : TangentSpace(components, Sweep(Field::Zero(cells))) {}
 
   Index components() const { return a12.size() > 0 ? 2 : 1; }
 
@@ -124,7 +130,7 @@ struct TangentOperator {
 
   /// Kd in the cells that are free; d is zero in others. Returns d.Kd.
   double apply(const Field& d, Field& Kd) {
-    op.apply(d, Kd);
+    op.apply_own(d, Kd);
     const Index n = space.a11.size();
     const auto& stiffness = space.stiffness;
     return space.free.template sum<double>([&](Index first, Index last, double& sum) {

@@ -86,7 +86,7 @@ Convolution<Real>::Convolution(const Grid& grid, BlockKernel kernel, const Elast
     : Operator<Real>(grid, std::move(kernel)),
       transform_(grid, fields(this->kernel()), std::max(options.threads, 1), planning(options.measure_plans)),
       components_(distinct_components(this->kernel())),
-      spectra_(components_.size() * count(transform_.columns() * (padded1() / 2 + 1))),
+      spectra_(components_.size() * count(transform_.own_columns(grid).count() * (padded1() / 2 + 1))),
       multiply_(multiply_for(this->kernel())) {
   for (std::size_t c = 0; c < this->kernel().components.size(); ++c) {
     const auto found = std::find(components_.begin(), components_.end(), this->kernel().components[c]);
@@ -154,8 +154,8 @@ auto Convolution<Real>::factors(Index column) const -> Factors {
 template <typename Real>
 double Convolution<Real>::predicted_bytes(const Grid& grid, const BlockKernel& kernel, int threads) {
   const Index p1 = fast_length(2 * grid.n1 - 1);
-  const Index p2 = fast_length(2 * grid.n2 - 1);
-  const std::size_t spectra = distinct_components(kernel).size() * count((p1 / 2 + 1) * (p2 / 2 + 1));
+  const std::size_t spectra =
+      distinct_components(kernel).size() * count((p1 / 2 + 1) * PaddedTransform<Real>::own_columns(grid).count());
   return static_cast<double>(sizeof(Real) * spectra + PaddedTransform<Real>::predicted_bytes(
                                                           grid, fields(kernel), std::max(threads, 1)));
 }

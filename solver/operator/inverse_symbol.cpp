@@ -26,10 +26,10 @@ std::vector<SymbolEntry> entries(bool tangential) {
   return {SymbolEntry::p11, SymbolEntry::p12, SymbolEntry::p22};
 }
 
-std::vector<Index> columns(const PeriodicGrid& periodic) {
-  std::vector<Index> frequencies(static_cast<std::size_t>(periodic.length2 / 2 + 1));
-  std::iota(frequencies.begin(), frequencies.end(), 0);
-  return frequencies;
+std::vector<Index> frequencies(const Share& columns) {
+  std::vector<Index> result(static_cast<std::size_t>(columns.count()));
+  std::iota(result.begin(), result.end(), columns.first);
+  return result;
 }
 
 /// Complex numbers times real ones.
@@ -68,67 +68,71 @@ class PeriodicInverseSymbol final : public InverseSymbol<Real> {
         periodic_(padded(grid, at_edge)),
         fields_(tangential ? 2 : 1),
         diagonal_(mean_inverse_symbol(periodic_, pair, tangential)),
-        table_(periodic_, pair, entries(tangential), columns(periodic_),
+        columns_(PlaneTransform<Real>::own_columns(shape(grid, periodic_, tangential))),
+        table_(periodic_, pair, entries(tangential), frequencies(columns_),
                1.0 / (static_cast<double>(periodic_.length1) * static_cast<double>(periodic_.length2))),
-        transform_(periodic_.length1, periodic_.length2, fields_, threads, planning(measure_plans)) {}
+        transform_(shape(grid, periodic_, tangential), threads, planning(measure_plans)) {}
 
   void apply(std::span<Real> field) override {
     if (static_cast<Index>(field.size()) != fields_ * grid_.cells()) {
       throw std::invalid_argument("inverse symbol applied to a field of another size");
     }
-    const Index rows = periodic_.length1;
-    in_parts(transform_.threads(), fields_ * rows, [&](int, Index first, Index last) {
-      for (Index i = first; i < last; ++i) load(i / rows, i % rows, field.data());
-    });
-    transform_.through_columns(fields_, [&](Index first, Index count) {
+    const auto each_row = [&](const auto& work) {
+      const Share own = transform_.own_samples();
+      in_parts(transform_.threads(), fields_ * own.count(), [&](int, Index first, Index last) {
+        for (Index i = first; i < last; ++i) work(i / own.count(), own.first + i % own.count());
+      });
+    };
+    each_row([&](Index f, Index i) { load(f, i, field.data()); });
+    transform_.through_columns(fields_, [&](int, const PlaneColumns<Real>& columns) {
       using Whole = std::integral_constant<Index, PlaneTransform<Real>::kColumns>;
-      count == Whole::value ? multiply(first, Whole()) : multiply(first, count);
+      columns.count == Whole::value ? multiply(columns, Whole()) : multiply(columns, columns.count);
     });
-    in_parts(transform_.threads(), fields_ * grid_.n1, [&](int, Index first, Index last) {
-      for (Index i = first; i < last; ++i) store(i / grid_.n1, i % grid_.n1, field.data());
-    });
+    each_row([&](Index f, Index i) { store(f, i, field.data()); });
   }
 
   std::array<double, 2> diagonal() const override { return diagonal_; }
   std::size_t bytes() const override { return table_.bytes() + transform_.bytes(); }
 
-  static Index predicted_size(const Grid& grid, bool tangential, bool at_edge) {
-    const auto [length1, length2, h1, h2] = padded(grid, at_edge);
-    return (tangential ? 3 : 1) * (length1 / 2 + 1) * (length2 / 2 + 1) +
-           PlaneTransform<Real>::size(length1, length2, tangential ? 2 : 1);
+  static Index predicted_size(const Grid& grid, bool tangential, bool at_edge, int threads) {
+    const PeriodicGrid periodic = padded(grid, at_edge);
+    const PlaneShape plane = shape(grid, periodic, tangential);
+    return (tangential ? 3 : 1) * (periodic.length1 / 2 + 1) *
+               PlaneTransform<Real>::own_columns(plane).count() +
+           PlaneTransform<Real>::size(plane, threads);
   }
 
  private:
-  /// Row i of a field forward; rows past the grid's last are zero.
+  static PlaneShape shape(const Grid& grid, const PeriodicGrid& periodic, bool tangential) {
+    return {periodic.length1, periodic.length2, tangential ? 2 : 1, grid.n1};
+  }
+
+  /// Row i of a field forward.
   void load(Index f, Index i, const Real* fields) {
-    Real* const row = transform_.row(f, i);
-    if (i >= grid_.n1) {
-      std::fill_n(row, transform_.row_stride(), Real(0));
-      return;
-    }
+    Real* const row = transform_.sample(f, i);
     std::copy_n(fields + (f * grid_.n1 + i) * grid_.n2, grid_.n2, row);
     std::fill(row + grid_.n2, row + periodic_.length2, Real(0));
-    transform_.forward_row(f, i);
+    transform_.forward_sample(f, i);
   }
 
   void store(Index f, Index i, Real* fields) {
-    transform_.backward_row(f, i);
-    std::copy_n(transform_.row(f, i), grid_.n2, fields + (f * grid_.n1 + i) * grid_.n2);
+    transform_.backward_sample(f, i);
+    std::copy_n(transform_.sample(f, i), grid_.n2, fields + (f * grid_.n1 + i) * grid_.n2);
   }
 
-  /// In so many columns from the first one on.
   template <typename Count>
-  void multiply(Index first, Count count) {
+  void multiply(const PlaneColumns<Real>& columns, Count count) {
+    const Index first = columns.first - columns_.first;
     for (Index k = 0; k < periodic_.length1; ++k) {
       const bool negative = 2 * k > periodic_.length1;
       const Index f = negative ? periodic_.length1 - k : k;
       const Real* const p11 = table_.row(SymbolEntry::p11, f) + first;
       if (fields_ == 1) {
-        scale_complex(count, p11, transform_.row(0, k) + 2 * first);
+        scale_complex(count, p11, columns.row(0, k));
       } else {
         mix(count, Real(negative ? -1 : 1), p11, table_.row(SymbolEntry::p12, f) + first,
-            table_.row(SymbolEntry::p22, f) + first, transform_.row(0, k) + 2 * first,
-            transform_.row(1, k) + 2 * first);
+            table_.row(SymbolEntry::p22, f) + first, columns.row(0, k),
+            columns.row(1, k));
       }
     }
   }
@@ -137,6 +141,7 @@ class PeriodicInverseSymbol final : public InverseSymbol<Real> {
   PeriodicGrid periodic_;
   Index fields_;
   std::array<double, 2> diagonal_;
+  Share columns_;  ///< of this rank
   SymbolTable<Real> table_;
   PlaneTransform<Real> transform_;
 };
@@ -177,7 +182,7 @@ double predicted_inverse_symbol_bytes(const Grid& grid, const BlockKernel& kerne
   check_diagonal(grid, tangential, diagonal);
   const Index size = grid.quadrant
                          ? MirroredInverseSymbol<Real>::predicted_size(grid, tangential, diagonal, threads)
-                         : PeriodicInverseSymbol<Real>::predicted_size(grid, tangential, at_edge);
+                         : PeriodicInverseSymbol<Real>::predicted_size(grid, tangential, at_edge, threads);
   return static_cast<double>(sizeof(Real)) * static_cast<double>(size);
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "solver/grid/grid.hpp"
+#include "solver/grid/ranks.hpp"
 #include "solver/operator/influence.hpp"
 #include "solver/operator/operator_kind.hpp"
 
@@ -43,6 +44,12 @@ class Operator {
   /// displacement = K * traction: outputs()*cells and inputs()*cells values. They may not overlap. Allocates
   /// nothing. Throws std::invalid_argument for other sizes.
   void apply(std::span<const Real> traction, std::span<Real> displacement) {
+    apply_own(traction, displacement);
+    gather(grid_, displacement);
+  }
+
+  /// In this rank's rows alone, see Ranks, of which alone it needs the tractions.
+  void apply_own(std::span<const Real> traction, std::span<Real> displacement) {
     const auto cells = static_cast<std::size_t>(grid_.cells());
     if (traction.size() != inputs() * cells || displacement.size() != outputs() * cells) {
       throw std::invalid_argument("operator applied to fields of another size");
@@ -54,6 +61,11 @@ class Operator {
   void apply(const Field& traction, Field& displacement) {
     apply(std::span(traction.data(), static_cast<std::size_t>(traction.size())),
           std::span(displacement.data(), static_cast<std::size_t>(displacement.size())));
+  }
+
+  void apply_own(const Field& traction, Field& displacement) {
+    apply_own(std::span(traction.data(), static_cast<std::size_t>(traction.size())),
+              std::span(displacement.data(), static_cast<std::size_t>(displacement.size())));
   }
 
   const Grid& grid() const { return grid_; }

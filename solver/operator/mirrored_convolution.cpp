@@ -66,7 +66,14 @@ MirroredConvolution<Real>::MirroredConvolution(const Grid& quadrant, BlockKernel
       along2_(quadrant.n2, planning(options.measure_plans)),
       row_groups_(groups(quadrant.n1, kLines)),
       column_groups_(groups(along2_.frequencies(), kLines)),
-      half_transformed_(count(fields() * row_groups_ * row_group_stride())) {
+      own_row_groups_(own_row_groups(quadrant.n1)),
+      field_size_(field_size(row_groups_, column_groups_, quadrant.n1)),
+      half_transformed_(count(fields() * field_size_)) {
+  if (Ranks::number() > 1) {
+    if (diagonal_) throw std::invalid_argument("several ranks do not exchange rows and columns");
+    ranks_.emplace(shared_matrix(row_groups_, column_groups_, quadrant.n1));
+  }
+  own_column_groups_ = ranks_ ? Ranks::own_share(column_groups_) : Share{0, column_groups_};
   if (diagonal_) transformed_ = FftwBuffer<Real>(transformed_reals<Real>(along1_.frequencies()));
   for (const Component component : distinct_components(this->kernel(), diagonal_)) {
     spectra_.push_back(kernel_spectrum(component, pair));
@@ -92,15 +99,36 @@ FftwBuffer<Real> MirroredConvolution<Real>::kernel_spectrum(Component component,
   // Where the field is odd, its row 0 is that of frequency h. K12's transform is zero at 0 and at h.
   const Index row0 = component == Component::k22 ? h1 : 0;
   const Index column0 = component == Component::k11 ? h2 : 0;
-  FftwBuffer<Real> spectrum(count(column_groups_ * kLines * h1));
+  const Index first = own_column_groups_.first * kLines;
+  const Index last = std::min(own_column_groups_.last * kLines, h2);
+  FftwBuffer<Real> spectrum(count(own_column_groups_.count() * kLines * h1));
   for (Index k1 = odd ? 1 : 0; k1 < h1; ++k1) {
-    for (Index k2 = odd ? 1 : 0; k2 < h2; ++k2) {
+    for (Index k2 = std::max<Index>(first, odd ? 1 : 0); k2 < last; ++k2) {
       const Index from = (k1 == 0 ? row0 : k1) * (h2 + 1) + (k2 == 0 ? column0 : k2);
-      spectrum.data()[(k2 / kLines * h1 + k1) * kLines + k2 % kLines] =
+      spectrum.data()[((k2 - first) / kLines * h1 + k1) * kLines + k2 % kLines] =
           static_cast<Real>(scale * values[count(from)]);
     }
   }
   return spectrum;
+}
+
+/// A block of kLines rows by kLines columns is an entry.
+template <typename Real>
+auto MirroredConvolution<Real>::shared_matrix(Index row_groups, Index column_groups, Index rows) -> Shape {
+  static_assert(RowBands::kRows % kLines == 0);
+  return {row_groups, RowBands(rows).rows_of_rank() / kLines, column_groups, kLines * kLines};
+}
+
+template <typename Real>
+Share MirroredConvolution<Real>::own_row_groups(Index rows) {
+  const Share own = RowBands(rows).own_rows();
+  return {groups(own.first, kLines), groups(own.last, kLines)};
+}
+
+template <typename Real>
+Index MirroredConvolution<Real>::field_size(Index row_groups, Index column_groups, Index rows) {
+  if (Ranks::number() == 1) return row_groups * column_groups * kLines * kLines;
+  return shared_matrix(row_groups, column_groups, rows).size();
 }
 
 template <typename Real>
@@ -123,10 +151,12 @@ double MirroredConvolution<Real>::predicted_bytes(const Grid& quadrant, const Bl
                                                   int threads, bool diagonal) {
   checked(kernel, quadrant, diagonal);
   const Index h1 = Transform::frequencies(quadrant.n1);
-  const Index columns = groups(Transform::frequencies(quadrant.n2), kLines) * kLines;
+  const Index column_groups = groups(Transform::frequencies(quadrant.n2), kLines);
+  const Index columns = Ranks::own_share(column_groups).count() * kLines;
   const Index fields = diagonal ? 1 : static_cast<Index>(kernel.inputs);
   const auto spectra = static_cast<Index>(distinct_components(kernel, diagonal).size());
-  const Index half_transformed = fields * groups(quadrant.n1, kLines) * kLines * columns;
+  const Index half_transformed =
+      fields * field_size(groups(quadrant.n1, kLines), column_groups, quadrant.n1);
   const Index transformed = diagonal ? static_cast<Index>(transformed_reals<Real>(h1)) : 0;
   const Index tables = Transform::table_size(quadrant.n1) + Transform::table_size(quadrant.n2);
   const Index per_thread =
@@ -143,19 +173,25 @@ void MirroredConvolution<Real>::do_apply(std::span<const Real> traction, std::sp
       for (Index group = first; group < last; ++group) work(thread, group);
     });
   };
-  in_groups(fields() * row_groups_, [&](int thread, Index group) {
-    const Index field = group / row_groups_;
-    rows_forward(thread, field, group % row_groups_, traction.data() + field * this->grid().cells());
+  const auto in_row_groups = [&](const auto& work) {
+    const Index own = own_row_groups_.count();
+    in_groups(fields() * own, [&](int thread, Index group) {
+      work(thread, group / own, own_row_groups_.first + group % own);
+    });
+  };
+  in_row_groups([&](int thread, Index field, Index group) {
+    rows_forward(thread, field, group, traction.data() + field * this->grid().cells());
   });
+  for (Index field = 0; ranks_ && field < fields(); ++field) ranks_->to_columns(of_field(field));
   if (diagonal_) {
     in_groups(column_groups_, [&](int thread, Index group) { columns_forward_diagonal(thread, group); });
     in_groups(column_groups_, [&](int thread, Index group) { columns_backward_diagonal(thread, group); });
   } else {
-    in_groups(column_groups_, [&](int thread, Index group) { convolve_columns(thread, group); });
+    in_groups(own_column_groups_.count(), [&](int thread, Index group) { convolve_columns(thread, group); });
   }
-  in_groups(fields() * row_groups_, [&](int thread, Index group) {
-    const Index field = group / row_groups_;
-    rows_backward(thread, field, group % row_groups_, displacement.data() + field * this->grid().cells());
+  for (Index field = 0; ranks_ && field < fields(); ++field) ranks_->to_rows(of_field(field));
+  in_row_groups([&](int thread, Index field, Index group) {
+    rows_backward(thread, field, group, displacement.data() + field * this->grid().cells());
     if (diagonal_) mirror_about_diagonal(group, displacement);
   });
 }

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "solver/fft/fftw.hpp"
 #include "solver/fft/half_sample_transform.hpp"
+#include "solver/fft/rank_transpose.hpp"
 #include "solver/operator/linear_operator.hpp"
 
 namespace slipstick::solver {
@@ -54,15 +56,23 @@ class MirroredConvolution final : public Operator<Real> {
   Workspace& column_workspace(int thread, Index field) {
     return column_workspaces_[static_cast<std::size_t>(thread * fields() + field)];
   }
-  /// Values from one group of rows of half_transformed_ to the next.
+  using Shape = typename RankTranspose<Real>::Shape;
+  static Shape shared_matrix(Index row_groups, Index column_groups, Index rows);
+  static Share own_row_groups(Index rows);
+  /// Values of half_transformed_ from one field to the next.
+  static Index field_size(Index row_groups, Index column_groups, Index rows);
+  Real* of_field(Index field) { return half_transformed_.data() + field * field_size_; }
+  /// Values from one group of rows of half_transformed_ to the next, while rows are carried.
   Index row_group_stride() const { return column_groups_ * kLines * kLines; }
   Real* half_transformed(Index field, Index row_group) {
-    return half_transformed_.data() + (field * row_groups_ + row_group) * row_group_stride();
+    return of_field(field) + (row_group - own_row_groups_.first) * row_group_stride();
   }
-  /// A group of columns of half_transformed_.
+  /// One of this rank's groups of columns of half_transformed_.
   template <typename Value>
   typename Transform::template Lines<Value> columns(Index field, Index group) {
-    return {half_transformed(field, 0) + group * kLines * kLines, kLines, row_group_stride()};
+    constexpr Index block = kLines * kLines;
+    if (ranks_) return {of_field(field) + group * row_groups_ * block, kLines, block};
+    return {of_field(field) + group * block, kLines, row_group_stride()};
   }
 
   bool diagonal_;
@@ -72,7 +82,12 @@ class MirroredConvolution final : public Operator<Real> {
   Index row_groups_;                       ///< groups of kLines rows of cells
   Index column_groups_;                    ///< groups of kLines frequencies along x2
   std::vector<FftwBuffer<Real>> spectra_;  ///< of the distinct components: h1 rows for each group of columns
-  FftwBuffer<Real> half_transformed_;      ///< along x2 only: h2 rows for each field and group of rows
+  Share own_row_groups_;                   ///< of this rank
+  Share own_column_groups_{};
+  Index field_size_;
+  std::optional<RankTranspose<Real>> ranks_;  ///< where there are several
+  FftwBuffer<Real> half_transformed_;  ///< along x2 only: h2 rows for each field and group of rows; on several
+                                       ///< ranks by groups of columns while these are carried
   FftwBuffer<Real> transformed_;           ///< diagonal only: h1 rows for each group of columns
   std::vector<Workspace> row_workspaces_;  ///< one for each thread
   std::vector<Workspace> column_workspaces_;  ///< one for each thread and field

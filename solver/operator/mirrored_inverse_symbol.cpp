@@ -18,12 +18,16 @@ PeriodicGrid mirrored(const Grid& grid) {
 /// Where sample i of t goes: even ones forwards, then odd ones backwards.
 Index reordered(Index i, Index t) { return i % 2 == 0 ? i / 2 : t - 1 - i / 2; }
 
+PlaneShape plane_of(const Grid& grid, bool tangential, bool symmetric) {
+  return {transform_length(grid.n1), transform_length(grid.n2), tangential ? 2 : 1, grid.n1, reordered, symmetric};
+}
+
 /// Where frequencies f2 lie in a row of coefficients: those of cosines, then those of sines.
-std::vector<Index> columns(Index t) {
-  std::vector<Index> frequencies;
-  for (Index k = 0; k <= t / 2; ++k) frequencies.push_back(k);
-  for (Index k = 0; k <= t / 2; ++k) frequencies.push_back(t - k);
-  return frequencies;
+std::vector<Index> frequencies(Index t, const Share& columns) {
+  std::vector<Index> result;
+  for (Index k = columns.first; k < columns.last; ++k) result.push_back(k);
+  for (Index k = columns.first; k < columns.last; ++k) result.push_back(t - k);
+  return result;
 }
 
 std::vector<SymbolEntry> entries(bool tangential, bool symmetric) {
@@ -56,15 +60,6 @@ void restore(const Real* __restrict row, Index n, Real even, Real odd, Index t, 
   }
   if (n % 2 != 0) values[n - 1] = even * row[n / 2];
 }
-
-/// cos and sin of pi k1/(2 t1), and those of pi k2/(2 t2) for all k2.
-template <typename Real>
-struct Twiddles {
-  Real c;
-  Real s;
-  const Real* c2;
-  const Real* s2;
-};
 
 /// With a and b the Fourier transform at (k1, k2) and (t1 - k1, k2), w1 = exp(-i pi k1/(2 t1)) and w2
 /// likewise, A = w1 w2 a and B = conj(w1) w2 b are the sums over samples times exp(-i (theta2 + theta1)) and
@@ -146,9 +141,10 @@ MirroredInverseSymbol<Real>::MirroredInverseSymbol(const Grid& grid, bool tangen
       t2_(transform_length(grid.n2)),
       half_(t2_ / 2 + 1),
       diagonal_(mean_inverse_symbol(mirrored(grid), pair, tangential)),
-      table_(mirrored(grid), pair, entries(tangential, diagonal == Diagonal::yes), columns(t2_),
+      columns_(PlaneTransform<Real>::own_columns(plane_of(grid, tangential, symmetric_))),
+      table_(mirrored(grid), pair, entries(tangential, diagonal == Diagonal::yes), frequencies(t2_, columns_),
              0.5 / (static_cast<double>(t1_) * static_cast<double>(t2_))),
-      transform_(t1_, t2_, tangential ? 2 : 1, threads, planning(measure_plans)),
+      transform_(plane_of(grid, tangential, symmetric_), threads, planning(measure_plans)),
       scratch_(coefficient_size(half_, tangential_ && !symmetric_)),
       coefficients_(static_cast<std::size_t>(threads * scratch_)),
       twiddles_(static_cast<std::size_t>(twiddle_size(t1_, half_))) {
@@ -178,7 +174,9 @@ Index MirroredInverseSymbol<Real>::predicted_size(const Grid& grid, bool tangent
   const Index t2 = transform_length(grid.n2);
   const Index half = t2 / 2 + 1;
   const auto tables = static_cast<Index>(entries(tangential, symmetric).size());
-  return tables * (t1 + 1) * 2 * half + PlaneTransform<Real>::size(t1, t2, tangential ? 2 : 1) +
+  const PlaneShape plane = plane_of(grid, tangential, symmetric);
+  return tables * (t1 + 1) * 2 * PlaneTransform<Real>::own_columns(plane).count() +
+         PlaneTransform<Real>::size(plane, threads) +
          threads * coefficient_size(half, tangential && !symmetric) + twiddle_size(t1, half);
 }
 
@@ -190,19 +188,25 @@ void MirroredInverseSymbol<Real>::apply(std::span<Real> field) {
   }
   const Index transformed = tangential_ && !symmetric_ ? 2 : 1;
   const int threads = transform_.threads();
-  in_parts(threads, transformed * t1_, [&](int, Index first, Index last) {
-    for (Index i = first; i < last; ++i) load(i / t1_, i % t1_, field.data() + i / t1_ * cells);
-  });
-  for (Index f = 0; f < transformed; ++f) transform_.forward_columns(f);
-  symmetric_ ? multiply_symmetric() : multiply();
+  const Share own = transform_.own_samples();
+  const auto each_row = [&](const auto& work) {
+    in_parts(threads, transformed * own.count(), [&](int, Index first, Index last) {
+      for (Index i = first; i < last; ++i) work(i / own.count(), own.first + i % own.count());
+    });
+  };
+  each_row([&](Index f, Index i) { load(f, i, field.data() + f * cells); });
+  if (symmetric_) {
+    transform_.clear_others(0);
+    transform_.forward_columns(0);
+    multiply_symmetric();
+    transform_.backward_columns(1);
+  } else {
+    transform_.through_columns(transformed, [&](int thread, const PlaneColumns<Real>& columns) {
+      multiply(thread, columns);
+    });
+  }
   const Index result = symmetric_ ? 1 : 0;
-  for (Index f = 0; f < transformed; ++f) transform_.backward_columns(result + f);
-  in_parts(threads, transformed * grid_.n1, [&](int, Index first, Index last) {
-    for (Index i = first; i < last; ++i) {
-      const Index f = i / grid_.n1;
-      store(result + f, i % grid_.n1, field.data() + f * cells);
-    }
-  });
+  each_row([&](Index f, Index i) { store(result + f, i, field.data() + f * cells); });
   if (!symmetric_) return;
   in_parts(threads, grid_.n1,
            [&](int, Index first, Index last) { store_transposed(field.data(), first, last); });
@@ -211,23 +215,16 @@ void MirroredInverseSymbol<Real>::apply(std::span<Real> field) {
 /// Sample i of a field, and forward.
 template <typename Real>
 void MirroredInverseSymbol<Real>::load(Index f, Index i, const Real* values) {
-  const Index k = reordered(i, t1_);
-  Real* const row = transform_.row(f, k);
-  if (i >= grid_.n1) {
-    std::fill_n(row, transform_.row_stride(), Real(0));
-    return;
-  }
   const auto [even, odd] = signs(f, i);
-  reorder(values + i * grid_.n2, grid_.n2, even, odd, t2_, row);
-  transform_.forward_row(f, k);
+  reorder(values + i * grid_.n2, grid_.n2, even, odd, t2_, transform_.sample(f, i));
+  transform_.forward_sample(f, i);
 }
 
 template <typename Real>
 void MirroredInverseSymbol<Real>::store(Index f, Index i, Real* values) {
-  const Index k = reordered(i, t1_);
   const auto [even, odd] = signs(symmetric_ ? 0 : f, i);
-  transform_.backward_row(f, k);
-  restore(transform_.row(f, k), grid_.n2, even, odd, t2_, values + i * grid_.n2);
+  transform_.backward_sample(f, i);
+  restore(transform_.sample(f, i), grid_.n2, even, odd, t2_, values + i * grid_.n2);
 }
 
 /// q1 is odd in x2 and q2 in x1: their samples at odd places take the other sign there.
@@ -245,28 +242,29 @@ auto MirroredInverseSymbol<Real>::coefficients(int thread, Index f) -> Coefficie
   return {first, first + half_, first + 2 * half_, first + 3 * half_};
 }
 
+/// cos and sin at row k1 and in some columns.
 template <typename Real>
-void MirroredInverseSymbol<Real>::separate(int thread, Index f, Index k1) {
-  const Coefficients to = coefficients(thread, f);
+Twiddles<Real> MirroredInverseSymbol<Real>::twiddles(Index k1, Index first_column) const {
   const Real* const c1 = twiddles_.data();
-  const Real* const c2 = c1 + 2 * (t1_ / 2 + 1);
-  const Real* const near = transform_.row(f, k1);
-  const Real* const far = transform_.row(f, k1 == 0 ? 0 : t1_ - k1);
-  separate_rows(half_, Twiddles<Real>{c1[k1], c1[t1_ / 2 + 1 + k1], c2, c2 + half_}, near, far, to.cc, to.cs,
-                to.sc, to.ss);
+  const Real* const c2 = c1 + 2 * (t1_ / 2 + 1) + first_column;
+  return {c1[k1], c1[t1_ / 2 + 1 + k1], c2, c2 + half_};
 }
 
 template <typename Real>
-void MirroredInverseSymbol<Real>::join(int thread, const Coefficients& from, Index f, Index k1) {
+void MirroredInverseSymbol<Real>::separate(int thread, const PlaneColumns<Real>& columns, Index f, Index k1) {
+  const Coefficients to = coefficients(thread, f);
+  separate_rows(columns.count, twiddles(k1, columns.first), columns.row(f, k1),
+                columns.row(f, k1 == 0 ? 0 : t1_ - k1), to.cc, to.cs, to.sc, to.ss);
+}
+
+template <typename Real>
+void MirroredInverseSymbol<Real>::join(int thread, const Coefficients& from, const PlaneColumns<Real>& columns,
+                                       Index f, Index k1) {
   // Rows 0 and t1/2 are their own partners: what is written twice goes elsewhere once.
   const bool alone = k1 == 0 || 2 * k1 == t1_;
   Real* const unused = scratch(thread) + scratch_ - 2 * half_;
-  const Real* const c1 = twiddles_.data();
-  const Real* const c2 = c1 + 2 * (t1_ / 2 + 1);
-  Real* const near = transform_.row(f, k1);
-  Real* const far = alone ? unused : transform_.row(f, t1_ - k1);
-  join_rows(half_, Twiddles<Real>{c1[k1], c1[t1_ / 2 + 1 + k1], c2, c2 + half_}, from.cc, from.cs, from.sc,
-            from.ss, near, far);
+  join_rows(columns.count, twiddles(k1, columns.first), from.cc, from.cs, from.sc, from.ss,
+            columns.row(f, k1), alone ? unused : columns.row(f, t1_ - k1));
 }
 
 template <typename Real>
@@ -278,38 +276,41 @@ void MirroredInverseSymbol<Real>::for_row_pairs(const Work& work) {
 }
 
 template <typename Real>
-void MirroredInverseSymbol<Real>::multiply() {
+void MirroredInverseSymbol<Real>::multiply(int thread, const PlaneColumns<Real>& columns) {
   const Index fields = tangential_ ? 2 : 1;
-  for_row_pairs([&](int thread, Index k1) {
-    for (Index f = 0; f < fields; ++f) separate(thread, f, k1);
-    multiply_rows(thread, k1);
-    for (Index f = 0; f < fields; ++f) join(thread, coefficients(thread, f), f, k1);
-  });
+  for (Index k1 = 0; k1 <= t1_ / 2; ++k1) {
+    for (Index f = 0; f < fields; ++f) separate(thread, columns, f, k1);
+    multiply_rows(thread, columns, k1);
+    for (Index f = 0; f < fields; ++f) join(thread, coefficients(thread, f), columns, f, k1);
+  }
 }
 
 /// Cosines of the frequencies k of p; sines of t - k, which for the odd coordinate of q1 and of q2 is k: so
 /// q1's cs has the frequencies of q2's sc, and so on.
 template <typename Real>
-void MirroredInverseSymbol<Real>::multiply_rows(int thread, Index k1) {
-  const auto low = [&](SymbolEntry entry) { return table_.row(entry, k1); };
-  const auto high = [&](SymbolEntry entry) { return table_.row(entry, t1_ - k1); };
+void MirroredInverseSymbol<Real>::multiply_rows(int thread, const PlaneColumns<Real>& columns, Index k1) {
+  const Index first = columns.first - columns_.first;
+  const Index n = columns.count;
+  const auto low = [&](SymbolEntry entry) { return table_.row(entry, k1) + first; };
+  const auto high = [&](SymbolEntry entry) { return table_.row(entry, t1_ - k1) + first; };
+  const Index sines = columns_.count();
   const Coefficients x = coefficients(thread, 0);
   if (!tangential_) {
-    scale(half_, low(SymbolEntry::p11), x.cc);
-    scale(half_, low(SymbolEntry::p11) + half_, x.cs);
-    scale(half_, high(SymbolEntry::p11), x.sc);
-    scale(half_, high(SymbolEntry::p11) + half_, x.ss);
+    scale(n, low(SymbolEntry::p11), x.cc);
+    scale(n, low(SymbolEntry::p11) + sines, x.cs);
+    scale(n, high(SymbolEntry::p11), x.sc);
+    scale(n, high(SymbolEntry::p11) + sines, x.ss);
     return;
   }
   const auto multiply_pair = [&](const auto& row, Index column, Real* x1, Real* x2) {
-    mix(half_, row(SymbolEntry::p11) + column, row(SymbolEntry::p12) + column, row(SymbolEntry::p22) + column,
-        x1, x2);
+    mix(n, row(SymbolEntry::p11) + column, row(SymbolEntry::p12) + column, row(SymbolEntry::p22) + column, x1,
+        x2);
   };
   const Coefficients y = coefficients(thread, 1);
   multiply_pair(low, 0, x.cs, y.sc);
-  multiply_pair(low, half_, x.cc, y.ss);
+  multiply_pair(low, sines, x.cc, y.ss);
   multiply_pair(high, 0, x.ss, y.cc);
-  multiply_pair(high, half_, x.sc, y.cs);
+  multiply_pair(high, sines, x.sc, y.cs);
 }
 
 /// The coefficients of q2 at (f1, f2) are minus those of q1 at (f2, f1): all of those are made first, in
@@ -318,7 +319,7 @@ template <typename Real>
 void MirroredInverseSymbol<Real>::multiply_symmetric() {
   for_row_pairs([&](int thread, Index k1) {
     const Coefficients x = coefficients(thread, 0);
-    separate(thread, 0, k1);
+    separate(thread, transform_.all_columns(), 0, k1);
     Real* const low = transform_.row(0, k1);
     std::copy_n(x.cs, half_, low);
     std::copy_n(x.cc, half_, low + half_);
@@ -329,7 +330,7 @@ void MirroredInverseSymbol<Real>::multiply_symmetric() {
   });
   for_row_pairs([&](int thread, Index k1) {
     multiply_symmetric_rows(thread, k1);
-    join(thread, coefficients(thread, 0), 1, k1);
+    join(thread, coefficients(thread, 0), transform_.all_columns(), 1, k1);
   });
 }
 

@@ -10,6 +10,15 @@
 
 namespace slipstick::solver {
 
+/// cos and sin of pi k1/(2 t1), and those of pi k2/(2 t2) for some k2.
+template <typename Real>
+struct Twiddles {
+  Real c;
+  Real s;
+  const Real* c2;
+  const Real* s2;
+};
+
 /// The inverse symbol on a quadrant: the periodic one on the mirrored field, whose period is 2 t1 x 2 t2
 /// cells, by cosine and sine transforms of the quadrant alone, padded with zeros to t1 x t2 cells.
 ///
@@ -50,13 +59,14 @@ class MirroredInverseSymbol final : public InverseSymbol<Real> {
   std::array<Real, 2> signs(Index f, Index i) const;
   void load(Index f, Index i, const Real* values);
   void store(Index f, Index i, Real* values);
-  void separate(int thread, Index f, Index k1);
-  void join(int thread, const Coefficients& from, Index f, Index k1);
+  Twiddles<Real> twiddles(Index k1, Index first_column) const;
+  void separate(int thread, const PlaneColumns<Real>& columns, Index f, Index k1);
+  void join(int thread, const Coefficients& from, const PlaneColumns<Real>& columns, Index f, Index k1);
   /// work(thread, k1) for the rows k1 = 0..t1/2, with each of which goes t1 - k1.
   template <typename Work>
   void for_row_pairs(const Work& work);
-  void multiply();
-  void multiply_rows(int thread, Index k1);
+  void multiply(int thread, const PlaneColumns<Real>& columns);
+  void multiply_rows(int thread, const PlaneColumns<Real>& columns, Index k1);
   void multiply_symmetric();
   void multiply_symmetric_rows(int thread, Index k1);
   void store_transposed(Real* field, Index first_row, Index last_row) const;
@@ -68,7 +78,8 @@ class MirroredInverseSymbol final : public InverseSymbol<Real> {
   Index t2_;
   Index half_;  ///< t2/2 + 1
   std::array<double, 2> diagonal_;
-  SymbolTable<Real> table_;  ///< columns 0..t2/2, then t2 - 0..t2/2
+  Share columns_;            ///< of this rank, of 0..t2/2
+  SymbolTable<Real> table_;  ///< those, then t2 less each of them
   PlaneTransform<Real> transform_;
   Index scratch_;  ///< values that each thread has of the next
   FftwBuffer<Real> coefficients_;

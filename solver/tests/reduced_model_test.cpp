@@ -422,10 +422,10 @@ TEST_F(PressureFromAFile, NeedsTheWholeGrid) {
 /// Without translations 9.2 of them; each condition brings a field of two components, half a number a padded
 /// cell.
 TEST(Memory, OfTheFullModelIsTenNumbersAPaddedCell) {
-  const ModelSolution solution = solve_full(paper_scene(64, 0.5));
-  const double padded = 4.0 * 64.0 * 64.0;
+  const ModelSolution solution = solve_full(paper_scene(96, 0.5));
+  const double padded = 4.0 * 96.0 * 96.0;
   EXPECT_LE(solution.bytes, (9.25 + 2 * 0.5) * sizeof(double) * padded);
-  EXPECT_LE(solve_in_model_units(paper_scene(64, 0.5)).bytes, 0.3 * solution.bytes) << "a quadrant of it";
+  EXPECT_LE(solve_in_model_units(paper_scene(96, 0.5)).bytes, 0.3 * solution.bytes) << "a quadrant of it";
 }
 
 }  // namespace

@@ -104,10 +104,10 @@ template <typename Real>
 void plan_from_wisdom(Index cells) {
   const Grid whole{cells, cells, 1.0, 1.0};
   PaddedTransform<Real>(whole, 2, 1, kFromWisdom);
-  PlaneTransform<Real>(fast_length(cells), fast_length(cells), 2, 1, kFromWisdom);
+  PlaneTransform<Real>({fast_length(cells), fast_length(cells), 2, cells}, 1, kFromWisdom);
   HalfSampleTransform<Real>(cells, kFromWisdom);
   const Index mirrored = fast_length(2 * cells) / 2;
-  PlaneTransform<Real>(mirrored, mirrored, 2, 1, kFromWisdom);
+  PlaneTransform<Real>({mirrored, mirrored, 2, cells / 2}, 1, kFromWisdom);
 }
 
 template <typename Real>
@@ -127,7 +127,7 @@ void expect_plans_in_file(const fs::path& file) {
       EXPECT_NO_THROW(plan_from_wisdom<Real>(cells));
     } else {
       EXPECT_THROW(PaddedTransform<Real>({cells, cells, 1.0, 1.0}, 2, 1, kFromWisdom), std::runtime_error);
-      EXPECT_THROW(PlaneTransform<Real>(fast_length(cells), fast_length(cells), 2, 1, kFromWisdom),
+      EXPECT_THROW(PlaneTransform<Real>({fast_length(cells), fast_length(cells), 2, cells}, 1, kFromWisdom),
                    std::runtime_error);
       EXPECT_THROW(HalfSampleTransform<Real>(cells, kFromWisdom), std::runtime_error);
     }

@@ -9,7 +9,7 @@ using Eigen::ArrayXd;
 
 TEST(Extension, GathersAsTheAdjointOfWhatItExtends) {
   const Grid grid{9, 14, 1.0, 1.0};
-  const ArrayXd free = (ArrayXd::Random(grid.cells()) > 0.2).cast<double>();
+  ArrayXd free = (ArrayXd::Random(grid.cells()) > 0.2).cast<double>();
   Extension<double> extension(grid);
   extension.prepare(free);
   const ArrayXd x = free * ArrayXd::Random(grid.cells());

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <optional>
+
+#include "solver/grid/ranks.hpp"
+
+namespace slipstick::solver {
+
+/// What a transform carries between ranks, between its pass over rows and that over columns; on one rank, which
+/// keeps all, it does nothing. Entries are some numbers of the type Real that stay together.
+template <typename Real>
+class RankTranspose {
+ public:
+  struct Shape {
+    Index rows;
+    Index rows_of_rank;
+    Index columns;
+    Index entry;
+
+    Share own_columns() const { return Ranks::own_share(columns); }
+    SharedMatrix matrix() const {
+      return {rows, rows_of_rank, columns, Ranks::block_of(columns, Ranks::number()),
+              static_cast<std::size_t>(entry) * sizeof(Real)};
+    }
+    /// Numbers in this rank's part, rounded up to cache lines.
+    Index size() const {
+      if (Ranks::number() == 1) return rows * columns * entry;
+      constexpr Index line = 64 / static_cast<Index>(sizeof(Real));
+      const auto bytes = Ranks::communicator().size(matrix());
+      return (static_cast<Index>(bytes / sizeof(Real)) + line - 1) / line * line;
+    }
+  };
+
+  explicit RankTranspose(const Shape& shape) {
+    if (Ranks::number() > 1) transposition_ = Ranks::communicator().transposition(shape.matrix());
+  }
+
+  void to_columns(Real* buffer) const {
+    if (transposition_) transposition_->to_columns(buffer);
+  }
+  void to_rows(Real* buffer) const {
+    if (transposition_) transposition_->to_rows(buffer);
+  }
+
+ private:
+  std::unique_ptr<Transposition> transposition_;
+};
+
+}  // namespace slipstick::solver

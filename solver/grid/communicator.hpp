@@ -1,0 +1,76 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+
+#include "solver/grid/grid.hpp"
+
+namespace slipstick::solver {
+
+/// A matrix that ranks share, of entries of some bytes each. Of its rows every rank has so many, the last ones
+/// fewer or none; so of its columns.
+struct SharedMatrix {
+  Index rows;
+  Index rows_of_rank;
+  Index columns;
+  Index columns_of_rank;
+  std::size_t entry;  ///< bytes, a multiple of 8
+};
+
+/// Carries such a matrix between ranks, in place: from their rows, in each of which the columns follow one
+/// another, to their columns, in each of which the rows do, and back. Moves numbers and changes none.
+class Transposition {
+ public:
+  virtual ~Transposition() = default;
+  Transposition(const Transposition&) = delete;
+  Transposition& operator=(const Transposition&) = delete;
+  virtual void to_columns(void* buffer) = 0;
+  virtual void to_rows(void* buffer) = 0;
+
+ protected:
+  Transposition() = default;
+};
+
+/// How ranks reach each other: what the library that knows MPI does for Ranks. All ranks call each of these
+/// alike.
+class Communicator {
+ public:
+  virtual ~Communicator() = default;
+  Communicator(const Communicator&) = delete;
+  Communicator& operator=(const Communicator&) = delete;
+
+  virtual int number() const = 0;
+  virtual int rank() const = 0;
+
+  /// Things of some bytes each, of which every rank has so many in its place, the last ones fewer: all of them
+  /// on every rank.
+  virtual void gather(void* things, std::size_t bytes, Index count, Index of_rank) = 0;
+  /// Of such things those next to this rank's, so many on each side.
+  virtual void gather_beside(void* things, std::size_t bytes, Index count, Index of_rank, Index depth) = 0;
+
+  /// Bytes in this rank's buffer.
+  virtual std::size_t size(const SharedMatrix& matrix) const = 0;
+  /// For buffers of that size that FFTW has allocated.
+  virtual std::unique_ptr<Transposition> transposition(const SharedMatrix& matrix) = 0;
+
+  /// What this rank has sent to others so far.
+  struct Sent {
+    double bytes = 0.0;
+    double messages = 0.0;
+  };
+  virtual Sent sent() const = 0;
+
+  /// Whether all ranks have called this, which need not be at the same time.
+  virtual bool have_all_ended() = 0;
+  /// Ends all ranks.
+  [[noreturn]] virtual void abort(int exit_code) = 0;
+
+ protected:
+  Communicator() = default;
+};
+
+/// Its name in the library, and its type: null where this process is on its own.
+inline constexpr const char* kJoinRanks = "slipstick_join_ranks";
+using JoinRanks = Communicator* (*)();
+
+}  // namespace slipstick::solver

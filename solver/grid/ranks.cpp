@@ -1,0 +1,76 @@
+#include "solver/grid/ranks.hpp"
+
+#include <dlfcn.h>
+
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <stdexcept>
+#include <thread>
+
+namespace slipstick::solver {
+namespace {
+
+/// In which mpirun and srun tell their processes how many they are.
+constexpr std::array kNumbers{"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
+/// Beside the program, or where it is installed: see the program's run path.
+constexpr const char* kLibrary = "libslipstick_ranks.so";
+/// Ranks that failed alike end within a moment of each other.
+constexpr std::chrono::seconds kOthersEnd{10};
+
+std::unique_ptr<Communicator> joined;
+
+int started() {
+  for (const char* name : kNumbers) {
+    if (const char* number = std::getenv(name)) return std::atoi(number);
+  }
+  return 1;
+}
+
+}  // namespace
+
+Ranks::Ranks() {
+  if (started() <= 1) return;
+  void* const library = dlopen(kLibrary, RTLD_NOW | RTLD_GLOBAL);
+  void* const join = library != nullptr ? dlsym(library, kJoinRanks) : nullptr;
+  if (join == nullptr) {
+    const char* const why = dlerror();
+    throw std::runtime_error("started on several ranks, for which this build has no library; build it with "
+                             "SLIPSTICK_MPI=ON, or start one process: " +
+                             std::string(why != nullptr ? why : kLibrary));
+  }
+  joined.reset(reinterpret_cast<JoinRanks>(join)());
+  for (const char* name : kNumbers) unsetenv(name);  // programs that this one starts are no ranks
+}
+
+Ranks::~Ranks() { joined.reset(); }
+
+int Ranks::number() { return joined ? joined->number() : 1; }
+int Ranks::rank() { return joined ? joined->rank() : 0; }
+Communicator& Ranks::communicator() {
+  if (!joined) throw std::logic_error("one rank on its own has no communicator");
+  return *joined;
+}
+Communicator::Sent Ranks::sent() { return joined ? joined->sent() : Communicator::Sent{}; }
+
+std::vector<double> Ranks::of_each(double own) {
+  std::vector<double> all(static_cast<std::size_t>(number()), own);
+  gather_shares(std::span(all));
+  return all;
+}
+
+void Ranks::end(int exit_code, const std::string& failure) {
+  if (!joined) return;
+  const auto start = std::chrono::steady_clock::now();
+  while (!joined->have_all_ended()) {
+    if (!failure.empty() && std::chrono::steady_clock::now() - start > kOthersEnd) {
+      std::fprintf(stderr, "slipstick: rank %d ends the run: %s\n", rank(), failure.c_str());
+      joined->abort(exit_code);
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+}
+
+}  // namespace slipstick::solver
