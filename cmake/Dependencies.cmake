@@ -56,6 +56,9 @@ else()
   set(found_mpi OFF)
 endif()
 option(SLIPSTICK_MPI "Solve one contact on several ranks: mpirun -n P slipstick solve" ${found_mpi})
+# Open MPI asks twice whether root means it, and once whether ranks may share a processor.
+set(SLIPSTICK_MPIRUN OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
+  OMPI_MCA_mpi_yield_when_idle=1)
 if(NOT found_mpi)
   set(why "MPI or FFTW's library for it was not found: install libopenmpi-dev openmpi-bin libfftw3-mpi-dev (or run `make setup`)")
   if(SLIPSTICK_MPI)

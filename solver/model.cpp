@@ -29,12 +29,12 @@ constexpr double kFieldsHeld = 24.0;
 constexpr double kPaperFields = 20.0;
 /// Of the tangential problem and its solution, on the part of the grid where that is solved; of the step
 /// before, or of the turn before, on the whole of it.
-constexpr double kFieldsOfPart = 18.0;
-constexpr double kFieldsBefore = 18.0;
+constexpr double kFieldsOfPart = 10.0;
+constexpr double kFieldsBefore = 30.0;
 /// Of pressure and tractions solved in turn besides, on the whole grid: Anderson's combination and guesses.
 constexpr double kFieldsOfTurns = 22.0;
-/// The program and its libraries.
-constexpr double kProgramBytes = 26.0 * 0x1p20;
+/// The program and its libraries; on several ranks what MPI takes besides.
+double program_bytes() { return (Ranks::number() > 1 ? 50.0 : 26.0) * 0x1p20; }
 /// Cells left free on each side of the expected contact where the scene does not give an extent.
 constexpr double kMarginCells = 2.0;
 /// With cells longer than so many times their width every method crawls.
@@ -264,11 +264,11 @@ Memory predicted_memory(const Scene& scene, const Model& model) {
     const double op = predicted_bytes(scene.op, grid, tangential_kernel(),
                                       {.threads = model.threads, .diagonal = elastic.diagonal});
     return {std::max({normal, op, coupling}),
-            kProgramBytes + fields + kPaperFields * sizeof(double) * static_cast<double>(grid.cells())};
+            program_bytes() + fields + kPaperFields * sizeof(double) * static_cast<double>(grid.cells())};
   }
   return {std::max({normal, predicted_coulomb_bytes(elastic, grid, may_have_translations(scene, model)),
                     coupling}),
-          kProgramBytes + fields + kFieldsOfPart * sizeof(double) * static_cast<double>(grid.cells())};
+          program_bytes() + fields + kFieldsOfPart * sizeof(double) * static_cast<double>(grid.cells())};
 }
 
 namespace {
@@ -278,6 +278,7 @@ constexpr Index kCellsOfThread = Index{1} << 17;
 
 int threads_for(const Scene& scene, const Grid& part) {
   if (scene.threads > 0) return scene.threads;
+  if (Ranks::number() > 1) return 1;  // ranks take the processors
   const Index processors = std::max(1U, std::thread::hardware_concurrency());
   return static_cast<int>(std::clamp<Index>(part.cells() / kCellsOfThread, 1, processors));
 }

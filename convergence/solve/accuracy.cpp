@@ -206,7 +206,7 @@ double predicted_seconds(const Scene& scene, const ContactOnGrid& contact) {
   return steps * work_of(accuracy_data(), across, scene.tolerance) * application_seconds(scene);
 }
 
-Json plan_json(const Scene& scene) {
+Json plan_json(const Scene& scene, int ranks) {
   Json plan;
   if (scene.model == solver::ModelChoice::exact) {
     require_oracle(scene);
@@ -224,7 +224,14 @@ Json plan_json(const Scene& scene) {
   plan["cells"] = {n1, n2};
   plan["tolerance"] = scene.tolerance;
   plan["unknowns"] = std::round(2.0 * M_PI * radius * radius / mirrored);
-  plan["bytes"] = solver::predicted_memory(scene, model).total();
+  if (ranks > 1) {
+    const solver::PlannedRanks planned(ranks);
+    plan["bytes"] = solver::predicted_memory(scene, model).total();
+    plan["ranks"] = ranks;
+    plan["sent_bytes"] = solver::predicted_sent_bytes(part.grid(), solver::tangential_kernel());
+  } else {
+    plan["bytes"] = solver::predicted_memory(scene, model).total();
+  }
   set_number(plan, "seconds", predicted_seconds(scene, contact),
              "measured for method = \"coulomb\" with operator = \"dcfft\" alone");
   plan["seconds_from"] = fmt::format(
@@ -238,10 +245,15 @@ std::string plan_text(const Json& result) {
   if (plan["cells"].is_null()) return text_line("plan", plan["cells_reason"].get<std::string>());
   const std::string grids =
       plan.contains("grids") ? fmt::format("{} grids of ", plan["grids"].get<int>()) : "";
-  return text_line("plan", fmt::format("{}{} x {} cells, {} unknowns, {} bytes, about {} s", grids,
+  const bool shared = plan.contains("ranks");
+  const std::string of_rank =
+      shared ? fmt::format(" on each of {} ranks, which send {} bytes for each application",
+                           plan["ranks"].get<int>(), number_text(plan["sent_bytes"]))
+             : "";
+  return text_line("plan", fmt::format("{}{} x {} cells, {} unknowns, {} bytes{}, about {} s{}", grids,
                                        plan["cells"][0].get<int>(), plan["cells"][1].get<int>(),
-                                       number_text(plan["unknowns"]), number_text(plan["bytes"]),
-                                       short_text(plan["seconds"])));
+                                       number_text(plan["unknowns"]), number_text(plan["bytes"]), of_rank,
+                                       short_text(plan["seconds"]), shared ? " on one" : ""));
 }
 
 }  // namespace slipstick::convergence

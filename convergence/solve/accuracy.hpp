@@ -80,7 +80,7 @@ std::optional<AccuracyChoice> refined(const solver::Scene& scene, const ContactO
 double predicted_seconds(const solver::Scene& scene, const ContactOnGrid& contact);
 
 /// Cells, unknowns, bytes and seconds of what a scene asks for. Throws InputError as make_model().
-Json plan_json(const solver::Scene& scene);
+Json plan_json(const solver::Scene& scene, int ranks = 1);
 std::string plan_text(const Json& result);
 
 }  // namespace slipstick::convergence

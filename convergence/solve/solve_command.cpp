@@ -50,6 +50,7 @@ struct SolveRequest {
   std::string accuracy_of = "twist";
   std::vector<std::string> uncertain;
   bool plan = false;
+  int ranks = 1;
   std::string checkpoint;
   bool resume = false;
   MemoryOption memory;
@@ -110,7 +111,7 @@ std::shared_ptr<const FinishedSteps> finished_in(const Checkpoint& checkpoint, c
                              "is there already; allowed: --resume, to go on from it, or another file");
   }
   std::shared_ptr<const FinishedSteps> finished = checkpoint.read();
-  if (finished) {
+  if (finished && solver::Ranks::first()) {
     std::cerr << fmt::format("slipstick: goes on after step {}, from {}\n", finished->state->finished,
                              request.checkpoint);
   }
@@ -131,7 +132,9 @@ SolvedScene solve_on(const solver::Scene& scene, const SolveRequest& request, So
   PacedCheckpoint paced(checkpoint);
   options.resumed = finished_in(checkpoint, request);
   if (options.resumed) step = options.resumed->state->finished;
-  options.on_state = [&](const solver::HistoryState& state, const Json& steps) { paced.offer(state, steps); };
+  if (solver::Ranks::first()) {
+    options.on_state = [&](const solver::HistoryState& state, const Json& steps) { paced.offer(state, steps); };
+  }
   return solve_scene(scene, options);
 }
 
@@ -270,7 +273,7 @@ int run_solve(const CLI::App& command, const SolveRequest& request, std::ostream
   require_output("--checkpoint", request.checkpoint);
   if (request.accuracy) return solve_accurately(scene, request, text, result);
   if (request.plan) {
-    result["plan"] = plan_json(scene);
+    result["plan"] = plan_json(scene, request.ranks);
     text << plan_text(result);
     return 0;
   }
@@ -315,6 +318,12 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_solve_command(CLI
       ->excludes(command->get_option("--accuracy"));
   command->add_flag("--plan", request->plan, "predict memory and time of what would be solved, and stop")
       ->excludes(command->get_option("--uncertain"));
+  command
+      ->add_option("--ranks", request->ranks,
+                   "with --plan: on so many ranks of MPI, of which the memory is that of one")
+      ->needs(command->get_option("--plan"))
+      ->excludes(command->get_option("--accuracy"))
+      ->check(CLI::Range(1, 1'000'000));
   command->add_option(
       "--fields", request->fields,
       "write tractions, pressure, stick and, from a grid, slip: .h5, .csv or .vti; of a history the "

@@ -74,13 +74,13 @@ namespace {
 NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& grid,
                                    const NormalProblem& problem, const NormalOptions& options) {
   const ArrayXd reachable = problem.gap.isFinite().cast<double>();
-  const PressureOnGrid contact(grid.n2, reachable, (reachable > 0.0).select(problem.gap, 0.0), problem.total_pressure,
+  PressureOnGrid contact(grid.n2, reachable, (reachable > 0.0).select(problem.gap, 0.0), problem.total_pressure,
                                problem.guess);
   const NewtonOptions newton{.tolerance = options.tolerance,
                              .max_applications = options.max_applications,
                              .refine_multipliers = options.refine_approach,
                              .progress = options.progress};
-  NestedSummary nested = solve_nested(elasticity, grid, contact, newton);
+  NestedSummary nested = solve_nested(elasticity, grid, std::move(contact), newton);
   NormalSolution solution;
   solution.status = nested.newton.converged ? Status::converged : Status::not_converged;
   if (!nested.newton.converged) {

@@ -42,6 +42,8 @@ class PaddedTransform {
   PaddedTransform(const Grid& grid, std::size_t fields, int threads, unsigned flags);
   static std::size_t predicted_bytes(const Grid& grid, std::size_t fields, int threads);
   std::size_t bytes() const;
+  /// What all ranks send for one field in one direction.
+  static double sent_bytes(const Grid& grid) { return shared_matrix(grid).sent_bytes(); }
 
   int threads() const { return threads_; }
   Index padded1() const { return 2 * m1_; }

@@ -22,6 +22,17 @@ class RankTranspose {
       return {rows, rows_of_rank, columns, Ranks::block_of(columns, Ranks::number()),
               static_cast<std::size_t>(entry) * sizeof(Real)};
     }
+    /// What all ranks together send for one way.
+    double sent_bytes() const {
+      double entries = 0.0;
+      for (int rank = 0; rank < Ranks::number(); ++rank) {
+        const Index first = std::min(rank * rows_of_rank, rows);
+        const Index own = std::min(first + rows_of_rank, rows) - first;
+        const Index others = columns - Ranks::share(columns, rank, Ranks::number()).count();
+        entries += static_cast<double>(own) * static_cast<double>(others);
+      }
+      return entries * static_cast<double>(entry) * sizeof(Real);
+    }
     /// Numbers in this rank's part, rounded up to cache lines.
     Index size() const {
       if (Ranks::number() == 1) return rows * columns * entry;

@@ -29,7 +29,33 @@ int started() {
   return 1;
 }
 
+/// The first of so many ranks, which cannot reach the others.
+class Planned final : public Communicator {
+ public:
+  explicit Planned(int number) : number_(number) {}
+  int number() const override { return number_; }
+  int rank() const override { return 0; }
+  std::size_t size(const SharedMatrix& matrix) const override {
+    const auto rows = std::min(matrix.rows_of_rank, matrix.rows);
+    const auto columns = std::min(matrix.columns_of_rank, matrix.columns);
+    return static_cast<std::size_t>(std::max(rows * matrix.columns, matrix.rows * columns)) * matrix.entry;
+  }
+  Sent sent() const override { return {}; }
+  void gather(void*, std::size_t, Index, Index) override { refuse(); }
+  void gather_beside(void*, std::size_t, Index, Index, Index) override { refuse(); }
+  std::unique_ptr<Transposition> transposition(const SharedMatrix&) override { refuse(); }
+  bool have_all_ended() override { return true; }
+  [[noreturn]] void abort(int exit_code) override { std::exit(exit_code); }
+
+ private:
+  [[noreturn]] static void refuse() { throw std::logic_error("ranks that are planned alone share no work"); }
+  int number_;
+};
+
 }  // namespace
+
+PlannedRanks::PlannedRanks(int number) : outer_(std::move(joined)) { joined = std::make_unique<Planned>(number); }
+PlannedRanks::~PlannedRanks() { joined = std::move(outer_); }
 
 Ranks::Ranks() {
   if (started() <= 1) return;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <memory>
 #include <span>
 #include <string>
 #include <vector>
@@ -78,6 +79,19 @@ class Ranks {
 
  private:
   static std::size_t size(Index rows) { return static_cast<std::size_t>(rows); }
+};
+
+/// As long as it lives, sizes are those of the first of so many ranks, of which there is none but this one: for
+/// predictions.
+class PlannedRanks {
+ public:
+  explicit PlannedRanks(int number);
+  ~PlannedRanks();
+  PlannedRanks(const PlannedRanks&) = delete;
+  PlannedRanks& operator=(const PlannedRanks&) = delete;
+
+ private:
+  std::unique_ptr<Communicator> outer_;
 };
 
 /// The rows of a grid in at most kMost bands of equal numbers of them. Sums are taken band by band and then in

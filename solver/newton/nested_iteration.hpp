@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <concepts>
 #include <span>
+#include <utility>
 
 #include "solver/grid/grid_transfer.hpp"
 #include "solver/newton/natural_map_newton.hpp"
@@ -27,13 +28,18 @@ inline double coarse_tolerance(const Grid& grid) {
   return 1.0 / (mirrored * static_cast<double>(grid.cells()));
 }
 
+/// This rank's, see Ranks.
+inline double own_cells(const Grid& grid) {
+  return static_cast<double>(RowBands(grid.n1).own_rows().count() * grid.n2);
+}
+
 /// What NestedSummary::bytes of such a solve with so many conditions will be.
 template <class Set>
 double predicted_nested_bytes(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel,
                               std::size_t conditions) {
   const auto bytes = [&]<typename Real>(Real) {
     return GridOperators<Real>::predicted_bytes(elasticity, grid, kernel) +
-           NaturalMapNewton<Set, Real>::bytes(static_cast<double>(grid.cells()), conditions);
+           NaturalMapNewton<Set, Real>::bytes(own_cells(grid), conditions);
   };
   return elasticity.precision == Precision::mixed ? bytes(0.0F) : bytes(0.0);
 }
@@ -66,9 +72,9 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
     coarse_options.tolerance = std::max(options.tolerance, coarse_tolerance(coarse));
     coarse_options.refine_multipliers = false;
     coarse_options.progress = nullptr;
-    const Problem on_coarse = problem.coarsened(grid, coarse);
+    Problem on_coarse = problem.coarsened(grid, coarse);
     const Eigen::ArrayXd start = on_coarse.start();
-    NestedSummary below = solve_nested_in<Real>(elasticity, coarse, on_coarse, coarse_options);
+    NestedSummary below = solve_nested_in<Real>(elasticity, coarse, std::move(on_coarse), coarse_options);
     result.grids = std::move(below.grids);
     result.safeguards = below.safeguards;
     if (below.field.isFinite().all()) {
@@ -93,17 +99,17 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
   }
   result.grids.push_back(
       {grid.n1, grid.n2, newton.applications(), result.newton.iterations, result.newton.gap});
-  result.bytes = operators->bytes() + newton.bytes(static_cast<double>(grid.cells()), program.imposed.size());
+  result.bytes = operators->bytes() + newton.bytes(own_cells(grid), program.imposed.size());
   return result;
 }
 
 /// In the precision that is asked for.
 template <NestedProblem Problem>
-NestedSummary solve_nested(const Elasticity& elasticity, const Grid& grid, const Problem& problem,
+NestedSummary solve_nested(const Elasticity& elasticity, const Grid& grid, Problem problem,
                            const NewtonOptions& options) {
   return elasticity.precision == Precision::mixed
-             ? solve_nested_in<float>(elasticity, grid, problem, options)
-             : solve_nested_in<double>(elasticity, grid, problem, options);
+             ? solve_nested_in<float>(elasticity, grid, std::move(problem), options)
+             : solve_nested_in<double>(elasticity, grid, std::move(problem), options);
 }
 
 }  // namespace slipstick::solver

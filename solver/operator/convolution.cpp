@@ -161,6 +161,11 @@ double Convolution<Real>::predicted_bytes(const Grid& grid, const BlockKernel& k
 }
 
 template <typename Real>
+double Convolution<Real>::sent_bytes(const Grid& grid, const BlockKernel& kernel) {
+  return static_cast<double>(kernel.inputs + kernel.outputs) * PaddedTransform<Real>::sent_bytes(grid);
+}
+
+template <typename Real>
 std::size_t Convolution<Real>::bytes() const {
   return spectra_.bytes() + transform_.bytes();
 }

@@ -23,6 +23,7 @@ class Convolution final : public Operator<Real> {
   Convolution(const Grid& grid, BlockKernel kernel, const ElasticPair& pair, const OperatorOptions& options);
   std::size_t bytes() const override;
   static double predicted_bytes(const Grid& grid, const BlockKernel& kernel, int threads);
+  static double sent_bytes(const Grid& grid, const BlockKernel& kernel);
   Index padded1() const { return transform_.padded1(); }
   Index padded2() const { return transform_.padded2(); }
 

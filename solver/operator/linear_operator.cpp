@@ -74,6 +74,11 @@ double predicted_bytes(OperatorKind kind, const Grid& grid, const BlockKernel& k
   throw std::logic_error("unknown operator kind");
 }
 
+double predicted_sent_bytes(const Grid& grid, const BlockKernel& kernel) {
+  return grid.quadrant ? MirroredConvolution<double>::sent_bytes(grid, kernel)
+                       : Convolution<double>::sent_bytes(grid, kernel);
+}
+
 double predicted_single_bytes(const Grid& grid, const BlockKernel& kernel, const OperatorOptions& options) {
   return predicted_convolution_bytes<float>(grid, kernel, options);
 }

@@ -116,4 +116,7 @@ double predicted_bytes(OperatorKind kind, const Grid& grid, const BlockKernel& k
 double predicted_single_bytes(const Grid& grid, const BlockKernel& kernel,
                               const OperatorOptions& options = {});
 
+/// What all ranks together will send in one application in double precision by discrete convolution.
+double predicted_sent_bytes(const Grid& grid, const BlockKernel& kernel);
+
 }  // namespace slipstick::solver

@@ -167,6 +167,13 @@ double MirroredConvolution<Real>::predicted_bytes(const Grid& quadrant, const Bl
 }
 
 template <typename Real>
+double MirroredConvolution<Real>::sent_bytes(const Grid& quadrant, const BlockKernel& kernel) {
+  const Shape matrix = shared_matrix(groups(quadrant.n1, kLines),
+                                     groups(Transform::frequencies(quadrant.n2), kLines), quadrant.n1);
+  return static_cast<double>(kernel.inputs + kernel.outputs) * matrix.sent_bytes();
+}
+
+template <typename Real>
 void MirroredConvolution<Real>::do_apply(std::span<const Real> traction, std::span<Real> displacement) {
   const auto in_groups = [this](Index total, const auto& work) {
     in_parts(threads_, total, [&work](int thread, Index first, Index last) {

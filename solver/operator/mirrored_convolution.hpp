@@ -35,6 +35,7 @@ class MirroredConvolution final : public Operator<Real> {
   std::size_t bytes() const override;
   static double predicted_bytes(const Grid& quadrant, const BlockKernel& kernel, int threads,
                                 bool diagonal = false);
+  static double sent_bytes(const Grid& quadrant, const BlockKernel& kernel);
 
  private:
   using Transform = HalfSampleTransform<Real>;

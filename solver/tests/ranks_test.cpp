@@ -1,21 +1,27 @@
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <memory>
 #include <numeric>
-#include <string>
+#include <span>
 #include <vector>
 
 #include "solver/grid/ranks.hpp"
+#include "solver/grid/sweep.hpp"
+#include "solver/newton/extension.hpp"
+#include "solver/operator/inverse_symbol.hpp"
 #include "solver/operator/linear_operator.hpp"
 #include "solver/tests/fields.hpp"
 
-/// Started by mpirun on any number of ranks; on one it is a test like any other.
+/// Started by mpirun on any number of ranks, which find the bits that each finds on its own; on one it is a
+/// test like any other.
 namespace slipstick::solver {
 namespace {
 
-/// Starts MPI before the tests and ends it after them.
+using Eigen::ArrayXd;
+
+/// Joins the ranks before the tests and leaves them afterwards.
 class RanksOfTheTests : public testing::Environment {
  public:
   void SetUp() override { ranks_ = std::make_unique<Ranks>(); }
@@ -26,88 +32,168 @@ class RanksOfTheTests : public testing::Environment {
 };
 const auto* const kRanks = testing::AddGlobalTestEnvironment(new RanksOfTheTests);
 
-/// Transforms and sums round by a few eps of the largest displacement.
-constexpr double kOfTwoWays = 1e-13;
-constexpr double kOfSinglePrecision = 1e-5;
-
-std::vector<BlockKernel> kernels() {
-  return {normal_kernel(), tangential_kernel(), coupling_kernel(), shear_kernel()};
-}
-
-/// Odd, prime and fast lengths; of the first ones some of the ranks have no rows or no columns.
+/// Odd, prime and fast lengths, fewer rows than ranks, rows for some of the ranks alone.
 std::vector<Grid> grids() {
-  return {{1, 1, 1.0, 1.0}, {9, 2, 1.0, 0.7}, {23, 31, 1.0, 1.3}, {64, 48, 1.0, 1.0}};
+  return {{1, 1, 1.0, 1.0}, {9, 2, 1.0, 0.7}, {23, 31, 1.0, 1.3}, {45, 46, 1.0, 1.0}, {64, 48, 1.0, 1.0},
+          {130, 7, 1.0, 1.0}};
 }
 
-double sum_over_ranks(double own) {
-  const std::vector<double> all = Ranks::of_each(own);
-  return std::accumulate(all.begin(), all.end(), 0.0);
+template <typename Field>
+auto values(Field& field) {
+  return std::span(field.data(), static_cast<std::size_t>(field.size()));
+}
+
+/// What `work` returns on this rank alone, and on all of them together.
+template <typename Work>
+void expect_same_bits(const Work& work, const char* what, const Grid& grid) {
+  const auto alone = [&] {
+    const PlannedRanks one(1);
+    return work();
+  }();
+  const auto together = work();
+  ASSERT_EQ(alone.size(), together.size());
+  EXPECT_TRUE((alone == together).all()) << what << " on " << grid.n1 << " x " << grid.n2
+                                         << (grid.quadrant ? ", a quadrant" : "");
+}
+
+template <typename Real>
+auto applied(Operator<Real>& op, const ArrayXd& traction) {
+  typename Operator<Real>::Field displacement(static_cast<Index>(op.outputs()) * op.grid().cells());
+  // Twice: the second time in buffers that the first has used.
+  for (int again = 0; again < 2; ++again) op.apply(traction.cast<Real>().eval(), displacement);
+  return displacement;
 }
 
 TEST(RanksShare, EveryRowBelongsToOneRank) {
-  for (const Index count : {0, 1, 2, 5, 64}) {
-    for (const int number : {1, 2, 3, 4, 7}) {
+  for (const Index count : {0, 1, 2, 5, 64, 1000}) {
+    for (const int number : {1, 2, 3, 4, 7, 100}) {
+      const PlannedRanks planned(number);
+      const RowBands bands(count);
+      EXPECT_LE(bands.count(), RowBands::kMost);
       Index next = 0;
       for (int rank = 0; rank < number; ++rank) {
-        const Share share = Ranks::share(count, rank, number);
+        const Share share = Ranks::share(bands.count(), rank, number);
         EXPECT_EQ(share.first, next);
         EXPECT_GE(share.count(), 0);
         next = share.last;
       }
-      EXPECT_EQ(next, count);
+      EXPECT_EQ(next, bands.count());
+      EXPECT_GE(bands.rows_of_rank() * number, count);
     }
   }
 }
 
-TEST(RanksOperator, IsThePlainSumOnAnyNumberOfRanks) {
-  for (const BlockKernel& kernel : kernels()) {
-    for (const Grid& grid : grids()) {
-      const Eigen::ArrayXd traction = random_field(static_cast<Index>(kernel.inputs) * grid.cells(), 7);
-      Eigen::ArrayXd expected(static_cast<Index>(kernel.outputs) * grid.cells());
-      Eigen::ArrayXd found(expected.size());
-      make_operator(OperatorKind::direct, grid, kernel, dissimilar_pair())->apply(traction, expected);
-      const auto shared = make_operator(OperatorKind::dcfft, grid, kernel, dissimilar_pair());
-      for (int again = 0; again < 2; ++again) {
-        shared->apply(traction, found);
-        EXPECT_LE((found - expected).abs().maxCoeff(), kOfTwoWays * traction.abs().sum())
-            << grid.n1 << " x " << grid.n2;
+TEST(RanksOperator, HasTheBitsOfOneRank) {
+  for (Grid grid : grids()) {
+    for (const bool quadrant : {false, true}) {
+      grid.quadrant = quadrant;
+      for (const BlockKernel& kernel : {normal_kernel(), tangential_kernel(), coupling_kernel(), shear_kernel()}) {
+        if (quadrant && kernel != normal_kernel() && kernel != tangential_kernel()) continue;
+        const ArrayXd traction = random_field(static_cast<Index>(kernel.inputs) * grid.cells(), 7);
+        expect_same_bits(
+            [&] {
+              const auto op = make_operator(OperatorKind::dcfft, grid, kernel, dissimilar_pair());
+              return applied(*op, traction);
+            },
+            "displacements", grid);
+        expect_same_bits(
+            [&] {
+              const auto op = make_single_operator(grid, kernel, dissimilar_pair());
+              return applied(*op, traction);
+            },
+            "displacements in single precision", grid);
       }
-      Eigen::ArrayXf single(expected.size());
-      make_single_operator(grid, kernel, dissimilar_pair())->apply(traction.cast<float>().eval(), single);
-      EXPECT_LE((single.cast<double>() - expected).abs().maxCoeff(),
-                kOfSinglePrecision * traction.abs().sum())
-          << grid.n1 << " x " << grid.n2;
     }
   }
 }
 
-/// Between the passes goes the half of the padded plane that is not zero, there and back: 64 bytes a cell
-/// for two fields, and the Nyquist column. What makes fields whole again comes on top, 16 bytes a cell to
-/// each other rank.
-TEST(RanksOperator, SendsNoZeros) {
-  const Grid grid{64, 48, 1.0, 1.0};
-  const auto shared = make_operator(OperatorKind::dcfft, grid, tangential_kernel(), dissimilar_pair());
-  const Eigen::ArrayXd traction = random_field(2 * grid.cells(), 3);
-  Eigen::ArrayXd displacement(traction.size());
-  const double before = sum_over_ranks(Ranks::sent());
-  shared->apply(traction, displacement);
-  const double others = Ranks::number() - 1;
-  const double whole = 16.0 * static_cast<double>(grid.cells()) * others;
-  const double between_passes = sum_over_ranks(Ranks::sent()) - before - whole;
-  EXPECT_LE(between_passes, 64.0 * static_cast<double>(grid.n1 * (grid.n2 + 1)) * others / (others + 1.0));
-  EXPECT_GE(between_passes, 32.0 * static_cast<double>(grid.cells()) * others / (others + 1.0));
+TEST(RanksPreconditioner, HasTheBitsOfOneRank) {
+  for (Grid grid : grids()) {
+    for (const bool quadrant : {false, true}) {
+      grid.quadrant = quadrant;
+      for (const BlockKernel& kernel : {normal_kernel(), tangential_kernel()}) {
+        expect_same_bits(
+            [&] {
+              ArrayXd field = random_field(static_cast<Index>(kernel.inputs) * grid.cells(), 5);
+              const auto symbol = make_inverse_symbol<double>(grid, kernel, dissimilar_pair());
+              for (int again = 0; again < 2; ++again) symbol->apply(values(field));
+              gather(grid, values(field));
+              return field;
+            },
+            "preconditioned fields", grid);
+      }
+    }
+  }
 }
 
-TEST(RanksOperator, HoldsItsShareAsPredicted) {
-  const Grid grid{256, 256, 1.0, 1.0};
-  const auto shared = make_operator(OperatorKind::dcfft, grid, tangential_kernel(), dissimilar_pair());
-  const double predicted = predicted_bytes(OperatorKind::dcfft, grid, tangential_kernel());
-  for (const double bytes : Ranks::of_each(static_cast<double>(shared->bytes()))) {
-    EXPECT_LE(bytes, 1.1 * predicted);
+TEST(RanksExtension, HasTheBitsOfOneRank) {
+  for (const Grid& grid : grids()) {
+    expect_same_bits(
+        [&] {
+          ArrayXd free = (random_field(grid.cells(), 3) > 0.0).cast<double>();
+          ArrayXd field = free * random_field(grid.cells(), 4);
+          Extension<double> extension(grid);
+          extension.prepare(free);
+          extension.extend(field);
+          extension.gather(field);
+          gather(grid, values(field));
+          return field;
+        },
+        "continued fields", grid);
   }
-  const double held = sum_over_ranks(static_cast<double>(shared->bytes()));
-  const double one = 112.0 * static_cast<double>(grid.cells());  // three spectra, two half planes
-  EXPECT_LE(held, 1.3 * one);
+}
+
+TEST(RanksSweep, CountsAndSumsAsOneRank) {
+  for (const Grid& grid : grids()) {
+    expect_same_bits(
+        [&] {
+          const ArrayXd field = random_field(grid.cells(), 9).max(0.0);
+          const Sweep cells(field, grid.n2);
+          const double sum = cells.sum<double>([&](Index first, Index last, double& part) {
+            part += field.segment(first, last - first).sum();
+          });
+          return ArrayXd{{static_cast<double>(cells.count()), sum}};
+        },
+        "sums", grid);
+  }
+}
+
+double over_all_ranks(double own) {
+  const std::vector<double> all = Ranks::of_each(own);
+  return std::accumulate(all.begin(), all.end(), 0.0);
+}
+
+/// Between the passes goes the half of the padded plane that is not zero, there and back: 64 bytes a cell for
+/// two fields, of whole grids with the Nyquist column besides.
+TEST(RanksOperator, SendsWhatIsPredictedAndNoZeros) {
+  for (const bool quadrant : {false, true}) {
+    const Grid grid{128, 96, 1.0, 1.0, quadrant};
+    const auto op = make_operator(OperatorKind::dcfft, grid, tangential_kernel(), dissimilar_pair());
+    const ArrayXd traction = random_field(2 * grid.cells(), 3);
+    ArrayXd displacement(traction.size());
+    const double before = over_all_ranks(Ranks::sent().bytes);
+    const double after_asking = over_all_ranks(Ranks::sent().bytes);
+    op->apply_own(traction, displacement);
+    const double sent = over_all_ranks(Ranks::sent().bytes) - after_asking - (after_asking - before);
+    EXPECT_EQ(sent, predicted_sent_bytes(grid, tangential_kernel()));
+    const double others = 1.0 - 1.0 / Ranks::number();
+    EXPECT_LE(sent, 64.0 * static_cast<double>(grid.n1 * (grid.n2 + 1)) * others);
+  }
+}
+
+/// To a tenth, besides the tables that every rank has.
+TEST(RanksOperator, HoldsItsShareAsPredicted) {
+  for (const bool quadrant : {false, true}) {
+    const Grid grid{256, 256, 1.0, 1.0, quadrant};
+    const auto op = make_operator(OperatorKind::dcfft, grid, tangential_kernel(), dissimilar_pair());
+    const std::vector<double> held = Ranks::of_each(static_cast<double>(op->bytes()));
+    const PlannedRanks planned(Ranks::number());
+    const double predicted = predicted_bytes(OperatorKind::dcfft, grid, tangential_kernel());
+    EXPECT_NEAR(*std::ranges::max_element(held), predicted, 0.1 * predicted);
+    const PlannedRanks one(1);
+    const double alone = predicted_bytes(OperatorKind::dcfft, grid, tangential_kernel());
+    EXPECT_LE(predicted, 1.3 * alone / Ranks::number() + 0.1 * alone);
+  }
 }
 
 }  // namespace
