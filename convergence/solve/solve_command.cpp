@@ -30,8 +30,8 @@
 #include "convergence/solve/checkpoint.hpp"
 #include "convergence/solve/uncertainty.hpp"
 #include "solver/cache/solve_cache.hpp"
-#include "solver/history_state.hpp"
 #include "solver/grid/ranks.hpp"
+#include "solver/history_state.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/toml_reader.hpp"
@@ -133,7 +133,9 @@ SolvedScene solve_on(const solver::Scene& scene, const SolveRequest& request, So
   options.resumed = finished_in(checkpoint, request);
   if (options.resumed) step = options.resumed->state->finished;
   if (solver::Ranks::first()) {
-    options.on_state = [&](const solver::HistoryState& state, const Json& steps) { paced.offer(state, steps); };
+    options.on_state = [&](const solver::HistoryState& state, const Json& steps) {
+      paced.offer(state, steps);
+    };
   }
   return solve_scene(scene, options);
 }
@@ -252,7 +254,8 @@ void require_shared_by_ranks(const SolveRequest& request, const solver::Scene& s
     throw solver::InputError("--accuracy", "not on several ranks; allowed: cells that the scene names");
   }
   if (!scene.wisdom.empty()) {
-    throw solver::InputError("solver.wisdom", "not on several ranks; allowed: no file, plans that are estimated");
+    throw solver::InputError("solver.wisdom",
+                             "not on several ranks; allowed: no file, plans that are estimated");
   }
   if (scene.rounding_seed != 0) {
     throw solver::InputError("solver.rounding_seed", "not on several ranks; allowed: 0");

@@ -12,8 +12,8 @@ _slipstick() {
       "exact "*) [[ $current != -* ]] || words="--moment-ratio --moment-deficit --stick-ratio --stick-complement --twist --history --help --points --unload-to --certified --radius --profile --normal-load --effective-modulus --shape --friction --shear-modulus --json --quiet" ;;
       "solve --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "solve --accuracy-of") words="twist traction stick_radius" ;;
-      "solve --model" | "solve --accuracy" | "solve --uncertain" | "solve --fields" | "solve --checkpoint" | "solve --figure" | "solve --memory-limit" | "solve --json") return ;;
-      "solve "*) [[ $current != -* ]] || words="--help --set --model --accuracy --accuracy-of --uncertain --plan --fields --checkpoint --resume --figure --memory-limit --json --quiet" ;;
+      "solve --model" | "solve --accuracy" | "solve --uncertain" | "solve --ranks" | "solve --fields" | "solve --checkpoint" | "solve --figure" | "solve --memory-limit" | "solve --json") return ;;
+      "solve "*) [[ $current != -* ]] || words="--help --set --model --accuracy --accuracy-of --uncertain --plan --ranks --fields --checkpoint --resume --figure --memory-limit --json --quiet" ;;
       "check --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "check --twist" | "check --tolerance" | "check --json") return ;;
       "check "*) [[ $current != -* ]] || words="--help --set --twist --discrete --tolerance --strict --json --quiet" ;;

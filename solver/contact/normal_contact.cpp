@@ -19,7 +19,8 @@ constexpr std::array<Parity, 1> kPressureParities{{{1, 1}}};
 /// The normal problem on one grid, as solve_nested() asks for it.
 class PressureOnGrid {
  public:
-  /// row: cells of one; reachable: 1 where the bodies can touch; height: the undeformed gap there, 0 elsewhere.
+  /// row: cells of one; reachable: 1 where the bodies can touch; height: the undeformed gap there, 0
+  /// elsewhere.
   PressureOnGrid(Index row, ArrayXd reachable, ArrayXd height, double total_pressure, ArrayXd guess = {})
       : row_(row),
         reachable_(std::move(reachable)),
@@ -74,8 +75,8 @@ namespace {
 NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& grid,
                                    const NormalProblem& problem, const NormalOptions& options) {
   const ArrayXd reachable = problem.gap.isFinite().cast<double>();
-  PressureOnGrid contact(grid.n2, reachable, (reachable > 0.0).select(problem.gap, 0.0), problem.total_pressure,
-                               problem.guess);
+  PressureOnGrid contact(grid.n2, reachable, (reachable > 0.0).select(problem.gap, 0.0),
+                         problem.total_pressure, problem.guess);
   const NewtonOptions newton{.tolerance = options.tolerance,
                              .max_applications = options.max_applications,
                              .refine_multipliers = options.refine_approach,

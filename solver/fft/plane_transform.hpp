@@ -9,8 +9,8 @@
 
 namespace slipstick::solver {
 
-/// Fields of n1 x n2 values, of whose rows so many hold samples and the others are zero: sample i stands in row
-/// place(i, n1). whole: all rows are kept, for what is done with the whole plane; on one rank alone.
+/// Fields of n1 x n2 values, of whose rows so many hold samples and the others are zero: sample i stands in
+/// row place(i, n1). whole: all rows are kept, for what is done with the whole plane; on one rank alone.
 struct PlaneShape {
   Index n1;
   Index n2;
@@ -106,8 +106,8 @@ class PlaneTransform {
   /// All columns of a whole plane.
   PlaneColumns<Real> all_columns() { return {buffer_.data(), row_stride_, field_size_, 0, columns_}; }
 
-  /// This rank's columns of the fields forward, a cache line of them at a time, work(thread, these), and back;
-  /// not of a whole plane.
+  /// This rank's columns of the fields forward, a cache line of them at a time, work(thread, these), and
+  /// back; not of a whole plane.
   template <typename Work>
   void through_columns(Index fields, const Work& work) {
     for (Index field = 0; field < fields; ++field) ranks_.to_columns(buffer_.data() + field * field_size_);
@@ -122,8 +122,8 @@ class PlaneTransform {
                               numbers(scratch + field * size));
         }
         const Index first = (own.first + batch) * kColumns;
-        work(thread, PlaneColumns<Real>{scratch, 2 * kColumns, size, first,
-                                        std::min(kColumns, columns_ - first)});
+        work(thread,
+             PlaneColumns<Real>{scratch, 2 * kColumns, size, first, std::min(kColumns, columns_ - first)});
         for (Index field = 0; field < fields; ++field) {
           Fftw<Real>::execute(column_backward_.get(), numbers(scratch + field * size),
                               numbers(scratch + field * size));
@@ -155,8 +155,8 @@ class PlaneTransform {
   static Index size(const PlaneShape& shape, int threads) {
     return shape.fields * field_size(shape) + (shape.whole ? 0 : threads * scratch_size(shape));
   }
-  /// Reals from one row to the next: on one rank an odd number of cache lines, so that a column is spread over
-  /// the cache whatever its length.
+  /// Reals from one row to the next: on one rank an odd number of cache lines, so that a column is spread
+  /// over the cache whatever its length.
   Index row_stride() const { return row_stride_; }
 
  private:

@@ -6,8 +6,8 @@
 
 namespace slipstick::solver {
 
-/// What a transform carries between ranks, between its pass over rows and that over columns; on one rank, which
-/// keeps all, it does nothing. Entries are some numbers of the type Real that stay together.
+/// What a transform carries between ranks, between its pass over rows and that over columns; on one rank,
+/// which keeps all, it does nothing. Entries are some numbers of the type Real that stay together.
 template <typename Real>
 class RankTranspose {
  public:

@@ -7,8 +7,8 @@
 
 namespace slipstick::solver {
 
-/// A matrix that ranks share, of entries of some bytes each. Of its rows every rank has so many, the last ones
-/// fewer or none; so of its columns.
+/// A matrix that ranks share, of entries of some bytes each. Of its rows every rank has so many, the last
+/// ones fewer or none; so of its columns.
 struct SharedMatrix {
   Index rows;
   Index rows_of_rank;
@@ -42,8 +42,8 @@ class Communicator {
   virtual int number() const = 0;
   virtual int rank() const = 0;
 
-  /// Things of some bytes each, of which every rank has so many in its place, the last ones fewer: all of them
-  /// on every rank.
+  /// Things of some bytes each, of which every rank has so many in its place, the last ones fewer: all of
+  /// them on every rank.
   virtual void gather(void* things, std::size_t bytes, Index count, Index of_rank) = 0;
   /// Of such things those next to this rank's, so many on each side.
   virtual void gather_beside(void* things, std::size_t bytes, Index count, Index of_rank, Index depth) = 0;

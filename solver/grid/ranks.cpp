@@ -54,7 +54,9 @@ class Planned final : public Communicator {
 
 }  // namespace
 
-PlannedRanks::PlannedRanks(int number) : outer_(std::move(joined)) { joined = std::make_unique<Planned>(number); }
+PlannedRanks::PlannedRanks(int number) : outer_(std::move(joined)) {
+  joined = std::make_unique<Planned>(number);
+}
 PlannedRanks::~PlannedRanks() { joined = std::move(outer_); }
 
 Ranks::Ranks() {
@@ -63,9 +65,10 @@ Ranks::Ranks() {
   void* const join = library != nullptr ? dlsym(library, kJoinRanks) : nullptr;
   if (join == nullptr) {
     const char* const why = dlerror();
-    throw std::runtime_error("started on several ranks, for which this build has no library; build it with "
-                             "SLIPSTICK_MPI=ON, or start one process: " +
-                             std::string(why != nullptr ? why : kLibrary));
+    throw std::runtime_error(
+        "started on several ranks, for which this build has no library; build it with "
+        "SLIPSTICK_MPI=ON, or start one process: " +
+        std::string(why != nullptr ? why : kLibrary));
   }
   joined.reset(reinterpret_cast<JoinRanks>(join)());
   for (const char* name : kNumbers) unsetenv(name);  // programs that this one starts are no ranks

@@ -19,16 +19,16 @@ struct Share {
   bool operator==(const Share&) const = default;
 };
 
-/// The processes of one run that solve one contact together: ranks of MPI, started by mpirun. A program that was
-/// not is the only rank, number 0.
+/// The processes of one run that solve one contact together: ranks of MPI, started by mpirun. A program that
+/// was not is the only rank, number 0.
 ///
 /// Every rank knows a field by the same addresses, of all its cells. Where ranks share the work each holds
 /// what its own rows have, and the memory of the others' rows is not touched, so that the system never gives
 /// it; gather() makes a field whole.
 class Ranks {
  public:
-  /// Joins those that mpirun has started, if it has, as long as this object lives. It is made once, and on the
-  /// thread that calls what is below. Throws std::runtime_error where the library for it is not there.
+  /// Joins those that mpirun has started, if it has, as long as this object lives. It is made once, and on
+  /// the thread that calls what is below. Throws std::runtime_error where the library for it is not there.
   Ranks();
   ~Ranks();
   Ranks(const Ranks&) = delete;
@@ -50,7 +50,8 @@ class Ranks {
   /// Makes a field of some rows whole on every rank, each of which has so many rows, the last ones fewer.
   template <typename Real>
   static void gather(std::span<Real> field, Index rows, Index rows_of_rank) {
-    if (number() > 1) communicator().gather(field.data(), field.size_bytes() / size(rows), rows, rows_of_rank);
+    if (number() > 1)
+      communicator().gather(field.data(), field.size_bytes() / size(rows), rows, rows_of_rank);
   }
   /// Brings the rows next to this rank's from the ranks that have them, so many on each side.
   template <typename Real>
@@ -81,8 +82,8 @@ class Ranks {
   static std::size_t size(Index rows) { return static_cast<std::size_t>(rows); }
 };
 
-/// As long as it lives, sizes are those of the first of so many ranks, of which there is none but this one: for
-/// predictions.
+/// As long as it lives, sizes are those of the first of so many ranks, of which there is none but this one:
+/// for predictions.
 class PlannedRanks {
  public:
   explicit PlannedRanks(int number);
@@ -94,8 +95,8 @@ class PlannedRanks {
   std::unique_ptr<Communicator> outer_;
 };
 
-/// The rows of a grid in at most kMost bands of equal numbers of them. Sums are taken band by band and then in
-/// their order, and ranks share the bands: so no sum depends on how many ranks there are.
+/// The rows of a grid in at most kMost bands of equal numbers of them. Sums are taken band by band and then
+/// in their order, and ranks share the bands: so no sum depends on how many ranks there are.
 class RowBands {
  public:
   static constexpr Index kMost = 64;

@@ -10,14 +10,14 @@
 namespace slipstick::solver {
 
 /// Those cells of a grid that a loop visits, as intervals of neighbours: cells that carry no traction cost
-/// nothing. Sums are taken in bands of rows, see RowBands, and then in their order, whatever the threads of the
-/// pool and the ranks of the run that share the bands: so no result depends on the number of either.
+/// nothing. Sums are taken in bands of rows, see RowBands, and then in their order, whatever the threads of
+/// the pool and the ranks of the run that share the bands: so no result depends on the number of either.
 class Sweep {
  public:
   /// None yet.
   Sweep() = default;
-  /// Cells where a field, one value a cell, is not zero. row: cells of a row, which ranks share; 0: every rank
-  /// visits all cells.
+  /// Cells where a field, one value a cell, is not zero. row: cells of a row, which ranks share; 0: every
+  /// rank visits all cells.
   template <typename Field>
   explicit Sweep(const Field& field, Index row = 0) : row_(row) {
     assign(field.size(), [&](Index cell) { return field[cell] != 0; });
@@ -85,7 +85,8 @@ class Sweep {
     Index first;
     Index last;
   };
-  /// Of a band, at least, where rows do not say; with fewer than some such bands a second thread is not worth it.
+  /// Of a band, at least, where rows do not say; with fewer than some such bands a second thread is not worth
+  /// it.
   static constexpr Index kCellsOfBand = 512;
   static constexpr Index kFew = 8 * kCellsOfBand;
 
@@ -160,7 +161,8 @@ void Sweep::assign(Index cells, const Contains& contains) {
   count_ = visited_;
   if (!shared()) return;
   count_ = 0;
-  for (const double visited : Ranks::of_each(static_cast<double>(visited_))) count_ += static_cast<Index>(visited);
+  for (const double visited : Ranks::of_each(static_cast<double>(visited_)))
+    count_ += static_cast<Index>(visited);
 }
 
 }  // namespace slipstick::solver

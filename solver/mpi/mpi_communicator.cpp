@@ -86,7 +86,9 @@ class MpiCommunicator final : public Communicator {
     const Thing thing(bytes);
     const Part own = part_of(rank_, count, of_rank);
     std::vector<MPI_Request> requests;
-    const auto at = [&](const Part& part) { return static_cast<std::byte*>(things) + static_cast<std::size_t>(part.first) * bytes; };
+    const auto at = [&](const Part& part) {
+      return static_cast<std::byte*>(things) + static_cast<std::size_t>(part.first) * bytes;
+    };
     for (int other = 0; other < number_; ++other) {
       if (other == rank_) continue;
       const Part theirs = part_of(other, count, of_rank);
@@ -105,8 +107,8 @@ class MpiCommunicator final : public Communicator {
     const std::array<Length, 2> sides{matrix.rows, matrix.columns};
     std::array<Length, 4> own{};
     const Length reals = fftw_mpi_local_size_many_transposed(
-        2, sides.data(), reals_of_entry(matrix), matrix.rows_of_rank, matrix.columns_of_rank, MPI_COMM_WORLD, &own[0],
-        &own[1], &own[2], &own[3]);
+        2, sides.data(), reals_of_entry(matrix), matrix.rows_of_rank, matrix.columns_of_rank, MPI_COMM_WORLD,
+        &own[0], &own[1], &own[2], &own[3]);
     return sizeof(double) * static_cast<std::size_t>(std::max<Length>(reals, reals_of_entry(matrix)));
   }
 

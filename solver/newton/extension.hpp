@@ -20,8 +20,8 @@ class Extension {
   /// Of scalar fields on a grid.
   explicit Extension(const Grid& grid);
 
-  /// free: 1 in the cells that are, 0 elsewhere. Of several ranks each knows its own rows, and gets those beside
-  /// them in whatever is given to it.
+  /// free: 1 in the cells that are, 0 elsewhere. Of several ranks each knows its own rows, and gets those
+  /// beside them in whatever is given to it.
   void prepare(Field& free);
   /// y, zero where no cell is free: its continuation is added there. Allocates nothing.
   void extend(Field& y);

@@ -315,8 +315,10 @@ bool NaturalMapNewton<Set, Real>::accept_trial(ArrayXd& q) {
     if (!lower) ++safeguards_.halvings;
     each_own([&](Index first, Index last) {
       const Index n = last - first;
-      trial_.segment(first, n) = q.segment(first, n) + part * (trial_.segment(first, n) - q.segment(first, n));
-      trial_u_.segment(first, n) = u_.segment(first, n) + part * (trial_u_.segment(first, n) - u_.segment(first, n));
+      trial_.segment(first, n) =
+          q.segment(first, n) + part * (trial_.segment(first, n) - q.segment(first, n));
+      trial_u_.segment(first, n) =
+          u_.segment(first, n) + part * (trial_u_.segment(first, n) - u_.segment(first, n));
     });
     after = energy(trial_, trial_u_);
   }

@@ -154,8 +154,8 @@ auto Convolution<Real>::factors(Index column) const -> Factors {
 template <typename Real>
 double Convolution<Real>::predicted_bytes(const Grid& grid, const BlockKernel& kernel, int threads) {
   const Index p1 = fast_length(2 * grid.n1 - 1);
-  const std::size_t spectra =
-      distinct_components(kernel).size() * count((p1 / 2 + 1) * PaddedTransform<Real>::own_columns(grid).count());
+  const std::size_t spectra = distinct_components(kernel).size() *
+                              count((p1 / 2 + 1) * PaddedTransform<Real>::own_columns(grid).count());
   return static_cast<double>(sizeof(Real) * spectra + PaddedTransform<Real>::predicted_bytes(
                                                           grid, fields(kernel), std::max(threads, 1)));
 }

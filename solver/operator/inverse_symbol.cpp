@@ -131,8 +131,7 @@ class PeriodicInverseSymbol final : public InverseSymbol<Real> {
         scale_complex(count, p11, columns.row(0, k));
       } else {
         mix(count, Real(negative ? -1 : 1), p11, table_.row(SymbolEntry::p12, f) + first,
-            table_.row(SymbolEntry::p22, f) + first, columns.row(0, k),
-            columns.row(1, k));
+            table_.row(SymbolEntry::p22, f) + first, columns.row(0, k), columns.row(1, k));
       }
     }
   }

@@ -155,8 +155,7 @@ double MirroredConvolution<Real>::predicted_bytes(const Grid& quadrant, const Bl
   const Index columns = Ranks::own_share(column_groups).count() * kLines;
   const Index fields = diagonal ? 1 : static_cast<Index>(kernel.inputs);
   const auto spectra = static_cast<Index>(distinct_components(kernel, diagonal).size());
-  const Index half_transformed =
-      fields * field_size(groups(quadrant.n1, kLines), column_groups, quadrant.n1);
+  const Index half_transformed = fields * field_size(groups(quadrant.n1, kLines), column_groups, quadrant.n1);
   const Index transformed = diagonal ? static_cast<Index>(transformed_reals<Real>(h1)) : 0;
   const Index tables = Transform::table_size(quadrant.n1) + Transform::table_size(quadrant.n2);
   const Index per_thread =

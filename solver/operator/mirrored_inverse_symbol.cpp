@@ -19,7 +19,12 @@ PeriodicGrid mirrored(const Grid& grid) {
 Index reordered(Index i, Index t) { return i % 2 == 0 ? i / 2 : t - 1 - i / 2; }
 
 PlaneShape plane_of(const Grid& grid, bool tangential, bool symmetric) {
-  return {transform_length(grid.n1), transform_length(grid.n2), tangential ? 2 : 1, grid.n1, reordered, symmetric};
+  return {transform_length(grid.n1),
+          transform_length(grid.n2),
+          tangential ? 2 : 1,
+          grid.n1,
+          reordered,
+          symmetric};
 }
 
 /// Where frequencies f2 lie in a row of coefficients: those of cosines, then those of sines.
@@ -201,9 +206,8 @@ void MirroredInverseSymbol<Real>::apply(std::span<Real> field) {
     multiply_symmetric();
     transform_.backward_columns(1);
   } else {
-    transform_.through_columns(transformed, [&](int thread, const PlaneColumns<Real>& columns) {
-      multiply(thread, columns);
-    });
+    transform_.through_columns(
+        transformed, [&](int thread, const PlaneColumns<Real>& columns) { multiply(thread, columns); });
   }
   const Index result = symmetric_ ? 1 : 0;
   each_row([&](Index f, Index i) { store(result + f, i, field.data() + f * cells); });
@@ -258,8 +262,8 @@ void MirroredInverseSymbol<Real>::separate(int thread, const PlaneColumns<Real>&
 }
 
 template <typename Real>
-void MirroredInverseSymbol<Real>::join(int thread, const Coefficients& from, const PlaneColumns<Real>& columns,
-                                       Index f, Index k1) {
+void MirroredInverseSymbol<Real>::join(int thread, const Coefficients& from,
+                                       const PlaneColumns<Real>& columns, Index f, Index k1) {
   // Rows 0 and t1/2 are their own partners: what is written twice goes elsewhere once.
   const bool alone = k1 == 0 || 2 * k1 == t1_;
   Real* const unused = scratch(thread) + scratch_ - 2 * half_;

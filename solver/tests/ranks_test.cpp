@@ -34,8 +34,8 @@ const auto* const kRanks = testing::AddGlobalTestEnvironment(new RanksOfTheTests
 
 /// Odd, prime and fast lengths, fewer rows than ranks, rows for some of the ranks alone.
 std::vector<Grid> grids() {
-  return {{1, 1, 1.0, 1.0}, {9, 2, 1.0, 0.7}, {23, 31, 1.0, 1.3}, {45, 46, 1.0, 1.0}, {64, 48, 1.0, 1.0},
-          {130, 7, 1.0, 1.0}};
+  return {{1, 1, 1.0, 1.0},   {9, 2, 1.0, 0.7},   {23, 31, 1.0, 1.3},
+          {45, 46, 1.0, 1.0}, {64, 48, 1.0, 1.0}, {130, 7, 1.0, 1.0}};
 }
 
 template <typename Field>
@@ -52,8 +52,8 @@ void expect_same_bits(const Work& work, const char* what, const Grid& grid) {
   }();
   const auto together = work();
   ASSERT_EQ(alone.size(), together.size());
-  EXPECT_TRUE((alone == together).all()) << what << " on " << grid.n1 << " x " << grid.n2
-                                         << (grid.quadrant ? ", a quadrant" : "");
+  EXPECT_TRUE((alone == together).all())
+      << what << " on " << grid.n1 << " x " << grid.n2 << (grid.quadrant ? ", a quadrant" : "");
 }
 
 template <typename Real>
@@ -87,7 +87,8 @@ TEST(RanksOperator, HasTheBitsOfOneRank) {
   for (Grid grid : grids()) {
     for (const bool quadrant : {false, true}) {
       grid.quadrant = quadrant;
-      for (const BlockKernel& kernel : {normal_kernel(), tangential_kernel(), coupling_kernel(), shear_kernel()}) {
+      for (const BlockKernel& kernel :
+           {normal_kernel(), tangential_kernel(), coupling_kernel(), shear_kernel()}) {
         if (quadrant && kernel != normal_kernel() && kernel != tangential_kernel()) continue;
         const ArrayXd traction = random_field(static_cast<Index>(kernel.inputs) * grid.cells(), 7);
         expect_same_bits(
