@@ -29,10 +29,10 @@ constexpr double kFieldsHeld = 24.0;
 constexpr double kPaperFields = 20.0;
 /// Of the tangential problem and its solution, on the part of the grid where that is solved; of the step
 /// before, or of the turn before, on the whole of it.
-constexpr double kFieldsOfPart = 10.0;
+constexpr double kFieldsOfPart = 2.0;
 constexpr double kFieldsBefore = 30.0;
 /// Of pressure and tractions solved in turn besides, on the whole grid: Anderson's combination and guesses.
-constexpr double kFieldsOfTurns = 22.0;
+constexpr double kFieldsOfTurns = 38.0;
 /// The program and its libraries; on several ranks what MPI takes besides.
 double program_bytes() { return (Ranks::number() > 1 ? 50.0 : 26.0) * 0x1p20; }
 /// Cells left free on each side of the expected contact where the scene does not give an extent.

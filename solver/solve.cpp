@@ -39,16 +39,17 @@ constexpr double kGapRounding = 1e-13;
 /// A mismatch below this, over the shear compliance, is the rounding of bodies that are alike.
 constexpr double kAlike = 1e-14;
 
-/// The problem on a part of the grid. A quadrant carries a quarter of the moment.
-TangentialProblem reduced(const TangentialProblem& problem, const Reduction& part) {
+/// The problem on a part of the grid. A quadrant carries a quarter of the moment. What only a solve needs is
+/// taken.
+TangentialProblem reduced(TangentialProblem& problem, const Reduction& part) {
   const double images = part.quadrant() ? 4.0 : 1.0;
   TangentialProblem on_part{.friction_bound = part.restricted(problem.friction_bound),
-                            .initial_displacement = part.restricted(problem.initial_displacement),
+                            .initial_displacement = part.restricted(std::move(problem.initial_displacement)),
                             .moment = problem.moment,
                             .twist = problem.twist,
                             .force = problem.force,
                             .displacement = problem.displacement,
-                            .start = part.restricted(problem.start)};
+                            .start = part.restricted(std::move(problem.start))};
   if (on_part.moment) *on_part.moment /= images;
   return on_part;
 }
@@ -62,10 +63,10 @@ void expand(TangentialSolution& solution, const Reduction& part) {
 
 /// gap: over the energy, that is enough for Coulomb's method; 0: as the scene asks.
 TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduction& part,
-                            const TangentialProblem& problem, const Progress& progress, double gap) {
+                            TangentialProblem problem, const Progress& progress, double gap) {
   const Elasticity elastic = elasticity(scene, model, part);
   if (scene.method == Method::coulomb) {
-    return solve_by_coulomb_method(elastic, part.grid(), problem,
+    return solve_by_coulomb_method(elastic, part.grid(), std::move(problem),
                                    {.tolerance = std::max(scene.tolerance, gap),
                                     .max_applications = scene.max_iterations,
                                     .refine_motion = gap == 0.0,
@@ -89,14 +90,14 @@ TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduct
 }
 
 /// Tractions under a pressure that is known. goal: of a turn under full coupling.
-TangentialSolution find_tractions(Model& model, const Scene& scene, const LoadStep& loads,
-                                  const ArrayXd& pressure, const ContactState& before,
-                                  const Progress& progress, const TurnGoal& goal = {}) {
+TangentialSolution find_tractions(Model& model, const Scene& scene, LoadStep& loads, const ArrayXd& pressure,
+                                  const ContactState& before, const Progress& progress,
+                                  const TurnGoal& goal = {}) {
   const Reduction part = traction_part(scene, model, pressure, before.pressure);
   note_omissions(model, scene, part, loads.problem.force || loads.problem.displacement);
   TangentialProblem problem = reduced(loads.problem, part);
   problem.guess = part.restricted(goal.guess);
-  TangentialSolution solution = solve_on(scene, model, part, problem, progress, goal.gap);
+  TangentialSolution solution = solve_on(scene, model, part, std::move(problem), progress, goal.gap);
   expand(solution, part);
   return solution;
 }

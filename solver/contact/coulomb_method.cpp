@@ -64,15 +64,24 @@ class TangentialOnGrid {
   TangentialOnGrid(const Grid& grid, TangentialProblem problem)
       : row_(grid.n2),
         problem_(std::move(problem)),
-        contact_((problem_.friction_bound > 0.0).cast<double>()),
-        fields_{ArrayXd(), ArrayXd(), contact_.replicate(2, 1) * rotation_field(grid)} {
-    const Index cells = contact_.size();
+        fields_{ArrayXd(), ArrayXd(), ArrayXd(2 * grid.cells())} {
+    const Index cells = grid.cells();
     if (problem_.start.size() == 0) problem_.start.setZero(2 * cells);
-    if (!problem_.force && !problem_.displacement) return;
-    for (const Index component : {0, 1}) {
-      ArrayXd& field = fields_[static_cast<std::size_t>(component)];
-      field.setZero(2 * cells);
-      field.segment(component * cells, cells) = contact_;
+    const bool translations = problem_.force || problem_.displacement;
+    auto& [along1, along2, rotation] = fields_;
+    if (translations) along1.resize(2 * cells);
+    if (translations) along2.resize(2 * cells);
+    const Share rows = RowBands(grid.n1).own_rows();
+    for (Index i = rows.first; i < rows.last; ++i) {
+      for (Index j = 0; j < grid.n2; ++j) {
+        const Index cell = i * grid.n2 + j;
+        const double contact = problem_.friction_bound[cell] > 0.0 ? 1.0 : 0.0;
+        rotation[cell] = -contact * grid.x2(j);
+        rotation[cell + cells] = contact * grid.x1(i);
+        if (!translations) continue;
+        along1[cell] = along2[cell + cells] = contact;
+        along1[cell + cells] = along2[cell] = 0.0;
+      }
     }
   }
 
@@ -82,8 +91,9 @@ class TangentialOnGrid {
   ArrayXd start() const { return problem_.start; }
   ArrayXd guess() const { return problem_.guess; }
 
+  /// Once: what it refers to takes the place of what the problem was given.
   ConvexProgram program(LinearOperator& op) {
-    reference_ = problem_.initial_displacement;
+    reference_ = std::move(problem_.initial_displacement);
     if ((problem_.start != 0.0).any()) {
       ArrayXd before(problem_.start.size());
       op.apply(problem_.start, before);
@@ -122,8 +132,9 @@ class TangentialOnGrid {
 
   Index row_;
   TangentialProblem problem_;
-  ArrayXd contact_;                ///< 1 where tractions may be
-  std::array<ArrayXd, 3> fields_;  ///< by Motion: (1, 0) and (0, 1), empty where not modelled, and (-x2, x1)
+  /// By Motion: (1, 0) and (0, 1), empty where not modelled, and (-x2, x1), where tractions may be; this
+  /// rank's.
+  std::array<ArrayXd, 3> fields_;
   ArrayXd reference_;
 };
 
@@ -168,7 +179,7 @@ double predicted_coulomb_bytes(const Elasticity& elasticity, const Grid& grid, b
 }
 
 TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const Grid& grid,
-                                           const TangentialProblem& problem, const CoulombOptions& options) {
+                                           TangentialProblem problem, const CoulombOptions& options) {
   require_valid(problem, grid);
   if ((problem.friction_bound == 0.0).all()) return unloaded(grid);
   NewtonOptions newton{.tolerance = options.tolerance,
@@ -179,14 +190,19 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
       options.progress(static_cast<int>(applications), gap);
     };
   }
-  NestedSummary nested = solve_nested(elasticity, grid, TangentialOnGrid(grid, problem), newton);
+  const TangentialProblem loads{.friction_bound = problem.friction_bound,
+                                .moment = problem.moment,
+                                .twist = problem.twist,
+                                .force = problem.force,
+                                .displacement = problem.displacement};
+  NestedSummary nested = solve_nested(elasticity, grid, TangentialOnGrid(grid, std::move(problem)), newton);
   TangentialSolution solution;
   solution.status = nested.newton.converged ? Status::converged : Status::not_converged;
   if (!nested.newton.converged) {
     solution.message = fmt::format("{}: gap / energy {:.3g}, asked for {:.3g}", nested.newton.message,
                                    nested.newton.gap, options.tolerance);
   }
-  describe_motion(solution, nested.newton, problem);
+  describe_motion(solution, nested.newton, loads);
   solution.traction = std::move(nested.field);
   solution.elastic_displacement = std::move(nested.displacement);
   solution.change = nested.newton.gap;
@@ -194,7 +210,7 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
   solution.grids = std::move(nested.grids);
   solution.safeguards = nested.safeguards;
   solution.bytes = nested.bytes;
-  describe(solution, problem, nested);
+  describe(solution, loads, nested);
   return solution;
 }
 

@@ -87,10 +87,10 @@ Reduction::Reduction(const Grid& grid, const ArrayXd& shape, const ArrayXd& cont
   diagonal_ = grid_.n1 == grid_.n2 && grid_.h1 == grid_.h2 && same(field, field.transpose());
 }
 
-ArrayXd Reduction::restricted(const ArrayXd& field) const {
+ArrayXd Reduction::restricted(ArrayXd field) const {
   if (field.size() == 0) return field;
-  const ArrayXd part = trimmed() ? middle(whole_, trimmed_, field) : field;
-  return quadrant() ? restrict_to_quadrant(trimmed_, part) : part;
+  if (trimmed()) field = middle(whole_, trimmed_, field);
+  return quadrant() ? restrict_to_quadrant(trimmed_, field) : field;
 }
 
 ArrayXd Reduction::expanded(const ArrayXd& field, const Symmetry& symmetry) const {

@@ -30,7 +30,7 @@ class Reduction {
   bool diagonal() const { return diagonal_; }
 
   /// A field of one or more components on the reduced grid.
-  Eigen::ArrayXd restricted(const Eigen::ArrayXd& field) const;
+  Eigen::ArrayXd restricted(Eigen::ArrayXd field) const;
 
   /// And back: zero outside, mirrored by the parity of each component.
   Eigen::ArrayXd expanded(const Eigen::ArrayXd& field, const Symmetry& symmetry) const;

@@ -183,11 +183,10 @@ void NaturalMapNewton<Set, Real>::write_slip(ArrayXd& s) const {
 }
 
 template <AdmissibleSet Set, typename Real>
-Eigen::ArrayXd NaturalMapNewton<Set, Real>::slip() const {
-  ArrayXd s(size());
-  clear(set_.sweep(), s);
-  write_slip(s);
-  return s;
+Eigen::ArrayXd NaturalMapNewton<Set, Real>::take_slip() {
+  clear(set_.sweep(), y_);
+  write_slip(y_);
+  return std::move(y_);
 }
 
 /// y = q - length * gradient, without the imposed conditions' part.

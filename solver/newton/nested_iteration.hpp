@@ -92,8 +92,8 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
   on_grid.least_iterations = guessed ? 1 : 0;
   result.newton = newton.run(result.field, multipliers, on_grid);
   result.safeguards += result.newton.safeguards;
-  result.displacement = newton.displacement();
-  result.slip = newton.slip();
+  result.slip = newton.take_slip();
+  result.displacement = newton.take_displacement();
   for (Eigen::ArrayXd* const field : {&result.field, &result.displacement, &result.slip}) {
     gather(grid, std::span(field->data(), static_cast<std::size_t>(field->size())));
   }
