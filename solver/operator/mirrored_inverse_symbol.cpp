@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
+#include <type_traits>
 
 namespace slipstick::solver {
 namespace {
@@ -71,8 +72,8 @@ void restore(const Real* __restrict row, Index n, Real even, Real odd, Index t, 
 /// exp(-i (theta2 - theta1)), theta the arguments of the cosines. Written is twice
 ///
 ///     cc = Re(A + B)/2,  cs = -Im(A + B)/2,  sc = Im(B - A)/2,  ss = Re(B - A)/2.
-template <typename Real>
-void separate_rows(Index count, Twiddles<Real> w, const Real* __restrict a, const Real* __restrict b,
+template <typename Real, typename Count>
+void separate_rows(Count count, Twiddles<Real> w, const Real* __restrict a, const Real* __restrict b,
                    Real* __restrict cc, Real* __restrict cs, Real* __restrict sc, Real* __restrict ss) {
   for (Index k = 0; k < count; ++k) {
     const Real sum_real = a[2 * k] + b[2 * k];
@@ -91,8 +92,8 @@ void separate_rows(Index count, Twiddles<Real> w, const Real* __restrict a, cons
 }
 
 /// The inverse of separate_rows(), times 2.
-template <typename Real>
-void join_rows(Index count, Twiddles<Real> w, const Real* __restrict cc, const Real* __restrict cs,
+template <typename Real, typename Count>
+void join_rows(Count count, Twiddles<Real> w, const Real* __restrict cc, const Real* __restrict cs,
                const Real* __restrict sc, const Real* __restrict ss, Real* __restrict a, Real* __restrict b) {
   for (Index k = 0; k < count; ++k) {
     const Real sr = w.c * cc[k] + w.s * sc[k];
@@ -110,13 +111,13 @@ void join_rows(Index count, Twiddles<Real> w, const Real* __restrict cc, const R
   }
 }
 
-template <typename Real>
-void scale(Index count, const Real* __restrict p, Real* __restrict x) {
+template <typename Real, typename Count>
+void scale(Count count, const Real* __restrict p, Real* __restrict x) {
   for (Index k = 0; k < count; ++k) x[k] *= p[k];
 }
 
-template <typename Real>
-void mix(Index count, const Real* __restrict p11, const Real* __restrict p12, const Real* __restrict p22,
+template <typename Real, typename Count>
+void mix(Count count, const Real* __restrict p11, const Real* __restrict p12, const Real* __restrict p22,
          Real* __restrict x1, Real* __restrict x2) {
   for (Index k = 0; k < count; ++k) {
     const Real first = x1[k];
@@ -206,8 +207,11 @@ void MirroredInverseSymbol<Real>::apply(std::span<Real> field) {
     multiply_symmetric();
     transform_.backward_columns(1);
   } else {
-    transform_.through_columns(
-        transformed, [&](int thread, const PlaneColumns<Real>& columns) { multiply(thread, columns); });
+    transform_.through_columns(transformed, [&](int thread, const PlaneColumns<Real>& columns) {
+      using Whole = std::integral_constant<Index, PlaneTransform<Real>::kColumns>;
+      columns.count == Whole::value ? multiply(thread, columns, Whole())
+                                    : multiply(thread, columns, columns.count);
+    });
   }
   const Index result = symmetric_ ? 1 : 0;
   each_row([&](Index f, Index i) { store(result + f, i, field.data() + f * cells); });
@@ -255,20 +259,23 @@ Twiddles<Real> MirroredInverseSymbol<Real>::twiddles(Index k1, Index first_colum
 }
 
 template <typename Real>
-void MirroredInverseSymbol<Real>::separate(int thread, const PlaneColumns<Real>& columns, Index f, Index k1) {
+template <typename Count>
+void MirroredInverseSymbol<Real>::separate(int thread, const PlaneColumns<Real>& columns, Count count,
+                                           Index f, Index k1) {
   const Coefficients to = coefficients(thread, f);
-  separate_rows(columns.count, twiddles(k1, columns.first), columns.row(f, k1),
+  separate_rows(count, twiddles(k1, columns.first), columns.row(f, k1),
                 columns.row(f, k1 == 0 ? 0 : t1_ - k1), to.cc, to.cs, to.sc, to.ss);
 }
 
 template <typename Real>
+template <typename Count>
 void MirroredInverseSymbol<Real>::join(int thread, const Coefficients& from,
-                                       const PlaneColumns<Real>& columns, Index f, Index k1) {
+                                       const PlaneColumns<Real>& columns, Count count, Index f, Index k1) {
   // Rows 0 and t1/2 are their own partners: what is written twice goes elsewhere once.
   const bool alone = k1 == 0 || 2 * k1 == t1_;
   Real* const unused = scratch(thread) + scratch_ - 2 * half_;
-  join_rows(columns.count, twiddles(k1, columns.first), from.cc, from.cs, from.sc, from.ss,
-            columns.row(f, k1), alone ? unused : columns.row(f, t1_ - k1));
+  join_rows(count, twiddles(k1, columns.first), from.cc, from.cs, from.sc, from.ss, columns.row(f, k1),
+            alone ? unused : columns.row(f, t1_ - k1));
 }
 
 template <typename Real>
@@ -280,35 +287,37 @@ void MirroredInverseSymbol<Real>::for_row_pairs(const Work& work) {
 }
 
 template <typename Real>
-void MirroredInverseSymbol<Real>::multiply(int thread, const PlaneColumns<Real>& columns) {
+template <typename Count>
+void MirroredInverseSymbol<Real>::multiply(int thread, const PlaneColumns<Real>& columns, Count count) {
   const Index fields = tangential_ ? 2 : 1;
   for (Index k1 = 0; k1 <= t1_ / 2; ++k1) {
-    for (Index f = 0; f < fields; ++f) separate(thread, columns, f, k1);
-    multiply_rows(thread, columns, k1);
-    for (Index f = 0; f < fields; ++f) join(thread, coefficients(thread, f), columns, f, k1);
+    for (Index f = 0; f < fields; ++f) separate(thread, columns, count, f, k1);
+    multiply_rows(thread, columns, count, k1);
+    for (Index f = 0; f < fields; ++f) join(thread, coefficients(thread, f), columns, count, f, k1);
   }
 }
 
 /// Cosines of the frequencies k of p; sines of t - k, which for the odd coordinate of q1 and of q2 is k: so
 /// q1's cs has the frequencies of q2's sc, and so on.
 template <typename Real>
-void MirroredInverseSymbol<Real>::multiply_rows(int thread, const PlaneColumns<Real>& columns, Index k1) {
+template <typename Count>
+void MirroredInverseSymbol<Real>::multiply_rows(int thread, const PlaneColumns<Real>& columns, Count count,
+                                                Index k1) {
   const Index first = columns.first - columns_.first;
-  const Index n = columns.count;
   const auto low = [&](SymbolEntry entry) { return table_.row(entry, k1) + first; };
   const auto high = [&](SymbolEntry entry) { return table_.row(entry, t1_ - k1) + first; };
   const Index sines = columns_.count();
   const Coefficients x = coefficients(thread, 0);
   if (!tangential_) {
-    scale(n, low(SymbolEntry::p11), x.cc);
-    scale(n, low(SymbolEntry::p11) + sines, x.cs);
-    scale(n, high(SymbolEntry::p11), x.sc);
-    scale(n, high(SymbolEntry::p11) + sines, x.ss);
+    scale(count, low(SymbolEntry::p11), x.cc);
+    scale(count, low(SymbolEntry::p11) + sines, x.cs);
+    scale(count, high(SymbolEntry::p11), x.sc);
+    scale(count, high(SymbolEntry::p11) + sines, x.ss);
     return;
   }
   const auto multiply_pair = [&](const auto& row, Index column, Real* x1, Real* x2) {
-    mix(n, row(SymbolEntry::p11) + column, row(SymbolEntry::p12) + column, row(SymbolEntry::p22) + column, x1,
-        x2);
+    mix(count, row(SymbolEntry::p11) + column, row(SymbolEntry::p12) + column, row(SymbolEntry::p22) + column,
+        x1, x2);
   };
   const Coefficients y = coefficients(thread, 1);
   multiply_pair(low, 0, x.cs, y.sc);
@@ -323,7 +332,7 @@ template <typename Real>
 void MirroredInverseSymbol<Real>::multiply_symmetric() {
   for_row_pairs([&](int thread, Index k1) {
     const Coefficients x = coefficients(thread, 0);
-    separate(thread, transform_.all_columns(), 0, k1);
+    separate(thread, transform_.all_columns(), half_, 0, k1);
     Real* const low = transform_.row(0, k1);
     std::copy_n(x.cs, half_, low);
     std::copy_n(x.cc, half_, low + half_);
@@ -334,7 +343,7 @@ void MirroredInverseSymbol<Real>::multiply_symmetric() {
   });
   for_row_pairs([&](int thread, Index k1) {
     multiply_symmetric_rows(thread, k1);
-    join(thread, coefficients(thread, 0), transform_.all_columns(), 1, k1);
+    join(thread, coefficients(thread, 0), transform_.all_columns(), half_, 1, k1);
   });
 }
 

@@ -60,13 +60,19 @@ class MirroredInverseSymbol final : public InverseSymbol<Real> {
   void load(Index f, Index i, const Real* values);
   void store(Index f, Index i, Real* values);
   Twiddles<Real> twiddles(Index k1, Index first_column) const;
-  void separate(int thread, const PlaneColumns<Real>& columns, Index f, Index k1);
-  void join(int thread, const Coefficients& from, const PlaneColumns<Real>& columns, Index f, Index k1);
+  /// Of some columns; count: how many they are, known to the compiler where these are whole cache lines.
+  template <typename Count>
+  void separate(int thread, const PlaneColumns<Real>& columns, Count count, Index f, Index k1);
+  template <typename Count>
+  void join(int thread, const Coefficients& from, const PlaneColumns<Real>& columns, Count count, Index f,
+            Index k1);
   /// work(thread, k1) for the rows k1 = 0..t1/2, with each of which goes t1 - k1.
   template <typename Work>
   void for_row_pairs(const Work& work);
-  void multiply(int thread, const PlaneColumns<Real>& columns);
-  void multiply_rows(int thread, const PlaneColumns<Real>& columns, Index k1);
+  template <typename Count>
+  void multiply(int thread, const PlaneColumns<Real>& columns, Count count);
+  template <typename Count>
+  void multiply_rows(int thread, const PlaneColumns<Real>& columns, Count count, Index k1);
   void multiply_symmetric();
   void multiply_symmetric_rows(int thread, Index k1);
   void store_transposed(Real* field, Index first_row, Index last_row) const;
