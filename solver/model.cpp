@@ -24,7 +24,7 @@ using Eigen::ArrayXd;
 
 /// Fields of one value a cell that a solve holds at once on the whole grid, temporaries included: those of
 /// the solution and those that its results are worked out from.
-constexpr double kFieldsHeld = 24.0;
+constexpr double kFieldsHeld = 20.0;
 /// Those that the paper's method holds besides.
 constexpr double kPaperFields = 20.0;
 /// Of the tangential problem and its solution, on the part of the grid where that is solved; of the step
