@@ -66,7 +66,6 @@ class TangentialOnGrid {
         problem_(std::move(problem)),
         fields_{ArrayXd(), ArrayXd(), ArrayXd(2 * grid.cells())} {
     const Index cells = grid.cells();
-    if (problem_.start.size() == 0) problem_.start.setZero(2 * cells);
     const bool translations = problem_.force || problem_.displacement;
     auto& [along1, along2, rotation] = fields_;
     if (translations) along1.resize(2 * cells);
@@ -88,7 +87,9 @@ class TangentialOnGrid {
   static BlockKernel kernel() { return tangential_kernel(); }
   static std::span<const Parity> parities() { return kTorsionParities; }
   FrictionDiscs admissible() const { return FrictionDiscs(problem_.friction_bound, row_); }
-  ArrayXd start() const { return problem_.start; }
+  ArrayXd start() const {
+    return problem_.start.size() > 0 ? problem_.start : ArrayXd::Zero(2 * problem_.friction_bound.size());
+  }
   ArrayXd guess() const { return problem_.guess; }
 
   /// Once: what it refers to takes the place of what the problem was given.
@@ -115,7 +116,7 @@ class TangentialOnGrid {
   TangentialOnGrid coarsened(const Grid& grid, const Grid& coarse) const {
     TangentialProblem problem = problem_;
     problem.friction_bound = restrict_to(coarse, grid, problem_.friction_bound);
-    problem.start = restrict_to(coarse, grid, problem_.start);
+    if (problem_.start.size() > 0) problem.start = restrict_to(coarse, grid, problem_.start);
     problem.guess = {};
     if (problem_.initial_displacement.size() > 0) {
       problem.initial_displacement = restrict_to(coarse, grid, problem_.initial_displacement);
