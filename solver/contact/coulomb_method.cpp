@@ -192,6 +192,7 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
     };
   }
   const TangentialProblem loads{.friction_bound = problem.friction_bound,
+                                .initial_displacement = {},
                                 .moment = problem.moment,
                                 .twist = problem.twist,
                                 .force = problem.force,

@@ -71,6 +71,12 @@ Ranks::Ranks() {
         std::string(why != nullptr ? why : kLibrary));
   }
   joined.reset(reinterpret_cast<JoinRanks>(join)());
+  if (number() == 1) {
+    joined.reset();
+    throw std::runtime_error(
+        "started on several ranks, each of which finds itself alone: mpirun is of another MPI "
+        "than this build's; start it with that one's");
+  }
   for (const char* name : kNumbers) unsetenv(name);  // programs that this one starts are no ranks
 }
 

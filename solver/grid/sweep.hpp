@@ -32,9 +32,6 @@ class Sweep {
   Index count() const { return count_; }
   std::size_t bytes() const { return intervals_.capacity() * sizeof(Interval); }
 
-  /// All cells of this rank's rows.
-  Share own_cells() const { return own_; }
-
   /// work(first, last) for each interval [first, last) of cells; several threads at the same time. It must
   /// not throw.
   template <typename Work>

@@ -17,11 +17,10 @@ FULL = ["--model", "full"]
 # Odd and prime sizes, more ranks than bands of rows; a quadrant; a rough surface, dissimilar bodies, full coupling.
 CASES = (
     ("paper", [33, 31], FULL, (2, 7)),
-    ("paper", [64, 48], [], (3, 4)),
+    ("paper", [64, 48], [], (4,)),
     ("rough_sphere", [37, 29], FULL, (3,)),
     ("dissimilar", [23, 26], [], (2,)),
     ("spence", [24, 20], [], (2,)),
-    ("fretting_torsion", [48, 40], [], (2,)),
 )
 # Several ranks do not exchange the rows and columns of a square quadrant, as one does.
 ROUNDING = 1e-13
@@ -89,7 +88,7 @@ def rank_to_kill(started):
 
 
 def survives_a_death(folder):
-    scene = ["solve", f"{SCENES}/fretting_torsion.toml", "--set", "grid.cells=[64,48]", "--set", "cycles=12"]
+    scene = ["solve", f"{SCENES}/fretting_torsion.toml", "--set", "grid.cells=[40,32]", "--set", "cycles=8"]
     kept = folder / "kept.h5"
     going = ["--checkpoint", str(kept), "--resume", "--json", str(folder / "resumed.json")]
     with subprocess.Popen(command(3, [*scene, *going]), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as started:
