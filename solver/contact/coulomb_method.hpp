@@ -23,8 +23,7 @@ struct CoulombOptions {
 /// Throws std::invalid_argument for a problem that require_valid() refuses. Everything that the numbers do is
 /// a status with its reason.
 TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const Grid& grid,
-                                           TangentialProblem problem,
-                                           const CoulombOptions& options = {});
+                                           TangentialProblem problem, const CoulombOptions& options = {});
 
 /// What TangentialSolution::bytes of it will be.
 double predicted_coulomb_bytes(const Elasticity& elasticity, const Grid& grid, bool translations = false);

@@ -66,8 +66,8 @@ class NaturalMapNewton {
   /// multipliers: guesses of those of the imposed conditions, or empty.
   NewtonSummary run(ArrayXd& q, const Coefficients& multipliers, const NewtonOptions& options);
 
-  /// At the end, before take_displacement(): u + g - multipliers c of the last q, in the cells whose set is not
-  /// zero alone; zero in others.
+  /// At the end, before take_displacement(): u + g - multipliers c of the last q, in the cells whose set is
+  /// not zero alone; zero in others.
   ArrayXd take_slip();
   /// And K q.
   ArrayXd take_displacement() { return std::move(u_); }

@@ -88,7 +88,7 @@ class MirroredConvolution final : public Operator<Real> {
   Index field_size_;
   std::optional<RankTranspose<Real>> ranks_;  ///< where there are several
   FftwBuffer<Real> half_transformed_;         ///< along x2 only: h2 rows for each field and group of rows; on
-                                       ///< several ranks by groups of columns while these are carried
+                                              ///< several ranks by groups of columns while these are carried
   FftwBuffer<Real> transformed_;              ///< diagonal only: h1 rows for each group of columns
   std::vector<Workspace> row_workspaces_;     ///< one for each thread
   std::vector<Workspace> column_workspaces_;  ///< one for each thread and field
