@@ -64,25 +64,7 @@ class TangentialOnGrid {
   TangentialOnGrid(const Grid& grid, TangentialProblem problem)
       : row_(grid.n2),
         problem_(std::move(problem)),
-        fields_{ArrayXd(), ArrayXd(), ArrayXd(2 * grid.cells())} {
-    const Index cells = grid.cells();
-    const bool translations = problem_.force || problem_.displacement;
-    auto& [along1, along2, rotation] = fields_;
-    if (translations) along1.resize(2 * cells);
-    if (translations) along2.resize(2 * cells);
-    const Share rows = RowBands(grid.n1).own_rows();
-    for (Index i = rows.first; i < rows.last; ++i) {
-      for (Index j = 0; j < grid.n2; ++j) {
-        const Index cell = i * grid.n2 + j;
-        const double contact = problem_.friction_bound[cell] > 0.0 ? 1.0 : 0.0;
-        rotation[cell] = -contact * grid.x2(j);
-        rotation[cell + cells] = contact * grid.x1(i);
-        if (!translations) continue;
-        along1[cell] = along2[cell + cells] = contact;
-        along1[cell + cells] = along2[cell] = 0.0;
-      }
-    }
-  }
+        motions_{MotionField(grid, 1.0), MotionField(grid, 0.0, 1.0), MotionField(grid, 0.0, 0.0, 1.0)} {}
 
   static BlockKernel kernel() { return tangential_kernel(); }
   static std::span<const Parity> parities() { return kTorsionParities; }
@@ -129,13 +111,11 @@ class TangentialOnGrid {
   }
 
  private:
-  const ArrayXd& field(Motion motion) const { return fields_[static_cast<std::size_t>(motion)]; }
+  const MotionField& field(Motion motion) const { return motions_[static_cast<std::size_t>(motion)]; }
 
   Index row_;
   TangentialProblem problem_;
-  /// By Motion: (1, 0) and (0, 1), empty where not modelled, and (-x2, x1), where tractions may be; this
-  /// rank's.
-  std::array<ArrayXd, 3> fields_;
+  std::array<MotionField, 3> motions_;  ///< by Motion: (1, 0), (0, 1) and (-x2, x1)
   ArrayXd reference_;
 };
 

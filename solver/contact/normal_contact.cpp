@@ -19,10 +19,11 @@ constexpr std::array<Parity, 1> kPressureParities{{{1, 1}}};
 /// The normal problem on one grid, as solve_nested() asks for it.
 class PressureOnGrid {
  public:
-  /// row: cells of one; reachable: 1 where the bodies can touch; height: the undeformed gap there, 0
-  /// elsewhere.
-  PressureOnGrid(Index row, ArrayXd reachable, ArrayXd height, double total_pressure, ArrayXd guess = {})
-      : row_(row),
+  /// reachable: 1 where the bodies can touch; height: the undeformed gap there, 0 elsewhere.
+  PressureOnGrid(const Grid& grid, ArrayXd reachable, ArrayXd height, double total_pressure,
+                 ArrayXd guess = {})
+      : row_(grid.n2),
+        approach_(grid, 1.0),
         reachable_(std::move(reachable)),
         height_(std::move(height)),
         total_pressure_(total_pressure),
@@ -34,7 +35,7 @@ class PressureOnGrid {
   ArrayXd start() const { return ArrayXd::Zero(reachable_.size()); }
   ArrayXd guess() const { return guess_; }
   ConvexProgram program(LinearOperator&) const {
-    return {.g = &height_, .imposed = {{&reachable_, total_pressure_}}};
+    return {.g = &height_, .imposed = {{&approach_, total_pressure_}}};
   }
 
   /// A coarse cell can touch where half of it can, at the mean height of that part.
@@ -42,12 +43,13 @@ class PressureOnGrid {
     const ArrayXd part = restrict_to(coarse, grid, reachable_);
     const ArrayXd height = restrict_to(coarse, grid, height_);
     const ArrayXd reachable = (part >= std::min(0.5, part.maxCoeff())).cast<double>();
-    return {coarse.n2, reachable, (reachable > 0.0).select(height / part.max(0.25 * part.maxCoeff()), 0.0),
+    return {coarse, reachable, (reachable > 0.0).select(height / part.max(0.25 * part.maxCoeff()), 0.0),
             total_pressure_ * grid.cell_area() / coarse.cell_area()};
   }
 
  private:
   Index row_;
+  MotionField approach_;
   ArrayXd reachable_;
   ArrayXd height_;
   double total_pressure_;
@@ -75,8 +77,8 @@ namespace {
 NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& grid,
                                    const NormalProblem& problem, const NormalOptions& options) {
   const ArrayXd reachable = problem.gap.isFinite().cast<double>();
-  PressureOnGrid contact(grid.n2, reachable, (reachable > 0.0).select(problem.gap, 0.0),
-                         problem.total_pressure, problem.guess);
+  PressureOnGrid contact(grid, reachable, (reachable > 0.0).select(problem.gap, 0.0), problem.total_pressure,
+                         problem.guess);
   const NewtonOptions newton{.tolerance = options.tolerance,
                              .max_applications = options.max_applications,
                              .refine_multipliers = options.refine_approach,

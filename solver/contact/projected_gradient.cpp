@@ -40,8 +40,9 @@ class ProjectedGradient {
         contact_((problem.friction_bound > 0.0).cast<double>().replicate(2, 1)),
         q_(options.start.size() > 0 ? options.start : ArrayXd::Zero(t_.size())),
         Kq_(ArrayXd::Zero(t_.size())),
-        discs_(problem.friction_bound),
-        balance_(discs_, imposed(problem, t_)),
+        rotation_(op.grid(), 0.0, 0.0, 1.0),
+        discs_(problem.friction_bound, op.grid().n2),
+        balance_(discs_, imposed(problem, rotation_)),
         phi_(problem.twist.value_or(0.0)) {
     if (q_.size() != t_.size()) throw std::invalid_argument("start: tractions of another size");
   }
@@ -123,7 +124,7 @@ class ProjectedGradient {
     most_momentum_ = (1.0 - e) / (1.0 + e);
   }
 
-  static std::vector<Condition> imposed(const TangentialProblem& problem, const ArrayXd& rotation) {
+  static std::vector<Condition> imposed(const TangentialProblem& problem, const MotionField& rotation) {
     if (!problem.moment) return {};
     return {{&rotation, *problem.moment}};
   }
@@ -203,6 +204,7 @@ class ProjectedGradient {
   ArrayXd y_, Ky_;  // the extrapolated point, where the gradient is taken
   double L_ = 0.0;  // bounds the curvature: 1/L is the step
   double most_momentum_ = 1.0;
+  const MotionField rotation_;
   const FrictionDiscs discs_;
   const LoadBalance<FrictionDiscs> balance_;
   Coefficients alpha_ = Coefficients::Zero(1);

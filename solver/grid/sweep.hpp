@@ -16,8 +16,8 @@ class Sweep {
  public:
   /// None yet.
   Sweep() = default;
-  /// Cells where a field, one value a cell, is not zero. row: cells of a row, which ranks share; 0: every
-  /// rank visits all cells.
+  /// Cells where a field, one value a cell, is not zero. row: cells of a row, which ranks share; intervals
+  /// end with their rows then. 0: there are none, and every rank visits all cells.
   template <typename Field>
   explicit Sweep(const Field& field, Index row = 0) : row_(row) {
     assign(field.size(), [&](Index cell) { return field[cell] != 0; });
@@ -140,7 +140,12 @@ void Sweep::assign(Index cells, const Contains& contains) {
     begin_[at(band)] = static_cast<Index>(intervals_.size());
     before_[at(band)] = visited_;
     bool inside = false;
+    Index row_end = rows.first * of_row + row_;
     for (Index cell = rows.first * of_row; cell < rows.last * of_row; ++cell) {
+      if (cell == row_end) {
+        inside = false;
+        row_end += row_;
+      }
       if (!contains(cell)) {
         inside = false;
         continue;

@@ -20,21 +20,40 @@ Pair pair(const Real* from, bool both) {
 }
 static Pair both(double value) { return Pair{value, value}; }
 
+/// Values next to each other in a row, of a field that is kept or worked out: the k-th pair of them.
+template <typename Real>
+struct KeptRow {
+  const Real* from;
+  Pair operator()(Index k, bool both_cells) const { return pair(from + k, both_cells); }
+};
+struct MotionRow {
+  static constexpr std::array<double, 2> kOnes{1.0, 1.0};
+  MotionField::Row row;
+  Pair operator()(Index k, bool both_cells) const {
+    return pair(&kOnes[0], both_cells) * both(row.constant) + both(row.slope) * pair(row.x2 + k, both_cells);
+  }
+};
+static MotionRow row_of(const MotionField& motion, Index first) { return {motion.row(first)}; }
+template <typename Real>
+KeptRow<Real> row_of(const Eigen::Array<Real, Eigen::Dynamic, 1>& field, Index first) {
+  return {field.data() + first};
+}
+
 template <int M, typename Direction>
 LoadsAlong<M> PositivePressures::loads_along(const ArrayXd& y, const std::array<const Direction*, M>& w,
                                              const Eigen::Vector<double, M>& x,
-                                             const std::array<const ArrayXd*, M>& c) const {
+                                             const std::array<const MotionField*, M>& c) const {
   static_assert(M == 1, "the approach is a pressure's only condition");
-  const auto* const direction = w[0]->data();
-  const double* const field = c[0]->data();
   return sweep_.sum<LoadsAlong<M>>([&](Index first, Index last, LoadsAlong<M>& sum) {
     Pair load{};
     Pair slope{};
     const Pair x_1 = both(x[0]);
+    const auto direction = row_of(*w[0], first);
+    const auto field = row_of(*c[0], first);
     const auto add = [&](Index i, bool both_cells) {
-      const Pair along = pair(direction + i, both_cells);
+      const Pair along = direction(i - first, both_cells);
       const Pair p = pair(y.data() + i, both_cells) + x_1 * along;
-      const Pair free = p > 0.0 ? pair(field + i, both_cells) : both(0.0);
+      const Pair free = p > 0.0 ? field(i - first, both_cells) : both(0.0);
       load += free * p;
       slope += free * along;
     };
@@ -77,7 +96,7 @@ Index PositivePressures::linearise(const ArrayXd& z, double, const std::array<do
   const auto changed = sweep_.sum<Index>([&](Index first, Index last, Index& count) {
     for (Index i = first; i < last; ++i) {
       const bool contact = z[i] > 0.0;
-      count += (space.a11[i] != Real(0)) != contact;
+      count += (space.f1[i] != Real(0)) != contact;
       space.set(i, contact);
     }
   });
@@ -153,10 +172,17 @@ struct LoadsOfPairs {
 template <int M, typename Direction>
 LoadsAlong<M> FrictionDiscs::loads_along(const ArrayXd& y, const std::array<const Direction*, M>& w,
                                          const Eigen::Vector<double, M>& x,
-                                         const std::array<const ArrayXd*, M>& c) const {
+                                         const std::array<const MotionField*, M>& c) const {
   const Index n = cells();
   return sweep_.sum<LoadsAlong<M>>([&](Index first, Index last, LoadsAlong<M>& sum) {
     LoadsOfPairs<M> part;
+    using RowOfDirection = decltype(row_of(*w[0], first));
+    std::array<std::array<RowOfDirection, 2>, M> rows;
+    std::array<std::array<MotionRow, 2>, M> rows_of_fields;
+    for (std::size_t k = 0; k < M; ++k) {
+      rows[k] = {row_of(*w[k], first), row_of(*w[k], first + n)};
+      rows_of_fields[k] = {row_of(*c[k], first), row_of(*c[k], first + n)};
+    }
     std::array<std::array<Pair, 2>, M> directions;
     std::array<std::array<Pair, 2>, M> fields;
     const auto add = [&](Index i, bool both_cells) {
@@ -164,9 +190,8 @@ LoadsAlong<M> FrictionDiscs::loads_along(const ArrayXd& y, const std::array<cons
       for (std::size_t k = 0; k < M; ++k) {
         const Pair x_k = both(x[static_cast<int>(k)]);
         for (const std::size_t component : {0, 1}) {
-          const Index at = i + static_cast<Index>(component) * n;
-          directions[k][component] = pair(w[k]->data() + at, both_cells);
-          fields[k][component] = pair(c[k]->data() + at, both_cells);
+          directions[k][component] = rows[k][component](i - first, both_cells);
+          fields[k][component] = rows_of_fields[k][component](i - first, both_cells);
           z[component] += x_k * directions[k][component];
         }
       }
@@ -227,7 +252,7 @@ Index FrictionDiscs::linearise(const ArrayXd& z, double rho, const std::array<do
     for (Index i = first; i < last; ++i) {
       const double size = std::sqrt(z[i] * z[i] + z[i + n] * z[i + n]);
       const bool slip = size > bound_[i];
-      count += slip != (space.stiffness[i] > Real(0));
+      count += slip != space.on_line(i);
       if (!slip) {
         space.set(i, true);
         continue;
@@ -257,38 +282,33 @@ void FrictionDiscs::add_jump(const ArrayXd& z, const ArrayXd& q, ArrayXd& step) 
   });
 }
 
-template LoadsAlong<1> PositivePressures::loads_along<1, ArrayXd>(const ArrayXd&,
-                                                                  const std::array<const ArrayXd*, 1>&,
-                                                                  const Eigen::Vector<double, 1>&,
-                                                                  const std::array<const ArrayXd*, 1>&) const;
-template LoadsAlong<1> PositivePressures::loads_along<1, ArrayXf>(const ArrayXd&,
-                                                                  const std::array<const ArrayXf*, 1>&,
-                                                                  const Eigen::Vector<double, 1>&,
-                                                                  const std::array<const ArrayXd*, 1>&) const;
-template LoadsAlong<1> FrictionDiscs::loads_along<1, ArrayXd>(const ArrayXd&,
-                                                              const std::array<const ArrayXd*, 1>&,
-                                                              const Eigen::Vector<double, 1>&,
-                                                              const std::array<const ArrayXd*, 1>&) const;
+template LoadsAlong<1> PositivePressures::loads_along<1, MotionField>(
+    const ArrayXd&, const std::array<const MotionField*, 1>&, const Eigen::Vector<double, 1>&,
+    const std::array<const MotionField*, 1>&) const;
+template LoadsAlong<1> PositivePressures::loads_along<1, ArrayXf>(
+    const ArrayXd&, const std::array<const ArrayXf*, 1>&, const Eigen::Vector<double, 1>&,
+    const std::array<const MotionField*, 1>&) const;
+template LoadsAlong<1> FrictionDiscs::loads_along<1, MotionField>(
+    const ArrayXd&, const std::array<const MotionField*, 1>&, const Eigen::Vector<double, 1>&,
+    const std::array<const MotionField*, 1>&) const;
 template LoadsAlong<1> FrictionDiscs::loads_along<1, ArrayXf>(const ArrayXd&,
                                                               const std::array<const ArrayXf*, 1>&,
                                                               const Eigen::Vector<double, 1>&,
-                                                              const std::array<const ArrayXd*, 1>&) const;
-template LoadsAlong<2> FrictionDiscs::loads_along<2, ArrayXd>(const ArrayXd&,
-                                                              const std::array<const ArrayXd*, 2>&,
-                                                              const Eigen::Vector<double, 2>&,
-                                                              const std::array<const ArrayXd*, 2>&) const;
+                                                              const std::array<const MotionField*, 1>&) const;
+template LoadsAlong<2> FrictionDiscs::loads_along<2, MotionField>(
+    const ArrayXd&, const std::array<const MotionField*, 2>&, const Eigen::Vector<double, 2>&,
+    const std::array<const MotionField*, 2>&) const;
 template LoadsAlong<2> FrictionDiscs::loads_along<2, ArrayXf>(const ArrayXd&,
                                                               const std::array<const ArrayXf*, 2>&,
                                                               const Eigen::Vector<double, 2>&,
-                                                              const std::array<const ArrayXd*, 2>&) const;
-template LoadsAlong<3> FrictionDiscs::loads_along<3, ArrayXd>(const ArrayXd&,
-                                                              const std::array<const ArrayXd*, 3>&,
-                                                              const Eigen::Vector<double, 3>&,
-                                                              const std::array<const ArrayXd*, 3>&) const;
+                                                              const std::array<const MotionField*, 2>&) const;
+template LoadsAlong<3> FrictionDiscs::loads_along<3, MotionField>(
+    const ArrayXd&, const std::array<const MotionField*, 3>&, const Eigen::Vector<double, 3>&,
+    const std::array<const MotionField*, 3>&) const;
 template LoadsAlong<3> FrictionDiscs::loads_along<3, ArrayXf>(const ArrayXd&,
                                                               const std::array<const ArrayXf*, 3>&,
                                                               const Eigen::Vector<double, 3>&,
-                                                              const std::array<const ArrayXd*, 3>&) const;
+                                                              const std::array<const MotionField*, 3>&) const;
 template Index PositivePressures::linearise(const ArrayXd&, double, const std::array<double, 2>&,
                                             TangentSpace<double>&) const;
 template Index PositivePressures::linearise(const ArrayXd&, double, const std::array<double, 2>&,

@@ -50,7 +50,7 @@ class PositivePressures {
   template <int M, typename Direction>
   LoadsAlong<M> loads_along(const Eigen::ArrayXd& y, const std::array<const Direction*, M>& w,
                             const Eigen::Vector<double, M>& x,
-                            const std::array<const Eigen::ArrayXd*, M>& c) const;
+                            const std::array<const MotionField*, M>& c) const;
 
   /// Sum of p times the opening above its least value: how far the energy can fall by moving load to where
   /// the surfaces are closest. opening: K p + h, less any approach.
@@ -88,7 +88,7 @@ class FrictionDiscs {
   template <int M, typename Direction>
   LoadsAlong<M> loads_along(const Eigen::ArrayXd& y, const std::array<const Direction*, M>& w,
                             const Eigen::Vector<double, M>& x,
-                            const std::array<const Eigen::ArrayXd*, M>& c) const;
+                            const std::array<const MotionField*, M>& c) const;
 
   /// Sum of s.q + mu p |s|; see Certificate.
   double gap(const Eigen::ArrayXd& q, const Eigen::ArrayXd& slip) const;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -41,26 +42,30 @@ struct CgSummary {
 
 template <typename Real>
 using CgField = Eigen::Array<Real, Eigen::Dynamic, 1>;
-template <typename Real>
-using CgFields = std::span<const CgField<Real>* const>;
+/// A condition preconditioned, in single precision: any field near it will do.
+using CgTangent = Eigen::ArrayXf;
 
 /// The system's matrix, symmetric and positive definite where the iteration moves: fields are zero elsewhere,
-/// and only these cells of them are written. apply(x, y): y = A x; returns x.y.
+/// and only these cells of them are written. y = A x in two parts, of which the last shares a sweep over the
+/// cells with what is done after: transform(x, y), and store(first, last, x, y).
 template <class Map, typename Real>
-concept LinearMap = requires(Map& map, const CgField<Real>& x, CgField<Real>& y) {
+concept LinearMap = requires(Map& map, Index cell, const CgField<Real>& x, CgField<Real>& y) {
   { map.cells() } -> std::convertible_to<const Sweep&>;
-  { map.apply(x, y) } -> std::same_as<double>;
+  map.transform(x, y);
+  map.store(cell, cell, x, y);
 };
 
 /// y = M r likewise, in three parts, so that the first and the last share a sweep over the cells with what
 /// is done before and after: load(first, last, r, z) for all cells of a z that is zero, transform(z), and
-/// store(first, last, r, z, y), where y may be z.
+/// store(first, last, r, z, y), where y may be z. project(first, last, y) leaves of y what lies in M's range;
+/// r lies there.
 template <class Map, typename Real>
 concept SplitMap = requires(Map& map, Index cell, const CgField<Real>& r, CgField<Real>& y) {
   { map.cells() } -> std::convertible_to<const Sweep&>;
   map.load(cell, cell, r, y);
   map.transform(y);
   map.store(cell, cell, r, y, y);
+  map.project(cell, cell, y);
 };
 
 /// a.b in the cells [first, last) of `cells`, in all components; products are summed in double precision.
@@ -75,177 +80,234 @@ double dot(Index cells, Index first, Index last, const CgField<Real>& a, const C
   return sum;
 }
 
+/// Fields that an iteration overwrites; not owned.
 template <typename Real>
 struct CgWorkspace {
-  explicit CgWorkspace(Index size) : d(size), Ad(size), y(size) {}
-  CgField<Real> d, Ad, y;
+  CgField<Real>& d;
+  CgField<Real>& Ad;
+  CgField<Real>& y;
 };
 
-/// With the conditions' fields, and with the residual.
+/// Of two fields, and of one with the conditions and one with their tangents.
 struct CgProducts {
-  double residual = 0.0;
-  std::array<double, kMaxConditions> conditions{};
+  using OfEach = std::array<double, kMaxConditions>;
+  double fields = 0.0;
+  OfEach conditions{}, tangents{};
 
   CgProducts& operator+=(const CgProducts& other) {
-    residual += other.residual;
-    for (std::size_t k = 0; k < conditions.size(); ++k) conditions[k] += other.conditions[k];
+    fields += other.fields;
+    for (std::size_t k = 0; k < conditions.size(); ++k) {
+      conditions[k] += other.conditions[k];
+      tangents[k] += other.tangents[k];
+    }
     return *this;
   }
 };
 
-/// Conditions c_k.x = 0, or given values, that an iteration keeps throughout: the preconditioned c_k take out
-/// of each direction what would violate them (Gould, Hribar and Nocedal 2001). Fields are not owned.
-template <typename Real>
+/// Conditions c_k.x = 0, or given values, that an iteration keeps throughout. Each has a tangent w_k, about
+/// the preconditioned c_k: with W = (w_1 ...) and C alike, residuals are kept at r - C (W^T C)^-1 W^T r and
+/// directions at y - W (C^T W)^-1 C^T y. Whatever the tangents are, both are projections, one the other's
+/// transpose, so that the preconditioner between them stays symmetric; with w_k = M c_k no direction is
+/// changed (Gould, Hribar and Nocedal 2001). So tangents may be those of a problem near by, and in single
+/// precision.
+///
+/// Condition: what MotionField can do with values of one row. Conditions are not owned.
+template <typename Real, class Condition>
 class CgConstraints {
  public:
+  using Conditions = std::span<const Condition* const>;
+
   /// None.
   CgConstraints() = default;
   /// storage: a field for each condition there will be; not owned.
-  explicit CgConstraints(std::span<CgField<Real>> storage) : preconditioned_(storage) {}
+  explicit CgConstraints(std::span<CgTangent> storage) : tangents_(storage) {}
 
-  /// False if the conditions are not independent where the preconditioner lets fields move; then they must
-  /// not be used. z: overwritten.
+  /// Tangents that are the preconditioned conditions. False if these are not independent where the
+  /// preconditioner lets fields move; then they must not be used. y, z: overwritten.
   template <SplitMap<Real> Preconditioner>
-  bool prepare(Preconditioner& preconditioner, CgFields<Real> conditions, CgField<Real>& z) {
+  bool prepare(Preconditioner& preconditioner, Conditions conditions, CgField<Real>& y, CgField<Real>& z) {
     count_ = conditions.size();
     std::ranges::copy(conditions, conditions_.begin());
     const Sweep& cells = preconditioner.cells();
+    CoefficientMatrix products(count(), count());
     for (std::size_t k = 0; k < count_; ++k) {
+      clear(cells, y);
       clear(cells, z);
-      cells.each([&](Index first, Index last) { preconditioner.load(first, last, *conditions[k], z); });
-      preconditioner.transform(z);
-      clear(cells, preconditioned_[k]);
+      clear(cells, tangents_[k]);
       cells.each([&](Index first, Index last) {
-        preconditioner.store(first, last, *conditions[k], z, preconditioned_[k]);
+        for_components(cells, y, first, last, [&](Index start, Index n) {
+          conditions_[k]->add_to(y.segment(start, n), start, 1.0);
+        });
+        preconditioner.project(first, last, y);
+        preconditioner.load(first, last, y, z);
       });
+      preconditioner.transform(z);
+      const auto with_z = cells.sum<CgProducts>([&](Index first, Index last, CgProducts& sum) {
+        preconditioner.store(first, last, y, z, z);
+        add_products(cells, first, last, z, sum);
+        for_components(cells, z, first, last, [&](Index start, Index n) {
+          tangents_[k].segment(start, n) = z.segment(start, n).template cast<float>();
+        });
+      });
+      products.col(static_cast<Index>(k)) = first(with_z.conditions);
     }
-    const CoefficientMatrix products = products_with(cells, conditions, preconditioned());
-    factor_.compute(products);
     if (count_ == 0) return true;
-    if (!factor_.is_definite()) return false;
+    const SmallCholesky factor(products);
+    if (!factor.is_definite()) return false;
     // What is left of each when those before are taken out.
-    return ((factor_.diagonal().array().square() / products.diagonal().array()) > kDependent).all();
+    if (!((factor.diagonal().array().square() / products.diagonal().array()) > kDependent).all())
+      return false;
+    return factorise(preconditioner, z);
   }
 
-  /// c_k.w_l
-  static CoefficientMatrix products_with(const Sweep& cells, CgFields<Real> conditions,
-                                         std::span<const CgField<Real>> w) {
-    const auto n = static_cast<Index>(conditions.size());
-    CoefficientMatrix products(n, n);
-    for (Index l = 0; l < n; ++l) {
-      const auto column = cells.sum<CgProducts>([&](Index first, Index last, CgProducts& sum) {
-        add_products(cells.size(), first, last, conditions, w[static_cast<std::size_t>(l)], sum);
-      });
-      for (Index k = 0; k < n; ++k) products(k, l) = column.conditions[static_cast<std::size_t>(k)];
+  /// The same tangents where less, or more, is free to move: keep(first, last, w) leaves in w what may move
+  /// there. all: the cells that carry anything. z: overwritten. False as above.
+  template <SplitMap<Real> Preconditioner, typename Keep>
+  bool restrict_tangents(const Preconditioner& preconditioner, const Sweep& all, const Keep& keep,
+                         CgField<Real>& z) {
+    for (CgTangent& w : tangents_.first(count_)) {
+      all.each([&](Index first, Index last) { keep(first, last, w); });
     }
-    return products;
+    return count_ == 0 || factorise(preconditioner, z);
   }
 
   /// sum += c_k.y in some cells
-  void add_products(Index cells, Index first, Index last, const CgField<Real>& y, CgProducts& sum) const {
-    add_products(cells, first, last, std::span(conditions_).first(count_), y, sum);
+  void add_products(const Sweep& cells, Index first, Index last, const CgField<Real>& y,
+                    CgProducts& sum) const {
+    for (std::size_t k = 0; k < count_; ++k) {
+      for_components(cells, y, first, last, [&](Index start, Index n) {
+        sum.conditions[k] += conditions_[k]->dot(start, y.segment(start, n).template cast<double>());
+      });
+    }
   }
-
-  /// Of the conditions' fields, what has to be taken out of a residual whose preconditioned field has these
-  /// products with them.
-  Coefficients multipliers(const CgProducts& products) const {
-    if (count_ == 0) return Coefficients();
-    return factor_.solve(Eigen::Map<const Eigen::VectorXd>(products.conditions.data(), count()));
-  }
-
-  /// The same of a residual that is not preconditioned.
-  Coefficients multipliers(const Sweep& cells, const CgField<Real>& r) const {
-    return multipliers(cells.sum<CgProducts>([&](Index first, Index last, CgProducts& sum) {
-      for (std::size_t k = 0; k < count_; ++k) {
-        sum.conditions[k] += dot(cells.size(), first, last, preconditioned_[k], r);
-      }
-    }));
-  }
-
-  /// Takes it out of r and of the preconditioned y, in some cells.
-  void take_out(Index cells, Index first, Index last, const Coefficients& multipliers, CgField<Real>& r,
-                CgField<Real>& y) const {
-    const Index n = last - first;
-    for (Index k = 0; k < count(); ++k) {
-      const auto multiplier = static_cast<Real>(multipliers[k]);
-      const auto at = static_cast<std::size_t>(k);
-      for (Index start = first; start < y.size(); start += cells) {
-        y.segment(start, n) -= multiplier * preconditioned_[at].segment(start, n);
-        r.segment(start, n) -= multiplier * conditions_[at]->segment(start, n);
-      }
+  /// sum += w_k.r in some cells
+  void add_products_of_tangents(const Sweep& cells, Index first, Index last, const CgField<Real>& r,
+                                CgProducts& sum) const {
+    for (std::size_t k = 0; k < count_; ++k) {
+      for_components(cells, r, first, last, [&](Index start, Index n) {
+        sum.tangents[k] += (tangents_[k].segment(start, n).template cast<double>() *
+                            r.segment(start, n).template cast<double>())
+                               .sum();
+      });
     }
   }
 
-  /// x += the combination of preconditioned conditions with these values of c_k.x.
-  void add_with_values(const Sweep& cells, const Coefficients& values, CgField<Real>& x) const {
-    const Coefficients parts = factor_.solve(values);
+  /// As many as there are conditions.
+  Coefficients first(const CgProducts::OfEach& products) const {
+    return Eigen::Map<const Eigen::VectorXd>(products.data(), count());
+  }
+  /// What has to be taken out of a residual that has these products with the tangents: parts of conditions.
+  Coefficients multipliers(const Coefficients& with_tangents) const {
+    return count_ == 0 ? Coefficients() : Coefficients(of_conditions_ * with_tangents);
+  }
+  /// And out of a direction that has these products with the conditions: parts of tangents.
+  Coefficients parts(const Coefficients& with_conditions) const {
+    return count_ == 0 ? Coefficients() : Coefficients(of_tangents_ * with_conditions);
+  }
+
+  /// r -= the sum of multiplier_k c_k in some cells
+  void take_conditions_out(const Sweep& cells, Index first, Index last, const Coefficients& multipliers,
+                           CgField<Real>& r) const {
+    for (Index k = 0; k < count(); ++k) {
+      for_components(cells, r, first, last, [&](Index start, Index n) {
+        conditions_[at(k)]->add_to(r.segment(start, n), start, -multipliers[k]);
+      });
+    }
+  }
+  /// y -= the sum of part_k w_k in some cells
+  void take_tangents_out(const Sweep& cells, Index first, Index last, const Coefficients& parts,
+                         CgField<Real>& y) const {
+    for (Index k = 0; k < count(); ++k) {
+      const auto part = static_cast<Real>(parts[k]);
+      for_components(cells, y, first, last, [&](Index start, Index n) {
+        y.segment(start, n) -= part * tangents_[at(k)].segment(start, n).template cast<Real>();
+      });
+    }
+  }
+
+  /// x += the combination of tangents with these values of c_k.x.
+  template <SplitMap<Real> Preconditioner>
+  void add_with_values(const Preconditioner& preconditioner, const Coefficients& values,
+                       CgField<Real>& x) const {
+    const Coefficients parts = -(of_tangents_ * values);
+    const Sweep& cells = preconditioner.cells();
     cells.each([&](Index first, Index last) {
-      for (Index k = 0; k < parts.size(); ++k) {
-        const auto& w = preconditioned_[static_cast<std::size_t>(k)];
-        for (Index start = first; start < x.size(); start += cells.size()) {
-          x.segment(start, last - first) += static_cast<Real>(parts[k]) * w.segment(start, last - first);
-        }
-      }
+      take_tangents_out(cells, first, last, parts, x);
+      preconditioner.project(first, last, x);
     });
   }
 
-  /// Each condition preconditioned.
-  std::span<const CgField<Real>> preconditioned() const { return preconditioned_.first(count_); }
+  std::span<const CgTangent> tangents() const { return tangents_.first(count_); }
 
  private:
   /// Conditions that depend on each other: one stick cell can be turned and pushed, but not told which.
   static constexpr double kDependent = 1e-12;
 
+  static std::size_t at(Index k) { return static_cast<std::size_t>(k); }
   Index count() const { return static_cast<Index>(count_); }
-  static void add_products(Index cells, Index first, Index last, CgFields<Real> conditions,
-                           const CgField<Real>& y, CgProducts& sum) {
-    for (std::size_t k = 0; k < conditions.size(); ++k) {
-      sum.conditions[k] += dot(cells, first, last, *conditions[k], y);
+  template <typename Field, typename Work>
+  static void for_components(const Sweep& cells, const Field& field, Index first, Index last,
+                             const Work& work) {
+    for (Index start = first; start < field.size(); start += cells.size()) work(start, last - first);
+  }
+  /// (C^T W)^-1 and its transpose, with tangents as far as they lie in the preconditioner's range, of which
+  /// rounding to single precision takes them out; false if there is none.
+  template <class Preconditioner>
+  bool factorise(const Preconditioner& preconditioner, CgField<Real>& z) {
+    const Sweep& cells = preconditioner.cells();
+    CoefficientMatrix products(count(), count());
+    for (std::size_t k = 0; k < count_; ++k) {
+      const auto column = cells.sum<CgProducts>([&](Index first, Index last, CgProducts& sum) {
+        for_components(cells, z, first, last, [&](Index start, Index n) {
+          z.segment(start, n) = tangents_[k].segment(start, n).template cast<Real>();
+        });
+        preconditioner.project(first, last, z);
+        add_products(cells, first, last, z, sum);
+      });
+      products.col(static_cast<Index>(k)) = first(column.conditions);
     }
+    of_tangents_ = products.inverse();
+    of_conditions_ = of_tangents_.transpose();
+    return of_tangents_.allFinite();
   }
 
-  std::array<const CgField<Real>*, kMaxConditions> conditions_{};
+  std::array<const Condition*, kMaxConditions> conditions_{};
   std::size_t count_ = 0;
-  std::span<CgField<Real>> preconditioned_;
-  SmallCholesky factor_;
+  std::span<CgTangent> tangents_;
+  CoefficientMatrix of_tangents_, of_conditions_;
 };
 
 /// Preconditioned conjugate gradients for A x = r - sum of multiplier_k c_k with the constraints' c_k.x as x
-/// has them at the start. r: the residual of x, its start; overwritten by what is left. Stops when r has
-/// fallen by `reduction`. The multipliers that are found go up with each iteration's residual: they are wrong
-/// by its part that the preconditioner and the exact inverse see differently. Each iteration applies both
-/// maps once and sweeps over the cells four times, twice of them within the maps. Allocates nothing.
-template <typename Real, LinearMap<Real> Map, SplitMap<Real> Preconditioner>
-CgSummary projected_cg(Map& map, Preconditioner& preconditioner, const CgConstraints<Real>& constraints,
-                       CgField<Real>& r, const CgOptions& options, CgWorkspace<Real>& work,
-                       CgField<Real>& x) {
+/// has them at the start. r: the residual of x, its start; overwritten by what is left under the multipliers
+/// that are found. Stops when r has fallen by `reduction`. Each iteration applies both maps once and sweeps
+/// over the cells four times, twice of them within the maps. Allocates nothing.
+template <typename Real, LinearMap<Real> Map, SplitMap<Real> Preconditioner, class Condition>
+CgSummary projected_cg(Map& map, Preconditioner& preconditioner,
+                       const CgConstraints<Real, Condition>& constraints, CgField<Real>& r,
+                       const CgOptions& options, const CgWorkspace<Real>& work, CgField<Real>& x) {
   CgField<Real>& d = work.d;
   CgField<Real>& Ad = work.Ad;
   CgField<Real>& y = work.y;
   const Sweep& cells = map.cells();
   CgSummary summary;
-  summary.multipliers = constraints.multipliers(CgProducts{});
-  Coefficients multipliers;
-  // y = r preconditioned; r.y once both are within the constraints.
+  // y = r preconditioned, what has to be taken out of it, and the product of r with what that leaves.
+  Coefficients parts, left;
   const auto precondition = [&] {
     preconditioner.transform(y);
     const auto products = cells.sum<CgProducts>([&](Index first, Index last, CgProducts& sum) {
       preconditioner.store(first, last, r, y, y);
-      sum.residual += dot(cells.size(), first, last, r, y);
-      constraints.add_products(cells.size(), first, last, y, sum);
+      sum.fields += dot(cells.size(), first, last, r, y);
+      constraints.add_products(cells, first, last, y, sum);
+      constraints.add_products_of_tangents(cells, first, last, r, sum);
     });
-    multipliers = constraints.multipliers(products);
-    double square = products.residual;
-    for (Index k = 0; k < multipliers.size(); ++k) {
-      square -= multipliers[k] * products.conditions[static_cast<std::size_t>(k)];
-    }
-    summary.multipliers += multipliers;
-    return square;
+    parts = constraints.parts(constraints.first(products.conditions));
+    left = constraints.first(products.tangents);  // rounding, which must not grow
+    return products.fields - (parts.size() > 0 ? parts.dot(left) : 0.0);
   };
-  // r and y within the constraints; the next direction.
   const auto turn = [&](Real kept) {
     cells.each([&](Index first, Index last) {
-      constraints.take_out(cells.size(), first, last, multipliers, r, y);
+      constraints.take_tangents_out(cells, first, last, parts, y);
+      preconditioner.project(first, last, y);
       for (Index start = first; start < d.size(); start += cells.size()) {
         auto part = d.segment(start, last - first);
         part = y.segment(start, last - first) + kept * part;
@@ -253,8 +315,17 @@ CgSummary projected_cg(Map& map, Preconditioner& preconditioner, const CgConstra
     });
   };
 
+  const auto of_start = cells.sum<CgProducts>([&](Index first, Index last, CgProducts& sum) {
+    preconditioner.project(first, last, r);
+    constraints.add_products_of_tangents(cells, first, last, r, sum);
+  });
+  summary.multipliers = constraints.multipliers(constraints.first(of_start.tangents));
   clear(cells, y);
-  cells.each([&](Index first, Index last) { preconditioner.load(first, last, r, y); });
+  cells.each([&](Index first, Index last) {
+    constraints.take_conditions_out(cells, first, last, summary.multipliers, r);
+    preconditioner.project(first, last, r);
+    preconditioner.load(first, last, r, y);
+  });
   double square = precondition();
   const double first_square = square;
   clear(cells, d);
@@ -265,24 +336,34 @@ CgSummary projected_cg(Map& map, Preconditioner& preconditioner, const CgConstra
       break;
     }
     ++summary.iterations;
-    const double curvature = map.apply(d, Ad);
+    map.transform(d, Ad);
+    const auto products = cells.sum<CgProducts>([&](Index first, Index last, CgProducts& sum) {
+      map.store(first, last, d, Ad);
+      sum.fields += dot(cells.size(), first, last, d, Ad);
+      constraints.add_products_of_tangents(cells, first, last, Ad, sum);
+    });
+    const double curvature = products.fields;
     if (!(curvature > 0.0)) {
       summary.status = CgStatus::indefinite;
       summary.breakdown_at = curvature;
       return summary;
     }
     const auto step = static_cast<Real>(square / curvature);
+    const Coefficients multipliers =
+        constraints.multipliers(left - static_cast<double>(step) * constraints.first(products.tangents));
+    summary.multipliers += multipliers;
     clear(cells, y);
     cells.each([&](Index first, Index last) {
       for (Index start = first; start < x.size(); start += cells.size()) {
         x.segment(start, last - first) += step * d.segment(start, last - first);
         r.segment(start, last - first) -= step * Ad.segment(start, last - first);
       }
+      constraints.take_conditions_out(cells, first, last, multipliers, r);
+      preconditioner.project(first, last, r);
       preconditioner.load(first, last, r, y);
     });
     // What is left of a residual that is not asked for is not measured.
     if (options.reduction == 0.0 && summary.iterations == options.max_iterations) {
-      summary.multipliers += constraints.multipliers(cells, r);
       summary.status = CgStatus::iterations;
       break;
     }

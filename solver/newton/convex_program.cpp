@@ -9,7 +9,7 @@ double ConvexProgram::energy(Index first, Index last, const ArrayXd& q, const Ar
   double sum = 0.5 * (q.segment(first, n) * u.segment(first, n)).sum();
   if (g != nullptr) sum += (q.segment(first, n) * g->segment(first, n)).sum();
   for (const auto& [c, multiplier] : given) {
-    sum -= multiplier * (q.segment(first, n) * c->segment(first, n)).sum();
+    sum -= multiplier * c->dot(first, q.segment(first, n));
   }
   return sum;
 }
@@ -20,7 +20,7 @@ void ConvexProgram::descend(Index first, Index last, const ArrayXd& q, const Arr
   auto part = y.segment(first, n);
   part = q.segment(first, n) - length * u.segment(first, n);
   if (g != nullptr) part -= length * g->segment(first, n);
-  for (const auto& [c, multiplier] : given) part += (length * multiplier) * c->segment(first, n);
+  for (const auto& [c, multiplier] : given) c->add_to(part, first, length * multiplier);
 }
 
 void ConvexProgram::write_slip(Index first, Index last, const ArrayXd& u, const Coefficients& multipliers,
@@ -29,9 +29,9 @@ void ConvexProgram::write_slip(Index first, Index last, const ArrayXd& u, const 
   auto part = s.segment(first, n);
   part = u.segment(first, n);
   if (g != nullptr) part += g->segment(first, n);
-  for (const auto& [c, multiplier] : given) part -= multiplier * c->segment(first, n);
+  for (const auto& [c, multiplier] : given) c->add_to(part, first, -multiplier);
   for (std::size_t k = 0; k < imposed.size(); ++k) {
-    part -= multipliers[static_cast<Index>(k)] * imposed[k].c->segment(first, n);
+    imposed[k].c->add_to(part, first, -multipliers[static_cast<Index>(k)]);
   }
 }
 

@@ -8,13 +8,13 @@
 namespace slipstick::solver {
 
 /// minimise q.Kq/2 + g.q - sum of multiplier_k c_k.q over the admissible q: with c_k.q = load_k for each
-/// condition that is imposed, which finds its multiplier, and with a given multiplier for the others. Fields
-/// of as many values as q; not owned.
+/// condition that is imposed, which finds its multiplier, and with a given multiplier for the others. g, of
+/// as many values as q, and motions are not owned. Values [first, last) are of one row.
 struct ConvexProgram {
   const Eigen::ArrayXd* g = nullptr;  ///< null: zero
   std::vector<Condition> imposed;     ///< at most kMaxConditions, with those that follow
   struct Given {
-    const Eigen::ArrayXd* c;
+    const MotionField* c;
     double multiplier;
   };
   std::vector<Given> given = {};

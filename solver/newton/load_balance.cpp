@@ -35,27 +35,27 @@ LoadBalance<Set>::LoadBalance(const Set& set, const std::vector<Condition>& cond
   }
   majorant_.resize(load_.size(), load_.size());
   for (Eigen::Index k = 0; k < load_.size(); ++k) {
-    for (Eigen::Index l = 0; l < load_.size(); ++l) majorant_(k, l) = product(field(k), field(l));
+    for (Eigen::Index l = 0; l < load_.size(); ++l) majorant_(k, l) = product(k, field(l));
   }
 }
 
-/// In the cells whose set is not zero alone.
+/// Of the k-th condition's field with values.
 template <class Set>
-double LoadBalance<Set>::product(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) const {
+template <typename Values>
+double LoadBalance<Set>::product(Eigen::Index k, const Values& values) const {
   return set_.sweep().template sum<double>([&](Eigen::Index first, Eigen::Index last, double& sum) {
-    for (Eigen::Index start = first; start < a.size(); start += set_.cells()) {
-      sum += (a.segment(start, last - first) * b.segment(start, last - first)).sum();
+    for (Eigen::Index start = first; start < Set::kComponents * set_.cells(); start += set_.cells()) {
+      sum += field(k).dot(start, values.segment(start, last - first));
     }
   });
 }
 
 template <class Set>
 void LoadBalance<Set>::add(const Coefficients& x, Eigen::ArrayXd& y) const {
-  const Eigen::Index cells = set_.cells();
   set_.sweep().each([&](Eigen::Index first, Eigen::Index last) {
     for (Eigen::Index k = 0; k < load_.size(); ++k) {
-      for (Eigen::Index start = first; start < y.size(); start += cells) {
-        y.segment(start, last - first) += x[k] * field(k).segment(start, last - first);
+      for (Eigen::Index start = first; start < y.size(); start += set_.cells()) {
+        field(k).add_to(y.segment(start, last - first), start, x[k]);
       }
     }
   });
@@ -63,10 +63,10 @@ void LoadBalance<Set>::add(const Coefficients& x, Eigen::ArrayXd& y) const {
 
 template <class Set>
 bool LoadBalance<Set>::solve(const Eigen::ArrayXd& y, Coefficients& x) const {
-  const std::span<const Eigen::ArrayXd* const> c(c_);
+  const std::span<const MotionField* const> c(c_);
   if (solve_along(y, c, x, true)) return true;
   Coefficients missing = load_;
-  for (Eigen::Index k = 0; k < load_.size(); ++k) missing[k] -= product(field(k), y);
+  for (Eigen::Index k = 0; k < load_.size(); ++k) missing[k] -= product(k, y);
   x = least_solution(majorant_, missing);
   return solve_along(y, c, x, true);
 }
@@ -89,7 +89,7 @@ LoadsAlong<M> LoadBalance<Set>::evaluate(const Eigen::ArrayXd& y, std::span<cons
                                          const Eigen::Vector<double, M>& x) const {
   ++evaluations_;
   std::array<const Direction*, M> directions;
-  std::array<const Eigen::ArrayXd*, M> fields;
+  std::array<const MotionField*, M> fields;
   for (std::size_t k = 0; k < M; ++k) {
     directions[k] = w[k];
     fields[k] = c_[k];
@@ -195,12 +195,6 @@ template bool LoadBalance<FrictionDiscs>::solve_along(const Eigen::ArrayXd&,
                                                       bool) const;
 template bool LoadBalance<PositivePressures>::solve_along(const Eigen::ArrayXd&,
                                                           std::span<const Eigen::ArrayXf* const>,
-                                                          Coefficients&, bool) const;
-template bool LoadBalance<FrictionDiscs>::solve_along(const Eigen::ArrayXd&,
-                                                      std::span<const Eigen::ArrayXd* const>, Coefficients&,
-                                                      bool) const;
-template bool LoadBalance<PositivePressures>::solve_along(const Eigen::ArrayXd&,
-                                                          std::span<const Eigen::ArrayXd* const>,
                                                           Coefficients&, bool) const;
 
 }  // namespace slipstick::solver

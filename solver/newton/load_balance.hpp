@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "solver/grid/motion_field.hpp"
 #include "solver/newton/coefficients.hpp"
 
 namespace slipstick::solver {
@@ -29,9 +30,9 @@ struct LoadsAlong {
   }
 };
 
-/// A linear condition on a field: c.q = load. c is not owned.
+/// A linear condition on a field: c.q = load, over the cells whose set is not zero alone. c is not owned.
 struct Condition {
-  const Eigen::ArrayXd* c;
+  const MotionField* c;
   double load;
 };
 
@@ -63,9 +64,10 @@ class LoadBalance {
   }
 
  private:
-  const Eigen::ArrayXd& field(Eigen::Index k) const { return *c_[static_cast<std::size_t>(k)]; }
+  const MotionField& field(Eigen::Index k) const { return *c_[static_cast<std::size_t>(k)]; }
 
-  double product(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) const;
+  template <typename Values>
+  double product(Eigen::Index k, const Values& values) const;
   template <typename Direction>
   bool solve_along(const Eigen::ArrayXd& y, std::span<const Direction* const> w, Coefficients& x,
                    bool own) const;
@@ -83,7 +85,7 @@ class LoadBalance {
   double imbalance(const LoadsAlong<M>& at) const;
 
   const Set& set_;
-  std::vector<const Eigen::ArrayXd*> c_;
+  std::vector<const MotionField*> c_;
   Coefficients load_;
   CoefficientMatrix majorant_;
   mutable long evaluations_ = 0;

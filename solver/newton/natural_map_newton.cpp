@@ -24,11 +24,16 @@ constexpr int kMaxGradientHalvings = 30;
 /// in full, so that cells reach the faces of their sets.
 constexpr double kLeastPart = 1e-3;
 constexpr double kNearlyAll = 0.9;
+/// Tangents are made anew where more than this part of the cells has changed its state, or multipliers have
+/// by more than this part of them.
+constexpr double kFewChanges = 1e-3;
+constexpr double kNearMultipliers = 0.1;
 /// Energies are compared up to their rounding.
 constexpr double kEnergyRounding = 1e-13;
 
-constexpr double kDoubleFields = 4.0;  ///< u_, y_, trial_, trial_u_
-constexpr double kRealFields = 5.0;    ///< r_, x_, and three of work_
+constexpr double kDoubleFields = 4.0;   ///< u_, y_, trial_, trial_u_
+constexpr double kRealFields = 3.0;     ///< r_, x_, d_
+constexpr double kOthersOfFloat = 2.0;  ///< others_
 
 NewtonSummary fail(NewtonSummary& summary, const std::string& why) {
   summary.message = why;
@@ -48,11 +53,11 @@ NaturalMapNewton<Set, Real>::NaturalMapNewton(const Set& set, const ConvexProgra
       symbol_(symbol),
       mean_(symbol.diagonal()),
       rho_((kIsScalar ? kRhoOfPressure : kRho) * 0.5 * (mean_[0] + mean_[1])),
-      work_(size()),
       tangents_(program.imposed.size()),
       constraints_(tangents_),
       r_(size()),
       x_(size()),
+      d_(size()),
       space_(Set::kComponents, set.sweep()),
       extension_(kIsScalar ? op.grid() : Grid{}),
       balance_(set, program.imposed),
@@ -60,13 +65,11 @@ NaturalMapNewton<Set, Real>::NaturalMapNewton(const Set& set, const ConvexProgra
       y_(size()),
       trial_(size()),
       trial_u_(size()) {
-  for (Field& tangent : tangents_) tangent.resize(size());
+  if (!std::is_same_v<Real, double>) others_.fill(Field(size()));
+  for (CgTangent& tangent : tangents_) tangent.resize(size());
   clear(set.sweep(), y_);
   clear(set.sweep(), trial_);
-  for (const Condition& condition : program.imposed) add_condition(*condition.c);
-  if constexpr (!std::is_same_v<Real, double>) {
-    for (const Field& field : rounded_) c_.push_back(&field);
-  }
+  for (const Condition& condition : program.imposed) c_.push_back(condition.c);
 }
 
 template <AdmissibleSet Set, typename Real>
@@ -74,6 +77,7 @@ NewtonSummary NaturalMapNewton<Set, Real>::run(ArrayXd& q, const Coefficients& m
                                                const NewtonOptions& options) {
   NewtonSummary summary;
   safeguards_ = {};
+  has_tangents_ = false;
   multipliers_ = multipliers.size() == balance_.count() ? multipliers : Coefficients::Zero(balance_.count());
   enter_admissible_set(q);
   double best_gap = std::numeric_limits<double>::infinity();
@@ -123,20 +127,10 @@ template <AdmissibleSet Set, typename Real>
 double NaturalMapNewton<Set, Real>::bytes(double cells, std::size_t conditions) {
   const double values = static_cast<double>(Set::kComponents) * cells;
   const auto fields = static_cast<double>(conditions);
-  const double rounded = std::is_same_v<Real, double> ? 0.0 : fields;
-  return kDoubleFields * sizeof(double) * values + (kRealFields + fields + rounded) * sizeof(Real) * values +
-         TangentSpace<Real>::bytes(Set::kComponents, cells) +
+  const double inner = kRealFields + (std::is_same_v<Real, double> ? 0.0 : kOthersOfFloat);
+  return kDoubleFields * sizeof(double) * values + inner * sizeof(Real) * values +
+         fields * sizeof(float) * values + TangentSpace<Real>::bytes(Set::kComponents, cells) +
          (kIsScalar ? Extension<Real>::bytes(cells) : 0.0);
-}
-
-/// A condition's field in the precision of the inner iteration.
-template <AdmissibleSet Set, typename Real>
-void NaturalMapNewton<Set, Real>::add_condition(const ArrayXd& c) {
-  if constexpr (std::is_same_v<Real, double>) {
-    c_.push_back(&c);
-  } else {
-    rounded_.push_back(c.template cast<Real>());
-  }
 }
 
 template <AdmissibleSet Set, typename Real>
@@ -226,9 +220,23 @@ bool NaturalMapNewton<Set, Real>::is_certified(double gap, double tolerance) con
 template <AdmissibleSet Set, typename Real>
 void NaturalMapNewton<Set, Real>::linearise() {
   changed_ = set_.linearise(y_, rho_, mean_, space_);
-  if (kIsScalar) extension_.prepare(space_.a11);
+  if (kIsScalar) extension_.prepare(space_.f1);
   TangentPreconditioner<Real> map = preconditioner();
-  has_tangents_ = constraints_.prepare(map, c_, work_.y);
+  if (has_tangents_ && tangents_are_near()) {
+    const auto keep = [&](Index first, Index last, CgTangent& w) { space_.project(first, last, w); };
+    has_tangents_ = constraints_.restrict_tangents(map, set_.sweep(), keep, work().y);
+    return;
+  }
+  has_tangents_ = constraints_.prepare(map, c_, work().d, work().y);
+  prepared_at_ = multipliers_;
+}
+
+/// Whether those of an earlier step will do: hardly a cell has changed its state since the last step, and
+/// slip, which the tangent space's stiffness goes with, has not changed much since they were made.
+template <AdmissibleSet Set, typename Real>
+bool NaturalMapNewton<Set, Real>::tangents_are_near() const {
+  return static_cast<double>(changed_) <= kFewChanges * static_cast<double>(space_.free.count()) &&
+         (multipliers_ - prepared_at_).norm() <= kNearMultipliers * multipliers_.norm();
 }
 
 /// Right-hand side -(s + stiffness q), of which the tangent space sees the turning part of q.
@@ -254,15 +262,16 @@ bool NaturalMapNewton<Set, Real>::solve_linear(const ArrayXd& q, const LinearTar
   TangentPreconditioner<Real> inverse = preconditioner();
   clear(set_.sweep(), x_);
   if (loads.size() > 0) {
-    constraints_.add_with_values(space_.free, loads, x_);
-    map.apply(x_, work_.Ad);
-    each([&](Index first, Index last) {
-      r_.segment(first, last - first) -= work_.Ad.segment(first, last - first);
-    });
+    constraints_.add_with_values(inverse, loads, x_);
+    Field& Ax = work().Ad;
+    map.transform(x_, Ax);
+    space_.free.each([&](Index first, Index last) { map.store(first, last, x_, Ax); });
+    each(
+        [&](Index first, Index last) { r_.segment(first, last - first) -= Ax.segment(first, last - first); });
   }
-  const CgConstraints<Real> none;
+  const CgConstraints<Real, MotionField> none;
   const CgSummary solved = projected_cg<Real>(map, inverse, has_tangents_ ? constraints_ : none, r_,
-                                              {target.reduction, target.max_iterations}, work_, x_);
+                                              {target.reduction, target.max_iterations}, work(), x_);
   if (!solved.broke_down()) return true;
   safeguards_ += {.breakdowns = 1, .breakdown = solved.message()};
   return false;
@@ -275,10 +284,9 @@ Coefficients NaturalMapNewton<Set, Real>::jump_loads(const ArrayXd& q) {
   set_.add_jump(y_, q, trial_);
   Coefficients loads(balance_.count());
   for (Eigen::Index k = 0; k < loads.size(); ++k) {
-    const ArrayXd& c = *program_.imposed[static_cast<std::size_t>(k)].c;
-    loads[k] = sum([&](Index first, Index last) {
-      return (c.segment(first, last - first) * trial_.segment(first, last - first)).sum();
-    });
+    const MotionField& c = *program_.imposed[static_cast<std::size_t>(k)].c;
+    loads[k] =
+        sum([&](Index first, Index last) { return c.dot(first, trial_.segment(first, last - first)); });
   }
   return loads;
 }
@@ -332,6 +340,7 @@ bool NaturalMapNewton<Set, Real>::accept_trial(ArrayXd& q) {
 /// trial = q and this part of the linear solution and of the jumps.
 template <AdmissibleSet Set, typename Real>
 void NaturalMapNewton<Set, Real>::write_trial(const ArrayXd& q, double length) {
+  clear(set_.sweep(), trial_);
   each([&](Index first, Index last) {
     trial_.segment(first, last - first) = x_.segment(first, last - first).template cast<double>();
   });
@@ -369,10 +378,10 @@ template <AdmissibleSet Set, typename Real>
 bool NaturalMapNewton<Set, Real>::restore_along_tangents() {
   if (!has_tangents_) return false;
   Coefficients x = Coefficients::Zero(balance_.count());
-  const auto tangents = constraints_.preconditioned();
-  std::array<const Field*, kMaxConditions> directions{};
-  std::ranges::transform(tangents, directions.begin(), [](const Field& tangent) { return &tangent; });
-  if (!balance_.template solve_along<Field>(trial_, std::span(directions).first(tangents.size()), x))
+  const auto tangents = constraints_.tangents();
+  std::array<const CgTangent*, kMaxConditions> directions{};
+  std::ranges::transform(tangents, directions.begin(), [](const CgTangent& tangent) { return &tangent; });
+  if (!balance_.template solve_along<CgTangent>(trial_, std::span(directions).first(tangents.size()), x))
     return false;
   each([&](Index first, Index last) {
     for (std::size_t k = 0; k < tangents.size(); ++k) {
@@ -395,6 +404,7 @@ template <AdmissibleSet Set, typename Real>
 bool NaturalMapNewton<Set, Real>::take_gradient_step(ArrayXd& q) {
   for (int halvings = 0; halvings <= kMaxGradientHalvings; halvings += 2) {
     const double length = std::ldexp(rho_, -halvings);
+    clear(set_.sweep(), trial_);
     descend(q, length, trial_);
     Coefficients x = length * multipliers_;
     if (!balance_.solve(trial_, x)) continue;
@@ -417,7 +427,7 @@ bool NaturalMapNewton<Set, Real>::refine(const ArrayXd& q, double tolerance, New
   TangentOperator<Real> map = tangent_operator();
   TangentPreconditioner<Real> inverse = preconditioner();
   const CgSummary step =
-      projected_cg<Real>(map, inverse, constraints_, r_, {0.0, kRefiningIterations}, work_, x_);
+      projected_cg<Real>(map, inverse, constraints_, r_, {0.0, kRefiningIterations}, work(), x_);
   if (step.broke_down()) return true;
   const Coefficients first_order = multipliers_;
   multipliers_ -= step.multipliers;

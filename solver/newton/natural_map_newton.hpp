@@ -87,6 +87,15 @@ class NaturalMapNewton {
     return {symbol_, space_, kIsScalar ? &extension_ : nullptr};
   }
 
+  /// For the linear problem: in double precision the fields of the trial, which is made after it.
+  CgWorkspace<Real> work() {
+    if constexpr (std::is_same_v<Real, double>) {
+      return {d_, trial_u_, trial_};
+    } else {
+      return {d_, others_[0], others_[1]};
+    }
+  }
+
   /// work(first, last) for the values of the cells that may carry something, and the sum of what it returns.
   template <typename Work>
   void each(const Work& work) const;
@@ -96,7 +105,6 @@ class NaturalMapNewton {
   template <typename Work>
   double sum(const Work& work) const;
 
-  void add_condition(const ArrayXd& c);
   void enter_admissible_set(ArrayXd& q);
   double energy(const ArrayXd& q, const ArrayXd& u) const;
   void write_slip(ArrayXd& s) const;
@@ -105,6 +113,7 @@ class NaturalMapNewton {
   double relative_gap(const ArrayXd& q);
   bool is_certified(double gap, double tolerance) const;
   void linearise();
+  bool tangents_are_near() const;
   void write_residual(const ArrayXd& q);
   bool solve_linear(const ArrayXd& q, const LinearTarget& target, const Coefficients& loads = {});
   Coefficients jump_loads(const ArrayXd& q);
@@ -126,20 +135,20 @@ class NaturalMapNewton {
   InverseSymbol<Real>& symbol_;
   std::array<double, 2> mean_;
   double rho_;
-  CgWorkspace<Real> work_;
-  std::vector<Field> tangents_;  ///< c preconditioned
-  CgConstraints<Real> constraints_;
-  Field r_, x_;  ///< of the linear problem: residual, solution
+  std::vector<CgTangent> tangents_;
+  CgConstraints<Real, MotionField> constraints_;
+  Field r_, x_, d_;              ///< of the linear problem: residual, solution, direction
+  std::array<Field, 2> others_;  ///< see work(); empty in double precision
   TangentSpace<Real> space_;
   Extension<Real> extension_;  ///< of scalars
   LoadBalance<Set> balance_;
-  std::vector<Field> rounded_;   ///< the conditions' fields, unless they are in this precision already
-  std::vector<const Field*> c_;  ///< those of the imposed conditions
+  std::vector<const MotionField*> c_;  ///< of the imposed conditions
   ArrayXd u_, y_, trial_, trial_u_;
   Coefficients multipliers_;  ///< of the imposed conditions
   double energy_ = 0.0;       ///< of q
   double elastic_ = 0.0;      ///< its q.u/2, as relative_gap() found it
   Safeguards safeguards_;     ///< of this run
+  Coefficients prepared_at_;  ///< the multipliers that the tangents were made at
   Index changed_ = 0;
   bool has_tangents_ = false;  ///< whether the constraints can be used
   bool energy_fell_ = false;   ///< in the last step, by more than its rounding

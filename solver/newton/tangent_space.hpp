@@ -1,7 +1,10 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 
 #include "solver/grid/sweep.hpp"
@@ -15,107 +18,136 @@ namespace slipstick::solver {
 /// freely in a stick cell, along its circle in a slip cell, not at all outside. On fields of that kind the
 /// linearised problem is K + stiffness, and
 ///
-///   scale * projector * (inverse symbol) * projector * scale + shift * projector
+///   projector * scale * (inverse symbol) * scale * projector + shift * projector
 ///
 /// is close to its inverse. The two terms reproduce 1/(1/xi + stiffness), the symbol of the inverse where the
 /// stiffness varies slowly, at the wave numbers xi = P and P/12, P the mean of the inverse symbol along the
 /// free direction; one term alone is wrong by the ratio of the largest to the smallest wave number where the
 /// stiffness is large.
 ///
-/// Real is the precision of the inner iteration.
+/// Real is the precision of the inner iteration. The stiffness and what the preconditioner takes need not be
+/// exact, but the directions do: fields that leave them by more than their own rounding would feel the part
+/// of the slip that no traction can change, and no residual could fall below that.
 template <typename Real>
 struct TangentSpace {
   using Field = Eigen::Array<Real, Eigen::Dynamic, 1>;
 
-  /// Of vectors (2 components) or scalars (1), on the grid of some cells that may carry traction. Nothing is
-  /// free: a linearisation counts the cells that change.
+  /// Of vectors (2 components) or scalars (1), on the grid of some cells that may carry traction. No scalar
+  /// is free, no vector on a line: a linearisation counts the cells that change.
   TangentSpace(Index components, const Sweep& cells)
-      : a11(cells.size()),
-        a12(components == 2 ? cells.size() : 0),
-        a22(a12.size()),
-        stiffness(a12.size()),
-        scale(a12.size()),
-        shift(a12.size()),
+      : f1(cells.size()),
+        f2(components == 2 ? cells.size() : 0),
+        stiffness(f2.size()),
+        scale(f2.size()),
+        shift(f2.size()),
         free(cells) {
-    for (Field* const field : {&a11, &a12, &a22, &stiffness, &scale, &shift}) clear(cells, *field);
+    for (Field* const field : {&f1, &f2}) clear(cells, *field);
+    for (Eigen::ArrayXf* const field : {&stiffness, &scale, &shift}) clear(cells, *field);
   }
 
   /// On so many cells, none of which may carry any.
   TangentSpace(Index components, Index cells) : TangentSpace(components, Sweep(Field::Zero(cells))) {}
 
-  Index components() const { return a12.size() > 0 ? 2 : 1; }
+  Index components() const { return f2.size() > 0 ? 2 : 1; }
 
   /// A cell that does not move, or moves freely.
   void set(Index cell, bool free) {
-    a11[cell] = Real(free);
+    f1[cell] = Real(components() == 1 && free);
     if (components() == 1) return;
-    a22[cell] = Real(free);
-    a12[cell] = stiffness[cell] = shift[cell] = Real(0);
-    scale[cell] = Real(1);
+    f2[cell] = Real(0);
+    stiffness[cell] = free ? 0.0F : kLeastStiffness;
+    scale[cell] = 1.0F;
+    shift[cell] = 0.0F;
   }
 
   /// A cell that moves along the unit vector (f1, f2) against a stiffness; mean: that of the inverse symbol
   /// along it.
-  void set_line(Index cell, double f1, double f2, double along, double mean) {
+  void set_line(Index cell, double along1, double along2, double along, double mean) {
     constexpr double kLowOverMean = 1.0 / 12.0;
     const double low = kLowOverMean * mean;
     const double alpha = 1.0 / ((1.0 + along * low) * (1.0 + along * mean));
-    a11[cell] = static_cast<Real>(f1 * f1);
-    a12[cell] = static_cast<Real>(f1 * f2);
-    a22[cell] = static_cast<Real>(f2 * f2);
-    stiffness[cell] = static_cast<Real>(along);
-    scale[cell] = static_cast<Real>(std::sqrt(alpha));
-    shift[cell] = static_cast<Real>(alpha * along * low * mean);
+    f1[cell] = static_cast<Real>(along1);
+    f2[cell] = static_cast<Real>(along2);
+    stiffness[cell] = std::max(static_cast<float>(along), kLeastStiffness);
+    scale[cell] = static_cast<float>(std::sqrt(alpha));
+    shift[cell] = static_cast<float>(alpha * along * low * mean);
   }
+
+  /// Whether a vector moves along a line, or not at all.
+  bool on_line(Index cell) const { return stiffness[cell] > 0.0F; }
 
   /// Finds the cells where something is free, after these were set.
   void find_free() {
     const bool vectors = components() == 2;
-    free.assign(a11.size(), [&](Index i) { return a11[i] != Real(0) || (vectors && a22[i] != Real(0)); });
+    free.assign(f1.size(),
+                [&](Index i) { return f1[i] != Real(0) || (vectors && (f2[i] != Real(0) || !on_line(i))); });
   }
 
-  /// z = projector * scale * r, in some cells
-  void restrict_to(Index first, Index last, const Field& r, Field& z) const {
-    const Index n = a11.size();
+  /// v: what of it may move, in some cells.
+  template <typename Values>
+  void project(Index first, Index last, Values& v) const {
+    using Value = typename Values::Scalar;
+    const Index n = f1.size();
     if (components() == 1) {
-      for (Index i = first; i < last; ++i) z[i] = r[i];
+      for (Index i = first; i < last; ++i) v[i] *= static_cast<Value>(f1[i]);
       return;
     }
     for (Index i = first; i < last; ++i) {
-      const Real r1 = scale[i] * r[i];
-      const Real r2 = scale[i] * r[i + n];
-      z[i] = a11[i] * r1 + a12[i] * r2;
-      z[i + n] = a12[i] * r1 + a22[i] * r2;
+      const auto [v1, v2] = projected<Value>(i, v[i], v[i + n]);
+      v[i] = v1;
+      v[i + n] = v2;
+    }
+  }
+  /// (v1, v2) likewise, in one cell of vectors.
+  template <typename Value>
+  std::array<Value, 2> projected(Index i, Value v1, Value v2) const {
+    const auto along1 = static_cast<Value>(f1[i]);
+    const auto along2 = static_cast<Value>(f2[i]);
+    const Value along = along1 * v1 + along2 * v2;
+    return {on_line(i) ? along * along1 : v1, on_line(i) ? along * along2 : v2};
+  }
+
+  /// z = scale * r, in some cells, of an r that may move
+  void load(Index first, Index last, const Field& r, Field& z) const {
+    const Index n = last - first;
+    if (components() == 1) {
+      z.segment(first, n) = r.segment(first, n);
+      return;
+    }
+    const auto scaling = scale.segment(first, n).template cast<Real>();
+    for (const Index start : {first, first + f1.size()}) {
+      z.segment(start, n) = scaling * r.segment(start, n);
     }
   }
 
-  /// y = projector * (scale * z + shift * projector * r), in some cells. Projected once only, what rounding
-  /// leaves of the part of r across the lines would enter r.y to first order, and no residual could fall
-  /// below the root of its rounding.
+  /// y = projector * scale * z + shift * r, in some cells, of an r that may move; y may be z.
   void complete(Index first, Index last, const Field& z, const Field& r, Field& y) const {
-    const Index n = a11.size();
+    const Index n = f1.size();
     if (components() == 1) {
       for (Index i = first; i < last; ++i) y[i] = z[i];
       return;
     }
     for (Index i = first; i < last; ++i) {
-      const Real r1 = a11[i] * r[i] + a12[i] * r[i + n];
-      const Real r2 = a12[i] * r[i] + a22[i] * r[i + n];
-      const Real y1 = scale[i] * z[i] + shift[i] * r1;
-      const Real y2 = scale[i] * z[i + n] + shift[i] * r2;
-      y[i] = a11[i] * y1 + a12[i] * y2;
-      y[i + n] = a12[i] * y1 + a22[i] * y2;
+      const auto scaling = static_cast<Real>(scale[i]);
+      const auto shifting = static_cast<Real>(shift[i]);
+      const auto [y1, y2] = projected<Real>(i, scaling * z[i], scaling * z[i + n]);
+      y[i] = y1 + shifting * r[i];
+      y[i + n] = y2 + shifting * r[i + n];
     }
   }
 
   static double bytes(Index components, double cells) {
-    return (components == 2 ? 6.0 : 1.0) * sizeof(Real) * cells;
+    const double vector = 2.0 * sizeof(Real) + 3.0 * sizeof(float);
+    return (components == 2 ? vector : sizeof(Real)) * cells;
   }
 
-  Field a11, a12, a22;  ///< the projector, symmetric
-  Field stiffness;      ///< lambda = |s|/(mu p) in slip cells
-  Field scale, shift;   ///< of the preconditioner
-  Sweep free;           ///< over the cells where the projector is not zero
+  Field f1, f2;  ///< unit vector of a cell on a line, zero else; of scalars f1 alone: 1 where they are free
+  Eigen::ArrayXf stiffness;     ///< lambda = |s|/(mu p) in slip cells, above zero; zero in stick cells
+  Eigen::ArrayXf scale, shift;  ///< of the preconditioner
+  Sweep free;                   ///< over the cells where something is free
+
+ private:
+  static constexpr float kLeastStiffness = std::numeric_limits<float>::min();
 };
 
 /// The linearised problem's matrix, K + stiffness, on the tangent space.
@@ -128,23 +160,18 @@ struct TangentOperator {
 
   const Sweep& cells() const { return space.free; }
 
-  /// Kd in the cells that are free; d is zero in others. Returns d.Kd.
-  double apply(const Field& d, Field& Kd) {
-    op.apply_own(d, Kd);
-    const Index n = space.a11.size();
-    const auto& stiffness = space.stiffness;
-    return space.free.template sum<double>([&](Index first, Index last, double& sum) {
-      if (space.components() == 1) {
-        for (Index i = first; i < last; ++i) sum += static_cast<double>(d[i]) * static_cast<double>(Kd[i]);
-        return;
-      }
-      for (Index i = first; i < last; ++i) {
-        Kd[i] += stiffness[i] * d[i];
-        Kd[i + n] += stiffness[i] * d[i + n];
-        sum += static_cast<double>(d[i]) * static_cast<double>(Kd[i]) +
-               static_cast<double>(d[i + n]) * static_cast<double>(Kd[i + n]);
-      }
-    });
+  /// The two parts of y = projector (K + stiffness) x in the cells that are free; x is zero in others.
+  void transform(const Field& x, Field& y) { op.apply_own(x, y); }
+  void store(Index first, Index last, const Field& x, Field& y) const {
+    if (space.components() == 1) return;
+    const Index n = space.f1.size();
+    for (Index i = first; i < last; ++i) {
+      const auto stiffness = static_cast<Real>(space.stiffness[i]);
+      const auto [y1, y2] =
+          space.template projected<Real>(i, y[i] + stiffness * x[i], y[i + n] + stiffness * x[i + n]);
+      y[i] = y1;
+      y[i + n] = y2;
+    }
   }
 };
 
@@ -160,7 +187,7 @@ struct TangentPreconditioner {
   const Sweep& cells() const { return space.free; }
 
   /// The three parts of y = M r, of which the first and the last go cell by cell.
-  void load(Index first, Index last, const Field& r, Field& z) const { space.restrict_to(first, last, r, z); }
+  void load(Index first, Index last, const Field& r, Field& z) const { space.load(first, last, r, z); }
   void transform(Field& z) {
     if (extension != nullptr) extension->extend(z);
     symbol.apply(std::span(z.data(), static_cast<std::size_t>(z.size())));
@@ -168,6 +195,9 @@ struct TangentPreconditioner {
   }
   void store(Index first, Index last, const Field& r, const Field& z, Field& y) const {
     space.complete(first, last, z, r, y);
+  }
+  void project(Index first, Index last, Field& y) const {
+    if (space.components() == 2) space.project(first, last, y);
   }
 };
 

@@ -45,8 +45,8 @@ int iterations_needed(Index cells, bool two_terms) {
     const double mean = f1 * f1 * means[0] + f2 * f2 * means[1];
     space.set_line(cell, f1, f2, stiffness, mean);
     if (two_terms) return;
-    space.scale[cell] = 1.0 / std::sqrt(1.0 + stiffness * mean);
-    space.shift[cell] = 0.0;
+    space.scale[cell] = static_cast<float>(1.0 / std::sqrt(1.0 + stiffness * mean));
+    space.shift[cell] = 0.0F;
   });
   space.find_free();
   TangentCg<double> cg(*op, *symbol, 2 * grid.cells(), 0);

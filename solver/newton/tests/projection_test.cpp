@@ -38,7 +38,7 @@ struct ProjectionCase {
   double excess(const ArrayXd& q) const { return (norms(q) - bound).maxCoeff(); }
   ArrayXd projected(double moment, double* alpha = nullptr) const {
     ArrayXd q = z;
-    const double multiplier = project_with_moment(q, bound, t, moment);
+    const double multiplier = project_with_moment(q, bound, grid, moment);
     if (alpha != nullptr) *alpha = multiplier;
     return q;
   }
@@ -138,7 +138,7 @@ TEST(Projection, LeavesWhatItHasProjected) {
     for (const double ratio : {-0.9, 0.0, 0.5}) {
       const ArrayXd once = of.projected(ratio * of.limit);
       ArrayXd twice = once;
-      const double alpha = project_with_moment(twice, of.bound, of.t, ratio * of.limit);
+      const double alpha = project_with_moment(twice, of.bound, of.grid, ratio * of.limit);
       EXPECT_LE((twice - once).abs().maxCoeff(), kProjectionRounding);
       EXPECT_NEAR(alpha, 0.0, kProjectionRounding);
     }
@@ -151,7 +151,7 @@ TEST(Projection, DoesNotDependOnTheGuess) {
   const ArrayXd q = of.projected(0.7 * of.limit, &alpha);
   for (const double guess : {alpha, -1.0, 1e3, -1e9, kNaN, std::numeric_limits<double>::infinity()}) {
     ArrayXd other = of.z;
-    EXPECT_NEAR(project_with_moment(other, of.bound, of.t, 0.7 * of.limit, guess), alpha,
+    EXPECT_NEAR(project_with_moment(other, of.bound, of.grid, 0.7 * of.limit, guess), alpha,
                 kProjectionRounding);
     EXPECT_LE((other - q).abs().maxCoeff(), kProjectionRounding);
   }

@@ -1,0 +1,71 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <type_traits>
+
+#include "solver/grid/grid.hpp"
+
+namespace slipstick::solver {
+
+/// The displacements of a rigid motion over a grid, (along1 - turn x2, along2 + turn x1) as two components or
+/// the first alone, worked out where they are asked for: no field of them is kept. What is said of values
+/// next to each other holds for those of one row.
+class MotionField {
+ public:
+  MotionField(const Grid& grid, double along1, double along2 = 0.0, double turn = 0.0)
+      : grid_(grid),
+        along1_(along1),
+        along2_(along2),
+        turn_(turn),
+        x2_(Eigen::ArrayXd::NullaryExpr(grid.n2, [&](Index j) { return grid.x2(j); })) {}
+
+  /// The k-th value from a first one on is constant + slope * x2[k].
+  struct Row {
+    double constant;
+    double slope;
+    const double* x2;
+  };
+  Row row(Index first) const {
+    const bool second = first >= grid_.cells();
+    const Index cell = second ? first - grid_.cells() : first;
+    const Index i = cell / grid_.n2;
+    const double* const x2 = x2_.data() + (cell - i * grid_.n2);
+    return second ? Row{along2_ + turn_ * grid_.x1(i), 0.0, x2} : Row{along1_, -turn_, x2};
+  }
+
+  /// The values [first, first + n), an expression of Eigen's.
+  auto segment(Index first, Index n) const {
+    const Row at = row(first);
+    return at.constant + at.slope * Eigen::Map<const Eigen::ArrayXd>(at.x2, n);
+  }
+
+  /// The sum of the products of as many values from `first` on with those of an array.
+  template <typename Values>
+  double dot(Index first, const Values& values) const {
+    const Row at = row(first);
+    double sum = at.constant == 0.0 ? 0.0 : at.constant * values.sum();
+    if (at.slope != 0.0) sum += at.slope * (x2(at, values.size()) * values).sum();
+    return sum;
+  }
+
+  /// part += factor times as many values from `first` on.
+  template <typename Part>
+  void add_to(Part&& part, Index first, double factor) const {
+    using Real = typename std::decay_t<Part>::Scalar;
+    const Row at = row(first);
+    if (at.slope != 0.0) {
+      part += (factor * at.constant + (factor * at.slope) * x2(at, part.size())).template cast<Real>();
+    } else if (at.constant != 0.0) {
+      part += static_cast<Real>(factor * at.constant);
+    }
+  }
+
+ private:
+  static Eigen::Map<const Eigen::ArrayXd> x2(const Row& row, Index n) { return {row.x2, n}; }
+
+  Grid grid_;
+  double along1_, along2_, turn_;
+  Eigen::ArrayXd x2_;
+};
+
+}  // namespace slipstick::solver
