@@ -23,31 +23,43 @@ double relative_difference(const std::array<double, 2>& value, const std::array<
   return std::hypot(value[0] - exact[0], value[1] - exact[1]) / std::hypot(exact[0], exact[1]);
 }
 
-/// Both given as sizes in each cell: of the difference, and of the exact field.
-FieldError field_error(const ArrayXd& difference, const ArrayXd& exact) {
-  return {difference.sum() / exact.sum(), std::sqrt(difference.square().sum() / exact.square().sum()),
-          difference.maxCoeff<Eigen::PropagateNaN>() / exact.maxCoeff<Eigen::PropagateNaN>()};
+/// Sum, sum of squares and maximum of the sizes of a field; NaN stays.
+struct Norms {
+  double sum = 0.0;
+  double squares = 0.0;
+  double max = 0.0;
+
+  void add(double size) {
+    sum += size;
+    squares += size * size;
+    if (!(size <= max) && !std::isnan(max)) max = size;
+  }
+};
+
+FieldError field_error(const Norms& difference, const Norms& exact) {
+  return {difference.sum / exact.sum, std::sqrt(difference.squares / exact.squares),
+          difference.max / exact.max};
 }
 
-/// Of the cells that `part` holds, 1 or 0 each, over the whole exact field.
-FieldError field_error(const ArrayXd& difference, const ArrayXd& exact, const ArrayXd& part) {
-  return field_error(difference * part, exact);
-}
-
-/// A function of the radius, found once at each: mirror images of a cell have its own, to the last bit.
-template <typename Function>
+/// The exact pressure and size of the shear traction at a radius, found once at each: mirror images of a cell
+/// have its own, to the last bit.
 class ByRadius {
  public:
-  explicit ByRadius(Function function) : function_(std::move(function)) {}
-  double operator()(double radius) {
+  explicit ByRadius(const Oracle& oracle) : oracle_(oracle) {}
+
+  struct Values {
+    double pressure;
+    double shear;
+  };
+  const Values& operator()(double radius) {
     const auto [place, is_new] = found_.try_emplace(radius);
-    if (is_new) place->second = function_(radius);
+    if (is_new) place->second = {oracle_.pressure(radius), oracle_.traction(radius)};
     return place->second;
   }
 
  private:
-  Function function_;
-  std::unordered_map<double, double> found_;
+  const Oracle& oracle_;
+  std::unordered_map<double, Values> found_;
 };
 
 /// The exact shear traction in an oracle's units, as a vector at a place measured from the axis; size: its
@@ -115,7 +127,8 @@ class Images {
   Index rows() const { return mirrored_ ? (n1_ + 1) / 2 : n1_; }
   Index columns() const { return mirrored_ ? (n2_ + 1) / 2 : n2_; }
 
-  /// visit(image, sign1, sign2) for a cell of the first rows() and columns() and each of its images.
+  /// visit(image, sign1, sign2) for a cell of the first rows() and columns() and each of its images: once,
+  /// also where some are the cell itself.
   template <typename Visit>
   void each(Index i, Index j, const Visit& visit) const {
     visit(i * n2_ + j, 1.0, 1.0);
@@ -123,9 +136,9 @@ class Images {
     const double sign = turns_ ? -1.0 : 1.0;
     const Index k = n1_ - 1 - i;
     const Index l = n2_ - 1 - j;
-    visit(k * n2_ + j, 1.0, sign);
-    visit(i * n2_ + l, sign, 1.0);
-    visit(k * n2_ + l, sign, sign);
+    if (k != i) visit(k * n2_ + j, 1.0, sign);
+    if (l != j) visit(i * n2_ + l, sign, 1.0);
+    if (k != i && l != j) visit(k * n2_ + l, sign, sign);
   }
 
  private:
@@ -157,44 +170,16 @@ std::array<double, 2> mean_over_cell(const Oracle& oracle, const solver::Grid& g
   return {sum[0] / (points * points), sum[1] / (points * points)};
 }
 
-/// Averages over the cells near an edge, values at the centres elsewhere, where the two differ by h^2/24
-/// times the traction's second derivatives. 2*cells, Pa.
-ArrayXd averaged_traction(const Oracle& oracle, const solver::Grid& grid, const ExactFields& at_centres) {
-  const double diagonal = std::hypot(grid.h1, grid.h2);
-  const ShearBesideEdges beside_edges(oracle, 2.0 * diagonal, std::min(grid.h1, grid.h2) / kTableSteps);
-  ArrayXd field = at_centres.traction;
-  const Images images(oracle, grid);
-  for (Index i = 0; i < images.rows(); ++i) {
-    for (Index j = 0; j < images.columns(); ++j) {
-      const double radius = at_centres.radius[i * grid.n2 + j];
-      const auto is_near = [&](double edge) { return std::abs(radius - edge) < diagonal; };
-      if (!is_near(oracle.stick_radius) && !is_near(oracle.contact_radius)) continue;
-      const auto [q1, q2] = mean_over_cell(oracle, grid, grid.x1(i) - oracle.centre[0],
-                                           grid.x2(j) - oracle.centre[1], beside_edges);
-      images.each(i, j, [&, q1 = q1, q2 = q2](Index image, double sign1, double sign2) {
-        field[image] = sign1 * q1;
-        field[image + grid.cells()] = sign2 * q2;
-      });
-    }
-  }
-  return field;
-}
-
 TractionError unknown_tractions() {
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   constexpr FieldError field{unknown, unknown, unknown};
   return {field, field, field, field, field, field};
 }
 
-ArrayXd band(const ArrayXd& radius, double edge, double width) {
-  return ((radius - edge).abs() <= width).cast<double>();
-}
-
 }  // namespace
 
 ExactFields exact_fields(const Oracle& oracle, const solver::Grid& grid) {
-  ByRadius pressure_at([&](double radius) { return oracle.pressure(radius); });
-  ByRadius shear([&](double radius) { return oracle.traction(radius); });
+  ByRadius at(oracle);
   const Index cells = grid.cells();
   ExactFields exact{ArrayXd(cells), ArrayXd(cells), ArrayXd(2 * cells)};
   const Images images(oracle, grid);
@@ -203,14 +188,15 @@ ExactFields exact_fields(const Oracle& oracle, const solver::Grid& grid) {
       const double y1 = grid.x1(i) - oracle.centre[0];
       const double y2 = grid.x2(j) - oracle.centre[1];
       const double radius = oracle.radius(y1, y2);
-      const double pressure = pressure_at(radius);
-      const auto [q1, q2] = shear_at(oracle, y1, y2, shear);
-      images.each(i, j, [&, q1 = q1, q2 = q2](Index image, double sign1, double sign2) {
-        exact.radius[image] = radius;
-        exact.pressure[image] = pressure;
-        exact.traction[image] = sign1 * q1;
-        exact.traction[image + cells] = sign2 * q2;
-      });
+      const auto [q1, q2] = shear_at(oracle, y1, y2, [&](double place) { return at(place).shear; });
+      images.each(
+          i, j,
+          [&, q1 = q1, q2 = q2, pressure = at(radius).pressure](Index image, double sign1, double sign2) {
+            exact.radius[image] = radius;
+            exact.pressure[image] = pressure;
+            exact.traction[image] = sign1 * q1;
+            exact.traction[image + cells] = sign2 * q2;
+          });
     }
   }
   return exact;
@@ -218,34 +204,69 @@ ExactFields exact_fields(const Oracle& oracle, const solver::Grid& grid) {
 
 namespace {
 
+/// Against averages over the cells near an edge, and values at the centres elsewhere, where the two differ by
+/// h^2/24 times the traction's second derivatives.
 TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, const solver::Grid& grid,
                              const ExactFields& fields) {
   if (!oracle.shear) return unknown_tractions();
-  const ArrayXd& at_centres = fields.traction;
-  const ArrayXd averaged = averaged_traction(oracle, grid, fields);
-  const ArrayXd exact = solver::norms(averaged);
-  const ArrayXd difference = solver::norms(traction - averaged);
+  const double diagonal = std::hypot(grid.h1, grid.h2);
+  const ShearBesideEdges beside_edges(oracle, 2.0 * diagonal, std::min(grid.h1, grid.h2) / kTableSteps);
   const double width = kEdgeBand * std::sqrt(grid.cell_area());
   const bool slips = oracle.stick_radius < oracle.contact_radius;
-  const ArrayXd stick_edge =
-      slips ? band(fields.radius, oracle.stick_radius, width) : ArrayXd::Zero(fields.radius.size());
-  const ArrayXd contact_edge = (1.0 - stick_edge) * band(fields.radius, oracle.contact_radius, width);
-  const ArrayXd rest = 1.0 - stick_edge - contact_edge;
-  const ArrayXd sticks = (fields.radius < oracle.stick_radius).cast<double>();
+  Norms exact_at_centres, exact_averaged, at_centres, averaged, stick_edge, contact_edge, inside, outside;
+  const Images images(oracle, grid);
+  for (Index i = 0; i < images.rows(); ++i) {
+    for (Index j = 0; j < images.columns(); ++j) {
+      const Index cell = i * grid.n2 + j;
+      const double radius = fields.radius[cell];
+      const auto is_within = [&](double distance, double edge) {
+        return std::abs(radius - edge) <= distance;
+      };
+      const std::array<double, 2> centre{fields.traction[cell], fields.traction[cell + grid.cells()]};
+      std::array<double, 2> mean = centre;
+      if (is_within(diagonal, oracle.stick_radius) || is_within(diagonal, oracle.contact_radius)) {
+        mean = mean_over_cell(oracle, grid, grid.x1(i) - oracle.centre[0], grid.x2(j) - oracle.centre[1],
+                              beside_edges);
+      }
+      Norms& region = slips && is_within(width, oracle.stick_radius) ? stick_edge
+                      : is_within(width, oracle.contact_radius)      ? contact_edge
+                      : radius < oracle.stick_radius                 ? inside
+                                                                     : outside;
+      const double size = std::sqrt(centre[0] * centre[0] + centre[1] * centre[1]);
+      const double mean_size = std::sqrt(mean[0] * mean[0] + mean[1] * mean[1]);
+      images.each(i, j, [&](Index image, double sign1, double sign2) {
+        const auto off = [&](const std::array<double, 2>& exact) {
+          const double d1 = traction[image] - sign1 * exact[0];
+          const double d2 = traction[image + grid.cells()] - sign2 * exact[1];
+          return std::sqrt(d1 * d1 + d2 * d2);
+        };
+        exact_at_centres.add(size);
+        exact_averaged.add(mean_size);
+        at_centres.add(off(centre));
+        const double difference = off(mean);
+        averaged.add(difference);
+        region.add(difference);
+      });
+    }
+  }
   return {
-      .at_centres = field_error(solver::norms(traction - at_centres), solver::norms(at_centres)),
-      .averaged = field_error(difference, exact),
-      .stick_edge = field_error(difference, exact, stick_edge),
-      .contact_edge = field_error(difference, exact, contact_edge),
-      .inside = field_error(difference, exact, rest * sticks),
-      .outside = field_error(difference, exact, rest * (1.0 - sticks)),
+      .at_centres = field_error(at_centres, exact_at_centres),
+      .averaged = field_error(averaged, exact_averaged),
+      .stick_edge = field_error(stick_edge, exact_averaged),
+      .contact_edge = field_error(contact_edge, exact_averaged),
+      .inside = field_error(inside, exact_averaged),
+      .outside = field_error(outside, exact_averaged),
   };
 }
 
 FieldError pressure_error(const ArrayXd& pressure, const ArrayXd& exact) {
-  const auto finite = exact.isFinite();
-  const ArrayXd difference = (pressure - exact).abs();
-  return field_error(finite.select(difference, 0.0), finite.select(exact, 0.0));
+  Norms difference, size;
+  for (Index i = 0; i < exact.size(); ++i) {
+    if (!std::isfinite(exact[i])) continue;
+    difference.add(std::abs(pressure[i] - exact[i]));
+    size.add(exact[i]);
+  }
+  return field_error(difference, size);
 }
 
 }  // namespace
