@@ -45,6 +45,12 @@ using CgField = Eigen::Array<Real, Eigen::Dynamic, 1>;
 /// A condition preconditioned, in single precision: any field near it will do.
 using CgTangent = Eigen::ArrayXf;
 
+/// In single precision, where mirror images stay each other's in sign and size, whichever way is rounded.
+template <typename Real>
+float to_tangent(Real value) {
+  return static_cast<float>(std::copysign(static_cast<float>(std::abs(value)), value));
+}
+
 /// The system's matrix, symmetric and positive definite where the iteration moves: fields are zero elsewhere,
 /// and only these cells of them are written. y = A x in two parts, of which the last shares a sweep over the
 /// cells with what is done after: transform(x, y), and store(first, last, x, y).
@@ -146,7 +152,7 @@ class CgConstraints {
         preconditioner.store(first, last, y, z, z);
         add_products(cells, first, last, z, sum);
         for_components(cells, z, first, last, [&](Index start, Index n) {
-          tangents_[k].segment(start, n) = z.segment(start, n).template cast<float>();
+          tangents_[k].segment(start, n) = z.segment(start, n).unaryExpr(&to_tangent<Real>);
         });
       });
       products.col(static_cast<Index>(k)) = first(with_z.conditions);
@@ -160,13 +166,20 @@ class CgConstraints {
     return factorise(preconditioner, z);
   }
 
-  /// The same tangents where less, or more, is free to move: keep(first, last, w) leaves in w what may move
-  /// there. all: the cells that carry anything. z: overwritten. False as above.
-  template <SplitMap<Real> Preconditioner, typename Keep>
-  bool restrict_tangents(const Preconditioner& preconditioner, const Sweep& all, const Keep& keep,
-                         CgField<Real>& z) {
+  /// The same tangents in another range of the preconditioner. all: the cells that carry anything. z:
+  /// overwritten. False as above.
+  template <SplitMap<Real> Preconditioner>
+  bool restrict_tangents(const Preconditioner& preconditioner, const Sweep& all, CgField<Real>& z) {
     for (CgTangent& w : tangents_.first(count_)) {
-      all.each([&](Index first, Index last) { keep(first, last, w); });
+      all.each([&](Index first, Index last) {
+        for_components(all, z, first, last, [&](Index start, Index n) {
+          z.segment(start, n) = w.segment(start, n).template cast<Real>();
+        });
+        preconditioner.project(first, last, z);
+        for_components(all, z, first, last, [&](Index start, Index n) {
+          w.segment(start, n) = z.segment(start, n).unaryExpr(&to_tangent<Real>);
+        });
+      });
     }
     return count_ == 0 || factorise(preconditioner, z);
   }

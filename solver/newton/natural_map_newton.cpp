@@ -223,8 +223,7 @@ void NaturalMapNewton<Set, Real>::linearise() {
   if (kIsScalar) extension_.prepare(space_.f1);
   TangentPreconditioner<Real> map = preconditioner();
   if (has_tangents_ && tangents_are_near()) {
-    const auto keep = [&](Index first, Index last, CgTangent& w) { space_.project(first, last, w); };
-    has_tangents_ = constraints_.restrict_tangents(map, set_.sweep(), keep, work().y);
+    has_tangents_ = constraints_.restrict_tangents(map, set_.sweep(), work().y);
     return;
   }
   has_tangents_ = constraints_.prepare(map, c_, work().d, work().y);

@@ -84,27 +84,22 @@ struct TangentSpace {
   }
 
   /// v: what of it may move, in some cells.
-  template <typename Values>
-  void project(Index first, Index last, Values& v) const {
-    using Value = typename Values::Scalar;
+  void project(Index first, Index last, Field& v) const {
     const Index n = f1.size();
     if (components() == 1) {
-      for (Index i = first; i < last; ++i) v[i] *= static_cast<Value>(f1[i]);
+      v.segment(first, last - first) *= f1.segment(first, last - first);
       return;
     }
     for (Index i = first; i < last; ++i) {
-      const auto [v1, v2] = projected<Value>(i, v[i], v[i + n]);
+      const auto [v1, v2] = projected(i, v[i], v[i + n]);
       v[i] = v1;
       v[i + n] = v2;
     }
   }
   /// (v1, v2) likewise, in one cell of vectors.
-  template <typename Value>
-  std::array<Value, 2> projected(Index i, Value v1, Value v2) const {
-    const auto along1 = static_cast<Value>(f1[i]);
-    const auto along2 = static_cast<Value>(f2[i]);
-    const Value along = along1 * v1 + along2 * v2;
-    return {on_line(i) ? along * along1 : v1, on_line(i) ? along * along2 : v2};
+  std::array<Real, 2> projected(Index i, Real v1, Real v2) const {
+    const Real along = f1[i] * v1 + f2[i] * v2;
+    return {on_line(i) ? along * f1[i] : v1, on_line(i) ? along * f2[i] : v2};
   }
 
   /// z = scale * r, in some cells, of an r that may move
@@ -130,7 +125,7 @@ struct TangentSpace {
     for (Index i = first; i < last; ++i) {
       const auto scaling = static_cast<Real>(scale[i]);
       const auto shifting = static_cast<Real>(shift[i]);
-      const auto [y1, y2] = projected<Real>(i, scaling * z[i], scaling * z[i + n]);
+      const auto [y1, y2] = projected(i, scaling * z[i], scaling * z[i + n]);
       y[i] = y1 + shifting * r[i];
       y[i + n] = y2 + shifting * r[i + n];
     }
@@ -167,8 +162,7 @@ struct TangentOperator {
     const Index n = space.f1.size();
     for (Index i = first; i < last; ++i) {
       const auto stiffness = static_cast<Real>(space.stiffness[i]);
-      const auto [y1, y2] =
-          space.template projected<Real>(i, y[i] + stiffness * x[i], y[i + n] + stiffness * x[i + n]);
+      const auto [y1, y2] = space.projected(i, y[i] + stiffness * x[i], y[i + n] + stiffness * x[i + n]);
       y[i] = y1;
       y[i + n] = y2;
     }
@@ -196,9 +190,7 @@ struct TangentPreconditioner {
   void store(Index first, Index last, const Field& r, const Field& z, Field& y) const {
     space.complete(first, last, z, r, y);
   }
-  void project(Index first, Index last, Field& y) const {
-    if (space.components() == 2) space.project(first, last, y);
-  }
+  void project(Index first, Index last, Field& y) const { space.project(first, last, y); }
 };
 
 }  // namespace slipstick::solver

@@ -62,9 +62,7 @@ class TangentCg {
   /// The tangents of the last precondition() on another tangent space.
   bool restrict_tangents(const TangentSpace<Real>& space) {
     const TangentPreconditioner<Real> inverse{symbol_, space};
-    return constraints_.restrict_tangents(
-        inverse, Sweep(Eigen::ArrayXd::Ones(space.f1.size())),
-        [&](Index first, Index last, CgTangent& w) { space.project(first, last, w); }, y_);
+    return constraints_.restrict_tangents(inverse, Sweep(Eigen::ArrayXd::Ones(space.f1.size())), y_);
   }
   CgSummary solve(const TangentSpace<Real>& space, double reduction, int max_iterations) {
     return run(space, {}, reduction, max_iterations);
