@@ -36,7 +36,7 @@ struct Staircase {
   double height;  ///< of the error
   std::vector<double> phases = {};
 
-  convergence::SolvedScene operator()(const solver::Scene& at) {
+  convergence::SolvedScene operator()(const solver::Scene& at, solver::Detail) {
     convergence::SolvedScene answer;
     answer.solution.status = solver::Status::converged;
     answer.solution.resolution = {.stick_width = 50.0, .slip_width = 20.0, .uncertainty = 0.0};
@@ -92,12 +92,14 @@ TEST(ShiftedGrids, AreNoBetterThanSuchMeshesWhereTheyAgree) {
 TEST(ShiftedGrids, ThatDoNotAllConvergeGiveNoMean) {
   const solver::Scene scene = shifted_scene("paper");
   int solves = 0;
-  const auto mean = mean_over_shifted_grids(
-      scene, kTwist, 0.5, convergence::contact_on_grid(scene), [&](const solver::Scene& at) {
-        convergence::SolvedScene answer = Staircase{.front = 1e-4, .height = 0.0}(at);
-        if (++solves == 2) answer.solution.status = solver::Status::not_converged;
-        return answer;
-      });
+  const auto mean = mean_over_shifted_grids(scene, kTwist, 0.5, convergence::contact_on_grid(scene),
+                                            [&](const solver::Scene& at, solver::Detail detail) {
+                                              convergence::SolvedScene answer =
+                                                  Staircase{.front = 1e-4, .height = 0.0}(at, detail);
+                                              if (++solves == 2)
+                                                answer.solution.status = solver::Status::not_converged;
+                                              return answer;
+                                            });
   EXPECT_EQ(solves, 2);
   EXPECT_TRUE(std::isnan(mean.uncertainty));
 }
