@@ -43,14 +43,15 @@ struct KernelLines {
 /// whose plan is found far sooner than that of a cosine transform.
 void transform_lines(double* values, const KernelLines& lines, Index h, bool odd) {
   FftwBuffer<double> period(count(4 * h));
-  double* const z = period.data();
-  const FftwPlan<double> plan(Fftw<double>::plan(static_cast<int>(2 * h), period.complex(), period.complex(),
-                                                 FFTW_FORWARD, FFTW_ESTIMATE));
+  FftwBuffer<double> transformed(count(4 * h));
+  const FftwPlan<double> plan(Fftw<double>::plan(static_cast<int>(2 * h), period.complex(),
+                                                 transformed.complex(), FFTW_FORWARD, FFTW_ESTIMATE));
   const double sign = odd ? -1.0 : 1.0;
   const Index ends = odd ? 1 : 0;  // where odd lines are taken to be zero, as their transforms are
   for (Index line = 0; line < lines.count; line += 2) {
     double* const first = values + line * lines.distance;
     double* const second = line + 1 < lines.count ? first + lines.distance : first;
+    double* const z = period.data();
     std::fill_n(z, 4 * h, 0.0);
     for (Index k = ends; k <= h - ends; ++k) {
       const std::array pair{first[k * lines.step], second[k * lines.step]};
@@ -59,10 +60,11 @@ void transform_lines(double* values, const KernelLines& lines, Index h, bool odd
         z[2 * k + i] = pair[count(i)];
       }
     }
-    Fftw<double>::execute(plan.get(), period.complex(), period.complex());
+    Fftw<double>::execute(plan.get(), period.complex(), transformed.complex());
+    const double* const sums = transformed.data();
     for (Index k = 0; k <= h; ++k) {
-      second[k * lines.step] = odd ? z[2 * k] : z[2 * k + 1];
-      first[k * lines.step] = odd ? -z[2 * k + 1] : z[2 * k];
+      second[k * lines.step] = odd ? sums[2 * k] : sums[2 * k + 1];
+      first[k * lines.step] = odd ? -sums[2 * k + 1] : sums[2 * k];
     }
   }
 }

@@ -28,7 +28,7 @@ std::vector<std::string> plans(int n) {
           text(Fftw<double>::plan_lines({n, 4, 4, 1, 1, n}, in, out, FFTW_BACKWARD, FFTW_ESTIMATE)),
           text(Fftw<double>::plan_plane_forward(plane, buffer.data(), in, FFTW_ESTIMATE)),
           text(Fftw<double>::plan_plane_backward(plane, in, buffer.data(), FFTW_ESTIMATE)),
-          text(Fftw<double>::plan(2 * n, in, in, FFTW_FORWARD, FFTW_ESTIMATE))};
+          text(Fftw<double>::plan(2 * n, in, out, FFTW_FORWARD, FFTW_ESTIMATE))};
 }
 
 /// That a process which has planned much gets the same bits as a new one rests on this: an estimated plan
