@@ -12,6 +12,7 @@
 /// tractions (solver::CellTraction) nothing else is left that matters: no extrapolation is needed.
 namespace slipstick::convergence {
 
+/// Solves one grid, to the detail that is asked for.
 using GridSolve = std::function<SolvedScene(const solver::Scene&, solver::Detail)>;
 
 /// Grids of a mean. The stick radius in cells, of them all, is spread evenly over one cell, the period of its
