@@ -43,6 +43,9 @@ void describe_tractions(ModelSolution& solution, const LoadStep& loads, const Ar
   if (solution.stick_cells == solution.contact_cells) {
     solution.stick_radius = solution.contact_radius;
     solution.stick_radius_note = "everything sticks";
+  } else if (solution.detail != Detail::all) {
+    solution.stick_radius = solution.stick_radius_counted;
+    solution.stick_radius_note = "only counted: nobody asked for more";
   } else if (slip.size() > 0) {
     const StickFront front = find_stick_front(grid, problem.friction_bound, slip, tangential.stick);
     solution.stick_radius = front.radius * model.length_unit;

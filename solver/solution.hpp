@@ -40,6 +40,13 @@ struct Seconds {
   double total = 0.0;
 };
 
+/// How much of an answer is worked out from its fields.
+enum class Detail {
+  all,
+  loads,  ///< loads and motions with their certificate: what a mean over grids takes. The stick radius is
+          ///< counted
+};
+
 /// The numerical answer at the end of a step, in SI units (those of the scene). Fields have one value a cell
 /// of the grid, vectors first all first components, then all second ones.
 struct Solution {
@@ -56,6 +63,7 @@ struct Solution {
   double shear_modulus = 0.0;           ///< Pa, of the pair: 1/G = 1/G_1 + 1/G_2
   std::vector<Omission> left_out;
 
+  Detail detail = Detail::all;
   Certificate certificate{};
   SlipDirection slip_direction{};
   Resolution resolution;

@@ -267,6 +267,7 @@ void solve_steps(const Scene& scene, const SolveOptions& options, const AfterSte
     cache->begin_solve(scene.rounding_seed == 0 ? room : 0.0);  // rounding changes with every application
   }
   solution.model.cache = cache;
+  solution.detail = options.detail;
   solution.seconds.setup = watch.lap();
   ContactState state;
   if (options.resumed) take_up(solution, state, *options.resumed, scene);

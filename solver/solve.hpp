@@ -26,6 +26,7 @@ struct SolveOptions {
   /// The history goes on from here: such a state of the same scene. The answer has the digits that it would
   /// have had without the break. Empty: from the first step.
   std::shared_ptr<const HistoryState> resumed = {};
+  Detail detail = Detail::all;
 };
 
 /// Solves a scene, step by step; returns the last one, or the first that did not converge. Throws InputError

@@ -100,12 +100,14 @@ Request request_of(const char* scene, const char* file, size_t n_overrides, cons
   return request;
 }
 
-convergence::SolvedScene find_on_grid(const Scene& scene, const Request& request) {
+convergence::SolvedScene find_on_grid(const Scene& scene, const Request& request,
+                                      const std::shared_ptr<solver::SolveCache>& cache = {},
+                                      solver::Detail detail = solver::Detail::all) {
   const auto progress = [&](int iteration, double change) {
     if (request.progress != nullptr && request.progress(iteration, change, request.user) != 0)
       throw Stopped{};
   };
-  return convergence::solve_scene(scene, {.progress = progress});
+  return convergence::solve_scene(scene, {.progress = progress, .cache = cache, .detail = detail});
 }
 
 void keep(slipstick_solution& kept, const convergence::SolvedScene& solved) {
@@ -153,8 +155,11 @@ std::string solve_accurately(slipstick_solution& kept, Scene scene, const Reques
     kept.result["accuracy"] = account;
     return {};
   }
-  const convergence::AccurateAnswer answer = convergence::solve_to_accuracy(
-      scene, target, [&](const Scene& chosen) { return find_on_grid(chosen, request); });
+  const auto cache = std::make_shared<solver::SolveCache>();
+  const convergence::AccurateAnswer answer =
+      convergence::solve_to_accuracy(scene, target, [&](const Scene& chosen, solver::Detail detail) {
+        return find_on_grid(chosen, request, cache, detail);
+      });
   keep(kept, answer.answer);
   kept.result["accuracy"] = answer.accuracy;
   return answer.reached ? std::string() : convergence::accuracy_text(kept.result);

@@ -58,6 +58,7 @@ ExactFields exact_fields(const Oracle& oracle, const solver::Grid& grid);
 TractionError traction_error(const Eigen::ArrayXd& traction, const Oracle& oracle, const solver::Grid& grid);
 /// pressure: cells, Pa. Where the exact one is infinite it is left out.
 FieldError pressure_error(const Eigen::ArrayXd& pressure, const Oracle& oracle, const solver::Grid& grid);
+/// Errors of fields only where the solution has all detail, else NaN.
 Errors compare(const solver::Solution& solution, const Oracle& oracle);
 
 }  // namespace slipstick::convergence

@@ -32,7 +32,8 @@ SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& opt
   const auto history = solver::within_double(scene, [&] { return exact_history(scene); });
   SolvedScene solved;
   Json steps = Json::array();
-  solver::SolveOptions to_solver{.progress = options.progress, .cache = options.cache};
+  solver::SolveOptions to_solver{
+      .progress = options.progress, .cache = options.cache, .detail = options.detail};
   if (options.resumed) {
     steps = options.resumed->results;
     to_solver.resumed = options.resumed->state;

@@ -40,6 +40,8 @@ struct SolveSceneOptions {
   std::function<void(const solver::HistoryState&, const Json& steps)> on_state = {};
   /// See solver::SolveOptions; null: from the first step.
   std::shared_ptr<const FinishedSteps> resumed = {};
+  /// See solver::SolveOptions.
+  solver::Detail detail = solver::Detail::all;
 };
 
 /// The one way in which a scene is solved on its grid and compared with its exact answer, by whichever

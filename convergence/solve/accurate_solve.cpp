@@ -95,7 +95,7 @@ struct Attempt {
 
 Attempt attempt(const Scene& scene, const Approach& approach, AccuracyOf of, const GridSolve& solve) {
   if (!approach.shifted) {
-    Attempt made{.answer = solve(scene), .reached = {}, .uncertainty = NAN, .grids = {}};
+    Attempt made{.answer = solve(scene, solver::Detail::all), .reached = {}, .uncertainty = NAN, .grids = {}};
     made.reached = reached_error(scene, made.answer.solution, made.answer.result, of);
     return made;
   }

@@ -13,7 +13,7 @@ namespace {
 /// Rounds, of which the quickest counts, and seconds that each takes at least: a round that nothing else
 /// disturbs is likely among them.
 constexpr int kRounds = 7;
-constexpr double kRoundSeconds = 3e-3;
+constexpr double kRoundSeconds = 2e-4;
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();

@@ -168,7 +168,8 @@ ShiftedMean mean_over_shifted_grids(const Scene& scene, const AccuracyQuantity& 
   std::vector<double> errors;
   // The smallest cells come last, so that what a solve writes beside its result is theirs.
   for (auto grid = scenes.rbegin(); grid != scenes.rend(); ++grid) {
-    found.answer = solve(*grid);
+    const bool last = grid + 1 == scenes.rend();
+    found.answer = solve(*grid, last ? solver::Detail::all : solver::Detail::loads);
     const solver::Solution& solution = found.answer.solution;
     if (solution.status != solver::Status::converged) {
       found.why = solution.message;

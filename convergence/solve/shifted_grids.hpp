@@ -12,7 +12,8 @@
 /// tractions (solver::CellTraction) nothing else is left that matters: no extrapolation is needed.
 namespace slipstick::convergence {
 
-using GridSolve = std::function<SolvedScene(const solver::Scene&)>;
+/// Solves one grid, to the detail that is asked for.
+using GridSolve = std::function<SolvedScene(const solver::Scene&, solver::Detail)>;
 
 /// Grids of a mean. The stick radius in cells, of them all, is spread evenly over one cell, the period of its
 /// staircase.

@@ -143,7 +143,8 @@ SolvedScene solve_on(const solver::Scene& scene, const SolveRequest& request, So
 /// Solves, and writes the fields of each step where they go to a file of its own.
 /// cache: null, or what several grids share.
 SolvedScene find_on_grid(const solver::Scene& scene, const SolveRequest& request, Json& result,
-                         const std::shared_ptr<solver::SolveCache>& cache = {}) {
+                         const std::shared_ptr<solver::SolveCache>& cache = {},
+                         solver::Detail detail = solver::Detail::all) {
   std::size_t step = 0;
   const auto on_step = [&](const solver::Solution& at, const OracleAnswer& exact) {
     ++step;
@@ -151,7 +152,11 @@ SolvedScene find_on_grid(const solver::Scene& scene, const SolveRequest& request
     write_solution_fields(file_of_step(request.fields, step), at, exact);
   };
   return solve_on(scene, request,
-                  {.progress = show_progress, .on_step = on_step, .incomplete = &result, .cache = cache},
+                  {.progress = show_progress,
+                   .on_step = on_step,
+                   .incomplete = &result,
+                   .cache = cache,
+                   .detail = detail},
                   step);
 }
 
@@ -214,9 +219,10 @@ int solve_accurately(solver::Scene scene, const SolveRequest& request, std::ostr
     return 0;
   }
   const auto cache = std::make_shared<solver::SolveCache>();
-  const AccurateAnswer answer = solve_to_accuracy(scene, target, [&](const solver::Scene& chosen) {
-    return find_on_grid(chosen, request, result, cache);
-  });
+  const AccurateAnswer answer =
+      solve_to_accuracy(scene, target, [&](const solver::Scene& chosen, solver::Detail detail) {
+        return find_on_grid(chosen, request, result, cache, detail);
+      });
   result = answer.answer.result;
   result["accuracy"] = answer.accuracy;
   write_answer(answer.answer, request, text);

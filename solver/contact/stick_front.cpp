@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
@@ -10,8 +11,6 @@
 #include <vector>
 
 #include "solver/contact/certificate.hpp"
-
-#include "solver/newton/coefficients.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -60,34 +59,43 @@ struct Sample {
   double psi;
 };
 
-/// Distance where a polynomial of that degree, with terms in y, x y and y^2 for what changes across the ray,
-/// is zero on the ray; NaN where the samples do not determine it or it does not rise there.
-double fitted_root(const std::vector<Sample>& samples, int degree) {
-  const Index terms = degree + 4;
-  const auto count = static_cast<Index>(samples.size());
-  if (count < 2 * terms) return std::nan("");
-  Eigen::MatrixXd basis(count, terms);
-  Eigen::VectorXd psi(count);
-  for (Index k = 0; k < count; ++k) {
-    const auto& [x, y, value] = samples[static_cast<std::size_t>(k)];
+/// Distance where a polynomial of the window's degree, with terms in y, x y and y^2 for what changes across
+/// the ray, is zero on the ray; NaN where the samples do not determine it or it does not rise there. By the
+/// normal equations, which are well conditioned in lengths over those of the window.
+double fitted_root(const std::vector<Sample>& samples, const Window& depth) {
+  constexpr int kMaxTerms = 8;
+  using Terms = Eigen::Matrix<double, kMaxTerms, 1>;
+  const int terms = depth.degree + 4;
+  if (static_cast<Index>(samples.size()) < 2 * terms) return std::nan("");
+  const double middle = 0.5 * (depth.from + depth.to);
+  const double half = 0.5 * (depth.to - depth.from);
+  Eigen::Matrix<double, kMaxTerms, kMaxTerms> matrix;
+  matrix.setZero();
+  matrix.diagonal().tail(kMaxTerms - terms).setOnes();
+  Terms right = Terms::Zero();
+  for (const auto& [along, across, psi] : samples) {
+    const double x = (along - middle) / half;
+    const double y = across / kLateral;
+    Terms row = Terms::Zero();
     double power = 1.0;
-    for (int p = 0; p <= degree; ++p, power *= x) basis(k, p) = power;
-    basis.row(k).tail<3>() << y, x * y, y * y;
-    psi[k] = value;
+    for (int p = 0; p <= depth.degree; ++p, power *= x) row[p] = power;
+    row.segment<3>(depth.degree + 1) << y, x * y, y * y;
+    for (int term = 0; term < terms; ++term) matrix.col(term) += row[term] * row;
+    right += psi * row;
   }
-  const Eigen::VectorXd c = least_squares(basis, psi);
-  double x = 0.0;
+  const Terms c = matrix.ldlt().solve(right);
+  double x = -middle / half;
   for (int step = 0; step < 20; ++step) {
     double value = 0.0;
     double slope = 0.0;
-    for (int p = degree; p >= 0; --p) {
+    for (int p = depth.degree; p >= 0; --p) {
       slope = slope * x + value;
       value = value * x + c[p];
     }
     if (!(slope > 0.0)) return std::nan("");
     x -= value / slope;
   }
-  return x;
+  return middle + half * x;
 }
 
 /// Counting is never further off than this, in cells: an answer that differs by more rests on slip that began
@@ -147,7 +155,7 @@ class FrontFinder {
       r = counted_;
       fitted = 0;
       for (Index ray = 0; ray < (mirrored_ ? rays_ / 4 : rays_); ++ray) {
-        const double shift = fitted_root(samples_near(ray), ring(ray).degree);
+        const double shift = fitted_root(samples_near(ray), ring(ray));
         if (!(std::abs(shift) <= kLargestShift)) continue;
         for (const Index image : images(ray)) r[image] = reference_[ray] + shift;
         fitted += static_cast<Index>(images(ray).size());

@@ -79,16 +79,16 @@ class PeriodicInverseSymbol final : public InverseSymbol<Real> {
     }
     const auto each_row = [&](const auto& work) {
       const Share own = transform_.own_samples();
-      in_parts(transform_.threads(), fields_ * own.count(), [&](int, Index first, Index last) {
-        for (Index i = first; i < last; ++i) work(i / own.count(), own.first + i % own.count());
+      in_parts(transform_.threads(), fields_ * own.count(), [&](int thread, Index first, Index last) {
+        for (Index i = first; i < last; ++i) work(thread, i / own.count(), own.first + i % own.count());
       });
     };
-    each_row([&](Index f, Index i) { load(f, i, field.data()); });
+    each_row([&](int thread, Index f, Index i) { load(thread, f, i, field.data()); });
     transform_.through_columns(fields_, [&](int, const PlaneColumns<Real>& columns) {
       using Whole = std::integral_constant<Index, PlaneTransform<Real>::kColumns>;
       columns.count == Whole::value ? multiply(columns, Whole()) : multiply(columns, columns.count);
     });
-    each_row([&](Index f, Index i) { store(f, i, field.data()); });
+    each_row([&](int thread, Index f, Index i) { store(thread, f, i, field.data()); });
   }
 
   std::array<double, 2> diagonal() const override { return diagonal_; }
@@ -108,16 +108,16 @@ class PeriodicInverseSymbol final : public InverseSymbol<Real> {
   }
 
   /// Row i of a field forward.
-  void load(Index f, Index i, const Real* fields) {
-    Real* const row = transform_.sample(f, i);
+  void load(int thread, Index f, Index i, const Real* fields) {
+    Real* const row = transform_.own_row(thread);
     std::copy_n(fields + (f * grid_.n1 + i) * grid_.n2, grid_.n2, row);
     std::fill(row + grid_.n2, row + periodic_.length2, Real(0));
-    transform_.forward_sample(f, i);
+    transform_.forward_sample(thread, f, i);
   }
 
-  void store(Index f, Index i, Real* fields) {
-    transform_.backward_sample(f, i);
-    std::copy_n(transform_.sample(f, i), grid_.n2, fields + (f * grid_.n1 + i) * grid_.n2);
+  void store(int thread, Index f, Index i, Real* fields) {
+    transform_.backward_sample(thread, f, i);
+    std::copy_n(transform_.own_row(thread), grid_.n2, fields + (f * grid_.n1 + i) * grid_.n2);
   }
 
   template <typename Count>

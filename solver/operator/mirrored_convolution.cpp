@@ -31,19 +31,48 @@ std::vector<Component> distinct_components(const BlockKernel& kernel, bool diago
   return {Component::k11, Component::k12, Component::k22};
 }
 
-/// The transform of a kernel that is even (odd) along a coordinate is a cosine (sine) transform over half a
-/// period, 0..h. The coefficients are transformed in place; a sine transform leaves the ends as they are.
+/// Real lines of h + 1 coefficients, from one to the next and from one coefficient to the next.
+struct KernelLines {
+  Index count;
+  Index distance;
+  Index step;
+};
+
+/// Cosine transforms over half a period, 0..h, of lines that are even about both ends; sine transforms of odd
+/// ones. In place. Two lines are the real and the imaginary part of a complex one over the whole period,
+/// whose plan is found far sooner than that of a cosine transform.
+void transform_lines(double* values, const KernelLines& lines, Index h, bool odd) {
+  FftwBuffer<double> period(count(4 * h));
+  FftwBuffer<double> transformed(count(4 * h));
+  const FftwPlan<double> plan(Fftw<double>::plan(static_cast<int>(2 * h), period.complex(),
+                                                 transformed.complex(), FFTW_FORWARD, FFTW_ESTIMATE));
+  const double sign = odd ? -1.0 : 1.0;
+  const Index ends = odd ? 1 : 0;  // where odd lines are taken to be zero, as their transforms are
+  for (Index line = 0; line < lines.count; line += 2) {
+    double* const first = values + line * lines.distance;
+    double* const second = line + 1 < lines.count ? first + lines.distance : first;
+    double* const z = period.data();
+    std::fill_n(z, 4 * h, 0.0);
+    for (Index k = ends; k <= h - ends; ++k) {
+      const std::array pair{first[k * lines.step], second[k * lines.step]};
+      for (const Index i : {0, 1}) {
+        z[2 * ((2 * h - k) % (2 * h)) + i] = sign * pair[count(i)];
+        z[2 * k + i] = pair[count(i)];
+      }
+    }
+    Fftw<double>::execute(plan.get(), period.complex(), transformed.complex());
+    const double* const sums = transformed.data();
+    for (Index k = 0; k <= h; ++k) {
+      second[k * lines.step] = odd ? sums[2 * k] : sums[2 * k + 1];
+      first[k * lines.step] = odd ? -sums[2 * k + 1] : sums[2 * k];
+    }
+  }
+}
+
+/// The transform of a kernel that is even (odd) along both coordinates. In place.
 void transform_kernel(std::vector<double>& values, Index h1, Index h2, bool odd) {
-  const Index ends = odd ? 1 : 0;
-  const int stride = static_cast<int>(h2 + 1);
-  const fftw_iodim along1{static_cast<int>(h1 + 1 - 2 * ends), stride, stride};
-  const fftw_iodim along2{static_cast<int>(h2 + 1 - 2 * ends), 1, 1};
-  const std::array kinds{odd ? FFTW_RODFT00 : FFTW_REDFT00, odd ? FFTW_RODFT00 : FFTW_REDFT00};
-  const std::array both{along1, along2};
-  double* const start = values.data() + ends * (h2 + 1) + ends;
-  const FftwPlan<double> plan(
-      fftw_plan_guru_r2r(2, both.data(), 0, nullptr, start, start, kinds.data(), FFTW_ESTIMATE));
-  fftw_execute(plan.get());
+  transform_lines(values.data(), {h1 + 1, h2 + 1, 1}, h2, odd);
+  transform_lines(values.data(), {h2 + 1, 1, h2 + 1}, h1, odd);
 }
 
 /// The exchanged coordinates of the last group's columns reach up to a group further.
@@ -75,8 +104,11 @@ MirroredConvolution<Real>::MirroredConvolution(const Grid& quadrant, BlockKernel
   }
   own_column_groups_ = ranks_ ? Ranks::own_share(column_groups_) : Share{0, column_groups_};
   if (diagonal_) transformed_ = FftwBuffer<Real>(transformed_reals<Real>(along1_.frequencies()));
-  for (const Component component : distinct_components(this->kernel(), diagonal_)) {
-    spectra_.push_back(kernel_spectrum(component, pair));
+  const std::vector<Component> components = distinct_components(this->kernel(), diagonal_);
+  auto tables = influence_tables(components, pair, quadrant.h1, quadrant.h2, along1_.frequencies() + 1,
+                                 along2_.frequencies() + 1, threads_);
+  for (std::size_t c = 0; c < components.size(); ++c) {
+    spectra_.push_back(kernel_spectrum(components[c], std::move(tables[c])));
   }
   for (int thread = 0; thread < threads_; ++thread) {
     row_workspaces_.emplace_back(along2_);
@@ -87,13 +119,10 @@ MirroredConvolution<Real>::MirroredConvolution(const Grid& quadrant, BlockKernel
 /// 1/(p1 p2) included, which undoes the transforms' scale.
 template <typename Real>
 FftwBuffer<Real> MirroredConvolution<Real>::kernel_spectrum(Component component,
-                                                            const ElasticPair& pair) const {
+                                                            std::vector<double> values) const {
   const Index h1 = along1_.frequencies();
   const Index h2 = along2_.frequencies();
   const bool odd = component == Component::k12;
-  std::vector<double> values = std::move(influence_tables(std::span(&component, 1), pair, this->grid().h1,
-                                                          this->grid().h2, h1 + 1, h2 + 1, threads_)
-                                             .front());
   transform_kernel(values, h1, h2, odd);
   const double scale = 1.0 / (4.0 * static_cast<double>(h1) * static_cast<double>(h2));
   // Where the field is odd, its row 0 is that of frequency h. K12's transform is zero at 0 and at h.

@@ -43,7 +43,8 @@ class MirroredConvolution final : public Operator<Real> {
   static constexpr Index kLines = Transform::kLines;
 
   void do_apply(std::span<const Real> traction, std::span<Real> displacement) override;
-  FftwBuffer<Real> kernel_spectrum(Component component, const ElasticPair& pair) const;
+  /// values: its influence table.
+  FftwBuffer<Real> kernel_spectrum(Component component, std::vector<double> values) const;
   void rows_forward(int thread, Index field, Index group, const Real* values);
   void rows_backward(int thread, Index field, Index group, Real* values);
   void convolve_columns(int thread, Index group);

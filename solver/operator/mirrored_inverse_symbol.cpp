@@ -196,11 +196,11 @@ void MirroredInverseSymbol<Real>::apply(std::span<Real> field) {
   const int threads = transform_.threads();
   const Share own = transform_.own_samples();
   const auto each_row = [&](const auto& work) {
-    in_parts(threads, transformed * own.count(), [&](int, Index first, Index last) {
-      for (Index i = first; i < last; ++i) work(i / own.count(), own.first + i % own.count());
+    in_parts(threads, transformed * own.count(), [&](int thread, Index first, Index last) {
+      for (Index i = first; i < last; ++i) work(thread, i / own.count(), own.first + i % own.count());
     });
   };
-  each_row([&](Index f, Index i) { load(f, i, field.data() + f * cells); });
+  each_row([&](int thread, Index f, Index i) { load(thread, f, i, field.data() + f * cells); });
   if (symmetric_) {
     transform_.clear_others(0);
     transform_.forward_columns(0);
@@ -214,7 +214,7 @@ void MirroredInverseSymbol<Real>::apply(std::span<Real> field) {
     });
   }
   const Index result = symmetric_ ? 1 : 0;
-  each_row([&](Index f, Index i) { store(result + f, i, field.data() + f * cells); });
+  each_row([&](int thread, Index f, Index i) { store(thread, result + f, i, field.data() + f * cells); });
   if (!symmetric_) return;
   in_parts(threads, grid_.n1,
            [&](int, Index first, Index last) { store_transposed(field.data(), first, last); });
@@ -222,17 +222,17 @@ void MirroredInverseSymbol<Real>::apply(std::span<Real> field) {
 
 /// Sample i of a field, and forward.
 template <typename Real>
-void MirroredInverseSymbol<Real>::load(Index f, Index i, const Real* values) {
+void MirroredInverseSymbol<Real>::load(int thread, Index f, Index i, const Real* values) {
   const auto [even, odd] = signs(f, i);
-  reorder(values + i * grid_.n2, grid_.n2, even, odd, t2_, transform_.sample(f, i));
-  transform_.forward_sample(f, i);
+  reorder(values + i * grid_.n2, grid_.n2, even, odd, t2_, transform_.own_row(thread));
+  transform_.forward_sample(thread, f, i);
 }
 
 template <typename Real>
-void MirroredInverseSymbol<Real>::store(Index f, Index i, Real* values) {
+void MirroredInverseSymbol<Real>::store(int thread, Index f, Index i, Real* values) {
   const auto [even, odd] = signs(symmetric_ ? 0 : f, i);
-  transform_.backward_sample(f, i);
-  restore(transform_.sample(f, i), grid_.n2, even, odd, t2_, values + i * grid_.n2);
+  transform_.backward_sample(thread, f, i);
+  restore(transform_.own_row(thread), grid_.n2, even, odd, t2_, values + i * grid_.n2);
 }
 
 /// q1 is odd in x2 and q2 in x1: their samples at odd places take the other sign there.

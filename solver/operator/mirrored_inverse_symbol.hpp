@@ -57,8 +57,8 @@ class MirroredInverseSymbol final : public InverseSymbol<Real> {
   void fill_twiddles();
   /// By which samples at even and odd places of row i are to be multiplied.
   std::array<Real, 2> signs(Index f, Index i) const;
-  void load(Index f, Index i, const Real* values);
-  void store(Index f, Index i, Real* values);
+  void load(int thread, Index f, Index i, const Real* values);
+  void store(int thread, Index f, Index i, Real* values);
   Twiddles<Real> twiddles(Index k1, Index first_column) const;
   /// Of some columns; count: how many they are, known to the compiler where these are whole cache lines.
   template <typename Count>

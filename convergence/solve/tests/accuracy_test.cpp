@@ -288,7 +288,7 @@ convergence::SolvedScene made_answer(const solver::Scene& at, double constant, d
 
 TEST(Accuracy, IsReachedByRefiningWhereTheFirstMeshIsTooCoarse) {
   const auto found = convergence::solve_to_accuracy(
-      punch(), {1e-3}, [](const solver::Scene& at) { return made_answer(at, 100.0, 2.0); });
+      punch(), {1e-3}, [](const solver::Scene& at, solver::Detail) { return made_answer(at, 100.0, 2.0); });
   EXPECT_TRUE(found.reached);
   EXPECT_GE(found.accuracy["attempts"].size(), 2U);
   EXPECT_LE(found.accuracy["reached"].get<double>(), 1e-3);
@@ -301,7 +301,7 @@ TEST(Accuracy, IsReachedByRefiningWhereTheFirstMeshIsTooCoarse) {
 
 TEST(Accuracy, IsGivenUpAfterThreeRefinements) {
   const auto found = convergence::solve_to_accuracy(
-      punch(), {1e-2}, [](const solver::Scene& at) { return made_answer(at, 0.02, 0.0); });
+      punch(), {1e-2}, [](const solver::Scene& at, solver::Detail) { return made_answer(at, 0.02, 0.0); });
   EXPECT_FALSE(found.reached);
   EXPECT_EQ(found.accuracy["attempts"].size(), 4U);
   EXPECT_DOUBLE_EQ(found.accuracy["reached"], 0.02);
@@ -309,24 +309,25 @@ TEST(Accuracy, IsGivenUpAfterThreeRefinements) {
 
 TEST(Accuracy, IsGivenUpWhereNoMeshThatMayBeChosenGetsThere) {
   const auto found = convergence::solve_to_accuracy(
-      punch(), {1e-2}, [](const solver::Scene& at) { return made_answer(at, 0.99, 0.0); });
+      punch(), {1e-2}, [](const solver::Scene& at, solver::Detail) { return made_answer(at, 0.99, 0.0); });
   EXPECT_FALSE(found.reached);
   EXPECT_LE(found.accuracy["attempts"].size(), 4U);
   EXPECT_LE(found.accuracy["attempts"].back()["cells"][0].get<double>(), convergence::kMaxCellsAcross + 8.0);
   const auto at_once = convergence::solve_to_accuracy(
-      punch(), {1e-5}, [](const solver::Scene& at) { return made_answer(at, 0.99, 0.0); });
+      punch(), {1e-5}, [](const solver::Scene& at, solver::Detail) { return made_answer(at, 0.99, 0.0); });
   EXPECT_EQ(at_once.accuracy["attempts"].size(), 1U);
   EXPECT_THAT(at_once.accuracy["not_reached"].get<std::string>(), HasSubstr("finer than 2048"));
 }
 
 TEST(Accuracy, ThatIsNoNumberIsNeverReached) {
   int solves = 0;
-  const auto found = convergence::solve_to_accuracy(punch(), {1e-2}, [&](const solver::Scene& at) {
-    ++solves;
-    convergence::SolvedScene answer = made_answer(at, 1.0, 1.0);
-    answer.solution.status = solver::Status::not_converged;
-    return answer;
-  });
+  const auto found =
+      convergence::solve_to_accuracy(punch(), {1e-2}, [&](const solver::Scene& at, solver::Detail) {
+        ++solves;
+        convergence::SolvedScene answer = made_answer(at, 1.0, 1.0);
+        answer.solution.status = solver::Status::not_converged;
+        return answer;
+      });
   EXPECT_FALSE(found.reached);
   EXPECT_EQ(solves, 1);
   EXPECT_TRUE(found.accuracy["reached"].is_null());

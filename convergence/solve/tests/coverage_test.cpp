@@ -67,8 +67,10 @@ TEST(AccuracyCoverage, UncertaintiesHoldInNineteenOfTwentyScenes) {
   for (int i = 0; i < scenes; ++i) {
     const solver::Scene scene = random.next();
     const double wanted = random.wanted();
-    const convergence::AccurateAnswer found = convergence::solve_to_accuracy(
-        scene, {wanted}, [](const solver::Scene& at) { return convergence::solve_scene(at); });
+    const convergence::AccurateAnswer found =
+        convergence::solve_to_accuracy(scene, {wanted}, [](const solver::Scene& at, solver::Detail detail) {
+          return convergence::solve_scene(at, {.detail = detail});
+        });
     ASSERT_TRUE(found.reached) << i << ": " << found.accuracy["not_reached"];
     const auto error = found.accuracy["reached"].get<double>();
     const auto uncertainty = found.accuracy["uncertainty"].get<double>();
