@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <utility>
 
 namespace slipstick::solver {
 namespace {
@@ -70,6 +71,29 @@ void Extension<Real>::gather(Field& y) {
   const Index count = rows.count() * grid_.n2;
   work_.segment(start, count) = weight_.segment(start, count) * y.segment(start, count);
   spread(work_, [&](Index first, const auto& sums) { y.segment(first, grid_.n2) += sums; });
+}
+
+template <typename Real>
+void Extension<Real>::hand_on(const Sweep& cells, const Field& free, Eigen::ArrayXd& p, Field& stays,
+                              Field& leaves) {
+  clear(cells, stays);
+  clear(cells, leaves);
+  const auto count = cells.sum<Index>([&](Index first, Index last, Index& sum) {
+    for (Index i = first; i < last; ++i) {
+      if (free[i] != Real(0) && p[i] > 0.0) {
+        stays[i] = Real(1);
+      } else if (p[i] != 0.0) {
+        leaves[i] = static_cast<Real>(std::exchange(p[i], 0.0));
+        ++sum;
+      }
+    }
+  });
+  if (count == 0) return;
+  prepare(stays);
+  gather(leaves);
+  cells.each([&](Index first, Index last) {
+    for (Index i = first; i < last; ++i) p[i] += static_cast<double>(stays[i] * leaves[i]);
+  });
 }
 
 template class Extension<double>;

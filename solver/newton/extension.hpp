@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 
 #include "solver/grid/ranks.hpp"
+#include "solver/grid/sweep.hpp"
 
 namespace slipstick::solver {
 
@@ -27,6 +28,12 @@ class Extension {
   void extend(Field& y);
   /// The adjoint: to y in the free cells it adds what it has where extend() writes. Allocates nothing.
   void gather(Field& y);
+
+  /// Pressures below zero, and those of cells that are not free, go to the free cells beside them, by the
+  /// adjoint: it is close to what these answer once the others carry nothing. Merely cut off, they would
+  /// press the whole neighbourhood apart, and the next state would hold too few cells. cells: those of p that
+  /// may differ from zero. Overwrites the last two fields, and what prepare() left.
+  void hand_on(const Sweep& cells, const Field& free, Eigen::ArrayXd& p, Field& stays, Field& leaves);
 
   static double bytes(double cells) { return 2.0 * sizeof(Real) * cells; }
 

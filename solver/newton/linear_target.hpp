@@ -19,7 +19,7 @@ inline constexpr double kLooseReduction = 0.1;
 inline constexpr double kTightReduction = 1e-4;
 inline constexpr double kPartOfWanted = 0.3;
 /// Of pressures, whose states change all over a rough surface: more is lost on a state that will not last.
-inline constexpr double kLooseReductionOfPressure = 0.5;
+inline constexpr double kLooseReductionOfPressure = 0.2;
 /// Times the root of the part of the free cells that have changed: as far as a pressure's state can be
 /// trusted.
 inline constexpr double kDistrust = 3.0;

@@ -348,6 +348,7 @@ void NaturalMapNewton<Set, Real>::write_trial(const ArrayXd& q, double length) {
     auto trial = trial_.segment(first, last - first);
     trial = q.segment(first, last - first) + length * trial;
   });
+  if constexpr (kIsScalar) extension_.hand_on(set_.sweep(), space_.a11, trial_, work_.Ad, work_.y);
 }
 
 template <AdmissibleSet Set, typename Real>
@@ -355,7 +356,7 @@ bool NaturalMapNewton<Set, Real>::take_newton_step(ArrayXd& q, const LinearTarge
   if (!solve_linear(q, target)) return false;
   write_trial(q, 1.0);
   bool restored = restore_along_tangents();
-  if (!restored && has_tangents_ && balance_.count() > 0) {
+  if (!kIsScalar && !restored && has_tangents_ && balance_.count() > 0) {
     ++safeguards_.second_solves;
     if (!solve_linear(q, target, -jump_loads(q))) return false;
     write_trial(q, 1.0);

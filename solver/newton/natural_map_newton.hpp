@@ -46,10 +46,10 @@ struct NewtonSummary {
 /// is projected onto the admissible set and the loads restored along the tangent fields (K + stiffness)^-1 c,
 /// which disturb the multipliers alone. Near gross slip these fields bring the loads back to second order
 /// only, and cannot make up for what cells bring that jump onto their circles; where they fail the linear
-/// problem is solved again with the jumps' loads taken out of it. Where the energy is less before the step's
-/// end than there, the step ends at its least, which costs nothing: the set is convex. Where it does not fall
-/// at all the step is halved; where even that fails, steps of the projected gradient take over, which always
-/// descend.
+/// problem is solved again with the jumps' loads taken out of it. Pressures that would turn negative are
+/// handed on to cells beside them. Where the energy is less before the step's end than there, the step ends
+/// at its least, which costs nothing: the set is convex. Where it does not fall at all the step is halved;
+/// where even that fails, steps of the projected gradient take over, which always descend.
 ///
 /// Compiled for both sets and both precisions of the inner iteration.
 template <AdmissibleSet Set, typename Real>
