@@ -348,7 +348,7 @@ void NaturalMapNewton<Set, Real>::write_trial(const ArrayXd& q, double length) {
     auto trial = trial_.segment(first, last - first);
     trial = q.segment(first, last - first) + length * trial;
   });
-  if constexpr (kIsScalar) extension_.hand_on(set_.sweep(), space_.a11, trial_, work_.Ad, work_.y);
+  if constexpr (kIsScalar) extension_.hand_on(set_.sweep(), space_.f1, trial_, d_, r_);
 }
 
 template <AdmissibleSet Set, typename Real>
