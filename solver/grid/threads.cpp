@@ -1,6 +1,7 @@
 #include "solver/grid/threads.hpp"
 
 #include <atomic>
+#include <cstdint>
 #include <utility>
 
 namespace slipstick::solver {
@@ -9,39 +10,73 @@ namespace {
 /// Of this thread.
 thread_local ThreadPool* current = nullptr;
 
+/// So often a thread looks for what it waits for before it sleeps: loops follow each other within some
+/// microseconds, and to be woken takes tens of them.
+constexpr int kLooks = 500;
+
+template <typename Value>
+void wait_while(const std::atomic<Value>& value, Value old) {
+  for (int look = 0; look < kLooks; ++look) {
+    if (value.load() != old) return;
+    std::this_thread::yield();
+  }
+  value.wait(old);
+}
+
 }  // namespace
 
-/// A run is one more generation: each thread does its part of the job and counts itself off.
+/// Parts of a job, each done by whoever takes it first: the thread that asks for them from the last part on,
+/// the others from the first. So it never waits for one that has no processor, but does that one's part.
 struct ThreadPool::Shared {
-  std::atomic<unsigned> generation = 0;
-  std::atomic<int> pending = 0;
-  Job job{};  ///< of this generation
-  int threads = 0;
-  bool stop = false;
+  /// Those that nobody has taken yet.
+  struct Parts {
+    std::uint16_t first;
+    std::uint16_t last;
+    bool operator==(const Parts&) const = default;
+  };
+  static constexpr Parts kStop{0xFFFF, 0xFFFF};
+  std::atomic<Parts> left = Parts{0, 0};
+  std::atomic<int> pending = 0;  ///< parts that are not done
+  Job job{};
+
+  /// Takes one and does it; false if none is left.
+  bool do_part(bool last) {
+    Parts parts = left.load();
+    Parts rest{};
+    do {
+      if (parts.first == parts.last) return false;
+      rest = parts;
+      if (last) {
+        --rest.last;
+      } else {
+        ++rest.first;
+      }
+    } while (!left.compare_exchange_weak(parts, rest));
+    job(last ? rest.last : parts.first);
+    if (pending.fetch_sub(1) == 1) pending.notify_one();
+    return true;
+  }
 };
 
 ThreadPool::ThreadPool(int threads)
     : shared_(std::make_unique<Shared>()), outer_(std::exchange(current, this)) {
   for (int thread = 0; thread + 1 < threads; ++thread) {
-    others_.emplace_back([this, thread] { work(thread); });
+    others_.emplace_back([this] { work(); });
   }
 }
 
 ThreadPool::~ThreadPool() {
   current = outer_;
-  shared_->stop = true;
-  shared_->generation.fetch_add(1);
-  shared_->generation.notify_all();
+  shared_->left = Shared::kStop;
+  shared_->left.notify_all();
 }
 
-void ThreadPool::work(int thread) {
+void ThreadPool::work() {
   Shared& shared = *shared_;
-  for (unsigned seen = 0;;) {
-    shared.generation.wait(seen);
-    seen = shared.generation.load();
-    if (shared.stop) return;
-    if (thread + 1 < shared.threads) shared.job(thread);
-    if (shared.pending.fetch_sub(1) == 1) shared.pending.notify_one();
+  for (;;) {
+    const Shared::Parts left = shared.left.load();
+    if (left == Shared::kStop) return;
+    if (!shared.do_part(false)) wait_while(shared.left, left);
   }
 }
 
@@ -56,12 +91,14 @@ void ThreadPool::run(int threads, Job job) {
   }
   Shared& shared = *current->shared_;
   shared.job = job;
-  shared.threads = threads;
-  shared.pending = static_cast<int>(current->others_.size());
-  shared.generation.fetch_add(1);
-  shared.generation.notify_all();
-  job(threads - 1);
-  for (int left = shared.pending.load(); left > 0; left = shared.pending.load()) shared.pending.wait(left);
+  shared.pending = threads;
+  shared.left = Shared::Parts{0, static_cast<std::uint16_t>(threads)};
+  shared.left.notify_all();
+  while (shared.do_part(true)) {
+  }
+  for (int pending = shared.pending.load(); pending > 0; pending = shared.pending.load()) {
+    wait_while(shared.pending, pending);
+  }
 }
 
 }  // namespace slipstick::solver

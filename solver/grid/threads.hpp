@@ -32,7 +32,7 @@ class ThreadPool {
 
  private:
   struct Shared;
-  void work(int thread);
+  void work();
 
   std::unique_ptr<Shared> shared_;
   std::vector<std::jthread> others_;
