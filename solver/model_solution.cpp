@@ -7,6 +7,8 @@
 #include <utility>
 
 #include "solver/contact/stick_front.hpp"
+#include "solver/grid/motion_field.hpp"
+#include "solver/grid/sweep.hpp"
 #include "solver/resolution.hpp"
 
 namespace slipstick::solver {
@@ -31,13 +33,35 @@ void describe_contact(ModelSolution& solution) {
   solution.contact_radius_counted = equal_area_radius(grid, solution.contact_cells) * model.length_unit;
 }
 
+/// Over the cell's area.
+struct Resultants {
+  double force1 = 0.0, force2 = 0.0;
+  double moment = 0.0;
+
+  Resultants& operator+=(const Resultants& other) {
+    force1 += other.force1;
+    force2 += other.force2;
+    moment += other.moment;
+    return *this;
+  }
+};
+
+Resultants resultants_of(const ArrayXd& traction, const Grid& grid) {
+  const MotionField rotation(grid, 0.0, 0.0, 1.0);
+  const Index cells = grid.cells();
+  return Sweep::whole(cells, grid.n2).sum<Resultants>([&](Index first, Index last, Resultants& sum) {
+    const auto q1 = traction.segment(first, last - first);
+    const auto q2 = traction.segment(first + cells, last - first);
+    sum += {q1.sum(), q2.sum(), rotation.dot(first, q1) + rotation.dot(first + cells, q2)};
+  });
+}
+
 /// Stick area, loads and their limits, certificate. slip: see ContactState.
 void describe_tractions(ModelSolution& solution, const LoadStep& loads, const ArrayXd& slip) {
   const Model& model = solution.model;
   const Grid& grid = model.grid;
   const TangentialProblem& problem = loads.problem;
   const TangentialSolution& tangential = solution.tangential;
-  const Index cells = grid.cells();
   solution.stick_cells = (tangential.stick > 0.0).count();
   solution.stick_radius_counted = equal_area_radius(grid, solution.stick_cells) * model.length_unit;
   if (solution.stick_cells == solution.contact_cells) {
@@ -56,9 +80,9 @@ void describe_tractions(ModelSolution& solution, const LoadStep& loads, const Ar
   }
   const double moment_unit = grid.cell_area() * model.moment_unit();
   const double force_unit = grid.cell_area() * model.force_unit();
-  const ArrayXd rotation = rotation_field(grid);
-  const double moment = (tangential.traction * rotation).sum();
-  const std::array force{tangential.traction.head(cells).sum(), tangential.traction.tail(cells).sum()};
+  const Resultants resultants = resultants_of(tangential.traction, grid);
+  const double moment = resultants.moment;
+  const std::array force{resultants.force1, resultants.force2};
   solution.moment = moment * moment_unit;
   solution.force = {force[0] * force_unit, force[1] * force_unit};
   solution.moment_limit = loads.moment_limit * moment_unit;
@@ -67,21 +91,47 @@ void describe_tractions(ModelSolution& solution, const LoadStep& loads, const Ar
     for (double& x : *solution.limit.centre) x *= model.length_unit;
   }
   solution.certificate = certify({tangential.traction, tangential.elastic_displacement, tangential.slip},
-                                 problem.friction_bound, rotation, problem.moment.value_or(moment),
+                                 problem.friction_bound, grid, problem.moment.value_or(moment),
                                  problem.displacement ? force : problem.force.value_or(std::array{0.0, 0.0}),
                                  least_eigenvalue(model.pair, grid.h1, grid.h2));
   solution.slip_direction = slip_direction(tangential.traction, tangential.slip);
   solution.resolution = resolution(grid, loads, tangential.stick, tangential.twist);
 }
 
+/// Over the moment's unit and the cell's area.
+struct Work {
+  double elastic = 0.0;
+  double dissipated = 0.0;
+  double of_loads = 0.0;
+
+  Work& operator+=(const Work& other) {
+    elastic += other.elastic;
+    dissipated += other.dissipated;
+    of_loads += other.of_loads;
+    return *this;
+  }
+};
+
 /// What became of the loads' work.
 void describe_energy(ModelSolution& solution, const LoadStep& loads) {
   const Model& model = solution.model;
   const TangentialSolution& tangential = solution.tangential;
   const double unit = model.grid.cell_area() * model.moment_unit();
-  solution.elastic_energy = 0.5 * (tangential.traction * tangential.elastic_displacement).sum() * unit;
-  solution.dissipated = (loads.problem.friction_bound * norms(tangential.slip)).sum() * unit;
-  solution.work = -(tangential.traction * tangential.slip).sum() * unit;
+  const Index cells = model.grid.cells();
+  const ArrayXd& bound = loads.problem.friction_bound;
+  const Work work = Sweep::whole(cells, model.grid.n2).sum<Work>([&](Index first, Index last, Work& sum) {
+    const Index n = last - first;
+    const auto q1 = tangential.traction.segment(first, n);
+    const auto q2 = tangential.traction.segment(first + cells, n);
+    const auto s1 = tangential.slip.segment(first, n);
+    const auto s2 = tangential.slip.segment(first + cells, n);
+    const ArrayXd& u = tangential.elastic_displacement;
+    sum += {0.5 * (q1 * u.segment(first, n) + q2 * u.segment(first + cells, n)).sum(),
+            (bound.segment(first, n) * (s1.square() + s2.square()).sqrt()).sum(), -(q1 * s1 + q2 * s2).sum()};
+  });
+  solution.elastic_energy = work.elastic * unit;
+  solution.dissipated = work.dissipated * unit;
+  solution.work = work.of_loads * unit;
 }
 
 }  // namespace
@@ -116,12 +166,46 @@ Solution in_si(ModelSolution solution) {
   return solution;
 }
 
+namespace {
+
+/// Of a pressure, over the cell's area.
+struct PressureMoments {
+  double load = 0.0;
+  double first1 = 0.0, first2 = 0.0;
+  double second11 = 0.0, second12 = 0.0, second22 = 0.0;
+
+  PressureMoments& operator+=(const PressureMoments& other) {
+    load += other.load;
+    first1 += other.first1;
+    first2 += other.first2;
+    second11 += other.second11;
+    second12 += other.second12;
+    second22 += other.second22;
+    return *this;
+  }
+};
+
+}  // namespace
+
 double measure_contact_radius(const Dimensionless& model, const ArrayXd& pressure) {
-  const double load = pressure.sum();
-  const auto mean = [&](const ArrayXd& x) { return (pressure * x).sum() / load; };
-  const ArrayXd x1 = cell_x1(model.grid) - mean(cell_x1(model.grid));
-  const ArrayXd x2 = cell_x2(model.grid) - mean(cell_x2(model.grid));
-  const double covariance = mean(x1.square()) * mean(x2.square()) - mean(x1 * x2) * mean(x1 * x2);
+  const Grid& grid = model.grid;
+  const ArrayXd x2 = ArrayXd::NullaryExpr(grid.n2, [&](Index j) { return grid.x2(j); });
+  const Sweep rows = Sweep::whole(grid.cells(), grid.n2);
+  const auto moments_about = [&](double c1, double c2) {
+    return rows.sum<PressureMoments>([&](Index first, Index last, PressureMoments& sum) {
+      const auto p = pressure.segment(first, last - first);
+      const double y1 = grid.x1(first / grid.n2) - c1;
+      const double load = p.sum();
+      const double along2 = (p * (x2 - c2)).sum();
+      sum += {load, y1 * load, along2, y1 * y1 * load, y1 * along2, (p * (x2 - c2).square()).sum()};
+    });
+  };
+  const PressureMoments about_origin = moments_about(0.0, 0.0);
+  const PressureMoments about_centroid =
+      moments_about(about_origin.first1 / about_origin.load, about_origin.first2 / about_origin.load);
+  const auto mean = [&](double moment) { return moment / about_centroid.load; };
+  const double covariance = mean(about_centroid.second11) * mean(about_centroid.second22) -
+                            mean(about_centroid.second12) * mean(about_centroid.second12);
   const double radius = std::sqrt(5.0 * std::sqrt(std::max(covariance, 0.0)));
   // A contact one cell wide has no second moment.
   return model.hertzian && radius > 0.0 ? radius : equal_area_radius(model.grid, (pressure > 0.0).count());

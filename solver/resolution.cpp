@@ -6,6 +6,8 @@
 #include <limits>
 #include <numbers>
 
+#include "solver/grid/sweep.hpp"
+
 namespace slipstick::solver {
 namespace {
 
@@ -18,24 +20,35 @@ struct Area {
   std::array<double, 2> sides{};  ///< of cells that look along x1, x2
   double mean = 0.0;              ///< of the field
   double edge = 0.0;              ///< of the field along the outline
+
+  Area& operator+=(const Area& other) {
+    cells += other.cells;
+    sides[0] += other.sides[0];
+    sides[1] += other.sides[1];
+    mean += other.mean;
+    edge += other.edge;
+    return *this;
+  }
 };
 
-Area measure(const Grid& grid, const ArrayXd& field) {
-  Area area;
-  for (Index i = 0, k = 0; i < grid.n1; ++i) {
-    for (Index j = 0; j < grid.n2; ++j, ++k) {
-      const double value = field[k];
+/// field(cell): its value there.
+template <typename Field>
+Area measure(const Grid& grid, const Field& field) {
+  Area area = Sweep::whole(grid.cells(), grid.n2).sum<Area>([&](Index first, Index last, Area& sum) {
+    const bool top = first < grid.n2;
+    const bool bottom = last > grid.cells() - grid.n2;
+    for (Index k = first; k < last; ++k) {
+      const double value = field(k);
       if (value == 0.0) continue;
-      const int along1 =
-          (i == 0 || field[k - grid.n2] == 0.0) + (i + 1 == grid.n1 || field[k + grid.n2] == 0.0);
-      const int along2 = (j == 0 || field[k - 1] == 0.0) + (j + 1 == grid.n2 || field[k + 1] == 0.0);
-      area.cells += 1.0;
-      area.mean += value;
-      area.sides[0] += along1;
-      area.sides[1] += along2;
-      area.edge += (along1 + along2) * value;
+      const int along1 = (top || field(k - grid.n2) == 0.0) + (bottom || field(k + grid.n2) == 0.0);
+      const int along2 = (k == first || field(k - 1) == 0.0) + (k + 1 == last || field(k + 1) == 0.0);
+      sum += {1.0,
+              0.0,
+              {static_cast<double>(along1), static_cast<double>(along2)},
+              value,
+              (along1 + along2) * value};
     }
-  }
+  });
   if (area.cells == 0.0) return area;
   area.mean /= area.cells;
   area.outline = area.sides[0] + area.sides[1];
@@ -79,10 +92,12 @@ double missing_twist(const Grid& grid, const LoadStep& loads) {
 }  // namespace
 
 Resolution resolution(const Grid& grid, const LoadStep& loads, const ArrayXd& stick, double twist) {
-  const Area contact = measure(grid, loads.problem.friction_bound);
+  const ArrayXd& bound = loads.problem.friction_bound;
+  const Area contact = measure(grid, [&](Index cell) { return bound[cell]; });
   if (contact.cells == 0.0) return {};
-  const Area sticking = measure(grid, stick);
-  const Area slipping = measure(grid, (loads.problem.friction_bound > 0.0 && stick == 0.0).cast<double>());
+  const Area sticking = measure(grid, [&](Index cell) { return stick[cell]; });
+  const Area slipping =
+      measure(grid, [&](Index cell) { return bound[cell] > 0.0 && stick[cell] == 0.0 ? 1.0 : 0.0; });
   Resolution result;
   if (sticking.cells > 0.0) result.stick_width = 4.0 * sticking.cells / sticking.outline;
   if (slipping.cells > 0.0) result.slip_width = 2.0 * slipping.cells / slipping.outline;

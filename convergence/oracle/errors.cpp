@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <limits>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -40,27 +39,6 @@ FieldError field_error(const Norms& difference, const Norms& exact) {
   return {difference.sum / exact.sum, std::sqrt(difference.squares / exact.squares),
           difference.max / exact.max};
 }
-
-/// The exact pressure and size of the shear traction at a radius, found once at each: mirror images of a cell
-/// have its own, to the last bit.
-class ByRadius {
- public:
-  explicit ByRadius(const Oracle& oracle) : oracle_(oracle) {}
-
-  struct Values {
-    double pressure;
-    double shear;
-  };
-  const Values& operator()(double radius) {
-    const auto [place, is_new] = found_.try_emplace(radius);
-    if (is_new) place->second = {oracle_.pressure(radius), oracle_.traction(radius)};
-    return place->second;
-  }
-
- private:
-  const Oracle& oracle_;
-  std::unordered_map<double, Values> found_;
-};
 
 /// The exact shear traction in an oracle's units, as a vector at a place measured from the axis; size: its
 /// size at a radius.
@@ -115,17 +93,22 @@ class ShearBesideEdges {
 };
 
 /// A grid about the axis has mirror images of each cell of its first quadrant, in which exact fields are
-/// equal but for signs: those are found once. A grid about another place has none.
+/// equal but for signs: those are found once. About the diagonal of a square too, where the contact is round.
+/// A grid about another place has none.
 class Images {
  public:
   Images(const Oracle& oracle, const solver::Grid& grid)
       : n1_(grid.n1),
         n2_(grid.n2),
-        mirrored_(oracle.centre == std::array<double, 2>{} && oracle.axis_ratio == 1.0 && !grid.quadrant),
+        mirrored_(oracle.centre == std::array<double, 2>{} &&
+                  (oracle.axis_ratio == 1.0 || oracle.angle == 0.0) && !grid.quadrant),
+        diagonal_(mirrored_ && oracle.axis_ratio == 1.0 && grid.n1 == grid.n2 && grid.h1 == grid.h2),
         turns_(oracle.direction == std::array<double, 2>{}) {}
 
   Index rows() const { return mirrored_ ? (n1_ + 1) / 2 : n1_; }
   Index columns() const { return mirrored_ ? (n2_ + 1) / 2 : n2_; }
+  /// Whether cells (i, j) and (j, i) of these are images as well, by their distance from the axis.
+  bool diagonal() const { return diagonal_; }
 
   /// visit(image, sign1, sign2) for a cell of the first rows() and columns() and each of its images: once,
   /// also where some are the cell itself.
@@ -145,6 +128,7 @@ class Images {
   Index n1_;
   Index n2_;
   bool mirrored_;
+  bool diagonal_;
   bool turns_;  ///< tractions go round the axis, as (-x2, x1) does
 };
 
@@ -180,24 +164,28 @@ TractionError unknown_tractions() {
 }  // namespace
 
 ExactFields exact_fields(const Oracle& oracle, const solver::Grid& grid) {
-  ByRadius at(oracle);
   const Index cells = grid.cells();
   ExactFields exact{ArrayXd(cells), ArrayXd(cells), ArrayXd(2 * cells)};
   const Images images(oracle, grid);
+  ArrayXd sizes(images.rows() * images.columns());  // of the shear tractions
   for (Index i = 0; i < images.rows(); ++i) {
     for (Index j = 0; j < images.columns(); ++j) {
       const double y1 = grid.x1(i) - oracle.centre[0];
       const double y2 = grid.x2(j) - oracle.centre[1];
-      const double radius = oracle.radius(y1, y2);
-      const auto [q1, q2] = shear_at(oracle, y1, y2, [&](double place) { return at(place).shear; });
-      images.each(
-          i, j,
-          [&, q1 = q1, q2 = q2, pressure = at(radius).pressure](Index image, double sign1, double sign2) {
-            exact.radius[image] = radius;
-            exact.pressure[image] = pressure;
-            exact.traction[image] = sign1 * q1;
-            exact.traction[image + cells] = sign2 * q2;
-          });
+      const bool found = images.diagonal() && j < i;
+      const Index twin = j * grid.n2 + i;
+      const double radius = found ? exact.radius[twin] : oracle.radius(y1, y2);
+      const double pressure = found ? exact.pressure[twin] : oracle.pressure(radius);
+      double& size = sizes[i * images.columns() + j];
+      const auto [q1, q2] = shear_at(oracle, y1, y2, [&](double place) {
+        return size = found ? sizes[j * images.columns() + i] : oracle.traction(place);
+      });
+      images.each(i, j, [&, q1 = q1, q2 = q2](Index image, double sign1, double sign2) {
+        exact.radius[image] = radius;
+        exact.pressure[image] = pressure;
+        exact.traction[image] = sign1 * q1;
+        exact.traction[image + cells] = sign2 * q2;
+      });
     }
   }
   return exact;

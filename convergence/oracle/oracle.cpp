@@ -129,6 +129,7 @@ std::unique_ptr<ExactHistory> history_of_dissimilar(const solver::Scene& scene) 
 }  // namespace
 
 double Oracle::radius(double y1, double y2) const {
+  if (axis_ratio == 1.0) return std::hypot(y1, y2);
   const double along = std::cos(angle) * y1 + std::sin(angle) * y2;
   const double across = std::cos(angle) * y2 - std::sin(angle) * y1;
   return std::sqrt(along * along / axis_ratio + across * across * axis_ratio);

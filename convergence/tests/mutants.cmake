@@ -35,9 +35,9 @@ mutant(k12_sign_in_a_quadrant
 
 # A shear in place of a rotation, Eqs. (8), (9) as printed.
 mutant(rotation_as_printed
-  FILE solver/grid/grid.cpp
-  FIND [[t.head(grid.cells()) = -cell_x2(grid);]]
-  REPLACE [[t.head(grid.cells()) = cell_x2(grid);]]
+  FILE solver/contact/coulomb_method.cpp
+  FIND [[MotionField(grid, 0.0, 0.0, 1.0)]]
+  REPLACE [[MotionField(Grid{grid.n1, grid.n2, grid.h1, -grid.h2, grid.quadrant}, 0.0, 0.0, 1.0)]]
   GATES full-64-twist full-64-traction-averaged-l2)
 
 # Slip in the direction that the traction had when a cell began to slip, Eqs. (22), (23).
@@ -84,9 +84,8 @@ mutant(masing_less_than_twice
 # The energy that a step's slip loses, against the pressure before the step.
 mutant(dissipated_against_the_old_pressure
   FILE solver/model_solution.cpp
-  FIND [[solution.dissipated = (loads.problem.friction_bound * norms(tangential.slip)).sum() * unit;]]
-  REPLACE [[static ArrayXd bound;
-  if (bound.size() == 0) bound = loads.problem.friction_bound;
-  solution.dissipated = (bound * norms(tangential.slip)).sum() * unit;
-  bound = loads.problem.friction_bound;]]
+  FIND [[const ArrayXd& bound = loads.problem.friction_bound;]]
+  REPLACE [[static ArrayXd kept;
+  const ArrayXd bound = kept.size() == 0 ? loads.problem.friction_bound : kept;
+  kept = loads.problem.friction_bound;]]
   GATES growing_load-128-released-dissipated)

@@ -7,6 +7,8 @@
 #include <limits>
 #include <numbers>
 
+#include "solver/grid/motion_field.hpp"
+#include "solver/grid/sweep.hpp"
 #include "solver/newton/admissible.hpp"
 
 namespace slipstick::solver {
@@ -18,42 +20,93 @@ Eigen::ArrayXd dot_products(const Eigen::ArrayXd& v, const Eigen::ArrayXd& w) {
 
 Eigen::ArrayXd norms(const Eigen::ArrayXd& vectors) { return dot_products(vectors, vectors).sqrt(); }
 
+namespace {
+
+/// Of a certificate, over cells.
+struct CertificateSums {
+  double friction = 0.0;  ///< of mu p
+  double energy = 0.0;    ///< q.Kq/2
+  double gap = 0.0;
+  double limit = 0.0;   ///< the moment if all slips
+  double moment = 0.0;  ///< of the tractions
+  double force1 = 0.0, force2 = 0.0;
+  double worst = 0.0;  ///< max |q|/(mu p), or NaN
+
+  CertificateSums& operator+=(const CertificateSums& other) {
+    friction += other.friction;
+    energy += other.energy;
+    gap += other.gap;
+    limit += other.limit;
+    moment += other.moment;
+    force1 += other.force1;
+    force2 += other.force2;
+    worst = other.worst <= worst || std::isnan(worst) ? worst : other.worst;
+    return *this;
+  }
+};
+
+/// Rotation: a field, or what works it out, in cells of one row of the sweep's.
+template <class Rotation>
+Certificate certificate_of(const Sweep& all, const TractionField& field, const Eigen::ArrayXd& friction_bound,
+                           const Rotation& rotation, double moment, const std::array<double, 2>& force,
+                           double least_eigenvalue) {
+  const Eigen::Index cells = friction_bound.size();
+  const Eigen::ArrayXd& q = field.traction;
+  const Eigen::ArrayXd& u = field.elastic_displacement;
+  const Eigen::ArrayXd& s = field.slip;
+  const auto sums = all.sum<CertificateSums>([&](Index first, Index last, CertificateSums& sum) {
+    const Index n = last - first;
+    const auto bound = friction_bound.segment(first, n);
+    const auto q1 = q.segment(first, n);
+    const auto q2 = q.segment(first + cells, n);
+    const auto s1 = s.segment(first, n);
+    const auto s2 = s.segment(first + cells, n);
+    const auto t1 = rotation.segment(first, n);
+    const auto t2 = rotation.segment(first + cells, n);
+    const auto size = (q1.square() + q2.square()).sqrt();
+    // Outside the contact any traction at all is beyond every bound.
+    const auto beyond = (size == 0.0).select(0.0, std::numeric_limits<double>::infinity() + 0.0 * size);
+    const double worst = (bound > 0.0).select(size / bound, beyond).template maxCoeff<Eigen::PropagateNaN>();
+    sum += {.friction = bound.sum(),
+            .energy = 0.5 * (q1 * u.segment(first, n) + q2 * u.segment(first + cells, n)).sum(),
+            .gap = (q1 * s1 + q2 * s2 + bound * (s1.square() + s2.square()).sqrt()).sum(),
+            .limit = (bound * (t1.square() + t2.square()).sqrt()).sum(),
+            .moment = (q1 * t1 + q2 * t2).sum(),
+            .force1 = q1.sum(),
+            .force2 = q2.sum(),
+            .worst = worst};
+  });
+  // No friction, no traction: nothing to violate.
+  if (sums.friction == 0.0 && sums.worst == 0.0) return {};
+
+  Certificate certificate{};
+  certificate.gap = sums.gap == 0.0 ? 0.0 : sums.gap / sums.energy;
+  const FrictionDiscs discs(friction_bound);
+  const double energy_error = discs.energy_error(q, s, least_eigenvalue);
+  certificate.energy_error = energy_error == 0.0 ? 0.0 : energy_error / sums.energy;
+  const double rounding = discs.gap_rounding(s, u);
+  certificate.rounding = rounding == 0.0 ? 0.0 : rounding / sums.energy;
+  const double imbalance = std::abs(sums.moment - moment);
+  certificate.moment =
+      imbalance == 0.0 ? 0.0 : imbalance / sums.limit;  // one cell on the axis: the limit is 0 too
+  certificate.force = std::hypot(sums.force1 - force[0], sums.force2 - force[1]) / sums.friction;
+  certificate.friction_bound = sums.worst - 1.0;
+  return certificate;
+}
+
+}  // namespace
+
 Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound,
                     const Eigen::ArrayXd& rotation, double moment, const std::array<double, 2>& force,
                     double least_eigenvalue) {
-  const Eigen::Index cells = friction_bound.size();
-  const auto& q = field.traction;
-  const double total_friction = friction_bound.sum();
-  if (total_friction == 0.0 && (q == 0.0).all()) return {};  // no friction, no traction: nothing to violate
-  const double energy = 0.5 * (q * field.elastic_displacement).sum();
-  const Eigen::ArrayXd gap = dot_products(q, field.slip) + friction_bound * norms(field.slip);
-  const double limit = (friction_bound * norms(rotation)).sum();
+  return certificate_of(Sweep::whole(friction_bound.size()), field, friction_bound, rotation, moment, force,
+                        least_eigenvalue);
+}
 
-  Certificate certificate{};
-  const double total_gap = gap.sum();
-  certificate.gap = total_gap == 0.0 ? 0.0 : total_gap / energy;
-  const FrictionDiscs discs(friction_bound);
-  const double energy_error = discs.energy_error(q, field.slip, least_eigenvalue);
-  certificate.energy_error = energy_error == 0.0 ? 0.0 : energy_error / energy;
-  const double rounding = discs.gap_rounding(field.slip, field.elastic_displacement);
-  certificate.rounding = rounding == 0.0 ? 0.0 : rounding / energy;
-  const double imbalance = std::abs((q * rotation).sum() - moment);
-  certificate.moment =
-      imbalance == 0.0 ? 0.0 : imbalance / limit;  // one cell on the axis: the limit is 0 too
-  certificate.force =
-      std::hypot(q.head(cells).sum() - force[0], q.tail(cells).sum() - force[1]) / total_friction;
-  const Eigen::ArrayXd size = norms(q);
-  double worst = 0.0;
-  for (Eigen::Index i = 0; i < cells; ++i) {
-    // Outside the contact any traction at all is beyond every bound.
-    const double ratio = friction_bound[i] > 0.0 ? size[i] / friction_bound[i]
-                         : size[i] == 0.0        ? 0.0
-                                                 : std::numeric_limits<double>::infinity();
-    worst = ratio <= worst ? worst : ratio;  // keeps NaN
-    if (std::isnan(worst)) break;
-  }
-  certificate.friction_bound = worst - 1.0;
-  return certificate;
+Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound, const Grid& grid,
+                    double moment, const std::array<double, 2>& force, double least_eigenvalue) {
+  return certificate_of(Sweep::whole(grid.cells(), grid.n2), field, friction_bound,
+                        MotionField(grid, 0.0, 0.0, 1.0), moment, force, least_eigenvalue);
 }
 
 std::string beyond(const Certificate& certificate, const CertificateBounds& bounds) {
@@ -73,24 +126,51 @@ std::string beyond(const Certificate& certificate, const CertificateBounds& boun
   return "";
 }
 
-SlipDirection slip_direction(const Eigen::ArrayXd& traction, const Eigen::ArrayXd& slip) {
-  const Eigen::Index cells = traction.size() / 2;
-  const Eigen::ArrayXd size = norms(slip);
-  const double noticeable = kNoticeableSlip * size.maxCoeff<Eigen::PropagateNaN>();
-  const Eigen::ArrayXd along = -dot_products(traction, slip);
-  SlipDirection direction{};
-  double weight = 0.0;
-  for (Eigen::Index i = 0; i < cells; ++i) {
-    if (size[i] == 0.0) continue;
-    const double across = traction[i] * slip[i + cells] - traction[i + cells] * slip[i];
-    const double angle = std::atan2(std::abs(across), along[i]) * 180.0 / std::numbers::pi;
-    direction.mean += size[i] * angle;
-    weight += size[i];
-    if (size[i] >= noticeable) direction.max = std::max(direction.max, angle);
+namespace {
+
+struct Largest {
+  double value = 0.0;  ///< NaN stays
+  Largest& operator+=(const Largest& other) {
+    value = other.value <= value || std::isnan(value) ? value : other.value;
+    return *this;
   }
-  if (weight > 0.0) direction.mean /= weight;
-  if (std::isnan(weight) || std::isnan(direction.mean)) direction.mean = direction.max = std::nan("");
-  return direction;
+};
+
+struct AngleSums {
+  double weight = 0.0;
+  double angles = 0.0;  ///< times their weights
+  Largest largest;
+
+  AngleSums& operator+=(const AngleSums& other) {
+    weight += other.weight;
+    angles += other.angles;
+    largest += other.largest;
+    return *this;
+  }
+};
+
+}  // namespace
+
+SlipDirection slip_direction(const Eigen::ArrayXd& traction, const Eigen::ArrayXd& slip) {
+  const Index cells = traction.size() / 2;
+  const Sweep all = Sweep::whole(cells);
+  const auto size = [&](Index i) { return std::sqrt(slip[i] * slip[i] + slip[i + cells] * slip[i + cells]); };
+  const auto largest = all.sum<Largest>([&](Index first, Index last, Largest& sum) {
+    for (Index i = first; i < last; ++i) sum += {size(i)};
+  });
+  const double noticeable = kNoticeableSlip * largest.value;
+  const auto sums = all.sum<AngleSums>([&](Index first, Index last, AngleSums& sum) {
+    for (Index i = first; i < last; ++i) {
+      const double weight = size(i);
+      if (weight == 0.0) continue;
+      const double along = -(traction[i] * slip[i] + traction[i + cells] * slip[i + cells]);
+      const double across = traction[i] * slip[i + cells] - traction[i + cells] * slip[i];
+      const double angle = std::atan2(std::abs(across), along) * 180.0 / std::numbers::pi;
+      sum += {weight, weight * angle, {weight >= noticeable ? angle : 0.0}};
+    }
+  });
+  if (std::isnan(sums.weight) || std::isnan(sums.angles)) return {std::nan(""), std::nan("")};
+  return {sums.weight > 0.0 ? sums.angles / sums.weight : 0.0, sums.largest.value};
 }
 
 }  // namespace slipstick::solver

@@ -4,6 +4,8 @@
 #include <array>
 #include <string>
 
+#include "solver/grid/grid.hpp"
+
 namespace slipstick::solver {
 
 enum class Status { converged, not_converged };
@@ -41,6 +43,9 @@ struct Certificate {
 Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound,
                     const Eigen::ArrayXd& rotation, double moment, const std::array<double, 2>& force = {},
                     double least_eigenvalue = 0.0);
+/// The same about a grid's origin.
+Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound, const Grid& grid,
+                    double moment, const std::array<double, 2>& force = {}, double least_eigenvalue = 0.0);
 
 /// What the members of a certificate may be. Infinite: anything but NaN.
 struct CertificateBounds {

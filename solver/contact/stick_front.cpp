@@ -10,7 +10,8 @@
 #include <stdexcept>
 #include <vector>
 
-#include "solver/contact/certificate.hpp"
+#include "solver/grid/sweep.hpp"
+#include "solver/grid/threads.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -105,11 +106,17 @@ constexpr double kLargestCorrection = 0.5;
 class FrontFinder {
  public:
   FrontFinder(const Grid& grid, const ArrayXd& friction_bound, const ArrayXd& slip, const ArrayXd& stick)
-      : grid_(grid), bound_(friction_bound), slip_(slip), stick_(stick) {}
+      : grid_(grid),
+        all_(Sweep::whole(grid.cells(), grid.n2)),
+        bound_(friction_bound),
+        slip_(slip),
+        stick_(stick) {}
 
   StickFront run() {
     StickFront front;
-    stick_cells_ = (bound_ > 0.0 && stick_ != 0.0).cast<double>().sum();
+    stick_cells_ = static_cast<double>(all_.sum<Index>([&](Index first, Index last, Index& count) {
+      for (Index cell = first; cell < last; ++cell) count += bound_[cell] > 0.0 && stick_[cell] != 0.0;
+    }));
     front.counted_radius = front.radius = radius(stick_cells_);
     if (!finite()) {
       front.radius = std::nan("");
@@ -123,8 +130,12 @@ class FrontFinder {
 
  private:
   bool finite() const {
-    const ArrayXd slip_in_contact = (bound_ > 0.0).select(norms(slip_), 0.0);
-    return bound_.isFinite().all() && stick_.isFinite().all() && slip_in_contact.isFinite().all();
+    return all_.sum<Index>([&](Index first, Index last, Index& count) {
+      for (Index cell = first; cell < last; ++cell) {
+        const bool slips_finitely = !(bound_[cell] > 0.0) || std::isfinite(slip_square(cell));
+        count += !(std::isfinite(bound_[cell]) && std::isfinite(stick_[cell]) && slips_finitely);
+      }
+    }) == 0;
   }
 
   double slip_square(Index cell) const {
@@ -153,11 +164,15 @@ class FrontFinder {
       reference_ = smoothed(r);
       for (SlippingCell& cell : slipping_) cell.reference = cell.rays.of(reference_);
       r = counted_;
+      const Index distinct = mirrored_ ? rays_ / 4 : rays_;
+      ArrayXd shifts(distinct);
+      in_parts(ThreadPool::available(), distinct, [&](int, Index first, Index last) {
+        for (Index ray = first; ray < last; ++ray) shifts[ray] = fitted_root(samples_near(ray), ring(ray));
+      });
       fitted = 0;
-      for (Index ray = 0; ray < (mirrored_ ? rays_ / 4 : rays_); ++ray) {
-        const double shift = fitted_root(samples_near(ray), ring(ray));
-        if (!(std::abs(shift) <= kLargestShift)) continue;
-        for (const Index image : images(ray)) r[image] = reference_[ray] + shift;
+      for (Index ray = 0; ray < distinct; ++ray) {
+        if (!(std::abs(shifts[ray]) <= kLargestShift)) continue;
+        for (const Index image : images(ray)) r[image] = reference_[ray] + shifts[ray];
         fitted += static_cast<Index>(images(ray).size());
       }
     }
@@ -203,16 +218,13 @@ class FrontFinder {
     const auto alike = [&](Index a, Index b) {
       return bound_[a] == bound_[b] && stick_[a] == stick_[b] && slip_square(a) == slip_square(b);
     };
-    for (Index i = 0; i < grid_.n1; ++i) {
-      for (Index j = 0; j < grid_.n2; ++j) {
-        const Index cell = i * grid_.n2 + j;
-        if (bound_[cell] > 0.0 && !(alike(cell, (grid_.n1 - 1 - i) * grid_.n2 + j) &&
-                                    alike(cell, i * grid_.n2 + grid_.n2 - 1 - j))) {
-          return false;
-        }
+    return all_.sum<Index>([&](Index first, Index last, Index& count) {
+      const Index opposite = grid_.cells() - last - first;  // the row on the other side
+      for (Index cell = first; cell < last; ++cell) {
+        count +=
+            bound_[cell] > 0.0 && !(alike(cell, cell + opposite) && alike(cell, first + last - 1 - cell));
       }
-    }
-    return true;
+    }) == 0;
   }
 
   /// The ray, and its mirror images where there are some.
@@ -336,6 +348,7 @@ class FrontFinder {
   }
 
   const Grid& grid_;
+  Sweep all_;  // row by row
   const ArrayXd& bound_;
   const ArrayXd& slip_;
   const ArrayXd& stick_;

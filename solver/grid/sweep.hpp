@@ -23,6 +23,14 @@ class Sweep {
     assign(field.size(), [&](Index cell) { return field[cell] != 0; });
   }
 
+  /// Over all cells, whatever they carry. row: see above.
+  static Sweep whole(Index cells, Index row = 0) {
+    Sweep sweep;
+    sweep.row_ = row;
+    sweep.assign(cells, [](Index) { return true; });
+    return sweep;
+  }
+
   /// The cells below `cells` for which contains(cell) is true.
   template <typename Contains>
   void assign(Index cells, const Contains& contains);

@@ -217,19 +217,18 @@ double FrictionDiscs::gap(const ArrayXd& q, const ArrayXd& slip) const {
 double FrictionDiscs::energy_error(const ArrayXd& q, const ArrayXd& slip, double k) const {
   if (k == 0.0) return gap(q, slip);
   const Index n = cells();
-  double sum = 0.0;
-  for (Index i = 0; i < n; ++i) {
-    if (bound_[i] == 0.0) continue;
-    double d1 = -slip[i] / k;
-    double d2 = -slip[i + n] / k;
-    const double size = std::sqrt((q[i] + d1) * (q[i] + d1) + (q[i + n] + d2) * (q[i + n] + d2));
-    if (size > bound_[i]) {
-      d1 = (q[i] + d1) * bound_[i] / size - q[i];
-      d2 = (q[i + n] + d2) * bound_[i] / size - q[i + n];
+  return sweep_.sum<double>([&](Index first, Index last, double& sum) {
+    for (Index i = first; i < last; ++i) {
+      double d1 = -slip[i] / k;
+      double d2 = -slip[i + n] / k;
+      const double size = std::sqrt((q[i] + d1) * (q[i] + d1) + (q[i + n] + d2) * (q[i + n] + d2));
+      if (size > bound_[i]) {
+        d1 = (q[i] + d1) * bound_[i] / size - q[i];
+        d2 = (q[i + n] + d2) * bound_[i] / size - q[i + n];
+      }
+      sum -= slip[i] * d1 + slip[i + n] * d2 + 0.5 * k * (d1 * d1 + d2 * d2);
     }
-    sum -= slip[i] * d1 + slip[i + n] * d2 + 0.5 * k * (d1 * d1 + d2 * d2);
-  }
-  return sum;
+  });
 }
 
 double FrictionDiscs::gap_rounding(const ArrayXd& slip, const ArrayXd& displacement) const {

@@ -4,6 +4,8 @@
 #include <array>
 #include <utility>
 
+#include "solver/grid/threads.hpp"
+
 namespace slipstick::solver {
 namespace {
 
@@ -20,7 +22,8 @@ Extension<Real>::Extension(const Grid& grid)
     : grid_(grid),
       weight_(grid.cells()),
       work_(grid.cells()),
-      column_sums_(Field::Zero(grid.n2 + 2 * kReach)) {}
+      threads_(ThreadPool::available()),
+      column_sums_(Field::Zero((grid.n2 + 2 * kReach) * threads_)) {}
 
 /// Row by row the sum over neighbours of a field, which is zero beyond the grid.
 template <typename Real>
@@ -30,19 +33,23 @@ void Extension<Real>::spread(Field& in, const Row& take_row) {
   Ranks::gather_beside(std::span<Real>(in.data(), static_cast<std::size_t>(in.size())), grid_.n1,
                        bands.rows_of_rank(), kReach);
   const auto row = [&](Index i) { return in.segment(i * grid_.n2, grid_.n2); };
-  auto inner = column_sums_.segment(kReach, grid_.n2);
-  for (Index i = bands.own_rows().first; i < bands.own_rows().last; ++i) {
-    inner = row(i);
-    for (Index k = 1; k <= kReach; ++k) {
-      const auto weight = static_cast<Real>(kNeighbours[static_cast<std::size_t>(k - 1)]);
-      if (i >= k) inner += weight * row(i - k);
-      if (i + k < grid_.n1) inner += weight * row(i + k);
+  const Share own = bands.own_rows();
+  in_parts(threads_, own.count(), [&](int thread, Index first, Index last) {
+    auto sums = column_sums_.segment(thread * (grid_.n2 + 2 * kReach), grid_.n2 + 2 * kReach);
+    auto inner = sums.segment(kReach, grid_.n2);
+    const auto shifted = [&](Index k) { return sums.segment(kReach + k, grid_.n2); };
+    for (Index i = own.first + first; i < own.first + last; ++i) {
+      inner = row(i);
+      for (Index k = 1; k <= kReach; ++k) {
+        const auto weight = static_cast<Real>(kNeighbours[static_cast<std::size_t>(k - 1)]);
+        if (i >= k) inner += weight * row(i - k);
+        if (i + k < grid_.n1) inner += weight * row(i + k);
+      }
+      static_assert(kReach == 2);
+      take_row(i * grid_.n2, inner + static_cast<Real>(kNeighbours[0]) * (shifted(-1) + shifted(1)) +
+                                 static_cast<Real>(kNeighbours[1]) * (shifted(-2) + shifted(2)));
     }
-    const auto shifted = [&](Index k) { return column_sums_.segment(kReach + k, grid_.n2); };
-    static_assert(kReach == 2);
-    take_row(i * grid_.n2, inner + static_cast<Real>(kNeighbours[0]) * (shifted(-1) + shifted(1)) +
-                               static_cast<Real>(kNeighbours[1]) * (shifted(-2) + shifted(2)));
-  }
+  });
 }
 
 template <typename Real>

@@ -44,7 +44,8 @@ class Extension {
   Grid grid_;
   Field weight_;  ///< of the sum near by; 0 in the free cells
   Field work_;
-  Field column_sums_;  ///< of a row, with a margin
+  int threads_;
+  Field column_sums_;  ///< of a row, with a margin, for each thread
 };
 
 extern template class Extension<double>;

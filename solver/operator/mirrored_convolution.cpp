@@ -41,14 +41,19 @@ struct KernelLines {
 /// Cosine transforms over half a period, 0..h, of lines that are even about both ends; sine transforms of odd
 /// ones. In place. Two lines are the real and the imaginary part of a complex one over the whole period,
 /// whose plan is found far sooner than that of a cosine transform.
-void transform_lines(double* values, const KernelLines& lines, Index h, bool odd) {
-  FftwBuffer<double> period(count(4 * h));
-  FftwBuffer<double> transformed(count(4 * h));
-  const FftwPlan<double> plan(Fftw<double>::plan(static_cast<int>(2 * h), period.complex(),
-                                                 transformed.complex(), FFTW_FORWARD, FFTW_ESTIMATE));
+void transform_lines(double* values, const KernelLines& lines, Index h, bool odd, int threads) {
+  std::vector<FftwBuffer<double>> periods, transforms;
+  for (int thread = 0; thread < threads; ++thread) {
+    periods.emplace_back(count(4 * h));
+    transforms.emplace_back(count(4 * h));
+  }
+  const FftwPlan<double> plan(Fftw<double>::plan(static_cast<int>(2 * h), periods[0].complex(),
+                                                 transforms[0].complex(), FFTW_FORWARD, FFTW_ESTIMATE));
   const double sign = odd ? -1.0 : 1.0;
   const Index ends = odd ? 1 : 0;  // where odd lines are taken to be zero, as their transforms are
-  for (Index line = 0; line < lines.count; line += 2) {
+  const auto transform_pair = [&](int thread, Index line) {
+    FftwBuffer<double>& period = periods[static_cast<std::size_t>(thread)];
+    FftwBuffer<double>& transformed = transforms[static_cast<std::size_t>(thread)];
     double* const first = values + line * lines.distance;
     double* const second = line + 1 < lines.count ? first + lines.distance : first;
     double* const z = period.data();
@@ -66,13 +71,16 @@ void transform_lines(double* values, const KernelLines& lines, Index h, bool odd
       second[k * lines.step] = odd ? sums[2 * k] : sums[2 * k + 1];
       first[k * lines.step] = odd ? -sums[2 * k + 1] : sums[2 * k];
     }
-  }
+  };
+  in_parts(threads, groups(lines.count, 2), [&](int thread, Index begin, Index end) {
+    for (Index pair = begin; pair < end; ++pair) transform_pair(thread, 2 * pair);
+  });
 }
 
 /// The transform of a kernel that is even (odd) along both coordinates. In place.
-void transform_kernel(std::vector<double>& values, Index h1, Index h2, bool odd) {
-  transform_lines(values.data(), {h1 + 1, h2 + 1, 1}, h2, odd);
-  transform_lines(values.data(), {h2 + 1, 1, h2 + 1}, h1, odd);
+void transform_kernel(std::vector<double>& values, Index h1, Index h2, bool odd, int threads) {
+  transform_lines(values.data(), {h1 + 1, h2 + 1, 1}, h2, odd, threads);
+  transform_lines(values.data(), {h2 + 1, 1, h2 + 1}, h1, odd, threads);
 }
 
 /// The exchanged coordinates of the last group's columns reach up to a group further.
@@ -123,7 +131,7 @@ FftwBuffer<Real> MirroredConvolution<Real>::kernel_spectrum(Component component,
   const Index h1 = along1_.frequencies();
   const Index h2 = along2_.frequencies();
   const bool odd = component == Component::k12;
-  transform_kernel(values, h1, h2, odd);
+  transform_kernel(values, h1, h2, odd, threads_);
   const double scale = 1.0 / (4.0 * static_cast<double>(h1) * static_cast<double>(h2));
   // Where the field is odd, its row 0 is that of frequency h. K12's transform is zero at 0 and at h.
   const Index row0 = component == Component::k22 ? h1 : 0;
@@ -131,13 +139,16 @@ FftwBuffer<Real> MirroredConvolution<Real>::kernel_spectrum(Component component,
   const Index first = own_column_groups_.first * kLines;
   const Index last = std::min(own_column_groups_.last * kLines, h2);
   FftwBuffer<Real> spectrum(count(own_column_groups_.count() * kLines * h1));
-  for (Index k1 = odd ? 1 : 0; k1 < h1; ++k1) {
-    for (Index k2 = std::max<Index>(first, odd ? 1 : 0); k2 < last; ++k2) {
-      const Index from = (k1 == 0 ? row0 : k1) * (h2 + 1) + (k2 == 0 ? column0 : k2);
-      spectrum.data()[((k2 - first) / kLines * h1 + k1) * kLines + k2 % kLines] =
-          static_cast<Real>(scale * values[count(from)]);
+  const Index start = odd ? 1 : 0;
+  in_parts(threads_, h1 - start, [&](int, Index begin, Index end) {
+    for (Index k1 = start + begin; k1 < start + end; ++k1) {
+      for (Index k2 = std::max(first, start); k2 < last; ++k2) {
+        const Index from = (k1 == 0 ? row0 : k1) * (h2 + 1) + (k2 == 0 ? column0 : k2);
+        spectrum.data()[((k2 - first) / kLines * h1 + k1) * kLines + k2 % kLines] =
+            static_cast<Real>(scale * values[count(from)]);
+      }
     }
-  }
+  });
   return spectrum;
 }
 

@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "solver/grid/threads.hpp"
+
 namespace slipstick::solver {
 namespace {
 
@@ -52,16 +54,18 @@ SymbolTable<Real>::SymbolTable(const PeriodicGrid& grid, const ElasticPair& pair
     tables_[static_cast<std::size_t>(entry)] = FftwBuffer<Real>(static_cast<std::size_t>(rows * columns_));
   }
   const bool tangential = entries.size() > 1;
-  for (Index f1 = 0; f1 < rows; ++f1) {
-    for (Index column = 0; column < columns_; ++column) {
-      const auto symbol =
-          inverse_symbol(grid, pair, tangential, f1, columns[static_cast<std::size_t>(column)]);
-      for (const SymbolEntry entry : entries) {
-        const auto e = static_cast<std::size_t>(entry);
-        tables_[e].data()[f1 * columns_ + column] = static_cast<Real>(factor * symbol[e]);
+  in_parts(ThreadPool::available(), rows, [&](int, Index first, Index last) {
+    for (Index f1 = first; f1 < last; ++f1) {
+      for (Index column = 0; column < columns_; ++column) {
+        const auto symbol =
+            inverse_symbol(grid, pair, tangential, f1, columns[static_cast<std::size_t>(column)]);
+        for (const SymbolEntry entry : entries) {
+          const auto e = static_cast<std::size_t>(entry);
+          tables_[e].data()[f1 * columns_ + column] = static_cast<Real>(factor * symbol[e]);
+        }
       }
     }
-  }
+  });
 }
 
 template <typename Real>
@@ -74,14 +78,23 @@ std::size_t SymbolTable<Real>::bytes() const {
 std::array<double, 2> mean_inverse_symbol(const PeriodicGrid& grid, const ElasticPair& pair,
                                           bool tangential) {
   const auto signs = [](Index f, Index length) { return f == 0 || 2 * f == length ? 1.0 : 2.0; };
-  std::array<double, 2> sum{};
-  for (Index f1 = 0; 2 * f1 <= grid.length1; ++f1) {
-    for (Index f2 = 0; 2 * f2 <= grid.length2; ++f2) {
-      const double weight = signs(f1, grid.length1) * signs(f2, grid.length2);
-      const auto symbol = inverse_symbol(grid, pair, tangential, f1, f2);
-      sum[0] += weight * symbol[0];
-      sum[1] += weight * symbol[tangential ? 2 : 0];
+  const Index rows = grid.length1 / 2 + 1;
+  std::vector<std::array<double, 2>> of_rows(static_cast<std::size_t>(rows));
+  in_parts(ThreadPool::available(), rows, [&](int, Index first, Index last) {
+    for (Index f1 = first; f1 < last; ++f1) {
+      auto& sum = of_rows[static_cast<std::size_t>(f1)];
+      for (Index f2 = 0; 2 * f2 <= grid.length2; ++f2) {
+        const double weight = signs(f1, grid.length1) * signs(f2, grid.length2);
+        const auto symbol = inverse_symbol(grid, pair, tangential, f1, f2);
+        sum[0] += weight * symbol[0];
+        sum[1] += weight * symbol[tangential ? 2 : 0];
+      }
     }
+  });
+  std::array<double, 2> sum{};
+  for (const auto& row : of_rows) {
+    sum[0] += row[0];
+    sum[1] += row[1];
   }
   const double frequencies = static_cast<double>(grid.length1) * static_cast<double>(grid.length2);
   return {sum[0] / frequencies, sum[1] / frequencies};

@@ -127,30 +127,60 @@ std::array<double, 2> half_sides_below(const Surface& surface, double depth) {
   throw std::logic_error("unknown shape");
 }
 
-ArrayXd gap_field(const Surface& surface, const Grid& grid) {
-  const ArrayXd from_1 = cell_x1(grid) - surface.at[0];
-  const ArrayXd from_2 = cell_x2(grid) - surface.at[1];
+/// height(along, across, row) writes the heights over a row of the shape's own coordinates.
+template <typename Height>
+ArrayXd by_rows(const Surface& surface, const Grid& grid, const Height& height) {
   const double c = std::cos(surface.angle);
   const double s = std::sin(surface.angle);
-  const ArrayXd along = c * from_1 + s * from_2;
-  const ArrayXd across = c * from_2 - s * from_1;
-  const ArrayXd r = (along.square() + across.square()).sqrt();
+  const ArrayXd from_2 = ArrayXd::NullaryExpr(grid.n2, [&](Index j) { return grid.x2(j); }) - surface.at[1];
+  ArrayXd heights(grid.cells());
+  ArrayXd along(grid.n2);
+  ArrayXd across(grid.n2);
+  for (Index i = 0; i < grid.n1; ++i) {
+    const double from_1 = grid.x1(i) - surface.at[0];
+    along = c * from_1 + s * from_2;
+    across = c * from_2 - s * from_1;
+    height(along, across, heights.segment(i * grid.n2, grid.n2));
+  }
+  return heights;
+}
+
+/// Of the distance from the axis.
+template <typename Height>
+ArrayXd by_distance(const Surface& surface, const Grid& grid, const Height& height) {
+  ArrayXd r(grid.n2);
+  return by_rows(surface, grid, [&](const ArrayXd& along, const ArrayXd& across, auto row) {
+    r = (along.square() + across.square()).sqrt();
+    row = height(r);
+  });
+}
+
+ArrayXd gap_field(const Surface& surface, const Grid& grid) {
   switch (surface.shape) {
     case Shape::sphere:
     case Shape::ellipsoid: {
       const auto radii = paraboloid_radii(surface);
-      return along.square() / (2.0 * radii[0]) + across.square() / (2.0 * radii[1]);
+      return by_rows(surface, grid, [&](const ArrayXd& along, const ArrayXd& across, auto row) {
+        row = along.square() / (2.0 * radii[0]) + across.square() / (2.0 * radii[1]);
+      });
     }
     case Shape::cone:
-      return surface.slope * r;
+      return by_distance(surface, grid, [&](const ArrayXd& r) { return (surface.slope * r).eval(); });
     case Shape::flat_punch:
-      return (r >= surface.inner_radius && r <= surface.radius)
-          .select(ArrayXd::Zero(r.size()),
-                  ArrayXd::Constant(r.size(), std::numeric_limits<double>::infinity()));
+      return by_distance(surface, grid, [&](const ArrayXd& r) {
+        return (r >= surface.inner_radius && r <= surface.radius)
+            .select(ArrayXd::Zero(r.size()),
+                    ArrayXd::Constant(r.size(), std::numeric_limits<double>::infinity()))
+            .eval();
+      });
     case Shape::rounded_punch:
-      return (r - surface.flat_radius).max(0.0).square() / (2.0 * surface.corner_radius);
+      return by_distance(surface, grid, [&](const ArrayXd& r) {
+        return ((r - surface.flat_radius).max(0.0).square() / (2.0 * surface.corner_radius)).eval();
+      });
     case Shape::power:
-      return surface.coefficient * r.pow(surface.exponent);
+      return by_distance(surface, grid, [&](const ArrayXd& r) {
+        return (surface.coefficient * r.pow(surface.exponent)).eval();
+      });
     case Shape::height_map:
       return as_field(surface.heights);
     case Shape::roughness:
