@@ -7,6 +7,9 @@
 #include <utility>
 #include <vector>
 
+#include "solver/grid/sweep.hpp"
+#include "solver/grid/threads.hpp"
+
 namespace slipstick::convergence {
 namespace {
 
@@ -28,10 +31,26 @@ struct Norms {
   double squares = 0.0;
   double max = 0.0;
 
-  void add(double size) {
-    sum += size;
-    squares += size * size;
-    if (!(size <= max) && !std::isnan(max)) max = size;
+  void add(double size) { *this += {size, size * size, size}; }
+  Norms& operator+=(const Norms& other) {
+    sum += other.sum;
+    squares += other.squares;
+    if (!(other.max <= max) && !std::isnan(max)) max = other.max;
+    return *this;
+  }
+};
+
+struct TractionNorms {
+  Norms exact_at_centres, exact_averaged, at_centres, averaged, stick_edge, contact_edge, inside, outside;
+
+  TractionNorms& operator+=(const TractionNorms& other) {
+    for (const auto member :
+         {&TractionNorms::exact_at_centres, &TractionNorms::exact_averaged, &TractionNorms::at_centres,
+          &TractionNorms::averaged, &TractionNorms::stick_edge, &TractionNorms::contact_edge,
+          &TractionNorms::inside, &TractionNorms::outside}) {
+      this->*member += other.*member;
+    }
+    return *this;
   }
 };
 
@@ -202,10 +221,12 @@ TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, cons
   const ShearBesideEdges beside_edges(oracle, 2.0 * diagonal, std::min(grid.h1, grid.h2) / kTableSteps);
   const double width = kEdgeBand * std::sqrt(grid.cell_area());
   const bool slips = oracle.stick_radius < oracle.contact_radius;
-  Norms exact_at_centres, exact_averaged, at_centres, averaged, stick_edge, contact_edge, inside, outside;
   const Images images(oracle, grid);
-  for (Index i = 0; i < images.rows(); ++i) {
-    for (Index j = 0; j < images.columns(); ++j) {
+  const auto distinct = solver::Sweep::whole(images.rows() * images.columns());
+  const auto sums = distinct.sum<TractionNorms>([&](Index first, Index last, TractionNorms& sum) {
+    for (Index k = first; k < last; ++k) {
+      const Index i = k / images.columns();
+      const Index j = k % images.columns();
       const Index cell = i * grid.n2 + j;
       const double radius = fields.radius[cell];
       const auto is_within = [&](double distance, double edge) {
@@ -217,10 +238,10 @@ TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, cons
         mean = mean_over_cell(oracle, grid, grid.x1(i) - oracle.centre[0], grid.x2(j) - oracle.centre[1],
                               beside_edges);
       }
-      Norms& region = slips && is_within(width, oracle.stick_radius) ? stick_edge
-                      : is_within(width, oracle.contact_radius)      ? contact_edge
-                      : radius < oracle.stick_radius                 ? inside
-                                                                     : outside;
+      Norms& region = slips && is_within(width, oracle.stick_radius) ? sum.stick_edge
+                      : is_within(width, oracle.contact_radius)      ? sum.contact_edge
+                      : radius < oracle.stick_radius                 ? sum.inside
+                                                                     : sum.outside;
       const double size = std::sqrt(centre[0] * centre[0] + centre[1] * centre[1]);
       const double mean_size = std::sqrt(mean[0] * mean[0] + mean[1] * mean[1]);
       images.each(i, j, [&](Index image, double sign1, double sign2) {
@@ -229,32 +250,38 @@ TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, cons
           const double d2 = traction[image + grid.cells()] - sign2 * exact[1];
           return std::sqrt(d1 * d1 + d2 * d2);
         };
-        exact_at_centres.add(size);
-        exact_averaged.add(mean_size);
-        at_centres.add(off(centre));
+        sum.exact_at_centres.add(size);
+        sum.exact_averaged.add(mean_size);
+        sum.at_centres.add(off(centre));
         const double difference = off(mean);
-        averaged.add(difference);
+        sum.averaged.add(difference);
         region.add(difference);
       });
     }
-  }
+  });
   return {
-      .at_centres = field_error(at_centres, exact_at_centres),
-      .averaged = field_error(averaged, exact_averaged),
-      .stick_edge = field_error(stick_edge, exact_averaged),
-      .contact_edge = field_error(contact_edge, exact_averaged),
-      .inside = field_error(inside, exact_averaged),
-      .outside = field_error(outside, exact_averaged),
+      .at_centres = field_error(sums.at_centres, sums.exact_at_centres),
+      .averaged = field_error(sums.averaged, sums.exact_averaged),
+      .stick_edge = field_error(sums.stick_edge, sums.exact_averaged),
+      .contact_edge = field_error(sums.contact_edge, sums.exact_averaged),
+      .inside = field_error(sums.inside, sums.exact_averaged),
+      .outside = field_error(sums.outside, sums.exact_averaged),
   };
 }
 
 FieldError pressure_error(const ArrayXd& pressure, const ArrayXd& exact) {
-  Norms difference, size;
-  for (Index i = 0; i < exact.size(); ++i) {
-    if (!std::isfinite(exact[i])) continue;
-    difference.add(std::abs(pressure[i] - exact[i]));
-    size.add(exact[i]);
-  }
+  const auto finite = [&](Index i) { return std::isfinite(exact[i]); };
+  const auto all = solver::Sweep::whole(exact.size());
+  const auto difference = all.sum<Norms>([&](Index first, Index last, Norms& sum) {
+    for (Index i = first; i < last; ++i) {
+      if (finite(i)) sum.add(std::abs(pressure[i] - exact[i]));
+    }
+  });
+  const auto size = all.sum<Norms>([&](Index first, Index last, Norms& sum) {
+    for (Index i = first; i < last; ++i) {
+      if (finite(i)) sum.add(exact[i]);
+    }
+  });
   return field_error(difference, size);
 }
 
@@ -269,6 +296,7 @@ FieldError pressure_error(const ArrayXd& pressure, const Oracle& oracle, const s
 }
 
 Errors compare(const solver::Solution& solution, const Oracle& oracle) {
+  const solver::ThreadPool threads(solution.threads);
   const bool fields = solution.detail == solver::Detail::all;
   const ExactFields exact = fields ? exact_fields(oracle, solution.grid) : ExactFields{};
   return {
