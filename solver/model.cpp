@@ -274,7 +274,7 @@ Memory predicted_memory(const Scene& scene, const Model& model) {
 namespace {
 
 /// A thread that has fewer cells waits for the others about as long as it works.
-constexpr Index kCellsOfThread = Index{1} << 17;
+constexpr Index kCellsOfThread = Index{1} << 15;
 
 int threads_for(const Scene& scene, const Grid& part) {
   if (scene.threads > 0) return scene.threads;
