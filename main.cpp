@@ -31,6 +31,7 @@
 #include "convergence/solve/solve_command.hpp"
 #include "convergence/studies/study_command.hpp"
 #include "solver/grid/ranks.hpp"
+#include "solver/memory.hpp"
 
 namespace {
 
@@ -131,6 +132,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   slipstick::convergence::hold_standard_streams();
+  slipstick::solver::keep_freed_blocks();
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error like a full disk
   try {
     slipstick::convergence::obey_tie(argc, argv);

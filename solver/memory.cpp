@@ -8,6 +8,10 @@
 #include <limits>
 #include <string>
 
+#ifdef __GLIBC__
+#include <malloc.h>
+#endif
+
 namespace slipstick::solver {
 namespace {
 
@@ -76,6 +80,13 @@ double available_memory(const fs::path& root) {
     }
   }
   return std::max(least, 0.0);
+}
+
+void keep_freed_blocks() {
+#ifdef __GLIBC__
+  mallopt(M_MMAP_THRESHOLD, 8 << 20);
+  mallopt(M_TRIM_THRESHOLD, 64 << 20);
+#endif
 }
 
 std::string bytes_text(double bytes) {

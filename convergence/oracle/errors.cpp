@@ -234,7 +234,9 @@ TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, cons
       };
       const std::array<double, 2> centre{fields.traction[cell], fields.traction[cell + grid.cells()]};
       std::array<double, 2> mean = centre;
-      if (is_within(diagonal, oracle.stick_radius) || is_within(diagonal, oracle.contact_radius)) {
+      const bool near_edge =
+          is_within(diagonal, oracle.stick_radius) || is_within(diagonal, oracle.contact_radius);
+      if (near_edge) {
         mean = mean_over_cell(oracle, grid, grid.x1(i) - oracle.centre[0], grid.x2(j) - oracle.centre[1],
                               beside_edges);
       }
@@ -252,8 +254,9 @@ TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, cons
         };
         sum.exact_at_centres.add(size);
         sum.exact_averaged.add(mean_size);
-        sum.at_centres.add(off(centre));
-        const double difference = off(mean);
+        const double at_centre = off(centre);
+        const double difference = near_edge ? off(mean) : at_centre;
+        sum.at_centres.add(at_centre);
         sum.averaged.add(difference);
         region.add(difference);
       });

@@ -164,7 +164,7 @@ class FrontFinder {
       reference_ = smoothed(r);
       for (SlippingCell& cell : slipping_) cell.reference = cell.rays.of(reference_);
       r = counted_;
-      const Index distinct = mirrored_ ? rays_ / 4 : rays_;
+      const Index distinct = distinct_rays();
       ArrayXd shifts(distinct);
       in_parts(ThreadPool::available(), distinct, [&](int, Index first, Index last) {
         for (Index ray = first; ray < last; ++ray) shifts[ray] = fitted_root(samples_near(ray), ring(ray));
@@ -227,6 +227,9 @@ class FrontFinder {
     }) == 0;
   }
 
+  /// The first ones, which show all the others by their images.
+  Index distinct_rays() const { return mirrored_ ? rays_ / 4 : rays_; }
+
   /// The ray, and its mirror images where there are some.
   std::vector<Index> images(Index ray) const {
     if (!mirrored_) return {ray};
@@ -246,16 +249,23 @@ class FrontFinder {
     rays_ = 4 * static_cast<Index>(std::ceil(0.25 * kTurn * longest));  // no answer changes by a quarter turn
     counted_.resize(rays_);
     edge_.resize(rays_);
-    for (Index ray = 0; ray < rays_; ++ray) {
-      const double c = std::cos(angle(ray));
-      const double s = std::sin(angle(ray));
-      const auto march = [&](double r, const auto& inside) {
-        while (inside(nearest(centre_i_ + r * c), nearest(centre_j_ + r * s))) r += kMarch;
-        return r;
-      };
-      const double front = march(0.0, [&](Index i, Index j) { return sticks(i, j); });
-      edge_[ray] = march(front, [&](Index i, Index j) { return in_contact(i, j); });
-      counted_[ray] = std::max(0.0, front - 0.5 * kMarch);
+    in_parts(ThreadPool::available(), distinct_rays(), [&](int, Index first, Index last) {
+      for (Index ray = first; ray < last; ++ray) cast_ray(ray);
+    });
+  }
+
+  void cast_ray(Index ray) {
+    const double c = std::cos(angle(ray));
+    const double s = std::sin(angle(ray));
+    const auto march = [&](double r, const auto& inside) {
+      while (inside(nearest(centre_i_ + r * c), nearest(centre_j_ + r * s))) r += kMarch;
+      return r;
+    };
+    const double front = march(0.0, [&](Index i, Index j) { return sticks(i, j); });
+    const double edge = march(front, [&](Index i, Index j) { return in_contact(i, j); });
+    for (const Index image : images(ray)) {
+      edge_[image] = edge;
+      counted_[image] = std::max(0.0, front - 0.5 * kMarch);
     }
   }
 
