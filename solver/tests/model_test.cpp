@@ -188,9 +188,10 @@ TEST(Model, HasThreadsThatAreWorthTheirCells) {
     return make_model(scene).threads;
   };
   const int processors = static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
-  EXPECT_EQ(threads(256, ModelChoice::full, 0), 1);
-  EXPECT_EQ(threads(512, ModelChoice::full, 0), std::min(2, processors));
-  EXPECT_EQ(threads(512, ModelChoice::automatic, 0), 1);
+  EXPECT_EQ(threads(128, ModelChoice::full, 0), 1);
+  EXPECT_EQ(threads(256, ModelChoice::full, 0), std::min(2, processors));
+  EXPECT_EQ(threads(256, ModelChoice::automatic, 0), 1);
+  EXPECT_EQ(threads(512, ModelChoice::automatic, 0), std::min(2, processors));
   EXPECT_EQ(threads(64, ModelChoice::automatic, 3), 3);
   EXPECT_EQ(threads(512, ModelChoice::full, 1), 1);
 }
