@@ -112,7 +112,11 @@ convergence::SolvedScene find_on_grid(const Scene& scene, const Request& request
 
 void keep(slipstick_solution& kept, const convergence::SolvedScene& solved) {
   kept.grid = solved.solution.grid;
-  kept.columns = convergence::solution_columns(solved.solution, solved.exact);
+  const solver::Index cells = kept.grid.cells();
+  for (const solver::FieldColumn& column : convergence::solution_columns(solved.solution, solved.exact)) {
+    kept.columns.push_back({column.name, Eigen::ArrayXd(cells)});
+    column.values(0, cells, kept.columns.back().values.data());
+  }
   kept.pressure = solved.solution.pressure;
   kept.result = solved.result;
   kept.text = convergence::solve_text(kept.result);

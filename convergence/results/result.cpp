@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -371,23 +372,36 @@ std::string solve_text(const Json& r) {
   return r.contains("steps") ? text + steps_text(r) : text;
 }
 
-std::vector<solver::Column> solution_columns(const Solution& solution, const OracleAnswer& exact) {
-  const solver::Index cells = solution.grid.cells();
-  std::vector<solver::Column> columns{
-      {"x1", solver::cell_x1(solution.grid)},
-      {"x2", solver::cell_x2(solution.grid)},
-      {"pressure", solution.pressure},
-      {"q1", solution.traction.head(cells)},
-      {"q2", solution.traction.tail(cells)},
-      {"slip1", solution.slip.head(cells)},
-      {"slip2", solution.slip.tail(cells)},
-      {"stick", solution.stick},
-      {"dissipated", solution.friction * solution.pressure * solver::norms(solution.slip)},
+std::vector<solver::FieldColumn> solution_columns(const Solution& solution, const OracleAnswer& exact) {
+  using solver::Index;
+  const solver::Grid grid = solution.grid;
+  const Index cells = grid.cells();
+  std::vector<solver::FieldColumn> columns;
+  const auto add = [&](const char* name, const auto& value) {
+    columns.push_back({name, [value](Index first, Index last, double* values) {
+                         for (Index cell = first; cell < last; ++cell) *values++ = value(cell);
+                       }});
   };
+  const auto add_kept = [&](const char* name, const Eigen::ArrayXd& field, Index start) {
+    add(name, [&field, start](Index cell) { return field[start + cell]; });
+  };
+  add("x1", [grid](Index cell) { return grid.x1(cell / grid.n2); });
+  add("x2", [grid](Index cell) { return grid.x2(cell % grid.n2); });
+  add_kept("pressure", solution.pressure, 0);
+  add_kept("q1", solution.traction, 0);
+  add_kept("q2", solution.traction, cells);
+  add_kept("slip1", solution.slip, 0);
+  add_kept("slip2", solution.slip, cells);
+  add_kept("stick", solution.stick, 0);
+  add("dissipated", [&solution, cells](Index cell) {
+    const double s1 = solution.slip[cell];
+    const double s2 = solution.slip[cell + cells];
+    return solution.friction * solution.pressure[cell] * std::sqrt(s1 * s1 + s2 * s2);
+  });
   if (exact.oracle && exact.oracle->shear) {
-    const ExactFields fields = exact_fields(*exact.oracle, solution.grid);
-    columns.push_back({"q1_exact", fields.traction.head(cells)});
-    columns.push_back({"q2_exact", fields.traction.tail(cells)});
+    const auto fields = std::make_shared<const ExactFields>(exact_fields(*exact.oracle, grid));
+    add("q1_exact", [fields](Index cell) { return fields->traction[cell]; });
+    add("q2_exact", [fields, cells](Index cell) { return fields->traction[cells + cell]; });
   }
   return columns;
 }

@@ -32,8 +32,9 @@ std::string solve_text(const Json& result);
 Json profile_json(const solver::Solution& solution, const OracleAnswer& exact);
 
 /// Tractions, pressure, slip, stick and the energy dissipated (J/m^2) of a solution (and the exact traction,
-/// where known) over its cells; slip and dissipated of its step.
-std::vector<solver::Column> solution_columns(const solver::Solution& solution, const OracleAnswer& exact);
+/// where known) over its cells, which the columns refer to; slip and dissipated of its step.
+std::vector<solver::FieldColumn> solution_columns(const solver::Solution& solution,
+                                                  const OracleAnswer& exact);
 
 /// Writes these, where there is pressure.
 void write_solution_fields(const std::filesystem::path& file, const solver::Solution& solution,

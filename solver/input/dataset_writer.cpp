@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 #include <hdf5.h>
 
-#include <algorithm>
 #include <stdexcept>
 
 #include "solver/input/whole_file.hpp"
@@ -39,39 +38,56 @@ void add_dataset(hid_t file, const std::string& name, hid_t type, const void* va
   }
 }
 
-/// The bytes of an HDF5 file, made in memory: a disk that is full is no matter of the library's, which keeps
-/// what it could not write and crashes over it when the process ends.
-std::vector<char> hdf5_image(const std::vector<Column>& columns, const std::vector<NamedText>& texts) {
-  std::size_t size = std::size_t{1} << 16;      // beside the values, for names and their tree
+constexpr std::size_t kNames = std::size_t{1} << 16;  ///< bytes of a file beside values: names and their tree
+
+/// Makes an HDF5 file of about so many bytes in memory and writes it from there: a disk that is full is no
+/// matter of the library's, which keeps what it could not write and crashes over it when the process ends.
+void write_hdf5(const std::filesystem::path& path, std::size_t size,
+                const std::function<void(hid_t file)>& add_datasets) {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the library's own messages stay off the terminal
-  for (const Column& column : columns)
-    size += static_cast<std::size_t>(column.values.size()) * sizeof(double);
-  for (const NamedText& text : texts) size += text.text.size();
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_fapl_core(access, size, false);
+  H5Pset_fapl_core(access, kNames + size, false);
   const Handle file(H5Fcreate("fields", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
-  for (const Column& column : columns) {
-    add_dataset(file, column.name, H5T_NATIVE_DOUBLE, column.values.data(),
-                static_cast<std::size_t>(column.values.size()));
-  }
-  for (const NamedText& text : texts) {
-    add_dataset(file, text.name, H5T_NATIVE_UCHAR, text.text.data(), text.text.size());
-  }
+  add_datasets(file);
   H5Fflush(file, H5F_SCOPE_LOCAL);
-  std::vector<char> image(
-      static_cast<std::size_t>(std::max<ssize_t>(H5Fget_file_image(file, nullptr, 0), 0)));
-  if (image.empty() || H5Fget_file_image(file, image.data(), image.size()) < 0) {
+  const ssize_t bytes = H5Fget_file_image(file, nullptr, 0);
+  void* place = nullptr;  // of the pointer to the bytes
+  if (bytes <= 0 || H5Fget_vfd_handle(file, access, &place) < 0 || place == nullptr) {
     throw std::runtime_error("HDF5 gives no image of a file in memory");
   }
-  return image;
+  write_whole_file(path, {*static_cast<char**>(place), static_cast<std::size_t>(bytes)});
 }
+
+std::size_t bytes_of(Index values) { return static_cast<std::size_t>(values) * sizeof(double); }
 
 }  // namespace
 
 void write_datasets(const std::filesystem::path& file, const std::vector<Column>& columns,
                     const std::vector<NamedText>& texts) {
-  const std::vector<char> image = hdf5_image(columns, texts);
-  write_whole_file(file, {image.data(), image.size()});
+  std::size_t size = 0;
+  for (const Column& column : columns) size += bytes_of(column.values.size());
+  for (const NamedText& text : texts) size += text.text.size();
+  write_hdf5(file, size, [&](hid_t to) {
+    for (const Column& column : columns) {
+      add_dataset(to, column.name, H5T_NATIVE_DOUBLE, column.values.data(),
+                  static_cast<std::size_t>(column.values.size()));
+    }
+    for (const NamedText& text : texts) {
+      add_dataset(to, text.name, H5T_NATIVE_UCHAR, text.text.data(), text.text.size());
+    }
+  });
+}
+
+void write_datasets(const std::filesystem::path& file, const std::vector<LongDataset>& datasets) {
+  std::size_t size = 0;
+  for (const LongDataset& dataset : datasets) size += bytes_of(dataset.size);
+  write_hdf5(file, size, [&](hid_t to) {
+    for (const LongDataset& dataset : datasets) {
+      Eigen::ArrayXd values(dataset.size);
+      dataset.write(values.data());
+      add_dataset(to, dataset.name, H5T_NATIVE_DOUBLE, values.data(), static_cast<std::size_t>(dataset.size));
+    }
+  });
 }
 
 }  // namespace slipstick::solver

@@ -167,32 +167,46 @@ std::vector<Column> read_hdf5_columns(const path& file, const std::vector<std::s
   return columns;
 }
 
-void write_csv(std::FILE* file, const std::vector<Column>& columns) {
+/// visit(first, last) for the cells of each row of a grid.
+template <typename Visit>
+void for_rows(const Grid& grid, const Visit& visit) {
+  for (Index first = 0; first < grid.cells(); first += grid.n2) visit(first, first + grid.n2);
+}
+
+void write_csv(std::FILE* file, const Grid& grid, const std::vector<FieldColumn>& columns,
+               const ArrayXd& keep) {
   std::vector<std::string> names;
   names.reserve(columns.size());
-  for (const Column& column : columns) names.push_back(column.name);
+  for (const FieldColumn& column : columns) names.push_back(column.name);
   fmt::print(file, "{}\n", fmt::join(names, ","));
-  for (Index row = 0; row < columns.front().values.size(); ++row) {
-    const char* separator = "";
-    for (const Column& column : columns) {
-      fmt::print(file, "{}{:.17g}", std::exchange(separator, ","), column.values[row]);
+  Eigen::ArrayXXd row(grid.n2, static_cast<Index>(columns.size()));
+  for_rows(grid, [&](Index first, Index last) {
+    for (std::size_t c = 0; c < columns.size(); ++c)
+      columns[c].values(first, last, row.col(static_cast<Index>(c)).data());
+    for (Index cell = first; cell < last; ++cell) {
+      if (keep[cell] == 0.0) continue;
+      const char* separator = "";
+      for (const double value : row.row(cell - first))
+        fmt::print(file, "{}{:.17g}", std::exchange(separator, ","), value);
+      fmt::print(file, "\n");
     }
-    fmt::print(file, "\n");
-  }
+  });
 }
 
 /// VTK's x runs fastest, this project's x2 does.
-void write_vti(std::FILE* file, const Grid& grid, const std::vector<Column>& columns) {
+void write_vti(std::FILE* file, const Grid& grid, const std::vector<FieldColumn>& columns) {
   fmt::print(file,
              "<?xml version=\"1.0\"?>\n<VTKFile type=\"ImageData\" version=\"0.1\" "
              "byte_order=\"LittleEndian\">\n"
              "<ImageData WholeExtent=\"0 {0} 0 {1} 0 0\" Origin=\"{2:.17g} {3:.17g} 0\" "
              "Spacing=\"{4:.17g} {5:.17g} 1\">\n<Piece Extent=\"0 {0} 0 {1} 0 0\">\n<CellData>\n",
              grid.n1, grid.n2, grid.x1(0) - 0.5 * grid.h1, grid.x2(0) - 0.5 * grid.h2, grid.h1, grid.h2);
-  for (const Column& column : columns) {
+  ArrayXd values(grid.cells());
+  for (const FieldColumn& column : columns) {
+    column.values(0, grid.cells(), values.data());
     fmt::print(file, "<DataArray type=\"Float64\" Name=\"{}\" format=\"ascii\">\n", column.name);
     for (Index j = 0; j < grid.n2; ++j) {
-      for (Index i = 0; i < grid.n1; ++i) fmt::print(file, "{:.17g} ", column.values[i * grid.n2 + j]);
+      for (Index i = 0; i < grid.n1; ++i) fmt::print(file, "{:.17g} ", values[i * grid.n2 + j]);
       fmt::print(file, "\n");
     }
     fmt::print(file, "</DataArray>\n");
@@ -200,15 +214,22 @@ void write_vti(std::FILE* file, const Grid& grid, const std::vector<Column>& col
   fmt::print(file, "</CellData>\n</Piece>\n</ImageData>\n</VTKFile>\n");
 }
 
-std::vector<Column> kept_rows(const std::vector<Column>& columns, const ArrayXd& keep) {
-  std::vector<Index> rows;
-  for (Index i = 0; i < keep.size(); ++i) {
-    if (keep[i] != 0.0) rows.push_back(i);
+void write_hdf5(const path& file, const Grid& grid, const std::vector<FieldColumn>& columns,
+                const ArrayXd& keep) {
+  std::vector<LongDataset> datasets;
+  const Index kept = (keep != 0.0).count();
+  for (const FieldColumn& column : columns) {
+    datasets.push_back({column.name, kept, [&](double* values) {
+                          ArrayXd row(grid.n2);
+                          for_rows(grid, [&](Index first, Index last) {
+                            column.values(first, last, row.data());
+                            for (Index cell = first; cell < last; ++cell) {
+                              if (keep[cell] != 0.0) *values++ = row[cell - first];
+                            }
+                          });
+                        }});
   }
-  std::vector<Column> kept;
-  kept.reserve(columns.size());
-  for (const Column& column : columns) kept.push_back({column.name, column.values(rows)});
-  return kept;
+  write_datasets(file, datasets);
 }
 
 }  // namespace
@@ -244,16 +265,28 @@ void require_field_format(const path& file) {
   }
 }
 
-void write_fields(const path& file, const Grid& grid, const std::vector<Column>& columns,
+void write_fields(const path& file, const Grid& grid, const std::vector<FieldColumn>& columns,
                   const ArrayXd& keep) {
   require_field_format(file);
-  if (file.extension() == ".vti") {
-    write_whole_file(file, [&](std::FILE* stream) { write_vti(stream, grid, columns); });
-  } else if (is_hdf5(file)) {
-    write_datasets(file, kept_rows(columns, keep));
+  if (is_hdf5(file)) {
+    write_hdf5(file, grid, columns, keep);
   } else {
-    write_whole_file(file, [&](std::FILE* stream) { write_csv(stream, kept_rows(columns, keep)); });
+    const bool is_vti = file.extension() == ".vti";
+    write_whole_file(file, [&](std::FILE* stream) {
+      is_vti ? write_vti(stream, grid, columns) : write_csv(stream, grid, columns, keep);
+    });
   }
+}
+
+void write_fields(const path& file, const Grid& grid, const std::vector<Column>& columns,
+                  const ArrayXd& keep) {
+  std::vector<FieldColumn> from_kept;
+  for (const Column& column : columns) {
+    from_kept.push_back({column.name, [&values = column.values](Index first, Index last, double* out) {
+                           std::copy(values.data() + first, values.data() + last, out);
+                         }});
+  }
+  write_fields(file, grid, from_kept, keep);
 }
 
 }  // namespace slipstick::solver

@@ -2,6 +2,7 @@
 
 #include <Eigen/Core>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -13,6 +14,13 @@ namespace slipstick::solver {
 struct Column {
   std::string name;
   Eigen::ArrayXd values;
+};
+
+/// A column over the cells of a grid that is worked out where it is written, and kept nowhere: values() of
+/// the cells [first, last).
+struct FieldColumn {
+  std::string name;
+  std::function<void(Index first, Index last, double* values)> values;
 };
 
 /// Reads columns by name from a CSV file (header line, one row a cell) or an HDF5 file (1-D datasets of equal
@@ -29,7 +37,11 @@ void require_field_format(const std::filesystem::path& file);
 
 /// Writes columns over all cells of a grid: .csv and .h5 get the rows where `keep` is not zero; .vti (VTK
 /// image data, for ParaView) gets all cells. The file is the old one or the whole new one, and the same
-/// numbers give the same bytes. Throws InputError if it cannot write.
+/// numbers give the same bytes. No more than one column is held in memory, and of .h5 the file. Throws
+/// InputError if it cannot write.
+void write_fields(const std::filesystem::path& file, const Grid& grid,
+                  const std::vector<FieldColumn>& columns, const Eigen::ArrayXd& keep);
+/// Columns that are kept.
 void write_fields(const std::filesystem::path& file, const Grid& grid, const std::vector<Column>& columns,
                   const Eigen::ArrayXd& keep);
 
