@@ -73,6 +73,10 @@ class TangentialOnGrid {
     return problem_.start.size() > 0 ? problem_.start : ArrayXd::Zero(2 * problem_.friction_bound.size());
   }
   ArrayXd guess() const { return problem_.guess; }
+  void keep_own_rows(const Grid& grid) {
+    problem_.friction_bound = own_rows(grid, std::move(problem_.friction_bound));
+    problem_.initial_displacement = own_rows(grid, std::move(problem_.initial_displacement));
+  }
 
   /// Once: what it refers to takes the place of what the problem was given.
   ConvexProgram program(LinearOperator& op) {

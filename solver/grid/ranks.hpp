@@ -133,4 +133,16 @@ void gather(const Grid& grid, std::span<Real> field) {
   }
 }
 
+/// A field that is known in this rank's rows alone: the memory of the others' rows is given back.
+inline Eigen::ArrayXd own_rows(const Grid& grid, Eigen::ArrayXd field) {
+  if (Ranks::number() == 1) return field;
+  const Share rows = RowBands(grid.n1).own_rows();
+  Eigen::ArrayXd own(field.size());
+  for (Index start = 0; start < field.size(); start += grid.cells()) {
+    own.segment(start + rows.first * grid.n2, rows.count() * grid.n2) =
+        field.segment(start + rows.first * grid.n2, rows.count() * grid.n2);
+  }
+  return own;
+}
+
 }  // namespace slipstick::solver
