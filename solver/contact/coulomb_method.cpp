@@ -138,14 +138,11 @@ void describe_motion(TangentialSolution& solution, const NewtonSummary& newton,
   solution.twist = motion(Motion::twist);
 }
 
-/// Slip where the bodies touch, and the stick area: where the tractions stay within their bound.
-void describe(TangentialSolution& solution, const TangentialProblem& problem, const NestedSummary& nested) {
-  const ArrayXd& bound = problem.friction_bound;
-  const ArrayXd contact = (bound > 0.0).cast<double>();
-  solution.slip = contact.replicate(2, 1) * nested.slip;
-  // Slipping cells lie on their circle up to rounding; within it a cell sticks.
+/// 1 where tractions stay within their bound. Slipping cells lie on their circle up to rounding; within it a
+/// cell sticks.
+ArrayXd stick_area(const ArrayXd& traction, const ArrayXd& bound) {
   constexpr double kOnCircle = 1e-12;
-  solution.stick = contact * (norms(solution.traction) < (1.0 - kOnCircle) * bound).cast<double>();
+  return (norms(traction) < (1.0 - kOnCircle) * bound).cast<double>();
 }
 
 TangentialSolution unloaded(const Grid& grid) {
@@ -196,7 +193,8 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
   solution.grids = std::move(nested.grids);
   solution.safeguards = nested.safeguards;
   solution.bytes = nested.bytes;
-  describe(solution, loads, nested);
+  solution.slip = std::move(nested.slip);
+  solution.stick = stick_area(solution.traction, loads.friction_bound);
   return solution;
 }
 

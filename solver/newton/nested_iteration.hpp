@@ -68,6 +68,7 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
   result.field = problem.guess();
   const bool guessed = result.field.size() > 0;
   if (!guessed) result.field = problem.start();
+  result.field = own_rows(grid, std::move(result.field));
   if (!guessed && can_coarsen(grid)) {
     const Grid coarse = coarser(grid);
     NewtonOptions coarse_options = options;
@@ -81,11 +82,13 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
     result.safeguards = below.safeguards;
     gather(coarse, std::span(below.field.data(), static_cast<std::size_t>(below.field.size())));
     if (below.field.isFinite().all()) {
-      result.field += prolong_to(grid, coarse, below.field - start, problem.parities());
+      const Eigen::ArrayXd change = prolong_to(grid, coarse, below.field - start, problem.parities());
+      in_own_rows(grid, change.size(), [&](Index first, Index count) {
+        result.field.segment(first, count) += change.segment(first, count);
+      });
     }
     multipliers = below.newton.multipliers;
   }
-  result.field = own_rows(grid, std::move(result.field));
   problem.keep_own_rows(grid);
 
   const auto operators = elasticity.make_all<Real>(grid, problem.kernel());
