@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
@@ -75,10 +76,10 @@ NormalSolution solved_pressure(const Scene& scene, const Model& model, double no
   // Shear opens the gap as it likes.
   const Reduction part = opening.size() > 0 ? Reduction(model.grid) : model.pressure_part;
   const double images = part.quadrant() ? 4.0 : 1.0;
-  const Eigen::ArrayXd gap = opening.size() > 0 ? Eigen::ArrayXd(model.gap + opening) : model.gap;
+  Eigen::ArrayXd gap = opening.size() > 0 ? Eigen::ArrayXd(model.gap + opening) : model.gap;
   NormalSolution solution =
       solve_normal_contact(elasticity(scene, model, part), part.grid(),
-                           {.gap = part.restricted(gap),
+                           {.gap = part.restricted(std::move(gap)),
                             .total_pressure = normal_load / model.grid.cell_area() / images,
                             .guess = part.restricted(goal.guess)},
                            {.tolerance = std::max(std::min(kPressureTolerance, scene.tolerance), goal.gap),

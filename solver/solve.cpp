@@ -43,7 +43,7 @@ constexpr double kAlike = 1e-14;
 /// taken.
 TangentialProblem reduced(TangentialProblem& problem, const Reduction& part) {
   const double images = part.quadrant() ? 4.0 : 1.0;
-  TangentialProblem on_part{.friction_bound = part.restricted(problem.friction_bound),
+  TangentialProblem on_part{.friction_bound = part.restricted(std::move(problem.friction_bound)),
                             .initial_displacement = part.restricted(std::move(problem.initial_displacement)),
                             .moment = problem.moment,
                             .twist = problem.twist,
@@ -99,6 +99,7 @@ TangentialSolution find_tractions(Model& model, const Scene& scene, LoadStep& lo
   problem.guess = part.restricted(goal.guess);
   TangentialSolution solution = solve_on(scene, model, part, std::move(problem), progress, goal.gap);
   expand(solution, part);
+  loads.problem.friction_bound = model.friction * pressure;
   return solution;
 }
 

@@ -73,6 +73,10 @@ class TangentialOnGrid {
     return problem_.start.size() > 0 ? problem_.start : ArrayXd::Zero(2 * problem_.friction_bound.size());
   }
   ArrayXd guess() const { return problem_.guess; }
+  void keep_own_rows(const Grid& grid) {
+    problem_.friction_bound = own_rows(grid, std::move(problem_.friction_bound));
+    problem_.initial_displacement = own_rows(grid, std::move(problem_.initial_displacement));
+  }
 
   /// Once: what it refers to takes the place of what the problem was given.
   ConvexProgram program(LinearOperator& op) {
@@ -134,14 +138,11 @@ void describe_motion(TangentialSolution& solution, const NewtonSummary& newton,
   solution.twist = motion(Motion::twist);
 }
 
-/// Slip where the bodies touch, and the stick area: where the tractions stay within their bound.
-void describe(TangentialSolution& solution, const TangentialProblem& problem, const NestedSummary& nested) {
-  const ArrayXd& bound = problem.friction_bound;
-  const ArrayXd contact = (bound > 0.0).cast<double>();
-  solution.slip = contact.replicate(2, 1) * nested.slip;
-  // Slipping cells lie on their circle up to rounding; within it a cell sticks.
+/// 1 where tractions stay within their bound. Slipping cells lie on their circle up to rounding; within it a
+/// cell sticks.
+ArrayXd stick_area(const ArrayXd& traction, const ArrayXd& bound) {
   constexpr double kOnCircle = 1e-12;
-  solution.stick = contact * (norms(solution.traction) < (1.0 - kOnCircle) * bound).cast<double>();
+  return (norms(traction) < (1.0 - kOnCircle) * bound).cast<double>();
 }
 
 TangentialSolution unloaded(const Grid& grid) {
@@ -192,7 +193,8 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
   solution.grids = std::move(nested.grids);
   solution.safeguards = nested.safeguards;
   solution.bytes = nested.bytes;
-  describe(solution, loads, nested);
+  solution.slip = std::move(nested.slip);
+  solution.stick = stick_area(solution.traction, loads.friction_bound);
   return solution;
 }
 

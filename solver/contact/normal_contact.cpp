@@ -34,6 +34,10 @@ class PressureOnGrid {
   PositivePressures admissible() const { return PositivePressures(reachable_, row_); }
   ArrayXd start() const { return ArrayXd::Zero(reachable_.size()); }
   ArrayXd guess() const { return guess_; }
+  void keep_own_rows(const Grid& grid) {
+    reachable_ = own_rows(grid, std::move(reachable_));
+    height_ = own_rows(grid, std::move(height_));
+  }
   ConvexProgram program(LinearOperator&) const {
     return {.g = &height_, .imposed = {{&approach_, total_pressure_}}};
   }
@@ -76,8 +80,8 @@ namespace {
 
 NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& grid,
                                    const NormalProblem& problem, const NormalOptions& options) {
-  const ArrayXd reachable = problem.gap.isFinite().cast<double>();
-  PressureOnGrid contact(grid, reachable, (reachable > 0.0).select(problem.gap, 0.0), problem.total_pressure,
+  PressureOnGrid contact(grid, problem.gap.isFinite().cast<double>(),
+                         problem.gap.isFinite().select(problem.gap, 0.0), problem.total_pressure,
                          problem.guess);
   const NewtonOptions newton{.tolerance = options.tolerance,
                              .max_applications = options.max_applications,

@@ -133,4 +133,22 @@ void gather(const Grid& grid, std::span<Real> field) {
   }
 }
 
+/// work(first, count) for this rank's cells of each component of a field.
+template <typename Work>
+void in_own_rows(const Grid& grid, Index size, const Work& work) {
+  const Share rows = RowBands(grid.n1).own_rows();
+  for (Index start = 0; start < size; start += grid.cells()) {
+    work(start + rows.first * grid.n2, rows.count() * grid.n2);
+  }
+}
+
+/// A field that is known in this rank's rows alone: the memory of the others' rows is given back.
+inline Eigen::ArrayXd own_rows(const Grid& grid, Eigen::ArrayXd field) {
+  if (Ranks::number() == 1) return field;
+  Eigen::ArrayXd own(field.size());
+  in_own_rows(grid, field.size(),
+              [&](Index first, Index count) { own.segment(first, count) = field.segment(first, count); });
+  return own;
+}
+
 }  // namespace slipstick::solver

@@ -53,11 +53,13 @@ concept NestedProblem = requires(Problem problem, const Grid& grid, LinearOperat
   { problem.program(op) } -> std::same_as<ConvexProgram>;      // refers to the problem's own fields
   { problem.start() } -> std::same_as<Eigen::ArrayXd>;         // known in full
   { problem.guess() } -> std::same_as<Eigen::ArrayXd>;         // near the answer; empty: by coarser grids
+  {problem.keep_own_rows(grid)};                               // which are enough once it has been coarsened
   { problem.coarsened(grid, grid) } -> std::same_as<Problem>;  // from the grid to the coarse one
 };
 
 /// Solves from the coarsest grid up, or from a guess, inner iterations in the precision Real. From coarse
-/// grids only the change from start() is taken: start() itself is known in full.
+/// grids only the change from start() is taken: start() itself is known in full. Of several ranks each has
+/// its own rows of the fields.
 template <typename Real, NestedProblem Problem>
 NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Problem problem,
                               const NewtonOptions& options) {
@@ -66,6 +68,7 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
   result.field = problem.guess();
   const bool guessed = result.field.size() > 0;
   if (!guessed) result.field = problem.start();
+  result.field = own_rows(grid, std::move(result.field));
   if (!guessed && can_coarsen(grid)) {
     const Grid coarse = coarser(grid);
     NewtonOptions coarse_options = options;
@@ -77,11 +80,16 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
     NestedSummary below = solve_nested_in<Real>(elasticity, coarse, std::move(on_coarse), coarse_options);
     result.grids = std::move(below.grids);
     result.safeguards = below.safeguards;
+    gather(coarse, std::span(below.field.data(), static_cast<std::size_t>(below.field.size())));
     if (below.field.isFinite().all()) {
-      result.field += prolong_to(grid, coarse, below.field - start, problem.parities());
+      const Eigen::ArrayXd change = prolong_to(grid, coarse, below.field - start, problem.parities());
+      in_own_rows(grid, change.size(), [&](Index first, Index count) {
+        result.field.segment(first, count) += change.segment(first, count);
+      });
     }
     multipliers = below.newton.multipliers;
   }
+  problem.keep_own_rows(grid);
 
   const auto operators = elasticity.make_all<Real>(grid, problem.kernel());
   const auto admissible = problem.admissible();
@@ -94,22 +102,23 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
   result.safeguards += result.newton.safeguards;
   result.slip = newton.take_slip();
   result.displacement = newton.take_displacement();
-  for (Eigen::ArrayXd* const field : {&result.field, &result.displacement, &result.slip}) {
-    gather(grid, std::span(field->data(), static_cast<std::size_t>(field->size())));
-  }
   result.grids.push_back(
       {grid.n1, grid.n2, newton.applications(), result.newton.iterations, result.newton.gap});
   result.bytes = operators->bytes() + newton.bytes(own_cells(grid), program.imposed.size());
   return result;
 }
 
-/// In the precision that is asked for.
+/// In the precision that is asked for. Fields are gathered when operators and workspaces are gone.
 template <NestedProblem Problem>
 NestedSummary solve_nested(const Elasticity& elasticity, const Grid& grid, Problem problem,
                            const NewtonOptions& options) {
-  return elasticity.precision == Precision::mixed
-             ? solve_nested_in<float>(elasticity, grid, std::move(problem), options)
-             : solve_nested_in<double>(elasticity, grid, std::move(problem), options);
+  NestedSummary result = elasticity.precision == Precision::mixed
+                             ? solve_nested_in<float>(elasticity, grid, std::move(problem), options)
+                             : solve_nested_in<double>(elasticity, grid, std::move(problem), options);
+  for (Eigen::ArrayXd* const field : {&result.field, &result.displacement, &result.slip}) {
+    gather(grid, std::span(field->data(), static_cast<std::size_t>(field->size())));
+  }
+  return result;
 }
 
 }  // namespace slipstick::solver
