@@ -22,19 +22,24 @@ namespace {
 
 using Eigen::ArrayXd;
 
-/// Fields of one value a cell that a solve holds at once on the whole grid, temporaries included: those of
-/// the solution and those that its results are worked out from.
-constexpr double kFieldsHeld = 20.0;
+/// Fields of one value a cell that a solve holds on the whole grid beside operators and workspaces,
+constexpr double kFieldsHeld = 4.0;
+/// those of the tangential problem on the part of the grid where that is solved, of a rank its own rows, and
+constexpr double kFieldsOfPart = 5.0;
+/// those of the whole grid that it holds before and after, temporaries included, without the operators.
+constexpr double kFieldsAround = 12.5;
 /// Those that the paper's method holds besides.
 constexpr double kPaperFields = 20.0;
-/// Of the tangential problem and its solution, on the part of the grid where that is solved; of the step
-/// before, or of the turn before, on the whole of it.
-constexpr double kFieldsOfPart = 2.0;
-constexpr double kFieldsBefore = 30.0;
+/// Of the step before, or of the turn before, on the whole grid.
+constexpr double kFieldsBefore = 37.0;
 /// Of pressure and tractions solved in turn besides, on the whole grid: Anderson's combination and guesses.
-constexpr double kFieldsOfTurns = 38.0;
+constexpr double kFieldsOfTurns = 44.0;
 /// The program and its libraries; on several ranks what MPI takes besides.
-double program_bytes() { return (Ranks::number() > 1 ? 50.0 : 26.0) * 0x1p20; }
+double program_bytes() { return (Ranks::number() > 1 ? 36.0 : 26.0) * 0x1p20; }
+/// Of so many fields.
+double field_bytes(double fields, Index cells) {
+  return fields * sizeof(double) * static_cast<double>(cells);
+}
 /// Cells left free on each side of the expected contact where the scene does not give an extent.
 constexpr double kMarginCells = 2.0;
 /// With cells longer than so many times their width every method crawls.
@@ -246,9 +251,9 @@ bool may_have_translations(const Scene& scene, const Model& model) {
 
 Memory predicted_memory(const Scene& scene, const Model& model) {
   const bool follows = scene.steps.size() > 1 || scene.cycles > 1 || model.shear_coupling;
-  const double turns = model.shear_coupling ? kFieldsOfTurns : 0.0;
-  const double fields = (kFieldsHeld + (follows ? kFieldsBefore : 0.0) + turns) * sizeof(double) *
-                        static_cast<double>(model.grid.cells());
+  const double fields = field_bytes(
+      kFieldsHeld + (follows ? kFieldsBefore : 0.0) + (model.shear_coupling ? kFieldsOfTurns : 0.0),
+      model.grid.cells());
   const Grid& part = model.pressure_part.grid();
   const Elasticity on_part = elasticity(scene, model, model.pressure_part);
   const double normal = scene.pressure == PressureModel::solved ? predicted_normal_bytes(on_part, part) : 0.0;
@@ -263,12 +268,15 @@ Memory predicted_memory(const Scene& scene, const Model& model) {
   if (scene.method == Method::paper) {
     const double op = predicted_bytes(scene.op, grid, tangential_kernel(),
                                       {.threads = model.threads, .diagonal = elastic.diagonal});
-    return {std::max({normal, op, coupling}),
-            program_bytes() + fields + kPaperFields * sizeof(double) * static_cast<double>(grid.cells())};
+    return {std::max({normal, op, coupling}), program_bytes() + fields +
+                                                  field_bytes(kFieldsAround, model.grid.cells()) +
+                                                  field_bytes(kPaperFields, grid.cells())};
   }
-  return {std::max({normal, predicted_coulomb_bytes(elastic, grid, may_have_translations(scene, model)),
-                    coupling}),
-          program_bytes() + fields + kFieldsOfPart * sizeof(double) * static_cast<double>(grid.cells())};
+  const double solver = std::max(
+      {normal, predicted_coulomb_bytes(elastic, grid, may_have_translations(scene, model)), coupling});
+  const double on_own_rows = field_bytes(kFieldsOfPart, RowBands(grid.n1).own_rows().count() * grid.n2);
+  const double around = field_bytes(kFieldsAround, model.grid.cells());
+  return {solver, program_bytes() + std::max(fields + on_own_rows, around - solver)};
 }
 
 namespace {
@@ -298,7 +306,7 @@ Model build_model(const Scene& scene) {
   model.hertzian = is_hertzian(surfaces) && scene.pressure != PressureModel::file && !shear_presses &&
                    !scene.ends_at_grid_edge;
   model.forces = std::any_of(scene.steps.begin(), scene.steps.end(), brings_translation);
-  require_memory(scene, grid, kFieldsHeld * sizeof(double) * static_cast<double>(grid.cells()));
+  require_memory(scene, grid, field_bytes(kFieldsAround, grid.cells()));
   model.length_unit = grid.h1;
   model.stress_unit = pair.shear_modulus();
   const double compliance_unit = pair.shear_compliance;

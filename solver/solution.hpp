@@ -53,14 +53,16 @@ struct Solution {
   Status status = Status::not_converged;
   std::string message;  ///< why it did not converge
 
-  Grid grid{};                          ///< m
-  Eigen::ArrayXd pressure;              ///< Pa
-  Eigen::ArrayXd traction;              ///< Pa, (q1, q2) on the lower body
-  Eigen::ArrayXd elastic_displacement;  ///< m, (u1, u2) by them, of the lower surface less that of the upper
-  Eigen::ArrayXd slip;                  ///< m, (s1, s2) in this step
-  Eigen::ArrayXd stick;                 ///< 1 where the bodies stick, else 0
-  double friction = 0.0;                ///< mu
-  double shear_modulus = 0.0;           ///< Pa, of the pair: 1/G = 1/G_1 + 1/G_2
+  Grid grid{};              ///< m
+  Eigen::ArrayXd pressure;  ///< Pa
+  Eigen::ArrayXd traction;  ///< Pa, (q1, q2) on the lower body
+  /// m, (u1, u2) by them, of the lower surface less that of the upper. Several ranks may have their own rows
+  /// alone.
+  Eigen::ArrayXd elastic_displacement;
+  Eigen::ArrayXd slip;         ///< m, (s1, s2) in this step
+  Eigen::ArrayXd stick;        ///< 1 where the bodies stick, else 0
+  double friction = 0.0;       ///< mu
+  double shear_modulus = 0.0;  ///< Pa, of the pair: 1/G = 1/G_1 + 1/G_2
   std::vector<Omission> left_out;
 
   Detail detail = Detail::all;

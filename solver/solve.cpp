@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -55,6 +56,9 @@ TangentialProblem reduced(TangentialProblem& problem, const Reduction& part) {
 }
 
 void expand(TangentialSolution& solution, const Reduction& part) {
+  if (!part.trimmed() && !part.quadrant()) return;
+  ArrayXd& u = solution.elastic_displacement;
+  gather(part.grid(), std::span(u.data(), static_cast<std::size_t>(u.size())));
   for (ArrayXd* const field : {&solution.traction, &solution.elastic_displacement, &solution.slip}) {
     *field = part.expanded(*field, torsion_symmetry());
   }

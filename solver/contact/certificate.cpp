@@ -45,11 +45,12 @@ struct CertificateSums {
   }
 };
 
-/// Rotation: a field, or what works it out, in cells of one row of the sweep's.
+/// Rotation: a field, or what works it out, in cells of one row. row: see Sweep.
 template <class Rotation>
-Certificate certificate_of(const Sweep& all, const TractionField& field, const Eigen::ArrayXd& friction_bound,
+Certificate certificate_of(Index row, const TractionField& field, const Eigen::ArrayXd& friction_bound,
                            const Rotation& rotation, double moment, const std::array<double, 2>& force,
                            double least_eigenvalue) {
+  const Sweep all = Sweep::whole(friction_bound.size(), row);
   const Eigen::Index cells = friction_bound.size();
   const Eigen::ArrayXd& q = field.traction;
   const Eigen::ArrayXd& u = field.elastic_displacement;
@@ -81,7 +82,7 @@ Certificate certificate_of(const Sweep& all, const TractionField& field, const E
 
   Certificate certificate{};
   certificate.gap = sums.gap == 0.0 ? 0.0 : sums.gap / sums.energy;
-  const FrictionDiscs discs(friction_bound);
+  const FrictionDiscs discs(friction_bound, row);
   const double energy_error = discs.energy_error(q, s, least_eigenvalue);
   certificate.energy_error = energy_error == 0.0 ? 0.0 : energy_error / sums.energy;
   const double rounding = discs.gap_rounding(s, u);
@@ -99,14 +100,13 @@ Certificate certificate_of(const Sweep& all, const TractionField& field, const E
 Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound,
                     const Eigen::ArrayXd& rotation, double moment, const std::array<double, 2>& force,
                     double least_eigenvalue) {
-  return certificate_of(Sweep::whole(friction_bound.size()), field, friction_bound, rotation, moment, force,
-                        least_eigenvalue);
+  return certificate_of(0, field, friction_bound, rotation, moment, force, least_eigenvalue);
 }
 
 Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound, const Grid& grid,
                     double moment, const std::array<double, 2>& force, double least_eigenvalue) {
-  return certificate_of(Sweep::whole(grid.cells(), grid.n2), field, friction_bound,
-                        MotionField(grid, 0.0, 0.0, 1.0), moment, force, least_eigenvalue);
+  return certificate_of(grid.n2, field, friction_bound, MotionField(grid, 0.0, 0.0, 1.0), moment, force,
+                        least_eigenvalue);
 }
 
 std::string beyond(const Certificate& certificate, const CertificateBounds& bounds) {

@@ -100,13 +100,14 @@ class TangentialOnGrid {
 
   /// The same part of the limit loads on the coarse grid.
   TangentialOnGrid coarsened(const Grid& grid, const Grid& coarse) const {
-    TangentialProblem problem = problem_;
-    problem.friction_bound = restrict_to(coarse, grid, problem_.friction_bound);
-    if (problem_.start.size() > 0) problem.start = restrict_to(coarse, grid, problem_.start);
-    problem.guess = {};
-    if (problem_.initial_displacement.size() > 0) {
-      problem.initial_displacement = restrict_to(coarse, grid, problem_.initial_displacement);
-    }
+    TangentialProblem problem{
+        .friction_bound = restrict_to(coarse, grid, problem_.friction_bound),
+        .initial_displacement = restrict_to(coarse, grid, problem_.initial_displacement),
+        .moment = problem_.moment,
+        .twist = problem_.twist,
+        .force = problem_.force,
+        .displacement = problem_.displacement,
+        .start = restrict_to(coarse, grid, problem_.start)};
     const double scaled = limit_of(problem, coarse).factor / limit_of(problem_, grid).factor;
     const double scale = std::isfinite(scaled) ? scaled : 1.0;  // no load: nothing to scale
     if (problem.moment) *problem.moment *= scale;

@@ -108,14 +108,15 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
   return result;
 }
 
-/// In the precision that is asked for. Fields are gathered when operators and workspaces are gone.
+/// In the precision that is asked for. Field and slip are gathered when operators and workspaces are gone; of
+/// the displacement a rank has its own rows.
 template <NestedProblem Problem>
 NestedSummary solve_nested(const Elasticity& elasticity, const Grid& grid, Problem problem,
                            const NewtonOptions& options) {
   NestedSummary result = elasticity.precision == Precision::mixed
                              ? solve_nested_in<float>(elasticity, grid, std::move(problem), options)
                              : solve_nested_in<double>(elasticity, grid, std::move(problem), options);
-  for (Eigen::ArrayXd* const field : {&result.field, &result.displacement, &result.slip}) {
+  for (Eigen::ArrayXd* const field : {&result.field, &result.slip}) {
     gather(grid, std::span(field->data(), static_cast<std::size_t>(field->size())));
   }
   return result;

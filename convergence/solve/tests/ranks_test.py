@@ -24,6 +24,9 @@ CASES = (
 )
 # Several ranks do not exchange the rows and columns of a square quadrant, as one does.
 ROUNDING = 1e-13
+# Memory of a rank of four, where the program and MPI are a half of it; and how far off its prediction may be.
+LESS = 0.75
+AS_PREDICTED = 0.2
 
 
 def command(ranks, arguments):
@@ -70,6 +73,19 @@ def agrees_on_a_square_quadrant(folder):
         assert math.isclose(alone[key], two[key], rel_tol=ROUNDING), f"{key}: {alone[key]} and {two[key]}"
 
 
+def holds_less(folder):
+    """A rank of four takes less memory than one process, and about what was said of it before."""
+    scene = ["solve", f"{SCENES}/rough_sphere.toml", "--set", "grid.cells=[512,512]", *FULL]
+    result = folder / "memory.json"
+    assert run(0, [*scene, "--json", str(result)]).returncode == 0
+    alone = json.loads(result.read_text())["peak_bytes"]
+    assert run(4, [*scene, "--json", str(result)]).returncode == 0
+    shared = json.loads(result.read_text())
+    peak = max(shared["ranks"]["peak_bytes"])
+    assert peak <= LESS * alone, f"{peak} bytes on a rank of four, {alone} on one"
+    assert abs(shared["predicted_bytes"] / peak - 1.0) <= AS_PREDICTED, f"{peak}, said: {shared['predicted_bytes']}"
+
+
 def is_refused(arguments, reason):
     done = run(2, arguments)
     assert done.returncode == 2, f"{arguments}: exit code {done.returncode}"
@@ -113,6 +129,7 @@ def main():
         for case in CASES:
             agrees(*case, pathlib.Path(folder))
         agrees_on_a_square_quadrant(pathlib.Path(folder))
+        holds_less(pathlib.Path(folder))
         survives_a_death(pathlib.Path(folder))
         is_refused(["solve", paper, "--accuracy", "1e-2"], "not on several ranks")
         is_refused(["solve", paper, "--set", 'solver.operator="direct"', *FULL], "allowed there: \"dcfft\"")
