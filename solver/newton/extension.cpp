@@ -1,17 +1,19 @@
 #include "solver/newton/extension.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 namespace slipstick::solver {
 namespace {
 
-/// Of a cell's neighbours along each axis, from the next one on.
-constexpr std::array<double, 2> kNeighbours{0.5, 0.25};
-constexpr Index kReach = kNeighbours.size();
+/// A cell's neighbours along each axis, up to this far off, count each for this part of the one nearer to it.
+/// At 1,024 cells, half of them in contact, a reach of two takes two fifths more applications.
+constexpr Index kReach = 8;
+constexpr double kNearest = 0.5;
+constexpr double kDecay = 0.7;
 /// Beside the neighbours' weights: what lets the continuation fade where few of them are free.
-constexpr double kFade = 0.5;
+/// Of 0.5, contacts of few cells take an eighth more applications.
+constexpr double kFade = 1.0;
 
 }  // namespace
 
@@ -20,7 +22,8 @@ Extension<Real>::Extension(const Grid& grid)
     : grid_(grid),
       weight_(grid.cells()),
       work_(grid.cells()),
-      column_sums_(Field::Zero(grid.n2 + 2 * kReach)) {}
+      column_sums_(Field::Zero(grid.n2 + 2 * kReach)),
+      sums_(grid.n2) {}
 
 /// Row by row the sum over neighbours of a field, which is zero beyond the grid.
 template <typename Real>
@@ -33,15 +36,16 @@ void Extension<Real>::spread(Field& in, const Row& take_row) {
   auto inner = column_sums_.segment(kReach, grid_.n2);
   for (Index i = bands.own_rows().first; i < bands.own_rows().last; ++i) {
     inner = row(i);
-    for (Index k = 1; k <= kReach; ++k) {
-      const auto weight = static_cast<Real>(kNeighbours[static_cast<std::size_t>(k - 1)]);
+    Real weight = kNearest;
+    for (Index k = 1; k <= kReach; ++k, weight *= Real(kDecay)) {
       if (i >= k) inner += weight * row(i - k);
       if (i + k < grid_.n1) inner += weight * row(i + k);
     }
+    sums_ = inner;
     const auto shifted = [&](Index k) { return column_sums_.segment(kReach + k, grid_.n2); };
-    static_assert(kReach == 2);
-    take_row(i * grid_.n2, inner + static_cast<Real>(kNeighbours[0]) * (shifted(-1) + shifted(1)) +
-                               static_cast<Real>(kNeighbours[1]) * (shifted(-2) + shifted(2)));
+    weight = kNearest;
+    for (Index k = 1; k <= kReach; ++k, weight *= Real(kDecay)) sums_ += weight * (shifted(-k) + shifted(k));
+    take_row(i * grid_.n2, sums_);
   }
 }
 
