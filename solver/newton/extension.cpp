@@ -1,6 +1,7 @@
 #include "solver/newton/extension.hpp"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 namespace slipstick::solver {
@@ -8,12 +9,23 @@ namespace {
 
 /// A cell's neighbours along each axis, up to this far off, count each for this part of the one nearer to it.
 /// At 1,024 cells, half of them in contact, a reach of two takes two fifths more applications.
-constexpr Index kReach = 8;
+constexpr int kReach = 8;
 constexpr double kNearest = 0.5;
 constexpr double kDecay = 0.7;
 /// Beside the neighbours' weights: what lets the continuation fade where few of them are free.
 /// Of 0.5, contacts of few cells take an eighth more applications.
 constexpr double kFade = 1.0;
+
+/// The sum over neighbours on both sides of what `at` gives at their distance.
+template <typename Real, typename At, int... K>
+auto sum_beside(const At& at, std::integer_sequence<int, K...>) {
+  static constexpr auto kWeights = [] {
+    std::array<Real, kReach> weights{static_cast<Real>(kNearest)};
+    for (std::size_t k = 1; k < kReach; ++k) weights[k] = static_cast<Real>(kDecay) * weights[k - 1];
+    return weights;
+  }();
+  return ((kWeights[K] * (at(-1 - K) + at(1 + K))) + ...);
+}
 
 }  // namespace
 
@@ -23,7 +35,7 @@ Extension<Real>::Extension(const Grid& grid)
       weight_(grid.cells()),
       work_(grid.cells()),
       column_sums_(Field::Zero(grid.n2 + 2 * kReach)),
-      sums_(grid.n2) {}
+      zeros_(Field::Zero(grid.n2)) {}
 
 /// Row by row the sum over neighbours of a field, which is zero beyond the grid.
 template <typename Real>
@@ -32,20 +44,15 @@ void Extension<Real>::spread(Field& in, const Row& take_row) {
   const RowBands bands(grid_.n1);
   Ranks::gather_beside(std::span<Real>(in.data(), static_cast<std::size_t>(in.size())), grid_.n1,
                        bands.rows_of_rank(), kReach);
-  const auto row = [&](Index i) { return in.segment(i * grid_.n2, grid_.n2); };
-  auto inner = column_sums_.segment(kReach, grid_.n2);
+  constexpr auto kDistances = std::make_integer_sequence<int, kReach>();
+  const auto inner = [&](Index k) { return column_sums_.segment(kReach + k, grid_.n2); };
   for (Index i = bands.own_rows().first; i < bands.own_rows().last; ++i) {
-    inner = row(i);
-    Real weight = kNearest;
-    for (Index k = 1; k <= kReach; ++k, weight *= Real(kDecay)) {
-      if (i >= k) inner += weight * row(i - k);
-      if (i + k < grid_.n1) inner += weight * row(i + k);
-    }
-    sums_ = inner;
-    const auto shifted = [&](Index k) { return column_sums_.segment(kReach + k, grid_.n2); };
-    weight = kNearest;
-    for (Index k = 1; k <= kReach; ++k, weight *= Real(kDecay)) sums_ += weight * (shifted(-k) + shifted(k));
-    take_row(i * grid_.n2, sums_);
+    const auto row = [&](Index k) {
+      const bool inside = 0 <= i + k && i + k < grid_.n1;
+      return inside ? in.segment((i + k) * grid_.n2, grid_.n2) : zeros_.segment(0, grid_.n2);
+    };
+    inner(0) = row(0) + sum_beside<Real>(row, kDistances);
+    take_row(i * grid_.n2, inner(0) + sum_beside<Real>(inner, kDistances));
   }
 }
 

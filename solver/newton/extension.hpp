@@ -45,7 +45,7 @@ class Extension {
   Field weight_;  ///< of the sum near by; 0 in the free cells
   Field work_;
   Field column_sums_;  ///< of a row, with a margin
-  Field sums_;         ///< of a row
+  Field zeros_;        ///< a row beyond the grid
 };
 
 extern template class Extension<double>;
