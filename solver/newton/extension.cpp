@@ -1,41 +1,34 @@
 #include "solver/newton/extension.hpp"
 
 #include <algorithm>
-#include <array>
 #include <utility>
 
 namespace slipstick::solver {
 namespace {
 
 /// A cell's neighbours along each axis, up to this far off, count each for this part of the one nearer to it.
-/// At 1,024 cells, half of them in contact, a reach of two takes two fifths more applications.
-constexpr int kReach = 8;
+/// Spots of a finer mesh have more cells: at 1,024, half of them in contact, a reach of two takes two fifths
+/// more applications. On coarse meshes more costs more than it spares.
+constexpr Index kLeastReach = 2;
+constexpr Index kMostReach = 8;
+constexpr Index kSidesOfReach = 64;
 constexpr double kNearest = 0.5;
 constexpr double kDecay = 0.7;
 /// Beside the neighbours' weights: what lets the continuation fade where few of them are free.
 /// Of 0.5, contacts of few cells take an eighth more applications.
 constexpr double kFade = 1.0;
 
-/// The sum over neighbours on both sides of what `at` gives at their distance.
-template <typename Real, typename At, int... K>
-auto sum_beside(const At& at, std::integer_sequence<int, K...>) {
-  static constexpr auto kWeights = [] {
-    std::array<Real, kReach> weights{static_cast<Real>(kNearest)};
-    for (std::size_t k = 1; k < kReach; ++k) weights[k] = static_cast<Real>(kDecay) * weights[k - 1];
-    return weights;
-  }();
-  return ((kWeights[K] * (at(-1 - K) + at(1 + K))) + ...);
-}
-
 }  // namespace
 
 template <typename Real>
 Extension<Real>::Extension(const Grid& grid)
     : grid_(grid),
+      reach_(std::clamp(std::min(grid.n1, grid.n2) / kSidesOfReach, kLeastReach, kMostReach)),
       weight_(grid.cells()),
       work_(grid.cells()),
-      column_sums_(Field::Zero(grid.n2 + 2 * kReach)),
-      zeros_(Field::Zero(grid.n2)) {}
+      column_sums_(Field::Zero(grid.n2 + 2 * reach_)),
+      zeros_(Field::Zero(grid.n2)),
+      sums_(grid.n2) {}
 
 /// Row by row the sum over neighbours of a field, which is zero beyond the grid.
 template <typename Real>
@@ -43,16 +36,22 @@ template <typename Row>
 void Extension<Real>::spread(Field& in, const Row& take_row) {
   const RowBands bands(grid_.n1);
   Ranks::gather_beside(std::span<Real>(in.data(), static_cast<std::size_t>(in.size())), grid_.n1,
-                       bands.rows_of_rank(), kReach);
-  constexpr auto kDistances = std::make_integer_sequence<int, kReach>();
-  const auto inner = [&](Index k) { return column_sums_.segment(kReach + k, grid_.n2); };
+                       bands.rows_of_rank(), reach_);
+  const auto inner = [&](Index k) { return column_sums_.segment(reach_ + k, grid_.n2); };
   for (Index i = bands.own_rows().first; i < bands.own_rows().last; ++i) {
     const auto row = [&](Index k) {
       const bool inside = 0 <= i + k && i + k < grid_.n1;
       return inside ? in.segment((i + k) * grid_.n2, grid_.n2) : zeros_.segment(0, grid_.n2);
     };
-    inner(0) = row(0) + sum_beside<Real>(row, kDistances);
-    take_row(i * grid_.n2, inner(0) + sum_beside<Real>(inner, kDistances));
+    const auto add_beside = [&](const auto& at, auto&& sum) {
+      Real weight = kNearest;
+      for (Index k = 1; k <= reach_; ++k, weight *= Real(kDecay)) sum += weight * (at(-k) + at(k));
+    };
+    inner(0) = row(0);
+    add_beside(row, inner(0));
+    sums_ = inner(0);
+    add_beside(inner, sums_);
+    take_row(i * grid_.n2, sums_);
   }
 }
 

@@ -42,10 +42,12 @@ class Extension {
   void spread(Field& in, const Row& take_row);
 
   Grid grid_;
+  Index reach_;   ///< cells, along each axis
   Field weight_;  ///< of the sum near by; 0 in the free cells
   Field work_;
   Field column_sums_;  ///< of a row, with a margin
   Field zeros_;        ///< a row beyond the grid
+  Field sums_;         ///< of a row
 };
 
 extern template class Extension<double>;
