@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "solver/grid/ranks.hpp"
 #include "solver/grid/sweep.hpp"
@@ -42,10 +43,12 @@ class Extension {
   void spread(Field& in, const Row& take_row);
 
   Grid grid_;
+  Index reach_;   ///< cells, along each axis
   Field weight_;  ///< of the sum near by; 0 in the free cells
   Field work_;
-  int threads_;
-  Field column_sums_;  ///< of a row, with a margin, for each thread
+  Field zeros_;                     ///< a row beyond the grid
+  std::vector<Field> column_sums_;  ///< of a row, with a margin, for each thread
+  std::vector<Field> sums_;         ///< of a row, likewise
 };
 
 extern template class Extension<double>;
