@@ -44,6 +44,7 @@ struct RoughFace {
 
 /// The aim is 40 and its bound 60 of them, on any mesh.
 constexpr double kMostApplications = 60.0;
+constexpr double kWantedApplications = 40.0;
 constexpr double kTolerance = 1e-10;
 constexpr double kRounding = 1e-12;
 
@@ -71,6 +72,14 @@ TEST(RoughContact, TakesFewApplicationsAtAnyContactFraction) {
     last = fraction;
   }
   EXPECT_EQ(last, 1.0);
+}
+
+/// Where spots have many cells, residuals are continued further: else this takes 46.
+TEST(RoughContact, TakesFewApplicationsOnAFineMesh) {
+  const RoughFace face(512);
+  const NormalSolution found = face.pressed(0.25);
+  EXPECT_EQ(found.status, Status::converged) << found.message;
+  EXPECT_LE(finest_grid_applications(found.grids), kWantedApplications);
 }
 
 /// Then there is no inequality left: K p + h is the approach everywhere.
