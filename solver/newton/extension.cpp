@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <utility>
 
-#include "solver/grid/threads.hpp"
-
 namespace slipstick::solver {
 namespace {
 
@@ -20,6 +18,12 @@ constexpr double kDecay = 0.7;
 /// Of 0.5, contacts of few cells take an eighth more applications.
 constexpr double kFade = 1.0;
 
+/// Cells of a row that are mixed together: the neighbours of one are in the blocks beside it at most.
+constexpr Index kBlock = 16;
+static_assert(kBlock >= kMostReach);
+/// Cells of a row that are summed at once.
+constexpr Index kChunk = 256;
+
 }  // namespace
 
 template <typename Real>
@@ -28,69 +32,107 @@ Extension<Real>::Extension(const Grid& grid)
       reach_(std::clamp(std::min(grid.n1, grid.n2) / kSidesOfReach, kLeastReach, kMostReach)),
       weight_(grid.cells()),
       work_(grid.cells()),
-      zeros_(Field::Zero(grid.n2)) {
-  for (int thread = 0; thread < ThreadPool::available(); ++thread) {
-    column_sums_.push_back(Field::Zero(grid.n2 + 2 * reach_));
-    sums_.emplace_back(grid.n2);
-  }
+      mixed_(Sweep::whole(0, grid.n2)) {}
+
+template <typename Real>
+void Extension<Real>::bring_beside(Field& field) const {
+  Ranks::gather_beside(std::span<Real>(field.data(), static_cast<std::size_t>(field.size())), grid_.n1,
+                       RowBands(grid_.n1).rows_of_rank(), reach_);
 }
 
-/// Row by row the sum over neighbours of a field, which is zero beyond the grid.
+/// Counts free cells near each block; what is beyond the grid is not free.
 template <typename Real>
-template <typename Row>
-void Extension<Real>::spread(Field& in, const Row& take_row) {
-  const RowBands bands(grid_.n1);
-  Ranks::gather_beside(std::span<Real>(in.data(), static_cast<std::size_t>(in.size())), grid_.n1,
-                       bands.rows_of_rank(), reach_);
-  const Share own = bands.own_rows();
-  in_parts(static_cast<int>(sums_.size()), own.count(), [&](int thread, Index first, Index last) {
-    Field& column_sums = column_sums_[static_cast<std::size_t>(thread)];
-    Field& sums = sums_[static_cast<std::size_t>(thread)];
-    const auto inner = [&](Index k) { return column_sums.segment(reach_ + k, grid_.n2); };
-    const auto add_beside = [&](const auto& at, auto&& sum) {
-      Real weight = kNearest;
-      for (Index k = 1; k <= reach_; ++k, weight *= Real(kDecay)) sum += weight * (at(-k) + at(k));
+void Extension<Real>::find_mixed(const Field& free) {
+  const Share own = RowBands(grid_.n1).own_rows();
+  const Index blocks = (grid_.n2 + kBlock - 1) / kBlock;
+  const Index rows_near = 2 * reach_ + 1;
+  const auto cells_of = [&](auto& field, Index row, Index block) {
+    const Index first = block * kBlock;
+    return field.segment(row * grid_.n2 + first, std::min(kBlock, grid_.n2 - first));
+  };
+  Eigen::ArrayXXi counts = Eigen::ArrayXXi::Zero(blocks + 2, own.count() + 2 * reach_);
+  const Index row_0 = own.first - reach_;
+  for (Index row = std::max<Index>(row_0, 0); row < std::min(own.last + reach_, grid_.n1); ++row) {
+    for (Index block = 0; block < blocks; ++block) {
+      counts(block + 1, row - row_0) = static_cast<int>(cells_of(free, row, block).sum());
+    }
+  }
+  Eigen::ArrayXi near(blocks + 2);
+  for (Index row = own.first; row < own.last; ++row) {
+    near = counts.middleCols(row - own.first, rows_near).rowwise().sum();
+    for (Index block = 0; block < blocks; ++block) {
+      const int count = near.template segment<3>(block).sum();
+      cells_of(weight_, row, block)
+          .setConstant(count > 0 && count < 3 * kBlock * rows_near ? Real(1) : Real(0));
+    }
+  }
+  mixed_.assign(grid_.cells(), [&](Index cell) { return weight_[cell] != Real(0); });
+}
+
+/// take(first, sums) for cells of mixed_: the sums over neighbours of a field, which is zero beyond the grid.
+template <typename Real>
+template <typename Take>
+void Extension<Real>::spread(const Field& in, const Take& take) const {
+  using Line = Eigen::Array<Real, kChunk + 2 * kMostReach, 1>;
+  const Line zeros = Line::Zero();
+  const auto add_beside = [&](const auto& at, auto&& sum) {
+    Real weight = kNearest;
+    for (Index k = 1; k <= reach_; ++k, weight *= Real(kDecay)) sum += weight * (at(-k) + at(k));
+  };
+  const auto spread_in = [&](Index row, Index first, Index last) {
+    const Index left = std::max<Index>(first - reach_, 0);
+    const Index count = std::min(last + reach_, grid_.n2) - left;
+    const auto line = [&](Index k) {
+      const bool inside = 0 <= row + k && row + k < grid_.n1;
+      return Eigen::Map<const Field>(inside ? in.data() + (row + k) * grid_.n2 + left : zeros.data(), count);
     };
-    for (Index i = own.first + first; i < own.first + last; ++i) {
-      const auto row = [&](Index k) {
-        const bool inside = 0 <= i + k && i + k < grid_.n1;
-        return inside ? in.segment((i + k) * grid_.n2, grid_.n2) : zeros_.segment(0, grid_.n2);
-      };
-      inner(0) = row(0);
-      add_beside(row, inner(0));
-      sums = inner(0);
-      add_beside(inner, sums);
-      take_row(i * grid_.n2, sums);
+    Line column_sums = zeros;
+    auto within = column_sums.segment(left - (first - reach_), count);
+    within = line(0);
+    add_beside(line, within);
+    const auto shifted = [&](Index k) { return column_sums.segment(reach_ + k, last - first); };
+    Line sums;
+    sums.head(last - first) = shifted(0);
+    add_beside(shifted, sums.head(last - first));
+    take(row * grid_.n2 + first, sums.head(last - first));
+  };
+  mixed_.each([&](Index first, Index last) {
+    const Index row = first / grid_.n2;
+    for (Index start = first; start < last; start += kChunk) {
+      spread_in(row, start - row * grid_.n2, std::min(start + kChunk, last) - row * grid_.n2);
     }
   });
 }
 
 template <typename Real>
 void Extension<Real>::prepare(Field& free) {
+  bring_beside(free);
+  find_mixed(free);
+  clear(mixed_, work_);
   spread(free, [&](Index first, const auto& sums) {
-    const auto is_free = free.segment(first, grid_.n2);
-    weight_.segment(first, grid_.n2) = (Real(1) - is_free) / (sums + static_cast<Real>(kFade));
+    const auto is_free = free.segment(first, sums.size());
+    weight_.segment(first, sums.size()) = (Real(1) - is_free) / (sums + static_cast<Real>(kFade));
   });
 }
 
 template <typename Real>
 void Extension<Real>::extend(Field& y) {
+  bring_beside(y);
   spread(y, [&](Index first, const auto& sums) {
-    work_.segment(first, grid_.n2) = weight_.segment(first, grid_.n2) * sums;
+    work_.segment(first, sums.size()) = weight_.segment(first, sums.size()) * sums;
   });
-  const Share rows = RowBands(grid_.n1).own_rows();
-  const Index first = rows.first * grid_.n2;
-  const Index count = rows.count() * grid_.n2;
-  y.segment(first, count) += work_.segment(first, count);
+  mixed_.each(
+      [&](Index first, Index last) { y.segment(first, last - first) += work_.segment(first, last - first); });
 }
 
 template <typename Real>
 void Extension<Real>::gather(Field& y) {
-  const Share rows = RowBands(grid_.n1).own_rows();
-  const Index start = rows.first * grid_.n2;
-  const Index count = rows.count() * grid_.n2;
-  work_.segment(start, count) = weight_.segment(start, count) * y.segment(start, count);
-  spread(work_, [&](Index first, const auto& sums) { y.segment(first, grid_.n2) += sums; });
+  mixed_.each([&](Index first, Index last) {
+    work_.segment(first, last - first) =
+        weight_.segment(first, last - first) * y.segment(first, last - first);
+  });
+  bring_beside(work_);
+  spread(work_, [&](Index first, const auto& sums) { y.segment(first, sums.size()) += sums; });
 }
 
 template <typename Real>

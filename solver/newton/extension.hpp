@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <vector>
 
 #include "solver/grid/ranks.hpp"
 #include "solver/grid/sweep.hpp"
@@ -39,16 +38,16 @@ class Extension {
   static double bytes(double cells) { return 2.0 * sizeof(Real) * cells; }
 
  private:
-  template <typename Row>
-  void spread(Field& in, const Row& take_row);
+  void bring_beside(Field& field) const;
+  void find_mixed(const Field& free);
+  template <typename Take>
+  void spread(const Field& in, const Take& take) const;
 
   Grid grid_;
   Index reach_;   ///< cells, along each axis
   Field weight_;  ///< of the sum near by; 0 in the free cells
-  Field work_;
-  Field zeros_;                     ///< a row beyond the grid
-  std::vector<Field> column_sums_;  ///< of a row, with a margin, for each thread
-  std::vector<Field> sums_;         ///< of a row, likewise
+  Field work_;    ///< 0 but in mixed_
+  Sweep mixed_;   ///< over blocks of cells that have both kinds near them: elsewhere nothing is continued
 };
 
 extern template class Extension<double>;
