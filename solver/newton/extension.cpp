@@ -32,7 +32,8 @@ Extension<Real>::Extension(const Grid& grid)
       reach_(std::clamp(std::min(grid.n1, grid.n2) / kSidesOfReach, kLeastReach, kMostReach)),
       weight_(grid.cells()),
       work_(grid.cells()),
-      mixed_(Sweep::whole(0, grid.n2)) {}
+      mixed_(Sweep::whole(0, grid.n2)),
+      zeros_(Field::Zero(grid.n2)) {}
 
 template <typename Real>
 void Extension<Real>::bring_beside(Field& field) const {
@@ -74,7 +75,6 @@ template <typename Real>
 template <typename Take>
 void Extension<Real>::spread(const Field& in, const Take& take) const {
   using Line = Eigen::Array<Real, kChunk + 2 * kMostReach, 1>;
-  const Line zeros = Line::Zero();
   const auto add_beside = [&](const auto& at, auto&& sum) {
     Real weight = kNearest;
     for (Index k = 1; k <= reach_; ++k, weight *= Real(kDecay)) sum += weight * (at(-k) + at(k));
@@ -84,9 +84,10 @@ void Extension<Real>::spread(const Field& in, const Take& take) const {
     const Index count = std::min(last + reach_, grid_.n2) - left;
     const auto line = [&](Index k) {
       const bool inside = 0 <= row + k && row + k < grid_.n1;
-      return Eigen::Map<const Field>(inside ? in.data() + (row + k) * grid_.n2 + left : zeros.data(), count);
+      return inside ? in.segment((row + k) * grid_.n2 + left, count) : zeros_.segment(0, count);
     };
-    Line column_sums = zeros;
+    Line column_sums;
+    column_sums.head(last - first + 2 * reach_).setZero();
     auto within = column_sums.segment(left - (first - reach_), count);
     within = line(0);
     add_beside(line, within);

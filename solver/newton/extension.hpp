@@ -48,6 +48,7 @@ class Extension {
   Field weight_;  ///< of the sum near by; 0 in the free cells
   Field work_;    ///< 0 but in mixed_
   Sweep mixed_;   ///< over blocks of cells that have both kinds near them: elsewhere nothing is continued
+  Field zeros_;   ///< a row beyond the grid
 };
 
 extern template class Extension<double>;
