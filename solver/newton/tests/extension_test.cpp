@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <utility>
+
 namespace slipstick::solver {
 namespace {
 
@@ -22,6 +24,46 @@ TEST(Extension, GathersAsTheAdjointOfWhatItExtends) {
   EXPECT_GT(((1.0 - free) * extended).abs().maxCoeff(), 0.0);
   // Sums of some hundreds of numbers of size one round by less.
   EXPECT_NEAR((extended * y).sum(), (x * gathered).sum(), 1e-12);
+}
+
+/// A spot's continuation moves with it, bit by bit, also to where the grid ends, which is like cells that are
+/// not free.
+TEST(Extension, MovesWithTheContact) {
+  const Grid grid{512, 520, 1.0, 1.0};
+  constexpr Index kRows = 90;
+  constexpr Index kColumns = 60;
+  const Eigen::ArrayXXd spot = (Eigen::ArrayXXd::Random(kColumns, kRows) > 0.2).cast<double>();
+  const Eigen::ArrayXXd values = Eigen::ArrayXXd::Random(kColumns, kRows);
+  const auto placed = [&](const Eigen::ArrayXXd& part, Index row, Index column) {
+    ArrayXd field = ArrayXd::Zero(grid.cells());
+    Eigen::Map<Eigen::ArrayXXd>(field.data(), grid.n2, grid.n1).block(column, row, kColumns, kRows) = part;
+    return field;
+  };
+  struct Continued {
+    Eigen::ArrayXXd extended, gathered;
+  };
+  const auto continued = [&](Index row, Index column) {
+    Extension<double> extension(grid);
+    ArrayXd free = placed(spot, row, column);
+    extension.prepare(free);
+    ArrayXd extended = placed(spot * values, row, column);
+    ArrayXd gathered = placed(values, row, column);
+    extension.extend(extended);
+    extension.gather(gathered);
+    gathered *= free;
+    const auto window = [&](const ArrayXd& field) -> Eigen::ArrayXXd {
+      return Eigen::Map<const Eigen::ArrayXXd>(field.data(), grid.n2, grid.n1)
+          .block(column, row, kColumns, kRows);
+    };
+    return Continued{window(extended), window(gathered)};
+  };
+  const Continued here = continued(200, 200);
+  EXPECT_TRUE(((here.extended != 0.0) || (spot != 0.0)).all());  // holes are narrower than the reach
+  for (const auto& [row, column] : {std::pair<Index, Index>{203, 205}, {187, 211}, {0, 0}, {422, 460}}) {
+    const Continued there = continued(row, column);
+    EXPECT_TRUE((there.extended == here.extended).all()) << row << ", " << column;
+    EXPECT_TRUE((there.gathered == here.gathered).all()) << row << ", " << column;
+  }
 }
 
 /// What leaves reaches the cells that stay by the adjoint: the sums of its product with any continuation
