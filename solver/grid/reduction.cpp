@@ -28,10 +28,13 @@ bool same(const A& a, const B& b) {
   return true;
 }
 
-/// Whether a field is even in x1 and in x2, up to rounding.
+/// Whether a field is even in x1 and in x2, up to rounding: one of two images says it of both.
 bool is_mirrored(const Grid& grid, const ArrayXd& field) {
   const ConstComponent values(field.data(), grid.n1, grid.n2);
-  return same(values, values.rowwise().reverse()) && same(values, values.colwise().reverse());
+  const Index rows = grid.n1 / 2;
+  const Index columns = grid.n2 / 2;
+  return same(values.topRows(rows), values.bottomRows(rows).colwise().reverse()) &&
+         same(values.leftCols(columns), values.rightCols(columns).rowwise().reverse());
 }
 
 /// Empty rows on each side, the smaller of the two counts; all but one if the field is empty.
@@ -82,9 +85,9 @@ Reduction::Reduction(const Grid& grid, const ArrayXd& shape, const ArrayXd& cont
   if (trimmed_.n1 % 2 != 0 || trimmed_.n2 % 2 != 0) return;  // an axis would cut cells in two
   const ArrayXd part = middle(whole_, trimmed_, shape);
   if (!is_mirrored(trimmed_, part)) return;
-  const ConstComponent field(part.data(), trimmed_.n1, trimmed_.n2);
   grid_ = quadrant_of(trimmed_);
-  diagonal_ = grid_.n1 == grid_.n2 && grid_.h1 == grid_.h2 && same(field, field.transpose());
+  const auto corner = ConstComponent(part.data(), trimmed_.n1, trimmed_.n2).topLeftCorner(grid_.n1, grid_.n2);
+  diagonal_ = grid_.n1 == grid_.n2 && grid_.h1 == grid_.h2 && same(corner, corner.transpose());
 }
 
 ArrayXd Reduction::restricted(ArrayXd field) const {
@@ -100,7 +103,8 @@ ArrayXd Reduction::expanded(const ArrayXd& field, const Symmetry& symmetry) cons
 
 bool is_half_turn_symmetric(const Grid& grid, const ArrayXd& field) {
   const ConstComponent values(field.data(), 1, field.size());
-  return is_mirrored(grid, field) || same(values, values.reverse());
+  const Index half = field.size() / 2;
+  return is_mirrored(grid, field) || same(values.leftCols(half), values.rightCols(half).rowwise().reverse());
 }
 
 ArrayXd half_turn_symmetrised(const ArrayXd& pressure) { return 0.5 * (pressure + pressure.reverse()); }
