@@ -110,9 +110,10 @@ NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& gri
 NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& grid,
                                     const NormalProblem& problem, const NormalOptions& options) {
   require_valid(problem, grid);
+  // From a guess no other solve starts again.
+  if (problem.guess.size() > 0) return find_normal_contact(elasticity, grid, problem, options);
   CacheKey key = elasticity.key("pressure", grid);
   key.add({problem.gap.data(), static_cast<std::size_t>(problem.gap.size())}).add(problem.total_pressure);
-  key.add({problem.guess.data(), static_cast<std::size_t>(problem.guess.size())});
   key.add(options.tolerance).add(options.max_applications).add(options.refine_approach);
   const Cached<NormalSolution> solution(
       elasticity.usable_cache(), std::move(key),
