@@ -28,12 +28,14 @@ constexpr double kFieldsHeld = 4.0;
 constexpr double kFieldsOfPart = 5.0;
 /// those of the whole grid that it holds before and after, temporaries included, without the operators.
 constexpr double kFieldsAround = 12.5;
-/// Those that the paper's method holds besides.
-constexpr double kPaperFields = 20.0;
-/// Of the step before, or of the turn before, on the whole grid.
+/// Those that the other methods than Coulomb's hold besides, on their part of the grid.
+constexpr double kFieldsOfOthers = 23.0;
+/// Of the step before, on the whole grid.
 constexpr double kFieldsBefore = 37.0;
-/// Of pressure and tractions solved in turn besides, on the whole grid: Anderson's combination and guesses.
-constexpr double kFieldsOfTurns = 44.0;
+/// Of pressure and tractions solved in turn, on the whole grid: Anderson's combination and guesses. Much of
+/// the step before stands in for them.
+constexpr double kFieldsOfTurns = 58.0;
+constexpr double kFieldsBeforeTurns = 21.0;
 /// The program and its libraries; on several ranks what MPI takes besides.
 double program_bytes() { return (Ranks::number() > 1 ? 36.0 : 26.0) * 0x1p20; }
 /// Of so many fields.
@@ -250,10 +252,11 @@ bool may_have_translations(const Scene& scene, const Model& model) {
 }  // namespace
 
 Memory predicted_memory(const Scene& scene, const Model& model) {
-  const bool follows = scene.steps.size() > 1 || scene.cycles > 1 || model.shear_coupling;
-  const double fields = field_bytes(
-      kFieldsHeld + (follows ? kFieldsBefore : 0.0) + (model.shear_coupling ? kFieldsOfTurns : 0.0),
-      model.grid.cells());
+  const bool follows = scene.steps.size() > 1 || scene.cycles > 1;
+  const double before = model.shear_coupling ? kFieldsBeforeTurns : kFieldsBefore;
+  const double turns = model.shear_coupling ? kFieldsOfTurns : 0.0;
+  const double fields = field_bytes(kFieldsHeld + (follows ? before : 0.0) + turns, model.grid.cells());
+  const double around = field_bytes(kFieldsAround, model.grid.cells());
   const Grid& part = model.pressure_part.grid();
   const Elasticity on_part = elasticity(scene, model, model.pressure_part);
   const double normal = scene.pressure == PressureModel::solved ? predicted_normal_bytes(on_part, part) : 0.0;
@@ -265,17 +268,16 @@ Memory predicted_memory(const Scene& scene, const Model& model) {
   const double coupling = model.pressure_coupling
                               ? predicted_bytes(scene.op, grid, coupling_kernel(), {.threads = model.threads})
                               : 0.0;
-  if (scene.method == Method::paper) {
+  if (scene.method != Method::coulomb) {
     const double op = predicted_bytes(scene.op, grid, tangential_kernel(),
                                       {.threads = model.threads, .diagonal = elastic.diagonal});
-    return {std::max({normal, op, coupling}), program_bytes() + fields +
-                                                  field_bytes(kFieldsAround, model.grid.cells()) +
-                                                  field_bytes(kPaperFields, grid.cells())};
+    const double solver = std::max({normal, op, coupling});
+    return {solver,
+            program_bytes() + std::max(fields + field_bytes(kFieldsOfOthers, grid.cells()), around - solver)};
   }
   const double solver = std::max(
       {normal, predicted_coulomb_bytes(elastic, grid, may_have_translations(scene, model)), coupling});
   const double on_own_rows = field_bytes(kFieldsOfPart, RowBands(grid.n1).own_rows().count() * grid.n2);
-  const double around = field_bytes(kFieldsAround, model.grid.cells());
   return {solver, program_bytes() + std::max(fields + on_own_rows, around - solver)};
 }
 
