@@ -84,12 +84,15 @@ std::string file_of_step(std::string file, std::size_t step) {
   return file.replace(file.find(kStep), kStep.size(), std::to_string(step));
 }
 
-/// The files asked for beside the result; write_fields writes the cells to the file it is given.
+/// The files asked for beside the result, by all ranks; write_fields writes the cells to the file it is
+/// given.
 void write_files(const SolveRequest& request, const Json& result,
                  const std::function<void(const std::filesystem::path&)>& write_fields) {
-  if (!solver::Ranks::first()) return;
   if (!request.fields.empty() && !one_file_a_step(request.fields)) write_fields(request.fields);
-  if (!request.figure.empty()) draw_figure(request.figure, result, write_fields);
+  if (request.figure.empty()) return;
+  // Other ranks have their cells to write, into the first one's file.
+  solver::Ranks::first() ? draw_figure(request.figure, result, write_fields)
+                         : write_fields(request.figure + ".h5");
 }
 
 int answer_exactly(const solver::Scene& scene, const SolveRequest& request, std::ostream& text,
@@ -148,7 +151,7 @@ SolvedScene find_on_grid(const solver::Scene& scene, const SolveRequest& request
   std::size_t step = 0;
   const auto on_step = [&](const solver::Solution& at, const OracleAnswer& exact) {
     ++step;
-    if (!one_file_a_step(request.fields) || !solver::Ranks::first()) return;
+    if (!one_file_a_step(request.fields)) return;
     write_solution_fields(file_of_step(request.fields, step), at, exact);
   };
   return solve_on(scene, request,

@@ -1,20 +1,34 @@
 #include "solver/input/dataset_writer.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 #include <hdf5.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <algorithm>
+#include <array>
+#include <cerrno>
+#include <memory>
+#include <sstream>
 #include <stdexcept>
+#include <system_error>
 
+#include "solver/grid/ranks.hpp"
+#include "solver/input/input_error.hpp"
 #include "solver/input/whole_file.hpp"
 
 namespace slipstick::solver {
 namespace {
 
+namespace fs = std::filesystem;
+
 /// A handle of the library.
 class Handle {
  public:
   Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {
-    if (id_ < 0) throw std::runtime_error("HDF5 refuses to make a file in memory");
+    if (id_ < 0) throw std::runtime_error("HDF5 refuses to lay a file out");
   }
   ~Handle() { close_(id_); }
   Handle(const Handle&) = delete;
@@ -26,68 +40,178 @@ class Handle {
   herr_t (*close_)(hid_t);
 };
 
-void add_dataset(hid_t file, const std::string& name, hid_t type, const void* values, std::size_t size) {
-  const auto length = static_cast<hsize_t>(size);
-  const Handle space(H5Screate_simple(1, &length, nullptr), H5Sclose);
-  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_obj_track_times(creation, false);  // the same numbers, the same bytes
-  const Handle dataset(H5Dcreate2(file, name.c_str(), type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
-                       H5Dclose);
-  if (H5Dwrite(dataset, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) < 0) {
-    throw std::runtime_error(fmt::format("dataset {}: HDF5 cannot write it", name));
-  }
-}
+using PutBytes = std::function<void(const void* bytes, std::size_t count)>;
+
+/// What a dataset holds; first: where this rank's part begins.
+struct Content {
+  std::string name;
+  hid_t type;
+  std::size_t size, first;
+  std::function<void(const PutBytes& put)> write;
+};
+
+/// Where each dataset's values lie in a file.
+using Offsets = std::vector<off_t>;
 
 constexpr std::size_t kNames = std::size_t{1} << 16;  ///< bytes of a file beside values: names and their tree
 
-/// Makes an HDF5 file of about so many bytes in memory and writes it from there: a disk that is full is no
-/// matter of the library's, which keeps what it could not write and crashes over it when the process ends.
-void write_hdf5(const std::filesystem::path& path, std::size_t size,
-                const std::function<void(hid_t file)>& add_datasets) {
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the library's own messages stay off the terminal
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_fapl_core(access, kNames + size, false);
-  const Handle file(H5Fcreate("fields", H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
-  add_datasets(file);
-  H5Fflush(file, H5F_SCOPE_LOCAL);
-  const ssize_t bytes = H5Fget_file_image(file, nullptr, 0);
-  void* place = nullptr;  // of the pointer to the bytes
-  if (bytes <= 0 || H5Fget_vfd_handle(file, access, &place) < 0 || place == nullptr) {
-    throw std::runtime_error("HDF5 gives no image of a file in memory");
-  }
-  write_whole_file(path, {*static_cast<char**>(place), static_cast<std::size_t>(bytes)});
+[[noreturn]] void fail(int error) { throw std::system_error(error, std::generic_category()); }
+
+/// Of what was written, which is on the disk otherwise.
+int error_of(std::FILE* file) {
+  const bool done = std::ferror(file) == 0 && std::fflush(file) == 0 && fsync(fileno(file)) == 0;
+  return done ? 0 : (errno != 0 ? errno : EIO);
 }
 
-std::size_t bytes_of(Index values) { return static_cast<std::size_t>(values) * sizeof(double); }
+std::string name_of(std::FILE* file) {
+  struct stat status {};
+  if (fstat(fileno(file), &status) != 0 || !S_ISREG(status.st_mode)) fail(ESPIPE);
+  if (status.st_nlink == 0) fail(ENOENT);
+  return fs::read_symlink(fmt::format("/proc/self/fd/{}", fileno(file)));
+}
+
+off_t add_dataset(hid_t file, const Content& content) {
+  const auto length = static_cast<hsize_t>(content.size);
+  const Handle space(H5Screate_simple(1, &length, nullptr), H5Sclose);
+  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
+  H5Pset_obj_track_times(creation, false);  // the same numbers, the same bytes
+  H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
+  H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
+  const Handle dataset(
+      H5Dcreate2(file, content.name.c_str(), content.type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
+      H5Dclose);
+  return content.size > 0 ? static_cast<off_t>(H5Dget_offset(dataset)) : 0;
+}
+
+/// HDF5 lays the file out, and writes names alone: values are holes. Room for them is had before, since the
+/// library keeps what it could not write and crashes over it when the process ends.
+Offsets lay_out(std::FILE* file, const std::vector<Content>& contents) {
+  const std::string path = name_of(file);
+  const std::string room(kNames, '\0');
+  std::fwrite(room.data(), 1, room.size(), file);
+  if (const int error = error_of(file)) fail(error);
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the library's own messages stay off the terminal
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
+  H5Pset_file_locking(access, false, true);  // it is locked already
+  const Handle laid_out(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
+  Offsets offsets;
+  for (const Content& content : contents) offsets.push_back(add_dataset(laid_out, content));
+  if (H5Fflush(laid_out, H5F_SCOPE_LOCAL) < 0) fail(EIO);
+  return offsets;
+}
+
+/// This rank's part of all datasets.
+void write_values(std::FILE* file, const Offsets& offsets, const std::vector<Content>& contents) {
+  for (std::size_t k = 0; k < contents.size(); ++k) {
+    const auto before = static_cast<off_t>(contents[k].first * H5Tget_size(contents[k].type));
+    if (fseeko(file, offsets[k] + before, SEEK_SET) != 0) fail(errno);
+    contents[k].write([&](const void* bytes, std::size_t count) { std::fwrite(bytes, 1, count, file); });
+  }
+  if (const int error = error_of(file)) fail(error);
+}
+
+/// Tells all ranks what the first one has to say.
+std::string told(const std::string& text) {
+  constexpr std::size_t kMost = 8192;
+  std::vector<std::array<char, kMost>> all(static_cast<std::size_t>(Ranks::number()));
+  std::array<char, kMost>& own = all[static_cast<std::size_t>(Ranks::rank())];
+  own.fill('\0');
+  std::ranges::copy(std::string_view(text).substr(0, kMost - 1), own.begin());
+  Ranks::gather_shares(std::span(all));
+  return all.front().data();
+}
+
+/// Whether all ranks have done their part: an error of the system that one of them has met; 0: none.
+int first_error(int own) {
+  for (const double error : Ranks::of_each(own)) {
+    if (error != 0.0) return static_cast<int>(error);
+  }
+  return 0;
+}
+
+/// This rank's part of a draft that the first one has laid out; its error. what: the offsets, and its name.
+int write_into(const std::string& what, const std::vector<Content>& contents) {
+  if (what.empty()) return 0;
+  std::istringstream text(what);
+  Offsets offsets(contents.size());
+  for (off_t& offset : offsets) text >> offset;
+  std::string draft;
+  std::getline(text.ignore(), draft, '\0');
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(draft.c_str(), "r+b"), std::fclose);
+  if (!file) return errno;
+  try {
+    write_values(file.get(), offsets, contents);
+  } catch (const std::system_error& error) {
+    return error.code().value();
+  }
+  return 0;
+}
+
+void write_shared(const fs::path& path, const std::vector<Content>& contents) {
+  if (!Ranks::first()) {
+    first_error(write_into(told({}), contents));
+    return;
+  }
+  bool begun = false;
+  try {
+    write_whole_file(path, [&](std::FILE* file) {
+      if (begun) fail(ENOENT);  // the others are done with a draft that is gone
+      const Offsets offsets = lay_out(file, contents);
+      begun = true;
+      const std::string what = told(fmt::format("{} {}", fmt::join(offsets, " "), name_of(file)));
+      if (const int error = first_error(write_into(what, contents))) fail(error);
+    });
+  } catch (...) {
+    if (!begun) {
+      told({});
+      first_error(0);
+    }
+    throw;
+  }
+}
+
+void require_room(const fs::path& path, const std::vector<Content>& contents) {
+  std::size_t bytes = kNames;
+  for (const Content& content : contents) bytes += content.size * H5Tget_size(content.type);
+  rlimit most{};
+  if (getrlimit(RLIMIT_FSIZE, &most) == 0 && most.rlim_cur != RLIM_INFINITY && bytes > most.rlim_cur) {
+    throw InputError(path.string(), why_not_written(EFBIG));
+  }
+}
+
+/// shared: by all ranks.
+void write_hdf5(const fs::path& path, const std::vector<Content>& contents, bool shared) {
+  require_room(path, contents);
+  if (shared) return write_shared(path, contents);
+  write_whole_file(path, [&](std::FILE* file) { write_values(file, lay_out(file, contents), contents); });
+}
 
 }  // namespace
 
-void write_datasets(const std::filesystem::path& file, const std::vector<Column>& columns,
+void write_datasets(const fs::path& file, const std::vector<Column>& columns,
                     const std::vector<NamedText>& texts) {
-  std::size_t size = 0;
-  for (const Column& column : columns) size += bytes_of(column.values.size());
-  for (const NamedText& text : texts) size += text.text.size();
-  write_hdf5(file, size, [&](hid_t to) {
-    for (const Column& column : columns) {
-      add_dataset(to, column.name, H5T_NATIVE_DOUBLE, column.values.data(),
-                  static_cast<std::size_t>(column.values.size()));
-    }
-    for (const NamedText& text : texts) {
-      add_dataset(to, text.name, H5T_NATIVE_UCHAR, text.text.data(), text.text.size());
-    }
-  });
+  std::vector<Content> contents;
+  const auto add = [&](const std::string& name, hid_t type, std::size_t size, const void* values) {
+    contents.push_back(
+        {name, type, size, 0, [=](const PutBytes& put) { put(values, size * H5Tget_size(type)); }});
+  };
+  for (const Column& column : columns) {
+    add(column.name, H5T_NATIVE_DOUBLE, static_cast<std::size_t>(column.values.size()), column.values.data());
+  }
+  for (const NamedText& text : texts) add(text.name, H5T_NATIVE_UCHAR, text.text.size(), text.text.data());
+  write_hdf5(file, contents, false);
 }
 
-void write_datasets(const std::filesystem::path& file, const std::vector<LongDataset>& datasets) {
-  std::size_t size = 0;
-  for (const LongDataset& dataset : datasets) size += bytes_of(dataset.size);
-  write_hdf5(file, size, [&](hid_t to) {
-    for (const LongDataset& dataset : datasets) {
-      Eigen::ArrayXd values(dataset.size);
-      dataset.write(values.data());
-      add_dataset(to, dataset.name, H5T_NATIVE_DOUBLE, values.data(), static_cast<std::size_t>(dataset.size));
-    }
-  });
+void write_datasets(const fs::path& file, const std::vector<LongDataset>& datasets) {
+  std::vector<Content> contents;
+  for (const LongDataset& dataset : datasets) {
+    contents.push_back(
+        {dataset.name, H5T_NATIVE_DOUBLE, static_cast<std::size_t>(dataset.size),
+         static_cast<std::size_t>(dataset.first), [&dataset](const PutBytes& put) {
+           dataset.write([&](std::span<const double> values) { put(values.data(), values.size_bytes()); });
+         }});
+  }
+  write_hdf5(file, contents, Ranks::number() > 1);
 }
 
 }  // namespace slipstick::solver

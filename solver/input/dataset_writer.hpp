@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -15,11 +16,14 @@ struct NamedText {
   std::string text;
 };
 
-/// Numbers under a name, worked out when they are written: write() fills in `size` of them.
+/// Numbers under a name, worked out when they are written. Of several ranks each has a part of them.
 struct LongDataset {
+  using Put = std::function<void(std::span<const double> values)>;
+
   std::string name;
-  Index size;
-  std::function<void(double* values)> write;
+  Index size;                                 ///< of all ranks' parts
+  Index first = 0;                            ///< of this rank's part
+  std::function<void(const Put& put)> write;  ///< puts that part, piece by piece
 };
 
 /// Writes an HDF5 file of 1-D datasets, each of its own length: numbers, and texts as their bytes. It is
@@ -27,7 +31,8 @@ struct LongDataset {
 /// cannot be written.
 void write_datasets(const std::filesystem::path& file, const std::vector<Column>& columns,
                     const std::vector<NamedText>& texts = {});
-/// Likewise, holding one of them at a time beside the file.
+/// Likewise, holding a piece of one dataset at a time. All ranks call it, and write their parts into one
+/// file, which is in a place that all of them see. One of them that cannot write makes the first one throw.
 void write_datasets(const std::filesystem::path& file, const std::vector<LongDataset>& datasets);
 
 }  // namespace slipstick::solver

@@ -8,10 +8,12 @@
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 #include <string_view>
 #include <utility>
 
+#include "solver/grid/ranks.hpp"
 #include "solver/input/dataset_reader.hpp"
 #include "solver/input/dataset_writer.hpp"
 #include "solver/input/input_error.hpp"
@@ -167,12 +169,6 @@ std::vector<Column> read_hdf5_columns(const path& file, const std::vector<std::s
   return columns;
 }
 
-/// visit(first, last) for the cells of each row of a grid.
-template <typename Visit>
-void for_rows(const Grid& grid, const Visit& visit) {
-  for (Index first = 0; first < grid.cells(); first += grid.n2) visit(first, first + grid.n2);
-}
-
 void write_csv(std::FILE* file, const Grid& grid, const std::vector<FieldColumn>& columns,
                const ArrayXd& keep) {
   std::vector<std::string> names;
@@ -180,7 +176,8 @@ void write_csv(std::FILE* file, const Grid& grid, const std::vector<FieldColumn>
   for (const FieldColumn& column : columns) names.push_back(column.name);
   fmt::print(file, "{}\n", fmt::join(names, ","));
   Eigen::ArrayXXd row(grid.n2, static_cast<Index>(columns.size()));
-  for_rows(grid, [&](Index first, Index last) {
+  for (Index first = 0; first < grid.cells(); first += grid.n2) {
+    const Index last = first + grid.n2;
     for (std::size_t c = 0; c < columns.size(); ++c)
       columns[c].values(first, last, row.col(static_cast<Index>(c)).data());
     for (Index cell = first; cell < last; ++cell) {
@@ -190,7 +187,7 @@ void write_csv(std::FILE* file, const Grid& grid, const std::vector<FieldColumn>
         fmt::print(file, "{}{:.17g}", std::exchange(separator, ","), value);
       fmt::print(file, "\n");
     }
-  });
+  }
 }
 
 /// VTK's x runs fastest, this project's x2 does.
@@ -214,19 +211,29 @@ void write_vti(std::FILE* file, const Grid& grid, const std::vector<FieldColumn>
   fmt::print(file, "</CellData>\n</Piece>\n</ImageData>\n</VTKFile>\n");
 }
 
+/// Each rank has what is kept of its own rows, after that of the ranks before it.
 void write_hdf5(const path& file, const Grid& grid, const std::vector<FieldColumn>& columns,
                 const ArrayXd& keep) {
+  const Share rows = RowBands(grid.n1).own_rows();
+  const Index first = rows.first * grid.n2;
+  const auto own = static_cast<double>((keep.segment(first, rows.count() * grid.n2) != 0.0).count());
+  const std::vector<double> kept = Ranks::of_each(own);
+  const auto own_at = kept.begin() + Ranks::rank();
   std::vector<LongDataset> datasets;
-  const Index kept = (keep != 0.0).count();
   for (const FieldColumn& column : columns) {
-    datasets.push_back({column.name, kept, [&](double* values) {
-                          ArrayXd row(grid.n2);
-                          for_rows(grid, [&](Index first, Index last) {
-                            column.values(first, last, row.data());
-                            for (Index cell = first; cell < last; ++cell) {
-                              if (keep[cell] != 0.0) *values++ = row[cell - first];
+    datasets.push_back({column.name, static_cast<Index>(std::accumulate(kept.begin(), kept.end(), 0.0)),
+                        static_cast<Index>(std::accumulate(kept.begin(), own_at, 0.0)),
+                        [&](const LongDataset::Put& put) {
+                          std::vector<double> row(static_cast<std::size_t>(grid.n2));
+                          for (Index i = rows.first; i < rows.last; ++i) {
+                            const Index start = i * grid.n2;
+                            column.values(start, start + grid.n2, row.data());
+                            std::size_t count = 0;
+                            for (Index j = 0; j < grid.n2; ++j) {
+                              if (keep[start + j] != 0.0) row[count++] = row[static_cast<std::size_t>(j)];
                             }
-                          });
+                            put(std::span(row).first(count));
+                          }
                         }});
   }
   write_datasets(file, datasets);
@@ -271,6 +278,7 @@ void write_fields(const path& file, const Grid& grid, const std::vector<FieldCol
   if (is_hdf5(file)) {
     write_hdf5(file, grid, columns, keep);
   } else {
+    if (!Ranks::first()) return;
     const bool is_vti = file.extension() == ".vti";
     write_whole_file(file, [&](std::FILE* stream) {
       is_vti ? write_vti(stream, grid, columns) : write_csv(stream, grid, columns, keep);

@@ -44,7 +44,8 @@ def without(value):
 
 
 def solved(ranks, scene, cells, options, folder):
-    result, fields = folder / f"{ranks}.json", folder / f"{ranks}.csv"
+    # All ranks write one HDF5 file, a CSV file only the first.
+    result, fields = folder / f"{ranks}.json", folder / f"{ranks}.{'csv' if scene == 'spence' else 'h5'}"
     done = run(ranks, ["solve", f"{SCENES}/{scene}.toml", "--set", f"grid.cells={cells}", *options,
                        "--json", str(result), "--fields", str(fields)])
     assert done.returncode == 0, f"{scene} on {ranks} ranks: {done.stdout}{done.stderr}"
@@ -134,6 +135,9 @@ def main():
         is_refused(["solve", paper, "--accuracy", "1e-2"], "not on several ranks")
         is_refused(["solve", paper, "--set", 'solver.operator="direct"', *FULL], "allowed there: \"dcfft\"")
         is_refused(["solve", f"{folder}/nowhere.toml"], "nowhere.toml")
+        no_file = pathlib.Path(folder) / "no_file.h5"
+        no_file.symlink_to("/dev/null")
+        is_refused(["solve", paper, "--set", "grid.cells=[16,16]", "--fields", str(no_file)], "no_file.h5: cannot be written")
 
 
 main()

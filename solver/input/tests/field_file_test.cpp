@@ -68,6 +68,13 @@ TEST_P(Format, HoldsOnlyTheCellsToKeep) {
   EXPECT_EQ(back[0].values[2], columns_[1].values[5]);
 }
 
+TEST_P(Format, MayHoldNoCellButIsNotReadThen) {
+  const auto file = folder_ / ("fields" + GetParam());
+  write_fields(file, grid_, columns_, ArrayXd::Zero(6));
+  EXPECT_TRUE(std::filesystem::exists(file));
+  EXPECT_THAT(complaint([&] { read_columns(file, {"pressure"}); }), HasSubstr(file.string()));
+}
+
 TEST_P(Format, OverwritesWhatWasThere) {
   const auto file = folder_ / ("fields" + GetParam());
   write_fields(file, grid_, columns_, ArrayXd::Ones(6));

@@ -22,6 +22,7 @@
 #include <thread>
 #include <vector>
 
+#include "solver/input/dataset_writer.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/tests/complaint.hpp"
 
@@ -202,6 +203,20 @@ TEST_F(WholeFile, IsWrittenAgainWhereItsDraftWasTakenAway) {
   EXPECT_EQ(text(file_), "whole");
   EXPECT_EQ(times, 2);
   EXPECT_EQ(files(), 1);
+}
+
+/// HDF5 makes a file by its name, which one whose draft was taken away has no more.
+TEST_F(WholeFile, OfDatasetsIsWrittenAgainWhereItsDraftWasTakenAway) {
+  const fs::path file = folder_ / "datasets.h5";
+  int times = 0;
+  const Eigen::ArrayXd values = Eigen::ArrayXd::LinSpaced(5, 0.0, 1.0);
+  write_datasets(file, {{"values", 5, 0, [&](const LongDataset::Put& put) {
+                           if (++times == 1) fs::remove_all(folder_), fs::create_directories(folder_);
+                           put(std::span(values.data(), 5));
+                         }}});
+  EXPECT_EQ(times, 2);
+  EXPECT_EQ(files(), 1);
+  EXPECT_TRUE((read_columns(file, {"values"})[0].values == values).all());
 }
 
 TEST_F(WholeFile, MayHaveTheLongestName) {
