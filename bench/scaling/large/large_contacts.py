@@ -15,7 +15,8 @@ GIB = 2.0**30
 MOST_NODES = 1024
 GAIN = 1.5  # of time by twice the nodes, for which they are worth having
 FITTED = (128, 256, 512)  # sizes; the others are left out
-FITTED_IN_MEMORY = (256, 384, 512)  # of seconds: smaller ones stay in a cache
+FITTED_IN_APPLICATIONS = (512, 1024, 2048)  # coarser meshes do not show all of a surface
+FITTED_IN_MEMORY = (768, 1024, 1536)  # of seconds: smaller ones stay in a cache
 FITTED_LENGTHS = (64, 256, 512, 1024, 2048)
 # Bytes that one application of the tangential operator reads and writes for each cell, by the loops over it: tractions
 # 16; the half-plane's columns written 32 (and fetched before 32), read and written in place 64, read 32; the kernel's
@@ -93,15 +94,15 @@ class Model:
     def __init__(self, counts):
         solves = counts["solves"]
 
-        def law(name, key, terms):
-            return Law(name, [(row["cells"], row[key]) for row in solves], terms, FITTED)
+        def law(name, key, terms, fitted):
+            return Law(name, [(row["cells"], row[key]) for row in solves], terms, fitted)
 
         logarithm = (lambda n: (1.0, math.log2(n)))
         area = (lambda n: (1.0, n * n))
         area_alone = (lambda n: (n * n,))
-        self.tangential = law("applications, tangential", "tangential", logarithm)
-        self.normal = law("applications, normal", "normal", logarithm)
-        self.memory = law("peak memory", "peak_bytes", area)
+        self.tangential = law("applications, tangential", "tangential", logarithm, FITTED_IN_APPLICATIONS)
+        self.normal = law("applications, normal", "normal", logarithm, FITTED_IN_APPLICATIONS)
+        self.memory = law("peak memory", "peak_bytes", area, FITTED)
         flops = [(row["length"], row["flops"] * transforms(row["length"])) for row in counts["transforms"]]
         self.flops = Law("flops of transforms", flops, lambda n: (n * n * math.log2(n),), FITTED_LENGTHS)
         rows = [(row["cells"], row["seconds"]) for row in counts["applications"]]
