@@ -164,8 +164,10 @@ std::array<double, 2> mean_over_cell(const Oracle& oracle, const solver::Grid& g
   constexpr int points = kPointsAcross;
   std::array<double, 2> sum{};
   for (int k = 0; k < points * points; ++k) {
-    const double part1 = (k / points + 0.5) / points - 0.5;
-    const double part2 = (k % points + 0.5) / points - 0.5;
+    const int row = k / points;
+    const int column = k % points;
+    const double part1 = (row + 0.5) / points - 0.5;
+    const double part2 = (column + 0.5) / points - 0.5;
     const auto [q1, q2] = shear_at(oracle, y1 + part1 * grid.h1, y2 + part2 * grid.h2, size_at);
     sum[0] += q1;
     sum[1] += q2;

@@ -333,7 +333,7 @@ std::string coupling_text(const Json& r) {
 /// What the mesh resolves.
 std::string resolution_text(const Json& r) {
   const Json& resolved = r["resolved"];
-  const std::string text = text_line(
+  std::string text = text_line(
       "resolved", fmt::format("stick area {:.3g} cells wide, slip area {:.3g}; mesh error about {}",
                               resolved["stick_width"].get<double>(), resolved["slip_width"].get<double>(),
                               short_text(resolved["uncertainty"])));

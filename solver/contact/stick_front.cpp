@@ -66,7 +66,7 @@ struct Sample {
 double fitted_root(const std::vector<Sample>& samples, const Window& depth) {
   constexpr int kMaxTerms = 8;
   using Terms = Eigen::Matrix<double, kMaxTerms, 1>;
-  const int terms = depth.degree + 4;
+  const Index terms = depth.degree + 4;
   if (static_cast<Index>(samples.size()) < 2 * terms) return std::nan("");
   const double middle = 0.5 * (depth.from + depth.to);
   const double half = 0.5 * (depth.to - depth.from);

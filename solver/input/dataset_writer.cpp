@@ -204,6 +204,7 @@ void write_datasets(const fs::path& file, const std::vector<Column>& columns,
 
 void write_datasets(const fs::path& file, const std::vector<LongDataset>& datasets) {
   std::vector<Content> contents;
+  contents.reserve(datasets.size());
   for (const LongDataset& dataset : datasets) {
     contents.push_back(
         {dataset.name, H5T_NATIVE_DOUBLE, static_cast<std::size_t>(dataset.size),

@@ -220,6 +220,7 @@ void write_hdf5(const path& file, const Grid& grid, const std::vector<FieldColum
   const std::vector<double> kept = Ranks::of_each(own);
   const auto own_at = kept.begin() + Ranks::rank();
   std::vector<LongDataset> datasets;
+  datasets.reserve(columns.size());
   for (const FieldColumn& column : columns) {
     datasets.push_back({column.name, static_cast<Index>(std::accumulate(kept.begin(), kept.end(), 0.0)),
                         static_cast<Index>(std::accumulate(kept.begin(), own_at, 0.0)),
@@ -289,6 +290,7 @@ void write_fields(const path& file, const Grid& grid, const std::vector<FieldCol
 void write_fields(const path& file, const Grid& grid, const std::vector<Column>& columns,
                   const ArrayXd& keep) {
   std::vector<FieldColumn> from_kept;
+  from_kept.reserve(columns.size());
   for (const Column& column : columns) {
     from_kept.push_back({column.name, [&values = column.values](Index first, Index last, double* out) {
                            std::copy(values.data() + first, values.data() + last, out);

@@ -268,7 +268,7 @@ TEST_F(WholeFile, AReadOnlyFolderIsSaid) {
 TEST_F(WholeFile, FieldsAreWholeOrTheOldOnes) {
   const Grid grid{32, 32, 0.5, 0.25};
   const std::vector<Column> columns{{"x1", cell_x1(grid)}, {"x2", cell_x2(grid)}};
-  const Eigen::ArrayXd all = Eigen::ArrayXd::Ones(32 * 32);
+  const Eigen::ArrayXd all = Eigen::ArrayXd::Ones(grid.cells());
   for (const char* name : {"fields.csv", "fields.h5", "fields.hdf5", "fields.vti"}) {
     const fs::path file = folder_ / name;
     write_fields(file, grid, {columns[0]}, all);
