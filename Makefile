@@ -65,7 +65,7 @@ gate: configure ## check the numbers that README.md promises, and counts of work
 
 hard: configure ## solve 600 hard scenes, each in several views; audit every one of them with NumPy (2 minutes)
 	$(call build,slipstick)
-	@python="$$(sed -n 's/^SLIPSTICK_PYTHON:[A-Z]*=//p' $(BUILD)/CMakeCache.txt)"; status=0; \
+	@python="$$(sed -n 's/^SLIPSTICK_PYTHON:[A-Z]*=//p' $(BUILD)/CMakeCache.txt)"; status=0; mkdir -p $(BUILD)/hard; \
 	  $(BUILD)/slipstick hard convergence/hard/*.toml --output $(BUILD)/hard --fields $(BUILD)/hard/fields \
 	    --json $(BUILD)/hard/hard.json $(HARD_OPTIONS) || status=$$?; \
 	  [ $$status -gt 1 ] || "$$python" convergence/hard/audit.py $(BUILD)/hard/hard.json || status=1; exit $$status
