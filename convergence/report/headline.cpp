@@ -115,6 +115,7 @@ bool differs(const Json& now, const Json& before) {
 
 std::string value_text(const Json& value) {
   if (value.is_number_float()) return fmt::format("{:.2e}", value.get<double>());
+  if (value.is_null()) return "none";
   return value.is_string() ? value.get<std::string>() : value.dump();
 }
 
@@ -124,9 +125,11 @@ void compare(const Json& now, const Json& before, const std::string& where, Json
     std::string name = where + key;
     std::ranges::replace(name, '_', ' ');
     const Json old = before.is_object() && before.contains(key) ? before[key] : Json{};
-    if (key == "seconds") continue;
-    if (value.is_object()) {
+    if (key == "seconds" || key.ends_with("_reason")) continue;
+    if (value.is_object() && old.is_object()) {
       compare(value, old, name + " ", found);
+    } else if (value.is_object() || old.is_object()) {  // a part of the page
+      found.push_back(fmt::format("{}: left out {}", name, value.is_object() ? "before" : "now"));
     } else if (differs(value, old)) {
       found.push_back(fmt::format("{}: {} before, {} now", name, value_text(old), value_text(value)));
     }

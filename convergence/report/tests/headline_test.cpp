@@ -114,6 +114,17 @@ TEST(HeadlineChanges, NameWhatIsDifferent) {
   EXPECT_EQ(found[1], "twist error: 1.00e-05 before, 2.00e-05 now");
 }
 
+TEST(HeadlineChanges, NameAPartThatOneOfThemLeavesOut) {
+  Json quick = report();
+  quick.erase("gates");
+  const Json before = changes(headline(report()), headline(quick));
+  ASSERT_EQ(before.size(), 1U);
+  EXPECT_EQ(before[0], "gates: left out before");
+  const Json now = changes(headline(quick), headline(report()));
+  ASSERT_EQ(now.size(), 1U);
+  EXPECT_EQ(now[0], "gates: left out now");
+}
+
 /// The same command twice must not hide what the first of the two found.
 TEST(HeadlineChanges, StayWhereNothingMoreHasChanged) {
   Json later = report();
