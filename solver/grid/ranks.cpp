@@ -100,6 +100,14 @@ std::vector<double> Ranks::of_each(double own) {
   return all;
 }
 
+std::string Ranks::of_first(const std::string& own) {
+  std::vector<std::array<char, 8192>> all(static_cast<std::size_t>(number()));
+  auto& text = all[static_cast<std::size_t>(rank())];
+  own.copy(text.data(), text.size() - 1);
+  gather_shares(std::span(all));
+  return all.front().data();
+}
+
 void Ranks::end(int exit_code, const std::string& failure) {
   if (!joined) return;
   const auto start = std::chrono::steady_clock::now();

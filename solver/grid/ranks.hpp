@@ -68,6 +68,8 @@ class Ranks {
   }
   /// One number of each rank, on all of them.
   static std::vector<double> of_each(double own);
+  /// A text of the first rank, of less than 8 KiB, on all of them.
+  static std::string of_first(const std::string& own);
 
   /// Several ranks alone have one.
   static Communicator& communicator();

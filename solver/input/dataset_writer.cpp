@@ -7,8 +7,6 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
-#include <array>
 #include <cerrno>
 #include <memory>
 #include <sstream>
@@ -110,17 +108,6 @@ void write_values(std::FILE* file, const Offsets& offsets, const std::vector<Con
   if (const int error = error_of(file)) fail(error);
 }
 
-/// Tells all ranks what the first one has to say.
-std::string told(const std::string& text) {
-  constexpr std::size_t kMost = 8192;
-  std::vector<std::array<char, kMost>> all(static_cast<std::size_t>(Ranks::number()));
-  std::array<char, kMost>& own = all[static_cast<std::size_t>(Ranks::rank())];
-  own.fill('\0');
-  std::ranges::copy(std::string_view(text).substr(0, kMost - 1), own.begin());
-  Ranks::gather_shares(std::span(all));
-  return all.front().data();
-}
-
 /// Whether all ranks have done their part: an error of the system that one of them has met; 0: none.
 int first_error(int own) {
   for (const double error : Ranks::of_each(own)) {
@@ -149,7 +136,7 @@ int write_into(const std::string& what, const std::vector<Content>& contents) {
 
 void write_shared(const fs::path& path, const std::vector<Content>& contents) {
   if (!Ranks::first()) {
-    first_error(write_into(told({}), contents));
+    first_error(write_into(Ranks::of_first({}), contents));
     return;
   }
   bool begun = false;
@@ -158,18 +145,19 @@ void write_shared(const fs::path& path, const std::vector<Content>& contents) {
       if (begun) fail(ENOENT);  // the others are done with a draft that is gone
       const Offsets offsets = lay_out(file, contents);
       begun = true;
-      const std::string what = told(fmt::format("{} {}", fmt::join(offsets, " "), name_of(file)));
+      const std::string what = Ranks::of_first(fmt::format("{} {}", fmt::join(offsets, " "), name_of(file)));
       if (const int error = first_error(write_into(what, contents))) fail(error);
     });
   } catch (...) {
     if (!begun) {
-      told({});
+      Ranks::of_first({});
       first_error(0);
     }
     throw;
   }
 }
 
+/// Here too: the library crashes over a file that it may not make so large.
 void require_room(const fs::path& path, const std::vector<Content>& contents) {
   std::size_t bytes = kNames;
   for (const Content& content : contents) bytes += content.size * H5Tget_size(content.type);

@@ -421,7 +421,7 @@ TEST(CgBreakdown, IsNamed) {
   EXPECT_THAT(solve_with_multiple(-2.0, 1.0).message(), HasSubstr("curvature -"));
   EXPECT_THAT(solve_with_multiple(0.0, 1.0).message(), HasSubstr("curvature 0"));
   EXPECT_THAT(solve_with_multiple(std::nan(""), 1.0).message(), HasSubstr("nan"));
-  EXPECT_THAT(solve_with_multiple(2.0, std::nan("")).message(), HasSubstr("nan"));
+  EXPECT_THAT(solve_with_multiple(2.0, std::nan("")).message(), HasSubstr("square is nan"));
 }
 
 // --- single precision ---
