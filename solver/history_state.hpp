@@ -1,11 +1,52 @@
 #pragma once
 
+#include <Eigen/Core>
+#include <array>
 #include <cstddef>
 
+#include "solver/contact/limit_load.hpp"
 #include "solver/contact/normal_contact.hpp"
-#include "solver/load_step.hpp"
+#include "solver/solution.hpp"
 
+/// What one step of a history leaves to the next.
 namespace slipstick::solver {
+
+/// Motion since the first step began, and loads, at the end of a step; in SI units.
+struct StepEnd {
+  double twist = 0.0;
+  std::array<double, 2> displacement{};
+  double moment = 0.0;
+  std::array<double, 2> force{};
+  double moment_limit = 0.0;
+};
+StepEnd end_of(const Solution& solution);
+
+/// How far two ends lie apart.
+Quantities distance(const StepEnd& from, const StepEnd& to);
+
+/// What the mesh leaves open of the steps so far. Errors of steps add up, whatever their signs. But a contact
+/// forgets a loop once a larger one closes: no more counts than three times the largest size that was
+/// reached, at the relative error of the worst step.
+struct OpenHistory {
+  Quantities sum;
+  Quantities largest;
+  double worst = 0.0;
+
+  /// A step from one end to the next, with the relative error of its changes.
+  void add(const StepEnd& from, const StepEnd& to, double error);
+  Quantities mesh() const;
+};
+
+/// What a step starts from and ends with, in the model's units.
+struct ContactState {
+  Eigen::ArrayXd pressure;  ///< empty: the bodies have not touched yet
+  Eigen::ArrayXd traction;  ///< 2*cells; empty likewise
+  /// 2*cells, of each cell since it last stuck or turned back; empty where the contact has just grown.
+  Eigen::ArrayXd slip;
+  RigidMotion motion;  ///< since the first step began
+  StepEnd end;
+  OpenHistory open;
+};
 
 /// Where a history stands at the end of a step: all that the next one needs to give the same digits.
 struct HistoryState {

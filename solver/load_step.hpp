@@ -4,18 +4,10 @@
 
 #include "solver/contact/limit_load.hpp"
 #include "solver/contact/tangential_problem.hpp"
+#include "solver/history_state.hpp"
 #include "solver/model.hpp"
 
 namespace slipstick::solver {
-
-/// What a step starts from and ends with, in the model's units.
-struct ContactState {
-  Eigen::ArrayXd pressure;  ///< empty: the bodies have not touched yet
-  Eigen::ArrayXd traction;  ///< 2*cells; empty likewise
-  /// 2*cells, of each cell since it last stuck or turned back; empty where the contact has just grown.
-  Eigen::ArrayXd slip;
-  RigidMotion motion;  ///< since the first step began
-};
 
 /// A step's tangential problem, and what its contact can carry.
 struct LoadStep {

@@ -95,7 +95,6 @@ void describe_tractions(ModelSolution& solution, const LoadStep& loads, const Ar
                                  problem.displacement ? force : problem.force.value_or(std::array{0.0, 0.0}),
                                  least_eigenvalue(model.pair, grid.h1, grid.h2));
   solution.slip_direction = slip_direction(tangential.traction, tangential.slip);
-  solution.resolution = resolution(grid, loads, tangential.stick, tangential.twist);
 }
 
 /// Over the moment's unit and the cell's area.
@@ -136,9 +135,11 @@ void describe_energy(ModelSolution& solution, const LoadStep& loads) {
 
 }  // namespace
 
-void describe(ModelSolution& solution, const LoadStep& loads, const ArrayXd& slip) {
+void describe(ModelSolution& solution, const Scene& scene, const LoadStep& loads, const ArrayXd& slip) {
   describe_contact(solution);
   describe_tractions(solution, loads, slip);
+  solution.resolution = resolution(scene, solution.loads, solution.model.grid, loads,
+                                   solution.tangential.stick, solution.tangential.twist);
   describe_energy(solution, loads);
 }
 

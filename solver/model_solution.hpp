@@ -24,8 +24,8 @@ ModelSolution solve_in_model_units(const Scene& scene,
 Solution in_si(ModelSolution solution);
 
 /// Fills in the members that follow from pressure, tractions and loads: the contact, the stick area, loads
-/// and limits, certificate, energies. slip: see ContactState.
-void describe(ModelSolution& solution, const LoadStep& loads, const Eigen::ArrayXd& slip);
+/// and limits, certificate, energies, resolution. slip: see ContactState.
+void describe(ModelSolution& solution, const Scene& scene, const LoadStep& loads, const Eigen::ArrayXd& slip);
 
 /// Contact radius of a pressure, in the grid's units: of a Hertzian contact from the second moments of the
 /// pressure about its centre (those along the axes are a_i^2/5), which know the radius to far less than a

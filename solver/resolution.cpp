@@ -73,8 +73,9 @@ double bound_at_centre(const Grid& grid, const LoadStep& loads) {
                  : 0.0;
 }
 
-/// What the twist lacks where the stick area should be smaller than the mesh shows it.
-double missing_twist(const Grid& grid, const LoadStep& loads) {
+/// The twist that a mesh leaves open where the stick area is small. limit_error: relative, of the mesh's
+/// limit load beside a load that is no ratio of it.
+double open_twist(const Grid& grid, const LoadStep& loads, double limit_error) {
   const double bound = bound_at_centre(grid, loads);
   if (!(bound > 0.0) || loads.limit.sliding.twist == 0.0) return 0.0;
   // The loads do unit work in the sliding motion: over its twist that is a moment, with all lever arms.
@@ -86,12 +87,18 @@ double missing_twist(const Grid& grid, const LoadStep& loads) {
   };
   const double limit = loads.limit.factor * moment;
   if (!std::isfinite(limit)) return 0.0;
-  return 0.5 * bound * (unresolved(limit - moment) - unresolved(limit));
+  const double missing = limit - moment;
+  const double of_limit = limit_error * limit < missing ? -std::log1p(-limit_error * limit / missing) / 3.0
+                                                        : std::numeric_limits<double>::infinity();
+  return 0.5 * bound * (unresolved(missing) - unresolved(limit) + of_limit);
 }
+
+bool is_zero(const Step& step) { return step.force == std::array<double, 2>{} && !step.displacement; }
 
 }  // namespace
 
-Resolution resolution(const Grid& grid, const LoadStep& loads, const ArrayXd& stick, double twist) {
+Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, const LoadStep& loads,
+                      const ArrayXd& stick, double twist) {
   const ArrayXd& bound = loads.problem.friction_bound;
   const Area contact = measure(grid, [&](Index cell) { return bound[cell]; });
   if (contact.cells == 0.0) return {};
@@ -105,15 +112,19 @@ Resolution resolution(const Grid& grid, const LoadStep& loads, const ArrayXd& st
   const double cell1 = std::numbers::pi / 4.0 * contact.sides[0] / contact.cells;
   const double cell2 = std::numbers::pi / 4.0 * contact.sides[1] / contact.cells;
   const double cell = std::sqrt(0.5 * (cell1 * cell1 + cell2 * cell2));
-  const double edge = std::min(1.0, contact.edge / contact.mean);
-  // Where all sticks up to the last cell, tractions rise towards the edge as if they had no bound.
-  constexpr double kSteeper = 5.0;
-  const double steep = result.slip_width < 1.0 ? kSteeper : 1.0;
-  result.uncertainty = 0.5 * steep * cell * cell + 0.25 * edge * edge * cell;
-  const double missing = missing_twist(grid, loads);
-  if (missing > 0.0) {
-    result.uncertainty +=
-        sticking.cells > 0.0 ? missing / std::abs(twist) : std::numeric_limits<double>::infinity();
+  // 1 where the pressure does not fall towards the edge, and soon little where it does.
+  const double edge = std::pow(std::min(1.0, contact.edge / contact.mean), 3);
+  const bool at_centres = scene.pressure == PressureModel::hertz;
+  const bool averaged = scene.pressure == PressureModel::hertz_averaged;
+  const double smooth = at_centres ? 1.2 : averaged ? 1.7 : 0.3;
+  const double narrow = std::clamp((4.0 - result.slip_width) / 3.0, 0.0, 1.0);
+  const double staircase = (at_centres ? 1.6 : 0.85) * cell * std::sqrt(cell) + (averaged ? 1.6 * cell : 0.0);
+  result.step = smooth * cell * cell + 0.22 * edge * cell + narrow * staircase;
+  const bool of_mesh = std::holds_alternative<MomentRatio>(step.torsion) && is_zero(step);
+  const double limit_error = of_mesh ? 0.0 : 0.6 * smooth * cell * cell + 0.15 * edge * cell;
+  const double open = open_twist(grid, loads, limit_error);
+  if (open > 0.0) {
+    result.step += sticking.cells > 0.0 ? open / std::abs(twist) : std::numeric_limits<double>::infinity();
   }
   return result;
 }

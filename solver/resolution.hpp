@@ -3,24 +3,31 @@
 #include <Eigen/Core>
 
 #include "solver/load_step.hpp"
+#include "solver/scene/scene.hpp"
 #include "solver/solution.hpp"
 
 namespace slipstick::solver {
 
-/// Three parts. Everywhere the error of cells of size h on a contact of radius r, h/r in the root mean square
-/// of both axes: h^2/(2 r^2), and h/(4 r) where the pressure does not fall to zero at the edge. Where slip is
-/// narrower than a cell, four times the first on top, since tractions rise towards the edge as if nothing
-/// bounded them: the error of spheres, cones and rounded punches on 8 to 64 cells at loads of 1e-6 to 0.1 of
-/// the limit was up to 3.1 times the first part, at larger loads up to 0.7 times. And where a moment is
-/// imposed, that of a stick area that shrinks below a cell: the load that is missing to the limit tells the
-/// radius that the stick area should have, a_s^3 = 9 (M_lim - M)/(8 mu p), p the pressure at the centre of
-/// sliding (Jaeger's superposition with a smooth pressure, dH = -p ds/s); the twist grows like mu p
-/// ln(1/a_s)/(2 G) there, but on a mesh no further than to a_s of about 0.6 h. Constants were set by solves
-/// of the same bodies at 32 and 64 cells, 0.5 to 1 - 1e-8 of the limit. Infinite where no cell is left to
-/// stick though one should.
+/// What the mesh resolves of a step, and the relative error that it leaves in the step's change of motion.
+/// Cells of size h on a contact of radius r, h/r in the root mean square of both axes, leave these parts:
+/// - everywhere 0.3 (h/r)^2, and up to 0.22 h/r where the pressure does not fall to zero at the edge;
+/// - where slip is narrower than four cells, up to 0.85 (h/r)^1.5, since tractions rise towards a staircase
+/// of
+///   an edge as if nothing bounded them;
+/// - where the pressure is Hertz's and not solved on the grid, more of both; averaged over cells it also
+///   widens a contact that sticks by most of a cell;
+/// - where a moment is imposed, that of a stick area that shrinks below a cell: the load that is missing to
+///   the limit tells the radius that the stick area should have, a_s^3 = 9 (M_lim - M)/(8 mu p), p the
+///   pressure at the centre of sliding (Jaeger's superposition with a smooth pressure, dH = -p ds/s); the
+///   twist grows like mu p ln(1/a_s)/(2 G) there, but on a mesh no further than to a_s of about 0.6 h;
+/// - where the load is no ratio of the mesh's own limit, what the error of that limit makes of the missing
+///   load.
+/// Infinite where no cell is left to stick though one should, or the mesh's limit may lie below the load.
+/// Constants were set by exact answers of spheres, cones, powers and punches on 16 to 96 cells at loads of
+/// 1e-6 to 1 - 1e-6 of the limit.
 ///
-/// stick: one value a cell of the whole grid; twist: of the step. In the model's units (stresses
-/// over G).
-Resolution resolution(const Grid& grid, const LoadStep& loads, const Eigen::ArrayXd& stick, double twist);
+/// stick: one value a cell of the whole grid; twist: of the step. In the model's units (stresses over G).
+Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, const LoadStep& loads,
+                      const Eigen::ArrayXd& stick, double twist);
 
 }  // namespace slipstick::solver

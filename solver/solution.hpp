@@ -19,15 +19,31 @@ struct Omission {
   std::string why;
 };
 
+/// One size for each number that loads may leave open.
+struct Quantities {
+  double twist = 0.0;         ///< rad
+  double displacement = 0.0;  ///< m
+  double moment = 0.0;        ///< N m
+  double force = 0.0;         ///< N
+};
+inline constexpr std::array kQuantities{&Quantities::twist, &Quantities::displacement, &Quantities::moment,
+                                        &Quantities::force};
+
 /// What a mesh resolves of a contact's slip and stick.
 struct Resolution {
   /// Cells across the stick area, in the mean: four times its area over its outline. Zero where no cell
   /// sticks.
   double stick_width = 0.0;
   double slip_width = 0.0;  ///< cells across the slip area, likewise, twice its area over its outline
-  /// Relative, of the twist (of the translation where forces alone act; where motions are imposed, of the
-  /// loads): what the mesh leaves open, an estimate of its size. Where it is worse than kPoorlyResolved the
-  /// numbers are those of the mesh, not of the contact.
+  double step = 0.0;        ///< relative: what the mesh leaves open of the step's own change
+  Quantities mesh;          ///< what it leaves open of the whole history: the sum over its steps
+  Quantities path;          ///< what the number of parts of its steps leaves open
+  /// The number that the loads leave open: the twist where a moment acts or has turned the contact, the
+  /// moment where the twist is imposed; without torsion the displacement, or the force where that is imposed.
+  double Quantities::*number = &Quantities::twist;
+  double absolute = 0.0;  ///< mesh and path together, of `number`
+  /// The same, relative. Where it is worse than kPoorlyResolved the numbers are those of the mesh or of the
+  /// steps, not of the contact.
   double uncertainty = 0.0;
 };
 inline constexpr double kPoorlyResolved = 0.1;

@@ -20,6 +20,7 @@
 #include "solver/grid_edge.hpp"
 #include "solver/history_state.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/load_path.hpp"
 #include "solver/load_step.hpp"
 #include "solver/model_solution.hpp"
 #include "solver/operator/random_rounding.hpp"
@@ -221,12 +222,17 @@ void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, c
   const ArrayXd onwards =
       previous != nullptr ? slip_onwards(before, solution.normal.pressure, tangential) : ArrayXd();
   const ArrayXd& slip = previous != nullptr ? onwards : tangential.slip;
-  describe(solution, loads, slip);
+  describe(solution, scene, loads, slip);
+  OpenHistory open = before.open;
+  open.add(before.end, end_of(solution), solution.resolution.step);
+  solution.resolution.mesh = open.mesh();
   if (solution.status == Status::converged) {
     solution.message = beyond(solution.certificate, promised(scene));
     if (!solution.message.empty()) solution.status = Status::not_converged;
   }
-  if (after != nullptr) *after = {solution.normal.pressure, tangential.traction, slip, motion};
+  if (after != nullptr) {
+    *after = {solution.normal.pressure, tangential.traction, slip, motion, end_of(solution), open};
+  }
   solution.seconds.total = solution.seconds.setup + watch.lap();
 }
 
@@ -245,6 +251,33 @@ void take_up(ModelSolution& solution, ContactState& state, const HistoryState& r
   solution.normal.pressure = at.pressure;
 }
 
+/// What the steps up to this one leave open: the number, and how far it may be off.
+void state_uncertainty(Solution& solution, const Scene& scene, std::size_t step) {
+  Resolution& resolution = solution.resolution;
+  const auto is_zero = [](const TorsionLoad& torsion) {
+    return std::visit([](const auto& load) { return load.value == 0.0; }, torsion);
+  };
+  const auto last = scene.steps.begin() + static_cast<std::ptrdiff_t>(std::min(step + 1, scene.steps.size()));
+  const bool turned =
+      !std::all_of(scene.steps.begin(), last, [&](const Step& at) { return is_zero(at.torsion); });
+  const bool moved = std::any_of(scene.steps.begin(), last, [](const Step& at) {
+    return at.displacement || at.force != std::array<double, 2>{};
+  });
+  const auto size = [](const std::array<double, 2>& pair) { return std::hypot(pair[0], pair[1]); };
+  double value = 0.0;
+  if (turned || !moved) {
+    const bool imposed = std::holds_alternative<Twist>(solution.loads.torsion);
+    resolution.number = imposed ? &Quantities::moment : &Quantities::twist;
+    value = std::abs(imposed ? solution.moment : solution.twist_angle);
+  } else {
+    const bool imposed = solution.loads.displacement.has_value();
+    resolution.number = imposed ? &Quantities::force : &Quantities::displacement;
+    value = size(imposed ? solution.force : solution.displacement);
+  }
+  resolution.absolute = resolution.mesh.*resolution.number + resolution.path.*resolution.number;
+  resolution.uncertainty = resolution.absolute > 0.0 ? resolution.absolute / value : resolution.step;
+}
+
 /// Hands on where the history stands.
 void hand_on(const SolveOptions& options, std::size_t finished, ContactState& state,
              const NormalSolution& normal) {
@@ -254,6 +287,31 @@ void hand_on(const SolveOptions& options, std::size_t finished, ContactState& st
   options.on_state(at);
   state = std::move(at.contact);
 }
+
+/// What adds up over the parts of a step.
+struct Spent {
+  Seconds seconds;
+  double dissipated = 0.0, work = 0.0;
+  double operator_applications = 0.0, pressure_applications = 0.0;
+
+  void add(const Solution& part) {
+    seconds.pressure += part.seconds.pressure;
+    seconds.traction += part.seconds.traction;
+    seconds.total += part.seconds.total;
+    dissipated += part.dissipated;
+    work += part.work;
+    operator_applications += part.operator_applications;
+    pressure_applications += part.pressure_applications;
+  }
+  void put(Solution& step) {
+    seconds.total += seconds.setup;
+    step.seconds = seconds;
+    step.dissipated = dissipated;
+    step.work = work;
+    step.operator_applications = operator_applications;
+    step.pressure_applications = pressure_applications;
+  }
+};
 
 /// Step by step, until one does not converge. after_step may take the solution's fields where it is the last.
 using AfterStep = std::function<void(ModelSolution& solution, bool last)>;
@@ -273,6 +331,8 @@ void solve_steps(const Scene& scene, const SolveOptions& options, const AfterSte
   }
   solution.model.cache = cache;
   solution.detail = options.detail;
+  std::optional<PathUncertainty> path;
+  if (options.detail == Detail::all) path.emplace(scene, solution.model);
   solution.seconds.setup = watch.lap();
   ContactState state;
   if (options.resumed) take_up(solution, state, *options.resumed, scene);
@@ -280,14 +340,25 @@ void solve_steps(const Scene& scene, const SolveOptions& options, const AfterSte
   const std::size_t all = of_cycle * static_cast<std::size_t>(scene.cycles);
   const std::size_t first = options.resumed ? options.resumed->finished : 0;
   for (std::size_t k = first; k < all; ++k) {
-    const Step& step = scene.steps[k % of_cycle];
-    const Step* const previous = k > 0 ? &scene.steps[(k - 1) % of_cycle] : nullptr;
-    if (k > first) solution.seconds = {};
+    const Step* previous = k > 0 ? &scene.steps[(k - 1) % of_cycle] : nullptr;
+    const std::vector<Step> parts = parts_of(scene, scene.steps[k % of_cycle], previous, state.end);
     solution.cycle = static_cast<int>(k / of_cycle) + 1;
     const bool last = k + 1 == all;
-    ContactState after;
-    solve_step(solution, scene, step, previous, state, options.progress, last ? nullptr : &after);
-    state = std::move(after);
+    Spent spent;
+    if (k == first) spent.seconds.setup = solution.seconds.setup;
+    for (const Step& part : parts) {
+      solution.seconds = {};
+      const bool ends = last && &part == &parts.back();
+      ContactState after;
+      solve_step(solution, scene, part, previous, state, options.progress, ends ? nullptr : &after);
+      spent.add(solution);
+      if (solution.status != Status::converged) break;
+      state = std::move(after);
+      previous = &part;
+    }
+    spent.put(solution);
+    if (path) solution.resolution.path = path->at(k);
+    state_uncertainty(solution, scene, k);
     const bool failed = solution.status != Status::converged;
     if (last || failed) solution.model.cache = nullptr;
     after_step(solution, last || failed);

@@ -125,21 +125,22 @@ double natural_size(const Json& result, const std::string& path) {
   return or_nothing(energy / limit) + or_nothing(shift / radius);
 }
 
-double main_value(const solver::Step& step, const Json& result) {
-  if (solver::value_if<solver::Twist>(step.torsion)) return number(result, "/moment");
-  const auto ratio = solver::value_if<solver::MomentRatio>(step.torsion);
-  const auto moment = solver::value_if<solver::Moment>(step.torsion);
-  if (ratio.value_or(moment.value_or(0.0)) != 0.0) return number(result, "/twist_angle");
-  if (step.displacement) return std::hypot(number(result, "/force/0"), number(result, "/force/1"));
-  if (step.force[0] == 0.0 && step.force[1] == 0.0) return std::numeric_limits<double>::quiet_NaN();
-  return std::hypot(number(result, "/displacement/0"), number(result, "/displacement/1"));
+double main_value(const Json& result) {
+  const std::string path = "/" + result["resolved"].value("number", "");
+  const double value = number(result, path.c_str());
+  const double size = std::isnan(value) ? std::hypot(number(result, (path + "/0").c_str()),
+                                                     number(result, (path + "/1").c_str()))
+                                        : value;
+  return size == 0.0 ? std::numeric_limits<double>::quiet_NaN() : size;
 }
 
-MeshReference judge_by_finer(double value, double uncertainty, double twice, double four_times) {
-  const double error = std::abs(value - four_times) / std::abs(four_times);
-  const double change = std::abs(twice - four_times) / std::abs(four_times);
-  const bool claims_nothing = uncertainty >= 1.0;
-  return {error, change, error <= uncertainty + change || (claims_nothing && std::isfinite(error))};
+MeshReference judge_by_finer(double value, double absolute, double twice, double four_times) {
+  const double error = std::abs(value - four_times);
+  const double change = std::abs(twice - four_times);
+  const bool claims_nothing = absolute >= std::abs(value);
+  const double unit = 1.0 / std::abs(four_times);
+  return {unit * error, unit * change,
+          error <= absolute + change || (claims_nothing && std::isfinite(error))};
 }
 
 double same_answer(const Json& result) {

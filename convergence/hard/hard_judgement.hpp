@@ -24,17 +24,17 @@ struct JudgedCase {
 /// A result by itself: its status, its certificate, and its distance from the exact answer, if there is one.
 JudgedCase judge_alone(const Json& result);
 
-/// What a step leaves open and a result's uncertainty is of: the moment where the twist is imposed, the
-/// translation's size where forces alone act, else the twist. NaN where no tangential load is.
-double main_value(const solver::Step& step, const Json& result);
+/// The size of the number that a result's uncertainty is of; NaN where it is missing, or zero.
+double main_value(const Json& result);
 
-/// A value beside those on twice and four times the cells.
+/// A value beside those on twice and four times the cells, with as many times the parts of each step.
 struct MeshReference {
   double error;   ///< from the finest, relative to that
   double change;  ///< between the finer two, likewise: how far the finest may be off itself
-  bool holds;     ///< the error is within the stated uncertainty and the change; 100 % claims nothing
+  bool holds;     ///< the error is within what is stated and the change; 100 % claims nothing
 };
-MeshReference judge_by_finer(double value, double uncertainty, double twice, double four_times);
+/// absolute: the stated uncertainty, in the value's unit.
+MeshReference judge_by_finer(double value, double absolute, double twice, double four_times);
 
 /// Two answers to one discrete problem: how far one seen otherwise is from the first, relative; NaN where a
 /// number is missing.

@@ -135,7 +135,7 @@ bool needs_finer_meshes(const Trial& trial) {
   const Json& numbers = trial.judged.numbers;
   return trial.judged.verdict == HardVerdict::certified && numbers["error"].is_null() &&
          numbers["uncertainty"].is_number() && !has_given_grid(*trial.scene) &&
-         std::isfinite(main_value(trial.scene->steps.back(), trial.result));
+         std::isfinite(main_value(trial.result));
 }
 
 /// Whether a finer mesh may refuse what this one carries: a load so near the limit that the mesh decides.
@@ -155,19 +155,19 @@ void judge_by_finer_meshes(std::vector<Trial>& trials, const ProcessPool& pool) 
     for (const int finer : {2, 4}) {
       RunSpec spec = trial.hard->run;
       for (std::string& key : grid_of(trial.result, finer)) spec.overrides.push_back(std::move(key));
+      spec.overrides.push_back(fmt::format("solver.substeps={}", finer * trial.scene->substeps));
       batch.add(trial, std::move(spec));
     }
   }
   batch.run(pool, [&](Trial& trial, const RunSpec&, const Json& result) {
     const bool converged = result["status"] == "converged";
     if (result["status"] == "refused" && is_at_limit(trial.result)) refused.insert(&trial);
-    found[&trial].push_back(converged ? main_value(trial.scene->steps.back(), result) : std::nan(""));
+    found[&trial].push_back(converged ? main_value(result) : std::nan(""));
   });
   for (const auto& [trial, finer] : found) {
     Json& numbers = trial->judged.numbers;
-    const double uncertainty = numbers["uncertainty"];
-    const MeshReference reference = judge_by_finer(main_value(trial->scene->steps.back(), trial->result),
-                                                   uncertainty, finer[0], finer[1]);
+    const MeshReference reference =
+        judge_by_finer(main_value(trial->result), trial->result["resolved"]["absolute"], finer[0], finer[1]);
     const char* none = refused.contains(trial) ? "a finer mesh carries a little less than this load"
                                                : "a finer mesh has no answer";
     set_number(numbers, "finer_meshes.error", reference.error, none);
@@ -175,7 +175,7 @@ void judge_by_finer_meshes(std::vector<Trial>& trials, const ProcessPool& pool) 
     if (!reference.holds && !refused.contains(trial)) {
       judge_too(*trial, HardVerdict::wrong,
                 fmt::format("it is {:.3g} from the answer on a finer mesh, and says {:.3g}", reference.error,
-                            uncertainty));
+                            numbers["uncertainty"].get<double>()));
     }
   }
 }

@@ -330,13 +330,22 @@ std::string coupling_text(const Json& r) {
                                r["turns"].get<int>(), number_text(r["pressure_complementarity"])));
 }
 
-/// What the mesh resolves.
+std::string words_of(const Json& resolved) {
+  const std::string number = resolved["number"];
+  return number == "twist_angle" ? "twist" : number;
+}
+
+/// What the mesh resolves, and how far the answer may be off.
 std::string resolution_text(const Json& r) {
   const Json& resolved = r["resolved"];
-  std::string text = text_line(
-      "resolved", fmt::format("stick area {:.3g} cells wide, slip area {:.3g}; mesh error about {}",
-                              resolved["stick_width"].get<double>(), resolved["slip_width"].get<double>(),
-                              short_text(resolved["uncertainty"])));
+  std::string text =
+      text_line("resolved",
+                fmt::format("stick area {:.3g} cells wide, slip area {:.3g}",
+                            resolved["stick_width"].get<double>(), resolved["slip_width"].get<double>())) +
+      text_line("uncertain",
+                fmt::format("{} by {}, {} of it: mesh {}, length of steps {}", words_of(resolved),
+                            short_text(resolved["absolute"]), percent_text(resolved["uncertainty"]),
+                            short_text(resolved["mesh"]), short_text(resolved["path"])));
   if (!resolved.contains("warning")) return text;
   return text + text_line("warning", resolved["warning"].get<std::string>());
 }

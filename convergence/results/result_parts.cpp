@@ -3,6 +3,8 @@
 #include <fmt/core.h>
 #include <sys/resource.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 
@@ -87,22 +89,55 @@ Json certificate_json(const solver::Certificate& certificate, const std::string&
   return json;
 }
 
+namespace {
+
+const char* name_of(double solver::Quantities::*number) {
+  constexpr std::array kNames{"twist_angle", "displacement", "moment", "force"};
+  return kNames[static_cast<std::size_t>(std::ranges::find(solver::kQuantities, number) -
+                                         solver::kQuantities.begin())];
+}
+
+/// Why the number is not known well enough to be used, and what to do.
+std::string poorly_resolved(const solver::Resolution& resolution) {
+  const double mesh = resolution.mesh.*resolution.number;
+  const double path = resolution.path.*resolution.number;
+  const std::string uncertain = std::isfinite(resolution.uncertainty)
+                                    ? "uncertain by " + percent_text(resolution.uncertainty)
+                                    : "not determined";
+  if (!(resolution.step <= solver::kPoorlyResolved)) {
+    return fmt::format(
+        "the mesh is too coarse: the stick area is {:.2g} cells wide, so the contact's motion is {}; take "
+        "more cells, or a load further from gross slip",
+        resolution.stick_width, uncertain);
+  }
+  if (std::isinf(path)) {
+    return "what the length of the steps leaves open is not known, since few cells or more parts of the "
+           "steps "
+           "do not carry these loads; compare with a larger solver.substeps";
+  }
+  if (path > mesh) {
+    return fmt::format("the steps are too long, so the contact's motion is {}; take more solver.substeps",
+                       uncertain);
+  }
+  return fmt::format("little is left beside what the steps before have changed, so it is {}; take more cells",
+                     uncertain);
+}
+
+}  // namespace
+
 Json resolution_json(const solver::Resolution& resolution) {
+  const std::string unknown = std::isfinite(resolution.mesh.*resolution.number)
+                                  ? "the steps' parts on few cells, or more of them, do not carry these loads"
+                                  : "the stick area lies within a cell";
   Json json;
   json["stick_width"] = resolution.stick_width;
   json["slip_width"] = resolution.slip_width;
-  set_number(json, "uncertainty", resolution.uncertainty, "the stick area lies within a cell");
-  if (!(resolution.uncertainty <= solver::kPoorlyResolved)) {
-    constexpr double percent = 100.0;
-    const std::string uncertain = std::isfinite(resolution.uncertainty)
-                                      ? fmt::format("uncertain by {:.2g} %", percent * resolution.uncertainty)
-                                      : "not determined";
-    json["warning"] = fmt::format(
-        "the mesh is too coarse: the stick area is {:.2g} cells wide, so the contact's motion is {}; take "
-        "more "
-        "cells, or a load further from gross slip",
-        resolution.stick_width, uncertain);
-  }
+  json["number"] = name_of(resolution.number);
+  set_number(json, "uncertainty", resolution.uncertainty, unknown);
+  set_number(json, "absolute", resolution.absolute, unknown);
+  set_number(json, "mesh", resolution.mesh.*resolution.number, unknown);
+  set_number(json, "path", resolution.path.*resolution.number, unknown);
+  if (!(resolution.uncertainty <= solver::kPoorlyResolved)) json["warning"] = poorly_resolved(resolution);
   return json;
 }
 
@@ -120,6 +155,12 @@ std::size_t peak_bytes() {
 
 std::string number_text(const Json& value) {
   return value.is_number() ? fmt::format("{:.6g}", value.get<double>()) : "-";
+}
+
+std::string percent_text(const Json& part) {
+  if (!part.is_number()) return "-";
+  const double percent = 100.0 * part.get<double>();
+  return percent < 100.0 ? fmt::format("{:.2g} %", percent) : fmt::format("{:.0f} %", percent);
 }
 
 std::string short_text(const Json& value) {

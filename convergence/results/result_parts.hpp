@@ -38,6 +38,9 @@ std::size_t peak_bytes();
 /// A number for a person, "-" where there is none.
 std::string number_text(const Json& value);
 
+/// A part of a whole in percent, written out: "0.028 %", "130 %"; "-" where it is no number.
+std::string percent_text(const Json& part);
+
 /// The same with four digits.
 std::string short_text(const Json& value);
 

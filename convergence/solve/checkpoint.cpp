@@ -4,7 +4,9 @@
 
 #include <bit>
 #include <cstdint>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -68,6 +70,26 @@ NormalSolution normal_of(const Json& json) {
   return normal;
 }
 
+Json end_json(const solver::StepEnd& end) {
+  return {end.twist,    end.displacement[0], end.displacement[1], end.moment,
+          end.force[0], end.force[1],        end.moment_limit};
+}
+
+Json open_json(const solver::OpenHistory& open) {
+  const auto& [sum, largest, worst] = open;
+  return {sum.twist,      sum.displacement, sum.moment, sum.force, largest.twist, largest.displacement,
+          largest.moment, largest.force,    worst};
+}
+
+/// JSON has null for what is infinite.
+std::vector<double> numbers_of(const Json& json) {
+  std::vector<double> numbers;
+  for (const Json& at : json) {
+    numbers.push_back(at.is_null() ? std::numeric_limits<double>::infinity() : at.get<double>());
+  }
+  return numbers;
+}
+
 /// Of the bits of all numbers and of the text: a file that was changed is no longer the history's.
 std::string sum_of(const ContactState& contact, const std::string& text) {
   std::uint64_t sum = checksum(text);
@@ -123,10 +145,18 @@ std::shared_ptr<const FinishedSteps> Checkpoint::read() const {
     if (as_text(numbers_in(file_, "checksum")) != sum_of(state.contact, text)) throw damaged;
     const Json& motion = json.at("motion");
     state.contact.motion = {motion.at(0), motion.at(1), motion.at(2)};
+    const std::vector<double> end = numbers_of(json.at("end"));
+    state.contact.end = {end.at(0), {end.at(1), end.at(2)}, end.at(3), {end.at(4), end.at(5)}, end.at(6)};
+    const std::vector<double> open = numbers_of(json.at("open"));
+    state.contact.open = {{open.at(0), open.at(1), open.at(2), open.at(3)},
+                          {open.at(4), open.at(5), open.at(6), open.at(7)},
+                          open.at(8)};
     state.finished = json.at("finished");
     state.normal = normal_of(json.at("normal"));
     steps = json.at("steps");
   } catch (const Json::exception&) {
+    throw damaged;
+  } catch (const std::out_of_range&) {
     throw damaged;
   }
   return std::make_shared<const FinishedSteps>(
@@ -141,6 +171,8 @@ void Checkpoint::write(const HistoryState& state, const Json& steps) const {
                {"program", program_},
                {"finished", state.finished},
                {"motion", {contact.motion.delta1, contact.motion.delta2, contact.motion.twist}},
+               {"end", end_json(contact.end)},
+               {"open", open_json(contact.open)},
                {"normal", normal_json(state.normal)},
                {"has_slip", contact.slip.size() > 0},
                {"steps", steps}});

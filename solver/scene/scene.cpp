@@ -156,6 +156,7 @@ Scene read_scene(SceneReader& reader, const std::filesystem::path& file) {
   scene.op = reader.choice_or("solver.operator", scene.op, kOperators);
   scene.tolerance = reader.number_or("solver.tolerance", scene.tolerance);
   scene.max_iterations = static_cast<int>(reader.number_or("solver.max_iterations", scene.max_iterations));
+  scene.substeps = static_cast<int>(reader.number_or("solver.substeps", scene.substeps));
   scene.threads = static_cast<int>(reader.number_or("solver.threads", scene.threads));
   scene.rounding_seed = static_cast<std::int64_t>(
       reader.number_or("solver.rounding_seed", static_cast<double>(scene.rounding_seed)));

@@ -83,6 +83,7 @@ struct Scene {
   Coupling coupling = Coupling::automatic;
   std::vector<Step> steps = std::vector<Step>(1);  ///< at least one
   int cycles = 1;                                  ///< how often the steps are gone through
+  int substeps = 1;                                ///< parts that each step's loads are brought in
   std::array<Index, 2> cells{};
   std::optional<std::array<double, 2>> extent;  ///< m
   Method method = Method::coulomb;

@@ -175,6 +175,9 @@ void add_grid_and_solver(SettingKeys& keys, const Scene& scene) {
        "edge."},
       {"solver.precision", kWord, "", word_of(kPrecisions, scene.precision), one_of(kPrecisions),
        "Of inner iterations; the certificate is of double precision always."},
+      {"solver.substeps", kNumber, "", shown(scene.substeps), kSubsteps,
+       "Parts that the loads of each step are brought in, each an implicit step. More of them make smaller "
+       "what a result states as `resolved.path`."},
       {"solver.threads", kNumber, "", shown(scene.threads), kThreads,
        "Threads of one solve, which change no digit. 0: one a processor where the part of the grid that is "
        "solved has many cells, 32,768 for each thread; one for each of many solves (studies, gates)."},

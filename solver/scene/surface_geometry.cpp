@@ -203,7 +203,8 @@ const Surface* find_height_map(const std::vector<Surface>& surfaces) {
 
 std::vector<Surface> with_heights(std::vector<Surface> surfaces) {
   for (Surface& surface : surfaces) {
-    if (surface.shape == Shape::height_map) surface.heights = read_heights(surface);
+    if (surface.shape == Shape::height_map && surface.heights.size() == 0)
+      surface.heights = read_heights(surface);
   }
   return surfaces;
 }

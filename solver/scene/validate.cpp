@@ -27,6 +27,7 @@ class Validation {
     check_grid();
     require("solver.tolerance", scene_.tolerance, kTolerance);
     require("solver.max_iterations", scene_.max_iterations, kIterations);
+    require("solver.substeps", scene_.substeps, kSubsteps);
     require("solver.threads", scene_.threads, kThreads);
     require("solver.rounding_seed", static_cast<double>(scene_.rounding_seed), kRoundingSeeds);
     check_consistency();
@@ -140,7 +141,7 @@ class Validation {
   void check_method() const {
     if (scene_.method == Method::coulomb) return;
     const Step& step = scene_.steps.front();
-    if (scene_.steps.size() > 1 || scene_.cycles > 1 || step.displacement ||
+    if (scene_.steps.size() > 1 || scene_.cycles > 1 || scene_.substeps > 1 || step.displacement ||
         step.force != std::array<double, 2>{}) {
       refuse_("solver.method", fmt::format("\"{}\"", to_string(scene_.method)),
               "coulomb (this method knows one step of torsion about the origin)");

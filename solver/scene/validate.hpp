@@ -16,6 +16,7 @@ inline const Range kTolerance{"from 1e-15 to below 1", [](double x) { return x >
 inline const Range kCells = whole(1, 65536);
 inline const Range kIterations = whole(1, 1e9);
 inline const Range kRoundingSeeds = whole(0, 1e9);
+inline const Range kSubsteps = whole(1, 4096);
 inline const Range kThreads = whole(0, 1024);
 /// Powers of a cell's size stay within double precision.
 inline const Range kExponent{"from 1 to 20", [](double x) { return x >= 1.0 && x <= 20.0; }};

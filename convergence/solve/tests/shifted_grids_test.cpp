@@ -39,7 +39,8 @@ struct Staircase {
   convergence::SolvedScene operator()(const solver::Scene& at, solver::Detail) {
     convergence::SolvedScene answer;
     answer.solution.status = solver::Status::converged;
-    answer.solution.resolution = {.stick_width = 50.0, .slip_width = 20.0, .uncertainty = 0.0};
+    answer.solution.resolution.stick_width = 50.0;
+    answer.solution.resolution.slip_width = 20.0;
     const double cells = front * static_cast<double>(at.cells[0]) / (*at.extent)[0];
     phases.push_back(cells - std::floor(cells));
     const double error = height * std::sin(2.0 * M_PI * cells);

@@ -1,0 +1,202 @@
+#include "solver/load_path.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <type_traits>
+#include <utility>
+
+#include "solver/input/input_error.hpp"
+#include "solver/pressure.hpp"
+#include "solver/scene/surface_geometry.hpp"
+#include "solver/solve.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXXd;
+
+/// Cells along the longer side of the coarse grid, and how many of them a contact has to fill there: on 16 to
+/// 64 cells a path's error differs by up to a quarter.
+constexpr double kCoarseCells = 24.0;
+constexpr double kCoarseAcross = 12.0;
+constexpr double kCoarseTolerance = 1e-7;
+/// Error of n parts over its difference from 4 n parts. An error that falls like 1/n would make it 4/3. A
+/// single part is not there yet: 1.8 to 2.4 for pushes before twists and both at once, sphere and ellipsoids
+/// of up to 10 to 1.
+constexpr double kSafety = 2.5;
+constexpr int kFinerPath = 4;
+/// Steps that are solved to estimate; a longer history's path is longer in proportion.
+constexpr std::size_t kMaxSteps = 60;
+
+Quantities times(double factor, Quantities quantities) {
+  for (const auto number : kQuantities) quantities.*number *= factor;
+  return quantities;
+}
+
+double between(double from, double to, double part) { return from + part * (to - from); }
+
+/// What the contact carries, or where it stands, as a load of this kind.
+TorsionLoad as_load(const TorsionLoad& kind, const StepEnd& at) {
+  if (std::holds_alternative<Twist>(kind)) return Twist{at.twist};
+  if (std::holds_alternative<Moment>(kind)) return Moment{at.moment};
+  return MomentRatio{at.moment_limit > 0.0 ? at.moment / at.moment_limit : 0.0};
+}
+
+/// The step with its tangential loads gone so far from those before.
+Step gone(const Step& step, const StepEnd& before, double part) {
+  Step at = step;
+  at.torsion = std::visit(
+      [&](const auto& to) -> TorsionLoad {
+        using Kind = std::remove_cvref_t<decltype(to)>;
+        return Kind{between(std::get<Kind>(as_load(step.torsion, before)).value, to.value, part)};
+      },
+      step.torsion);
+  for (std::size_t i = 0; i < 2; ++i) {
+    if (step.displacement) {
+      (*at.displacement)[i] = between(before.displacement[i], (*step.displacement)[i], part);
+    } else {
+      at.force[i] = between(before.force[i], step.force[i], part);
+    }
+  }
+  return at;
+}
+
+bool has_axis(const Scene& scene) {
+  if (scene.surfaces.size() != 1 || scene.pressure == PressureModel::file) return false;
+  const Surface& surface = scene.surfaces.front();
+  if (surface.shape == Shape::ellipsoid) return surface.radius_1 == surface.radius_2;
+  return surface.shape != Shape::height_map && surface.shape != Shape::roughness;
+}
+
+/// Means over squares of so many samples; what does not fill one at the far ends is cut off.
+ArrayXXd block_means(const ArrayXXd& heights, Index side) {
+  return ArrayXXd::NullaryExpr(heights.rows() / side, heights.cols() / side, [&](Index i, Index j) {
+    return heights.block(i * side, j * side, side, side).mean();
+  });
+}
+
+void make_coarse(Scene& scene, double cells) {
+  const auto longer = static_cast<double>(std::max(scene.cells[0], scene.cells[1]));
+  if (longer <= cells) return;
+  for (Index& side : scene.cells) {
+    side = std::max<Index>(4, 2 * std::lround(0.5 * static_cast<double>(side) * cells / longer));
+  }
+}
+
+/// Cells that a circle of the first step's contact has across.
+double cells_across(const Scene& scene) {
+  const Model model = make_model(scene);
+  const NormalSolution normal = find_pressure(scene, model, scene.steps.front());
+  return 2.0 * std::sqrt(static_cast<double>((normal.pressure > 0.0).count()) / M_PI);
+}
+
+/// See PathUncertainty.
+bool depends_on_path(const Scene& scene, const Model& model) {
+  if (scene.method != Method::coulomb) return false;
+  const bool one_pressure = std::ranges::all_of(
+      scene.steps, [&](const Step& step) { return step.normal == scene.steps.front().normal; });
+  const bool similar = !model.pressure_coupling || model.pair.mismatch == 0.0;
+  return !(one_pressure && similar && !model.forces && has_axis(scene));
+}
+
+/// The scene on few cells; none where a file of pressures fixes the grid.
+std::optional<Scene> coarse_scene(const Scene& scene) {
+  if (scene.pressure == PressureModel::file) return std::nullopt;
+  Scene coarse = scene;
+  coarse.tolerance = std::max(coarse.tolerance, kCoarseTolerance);
+  coarse.op = OperatorKind::dcfft;
+  coarse.model = ModelChoice::automatic;
+  coarse.threads = 1;
+  coarse.surfaces = with_heights(std::move(coarse.surfaces));
+  const Surface* const map = find_height_map(coarse.surfaces);
+  if (map == nullptr) {
+    make_coarse(coarse, kCoarseCells);
+    if (!scene.extent) return coarse;
+    const double across = cells_across(coarse);
+    if (across < kCoarseAcross) {
+      coarse.cells = scene.cells;
+      make_coarse(coarse, kCoarseCells * kCoarseAcross / std::max(across, 1.0));
+    }
+    return coarse;
+  }
+  const Index side =
+      std::max(map->heights.rows(), map->heights.cols()) / static_cast<Index>(4.0 * kCoarseCells);
+  if (side < 2) return coarse;
+  for (Surface& surface : coarse.surfaces) {
+    if (surface.shape != Shape::height_map) continue;
+    surface.heights = block_means(surface.heights, side);
+    for (double& spacing : surface.spacing) spacing *= static_cast<double>(side);
+  }
+  coarse.cells = {};
+  return coarse;
+}
+
+/// The ends of the steps, as far as it goes.
+std::vector<StepEnd> ends_of(const Scene& scene) {
+  std::vector<StepEnd> ends;
+  try {
+    solve(scene, {.progress = {},
+                  .on_step =
+                      [&](const Solution& at) {
+                        if (at.status == Status::converged) ends.push_back(end_of(at));
+                      },
+                  .detail = Detail::loads});
+  } catch (const InputError&) {
+    // Few cells carry a little less, or more parts slide on their way.
+  }
+  return ends;
+}
+
+/// At most so many of its steps.
+void shorten(Scene& scene, std::size_t steps) {
+  const std::size_t cycles = std::max<std::size_t>(1, steps / scene.steps.size());
+  scene.cycles = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(scene.cycles), cycles));
+  if (scene.steps.size() > steps) scene.steps.resize(steps);
+}
+
+}  // namespace
+
+std::vector<Step> parts_of(const Scene& scene, const Step& step, const Step* previous,
+                           const StepEnd& before) {
+  const int parts = scene.substeps;
+  const bool presses = previous != nullptr && previous->normal && previous->normal != step.normal;
+  const int pressing = presses ? parts / 2 : 0;
+  std::vector<Step> loads;
+  for (int k = 1; k <= pressing; ++k) {
+    loads.push_back(gone(step, before, 0.0));
+    loads.back().normal = between(*previous->normal, *step.normal, static_cast<double>(k) / pressing);
+  }
+  for (int k = pressing + 1; k < parts; ++k) {
+    loads.push_back(gone(step, before, static_cast<double>(k - pressing) / (parts - pressing)));
+  }
+  loads.push_back(step);
+  return loads;
+}
+
+PathUncertainty::PathUncertainty(const Scene& scene, const Model& model)
+    : matters_(depends_on_path(scene, model)) {
+  if (!matters_) return;
+  std::optional<Scene> coarse = coarse_scene(scene);
+  broke_off_ = !coarse;
+  if (broke_off_) return;
+  shorten(*coarse, kMaxSteps);
+  const std::vector<StepEnd> ends = ends_of(*coarse);
+  coarse->substeps *= kFinerPath;
+  const std::vector<StepEnd> finer = ends_of(*coarse);
+  for (std::size_t k = 0; k < std::min(ends.size(), finer.size()); ++k) {
+    at_ends_.push_back(times(kSafety, distance(ends[k], finer[k])));
+  }
+  broke_off_ = at_ends_.size() < coarse->steps.size() * static_cast<std::size_t>(coarse->cycles);
+}
+
+Quantities PathUncertainty::at(std::size_t step) const {
+  if (!matters_) return {};
+  if (step < at_ends_.size()) return at_ends_[step];
+  constexpr double kUnknown = std::numeric_limits<double>::infinity();
+  if (broke_off_) return {kUnknown, kUnknown, kUnknown, kUnknown};
+  return times(static_cast<double>(step + 1) / static_cast<double>(at_ends_.size()), at_ends_.back());
+}
+
+}  // namespace slipstick::solver

@@ -1,0 +1,107 @@
+#include "solver/load_path.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+
+#include "solver/solve.hpp"
+#include "solver/tests/scene_file.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+class LoadPath : public SceneFile {
+ protected:
+  Solution solved(const std::string& steps, const std::vector<std::string>& overrides = {}) const {
+    std::vector<std::string> keys{"grid.cells=[24,24]", "load.moment_ratio=0"};
+    keys.insert(keys.end(), overrides.begin(), overrides.end());
+    return solve(read(kShortScene + steps, keys));
+  }
+  /// A push, and a twist in so many steps that are written out.
+  static std::string push_and_twist(int steps) {
+    std::string text = "[[step]]\nforce = [50, 0]\n";
+    for (int k = 1; k <= steps; ++k) {
+      text += "[[step]]\nmoment_ratio = " + std::to_string(0.5 * k / steps) + "\n";
+    }
+    return text;
+  }
+};
+
+TEST_F(LoadPath, PartsEndWithTheStepAndGoStraightToIt) {
+  Scene scene;
+  scene.substeps = 4;
+  const Step before{.name = {}, .normal = 1000.0, .displacement = {}};
+  Step step = before;
+  step.torsion = Moment{0.03};
+  step.force = {10.0, -20.0};
+  const StepEnd end{.moment = -0.01, .force = {2.0, 0.0}};
+  const std::vector<Step> parts = parts_of(scene, step, &before, end);
+  ASSERT_EQ(parts.size(), 4U);
+  for (std::size_t k = 0; k < 4; ++k) {
+    const double part = 0.25 * static_cast<double>(k + 1);
+    EXPECT_NEAR(std::get<Moment>(parts[k].torsion).value, -0.01 + 0.04 * part, 1e-17);
+    EXPECT_NEAR(parts[k].force[0], 2.0 + 8.0 * part, 1e-14);
+    EXPECT_NEAR(parts[k].force[1], -20.0 * part, 1e-14);
+    EXPECT_EQ(parts[k].normal, 1000.0);
+  }
+  EXPECT_EQ(parts.back().force, step.force);
+}
+
+TEST_F(LoadPath, TheNormalLoadComesFirstWhileTheOthersStay) {
+  Scene scene;
+  scene.substeps = 4;
+  const Step before{.name = {}, .normal = 1000.0, .displacement = {}};
+  Step step = before;
+  step.normal = 800.0;
+  step.torsion = Twist{2e-4};
+  const StepEnd end{.twist = 1e-4, .force = {3.0, 4.0}};
+  const std::vector<Step> parts = parts_of(scene, step, &before, end);
+  ASSERT_EQ(parts.size(), 4U);
+  EXPECT_EQ(parts[0].normal, 900.0);
+  EXPECT_EQ(parts[1].normal, 800.0);
+  for (const std::size_t k : {0, 1}) {
+    EXPECT_EQ(std::get<Twist>(parts[k].torsion).value, 1e-4);
+    EXPECT_EQ(parts[k].force, end.force);
+  }
+  EXPECT_NEAR(std::get<Twist>(parts[2].torsion).value, 1.5e-4, 1e-19);
+  EXPECT_EQ(parts[2].normal, 800.0);
+}
+
+TEST_F(LoadPath, AStepInPartsEndsAsStepsThatAreWrittenOut) {
+  const Solution in_parts =
+      solved("[[step]]\nforce = [50, 0]\n[[step]]\nforce = [30, 20]\n", {"solver.substeps=2"});
+  const Solution written = solved(
+      "[[step]]\nforce = [25, 0]\n[[step]]\nforce = [50, 0]\n[[step]]\nforce = [40, 10]\n[[step]]\nforce = "
+      "[30, 20]\n");
+  ASSERT_EQ(in_parts.status, Status::converged);
+  EXPECT_NEAR(in_parts.displacement[0], written.displacement[0], 1e-12 * std::abs(written.displacement[0]));
+  EXPECT_NEAR(in_parts.displacement[1], written.displacement[1], 1e-12 * std::abs(written.displacement[1]));
+  EXPECT_GT(in_parts.dissipated, written.dissipated);  // of both parts, not of the last one
+}
+
+// Slip under a push lies along it; the twist that follows turns it.
+TEST_F(LoadPath, WhatFewPartsLeaveOpenIsStatedWhereSlipTurns) {
+  const Solution one = solved(push_and_twist(1));
+  const Solution many = solved(push_and_twist(32));
+  const double off = std::abs(one.twist_angle - many.twist_angle);
+  EXPECT_GT(off, 0.005 * many.twist_angle);
+  EXPECT_GT(one.resolution.path.twist, off);
+  EXPECT_LT(one.resolution.path.twist, 4.0 * off);
+  EXPECT_GE(one.resolution.absolute, one.resolution.path.twist);
+  const double shift = std::abs(one.displacement[0] - many.displacement[0]);
+  EXPECT_GT(one.resolution.path.displacement, shift);
+  // It falls like one over the number of parts, once there are many.
+  EXPECT_LT(solved(push_and_twist(1), {"solver.substeps=32"}).resolution.path.twist,
+            0.2 * one.resolution.path.twist);
+}
+
+TEST_F(LoadPath, ATwistOfASurfaceOfRevolutionHasNoPath) {
+  const std::string loop = "[[step]]\nmoment_ratio = 0.9\n[[step]]\nmoment_ratio = -0.4\n";
+  EXPECT_EQ(solved(loop).resolution.path.twist, 0.0);
+  EXPECT_GT(solved(loop, {"contact.coupling=\"pressure\"", "lower.young_modulus=70e9"}).resolution.path.twist,
+            0.0);
+}
+
+}  // namespace
+}  // namespace slipstick::solver
