@@ -23,14 +23,21 @@ Quantities distance(const StepEnd& from, const StepEnd& to) {
           .force = apart(from.force, to.force)};
 }
 
-void OpenHistory::add(const StepEnd& from, const StepEnd& to, double error) {
+void OpenHistory::add(const StepEnd& from, const StepEnd& to, const Resolution& step) {
   const Quantities changes = distance(from, to);
   const Quantities sizes = distance({}, to);
+  const bool goes_on = (to.twist - from.twist) * last_twist > 0.0;
   for (const auto number : kQuantities) {
-    if (changes.*number > 0.0) sum.*number += error * changes.*number;  // 0 of an infinite error is 0
+    if (changes.*number > 0.0) sum.*number += step.step * changes.*number;  // 0 of an infinite error is 0
     largest.*number = std::max(largest.*number, sizes.*number);
+    const double open = step.open.*number;
+    const double known = goes_on ? last_small_stick.*number : 0.0;
+    if (open > known) small_stick.*number += open - known;
+    largest_small_stick.*number = std::max(largest_small_stick.*number, open);
   }
-  worst = std::max(worst, error);
+  worst = std::max(worst, step.step);
+  last_small_stick = step.open;
+  last_twist = to.twist - from.twist;
 }
 
 Quantities OpenHistory::mesh() const {
@@ -40,8 +47,8 @@ Quantities OpenHistory::mesh() const {
   Quantities open;
   for (const auto number : kQuantities) {
     const bool turns = number == &Quantities::twist || number == &Quantities::moment;
-    const double most = largest.*number > 0.0 ? kLoops * worst * largest.*number : 0.0;
-    open.*number = (turns ? 1.0 : kOfTranslation) * std::min(sum.*number, most);
+    open.*number = (turns ? 1.0 : kOfTranslation) * std::min(sum.*number, kLoops * worst * largest.*number) +
+                   std::min(small_stick.*number, kLoops * largest_small_stick.*number);
   }
   return open;
 }

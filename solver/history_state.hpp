@@ -31,9 +31,13 @@ struct OpenHistory {
   Quantities sum;
   Quantities largest;
   double worst = 0.0;
+  Quantities small_stick;          ///< likewise of Resolution::open, of which a step that goes on adds
+  Quantities largest_small_stick;  ///< what is new
+  Quantities last_small_stick;
+  double last_twist = 0.0;  ///< of the last step alone
 
-  /// A step from one end to the next, with the relative error of its changes.
-  void add(const StepEnd& from, const StepEnd& to, double error);
+  /// A step from one end to the next.
+  void add(const StepEnd& from, const StepEnd& to, const Resolution& step);
   Quantities mesh() const;
 };
 

@@ -21,11 +21,12 @@ using Eigen::ArrayXXd;
 /// 64 cells a path's error differs by up to a quarter.
 constexpr double kCoarseCells = 24.0;
 constexpr double kCoarseAcross = 12.0;
-constexpr double kCoarseTolerance = 1e-7;
+/// Differences of parts are small, and each part leaves what the tolerance allows.
+constexpr double kCoarseTolerance = 1e-9;
 /// Error of n parts over its difference from 4 n parts. An error that falls like 1/n would make it 4/3. A
-/// single part is not there yet: 1.8 to 2.4 for pushes before twists and both at once, sphere and ellipsoids
-/// of up to 10 to 1.
-constexpr double kSafety = 2.5;
+/// single part is not there yet: 1.8 to 2.4 for pushes before twists and both at once, spheres and ellipsoids
+/// of up to 10 to 1; 3.0 for an ellipsoid that is twisted.
+constexpr double kSafety = 3.0;
 constexpr int kFinerPath = 4;
 /// Steps that are solved to estimate; a longer history's path is longer in proportion.
 constexpr std::size_t kMaxSteps = 60;
@@ -105,7 +106,7 @@ bool depends_on_path(const Scene& scene, const Model& model) {
 std::optional<Scene> coarse_scene(const Scene& scene) {
   if (scene.pressure == PressureModel::file) return std::nullopt;
   Scene coarse = scene;
-  coarse.tolerance = std::max(coarse.tolerance, kCoarseTolerance);
+  coarse.tolerance = kCoarseTolerance;
   coarse.op = OperatorKind::dcfft;
   coarse.model = ModelChoice::automatic;
   coarse.threads = 1;

@@ -138,8 +138,9 @@ void describe_energy(ModelSolution& solution, const LoadStep& loads) {
 void describe(ModelSolution& solution, const Scene& scene, const LoadStep& loads, const ArrayXd& slip) {
   describe_contact(solution);
   describe_tractions(solution, loads, slip);
-  solution.resolution = resolution(scene, solution.loads, solution.model.grid, loads,
-                                   solution.tangential.stick, solution.tangential.twist);
+  const Model& model = solution.model;
+  solution.resolution = resolution(scene, solution.loads, model.grid, loads, solution.tangential.stick);
+  solution.resolution.open.displacement *= model.length_unit;
   describe_energy(solution, loads);
 }
 

@@ -98,7 +98,7 @@ bool is_zero(const Step& step) { return step.force == std::array<double, 2>{} &&
 }  // namespace
 
 Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, const LoadStep& loads,
-                      const ArrayXd& stick, double twist) {
+                      const ArrayXd& stick) {
   const ArrayXd& bound = loads.problem.friction_bound;
   const Area contact = measure(grid, [&](Index cell) { return bound[cell]; });
   if (contact.cells == 0.0) return {};
@@ -118,14 +118,18 @@ Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, co
   const bool averaged = scene.pressure == PressureModel::hertz_averaged;
   const double smooth = at_centres ? 1.2 : averaged ? 1.7 : 0.3;
   const double narrow = std::clamp((4.0 - result.slip_width) / 3.0, 0.0, 1.0);
-  const double staircase = (at_centres ? 1.6 : 0.85) * cell * std::sqrt(cell) + (averaged ? 1.6 * cell : 0.0);
+  const double staircase = (at_centres ? 1.6 : 0.75) * cell * std::sqrt(cell) + (averaged ? 1.6 * cell : 0.0);
   result.step = smooth * cell * cell + 0.22 * edge * cell + narrow * staircase;
+  // A stick area of few cells is off by more of itself.
+  result.step += 0.6 * std::clamp(1.0 - result.stick_width / 6.0, 0.0, 1.0) * cell * cell;
   const bool of_mesh = std::holds_alternative<MomentRatio>(step.torsion) && is_zero(step);
   const double limit_error = of_mesh ? 0.0 : 0.6 * smooth * cell * cell + 0.15 * edge * cell;
-  const double open = open_twist(grid, loads, limit_error);
-  if (open > 0.0) {
-    result.step += sticking.cells > 0.0 ? open / std::abs(twist) : std::numeric_limits<double>::infinity();
-  }
+  const RigidMotion& sliding = loads.limit.sliding;
+  double open = open_twist(grid, loads, limit_error);
+  if (!(open > 0.0)) return result;
+  if (sticking.cells == 0.0) open = std::numeric_limits<double>::infinity();
+  result.open.twist = open;
+  result.open.displacement = open * std::hypot(sliding.delta1, sliding.delta2) / std::abs(sliding.twist);
   return result;
 }
 

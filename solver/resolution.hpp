@@ -11,7 +11,7 @@ namespace slipstick::solver {
 /// What the mesh resolves of a step, and the relative error that it leaves in the step's change of motion.
 /// Cells of size h on a contact of radius r, h/r in the root mean square of both axes, leave these parts:
 /// - everywhere 0.3 (h/r)^2, and up to 0.22 h/r where the pressure does not fall to zero at the edge;
-/// - where slip is narrower than four cells, up to 0.85 (h/r)^1.5, since tractions rise towards a staircase
+/// - where slip is narrower than four cells, up to 0.75 (h/r)^1.5, since tractions rise towards a staircase
 /// of
 ///   an edge as if nothing bounded them;
 /// - where the pressure is Hertz's and not solved on the grid, more of both; averaged over cells it also
@@ -26,8 +26,8 @@ namespace slipstick::solver {
 /// Constants were set by exact answers of spheres, cones, powers and punches on 16 to 96 cells at loads of
 /// 1e-6 to 1 - 1e-6 of the limit.
 ///
-/// stick: one value a cell of the whole grid; twist: of the step. In the model's units (stresses over G).
+/// stick: one value a cell of the whole grid. In the model's units (stresses over G, lengths over a cell).
 Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, const LoadStep& loads,
-                      const Eigen::ArrayXd& stick, double twist);
+                      const Eigen::ArrayXd& stick);
 
 }  // namespace slipstick::solver

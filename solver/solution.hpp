@@ -36,7 +36,8 @@ struct Resolution {
   double stick_width = 0.0;
   double slip_width = 0.0;  ///< cells across the slip area, likewise, twice its area over its outline
   double step = 0.0;        ///< relative: what the mesh leaves open of the step's own change
-  Quantities mesh;          ///< what it leaves open of the whole history: the sum over its steps
+  Quantities open;          ///< besides, where the stick area is small next to the limit: rad and m
+  Quantities mesh;          ///< what it leaves open of the whole history: over all its steps
   Quantities path;          ///< what the number of parts of its steps leaves open
   /// The number that the loads leave open: the twist where a moment acts or has turned the contact, the
   /// moment where the twist is imposed; without torsion the displacement, or the force where that is imposed.

@@ -224,7 +224,7 @@ void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, c
   const ArrayXd& slip = previous != nullptr ? onwards : tangential.slip;
   describe(solution, scene, loads, slip);
   OpenHistory open = before.open;
-  open.add(before.end, end_of(solution), solution.resolution.step);
+  open.add(before.end, end_of(solution), solution.resolution);
   solution.resolution.mesh = open.mesh();
   if (solution.status == Status::converged) {
     solution.message = beyond(solution.certificate, promised(scene));

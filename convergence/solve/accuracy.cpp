@@ -26,8 +26,6 @@ using solver::Scene;
 /// more than the second at once, since an error on a coarse mesh may say little.
 constexpr double kRefinementMargin = 1.1;
 constexpr double kMaxRefinement = 4.0;
-/// Tolerances that scene files may have.
-constexpr double kTightestTolerance = 1e-14;
 /// Cells that a grid without a given extent leaves free around the expected contact, both sides together; and
 /// the fewest cells on which it does.
 constexpr double kMarginCells = 4.0;

@@ -47,6 +47,9 @@ double cells_across(const ContactOnGrid& contact, solver::Index cells);
 /// The scene on another mesh, in the shape of its own.
 solver::Scene with_cells(solver::Scene scene, solver::Index longer);
 
+/// Of a chosen solve; scene files may have one that is ten times tighter.
+inline constexpr double kTightestTolerance = 1e-14;
+
 /// What is solved to reach a target.
 struct AccuracyChoice {
   solver::Index cells = 0;  ///< along the grid's longer side

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "convergence/results/exact_result.hpp"
+#include "convergence/results/quantity.hpp"
 #include "convergence/solve/reached.hpp"
 #include "solver/input/input_error.hpp"
 
@@ -27,23 +28,23 @@ struct Approach {
   ContactOnGrid contact;
   bool smooth;  ///< cell tractions
   bool shifted;
-  double stick_ratio;  ///< of shifted grids
+  ContactForm form;  ///< of shifted grids
 };
 
 Approach approach_to(const Scene& scene, const AccuracyTarget& target) {
   const bool shifted = takes_shifted_grids(scene, target.of);
   return {contact_on_grid(scene), gains_by_smooth_cells(scene, target.of), shifted,
-          shifted ? coarse_stick_ratio(scene) : 0.0};
+          shifted ? coarse_form(scene) : ContactForm{}};
 }
 
 AccuracyChoice first_choice(const Scene& scene, const Approach& approach, const AccuracyTarget& target) {
-  return approach.shifted ? choose_shifted(scene, approach.contact, target, approach.stick_ratio)
+  return approach.shifted ? choose_shifted(scene, approach.contact, target, approach.form)
                           : choose_grid(scene, approach.contact, target, is_estimated(scene, target.of));
 }
 
 Scene chosen_scene(const Scene& scene, const Approach& approach, const AccuracyChoice& choice) {
   Scene chosen = with_cells(scene, choice.cells);
-  chosen.tolerance = choice.tolerance;
+  chosen.tolerance = std::max(choice.tolerance / scene.substeps, kTightestTolerance);
   if (approach.smooth) chosen.cell_traction = solver::CellTraction::smooth;
   return chosen;
 }
@@ -54,6 +55,51 @@ constexpr double kWithCoarserSolve = 1.25;
 double solves_of(const Scene& scene, const Approach& approach, AccuracyOf of) {
   if (approach.shifted) return kShiftedGrids;
   return is_estimated(scene, of) ? kWithCoarserSolve : 1.0;
+}
+
+/// Of a target, what the length of steps may take; and the largest number of their parts.
+constexpr double kPathPart = 0.4;
+constexpr int kMaxSubsteps = 256;
+constexpr int kPathTrials = 4;
+
+/// What the length of steps leaves open of the number that is asked for, relative.
+double path_of(const solver::Solution& solution) {
+  const solver::Resolution& resolved = solution.resolution;
+  const double path = resolved.path.*resolved.number;
+  const bool turns = resolved.number == &solver::Quantities::twist;
+  return path > 0.0 ? path / std::abs(turns ? solution.twist_angle : solution.moment) : 0.0;
+}
+
+/// What is known of the number's error, where the answer states it.
+void put_uncertainty(Json& result, double mesh, double path) {
+  if (!result.contains("resolved")) return;
+  Json& resolved = result["resolved"];
+  const double value = std::abs(number_at(result, resolved["number"].get<std::string>()));
+  if (!std::isfinite(mesh * value)) return;
+  resolved["uncertainty"] = mesh + path;
+  resolved["absolute"] = (mesh + path) * value;
+  resolved["mesh"] = mesh * value;
+  resolved["path"] = path * value;
+  resolved.erase("warning");
+}
+
+/// The scene with as many parts of its steps as the target takes, found on few cells.
+Scene with_parts(Scene scene, const AccuracyTarget& target) {
+  if (target.of != AccuracyOf::twist || !is_estimated(scene, target.of)) return scene;
+  Scene coarse = with_cells(scene, kReferenceCells);
+  for (int trial = 0; trial < kPathTrials && scene.substeps < kMaxSubsteps; ++trial) {
+    coarse.substeps = scene.substeps;
+    double path = 0.0;
+    try {
+      path = path_of(solver::solve(coarse));
+    } catch (const InputError&) {
+      return scene;  // the mesh that counts may do better, or says it again
+    }
+    if (!(path > kPathPart * target.error)) return scene;
+    const double parts = std::ceil(scene.substeps * path / (0.8 * kPathPart * target.error));
+    scene.substeps = parts < kMaxSubsteps ? static_cast<int>(parts) : kMaxSubsteps;
+  }
+  return scene;
 }
 
 const std::string kNoFinerMesh =
@@ -84,10 +130,12 @@ struct Attempt {
   ReachedError reached;
   double uncertainty;  ///< of a mean over shifted grids; NaN of another answer
   Json grids;          ///< likewise; else null
+  double path;         ///< what the length of steps leaves open beside it
 
   /// NaN never is.
   bool within(double error) const {
-    return reached.error <= error && (std::isnan(uncertainty) || uncertainty <= error);
+    const double mesh = error - path;
+    return reached.error <= mesh && (std::isnan(uncertainty) || uncertainty <= mesh);
   }
   /// What the next mesh has to lower.
   double to_lower() const { return std::fmax(reached.error, uncertainty); }
@@ -95,18 +143,24 @@ struct Attempt {
 
 Attempt attempt(const Scene& scene, const Approach& approach, AccuracyOf of, const GridSolve& solve) {
   if (!approach.shifted) {
-    Attempt made{.answer = solve(scene, solver::Detail::all), .reached = {}, .uncertainty = NAN, .grids = {}};
+    Attempt made{.answer = solve(scene, solver::Detail::all),
+                 .reached = {},
+                 .uncertainty = NAN,
+                 .grids = {},
+                 .path = 0.0};
+    if (of == AccuracyOf::twist) made.path = path_of(made.answer.solution);
     made.reached = reached_error(scene, made.answer.solution, made.answer.result, of);
     return made;
   }
-  ShiftedMean mean = mean_over_shifted_grids(scene, accuracy_quantity(scene, of), approach.stick_ratio,
-                                             approach.contact, solve);
+  ShiftedMean mean =
+      mean_over_shifted_grids(scene, accuracy_quantity(scene, of), approach.form, approach.contact, solve);
   ReachedError reached{mean.uncertainty, "estimated", mean.why};
   if (std::isfinite(mean.uncertainty) && std::isfinite(mean.error)) {
     reached = {std::abs(mean.error), "exact",
                fmt::format("the mean of {} grids against the exact answer", mean.grids.size())};
   }
-  return {std::move(mean.answer), reached, mean.uncertainty, std::move(mean.grids)};
+  const double path = reached.how == "exact" ? 0.0 : path_of(mean.answer.solution);
+  return {std::move(mean.answer), reached, mean.uncertainty, std::move(mean.grids), path};
 }
 
 Json attempt_json(const Attempt& made, const Scene& scene, double seconds) {
@@ -119,8 +173,9 @@ Json attempt_json(const Attempt& made, const Scene& scene, double seconds) {
 
 }  // namespace
 
-Json accuracy_plan(const Scene& scene, const AccuracyTarget& target) {
-  if (scene.model == solver::ModelChoice::exact) return plan_json(scene);
+Json accuracy_plan(const Scene& given, const AccuracyTarget& target) {
+  if (given.model == solver::ModelChoice::exact) return plan_json(given);
+  const Scene scene = with_parts(given, target);
   const Approach approach = approach_to(scene, target);
   Json plan = plan_json(chosen_scene(scene, approach, first_choice(scene, approach, target)));
   if (!approach.shifted) return plan;
@@ -129,7 +184,8 @@ Json accuracy_plan(const Scene& scene, const AccuracyTarget& target) {
   return plan;
 }
 
-AccurateAnswer solve_to_accuracy(const Scene& scene, const AccuracyTarget& target, const GridSolve& solve) {
+AccurateAnswer solve_to_accuracy(const Scene& given, const AccuracyTarget& target, const GridSolve& solve) {
+  const Scene scene = with_parts(given, target);
   const Approach approach = approach_to(scene, target);
   const double order = approach.shifted ? kShiftedOrder : falling_order(accuracy_data(), target.of);
   std::optional<AccuracyChoice> choice = first_choice(scene, approach, target);
@@ -146,6 +202,11 @@ AccurateAnswer solve_to_accuracy(const Scene& scene, const AccuracyTarget& targe
     attempts.push_back(attempt_json(made, chosen, seconds));
     found.reached = made.within(target.error);
     if (found.reached) break;
+    if (!(made.path < target.error)) {
+      stopped =
+          fmt::format("steps in {} parts leave {:.2g} open; write out more steps", scene.substeps, made.path);
+      break;
+    }
     choice = refined(scene, approach.contact, target, *choice, made.to_lower(), order);
     if (!choice) {
       stopped = std::isfinite(made.reached.error) ? kNoFinerMesh : made.reached.why;
@@ -153,7 +214,9 @@ AccurateAnswer solve_to_accuracy(const Scene& scene, const AccuracyTarget& targe
     }
   }
   if (!found.reached) found.accuracy["not_reached"] = stopped;
-  set_number(found.accuracy, "reached", made.reached.error, made.reached.why);
+  set_number(found.accuracy, "reached", made.reached.error + made.path, made.reached.why);
+  set_number(found.accuracy, "path", made.path, "more parts of the steps do not carry these loads");
+  found.accuracy["substeps"] = scene.substeps;
   found.accuracy.update(
       {{"how", made.reached.how}, {"why", made.reached.why}, {"attempts", std::move(attempts)}});
   if (approach.shifted) set_number(found.accuracy, "uncertainty", made.uncertainty, made.reached.why);
@@ -162,6 +225,7 @@ AccurateAnswer solve_to_accuracy(const Scene& scene, const AccuracyTarget& targe
   found.accuracy["replaced"] = {{"cells", scene.cells}, {"tolerance", scene.tolerance}};
   if (const std::string note = note_on(scene); !note.empty()) found.accuracy["note"] = note;
   found.answer = std::move(made.answer);
+  if (target.of == AccuracyOf::twist) put_uncertainty(found.answer.result, made.to_lower(), made.path);
   return found;
 }
 
@@ -197,6 +261,10 @@ std::string accuracy_text(const Json& result) {
   if (accuracy.contains("uncertainty")) {
     text += text_line("uncertainty", fmt::format("{} of it (95 %), the mean of {} grids",
                                                  short_text(accuracy["uncertainty"]), kShiftedGrids));
+  }
+  if (accuracy.value("substeps", 1) > 1) {
+    text += text_line("steps", fmt::format("each in {} parts, which leave {} open",
+                                           accuracy["substeps"].get<int>(), short_text(accuracy["path"])));
   }
   if (accuracy.contains("not_reached")) {
     text += text_line("not reached", accuracy["not_reached"].get<std::string>());

@@ -76,9 +76,12 @@ Json end_json(const solver::StepEnd& end) {
 }
 
 Json open_json(const solver::OpenHistory& open) {
-  const auto& [sum, largest, worst] = open;
-  return {sum.twist,      sum.displacement, sum.moment, sum.force, largest.twist, largest.displacement,
-          largest.moment, largest.force,    worst};
+  Json json{open.worst, open.last_twist};
+  for (const auto& sizes :
+       {open.sum, open.largest, open.small_stick, open.largest_small_stick, open.last_small_stick}) {
+    for (const auto number : solver::kQuantities) json.push_back(sizes.*number);
+  }
+  return json;
 }
 
 /// JSON has null for what is infinite.
@@ -148,9 +151,14 @@ std::shared_ptr<const FinishedSteps> Checkpoint::read() const {
     const std::vector<double> end = numbers_of(json.at("end"));
     state.contact.end = {end.at(0), {end.at(1), end.at(2)}, end.at(3), {end.at(4), end.at(5)}, end.at(6)};
     const std::vector<double> open = numbers_of(json.at("open"));
-    state.contact.open = {{open.at(0), open.at(1), open.at(2), open.at(3)},
-                          {open.at(4), open.at(5), open.at(6), open.at(7)},
-                          open.at(8)};
+    solver::OpenHistory& at = state.contact.open;
+    at.worst = open.at(0);
+    at.last_twist = open.at(1);
+    std::size_t next = 2;
+    for (auto* const sizes :
+         {&at.sum, &at.largest, &at.small_stick, &at.largest_small_stick, &at.last_small_stick}) {
+      for (const auto number : solver::kQuantities) sizes->*number = open.at(next++);
+    }
     state.finished = json.at("finished");
     state.normal = normal_of(json.at("normal"));
     steps = json.at("steps");

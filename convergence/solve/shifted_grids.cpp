@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -46,10 +47,9 @@ constexpr double kSafety = 1.25;
 /// Meshes are tried from so many cells across on, each finer by so much.
 constexpr double kMinAcrossShifted = 12.0;
 constexpr double kFiner = 1.02;
-/// What iterations may leave, as gap over energy: over the wanted error, and the most and least.
+/// What iterations may leave, as gap over energy: over the wanted error, and the most.
 constexpr double kToleranceOfError = 0.1;
 constexpr double kLoosest = 1e-4;
-constexpr double kTightest = 1e-14;
 /// Of the coarse grid; and the least stick radius in cells by which grids are spread, so that none is much
 /// coarser than the others.
 constexpr solver::Index kCoarseCells = 40;
@@ -78,9 +78,39 @@ double part_of_scatter(const Scene& scene, double stick_width, double slip_width
   return has_tip(scene) ? kOfScatterOfTips : kOfScatter;
 }
 
-double expected_uncertainty(const Scene& scene, double across, double stick_ratio) {
-  return part_of_scatter(scene, stick_ratio * across, 0.5 * (1.0 - stick_ratio) * across) *
-         expected_scatter(across, stick_ratio);
+/// Over the scatter that the stick area's shape explains: in a slender contact that shape differs from the
+/// contact's, and all grids err alike.
+double of_slender(double slender) {
+  constexpr double kSlender = 1.25;
+  return std::max(1.0, slender / kSlender);
+}
+
+double expected_uncertainty(const Scene& scene, double across, const ContactForm& form) {
+  const double stick = form.stick_ratio;
+  return of_slender(form.slender) * part_of_scatter(scene, stick * across, 0.5 * (1.0 - stick) * across) *
+         expected_scatter(across, stick);
+}
+
+/// Longer over shorter axis of a contact, from its pressure's second moments.
+double slenderness(const solver::Solution& solution) {
+  const solver::Grid& grid = solution.grid;
+  double load = 0.0;
+  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
+  Eigen::Matrix2d moments = Eigen::Matrix2d::Zero();
+  for (solver::Index i = 0; i < grid.n1; ++i) {
+    for (solver::Index j = 0; j < grid.n2; ++j) {
+      const double pressure = solution.pressure[i * grid.n2 + j];
+      const Eigen::Vector2d x(grid.x1(i), grid.x2(j));
+      load += pressure;
+      centre += pressure * x;
+      moments += pressure * x * x.transpose();
+    }
+  }
+  centre /= load;
+  const Eigen::Vector2d axes =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(moments / load - centre * centre.transpose())
+          .eigenvalues();
+  return std::sqrt(axes[1] / axes[0]);
 }
 
 /// The scene's grid, and larger ones of as many cells.
@@ -134,33 +164,39 @@ bool takes_shifted_grids(const Scene& scene, AccuracyOf of) {
   return of == AccuracyOf::twist && gains_by_smooth_cells(scene, of);
 }
 
-double coarse_stick_ratio(const Scene& scene) {
+ContactForm coarse_form(const Scene& scene) {
+  ContactForm form;
   try {
     const solver::Solution coarse = solver::solve(with_cells(scene, kCoarseCells));
     const double ratio = coarse.stick_radius / coarse.contact_radius;
-    return ratio >= 0.0 && ratio <= 1.0 ? ratio : kSmallStick;
+    if (ratio >= 0.0 && ratio <= 1.0) form.stick_ratio = ratio;
+    const double slender = slenderness(coarse);
+    if (slender >= 1.0 && std::isfinite(slender)) form.slender = slender;
   } catch (const InputError&) {
-    return kSmallStick;  // the mesh that counts may do better, or says it again
+    // the mesh that counts may do better, or says it again
   }
+  return form;
 }
 
 AccuracyChoice choose_shifted(const Scene& scene, const ContactOnGrid& contact, const AccuracyTarget& target,
-                              double stick_ratio) {
+                              const ContactForm& form) {
   const double aim = target.error / kSafety;
-  const double least = kSafety * expected_uncertainty(scene, kMaxCellsAcross, stick_ratio);
+  const double least = kSafety * expected_uncertainty(scene, kMaxCellsAcross, form);
   if (!(target.error >= least)) throw out_of_reach(scene, target, least);
   double across = kMinAcrossShifted;
-  while (across < kMaxCellsAcross && expected_uncertainty(scene, across, stick_ratio) > aim) across *= kFiner;
-  AccuracyChoice choice{.cells = cells_for(contact, std::min(across, kMaxCellsAcross)),
-                        .tolerance = std::clamp(kToleranceOfError * target.error, kTightest, kLoosest)};
+  while (across < kMaxCellsAcross && expected_uncertainty(scene, across, form) > aim) across *= kFiner;
+  AccuracyChoice choice{
+      .cells = cells_for(contact, std::min(across, kMaxCellsAcross)),
+      .tolerance = std::clamp(kToleranceOfError * target.error, kTightestTolerance, kLoosest)};
   solver::make_model(with_cells(scene, choice.cells));  // says what does not fit in memory
   return choice;
 }
 
-ShiftedMean mean_over_shifted_grids(const Scene& scene, const AccuracyQuantity& quantity, double stick_ratio,
-                                    const ContactOnGrid& contact, const GridSolve& solve) {
+ShiftedMean mean_over_shifted_grids(const Scene& scene, const AccuracyQuantity& quantity,
+                                    const ContactForm& form, const ContactOnGrid& contact,
+                                    const GridSolve& solve) {
   const double radius = 0.5 * cells_across(contact, std::max(scene.cells[0], scene.cells[1]));
-  const std::vector<Scene> scenes = shifted(scene, stick_ratio * radius);
+  const std::vector<Scene> scenes = shifted(scene, form.stick_ratio * radius);
   constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
   ShiftedMean found{
       .answer = {}, .error = unknown, .uncertainty = unknown, .why = {}, .grids = Json::array()};
@@ -182,10 +218,11 @@ ShiftedMean mean_over_shifted_grids(const Scene& scene, const AccuracyQuantity& 
   const Moments moments = moments_of(values);
   found.error = moments_of(errors).mean;
   const solver::Resolution& resolved = found.answer.solution.resolution;
-  const double part = part_of_scatter(scene, resolved.stick_width, resolved.slip_width);
+  const double part =
+      of_slender(form.slender) * part_of_scatter(scene, resolved.stick_width, resolved.slip_width);
   const double scatter = moments.deviation / std::abs(moments.mean);
-  found.uncertainty = part * std::max(scatter, expected_scatter(2.0 * radius, stick_ratio));
-  found.why = fmt::format("{} times the scatter of the {} grids whose mean it is, {:.2g}", part,
+  found.uncertainty = part * std::max(scatter, expected_scatter(2.0 * radius, form.stick_ratio));
+  found.why = fmt::format("{:.2g} times the scatter of the {} grids whose mean it is, {:.2g}", part,
                           values.size(), scatter);
   put_mean(found.answer.result, quantity, moments.mean, found.error);
   if (found.answer.result.contains("steps")) {

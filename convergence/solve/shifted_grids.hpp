@@ -29,13 +29,18 @@ bool gains_by_smooth_cells(const solver::Scene& scene, AccuracyOf of);
 /// stick radius keeps an error of its own, since it is fitted to the slip beside its edge.
 bool takes_shifted_grids(const solver::Scene& scene, AccuracyOf of);
 
-/// Stick radius over contact radius, from a coarse grid; a half where that cannot say.
-double coarse_stick_ratio(const solver::Scene& scene);
+/// What a mesh is chosen by.
+struct ContactForm {
+  double stick_ratio = 0.5;  ///< stick radius over contact radius
+  double slender = 1.0;      ///< longer over shorter axis of the contact
+};
+/// From a coarse grid, as far as that can say.
+ContactForm coarse_form(const solver::Scene& scene);
 
 /// The mesh on which the mean is expected to have the wanted uncertainty. Throws InputError, with what is
 /// reachable, where none does, and where it does not fit in memory.
 AccuracyChoice choose_shifted(const solver::Scene& scene, const ContactOnGrid& contact,
-                              const AccuracyTarget& target, double stick_ratio);
+                              const AccuracyTarget& target, const ContactForm& form);
 
 /// The mean over grids of so many cells and of growing extent.
 struct ShiftedMean {
@@ -47,6 +52,7 @@ struct ShiftedMean {
   Json grids;       ///< [{extent, value}], in the order of their solves
 };
 ShiftedMean mean_over_shifted_grids(const solver::Scene& scene, const AccuracyQuantity& quantity,
-                                    double stick_ratio, const ContactOnGrid& contact, const GridSolve& solve);
+                                    const ContactForm& form, const ContactOnGrid& contact,
+                                    const GridSolve& solve);
 
 }  // namespace slipstick::convergence
