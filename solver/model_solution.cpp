@@ -90,11 +90,18 @@ void describe_tractions(ModelSolution& solution, const LoadStep& loads, const Ar
   if (solution.limit.centre) {
     for (double& x : *solution.limit.centre) x *= model.length_unit;
   }
+  const bool inherits = problem.energy_before > 0.0 || model.pressure_coupling;
+  const double reach = 0.5 * std::hypot(grid.x1(grid.n1 - 1) - grid.x1(0), grid.x2(grid.n2 - 1) - grid.x2(0));
+  const double motion =
+      std::hypot(tangential.displacement[0], tangential.displacement[1]) + std::abs(tangential.twist) * reach;
   solution.certificate = certify({tangential.traction, tangential.elastic_displacement, tangential.slip},
                                  problem.friction_bound, grid, problem.moment.value_or(moment),
                                  problem.displacement ? force : problem.force.value_or(std::array{0.0, 0.0}),
-                                 least_eigenvalue(model.pair, grid.h1, grid.h2));
-  solution.slip_direction = slip_direction(tangential.traction, tangential.slip);
+                                 least_eigenvalue(model.pair, grid.h1, grid.h2),
+                                 {problem.energy_before, inherits ? motion : 0.0});
+  solution.slip_direction = solution.stick_cells == solution.contact_cells
+                                ? SlipDirection{std::nan(""), std::nan("")}
+                                : slip_direction(tangential.traction, tangential.slip);
   solution.resolution = resolution(grid, loads, tangential.stick, tangential.twist);
 }
 
@@ -158,6 +165,7 @@ Solution in_si(ModelSolution solution) {
   solution.slip = in_unit(solution.tangential.slip, model.length_unit);
   solution.stick = std::move(solution.tangential.stick);
   solution.left_out = model.left_out;
+  solution.certificate.energy *= model.grid.cell_area() * model.moment_unit();
   solution.iterations = solution.tangential.iterations;
   solution.change = solution.tangential.change;
   solution.grids = std::move(solution.tangential.grids);

@@ -13,12 +13,6 @@
 
 namespace slipstick::solver {
 
-/// Something that a scene lets the model leave out, and why its answer does not change by that.
-struct Omission {
-  std::string what;
-  std::string why;
-};
-
 /// What a mesh resolves of a contact's slip and stick.
 struct Resolution {
   /// Cells across the stick area, in the mean: four times its area over its outline. Zero where no cell
@@ -67,7 +61,7 @@ struct Solution {
 
   Detail detail = Detail::all;
   Certificate certificate{};
-  SlipDirection slip_direction{};
+  SlipDirection slip_direction{};  ///< NaN where nothing slips
   Resolution resolution;
 
   double normal_load = 0.0;    ///< W, N: what the pressure carries

@@ -24,7 +24,7 @@ using solver::HistoryState;
 using solver::InputError;
 using solver::NormalSolution;
 
-constexpr const char* kFormat = "slipstick history 1";
+constexpr const char* kFormat = "slipstick history 2";
 /// Most of the time that may go into writing.
 constexpr double kPart = 0.01;
 /// Values of a dataset: those of the largest grid that is solved, twice.
@@ -123,6 +123,7 @@ std::shared_ptr<const FinishedSteps> Checkpoint::read() const {
     if (as_text(numbers_in(file_, "checksum")) != sum_of(state.contact, text)) throw damaged;
     const Json& motion = json.at("motion");
     state.contact.motion = {motion.at(0), motion.at(1), motion.at(2)};
+    state.contact.energy = json.at("energy");
     state.finished = json.at("finished");
     state.normal = normal_of(json.at("normal"));
     steps = json.at("steps");
@@ -141,6 +142,7 @@ void Checkpoint::write(const HistoryState& state, const Json& steps) const {
                {"program", program_},
                {"finished", state.finished},
                {"motion", {contact.motion.delta1, contact.motion.delta2, contact.motion.twist}},
+               {"energy", contact.energy},
                {"normal", normal_json(state.normal)},
                {"has_slip", contact.slip.size() > 0},
                {"steps", steps}});
