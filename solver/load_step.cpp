@@ -44,15 +44,6 @@ std::string sliding_text(const LimitLoad& limit, double length_unit) {
   const std::string file = scene.source.string();
   const std::string sliding = sliding_text(loads.limit, model.length_unit);
   const auto moment = value_if<Moment>(step.torsion);
-  const auto ratio = value_if<MomentRatio>(step.torsion);
-  const double factor = loads.limit.factor;
-  if (ratio && step.force == std::array<double, 2>{}) {
-    throw InputError(
-        file, step.key + ".moment_ratio", fmt::format("{}", *ratio),
-        fmt::format("below {:.17g} in size, as far as rounding lets the limit be known; at or above "
-                    "it the contact slips everywhere, {}",
-                    std::min(factor * std::abs(*ratio), std::abs(*ratio)), sliding));
-  }
   if (moment && step.force == std::array<double, 2>{}) {
     throw InputError(
         file, step.key + ".moment", fmt::format("{} N m", *moment),
@@ -61,18 +52,19 @@ std::string sliding_text(const LimitLoad& limit, double length_unit) {
             "contact slips everywhere, {}",
             loads.moment_limit * model.grid.cell_area() * model.moment_unit(), sliding));
   }
-  const auto& torsion = loads.problem.moment;
-  const double unit = model.grid.cell_area() * model.moment_unit();
   // Next to 1 the factor does not say which side of the limit the loads are on: their numbers do.
+  const double factor = loads.limit.factor;
   const std::string times = std::abs(factor - 1.0) > kNextTo ? fmt::format("{:.6g} times these", factor)
                                                              : fmt::format("these up to {:g}", kNextTo);
+  const auto ratio = value_if<MomentRatio>(step.torsion);
+  const bool turned = ratio && step.force == std::array<double, 2>{};
+  const double torsion = loads.problem.moment.value_or(0.0) * model.grid.cell_area() * model.moment_unit();
   throw InputError(
-      file, step.key + ".force", fmt::format("[{}, {}] N", step.force[0], step.force[1]),
-      fmt::format(
-          "loads below what this pressure and mesh can carry, which is {}: [{:.17g}, {:.17g}] N{}; at or "
-          "beyond that the contact slips everywhere, {}",
-          times, factor * step.force[0], factor * step.force[1],
-          torsion ? fmt::format(" and {:.17g} N m", factor * *torsion * unit) : "", sliding));
+      file, step.key + (turned ? ".moment_ratio" : ".force"),
+      turned ? fmt::format("{}", *ratio) : fmt::format("[{}, {}] N", step.force[0], step.force[1]),
+      fmt::format("loads below what this pressure and mesh can carry, which is {}: [{:.17g}, {:.17g}] N and "
+                  "{:.17g} N m; at or beyond that the contact slips everywhere, {}",
+                  times, factor * step.force[0], factor * step.force[1], factor * torsion, sliding));
 }
 
 /// The other methods know torsion about the grid's origin alone: what half a turn does not bring onto itself

@@ -16,6 +16,10 @@ namespace {
 
 using Eigen::ArrayXd;
 
+/// Energy lost to slip that may be none: so many gaps, and at most this part of the energy.
+constexpr double kGapsOfNoSlip = 10.0;
+constexpr double kNoSlip = 1e-5;
+
 double equal_area_radius(const Grid& grid, Index cells) {
   return std::sqrt(static_cast<double>(cells) * grid.cell_area() / std::numbers::pi);
 }
@@ -99,9 +103,6 @@ void describe_tractions(ModelSolution& solution, const LoadStep& loads, const Ar
                                  problem.displacement ? force : problem.force.value_or(std::array{0.0, 0.0}),
                                  least_eigenvalue(model.pair, grid.h1, grid.h2),
                                  {problem.energy_before, inherits ? motion : 0.0});
-  solution.slip_direction = solution.stick_cells == solution.contact_cells
-                                ? SlipDirection{std::nan(""), std::nan("")}
-                                : slip_direction(tangential.traction, tangential.slip);
   solution.resolution = resolution(grid, loads, tangential.stick, tangential.twist);
 }
 
@@ -139,6 +140,13 @@ void describe_energy(ModelSolution& solution, const LoadStep& loads) {
   solution.elastic_energy = work.elastic * unit;
   solution.dissipated = work.dissipated * unit;
   solution.work = work.of_loads * unit;
+  // Slip of which the gap leaves open whether it is any has no direction.
+  const Certificate& certificate = solution.certificate;
+  const bool slips =
+      solution.stick_cells < solution.contact_cells &&
+      !(work.dissipated <= std::min(kGapsOfNoSlip * certificate.gap, kNoSlip) * certificate.energy);
+  solution.slip_direction = slips ? slip_direction(tangential.traction, tangential.slip)
+                                  : SlipDirection{std::nan(""), std::nan("")};
 }
 
 }  // namespace

@@ -237,7 +237,7 @@ Json solve_result(const solver::Scene& scene, const Solution& solution, const Or
   json["certificate"] = certificate_json(solution.certificate, kBroken);
   set_number(json["certificate"], "energy", solution.certificate.energy, kBroken);
   json["resolved"] = resolution_json(solution.resolution);
-  const std::string& no_direction = solution.stick_cells == solution.contact_cells ? kNoSlip : kBroken;
+  const std::string& no_direction = solution.status == solver::Status::converged ? kNoSlip : kBroken;
   set_number(json["slip_direction"], "mean", solution.slip_direction.mean, no_direction);
   set_number(json["slip_direction"], "max", solution.slip_direction.max, no_direction);
   add_errors(json, solution, exact);
