@@ -17,6 +17,7 @@ constexpr double kRhoOfPressure = 0.1;
 /// Of the linear problem that refines the multipliers at the end; each brings them nearer by about 5.
 constexpr int kRefiningIterations = 2;
 constexpr int kPatience = 8;
+constexpr int kPatienceOfEnough = 2;
 /// Of a Newton step, and of a gradient step of length rho, before it is given up.
 constexpr int kMaxHalvings = 6;
 constexpr int kMaxGradientHalvings = 30;
@@ -100,9 +101,12 @@ NewtonSummary NaturalMapNewton<Set, Real>::run(ArrayXd& q, const Coefficients& m
     if (settled && summary.gap > options.tolerance && is_certified(options.tolerance)) {
       return stop(q, options, summary, "rounding");
     }
-    without_progress = summary.gap < best_gap || energy_fell_ ? 0 : without_progress + 1;
+    const bool enough = program_.energy_before > 0.0 && is_certified(options.tolerance);
+    const bool progress = enough ? summary.gap < 0.5 * best_gap : summary.gap < best_gap || energy_fell_;
+    without_progress = progress ? 0 : without_progress + 1;
     best_gap = std::min(best_gap, summary.gap);
-    if (without_progress > kPatience) return stop(q, options, summary, "rounding: no further progress");
+    if (without_progress > (enough ? kPatienceOfEnough : kPatience))
+      return stop(q, options, summary, "rounding: no further progress");
     if (applications() >= options.max_applications) {
       return stop(q, options, summary,
                   fmt::format("no convergence within {} operator applications", options.max_applications));

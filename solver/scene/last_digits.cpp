@@ -1,7 +1,5 @@
 #include "solver/scene/last_digits.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 
@@ -50,7 +48,7 @@ Scene without_last_digits(Scene scene) {
   const auto sides = sides_of(scene);
   if (scene.model == ModelChoice::full || !sides) return scene;
   const auto note = [&](const std::string& what) {
-    scene.left_out.push_back({what, fmt::format("less than {:g} of what it belongs to", kLastDigits)});
+    scene.left_out.push_back({what, "less than 1e-12 of what it belongs to"});
   };
   for (Surface& surface : scene.surfaces) {
     for (std::size_t i = 0; i < 2; ++i) {
