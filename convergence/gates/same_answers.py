@@ -6,8 +6,7 @@ import json
 import subprocess
 import sys
 
-KEYS = ("contact_radius", "stick_radius", "twist_angle", "moment", "peak_pressure", "approach", "elastic_energy",
-        "dissipated", "displacement", "force")
+KEYS = ("contact_radius", "stick_radius", "twist_angle", "moment", "peak_pressure", "approach", "elastic_energy", "dissipated")
 ALLOWED = 1e-9  # relative; a stick radius follows from where slip begins, which rounding moves by more
 ALLOWED_OF = {"stick_radius": 1e-6}
 

@@ -47,22 +47,22 @@ bool are_alike(const Material& upper, const Material& lower) {
 Scene without_last_digits(Scene scene) {
   const auto sides = sides_of(scene);
   if (scene.model == ModelChoice::full || !sides) return scene;
-  const auto note = [&](const std::string& what) {
+  const auto left_out = [&](const std::string& what) {
     scene.left_out.push_back({what, "less than 1e-12 of what it belongs to"});
   };
   for (Surface& surface : scene.surfaces) {
     for (std::size_t i = 0; i < 2; ++i) {
       if (!is_rounding(surface.at[i], (*sides)[i] / static_cast<double>(scene.cells[i]))) continue;
       surface.at[i] = 0.0;
-      note("a shape's position");
+      left_out("a shape's position");
     }
     if (!is_rounding(surface.radius_2 - surface.radius_1, surface.radius_1)) continue;
     surface.radius_2 = surface.radius_1;
-    note("the difference of the radii");
+    left_out("the difference of the radii");
   }
   if (is_rounding(forces_over_torsion(scene, std::hypot((*sides)[0], (*sides)[1])), 1.0)) {
     for (Step& step : scene.steps) step.force = {};
-    note("forces");
+    left_out("forces");
   }
   return scene;
 }
