@@ -16,7 +16,7 @@ set(SLIPSTICK_HEADERS <algorithm> <array> <cmath> <filesystem> <fstream> <functi
   <sstream> <string> <variant> <vector> <fmt/format.h>)
 
 function(slipstick_configure target)
-  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion
+  target_compile_options(${target} PRIVATE -Wall -Wextra -Wpedantic -Wconversion -ffp-contract=off
     $<$<BOOL:${SLIPSTICK_WERROR}>:-Werror> $<$<BOOL:${SLIPSTICK_NATIVE}>:-march=native>)
 endfunction()
 

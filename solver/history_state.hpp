@@ -48,6 +48,9 @@ struct ContactState {
   /// 2*cells, of each cell since it last stuck or turned back; empty where the contact has just grown.
   Eigen::ArrayXd slip;
   RigidMotion motion;  ///< since the first step began
+  /// The largest q.Kq/2 so far, as far as the friction bounds have been able to hold it since; over the cell
+  /// area. What a step's certificate is relative to where it leaves less.
+  double energy = 0.0;
   StepEnd end;
   OpenHistory open;
 };

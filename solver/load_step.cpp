@@ -12,8 +12,11 @@ namespace {
 
 using Eigen::ArrayXd;
 
-/// Pressures of mirror images that are equal but for the rounding of their solve.
+/// Of pressures of mirror images that are equal but for the rounding of their solve, and of displacements by
+/// transforms.
 constexpr double kRounding = 1e-12;
+/// So close to 1 a factor of the loads is not worth printing.
+constexpr double kNextTo = 1e-5;
 
 /// Tangential displacement by the change of pressure, Eq. (12).
 ArrayXd pressure_displacement(const Scene& scene, const Model& model, const ArrayXd& pressure,
@@ -22,7 +25,9 @@ ArrayXd pressure_displacement(const Scene& scene, const Model& model, const Arra
   const auto op = elasticity(scene, model, Reduction(model.grid)).make(model.grid, coupling_kernel());
   ArrayXd u(2 * pressure.size());
   op->apply(before.pressure.size() > 0 ? ArrayXd(pressure - before.pressure) : pressure, u);
-  return u;
+  // A single cell does not move itself: what transforms leave there is no displacement.
+  const double in_contact = ((pressure > 0.0).cast<double>().replicate(2, 1) * u).abs().maxCoeff();
+  return in_contact <= kRounding * u.abs().maxCoeff() ? ArrayXd() : u;
 }
 
 /// How a body would slide, in words; lengths in the scene's unit.
@@ -47,11 +52,19 @@ std::string sliding_text(const LimitLoad& limit, double length_unit) {
             "contact slips everywhere, {}",
             loads.moment_limit * model.grid.cell_area() * model.moment_unit(), sliding));
   }
+  // Next to 1 the factor does not say which side of the limit the loads are on: their numbers do.
+  const double factor = loads.limit.factor;
+  const std::string times = std::abs(factor - 1.0) > kNextTo ? fmt::format("{:.6g} times these", factor)
+                                                             : fmt::format("these up to {:g}", kNextTo);
+  const auto ratio = value_if<MomentRatio>(step.torsion);
+  const bool turned = ratio && step.force == std::array<double, 2>{};
+  const double torsion = loads.problem.moment.value_or(0.0) * model.grid.cell_area() * model.moment_unit();
   throw InputError(
-      file, step.key + ".force", fmt::format("[{}, {}] N", step.force[0], step.force[1]),
-      fmt::format("loads below what this pressure and mesh can carry, which is {:.6g} times these; "
-                  "beyond that the contact slips everywhere, {}",
-                  loads.limit.factor, sliding));
+      file, step.key + (turned ? ".moment_ratio" : ".force"),
+      turned ? fmt::format("{}", *ratio) : fmt::format("[{}, {}] N", step.force[0], step.force[1]),
+      fmt::format("loads below what this pressure and mesh can carry, which is {}: [{:.17g}, {:.17g}] N and "
+                  "{:.17g} N m; at or beyond that the contact slips everywhere, {}",
+                  times, factor * step.force[0], factor * step.force[1], factor * torsion, sliding));
 }
 
 /// The other methods know torsion about the grid's origin alone: what half a turn does not bring onto itself
@@ -95,6 +108,16 @@ void impose_translation(TangentialProblem& problem, const Model& model, const St
   }
 }
 
+/// An energy goes with the square of the loads over the contact's size: what the bounds cannot hold any more
+/// says nothing of what they do hold.
+double energy_before(const ArrayXd& pressure, const ContactState& before) {
+  if (before.energy == 0.0) return 0.0;
+  const double load = pressure.sum() / before.pressure.sum();
+  const double cells = static_cast<double>((pressure > 0.0).count());
+  const double size = std::sqrt(cells / static_cast<double>((before.pressure > 0.0).count()));
+  return before.energy * std::min(1.0, load * load / size);
+}
+
 }  // namespace
 
 LoadStep load_step(const Scene& scene, const Model& model, const Step& step, const ArrayXd& pressure,
@@ -105,6 +128,7 @@ LoadStep load_step(const Scene& scene, const Model& model, const Step& step, con
   problem.friction_bound = model.friction * pressure;
   problem.initial_displacement = pressure_displacement(scene, model, pressure, before);
   problem.start = before.traction;
+  problem.energy_before = energy_before(pressure, before);
   const bool translations = has_translations(scene, model, pressure);
   loads.moment_limit = translations ? free_moment_limit(model.grid, problem.friction_bound)
                                     : moment_limit(model.grid, problem.friction_bound);

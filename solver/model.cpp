@@ -14,6 +14,7 @@
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/memory.hpp"
+#include "solver/scene/last_digits.hpp"
 #include "solver/scene/surface_geometry.hpp"
 #include "solver/within_double.hpp"
 
@@ -199,7 +200,7 @@ Reduction traction_part(const Scene& scene, const Model& model, const Eigen::Arr
 void note_omissions(Model& model, const Scene& scene, const Reduction& part, bool translations) {
   std::vector<Omission>& left_out = model.left_out;
   const Grid& grid = part.grid();
-  left_out.clear();
+  left_out = scene.left_out;
   if (!model.pressure_coupling) {
     left_out.push_back({"K13, K23", model.pair.mismatch == 0.0
                                         ? "similar materials: pressure moves both surfaces alike"
@@ -294,7 +295,8 @@ int threads_for(const Scene& scene, const Grid& part) {
 }
 
 Model build_model(const Scene& scene) {
-  const ElasticPair pair = elastic_pair(half_space(scene.lower), half_space(scene.upper));
+  ElasticPair pair = elastic_pair(half_space(scene.lower), half_space(scene.upper));
+  if (are_alike(scene.upper, scene.lower)) pair.mismatch = 0.0;
   require_memory_for_files(scene);
   const std::vector<Surface> surfaces = with_heights(scene.surfaces);
   const Grid grid = make_grid(scene, surfaces, pair.effective_modulus());

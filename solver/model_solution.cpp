@@ -16,6 +16,10 @@ namespace {
 
 using Eigen::ArrayXd;
 
+/// Energy lost to slip that may be none: so many gaps, and at most this part of the energy.
+constexpr double kGapsOfNoSlip = 10.0;
+constexpr double kNoSlip = 1e-5;
+
 double equal_area_radius(const Grid& grid, Index cells) {
   return std::sqrt(static_cast<double>(cells) * grid.cell_area() / std::numbers::pi);
 }
@@ -90,11 +94,15 @@ void describe_tractions(ModelSolution& solution, const LoadStep& loads, const Ar
   if (solution.limit.centre) {
     for (double& x : *solution.limit.centre) x *= model.length_unit;
   }
+  const bool inherits = problem.energy_before > 0.0 || model.pressure_coupling;
+  const double reach = 0.5 * std::hypot(grid.x1(grid.n1 - 1) - grid.x1(0), grid.x2(grid.n2 - 1) - grid.x2(0));
+  const double motion =
+      std::hypot(tangential.displacement[0], tangential.displacement[1]) + std::abs(tangential.twist) * reach;
   solution.certificate = certify({tangential.traction, tangential.elastic_displacement, tangential.slip},
                                  problem.friction_bound, grid, problem.moment.value_or(moment),
                                  problem.displacement ? force : problem.force.value_or(std::array{0.0, 0.0}),
-                                 least_eigenvalue(model.pair, grid.h1, grid.h2));
-  solution.slip_direction = slip_direction(tangential.traction, tangential.slip);
+                                 least_eigenvalue(model.pair, grid.h1, grid.h2),
+                                 {problem.energy_before, inherits ? motion : 0.0});
 }
 
 /// Over the moment's unit and the cell's area.
@@ -131,6 +139,13 @@ void describe_energy(ModelSolution& solution, const LoadStep& loads) {
   solution.elastic_energy = work.elastic * unit;
   solution.dissipated = work.dissipated * unit;
   solution.work = work.of_loads * unit;
+  // Slip of which the gap leaves open whether it is any has no direction.
+  const Certificate& certificate = solution.certificate;
+  const bool slips =
+      solution.stick_cells < solution.contact_cells &&
+      !(work.dissipated <= std::min(kGapsOfNoSlip * certificate.gap, kNoSlip) * certificate.energy);
+  solution.slip_direction = slips ? slip_direction(tangential.traction, tangential.slip)
+                                  : SlipDirection{std::nan(""), std::nan("")};
 }
 
 }  // namespace
@@ -160,6 +175,7 @@ Solution in_si(ModelSolution solution) {
   solution.slip = in_unit(solution.tangential.slip, model.length_unit);
   solution.stick = std::move(solution.tangential.stick);
   solution.left_out = model.left_out;
+  solution.certificate.energy *= model.grid.cell_area() * model.moment_unit();
   solution.iterations = solution.tangential.iterations;
   solution.change = solution.tangential.change;
   solution.grids = std::move(solution.tangential.grids);

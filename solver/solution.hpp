@@ -13,12 +13,6 @@
 
 namespace slipstick::solver {
 
-/// Something that a scene lets the model leave out, and why its answer does not change by that.
-struct Omission {
-  std::string what;
-  std::string why;
-};
-
 /// One size for each number that loads may leave open.
 struct Quantities {
   double twist = 0.0;         ///< rad
@@ -84,7 +78,7 @@ struct Solution {
 
   Detail detail = Detail::all;
   Certificate certificate{};
-  SlipDirection slip_direction{};
+  SlipDirection slip_direction{};  ///< NaN where nothing slips
   Resolution resolution;
 
   double normal_load = 0.0;    ///< W, N: what the pressure carries

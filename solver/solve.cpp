@@ -38,8 +38,6 @@ using Eigen::ArrayXd;
 constexpr double kLoadRounding = 1e-12;
 /// and the gap, in which they cancel, so much of the energy.
 constexpr double kGapRounding = 1e-13;
-/// A mismatch below this, over the shear compliance, is the rounding of bodies that are alike.
-constexpr double kAlike = 1e-14;
 
 /// The problem on a part of the grid. A quadrant carries a quarter of the moment. What only a solve needs is
 /// taken.
@@ -51,7 +49,8 @@ TangentialProblem reduced(TangentialProblem& problem, const Reduction& part) {
                             .twist = problem.twist,
                             .force = problem.force,
                             .displacement = problem.displacement,
-                            .start = part.restricted(std::move(problem.start))};
+                            .start = part.restricted(std::move(problem.start)),
+                            .energy_before = problem.energy_before / images};
   if (on_part.moment) *on_part.moment /= images;
   return on_part;
 }
@@ -202,7 +201,7 @@ void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, c
   const KeptRounding rounding;  // what draws its own
   const Model& model = solution.model;
   solution.safeguards = {};
-  const LoadStep loads = model.shear_coupling && std::abs(model.pair.mismatch) > kAlike
+  const LoadStep loads = model.shear_coupling && model.pair.mismatch != 0.0
                              ? solve_coupled(solution, scene, step, before, progress)
                              : solve_in_sequence(solution, scene, step, previous, before, progress);
   const TangentialSolution& tangential = solution.tangential;
@@ -231,7 +230,13 @@ void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, c
     if (!solution.message.empty()) solution.status = Status::not_converged;
   }
   if (after != nullptr) {
-    *after = {solution.normal.pressure, tangential.traction, slip, motion, end_of(solution), open};
+    *after = {solution.normal.pressure,
+              tangential.traction,
+              slip,
+              motion,
+              std::max(loads.problem.energy_before, solution.certificate.energy),
+              end_of(solution),
+              open};
   }
   solution.seconds.total = solution.seconds.setup + watch.lap();
 }
@@ -340,8 +345,10 @@ void solve_steps(const Scene& scene, const SolveOptions& options, const AfterSte
   const std::size_t all = of_cycle * static_cast<std::size_t>(scene.cycles);
   const std::size_t first = options.resumed ? options.resumed->finished : 0;
   for (std::size_t k = first; k < all; ++k) {
-    const Step* previous = k > 0 ? &scene.steps[(k - 1) % of_cycle] : nullptr;
-    const std::vector<Step> parts = parts_of(scene, scene.steps[k % of_cycle], previous, state.end);
+    const Step step = step_of(scene, k);
+    const Step last_step = step_of(scene, k > 0 ? k - 1 : 0);
+    const Step* previous = k > 0 ? &last_step : nullptr;
+    const std::vector<Step> parts = parts_of(scene, step, previous, state.end);
     solution.cycle = static_cast<int>(k / of_cycle) + 1;
     const bool last = k + 1 == all;
     Spent spent;

@@ -40,6 +40,7 @@ def main(words):
             if spread is None:
                 if apart:
                     print(f"{path}: {name}: {other[name]}, {words[1]} has {first[name]}; nothing is said of how far apart")
+                found += apart == math.inf  # words, such as what a model leaves out
             elif not apart <= spread:
                 print(f"{path}: {name}: {other[name]}, {words[1]} has {first[name]}; allowed apart: {spread:g}")
                 found += 1

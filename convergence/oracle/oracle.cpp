@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "convergence/oracle/exact_theories.hpp"
+#include "solver/scene/last_digits.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -32,7 +33,7 @@ std::string obstacle(const std::vector<solver::Surface>& surfaces) {
 
 /// Whether the pressure moves the two surfaces sideways by different amounts, and the scene wants to know.
 bool is_coupled(const solver::Scene& scene) {
-  return scene.coupling != solver::Coupling::none && mismatch(scene.upper) != mismatch(scene.lower);
+  return scene.coupling != solver::Coupling::none && !are_alike(scene.upper, scene.lower);
 }
 
 /// Why no theory holds for a scene; empty if one may.

@@ -35,8 +35,8 @@ std::string load_text(const solver::Step& step) {
 /// The pressure's tangential displacement of dissimilar materials would change the answer; the scene may ask
 /// that it be left out.
 std::vector<solver::Omission> omissions(const solver::Scene& scene) {
-  std::vector<solver::Omission> left_out{
-      {"the grid", "the scene is axisymmetric: the exact solution answers"}};
+  std::vector<solver::Omission> left_out = scene.left_out;
+  left_out.push_back({"the grid", "the scene is axisymmetric: the exact solution answers"});
   if (scene.coupling == solver::Coupling::none) {
     left_out.push_back({"K13, K23", "contact.coupling = \"none\""});
   }
@@ -52,17 +52,17 @@ Oracle find_required_oracle(const solver::Scene& scene) {
   const std::unique_ptr<ExactHistory> history = exact_history(scene);
   const std::string file = scene.source.string();
   OracleAnswer exact;
-  for (int cycle = 0; cycle < scene.cycles; ++cycle) {
-    for (const solver::Step& step : scene.steps) {
-      exact = history->advance(step);
-      if (exact.oracle && exact.oracle->only_normal.empty()) continue;
-      if (exact.out_of_range) {
-        throw solver::InputError(file, fmt::format("{}: {}", load_text(step), exact.reason));
-      }
-      throw solver::InputError(
-          file, "solver.model", "\"exact\"",
-          fmt::format("auto, full ({})", exact.oracle ? exact.oracle->only_normal : exact.reason));
+  const std::size_t steps = scene.steps.size() * static_cast<std::size_t>(scene.cycles);
+  for (std::size_t k = 0; k < steps; ++k) {
+    const solver::Step step = solver::step_of(scene, k);
+    exact = history->advance(step);
+    if (exact.oracle && exact.oracle->only_normal.empty()) continue;
+    if (exact.out_of_range) {
+      throw solver::InputError(file, fmt::format("{}: {}", load_text(step), exact.reason));
     }
+    throw solver::InputError(
+        file, "solver.model", "\"exact\"",
+        fmt::format("auto, full ({})", exact.oracle ? exact.oracle->only_normal : exact.reason));
   }
   return *exact.oracle;
 }

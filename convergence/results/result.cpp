@@ -108,6 +108,9 @@ void add_errors(Json& json, const Solution& solution, const OracleAnswer& exact)
 }
 
 const std::string kBroken = "the solve broke down, or there is no friction";
+/// Of two sums over the same cells.
+constexpr double kRounding = 1e-12;
+const std::string kNoSlip = "nothing slips";
 
 /// How far the loads are from what the contact can carry, and how it would slide.
 Json limit_json(const solver::LimitLoad& limit) {
@@ -202,6 +205,7 @@ Json step_result(const solver::Scene& scene, const Solution& solution, const Ora
   add_state(json, scene, solution);
   add_counts(json, scene, solution);
   json["certificate"] = certificate_json(solution.certificate, kBroken);
+  set_number(json["certificate"], "energy", solution.certificate.energy, kBroken);
   json["resolved"] = resolution_json(solution.resolution);
   add_errors(json, solution, exact);
   add_seconds(json, solution.seconds);
@@ -231,9 +235,11 @@ Json solve_result(const solver::Scene& scene, const Solution& solution, const Or
   json["tolerance"] = scene.tolerance;
   set_number(json, "change", solution.change, "the solve broke down");
   json["certificate"] = certificate_json(solution.certificate, kBroken);
+  set_number(json["certificate"], "energy", solution.certificate.energy, kBroken);
   json["resolved"] = resolution_json(solution.resolution);
-  set_number(json["slip_direction"], "mean", solution.slip_direction.mean, kBroken);
-  set_number(json["slip_direction"], "max", solution.slip_direction.max, kBroken);
+  const std::string& no_direction = solution.status == solver::Status::converged ? kNoSlip : kBroken;
+  set_number(json["slip_direction"], "mean", solution.slip_direction.mean, no_direction);
+  set_number(json["slip_direction"], "max", solution.slip_direction.max, no_direction);
   add_errors(json, solution, exact);
   add_seconds(json, solution.seconds);
   json["solver_bytes"] = solution.bytes;
@@ -353,6 +359,13 @@ std::string resolution_text(const Json& r) {
 /// How far rounding let the certificate go, where that is not as far as the tolerance.
 std::string energy_text(const Json& r) {
   const Json& gap = r["certificate"]["gap"];
+  const Json& energy = r["certificate"]["energy"];
+  const Json& held = r["elastic_energy"];
+  if (energy.is_number() && held.is_number() && energy > (1.0 + kRounding) * held.get<double>()) {
+    return text_line("", fmt::format("over {} J, which a state before held: an error is absolute, and these "
+                                     "tractions hold {} J",
+                                     number_text(energy), number_text(held)));
+  }
   if (r["status"] != "converged" || r["method"] == "paper" || !gap.is_number() || gap <= r["tolerance"])
     return "";
   return text_line("", fmt::format("rounding hides the rest of the gap; the energy is within {} of the least",
@@ -373,9 +386,12 @@ std::string solve_text(const Json& r) {
                                 number_text(r["certificate"]["gap"]), number_text(r["certificate"]["moment"]),
                                 number_text(r["certificate"]["friction_bound"])));
   text += energy_text(r);
-  text += text_line("slip direction", fmt::format("{} degrees off in the mean, {} at most (Coulomb: 0)",
-                                                  number_text(r["slip_direction"]["mean"]),
-                                                  number_text(r["slip_direction"]["max"])));
+  const Json& direction = r["slip_direction"];
+  text += text_line("slip direction",
+                    direction.value("mean_reason", "") == kNoSlip
+                        ? kNoSlip
+                        : fmt::format("{} degrees off in the mean, {} at most (Coulomb: 0)",
+                                      number_text(direction["mean"]), number_text(direction["max"])));
   text += resolution_text(r);
   text += model_text(r);
   return r.contains("steps") ? text + steps_text(r) : text;

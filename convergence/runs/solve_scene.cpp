@@ -38,7 +38,7 @@ SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& opt
     steps = options.resumed->results;
     to_solver.resumed = options.resumed->state;
     for (std::size_t k = 0; k < to_solver.resumed->finished; ++k) {
-      solved.exact = history->advance(scene.steps[k % scene.steps.size()]);
+      solved.exact = history->advance(solver::step_of(scene, k));
     }
   }
   to_solver.on_step = [&](const solver::Solution& at) {

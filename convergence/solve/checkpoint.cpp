@@ -26,7 +26,7 @@ using solver::HistoryState;
 using solver::InputError;
 using solver::NormalSolution;
 
-constexpr const char* kFormat = "slipstick history 1";
+constexpr const char* kFormat = "slipstick history 2";
 /// Most of the time that may go into writing.
 constexpr double kPart = 0.01;
 /// Values of a dataset: those of the largest grid that is solved, twice.
@@ -159,6 +159,7 @@ std::shared_ptr<const FinishedSteps> Checkpoint::read() const {
          {&at.sum, &at.largest, &at.small_stick, &at.largest_small_stick, &at.last_small_stick}) {
       for (const auto number : solver::kQuantities) sizes->*number = open.at(next++);
     }
+    state.contact.energy = json.at("energy");
     state.finished = json.at("finished");
     state.normal = normal_of(json.at("normal"));
     steps = json.at("steps");
@@ -181,6 +182,7 @@ void Checkpoint::write(const HistoryState& state, const Json& steps) const {
                {"motion", {contact.motion.delta1, contact.motion.delta2, contact.motion.twist}},
                {"end", end_json(contact.end)},
                {"open", open_json(contact.open)},
+               {"energy", contact.energy},
                {"normal", normal_json(state.normal)},
                {"has_slip", contact.slip.size() > 0},
                {"steps", steps}});

@@ -49,7 +49,7 @@ struct CertificateSums {
 template <class Rotation>
 Certificate certificate_of(Index row, const TractionField& field, const Eigen::ArrayXd& friction_bound,
                            const Rotation& rotation, double moment, const std::array<double, 2>& force,
-                           double least_eigenvalue) {
+                           double least_eigenvalue, const Inherited& before) {
   const Sweep all = Sweep::whole(friction_bound.size(), row);
   const Eigen::Index cells = friction_bound.size();
   const Eigen::ArrayXd& q = field.traction;
@@ -81,12 +81,17 @@ Certificate certificate_of(Index row, const TractionField& field, const Eigen::A
   if (sums.friction == 0.0 && sums.worst == 0.0) return {};
 
   Certificate certificate{};
-  certificate.gap = sums.gap == 0.0 ? 0.0 : sums.gap / sums.energy;
+  // A NaN stays, and so does what is less than nothing.
+  const double energy = before.energy > 0.0 && sums.energy <= before.energy ? before.energy : sums.energy;
+  certificate.energy = energy;
+  certificate.gap = sums.gap == 0.0 ? 0.0 : sums.gap / energy;
   const FrictionDiscs discs(friction_bound, row);
   const double energy_error = discs.energy_error(q, s, least_eigenvalue);
-  certificate.energy_error = energy_error == 0.0 ? 0.0 : energy_error / sums.energy;
-  const double rounding = discs.gap_rounding(s, u);
-  certificate.rounding = rounding == 0.0 ? 0.0 : rounding / sums.energy;
+  certificate.energy_error = energy_error == 0.0 ? 0.0 : energy_error / energy;
+  double rounding = discs.gap_rounding(s, u);
+  // Slip is then K q - K q_before - motion, of which the middle one is no larger than the three others.
+  if (before.motion > 0.0) rounding = 2.0 * rounding + kGapUnits * before.motion * sums.friction;
+  certificate.rounding = rounding == 0.0 ? 0.0 : rounding / energy;
   const double imbalance = std::abs(sums.moment - moment);
   certificate.moment =
       imbalance == 0.0 ? 0.0 : imbalance / sums.limit;  // one cell on the axis: the limit is 0 too
@@ -100,13 +105,14 @@ Certificate certificate_of(Index row, const TractionField& field, const Eigen::A
 Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound,
                     const Eigen::ArrayXd& rotation, double moment, const std::array<double, 2>& force,
                     double least_eigenvalue) {
-  return certificate_of(0, field, friction_bound, rotation, moment, force, least_eigenvalue);
+  return certificate_of(0, field, friction_bound, rotation, moment, force, least_eigenvalue, {});
 }
 
 Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound, const Grid& grid,
-                    double moment, const std::array<double, 2>& force, double least_eigenvalue) {
+                    double moment, const std::array<double, 2>& force, double least_eigenvalue,
+                    const Inherited& before) {
   return certificate_of(grid.n2, field, friction_bound, MotionField(grid, 0.0, 0.0, 1.0), moment, force,
-                        least_eigenvalue);
+                        least_eigenvalue, before);
 }
 
 std::string beyond(const Certificate& certificate, const CertificateBounds& bounds) {

@@ -35,6 +35,15 @@ struct Certificate {
   double moment;          ///< |t.q Delta - M| / M_lim
   double force;           ///< |sum of q - F/Delta| / sum of mu p
   double friction_bound;  ///< max |q|/(mu p) - 1
+  /// What the gap, its bound of second order and its rounding are relative to: q.Kq/2, or that of a state
+  /// before where it was more. An error is absolute, and a state that is all but unloaded inherits it.
+  double energy = 0.0;
+};
+
+/// What a step's state has of the one that it starts from.
+struct Inherited {
+  double energy = 0.0;  ///< see Certificate::energy
+  double motion = 0.0;  ///< of the step: the largest in the contact, in size
 };
 
 /// friction_bound: mu p of each cell; rotation: the field t = (-x2, x1); moment, force: M/Delta and F/Delta
@@ -45,7 +54,8 @@ Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_b
                     double least_eigenvalue = 0.0);
 /// The same about a grid's origin.
 Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound, const Grid& grid,
-                    double moment, const std::array<double, 2>& force = {}, double least_eigenvalue = 0.0);
+                    double moment, const std::array<double, 2>& force = {}, double least_eigenvalue = 0.0,
+                    const Inherited& before = {});
 
 /// What the members of a certificate may be. Infinite: anything but NaN.
 struct CertificateBounds {

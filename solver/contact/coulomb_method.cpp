@@ -87,6 +87,7 @@ class TangentialOnGrid {
       reference_ = reference_.size() > 0 ? ArrayXd(reference_ - before) : ArrayXd(-before);
     }
     ConvexProgram program;
+    program.energy_before = problem_.energy_before;
     if (reference_.size() > 0) program.g = &reference_;
     const Conditions conditions(problem_);
     for (const Motion motion : conditions.imposed) {
@@ -107,7 +108,8 @@ class TangentialOnGrid {
         .twist = problem_.twist,
         .force = problem_.force,
         .displacement = problem_.displacement,
-        .start = restrict_to(coarse, grid, problem_.start)};
+        .start = restrict_to(coarse, grid, problem_.start),
+        .energy_before = problem_.energy_before * grid.cell_area() / coarse.cell_area()};
     const double scaled = limit_of(problem, coarse).factor / limit_of(problem_, grid).factor;
     const double scale = std::isfinite(scaled) ? scaled : 1.0;  // no load: nothing to scale
     if (problem.moment) *problem.moment *= scale;

@@ -24,8 +24,9 @@ struct TangentialProblem {
   /// where a contact is its own image under half a turn and carries no force.
   std::optional<std::array<double, 2>> force = {};
   std::optional<std::array<double, 2>> displacement = {};
-  Eigen::ArrayXd start = {};  ///< tractions of the state before, 2*cells; empty: none
-  Eigen::ArrayXd guess = {};  ///< tractions near the answer, 2*cells; empty: found from coarser grids
+  Eigen::ArrayXd start = {};   ///< tractions of the state before, 2*cells; empty: none
+  double energy_before = 0.0;  ///< see ConvexProgram; of the whole grid, over the cell area
+  Eigen::ArrayXd guess = {};   ///< tractions near the answer, 2*cells; empty: found from coarser grids
 };
 
 struct TangentialSolution {

@@ -231,16 +231,17 @@ double FrictionDiscs::energy_error(const ArrayXd& q, const ArrayXd& slip, double
   });
 }
 
-double FrictionDiscs::gap_rounding(const ArrayXd& slip, const ArrayXd& displacement) const {
-  constexpr double kUnits = 16.0;  // of transforms, and of loads, which are balanced to 1e-14
+double FrictionDiscs::gap_rounding(const ArrayXd& slip, const ArrayXd& displacement,
+                                   const ArrayXd* reference) const {
   const double sum = sweep_.sum<double>([&](Index first, Index last, double& part) {
     const Index count = last - first;
     const auto size = [&](const ArrayXd& v) {
       return (v.segment(first, count).square() + v.segment(first + cells(), count).square()).sqrt();
     };
     part += (bound_.segment(first, count) * (size(slip) + 2.0 * size(displacement))).sum();
+    if (reference != nullptr) part += (bound_.segment(first, count) * size(*reference)).sum();
   });
-  return kUnits * std::numeric_limits<double>::epsilon() * sum;
+  return kGapUnits * sum;
 }
 
 template <typename Real>

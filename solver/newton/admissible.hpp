@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <concepts>
+#include <limits>
 
 #include "solver/newton/load_balance.hpp"
 #include "solver/newton/tangent_space.hpp"
@@ -11,6 +12,9 @@
 /// What tractions a cell may carry: the sets over which the contact's energy is minimised. Each knows its
 /// projection, and the tangent space of the natural map q = P(q - rho s).
 namespace slipstick::solver {
+
+/// Of displacements: units of rounding of transforms, and of loads, which are balanced to 1e-14.
+inline constexpr double kGapUnits = 16.0 * std::numeric_limits<double>::epsilon();
 
 /// Whether a gap is within a tolerance, or within its rounding where that is larger. NaN is not.
 inline bool is_certified(double gap, double rounding, double tolerance) {
@@ -28,7 +32,7 @@ concept AdmissibleSet = requires(const Set& set, const Eigen::ArrayXd& s, Eigen:
   { set.sweep() } -> std::same_as<const Sweep&>;                  // over those whose set is not zero alone
   {set.project(q)};                                               // the nearest admissible q
   { set.gap(q, s) } -> std::same_as<double>;                      // bounds the energy above its least
-  { set.gap_rounding(s, s) } -> std::same_as<double>;             // what rounding may do to the gap
+  { set.gap_rounding(s, s, &s) } -> std::same_as<double>;         // what rounding may do to the gap
   { set.linearise(q, rho, mean, space) } -> std::same_as<Index>;  // cells that changed their state
   {set.add_jump(s, s, q)};                                        // onto the face that the natural map says
 };
@@ -57,7 +61,9 @@ class PositivePressures {
   double gap(const Eigen::ArrayXd& p, const Eigen::ArrayXd& opening) const;
 
   /// Pressures are solved for where their gap is far above its rounding.
-  static double gap_rounding(const Eigen::ArrayXd&, const Eigen::ArrayXd&) { return 0.0; }
+  static double gap_rounding(const Eigen::ArrayXd&, const Eigen::ArrayXd&, const Eigen::ArrayXd*) {
+    return 0.0;
+  }
 
   /// State of each cell by the natural map at z = p - rho s.
   template <typename Real>
@@ -98,8 +104,10 @@ class FrictionDiscs {
   double energy_error(const Eigen::ArrayXd& q, const Eigen::ArrayXd& slip, double k) const;
 
   /// What rounding of slips and tractions does to the gap: each slip is a difference of displacements, each
-  /// product one of numbers that are right to some units of rounding. displacement: K q.
-  double gap_rounding(const Eigen::ArrayXd& slip, const Eigen::ArrayXd& displacement) const;
+  /// product one of numbers that are right to some units of rounding. displacement: K q; reference: what slip
+  /// holds besides of displacements, ConvexProgram::g, or null.
+  double gap_rounding(const Eigen::ArrayXd& slip, const Eigen::ArrayXd& displacement,
+                      const Eigen::ArrayXd* reference = nullptr) const;
 
   /// Stick where |z| <= mu p. Elsewhere q turns along its circle, against the stiffness (|z| - mu p)/(rho mu
   /// p), which is |s|/(mu p) where slip is opposed to traction already.

@@ -18,6 +18,9 @@ struct ConvexProgram {
     double multiplier;
   };
   std::vector<Given> given = {};
+  /// An energy of the states before, whose errors this one inherits: where rounding keeps the gap from the
+  /// tolerance over q.Kq/2, over this one will do.
+  double energy_before = 0.0;
 
   /// The part of the values [first, last) in the energy of q with the displacement u = K q; the imposed
   /// conditions' part, which is constant, left out.

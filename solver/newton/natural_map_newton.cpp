@@ -17,6 +17,7 @@ constexpr double kRhoOfPressure = 0.1;
 /// Of the linear problem that refines the multipliers at the end; each brings them nearer by about 5.
 constexpr int kRefiningIterations = 2;
 constexpr int kPatience = 8;
+constexpr int kPatienceOfEnough = 2;
 /// Of a Newton step, and of a gradient step of length rho, before it is given up.
 constexpr int kMaxHalvings = 6;
 constexpr int kMaxGradientHalvings = 30;
@@ -85,6 +86,7 @@ NewtonSummary NaturalMapNewton<Set, Real>::run(ArrayXd& q, const Coefficients& m
   for (;; ++summary.iterations) {
     if (!find_state(q))
       return fail(summary, "no multiplier restores the load: it is not finite, or at its limit");
+    if (program_.energy_before > 0.0) energy_ = energy(q, u_);
     summary.gap = relative_gap(q);
     summary.multipliers = multipliers_;
     summary.safeguards = safeguards_;
@@ -96,12 +98,15 @@ NewtonSummary NaturalMapNewton<Set, Real>::run(ArrayXd& q, const Coefficients& m
       return summary;
     }
     const bool settled = summary.iterations > 0 && !energy_fell_;
-    if (settled && summary.gap > options.tolerance && is_certified(summary.gap, options.tolerance)) {
+    if (settled && summary.gap > options.tolerance && is_certified(options.tolerance)) {
       return stop(q, options, summary, "rounding");
     }
-    without_progress = summary.gap < best_gap || energy_fell_ ? 0 : without_progress + 1;
+    const bool enough = program_.energy_before > 0.0 && is_certified(options.tolerance);
+    const bool progress = enough ? summary.gap < 0.5 * best_gap : summary.gap < best_gap || energy_fell_;
+    without_progress = progress ? 0 : without_progress + 1;
     best_gap = std::min(best_gap, summary.gap);
-    if (without_progress > kPatience) return stop(q, options, summary, "rounding: no further progress");
+    if (without_progress > (enough ? kPatienceOfEnough : kPatience))
+      return stop(q, options, summary, "rounding: no further progress");
     if (applications() >= options.max_applications) {
       return stop(q, options, summary,
                   fmt::format("no convergence within {} operator applications", options.max_applications));
@@ -168,7 +173,15 @@ double NaturalMapNewton<Set, Real>::sum(const Work& work) const {
 
 template <AdmissibleSet Set, typename Real>
 double NaturalMapNewton<Set, Real>::energy(const ArrayXd& q, const ArrayXd& u) const {
-  return sum([&](Index first, Index last) { return program_.energy(first, last, q, u); });
+  return sum([&](Index first, Index last) {
+    double part = program_.energy(first, last, q, u);
+    if (program_.energy_before == 0.0) return part;
+    // The imposed loads' part is constant but for their rounding, which may be more than is left to gain.
+    for (std::size_t k = 0; k < c_.size(); ++k) {
+      part -= multipliers_[static_cast<Index>(k)] * c_[k]->dot(first, q.segment(first, last - first));
+    }
+    return part;
+  });
 }
 
 template <AdmissibleSet Set, typename Real>
@@ -206,15 +219,18 @@ double NaturalMapNewton<Set, Real>::relative_gap(const ArrayXd& q) {
     program_.write_slip(first, last, u_, multipliers_, trial_u_);
     return 0.5 * (q.segment(first, last - first) * u_.segment(first, last - first)).sum();
   });
-  const double gap = set_.gap(q, trial_u_);
-  if (gap == 0.0) return 0.0;
-  return elastic_ >= 0.0 ? gap / elastic_ : std::numeric_limits<double>::quiet_NaN();
+  gap_ = set_.gap(q, trial_u_);
+  if (gap_ == 0.0) return 0.0;
+  // Next to no traction its rounding may be less than nothing.
+  if (std::abs(elastic_) <= kEnergyRounding * program_.energy_before) elastic_ = 0.0;
+  return elastic_ >= 0.0 ? gap_ / elastic_ : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Of the gap that relative_gap() has just found.
+/// Of the gap that relative_gap() has just found, over the larger of the two energies.
 template <AdmissibleSet Set, typename Real>
-bool NaturalMapNewton<Set, Real>::is_certified(double gap, double tolerance) const {
-  return solver::is_certified(gap, set_.gap_rounding(trial_u_, u_) / elastic_, tolerance);
+bool NaturalMapNewton<Set, Real>::is_certified(double tolerance) const {
+  const double energy = std::max(elastic_, program_.energy_before);
+  return solver::is_certified(gap_ / energy, set_.gap_rounding(trial_u_, u_, program_.g) / energy, tolerance);
 }
 
 template <AdmissibleSet Set, typename Real>
@@ -449,7 +465,7 @@ NewtonSummary NaturalMapNewton<Set, Real>::stop(const ArrayXd& q, const NewtonOp
                                                 NewtonSummary& summary, const std::string& why) {
   if (options.refine_multipliers) refine(q, summary.gap, summary);
   summary.gap = relative_gap(q);
-  summary.converged = is_certified(summary.gap, options.tolerance);
+  summary.converged = is_certified(options.tolerance);
   return summary.converged ? summary : fail(summary, why);
 }
 

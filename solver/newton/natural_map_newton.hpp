@@ -111,7 +111,7 @@ class NaturalMapNewton {
   void descend(const ArrayXd& q, double length, ArrayXd& y) const;
   bool find_state(const ArrayXd& q);
   double relative_gap(const ArrayXd& q);
-  bool is_certified(double gap, double tolerance) const;
+  bool is_certified(double tolerance) const;
   void linearise();
   bool tangents_are_near() const;
   void write_residual(const ArrayXd& q);
@@ -146,7 +146,8 @@ class NaturalMapNewton {
   ArrayXd u_, y_, trial_, trial_u_;
   Coefficients multipliers_;  ///< of the imposed conditions
   double energy_ = 0.0;       ///< of q
-  double elastic_ = 0.0;      ///< its q.u/2, as relative_gap() found it
+  double elastic_ = 0.0;      ///< its q.u/2, as relative_gap() found it,
+  double gap_ = 0.0;          ///< and its gap
   Safeguards safeguards_;     ///< of this run
   Coefficients prepared_at_;  ///< the multipliers that the tangents were made at
   Index changed_ = 0;

@@ -5,10 +5,12 @@
 
 #include <cmath>
 #include <limits>
+#include <utility>
 
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
 #include "solver/input/toml_reader.hpp"
+#include "solver/scene/last_digits.hpp"
 #include "solver/scene/scene_keys.hpp"
 #include "solver/scene/surface_geometry.hpp"
 #include "solver/scene/surface_reader.hpp"
@@ -29,7 +31,8 @@ Material read_material(SceneReader& reader, const std::string& body) {
 }
 
 /// What a table says of the torsion; what it does not say is as before.
-void read_torsion(SceneReader& reader, const std::string& table, std::optional<TorsionLoad>& torsion) {
+void read_torsion(SceneReader& reader, const std::string& table, Step& step,
+                  std::optional<TorsionLoad>& torsion) {
   const std::vector<std::string> keys{table + ".moment_ratio", table + ".moment", table + ".twist"};
   reader.prefer_overridden(keys);
   const auto ratio = reader.find_number(keys[0]);
@@ -39,6 +42,7 @@ void read_torsion(SceneReader& reader, const std::string& table, std::optional<T
     reader.fail(moment ? keys[1] : keys[2], "(with another torsion load beside it)",
                 fmt::format("exactly one of {}", fmt::join(keys, ", ")));
   }
+  if (ratio || moment || twist) step.unsaid.torsion = false;
   if (ratio) torsion = MomentRatio{*ratio};
   if (moment) torsion = Moment{*moment};
   if (twist) torsion = Twist{*twist};
@@ -54,7 +58,9 @@ void read_translation(SceneReader& reader, const std::string& table, Step& step)
   }
   if (force) step.force = *force;
   if (displacement) step.force = {};
-  if (force || displacement) step.displacement = displacement;
+  if (!force && !displacement) return;
+  step.displacement = displacement;
+  step.unsaid.translation = false;
 }
 
 /// A step whose torsion may still be missing.
@@ -66,8 +72,11 @@ struct ReadStep {
 void read_loads(SceneReader& reader, const std::string& table, ReadStep& read) {
   Step& step = read.step;
   step.key = table;
-  if (const auto normal = reader.find_number(table + ".normal")) step.normal = normal;
-  read_torsion(reader, table, read.torsion);
+  if (const auto normal = reader.find_number(table + ".normal")) {
+    step.normal = normal;
+    step.unsaid.normal = false;
+  }
+  read_torsion(reader, table, step, read.torsion);
   read_translation(reader, table, step);
 }
 
@@ -76,6 +85,7 @@ void read_loads(SceneReader& reader, const std::string& table, ReadStep& read) {
 std::vector<Step> read_steps(SceneReader& reader, bool needs_normal) {
   ReadStep load;
   read_loads(reader, "load", load);
+  load.step.unsaid = {true, true, true};
   std::vector<ReadStep> read;
   const std::size_t count = reader.count("step");
   if (count > kMaxSteps) {
@@ -110,6 +120,19 @@ std::array<Index, 2> read_cells(SceneReader& reader, const std::vector<Surface>&
 }
 
 }  // namespace
+
+Step step_of(const Scene& scene, std::size_t k) {
+  Step step = scene.steps[k % scene.steps.size()];
+  if (k < scene.steps.size()) return step;
+  const Step& last = scene.steps.back();
+  if (step.unsaid.normal) step.normal = last.normal;
+  if (step.unsaid.torsion) step.torsion = last.torsion;
+  if (step.unsaid.translation) {
+    step.force = last.force;
+    step.displacement = last.displacement;
+  }
+  return step;
+}
 
 void require_writes_within(const Scene& scene) {
   const std::filesystem::path folder = scene.source.has_parent_path() ? scene.source.parent_path() : ".";
@@ -168,7 +191,7 @@ Scene read_scene(SceneReader& reader, const std::filesystem::path& file) {
   validate(scene, [&](const std::string& key, const std::string& value, const std::string& allowed) {
     reader.fail(key, value, allowed);
   });
-  return scene;
+  return without_last_digits(std::move(scene));
 }
 
 }  // namespace

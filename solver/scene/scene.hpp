@@ -61,10 +61,21 @@ std::optional<double> value_if(const TorsionLoad& load) {
 struct Step {
   std::string key = "load";  ///< of its table in the scene file
   std::string name = {};
-  std::optional<double> normal;  ///< N; may be left out where the pressure comes from a file
+  std::optional<double> normal = {};  ///< N; may be left out where the pressure comes from a file
   TorsionLoad torsion = MomentRatio{0.0};
-  std::array<double, 2> force{};                      ///< N, tangential, on the upper body; or else
-  std::optional<std::array<double, 2>> displacement;  ///< m, imposed instead, since the first step
+  std::array<double, 2> force{};                           ///< N, tangential, on the upper body; or else
+  std::optional<std::array<double, 2>> displacement = {};  ///< m, imposed instead, since the first step
+  /// What no step of the file has said up to here: it is as [load] says in the first cycle, and as the last
+  /// step left it in those that follow.
+  struct Unsaid {
+    bool normal = false, torsion = false, translation = false;
+  } unsaid = {};
+};
+
+/// Something that a scene lets the model leave out, and why its answer does not change by that.
+struct Omission {
+  std::string what;
+  std::string why;
 };
 
 /// What a scene file says, checked, with defaults filled in; SI units, or any other consistent set.
@@ -102,7 +113,11 @@ struct Scene {
   /// Bytes that solving it may take; none: what the machine has left. No key of the file: it says nothing of
   /// the contact.
   std::optional<double> memory_limit;
+  std::vector<Omission> left_out = {};  ///< by without_last_digits()
 };
+
+/// The k-th of the whole history, cycles gone through.
+Step step_of(const Scene& scene, std::size_t k);
 
 /// Reads a scene file (TOML); each override is "key=value" with a dotted key, applied before anything is
 /// checked. Relative paths in the scene are relative to the scene file. Throws InputError naming file, key,

@@ -68,6 +68,7 @@ class Resumed : public SceneFile {
     expect_same_bits(one.contact.pressure, other.contact.pressure, at + ", pressure before ");
     expect_same_bits(one.contact.traction, other.contact.traction, at + ", traction before ");
     expect_same_bits(one.contact.slip, other.contact.slip, at + ", slip before ");
+    EXPECT_EQ(one.contact.energy, other.contact.energy) << at;
   }
 
   /// The ends of steps, and the states handed on from each to the next.

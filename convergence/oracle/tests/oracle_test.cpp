@@ -71,6 +71,16 @@ TEST(Oracle, TheSameStateByRatioMomentAndTwist) {
   }
 }
 
+TEST(Oracle, LastDigitsCostNoAnswer) {
+  const Oracle plain = *find_oracle(body("/paper.toml", {})).oracle;
+  for (const char* change :
+       {"lower.poisson_ratio=0.30000000000000004", "upper.at=[1e-18, 0]", "load.force=[1e-300, 0]"}) {
+    const OracleAnswer answer = find_oracle(body("/paper.toml", {change}));
+    ASSERT_TRUE(answer.oracle) << change << ": " << answer.reason;
+    EXPECT_NEAR(answer.oracle->twist_angle / plain.twist_angle, 1.0, kOracleTolerance) << change;
+  }
+}
+
 /// Pressure and moment of the fields of an oracle against what they should carry.
 void expect_fields_carry_the_loads(const Oracle& oracle, double load) {
   // Midpoint rule in r = a sin(t), which takes off a flat punch's singularity at the edge, piecewise about

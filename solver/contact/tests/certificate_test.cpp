@@ -313,7 +313,8 @@ TEST(Beyond, NamesTheMemberItsValueAndItsBound) {
                           .rounding = 0.0,
                           .moment = 1e-9,
                           .force = 1e-10,
-                          .friction_bound = -0.1};
+                          .friction_bound = -0.1,
+                          .energy = 1.0};
   EXPECT_EQ(beyond(holds, bounds), "");
   const struct {
     double Certificate::*member;
