@@ -262,10 +262,6 @@ void require_shared_by_ranks(const SolveRequest& request, const solver::Scene& s
   if (request.accuracy) {
     throw solver::InputError("--accuracy", "not on several ranks; allowed: cells that the scene names");
   }
-  if (!scene.wisdom.empty()) {
-    throw solver::InputError("solver.wisdom",
-                             "not on several ranks; allowed: no file, plans that are estimated");
-  }
   if (scene.rounding_seed != 0) {
     throw solver::InputError("solver.rounding_seed", "not on several ranks; allowed: 0");
   }

@@ -113,35 +113,6 @@ TEST_F(ProgramFiles, ResultsNeverOverwriteAnInputByAnotherName) {
   }
 }
 
-TEST_F(ProgramFiles, ScenesDoNotChooseWhereIsWritten) {
-  fs::create_directories("outside");
-  fs::create_directories("scenes/below");
-  fs::create_directory_symlink("../outside", "scenes/link");
-  const auto scene_with = [](const std::string& wisdom) {
-    write("scenes/scene.toml", std::string(solver::kShortScene) + "[solver]\nwisdom = \"" + wisdom + "\"\n");
-  };
-  for (const std::string& wisdom : {std::string("../outside/w"), std::string("link/w"),
-                                    fs::absolute("outside/w").string(), std::string("below/../../w")}) {
-    scene_with(wisdom);
-    const ProgramEnd end = run({"solve", "scenes/scene.toml"});
-    EXPECT_EQ(end.code, 2) << wisdom;
-    EXPECT_THAT(end.output,
-                AllOf(HasSubstr("scenes/scene.toml"), HasSubstr("solver.wisdom = "), HasSubstr("allowed")));
-    EXPECT_TRUE(fs::is_empty("outside")) << wisdom;
-  }
-  scene_with("below/w");
-  EXPECT_EQ(run({"solve", "scenes/scene.toml"}).code, 0);
-  EXPECT_TRUE(fs::exists("scenes/below/w"));
-  // What a study says of a scene's keys is from a file as well.
-  write("scenes/scene.toml", solver::kShortScene);
-  write("study.toml",
-        "scene = \"scenes/scene.toml\"\ncells = [8, 12]\nset = { \"solver.wisdom\" = \"../outside/w\" }\n");
-  const ProgramEnd end = run({"study", "study.toml"});
-  EXPECT_EQ(end.code, 2);
-  EXPECT_THAT(end.output, HasSubstr("solver.wisdom"));
-  EXPECT_TRUE(fs::is_empty("outside"));
-}
-
 TEST_F(ProgramFiles, NamesMayHoldAnything) {
   const std::string odd = "-a b\n'c\" $x `y` <z>&{} \xff";
   write(odd + ".toml", solver::kShortScene);
