@@ -1,4 +1,4 @@
-#include "convergence/solve/solve_command.hpp"
+#include "convergence/commands.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>
