@@ -1,7 +1,5 @@
 // The program: registers each folder's commands, maps errors to exit codes, nothing else.
 
-#include <fmt/core.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>

@@ -23,7 +23,6 @@ target_compile_definitions(slipstick_work_counts PRIVATE SLIPSTICK_SCENES="${PRO
 foreach(function
     fftw_plan_dft_1d fftwf_plan_dft_1d fftw_plan_many_dft fftwf_plan_many_dft
     fftw_plan_many_dft_r2c fftwf_plan_many_dft_r2c fftw_plan_many_dft_c2r fftwf_plan_many_dft_c2r
-    fftw_plan_guru_r2r
     fftw_execute fftw_execute_dft fftwf_execute_dft fftw_execute_dft_r2c fftwf_execute_dft_r2c
     fftw_execute_dft_c2r fftwf_execute_dft_c2r
     _ZN9slipstick6solver13integrate_rowERNS0_7CellRowEldddd)

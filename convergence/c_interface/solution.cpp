@@ -2,7 +2,6 @@
 #include <fmt/core.h>
 
 #include <chrono>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <mutex>

@@ -1,7 +1,5 @@
 #include "convergence/commands.hpp"
 
-#include <fmt/core.h>
-
 #include <CLI/CLI.hpp>
 #include <filesystem>
 #include <map>

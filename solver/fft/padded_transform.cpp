@@ -1,7 +1,6 @@
 #include "solver/fft/padded_transform.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 namespace slipstick::solver {

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <complex>
 #include <numbers>
-#include <random>
 #include <stdexcept>
 #include <string>
 
