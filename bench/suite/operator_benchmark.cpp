@@ -147,8 +147,7 @@ double operations(OperatorKind kind, Index cells) {
 }
 
 template <typename Real>
-void compare_with_transforms(Prepared& prepared, const Form& form, Index cells,
-                             const std::function<void()>& application) {
+void compare_with_transforms(Prepared& prepared, Index cells, const std::function<void()>& application) {
   constexpr Patience kPatience{.seconds = 0.1, .rounds = 5, .most_seconds = 0.5};
   FourTransforms<Real> transforms(cells);
   const auto times =
@@ -184,7 +183,7 @@ Prepared application(const Form& form, Index cells) {
   if constexpr (std::is_same_v<Real, double>) {
     if (form.kind == OperatorKind::dense) compare_with_reading(prepared, *op);
   }
-  if (form.kind == OperatorKind::dcfft) compare_with_transforms<Real>(prepared, form, cells, work);
+  if (form.kind == OperatorKind::dcfft) compare_with_transforms<Real>(prepared, cells, work);
   return prepared;
 }
 
