@@ -1,7 +1,5 @@
 // The program: registers each folder's commands, maps errors to exit codes, nothing else.
 
-#include <fmt/core.h>
-
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <csignal>
@@ -17,19 +15,11 @@
 #include "analytic/exact_command.hpp"
 #include "bench/bench_command.hpp"
 #include "bench/compare/compare_command.hpp"
-#include "convergence/check/check_command.hpp"
-#include "convergence/gates/gate_command.hpp"
-#include "convergence/hard/digits_command.hpp"
-#include "convergence/hard/hard_command.hpp"
-#include "convergence/laws/law_command.hpp"
+#include "convergence/commands.hpp"
 #include "convergence/programs/command_word.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/run_program.hpp"
-#include "convergence/reference/reference_command.hpp"
-#include "convergence/report/report_command.hpp"
 #include "convergence/results/output.hpp"
-#include "convergence/solve/solve_command.hpp"
-#include "convergence/studies/study_command.hpp"
 #include "solver/grid/ranks.hpp"
 #include "solver/memory.hpp"
 

@@ -4,7 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <cstdlib>
-#include <limits>
 #include <stdexcept>
 
 #include "analytic/pressure_table.hpp"

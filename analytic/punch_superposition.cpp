@@ -7,9 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "analytic/gsl.hpp"
 

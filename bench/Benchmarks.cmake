@@ -3,7 +3,7 @@
 add_executable(slipstick_benchmarks
   suite/checked_solve.cpp suite/exact_benchmark.cpp suite/history_benchmark.cpp suite/influence_benchmark.cpp
   suite/memory_benchmark.cpp suite/methods_benchmark.cpp suite/normal_benchmark.cpp suite/operator_benchmark.cpp
-  suite/planning_benchmark.cpp suite/slipstick_benchmarks.cpp suite/solve_benchmark.cpp suite/suite.cpp)
+  suite/slipstick_benchmarks.cpp suite/solve_benchmark.cpp suite/suite.cpp)
 slipstick_configure(slipstick_benchmarks)
 target_precompile_headers(slipstick_benchmarks PRIVATE ${SLIPSTICK_HEADERS} <Eigen/Core> <nlohmann/json.hpp>
   <benchmark/benchmark.h>)
@@ -23,7 +23,6 @@ target_compile_definitions(slipstick_work_counts PRIVATE SLIPSTICK_SCENES="${PRO
 foreach(function
     fftw_plan_dft_1d fftwf_plan_dft_1d fftw_plan_many_dft fftwf_plan_many_dft
     fftw_plan_many_dft_r2c fftwf_plan_many_dft_r2c fftw_plan_many_dft_c2r fftwf_plan_many_dft_c2r
-    fftw_plan_guru_r2r
     fftw_execute fftw_execute_dft fftwf_execute_dft fftw_execute_dft_r2c fftwf_execute_dft_r2c
     fftw_execute_dft_c2r fftwf_execute_dft_c2r
     _ZN9slipstick6solver13integrate_rowERNS0_7CellRowEldddd)

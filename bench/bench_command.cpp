@@ -32,7 +32,6 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
-using solver::InputError;
 
 /// What is compared unless a filter says otherwise: each part and the whole at two sizes, so small that it is
 /// done often.

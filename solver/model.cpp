@@ -236,7 +236,6 @@ Elasticity elasticity(const Scene& scene, const Model& model, const Reduction& p
           .precision = scene.precision,
           .diagonal = part.diagonal() && Ranks::number() == 1,
           .at_edge = scene.ends_at_grid_edge,
-          .measure_plans = !scene.wisdom.empty(),
           .rounding_seed = static_cast<std::uint64_t>(scene.rounding_seed),
           .cache = model.cache};
 }

@@ -16,7 +16,7 @@ struct ModelSolution : Solution {
   TangentialSolution tangential;
 };
 
-/// solve() without wisdom and without the change of units.
+/// solve() without the change of units.
 ModelSolution solve_in_model_units(const Scene& scene,
                                    const std::function<void(const ModelSolution&)>& on_step = {});
 

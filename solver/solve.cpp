@@ -1,11 +1,8 @@
 #include "solver/solve.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <span>
 #include <stdexcept>
 #include <utility>
@@ -14,7 +11,6 @@
 #include "solver/contact/full_coupling.hpp"
 #include "solver/contact/paper_method.hpp"
 #include "solver/contact/projected_gradient.hpp"
-#include "solver/fft/wisdom.hpp"
 #include "solver/grid/mirror.hpp"
 #include "solver/grid/threads.hpp"
 #include "solver/grid_edge.hpp"
@@ -405,8 +401,6 @@ ModelSolution solve_in_model_units(const Scene& scene,
 
 Solution solve(const Scene& scene, const SolveOptions& options) {
   require_can_solve(scene);
-  std::optional<Wisdom> wisdom;
-  if (!scene.wisdom.empty()) wisdom.emplace(scene.wisdom);
   Solution result;
   within_double(scene, [&] {
     solve_steps(scene, options, [&](ModelSolution& solution, bool last) {
@@ -416,10 +410,6 @@ Solution solve(const Scene& scene, const SolveOptions& options) {
       if (options.on_step) options.on_step(result);
     });
   });
-  if (wisdom && !wisdom->save()) {
-    result.message += fmt::format("{}solver.wisdom: {} could not be written",
-                                  result.message.empty() ? "" : "; ", scene.wisdom.string());
-  }
   return result;
 }
 

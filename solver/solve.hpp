@@ -31,7 +31,7 @@ struct SolveOptions {
 
 /// Solves a scene, step by step; returns the last one, or the first that did not converge. Throws InputError
 /// for what the scene got wrong, gross slip and a model that is not on a grid (ModelChoice::exact) among it;
-/// what the numbers do is in the status. With Scene::wisdom all that FFTW knew about plans is forgotten.
+/// what the numbers do is in the status.
 Solution solve(const Scene& scene, const SolveOptions& options = {});
 
 }  // namespace slipstick::solver

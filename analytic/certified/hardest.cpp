@@ -1,7 +1,5 @@
 #include "analytic/certified/hardest.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

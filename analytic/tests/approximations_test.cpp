@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numbers>
 #include <stdexcept>
@@ -77,18 +76,6 @@ TEST(Approximations, AreOffAsTabulated) {
     EXPECT_NEAR(100 * (dem_moment(state.twist) / state.moment - 1), point.dem_moment, 0.05) << m;
   }
   EXPECT_NEAR(100 * (dem_moment(1.0 / 8) / from_twist(1.0 / 8).moment - 1), 62, 0.5);
-}
-
-TEST(Approximations, OfEquation7AreOffAsKnown) {
-  struct Point {
-    double moment_ratio, percent;
-  };
-  for (const auto& [m, percent] : {Point{0.159, -0.25}, {0.527, -3.9}, {0.897, -23}, {0.994, -54}})
-    EXPECT_NEAR(100 * error(paper::eq7_twist, m), percent,
-                -percent < 1    ? 0.005
-                : -percent < 10 ? 0.05
-                                : 0.5)
-        << m;
 }
 
 TEST(Approximations, AreListedByName) {

@@ -8,7 +8,6 @@
 #include <memory>
 #include <numbers>
 #include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "analytic/gsl.hpp"

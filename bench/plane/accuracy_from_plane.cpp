@@ -12,8 +12,6 @@ namespace slipstick::bench {
 namespace {
 
 using convergence::AccuracyData;
-using convergence::AccuracyOf;
-using convergence::MeasuredError;
 using convergence::MeasuredMesh;
 
 /// Part of the mesh's error that the iteration may change.

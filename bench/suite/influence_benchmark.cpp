@@ -3,7 +3,6 @@
 
 #include <gsl/gsl_integration.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <memory>

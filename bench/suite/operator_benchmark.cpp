@@ -147,10 +147,9 @@ double operations(OperatorKind kind, Index cells) {
 }
 
 template <typename Real>
-void compare_with_transforms(Prepared& prepared, const Form& form, Index cells,
-                             const std::function<void()>& application) {
+void compare_with_transforms(Prepared& prepared, Index cells, const std::function<void()>& application) {
   constexpr Patience kPatience{.seconds = 0.1, .rounds = 5, .most_seconds = 0.5};
-  FourTransforms<Real> transforms(cells, form.options.measure_plans ? FFTW_MEASURE : FFTW_ESTIMATE);
+  FourTransforms<Real> transforms(cells);
   const auto times =
       side_by_side([&] { return seconds(application); }, [&] { return seconds(transforms); }, kPatience);
   prepared.counters["over_four_transforms"] = times.ratio;
@@ -184,8 +183,7 @@ Prepared application(const Form& form, Index cells) {
   if constexpr (std::is_same_v<Real, double>) {
     if (form.kind == OperatorKind::dense) compare_with_reading(prepared, *op);
   }
-  if (form.kind == OperatorKind::dcfft) compare_with_transforms<Real>(prepared, form, cells, work);
-  fftw_forget_wisdom();  // measured plans would be taken where others are to be estimated
+  if (form.kind == OperatorKind::dcfft) compare_with_transforms<Real>(prepared, cells, work);
   return prepared;
 }
 
@@ -255,7 +253,6 @@ void add_operator_benchmarks(Suite& suite) {
                            doubling(4, 128));
   add_applications<double>(suite, "dcfft", {}, all);
   add_applications<double>(suite, "dcfft_2_threads", {.options = two_threads}, doubling(4, 1024));
-  add_applications<double>(suite, "dcfft_measured", {.options = {.measure_plans = true}}, doubling(16, 1024));
   add_applications<float>(suite, "dcfft_single", {}, doubling(16, 1024));
   add_applications<double>(suite, "dcfft_quarter", quarter, doubling(16, 1024));
   add_applications<double>(suite, "dcfft_quarter_with_diagonal",

@@ -42,7 +42,6 @@ void add_all_benchmarks(slipstick::bench::Suite& suite) {
   slipstick::bench::add_influence_benchmarks(suite);
   slipstick::bench::add_operator_benchmarks(suite);
   slipstick::bench::add_memory_benchmarks(suite);
-  slipstick::bench::add_planning_benchmarks(suite);
   slipstick::bench::add_normal_benchmarks(suite);
   slipstick::bench::add_solve_benchmarks(suite);
   slipstick::bench::add_methods_benchmarks(suite);

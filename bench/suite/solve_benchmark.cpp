@@ -3,7 +3,6 @@
 // tolerance, four bare padded transforms).
 
 #include <cmath>
-#include <memory>
 #include <string>
 
 #include "bench/suite/checked_solve.hpp"

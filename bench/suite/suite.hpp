@@ -55,7 +55,6 @@ class Suite {
 void add_influence_benchmarks(Suite& suite);
 void add_operator_benchmarks(Suite& suite);
 void add_memory_benchmarks(Suite& suite);
-void add_planning_benchmarks(Suite& suite);
 void add_normal_benchmarks(Suite& suite);
 void add_solve_benchmarks(Suite& suite);
 void add_methods_benchmarks(Suite& suite);

@@ -26,7 +26,6 @@
 #include "convergence/loops/check_loop.hpp"
 #include "convergence/loops/loop_record.hpp"
 #include "convergence/programs/temporary_folder.hpp"
-#include "convergence/programs/tests/program_run.hpp"
 #include "convergence/studies/study.hpp"
 #include "solver/grid/grid.hpp"
 #include "solver/input/field_file.hpp"

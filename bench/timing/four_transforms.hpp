@@ -9,12 +9,12 @@ namespace slipstick::bench {
 template <typename Real>
 class FourTransforms {
  public:
-  explicit FourTransforms(solver::Index cells, unsigned flags = FFTW_ESTIMATE)
+  explicit FourTransforms(solver::Index cells)
       : padded_(static_cast<int>(solver::fast_length(2 * cells - 1))),
         real_(size()),
         spectrum_(size() + 2 * static_cast<std::size_t>(padded_)),
-        forward_(Library::plan_plane_forward(plane(), real_.data(), spectrum_.complex(), flags)),
-        backward_(Library::plan_plane_backward(plane(), spectrum_.complex(), real_.data(), flags)) {
+        forward_(Library::plan_plane_forward(plane(), real_.data(), spectrum_.complex())),
+        backward_(Library::plan_plane_backward(plane(), spectrum_.complex(), real_.data())) {
     std::fill_n(real_.data(), size(), Real(0));  // planning has written there
   }
 

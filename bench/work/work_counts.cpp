@@ -2,7 +2,6 @@
 
 #include <fftw3.h>
 
-#include <cstddef>
 #include <unordered_map>
 
 #include "solver/allocations/allocations.hpp"
@@ -39,12 +38,6 @@ void count_transform(const void* plan) {
 long product(int rank, const int* lengths) {
   long points = 1;
   for (int i = 0; i < rank; ++i) points *= lengths[i];
-  return points;
-}
-
-long product(int rank, const fftw_iodim* dimensions) {
-  long points = 1;
-  for (int i = 0; i < rank; ++i) points *= dimensions[i].n;
   return points;
 }
 
@@ -85,7 +78,6 @@ decltype(fftw_plan_many_dft_r2c) __real_fftw_plan_many_dft_r2c;
 decltype(fftwf_plan_many_dft_r2c) __real_fftwf_plan_many_dft_r2c;
 decltype(fftw_plan_many_dft_c2r) __real_fftw_plan_many_dft_c2r;
 decltype(fftwf_plan_many_dft_c2r) __real_fftwf_plan_many_dft_c2r;
-decltype(fftw_plan_guru_r2r) __real_fftw_plan_guru_r2r;
 
 fftw_plan __wrap_fftw_plan_dft_1d(int n, fftw_complex* in, fftw_complex* out, int sign, unsigned flags) {
   return count_plan(__real_fftw_plan_dft_1d(n, in, out, sign, flags), n);
@@ -134,11 +126,6 @@ fftwf_plan __wrap_fftwf_plan_many_dft_c2r(int rank, const int* n, int many, fftw
   return count_plan(__real_fftwf_plan_many_dft_c2r(rank, n, many, in, inembed, istride, idist, out, onembed,
                                                    ostride, odist, flags),
                     many * product(rank, n));
-}
-fftw_plan __wrap_fftw_plan_guru_r2r(int rank, const fftw_iodim* dims, int many_rank, const fftw_iodim* many,
-                                    double* in, double* out, const fftw_r2r_kind* kind, unsigned flags) {
-  return count_plan(__real_fftw_plan_guru_r2r(rank, dims, many_rank, many, in, out, kind, flags),
-                    product(rank, dims) * product(many_rank, many));
 }
 
 decltype(fftw_execute) __real_fftw_execute;

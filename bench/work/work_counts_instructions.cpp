@@ -8,7 +8,6 @@
 #include <numeric>
 #include <sstream>
 #include <stdexcept>
-#include <string_view>
 #include <thread>
 
 #include "convergence/programs/run_program.hpp"

@@ -1,7 +1,6 @@
 #include <fmt/core.h>
 
 #include <array>
-#include <cmath>
 #include <limits>
 #include <span>
 #include <stdexcept>

@@ -2,7 +2,6 @@
 #include <fmt/core.h>
 
 #include <chrono>
-#include <cmath>
 #include <limits>
 #include <memory>
 #include <mutex>
@@ -68,7 +67,7 @@ class Turn {
 
 bool goes_alone(const Scene& scene) {
   const bool reads_files = convergence::input_files(scene).size() > 1;
-  return reads_files || !scene.wisdom.empty() || scene.rounding_seed != 0;
+  return reads_files || scene.rounding_seed != 0;
 }
 
 /// FFTW remembers plans, and those that it chose under other rounding give other digits.

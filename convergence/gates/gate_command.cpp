@@ -1,4 +1,4 @@
-#include "convergence/gates/gate_command.hpp"
+#include "convergence/commands.hpp"
 
 #include <CLI/CLI.hpp>
 #include <filesystem>

@@ -4,8 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <cmath>
-#include <exception>
 #include <map>
 #include <nlohmann/json.hpp>
 

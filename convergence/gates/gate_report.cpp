@@ -10,7 +10,6 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <tuple>
-#include <utility>
 
 namespace slipstick::convergence {
 namespace {

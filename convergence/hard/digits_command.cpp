@@ -1,4 +1,4 @@
-#include "convergence/hard/digits_command.hpp"
+#include "convergence/commands.hpp"
 
 #include <CLI/CLI.hpp>
 #include <memory>

@@ -1,4 +1,4 @@
-#include "convergence/hard/hard_command.hpp"
+#include "convergence/commands.hpp"
 
 #include <CLI/CLI.hpp>
 #include <memory>

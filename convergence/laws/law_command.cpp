@@ -1,4 +1,4 @@
-#include "convergence/laws/law_command.hpp"
+#include "convergence/commands.hpp"
 
 #include <fmt/core.h>
 

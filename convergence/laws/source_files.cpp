@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "convergence/laws/law_files.hpp"
+#include "law_templates.hpp"  // law.h.in and law.py.in
 
 namespace slipstick::convergence {
 namespace {
@@ -61,125 +62,6 @@ std::string python_arrays(const std::string& name, const PiecewiseChebyshev& fit
   return fmt::format("{} = ([{}],\n    [{}],\n    [{}])\n", name, list(ends), fmt::join(first, ", "),
                      list(coefficients));
 }
-
-constexpr const char* kHeader = R"(/*
-@HEADING@   Relative errors of moment and rotation on first loading at most @ERROR@; of a moment on a later branch at
-   most three times that of the largest moment. A rotation beyond @LAST@ carries the limit.
-*/
-#ifndef SLIPSTICK_LAW_H
-#define SLIPSTICK_LAW_H
-
-#include <math.h>
-
-#define SLIPSTICK_LAW_LIMIT @LIMIT@
-#define SLIPSTICK_LAW_STIFFNESS @STIFFNESS@ /* at rest: moment over rotation */
-#define SLIPSTICK_LAW_ERROR @ERROR@
-#define SLIPSTICK_LAW_LAST_ROTATION @LAST@
-
-static inline double slipstick_law_fit(const double *ends, const int *first, const double *c, int pieces, double x) {
-  int k = 0, i;
-  double scaled, next = 0, after = 0;
-  while (k + 1 < pieces && x > ends[k + 1]) ++k;
-  scaled = (2 * x - ends[k] - ends[k + 1]) / (ends[k + 1] - ends[k]);
-  for (i = first[k + 1] - 1; i > first[k]; --i) {
-    const double value = c[i] + 2 * scaled * next - after;
-    after = next;
-    next = value;
-  }
-  return c[first[k]] + scaled * next - after;
-}
-
-/* The moment of first loading at a rotation. */
-static inline double slipstick_law_moment(double rotation) {
-@LOGARITHM@  const double size = fabs(rotation) / @ROTATION_UNIT@;
-  if (fabs(rotation) >= SLIPSTICK_LAW_LAST_ROTATION) return copysign(SLIPSTICK_LAW_LIMIT, rotation);
-  return copysign(-SLIPSTICK_LAW_LIMIT * expm1(-size * slipstick_law_fit(ends, first, c, @PIECES_1@, size)), rotation);
-}
-
-/* The rotation of first loading at a moment; infinite from the limit on. */
-static inline double slipstick_law_rotation(double moment) {
-@TWIST@  const double size = fabs(moment) / SLIPSTICK_LAW_LIMIT;
-  double l;
-  if (size > 1 - @DEFICIT@) return copysign(HUGE_VAL, moment);
-  l = -log1p(-size);
-  return copysign(@ROTATION_UNIT@ * l * slipstick_law_fit(ends, first, c, @PIECES_2@, l), moment);
-}
-
-/* The moment at a rotation on the branch that began at a reversal (Masing's rule), until it leaves the range of the
-   largest rotation so far: from there on it is that of first loading. */
-static inline double slipstick_law_branch(double start_rotation, double start_moment, double rotation) {
-  return start_moment + 2 * slipstick_law_moment(0.5 * (rotation - start_rotation));
-}
-
-/* The energy that a cycle between a moment and its negative loses; NaN from the limit on. */
-static inline double slipstick_law_energy_lost(double moment) {
-@LOSS@  const double size = fabs(moment) / SLIPSTICK_LAW_LIMIT;
-  if (!(size <= 1 - @DEFICIT@)) return NAN;
-  if (size <= @FULL_STICK@) return 0;
-  return 4 * fabs(moment) * slipstick_law_rotation(fabs(moment)) *
-         slipstick_law_fit(ends, first, c, @PIECES_3@, -log1p(-size));
-}
-
-#endif
-)";
-
-constexpr const char* kModule = R"("""
-@HEADING@Relative errors of moment and rotation on first loading at most @ERROR@; of a moment on a later branch at
-most three times that of the largest moment. A rotation beyond LAST_ROTATION carries the limit.
-"""
-
-from bisect import bisect_left
-from math import copysign, expm1, inf, log1p, nan
-
-LIMIT = @LIMIT@
-STIFFNESS = @STIFFNESS@  # at rest: moment over rotation
-ERROR = @ERROR@
-LAST_ROTATION = @LAST@
-
-@LOGARITHM@@TWIST@@LOSS@
-
-def _fit(data, x):
-    ends, first, c = data
-    k = min(bisect_left(ends, x, 1), len(ends) - 1) - 1
-    scaled = (2 * x - ends[k] - ends[k + 1]) / (ends[k + 1] - ends[k])
-    following = after = 0.0
-    for i in range(first[k + 1] - 1, first[k], -1):
-        following, after = c[i] + 2 * scaled * following - after, following
-    return c[first[k]] + scaled * following - after
-
-
-def moment(rotation):
-    """The moment of first loading at a rotation."""
-    if abs(rotation) >= LAST_ROTATION:
-        return copysign(LIMIT, rotation)
-    size = abs(rotation) / @ROTATION_UNIT@
-    return copysign(-LIMIT * expm1(-size * _fit(_LOGARITHM, size)), rotation)
-
-
-def rotation(moment):
-    """The rotation of first loading at a moment; infinite from the limit on."""
-    size = abs(moment) / LIMIT
-    if size > 1 - @DEFICIT@:
-        return copysign(inf, moment)
-    logarithm = -log1p(-size)
-    return copysign(@ROTATION_UNIT@ * logarithm * _fit(_TWIST, logarithm), moment)
-
-
-def branch(start_rotation, start_moment, rotation):
-    """The moment at a rotation on the branch that began at a reversal (Masing's rule), until it leaves the range of
-    the largest rotation so far: from there on it is that of first loading."""
-    return start_moment + 2 * moment(0.5 * (rotation - start_rotation))
-
-
-def energy_lost(moment):
-    """The energy that a cycle between a moment and its negative loses; NaN from the limit on."""
-    size = abs(moment) / LIMIT
-    if not size <= 1 - @DEFICIT@:
-        return nan
-    if size <= @FULL_STICK@:
-        return 0.0
-    return 4 * abs(moment) * rotation(abs(moment)) * _fit(_LOSS, -log1p(-size))
-)";
 
 std::string source(const char* text, const ContactLaw& law, const std::string& heading,
                    std::vector<std::pair<std::string, std::string>> values) {

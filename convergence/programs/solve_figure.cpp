@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "convergence/programs/python_script.hpp"
 #include "convergence/programs/temporary_folder.hpp"

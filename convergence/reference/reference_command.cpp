@@ -1,6 +1,4 @@
-#include "convergence/reference/reference_command.hpp"
-
-#include <fmt/core.h>
+#include "convergence/commands.hpp"
 
 #include <CLI/CLI.hpp>
 #include <filesystem>

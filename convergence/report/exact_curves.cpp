@@ -4,8 +4,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <stdexcept>
-#include <string>
 #include <vector>
 
 #include "analytic/approximations.hpp"

@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <vector>
 
 #include "convergence/results/result_parts.hpp"
 #include "convergence/runs/failed_runs.hpp"

@@ -1,7 +1,6 @@
 #include "convergence/runs/solve_scene.hpp"
 
 #include <cfenv>
-#include <memory>
 #include <utility>
 
 #include "convergence/results/result.hpp"

@@ -1,4 +1,4 @@
-#include "convergence/solve/solve_command.hpp"
+#include "convergence/commands.hpp"
 
 #include <fmt/core.h>
 #include <unistd.h>
@@ -261,10 +261,6 @@ void require_scene_kept(const CLI::App& command, const SolveRequest& request, co
 void require_shared_by_ranks(const SolveRequest& request, const solver::Scene& scene) {
   if (request.accuracy) {
     throw solver::InputError("--accuracy", "not on several ranks; allowed: cells that the scene names");
-  }
-  if (!scene.wisdom.empty()) {
-    throw solver::InputError("solver.wisdom",
-                             "not on several ranks; allowed: no file, plans that are estimated");
   }
   if (scene.rounding_seed != 0) {
     throw solver::InputError("solver.rounding_seed", "not on several ranks; allowed: 0");

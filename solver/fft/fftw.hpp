@@ -11,7 +11,8 @@
 
 #include "solver/grid/grid.hpp"
 
-/// FFTW's C interface, owned and by precision.
+/// FFTW's C interface, owned and by precision. Plans are estimated: those that are measured give other bits
+/// from run to run.
 namespace slipstick::solver {
 
 /// As containers count.
@@ -45,29 +46,29 @@ struct Fftw<double> {
   using Plan = fftw_plan;
   static double* allocate(std::size_t count) { return fftw_alloc_real(count); }
   static void free(double* pointer) { fftw_free(pointer); }
-  static Plan plan(int length, Complex* in, Complex* out, int direction, unsigned flags) {
-    return fftw_plan_dft_1d(length, in, out, direction, flags);
+  static Plan plan(int length, Complex* in, Complex* out, int direction) {
+    return fftw_plan_dft_1d(length, in, out, direction, FFTW_ESTIMATE);
   }
   static void execute(Plan plan, Complex* in, Complex* out) { fftw_execute_dft(plan, in, out); }
   static void destroy(Plan plan) { fftw_destroy_plan(plan); }
 
-  static Plan plan_lines(const FftwLines& lines, Complex* in, Complex* out, int sign, unsigned flags) {
+  static Plan plan_lines(const FftwLines& lines, Complex* in, Complex* out, int sign) {
     return fftw_plan_many_dft(1, &lines.length, lines.count, in, nullptr, lines.in_step, lines.in_distance,
-                              out, nullptr, lines.out_step, lines.out_distance, sign, flags);
+                              out, nullptr, lines.out_step, lines.out_distance, sign, FFTW_ESTIMATE);
   }
-  static Plan plan_plane_forward(const FftwPlane& plane, double* in, Complex* out, unsigned flags) {
+  static Plan plan_plane_forward(const FftwPlane& plane, double* in, Complex* out) {
     return fftw_plan_many_dft_r2c(2, plane.lengths.data(), 1, in, plane.reals.data(), 1, 0, out,
-                                  plane.numbers.data(), 1, 0, flags);
+                                  plane.numbers.data(), 1, 0, FFTW_ESTIMATE);
   }
-  static Plan plan_plane_backward(const FftwPlane& plane, Complex* in, double* out, unsigned flags) {
+  static Plan plan_plane_backward(const FftwPlane& plane, Complex* in, double* out) {
     return fftw_plan_many_dft_c2r(2, plane.lengths.data(), 1, in, plane.numbers.data(), 1, 0, out,
-                                  plane.reals.data(), 1, 0, flags);
+                                  plane.reals.data(), 1, 0, FFTW_ESTIMATE);
   }
-  static Plan plan_row_forward(int length, double* in, Complex* out, unsigned flags) {
-    return fftw_plan_many_dft_r2c(1, &length, 1, in, nullptr, 1, 0, out, nullptr, 1, 0, flags);
+  static Plan plan_row_forward(int length, double* in, Complex* out) {
+    return fftw_plan_many_dft_r2c(1, &length, 1, in, nullptr, 1, 0, out, nullptr, 1, 0, FFTW_ESTIMATE);
   }
-  static Plan plan_row_backward(int length, Complex* in, double* out, unsigned flags) {
-    return fftw_plan_many_dft_c2r(1, &length, 1, in, nullptr, 1, 0, out, nullptr, 1, 0, flags);
+  static Plan plan_row_backward(int length, Complex* in, double* out) {
+    return fftw_plan_many_dft_c2r(1, &length, 1, in, nullptr, 1, 0, out, nullptr, 1, 0, FFTW_ESTIMATE);
   }
   static void execute(Plan plan, double* in, Complex* out) { fftw_execute_dft_r2c(plan, in, out); }
   static void execute(Plan plan, Complex* in, double* out) { fftw_execute_dft_c2r(plan, in, out); }
@@ -79,29 +80,29 @@ struct Fftw<float> {
   using Plan = fftwf_plan;
   static float* allocate(std::size_t count) { return fftwf_alloc_real(count); }
   static void free(float* pointer) { fftwf_free(pointer); }
-  static Plan plan(int length, Complex* in, Complex* out, int direction, unsigned flags) {
-    return fftwf_plan_dft_1d(length, in, out, direction, flags);
+  static Plan plan(int length, Complex* in, Complex* out, int direction) {
+    return fftwf_plan_dft_1d(length, in, out, direction, FFTW_ESTIMATE);
   }
   static void execute(Plan plan, Complex* in, Complex* out) { fftwf_execute_dft(plan, in, out); }
   static void destroy(Plan plan) { fftwf_destroy_plan(plan); }
 
-  static Plan plan_lines(const FftwLines& lines, Complex* in, Complex* out, int sign, unsigned flags) {
+  static Plan plan_lines(const FftwLines& lines, Complex* in, Complex* out, int sign) {
     return fftwf_plan_many_dft(1, &lines.length, lines.count, in, nullptr, lines.in_step, lines.in_distance,
-                               out, nullptr, lines.out_step, lines.out_distance, sign, flags);
+                               out, nullptr, lines.out_step, lines.out_distance, sign, FFTW_ESTIMATE);
   }
-  static Plan plan_plane_forward(const FftwPlane& plane, float* in, Complex* out, unsigned flags) {
+  static Plan plan_plane_forward(const FftwPlane& plane, float* in, Complex* out) {
     return fftwf_plan_many_dft_r2c(2, plane.lengths.data(), 1, in, plane.reals.data(), 1, 0, out,
-                                   plane.numbers.data(), 1, 0, flags);
+                                   plane.numbers.data(), 1, 0, FFTW_ESTIMATE);
   }
-  static Plan plan_plane_backward(const FftwPlane& plane, Complex* in, float* out, unsigned flags) {
+  static Plan plan_plane_backward(const FftwPlane& plane, Complex* in, float* out) {
     return fftwf_plan_many_dft_c2r(2, plane.lengths.data(), 1, in, plane.numbers.data(), 1, 0, out,
-                                   plane.reals.data(), 1, 0, flags);
+                                   plane.reals.data(), 1, 0, FFTW_ESTIMATE);
   }
-  static Plan plan_row_forward(int length, float* in, Complex* out, unsigned flags) {
-    return fftwf_plan_many_dft_r2c(1, &length, 1, in, nullptr, 1, 0, out, nullptr, 1, 0, flags);
+  static Plan plan_row_forward(int length, float* in, Complex* out) {
+    return fftwf_plan_many_dft_r2c(1, &length, 1, in, nullptr, 1, 0, out, nullptr, 1, 0, FFTW_ESTIMATE);
   }
-  static Plan plan_row_backward(int length, Complex* in, float* out, unsigned flags) {
-    return fftwf_plan_many_dft_c2r(1, &length, 1, in, nullptr, 1, 0, out, nullptr, 1, 0, flags);
+  static Plan plan_row_backward(int length, Complex* in, float* out) {
+    return fftwf_plan_many_dft_c2r(1, &length, 1, in, nullptr, 1, 0, out, nullptr, 1, 0, FFTW_ESTIMATE);
   }
   static void execute(Plan plan, float* in, Complex* out) { fftwf_execute_dft_r2c(plan, in, out); }
   static void execute(Plan plan, Complex* in, float* out) { fftwf_execute_dft_c2r(plan, in, out); }
@@ -148,8 +149,5 @@ class FftwPlan {
   };
   std::unique_ptr<std::remove_pointer_t<Plan>, Destroy> plan_;
 };
-
-/// FFTW's flag for how it plans.
-inline unsigned planning(bool measured) { return measured ? FFTW_MEASURE : FFTW_ESTIMATE; }
 
 }  // namespace slipstick::solver

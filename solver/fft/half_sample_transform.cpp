@@ -53,7 +53,7 @@ HalfSampleTransform<Real>::Workspace::Workspace(const HalfSampleTransform& trans
       rows_(count(2 * half_ * kLines)) {}
 
 template <typename Real>
-HalfSampleTransform<Real>::HalfSampleTransform(Index samples, unsigned planner_flags)
+HalfSampleTransform<Real>::HalfSampleTransform(Index samples)
     : samples_(samples), half_(half_length(samples)), line_stride_(padded_line(half_)) {
   for (Index t = 0; t < half_; ++t) {
     const Index place = 2 * t < half_ ? t : t - half_;
@@ -73,10 +73,10 @@ HalfSampleTransform<Real>::HalfSampleTransform(Index samples, unsigned planner_f
   constexpr int pairs = static_cast<int>(kPairs);
   auto* const lines = work.samples_.complex();
   auto* const rows = work.rows_.complex();
-  forward_ = FftwPlan<Real>(
-      Fftw<Real>::plan_lines({length, pairs, 1, stride, pairs, 1}, lines, rows, FFTW_FORWARD, planner_flags));
-  backward_ = FftwPlan<Real>(Fftw<Real>::plan_lines({length, pairs, pairs, 1, 1, stride}, rows, lines,
-                                                    FFTW_BACKWARD, planner_flags));
+  forward_ =
+      FftwPlan<Real>(Fftw<Real>::plan_lines({length, pairs, 1, stride, pairs, 1}, lines, rows, FFTW_FORWARD));
+  backward_ = FftwPlan<Real>(
+      Fftw<Real>::plan_lines({length, pairs, pairs, 1, 1, stride}, rows, lines, FFTW_BACKWARD));
 }
 
 template <typename Real>

@@ -50,8 +50,8 @@ class HalfSampleTransform {
     FftwBuffer<Real> rows_;     ///< the even frequencies' rows, then the odd ones'
   };
 
-  /// samples >= 1. planner_flags: FFTW's.
-  HalfSampleTransform(Index samples, unsigned planner_flags);
+  /// samples >= 1.
+  explicit HalfSampleTransform(Index samples);
 
   /// h, the rows of a spectrum.
   Index frequencies() const { return 2 * half_; }

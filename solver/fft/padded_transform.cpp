@@ -1,7 +1,6 @@
 #include "solver/fft/padded_transform.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <numbers>
 
 namespace slipstick::solver {
@@ -55,7 +54,7 @@ std::size_t PaddedTransform<Real>::bytes() const {
 }
 
 template <typename Real>
-PaddedTransform<Real>::PaddedTransform(const Grid& grid, std::size_t fields, int threads, unsigned flags)
+PaddedTransform<Real>::PaddedTransform(const Grid& grid, std::size_t fields, int threads)
     : grid_(grid),
       fields_(fields),
       threads_(threads),
@@ -82,7 +81,7 @@ PaddedTransform<Real>::PaddedTransform(const Grid& grid, std::size_t fields, int
   for (int thread = 0; thread < threads; ++thread) scratch_.emplace_back(2 * count(size));
   const auto plan = [&](Index length, Index out, int direction) {
     auto* const start = scratch_.front().complex();
-    return FftwPlan<Real>(Fftw<Real>::plan(static_cast<int>(length), start, start + out, direction, flags));
+    return FftwPlan<Real>(Fftw<Real>::plan(static_cast<int>(length), start, start + out, direction));
   };
   row_forward_ = plan(m2_, kRows * stride2_, FFTW_FORWARD);
   row_backward_ = plan(m2_, kRows * stride2_, FFTW_BACKWARD);

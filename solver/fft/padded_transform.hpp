@@ -38,8 +38,8 @@ class PaddedTransform {
     std::array<Complex*, 2> odd;
   };
 
-  /// For one or two fields at a time. flags: FFTW's.
-  PaddedTransform(const Grid& grid, std::size_t fields, int threads, unsigned flags);
+  /// For one or two fields at a time.
+  PaddedTransform(const Grid& grid, std::size_t fields, int threads);
   static std::size_t predicted_bytes(const Grid& grid, std::size_t fields, int threads);
   std::size_t bytes() const;
   /// What all ranks send for one field in one direction.

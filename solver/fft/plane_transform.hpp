@@ -41,8 +41,7 @@ class PlaneTransform {
   /// Columns that lie in a cache line.
   static constexpr Index kColumns = 64 / static_cast<Index>(2 * sizeof(Real));
 
-  /// planner_flags: FFTW's.
-  PlaneTransform(const PlaneShape& shape, int threads, unsigned planner_flags)
+  PlaneTransform(const PlaneShape& shape, int threads)
       : shape_(shape),
         threads_(threads),
         row_stride_(row_stride(shape.n2)),
@@ -57,16 +56,13 @@ class PlaneTransform {
       own_rows_.emplace_back(count(row_stride_));
       if (!shape.whole) scratch_.emplace_back(count(scratch_size(shape)));
     }
-    row_forward_ = FftwPlan<Real>(Fftw<Real>::plan_row_forward(length, own_row(0), spectrum, planner_flags));
-    row_backward_ =
-        FftwPlan<Real>(Fftw<Real>::plan_row_backward(length, spectrum, own_row(0), planner_flags));
+    row_forward_ = FftwPlan<Real>(Fftw<Real>::plan_row_forward(length, own_row(0), spectrum));
+    row_backward_ = FftwPlan<Real>(Fftw<Real>::plan_row_backward(length, spectrum, own_row(0)));
     const int step = static_cast<int>(shape.whole ? row_stride_ / 2 : kColumns);
     auto* const columns = shape.whole ? spectrum : scratch_.front().complex();
     const FftwLines lines{static_cast<int>(shape.n1), static_cast<int>(kColumns), step, 1, step, 1};
-    column_forward_ =
-        FftwPlan<Real>(Fftw<Real>::plan_lines(lines, columns, columns, FFTW_FORWARD, planner_flags));
-    column_backward_ =
-        FftwPlan<Real>(Fftw<Real>::plan_lines(lines, columns, columns, FFTW_BACKWARD, planner_flags));
+    column_forward_ = FftwPlan<Real>(Fftw<Real>::plan_lines(lines, columns, columns, FFTW_FORWARD));
+    column_backward_ = FftwPlan<Real>(Fftw<Real>::plan_lines(lines, columns, columns, FFTW_BACKWARD));
   }
 
   int threads() const { return threads_; }

@@ -5,8 +5,6 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <cmath>
-#include <cstdint>
 #include <map>
 #include <sstream>
 #include <stdexcept>

@@ -36,7 +36,6 @@ class SceneReader {
   void prefer_overridden(const std::vector<std::string>& alternatives);
 
   bool has(const std::string& key);
-  bool is_overridden(const std::string& key) const { return overridden_.contains(key); }
   bool is_array(const std::string& key);
   bool is_text(const std::string& key);
   /// The line on which a key or a table stands; 0 where it is missing.

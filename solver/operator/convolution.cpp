@@ -84,7 +84,7 @@ template <typename Real>
 Convolution<Real>::Convolution(const Grid& grid, BlockKernel kernel, const ElasticPair& pair,
                                const OperatorOptions& options)
     : Operator<Real>(grid, std::move(kernel)),
-      transform_(grid, fields(this->kernel()), std::max(options.threads, 1), planning(options.measure_plans)),
+      transform_(grid, fields(this->kernel()), std::max(options.threads, 1)),
       components_(distinct_components(this->kernel())),
       spectra_(components_.size() * count(transform_.own_columns(grid).count() * (padded1() / 2 + 1))),
       multiply_(multiply_for(this->kernel())) {
@@ -95,7 +95,7 @@ Convolution<Real>::Convolution(const Grid& grid, BlockKernel kernel, const Elast
   if constexpr (std::is_same_v<Real, double>) {
     set_spectra(pair, transform_);
   } else {
-    PaddedTransform<double> transform(grid, 1, std::max(options.threads, 1), FFTW_ESTIMATE);
+    PaddedTransform<double> transform(grid, 1, std::max(options.threads, 1));
     set_spectra(pair, transform);
   }
 }

@@ -11,9 +11,7 @@ namespace {
 
 /// The diagonal's mirror is of use to the tangential kernel alone.
 OperatorOptions options_of(const Elasticity& elasticity, const BlockKernel& kernel) {
-  return {.threads = elasticity.threads,
-          .measure_plans = elasticity.measure_plans,
-          .diagonal = elasticity.diagonal && kernel.inputs == 2};
+  return {.threads = elasticity.threads, .diagonal = elasticity.diagonal && kernel.inputs == 2};
 }
 
 template <typename Real>
@@ -21,7 +19,7 @@ std::unique_ptr<InverseSymbol<Real>> symbol_of(const Elasticity& elasticity, con
                                                const BlockKernel& kernel) {
   return make_inverse_symbol<Real>(grid, kernel, elasticity.pair,
                                    options_of(elasticity, kernel).diagonal ? Diagonal::yes : Diagonal::no,
-                                   elasticity.measure_plans, elasticity.threads, elasticity.at_edge);
+                                   elasticity.threads, elasticity.at_edge);
 }
 
 std::unique_ptr<LinearOperator> new_operator(const Elasticity& elasticity, const Grid& grid,
@@ -39,9 +37,7 @@ CacheKey with_kernel(CacheKey key, const BlockKernel& kernel) {
 
 }  // namespace
 
-std::shared_ptr<SolveCache> Elasticity::usable_cache() const {
-  return measure_plans || rounding_seed != 0 ? nullptr : cache;
-}
+std::shared_ptr<SolveCache> Elasticity::usable_cache() const { return rounding_seed != 0 ? nullptr : cache; }
 
 CacheKey Elasticity::key(const char* what, const Grid& grid) const {
   CacheKey all(what);

@@ -22,7 +22,6 @@ struct Elasticity {
   Precision precision = Precision::double_precision;
   bool diagonal = false;                   ///< see OperatorOptions; of the tangential operator
   bool at_edge = false;                    ///< whether the contact may reach the grid's edge
-  bool measure_plans = false;              ///< see OperatorOptions; of the preconditioner too
   std::uint64_t rounding_seed = 0;         ///< 0: rounded to nearest; else at random, in double precision
   std::shared_ptr<SolveCache> cache = {};  ///< for operators that are needed again; empty: none
 

@@ -62,8 +62,7 @@ void mix(Index count, Real sign, const Real* __restrict p11, const Real* __restr
 template <typename Real>
 class PeriodicInverseSymbol final : public InverseSymbol<Real> {
  public:
-  PeriodicInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair, bool measure_plans,
-                        int threads, bool at_edge)
+  PeriodicInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair, int threads, bool at_edge)
       : grid_(grid),
         periodic_(padded(grid, at_edge)),
         fields_(tangential ? 2 : 1),
@@ -71,7 +70,7 @@ class PeriodicInverseSymbol final : public InverseSymbol<Real> {
         columns_(PlaneTransform<Real>::own_columns(shape(grid, periodic_, tangential))),
         table_(periodic_, pair, entries(tangential), frequencies(columns_),
                1.0 / (static_cast<double>(periodic_.length1) * static_cast<double>(periodic_.length2))),
-        transform_(shape(grid, periodic_, tangential), threads, planning(measure_plans)) {}
+        transform_(shape(grid, periodic_, tangential), threads) {}
 
   void apply(std::span<Real> field) override {
     if (static_cast<Index>(field.size()) != fields_ * grid_.cells()) {
@@ -163,15 +162,13 @@ void check_diagonal(const Grid& grid, bool tangential, Diagonal diagonal) {
 template <typename Real>
 std::unique_ptr<InverseSymbol<Real>> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel,
                                                          const ElasticPair& pair, Diagonal diagonal,
-                                                         bool measure_plans, int threads, bool at_edge) {
+                                                         int threads, bool at_edge) {
   const bool tangential = is_tangential(kernel);
   check_diagonal(grid, tangential, diagonal);
   if (grid.quadrant) {
-    return std::make_unique<MirroredInverseSymbol<Real>>(grid, tangential, pair, diagonal, measure_plans,
-                                                         threads);
+    return std::make_unique<MirroredInverseSymbol<Real>>(grid, tangential, pair, diagonal, threads);
   }
-  return std::make_unique<PeriodicInverseSymbol<Real>>(grid, tangential, pair, measure_plans, threads,
-                                                       at_edge);
+  return std::make_unique<PeriodicInverseSymbol<Real>>(grid, tangential, pair, threads, at_edge);
 }
 
 template <typename Real>
@@ -186,11 +183,11 @@ double predicted_inverse_symbol_bytes(const Grid& grid, const BlockKernel& kerne
 }
 
 template std::unique_ptr<InverseSymbol<double>> make_inverse_symbol<double>(const Grid&, const BlockKernel&,
-                                                                            const ElasticPair&, Diagonal,
-                                                                            bool, int, bool);
+                                                                            const ElasticPair&, Diagonal, int,
+                                                                            bool);
 template std::unique_ptr<InverseSymbol<float>> make_inverse_symbol<float>(const Grid&, const BlockKernel&,
-                                                                          const ElasticPair&, Diagonal, bool,
-                                                                          int, bool);
+                                                                          const ElasticPair&, Diagonal, int,
+                                                                          bool);
 template double predicted_inverse_symbol_bytes<double>(const Grid&, const BlockKernel&, Diagonal, int, bool);
 template double predicted_inverse_symbol_bytes<float>(const Grid&, const BlockKernel&, Diagonal, int, bool);
 

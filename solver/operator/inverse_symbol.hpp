@@ -40,13 +40,12 @@ class InverseSymbol {
 };
 
 /// The kernel is the normal or the tangential one; others throw std::invalid_argument, as does Diagonal::yes
-/// where the grid is no quadrant that its diagonal halves or the kernel not tangential. measure_plans: see
-/// OperatorOptions. at_edge: whether fields reach the edge of a whole grid.
+/// where the grid is no quadrant that its diagonal halves or the kernel not tangential. at_edge: whether
+/// fields reach the edge of a whole grid.
 template <typename Real>
 std::unique_ptr<InverseSymbol<Real>> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel,
                                                          const ElasticPair& pair,
-                                                         Diagonal diagonal = Diagonal::no,
-                                                         bool measure_plans = false, int threads = 1,
+                                                         Diagonal diagonal = Diagonal::no, int threads = 1,
                                                          bool at_edge = false);
 
 /// What bytes() of it will be.

@@ -93,9 +93,6 @@ using LinearOperator = Operator<double>;
 
 struct OperatorOptions {
   int threads = 1;
-  /// Let FFTW measure which plan is fastest: quicker applications, results that differ in their last bits
-  /// from run to run.
-  bool measure_plans = false;
   /// On a square quadrant, tangential: the fields are mirror images about the diagonal too.
   bool diagonal = false;
 };

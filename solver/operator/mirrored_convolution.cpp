@@ -48,7 +48,7 @@ void transform_lines(double* values, const KernelLines& lines, Index h, bool odd
     transforms.emplace_back(count(4 * h));
   }
   const FftwPlan<double> plan(Fftw<double>::plan(static_cast<int>(2 * h), periods[0].complex(),
-                                                 transforms[0].complex(), FFTW_FORWARD, FFTW_ESTIMATE));
+                                                 transforms[0].complex(), FFTW_FORWARD));
   const double sign = odd ? -1.0 : 1.0;
   const Index ends = odd ? 1 : 0;  // where odd lines are taken to be zero, as their transforms are
   const auto transform_pair = [&](int thread, Index line) {
@@ -99,8 +99,8 @@ MirroredConvolution<Real>::MirroredConvolution(const Grid& quadrant, BlockKernel
     : Operator<Real>(quadrant, checked(std::move(kernel), quadrant, diagonal)),
       diagonal_(diagonal),
       threads_(std::max(options.threads, 1)),
-      along1_(quadrant.n1, planning(options.measure_plans)),
-      along2_(quadrant.n2, planning(options.measure_plans)),
+      along1_(quadrant.n1),
+      along2_(quadrant.n2),
       row_groups_(groups(quadrant.n1, kLines)),
       column_groups_(groups(along2_.frequencies(), kLines)),
       own_row_groups_(own_row_groups(quadrant.n1)),

@@ -139,7 +139,7 @@ void mix_with_other_half(Index count, const Real* __restrict p11, const Real* __
 
 template <typename Real>
 MirroredInverseSymbol<Real>::MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair,
-                                                   Diagonal diagonal, bool measure_plans, int threads)
+                                                   Diagonal diagonal, int threads)
     : grid_(grid),
       tangential_(tangential),
       symmetric_(diagonal == Diagonal::yes),
@@ -150,7 +150,7 @@ MirroredInverseSymbol<Real>::MirroredInverseSymbol(const Grid& grid, bool tangen
       columns_(PlaneTransform<Real>::own_columns(plane_of(grid, tangential, symmetric_))),
       table_(mirrored(grid), pair, entries(tangential, diagonal == Diagonal::yes), frequencies(t2_, columns_),
              0.5 / (static_cast<double>(t1_) * static_cast<double>(t2_))),
-      transform_(plane_of(grid, tangential, symmetric_), threads, planning(measure_plans)),
+      transform_(plane_of(grid, tangential, symmetric_), threads),
       scratch_(coefficient_size(half_, tangential_ && !symmetric_)),
       coefficients_(static_cast<std::size_t>(threads * scratch_)),
       twiddles_(static_cast<std::size_t>(twiddle_size(t1_, half_))) {

@@ -34,7 +34,7 @@ class MirroredInverseSymbol final : public InverseSymbol<Real> {
  public:
   /// With Diagonal::yes only the first component is transformed, of which the second is minus the transpose.
   MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair, Diagonal diagonal,
-                        bool measure_plans, int threads);
+                        int threads);
 
   void apply(std::span<Real> field) override;
   std::array<double, 2> diagonal() const override { return diagonal_; }

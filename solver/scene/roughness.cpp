@@ -96,7 +96,7 @@ ArrayXd series_power(const ArrayXd& field, int n) {
   FftwBuffer<double> in(samples);
   FftwBuffer<double> out(2 * static_cast<std::size_t>(n) * static_cast<std::size_t>(half));
   const FftwPlan<double> plan(
-      Fftw<double>::plan_plane_forward({{n, n}, {n, n}, {n, half}}, in.data(), out.complex(), FFTW_ESTIMATE));
+      Fftw<double>::plan_plane_forward({{n, n}, {n, n}, {n, half}}, in.data(), out.complex()));
   std::copy_n(field.data(), samples, in.data());
   Fftw<double>::execute(plan.get(), in.data(), out.complex());
   const Eigen::Map<const ArrayXd, 0, Eigen::InnerStride<2>> real(out.data(), Index{n} * half);

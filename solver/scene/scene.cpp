@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "solver/input/input_error.hpp"
-#include "solver/input/input_file.hpp"
 #include "solver/input/toml_reader.hpp"
 #include "solver/scene/last_digits.hpp"
 #include "solver/scene/scene_keys.hpp"
@@ -134,13 +133,6 @@ Step step_of(const Scene& scene, std::size_t k) {
   return step;
 }
 
-void require_writes_within(const Scene& scene) {
-  const std::filesystem::path folder = scene.source.has_parent_path() ? scene.source.parent_path() : ".";
-  if (scene.wisdom.empty() || lies_within(scene.wisdom, folder)) return;
-  throw InputError(scene.source.string(), "solver.wisdom", fmt::format("\"{}\"", scene.wisdom.string()),
-                   "a file in the scene's folder or below, since it is written; or any, on the command line");
-}
-
 std::string to_string(PressureModel model) { return word_of(kPressureModels, model); }
 std::string to_string(OperatorKind kind) { return word_of(kOperators, kind); }
 std::string to_string(Method method) { return word_of(kMethods, method); }
@@ -183,10 +175,6 @@ Scene read_scene(SceneReader& reader, const std::filesystem::path& file) {
   scene.threads = static_cast<int>(reader.number_or("solver.threads", scene.threads));
   scene.rounding_seed = static_cast<std::int64_t>(
       reader.number_or("solver.rounding_seed", static_cast<double>(scene.rounding_seed)));
-  if (reader.has("solver.wisdom")) {
-    scene.wisdom = reader.path("solver.wisdom");
-    if (!reader.is_overridden("solver.wisdom")) require_writes_within(scene);
-  }
   reader.reject_unknown();
   validate(scene, [&](const std::string& key, const std::string& value, const std::string& allowed) {
     reader.fail(key, value, allowed);

@@ -107,9 +107,6 @@ struct Scene {
   int threads = 0;  ///< of one solve; 0: as its cells are worth it, up to one a processor
   /// 0: to nearest; else rounding is random, drawn from the seed, to see which digits depend on it.
   std::int64_t rounding_seed = 0;
-  /// Transforms are planned by measurement and the plans kept in this file; empty: by estimate, which gives
-  /// the same digits again.
-  std::filesystem::path wisdom;
   /// Bytes that solving it may take; none: what the machine has left. No key of the file: it says nothing of
   /// the contact.
   std::optional<double> memory_limit;
@@ -127,10 +124,6 @@ Scene read_scene(const std::filesystem::path& file, const std::vector<std::strin
 /// The same of text that is no file: `file` is what messages call it and where its relative paths begin.
 Scene read_scene_text(const std::string& text, const std::filesystem::path& file,
                       const std::vector<std::string>& overrides = {});
-
-/// Throws InputError where solving the scene would write a file outside of its folder: whoever hands on a
-/// scene must not choose where. read_scene() calls it for what the file itself says.
-void require_writes_within(const Scene& scene);
 
 /// Throws InputError, naming key, value and what is allowed, for a scene that cannot be solved as it stands,
 /// whoever built it. What only the solve can find (a contact wider than the grid, loads beyond the limit) is

@@ -182,9 +182,7 @@ void add_grid_and_solver(SettingKeys& keys, const Scene& scene) {
        "Threads of one solve, which change no digit. 0: one a processor where the part of the grid that is "
        "solved has many cells, 32,768 for each thread; one for each of many solves (studies, gates)."},
       {"solver.rounding_seed", kNumber, "", shown(static_cast<double>(scene.rounding_seed)), kRoundingSeeds,
-       "0: to nearest; else every operation is rounded at random, drawn from this seed."},
-      {"solver.wisdom", KeyType::file, "", "none: transforms are planned by estimate", kAny,
-       "File in the scene's folder or below that keeps measured plans of FFTW; it is read and written."}};
+       "0: to nearest; else every operation is rounded at random, drawn from this seed."}};
   keys.insert(keys.end(), solver.begin(), solver.end());
 }
 

@@ -1,12 +1,10 @@
 // Loads next to gross slip, and loads next to none: both are as easy as any other.
 
-#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <array>
 #include <cmath>
 #include <string>
-#include <vector>
 
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/model_solution.hpp"

@@ -1,9 +1,7 @@
 #include "analytic/certified/certified.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -14,18 +12,6 @@ namespace slipstick::analytic::certified {
 namespace {
 
 using namespace known;
-
-TEST(Certified, HasTheKnownStickRatios) {
-  const std::vector<std::pair<std::string, std::string>> known{{"0.1", "0.9693964204953627"},
-                                                               {"0.5", "0.8135681261276496"},
-                                                               {"0.9", "0.4958950522157781"},
-                                                               {"0.99", "0.2369661925296642"}};
-  const Precision precision(kBits);
-  for (const auto& [m, c] : known) {
-    const State found = state(kHertz, Quantity::moment_ratio, m, {}, 30);
-    EXPECT_TRUE(abs(enclosure(found.stick_ratio) - exact(c)) < exact("3e-16")) << m;
-  }
-}
 
 TEST(Certified, HasTheSpheresTwist) {
   const Precision precision(kBits);

@@ -1,6 +1,5 @@
 #include "analytic/certified/certified.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cstdlib>

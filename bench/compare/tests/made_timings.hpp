@@ -1,7 +1,6 @@
 #pragma once
 
 #include <fmt/core.h>
-#include <fmt/ranges.h>
 
 #include <cmath>
 #include <cstddef>
@@ -91,37 +90,6 @@ inline TwoFiles draw(std::mt19937_64& generator, std::size_t benchmarks, std::si
     run.now.benchmarks.push_back(timed(fmt::format("operator/{}", b), after));
   }
   return run;
-}
-
-/// As Google Benchmark writes it; times in milliseconds. What is no number is written as it writes it.
-inline std::string google_json(const Timings& timings) {
-  const TimingContext& context = timings.context;
-  const auto number = [](double x) {
-    return std::isnan(x) ? "NaN" : std::isinf(x) ? "Infinity" : fmt::format("{:.16e}", x);
-  };
-  std::vector<std::string> rows;
-  for (const TimedBenchmark& benchmark : timings.benchmarks) {
-    const auto row = [&](std::size_t i, const std::string& rest) {
-      rows.push_back(fmt::format(
-          R"({{"name": "{0}", "run_name": "{0}", "run_type": "iteration", "repetition_index": {1}, "threads": {2}, {3}}})",
-          benchmark.name, i, benchmark.threads, rest));
-    };
-    if (!benchmark.error.empty()) {
-      row(0,
-          fmt::format(R"("error_occurred": true, "error_message": "{}", "real_time": 0, "time_unit": "ms")",
-                      benchmark.error));
-    }
-    for (std::size_t i = 0; benchmark.error.empty() && i < benchmark.timings.size(); ++i) {
-      row(i, fmt::format(R"("iterations": 10, "real_time": {}, "cpu_time": {}, "time_unit": "ms")",
-                         number(1e3 * benchmark.timings[i].real), number(1e3 * benchmark.timings[i].cpu)));
-    }
-  }
-  return fmt::format(
-      R"({{"context": {{"host_name": "{}", "num_cpus": {}, "mhz_per_cpu": {}, "cpu_scaling_enabled": {},
-"caches": [{{"type": "Unified", "level": 2, "size": 2097152, "num_sharing": 1}}], "load_avg": [{}],
-"library_build_type": "{}"}}, "benchmarks": [{}]}})",
-      context.host_name, context.cpus, context.mhz, context.scaling.value_or(false),
-      fmt::join(context.load_average, ","), context.library_build_type, fmt::join(rows, ",\n"));
 }
 
 }  // namespace slipstick::bench

@@ -10,7 +10,6 @@
 namespace {
 
 using slipstick::bench::dominated_choices;
-using slipstick::bench::DominatedChoice;
 using slipstick::bench::pareto_front;
 using slipstick::bench::quickest_to;
 using slipstick::bench::Way;

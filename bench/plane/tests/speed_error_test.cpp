@@ -22,7 +22,6 @@ namespace {
 using namespace slipstick;
 using bench::Json;
 using bench::PlaneChoice;
-using testing::ElementsAre;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 

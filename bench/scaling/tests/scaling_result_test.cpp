@@ -105,7 +105,7 @@ TEST(ScalingResult, OfWhatWasNotTimedSaysWhy) {
 
 TEST(ScalingResult, OfOneSizeFitsNothing) {
   Timings timings;
-  timings.benchmarks.push_back(timed("planning/measure/cells:64", 1.0));
+  timings.benchmarks.push_back(timed("set_up/dcfft/cells:64", 1.0));
   const ordered_json family = scaling_json(timings)["families"][0];
   EXPECT_TRUE(family["power_law"]["exponent"].is_null());
   EXPECT_TRUE(family["growth"]["best"].is_null());

@@ -11,6 +11,9 @@
 #include <string>
 #include <vector>
 
+#include "convergence/runs/run_spec.hpp"
+#include "solver/tests/scene_file.hpp"
+
 namespace slipstick::convergence {
 namespace {
 
@@ -114,6 +117,17 @@ TEST_F(ResultCacheTest, AnotherProgramComputesAgain) {
   ask("a");
   EXPECT_TRUE(ResultCache(folder_).find("point", "a").has_value());
   EXPECT_FALSE(ResultCache(folder_, SLIPSTICK_PROGRAM).find("point", "a").has_value());
+}
+
+// What a result is kept under holds the scene's name and whole tables, which need not be UTF-8; JSON is.
+TEST_F(ResultCacheTest, ResultsOfScenesWithAnyNameAreFoundAgain) {
+  const fs::path scene = folder_ / "caf\xe9.toml";
+  fs::create_directories(folder_);
+  std::ofstream(scene) << solver::kShortScene;
+  const PreparedRun run = prepare_run({.scene = scene});
+  const ResultCache cache(folder_ / "runs");
+  cache.keep(run.name, run.cache_key, Json{{"name", "caf\xe9"}});
+  EXPECT_TRUE(cache.find(run.name, run.cache_key).has_value());
 }
 
 }  // namespace

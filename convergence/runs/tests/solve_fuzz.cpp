@@ -31,7 +31,6 @@ void make_small(solver::Scene& scene) {
   scene.tolerance = std::max(scene.tolerance, 1e-6);
   scene.max_iterations = std::min(scene.max_iterations, 200);
   scene.threads = 1;
-  scene.wisdom.clear();
 }
 
 void answer(const solver::Scene& scene) {

@@ -45,7 +45,7 @@ TYPED_TEST_SUITE(HalfSampleTransformTest, Precisions);
 TYPED_TEST(HalfSampleTransformTest, IsTheSumOfCosinesOrSines) {
   using Matrix = typename TestFixture::Matrix;
   for (const Index samples : {1, 2, 3, 5, 8, 11, 16, 17, 30, 37, 64}) {
-    const HalfSampleTransform<TypeParam> transform(samples, FFTW_ESTIMATE);
+    const HalfSampleTransform<TypeParam> transform(samples);
     EXPECT_GE(transform.frequencies(), 2 * samples);
     for (const Index count : {Index{1}, Index{2}, Index{5}, TestFixture::kLines}) {
       const Matrix lines = Matrix::Random(count, samples);
@@ -66,7 +66,7 @@ TYPED_TEST(HalfSampleTransformTest, IsTheSumOfCosinesOrSines) {
 TYPED_TEST(HalfSampleTransformTest, ComesBackTimesAPeriod) {
   using Matrix = typename TestFixture::Matrix;
   for (const Index samples : {1, 3, 8, 21, 50}) {
-    const HalfSampleTransform<TypeParam> transform(samples, FFTW_ESTIMATE);
+    const HalfSampleTransform<TypeParam> transform(samples);
     typename HalfSampleTransform<TypeParam>::Workspace work(transform);
     EXPECT_EQ(work.bytes(), sizeof(TypeParam) * static_cast<std::size_t>(transform.workspace_size(samples)));
     EXPECT_EQ(transform.bytes(), sizeof(TypeParam) * static_cast<std::size_t>(transform.table_size(samples)));

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <ostream>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -90,27 +89,6 @@ TEST_P(Transfer, RestrictionTakesTheMeanOverEachCoarseCell) {
   EXPECT_LE(largest_difference(restricted.tail(coarse_.cells()),
                                mean_by_areas(coarse_, fine_, field.tail(fine_.cells()))),
             1e-12);
-}
-
-TEST_P(Transfer, RestrictionKeepsTheIntegral) {
-  for (const Index components : {1, 2}) {
-    const ArrayXd field = random_field(components * fine_.cells(), 2);
-    const ArrayXd restricted = restrict_to(coarse_, fine_, field);
-    for (Index c = 0; c < components; ++c) {
-      const double fine = field.segment(c * fine_.cells(), fine_.cells()).sum() * fine_.cell_area();
-      const double coarse =
-          restricted.segment(c * coarse_.cells(), coarse_.cells()).sum() * coarse_.cell_area();
-      EXPECT_NEAR(coarse, fine, kRounding * static_cast<double>(fine_.cells()) * fine_.cell_area());
-    }
-  }
-}
-
-TEST_P(Transfer, ConstantsStayConstant) {
-  const ArrayXd restricted = restrict_to(coarse_, fine_, ArrayXd::Constant(2 * fine_.cells(), 3.0));
-  EXPECT_LE(largest_difference(restricted, ArrayXd::Constant(2 * coarse_.cells(), 3.0)), 3.0 * kRounding);
-  const Symmetry even{{1, 1}, {1, 1}};
-  const ArrayXd prolonged = prolong_to(fine_, coarse_, ArrayXd::Constant(2 * coarse_.cells(), 3.0), even);
-  EXPECT_LE(largest_difference(prolonged, ArrayXd::Constant(2 * fine_.cells(), 3.0)), 3.0 * kRounding);
 }
 
 /// a + b x1 + c x2 + d x1 x2, and each coordinate held at the outer coarse centres beyond them. Even in both

@@ -2,10 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 #include <limits>
-#include <random>
 #include <vector>
 
 #include "solver/tests/fields.hpp"

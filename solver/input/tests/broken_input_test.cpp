@@ -7,10 +7,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <array>
 #include <csignal>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <random>
 #include <string>
@@ -36,12 +34,6 @@ class BrokenInput : public SceneFile {
   fs::path fifo() const {
     const fs::path file = folder_ / "fifo";
     EXPECT_EQ(mkfifo(file.c_str(), 0600), 0);
-    return file;
-  }
-  /// A file that claims more bytes than any disk has, and holds none.
-  fs::path sparse(const std::string& name, std::uintmax_t size) const {
-    const fs::path file = write(name, "");
-    fs::resize_file(file, size);
     return file;
   }
   std::string read_field(const std::string& text) const {
@@ -75,18 +67,6 @@ TEST_F(BrokenInput, OnlyRegularFilesOfAReasonableSizeAreRead) {
   EXPECT_THAT(says(folder_ / "none"), AllOf(HasSubstr("none: cannot be read"), HasSubstr("No such file")));
   EXPECT_THAT(says(write("long", std::string(1001, 'a'))), HasSubstr("long: is larger than"));
   EXPECT_EQ(read_input_file(write("fits", std::string(1000, 'a')), 1000, "a letter").size(), 1000U);
-}
-
-// Every reader asks the same function.
-TEST_F(BrokenInput, EndlessFilesAreRefusedByEveryReader) {
-  fs::create_symlink("/dev/zero", folder_ / "zero.h5");
-  for (const fs::path& file : {fs::path("/dev/zero"), fifo(), folder_ / "zero.h5",
-                               sparse("big.csv", 1ULL << 35), sparse("big.h5", 1ULL << 35)}) {
-    const auto is_refused = AllOf(HasSubstr(file.string()), HasSubstr("allowed"));
-    EXPECT_THAT(complaint([&] { read_columns(file, {"x1"}); }), is_refused);
-    EXPECT_THAT(complaint([&] { read_height_map(file); }), is_refused);
-    EXPECT_THAT(complaint([&] { read_scene(file); }), is_refused);
-  }
 }
 
 TEST_F(BrokenInput, TablesSayWhatIsWrongWithThem) {

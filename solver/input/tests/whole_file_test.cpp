@@ -263,7 +263,7 @@ TEST_F(WholeFile, AReadOnlyFolderIsSaid) {
   EXPECT_EQ(files(), 0);
 }
 
-/// Fields of each kind, and plans: a process that could not write them says so and ends as it should. HDF5
+/// Fields of each kind: a process that could not write them says so and ends as it should. HDF5
 /// crashes at the end over what it could not write.
 TEST_F(WholeFile, FieldsAreWholeOrTheOldOnes) {
   const Grid grid{32, 32, 0.5, 0.25};

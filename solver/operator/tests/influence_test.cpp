@@ -1,6 +1,5 @@
 #include "solver/operator/influence.hpp"
 
-#include <gmock/gmock.h>
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_integration.h>
 #include <gtest/gtest.h>
@@ -316,30 +315,6 @@ TEST_F(Influence, ParityIsThatOfThePointLoads) {
   EXPECT_EQ(parity(Component::k12).x2, -1);
 }
 
-TEST_F(Influence, FarAwayIsThatOfAPointLoad) {
-  const ElasticPair pair = elastic_pair(kLower, kUpper);
-  for (const double aspect : kAspects) {
-    double previous = std::numeric_limits<double>::infinity();
-    for (const Index k : {30, 60, 120}) {
-      double worst = 0.0;
-      for (const Component component : kComponents) {
-        const Index k2 = k / 3;
-        const double cell = coefficient(component, pair, 1.0, aspect, k, k2);
-        const double point =
-            aspect * pair_point_load(component, static_cast<double>(k), static_cast<double>(k2) * aspect);
-        worst = std::max(worst, std::abs(cell / point - 1.0));
-      }
-      // The next term of the multipole expansion is of second order in cell size over distance.
-      const double size = std::max(1.0, aspect) / (static_cast<double>(k) * std::min(1.0, aspect));
-      EXPECT_LE(worst, size * size);
-      if (previous < 1.0) {
-        EXPECT_NEAR(previous / worst, 4.0, 0.4);
-      }
-      previous = worst;
-    }
-  }
-}
-
 void expect_coefficients(const ElasticPair& pair, double factor, const ElasticPair& reference,
                          double coupling_factor) {
   for (const Component component : kComponents) {
@@ -376,17 +351,6 @@ TEST_F(Influence, OfARigidBodyIsThatOfTheOtherAlone) {
     for (const Component component : kComponents) {
       const double computed = coefficient(component, pair, 1.0, 1.0, 200, 100);
       EXPECT_NEAR(computed / point_load(component, kLower, 200.0, 100.0), 1.0, 1e-4);  // (1/200)^2
-    }
-  }
-}
-
-TEST_F(Influence, K22IsK11WithTheAxesExchanged) {
-  const ElasticPair pair = elastic_pair(kLower, kUpper);
-  for (const double aspect : kAspects) {
-    for (const auto& [k1, k2] : {std::pair<Index, Index>{0, 0}, {1, 0}, {0, 2}, {3, 1}, {7, 40}}) {
-      const double k11 = coefficient(Component::k11, pair, 1.0, aspect, k1, k2);
-      const double k22 = coefficient(Component::k22, pair, aspect, 1.0, k2, k1);
-      EXPECT_NEAR(k22 / k11, 1.0, kPromised);
     }
   }
 }

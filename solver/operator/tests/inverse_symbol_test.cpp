@@ -4,9 +4,7 @@
 
 #include <Eigen/Core>
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <random>
 #include <string>
 #include <vector>
 
@@ -311,20 +309,6 @@ TEST(InverseSymbolDiagonal, IsTheMeanOfTheSymbol) {
     const auto normal = make_inverse_symbol<double>(grid, normal_kernel(), pair_of(nu))->diagonal();
     EXPECT_NEAR(normal[0], expected.modulus / (1.0 - nu), kSymbolRounding * normal[0]);
     EXPECT_EQ(normal[0], normal[1]);
-  }
-}
-
-TEST(InverseSymbolDiagonal, IsTheActionOnAUnitImpulse) {
-  for (const Grid& grid : {Grid{24, 40, 0.5, 0.8}, Grid{13, 17, 1.0, 1.0}}) {
-    const auto symbol = make_inverse_symbol<double>(grid, tangential_kernel(), pair_of(0.3));
-    for (const Index cell : {Index{0}, 5 * grid.n2 + 3, grid.cells() - 1}) {
-      for (Index f = 0; f < 2; ++f) {
-        ArrayXd impulse = ArrayXd::Zero(2 * grid.cells());
-        impulse[f * grid.cells() + cell] = 1.0;
-        const double expected = symbol->diagonal()[static_cast<std::size_t>(f)];
-        EXPECT_NEAR(applied(*symbol, impulse)[f * grid.cells() + cell], expected, kSymbolRounding * expected);
-      }
-    }
   }
 }
 

@@ -1,4 +1,3 @@
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -7,7 +6,6 @@
 #include <cstdlib>
 #include <limits>
 #include <numbers>
-#include <random>
 #include <string>
 
 #include "solver/allocations/allocations.hpp"
@@ -139,17 +137,6 @@ TEST(DenseMatrix, HoldsTheCoefficientOfEachOffset) {
   }
 }
 
-TEST_P(Operator, IsLinear) {
-  for (const OperatorKind kind : kKinds) {
-    const auto op = make(kind);
-    const ArrayXd x = random_traction(3);
-    const ArrayXd y = random_traction(4);
-    const ArrayXd separately = 2.5 * applied(*op, x) - 0.75 * applied(*op, y);
-    if (separately.abs().maxCoeff() == 0.0) continue;
-    EXPECT_LE(relative_difference(applied(*op, 2.5 * x - 0.75 * y), separately), kOfThreeWays);
-  }
-}
-
 TEST_P(SquareOperator, IsSymmetricAndPositiveDefinite) {
   for (const OperatorKind kind : kKinds) {
     const auto op = make(kind);
@@ -165,34 +152,6 @@ TEST_P(SquareOperator, IsSymmetricAndPositiveDefinite) {
     const Index n2 = op->grid().n2;
     for (Index i = 0; i < rough.size(); ++i) rough[i] = (i / n2 + i % n2) % 2 == 0 ? 1.0 : -1.0;
     EXPECT_GT((rough * applied(*op, rough)).sum(), 0.0);
-  }
-}
-
-/// A unit traction in each corner gives the coefficients of all offsets, the far corner's among them.
-TEST_P(Operator, DoesNotWrapAround) {
-  const auto& [name, grid, kernel] = GetParam();
-  const Index cells = grid.cells();
-  const auto op = make(OperatorKind::dcfft);
-  for (const Index corner : {Index{0}, grid.n2 - 1, cells - grid.n2, cells - 1}) {
-    for (std::size_t b = 0; b < kernel.inputs; ++b) {
-      ArrayXd traction = ArrayXd::Zero(static_cast<Index>(kernel.inputs) * cells);
-      traction[static_cast<Index>(b) * cells + corner] = 1.0;
-      const ArrayXd displacement = applied(*op, traction);
-      for (std::size_t a = 0; a < kernel.outputs; ++a) {
-        const Component component = kernel.components[a * kernel.inputs + b];
-        const auto coefficients =
-            influence_coefficients(component, dissimilar_pair(), grid.h1, grid.h2, grid.n1, grid.n2);
-        const double tolerance = kOfThreeWays * displacement.abs().maxCoeff();
-        for (Index point = 0; point < cells; ++point) {
-          const Index k1 = point / grid.n2 - corner / grid.n2;
-          const Index k2 = point % grid.n2 - corner % grid.n2;
-          const int sign = (k1 < 0 ? parity(component).x1 : 1) * (k2 < 0 ? parity(component).x2 : 1);
-          ASSERT_NEAR(displacement[static_cast<Index>(a) * cells + point],
-                      sign * coefficients[static_cast<std::size_t>(std::abs(k1) * grid.n2 + std::abs(k2))],
-                      tolerance);
-        }
-      }
-    }
   }
 }
 
@@ -249,36 +208,6 @@ TEST_P(Operator, TakesTheMemoryThatWasPredicted) {
       const OperatorOptions options{.threads = threads};
       EXPECT_EQ(static_cast<double>(make(kind, options)->bytes()),
                 predicted_bytes(kind, grid, kernel, options));
-    }
-  }
-}
-
-TEST(Shift, OfTheTractionShiftsTheDisplacement) {
-  const Grid grid{24, 20, 1.0, 0.8};
-  const ArrayXd patch = random_field(96, 10);
-  const auto placed = [&](Index i0, Index j0) {
-    ArrayXd field = ArrayXd::Zero(2 * grid.cells());
-    for (Index f = 0; f < 2; ++f) {
-      for (Index i = 0; i < 8; ++i) {
-        for (Index j = 0; j < 6; ++j) {
-          field[f * grid.cells() + (i0 + i) * grid.n2 + j0 + j] = patch[(f * 8 + i) * 6 + j];
-        }
-      }
-    }
-    return field;
-  };
-  for (const OperatorKind kind : kKinds) {
-    const auto op = make_operator(kind, grid, tangential_kernel(), dissimilar_pair());
-    const ArrayXd u = applied(*op, placed(0, 0));
-    const ArrayXd shifted = applied(*op, placed(16, 14));
-    const double scale = u.abs().maxCoeff();
-    for (Index f = 0; f < 2; ++f) {
-      for (Index i = 0; i < 8; ++i) {
-        for (Index j = 0; j < 6; ++j) {
-          EXPECT_NEAR(u[f * grid.cells() + i * grid.n2 + j],
-                      shifted[f * grid.cells() + (16 + i) * grid.n2 + 14 + j], kOfThreeWays * scale);
-        }
-      }
     }
   }
 }

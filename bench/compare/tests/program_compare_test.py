@@ -1,0 +1,167 @@
+#!/usr/bin/env python3
+"""program_compare_test.py PROGRAM: `slipstick compare` as users run it: exit codes, the second run, and what is written
+where."""
+
+import json
+import os
+import random
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[3] / "convergence/tests"))
+from program_run import ProgramTest, main
+
+MACHINE = {"host_name": "somewhere", "num_cpus": 8, "mhz_per_cpu": 3000, "cpu_scaling_enabled": False,
+           "caches": [{"type": "Unified", "level": 2, "size": 2097152, "num_sharing": 1}], "load_avg": [0.3, 0.2, 0.1],
+           "library_build_type": "release"}
+
+
+def steady(name, seconds, seed, repetitions=10):
+    """Evenly spread by a percent around a time; of two seeds, times differ but not their spread."""
+    spread = random.Random(seed)
+    rows = []
+    for i in range(repetitions):
+        time = 1e3 * seconds * spread.uniform(0.995, 1.005)
+        rows.append({"name": name, "run_name": name, "run_type": "iteration", "repetition_index": i, "threads": 1,
+                     "iterations": 10, "real_time": time, "cpu_time": time, "time_unit": "ms"})
+    return rows
+
+
+class ProgramCompare(ProgramTest):
+    def timings(self, name, *benchmarks, **machine):
+        """As Google Benchmark writes them."""
+        rows = [row for benchmark in benchmarks for row in benchmark]
+        return self.write(name, json.dumps({"context": {**MACHINE, **machine}, "benchmarks": rows}))
+
+    def two(self, name, factor, seed):
+        """Two benchmarks, the first as many times slower as is asked for."""
+        return self.timings(name, steady("apply/dcfft/64", factor * 61.2e-3, seed),
+                            steady("apply|(direct)/8", 1e-6, seed + 1))
+
+    def compare(self, factor, *words, code=0, says=()):
+        """A base, and a new file that is as many times slower; None: as they stand."""
+        if factor is not None:
+            self.two("base.json", 1.0, 1)
+            self.two("new.json", factor, 3)
+        return self.run_program("compare", "base.json", "new.json", *words, code=code, says=says)
+
+    def test_has_help_with_an_example(self):
+        self.run_program("compare", "--help", says=("Example", "slipstick compare base.json new.json", "--json",
+                                                    "--quiet", "Exit code"))
+
+    def test_exit_code_says_what_was_found(self):
+        self.assertNotIn("one run only", self.compare(1.0, says="2 benchmarks: 2 same"))
+        self.compare(1.2, code=1, says=("apply/dcfft/64    61.", " ms  ", "slower (p ",
+                                        "2 benchmarks: 1 same, 1 slower", "one run only", "--rerun"))
+        self.compare(0.8)
+        self.compare(1.2, "--effect", "30%", "--level", "0.02", says="30 % or more, by chance in 2 of 100")
+        self.compare(1.06, "--effect", "0.05", code=1)
+        self.compare(1.2, "--level", "1e-9", code=2)  # too few repetitions for that
+
+    def test_worst_stands_first(self):
+        self.timings("base.json", steady("a", 1e-3, 1), steady("b", 1.0, 2), steady("c", 1e-9, 3))
+        self.timings("new.json", steady("a", 1e-3, 4), steady("b", 1.2, 5), steady("c", 2e-9, 6))
+        text = self.compare(None, code=1)
+        self.assertLess(text.index("\n  c "), text.index("\n  b "))
+        self.assertLess(text.index("\n  b "), text.index("\n  a "))
+
+    def test_bad_input_is_exit_code_2(self):
+        self.two("base.json", 1.0, 1)
+        self.run_program("compare", "base.json", "/no/such/file.json", code=2, says="/no/such/file.json")
+        self.write("new.json", '{"results": []}')
+        self.compare(None, code=2, says=("new.json", "Google Benchmark"))
+        self.run_program("compare", "base.json", code=2)
+        for effect in ("10", "0", "-5%", "ten", "nan", "5%%", "150%"):
+            self.compare(1.2, f"--effect={effect}", code=2, says=("--effect", "10% or 0.10"))
+        for level in ("0", "0.6", "nan"):
+            self.compare(1.2, "--level", level, code=2)
+        self.compare(1.2, "--summary", "/no/such/folder/s.md", code=2)
+
+    def test_what_cannot_be_judged_is_exit_code_2_and_shown(self):
+        self.two("base.json", 1.0, 1)
+        self.timings("new.json", steady("apply/dcfft/64", 2.0, 8), steady("apply|(direct)/8", 1e-6, 9),
+                     host_name="elsewhere")
+        self.compare(None, code=2, says=("machines differ", "elsewhere", "not judged", " s  ",
+                                         "2 benchmarks: 2 not judged"))
+        self.compare(None, "--same-machine", code=1)
+        self.timings("new.json", steady("apply/fft/64", 61.2e-3, 8), steady("apply|(direct)/8", 1e-6, 9),
+                     library_build_type="debug")
+        self.compare(None, code=2, says="--debug-library")
+        self.compare(None, "--debug-library", code=2, says=("only in base", "renamed to apply/fft/64?",
+                                                            "1 only in new"))
+
+    def test_a_time_that_is_none_fails(self):
+        self.two("base.json", 1.0, 1)
+        bad = steady("apply/dcfft/64", 61.2e-3, 8)
+        bad[2]["real_time"] = float("nan")
+        self.timings("new.json", bad, steady("apply|(direct)/8", 1e-6, 9))
+        self.compare(None, code=1, says=("failed", "repetition 3 is nan"))
+
+    def test_only_what_the_second_run_confirms_counts(self):
+        # Leaves what the shell made of the filter in a file, and writes a file made before.
+        again = ("--rerun", "printf %s {filter} > filter; cat again.json")
+        self.two("again.json", 1.0, 5)
+        self.compare(1.2, *again, says=("run again", "first run: slower (1.", "second: same (1.00", "2 same"))
+        self.assertEqual(Path("filter").read_text(), "^(apply/dcfft/64)$")
+        self.two("again.json", 1.2, 5)
+        self.assertNotIn("one run only", self.compare(1.2, *again, code=1))
+        os.remove("filter")
+        self.compare(1.0, *again)
+        self.assertFalse(Path("filter").exists(), "nothing suspicious, nothing run")
+
+    def test_a_second_run_that_tells_nothing_leaves_it_undecided(self):
+        self.compare(1.2, "--rerun", "exit 3", code=2, says=("ended with 3", "1 undecided"))
+        self.compare(1.2, "--rerun", "echo hello", code=2, says="Google Benchmark")
+
+    def test_the_filter_stands_without_quotes(self):
+        """It comes with quotes of its own; what else is quoted is the caller's."""
+        for command in ('p --f="{filter}"', '"{filter}"', '"{filter} "', '" {filter}"', '{filter}"'):
+            self.compare(1.2, "--rerun", command, code=2, says="without quotes")
+        for command in ('{filter} ""', '"" {filter} ""', "{filter}"):
+            self.compare(1.2, "--rerun", command, code=2, says="ended with")
+
+    def test_writes_json(self):
+        result = json.loads(self.compare(1.2, "--json", "-", code=1))
+        self.assertEqual((result["exit_code"], result["counts"]["slower"], len(result["benchmarks"])), (1, 1, 2))
+        first = result["benchmarks"][0]
+        self.assertEqual((first["name"], first["finding"]), ("apply/dcfft/64", "slower"))
+        self.assertAlmostEqual(first["ratio"], 1.2, delta=0.01)
+        self.assertLess(first["low"], first["ratio"])
+        self.assertGreater(first["high"], first["ratio"])
+        self.assertEqual(self.compare(1.2, "--quiet", code=1), "")
+
+    def test_missing_numbers_are_null_with_a_reason(self):
+        """JSON has no NaN: what is in one file only has no ratio, and says so."""
+        self.timings("base.json", steady("a", 1e-3, 1), steady("b", 1.0, 2, 3))
+        self.timings("new.json", steady("b", 1.2, 5, 3))
+        alone, few = json.loads(self.compare(None, "--json", "-", code=2))["benchmarks"]
+        self.assertIsNone(alone["ratio"])
+        self.assertEqual(alone["ratio_reason"], "no times to compare")
+        self.assertIsInstance(few["ratio"], float)
+        for key in ("low", "high"):
+            self.assertIsNone(few[key])
+            self.assertIn("too few", few[f"{key}_reason"])
+
+    def test_writes_junit_and_markdown(self):
+        self.compare(1.2, "--junit", "out.xml", "--summary", "out.md", code=1)
+        for file, parts in (("out.xml", ('tests="2" failures="1" errors="0"', '<failure message="slower',
+                                         'name="apply|(direct)/8"')),
+                            ("out.md", ("### 2 benchmarks: 1 same, 1 slower", "| apply/dcfft/64 | 61.",
+                                        "| apply\\|(direct)/8 | "))):
+            for part in parts:
+                self.assertIn(part, Path(file).read_text())
+        self.timings("new.json", steady("apply/dcfft/64", 1.0, 8), steady("other", 1e-6, 9), host_name='a "b" & <c>')
+        self.compare(None, "--junit", "out.xml", code=2)
+        for part in ('tests="4" failures="0" errors="4"', "a &quot;b&quot; &amp; &lt;c&gt;"):
+            self.assertIn(part, Path("out.xml").read_text())
+
+    def test_markdown_stays_below_64_kilobytes(self):
+        self.timings("base.json", *(steady(f"{i:060}", 1e-3, i, 2) for i in range(1200)))
+        self.timings("new.json", *(steady(f"{i:060}", 1e-3, 5000 + i, 2) for i in range(1200)))
+        self.compare(None, "--quiet", "--summary", "out.md", code=2)
+        self.assertLess(Path("out.md").stat().st_size, 64000)
+        self.assertIn("none worse than these, are left out here", Path("out.md").read_text())
+
+
+if __name__ == "__main__":
+    main()

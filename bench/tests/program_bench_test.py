@@ -1,0 +1,64 @@
+#!/usr/bin/env python3
+"""program_bench_test.py PROGRAM: `slipstick bench` as users run it, on made programs: exit codes, and what is written
+where."""
+
+import json
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "convergence/tests"))
+from program_run import ProgramTest, main
+
+# Behaves as Google Benchmark's programs do, with benchmarks that all take so long, and notes each of its runs.
+MADE = r"""#!/bin/sh
+for word in "$@"; do
+  case "$word" in
+    --benchmark_list_tests) printf '@LIST@'; exit 0;;
+    --benchmark_filter=*) filter="${word#*=}";;
+    --benchmark_out=*) out="${word#*=}";;
+  esac
+done
+echo "@LABEL@ $filter" >> '@FOLDER@/log'
+cat > "$out" <<END
+{"context": {"num_cpus": 2, "build_type": "release"}, "benchmarks": [
+ {"name": "x", "run_name": "x", "run_type": "iteration", "real_time": @MS@, "cpu_time": @MS@, "time_unit": "ms"}]}
+END
+"""
+
+
+class ProgramBench(ProgramTest):
+    def made_program(self, label, names, milliseconds=1.0):
+        text = MADE.replace("@LIST@", names).replace("@LABEL@", label).replace("@MS@", str(milliseconds))
+        self.write(label, text.replace("@FOLDER@", str(self.folder)))
+        Path(label).chmod(0o700)
+        return str(self.folder / label)
+
+    def against(self, factor, *options, code=0, says=()):
+        """Two builds, of which the new one takes so many times as long."""
+        self.run_program("bench", "--filter", "f", "--against", self.made_program("base", r"f/cells:8\n"), "--program",
+                         self.made_program("now", r"f/cells:8\n", factor), "--output", "out", *options, code=code,
+                         says=says)
+
+    def test_is_green_where_nothing_is_slower(self):
+        self.against(1.01, "--rounds", "10", says="repetition by repetition")
+
+    def test_finds_what_is_slower_and_keeps_the_timings(self):
+        self.against(1.15, "--rounds", "10", "--json", "new.json", code=1, says="slower")
+        for file in ("new.json", "out/base.json", "out/new.json"):
+            self.assertEqual(len(json.loads(Path(file).read_text())["benchmarks"]), 10, file)
+
+    def test_says_when_there_are_too_few_rounds(self):
+        self.against(1.5, "--rounds", "3", code=2, says="too few")
+
+    def test_compares_the_second_of_two_methods_with_the_first(self):
+        program = self.made_program("both", r"f\ng\n")
+        self.run_program("bench", "--pair", "f", "g", "--program", program, "--output", "out", "--rounds", "2", code=2,
+                         says=("g against f, ", "g over f"))
+        self.assertLessEqual({"both ^(f)$", "both ^(g)$"}, set(Path("log").read_text().splitlines()))
+
+    def test_refuses_what_it_cannot_do(self):
+        self.run_program("bench", "--against", "nothing", "--program", "nothing", code=2)
+
+
+if __name__ == "__main__":
+    main()

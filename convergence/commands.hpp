@@ -1,0 +1,38 @@
+#pragma once
+
+#include <functional>
+#include <iosfwd>
+#include <nlohmann/json_fwd.hpp>
+
+namespace CLI {
+class App;
+}
+
+namespace slipstick::convergence {
+
+/// Runs a command that was given: writes what a person reads to the stream, fills the result, and returns the
+/// exit code. Throws InputError for what the user got wrong.
+using RunCommand = std::function<int(std::ostream&, nlohmann::ordered_json&)>;
+
+/// Adds `check` to the program: judges a traction field that any program computed. Exit code 0 for a good
+/// field, 1 for a bad one.
+RunCommand add_check_command(CLI::App& app);
+/// Adds `digits`: what rounding leaves of a scene's digits.
+RunCommand add_digits_command(CLI::App& app);
+/// Adds `gate`. Exit code 0 where all gates pass, 1 where one fails, 2 where one could not be judged.
+RunCommand add_gate_command(CLI::App& app);
+/// Adds `hard`: hard scenes by the hundred, each solved, seen otherwise and judged.
+RunCommand add_hard_command(CLI::App& app);
+/// Adds `law`: the contact law of a scene or a profile, as other programs want it.
+RunCommand add_law_command(CLI::App& app);
+/// Adds `reference`, which --help hides: it writes the pages of docs/reference, the manual page and the
+/// completion that are made from the program itself.
+RunCommand add_reference_command(CLI::App& app);
+/// Adds `report`: runs what the page needs and has it drawn.
+RunCommand add_report_command(CLI::App& app);
+/// Adds `solve`. Exit code 1 where the solve did not reach its tolerance.
+RunCommand add_solve_command(CLI::App& app);
+/// Adds `study`: a scene on many meshes, to many tolerances, with varied keys, judged.
+RunCommand add_study_command(CLI::App& app);
+
+}  // namespace slipstick::convergence

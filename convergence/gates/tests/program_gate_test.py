@@ -1,0 +1,104 @@
+#!/usr/bin/env python3
+"""program_gate_test.py PROGRAM: the exit codes and files of `slipstick gate`, with gates on a coarse grid."""
+
+import json
+import os
+import sys
+import xml.etree.ElementTree
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
+from program_run import SCENES, ProgramTest, main
+
+PAPER = SCENES / "paper.toml"
+LOOSE = "below = 1e-7"
+TIGHT = "below = 1e-30"
+COUNTED = """made_by = 'make counts'
+[[gate]]
+id = "counted"
+result = "work.json"
+quantity = "counts.some-case.applications"
+above = 17
+below = 21
+basis = "counted 19"
+"""
+
+
+def gate(name, bound, more="", quantity="certificate.gap"):
+    return (f"[[gate]]\nid = '{name}'\nscene = '{PAPER}'\nset = {{ 'grid.cells' = [16, 16] }}\n"
+            f"quantity = '{quantity}'\n{bound}\nbasis = 'the tolerance'\n{more}\n")
+
+
+def counts(number):
+    return f'{{"counts": {{"some-case": {{"applications": {number}}}}}}}'
+
+
+class GateProgram(ProgramTest):
+    def gate(self, *words, code=0, says=()):
+        return self.run_program("gate", "--output", "points", *words, code=code, says=says)
+
+    def test_exit_codes_say_what_happened(self):
+        self.write("good.toml", gate("good", LOOSE))
+        self.write("bad.toml", gate("bad", TIGHT) + gate("known", TIGHT, "status = 'expected_failure'"))
+        self.write("repaired.toml", gate("repaired", LOOSE, "status = 'expected_failure'"))
+        self.write("refused.toml", gate("refused", LOOSE, "platform_spread = 1"))
+        self.write("empty.toml", "")
+        self.gate("good.toml")
+        self.gate("good.toml", "bad.toml", code=1)
+        self.gate("bad.toml", "--only", "known")
+        self.gate("repaired.toml", code=1)
+        self.gate("refused.toml", code=2, says="tighter than its reference allows")
+        self.gate("empty.toml", code=2, says="no gate ran")
+        self.gate("good.toml", "--only", "goood", code=2)
+        self.gate(code=2)
+        self.gate("missing.toml", code=2)
+
+    def test_writes_its_reports_whatever_else_is_wrong(self):
+        self.write("good.toml", gate("good", LOOSE))
+        self.write("bad.toml", gate("bad", TIGHT))
+        self.write("broken.toml", "[[gate]]\nname = 'x'\n")
+        self.write("lost.toml",
+                   "[[gate]]\nid = 'lost'\nscene = 'nowhere.toml'\nquantity = 'x'\nbelow = 1\nbasis = 'none'\n")
+        self.gate("broken.toml", "good.toml", "lost.toml", "bad.toml", "--github", "--junit", "junit.xml", "--summary",
+                  "summary.md", "--json", "gates.json", code=2,
+                  says=("::error file=bad.toml,line=1,title=Gate bad::certificate.gap is ", "nowhere.toml",
+                        "broken.toml"))
+        suites = xml.etree.ElementTree.parse("junit.xml").getroot().iter()
+        self.assertIn(("4", "1", "2"), [tuple(map(each.get, ("tests", "failures", "errors"))) for each in suites])
+        self.assertIn("| passed | good | certificate.gap |", Path("summary.md").read_text())
+        result = json.loads(Path("gates.json").read_text())
+        self.assertEqual((result["counts"]["passed"], result["counts"]["refused"]), (1, 2))
+
+    def test_says_what_is_to_blame(self):
+        self.write("coarse.toml", gate("coarse", "below = 1e-6", quantity="twist_error"))
+        self.gate("coarse.toml", code=1, says=("likely to blame: discretisation", "--only coarse"))
+
+    def test_judges_studies(self):
+        self.write("study.toml", f"scene = '{PAPER}'\ncells = [12, 16]\n")
+        for study, equals, code, says in (("study.toml", 16, 0, ()), ("study.toml", 12, 1, ()),
+                                          ("nowhere.toml", 16, 2, "nowhere.toml")):
+            self.write("gates.toml", f"[[gate]]\nid = 'one'\nstudy = '{study}'\nset = {{ 'load.moment_ratio' = 0.5 }}\n"
+                       f"quantity = 'series.paper.rows[1].cells[0]'\nequals = {equals}\nbasis = 'asked for'\n")
+            self.gate("gates.toml", code=code, says=says)
+
+    def test_judges_result_files_of_any_program(self):
+        self.write("gates.toml", COUNTED)
+        self.gate("gates.toml", code=2, says=("work.json", "make counts"))
+        for text, code in (("19", 0), ("16", 1), ("22", 1), ("null", 1), ('"19"', 1)):
+            self.write("work.json", counts(text))
+            self.gate("gates.toml", code=code)
+        os.mkdir("results")
+        self.write("results/work.json", counts("18"))
+        self.gate("gates.toml", "--results", "results")
+        for broken in ("{", "", '{"counts": NaN}', '{"counts": 1e400}'):
+            self.write("work.json", broken)
+            self.gate("gates.toml", code=2, says=("work.json", "is not JSON"))
+
+    def test_computes_equal_scenes_once(self):
+        self.write("two.toml", gate("one", LOOSE) + gate("two", "below = 1e-6"))
+        self.gate("two.toml", says="[1/1]")
+        self.assertNotIn("[1/1]", self.gate("two.toml"))
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,156 @@
+#!/usr/bin/env python3
+"""program_faults_test.py PROGRAM: what commands do where they cannot write: all of them in one place, since main writes
+for all."""
+
+import json
+import os
+import resource
+import signal
+import subprocess
+from pathlib import Path
+
+from program_run import PROGRAM, SCENES, ProgramTest, main
+
+PAPER = str(SCENES / "paper.toml")
+SMALL = ("solve", PAPER, "--set", "grid.cells=[12,12]")
+TOO_LARGE = "cannot be written: File too large"
+
+
+def opened_as(number, file):
+    return lambda: os.dup2(os.open(file, os.O_RDWR), number)
+
+
+def limit_files(size):
+    def limit():
+        resource.setrlimit(resource.RLIMIT_FSIZE, (size, resource.getrlimit(resource.RLIMIT_FSIZE)[1]))
+    return limit
+
+
+def nobody_reads():
+    reader, writer = os.pipe()
+    os.close(reader)
+    os.dup2(writer, 1)
+
+
+def nobody_reads_and_no_signal():
+    nobody_reads()
+    signal.signal(signal.SIGPIPE, signal.SIG_IGN)
+
+
+class ProgramFaults(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("study.toml", f'scene = "{PAPER}"\ncells = [8, 12]\nquantities = ["twist_error"]\n')
+        self.write("gates.toml", f'[[gate]]\nid = "tiny"\nscene = "{PAPER}"\nset = {{ "grid.cells" = [12, 12] }}\n'
+                   'quantity = "status"\nequals = "converged"\nbasis = "the solve converges"\n')
+        self.write("hard.toml", f'[[family]]\nname = "tiny"\nwhy = "it is small"\nscene = "{PAPER}"\n'
+                   '[[family.vary]]\nkey = "grid.cells"\nvalues = [[12, 12]]\n')
+
+    def ends(self, words, code, prepare=None):
+        """What it complains of; what it prints goes to the file out, unless `prepare`, which is called in its process,
+        does otherwise."""
+        with open("out", "wb") as out:
+            end = subprocess.run([PROGRAM, *words], stdout=out, stderr=subprocess.PIPE, preexec_fn=prepare)
+        complaint = end.stderr.decode()
+        self.assertEqual(end.returncode, code, (words, complaint))
+        return complaint
+
+    def commands(self):
+        """Commands that have a result, with little to solve and what they solve kept."""
+        self.ends((*SMALL, "--quiet", "--fields", "fields.csv"), 0)
+        return (("exact", "--moment-ratio", "0.5"), SMALL, ("solve", PAPER, "--model", "exact"),
+                ("check", PAPER, "fields.csv"), ("study", "study.toml", "--output", "points"),
+                ("gate", "gates.toml", "--output", "points"),
+                ("hard", "hard.toml", "--once", "--output", "points"))
+
+    def whole_result(self):
+        self.assertIsInstance(json.loads(Path("result.json").read_text()), dict)
+        os.remove("result.json")
+
+    def test_a_standard_output_that_takes_nothing_is_exit_code_2(self):
+        """A result that went nowhere is no success. That in a file is there all the same."""
+        full = opened_as(1, "/dev/full")
+        for command in self.commands():
+            for fault in (full, lambda: os.close(1)):
+                self.assertIn("standard output: cannot be written: ", self.ends(command, 2, fault))
+                self.ends((*command, "--json", "-"), 2, fault)
+                self.ends((*command, "--json", "result.json"), 2, fault)
+                self.whole_result()
+                self.ends((*command, "--quiet", "--json", "result.json"), 0, fault)
+        self.ends(("--help",), 2, full)
+
+    def test_closed_streams_are_no_files_of_others(self):
+        """Files and pipes that get their numbers are not taken for them: HDF5 is written, read in a process of its own,
+        and studies have processes."""
+        self.ends((*SMALL, "--quiet", "--fields", "whole.h5"), 0)
+        check = ("check", PAPER, "whole.h5")
+        others = ((*SMALL, "--fields", "fields.h5"), ("study", "study.toml", "--output", "others"))
+        for closed in range(1, 8):
+            def close_some():
+                for stream in range(3):
+                    if closed >> stream & 1:
+                        os.close(stream)
+            for words in (check, *(others if closed == 7 else ())):
+                self.ends((*words, "--quiet", "--json", "result.json"), 0, close_some)
+                self.whole_result()
+        self.assertEqual(Path("fields.h5").read_bytes(), Path("whole.h5").read_bytes())
+
+    def test_a_reader_that_leaves_ends_it_quietly(self):
+        """As in `slipstick study ... | head -1`: no message, nothing lost in files."""
+        for command in self.commands():
+            complaint = self.ends((*command, "--json", "result.json"), -signal.SIGPIPE, nobody_reads)
+            self.assertNotIn("slipstick:", complaint)
+            self.whole_result()
+            self.assertIn("standard output: cannot be written: Broken pipe",
+                          self.ends(command, 2, nobody_reads_and_no_signal))
+
+    def test_a_full_standard_error_costs_nothing(self):
+        """Progress that nobody can read is no reason to stop."""
+        for command in self.commands():
+            self.ends(command, 0, opened_as(2, "/dev/full"))
+            self.assertGreater(Path("out").stat().st_size, 20)
+
+    def test_a_full_disk_is_said_and_leaves_no_part(self):
+        """The message names the file, says why and what to do. The old file stays, or none."""
+        commands = self.commands()
+        cases = [((*command, "--json", "x.json"), "x.json") for command in commands]
+        cases += [((*SMALL, "--fields", name), name) for name in ("x.csv", "x.h5", "x.vti")]
+        cases += [((*commands[5], "--junit", "x.xml"), "x.xml"), ((*commands[5], "--summary", "x.md"), "x.md")]
+        for words, name in cases:
+            file = Path(name)
+            self.ends((*words, "--quiet"), 0)  # what is solved is kept
+            for old in ("old", None):
+                file.unlink() if old is None else file.write_text(old)
+                complaint = self.ends((*words, "--quiet"), 2, limit_files(100))
+                self.assertIn(f"{name}: {TOO_LARGE}", complaint)
+                self.assertIn("make room", complaint)
+                self.assertEqual(file.read_text() if file.exists() else None, old)
+                self.assertEqual(list(self.folder.rglob("*.part*")), [])
+
+    def test_a_study_on_a_full_disk_stops_and_goes_on(self):
+        study = ("study", "study.toml", "--output", "points", "--json", "result.json")
+        complaint = self.ends(study, 2, limit_files(1024))
+        self.assertIn(TOO_LARGE, complaint)
+        self.assertIn("the same command goes on from there", complaint)
+        self.assertEqual([*self.folder.rglob("*.json*"), *self.folder.rglob("*.part*")], [])
+        self.ends(study, 0)
+
+    def test_where_nothing_can_be_written_nothing_is_solved(self):
+        self.write("plain", "a file")
+        os.mkdir("d.csv")
+        lost = "no/such/folder/x"
+        for words, name in (((*SMALL, "--json", lost), f"--json {lost}"), ((*SMALL, "--json", "."), "--json ."),
+                            ((*SMALL, "--fields", f"{lost}.h5"), f"--fields {lost}.h5"),
+                            ((*SMALL, "--fields", "d.csv"), "--fields d.csv"),
+                            ((*SMALL, "--figure", f"{lost}.svg"), f"{lost}.svg"),
+                            (("study", "study.toml", "--output", "plain"), "plain"),
+                            (("report", "--quick", "--output", "plain/report"), "plain/report"),
+                            (("gate", "gates.toml", "--junit", lost), f"--junit {lost}")):
+            complaint = self.ends(words, 2)
+            self.assertTrue(complaint.startswith(f"slipstick: {name}"), complaint)
+            self.assertIn("cannot be written: ", complaint)
+            self.assertEqual(Path("out").read_text(), "")
+
+
+if __name__ == "__main__":
+    main()

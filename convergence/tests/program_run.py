@@ -1,0 +1,61 @@
+"""What tests of the program share: it is run as users do, in a folder of its own."""
+
+import json
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+PROGRAM = str(Path(sys.argv[1]).resolve())
+SOURCE = Path(__file__).resolve().parents[2]
+SCENES = SOURCE / "convergence/scenes"
+SHORT_SCENE = """[upper]
+shape = "sphere"
+radius = 0.018
+young_modulus = 210e9
+poisson_ratio = 0.3
+[lower]
+young_modulus = 210e9
+poisson_ratio = 0.3
+[contact]
+friction = 0.1
+[load]
+normal = 1000
+moment_ratio = 0.5
+[grid]
+cells = [32, 32]
+"""
+
+
+class ProgramTest(unittest.TestCase):
+    maxDiff = None
+
+    def setUp(self):
+        before = os.getcwd()
+        self.folder = Path(tempfile.mkdtemp(prefix="slipstick-program-"))
+        self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
+        self.addCleanup(os.chdir, before)
+        os.chdir(self.folder)
+
+    def run_program(self, *words, code=0, says=()):
+        """What it prints; its exit code and parts of what it prints are as told."""
+        end = subprocess.run([PROGRAM, *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
+        text = end.stdout.decode(errors="replace")
+        self.assertEqual(end.returncode, code, (words, text))
+        for part in [says] if isinstance(says, str) else says:
+            self.assertIn(part, text, words)
+        return text
+
+    def result(self, *words, code=0):
+        return json.loads(self.run_program(*words, "--json", "-", code=code))
+
+    def write(self, name, text):
+        Path(name).write_text(text)
+        return name
+
+
+def main():
+    unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,167 @@
+#!/usr/bin/env python3
+"""program_test.py PROGRAM: the program as users run it: what goes out, where, and with which exit code. What `check`
+says stands in program_test.cpp."""
+
+import json
+import math
+import os
+from pathlib import Path
+
+from program_run import SCENES, ProgramTest, main
+
+SMALL = ("--set", "grid.cells=[24,24]")
+
+
+def solve(scene, *words):
+    return "solve", str(SCENES / f"{scene}.toml"), *SMALL, *words
+
+
+class Program(ProgramTest):
+    def test_every_command_has_help_with_an_example(self):
+        for command in ("bench", "check", "compare", "exact", "gate", "report", "solve", "study"):
+            self.run_program(command, "--help", says=("Example", f"slipstick {command}", "--json", "--quiet"))
+
+    def test_bad_command_line_is_exit_code_2(self):
+        for words in ((), ("frobnicate",), ("solve",), ("solve", "--no-such-option")):
+            self.run_program(*words, code=2)
+        self.run_program("slove", "scene.toml", code=2, says=("slove", "the nearest is solve"))
+
+    def test_solve_writes_every_key_of_the_contract(self):
+        result = self.result(*solve("paper"))
+        keys = """status method operator model cells cell_size contact_cells stick_cells contact_radius stick_radius
+            stick_radius_counted stick_ratio twist_angle moment moment_limit moment_ratio twist displacement iterations
+            operator_applications certificate seconds peak_bytes predicted_bytes provenance twist_error
+            stick_radius_error traction_error""".split()
+        self.assertLessEqual(set(keys), set(result))
+        for table, numbers in (("certificate", "gap moment force friction_bound"),
+                               ("seconds", "setup pressure traction total")):
+            for key in numbers.split():
+                self.assertIsInstance(result[table][key], (int, float), key)
+        self.assertLessEqual(set("version commit compiler flags libraries cpu threads".split()),
+                             set(result["provenance"]))
+        self.assertEqual(result["status"], "converged")
+        self.assertAlmostEqual(result["moment_ratio"], 0.9, delta=4e-16)
+
+    def test_every_scene_in_the_repository_solves(self):
+        scenes = sorted(SCENES.glob("*.toml"))
+        self.assertGreaterEqual(len(scenes), 16)
+        for scene in scenes:
+            # A height map's grid is that of its samples.
+            self.run_program("solve", str(scene), *(() if scene.stem == "honed_surface" else SMALL))
+
+    def test_gross_slip_is_refused_with_its_limit(self):
+        self.run_program(*solve("paper", "--set", "load.moment_ratio=1.0"), code=2,
+                         says=("load.moment_ratio", "gross slip"))
+        self.run_program(*solve("paper", "--set", "load.moment=0.05"), code=2,
+                         says=("load.moment = 0.05 N m", "below 0.0287", "paper.toml"))
+
+    def test_a_solve_that_misses_its_tolerance_is_exit_code_1_and_still_written(self):
+        self.run_program(*solve("paper", "--set", "solver.max_iterations=3", "--json", "missed.json"), code=1,
+                         says="within 3 operator applications")
+        result = json.loads(Path("missed.json").read_text())
+        self.assertEqual(result["status"], "not_converged")
+        self.assertGreater(result["certificate"]["gap"], 1e-8)
+
+    def test_bad_scenes_are_exit_code_2_and_say_what_is_allowed(self):
+        self.run_program(*solve("paper", "--set", "contact.fricton=0.2"), code=2,
+                         says=("contact.fricton", "contact.friction"))
+        self.run_program("solve", "no-such-scene.toml", code=2, says="no-such-scene.toml")
+        self.run_program("exact", "--moment-ratio", "1.5", code=2)
+        self.run_program("exact", "--moment-ratio", "0.5", "--twist", "0.1", code=2)
+
+    def test_result_is_not_lost_when_fields_or_figure_cannot_be_written(self):
+        for option, name in (("--fields", "full.csv"), ("--figure", "full.svg")):
+            os.symlink("/dev/full", name)  # shows while writing, after the solve
+            says = (name,) if option == "--fields" else ("moment", "the result is complete, but")
+            self.run_program(*solve("paper", option, name, "--json", "kept.json"), code=2, says=says)
+            self.assertEqual(json.loads(Path("kept.json").read_text())["status"], "converged")
+
+    def test_what_has_no_place_or_kind_is_refused_before_the_solve(self):
+        for option, file, says in (("--fields", "/no/such/folder/f.h5", "/no/such/folder/f.h5"),
+                                   ("--figure", "/no/such/folder/f.svg", "/no/such/folder/f.svg"),
+                                   ("--figure", "f.jpg", ("--figure", "f.jpg", ".svg, .pdf, .png"))):
+            self.run_program(*solve("paper", option, file, "--json", "refused.json"), code=2, says=says)
+            self.assertFalse(Path("refused.json").exists(), option)
+
+    def test_figure_is_written_beside_the_result(self):
+        for scene in (solve("ellipse"), solve("cone", "--model", "exact")):
+            Path("figure.svg").unlink(missing_ok=True)
+            self.run_program(*scene, "--figure", "figure.svg")
+            self.assertGreater(Path("figure.svg").stat().st_size, 10000)
+
+    def test_solves_exactly_with_the_numbers_of_exact(self):
+        solved = self.result(*solve("cone", "--model", "exact"))
+        # 210 GPa and nu = 0.3 on both sides.
+        exact = self.result("exact", "--profile", "cone", "--moment-ratio", "0.5", "--normal-load", "200", "--shape",
+                            "0.01", "--friction", "0.1", "--effective-modulus", "115384615384.61538",
+                            "--shear-modulus", "40384615384.615385")
+        self.assertEqual(solved["method"], "exact")
+        self.assertEqual(solved["twist"], exact["twist"])
+        for key in ("contact_radius", "approach", "stick_radius", "moment_limit", "moment", "twist_angle"):
+            self.assertAlmostEqual(solved[key] / exact["units"][key], 1, delta=1e-14, msg=key)
+        self.assertEqual(self.run_program(*solve("cone", "--set", "solver.model=exact", "--quiet")), "")
+        self.run_program(*solve("cone", "--model", "exact"), says="exact solution")
+        self.run_program(*solve("cone", "--set", "solver.model=exact", "--model", "auto"), says="24 x 24 cells")
+
+    def test_exact_model_refuses_with_exit_code_2(self):
+        self.run_program(*solve("ellipse", "--model", "exact"), code=2,
+                         says=("ellipse.toml", 'solver.model = "exact"', "auto, full", "ellipsoid"))
+        self.run_program(*solve("paper", "--model", "exact", "--set", "load.moment=0.05"), code=2,
+                         says=("load.moment = 0.05 N m", "gross slip", "M_lim = 0.02881"))
+        self.run_program(*solve("paper", "--model", "best"), code=2, says=("solver.model", "auto, full, exact"))
+
+    def test_fields_hold_the_columns_of_the_contract(self):
+        self.run_program(*solve("paper", "--fields", "fields.csv"))
+        header = Path("fields.csv").read_text().splitlines()[0]
+        self.assertTrue(header.startswith("x1,x2,pressure,q1,q2,slip1,slip2,stick"), header)
+        self.run_program(*solve("flat_punch", "--model", "exact", "--fields", "exact.csv"))
+        self.assertEqual(Path("exact.csv").read_text().splitlines()[0], "x1,x2,pressure,q1,q2,stick")
+
+    def test_errors_beside_an_infinite_peak_are_null(self):
+        result = self.result(*solve("cone"))
+        for number in (result["twist_error"], result["exact"]["twist"], result["peak_pressure"]):
+            self.assertIsInstance(number, float)
+        self.assertIsNone(result["peak_pressure_error"])
+        self.assertIsNone(result["exact"]["peak_pressure"])
+        self.assertIn("no finite peak", result["peak_pressure_error_reason"])
+
+    def test_report_is_for_a_sphere(self):  # the page redoes figures of one
+        self.run_program("report", str(SCENES / "cone.toml"), "--output", "page", code=2,
+                         says=('upper.shape = "cone"', "sphere"))
+
+    def test_quiet_prints_nothing(self):
+        self.assertEqual(self.run_program(*solve("paper", "--quiet")), "")
+
+    def test_pressure_from_a_file_gives_the_same_answer(self):
+        scene = solve("paper", "--set", "grid.extent=[1.1e-3,1.1e-3]")
+        first = self.result(*scene, "--fields", "pressure.h5")
+        second = self.result(*scene, "--set", "contact.pressure=file", "--set", "contact.pressure_file=" + str(self.folder / "pressure.h5"))
+        self.assertAlmostEqual(second["twist_angle"] / first["twist_angle"], 1, delta=1e-12)
+
+    def test_files_without_an_end_are_exit_code_2(self):
+        """Whatever reads a file: none is waited for, and none is read for ever."""
+        self.write("map.toml", '[upper]\nshape = "height_map"\nfile = "/dev/zero"\nspacing = [1e-5, 1e-5]\n'
+                   'young_modulus = 1e11\npoisson_ratio = 0.3\n[lower]\nrigid = true\n[contact]\nfriction = 0.1\n'
+                   '[load]\nnormal = 1.0\nmoment_ratio = 0.5\n')
+        self.write("study.toml", 'scene = "map.toml"\ntolerances = [1e-3, 1e-5]\n')
+        self.write("gates.toml",
+                   '[[gate]]\nid = "a"\nresult = "/dev/zero"\nquantity = "twist"\nbelow = 1.0\nbasis = "b"\n')
+        by_file = ("--set", "grid.extent=[1.1e-3,1.1e-3]", "--set", "contact.pressure=file", "--set",
+                   "contact.pressure_file=/dev/zero")
+        for words in (("check", str(SCENES / "paper.toml"), "/dev/zero"), ("solve", "/dev/zero"), ("solve", "map.toml"),
+                      solve("paper", *by_file), ("study", "/dev/zero"), ("study", "study.toml", "--output", "runs"),
+                      ("gate", "/dev/zero"), ("gate", "gates.toml"), ("compare", "/dev/zero", "/dev/zero"),
+                      ("exact", "--profile", "file:/dev/zero", "--moment-ratio", "0.5")):
+            self.run_program(*words, code=2, says=("/dev/zero: cannot be read", "allowed"))
+
+    def test_exact_writes_every_key_of_the_contract(self):
+        result = self.result("exact", "--stick-ratio", "0.5", "--radius", "0.25,0.75")
+        self.assertLessEqual({"moment_ratio", "moment_deficit", "stick_ratio", "stick_complement", "twist", "moment",
+                              "tangent_stiffness", "traction", "printed"}, set(result))
+        self.assertEqual(len(result["traction"]), 2)
+        self.assertAlmostEqual(result["traction"][1]["value"], math.sqrt(1 - 0.75**2), delta=4e-16)  # slip: mu p
+        self.assertAlmostEqual(result["tangent_stiffness"], 16 / 3 / 8, delta=4e-16)
+
+
+if __name__ == "__main__":
+    main()
