@@ -280,6 +280,20 @@ TEST_F(StudyTest, AchievedToleranceFollowsTheRequested) {
             std::abs(rows[2]["iteration"]["twist_error"].get<double>()));
 }
 
+/// Where there is no exact answer a row has the value under its own name, and how far it is off the tightest
+/// run.
+TEST_F(StudyTest, AValueIsNotShownAsAnError) {
+  const Json result = run("cells = [16]\ntolerances = [1e-1, 1e-6]\n", kEllipse);
+  const Json& row = result["series"].begin().value()["tolerances"][0];
+  EXPECT_GT(row["twist_angle"].get<double>(), 1e-4);  // rad
+  const double off = std::abs(row["iteration"]["twist_angle"].get<double>());
+  EXPECT_GT(off, 1e-7);  // in rad it would be a thousand times smaller
+  EXPECT_LT(off, 0.1);
+  const std::string text = study_text(result);
+  EXPECT_THAT(text, HasSubstr("exact answer where there is one, else values"));
+  EXPECT_THAT(text, HasSubstr("off the tightest run"));
+}
+
 TEST_F(StudyTest, BadStudiesSayWhatIsAllowed) {
   const auto message = [&](const std::string& text) { return solver::complaint([&] { study(text); }); };
   EXPECT_THAT(message(""), HasSubstr("nothing varies"));
