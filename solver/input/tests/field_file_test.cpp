@@ -169,6 +169,16 @@ TEST_F(FieldFile, BadCsvIsRefusedWithItsLine) {
   expect("a,c\n1,2\n", "has no column b; its columns: a, c");
 }
 
+/// A unit moves the decimal point: the value is the one that the digits say.
+TEST_F(FieldFile, UnitsAndDecimalCommasKeepEveryBit) {
+  const auto back = read_columns(write("comma.csv", "##\nX1 [mm];q1 (MPa)\n0,489;1,7e-3\n-0,1;nan\n"),
+                                 {"q1", "x1"}, {.may_be_missing = true});
+  EXPECT_EQ(back[0].values[0], 1.7e3);
+  EXPECT_TRUE(std::isnan(back[0].values[1]));
+  EXPECT_EQ(back[1].values[0], 0.489e-3);
+  EXPECT_EQ(back[1].values[1], -1e-4);
+}
+
 TEST_F(FieldFile, WhatIsNoHdf5IsRefused) {
   const auto file = write("text.h5", "a,b\n1,2\n");
   EXPECT_THAT(complaint([&] { read_columns(file, {"a"}); }), HasSubstr("cannot be read as HDF5"));
