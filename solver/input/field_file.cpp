@@ -73,7 +73,7 @@ std::vector<Column> read_vti_columns(const path& file, const std::vector<std::st
     const auto at = text.find(fmt::format(" Name=\"{}\"", stored[c]));
     const auto begin = text.rfind('<', at);
     const auto end = std::min(text.find('>', at), text.size());
-    if (at == std::string::npos ||
+    if (at == std::string::npos || begin == std::string::npos ||
         text.substr(begin, end - begin).find("format=\"ascii\"") == std::string::npos) {
       throw InputError(file.string(),
                        fmt::format("has no array {} with format=\"ascii\"; allowed: one, as --fields "
