@@ -44,10 +44,13 @@ def used_meshes(size, order):
     return used
 
 
+def has_exact_answer(series, quantity):
+    return all(one.order(quantity).get("basis") != "extrapolated" for one in series)
+
+
 def error_title(series, quantity):
     """The quantity, and what its error is from where no exact answer says it."""
-    extrapolated = any(one.order(quantity).get("basis") == "extrapolated" for one in series)
-    return quantity_words(quantity) + (", from the extrapolated value" if extrapolated else "")
+    return quantity_words(quantity) + ("" if has_exact_answer(series, quantity) else ", from the extrapolated value")
 
 
 def draw_errors(axis, series, quantity):
@@ -148,11 +151,19 @@ def draw_achieved(axis, series):
 
 
 def draw_tolerance_errors(axis, series, quantity):
+    """Errors, and the part of them due to stopping there; of a value without an exact answer that part alone."""
+    is_error = has_exact_answer(series, quantity)
+    dashed = dict(linestyle="--", marker="", linewidth=0.9) if is_error else {}
     for one in series:
-        tolerance_line(axis, one, numbers(one.tolerances, quantity))
-        left = np.array([row.get("iteration", {}).get(quantity) or np.nan for row in one.tolerances], float)
-        tolerance_line(axis, one, left, linestyle="--", marker="", linewidth=0.9)
-    axis.set(xscale="log", yscale="log", title=f"error: {quantity_words(quantity)}")
+        if is_error:
+            tolerance_line(axis, one, numbers(one.tolerances, quantity))
+        tolerance_line(axis, one, numbers(one.tolerances, "iteration", quantity), **dashed)
+    words = quantity_words(quantity)
+    axis.set(xscale="log", title=f"error: {words}" if is_error else f"{words}, from the tightest run")
+    if any((np.array(line.get_ydata()) > 0).any() for line in axis.lines):
+        axis.set_yscale("log")
+    else:
+        axis.set(ylim=(-1, 1), yticks=[0])  # zero on all rows has no place on a log scale
     axis.invert_xaxis()
     axis.yaxis.set_minor_locator(NullLocator())
 
@@ -222,9 +233,11 @@ def _draw_tolerance_section(part, series, quantities):
     axes[0].legend(handles=[asked, test], loc="lower left", fontsize=7)
     for axis, (_, path) in zip(axes[1:], quantities):
         draw_tolerance_errors(axis, series, path)
-        axis.legend(handles=[Line2D([], [], linestyle="-", color=style.BLACK, label="error"),
-                             Line2D([], [], linestyle="--", color=style.BLACK, linewidth=0.9,
-                                    label="part due to stopping there")], loc="lower left", fontsize=7)
+        error = [("error", dict(linestyle="-")), ("part due to stopping there", dict(linestyle="--", linewidth=0.9))]
+        difference = [("relative difference from the tightest run", dict(linestyle="-"))]
+        shown = error if has_exact_answer(series, path) else difference
+        axis.legend(handles=[Line2D([], [], color=style.BLACK, label=words, **look) for words, look in shown],
+                    loc="lower left", fontsize=7)
     part.supxlabel("tolerance asked for", fontsize=9)
 
 
@@ -293,8 +306,12 @@ def details(series, quantities):
                          "the meshes that they span; pale points take no part. Orders have their 95 % interval.")
     if any(one.tolerances for one in series):
         mesh = series[0].meshes[-1]
-        sentences.append(f"Tolerances on a mesh of {study_result.across(mesh)} cells across. The part of an error that is "
-                         "due to stopping there is its change as the iteration goes on.")
+        sentences.append(f"Tolerances on a mesh of {study_result.across(mesh)} cells across.")
+        exact = [has_exact_answer(series, path) for _, path in quantities]
+        if any(exact):
+            sentences.append("The part of an error that is due to stopping there is its change as the iteration goes on.")
+        if not all(exact):
+            sentences.append("Of what has no exact answer, the relative difference from the tightest run is shown.")
     return " ".join(sentences)
 
 

@@ -54,7 +54,9 @@ class Series:
 
     @property
     def tolerances(self):
-        return self.content.get("tolerances", [])
+        """On the finest mesh."""
+        finest = self.meshes[-1]["cells"]
+        return [row for row in self.content.get("tolerances", []) if row.get("cells", finest) == finest]
 
     @property
     def label(self):

@@ -163,7 +163,7 @@ std::string why(const Examination& e, const Verdict& verdict, bool strict) {
 }  // namespace
 
 Json check_field(const solver::Scene& scene, const std::filesystem::path& file, const CheckOptions& options) {
-  const Examination e = examine(scene, file, options.twist);
+  const Examination e = examine(scene, file, options.twist, options.columns);
   const Verdict verdict = reach_verdict(e, options.tolerance);
   const StickArea stick = stick_area(e);
   const bool fits = e.read.mistakes.empty() && !(options.strict && !e.conventions.empty());

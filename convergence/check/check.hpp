@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "convergence/results/result_parts.hpp"
 #include "solver/scene/scene.hpp"
@@ -11,9 +12,10 @@ namespace slipstick::convergence {
 
 /// What a field has to be called good, beside being right within its mesh.
 struct CheckOptions {
-  std::optional<double> twist = {};  ///< rad, that the program reported
-  bool discrete = false;             ///< it has to solve its own grid's problem, of constant cells, too
-  bool strict = false;               ///< it has to be in the scene's conventions
+  std::optional<double> twist = {};       ///< rad, that the program reported
+  std::vector<std::string> columns = {};  ///< of a file without a header, or paths in one of HDF5
+  bool discrete = false;                  ///< it has to solve its own grid's problem, of constant cells, too
+  bool strict = false;                    ///< it has to be in the scene's conventions
   std::optional<double> tolerance =
       {};  ///< on loads, motion and tractions, in place of what the mesh leaves open
 };

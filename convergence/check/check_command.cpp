@@ -40,7 +40,7 @@ int run_check(const CLI::App& command, const CheckRequest& request, std::ostream
   }
   const solver::Scene scene = solver::read_scene(request.scene, request.overrides);
   require_inputs_kept(command, input_files(scene));
-  if (is_loop_file(request.field)) {
+  if (request.check.columns.empty() && is_loop_file(request.field)) {
     if (request.check.twist || request.check.discrete) {
       throw solver::InputError(request.field,
                                "is a loop; --twist and --discrete are for a field of tractions; allowed: "
@@ -67,14 +67,21 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI
   command
       ->add_option(
           "field", request->field,
-          "columns x1, x2 (m), pressure, q1, q2 (Pa), one row for each contact cell: .csv or .h5; or a "
+          "columns x1, x2 (m), pressure, q1, q2 (Pa), one row for each contact cell: text, .h5 or .vti; or a "
           "loop: moment (N m), rotation (rad), or force (N), displacement (m), and perhaps time, "
-          "normal_load: .csv or .json")
+          "normal_load: text or .json")
       ->required();
   command
       ->add_option("--set", request->overrides,
                    "key=value: override a key of the scene, e.g. load.moment_ratio=0.5")
       ->take_all()
+      ->allow_extra_args(false);
+  command
+      ->add_option(
+          "--columns", request->check.columns,
+          "names of all columns of a field without a header, in order, as x1,x2,pressure,q1,q2; of HDF5 the "
+          "paths of these five")
+      ->delimiter(',')
       ->allow_extra_args(false);
   command->add_option("--twist", request->check.twist,
                       "rad, that the program reported; without it the one that Coulomb's law fits best");

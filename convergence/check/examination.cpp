@@ -59,12 +59,12 @@ solver::Certificate certify_field(const GivenContact& c, const solver::Step& loa
 }  // namespace
 
 Examination examine(const solver::Scene& scene, const std::filesystem::path& file,
-                    std::optional<double> given_twist) {
+                    std::optional<double> given_twist, const std::vector<std::string>& columns) {
   require_judgeable(scene);
   const solver::Step& load = scene.steps.front();
   const solver::Model model = solver::make_model(scene);
   const OracleAnswer exact = find_oracle(scene);
-  const Interpretation read = in_own_conventions(read_foreign_field(file), scene, model, exact);
+  const Interpretation read = in_own_conventions(read_foreign_field(file, columns), scene, model, exact);
   const GivenContact contact = make_given_contact(read.field, model, model.threads);
 
   std::vector<std::string> conventions = read.conventions;

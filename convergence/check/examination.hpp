@@ -34,12 +34,12 @@ struct Examination {
   solver::SlipDirection direction;  ///< of noticeable slip
 };
 
-/// twist: the one that the program reported, in rad; none: the scene's, if it imposes one, or the one that
-/// Coulomb's law fits best. Throws InputError for what cannot be judged: a history, a scene without friction,
-/// and what read_foreign_field() and in_own_conventions() refuse; std::runtime_error where the
-/// reference's solve does not converge.
+/// columns: as read_foreign_field(). twist: the one that the program reported, in rad; none: the scene's, if
+/// it imposes one, or the one that Coulomb's law fits best. Throws InputError for what cannot be judged: a
+/// history, a scene without friction, and what read_foreign_field() and in_own_conventions() refuse;
+/// std::runtime_error where the reference's solve does not converge.
 Examination examine(const solver::Scene& scene, const std::filesystem::path& file,
-                    std::optional<double> twist);
+                    std::optional<double> twist, const std::vector<std::string>& columns = {});
 
 /// computed/exact - 1.
 double relative_error(double value, double exact);

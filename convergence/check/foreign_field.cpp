@@ -15,8 +15,33 @@ using Eigen::ArrayXd;
 using solver::Index;
 using solver::InputError;
 
-ForeignField read_foreign_field(const std::filesystem::path& file) {
-  const auto columns = solver::read_columns(file, {"x1", "x2", "pressure", "q1", "q2"});
+namespace {
+
+/// NaN is zero where there is no contact.
+void read_missing_as_no_contact(const std::filesystem::path& file, std::vector<solver::Column>& columns) {
+  ArrayXd& pressure = columns[2].values;
+  for (Index row = 0; row < pressure.size(); ++row) {
+    const bool no_contact = std::isnan(pressure[row]) || pressure[row] == 0.0;
+    for (std::size_t c = 0; c < columns.size(); ++c) {
+      double& value = columns[c].values[row];
+      if (!std::isnan(value)) continue;
+      if (c < 2 || !no_contact) {
+        throw InputError(file.string(),
+                         fmt::format("row {}: {} is no number; allowed: NaN where there is no contact, "
+                                     "in pressure, q1 and q2",
+                                     row + 1, columns[c].name));
+      }
+      value = 0.0;
+    }
+  }
+}
+
+}  // namespace
+
+ForeignField read_foreign_field(const std::filesystem::path& file, const std::vector<std::string>& names) {
+  auto columns = solver::read_columns(file, {"x1", "x2", "pressure", "q1", "q2"},
+                                      {.columns = names, .may_be_missing = true});
+  read_missing_as_no_contact(file, columns);
   const FieldGrid found = find_field_grid(file, columns[0], columns[1]);
   const ArrayXd& pressure = columns[2].values;
   const ArrayXd pressure_rounding = solver::find_precision(pressure).rounding(pressure);

@@ -3,6 +3,8 @@
 #include <Eigen/Core>
 #include <array>
 #include <filesystem>
+#include <string>
+#include <vector>
 
 #include "solver/grid/grid.hpp"
 
@@ -20,9 +22,12 @@ struct ForeignField {
   Eigen::ArrayXd traction_rounding;  ///< cells, of |q|
 };
 
-/// Reads the columns x1, x2, pressure, q1, q2 (CSV or HDF5; others are ignored) with their numbers as they
-/// stand. Throws InputError for a column that is missing, a value that is not finite, a negative pressure,
-/// tractions that are all zero, and what find_field_grid() refuses.
-ForeignField read_foreign_field(const std::filesystem::path& file);
+/// Reads the columns x1, x2, pressure, q1, q2, as solver::read_columns() does (`columns` are those of its
+/// options; others are ignored), with their numbers as they stand. Where the pressure is NaN or a cell
+/// without pressure has a traction that is NaN, there is no contact. Throws InputError for a column that is
+/// missing, another value that is not finite, a negative pressure, tractions that are all zero, and what
+/// find_field_grid() refuses.
+ForeignField read_foreign_field(const std::filesystem::path& file,
+                                const std::vector<std::string>& columns = {});
 
 }  // namespace slipstick::convergence

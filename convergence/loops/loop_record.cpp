@@ -4,15 +4,15 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <cctype>
 #include <cmath>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <sstream>
 #include <string>
 
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
+#include "solver/input/table_text.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -40,18 +40,11 @@ bool is_of_force(const std::vector<std::string>& there) {
          !present(there, kDisplacementNames).empty();
 }
 
-/// The names in a table's first line, as far as one of columns goes.
-std::vector<std::string> csv_names(const std::filesystem::path& file) {
-  constexpr std::size_t kLongestLine = 65536;
-  std::string text(kLongestLine, '\0');
-  std::ifstream stream(file, std::ios::binary);
-  stream.read(text.data(), static_cast<std::streamsize>(kLongestLine));
-  text.resize(static_cast<std::size_t>(std::max<std::streamsize>(stream.gcount(), 0)));
-  std::istringstream cells(text.substr(0, text.find_first_of("\r\n")));
-  std::vector<std::string> names;
-  for (std::string cell; std::getline(cells, cell, ',');) {
-    std::erase_if(cell, [](char c) { return c == ' ' || c == '\t' || c == '"' || (c & 0x80) != 0; });
-    names.push_back(cell);
+/// As the table's header writes them, in small letters.
+std::vector<std::string> table_names(const std::filesystem::path& file) {
+  std::vector<std::string> names = solver::text_table_names(file);
+  for (std::string& name : names) {
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return std::tolower(c); });
   }
   return names;
 }
@@ -148,8 +141,10 @@ void require_sound(const LoopRecord& loop) {
 
 bool is_loop_file(const std::filesystem::path& file) {
   if (file.extension() == ".json") return true;
-  if (file.extension() != ".csv" || !std::filesystem::is_regular_file(file)) return false;
-  const std::vector<std::string> names = csv_names(file);
+  const std::vector<std::string> text{".csv", ".txt", ".dat", ".tsv"};
+  if (present({file.extension().string()}, text).empty() || !std::filesystem::is_regular_file(file))
+    return false;
+  const std::vector<std::string> names = table_names(file);
   const bool is_field = !present(names, {"x1"}).empty();
   const bool of_torsion = !present(names, kMomentNames).empty() && !present(names, kRotationNames).empty();
   return !is_field && (of_torsion || is_of_force(names));
@@ -160,7 +155,7 @@ LoopRecord read_loop(const std::filesystem::path& file) {
   LoopRecord loop =
       file.extension() == ".json"
           ? read_json(file)
-          : collect(file, csv_names(file), [&](const std::string& name) { return csv_column(file, name); });
+          : collect(file, table_names(file), [&](const std::string& name) { return csv_column(file, name); });
   require_sound(loop);
   return loop;
 }

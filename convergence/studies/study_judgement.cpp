@@ -349,17 +349,20 @@ bool needs_tightening(const Study& study, const Series& series, const std::vecto
 
 Json tolerance_rows(const Study& study, const Series& series, const std::vector<std::vector<Json>>& by_mesh,
                     const std::vector<MeshResults>& results) {
+  const auto chosen = choose_quantities(study, sample_result(results));
   std::vector<std::string> quantities;
-  for (const auto& [path, exact] : choose_quantities(study, sample_result(results)))
-    quantities.push_back(path);
+  for (const auto& [path, exact] : chosen) quantities.push_back(path);
   Json rows = Json::array();
   for (std::size_t i = 0; i < by_mesh.size(); ++i) {
     const std::vector<Json>& at = by_mesh[i];
     for (std::size_t k = 0; k < study.tolerances.size(); ++k) {
       Json row = row_json(at[k], series.meshes[i].grids.front(), study.tolerances[k], 0, quantities);
-      for (const std::string& path : quantities) {
-        set_number(row["iteration"], path, number_at(at[k], path) - number_at(at.back(), path),
-                   first_of(why_missing(at[k], path), why_missing(at.back(), path)));
+      for (const auto& [path, exact] : chosen) {
+        const double tightest = number_at(at.back(), path);
+        const double scale = exact ? 1.0 : std::abs(tightest);
+        const std::string missing = first_of(why_missing(at[k], path), why_missing(at.back(), path));
+        set_number(row["iteration"], path, (number_at(at[k], path) - tightest) / scale,
+                   first_of(missing, "the tightest run gives zero"));
       }
       rows.push_back(std::move(row));
     }

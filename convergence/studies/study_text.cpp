@@ -85,6 +85,11 @@ std::string orders_text(const Json& series) {
 
 /// What errors are measured from.
 std::string basis_text(const Json& series) {
+  const bool is_compared = series["meshes"].size() > 1;
+  if (!is_compared && series["basis"] != "exact") return "no exact answer: values";
+  if (!is_compared && !series["extrapolated"].empty()) {
+    return "errors against the exact answer where there is one, else values";
+  }
   if (series["basis"] != "exact") return "errors against the extrapolated value";
   if (series["extrapolated"].empty()) return "errors against the exact answer";
   return "errors against the exact answer, where it says nothing against the extrapolated value";
@@ -119,13 +124,16 @@ std::string tolerances_text(const Json& series) {
   const Json& rows = series["tolerances"];
   if (series["order"].empty()) return "  no quantity of this scene can be followed\n";
   const std::string quantity = series["order"].items().begin().key();
+  const bool is_error = series["order"][quantity]["basis"] == "exact";
   std::string text =
       fmt::format("  {:>13} {:>9} {:>12} {:>10} {:>12} {:>12}  {}\n", "cells", "requested", "gap/energy",
-                  "change", "applications", label(quantity), "of it by stopping there");
+                  "change", "applications", label(quantity) + (is_error ? " error" : ""),
+                  is_error ? "of it by stopping there" : "off the tightest run, relative");
   for (const Json& row : rows) {
     text += fmt::format("  {:>13} {:>9.0e} {:>12} {:>10} {:>12} {:>12}  {}{}\n", cells_text(row["cells"]),
                         row["requested"].get<double>(), size(row["certificate.gap"]), size(row["change"]),
-                        number_text(row["operator_applications"]), error(row[quantity]),
+                        number_text(row["operator_applications"]),
+                        is_error ? error(row[quantity]) : short_text(row[quantity]),
                         error(row["iteration"][quantity]), status_note(row["status"].get<std::string>()));
   }
   return text;
@@ -137,7 +145,8 @@ std::string rows_text(const Json& series) {
   for (const Json& row : series["rows"]) {
     text += fmt::format("  {:>13} {}", cells_text(row["cells"]), row["status"].get<std::string>());
     for (const auto& [path, order] : series["order"].items())
-      text += fmt::format("  {} {}", label(path), short_text(row[path]));
+      text += fmt::format("  {}{} {}", label(path), order["basis"] == "exact" ? " error" : "",
+                          short_text(row[path]));
     text += "\n";
   }
   return text;

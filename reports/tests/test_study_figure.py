@@ -264,6 +264,38 @@ class Tolerances(unittest.TestCase):
         gaps = [list(line.get_ydata()) for line in panels[0].lines if line.get_marker() not in ("None", "")]
         self.assertEqual(gaps, [[1e-2, 1e-4, 1e-6], [1e-2, 1e-4, 1e-4]])
 
+    def test_a_value_is_not_shown_as_an_error(self):
+        """The twist has an exact answer, the stick radius has none: metres are on no axis."""
+        content = tolerance_study()
+        for one in content["series"].values():
+            one["order"]["stick_radius"] = order(basis="extrapolated")
+            for row in one["tolerances"]:
+                row["stick_radius"] = 4e-4
+                row["iteration"]["stick_radius"] = -row["requested"]
+        entry = study_figure.draw(content)
+        panel = axes_of(entry.figure)[3]
+        self.assertEqual(panel.get_title(), "stick radius, from the tightest run")
+        self.assertEqual([list(line.get_ydata()) for line in panel.lines], [[1e-2, 1e-4, 1e-6]] * 2)
+        self.assertEqual([entry.get_text() for entry in panel.get_legend().get_texts()],
+                         ["relative difference from the tightest run"])
+        self.assertIn("no exact answer, the relative difference from the tightest run", entry.details)
+
+    def test_what_no_tolerance_changes_is_drawn(self):
+        content = tolerance_study()
+        for one in content["series"].values():
+            one["order"]["stick_radius"] = order(basis="extrapolated")
+            for row in one["tolerances"]:
+                row["iteration"]["stick_radius"] = 0.0
+        style.draw(study_figure.draw(content).figure, ".svg")
+
+    def test_the_finest_mesh_is_shown_alone(self):
+        content = tolerance_study()
+        for one in content["series"].values():
+            coarse = [row | {"cells": [8, 4], "certificate.gap": 1.0} for row in one["tolerances"]]
+            one["tolerances"] = coarse + [row | {"cells": [64, 32]} for row in one["tolerances"]]
+        gaps = axes_of(study_figure.draw(content).figure)[0].lines[1].get_ydata()
+        self.assertEqual(list(gaps), [1e-2, 1e-4, 1e-6])
+
     def test_a_gap_that_stays_is_named(self):
         message = study_figure.draw(tolerance_study()).message
         self.assertEqual(message, "With the paper’s method, Coulomb’s law holds to a gap of 1.0×10⁻⁴ at best, though its "

@@ -1,11 +1,14 @@
 #include "solver/input/dataset_reader.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 #include <hdf5.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <exception>
+#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -26,6 +29,8 @@ constexpr std::size_t kWidestNumber = 16;
 /// complaint, to the end.
 enum class Tag : char { values = '=', complaint = '!' };
 using Extent = std::array<Index, 2>;
+/// A file of more datasets and groups is not searched to its end.
+constexpr std::size_t kMaxNames = 100'000;
 
 /// An id of the HDF5 library, closed at the end.
 class Id {
@@ -50,9 +55,39 @@ void require(bool good, const std::string& complaint) {
 /// Links may lead to other files, as may data that lie outside the file or are put together from others'.
 void require_own_dataset(hid_t file, const std::string& name) {
   H5L_info_t link{};
-  require(H5Lexists(file, name.c_str(), H5P_DEFAULT) > 0, "no such dataset");
-  require(H5Lget_info(file, name.c_str(), &link, H5P_DEFAULT) >= 0 && link.type == H5L_TYPE_HARD,
-          "is a link; allowed: a dataset of this file");
+  for (std::size_t end = 0; end != std::string::npos;) {
+    end = name.find('/', end + 1);
+    const std::string part = name.substr(0, end);
+    require(H5Lexists(file, part.c_str(), H5P_DEFAULT) > 0, "no such dataset");
+    require(H5Lget_info(file, part.c_str(), &link, H5P_DEFAULT) >= 0 && link.type == H5L_TYPE_HARD,
+            "is a link; allowed: a dataset of this file");
+  }
+}
+
+/// "GROUP/" of the one group that has all of these names; nothing where the root has the first.
+std::string find_group(hid_t file, const std::vector<std::string>& names) {
+  if (names[0].find('/') != std::string::npos || H5Lexists(file, names[0].c_str(), H5P_DEFAULT) > 0)
+    return "";
+  std::set<std::string> links;
+  const auto add = [](hid_t, const char* name, const H5L_info_t*, void* to) {
+    auto& found = *static_cast<std::set<std::string>*>(to);
+    found.insert(name);
+    return found.size() < kMaxNames ? 0 : 1;
+  };
+  H5Lvisit(file, H5_INDEX_NAME, H5_ITER_INC, add, &links);
+  std::vector<std::string> groups;
+  for (const std::string& link : links) {
+    if (!link.ends_with("/" + names[0])) continue;
+    const std::string group = link.substr(0, link.size() - names[0].size());
+    if (std::ranges::all_of(names, [&](const std::string& name) { return links.contains(group + name); }))
+      groups.push_back(group);
+  }
+  require(!groups.empty(),
+          fmt::format("no such dataset; the file has: {}; check takes other paths by --columns",
+                      shown(fmt::format("{}", fmt::join(links, ", ")))));
+  require(groups.size() == 1, fmt::format("several groups have one: {}; allowed: --columns with the paths",
+                                          fmt::join(groups, ", ")));
+  return groups[0];
 }
 
 void require_own_data(hid_t dataset) {
@@ -74,9 +109,11 @@ void require_numbers(hid_t dataset) {
 Extent find_extent(hid_t dataset, int rank, Index most) {
   const Id space(H5Dget_space(dataset), H5Sclose, "cannot be read");
   const int found = H5Sget_simple_extent_ndims(space.get());
-  require(found == rank, fmt::format("has {} dimensions; allowed: {}", found, rank));
+  const bool fits = rank == kTableRank ? found == 1 || found == 2 : found == rank;
+  require(fits, fmt::format("has {} dimensions; allowed: {}", found,
+                            rank == kTableRank ? "1 or 2" : fmt::format("{}", rank)));
   std::array<hsize_t, 2> size{1, 1};
-  require(H5Sget_simple_extent_dims(space.get(), size.data(), nullptr) == rank, "cannot be read");
+  require(H5Sget_simple_extent_dims(space.get(), size.data(), nullptr) == found, "cannot be read");
   const auto limit = static_cast<hsize_t>(most);
   require(size[0] > 0 && size[1] > 0 && size[0] <= limit && size[1] <= limit / size[0],
           fmt::format("has {} x {} values; allowed: from 1 to {} in all", size[0], size[1], most));
@@ -102,9 +139,11 @@ void send_datasets(const path& file, const std::vector<std::string>& names, int 
   try {
     H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
     const Id hdf5(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "cannot be read as HDF5");
+    at = fmt::format("dataset {}: ", names[0]);
+    const std::string group = rank == kTableRank ? find_group(hdf5.get(), names) : "";
     for (const std::string& name : names) {
       at = fmt::format("dataset {}: ", name);
-      const Dataset values = read_dataset(hdf5.get(), name, rank, most);
+      const Dataset values = read_dataset(hdf5.get(), group + name, rank, most);
       const Tag tag = Tag::values;
       const Extent extent{values.rows(), values.cols()};
       send(&tag, sizeof tag);

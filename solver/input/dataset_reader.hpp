@@ -10,10 +10,13 @@ namespace slipstick::solver {
 /// Rows x columns, as HDF5 has them: the values of a row are neighbours.
 using Dataset = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-/// Reads datasets of an HDF5 file's root group by name: whole or floating-point numbers in `rank` (1 or 2)
-/// dimensions, at least one value and at most `most`; of one dimension they make one column. They are read in
-/// a process of their own, for a damaged file may kill the HDF5 library. Throws InputError with the file and
-/// the dataset.
+/// One or two dimensions, in the root or in the one group that has all the datasets.
+inline constexpr int kTableRank = 0;
+
+/// Reads datasets of an HDF5 file by name or path: whole or floating-point numbers in `rank` (1, 2
+/// or kTableRank) dimensions, at least one value and at most `most`; of one dimension they make one column.
+/// They are read in a process of their own, for a damaged file may kill the HDF5 library. Throws InputError
+/// with the file and the dataset.
 std::vector<Dataset> read_datasets(const std::filesystem::path& file, const std::vector<std::string>& names,
                                    int rank, Eigen::Index most);
 

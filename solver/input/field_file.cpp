@@ -7,10 +7,8 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <limits>
+#include <cstring>
 #include <numeric>
-#include <stdexcept>
-#include <string_view>
 #include <utility>
 
 #include "solver/grid/ranks.hpp"
@@ -18,6 +16,7 @@
 #include "solver/input/dataset_writer.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
+#include "solver/input/table_text.hpp"
 #include "solver/input/whole_file.hpp"
 
 namespace slipstick::solver {
@@ -28,143 +27,72 @@ using std::filesystem::path;
 
 bool is_hdf5(const path& file) { return file.extension() == ".h5" || file.extension() == ".hdf5"; }
 
-/// Rows of a table are cells of a contact, of 4,096 x 4,096 at most; heights of a map are cells of a grid. A
-/// solve on more takes tens of gigabytes.
-constexpr Index kMaxRows = Index{1} << 24;
+/// Heights of a map are cells of a grid. A solve on more takes tens of gigabytes.
 constexpr Index kMaxHeights = Index{1} << 26;
-/// Values on a line: as many as a grid has cells along a side.
-constexpr std::size_t kMaxColumns = 65536;
-/// Written by some programs at the beginning of a text.
-constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 
-std::string_view trimmed(std::string_view text) {
-  constexpr std::string_view kAround = " \t\r\"";
-  const auto first = text.find_first_not_of(kAround);
-  return first == std::string_view::npos ? std::string_view()
-                                         : text.substr(first, text.find_last_not_of(kAround) - first + 1);
+/// Throws InputError unless all have one number a row.
+void require_numbers(const path& file, const std::vector<Column>& columns, bool may_be_missing) {
+  for (const Column& column : columns) {
+    if (column.values.size() != columns.front().values.size()) {
+      throw InputError(file.string(), fmt::format("dataset {} has {} values; allowed: {}, as {}", column.name,
+                                                  column.values.size(), columns.front().values.size(),
+                                                  columns.front().name));
+    }
+    const auto bad = std::ranges::find_if_not(column.values, [&](double value) {
+      return std::isfinite(value) || (may_be_missing && std::isnan(value));
+    });
+    if (bad != column.values.end()) {
+      throw InputError(file.string(), fmt::format("dataset {}, row {}: {}; allowed: a finite number",
+                                                  column.name, bad - column.values.begin() + 1, *bad));
+    }
+  }
 }
 
-/// The text of a CSV file, line by line. Lines without anything are skipped.
-class CsvFile {
- public:
-  explicit CsvFile(const path& file)
-      : file_(file),
-        text_(read_input_file(file, kLargestTable, "a CSV file, or an HDF5 file named .h5 or .hdf5")) {
-    if (text_.starts_with(kByteOrderMark)) next_ = kByteOrderMark.size();
-  }
-
-  /// The values of the next line as text; none at the end. They stay until the next call.
-  const std::vector<std::string_view>& next_line() {
-    values_.clear();
-    while (values_.empty() && next_ < text_.size()) {
-      const std::size_t end = std::min(text_.find('\n', next_), text_.size());
-      const std::string_view line = std::string_view(text_).substr(next_, end - next_);
-      next_ = end + 1;
-      ++line_;
-      split(line);
-    }
-    return values_;
-  }
-
-  double number(std::string_view text) const {
-    // The text ends with a separator or, after the last, with a zero: where strtod stops.
-    char* end = nullptr;
-    const double value = text.empty() ? NAN : std::strtod(text.data(), &end);
-    if (end != text.data() + text.size() || !std::isfinite(value)) {
-      fail(fmt::format("\"{}\"; allowed: a finite number", shown(text)));
-    }
-    return value;
-  }
-
-  /// NaN for one that is missing.
-  double height(std::string_view text) const {
-    const bool missing = text.empty() || text == "nan" || text == "NaN" || text == "NAN";
-    return missing ? std::numeric_limits<double>::quiet_NaN() : number(text);
-  }
-
-  [[noreturn]] void fail(const std::string& complaint) const {
-    throw InputError(fmt::format("{}:{}", file_.string(), line_), complaint);
-  }
-
- private:
-  /// A separator at the end of the line is followed by nothing.
-  void split(std::string_view line) {
-    if (line.find_first_not_of(" \t\r") == std::string_view::npos) return;
-    for (std::size_t first = 0; first < line.size();) {
-      if (values_.size() == kMaxColumns) fail(fmt::format("more than {} values", kMaxColumns));
-      const std::size_t comma = std::min(line.find(',', first), line.size());
-      values_.push_back(trimmed(line.substr(first, comma - first)));
-      first = comma + 1;
-    }
-  }
-
-  const path& file_;
-  std::string text_;
-  std::size_t next_ = 0;
-  std::size_t line_ = 0;
-  std::vector<std::string_view> values_;
-};
-
-/// The place of each name in a header.
-std::vector<std::size_t> find_columns(const path& file, const std::vector<std::string>& names,
-                                      const std::vector<std::string_view>& header) {
-  std::vector<std::size_t> positions;
-  for (const std::string& name : names) {
-    const auto found = std::find(header.begin(), header.end(), name);
-    if (found == header.end()) {
-      throw InputError(file.string(),
-                       fmt::format("has no column {}; its columns: {}", name,
-                                   header.empty() ? "none, it is empty"
-                                                  : shown(fmt::format("{}", fmt::join(header, ", ")))));
-    }
-    if (std::find(found + 1, header.end(), name) != header.end()) {
-      throw InputError(file.string(), fmt::format("has two columns {}; allowed: one", name));
-    }
-    positions.push_back(static_cast<std::size_t>(found - header.begin()));
-  }
-  return positions;
-}
-
-std::vector<Column> read_csv_columns(const path& file, const std::vector<std::string>& names) {
-  CsvFile csv(file);
-  const std::vector<std::string_view> header = csv.next_line();
-  const std::vector<std::size_t> positions = find_columns(file, names, header);
-  std::vector<std::vector<double>> values(names.size());
-  for (;;) {
-    const std::vector<std::string_view>& row = csv.next_line();
-    if (row.empty()) break;
-    if (row.size() != header.size()) {
-      csv.fail(fmt::format("{} values; allowed: {}, one a column", row.size(), header.size()));
-    }
-    if (static_cast<Index>(values[0].size()) == kMaxRows)
-      csv.fail(fmt::format("more than {} rows", kMaxRows));
-    for (std::size_t c = 0; c < names.size(); ++c) values[c].push_back(csv.number(row[positions[c]]));
-  }
-  if (values[0].empty()) throw InputError(file.string(), "holds no rows of numbers");
+std::vector<Column> read_hdf5_columns(const path& file, const std::vector<std::string>& names,
+                                      const std::vector<std::string>& stored) {
+  const std::vector<Dataset> datasets = read_datasets(file, stored, kTableRank, kMaxRows);
   std::vector<Column> columns;
   for (std::size_t c = 0; c < names.size(); ++c) {
-    columns.push_back({names[c], ArrayXd::Map(values[c].data(), static_cast<Index>(values[c].size()))});
+    const Dataset& values = datasets[c];
+    if (values.size() == datasets[0].size() && values.rows() != datasets[0].rows()) {
+      throw InputError(file.string(), fmt::format("dataset {} has {} x {} values; allowed: {} x {}, as {}",
+                                                  stored[c], values.rows(), values.cols(), datasets[0].rows(),
+                                                  datasets[0].cols(), stored[0]));
+    }
+    columns.push_back({names[c], values.reshaped<Eigen::RowMajor>()});
   }
   return columns;
 }
 
-std::vector<Column> read_hdf5_columns(const path& file, const std::vector<std::string>& names) {
-  const std::vector<Dataset> datasets = read_datasets(file, names, 1, kMaxRows);
+/// VTK image data as write_vti() writes it.
+std::vector<Column> read_vti_columns(const path& file, const std::vector<std::string>& names,
+                                     const std::vector<std::string>& stored) {
+  const std::string text = read_input_file(file, kLargestTable, "VTK image data");
   std::vector<Column> columns;
   for (std::size_t c = 0; c < names.size(); ++c) {
-    const std::string& name = names[c];
-    columns.push_back({name, datasets[c].col(0)});
-    const ArrayXd& values = columns.back().values;
-    if (values.size() != columns.front().values.size()) {
+    const auto at = text.find(fmt::format(" Name=\"{}\"", stored[c]));
+    const auto begin = text.rfind('<', at);
+    const auto end = std::min(text.find('>', at), text.size());
+    if (at == std::string::npos || begin == std::string::npos ||
+        text.substr(begin, end - begin).find("format=\"ascii\"") == std::string::npos) {
       throw InputError(file.string(),
-                       fmt::format("dataset {} has {} values; allowed: {}, as {}", name, values.size(),
-                                   columns.front().values.size(), names.front()));
+                       fmt::format("has no array {} with format=\"ascii\"; allowed: one, as --fields "
+                                   "FILE.vti writes it, or the cells as CSV",
+                                   stored[c]));
     }
-    const auto bad = std::ranges::find_if_not(values, [](double value) { return std::isfinite(value); });
-    if (bad != values.end()) {
-      throw InputError(file.string(), fmt::format("dataset {}, row {}: {}; allowed: a finite number", name,
-                                                  bad - values.begin(), *bad));
+    std::vector<double> values;
+    const char* next = text.c_str() + std::min(end + 1, text.size());
+    for (char* after = nullptr;; next = after) {
+      const double value = std::strtod(next, &after);
+      if (after == next || static_cast<Index>(values.size()) == kMaxRows) break;
+      values.push_back(value);
     }
+    next += std::strspn(next, " \t\r\n");
+    if (*next != '<') {
+      throw InputError(file.string(), fmt::format("array {}, value {}; allowed: a number, at most {}",
+                                                  stored[c], values.size() + 1, kMaxRows));
+    }
+    columns.push_back({names[c], ArrayXd::Map(values.data(), static_cast<Index>(values.size()))});
   }
   return columns;
 }
@@ -242,29 +170,31 @@ void write_hdf5(const path& file, const Grid& grid, const std::vector<FieldColum
 
 }  // namespace
 
-std::vector<Column> read_columns(const path& file, const std::vector<std::string>& names) {
-  return is_hdf5(file) ? read_hdf5_columns(file, names) : read_csv_columns(file, names);
+std::vector<Column> read_columns(const path& file, const std::vector<std::string>& names,
+                                 const TableOptions& options) {
+  const bool is_vti = file.extension() == ".vti";
+  if (file.extension() == ".npz" || file.extension() == ".npy") {
+    throw InputError(file.string(),
+                     "is NumPy's; allowed: CSV, HDF5 or .vti; in Python np.savetxt(\"field.csv\", "
+                     "np.column_stack([f[k].ravel() "
+                     "for k in (\"x1\", \"x2\", \"pressure\", \"q1\", \"q2\")]), delimiter=\",\", "
+                     "header=\"x1,x2,pressure,q1,q2\") with f = np.load(...) makes a CSV of it");
+  }
+  if (!is_hdf5(file) && !is_vti) return read_text_columns(file, names, options);
+  if (!options.columns.empty() && options.columns.size() != names.size()) {
+    throw InputError("--columns", fmt::format("{} names; allowed: {}, the paths in the file of {}",
+                                              options.columns.size(), names.size(), fmt::join(names, ", ")));
+  }
+  const std::vector<std::string>& stored = options.columns.empty() ? names : options.columns;
+  std::vector<Column> columns =
+      is_vti ? read_vti_columns(file, names, stored) : read_hdf5_columns(file, names, stored);
+  require_numbers(file, columns, options.may_be_missing);
+  return columns;
 }
 
 Eigen::ArrayXXd read_height_map(const path& file) {
   if (is_hdf5(file)) return read_datasets(file, {"height"}, 2, kMaxHeights).front();
-  CsvFile csv(file);
-  std::vector<double> heights;
-  std::size_t columns = 0;
-  for (;;) {
-    const std::vector<std::string_view>& row = csv.next_line();
-    if (row.empty()) break;
-    if (heights.empty()) columns = row.size();
-    if (row.size() != columns) {
-      csv.fail(fmt::format("{} values; allowed: {}, as in the rows before", row.size(), columns));
-    }
-    if (static_cast<Index>(heights.size() + columns) > kMaxHeights)
-      csv.fail(fmt::format("more than {} values", kMaxHeights));
-    for (const std::string_view text : row) heights.push_back(csv.height(text));
-  }
-  if (heights.empty()) throw InputError(file.string(), "holds no rows of numbers");
-  return Eigen::Map<const Dataset>(heights.data(), static_cast<Index>(heights.size() / columns),
-                                   static_cast<Index>(columns));
+  return read_text_matrix(file, kMaxHeights);
 }
 
 void require_field_format(const path& file) {

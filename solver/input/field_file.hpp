@@ -23,13 +23,27 @@ struct FieldColumn {
   std::function<void(Index first, Index last, double* values)> values;
 };
 
-/// Reads columns by name from a CSV file (header line, one row a cell) or an HDF5 file (1-D datasets of equal
-/// length), distinguished by the ending .csv or .h5/.hdf5. Throws InputError for a file that cannot be read,
-/// a missing column, and a value that is not a finite number (with its row).
-std::vector<Column> read_columns(const std::filesystem::path& file, const std::vector<std::string>& names);
+/// Rows of a table are cells of a contact, of 4,096 x 4,096 at most.
+inline constexpr Index kMaxRows = Index{1} << 24;
 
-/// A matrix of heights: CSV without header, one line for each x1; or the 2-D HDF5 dataset "height". A point
-/// that is missing, an empty or "nan" cell of a CSV file, is NaN.
+struct TableOptions {
+  /// Names of all columns of a table without a header, "x1 [mm]" with a unit; of an HDF5 file the paths of
+  /// those that are read, in their order.
+  std::vector<std::string> columns;
+  bool may_be_missing = false;  ///< NaN and empty cells are NaN; they are refused otherwise
+};
+
+/// Reads columns by name. The ending .h5 or .hdf5 is HDF5 (1-D or 2-D datasets of equal shape, in the root or
+/// the one group that has them all), .vti VTK image data as write_fields() writes it; others are text: a line
+/// of names in any case, perhaps as a comment (#, %) and with units ("x1 [mm]": the values are returned in SI
+/// units), then a row a cell, with commas, semicolons, tabs or blanks between columns and decimal points or
+/// commas. Throws InputError for a file that cannot be read, a missing column, and a value that is not a
+/// finite number (with its row).
+std::vector<Column> read_columns(const std::filesystem::path& file, const std::vector<std::string>& names,
+                                 const TableOptions& options = {});
+
+/// A matrix of heights: text as above without header, one line for each x1; or the 2-D HDF5 dataset "height".
+/// A point that is missing, an empty or "nan" cell of a CSV file, is NaN.
 Eigen::ArrayXXd read_height_map(const std::filesystem::path& file);
 
 /// Throws InputError unless the ending is one that write_fields knows.

@@ -1,0 +1,178 @@
+"""study_processes_test.py PROGRAM SCENES: slipstick study as users run it: interrupted, continued, killed, and with bad
+input. Its processes are found by what only Linux shows."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+from pathlib import Path
+
+PROGRAM, SCENE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve() / "paper.toml"
+MARKER = "SLIPSTICK_TEST_MARKER"
+PATIENCE = 120  # seconds, longer than it takes on any machine
+ON_LINUX = unittest.skipUnless(sys.platform == "linux", "only Linux shows which processes are the study's")
+
+
+def comes_true(condition, pause=0.01):
+    end = time.monotonic() + PATIENCE
+    while not condition():
+        if time.monotonic() > end:
+            return False
+        time.sleep(pause)
+    return True
+
+
+class Study(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+        self.addCleanup(lambda: [os.kill(process, signal.SIGKILL) for process in self.processes()])
+        self.write("cells = [16, 24, 32, 48, 64, 96, 128]\nshifts = 2\nquantities = [\"twist_error\"]\n")
+
+    def write(self, text, scene=SCENE):
+        (self.folder / "study.toml").write_text(f'scene = "{scene}"\n{text}')
+
+    def start(self, name, jobs=0, **options):
+        """With its result and its messages in files of a name; in a group of its own, as from a terminal."""
+        with open(self.folder / f"{name}.txt", "w") as out, open(self.folder / f"{name}.log", "w") as log:
+            return subprocess.Popen(
+                [PROGRAM, "study", self.folder / "study.toml", "--output", self.folder / "points", "--json",
+                 self.folder / f"{name}.json", "--jobs", str(jobs)],
+                stdout=out, stderr=log, env=os.environ | {MARKER: str(self.folder)}, start_new_session=True, **options)
+
+    def run_study(self, name, code=0):
+        self.assertEqual(self.start(name).wait(), code, self.text(f"{name}.log"))
+
+    def text(self, file):
+        return (self.folder / file).read_text()
+
+    def finished(self):
+        return sorted((self.folder / "points").glob("*.json"))
+
+    def processes(self):
+        """Those that run, the study's own and its workers'; what has ended and is not waited for shows nothing."""
+        found = []
+        for folder in Path("/proc").glob("[0-9]*"):
+            try:
+                if f"{MARKER}={self.folder}\0".encode() in (folder / "environ").read_bytes():
+                    found.append(int(folder.name))
+            except OSError:
+                pass
+        return found
+
+    @staticmethod
+    def state(process):
+        """Its letter and its parent; X and 0 of one that is gone."""
+        try:
+            state, parent = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[:2]
+            return state, int(parent)
+        except OSError:
+            return "X", 0
+
+    def killed_after(self, runs, study):
+        """Kills the only worker in the middle of a run, once so many others are finished. One that computes whenever one
+        looks, so long after its last run, is not between two runs."""
+        kept = len(self.finished())
+        worker = next((one for one in self.processes() if self.state(one)[1] == study), 0)
+        for _ in range(15):
+            if not worker or kept < runs or len(self.finished()) != kept or self.state(worker)[0] != "R":
+                return False
+            time.sleep(0.001)
+        os.kill(worker, signal.SIGSTOP)
+        comes_true(lambda: self.state(worker)[0] in "TZX", 0)
+        in_a_run = len(self.finished()) == kept
+        os.kill(worker, signal.SIGKILL if in_a_run else signal.SIGCONT)
+        return in_a_run
+
+    def test_goes_on_after_an_interrupt(self):
+        """What is left is whole, and the same command goes on from it to the same result."""
+        first = self.start("first")
+        self.assertTrue(comes_true(self.finished, 0.001))
+        os.killpg(first.pid, signal.SIGINT)
+        self.assertEqual(first.wait(), 2)
+        self.assertIn("the same command goes on from there", self.text("first.log"))
+        left = {file: file.stat().st_mtime_ns for file in self.finished()}
+        for file in left:
+            self.assertIsInstance(json.loads(file.read_text()), dict)
+        self.run_study("second")
+        self.assertGreater(len(self.finished()), len(left))
+        self.assertEqual({file: file.stat().st_mtime_ns for file in left}, left)
+        self.assertNotIn("failed", self.text("second.txt"))
+        self.assertEqual(json.loads(self.text("second.json"))["failed_runs"]["count"], 0)
+        shutil.rmtree(self.folder / "points")
+        self.run_study("third")
+        second, third = (json.loads(self.text(f"{name}.json"))["series"]["paper"]["order"] for name in ("second", "third"))
+        self.assertEqual(second, third)
+
+    @ON_LINUX
+    def test_a_killed_worker_is_named_and_the_others_are_judged(self):
+        """Whichever it is: the study says so, in its text and its result, and leaves with 1. What is not known is null with
+        a reason and not zero."""
+        self.write('cells = [256, 320]\nquantities = ["twist_error"]\n')
+        # One at a time, the larger mesh first: the solve itself, to a tighter tolerance, then those of the other.
+        for before in range(6):
+            with self.subTest(before=before):
+                def is_killed():
+                    """Or the study has ended before the worker was caught in the run."""
+                    shutil.rmtree(self.folder / "points", ignore_errors=True)
+                    study = self.start("killed", jobs=1)
+                    self.assertTrue(comes_true(lambda: self.killed_after(before, study.pid) or study.poll() is not None))
+                    self.assertIn(study.wait(), (0, 1))
+                    return study.returncode == 1
+
+                self.assertTrue(comes_true(is_killed), self.text("killed.log"))
+                result = json.loads(self.text("killed.json"))
+                self.assertEqual(result["failed_runs"]["count"], 1)
+                self.assertIn("killed by signal 9", result["failed_runs"]["first"]["message"])
+                self.assertIn(" runs failed; the first (paper, grid.cells=", self.text("killed.txt"))
+                for file in ("killed.txt", "killed.log"):
+                    self.assertIn("killed by signal 9", self.text(file))
+                series = result["series"]["paper"]
+                self.assertIn("1 of 6 runs failed", series["order"]["twist_error"]["why"])
+                for row in series["rows"]:
+                    self.assertTrue(row["twist_error"] is not None or (row["status"] == "failed" and row["twist_error_reason"]))
+                noises = [mesh["twist_error"] for mesh in series["meshes"]]
+                self.assertIn(None, [at["noise"] for at in noises])
+                for at in noises:
+                    self.assertTrue(at["noise_reason"] if at["noise"] is None else at["noise"] > 0)
+
+    @ON_LINUX
+    def test_workers_end_with_their_parent(self):
+        """However it ends, no worker goes on: none is left, and none has finished."""
+        self.write('cells = [256, 288]\nset = { "solver.operator" = "direct" }\n')  # minutes each
+        for number in (signal.SIGKILL, signal.SIGHUP, signal.SIGTERM, signal.SIGINT):
+            with self.subTest(number):
+                study = self.start("parent", jobs=2)
+                self.assertTrue(comes_true(lambda: len(self.processes()) == 3), self.text("parent.log"))
+                study.send_signal(number)
+                study.wait()
+                self.assertTrue(comes_true(lambda: not self.processes()))
+                self.assertEqual(self.finished(), [])
+                shutil.rmtree(self.folder / "points", ignore_errors=True)
+
+    def test_an_ignored_hang_up_stays_ignored(self):
+        """nohup: what is ignored when the study starts stays so."""
+        before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
+        study = self.start("nohup", restore_signals=False)
+        signal.signal(signal.SIGHUP, before)
+        self.assertTrue(comes_true(self.finished, 0.001))
+        os.killpg(study.pid, signal.SIGHUP)
+        self.assertEqual(study.wait(), 0, self.text("nohup.log"))
+
+    def test_bad_input_is_exit_code_2(self):
+        self.write('cells = [16, "32"]\n')
+        self.run_study("bad", 2)
+        self.assertIn("study.toml:2: cells[1]", self.text("bad.log"))
+        self.write("cells = [16, 32]\n", "nowhere.toml")
+        self.run_study("missing", 2)
+        self.assertIn("nowhere.toml", self.text("missing.log"))
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
