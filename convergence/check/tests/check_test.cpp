@@ -348,6 +348,95 @@ TEST(Check, TakesTheTolerance) {
   EXPECT_EQ(check_field(scene, exact, {.tolerance = 1e-5})["verdict"], "bad");
 }
 
+/// The means of a field over squares of three cells.
+FieldRows averaged_by_three(const solver::Solution& fine) {
+  const solver::Grid& grid = fine.grid;
+  const solver::Grid coarse{grid.n1 / 3, grid.n2 / 3, 3.0 * grid.h1, 3.0 * grid.h2};
+  solver::Solution means;
+  means.grid = coarse;
+  means.pressure = Eigen::ArrayXd::Zero(coarse.cells());
+  means.traction = Eigen::ArrayXd::Zero(2 * coarse.cells());
+  for (solver::Index cell = 0; cell < grid.cells(); ++cell) {
+    const solver::Index to = cell / grid.n2 / 3 * coarse.n2 + cell % grid.n2 / 3;
+    means.pressure[to] += fine.pressure[cell] / 9.0;
+    means.traction[to] += fine.traction[cell] / 9.0;
+    means.traction[to + coarse.cells()] += fine.traction[cell + grid.cells()] / 9.0;
+  }
+  return rows_of(means);
+}
+
+// A third of the cells' size, averaged: of two bumps no pressure is known exactly.
+TEST(Check, FindsAveragesOfAFinerSolveGood) {
+  for (const int cells : {40, 64}) {
+    for (const char* name : {"patches", "unequal_patches", "paper"}) {
+      const auto scene = [&](int n) {
+        const std::string grid =
+            std::string(name) == "paper" ? fmt::format("[{},{}]", n, n) : fmt::format("[{},{}]", n, n / 2);
+        return solver::read_scene(kScenes + "/" + name + ".toml",
+                                  {"grid.cells=" + grid, "grid.extent=[2.2e-3,1.1e-3]"});
+      };
+      find_good(averaged_by_three(solver::solve(scene(3 * cells))), scene(cells));
+    }
+  }
+}
+
+// Its own field at its own twist, whose sign a force has made another than the moment's.
+TEST(Check, TakesATwistAgainstTheMoment) {
+  const solver::Scene scene =
+      solver::read_scene(kScenes + "/unequal_patches.toml",
+                         {"grid.cells=[64,40]", "load.force=[30,10]", "load.moment_ratio=-0.05"});
+  const solver::Solution solution = solver::solve(scene);
+  ASSERT_GT(solution.twist_angle, 0.0);
+  const Json result = find_good(rows_of(solution), scene, solution.twist_angle);
+  EXPECT_THAT(result["conventions"], IsEmpty());
+  const solver::Scene force = scene_of("paper", 32, {"load.moment_ratio=0", "load.force=[30,10]"});
+  for (const double rounding : {1e-19, -1e-19, 0.0}) {
+    EXPECT_THAT(find_good(solved(force), force, rounding)["conventions"], IsEmpty());
+  }
+}
+
+// The shape of the contact is the pressure's.
+TEST(Check, FindsTheFieldOfAnotherContactBad) {
+  using testing::StartsWith;
+  const auto ellipsoid = [](const std::string& scene, double r1, double r2, double angle) {
+    return scene_of(scene, 48,
+                    {"grid.cells=[48,48]", "grid.extent=[1.6e-3,1.6e-3]", "upper.shape=ellipsoid",
+                     fmt::format("upper.radius_1={}", r1), fmt::format("upper.radius_2={}", r2),
+                     fmt::format("upper.angle={}", angle)});
+  };
+  const solver::Scene sphere = scene_of("paper", 48);
+  const solver::Scene ellipse = ellipsoid("ellipse", 0.018, 0.0105, 0.0);
+  const solver::Scene two = scene_of("patches", 48, {"grid.extent=[2.2e-3,1.1e-3]", "grid.cells=[48,24]"});
+  const std::vector<std::pair<FieldRows, solver::Scene>> others{
+      {solved(ellipsoid("ellipse", 0.04, 0.0105, 0.0)), sphere},
+      {solved(ellipsoid("ellipse", 0.018, 0.0105, std::numbers::pi / 6.0)), ellipse},
+      {solved(ellipsoid("ellipse", 0.01375, 0.01375, 0.0)), ellipse},
+      {solved(sphere), two}};
+  for (const auto& [rows, scene] : others) {
+    const auto file = write_rows(rows);
+    for (const std::optional<double> tolerance : {std::optional<double>(), {1e-3}}) {
+      const Json result = check_field(scene, file, {.strict = true, .tolerance = tolerance});
+      EXPECT_EQ(result["verdict"], "bad");
+      EXPECT_THAT(why(result), HasSubstr("the contact has another shape"));
+    }
+  }
+  const Json given = check_field(sphere, write_rows(others.front().first), {.pressure_given = true});
+  EXPECT_EQ(given["verdict"], "good") << why(given);
+  EXPECT_THAT(given["headline"].get<std::string>(), HasSubstr("the pressure taken as given"));
+}
+
+// Hertz's pressure at centres and in the mean, of a file, and of a solve to three digits.
+TEST(Check, FindsOtherRightPressuresGood) {
+  for (const char* name : {"paper", "ellipse"}) {
+    for (const int cells : {24, 48, 64}) {
+      for (const char* pressure : {"hertz", "hertz_averaged"}) {
+        find_good(solved(scene_of(name, cells, {fmt::format("contact.pressure={}", pressure)})),
+                  scene_of(name, cells));
+      }
+    }
+  }
+}
+
 TEST(Check, SaysThatAnInfinitePressureCannotBeSampled) {
   const solver::Scene scene = scene_of("flat_punch");
   find_bad(sampled(scene), scene, AllOf(HasSubstr("normal load"), HasSubstr("sampled at cell centres")));
