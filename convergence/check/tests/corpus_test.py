@@ -25,7 +25,7 @@ def settings(keys):
 
 def run(*words):
     done = subprocess.run([PROGRAM, *map(str, words)], capture_output=True, text=True)
-    if done.returncode > 1 or (done.returncode == 1 and words[0] == "solve"):
+    if done.returncode > 1:
         raise RuntimeError(done.stderr)
     return done.stdout
 
@@ -151,7 +151,7 @@ def wrong_fields(rng, scene, keys, own, result, amplitude):
     yield "half", where(lambda x1, x2: x1 > middle[0], scaled(1 - a)), {}, None
     yield "q2", each(own, lambda x1, x2, p, q1, q2: (p, q1, q2 * (1 - a))), {}, None
     yield "turned tractions", each(own, lambda x1, x2, p, q1, q2: (p, *turned(q1, q2, 0.5 * a))), {}, None
-    cell = rng.choice([k for k, s in enumerate(size) if s > 0.5 * top])
+    cell = rng.choice([k for k, s in enumerate(size) if s > 0.5 * max(size)])
     yield "one cell", [r if k != cell else [*r[:3], r[3] * (1 - a), r[4] * (1 - a)] for k, r in enumerate(own)], {}, None
     column = sorted({r[0] for r in own})
     h = column[1] - column[0]
@@ -172,6 +172,8 @@ def wrong_fields(rng, scene, keys, own, result, amplitude):
         yield "K13 missing", solve(scene, keys | {"contact.coupling": "none"})[0], {}, "K13"
     if "ellipse" in scene:
         yield "frozen directions", solve(scene, keys | {"solver.method": "paper", "solver.tolerance": 1e-5})[0], {}, "keep a direction"
+    if scene not in ("paper", "cone", "ellipse", "turned_ellipse") or "load.force" in keys:
+        return
     stopped = {0.01: 40, 0.03: 20, 0.1: 10, 0.3: 5, 1.0: 2}[a]
     yield "stopped early", solve(scene, keys | {"solver.method": "projected_gradient", "solver.max_iterations": stopped,
                                                 "solver.tolerance": 1e-14})[0], {}, None
@@ -189,7 +191,7 @@ def cause_in(details):
 
 def main():
     rng = random.Random(SEED)
-    right, wrong, causes, failures = Counter(), defaultdict(Counter), defaultdict(Counter), []
+    right, wrong, causes = Counter(), defaultdict(Counter), defaultdict(Counter)
     numbers = Counter()
     for _ in range(COUNT):
         scene, keys = draw(rng)
@@ -202,19 +204,19 @@ def main():
             verdict = ask(scene, keys, rows, options)
             right[name, verdict["verdict"]] += 1
             if verdict["verdict"] == "bad":
-                failures.append(f"right but bad: {name}: {scene} {keys}: {verdict['why']}")
+                print(f"right but bad: {name}: {scene} {keys}: {verdict['why']}", flush=True)
         for amplitude in (0.01, 0.03, 0.1, 0.3, 1.0):
             try:
                 for name, rows, options, cause in wrong_fields(rng, scene, keys, own, result, amplitude):
                     try:
                         verdict = ask(scene, keys, rows, options)
-                    except RuntimeError as error:
+                    except RuntimeError:
                         wrong[name][amplitude, "refused"] += 1
                         continue
                     wrong[name][amplitude, verdict["verdict"]] += 1
                     if verdict["verdict"] == "good":
                         if amplitude == FULL:
-                            failures.append(f"wrong but good: {name}: {scene} {keys}: {verdict['why']}")
+                            print(f"wrong but good: {name}: {scene} {keys}: {verdict['why']}", flush=True)
                         continue
                     found = cause_in(verdict["details"])
                     quantity = any(not item["holds"] for item in verdict["judged"]) or verdict["mistakes"]
@@ -224,10 +226,9 @@ def main():
                     numbers[f"cause {kind}"] += 1
                     causes[name][kind] += 1
                     if kind == "wrong":
-                        failures.append(f"cause: {name} {amplitude}: {scene} {keys}: {found}")
+                        print(f"cause: {name} {amplitude}: {scene} {keys}: {found}", flush=True)
             except RuntimeError as error:
                 print("not made:", scene, amplitude, str(error)[:160])
-    print("\n".join(failures))
     print("| right field | good | bad |\n|---|---|---|")
     for name in sorted({name for name, _ in right}):
         print(f"| {name} | {right[name, 'good']} | {right[name, 'bad']} |")
