@@ -151,9 +151,10 @@ void correct_axes(Interpretation& read, const solver::Model& model) {
   rearrange(field, from, [](const auto& values) { return values.transpose(); });
 }
 
-/// A scene of one body that stands about an axis.
+/// A scene of one body that stands about an axis, with its own pressure.
 bool has_axis(const solver::Scene& scene) {
-  return scene.surfaces.size() == 1 && solver::find_height_map(scene.surfaces) == nullptr &&
+  return scene.surfaces.size() == 1 && scene.pressure != solver::PressureModel::file &&
+         solver::find_height_map(scene.surfaces) == nullptr &&
          scene.surfaces.front().shape != solver::Shape::roughness;
 }
 
@@ -168,7 +169,7 @@ void correct_origin(Interpretation& read, const solver::Scene& scene) {
     off[k] = field.centre[k] + (field.pressure * x).sum() / total - scene.surfaces.front().at[k];
   }
   const double cells = std::max(std::abs(off[0]) / field.grid.h1, std::abs(off[1]) / field.grid.h2);
-  if (!(cells > kInPlace)) return;
+  if (!(cells > (scene.coupling == solver::Coupling::full ? 1.0 : kInPlace))) return;
   for (std::size_t k = 0; k < 2; ++k) field.centre[k] -= off[k];
   if (cells < 1.0) return;
   read.conventions.push_back(fmt::format(

@@ -133,24 +133,25 @@ std::optional<ArrayXd> moved(const Grid& from, const ArrayXd& values, const Grid
 std::optional<ArrayXd> scene_pressure(const GivenContact& contact, const solver::Scene& scene,
                                       const solver::Model& model, Grid& grid) {
   const double unit = contact.length_unit;
-  const Grid own = model.grid_in_m();
-  const auto beyond = [&](Index n, double h, double side, double centre) {
-    const double missing = 0.5 * side / unit + std::abs(centre) - 0.5 * static_cast<double>(n) * h;
+  const Grid in_m = model.grid_in_m();
+  const Grid own{in_m.n1, in_m.n2, in_m.h1 / unit, in_m.h2 / unit};
+  const double half1 = 0.5 * static_cast<double>(own.n1) * own.h1;
+  const double half2 = 0.5 * static_cast<double>(own.n2) * own.h2;
+  const auto larger = [](Index n, double h, double half) {
+    const double missing = half - 0.5 * static_cast<double>(n) * h;
     return n + 2 * static_cast<Index>(std::clamp(std::ceil(missing / h), 0.0, kMaxCells));
   };
-  grid.n1 = beyond(grid.n1, grid.h1, static_cast<double>(own.n1) * own.h1, contact.centre[0]);
-  grid.n2 = beyond(grid.n2, grid.h2, static_cast<double>(own.n2) * own.h2, contact.centre[1]);
+  grid.n1 = larger(grid.n1, grid.h1, half1 + std::abs(contact.centre[0]));
+  grid.n2 = larger(grid.n2, grid.h2, half2 + std::abs(contact.centre[1]));
   if (!(static_cast<double>(grid.n1) * static_cast<double>(grid.n2) <= kMaxCells)) return std::nullopt;
-  const bool on_own_grid =
-      scene.pressure == solver::PressureModel::file || scene.coupling == solver::Coupling::full ||
-      std::ranges::any_of(scene.surfaces, [](const auto& surface) { return solver::is_measured(surface); });
-  if (on_own_grid) {
-    const Grid cells{own.n1, own.n2, own.h1 / unit, own.h2 / unit};
-    if (!moved(cells, ArrayXd::Zero(own.cells()), grid, contact.centre)) return std::nullopt;
-    const bool coupled = scene.coupling == solver::Coupling::full;
-    const ArrayXd pressure = coupled ? ArrayXd(solver::solve(scene).pressure / contact.stress_unit)
-                                     : solver::find_pressure(scene, model, scene.steps.front()).pressure;
-    return moved(cells, pressure, grid, contact.centre);
+  const bool coupled = scene.coupling == solver::Coupling::full;
+  if (coupled || scene.pressure == solver::PressureModel::file ||
+      std::ranges::any_of(scene.surfaces, solver::is_measured)) {
+    if (!moved(own, ArrayXd::Zero(own.cells()), grid, contact.centre)) return std::nullopt;
+    return moved(own,
+                 coupled ? ArrayXd(solver::solve(scene).pressure / contact.stress_unit)
+                         : solver::find_pressure(scene, model, scene.steps.front()).pressure,
+                 grid, contact.centre);
   }
   if (!scene.steps.front().normal) return std::nullopt;
   std::vector<solver::Surface> surfaces = scene.surfaces;
@@ -160,11 +161,8 @@ std::optional<ArrayXd> scene_pressure(const GivenContact& contact, const solver:
   }
   ArrayXd gap = solver::gap_field(surfaces, scene.combine, grid);
   if (scene.ends_at_grid_edge) {
-    const auto outside = [&](const ArrayXd& x, double centre, double side) {
-      return (x + centre).abs() > 0.5 * side / unit;
-    };
-    gap = (outside(solver::cell_x1(grid), contact.centre[0], static_cast<double>(own.n1) * own.h1) ||
-           outside(solver::cell_x2(grid), contact.centre[1], static_cast<double>(own.n2) * own.h2))
+    gap = ((solver::cell_x1(grid) + contact.centre[0]).abs() > half1 ||
+           (solver::cell_x2(grid) + contact.centre[1]).abs() > half2)
               .select(std::numeric_limits<double>::infinity(), gap);
   }
   const double total = *scene.steps.front().normal / contact.force_unit() / grid.cell_area();

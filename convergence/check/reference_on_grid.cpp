@@ -133,19 +133,16 @@ ArrayXd deviation_from(const ArrayXd& right, const ArrayXd& pressure) {
 }
 
 /// The right pressure on a third of the cells' size, over the whole grid or the wide one: the exact one, or
-/// else solved there. None where it is not known.
+/// else solved there if that is wanted. None where it is not known.
 std::optional<ArrayXd> fine_pressure(const GivenContact& contact, const solver::Scene& scene,
                                      const solver::Model& model, const std::optional<Oracle>& pressed,
                                      const Grid& fine, bool solve) {
-  const auto& normal = scene.steps.front().normal;
-  if (pressed && normal) {
+  if (const auto& normal = scene.steps.front().normal; pressed && normal) {
     if (auto exact = exact_pressure(*pressed, contact, fine, *normal)) return exact;
   }
   Grid same = fine;
-  if (!solve) return std::nullopt;
-  auto solved = scene_pressure(contact, scene, model, same);
-  if (solved) return resized(same, fine, *solved);
-  return std::nullopt;
+  const auto solved = solve ? scene_pressure(contact, scene, model, same) : std::nullopt;
+  return solved ? std::optional(resized(same, fine, *solved)) : std::nullopt;
 }
 
 MeshErrors measure_mesh(const GivenContact& contact, const solver::Scene& scene, const solver::Model& model,

@@ -259,17 +259,6 @@ TEST(Check, FindsExactFieldsGood) {
   }
 }
 
-TEST(Check, FindsExactFieldsGoodAtAnyLoad) {
-  for (const char* name : {"paper", "cone"}) {
-    for (const int cells : {32, 64}) {
-      for (const char* ratio : {"0.1", "0.3", "0.6", "0.9", "0.99"}) {
-        const solver::Scene scene = scene_of(name, cells, {std::string("load.moment_ratio=") + ratio});
-        find_good(sampled(scene), scene, find_oracle(scene).oracle->twist_angle);
-      }
-    }
-  }
-}
-
 // Samples of the exact answer do not solve the grid's problem of constant cells: they are right within the
 // mesh all the same.
 TEST(Check, AsksTwoQuestions) {
@@ -316,25 +305,6 @@ TEST(Check, AllowsOfLoadsNoMoreThanTheirQuadrature) {
 TEST(Check, JudgesTheMomentThatAnImposedTwistCauses) {
   find_bad(solved(scene_of("paper", 48, {"load.twist=1.02e-3"})), scene_of("paper", 48, {"load.twist=1e-3"}),
            HasSubstr("the moment is"));
-}
-
-// What is wrong with one number is said of that one alone: a right twist is not called another one's.
-TEST(Check, DoesNotContradictItself) {
-  const solver::Scene scene = scene_of("paper", 48);
-  const solver::Solution solution = solver::solve(scene);
-  for (const double factor : {0.5, 0.97, 0.995, 1.0}) {
-    const FieldRows rows = changed(rows_of(solution), [=](FieldRow& r) {
-      const double inside = std::hypot(r[0], r[1]) < 1e-4 ? factor : 1.0;
-      r[3] *= inside, r[4] *= inside;
-    });
-    const std::string text = why(check_rows(rows, scene, solution.twist_angle));
-    EXPECT_FALSE(text.find("the twist is right") != std::string::npos &&
-                 text.find("a twist that is not") != std::string::npos)
-        << text;
-    EXPECT_FALSE(text.find("Coulomb's law holds") != std::string::npos &&
-                 text.find("slip is not opposed") != std::string::npos)
-        << text;
-  }
 }
 
 // In place of what the mesh leaves open, both ways.
@@ -425,10 +395,22 @@ TEST(Check, FindsTheFieldOfAnotherContactBad) {
   EXPECT_THAT(given["headline"].get<std::string>(), HasSubstr("the pressure taken as given"));
 }
 
-// Hertz's pressure at centres and in the mean, of a file, and of a solve to three digits.
-TEST(Check, FindsOtherRightPressuresGood) {
+// Where the slip ring is narrower than a cell, and where the pressure or the gap are nearly those of constant
+// cells: near no slip and near the limit, on fine grids.
+TEST(Check, FindsExactFieldsGoodOnAnyGrid) {
+  const std::vector<std::tuple<const char*, int, double>> fields{
+      {"paper", 112, 0.99}, {"paper", 128, 0.05}, {"paper", 136, 0.05}, {"paper", 136, 0.2},
+      {"paper", 32, 0.1},   {"paper", 64, 0.99},  {"cone", 32, 0.6},    {"cone", 64, 0.9}};
+  for (const auto& [name, cells, ratio] : fields) {
+    const solver::Scene scene = scene_of(name, cells, {fmt::format("load.moment_ratio={}", ratio)});
+    find_good(sampled(scene), scene, find_oracle(scene).oracle->twist_angle);
+  }
+}
+
+// Hertz's pressure, at centres and in the mean.
+TEST(Check, FindsHertzPressuresGood) {
   for (const char* name : {"paper", "ellipse"}) {
-    for (const int cells : {24, 48, 64}) {
+    for (const int cells : {24, 48}) {
       for (const char* pressure : {"hertz", "hertz_averaged"}) {
         find_good(solved(scene_of(name, cells, {fmt::format("contact.pressure={}", pressure)})),
                   scene_of(name, cells));

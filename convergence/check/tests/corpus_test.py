@@ -1,5 +1,5 @@
 """corpus_test.py PROGRAM SCENES [COUNT [SEED]]: right and wrong fields, made by a seed, and what slipstick check says of them.
-COUNT is that of the scenes (default 4; 30 make some 300 right and 700 wrong fields). Prints tables by mistake and amplitude.
+COUNT is that of the scenes (default 4; 30 make some 300 right and 1,000 wrong fields). Prints tables by mistake and amplitude.
 Fails where a right field is bad, where a wrong one of full amplitude is good, and where causes are named wrongly."""
 
 import json
@@ -16,7 +16,7 @@ PROGRAM, SCENES = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 COUNT = int(sys.argv[3]) if len(sys.argv) > 3 else 4
 SEED = int(sys.argv[4]) if len(sys.argv) > 4 else 1
 FOLDER = Path(tempfile.mkdtemp())
-FULL = 1.0  # the amplitude at which every mistake must be found
+AMPLITUDES = (0.01, 0.03, 0.1, 0.3, 1.0)  # two of them for each scene; the last must be found
 
 
 def settings(keys):
@@ -65,7 +65,7 @@ def turned(q1, q2, angle):
 
 def draw(rng):
     """A scene, its keys, and whether its answer is exact."""
-    n = 2 * rng.randint(12, 32)
+    n = 2 * rng.randint(12, 26)
     kind = rng.choice(["paper", "paper", "cone", "ellipse", "turned_ellipse", "patches", "unequal_patches", "dissimilar", "mindlin"])
     keys = {"grid.cells": f"[{n},{n}]", "contact.friction": round(rng.uniform(0.05, 0.6), 3)}
     if kind == "mindlin":
@@ -170,7 +170,7 @@ def wrong_fields(rng, scene, keys, own, result, amplitude):
                                                       (("poisson_ratio", nu), ("young_modulus", young))})[0], {}, "Poisson"
     if scene == "dissimilar":
         yield "K13 missing", solve(scene, keys | {"contact.coupling": "none"})[0], {}, "K13"
-    if "ellipse" in scene:
+    if "ellipse" in scene and "load.force" not in keys:
         yield "frozen directions", solve(scene, keys | {"solver.method": "paper", "solver.tolerance": 1e-5})[0], {}, "keep a direction"
     if scene not in ("paper", "cone", "ellipse", "turned_ellipse") or "load.force" in keys:
         return
@@ -205,7 +205,7 @@ def main():
             right[name, verdict["verdict"]] += 1
             if verdict["verdict"] == "bad":
                 print(f"right but bad: {name}: {scene} {keys}: {verdict['why']}", flush=True)
-        for amplitude in (0.01, 0.03, 0.1, 0.3, 1.0):
+        for amplitude in rng.sample(AMPLITUDES, 2):
             try:
                 for name, rows, options, cause in wrong_fields(rng, scene, keys, own, result, amplitude):
                     try:
@@ -215,7 +215,7 @@ def main():
                         continue
                     wrong[name][amplitude, verdict["verdict"]] += 1
                     if verdict["verdict"] == "good":
-                        if amplitude == FULL:
+                        if amplitude == AMPLITUDES[-1]:
                             print(f"wrong but good: {name}: {scene} {keys}: {verdict['why']}", flush=True)
                         continue
                     found = cause_in(verdict["details"])
@@ -234,7 +234,7 @@ def main():
         print(f"| {name} | {right[name, 'good']} | {right[name, 'bad']} |")
     print("| mistake | good/bad at 0.01 | 0.03 | 0.1 | 0.3 | 1 | cause right | none | wrong |\n|---|---|---|---|---|---|---|---|---|")
     for name, found in sorted(wrong.items()):
-        cells = " | ".join(f"{found[a, 'good']}/{found[a, 'bad']}" for a in (0.01, 0.03, 0.1, 0.3, 1.0))
+        cells = " | ".join(f"{found[a, 'good']}/{found[a, 'bad']}" for a in AMPLITUDES)
         print(f"| {name} | {cells} | {causes[name]['right']} | {causes[name]['none']} | {causes[name]['wrong']} |")
     print(sum(right.values()), "right,", sum(sum(v for (_, k), v in f.items() if k != "refused") for f in wrong.values()), "wrong:",
           dict(numbers))
