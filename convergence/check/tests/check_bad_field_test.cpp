@@ -73,15 +73,6 @@ TEST_P(CheckCoarseBadField, FrictionTwoPercentLowUnderTheSameMoment) {
                  HasSubstr("friction coefficient of 0.098 in place of 0.1")));
 }
 
-TEST_P(CheckCoarseBadField, OneQuadrantTwoPercentLow) {
-  find_bad(changed(rows_,
-                   [](FieldRow& r) {
-                     const double factor = r[0] > 0.0 && r[1] > 0.0 ? 0.98 : 1.0;
-                     r[3] *= factor, r[4] *= factor;
-                   }),
-           scene_, testing::_);
-}
-
 // The twist that is wrong is that which was given, and no sentence calls it right.
 TEST_P(CheckCoarseBadField, TwistOnePercentHigh) {
   find_bad(rows_, scene_,

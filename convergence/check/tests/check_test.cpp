@@ -407,18 +407,6 @@ TEST(Check, FindsExactFieldsGoodOnAnyGrid) {
   }
 }
 
-// Hertz's pressure, at centres and in the mean.
-TEST(Check, FindsHertzPressuresGood) {
-  for (const char* name : {"paper", "ellipse"}) {
-    for (const int cells : {24, 48}) {
-      for (const char* pressure : {"hertz", "hertz_averaged"}) {
-        find_good(solved(scene_of(name, cells, {fmt::format("contact.pressure={}", pressure)})),
-                  scene_of(name, cells));
-      }
-    }
-  }
-}
-
 TEST(Check, SaysThatAnInfinitePressureCannotBeSampled) {
   const solver::Scene scene = scene_of("flat_punch");
   find_bad(sampled(scene), scene, AllOf(HasSubstr("normal load"), HasSubstr("sampled at cell centres")));
