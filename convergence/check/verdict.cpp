@@ -341,25 +341,6 @@ std::string twist_mistake(const Examination& e, double allowed) {
   return fmt::format("a twist that is not that of these tractions, {:.6g} rad", e.fitted.twist);
 }
 
-/// Where the field's slipping cells have the right answer's directions, and nothing else is changed.
-bool directions_explain(const Examination& e, double allowed) {
-  const GivenContact& c = e.contact;
-  const ArrayXd& right = e.reference.right.traction;
-  const ArrayXd size = solver::norms(right);
-  const ArrayXd turn = ((e.stick == 0.0) && (size > 0.0)).cast<double>();
-  const ArrayXd turned = turn * solver::norms(c.traction) / (size > 0.0).select(size, 1.0);
-  const ArrayXd tractions = (1.0 - turn).replicate(2, 1) * c.traction + turned.replicate(2, 1) * right;
-  return solver::norms(tractions - right).sum() <= allowed * size.sum();
-}
-
-/// Whether no more of the tractions than is allowed exceeds the friction that the slip ring shows.
-bool keeps_friction(const Examination& e, double allowed) {
-  const GivenContact& c = e.contact;
-  const ArrayXd size = solver::norms(c.traction);
-  const double friction = plateau_of_friction(c, e.reference.right).value_or(0.0);
-  return (size - friction * c.pressure).max(0.0).sum() <= allowed * size.sum();
-}
-
 /// Whether all hold but those whose quantity begins with one of these words.
 bool all_hold_but(const std::vector<Judged>& judged, const std::vector<std::string>& words) {
   return std::ranges::all_of(judged, [&](const Judged& item) {
@@ -390,7 +371,8 @@ std::vector<std::string> causes(const Examination& e, const std::vector<Judged>&
   const double left = e.constant_cells ? allowed.discrete_gap : allowed.gap;
   const double gap = std::min(left, kCollapsed * diagnosis->reference_kernel.gap);
   if (const auto& friction = diagnosis->friction;
-      friction && friction->gap <= left && keeps_friction(e, allowed.tractions)) {
+      friction && friction->gap <= left &&
+      keeps_shown_friction(e.contact, e.reference.right, allowed.tractions)) {
     causes.push_back(friction->name);
     return causes;
   }
@@ -400,7 +382,7 @@ std::vector<std::string> causes(const Examination& e, const std::vector<Judged>&
     const bool explains = kernel->gap <= gap || (directions && kernel->stick_gap <= kIterationGap);
     if (explains) causes.push_back(kernel_text(*kernel, e));
     if (!explains || kernel->gap <= gap) return causes;
-  } else if (!directions_explain(e, allowed.tractions)) {
+  } else if (!directions_explain(e.contact, e.reference.right, allowed.tractions)) {
     return causes;
   }
   if (directions)
