@@ -92,9 +92,8 @@ def right_fields(rng, scene, keys, own, result):
     yield "3 digits", own, {"digits": 3}
     yield "mm and MPa", [[x * 1e3 for x in r[:2]] + [s * 1e-6 for s in r[2:]] for r in own], {}
     yield "other body", each(own, lambda x1, x2, p, q1, q2: (p, -q1, -q2)), {}
-    yield "moved by 0.3 cells" if "patches" not in scene else "own solve", [
-        [r[0] + (0.3e-5 if "patches" not in scene and scene != "mindlin" and "load.force" not in keys else 0.0), *r[1:]]
-        for r in own], {}
+    if "patches" not in scene and scene != "mindlin" and "load.force" not in keys:
+        yield "moved by 0.3 cells", [[r[0] + 0.3 * result["cell_size"][0], *r[1:]] for r in own], {}
     noise = rng.choice([1e-4, 3e-4, 1e-3])
     yield f"noise {noise}", each(own, lambda x1, x2, p, q1, q2: (p * rng.gauss(1, noise), q1 * rng.gauss(1, noise),
                                                                  q2 * rng.gauss(1, noise))), {}
