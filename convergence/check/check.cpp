@@ -148,22 +148,24 @@ Json reference_json(const Examination& e) {
 /// Up to its reason.
 std::string short_note(const std::string& note) { return note.substr(0, note.find(':')); }
 
-/// Mistakes first, then the conventions that do not count, then what is to be said of the field as it was
-/// read.
-std::string why(const Examination& e, const Verdict& verdict, bool strict) {
+/// Mistakes and the conventions that do not count, where the field is good without them, and else the first
+/// quantity that is wrong.
+std::string headline(const Examination& e, const Verdict& verdict, const CheckOptions& options) {
+  if (!verdict.within_mesh()) return verdict.headline;
   std::vector<std::string> wrong;
   for (const std::string& mistake : e.read.mistakes) wrong.push_back(short_note(mistake));
-  if (strict) {
+  if (options.strict) {
     for (const std::string& convention : e.conventions) wrong.push_back(short_note(convention));
   }
-  if (wrong.empty()) return verdict.why;
-  return fmt::format("{}; without that {}", fmt::join(wrong, ", and "), verdict.why);
+  if (options.discrete && !verdict.discrete.holds()) wrong.push_back(verdict.discrete.wrong);
+  if (wrong.empty()) return verdict.headline;
+  return fmt::format("{}; without that {}", fmt::join(wrong, ", and "), verdict.headline);
 }
 
 }  // namespace
 
 Json check_field(const solver::Scene& scene, const std::filesystem::path& file, const CheckOptions& options) {
-  const Examination e = examine(scene, file, options.twist, options.columns);
+  const Examination e = examine(scene, file, options.twist, options.pressure_given, options.columns);
   const Verdict verdict = reach_verdict(e, options.tolerance);
   const StickArea stick = stick_area(e);
   const bool fits = e.read.mistakes.empty() && !(options.strict && !e.conventions.empty());
@@ -172,7 +174,10 @@ Json check_field(const solver::Scene& scene, const std::filesystem::path& file, 
   json["name"] = scene.name;
   json["field"] = file.string();
   json["verdict"] = good ? "good" : "bad";
-  json["why"] = why(e, verdict, options.strict);
+  json["headline"] = headline(e, verdict, options);
+  json["details"] = verdict.details;
+  json["why"] = json["headline"].get<std::string>() + (verdict.details.empty() ? "" : "; " + verdict.details);
+  json["pressure_given"] = options.pressure_given;
   json["within_mesh"] = verdict.within_mesh();
   json["discrete"]["holds"] = verdict.discrete.holds();
   set_number(json["discrete"], "gap", verdict.discrete.value, "|q| exceeds mu p: there is no gap");
@@ -211,9 +216,12 @@ std::string field_text(const Json& r) {
 
 std::string state_and_errors_text(const Json& r) {
   const auto error = [&](const char* key) {
-    return r[key].is_number() ? fmt::format("   (error {:+.1e})", r[key].get<double>()) : "";
+    constexpr double kNone = 1e-6;
+    if (!r[key].is_number()) return std::string();
+    const double value = r[key];
+    return std::abs(value) < kNone ? "   (no error)" : fmt::format("   (error {:+.1e})", value);
   };
-  const std::string inferred = r["twist_inferred"].get<bool>() ? ", inferred" : "";
+  const std::string inferred = r["twist_inferred"].get<bool>() ? ", which fits the tractions" : "";
   return text_line("normal load", number_text(r["normal_load"]) + " N") +
          text_line("contact radius",
                    number_text(r["contact_radius"]) + " m" + error("contact_radius_error")) +
@@ -239,8 +247,7 @@ std::string certificate_text(const Json& r) {
   const Json& certificate = r["certificate"];
   const Json& direction = r["slip_direction"];
   return text_line("certificate",
-                   fmt::format("gap/energy {}, moment off by {}, |q| above mu p by {}",
-                               number_text(certificate["gap"]), number_text(certificate["moment"]),
+                   fmt::format("moment off by {}, |q| above mu p by {}", number_text(certificate["moment"]),
                                number_text(certificate["friction_bound"]))) +
          text_line("slip direction",
                    fmt::format("{} degrees off in the mean, {} at most (Coulomb: 0)",
@@ -254,7 +261,8 @@ std::string check_text(const Json& r) {
   for (const Json& note : r["conventions"]) taken.push_back(short_note(note));
   std::string text = r["verdict"];
   if (!taken.empty()) text += fmt::format(" ({})", fmt::join(taken, "; "));
-  text += fmt::format(": {}\n", r["why"].get<std::string>());
+  text += fmt::format(": {}\n", r["headline"].get<std::string>());
+  if (r["details"] != "") text += fmt::format("  {}\n", r["details"].get<std::string>());
   text += field_text(r) + state_and_errors_text(r) + traction_text(r) + certificate_text(r);
   for (const Json& item : r["judged"]) {
     text +=

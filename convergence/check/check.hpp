@@ -16,8 +16,9 @@ struct CheckOptions {
   std::vector<std::string> columns = {};  ///< of a file without a header, or paths in one of HDF5
   bool discrete = false;                  ///< it has to solve its own grid's problem, of constant cells, too
   bool strict = false;                    ///< it has to be in the scene's conventions
+  bool pressure_given = false;            ///< its pressure is not judged
   std::optional<double> tolerance =
-      {};  ///< on loads, motion and tractions, in place of what the mesh leaves open
+      {};  ///< on loads, pressure, motion and tractions, in place of what the mesh leaves open
 };
 
 /// Judges a traction field that any program computed for a scene: against the exact solution where there is

@@ -41,10 +41,10 @@ int run_check(const CLI::App& command, const CheckRequest& request, std::ostream
   const solver::Scene scene = solver::read_scene(request.scene, request.overrides);
   require_inputs_kept(command, input_files(scene));
   if (request.check.columns.empty() && is_loop_file(request.field)) {
-    if (request.check.twist || request.check.discrete) {
+    if (request.check.twist || request.check.discrete || request.check.pressure_given) {
       throw solver::InputError(request.field,
-                               "is a loop; --twist and --discrete are for a field of tractions; allowed: "
-                               "without them");
+                               "is a loop; --twist, --discrete and --pressure-given are for a field of "
+                               "tractions; allowed: without them");
     }
     result = check_loop(
         scene, request.field,
@@ -92,6 +92,8 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI
       "--tolerance", request->check.tolerance,
       "error of loads, twist and tractions that is allowed, in place of what the mesh leaves open; of a "
       "loop's moment, root mean square, in place of 0.01");
+  command->add_flag("--pressure-given", request->check.pressure_given,
+                    "take the field's pressure as it is: judge its load and the tractions under it alone");
   command->add_flag("--strict", request->check.strict,
                     "good only in the scene's own conventions: m, Pa, tractions on the lower body");
   command->footer(

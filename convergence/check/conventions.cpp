@@ -29,6 +29,9 @@ constexpr double kSameUnit = 31.6;
 /// Where units had to be guessed the load has to confirm them.
 constexpr double kCorrectedLoad = 0.2;
 
+/// Sums over cells know a contact's middle up to this part of a cell.
+constexpr double kInPlace = 1e-2;
+
 struct Unit {
   const char* name;
   double size;
@@ -148,13 +151,14 @@ void correct_axes(Interpretation& read, const solver::Model& model) {
   rearrange(field, from, [](const auto& values) { return values.transpose(); });
 }
 
-/// A scene of one body that stands about an axis.
+/// A scene of one body that stands about an axis, with its own pressure.
 bool has_axis(const solver::Scene& scene) {
-  return scene.surfaces.size() == 1 && solver::find_height_map(scene.surfaces) == nullptr &&
+  return scene.surfaces.size() == 1 && scene.pressure != solver::PressureModel::file &&
+         solver::find_height_map(scene.surfaces) == nullptr &&
          scene.surfaces.front().shape != solver::Shape::roughness;
 }
 
-/// A contact that stands a cell or more from its place in the scene is one in other coordinates.
+/// A contact about an axis is put on it. One that stood a cell or more away was in other coordinates.
 void correct_origin(Interpretation& read, const solver::Scene& scene) {
   ForeignField& field = read.field;
   if (!has_axis(scene)) return;
@@ -164,10 +168,12 @@ void correct_origin(Interpretation& read, const solver::Scene& scene) {
     const ArrayXd x = k == 0 ? solver::cell_x1(field.grid) : solver::cell_x2(field.grid);
     off[k] = field.centre[k] + (field.pressure * x).sum() / total - scene.surfaces.front().at[k];
   }
-  if (std::abs(off[0]) < field.grid.h1 && std::abs(off[1]) < field.grid.h2) return;
+  const double cells = std::max(std::abs(off[0]) / field.grid.h1, std::abs(off[1]) / field.grid.h2);
+  if (!(cells > (scene.coupling == solver::Coupling::full ? 1.0 : kInPlace))) return;
+  for (std::size_t k = 0; k < 2; ++k) field.centre[k] -= off[k];
+  if (cells < 1.0) return;
   read.conventions.push_back(fmt::format(
       "the contact's middle stands ({:.4g}, {:.4g}) m from the scene's: moved there", off[0], off[1]));
-  for (std::size_t k = 0; k < 2; ++k) field.centre[k] -= off[k];
 }
 
 /// How tractions may be written: those on the other body, in a left-handed frame, in another order of their

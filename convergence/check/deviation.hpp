@@ -54,6 +54,8 @@ struct Deviation {
   /// few cells along its edges do not move. 0 where hardly any cell slips.
   double friction = 0.0;
   double gap = 0.0;  ///< of Coulomb's law, over energy
+  /// sum |p - r| / sum r, with p under the right normal load: the contact's shape. Not find_deviation()'s.
+  double pressure = 0.0;
 };
 /// The motion is compared as it is reported, the gap is that under the motion that Coulomb's law fits best:
 /// a wrong twist is no mistake of the tractions.

@@ -222,4 +222,19 @@ Diagnosis diagnose(const GivenContact& contact, const solver::Step& load, double
           .stick_area_explained = explained.stick_gap <= std::min(allowed, kExplains * explained.gap)};
 }
 
+bool directions_explain(const GivenContact& c, const RightAnswer& answer, double allowed) {
+  const ArrayXd& right = answer.traction;
+  const ArrayXd size = solver::norms(right);
+  const ArrayXd turn = ((stick_cells(c) == 0.0) && (size > 0.0)).cast<double>();
+  const ArrayXd turned = turn * solver::norms(c.traction) / (size > 0.0).select(size, 1.0);
+  const ArrayXd tractions = (1.0 - turn).replicate(2, 1) * c.traction + turned.replicate(2, 1) * right;
+  return solver::norms(tractions - right).sum() <= allowed * size.sum();
+}
+
+bool keeps_shown_friction(const GivenContact& c, const RightAnswer& right, double allowed) {
+  const ArrayXd size = solver::norms(c.traction);
+  const double friction = plateau_of_friction(c, right).value_or(0.0);
+  return (size - friction * c.pressure).max(0.0).sum() <= allowed * size.sum();
+}
+
 }  // namespace slipstick::convergence

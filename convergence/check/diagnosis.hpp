@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "convergence/check/deviation.hpp"
 #include "convergence/check/given_contact.hpp"
 
 namespace slipstick::convergence {
@@ -37,5 +38,12 @@ Diagnosis diagnose(const GivenContact& contact, const solver::Step& load, double
 
 /// Cells that stick: |q| below mu p by more than what a file's digits or a solver's tolerance leave open.
 Eigen::ArrayXd stick_cells(const GivenContact& contact);
+
+/// Whether the tractions are right, up to a part of them, once the cells that do not stick have the right
+/// directions.
+bool directions_explain(const GivenContact& contact, const RightAnswer& answer, double allowed);
+
+/// Whether no more than a part of the tractions exceeds the friction that the slip ring shows.
+bool keeps_shown_friction(const GivenContact& contact, const RightAnswer& right, double allowed);
 
 }  // namespace slipstick::convergence

@@ -16,6 +16,10 @@ using Eigen::ArrayXd;
 using solver::Index;
 using solver::InputError;
 
+/// A pressure is that of constant cells where it is off by no more than this part of what other right ones
+/// are.
+constexpr double kConstantCells = 0.1;
+
 void require_judgeable(const solver::Scene& scene) {
   const std::string file = scene.source.string();
   if (scene.steps.size() > 1 || scene.cycles > 1) {
@@ -48,6 +52,15 @@ OracleAnswer exact_normal_contact(solver::Scene scene) {
   return find_oracle(scene);
 }
 
+/// Whether a twist is the one that fits the tractions but for its sign, and no rounding.
+bool is_turned_over(const GivenContact& c, double twist, double fitted) {
+  constexpr double kSameSize = 0.1;
+  constexpr double kRounding = 1e-6;
+  return std::abs(twist + fitted) < kSameSize * std::abs(twist) &&
+         std::abs(twist) * solver::norms(c.rotation).maxCoeff() >
+             kRounding * solver::norms(c.displacement).maxCoeff();
+}
+
 /// The loads are those that the scene asks for, and else the field's own.
 solver::Certificate certify_field(const GivenContact& c, const solver::Step& load, const State& state,
                                   const std::optional<double>& moment) {
@@ -59,7 +72,8 @@ solver::Certificate certify_field(const GivenContact& c, const solver::Step& loa
 }  // namespace
 
 Examination examine(const solver::Scene& scene, const std::filesystem::path& file,
-                    std::optional<double> given_twist, const std::vector<std::string>& columns) {
+                    std::optional<double> given_twist, bool pressure_given,
+                    const std::vector<std::string>& columns) {
   require_judgeable(scene);
   const solver::Step& load = scene.steps.front();
   const solver::Model model = solver::make_model(scene);
@@ -68,17 +82,18 @@ Examination examine(const solver::Scene& scene, const std::filesystem::path& fil
   const GivenContact contact = make_given_contact(read.field, model, model.threads);
 
   std::vector<std::string> conventions = read.conventions;
+  const State fitted = find_state(contact, load, std::nullopt);
   std::optional<double> twist = given_twist;
   if (!twist) {
     twist = solver::value_if<solver::Twist>(load.torsion);
-  } else if (!(*twist * contact.moment() >= 0.0)) {  // first loading turns in the sense of the moment
+  } else if (is_turned_over(contact, *twist, fitted.twist)) {
     twist = -*twist;
     conventions.emplace_back("the twist that was given counts the other way round");
   }
   const OracleAnswer pressed = seen_from(exact_normal_contact(scene), read.field.centre);
-  const ReferenceOnGrid reference =
-      find_reference_on_grid(contact, load, pressed.oracle, given_twist.has_value());
-  const State fitted = find_state(contact, load, std::nullopt);
+  const ReferenceOnGrid reference = find_reference_on_grid(
+      contact, scene, model,
+      {pressed.oracle, seen_from(exact, read.field.centre).oracle, given_twist.has_value(), pressure_given});
   const State state = twist ? find_state(contact, load, twist) : fitted;
   const double limit = solver::free_moment_limit(contact.grid, contact.friction_bound);
   const auto moment = std::holds_alternative<solver::Twist>(load.torsion)
@@ -90,7 +105,9 @@ Examination examine(const solver::Scene& scene, const std::filesystem::path& fil
           .exact = seen_from(exact, read.field.centre),
           .contact = contact,
           .reference = reference,
-          .constant_cells = solves_normal_problem(contact, scene),
+          .constant_cells = reference.pressure &&
+                            reference.pressure->off <= kConstantCells * reference.mesh.deviation.pressure,
+          .pressure_given = pressure_given,
           .twist_given = twist.has_value(),
           .state = state,
           .fitted = fitted,

@@ -23,6 +23,7 @@ struct Examination {
   GivenContact contact;
   ReferenceOnGrid reference;
   bool constant_cells;  ///< the pressure is one of constant cells: so are the tractions, then
+  bool pressure_given;  ///< it was not judged because the user said so
   bool twist_given;
   State state;                   ///< under the twist given or imposed, or else the one that fits
   State fitted;                  ///< under the motion that Coulomb's law fits best
@@ -34,12 +35,14 @@ struct Examination {
   solver::SlipDirection direction;  ///< of noticeable slip
 };
 
-/// columns: as read_foreign_field(). twist: the one that the program reported, in rad; none: the scene's, if
-/// it imposes one, or the one that Coulomb's law fits best. Throws InputError for what cannot be judged: a
-/// history, a scene without friction, and what read_foreign_field() and in_own_conventions() refuse;
-/// std::runtime_error where the reference's solve does not converge.
+/// twist: the one that the program reported, in rad; none: the scene's, if it imposes one, or the one that
+/// Coulomb's law fits best. Throws InputError for what cannot be judged: a history, a scene without friction,
+/// and what read_foreign_field() and in_own_conventions() refuse; std::runtime_error where the
+/// reference's solve does not converge. pressure_given: it is not judged. columns: as
+/// read_foreign_field().
 Examination examine(const solver::Scene& scene, const std::filesystem::path& file,
-                    std::optional<double> twist, const std::vector<std::string>& columns = {});
+                    std::optional<double> twist, bool pressure_given = false,
+                    const std::vector<std::string>& columns = {});
 
 /// computed/exact - 1.
 double relative_error(double value, double exact);

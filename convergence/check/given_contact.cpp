@@ -1,10 +1,16 @@
 #include "convergence/check/given_contact.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <limits>
 #include <utility>
 
+#include "solver/contact/normal_contact.hpp"
+#include "solver/pressure.hpp"
 #include "solver/scene/surface.hpp"
 #include "solver/scene/surface_geometry.hpp"
 #include "solver/scene/to_dimensionless.hpp"
+#include "solver/solve.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -83,23 +89,85 @@ GivenContact make_given_contact(const ForeignField& field, const solver::Dimensi
           field.traction_rounding / stress};
 }
 
-bool solves_normal_problem(const GivenContact& contact, const solver::Scene& scene) {
-  // Of the displacements: what a solver's tolerance leaves between surfaces that should lie together.
-  constexpr double kTogether = 1e-5;
+ArrayXd resized(const Grid& from, const Grid& to, const ArrayXd& values) {
+  const Index rows = std::min(from.n1, to.n1);
+  const Index columns = std::min(from.n2, to.n2);
+  ArrayXd result = ArrayXd::Zero(to.cells());
+  result.reshaped(to.n2, to.n1).block((to.n2 - columns) / 2, (to.n1 - rows) / 2, columns, rows) =
+      values.reshaped(from.n2, from.n1).block((from.n2 - columns) / 2, (from.n1 - rows) / 2, columns, rows);
+  return result;
+}
+
+namespace {
+
+/// Cells beyond which a scene's grid is not solved on cells of another one's size.
+constexpr double kMaxCells = 2e7;
+
+/// A part of a cell by which the centres of two grids may differ.
+constexpr double kSameCells = 1e-3;
+
+/// The same values where the cells of `from`, about the scene's origin, are those of `to` about `centre`, all
+/// in the unit of `to`'s cells.
+std::optional<ArrayXd> moved(const Grid& from, const ArrayXd& values, const Grid& to,
+                             const std::array<double, 2>& centre) {
+  const double off1 = (centre[0] / to.h1) + 0.5 * static_cast<double>(from.n1 - to.n1);
+  const double off2 = (centre[1] / to.h2) + 0.5 * static_cast<double>(from.n2 - to.n2);
+  const double stretched = std::max(std::abs(from.h1 / to.h1 - 1.0), std::abs(from.h2 / to.h2 - 1.0));
+  if (!(std::max(std::abs(off1 - std::round(off1)), std::abs(off2 - std::round(off2))) <= kSameCells &&
+        stretched * static_cast<double>(std::max(from.n1, from.n2)) <= kSameCells)) {
+    return std::nullopt;
+  }
+  ArrayXd result = ArrayXd::Zero(to.cells());
+  for (Index i = 0; i < to.n1; ++i) {
+    for (Index j = 0; j < to.n2; ++j) {
+      const Index k = i + std::lround(off1);
+      const Index l = j + std::lround(off2);
+      if (k >= 0 && k < from.n1 && l >= 0 && l < from.n2) result[i * to.n2 + j] = values[k * from.n2 + l];
+    }
+  }
+  return result;
+}
+
+}  // namespace
+
+std::optional<ArrayXd> scene_pressure(const GivenContact& contact, const solver::Scene& scene,
+                                      const solver::Model& model, Grid& grid) {
+  const double unit = contact.length_unit;
+  const Grid in_m = model.grid_in_m();
+  const Grid own{in_m.n1, in_m.n2, in_m.h1 / unit, in_m.h2 / unit};
+  const double half1 = 0.5 * static_cast<double>(own.n1) * own.h1;
+  const double half2 = 0.5 * static_cast<double>(own.n2) * own.h2;
+  const auto larger = [](Index n, double h, double half) {
+    const double missing = half - 0.5 * static_cast<double>(n) * h;
+    return n + 2 * static_cast<Index>(std::clamp(std::ceil(missing / h), 0.0, kMaxCells));
+  };
+  grid.n1 = larger(grid.n1, grid.h1, half1 + std::abs(contact.centre[0]));
+  grid.n2 = larger(grid.n2, grid.h2, half2 + std::abs(contact.centre[1]));
+  if (!(static_cast<double>(grid.n1) * static_cast<double>(grid.n2) <= kMaxCells)) return std::nullopt;
+  const bool coupled = scene.coupling == solver::Coupling::full;
+  if (coupled || scene.pressure == solver::PressureModel::file ||
+      std::ranges::any_of(scene.surfaces, solver::is_measured)) {
+    if (!moved(own, ArrayXd::Zero(own.cells()), grid, contact.centre)) return std::nullopt;
+    return moved(own,
+                 coupled ? ArrayXd(solver::solve(scene).pressure / contact.stress_unit)
+                         : solver::find_pressure(scene, model, scene.steps.front()).pressure,
+                 grid, contact.centre);
+  }
+  if (!scene.steps.front().normal) return std::nullopt;
   std::vector<solver::Surface> surfaces = scene.surfaces;
   for (solver::Surface& surface : surfaces) {
-    if (surface.shape == solver::Shape::height_map || surface.shape == solver::Shape::roughness) return false;
-    surface = solver::to_dimensionless(std::move(surface), contact.length_unit);
+    surface = solver::to_dimensionless(std::move(surface), unit);
     for (std::size_t k = 0; k < 2; ++k) surface.at[k] -= contact.centre[k];
   }
-  const Grid& grid = contact.grid;
-  const ArrayXd& p = contact.pressure;
-  const ArrayXd gap = solver::gap_field(surfaces, scene.combine, grid);
-  ArrayXd u3(grid.cells());
-  contact.elasticity.make(grid, solver::normal_kernel())->apply(p, u3);
-  const ArrayXd approach = (p > 0.0).select(gap + u3, 0.0);
-  const double mean = (p * approach).sum() / p.sum();
-  return (p * (approach - mean).abs()).sum() <= kTogether * (p * u3).sum();
+  ArrayXd gap = solver::gap_field(surfaces, scene.combine, grid);
+  if (scene.ends_at_grid_edge) {
+    gap = ((solver::cell_x1(grid) + contact.centre[0]).abs() > half1 ||
+           (solver::cell_x2(grid) + contact.centre[1]).abs() > half2)
+              .select(std::numeric_limits<double>::infinity(), gap);
+  }
+  const double total = *scene.steps.front().normal / contact.force_unit() / grid.cell_area();
+  return solver::solve_normal_contact(contact.elasticity, grid, {.gap = gap, .total_pressure = total})
+      .pressure;
 }
 
 RigidMotions rigid_motions(const GivenContact& contact, const solver::Step& load,

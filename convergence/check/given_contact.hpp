@@ -7,6 +7,7 @@
 
 #include "convergence/check/foreign_field.hpp"
 #include "solver/load_step.hpp"
+#include "solver/model.hpp"
 
 namespace slipstick::convergence {
 
@@ -54,10 +55,16 @@ GivenContact make_given_contact(const ForeignField& field, const solver::Dimensi
 GivenContact with_fields(const GivenContact& contact, const solver::Grid& grid, Eigen::ArrayXd pressure,
                          Eigen::ArrayXd traction);
 
-/// Whether the pressure solves the normal problem of its own grid, of pressures constant in each cell, for
-/// the scene's bodies: no other discretisation's does. Not looked at under height maps and roughness, which
-/// stand on grids of their own.
-bool solves_normal_problem(const GivenContact& contact, const solver::Scene& scene);
+/// Values of any grid about the same centre, with cells of the same size and an even number of them more or
+/// less along each axis: cut off or continued by zero.
+Eigen::ArrayXd resized(const solver::Grid& from, const solver::Grid& to, const Eigen::ArrayXd& values);
+
+/// The pressure of a scene's own normal contact in a contact's units, on `grid` about its centre and as far
+/// beyond as the scene's grid reaches: `grid` becomes that larger one. Measured surfaces, pressures from
+/// files and those that shear changes stand on the scene's grid alone: none, where its cells are not those
+/// of `grid`. None, too, without a normal load to solve for.
+std::optional<Eigen::ArrayXd> scene_pressure(const GivenContact& contact, const solver::Scene& scene,
+                                             const solver::Model& model, solver::Grid& grid);
 
 /// Displacement fields of the scene's rigid motions that are not imposed: translations, unless the scene says
 /// how far, and rotation, unless the twist is given. `imposed`: the sum of those that are.

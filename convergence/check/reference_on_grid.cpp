@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "convergence/oracle/errors.hpp"
 #include "solver/grid/grid_transfer.hpp"
 
 namespace slipstick::convergence {
@@ -93,13 +94,13 @@ solver::TangentialSolution solve_finer(const GivenContact& contact, const solver
 /// Loads of a field over an area in the grid's units, about the grid's centre.
 struct Sums {
   double normal, moment, force1, force2;
-
-  Sums(const Grid& grid, const ArrayXd& pressure, const ArrayXd& traction)
-      : normal(grid.cell_area() * pressure.sum()),
-        moment(grid.cell_area() * (traction * solver::rotation_field(grid)).sum()),
-        force1(grid.cell_area() * traction.head(grid.cells()).sum()),
-        force2(grid.cell_area() * traction.tail(grid.cells()).sum()) {}
 };
+
+Sums sums_of(const Grid& grid, const ArrayXd& pressure, const ArrayXd& traction) {
+  const double area = grid.cell_area();
+  return {area * pressure.sum(), area * (traction * solver::rotation_field(grid)).sum(),
+          area * traction.head(grid.cells()).sum(), area * traction.tail(grid.cells()).sum()};
+}
 
 LoadErrors load_errors(const Sums& coarse, const Sums& fine, double friction) {
   return {.normal = std::abs(coarse.normal / fine.normal - 1.0),
@@ -108,34 +109,110 @@ LoadErrors load_errors(const Sums& coarse, const Sums& fine, double friction) {
                    (friction * fine.normal)};
 }
 
-MeshErrors measure_mesh(const GivenContact& contact, const solver::Step& load,
-                        const std::optional<Oracle>& pressed, bool twist_given) {
+Grid field_grid_in_m(const GivenContact& contact, const Grid& grid) {
+  return {grid.n1, grid.n2, grid.h1 * contact.length_unit, grid.h2 * contact.length_unit};
+}
+
+/// The scene's pressure on cells of the field's size, as far as its contact may reach.
+struct WidePressure {
+  Grid grid;  ///< the field's, padded, or a larger one
+  ArrayXd values;
+};
+
+std::optional<WidePressure> wide_pressure(const GivenContact& contact, const solver::Scene& scene,
+                                          const solver::Model& model) {
+  WidePressure wide{padded(contact.grid), {}};
+  auto values = scene_pressure(contact, scene, model, wide.grid);
+  if (!values || !(values->sum() > 0.0)) return std::nullopt;
+  wide.values = std::move(*values);
+  return wide;
+}
+
+ArrayXd deviation_from(const ArrayXd& right, const ArrayXd& pressure) {
+  return (pressure * (right.sum() / pressure.sum()) - right).abs();
+}
+
+/// The right pressure on a third of the cells' size, over the whole grid or the wide one: the exact one, or
+/// else solved there if that is wanted. None where it is not known.
+std::optional<ArrayXd> fine_pressure(const GivenContact& contact, const solver::Scene& scene,
+                                     const solver::Model& model, const std::optional<Oracle>& pressed,
+                                     const Grid& fine, bool solve) {
+  if (const auto& normal = scene.steps.front().normal; pressed && normal) {
+    if (auto exact = exact_pressure(*pressed, contact, fine, *normal)) return exact;
+  }
+  Grid same = fine;
+  const auto solved = solve ? scene_pressure(contact, scene, model, same) : std::nullopt;
+  return solved ? std::optional(resized(same, fine, *solved)) : std::nullopt;
+}
+
+MeshErrors measure_mesh(const GivenContact& contact, const solver::Scene& scene, const solver::Model& model,
+                        const Known& known, const std::optional<WidePressure>& wide) {
+  const solver::Step& load = scene.steps.front();
   const Grid grid = padded(contact.grid);
   const Grid fine = finer(grid);
-  ArrayXd pressure;
-  if (pressed && load.normal) {
-    pressure = exact_pressure(*pressed, contact, fine, *load.normal).value_or(ArrayXd());
-  }
-  if (pressure.size() == 0) pressure = handed_down(contact.grid, contact.pressure);
-  const solver::TangentialSolution solution = solve_finer(contact, load, fine, pressure);
-  const Sums sums(fine, pressure, solution.traction);
   MeshErrors errors;
-  const auto measure = [&](ArrayXd p, ArrayXd q) {
+  errors.pressures = errors.tractions = ArrayXd::Zero(contact.pressure.size());
+  const Grid whole = wide ? wide->grid : grid;
+  const auto found = fine_pressure(contact, scene, model, known.pressed, finer(whole), wide.has_value());
+  ArrayXd pressure = handed_down(contact.grid, contact.pressure);
+  if (found) {
+    const ArrayXd here = resized(finer(whole), fine, *found);
+    if (here.sum() >= (1.0 - kMissedLoad) * found->sum()) pressure = here;
+  }
+  if (found && wide) {
+    for (const ArrayXd& p : {sampled(whole, *found), solver::restrict_to(whole, finer(whole), *found)}) {
+      const ArrayXd off = deviation_from(wide->values, p);
+      errors.deviation.pressure = std::max(errors.deviation.pressure, off.sum() / wide->values.sum());
+      errors.pressures = errors.pressures.max(resized(whole, contact.grid, off));
+    }
+  }
+  const solver::TangentialSolution solution = solve_finer(contact, load, fine, pressure);
+  const Sums sums = sums_of(fine, pressure, solution.traction);
+  const auto measure = [&](ArrayXd p, ArrayXd q, const Sums& meant, double twist) {
     const GivenContact field = with_fields(contact, grid, std::move(p), std::move(q));
-    const LoadErrors loads = load_errors({grid, field.pressure, field.traction}, sums, contact.friction);
+    const LoadErrors loads =
+        load_errors(sums_of(grid, field.pressure, field.traction), meant, contact.friction);
     errors.loads = {.normal = std::max(errors.loads.normal, loads.normal),
                     .moment = std::max(errors.loads.moment, loads.moment),
                     .force = std::max(errors.loads.force, loads.force)};
     const State fitted = find_state(field, load, std::nullopt);
-    const State reported = twist_given ? find_state(field, load, solution.twist) : fitted;
-    const Deviation deviation = find_deviation(field, find_right_answer(field, load), reported, fitted);
+    const State reported = known.twist ? find_state(field, load, twist) : fitted;
+    const RightAnswer right = find_right_answer(field, load);
+    Deviation deviation = find_deviation(field, right, reported, fitted);
+    deviation.pressure = errors.deviation.pressure;
     errors.deviation = larger(errors.deviation, deviation);
+    errors.tractions =
+        errors.tractions.max(resized(grid, contact.grid, solver::norms(field.traction - right.traction)));
     errors.direction =
         std::max(errors.direction, noticeable_direction(field, fitted, deviation.tractions).mean);
   };
-  measure(sampled(grid, pressure), sampled(grid, solution.traction));
-  measure(restrict_to(grid, fine, pressure), restrict_to(grid, fine, solution.traction));
+  measure(sampled(grid, pressure), sampled(grid, solution.traction), sums, solution.twist);
+  measure(restrict_to(grid, fine, pressure), restrict_to(grid, fine, solution.traction), sums,
+          solution.twist);
+  if (wide && !found) {  // a pressure that no finer mesh knows: as its tractions, which end where it does
+    errors.deviation.pressure = errors.deviation.tractions;
+    errors.pressures = errors.tractions / contact.friction;
+  }
+  if (!wide || !known.exact || !known.exact->shear) return errors;
+  // The exact answer itself has what no finer mesh shows: a slip ring that is narrower than its cells.
+  const Oracle& exact = *known.exact;
+  const ExactFields fields = exact_fields(exact, field_grid_in_m(contact, grid));
+  const double carried = fields.pressure.sum() * grid.cell_area() / contact.stress_unit;
+  const double normal = load.normal.value_or(0.0) / contact.force_unit();
+  if (!(std::abs(carried / normal - 1.0) <= kMissedLoad) || !fields.traction.allFinite()) return errors;
+  const bool torsion = exact.force == std::array<double, 2>{};
+  measure(fields.pressure / contact.stress_unit, fields.traction / contact.stress_unit,
+          {normal, torsion ? exact.moment / contact.moment_unit() : 0.0,
+           exact.force[0] / contact.force_unit(), exact.force[1] / contact.force_unit()},
+          exact.twist_angle);
   return errors;
+}
+
+ScenePressure on_field(const GivenContact& contact, const WidePressure& wide) {
+  const ArrayXd off = deviation_from(wide.values, resized(contact.grid, wide.grid, contact.pressure));
+  return {.values = resized(wide.grid, contact.grid, wide.values),
+          .deviation = resized(wide.grid, contact.grid, off),
+          .off = off.sum() / wide.values.sum()};
 }
 
 /// Standard deviation of |q| that a field shows where it slips, in each cell: in parts of mu p or of the
@@ -179,12 +256,15 @@ Deviation disturbed(const GivenContact& contact, const RightAnswer& right, const
 
 }  // namespace
 
-ReferenceOnGrid find_reference_on_grid(const GivenContact& contact, const solver::Step& load,
-                                       const std::optional<Oracle>& pressed, bool twist_given) {
+ReferenceOnGrid find_reference_on_grid(const GivenContact& contact, const solver::Scene& scene,
+                                       const solver::Model& model, const Known& known) {
+  const solver::Step& load = scene.steps.front();
+  const auto wide = known.pressure ? std::nullopt : wide_pressure(contact, scene, model);
   const RightAnswer right = find_right_answer(contact, load);
   const ArrayXd noise = noise_size(contact, right);
-  return {.right = right,
-          .mesh = measure_mesh(contact, load, pressed, twist_given),
+  return {.pressure = wide ? std::optional(on_field(contact, *wide)) : std::nullopt,
+          .right = right,
+          .mesh = measure_mesh(contact, scene, model, known, wide),
           .rounding = disturbed(contact, right, load, contact.traction_rounding + contact.bound_rounding),
           .noise = disturbed(contact, right, load, noise),
           .noise_size = noise};

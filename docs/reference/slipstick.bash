@@ -16,7 +16,7 @@ _slipstick() {
       "solve "*) [[ $current != -* ]] || words="--help --set --model --accuracy --accuracy-of --uncertain --plan --ranks --fields --checkpoint --resume --figure --memory-limit --json --quiet" ;;
       "check --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "check --columns" | "check --twist" | "check --tolerance" | "check --json") return ;;
-      "check "*) [[ $current != -* ]] || words="--help --set --columns --twist --discrete --tolerance --strict --json --quiet" ;;
+      "check "*) [[ $current != -* ]] || words="--help --set --columns --twist --discrete --tolerance --pressure-given --strict --json --quiet" ;;
       "law --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "law --profile" | "law --write" | "law --error" | "law --table-error" | "law --element-error" | "law --elements" | "law --limit-loads" | "law --json") return ;;
       "law "*) [[ $current != -* ]] || words="--help --set --profile --write --error --table-error --element-error --elements --limit-loads --json --quiet" ;;

@@ -71,12 +71,13 @@ def _written(field: Mapping[str, npt.ArrayLike], file: str) -> str:
 
 
 def check(scene: Scene, field: Path_ | Mapping[str, npt.ArrayLike], *, twist: float | None = None,
-          tolerance: float | None = None, discrete: bool = False, strict: bool = False, **overrides: Any) -> Check:
+          tolerance: float | None = None, discrete: bool = False, strict: bool = False, pressure_given: bool = False,
+          **overrides: Any) -> Check:
     """Judges tractions that any program computed for a scene: docs/guides/verify-your-solver.md explains each number.
 
     field: a file (.csv, .h5) or arrays by name: x1, x2 (m, cell centres), pressure, q1, q2 (Pa), one number a cell; the
     fields of a Solution are such arrays. twist: rad, that the program reported. tolerance: the error that is allowed, in
-    place of what the mesh leaves open. discrete: good only if it solves its own grid's problem. strict: good only in the
+    place of what the mesh leaves open. pressure_given: the pressure is not judged. discrete: good only if it solves its own grid's problem. strict: good only in the
     scene's own units and signs. overrides as of solve(). Relative paths in a scene that is no file begin nowhere: write
     them in full.
     """
@@ -85,7 +86,7 @@ def check(scene: Scene, field: Path_ | Mapping[str, npt.ArrayLike], *, twist: fl
         options += ["--twist", repr(float(twist))]
     if tolerance is not None:
         options += ["--tolerance", repr(float(tolerance))]
-    options += ["--discrete"] * discrete + ["--strict"] * strict
+    options += ["--discrete"] * discrete + ["--strict"] * strict + ["--pressure-given"] * pressure_given
     options += _set(overrides)
     with _files(scene, getattr(field, "fields", field)) as files:
         return Check(run("check", *files, *options))

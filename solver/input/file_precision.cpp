@@ -42,6 +42,7 @@ bool is_single(const Eigen::ArrayXd& values) { return (values == values.cast<flo
 }  // namespace
 
 FilePrecision find_precision(const Eigen::ArrayXd& values) {
+  if ((values == 0.0).all()) return {0.0, 0.0};  // zeros say nothing of decimals, in any unit
   const int digits = digits_needed(values);
   if (digits > kDigitsOfSingle && is_single(values)) {
     return {0.5 * static_cast<double>(std::numeric_limits<float>::epsilon()), 0.0};

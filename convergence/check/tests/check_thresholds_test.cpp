@@ -286,40 +286,6 @@ TEST(CheckThreshold, OfLoadsIsWhatExactFieldsMiss) {
   EXPECT_NEAR(e.reference.mesh.loads.force / missed_force, 1.0, 0.5);
 }
 
-/// Degrees between slip and the reverse of traction, in the mean, where as many cells as there are parts have
-/// a slip of this part of the largest displacement, across their traction, and all others one opposed to
-/// theirs.
-double direction_with_turned(const GivenContact& contact, const std::vector<double>& parts, double least) {
-  const solver::Index cells = contact.pressure.size();
-  const double largest = solver::norms(contact.displacement).maxCoeff();
-  State state{.twist = 0.0, .displacement = {}, .slip = Eigen::ArrayXd::Zero(2 * cells), .gap = {}};
-  std::size_t turned = 0;
-  for (solver::Index cell = 0; cell < cells; ++cell) {
-    const std::array q{contact.traction[cell], contact.traction[cell + cells]};
-    const double size = std::hypot(q[0], q[1]);
-    if (!(size > 0.1 * contact.friction_bound.maxCoeff())) continue;
-    const bool turn = turned < parts.size();
-    const double slip = (turn ? parts[turned++] : 10.0 * least) * largest / size;
-    state.slip[cell] = turn ? -slip * q[1] : -slip * q[0];
-    state.slip[cell + cells] = turn ? slip * q[0] : -slip * q[1];
-  }
-  return noticeable_direction(contact, state, least).mean;
-}
-
-// Slips that are a smaller part of the displacements than the mesh leaves open of the tractions have no
-// direction to judge.
-TEST(CheckThreshold, OfSlipsThatCountIsWhatTheMeshLeavesOpen) {
-  const RightField& field = right_field();
-  const Examination e = examine(field.scene, write_rows(sampled(field.scene)), {});
-  const double least = e.reference.mesh.deviation.tractions;
-  EXPECT_LT(direction_with_turned(e.contact, {kBelow * least, 0.1 * least}, least), 1e-12);
-  EXPECT_GT(direction_with_turned(e.contact, {kAbove * least}, least), 0.01);
-  EXPECT_EQ(e.direction.mean, noticeable_direction(e.contact, e.fitted, least).mean);
-  for (const double other : {0.5, 2.0}) {
-    EXPECT_NE(e.direction.mean, noticeable_direction(e.contact, e.fitted, other * least).mean);
-  }
-}
-
 // The upper quartile of a normal distribution says how much noise |q| has, up to 0.3 %.
 TEST(CheckThreshold, OfNoiseIsThreeThousandths) {
   const RightField& field = right_field();

@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <complex>
 #include <functional>
 
 #include "convergence/check/given_contact.hpp"
@@ -173,38 +172,6 @@ TEST(Diagnosis, NamesNoKernelForAGapThatAnIterationLeaves) {
   EXPECT_NEAR(above.reference_kernel.stick_gap, 1.07e-4, 0.03e-4);
   ASSERT_TRUE(above.kernel);
   EXPECT_THAT(above.kernel->name, HasSubstr("Poisson's ratio of 0.30"));
-}
-
-/// A right contact whose slipping cells have their tractions turned, one way and the other like a
-/// chessboard's squares.
-GivenContact with_turned_slipping_cells(double angle) {
-  const GivenContact right = computed_with(right_cross);
-  Eigen::ArrayXd traction = right.traction;
-  const Eigen::ArrayXd stick = stick_cells(right);
-  for (Index cell = 0; cell < stick.size(); ++cell) {
-    if (stick[cell] == 1.0) continue;
-    const bool white = (cell / right.grid.n2 + cell % right.grid.n2) % 2 == 0;
-    const std::complex<double> turned =
-        std::complex(traction[cell], traction[cell + stick.size()]) * std::polar(1.0, white ? angle : -angle);
-    traction[cell] = turned.real();
-    traction[cell + stick.size()] = turned.imag();
-  }
-  return made_contact(right, right.pressure, traction);
-}
-
-// What is wrong is slipping cells where the stick area's gap is a tenth of the whole or less, and what the
-// mesh accounts for.
-TEST(Diagnosis, ExplainsTheStickAreaUpToATenthAndWhatIsAllowed) {
-  for (const auto& [angle, is_explained] : {std::pair{0.19, false}, {0.235, true}}) {
-    const GivenContact contact = with_turned_slipping_cells(angle);
-    const Diagnosis found = diagnose(contact, {}, 1.0);
-    const double gap = found.reference_kernel.stick_gap;
-    EXPECT_NEAR(gap / found.reference_kernel.gap, is_explained ? 0.092 : 0.108, 0.007);
-    EXPECT_EQ(found.stick_area_explained, is_explained);
-    if (!is_explained) continue;
-    EXPECT_TRUE(diagnose(contact, {}, 1.1 * gap).stick_area_explained);
-    EXPECT_FALSE(diagnose(contact, {}, 0.9 * gap).stick_area_explained);
-  }
 }
 
 // By more than 1e-4 of its bound a cell has to stay below it, to stick.
