@@ -14,7 +14,7 @@ bool is_rounding(double value, double scale) {
 
 double compliance(const Material& body) { return (1.0 + body.poisson_ratio) / body.young_modulus; }
 
-/// Sides of the grid, as far as they are known before the solve.
+/// Sides of the grid, or half those of the contact, as far as they are known before the solve.
 std::optional<std::array<double, 2>> sides_of(const Scene& scene) {
   const auto& load = scene.steps.front().normal;
   if (scene.extent || !load) return scene.extent;
@@ -52,7 +52,7 @@ Scene without_last_digits(Scene scene) {
   };
   for (Surface& surface : scene.surfaces) {
     for (std::size_t i = 0; i < 2; ++i) {
-      if (!is_rounding(surface.at[i], (*sides)[i] / static_cast<double>(scene.cells[i]))) continue;
+      if (!is_rounding(surface.at[i], (*sides)[i])) continue;
       surface.at[i] = 0.0;
       left_out("a shape's position");
     }

@@ -12,8 +12,9 @@ inline constexpr double kLastDigits = 1e-12;
 /// Whether a pressure moves both surfaces alike along themselves: Dundurs' beta is 0.
 bool are_alike(const Material& upper, const Material& lower);
 
-/// Without positions that are nothing over a cell, a difference of radii over themselves, and forces over the
-/// torsion; notes them in Scene::left_out. model = "full" keeps all. Of a valid scene; read_scene() calls it.
+/// Without positions that are nothing over the contact, a difference of radii over themselves, and forces
+/// over the torsion; notes them in Scene::left_out. model = "full" keeps all. Of a valid scene; read_scene()
+/// calls it.
 Scene without_last_digits(Scene scene);
 
 }  // namespace slipstick::solver

@@ -225,7 +225,8 @@ TEST(Oracle, EllipseOfNearlyEqualRadiiIsNearlyTheSphere) {
   const Oracle sphere = *find_oracle(paper({"load.moment_ratio=0.7"})).oracle;
   for (const char* radius_2 : {"upper.radius_2=0.01800000000001", "upper.radius_2=0.01799999999999"}) {
     const Oracle ellipse =
-        *find_oracle(body("/ellipse.toml", {"upper.radius_1=0.018", radius_2, "load.moment_ratio=0.7"}))
+        *find_oracle(body("/ellipse.toml", {"upper.radius_1=0.018", radius_2, "load.moment_ratio=0.7",
+                                            "solver.model=full"}))  // keeps the last digits
              .oracle;
     constexpr double tolerance = 2e-12;  // the radii differ by 6e-13
     EXPECT_NE(ellipse.axis_ratio, 1.0);
