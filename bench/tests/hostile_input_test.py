@@ -1,0 +1,232 @@
+#!/usr/bin/env python3
+"""hostile_input_test.py PROGRAM: every reader of the program against every way in which a file can be damaged: each is
+refused at once, with its name and what is allowed, and exit code 2. What a fuzzer finds stands in the corpora beside
+the readers."""
+
+import json
+import math
+import os
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "convergence/tests"))
+from program_run import PROGRAM, SHORT_SCENE, ProgramTest, main
+
+RADIUS = 4.89e-4
+EXTENT = 8 / 3 * RADIUS  # of the contact and a cell around it
+
+
+def sphere_field(peak):
+    """The sphere's contact on 6 x 6 cells, turned."""
+    lines = ["x1,x2,pressure,q1,q2"]
+    for x1, x2 in (((i - 2.5) / 3, (j - 2.5) / 3) for i in range(6) for j in range(6)):
+        pressure = peak * math.sqrt(max(0, 1 - x1 * x1 - x2 * x2))
+        if pressure > 0:
+            row = RADIUS * x1, RADIUS * x2, pressure, -0.1 * pressure * x2, 0.1 * pressure * x1
+            lines.append(",".join(f"{value:.9g}" for value in row))
+    return "\n".join(lines) + "\n"
+
+
+TWISTS = [1e-5 * (i if i <= 15 else 30 - i) for i in range(31)]  # there and back, all of it sticking
+STUDY = 'scene = "sphere.toml"\ncells = [8, 12]\n'
+GATES = '[[gate]]\nid = "a"\nscene = "sphere.toml"\nquantity = "twist_error"\nbelow = 1.0\nbasis = "b"\n'
+CASES = ('[[family]]\nname = "f"\nwhy = "w"\nscene = "sphere.toml"\n[[family.vary]]\nkey = "contact.friction"\n'
+         'values = [0.1, 0.2]\n')
+HEIGHTS = "0.1,0.2,0.3\n0.2,0.1,0.2\n"
+FIELD = sphere_field(2e9)
+COLUMNS = sphere_field(1.9186e9)  # carries 1000 N
+LOOP = "time,moment,rotation\n" + "".join(f"{i},{25 * twist:g},{twist:g}\n" for i, twist in enumerate(TWISTS))
+JSON_LOOP = json.dumps({"rotation": TWISTS, "moment": TWISTS}).replace("[0.0, ", "[0,")
+PROFILE = "radius,pressure\n" + "".join(f"{i / 16:g},{2 - i / 16:g}\n" for i in range(17))
+TIMINGS = json.dumps({"context": {"num_cpus": 2}, "benchmarks": 10 * [
+    {"name": "a", "real_time": 1, "cpu_time": 1, "time_unit": "ms"}]})
+GIVEN = ("solve", "sphere.toml", "--set", "contact.pressure=file", "--set", f"grid.extent=[{EXTENT},{EXTENT}]",
+         "--set", "grid.cells=[8,8]", "--set")
+# What is read, and by which command.
+READERS = {
+    "scene.toml": (SHORT_SCENE, ("solve", "scene.toml")),
+    "study.toml": (STUDY, ("study", "study.toml", "--output", "runs")),
+    "gates.toml": (GATES, ("gate", "gates.toml", "--output", "runs")),
+    "cases.toml": (CASES, ("hard", "cases.toml", "--once", "--output", "runs")),
+    "heights.csv": (HEIGHTS, ("solve", "map.toml")),
+    "columns.csv": (COLUMNS, (*GIVEN, "contact.pressure_file=columns.csv")),
+    "columns.h5": (None, (*GIVEN, "contact.pressure_file=columns.h5")),
+    "field.csv": (FIELD, ("check", "sphere.toml", "field.csv")),
+    "loop.csv": (LOOP, ("check", "sphere.toml", "loop.csv")),
+    "loop.json": (JSON_LOOP, ("check", "sphere.toml", "loop.json")),
+    "profile.csv": (PROFILE, ("exact", "--profile", "file:profile.csv", "--moment-ratio", "0.5")),
+    "result.json": ('{"twist_error": 0.5}', ("gate", "result.toml")),
+    "timings.json": (TIMINGS, ("compare", "timings.json", "other.json", "--same-machine")),
+}
+
+
+def changed(text, old, new):
+    assert old in text, old
+    return text.replace(old, new, 1)
+
+
+def second_row(row):
+    lines = COLUMNS.splitlines()
+    return "\n".join([*lines[:2], row, *lines[3:]]) + "\n"
+
+
+# What is wrong with a text, and what the complaint names beside the file.
+DAMAGES = [
+    *(("scene.toml", changed(SHORT_SCENE, old, new), says) for old, new, *says in (
+        ("0.018", "nan", "upper.radius = nan", "positive"),
+        ("0.018", "inf", "upper.radius = inf", "finite"),
+        ("0.018", "1e400", ":3"),
+        ("0.018", '"18 mm"', "upper.radius = ", "18 mm", "a number"),
+        ("0.018", "-1", "upper.radius = -1", "positive"),
+        ("[32, 32]", "[1000000, 1000000]", "grid.cells", "1000000", "65536"),
+        ("[32, 32]", "[0, 8]", "grid.cells", "whole number from 1"),
+        ("[32, 32]", "[8, 8, 8]", "grid.cells", "two numbers"),
+        ("normal", "nomral", "load.nomral", "load.normal"),
+        ("normal = 1000\n", "", "load.normal", "missing"),
+        ('"sphere"', '"spere"', 'upper.shape = "spere"', "sphere"),
+        ("0.018", "{ a = 1 }", "upper.radius", "a number"),
+        ("radius = 0.018", "radius = 1\nradius = 2", ":4"))),
+    ("study.toml", STUDY + "tolerances = [nan]\n", ("tolerances[0] = nan", "positive")),
+    ("study.toml", changed(STUDY, "12", "1000000"), ("cells[1] = 1000000", "16384")),
+    ("study.toml", STUDY + "shift = 2\n", ("shift", "shifts")),
+    ("study.toml", "cells = [8, 12]\n", ("scene", "missing")),
+    ("gates.toml", changed(GATES, "1.0", "nan"), ("gate[0].below = nan", "finite")),
+    ("gates.toml", changed(GATES, "below", "bellow"), ("below",)),
+    ("gates.toml", 'gate = "a"\n', ("gate = ", "[[gate]]")),
+    ("cases.toml", changed(CASES, "why", "whi"), ("why",)),
+    ("cases.toml", changed(CASES, "[0.1, 0.2]", "[]"), ("values = []", "at least one")),
+    ("heights.csv", changed(HEIGHTS, "0.3", "inf"), (":1", "inf", "finite")),
+    ("heights.csv", changed(HEIGHTS, "0.3", "1e400"), (":1", "1e400", "finite")),
+    ("heights.csv", HEIGHTS + "1,2\n", (":3", "2 values; allowed: 3")),
+    ("heights.csv", changed(HEIGHTS, "0.3", "0.3um"), (":1", "0.3um", "finite number")),
+    ("columns.csv", second_row("0,1e-4,nan,1e7,0"), (":3", "nan", "finite")),
+    ("columns.csv", second_row("0,1e-4,inf,1e7,0"), (":3", "inf", "finite")),
+    ("columns.csv", second_row("0,1e-4,1e400,1e7,0"), (":3", "1e400", "finite")),
+    ("columns.csv", second_row("0,1e-4,1e9"), (":3", "3 values; allowed: 5")),
+    ("columns.csv", second_row("0,1e-4,1 GPa,1e7,0"), (":3", "1 GPa", "finite")),
+    ("columns.csv", changed(COLUMNS, "pressure", "p"), ("no column pressure", "x1, x2, p")),
+    ("columns.csv", changed(COLUMNS, "q2", "x1"), ("two columns x1; allowed: one",)),
+    ("field.csv", FIELD + "4.075e-4,-4.075e-4,-1e9,0,1\n", ("row 33", "pressure = -1", "zero or positive")),
+    ("field.csv", FIELD + "8.15e-5,8.15e-5,1e9,0,1\n", ("row 33",)),
+    ("field.csv", FIELD + "8.2e-5,8e-5,1e9,0,1\n", ("row",)),
+    ("field.csv", FIELD + "0,1e200,1e9,0,1\n", ("allowed",)),
+    ("loop.csv", changed(LOOP, "1,0.00025", "1,nan"), (":3", "nan", "finite")),
+    ("loop.csv", changed(LOOP, "\n2,", "\n1,"), ("row 3", "time = 1", "later")),
+    ("loop.json", changed(JSON_LOOP, "rotation", "height"), ("no rotation", "twist")),
+    ("loop.json", changed(JSON_LOOP, "[0,", '["a",'), ("rotation", "a list of numbers")),
+    ("loop.json", changed(JSON_LOOP, "[0,", "[1e400,"), ("is not JSON",)),
+    ("loop.json", changed(JSON_LOOP, "[0,", "[0,0,"), ("equally many",)),
+    ("profile.csv", changed(PROFILE, "0,2", "0,nan"), (":2", "nan")),
+    ("profile.csv", changed(PROFILE, "0,2", "0,inf"), (":2", "inf")),
+    ("profile.csv", changed(PROFILE, "0,2", "0,1e400"), (":2", "allowed")),
+    ("profile.csv", changed(PROFILE, "0,2", "0,-2"), (":2", "-2", "allowed: finite and not negative")),
+    ("profile.csv", "0,1\n1,0.5\n", ("16",)),
+    ("result.json", '{"twist_error": NaN}', ("not JSON",)),
+    ("timings.json", changed(TIMINGS, '"ms"', '"weeks"'), ("time_unit", "weeks")),
+    ("timings.json", '{"context": {}, "benchmarks": 3}', ("benchmarks",)),
+    ("timings.json", '{"context": {}, "benchmarks": []}', ("benchmark",)),
+]
+
+
+class HostileInput(ProgramTest):
+    def setUp(self):
+        super().setUp()
+        self.write("sphere.toml", SHORT_SCENE.replace("[32, 32]", "[8, 8]"))
+        self.write("map.toml", SHORT_SCENE.replace(
+            'shape = "sphere"\nradius = 0.018', 'shape = "height_map"\nfile = "heights.csv"\nspacing = [1e-4, 1e-4]\nends_at_grid_edge = true')
+            .replace("cells = [32, 32]\n", "").replace("[grid]\n", ""))
+        self.write("result.toml", '[[gate]]\nid = "a"\nresult = "result.json"\nquantity = "twist_error"\nbelow = 1.0\n'
+                   'basis = "b"\n')
+        self.write("other.json", TIMINGS.replace('"real_time": 1,', '"real_time": 1.01,'))
+
+    def good(self, name):
+        text, _ = READERS[name]
+        if text is None:
+            self.run_program("solve", "sphere.toml", "--set", "grid.cells=[8,8]", "--set",
+                             f"grid.extent=[{EXTENT},{EXTENT}]", "--fields", name)
+        else:
+            self.write(name, text)
+        return Path(name).read_bytes()
+
+    def ends(self, name):
+        """The exit code, and what is said with it."""
+        end = subprocess.run([PROGRAM, *READERS[name][1]], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, timeout=60)
+        return end.returncode, end.stdout.decode(errors="replace")
+
+    def refused(self, name, damage, says=()):
+        code, said = self.ends(name)
+        self.assertEqual(code, 2, (name, damage, said[:4000]))
+        for part in (name, *says):
+            self.assertIn(part, said, (name, damage))
+        self.assertLess(len(said), 4000, (name, damage))
+
+    def test_what_is_whole_is_read(self):
+        for name in READERS:
+            self.good(name)
+            code, said = self.ends(name)
+            self.assertIn(code, (0, 1), (name, said))
+
+    def test_what_is_no_file_is_refused(self):
+        for name in READERS:
+            self.refused(name, "missing")
+            os.mkdir(name)
+            self.refused(name, "a folder")
+            os.rmdir(name)
+            os.mkfifo(name)
+            self.refused(name, "a pipe that nobody writes to")
+            # Reading a process's memory from its first address on fails, for whoever asks.
+            for target, what in (("/dev/zero", "a device"), (name, "a link to itself"),
+                                 ("/proc/self/mem", "an error while reading")):
+                os.remove(name)
+                os.symlink(target, name)
+                self.refused(name, what)
+            os.remove(name)
+            Path(name).touch()
+            os.truncate(name, 1 << 36)  # takes no room on the disk
+            self.refused(name, "64 GiB")
+
+    def test_what_holds_something_else_is_refused(self):
+        for name, (text, _) in READERS.items():
+            for damage, content in (("empty", b""), ("a program", b"\x7fELF\x02\x01\x01\0\0\0\xff\xfe\0\x01"),
+                                    ("UTF-16", b"\xff\xfe" + (text or "")[:20].encode()), ("Latin-1", b"caf\xe9 = 1\n"),
+                                    ("a page", b"<!doctype html><html><body>Not found</body></html>\n"),
+                                    ("deep", 200000 * b"["), ("an endless line", 300000 * b"a")):
+                Path(name).write_bytes(content)
+                if (name, damage) != ("gates.toml", "empty"):  # there is nothing to do
+                    self.refused(name, damage)
+
+    def test_what_is_cut_off_anywhere_is_read_or_refused(self):
+        """A beginning may be a whole file too, as where a last line is missing."""
+        for name in READERS:
+            whole = self.good(name)
+            for size in range(0, len(whole), len(whole) // 8 if READERS[name][0] is None else 7):
+                Path(name).write_bytes(whole[:size])
+                code, said = self.ends(name)
+                self.assertIn(code, (0, 1, 2), (name, size, said))
+                if code == 2:
+                    self.assertTrue(name in said or "sphere.toml" in said or "map.toml" in said, (name, size, said))
+
+    @unittest.skipIf(os.geteuid() == 0, "root may read everything")
+    def test_what_may_not_be_read_is_refused(self):
+        for name in READERS:
+            self.good(name)
+            os.chmod(name, 0)
+            self.refused(name, "unreadable")
+
+    def test_a_wrong_value_is_refused_with_its_key_and_what_is_allowed(self):
+        for name, text, says in DAMAGES:
+            self.write(name, text)
+            self.refused(name, text[:300], says)
+
+    def test_no_text_reaches_the_terminal_as_commands(self):
+        """A terminal obeys what stands behind an escape character."""
+        self.write("scene.toml", changed(SHORT_SCENE, '"sphere"', '"\\u001b]0;title\\u0007"'))
+        said = self.run_program("solve", "scene.toml", code=2, says="\\x1b]0;title")
+        self.assertNotIn("\x1b", said)
+        self.assertNotIn("\x07", said)
+
+
+if __name__ == "__main__":
+    main()
