@@ -19,10 +19,10 @@ using Eigen::ArrayXXd;
 
 /// Cells along the longer side of the coarse grid, and how many of them a contact has to fill there: on 16 to
 /// 64 cells a path's error differs by up to a quarter.
-constexpr double kCoarseCells = 24.0;
-constexpr double kCoarseAcross = 12.0;
+constexpr double kCoarseCells = 16.0;
+constexpr double kCoarseAcross = 8.0;
 /// Differences of parts are small, and each part leaves what the tolerance allows.
-constexpr double kCoarseTolerance = 1e-9;
+constexpr double kCoarseTolerance = 1e-7;
 /// Error of n parts over its difference from 4 n parts. An error that falls like 1/n would make it 4/3. A
 /// single part is not there yet: 1.8 to 2.4 for pushes before twists and both at once, spheres and ellipsoids
 /// of up to 10 to 1; 3.0 for an ellipsoid that is twisted.
