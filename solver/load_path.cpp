@@ -17,8 +17,8 @@ namespace {
 
 using Eigen::ArrayXXd;
 
-/// Cells along the longer side of the coarse grid, and how many of them a contact has to fill there: on 16 to
-/// 64 cells a path's error differs by up to a quarter.
+/// Cells along a side of the coarse grid, in the geometric mean, and how many of them a contact has to fill
+/// there: on 16 to 64 cells a path's error differs by up to a quarter.
 constexpr double kCoarseCells = 16.0;
 constexpr double kCoarseAcross = 8.0;
 /// Differences of parts are small, and each part leaves what the tolerance allows.
@@ -92,10 +92,10 @@ ArrayXXd block_means(const ArrayXXd& heights, Index side) {
 }
 
 void make_coarse(Scene& scene, double cells) {
-  const auto longer = static_cast<double>(std::max(scene.cells[0], scene.cells[1]));
-  if (longer <= cells) return;
+  const double mean = std::sqrt(static_cast<double>(scene.cells[0] * scene.cells[1]));
+  if (mean <= cells) return;
   for (Index& side : scene.cells) {
-    side = std::max<Index>(4, 2 * std::lround(0.5 * static_cast<double>(side) * cells / longer));
+    side = std::max<Index>(4, 2 * std::lround(0.5 * static_cast<double>(side) * cells / mean));
   }
 }
 

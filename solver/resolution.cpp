@@ -121,7 +121,7 @@ Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, co
   const double staircase = (at_centres ? 1.6 : 0.65) * cell * std::sqrt(cell) + (averaged ? 1.6 * cell : 0.0);
   result.step = smooth * cell * cell + 0.22 * edge * cell + narrow * staircase;
   // A stick area of few cells is off by more of itself.
-  result.step += 0.6 * std::clamp(1.0 - result.stick_width / 6.0, 0.0, 1.0) * cell * cell;
+  result.step += std::clamp(1.0 - result.stick_width / 8.0, 0.0, 1.0) * cell * cell;
   const bool of_mesh = std::holds_alternative<MomentRatio>(step.torsion) && is_zero(step);
   const double limit_error = of_mesh ? 0.0 : 0.6 * smooth * cell * cell + 0.15 * edge * cell;
   const RigidMotion& sliding = loads.limit.sliding;
