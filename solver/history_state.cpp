@@ -41,9 +41,9 @@ void OpenHistory::add(const StepEnd& from, const StepEnd& to, const Resolution& 
 }
 
 Quantities OpenHistory::mesh() const {
-  constexpr double kLoops = 3.0;
+  constexpr double kLoops = 2.0;
   // A radius that is off by 1 % moves a twist by 3 % and a translation by 1 %.
-  constexpr double kOfTranslation = 0.5;
+  constexpr double kOfTranslation = 0.4;
   Quantities open;
   for (const auto number : kQuantities) {
     const bool turns = number == &Quantities::twist || number == &Quantities::moment;

@@ -25,7 +25,7 @@ StepEnd end_of(const Solution& solution);
 Quantities distance(const StepEnd& from, const StepEnd& to);
 
 /// What the mesh leaves open of the steps so far. Errors of steps add up, whatever their signs. But a contact
-/// forgets a loop once a larger one closes: no more counts than three times the largest size that was
+/// forgets a loop once a larger one closes: no more counts than twice the largest size that was
 /// reached, at the relative error of the worst step.
 struct OpenHistory {
   Quantities sum;

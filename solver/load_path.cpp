@@ -17,16 +17,19 @@ namespace {
 
 using Eigen::ArrayXXd;
 
-/// Cells along the longer side of the coarse grid, and how many of them a contact has to fill there: on 16 to
-/// 64 cells a path's error differs by up to a quarter.
-constexpr double kCoarseCells = 24.0;
-constexpr double kCoarseAcross = 12.0;
+/// Cells along a side of the coarse grid, in the geometric mean, and how many of them a contact has to fill
+/// there: on 16 to 64 cells a path's error differs by up to a quarter.
+constexpr double kCoarseCells = 16.0;
+constexpr double kCoarseAcross = 8.0;
 /// Differences of parts are small, and each part leaves what the tolerance allows.
-constexpr double kCoarseTolerance = 1e-9;
+constexpr double kCoarseTolerance = 1e-7;
 /// Error of n parts over its difference from 4 n parts. An error that falls like 1/n would make it 4/3. A
 /// single part is not there yet: 1.8 to 2.4 for pushes before twists and both at once, spheres and ellipsoids
 /// of up to 10 to 1; 3.0 for an ellipsoid that is twisted.
-constexpr double kSafety = 3.0;
+constexpr double kSafety = 2.7;
+/// More where a step changes the normal load beside the others: a single part brings both at once, four parts
+/// one after the other, and they may agree by chance.
+constexpr double kBothAtOnce = 2.5;
 constexpr int kFinerPath = 4;
 /// Steps that are solved to estimate; a longer history's path is longer in proportion.
 constexpr std::size_t kMaxSteps = 60;
@@ -64,6 +67,16 @@ Step gone(const Step& step, const StepEnd& before, double part) {
   return at;
 }
 
+/// The normal load, and a tangential one.
+bool changes_both(const Step& from, const Step& to) {
+  const auto value = [](const Step& step) {
+    return std::visit([](const auto& load) { return load.value; }, step.torsion);
+  };
+  return from.normal != to.normal &&
+         (from.torsion.index() != to.torsion.index() || value(from) != value(to) || from.force != to.force ||
+          from.displacement != to.displacement);
+}
+
 bool has_axis(const Scene& scene) {
   if (scene.surfaces.size() != 1 || scene.pressure == PressureModel::file) return false;
   const Surface& surface = scene.surfaces.front();
@@ -79,10 +92,10 @@ ArrayXXd block_means(const ArrayXXd& heights, Index side) {
 }
 
 void make_coarse(Scene& scene, double cells) {
-  const auto longer = static_cast<double>(std::max(scene.cells[0], scene.cells[1]));
-  if (longer <= cells) return;
+  const double mean = std::sqrt(static_cast<double>(scene.cells[0] * scene.cells[1]));
+  if (mean <= cells) return;
   for (Index& side : scene.cells) {
-    side = std::max<Index>(4, 2 * std::lround(0.5 * static_cast<double>(side) * cells / longer));
+    side = std::max<Index>(4, 2 * std::lround(0.5 * static_cast<double>(side) * cells / mean));
   }
 }
 
@@ -186,8 +199,10 @@ PathUncertainty::PathUncertainty(const Scene& scene, const Model& model)
   const std::vector<StepEnd> ends = ends_of(*coarse);
   coarse->substeps *= kFinerPath;
   const std::vector<StepEnd> finer = ends_of(*coarse);
+  double safety = kSafety;
   for (std::size_t k = 0; k < std::min(ends.size(), finer.size()); ++k) {
-    at_ends_.push_back(times(kSafety, distance(ends[k], finer[k])));
+    if (k > 0 && changes_both(step_of(scene, k - 1), step_of(scene, k))) safety = kSafety * kBothAtOnce;
+    at_ends_.push_back(times(safety, distance(ends[k], finer[k])));
   }
   broke_off_ = at_ends_.size() < coarse->steps.size() * static_cast<std::size_t>(coarse->cycles);
 }

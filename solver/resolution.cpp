@@ -116,12 +116,12 @@ Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, co
   const double edge = std::pow(std::min(1.0, contact.edge / contact.mean), 3);
   const bool at_centres = scene.pressure == PressureModel::hertz;
   const bool averaged = scene.pressure == PressureModel::hertz_averaged;
-  const double smooth = at_centres ? 1.2 : averaged ? 1.7 : 0.3;
+  const double smooth = at_centres ? 1.2 : averaged ? 1.7 : 0.26;
   const double narrow = std::clamp((4.0 - result.slip_width) / 3.0, 0.0, 1.0);
-  const double staircase = (at_centres ? 1.6 : 0.75) * cell * std::sqrt(cell) + (averaged ? 1.6 * cell : 0.0);
+  const double staircase = (at_centres ? 1.6 : 0.65) * cell * std::sqrt(cell) + (averaged ? 1.6 * cell : 0.0);
   result.step = smooth * cell * cell + 0.22 * edge * cell + narrow * staircase;
   // A stick area of few cells is off by more of itself.
-  result.step += 0.6 * std::clamp(1.0 - result.stick_width / 6.0, 0.0, 1.0) * cell * cell;
+  result.step += std::clamp(1.0 - result.stick_width / 8.0, 0.0, 1.0) * cell * cell;
   const bool of_mesh = std::holds_alternative<MomentRatio>(step.torsion) && is_zero(step);
   const double limit_error = of_mesh ? 0.0 : 0.6 * smooth * cell * cell + 0.15 * edge * cell;
   const RigidMotion& sliding = loads.limit.sliding;

@@ -10,8 +10,8 @@ namespace slipstick::solver {
 
 /// What the mesh resolves of a step, and the relative error that it leaves in the step's change of motion.
 /// Cells of size h on a contact of radius r, h/r in the root mean square of both axes, leave these parts:
-/// - everywhere 0.3 (h/r)^2, and up to 0.22 h/r where the pressure does not fall to zero at the edge;
-/// - where slip is narrower than four cells, up to 0.75 (h/r)^1.5, since tractions rise towards a staircase
+/// - everywhere 0.26 (h/r)^2, and up to 0.22 h/r where the pressure does not fall to zero at the edge;
+/// - where slip is narrower than four cells, up to 0.65 (h/r)^1.5, since tractions rise towards a staircase
 /// of
 ///   an edge as if nothing bounded them;
 /// - where the pressure is Hertz's and not solved on the grid, more of both; averaged over cells it also

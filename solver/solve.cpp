@@ -275,6 +275,7 @@ void state_uncertainty(Solution& solution, const Scene& scene, std::size_t step)
     resolution.number = imposed ? &Quantities::force : &Quantities::displacement;
     value = size(imposed ? solution.force : solution.displacement);
   }
+  if (!turned && !moved) resolution.mesh = resolution.path = {};  // what moves is rounding
   resolution.absolute = resolution.mesh.*resolution.number + resolution.path.*resolution.number;
   resolution.uncertainty = resolution.absolute > 0.0 ? resolution.absolute / value : resolution.step;
 }

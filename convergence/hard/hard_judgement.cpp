@@ -118,7 +118,9 @@ double natural_size(const Json& result, const std::string& path) {
   const double force = std::hypot(number(result, "/force/0"), number(result, "/force/1"));
   const double shift = std::hypot(number(result, "/displacement/0"), number(result, "/displacement/1"));
   const auto or_nothing = [](double size) { return std::isfinite(size) ? size : 0.0; };
-  const double energy = number(result, "/elastic_energy");
+  // Of a state that has come back to nothing, what its certificate is relative to.
+  const double energy = std::fmax(number(result, "/elastic_energy"), number(result, "/certificate/energy"));
+  if (path == "/elastic_energy") return or_nothing(energy);
   if (path == "/moment")
     return or_nothing(force * radius) + or_nothing(energy * radius / number(result, "/approach"));
   if (path != "/twist_angle") return 0.0;
@@ -131,7 +133,8 @@ double main_value(const Json& result) {
   const double size = std::isnan(value) ? std::hypot(number(result, (path + "/0").c_str()),
                                                      number(result, (path + "/1").c_str()))
                                         : value;
-  return size == 0.0 ? std::numeric_limits<double>::quiet_NaN() : size;
+  const bool nothing_acts = number(result, "/resolved/absolute") == 0.0;
+  return size == 0.0 || nothing_acts ? std::numeric_limits<double>::quiet_NaN() : size;
 }
 
 MeshReference judge_by_finer(double value, double absolute, double twice, double four_times) {

@@ -24,7 +24,8 @@ struct JudgedCase {
 /// A result by itself: its status, its certificate, and its distance from the exact answer, if there is one.
 JudgedCase judge_alone(const Json& result);
 
-/// The size of the number that a result's uncertainty is of; NaN where it is missing, or zero.
+/// The size of the number that a result's uncertainty is of; NaN where it is missing, zero, or
+/// open to nothing but rounding.
 double main_value(const Json& result);
 
 /// A value beside those on twice and four times the cells, with as many times the parts of each step.

@@ -341,17 +341,25 @@ std::string words_of(const Json& resolved) {
   return number == "twist_angle" ? "twist" : number;
 }
 
+std::string unit_of(const Json& resolved) {
+  const std::string number = resolved["number"];
+  return number == "twist_angle" ? "rad" : number == "displacement" ? "m" : number == "moment" ? "N m" : "N";
+}
+
 /// What the mesh resolves, and how far the answer may be off.
 std::string resolution_text(const Json& r) {
   const Json& resolved = r["resolved"];
+  const bool open = resolved["absolute"] != 0.0;
   std::string text =
       text_line("resolved",
                 fmt::format("stick area {:.3g} cells wide, slip area {:.3g}",
                             resolved["stick_width"].get<double>(), resolved["slip_width"].get<double>())) +
       text_line("uncertain",
-                fmt::format("{} by {}, {} of it: mesh {}, length of steps {}", words_of(resolved),
-                            short_text(resolved["absolute"]), percent_text(resolved["uncertainty"]),
-                            short_text(resolved["mesh"]), short_text(resolved["path"])));
+                open ? fmt::format("{} by {} {} ({}): mesh {}, length of steps {}", words_of(resolved),
+                                   short_text(resolved["absolute"]), unit_of(resolved),
+                                   percent_text(resolved["uncertainty"]), short_text(resolved["mesh"]),
+                                   short_text(resolved["path"]))
+                     : "by about " + percent_text(resolved["uncertainty"]));
   if (!resolved.contains("warning")) return text;
   return text + text_line("warning", resolved["warning"].get<std::string>());
 }

@@ -160,6 +160,7 @@ std::string number_text(const Json& value) {
 std::string percent_text(const Json& part) {
   if (!part.is_number()) return "-";
   const double percent = 100.0 * part.get<double>();
+  if (!(percent < 1e4)) return "over 10,000 %";
   return percent < 100.0 ? fmt::format("{:.2g} %", percent) : fmt::format("{:.0f} %", percent);
 }
 

@@ -83,6 +83,12 @@ void put_uncertainty(Json& result, double mesh, double path) {
   resolved.erase("warning");
 }
 
+/// Parts that leave as little as the target allows them, if what is left falls like one over their number.
+int more_parts(int parts, double path, const AccuracyTarget& target) {
+  const double needed = std::ceil(parts * path / (0.8 * kPathPart * target.error));
+  return needed < kMaxSubsteps ? static_cast<int>(needed) : kMaxSubsteps;
+}
+
 /// The scene with as many parts of its steps as the target takes, found on few cells.
 Scene with_parts(Scene scene, const AccuracyTarget& target) {
   if (target.of != AccuracyOf::twist || !is_estimated(scene, target.of)) return scene;
@@ -96,8 +102,7 @@ Scene with_parts(Scene scene, const AccuracyTarget& target) {
       return scene;  // the mesh that counts may do better, or says it again
     }
     if (!(path > kPathPart * target.error)) return scene;
-    const double parts = std::ceil(scene.substeps * path / (0.8 * kPathPart * target.error));
-    scene.substeps = parts < kMaxSubsteps ? static_cast<int>(parts) : kMaxSubsteps;
+    scene.substeps = more_parts(scene.substeps, path, target);
   }
   return scene;
 }
@@ -185,7 +190,7 @@ Json accuracy_plan(const Scene& given, const AccuracyTarget& target) {
 }
 
 AccurateAnswer solve_to_accuracy(const Scene& given, const AccuracyTarget& target, const GridSolve& solve) {
-  const Scene scene = with_parts(given, target);
+  Scene scene = with_parts(given, target);
   const Approach approach = approach_to(scene, target);
   const double order = approach.shifted ? kShiftedOrder : falling_order(accuracy_data(), target.of);
   std::optional<AccuracyChoice> choice = first_choice(scene, approach, target);
@@ -202,10 +207,14 @@ AccurateAnswer solve_to_accuracy(const Scene& given, const AccuracyTarget& targe
     attempts.push_back(attempt_json(made, chosen, seconds));
     found.reached = made.within(target.error);
     if (found.reached) break;
-    if (!(made.path < target.error)) {
-      stopped =
-          fmt::format("steps in {} parts leave {:.2g} open; write out more steps", scene.substeps, made.path);
-      break;
+    if (made.path > kPathPart * target.error) {
+      if (!(made.path < target.error) && (scene.substeps >= kMaxSubsteps || std::isinf(made.path))) {
+        stopped = fmt::format("steps in {} parts leave {:.2g} open; write out more steps", scene.substeps,
+                              made.path);
+        break;
+      }
+      scene.substeps = more_parts(scene.substeps, made.path, target);
+      if (made.to_lower() <= (1.0 - kPathPart) * target.error) continue;
     }
     choice = refined(scene, approach.contact, target, *choice, made.to_lower(), order);
     if (!choice) {

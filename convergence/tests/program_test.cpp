@@ -38,10 +38,10 @@ std::string check(const std::string& field) {
 TEST(Program, CheckTellsAGoodFieldFromABadOne) {
   const ProgramRun good = run(check("contact-64-0.9.csv --twist 2.361048651456917e-3"));
   EXPECT_EQ(good.exit_code, 0) << good.output;
-  EXPECT_THAT(good.output, testing::StartsWith("good: the moment is right"));
+  EXPECT_THAT(good.output, testing::StartsWith("good: "));
   const ProgramRun bad = run(check("cgcontact-64-0.9.csv --twist 2.21775472e-3"));
   EXPECT_EQ(bad.exit_code, 1) << bad.output;
-  EXPECT_THAT(bad.output, AllOf(testing::StartsWith("bad: the moment is right"), HasSubstr("6.1 % too low"),
+  EXPECT_THAT(bad.output, AllOf(testing::StartsWith("bad: the twist is"), HasSubstr("6.1 % too low"),
                                 HasSubstr("FAILS")));
 }
 
@@ -84,7 +84,7 @@ TEST(Program, CheckOfWhatCannotBeJudgedIsExitCode2) {
   std::ofstream(file) << "x1,x2,pressure,q1,q2\n0,0,1,nan,0\n";
   const ProgramRun nan = run("check " + kScenes + "/paper.toml " + file.string());
   EXPECT_EQ(nan.exit_code, 2);
-  EXPECT_THAT(nan.output, AllOf(HasSubstr("nan.csv:2"), HasSubstr("a finite number")));
+  EXPECT_THAT(nan.output, AllOf(HasSubstr("nan.csv: row 1"), HasSubstr("q1")));
   std::ofstream(file) << "x1,x2,p,q1,q2\n0,0,1,0,0\n";
   EXPECT_THAT(run("check " + kScenes + "/paper.toml " + file.string()).output,
               HasSubstr("no column pressure; its columns: x1, x2, p, q1, q2"));

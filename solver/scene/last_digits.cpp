@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "solver/scene/surface_geometry.hpp"
 
@@ -14,13 +15,20 @@ bool is_rounding(double value, double scale) {
 
 double compliance(const Material& body) { return (1.0 + body.poisson_ratio) / body.young_modulus; }
 
-/// Sides of the grid, or half those of the contact, as far as they are known before the solve.
+/// Sides of the grid, or half those of the contact, as far as they are known before the solve and double
+/// precision holds them.
 std::optional<std::array<double, 2>> sides_of(const Scene& scene) {
   const auto& load = scene.steps.front().normal;
   if (scene.extent || !load) return scene.extent;
   const auto plane = [](const Material& body) { return (1.0 - body.poisson_ratio) * compliance(body); };
-  return expected_half_sides(scene.surfaces, scene.combine, *load,
-                             1.0 / (plane(scene.upper) + plane(scene.lower)));
+  try {
+    return expected_half_sides(scene.surfaces, scene.combine, *load,
+                               1.0 / (plane(scene.upper) + plane(scene.lower)));
+  } catch (const std::domain_error&) {
+    return std::nullopt;
+  } catch (const std::invalid_argument&) {
+    return std::nullopt;
+  }
 }
 
 /// The largest forces, over those that bring the largest moment about a lever as long as the grid.
