@@ -1,19 +1,22 @@
 #!/usr/bin/env python3
-"""program_test.py PROGRAM: the program as users run it: what goes out, where, and with which exit code. What `check`
-says stands in program_test.cpp."""
+"""program_test.py PROGRAM: the program as users run it: what goes out, where, and with which exit code."""
 
 import json
 import math
 import os
 from pathlib import Path
 
-from program_run import SCENES, ProgramTest, main
+from program_run import SCENES, SOURCE, ProgramTest, main
 
 SMALL = ("--set", "grid.cells=[24,24]")
 
 
 def solve(scene, *words):
     return "solve", str(SCENES / f"{scene}.toml"), *SMALL, *words
+
+
+def check(field, *words):
+    return "check", str(SCENES / "paper.toml"), str(SOURCE / "convergence/check/fields" / field), *words
 
 
 class Program(ProgramTest):
@@ -161,6 +164,39 @@ class Program(ProgramTest):
         self.assertEqual(len(result["traction"]), 2)
         self.assertAlmostEqual(result["traction"][1]["value"], math.sqrt(1 - 0.75**2), delta=4e-16)  # slip: mu p
         self.assertAlmostEqual(result["tangent_stiffness"], 16 / 3 / 8, delta=4e-16)
+
+    def test_check_tells_a_good_field_from_a_bad_one(self):
+        good = self.run_program(*check("contact-64-0.9.csv", "--twist", "2.361048651456917e-3"))
+        self.assertTrue(good.startswith("good: "), good)
+        bad = self.run_program(*check("cgcontact-64-0.9.csv", "--twist", "2.21775472e-3"), code=1,
+                               says=("6.1 % too low", "FAILS"))
+        self.assertTrue(bad.startswith("bad: the twist is"), bad)
+
+    def test_check_asks_for_more_where_it_is_told(self):
+        """The exact answer, sampled, is right within its mesh; it solves no grid's own problem."""
+        scene = (str(SCENES / "paper.toml"), "--set", "grid.cells=[48,48]")
+        self.run_program("solve", *scene, "--set", "solver.model=exact", "--fields", "sampled.csv")
+        for code, *options in ((0,), (0, "--strict"), (1, "--discrete"), (0, "--tolerance", "0.02"),
+                               (1, "--tolerance", "1e-6"), (2, "--tolerance", "0")):
+            self.run_program("check", scene[0], "sampled.csv", *scene[1:], *options, code=code)
+        self.run_program(*check("contact-64-0.9.csv", "--discrete", "--strict"))
+
+    def test_check_writes_every_key_of_the_contract(self):
+        result = self.result(*check("cgcontact-64-0.9.csv"), code=1)
+        for table, numbers in ((result, "twist_error moment_error stick_radius_error"),
+                               (result["traction_error"], "l1 l2 max"),
+                               (result["certificate"], "gap moment force friction_bound"),
+                               (result["slip_direction"], "mean max")):
+            for key in numbers.split():
+                self.assertIsInstance(table[key], (int, float), key)
+        self.assertEqual(result["verdict"], "bad")
+        self.assertTrue(result["why"])
+
+    def test_check_of_what_cannot_be_judged_is_exit_code_2(self):
+        self.run_program(*check("no-such-field.csv"), code=2, says="no-such-field.csv")
+        for text, says in (("x1,x2,pressure,q1,q2\n0,0,1,nan,0\n", ("field.csv: row 1: q1 is no number", "allowed: NaN where there is no contact")),
+                           ("x1,x2,p,q1,q2\n0,0,1,0,0\n", "no column pressure; its columns: x1, x2, p, q1, q2")):
+            self.run_program("check", str(SCENES / "paper.toml"), self.write("field.csv", text), code=2, says=says)
 
 
 if __name__ == "__main__":
