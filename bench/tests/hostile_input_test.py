@@ -92,18 +92,35 @@ DAMAGES = [
     ("study.toml", changed(STUDY, "12", "1000000"), ("cells[1] = 1000000", "16384")),
     ("study.toml", STUDY + "shift = 2\n", ("shift", "shifts")),
     ("study.toml", "cells = [8, 12]\n", ("scene", "missing")),
-    ("gates.toml", changed(GATES, "1.0", "nan"), ("gate[0].below = nan", "finite")),
-    ("gates.toml", changed(GATES, "below", "bellow"), ("below",)),
+    *(("gates.toml", changed(GATES, old, new), says) for old, new, *says in (
+        ("1.0", "nan", "gate[0].below = nan", "finite"),
+        ("1.0", "-1", "positive"),
+        ("below", "bellow = 1\nbelow", ":5", "gate[0].bellow", "nearest known one is gate[0].below"),
+        ("scene =", "study = 'a.toml'\nscene =", "one of scene and study"),
+        ('scene = "sphere.toml"\n', "", "one of scene and study"),
+        ('id = "a"\n', "", "gate[0].id"),
+        ('quantity = "twist_error"\n', "", "gate[0].quantity"),
+        ("below = 1.0\n", "", "below, above, both, or equals"),
+        ("below = 1.0", "below = 1.0\nequals = 3", "one or the other"),
+        ("below = 1.0", "below = 1.0\nabove = 1.0", "less than below"),
+        ('basis = "b"\n', "", "gate[0].basis", "active gate"),
+        ('"b"', "''", "gate[0].basis"),
+        ("basis", "status = 'off'\nbasis", '"off"', "expected_failure"),
+        ("basis", "platform_spread = -1\nbasis", "platform_spread"),
+        ("[[gate]]", "[[gates]]", "gates"),
+        ("[[gate]]", "[[gate]", ":1"))),
     ("gates.toml", 'gate = "a"\n', ("gate = ", "[[gate]]")),
     ("cases.toml", changed(CASES, "why", "whi"), ("why",)),
     ("cases.toml", changed(CASES, "[0.1, 0.2]", "[]"), ("values = []", "at least one")),
     ("heights.csv", changed(HEIGHTS, "0.3", "inf"), (":1", "inf", "finite")),
     ("heights.csv", changed(HEIGHTS, "0.3", "1e400"), (":1", "1e400", "finite")),
+    ("heights.csv", changed(HEIGHTS, "0.3\n", "0.3,x\n"), (":1",)),
     ("heights.csv", HEIGHTS + "1,2\n", (":3", "2 values; allowed: 3")),
     ("heights.csv", changed(HEIGHTS, "0.3", "0.3um"), (":1", "0.3um", "finite number")),
     ("columns.csv", second_row("0,1e-4,nan,1e7,0"), (":3", "nan", "finite")),
     ("columns.csv", second_row("0,1e-4,inf,1e7,0"), (":3", "inf", "finite")),
     ("columns.csv", second_row("0,1e-4,1e400,1e7,0"), (":3", "1e400", "finite")),
+    ("columns.csv", second_row("0,1e-4,,1e7,0"), (":3", "finite")),
     ("columns.csv", second_row("0,1e-4,1e9"), (":3", "3 values; allowed: 5")),
     ("columns.csv", second_row("0,1e-4,1 GPa,1e7,0"), (":3", "1 GPa", "finite")),
     ("columns.csv", changed(COLUMNS, "pressure", "p"), ("no column pressure", "x1, x2, p")),
@@ -135,7 +152,8 @@ class HostileInput(ProgramTest):
         super().setUp()
         self.write("sphere.toml", SHORT_SCENE.replace("[32, 32]", "[8, 8]"))
         self.write("map.toml", SHORT_SCENE.replace(
-            'shape = "sphere"\nradius = 0.018', 'shape = "height_map"\nfile = "heights.csv"\nspacing = [1e-4, 1e-4]\nends_at_grid_edge = true')
+            'shape = "sphere"\nradius = 0.018',
+            'shape = "height_map"\nfile = "heights.csv"\nspacing = [1e-4, 1e-4]\nends_at_grid_edge = true')
             .replace("cells = [32, 32]\n", "").replace("[grid]\n", ""))
         self.write("result.toml", '[[gate]]\nid = "a"\nresult = "result.json"\nquantity = "twist_error"\nbelow = 1.0\n'
                    'basis = "b"\n')

