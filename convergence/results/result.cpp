@@ -354,12 +354,11 @@ std::string resolution_text(const Json& r) {
       text_line("resolved",
                 fmt::format("stick area {:.3g} cells wide, slip area {:.3g}",
                             resolved["stick_width"].get<double>(), resolved["slip_width"].get<double>())) +
-      text_line("uncertain",
-                open ? fmt::format("{} by {} {} ({}): mesh {}, length of steps {}", words_of(resolved),
-                                   short_text(resolved["absolute"]), unit_of(resolved),
-                                   percent_text(resolved["uncertainty"]), short_text(resolved["mesh"]),
-                                   short_text(resolved["path"]))
-                     : "by about " + percent_text(resolved["uncertainty"]));
+      text_line("uncertain", open ? fmt::format("{} by {} {} ({}): mesh {}, length of steps {}",
+                                                words_of(resolved), short_text(resolved["absolute"]),
+                                                unit_of(resolved), percent_text(resolved["uncertainty"]),
+                                                short_text(resolved["mesh"]), short_text(resolved["path"]))
+                                  : "by about " + percent_text(resolved["uncertainty"]));
   if (!resolved.contains("warning")) return text;
   return text + text_line("warning", resolved["warning"].get<std::string>());
 }

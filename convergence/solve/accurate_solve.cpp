@@ -10,6 +10,7 @@
 
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/quantity.hpp"
+#include "convergence/solve/cost.hpp"
 #include "convergence/solve/reached.hpp"
 #include "solver/input/input_error.hpp"
 

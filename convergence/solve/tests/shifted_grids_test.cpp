@@ -2,6 +2,7 @@
 
 #include "convergence/solve/shifted_grids.hpp"
 
+#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
