@@ -173,10 +173,6 @@ void require_memory_for_files(const Scene& scene) {
   }
 }
 
-bool brings_translation(const Step& step) {
-  return step.displacement || step.force != std::array<double, 2>{};
-}
-
 /// Direct and dense summation are there to be compared with: they sum over all cells.
 bool reducible(const Scene& scene) {
   return scene.model != ModelChoice::full && scene.op == OperatorKind::dcfft;

@@ -261,9 +261,7 @@ void state_uncertainty(Solution& solution, const Scene& scene, std::size_t step)
   const auto last = scene.steps.begin() + static_cast<std::ptrdiff_t>(std::min(step + 1, scene.steps.size()));
   const bool turned =
       !std::all_of(scene.steps.begin(), last, [&](const Step& at) { return is_zero(at.torsion); });
-  const bool moved = std::any_of(scene.steps.begin(), last, [](const Step& at) {
-    return at.displacement || at.force != std::array<double, 2>{};
-  });
+  const bool moved = std::any_of(scene.steps.begin(), last, brings_translation);
   const auto size = [](const std::array<double, 2>& pair) { return std::hypot(pair[0], pair[1]); };
   double value = 0.0;
   if (turned || !moved) {

@@ -120,6 +120,10 @@ std::array<Index, 2> read_cells(SceneReader& reader, const std::vector<Surface>&
 
 }  // namespace
 
+bool brings_translation(const Step& step) {
+  return step.displacement || step.force != std::array<double, 2>{};
+}
+
 Step step_of(const Scene& scene, std::size_t k) {
   Step step = scene.steps[k % scene.steps.size()];
   if (k < scene.steps.size()) return step;

@@ -78,6 +78,9 @@ struct Omission {
   std::string why;
 };
 
+/// Whether a step brings a tangential force or displacement.
+bool brings_translation(const Step& step);
+
 /// What a scene file says, checked, with defaults filled in; SI units, or any other consistent set.
 struct Scene {
   std::filesystem::path source;  ///< the file it was read from
