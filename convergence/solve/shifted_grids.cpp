@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -94,23 +93,25 @@ double expected_uncertainty(const Scene& scene, double across, const ContactForm
 /// Longer over shorter axis of a contact, from its pressure's second moments.
 double slenderness(const solver::Solution& solution) {
   const solver::Grid& grid = solution.grid;
-  double load = 0.0;
-  Eigen::Vector2d centre = Eigen::Vector2d::Zero();
-  Eigen::Matrix2d moments = Eigen::Matrix2d::Zero();
+  double load = 0.0, first1 = 0.0, first2 = 0.0, second11 = 0.0, second12 = 0.0, second22 = 0.0;
   for (solver::Index i = 0; i < grid.n1; ++i) {
     for (solver::Index j = 0; j < grid.n2; ++j) {
       const double pressure = solution.pressure[i * grid.n2 + j];
-      const Eigen::Vector2d x(grid.x1(i), grid.x2(j));
+      const double x1 = grid.x1(i);
+      const double x2 = grid.x2(j);
       load += pressure;
-      centre += pressure * x;
-      moments += pressure * x * x.transpose();
+      first1 += pressure * x1;
+      first2 += pressure * x2;
+      second11 += pressure * x1 * x1;
+      second12 += pressure * x1 * x2;
+      second22 += pressure * x2 * x2;
     }
   }
-  centre /= load;
-  const Eigen::Vector2d axes =
-      Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(moments / load - centre * centre.transpose())
-          .eigenvalues();
-  return std::sqrt(axes[1] / axes[0]);
+  const double about11 = second11 - first1 * first1 / load;
+  const double about22 = second22 - first2 * first2 / load;
+  const double mean = 0.5 * (about11 + about22);
+  const double apart = std::hypot(0.5 * (about11 - about22), second12 - first1 * first2 / load);
+  return std::sqrt((mean + apart) / (mean - apart));
 }
 
 /// The scene's grid, and larger ones of as many cells.
