@@ -1,6 +1,6 @@
 """corpus_test.py PROGRAM SCENES [COUNT [SEED]]: right and wrong fields, made by a seed, and what slipstick check says of them.
 COUNT is that of the scenes (default 4; 30 make some 300 right and 1,000 wrong fields). Prints tables by mistake and amplitude.
-Fails where a right field is bad, where a wrong one of full amplitude is good, and where causes are named wrongly."""
+Fails where a right field is bad, where more than 1 bad field in 10 has no quantity, or more than 1 in 50 a wrong cause."""
 
 import json
 import math
