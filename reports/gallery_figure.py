@@ -26,8 +26,7 @@ def gallery(report, data_dir):
         axis.axis("off")
     for axis, scene in zip(axes.flat, scenes):
         draw_scene(axis, scene, data_dir)
-    figure.colorbar(ScalarMappable(Normalize(0, 1), style.SLIP), ax=axes, location="bottom", shrink=0.4, aspect=40,
-                    pad=0.01, label="slip in the last step, over its largest value; blue: sticks")
+    draw_key(figure, axes)
     return FigureEntry(
         message(scenes),
         "Each panel shows the contact at the end of the scene’s last step, with the share of it that sticks; "
@@ -45,11 +44,12 @@ def slip_maps(report, data_dir):
     shown = [scenes[name] for name in SHOWN if name in scenes]
     if not shown:
         raise Unavailable("the gallery has none of the scenes that are shown here")
-    figure, axes = style.panels(-(-len(shown) // 2), 2, 3.4 * -(-len(shown) // 2), squeeze=False)
+    figure, axes = style.panels(-(-len(shown) // 2), 2, 3.4 * -(-len(shown) // 2) + 0.5, squeeze=False)
     for axis in axes.flat:
         axis.axis("off")
     for axis, scene in zip(axes.flat, shown):
         draw_arrows(axis, draw_scene(axis, scene, data_dir))
+    draw_key(figure, axes)
     return FigureEntry(
         "The middle sticks, the rest slips around the point about which the contact turns; a rough contact sticks in spots.",
         "Blue sticks, orange slips, darker where it slips further. Arrows show how the half-space’s surface slips relative to "
@@ -73,6 +73,12 @@ def draw_arrows(axis, cells):
     along = slip[:, shown] / length[shown] * cells.spacing(ARROWS) * 0.9
     axis.quiver(*cells.positions[:, shown], *along, angles="xy", scale_units="xy", scale=1, pivot="mid", width=0.004,
                 headwidth=4, color=style.BLACK)
+
+
+def draw_key(figure, axes):
+    """What the colours of the maps say, below them."""
+    figure.colorbar(ScalarMappable(Normalize(0, 1), style.SLIP), ax=axes, location="bottom", shrink=0.5, aspect=40,
+                    pad=0.01, label="slip in the last step, over its largest value; blue: sticks")
 
 
 def draw_scene(axis, scene, data_dir):

@@ -64,8 +64,8 @@ def draw_errors(axis, series, quantity):
         low = np.where(spread < mean, spread, (1 - 1e-9) * mean)  # a bar that would reach zero leaves the axes
         for where, alpha in ((used & given, 1.0), (~used & given, 0.3)):
             if where.any():
-                axis.errorbar(size[where], mean[where], yerr=(low[where], spread[where]), elinewidth=0.7, alpha=alpha,
-                              **look)
+                bars = [list(low[where]), list(spread[where])]  # an array of one mesh would be taken for a number
+                axis.errorbar(size[where], mean[where], yerr=bars, elinewidth=0.7, alpha=alpha, **look)
         if order["constant"] is not None and order["verdict"] != "oscillatory":
             ends = np.array([size[used].min(), size[used].max()])
             axis.plot(ends, abs(order["constant"]) * ends ** order["value"], color=look["color"], linewidth=0.9,

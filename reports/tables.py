@@ -34,7 +34,7 @@ MESH = [
     ("traction error L2", "traction_error.l2", sci),
     ("gap / energy", "certificate.gap", sci),
     ("iter&shy;ations", "iterations", _text),
-    ("operator applica&shy;tions", "operator_applications", _text),
+    ("operator applica&shy;tions", "operator_applications", "{:.3g}".format),
     ("pressure, s", "seconds.pressure", seconds),
     ("traction, s", "seconds.traction", seconds),
     ("total, s", "seconds.total", seconds),
@@ -51,7 +51,7 @@ LOADING = [
     ("error", "twist_error", sci),
     ("gap / energy", "certificate.gap", sci),
     ("iter&shy;ations", "iterations", _text),
-    ("operator applica&shy;tions", "operator_applications", _text),
+    ("operator applica&shy;tions", "operator_applications", "{:.3g}".format),
     ("time, s", "seconds.total", seconds),
 ]
 

@@ -42,7 +42,7 @@ std::string equation_5_cancellation() {
   for (const double complement : {1e-3, 1e-4, 1e-6}) {
     const analytic::TorsionState state = analytic::from_stick_complement(complement);
     text += fmt::format(
-        "{}{:.0e} at aₛ/a = 1 − {:g}", std::exchange(separator, ", "),
+        "{}{:.1e} at aₛ/a = 1 − {:g}", std::exchange(separator, ", "),
         std::abs(paper::eq5_moment(state.stick_ratio) / analytic::from_stick_ratio(state.stick_ratio).moment -
                  1.0),
         complement);

@@ -20,9 +20,9 @@ class Result(Mapping[str, Any]):
     >>> result = Result({"twist": 0.1, "certificate": {"gap": None, "gap_reason": "nothing slips"}})
     >>> result.twist, result.certificate.gap, result.certificate.reason("gap")
     (0.1, None, 'nothing slips')
-    >>> result.twits
+    >>> result.mass
     Traceback (most recent call last):
-    AttributeError: the result has no twits; it has: twist, certificate
+    AttributeError: the result has no mass; it has: twist, certificate
     """
 
     def __init__(self, data: dict[str, Any]) -> None:

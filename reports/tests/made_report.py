@@ -178,10 +178,12 @@ def write_data(folder, report):
 
 
 def run_render(data_dir, output, save=style.save):
-    """Exit code, and what it says; `save` writes the figures. A warning is an error."""
+    """Exit code, and what it says; `save` writes the figures. A warning is an error, but for what matplotlib will do
+    otherwise one day."""
     with redirect_stderr(io.StringIO()) as errors, patch.object(style, "save", save), warnings.catch_warnings():
-        for kind in (UserWarning, RuntimeWarning):
+        for kind in (UserWarning, RuntimeWarning, DeprecationWarning):
             warnings.simplefilter("error", kind)
+        warnings.filterwarnings("ignore", category=DeprecationWarning, module="matplotlib")
         exit_code = render.main([str(data_dir), "--output", str(output)])
     return exit_code, errors.getvalue()
 

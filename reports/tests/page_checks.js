@@ -42,6 +42,14 @@ globalThis.checks = (() => {
     return found;
   }
 
+  // Drawings whose text, of 7 points and more, a small screen would shrink below 7 pixels. Their unit is a point.
+  function legible() {
+    return verdict(all(".drawn svg").filter(visible), (each) => {
+      const scale = each.getBoundingClientRect().width / each.viewBox.baseVal.width;
+      return scale >= 1 ? "" : `${scale.toFixed(2)} pixels to the point`;
+    });
+  }
+
   // Colours as they are painted: any notation, alpha from 0 to 1.
   const painter = new OffscreenCanvas(1, 1).getContext("2d", { willReadFrequently: true });
   const known = new Map();
@@ -168,6 +176,6 @@ globalThis.checks = (() => {
   const alphabetical = (texts, sign) => [{}, { numeric: true }].some((options) => texts.every(
     (each, i) => i === 0 || sign * texts[i - 1].localeCompare(each, undefined, options) <= 0));
 
-  return { alternatives, width, text, headings, anchors, reachable, clicked, focus, focused,
-    alphabetical, canvas: () => light(background(document.body)) };
+  return { alternatives, width, legible, text, headings, anchors, reachable, clicked, focus, focused,
+    alphabetical, canvases: () => all("body, .drawn").map((each) => light(background(each))) };
 })();

@@ -104,6 +104,7 @@ class Page(unittest.TestCase):
             with self.subTest(pixels=pixels):
                 self.browser.width(pixels)
                 self.nothing_wrong("width")
+                self.nothing_wrong("legible")
                 self.nothing_wrong("reachable")
 
     def test_every_text_stands_out_from_its_background(self):
@@ -111,7 +112,7 @@ class Page(unittest.TestCase):
         for scheme, is_so in (("light", lambda light: light > 0.8), ("dark", lambda light: light < 0.05)):
             with self.subTest(scheme=scheme):
                 self.browser.media(scheme=scheme)
-                self.assertTrue(is_so(self.browser.evaluate("checks.canvas()")))
+                self.assertTrue(all(map(is_so, self.browser.evaluate("checks.canvases()"))))
                 self.nothing_wrong("text")
 
     def test_folds_open_and_close_on_a_click(self):
