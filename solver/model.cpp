@@ -23,23 +23,23 @@ namespace {
 
 using Eigen::ArrayXd;
 
-/// Fields of one value a cell that a solve holds on the whole grid beside operators and workspaces,
+/// Doubles a cell of the whole grid that a solve holds beside operators and workspaces. Measured, as all that
+/// follow, by convergence/solve/tests/memory_test.py.
 constexpr double kFieldsHeld = 4.0;
-/// those of the tangential problem on the part of the grid where that is solved, of a rank its own rows, and
+/// Doubles a cell of the part that is solved; a rank has its own rows of it.
 constexpr double kFieldsOfPart = 5.0;
-/// those of the whole grid that it holds before and after, temporaries included, without the operators.
+/// Doubles a cell of the whole grid before and after the solve, when operators and workspaces are gone.
 constexpr double kFieldsAround = 12.5;
-/// Those that the other methods than Coulomb's hold besides, on their part of the grid.
+/// Doubles a cell of the part that the other methods than Coulomb's hold.
 constexpr double kFieldsOfOthers = 23.0;
-/// Of the step before, on the whole grid.
+/// Doubles a cell of the whole grid of the step before.
 constexpr double kFieldsBefore = 37.0;
-/// Of pressure and tractions solved in turn, on the whole grid: Anderson's combination and guesses. Much of
-/// the step before stands in for them.
+/// Doubles a cell of the whole grid where pressure and tractions are solved in turn: Anderson's combination
+/// and guesses. They stand in for much of the step before.
 constexpr double kFieldsOfTurns = 58.0;
 constexpr double kFieldsBeforeTurns = 21.0;
-/// The program and its libraries; on several ranks what MPI takes besides.
-double program_bytes() { return (Ranks::number() > 1 ? 36.0 : 26.0) * 0x1p20; }
-/// Of so many fields.
+/// The program and its libraries; on several ranks MPI's too.
+double program_bytes() { return (Ranks::number() > 1 ? 35.0 : 25.0) * 0x1p20; }
 double field_bytes(double fields, Index cells) {
   return fields * sizeof(double) * static_cast<double>(cells);
 }
@@ -236,17 +236,6 @@ Elasticity elasticity(const Scene& scene, const Model& model, const Reduction& p
           .cache = model.cache};
 }
 
-namespace {
-
-/// Before the pressure is known.
-bool may_have_translations(const Scene& scene, const Model& model) {
-  const bool symmetric =
-      scene.pressure != PressureModel::file && is_half_turn_symmetric(model.grid, model.gap);
-  return scene.model == ModelChoice::full || model.forces || !symmetric;
-}
-
-}  // namespace
-
 Memory predicted_memory(const Scene& scene, const Model& model) {
   const bool follows = scene.steps.size() > 1 || scene.cycles > 1;
   const double before = model.shear_coupling ? kFieldsBeforeTurns : kFieldsBefore;
@@ -255,26 +244,21 @@ Memory predicted_memory(const Scene& scene, const Model& model) {
   const double around = field_bytes(kFieldsAround, model.grid.cells());
   const Grid& part = model.pressure_part.grid();
   const Elasticity on_part = elasticity(scene, model, model.pressure_part);
-  const double normal = scene.pressure == PressureModel::solved ? predicted_normal_bytes(on_part, part) : 0.0;
+  const double normal =
+      scene.pressure == PressureModel::solved ? on_part.newton_bytes(part, normal_kernel()) : 0.0;
   // The pressure has the gap's mirrors, unless a file brings it; its tangential displacement has not those of
   // torsion.
   const bool whole = model.pressure_coupling || model.forces || scene.pressure == PressureModel::file;
   const Grid& grid = whole ? model.grid : part;
   const Elasticity elastic = whole ? elasticity(scene, model, Reduction(model.grid)) : on_part;
-  const double coupling = model.pressure_coupling
-                              ? predicted_bytes(scene.op, grid, coupling_kernel(), {.threads = model.threads})
-                              : 0.0;
-  if (scene.method != Method::coulomb) {
-    const double op = predicted_bytes(scene.op, grid, tangential_kernel(),
-                                      {.threads = model.threads, .diagonal = elastic.diagonal});
-    const double solver = std::max({normal, op, coupling});
-    return {solver,
-            program_bytes() + std::max(fields + field_bytes(kFieldsOfOthers, grid.cells()), around - solver)};
-  }
-  const double solver = std::max(
-      {normal, predicted_coulomb_bytes(elastic, grid, may_have_translations(scene, model)), coupling});
-  const double on_own_rows = field_bytes(kFieldsOfPart, RowBands(grid.n1).own_rows().count() * grid.n2);
-  return {solver, program_bytes() + std::max(fields + on_own_rows, around - solver)};
+  const double coupling = model.pressure_coupling ? elastic.operator_bytes(grid, coupling_kernel()) : 0.0;
+  const bool newton = scene.method == Method::coulomb;
+  const double tangential = newton ? elastic.newton_bytes(grid, tangential_kernel())
+                                   : elastic.operator_bytes(grid, tangential_kernel());
+  const double solver = std::max({normal, tangential, coupling});
+  const double of_part = newton ? field_bytes(kFieldsOfPart, RowBands(grid.n1).own_rows().count() * grid.n2)
+                                : field_bytes(kFieldsOfOthers, grid.cells());
+  return {solver, program_bytes() + std::max(fields + of_part, around - solver)};
 }
 
 namespace {

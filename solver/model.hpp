@@ -70,7 +70,7 @@ Model make_model(const Scene& scene);
 
 /// Memory that solving the scene takes, in bytes, at most: operators, workspaces, fields.
 struct Memory {
-  double solver;  ///< operators and workspaces of the larger of the two problems, Solution::bytes
+  double solver;  ///< operators and workspaces of the larger of the two problems
   double fields;  ///< the model's and the solution's, and the program itself
   double total() const { return solver + fields; }
 };

@@ -109,7 +109,7 @@ struct Solution {
   Index stick_cells = 0;
   double operator_applications = 0.0;  ///< tangential, of all grids in those of the finest one
   double pressure_applications = 0.0;  ///< likewise of the normal operator
-  double bytes = 0.0;                  ///< operators and workspaces of the larger of the two problems
+  double bytes = 0.0;                  ///< predicted, of operators and workspaces: Memory::solver
   double predicted_bytes = 0.0;        ///< of all that the solve holds, said before it
   int threads = 1;
   Seconds seconds;

@@ -85,7 +85,6 @@ TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduct
                                          .progress = progress});
   solution.grids = {
       {part.grid().n1, part.grid().n2, op->applications(), solution.iterations, solution.change}};
-  solution.bytes = static_cast<double>(op->bytes());
   return solution;
 }
 
@@ -205,7 +204,6 @@ void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, c
   solution.loads = step;
   solution.twist_angle = motion.twist;
   solution.displacement = {motion.delta1 * model.length_unit, motion.delta2 * model.length_unit};
-  solution.bytes = std::max(solution.normal.bytes, tangential.bytes);
   const bool converged =
       solution.normal.status == Status::converged && tangential.status == Status::converged;
   solution.status = converged ? Status::converged : Status::not_converged;
@@ -321,12 +319,13 @@ void solve_steps(const Scene& scene, const SolveOptions& options, const AfterSte
   ModelSolution solution;
   solution.model = make_model(scene);
   const ThreadPool threads(solution.model.threads);
-  solution.predicted_bytes = predicted_memory(scene, solution.model).total();
+  const Memory memory = predicted_memory(scene, solution.model);
+  solution.bytes = memory.solver;
+  solution.predicted_bytes = memory.total();
   const bool repeats = scene.steps.size() > 1 || scene.cycles > 1 || solution.model.shear_coupling;
   if (!cache && repeats) cache = std::make_shared<SolveCache>();
   if (cache) {
-    const double room =
-        scene.memory_limit.value_or(std::numeric_limits<double>::infinity()) - solution.predicted_bytes;
+    const double room = scene.memory_limit.value_or(std::numeric_limits<double>::infinity()) - memory.total();
     cache->begin_solve(scene.rounding_seed == 0 ? room : 0.0);  // rounding changes with every application
   }
   solution.model.cache = cache;

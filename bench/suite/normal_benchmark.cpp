@@ -34,7 +34,7 @@ Prepared solve(Index cells) {
                        {"complementarity", found.complementarity},
                        {"applications", solver::finest_grid_applications(found.grids)},
                        {"iterations", found.iterations},
-                       {"bytes", found.bytes}},
+                       {"bytes", solver::predicted_memory(scene, *model).solver}},
           .invalid_reason = found.status != solver::Status::converged ? found.message
                             : right                                   ? ""
                                                                       : "the pressure is not Hertz's",

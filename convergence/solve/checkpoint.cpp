@@ -47,8 +47,7 @@ Json normal_json(const NormalSolution& normal) {
           {"grids", std::move(grids)},
           {"safeguards",
            {safeguards.second_solves, safeguards.halvings, safeguards.gradient_steps, safeguards.breakdowns,
-            safeguards.breakdown}},
-          {"bytes", normal.bytes}};
+            safeguards.breakdown}}};
 }
 
 NormalSolution normal_of(const Json& json) {
@@ -66,7 +65,6 @@ NormalSolution normal_of(const Json& json) {
   const Json& safeguards = json.at("safeguards");
   normal.safeguards = {safeguards.at(0), safeguards.at(1), safeguards.at(2), safeguards.at(3),
                        safeguards.at(4)};
-  normal.bytes = json.at("bytes");
   return normal;
 }
 

@@ -106,9 +106,9 @@ template <typename T>
 class Cached {
  public:
   Cached() = default;
-  /// cache: null for none. make: returns a std::unique_ptr<T>; bytes: those of a T.
-  template <typename Make, typename Bytes>
-  Cached(std::shared_ptr<SolveCache> cache, CacheKey key, const Make& make, Bytes bytes)
+  /// cache: null for none. make: returns a std::unique_ptr<T>; bytes: those of a T, about.
+  template <typename Make>
+  Cached(std::shared_ptr<SolveCache> cache, CacheKey key, const Make& make, double bytes)
       : cache_(std::move(cache)), key_(std::move(key)), bytes_(bytes) {
     if (cache_) found_ = cache_->take(key_);
     if (found_.thing) return;
@@ -119,8 +119,7 @@ class Cached {
   ~Cached() {
     if (!cache_ || !found_.thing || std::uncaught_exceptions() > 0) return;  // in the middle of some work
     try {
-      const double bytes = bytes_(**this);  // before what it stands in is moved
-      cache_->keep(std::move(key_), std::move(found_), bytes);
+      cache_->keep(std::move(key_), std::move(found_), bytes_);
     } catch (const std::bad_alloc&) {  // then it is made again
     }
   }
@@ -134,7 +133,7 @@ class Cached {
   std::shared_ptr<SolveCache> cache_;
   CacheKey key_{""};
   SolveCache::Thing found_;
-  double (*bytes_)(const T&) = nullptr;
+  double bytes_ = 0.0;
 };
 
 }  // namespace slipstick::solver

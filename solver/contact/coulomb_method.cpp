@@ -159,10 +159,6 @@ TangentialSolution unloaded(const Grid& grid) {
 
 }  // namespace
 
-double predicted_coulomb_bytes(const Elasticity& elasticity, const Grid& grid, bool translations) {
-  return predicted_nested_bytes<FrictionDiscs>(elasticity, grid, tangential_kernel(), translations ? 3 : 1);
-}
-
 TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const Grid& grid,
                                            TangentialProblem problem, const CoulombOptions& options) {
   require_valid(problem, grid);
@@ -195,7 +191,6 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
   solution.iterations = nested.newton.iterations;
   solution.grids = std::move(nested.grids);
   solution.safeguards = nested.safeguards;
-  solution.bytes = nested.bytes;
   solution.slip = std::move(nested.slip);
   solution.stick = stick_area(solution.traction, loads.friction_bound);
   return solution;

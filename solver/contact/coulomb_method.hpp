@@ -25,7 +25,4 @@ struct CoulombOptions {
 TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const Grid& grid,
                                            TangentialProblem problem, const CoulombOptions& options = {});
 
-/// What TangentialSolution::bytes of it will be.
-double predicted_coulomb_bytes(const Elasticity& elasticity, const Grid& grid, bool translations = false);
-
 }  // namespace slipstick::solver

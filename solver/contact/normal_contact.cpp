@@ -70,14 +70,6 @@ void require_valid(const NormalProblem& problem, const Grid& grid) {
   }
 }
 
-}  // namespace
-
-double predicted_normal_bytes(const Elasticity& elasticity, const Grid& grid) {
-  return predicted_nested_bytes<PositivePressures>(elasticity, grid, normal_kernel(), 1);
-}
-
-namespace {
-
 NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& grid,
                                    const NormalProblem& problem, const NormalOptions& options) {
   PressureOnGrid contact(grid, problem.gap.isFinite().cast<double>(),
@@ -101,7 +93,6 @@ NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& gri
   solution.iterations = nested.newton.iterations;
   solution.grids = std::move(nested.grids);
   solution.safeguards = nested.safeguards;
-  solution.bytes = nested.bytes;
   return solution;
 }
 
@@ -120,10 +111,7 @@ NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& gr
       [&] {
         return std::make_unique<NormalSolution>(find_normal_contact(elasticity, grid, problem, options));
       },
-      [](const NormalSolution& found) {
-        return static_cast<double>(sizeof found) +
-               sizeof(double) * static_cast<double>(found.pressure.size());
-      });
+      sizeof(NormalSolution) + sizeof(double) * static_cast<double>(grid.cells()));
   return *solution;
 }
 

@@ -38,7 +38,6 @@ struct NormalSolution {
   int iterations = 0;
   std::vector<GridWork> grids = {};  ///< work done, coarsest grid first
   Safeguards safeguards = {};        ///< on all grids
-  double bytes = 0.0;                ///< operators and workspaces on the finest grid
 };
 
 /// Newton's method on the natural map p = max(0, p - rho (K p + h - approach)), from the coarsest grid up
@@ -48,8 +47,5 @@ struct NormalSolution {
 /// Throws std::invalid_argument for a load that is not positive or a gap that is nowhere finite or NaN.
 NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& grid,
                                     const NormalProblem& problem, const NormalOptions& options = {});
-
-/// What NormalSolution::bytes will be.
-double predicted_normal_bytes(const Elasticity& elasticity, const Grid& grid);
 
 }  // namespace slipstick::solver

@@ -43,7 +43,6 @@ struct TangentialSolution {
   int iterations = 0;
   std::vector<GridWork> grids = {};  ///< work done, coarsest grid first
   Safeguards safeguards = {};        ///< of Coulomb's method, on all grids
-  double bytes = 0.0;                ///< operators and workspaces on the finest grid
 };
 
 /// The largest moment (over the cell area) that the friction bounds can carry about the origin: sum of mu p

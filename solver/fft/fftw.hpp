@@ -113,7 +113,7 @@ template <typename Real>
 class FftwBuffer {
  public:
   FftwBuffer() = default;
-  explicit FftwBuffer(std::size_t size) : data_(Fftw<Real>::allocate(size)), size_(size) {
+  explicit FftwBuffer(std::size_t size) : data_(Fftw<Real>::allocate(size)) {
     if (!data_) throw std::bad_alloc();
     std::fill_n(data_.get(), size, Real(0));
   }
@@ -122,14 +122,12 @@ class FftwBuffer {
   typename Fftw<Real>::Complex* complex() {
     return reinterpret_cast<typename Fftw<Real>::Complex*>(data_.get());
   }
-  std::size_t bytes() const { return size_ * sizeof(Real); }
 
  private:
   struct Free {
     void operator()(Real* pointer) const { Fftw<Real>::free(pointer); }
   };
   std::unique_ptr<Real, Free> data_;
-  std::size_t size_ = 0;
 };
 
 /// Throws std::runtime_error where FFTW made no plan.

@@ -30,23 +30,6 @@ Index HalfSampleTransform<Real>::frequencies(Index samples) {
 }
 
 template <typename Real>
-Index HalfSampleTransform<Real>::workspace_size(Index samples) {
-  const Index half = half_length(samples);
-  return 4 * kPairs * padded_line(half) + 2 * half * kLines;
-}
-
-template <typename Real>
-Index HalfSampleTransform<Real>::table_size(Index samples) {
-  const Index half = half_length(samples);
-  return 2 * (2 * half) + 2 * (half + 1);
-}
-
-template <typename Real>
-std::size_t HalfSampleTransform<Real>::bytes() const {
-  return sizeof(Real) * (turn_real_.size() + turn_imaginary_.size()) + sizeof(Twiddle) * twiddle_.size();
-}
-
-template <typename Real>
 HalfSampleTransform<Real>::Workspace::Workspace(const HalfSampleTransform& transform)
     : half_(transform.half_),
       samples_(count(4 * kPairs * transform.line_stride_)),

@@ -41,7 +41,6 @@ class HalfSampleTransform {
     explicit Workspace(const HalfSampleTransform& transform);
     /// A spectrum's row of kLines values, one for each line.
     Real* row(Index k) { return rows_.data() + ((k % 2) * half_ + k / 2) * kLines; }
-    std::size_t bytes() const { return samples_.bytes() + rows_.bytes(); }
 
    private:
     friend class HalfSampleTransform;
@@ -56,10 +55,6 @@ class HalfSampleTransform {
   /// h, the rows of a spectrum.
   Index frequencies() const { return 2 * half_; }
   static Index frequencies(Index samples);
-  /// Values in a workspace, and in the transform's own tables.
-  static Index workspace_size(Index samples);
-  static Index table_size(Index samples);
-  std::size_t bytes() const;
 
   /// Writes row k of the lines' spectrum to target(k), which may be work.row(k). parity: +1 even, -1 odd.
   template <typename Target>

@@ -36,24 +36,6 @@ std::vector<std::complex<Real>> twiddles(Index n, Index m) {
 }  // namespace
 
 template <typename Real>
-std::size_t PaddedTransform<Real>::predicted_bytes(const Grid& grid, std::size_t fields, int threads) {
-  const Index m2 = half_length(grid.n2);
-  const Index stride1 = stride(half_length(grid.n1));
-  const std::size_t columns = fields * field_size(grid, m2 + 1, stride1);
-  const std::size_t scratch =
-      static_cast<std::size_t>(threads) * count(scratch_size(fields, stride1, stride(m2)));
-  return sizeof(Complex) * (columns + scratch + count(grid.n1 + grid.n2)) + sizeof(Real) * count(grid.n2);
-}
-
-template <typename Real>
-std::size_t PaddedTransform<Real>::bytes() const {
-  std::size_t sum = columns_.bytes() + sizeof(Complex) * (twiddle1_.size() + twiddle2_.size()) +
-                    sizeof(Real) * zero_row_.size();
-  for (const FftwBuffer<Real>& buffer : scratch_) sum += buffer.bytes();
-  return sum;
-}
-
-template <typename Real>
 PaddedTransform<Real>::PaddedTransform(const Grid& grid, std::size_t fields, int threads)
     : grid_(grid),
       fields_(fields),

@@ -40,8 +40,6 @@ class PaddedTransform {
 
   /// For one or two fields at a time.
   PaddedTransform(const Grid& grid, std::size_t fields, int threads);
-  static std::size_t predicted_bytes(const Grid& grid, std::size_t fields, int threads);
-  std::size_t bytes() const;
   /// What all ranks send for one field in one direction.
   static double sent_bytes(const Grid& grid) { return shared_matrix(grid).sent_bytes(); }
 

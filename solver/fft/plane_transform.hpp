@@ -46,7 +46,7 @@ class PlaneTransform {
         threads_(threads),
         row_stride_(row_stride(shape.n2)),
         columns_(shape.n2 / 2 + 1),
-        own_samples_(own_samples(shape)),
+        own_samples_(RowBands(shape.samples).own_rows()),
         field_size_(field_size(shape)),
         buffer_(count(shape.fields * field_size_)),
         ranks_(shared_matrix(shape)) {
@@ -69,7 +69,6 @@ class PlaneTransform {
 
   /// The samples whose rows this rank carries.
   const Share& own_samples() const { return own_samples_; }
-  static Share own_samples(const PlaneShape& shape) { return RowBands(shape.samples).own_rows(); }
   /// Columns that it does.
   static Share own_columns(const PlaneShape& shape) {
     const Share batches = shared_matrix(shape).own_columns();
@@ -144,17 +143,6 @@ class PlaneTransform {
     });
   }
 
-  std::size_t bytes() const {
-    std::size_t sum = buffer_.bytes();
-    for (const FftwBuffer<Real>& own : own_rows_) sum += own.bytes();
-    for (const FftwBuffer<Real>& scratch : scratch_) sum += scratch.bytes();
-    return sum;
-  }
-  /// Reals in the workspace.
-  static Index size(const PlaneShape& shape, int threads) {
-    return shape.fields * field_size(shape) +
-           threads * (row_stride(shape.n2) + (shape.whole ? 0 : scratch_size(shape)));
-  }
   /// Reals from one row to the next: on one rank an odd number of cache lines, so that a column is spread
   /// over the cache whatever its length.
   Index row_stride() const { return row_stride_; }

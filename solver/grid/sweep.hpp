@@ -38,7 +38,6 @@ class Sweep {
   /// Cells of the grid, and those that are visited, by all ranks together.
   Index size() const { return size_; }
   Index count() const { return count_; }
-  std::size_t bytes() const { return intervals_.capacity() * sizeof(Interval); }
 
   /// work(first, last) for each interval [first, last) of cells; several threads at the same time. It must
   /// not throw.

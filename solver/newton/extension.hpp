@@ -35,8 +35,6 @@ class Extension {
   /// may differ from zero. Overwrites the last two fields, and what prepare() left.
   void hand_on(const Sweep& cells, const Field& free, Eigen::ArrayXd& p, Field& stays, Field& leaves);
 
-  static double bytes(double cells) { return 2.0 * sizeof(Real) * cells; }
-
  private:
   void bring_beside(Field& field) const;
   void find_mixed(const Field& free);

@@ -32,10 +32,6 @@ constexpr double kNearMultipliers = 0.1;
 /// Energies are compared up to their rounding.
 constexpr double kEnergyRounding = 1e-13;
 
-constexpr double kDoubleFields = 4.0;   ///< u_, y_, trial_, trial_u_
-constexpr double kRealFields = 3.0;     ///< r_, x_, d_
-constexpr double kOthersOfFloat = 2.0;  ///< others_
-
 NewtonSummary fail(NewtonSummary& summary, const std::string& why) {
   summary.message = why;
   return summary;
@@ -126,16 +122,6 @@ template <AdmissibleSet Set, typename Real>
 long NaturalMapNewton<Set, Real>::applications() const {
   const bool one = static_cast<const void*>(&op_) == static_cast<const void*>(&inner_);
   return op_.applications() + (one ? 0 : inner_.applications());
-}
-
-template <AdmissibleSet Set, typename Real>
-double NaturalMapNewton<Set, Real>::bytes(double cells, std::size_t conditions) {
-  const double values = static_cast<double>(Set::kComponents) * cells;
-  const auto fields = static_cast<double>(conditions);
-  const double inner = kRealFields + (std::is_same_v<Real, double> ? 0.0 : kOthersOfFloat);
-  return kDoubleFields * sizeof(double) * values + inner * sizeof(Real) * values +
-         fields * sizeof(float) * values + TangentSpace<Real>::bytes(Set::kComponents, cells) +
-         (kIsScalar ? Extension<Real>::bytes(cells) : 0.0);
 }
 
 template <AdmissibleSet Set, typename Real>

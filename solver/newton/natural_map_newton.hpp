@@ -74,9 +74,6 @@ class NaturalMapNewton {
 
   long applications() const;
 
-  /// Memory of the workspaces for so many cells and conditions.
-  static double bytes(double cells, std::size_t conditions);
-
  private:
   using Field = CgField<Real>;
   static constexpr bool kIsScalar = Set::kComponents == 1;

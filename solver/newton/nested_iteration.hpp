@@ -19,29 +19,12 @@ struct NestedSummary {
   Eigen::ArrayXd slip;          ///< K q + g - multipliers c
   std::vector<GridWork> grids;  ///< coarsest first
   Safeguards safeguards;        ///< of all grids
-  double bytes = 0.0;           ///< operators and workspaces on the finest grid
 };
 
 /// A coarse grid's answer need not be better than its mesh: gap over energy of the order of (h/a)^2.
 inline double coarse_tolerance(const Grid& grid) {
   const double mirrored = grid.quadrant ? 4.0 : 1.0;
   return 1.0 / (mirrored * static_cast<double>(grid.cells()));
-}
-
-/// This rank's, see Ranks.
-inline double own_cells(const Grid& grid) {
-  return static_cast<double>(RowBands(grid.n1).own_rows().count() * grid.n2);
-}
-
-/// What NestedSummary::bytes of such a solve with so many conditions will be.
-template <class Set>
-double predicted_nested_bytes(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel,
-                              std::size_t conditions) {
-  const auto bytes = [&]<typename Real>(Real) {
-    return GridOperators<Real>::predicted_bytes(elasticity, grid, kernel) +
-           NaturalMapNewton<Set, Real>::bytes(own_cells(grid), conditions);
-  };
-  return elasticity.precision == Precision::mixed ? bytes(0.0F) : bytes(0.0);
 }
 
 /// What solve_nested() asks of a problem on one grid.
@@ -104,7 +87,6 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
   result.displacement = newton.take_displacement();
   result.grids.push_back(
       {grid.n1, grid.n2, newton.applications(), result.newton.iterations, result.newton.gap});
-  result.bytes = operators->bytes() + newton.bytes(own_cells(grid), program.imposed.size());
   return result;
 }
 

@@ -131,11 +131,6 @@ struct TangentSpace {
     }
   }
 
-  static double bytes(Index components, double cells) {
-    const double vector = 2.0 * sizeof(Real) + 3.0 * sizeof(float);
-    return (components == 2 ? vector : sizeof(Real)) * cells;
-  }
-
   Field f1, f2;  ///< unit vector of a cell on a line, zero else; of scalars f1 alone: 1 where they are free
   Eigen::ArrayXf stiffness;     ///< lambda = |s|/(mu p) in slip cells, above zero; zero in stick cells
   Eigen::ArrayXf scale, shift;  ///< of the preconditioner

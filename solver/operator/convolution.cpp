@@ -152,22 +152,8 @@ auto Convolution<Real>::factors(Index column) const -> Factors {
 }
 
 template <typename Real>
-double Convolution<Real>::predicted_bytes(const Grid& grid, const BlockKernel& kernel, int threads) {
-  const Index p1 = fast_length(2 * grid.n1 - 1);
-  const std::size_t spectra = distinct_components(kernel).size() *
-                              count((p1 / 2 + 1) * PaddedTransform<Real>::own_columns(grid).count());
-  return static_cast<double>(sizeof(Real) * spectra + PaddedTransform<Real>::predicted_bytes(
-                                                          grid, fields(kernel), std::max(threads, 1)));
-}
-
-template <typename Real>
 double Convolution<Real>::sent_bytes(const Grid& grid, const BlockKernel& kernel) {
   return static_cast<double>(kernel.inputs + kernel.outputs) * PaddedTransform<Real>::sent_bytes(grid);
-}
-
-template <typename Real>
-std::size_t Convolution<Real>::bytes() const {
-  return spectra_.bytes() + transform_.bytes();
 }
 
 template <typename Real>

@@ -21,8 +21,6 @@ class Convolution final : public Operator<Real> {
  public:
   /// Throws std::invalid_argument for a kernel of another shape than the normal, tangential or coupling one.
   Convolution(const Grid& grid, BlockKernel kernel, const ElasticPair& pair, const OperatorOptions& options);
-  std::size_t bytes() const override;
-  static double predicted_bytes(const Grid& grid, const BlockKernel& kernel, int threads);
   static double sent_bytes(const Grid& grid, const BlockKernel& kernel);
   Index padded1() const { return transform_.padded1(); }
   Index padded2() const { return transform_.padded2(); }

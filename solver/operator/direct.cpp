@@ -45,13 +45,6 @@ DirectSum::DirectSum(const Grid& grid, BlockKernel kernel, const ElasticPair& pa
   }
 }
 
-double DirectSum::predicted_bytes(const Grid& grid, const BlockKernel& kernel) {
-  const double offsets = static_cast<double>(2 * grid.n1 - 1) * static_cast<double>(2 * grid.n2 - 1);
-  return static_cast<double>(distinct(kernel).size() * sizeof(double)) * offsets;
-}
-
-std::size_t DirectSum::bytes() const { return static_cast<std::size_t>(predicted_bytes(grid(), kernel())); }
-
 void DirectSum::do_apply(std::span<const double> traction, std::span<double> displacement) {
   const Index n1 = grid().n1;
   const Index n2 = grid().n2;
@@ -97,13 +90,6 @@ DenseMatrix::DenseMatrix(const Grid& grid, BlockKernel kernel, const ElasticPair
     }
   }
 }
-
-double DenseMatrix::predicted_bytes(const Grid& grid, const BlockKernel& kernel) {
-  const double cells = static_cast<double>(grid.cells());
-  return static_cast<double>(kernel.inputs * kernel.outputs * sizeof(double)) * cells * cells;
-}
-
-std::size_t DenseMatrix::bytes() const { return static_cast<std::size_t>(matrix_.size()) * sizeof(double); }
 
 void DenseMatrix::do_apply(std::span<const double> traction, std::span<double> displacement) {
   const Eigen::Map<const Eigen::VectorXd> in(traction.data(), static_cast<Index>(traction.size()));

@@ -11,8 +11,6 @@ namespace slipstick::solver {
 class DirectSum final : public LinearOperator {
  public:
   DirectSum(const Grid& grid, BlockKernel kernel, const ElasticPair& pair, const OperatorOptions& options);
-  std::size_t bytes() const override;
-  static double predicted_bytes(const Grid& grid, const BlockKernel& kernel);
 
  private:
   void do_apply(std::span<const double> traction, std::span<double> displacement) override;
@@ -26,8 +24,6 @@ class DirectSum final : public LinearOperator {
 class DenseMatrix final : public LinearOperator {
  public:
   DenseMatrix(const Grid& grid, BlockKernel kernel, const ElasticPair& pair);
-  std::size_t bytes() const override;
-  static double predicted_bytes(const Grid& grid, const BlockKernel& kernel);
   const Eigen::MatrixXd& matrix() const { return matrix_; }
 
  private:

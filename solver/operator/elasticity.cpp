@@ -1,6 +1,10 @@
 #include "solver/operator/elasticity.hpp"
 
-#include <type_traits>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <set>
+#include <stdexcept>
 #include <utility>
 
 #include "solver/operator/random_rounding.hpp"
@@ -29,6 +33,40 @@ std::unique_ptr<LinearOperator> new_operator(const Elasticity& elasticity, const
                                        : rounded_at_random(std::move(op), kernel, elasticity.rounding_seed);
 }
 
+/// Doubles a cell of the padded grid: of a whole grid, of a quadrant, of one that its diagonal halves.
+using Held = std::array<double, 3>;
+/// What an operator by FFT holds, and what Newton's method holds beside it in double and in mixed precision.
+/// Counted on 256 x 256 cells, rounded up; convergence/solve/tests/memory_test.py measures them in processes.
+struct HeldOf {
+  Held op, newton, mixed;
+};
+constexpr HeldOf kNormal{{0.8, 1.6, 1.6}, {3.0, 3.2, 3.2}, {2.7, 3.3, 3.3}};
+constexpr HeldOf kTangential{{1.8, 4.15, 3.6}, {5.9, 5.95, 5.7}, {5.95, 6.9, 6.5}};
+constexpr HeldOf kCoupling{{1.55, 0.0, 0.0}, {}, {}};
+/// Shorter sides take as much as one of so many cells: lines are transformed in groups.
+constexpr Index kLeastSide = 16;
+/// Bytes of freed blocks that stay with the process, see keep_freed_blocks(): a matrix of the pressure does.
+constexpr double kKeptBlocks = 8.0 * 0x1p20;
+
+const HeldOf& held_of(const BlockKernel& kernel) {
+  if (kernel.inputs != kernel.outputs) return kCoupling;
+  return kernel.inputs == 1 ? kNormal : kTangential;
+}
+
+std::size_t form_of(const Elasticity& elasticity, const Grid& grid) {
+  return !grid.quadrant ? 0 : elasticity.diagonal ? 2 : 1;
+}
+
+/// This rank's part of the bytes of so many doubles a padded cell.
+double padded_bytes(double doubles, const Grid& grid) {
+  const auto padded = [](Index cells) {
+    return static_cast<double>(fast_length(2 * std::max(cells, kLeastSide) - 1));
+  };
+  const double part =
+      static_cast<double>(RowBands(grid.n1).own_rows().count()) / static_cast<double>(grid.n1);
+  return sizeof(double) * doubles * padded(grid.n1) * padded(grid.n2) * part;
+}
+
 CacheKey with_kernel(CacheKey key, const BlockKernel& kernel) {
   key.add(kernel.outputs).add(kernel.inputs);
   for (const Component component : kernel.components) key.add(component);
@@ -46,11 +84,32 @@ CacheKey Elasticity::key(const char* what, const Grid& grid) const {
   return all.add(grid.n1).add(grid.n2).add(grid.h1).add(grid.h2).add(grid.quadrant);
 }
 
+double Elasticity::operator_bytes(const Grid& grid, const BlockKernel& kernel) const {
+  const std::set<Component> components(kernel.components.begin(), kernel.components.end());
+  switch (kind) {
+    case OperatorKind::dcfft:
+      return padded_bytes(held_of(kernel).op[form_of(*this, grid)], grid);
+    case OperatorKind::direct:
+      return padded_bytes(static_cast<double>(components.size()), grid);
+    case OperatorKind::dense: {
+      const double matrix = sizeof(double) * static_cast<double>(kernel.inputs * kernel.outputs) *
+                            std::pow(static_cast<double>(grid.cells()), 2);
+      return matrix + std::min(matrix, kKeptBlocks);
+    }
+  }
+  throw std::logic_error("unknown operator kind");
+}
+
+double Elasticity::newton_bytes(const Grid& grid, const BlockKernel& kernel) const {
+  const HeldOf& held = held_of(kernel);
+  const Held& beside = precision == Precision::mixed ? held.mixed : held.newton;
+  return operator_bytes(grid, kernel) + padded_bytes(beside[form_of(*this, grid)], grid);
+}
+
 Cached<LinearOperator> Elasticity::make(const Grid& grid, const BlockKernel& kernel) const {
   Cached<LinearOperator> op(
       usable_cache(), with_kernel(key("operator", grid), kernel),
-      [&] { return new_operator(*this, grid, kernel); },
-      [](const LinearOperator& made) { return static_cast<double>(made.bytes()); });
+      [&] { return new_operator(*this, grid, kernel); }, operator_bytes(grid, kernel));
   op->restart_count();
   return op;
 }
@@ -80,8 +139,7 @@ template <typename Real>
 Cached<GridOperators<Real>> Elasticity::make_all(const Grid& grid, const BlockKernel& kernel) const {
   Cached<GridOperators<Real>> operators(
       usable_cache(), with_kernel(key("grid operators", grid), kernel),
-      [&] { return std::make_unique<GridOperators<Real>>(*this, grid, kernel); },
-      [](const GridOperators<Real>& made) { return made.bytes(); });
+      [&] { return std::make_unique<GridOperators<Real>>(*this, grid, kernel); }, newton_bytes(grid, kernel));
   operators->op->restart_count();
   operators->inner().restart_count();
   return operators;
@@ -89,21 +147,6 @@ Cached<GridOperators<Real>> Elasticity::make_all(const Grid& grid, const BlockKe
 
 template Cached<GridOperators<double>> Elasticity::make_all(const Grid&, const BlockKernel&) const;
 template Cached<GridOperators<float>> Elasticity::make_all(const Grid&, const BlockKernel&) const;
-
-template <typename Real>
-double GridOperators<Real>::bytes() const {
-  return static_cast<double>(op->bytes() + (single ? single->bytes() : 0) + symbol->bytes());
-}
-
-template <typename Real>
-double GridOperators<Real>::predicted_bytes(const Elasticity& elasticity, const Grid& grid,
-                                            const BlockKernel& kernel) {
-  const OperatorOptions options = options_of(elasticity, kernel);
-  const double inner = std::is_same_v<Real, double> ? 0.0 : predicted_single_bytes(grid, kernel, options);
-  return solver::predicted_bytes(elasticity.kind, grid, kernel, options) + inner +
-         predicted_inverse_symbol_bytes<Real>(grid, kernel, options.diagonal ? Diagonal::yes : Diagonal::no,
-                                              options.threads, elasticity.at_edge);
-}
 
 template struct GridOperators<double>;
 template struct GridOperators<float>;

@@ -30,6 +30,10 @@ struct Elasticity {
   /// A key of these displacements on a grid.
   CacheKey key(const char* what, const Grid& grid) const;
 
+  /// Memory on this rank, in bytes: of an operator, and of that, its preconditioner and Newton's workspaces.
+  double operator_bytes(const Grid& grid, const BlockKernel& kernel) const;
+  double newton_bytes(const Grid& grid, const BlockKernel& kernel) const;
+
   /// An operator that has not been applied yet.
   Cached<LinearOperator> make(const Grid& grid, const BlockKernel& kernel) const;
   template <typename Real>
@@ -43,9 +47,6 @@ struct GridOperators {
   GridOperators(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel);
 
   Operator<Real>& inner();
-  double bytes() const;
-  /// What bytes() will be.
-  static double predicted_bytes(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel);
 
   std::unique_ptr<LinearOperator> op;
   std::unique_ptr<Operator<Real>> single;  ///< empty where Real is double

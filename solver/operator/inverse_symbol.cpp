@@ -91,15 +91,6 @@ class PeriodicInverseSymbol final : public InverseSymbol<Real> {
   }
 
   std::array<double, 2> diagonal() const override { return diagonal_; }
-  std::size_t bytes() const override { return table_.bytes() + transform_.bytes(); }
-
-  static Index predicted_size(const Grid& grid, bool tangential, bool at_edge, int threads) {
-    const PeriodicGrid periodic = padded(grid, at_edge);
-    const PlaneShape plane = shape(grid, periodic, tangential);
-    return (tangential ? 3 : 1) * (periodic.length1 / 2 + 1) *
-               PlaneTransform<Real>::own_columns(plane).count() +
-           PlaneTransform<Real>::size(plane, threads);
-  }
 
  private:
   static PlaneShape shape(const Grid& grid, const PeriodicGrid& periodic, bool tangential) {
@@ -171,24 +162,11 @@ std::unique_ptr<InverseSymbol<Real>> make_inverse_symbol(const Grid& grid, const
   return std::make_unique<PeriodicInverseSymbol<Real>>(grid, tangential, pair, threads, at_edge);
 }
 
-template <typename Real>
-double predicted_inverse_symbol_bytes(const Grid& grid, const BlockKernel& kernel, Diagonal diagonal,
-                                      int threads, bool at_edge) {
-  const bool tangential = is_tangential(kernel);
-  check_diagonal(grid, tangential, diagonal);
-  const Index size = grid.quadrant
-                         ? MirroredInverseSymbol<Real>::predicted_size(grid, tangential, diagonal, threads)
-                         : PeriodicInverseSymbol<Real>::predicted_size(grid, tangential, at_edge, threads);
-  return static_cast<double>(sizeof(Real)) * static_cast<double>(size);
-}
-
 template std::unique_ptr<InverseSymbol<double>> make_inverse_symbol<double>(const Grid&, const BlockKernel&,
                                                                             const ElasticPair&, Diagonal, int,
                                                                             bool);
 template std::unique_ptr<InverseSymbol<float>> make_inverse_symbol<float>(const Grid&, const BlockKernel&,
                                                                           const ElasticPair&, Diagonal, int,
                                                                           bool);
-template double predicted_inverse_symbol_bytes<double>(const Grid&, const BlockKernel&, Diagonal, int, bool);
-template double predicted_inverse_symbol_bytes<float>(const Grid&, const BlockKernel&, Diagonal, int, bool);
 
 }  // namespace slipstick::solver

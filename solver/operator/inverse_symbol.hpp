@@ -35,8 +35,6 @@ class InverseSymbol {
   /// Means of the diagonal symbols over all frequencies, one per component (for the normal kernel both are
   /// the same): the diagonal of the operator on a whole grid, and on a quadrant away from its axes.
   virtual std::array<double, 2> diagonal() const = 0;
-  /// Memory held for tables and workspace.
-  virtual std::size_t bytes() const = 0;
 };
 
 /// The kernel is the normal or the tangential one; others throw std::invalid_argument, as does Diagonal::yes
@@ -47,11 +45,5 @@ std::unique_ptr<InverseSymbol<Real>> make_inverse_symbol(const Grid& grid, const
                                                          const ElasticPair& pair,
                                                          Diagonal diagonal = Diagonal::no, int threads = 1,
                                                          bool at_edge = false);
-
-/// What bytes() of it will be.
-template <typename Real>
-double predicted_inverse_symbol_bytes(const Grid& grid, const BlockKernel& kernel,
-                                      Diagonal diagonal = Diagonal::no, int threads = 1,
-                                      bool at_edge = false);
 
 }  // namespace slipstick::solver

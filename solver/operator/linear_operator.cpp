@@ -27,14 +27,6 @@ std::unique_ptr<Operator<Real>> make_convolution(const Grid& grid, const BlockKe
   return std::make_unique<Convolution<Real>>(grid, kernel, pair, options);
 }
 
-template <typename Real>
-double predicted_convolution_bytes(const Grid& grid, const BlockKernel& kernel,
-                                   const OperatorOptions& options) {
-  return grid.quadrant
-             ? MirroredConvolution<Real>::predicted_bytes(grid, kernel, options.threads, options.diagonal)
-             : Convolution<Real>::predicted_bytes(grid, kernel, options.threads);
-}
-
 void require_whole(const Grid& grid) {
   if (grid.quadrant) throw std::invalid_argument("only dcfft knows quadrants");
 }
@@ -61,26 +53,9 @@ std::unique_ptr<Operator<float>> make_single_operator(const Grid& grid, const Bl
   return make_convolution<float>(grid, kernel, pair, options);
 }
 
-double predicted_bytes(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
-                       const OperatorOptions& options) {
-  switch (kind) {
-    case OperatorKind::dcfft:
-      return predicted_convolution_bytes<double>(grid, kernel, options);
-    case OperatorKind::direct:
-      return DirectSum::predicted_bytes(grid, kernel);
-    case OperatorKind::dense:
-      return DenseMatrix::predicted_bytes(grid, kernel);
-  }
-  throw std::logic_error("unknown operator kind");
-}
-
 double predicted_sent_bytes(const Grid& grid, const BlockKernel& kernel) {
   return grid.quadrant ? MirroredConvolution<double>::sent_bytes(grid, kernel)
                        : Convolution<double>::sent_bytes(grid, kernel);
-}
-
-double predicted_single_bytes(const Grid& grid, const BlockKernel& kernel, const OperatorOptions& options) {
-  return predicted_convolution_bytes<float>(grid, kernel, options);
 }
 
 }  // namespace slipstick::solver

@@ -74,8 +74,6 @@ class Operator {
   /// Applications so far.
   long applications() const { return applications_; }
   void restart_count() { applications_ = 0; }
-  /// Memory held for coefficients and workspace.
-  virtual std::size_t bytes() const = 0;
 
  protected:
   Operator(const Grid& grid, BlockKernel kernel) : grid_(grid), kernel_(std::move(kernel)) {}
@@ -106,12 +104,6 @@ std::unique_ptr<LinearOperator> make_operator(OperatorKind kind, const Grid& gri
 std::unique_ptr<Operator<float>> make_single_operator(const Grid& grid, const BlockKernel& kernel,
                                                       const ElasticPair& pair,
                                                       const OperatorOptions& options = {});
-
-/// What bytes() of such an operator will be.
-double predicted_bytes(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
-                       const OperatorOptions& options = {});
-double predicted_single_bytes(const Grid& grid, const BlockKernel& kernel,
-                              const OperatorOptions& options = {});
 
 /// What all ranks together will send in one application in double precision by discrete convolution.
 double predicted_sent_bytes(const Grid& grid, const BlockKernel& kernel);

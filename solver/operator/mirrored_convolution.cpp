@@ -178,34 +178,6 @@ Parity MirroredConvolution<Real>::parity_of(Index field) const {
 }
 
 template <typename Real>
-std::size_t MirroredConvolution<Real>::bytes() const {
-  std::size_t sum = along1_.bytes() + along2_.bytes() + half_transformed_.bytes() + transformed_.bytes();
-  for (const FftwBuffer<Real>& spectrum : spectra_) sum += spectrum.bytes();
-  for (const Workspace& workspace : row_workspaces_) sum += workspace.bytes();
-  for (const Workspace& workspace : column_workspaces_) sum += workspace.bytes();
-  return sum;
-}
-
-template <typename Real>
-double MirroredConvolution<Real>::predicted_bytes(const Grid& quadrant, const BlockKernel& kernel,
-                                                  int threads, bool diagonal) {
-  checked(kernel, quadrant, diagonal);
-  const Index h1 = Transform::frequencies(quadrant.n1);
-  const Index column_groups = groups(Transform::frequencies(quadrant.n2), kLines);
-  const Index columns = Ranks::own_share(column_groups).count() * kLines;
-  const Index fields = diagonal ? 1 : static_cast<Index>(kernel.inputs);
-  const auto spectra = static_cast<Index>(distinct_components(kernel, diagonal).size());
-  const Index half_transformed = fields * field_size(groups(quadrant.n1, kLines), column_groups, quadrant.n1);
-  const Index transformed = diagonal ? static_cast<Index>(transformed_reals<Real>(h1)) : 0;
-  const Index tables = Transform::table_size(quadrant.n1) + Transform::table_size(quadrant.n2);
-  const Index per_thread =
-      Transform::workspace_size(quadrant.n2) + fields * Transform::workspace_size(quadrant.n1);
-  return static_cast<double>(sizeof(Real)) *
-         static_cast<double>(spectra * h1 * columns + half_transformed + transformed + tables +
-                             std::max(threads, 1) * per_thread);
-}
-
-template <typename Real>
 double MirroredConvolution<Real>::sent_bytes(const Grid& quadrant, const BlockKernel& kernel) {
   const Shape matrix = shared_matrix(groups(quadrant.n1, kLines),
                                      groups(Transform::frequencies(quadrant.n2), kLines), quadrant.n1);

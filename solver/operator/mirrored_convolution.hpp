@@ -32,9 +32,6 @@ class MirroredConvolution final : public Operator<Real> {
   /// tangential, and with `diagonal` for another kernel than the tangential one or unequal sides or cells.
   MirroredConvolution(const Grid& quadrant, BlockKernel kernel, const ElasticPair& pair,
                       const OperatorOptions& options, bool diagonal = false);
-  std::size_t bytes() const override;
-  static double predicted_bytes(const Grid& quadrant, const BlockKernel& kernel, int threads,
-                                bool diagonal = false);
   static double sent_bytes(const Grid& quadrant, const BlockKernel& kernel);
 
  private:

@@ -168,25 +168,6 @@ void MirroredInverseSymbol<Real>::fill_twiddles() {
 }
 
 template <typename Real>
-std::size_t MirroredInverseSymbol<Real>::bytes() const {
-  return table_.bytes() + transform_.bytes() + coefficients_.bytes() + twiddles_.bytes();
-}
-
-template <typename Real>
-Index MirroredInverseSymbol<Real>::predicted_size(const Grid& grid, bool tangential, Diagonal diagonal,
-                                                  int threads) {
-  const bool symmetric = diagonal == Diagonal::yes;
-  const Index t1 = transform_length(grid.n1);
-  const Index t2 = transform_length(grid.n2);
-  const Index half = t2 / 2 + 1;
-  const auto tables = static_cast<Index>(entries(tangential, symmetric).size());
-  const PlaneShape plane = plane_of(grid, tangential, symmetric);
-  return tables * (t1 + 1) * 2 * PlaneTransform<Real>::own_columns(plane).count() +
-         PlaneTransform<Real>::size(plane, threads) +
-         threads * coefficient_size(half, tangential && !symmetric) + twiddle_size(t1, half);
-}
-
-template <typename Real>
 void MirroredInverseSymbol<Real>::apply(std::span<Real> field) {
   const Index cells = grid_.cells();
   if (static_cast<Index>(field.size()) != (tangential_ ? 2 : 1) * cells) {

@@ -38,8 +38,6 @@ class MirroredInverseSymbol final : public InverseSymbol<Real> {
 
   void apply(std::span<Real> field) override;
   std::array<double, 2> diagonal() const override { return diagonal_; }
-  std::size_t bytes() const override;
-  static Index predicted_size(const Grid& grid, bool tangential, Diagonal diagonal, int threads);
 
  private:
   /// half_ values each, k2 = 0..t2/2, of the transform of reordered samples along x1 and x2: by cosines (c)

@@ -18,8 +18,6 @@ class RandomlyRounded final : public LinearOperator {
     generator_.seed(sequence);
   }
 
-  std::size_t bytes() const override { return op_->bytes(); }
-
  private:
   void do_apply(std::span<const double> traction, std::span<double> displacement) override {
     op_->apply(traction, displacement);

@@ -68,13 +68,6 @@ SymbolTable<Real>::SymbolTable(const PeriodicGrid& grid, const ElasticPair& pair
   });
 }
 
-template <typename Real>
-std::size_t SymbolTable<Real>::bytes() const {
-  std::size_t sum = 0;
-  for (const FftwBuffer<Real>& table : tables_) sum += table.bytes();
-  return sum;
-}
-
 std::array<double, 2> mean_inverse_symbol(const PeriodicGrid& grid, const ElasticPair& pair,
                                           bool tangential) {
   const auto signs = [](Index f, Index length) { return f == 0 || 2 * f == length ? 1.0 : 2.0; };

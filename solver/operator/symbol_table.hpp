@@ -45,7 +45,6 @@ class SymbolTable {
   const Real* row(SymbolEntry entry, Index f1) const {
     return tables_[static_cast<std::size_t>(entry)].data() + f1 * columns_;
   }
-  std::size_t bytes() const;
 
  private:
   Index columns_;

@@ -36,7 +36,6 @@ inline ElasticPair dissimilar_pair() { return elastic_pair({1.0, 0.3}, {2.5, 0.1
 class Multiple final : public LinearOperator {
  public:
   Multiple(const Grid& grid, double factor) : LinearOperator(grid, tangential_kernel()), factor_(factor) {}
-  std::size_t bytes() const override { return 0; }
 
  private:
   void do_apply(std::span<const double> traction, std::span<double> displacement) override {

@@ -182,20 +182,5 @@ TEST(RanksOperator, SendsWhatIsPredictedAndNoZeros) {
   }
 }
 
-/// To a tenth, besides the tables that every rank has.
-TEST(RanksOperator, HoldsItsShareAsPredicted) {
-  for (const bool quadrant : {false, true}) {
-    const Grid grid{256, 256, 1.0, 1.0, quadrant};
-    const auto op = make_operator(OperatorKind::dcfft, grid, tangential_kernel(), dissimilar_pair());
-    const std::vector<double> held = Ranks::of_each(static_cast<double>(op->bytes()));
-    const PlannedRanks planned(Ranks::number());
-    const double predicted = predicted_bytes(OperatorKind::dcfft, grid, tangential_kernel());
-    EXPECT_NEAR(*std::ranges::max_element(held), predicted, 0.1 * predicted);
-    const PlannedRanks one(1);
-    const double alone = predicted_bytes(OperatorKind::dcfft, grid, tangential_kernel());
-    EXPECT_LE(predicted, 1.3 * alone / Ranks::number() + 0.1 * alone);
-  }
-}
-
 }  // namespace
 }  // namespace slipstick::solver

@@ -46,7 +46,6 @@ class OtherKernel final : public solver::LinearOperator {
       }
     }
   }
-  std::size_t bytes() const override { return static_cast<std::size_t>(matrix_.size()) * sizeof(double); }
 
  private:
   void do_apply(std::span<const double> traction, std::span<double> displacement) override {

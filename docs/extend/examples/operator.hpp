@@ -19,8 +19,6 @@ class CoatedHalfSpaces final : public solver::LinearOperator {
         half_spaces_(std::move(half_spaces)),
         compliance_(compliance) {}
 
-  std::size_t bytes() const override { return half_spaces_->bytes(); }
-
  private:
   void do_apply(std::span<const double> traction, std::span<double> displacement) override {
     half_spaces_->apply(traction, displacement);

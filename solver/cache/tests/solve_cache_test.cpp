@@ -42,7 +42,6 @@ void expect_the_same(const Solution& solution, const Solution& alone) {
   EXPECT_EQ(solution.twist_angle, alone.twist_angle);
   EXPECT_EQ(solution.operator_applications, alone.operator_applications);
   EXPECT_EQ(solution.pressure_applications, alone.pressure_applications);
-  EXPECT_EQ(solution.bytes, alone.bytes);
 }
 
 /// Whatever a solve shares, and with whom, its answer has the bits and its work the counts that it has alone;

@@ -90,7 +90,6 @@ class FakeOperator final : public LinearOperator {
  public:
   FakeOperator(const Grid& grid, double factor)
       : LinearOperator(grid, tangential_kernel()), factor_(factor) {}
-  std::size_t bytes() const override { return 0; }
 
  private:
   void do_apply(std::span<const double> traction, std::span<double> displacement) override {

@@ -336,7 +336,6 @@ class MadeUpOperator final : public LinearOperator {
   using Factor = std::function<double(std::size_t cell, long call)>;
   MadeUpOperator(const Grid& grid, Factor factor)
       : LinearOperator(grid, tangential_kernel()), factor_(std::move(factor)) {}
-  std::size_t bytes() const override { return 0; }
 
  private:
   void do_apply(std::span<const double> traction, std::span<double> displacement) override {
@@ -417,7 +416,6 @@ class SoftOnTheCheckerboard final : public LinearOperator {
     }
     c_ *= rotation_field(grid);
   }
-  std::size_t bytes() const override { return 0; }
 
  private:
   void do_apply(std::span<const double> traction, std::span<double> displacement) override {

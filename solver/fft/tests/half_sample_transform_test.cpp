@@ -68,8 +68,6 @@ TYPED_TEST(HalfSampleTransformTest, ComesBackTimesAPeriod) {
   for (const Index samples : {1, 3, 8, 21, 50}) {
     const HalfSampleTransform<TypeParam> transform(samples);
     typename HalfSampleTransform<TypeParam>::Workspace work(transform);
-    EXPECT_EQ(work.bytes(), sizeof(TypeParam) * static_cast<std::size_t>(transform.workspace_size(samples)));
-    EXPECT_EQ(transform.bytes(), sizeof(TypeParam) * static_cast<std::size_t>(transform.table_size(samples)));
     const Matrix lines = Matrix::Random(3, samples);
     for (const int parity : {1, -1}) {
       const Matrix rows = this->spectrum(transform, lines, parity);

@@ -25,7 +25,6 @@ class Reversing final : public InverseSymbol<double> {
     for (double& value : field) value = -value;
   }
   std::array<double, 2> diagonal() const override { return {1.0, 1.0}; }
-  std::size_t bytes() const override { return 0; }
 };
 
 /// The sphere's contact in torsion, as a convex program.

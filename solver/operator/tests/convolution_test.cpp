@@ -163,23 +163,5 @@ TEST(SingleConvolution, GivesTheSameBitsAgainAndWithTwoThreads) {
   }
 }
 
-TEST(SingleConvolution, TakesTheMemoryThatWasPredicted) {
-  for (const Grid& grid : shapes()) {
-    for (const BlockKernel& kernel : kernels()) {
-      const OperatorOptions options{.threads = 2};
-      const auto single = make_single_operator(grid, kernel, dissimilar_pair(), options);
-      EXPECT_EQ(static_cast<double>(single->bytes()), predicted_single_bytes(grid, kernel, options));
-    }
-  }
-}
-
-/// What keeps the largest grids possible: the spectra are stored as a quadrant, the fields without padding.
-TEST(Convolution, TakesLessThanTwoNumbersForEachPaddedCell) {
-  const Grid grid{512, 512, 1.0, 1.0};
-  const double padded = 1024.0 * 1024.0;
-  EXPECT_LE(predicted_bytes(OperatorKind::dcfft, grid, tangential_kernel()) / sizeof(double), 1.9 * padded);
-  EXPECT_LE(predicted_single_bytes(grid, tangential_kernel()) / sizeof(float), 1.9 * padded);
-}
-
 }  // namespace
 }  // namespace slipstick::solver

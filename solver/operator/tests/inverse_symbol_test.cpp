@@ -175,14 +175,6 @@ TEST_P(InverseSymbolOf, AllocatesNothingInAnApplication) {
   EXPECT_EQ(allocations(), before);
 }
 
-TEST_P(InverseSymbolOf, TakesTheMemoryThatWasPredicted) {
-  const auto& [name, grid, tangential, diagonal] = GetParam();
-  EXPECT_EQ(static_cast<double>(make()->bytes()),
-            predicted_inverse_symbol_bytes<double>(grid, GetParam().kernel(), diagonal));
-  EXPECT_EQ(static_cast<double>(make<float>()->bytes()),
-            predicted_inverse_symbol_bytes<float>(grid, GetParam().kernel(), diagonal));
-}
-
 TEST_P(InverseSymbolOf, RefusesFieldsOfAnotherSize) {
   const auto symbol = make();
   std::vector<double> values(static_cast<std::size_t>(GetParam().size()) + 1);
@@ -358,7 +350,6 @@ TEST_P(DiagonalSymbol, KeepsTheSymmetryExactly) {
 TEST(InverseSymbol, RefusesOtherKernelsAndSymmetries) {
   const Grid square{8, 8, 1.0, 1.0, true};
   const auto make = [](const Grid& grid, const BlockKernel& kernel, Diagonal diagonal) {
-    predicted_inverse_symbol_bytes<double>(grid, kernel, diagonal);
     return make_inverse_symbol<double>(grid, kernel, pair_of(0.3), diagonal);
   };
   EXPECT_NO_THROW(make(square, tangential_kernel(), Diagonal::yes));
@@ -369,7 +360,6 @@ TEST(InverseSymbol, RefusesOtherKernelsAndSymmetries) {
   EXPECT_THROW(make({8, 9, 1.0, 1.0, true}, tangential_kernel(), Diagonal::yes), std::invalid_argument);
   EXPECT_THROW(make({8, 8, 1.0, 2.0, true}, tangential_kernel(), Diagonal::yes), std::invalid_argument);
   EXPECT_THROW(make_inverse_symbol<float>(square, coupling_kernel(), pair_of(0.3)), std::invalid_argument);
-  EXPECT_THROW(predicted_inverse_symbol_bytes<float>(square, coupling_kernel()), std::invalid_argument);
 }
 
 }  // namespace

@@ -171,20 +171,6 @@ TEST_P(MirroredShape, AllocatesNothingInAnApplication) {
   expect_no_allocation<float>(grid(), kernel(), false);
 }
 
-template <typename Real>
-void expect_predicted_memory(const Grid& grid, const BlockKernel& kernel, bool diagonal) {
-  for (const int threads : {0, 1, 3}) {
-    const MirroredConvolution<Real> mirrored(grid, kernel, dissimilar_pair(), {.threads = threads}, diagonal);
-    EXPECT_EQ(static_cast<double>(mirrored.bytes()),
-              MirroredConvolution<Real>::predicted_bytes(grid, kernel, threads, diagonal));
-  }
-}
-
-TEST_P(MirroredShape, TakesTheMemoryThatWasPredicted) {
-  expect_predicted_memory<double>(grid(), kernel(), false);
-  expect_predicted_memory<float>(grid(), kernel(), false);
-}
-
 class DiagonalConvolutionTest : public testing::TestWithParam<Index> {
  protected:
   Grid grid() const { return quadrant(GetParam(), GetParam(), 0.3, 0.3); }
@@ -238,11 +224,9 @@ TEST_P(DiagonalConvolutionTest, InSinglePrecisionIsNearToDouble) {
             1e-6);
 }
 
-TEST_P(DiagonalConvolutionTest, AllocatesNothingAndTakesTheMemoryThatWasPredicted) {
+TEST_P(DiagonalConvolutionTest, AllocatesNothingInAnApplication) {
   expect_no_allocation<double>(grid(), tangential_kernel(), true);
   expect_no_allocation<float>(grid(), tangential_kernel(), true);
-  expect_predicted_memory<double>(grid(), tangential_kernel(), true);
-  expect_predicted_memory<float>(grid(), tangential_kernel(), true);
 }
 
 TEST(MirroredConvolutionRefuses, WhatHasNotItsSymmetry) {
@@ -256,7 +240,6 @@ TEST(MirroredConvolutionRefuses, WhatHasNotItsSymmetry) {
   EXPECT_THROW(make(quadrant(4, 4), normal_kernel(), true), std::invalid_argument);
   EXPECT_THROW(make(quadrant(4, 5), tangential_kernel(), true), std::invalid_argument);
   EXPECT_THROW(make(quadrant(4, 4, 1.0, 0.5), tangential_kernel(), true), std::invalid_argument);
-  EXPECT_THROW(Mirrored::predicted_bytes({4, 4, 1.0, 1.0}, normal_kernel(), 1), std::invalid_argument);
 }
 
 TEST(MirroredConvolutionRefuses, FieldsOfAnotherSize) {

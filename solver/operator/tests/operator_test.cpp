@@ -201,17 +201,6 @@ TEST_P(Operator, RefusesFieldsOfAnotherSize) {
   }
 }
 
-TEST_P(Operator, TakesTheMemoryThatWasPredicted) {
-  const auto& [name, grid, kernel] = GetParam();
-  for (const OperatorKind kind : kKinds) {
-    for (const int threads : {1, 3}) {
-      const OperatorOptions options{.threads = threads};
-      EXPECT_EQ(static_cast<double>(make(kind, options)->bytes()),
-                predicted_bytes(kind, grid, kernel, options));
-    }
-  }
-}
-
 /// Means over cells of the traction under a bonded circular punch that is twisted by phi (Reissner and Sagoci
 /// 1944): q = (4 G phi/pi) (-x2, x1)/sqrt(a^2 - r^2) = (4 G phi/pi) (d/dx2, -d/dx1) sqrt(a^2 - r^2).
 ArrayXd bonded_punch_traction(const Grid& grid, double a) {

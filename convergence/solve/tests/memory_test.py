@@ -1,0 +1,97 @@
+#!/usr/bin/env python3
+"""memory_test.py PROGRAM: what a solve will take is known before it is taken. The doubles a cell by which it is
+predicted stand in solver/operator/elasticity.cpp and solver/model.cpp; memory_test.py PROGRAM --measure prints those of
+processes beside them."""
+
+import itertools
+import subprocess
+import sys
+import unittest
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
+from program_run import PROGRAM, SCENES, ProgramTest, main
+
+# Sanitizers take memory of their own.
+SANITIZED = any(name in Path(PROGRAM).read_bytes() for name in (b"__asan_init", b"__tsan_init"))
+MOST = 1.3  # the prediction over what is taken
+FULL = "solver.model=full"
+# By scene and settings: how much of the grid is solved, the method, its precision, what a history and turns keep.
+CASES = [("paper", 288), ("paper", 288, FULL), ("paper", 288, "solver.precision=mixed"),
+         ("paper", 288, FULL, "solver.precision=mixed"), ("paper", 288, "contact.pressure=hertz"),
+         ("paper", 160, FULL, "solver.method=paper"), ("paper", 288, "solver.method=projected_gradient"),
+         ("paper", 160, FULL, "solver.method=projected_gradient"), ("paper", 288, FULL, "solver.threads=4"),
+         ("paper", 24, FULL, "solver.operator=dense"), ("paper", 36, FULL, "solver.operator=dense"),
+         ("paper", 48, FULL, "solver.operator=direct"), ("ellipse", 288), ("turned_ellipse", 288),
+         ("torsion_and_force", 160), ("torsion_and_force", 288), ("fretting_torsion", 288), ("dissimilar", 288),
+         ("dissimilar", 128, "contact.coupling=full"), ("off_centre", 200), ("patches", 160)]
+
+
+def words(scene, cells, *settings):
+    assignments = [f"grid.cells=[{cells},{cells}]", "solver.tolerance=1e-3", *settings]
+    return [str(SCENES / f"{scene}.toml"), *itertools.chain(*(("--set", each) for each in assignments))]
+
+
+class Memory(ProgramTest):
+    def taken(self, *case):
+        result = self.result("solve", *words(*case))
+        return result["predicted_bytes"], result["peak_bytes"]
+
+    @unittest.skipIf(SANITIZED, "sanitizers take memory of their own")
+    def test_predicted_is_an_upper_bound_and_not_much_more(self):
+        for case in CASES:
+            predicted, taken = self.taken(*case)
+            self.assertGreaterEqual(predicted, taken, case)
+            self.assertLessEqual(predicted, MOST * taken, case)
+
+    @unittest.skipIf(SANITIZED, "sanitizers take memory of their own")
+    def test_a_padded_cell_takes_ten_numbers_and_a_quadrant_a_third_of_that(self):
+        def doubles(*settings):
+            few, many = (self.taken("paper", cells, *settings)[1] for cells in (256, 512))
+            return (many - few) / (8 * 4 * (512**2 - 256**2))
+
+        self.assertLessEqual(doubles(FULL), 10)
+        self.assertLessEqual(doubles(), 0.45 * doubles(FULL))
+
+    def test_limit_is_what_a_plan_may_need(self):
+        solve = ["solve", *words("paper", 16)]
+        needed = self.result(*solve, "--plan")["plan"]["bytes"]
+        for limit in (f"{needed + 2:.0f}", "1GiB"):
+            self.run_program(*solve, "--memory-limit", limit)
+        self.run_program(*solve, "--memory-limit", f"{needed - 2:.0f}", code=2,
+                         says=["paper.toml", "grid.cells = [16, 16]", "--memory-limit", "fewer cells"])
+        self.run_program(*solve, "--memory-limit", "some", code=2)
+
+    @unittest.skipIf(SANITIZED, "sanitizers take memory of their own")
+    def test_what_is_refused_is_not_taken(self):
+        # One field of this grid takes 7 GB; what may be taken at all is a tenth of that.
+        end = subprocess.run(["sh", "-c", 'ulimit -v 700000; exec "$@"', "sh", PROGRAM, "solve", *words("paper", 30000),
+                              "--memory-limit", "1GiB"], capture_output=True, text=True)
+        self.assertEqual(end.returncode, 2, end.stderr)
+        for part in ("grid.cells = [30000, 30000]", "1 GiB are allowed"):
+            self.assertIn(part, end.stderr)
+
+    def test_limit_holds_for_commands_of_many_solves(self):
+        scene = f'scene = "{SCENES / "paper.toml"}"\n'
+        study = self.write("study.toml", scene + "cells = [8, 12]\n")
+        gate = f'[[gate]]\nid = "a"\n{scene}quantity = "twist_error"\nbelow = 1.0\nbasis = "b"\n'
+        gates = self.write("gates.toml", gate + "set = { 'grid.cells' = [16, 16] }\n")
+        for command in (["study", study], ["gate", gates]):
+            self.run_program(*command, "--output", "runs", "--memory-limit", "1MB", code=2,
+                             says=["paper.toml", "--memory-limit"])
+        # Refusals are not kept: with more memory the same scene has an answer.
+        self.run_program("gate", gates, "--output", "runs", "--memory-limit", "1GB")
+
+
+def measure():
+    for case in CASES:
+        test = Memory()
+        predicted, taken = test.taken(*case)
+        _, least = test.taken(case[0], 16, *case[2:])
+        cell = 8 * 4 * case[1]**2
+        print(f"{(taken - least) / cell:6.2f} doubles a padded cell of the whole grid, {predicted / taken:.2f} of them "
+              f"and the program predicted: {' '.join(map(str, case))}", flush=True)
+
+
+if __name__ == "__main__":
+    measure() if "--measure" in sys.argv else main()
