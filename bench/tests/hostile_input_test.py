@@ -238,6 +238,59 @@ class HostileInput(ProgramTest):
             self.write(name, text)
             self.refused(name, text[:300], says)
 
+    def test_what_is_nested_without_end_is_refused(self):
+        """A value deep in brackets or in tables, which recursion would follow until the stack ends."""
+        for levels in (201, 40000, 500000):
+            for name, text in (("result.json", '{"twist_error": 0.5, "x": ' + levels * "[" + levels * "]" + "}"),
+                               ("result.json", levels * '{"twist_error":' + "1" + levels * "}"),
+                               ("loop.json", changed(JSON_LOOP, "[0,", "[" + levels * "[" + levels * "]" + ",")),
+                               ("timings.json", changed(TIMINGS, '"num_cpus": 2', levels * '"a": {' + levels * "}"))):
+                self.write(name, text)
+                self.refused(name, levels, ("more than 200 deep",))
+        self.write("result.json", '{"twist_error": 0.5, "x": ' + 199 * "[" + 199 * "]" + "}")
+        self.assertEqual(self.ends("result.json")[0], 0)
+
+    def test_a_kept_result_nested_without_end_is_computed_again(self):
+        self.write("study.toml", STUDY)
+
+        def study():
+            self.run_program("study", "study.toml", "--output", "runs", "--json", "study.json")
+            return json.loads(Path("study.json").read_text())["series"]
+
+        before = study()
+        kept = sorted(Path("runs").glob("sphere-*.json"))[0]
+        for levels in (201, 200000):
+            kept.write_text(changed(kept.read_text(), '"result": {', '"result": {"x": ' + levels * "[" + levels * "]" +
+                                    ", "))
+            self.assertEqual(study().keys(), before.keys())
+
+    def test_many_keys_cost_no_more_than_many_numbers(self):
+        """In processor time, of which the square of this number would take a minute."""
+        self.write("result.json", json.dumps({**{f"k{i}": i for i in range(300000)}, "twist_error": 0.5}))
+        before = os.times()
+        self.assertEqual(self.ends("result.json")[0], 0)
+        after = os.times()
+        self.assertLess(after.children_user - before.children_user, 15)
+
+    def test_tables_in_an_override_are_counted_too(self):
+        self.write("scene.toml", SHORT_SCENE)
+        for parts in (33, 60000):
+            key = ".".join(parts * ["a"])
+            for value in (f"{{{key}=1}}", f"[{{{key}=1}}]", f"1\n{key}=1", "".join(f"{{{'.'.join(31 * 'a')}=" for _ in
+                                                                                   range(200)) + 200 * "}"):
+                said = self.run_program("solve", "scene.toml", "--set", f"grid.cells={value}", code=2,
+                                        says="a key of more than 32 parts; allowed: 32")
+                self.assertLess(len(said), 4000)
+
+    def test_dots_in_a_string_are_no_parts_of_a_key(self):
+        name = " ".join(f"{i}.{i}" for i in range(1, 40))
+        for text in (f'"{name}"', f"'{name}'", f'"\\"{name}\\""', f'"""{name}"""', f"'''{name}\''''"):
+            self.write("scene.toml", f"name = {text}  # {name}\n{SHORT_SCENE}")
+            self.assertIn("1.1 2.2", self.run_program("solve", "scene.toml", "--plan"))
+            self.run_program("solve", "scene.toml", "--plan", "--set", f"name={text}")
+            self.write("scene.toml", f"name = {text}\n{'.'.join(33 * 'a')} = 1\n{SHORT_SCENE}")
+            self.run_program("solve", "scene.toml", code=2, says=("scene.toml:2", "a key of more than 32 parts"))
+
     def test_no_text_reaches_the_terminal_as_commands(self):
         """A terminal obeys what stands behind an escape character."""
         self.write("scene.toml", changed(SHORT_SCENE, '"sphere"', '"\\u001b]0;title\\u0007"'))
