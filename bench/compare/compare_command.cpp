@@ -70,8 +70,8 @@ int run_compare(const CompareRequest& request, std::ostream& text, nlohmann::ord
   convergence::require_output("--junit", request.junit);
   const TwoTimings first{read_timings(request.base), read_timings(request.now)};
   const auto again = [&](const std::vector<std::string>& names) {
-    std::cerr << fmt::format("slipstick: {} benchmark{} again: {}\n", names.size(),
-                             names.size() == 1 ? "" : "s", request.rerun);
+    std::cerr << convergence::plain_text(fmt::format("slipstick: {} benchmark{} again: {}\n", names.size(),
+                                                     names.size() == 1 ? "" : "s", request.rerun));
     return TwoTimings{first.base, run_again(request.rerun, names)};
   };
   const ComparisonReport report =

@@ -55,8 +55,7 @@ std::vector<double> csv_column(const std::filesystem::path& file, const std::str
   return {values.begin(), values.end()};
 }
 
-std::vector<double> json_list(const std::filesystem::path& file, const Json& json,
-                              const std::string& name) {
+std::vector<double> json_list(const std::filesystem::path& file, const Json& json, const std::string& name) {
   std::vector<double> values;
   const Json& list = json[name];
   const bool are_numbers =

@@ -49,8 +49,8 @@ Extent extent_of(const std::string& text) {
 Json parse_json(const std::string& text, const std::string& source, const std::string& allowed) {
   const Extent extent = extent_of(text);
   if (extent.levels > kMaxJsonLevels) {
-    throw solver::InputError(source, fmt::format("brackets in brackets, more than {} deep; allowed: {}",
-                                                 kMaxJsonLevels, allowed));
+    throw solver::InputError(
+        source, fmt::format("brackets in brackets, more than {} deep; allowed: {}", kMaxJsonLevels, allowed));
   }
   try {
     return extent.keys > kMaxOrderedKeys ? Json(nlohmann::json::parse(text)) : Json::parse(text);

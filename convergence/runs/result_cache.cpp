@@ -6,6 +6,7 @@
 #include <fstream>
 #include <ios>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <utility>
 #include <vector>
 
@@ -124,6 +125,9 @@ void ResultCache::keep(const std::string& name, const std::string& cache_key, co
                        const fs::path& beside) const {
   std::error_code stays;  // the folder is the cache's own: a link or a pipe in a result's place is damage
   if (!fs::is_regular_file(fs::symlink_status(file(name), stays))) fs::remove(file(name), stays);
+  if (fs::is_directory(file(name), stays)) {  // with something in it, which may be somebody's
+    fs::rename(file(name), file(name) += fmt::format(".aside-{:08x}", std::random_device{}()), stays);
+  }
   write_json_file(file(name), entry(program_, cache_key, result, beside));
 }
 
