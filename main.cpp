@@ -38,11 +38,13 @@ void write_json(const std::string& path, const Json& result) {
   slipstick::convergence::write_option_file("--json", path, text + "\n");
 }
 
+using slipstick::convergence::failure_text;
+using slipstick::convergence::plain_text;
 using slipstick::solver::Ranks;
 
 /// Ranks that fail, fail alike: one of them says so.
 void complain(const std::exception& error) {
-  if (Ranks::first()) std::cerr << "slipstick: " << error.what() << '\n';
+  if (Ranks::first()) std::cerr << plain_text("slipstick: " + failure_text(error)) << '\n';
 }
 
 /// Writes beside an error that is said in any case.
@@ -78,18 +80,22 @@ int run(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    std::ostringstream unsaid;
-    const int left = Ranks::first() ? app.exit(error) : app.exit(error, unsaid, unsaid);
-    const int exit_code = left == 0 ? 0 : kCouldNotJudge;
-    slipstick::convergence::write_standard_output("");
-    return exit_code;
+    std::ostringstream output;
+    std::ostringstream errors;
+    const int left = app.exit(error, output, errors);
+    if (Ranks::first()) {
+      std::cerr << plain_text(errors.str());
+      slipstick::convergence::write_standard_output(output.str());
+    }
+    return left == 0 ? 0 : kCouldNotJudge;
   }
 
   std::ostringstream text;
   Json result;
+  bool commands_server = false;  // with commands of its own in the text, beside which it has made names plain
   const auto write_text = [&] {
-    if (!quiet && Ranks::first() && json_path != "-")
-      slipstick::convergence::write_standard_output(text.str());
+    if (quiet || !Ranks::first() || json_path == "-") return;
+    slipstick::convergence::write_standard_output(commands_server ? text.str() : plain_text(text.str()));
   };
   // The file first: who reads the text may leave, and so end this process.
   const auto write_out = [&] {
@@ -105,6 +111,8 @@ int run(int argc, char** argv) {
     if (!subcommands[i]->parsed()) continue;
     slipstick::convergence::require_inputs_kept(*subcommands[i]);
     if (json_path != "-") slipstick::convergence::require_output("--json", json_path);
+    const CLI::Option* const github = subcommands[i]->get_option_no_throw("--github");
+    commands_server = github != nullptr && github->count() > 0;
     int exit_code = kCouldNotJudge;
     try {
       exit_code = commands[i](text, result);
@@ -135,7 +143,7 @@ int main(int argc, char** argv) {
       exit_code = run(argc, argv);
     } catch (const std::exception& error) {
       complain(error);
-      failure = error.what();
+      failure = failure_text(error);
     }
     Ranks::end(exit_code, failure);
     return exit_code;

@@ -1,6 +1,8 @@
 """Says which Python packages a script lacks, and how to install them."""
 
+import os
 import sys
+from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 
@@ -12,3 +14,9 @@ def require(*names):
         print(f"{Path(sys.argv[0]).name}: {sys.executable} cannot import {', '.join(missing)}. On Debian or Ubuntu: "
               "apt-get install " + " ".join(f"python3-{name}" for name in missing), file=sys.stderr)
         sys.exit(2)
+    if "matplotlib" in names:  # read where no matplotlibrc of the user's can be found: a broken one ends its import
+        here = Path.cwd()
+        os.environ["MATPLOTLIBRC"] = os.devnull
+        os.chdir("/")
+        import_module("matplotlib")
+        os.chdir(here)

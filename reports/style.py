@@ -28,6 +28,7 @@ HALO = [withStroke(linewidth=2.5, foreground="white")]  # keeps text readable ov
 
 WIDTH = 7.2  # inches
 
+matplotlib.rcdefaults()  # no matplotlibrc that lies about
 matplotlib.rcParams.update({
     "font.family": "DejaVu Sans",
     "font.size": 9,

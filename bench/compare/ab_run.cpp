@@ -85,13 +85,14 @@ SessionFiles run_session(const std::vector<InterleavedPair>& pairs, int rounds, 
   return files;
 }
 
-ABRunResult run_ab(const std::vector<InterleavedPair>& pairs, int rounds, const ComparisonRules& rules,
+ABRunResult run_ab(const std::vector<InterleavedPair>& pairs, int rounds, ComparisonRules rules,
                    const RunLength& length) {
+  rules.second_run = 2;
   SessionFiles files = run_session(pairs, rounds, length);
   const auto again = [&](const std::vector<std::string>& names) {
     std::vector<InterleavedPair> suspicious = pairs;
     std::erase_if(suspicious, [&](const InterleavedPair& pair) { return !contains(names, pair.name); });
-    return timings_of(run_session(suspicious, 2 * rounds, length));
+    return timings_of(run_session(suspicious, static_cast<int>(rules.second_run) * rounds, length));
   };
   return {compare_twice(timings_of(files), rules, again), std::move(files)};
 }

@@ -61,6 +61,7 @@ ComparisonRules rules_of(const CompareRequest& request) {
   rules.level = request.level;
   rules.same_machine = request.same_machine;
   rules.debug_library = request.debug_library;
+  rules.second_run = request.rerun.empty() ? 0 : 1;  // as long as the first: who knows
   return rules;
 }
 
@@ -69,15 +70,12 @@ int run_compare(const CompareRequest& request, std::ostream& text, nlohmann::ord
   convergence::require_output("--summary", request.summary);
   convergence::require_output("--junit", request.junit);
   const TwoTimings first{read_timings(request.base), read_timings(request.now)};
-  const auto again = [&](const std::vector<std::string>& names) {
-    std::cerr << fmt::format("slipstick: {} benchmark{} again: {}\n", names.size(),
-                             names.size() == 1 ? "" : "s", request.rerun);
+  const Again again = [&](const std::vector<std::string>& names) {
+    std::cerr << convergence::plain_text(fmt::format("slipstick: {} benchmark{} again: {}\n", names.size(),
+                                                     names.size() == 1 ? "" : "s", request.rerun));
     return TwoTimings{first.base, run_again(request.rerun, names)};
   };
-  const ComparisonReport report =
-      request.rerun.empty()
-          ? ComparisonReport{request.base, request.now, rules, compare(first.base, first.now, rules), {}}
-          : compare_twice(first, rules, again);
+  const ComparisonReport report = compare_twice(first, rules, request.rerun.empty() ? Again() : again);
   result = comparison_json(report);
   text << comparison_text(report);
   convergence::write_option_file("--summary", request.summary, comparison_markdown(report));

@@ -11,6 +11,7 @@
 #include <utility>
 
 #include "bench/compare/obstacles.hpp"
+#include "bench/compare/power.hpp"
 #include "bench/compare/rank_tests.hpp"
 #include "bench/timing/median.hpp"
 #include "solver/input/misspelling.hpp"
@@ -89,7 +90,7 @@ ComparedBenchmark meet(const std::string& name, const TimedBenchmark* base, cons
   met.new_seconds = median_seconds(now);
   met.base_repetitions = base == nullptr ? 0 : base->timings.size();
   met.new_repetitions = now == nullptr ? 0 : now->timings.size();
-  met.ratio = met.low = met.high = met.p_value = kNaN;
+  met.ratio = met.low = met.high = met.p_value = met.smallest_found = kNaN;
   if (base == nullptr || now == nullptr) {
     met.finding = now == nullptr ? Finding::only_in_base : Finding::only_in_new;
   } else {
@@ -124,6 +125,7 @@ std::string remark_on(const ComparedBenchmark& benchmark, std::size_t enough, bo
     return fmt::format("only the first {} repetitions are pairs",
                        std::min(benchmark.base_repetitions, benchmark.new_repetitions));
   }
+  if (benchmark.finding == Finding::same && benchmark.low > 1.0) return "slower, below what counts";
   if (benchmark.finding == Finding::same && !(benchmark.high < 1.0 + rules.effect)) {
     return fmt::format("scatters too much to rule {:.0f} % out", 100.0 * rules.effect);
   }
@@ -234,6 +236,21 @@ Comparison compare(const Timings& base, const Timings& now, const ComparisonRule
   comparison.remarks = std::move(found.remarks);
   if (!comparison.obstacles.empty()) withdraw(comparison.benchmarks);
   return comparison;
+}
+
+void state_power(Comparison& comparison, const Timings& base, const Timings& now,
+                 const ComparisonRules& rules) {
+  const auto is_timed = [](const ComparedBenchmark& benchmark) { return std::isfinite(benchmark.ratio); };
+  const auto timed = static_cast<double>(std::ranges::count_if(comparison.benchmarks, is_timed));
+  const Search search{.effect = rules.effect,
+                      .level = rules.second_run > 0 ? rules.level : rules.level / timed,
+                      .second_run = rules.second_run};
+  for (ComparedBenchmark& benchmark : comparison.benchmarks) {
+    if (!is_timed(benchmark)) continue;
+    benchmark.smallest_found =
+        smallest_found(log_times(*find(base, benchmark.name)), log_times(*find(now, benchmark.name)),
+                       comparison.paired, search);
+  }
 }
 
 std::vector<std::string> suspicious(const Comparison& comparison) {

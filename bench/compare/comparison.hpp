@@ -18,6 +18,8 @@ struct ComparisonRules {
   /// Benchmarks that are known to wait in the new build, so that it is no sign of load: of a second run, what
   /// waits in the first.
   std::vector<std::string> waiting = {};
+  /// Repetitions, over those of this run, of a second one of what is suspicious; 0: there will be none.
+  std::size_t second_run = 0;
 };
 
 /// What was found of one benchmark, first what its times say. Undecided: as much slower as counts, but not
@@ -51,6 +53,7 @@ struct ComparedBenchmark {
   double high = 0.0;
   double p_value =
       0.0;  ///< of a ratio of one or below (above, where it is below one), with Holm's correction
+  double smallest_found = 0.0;  ///< the ratio that is found slower nine times in ten; see state_power()
   std::size_t base_repetitions = 0;
   std::size_t new_repetitions = 0;
   std::string remark;  ///< what a reader must know beside the numbers; empty: nothing
@@ -68,6 +71,11 @@ struct Comparison {
 /// of ratios), others as independent samples (Mann and Whitney's test), both exactly.
 /// Throws std::invalid_argument for an effect that is not above zero and a level that is not between 0 and 1.
 Comparison compare(const Timings& base, const Timings& now, const ComparisonRules& rules = {});
+
+/// Says of each benchmark how much slower it would have to be to be found so, by repetitions that scatter as
+/// its own do; among as many benchmarks, of which it is the only one.
+void state_power(Comparison& comparison, const Timings& base, const Timings& now,
+                 const ComparisonRules& rules);
 
 /// Benchmarks of which nothing should be said before a second run: slower, undecided or failed.
 std::vector<std::string> suspicious(const Comparison& comparison);

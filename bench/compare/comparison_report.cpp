@@ -72,6 +72,7 @@ std::string interval_text(const ComparedBenchmark& benchmark) {
 
 /// With the chance that it is none, where that says something.
 std::string verdict_text(const ComparedBenchmark& benchmark) {
+  if (benchmark.finding == Finding::same && benchmark.low > 1.0) return benchmark.remark;
   const bool has_chance = is_failure(benchmark.finding) || benchmark.finding == Finding::undecided ||
                           benchmark.finding == Finding::quicker;
   return has_chance && std::isfinite(benchmark.p_value)
@@ -113,7 +114,8 @@ std::string table(const std::vector<ComparedBenchmark>& benchmarks) {
       line += "  " + std::string(widths[i] - letters(row[i]), ' ') + row[i];
     }
     text += line + "  " + row.back() + "\n";
-    if (r > 0 && !benchmarks[r - 1].remark.empty()) text += "      " + benchmarks[r - 1].remark + "\n";
+    if (r > 0 && !benchmarks[r - 1].remark.empty() && benchmarks[r - 1].remark != row.back())
+      text += "      " + benchmarks[r - 1].remark + "\n";
   }
   return text;
 }
@@ -129,6 +131,23 @@ std::string rules_text(const ComparisonRules& rules) {
                      100.0 * rules.effect, 100.0 * rules.level);
 }
 
+/// The slowdown that is found nine times in ten: in the benchmark in the middle, and in the one that scatters
+/// most.
+std::string power_text(const std::vector<ComparedBenchmark>& benchmarks) {
+  std::vector<std::pair<double, std::string>> found;
+  for (const ComparedBenchmark& benchmark : benchmarks) {
+    if (benchmark.smallest_found > 1.0) found.emplace_back(benchmark.smallest_found, benchmark.name);
+  }
+  if (found.empty()) return "";
+  std::ranges::sort(found);
+  const auto percent = [](double ratio) {
+    return std::isfinite(ratio) ? fmt::format("from {:.3g} % on", 100.0 * (ratio - 1.0)) : "never";
+  };
+  return fmt::format("so many repetitions find a slowdown nine times in ten {} (median), in {} {}",
+                     percent(found[found.size() / 2].first), found.back().second,
+                     percent(found.back().first));
+}
+
 /// What a reader needs beside the table, a paragraph each.
 std::vector<std::string> notes(const ComparisonReport& report) {
   std::vector<std::string> lines;
@@ -136,6 +155,8 @@ std::vector<std::string> notes(const ComparisonReport& report) {
     lines.push_back("could not judge: " + obstacle);
   }
   for (const std::string& remark : report.comparison.remarks) lines.push_back(remark);
+  if (const std::string power = power_text(report.comparison.benchmarks); !power.empty())
+    lines.push_back(power);
   if (!report.second && !suspicious(report.comparison).empty()) {
     lines.push_back(
         "this is one run only: let --rerun 'PROGRAM --benchmark_filter={filter} --benchmark_format=json "
@@ -175,6 +196,8 @@ Json benchmark_json(const ComparedBenchmark& benchmark) {
     convergence::set_missing(json, "high", no_interval);
   }
   convergence::set_number(json, "p_value", benchmark.p_value, no_times);
+  convergence::set_number(json, "smallest_found", benchmark.smallest_found,
+                          std::isfinite(benchmark.ratio) ? "too few repetitions to find any" : no_times);
   json["base_repetitions"] = benchmark.base_repetitions;
   json["new_repetitions"] = benchmark.new_repetitions;
   json["remark"] = benchmark.remark;

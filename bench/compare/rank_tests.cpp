@@ -6,7 +6,6 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -125,17 +124,19 @@ class RankSum {
   double variance_ = 0.0;
 };
 
-/// Sets estimate and interval from all differences (or means of two). As many of them are beyond either end
-/// as the statistic, from its least value on, stays in the tail; `least` is that value, doubled.
-void set_estimate(Shift& shift, std::vector<double> differences, const RankSum& without_ties,
-                  std::size_t least) {
-  std::sort(differences.begin(), differences.end());
-  const std::size_t count = differences.size();
-  shift.estimate = 0.5 * (differences[(count - 1) / 2] + differences[count / 2]);
+/// How many of all differences (or means of two) are beyond an end of the interval: as many as the statistic,
+/// from its least value on, stays in the tail; `least` is that value, doubled.
+std::size_t count_beyond(const RankSum& without_ties, std::size_t least, std::size_t count, double tail) {
   std::size_t beyond = 0;
-  while (2 * beyond < count && without_ties.at_most(least + 2 * beyond) <= kTail) ++beyond;
-  shift.low = beyond == 0 ? -kInfinity : differences[beyond - 1];
-  shift.high = beyond == 0 ? kInfinity : differences[count - beyond];
+  while (2 * beyond < count && without_ties.at_most(least + 2 * beyond) <= tail) ++beyond;
+  return beyond;
+}
+
+/// Sets estimate and interval.
+void set_estimate(Shift& shift, const std::vector<double>& sorted, std::size_t place) {
+  shift.estimate = median_of_sorted(sorted);
+  shift.low = place == 0 ? -kInfinity : sorted[place - 1];
+  shift.high = place == 0 ? kInfinity : sorted[sorted.size() - place];
 }
 
 void require_numbers(std::span<const double> sample) {
@@ -144,6 +145,38 @@ void require_numbers(std::span<const double> sample) {
 }
 
 }  // namespace
+
+double median_of_sorted(const std::vector<double>& sorted) {
+  return 0.5 * (sorted[(sorted.size() - 1) / 2] + sorted[sorted.size() / 2]);
+}
+
+std::vector<double> sorted_means(std::span<const double> differences) {
+  std::vector<double> means;
+  for (std::size_t i = 0; i < differences.size(); ++i) {
+    for (std::size_t j = i; j < differences.size(); ++j)
+      means.push_back(0.5 * (differences[i] + differences[j]));
+  }
+  std::ranges::sort(means);
+  return means;
+}
+
+std::vector<double> sorted_differences(std::span<const double> base, std::span<const double> now) {
+  std::vector<double> differences;
+  for (const double later : now) {
+    for (const double earlier : base) differences.push_back(later - earlier);
+  }
+  std::ranges::sort(differences);
+  return differences;
+}
+
+std::size_t signed_rank_place(std::size_t n, double level) {
+  return count_beyond(RankSum::of_any(doubled_ranks_without_ties(n)), 0, n * (n + 1) / 2, level);
+}
+
+std::size_t rank_sum_place(std::size_t base, std::size_t now, double level) {
+  const RankSum choice = RankSum::of_choice(doubled_ranks_without_ties(base + now), now);
+  return count_beyond(choice, now * (now + 1), base * now, level);
+}
 
 Shift signed_rank_shift(std::span<const double> differences) {
   require_numbers(differences);
@@ -161,12 +194,7 @@ Shift signed_rank_shift(std::span<const double> differences) {
   Shift shift;
   shift.p_positive = chance.at_least(observed);
   shift.p_negative = chance.at_most(observed);
-  std::vector<double> means;
-  for (std::size_t i = 0; i < differences.size(); ++i) {
-    for (std::size_t j = i; j < differences.size(); ++j)
-      means.push_back(0.5 * (differences[i] + differences[j]));
-  }
-  set_estimate(shift, std::move(means), RankSum::of_any(doubled_ranks_without_ties(differences.size())), 0);
+  set_estimate(shift, sorted_means(differences), signed_rank_place(differences.size(), kTail));
   return shift;
 }
 
@@ -181,14 +209,7 @@ Shift rank_sum_shift(std::span<const double> base, std::span<const double> now) 
   Shift shift;
   shift.p_positive = chance.at_least(observed);
   shift.p_negative = chance.at_most(observed);
-  std::vector<double> differences;
-  for (const double later : now) {
-    for (const double earlier : base) differences.push_back(later - earlier);
-  }
-  const bool has_ties = std::set(ranks.begin(), ranks.end()).size() < ranks.size();
-  const RankSum without_ties =
-      has_ties ? RankSum::of_choice(doubled_ranks_without_ties(pooled.size()), now.size()) : chance;
-  set_estimate(shift, std::move(differences), without_ties, now.size() * (now.size() + 1));
+  set_estimate(shift, sorted_differences(base, now), rank_sum_place(base.size(), now.size(), kTail));
   return shift;
 }
 

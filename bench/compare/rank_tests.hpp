@@ -16,6 +16,15 @@ struct Shift {
   double p_negative = 1.0;  ///< of ranks as low or lower
 };
 
+/// Means of all two of these differences, each with itself too, and differences of two samples, in order.
+/// Their median is Hodges and Lehmann's estimate; the shift is significant, on one side, where the one at
+/// signed_rank_place() or rank_sum_place(), counted from 1, is above zero; 0: it cannot be.
+std::vector<double> sorted_means(std::span<const double> differences);
+std::vector<double> sorted_differences(std::span<const double> base, std::span<const double> now);
+std::size_t signed_rank_place(std::size_t n, double level);
+std::size_t rank_sum_place(std::size_t base, std::size_t now, double level);
+double median_of_sorted(const std::vector<double>& sorted);
+
 /// Of differences of pairs: Wilcoxon's signed ranks (1945), zeros left out. Throws std::invalid_argument for
 /// an empty sample and for numbers that are not finite; so does rank_sum_shift.
 Shift signed_rank_shift(std::span<const double> differences);

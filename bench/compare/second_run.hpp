@@ -16,8 +16,8 @@ struct TwoTimings {
 /// Times some benchmarks once more.
 using Again = std::function<TwoTimings(const std::vector<std::string>& names)>;
 
-/// Compares; what is suspicious once more: only what both runs say counts. A second run that throws
-/// InputError leaves it undecided.
+/// Compares, and states the power; what is suspicious once more, where `again` is not empty: only what both
+/// runs say counts. A second run that throws InputError leaves it undecided.
 ComparisonReport compare_twice(const TwoTimings& first, const ComparisonRules& rules, const Again& again);
 
 /// Runs a command by the shell, {filter} in it replaced by the filter of these benchmarks, ready for the

@@ -42,6 +42,8 @@ JSON_LOOP = json.dumps({"rotation": TWISTS, "moment": TWISTS}).replace("[0.0, ",
 PROFILE = "radius,pressure\n" + "".join(f"{i / 16:g},{2 - i / 16:g}\n" for i in range(17))
 TIMINGS = json.dumps({"context": {"num_cpus": 2}, "benchmarks": 10 * [
     {"name": "a", "real_time": 1, "cpu_time": 1, "time_unit": "ms"}]})
+LONG_KEY = "a" + 32 * ' . "a b"'  # of 33 parts
+LONG = "a key of more than 32 parts; allowed: 32"
 GIVEN = ("solve", "sphere.toml", "--set", "contact.pressure=file", "--set", f"grid.extent=[{EXTENT},{EXTENT}]",
          "--set", "grid.cells=[8,8]", "--set")
 # What is read, and by which command.
@@ -87,7 +89,16 @@ DAMAGES = [
         ("normal = 1000\n", "", "load.normal", "missing"),
         ('"sphere"', '"spere"', 'upper.shape = "spere"', "sphere"),
         ("0.018", "{ a = 1 }", "upper.radius", "a number"),
-        ("radius = 0.018", "radius = 1\nradius = 2", ":4"))),
+        ("radius = 0.018", "radius = 1\nradius = 2", ":4"),
+        ('"sphere"', '"' + 3000000 * "a" + '"', 'upper.shape = "aaa'),
+        ("radius", 3000000 * "a" + " = 1\nradius", ":3"),
+        ("[grid]", f"[{LONG_KEY}]\n[grid]", ":14", LONG),
+        ("[upper]", f"{LONG_KEY} = 1\n[upper]", ":1", LONG),
+        ("[upper]", f"{8 * 'a.'}a = {250 * ('{ ' + 28 * 'a.' + 'a = ')}1{250 * '}'}\n[upper]", ":1", LONG),
+        ("[grid]", 100001 * "[[step]]\n" + "[grid]", "step = 100001 tables", "at most 100000"),
+        ("[upper]", "cycles = 100001\n[upper]", "cycles = 100001"),
+        ('shape = "sphere"\nradius = 0.018\n', 1001 * '[[upper.shape]]\nshape = "sphere"\nradius = 1\n',
+         "upper.shape = 1001 tables: allowed: at most 1000"))),
     ("study.toml", STUDY + "tolerances = [nan]\n", ("tolerances[0] = nan", "positive")),
     ("study.toml", changed(STUDY, "12", "1000000"), ("cells[1] = 1000000", "16384")),
     ("study.toml", STUDY + "shift = 2\n", ("shift", "shifts")),
@@ -121,6 +132,10 @@ DAMAGES = [
     ("columns.csv", second_row("0,1e-4,inf,1e7,0"), (":3", "inf", "finite")),
     ("columns.csv", second_row("0,1e-4,1e400,1e7,0"), (":3", "1e400", "finite")),
     ("columns.csv", second_row("0,1e-4,,1e7,0"), (":3", "finite")),
+    ("columns.csv", "", ("has no column x1; its columns: none",)),
+    ("columns.csv", "x1,x2,pressure,q1,q2\n", ("holds no rows",)),
+    ("columns.csv", second_row("0,1e-4\0,1e9,1e7,0"), (":3", "\\x00", "finite")),
+    ("columns.csv", second_row(100000 * ","), (":3", "more than 65536 values")),
     ("columns.csv", second_row("0,1e-4,1e9"), (":3", "3 values; allowed: 5")),
     ("columns.csv", second_row("0,1e-4,1 GPa,1e7,0"), (":3", "1 GPa", "finite")),
     ("columns.csv", changed(COLUMNS, "pressure", "p"), ("no column pressure", "x1, x2, p")),
@@ -237,6 +252,63 @@ class HostileInput(ProgramTest):
         for name, text, says in DAMAGES:
             self.write(name, text)
             self.refused(name, text[:300], says)
+
+    def test_what_is_nested_without_end_is_refused(self):
+        """A value deep in brackets or in tables, which recursion would follow until the stack ends."""
+        for levels in (201, 40000, 500000):
+            for name, text in (("result.json", '{"twist_error": 0.5, "x": ' + levels * "[" + levels * "]" + "}"),
+                               ("result.json", levels * '{"twist_error":' + "1" + levels * "}"),
+                               ("loop.json", changed(JSON_LOOP, "[0,", "[" + levels * "[" + levels * "]" + ",")),
+                               ("timings.json", changed(TIMINGS, '"num_cpus": 2', levels * '"a": {' + levels * "}"))):
+                self.write(name, text)
+                self.refused(name, levels, ("more than 200 deep",))
+        self.write("result.json", '{"twist_error": 0.5, "x": ' + 199 * "[" + 199 * "]" + "}")
+        self.assertEqual(self.ends("result.json")[0], 0)
+
+    def test_a_kept_result_nested_without_end_is_computed_again(self):
+        self.write("study.toml", STUDY)
+
+        def study():
+            self.run_program("study", "study.toml", "--output", "runs", "--json", "study.json")
+            return json.loads(Path("study.json").read_text())["series"]
+
+        before = study()
+        kept = sorted(Path("runs").glob("sphere-*.json"))[0]
+        for levels in (201, 200000):
+            kept.write_text(changed(kept.read_text(), '"result": {', '"result": {"x": ' + levels * "[" + levels * "]" +
+                                    ", "))
+            self.assertEqual(study().keys(), before.keys())
+
+    def test_many_keys_cost_no_more_than_many_numbers(self):
+        """In processor time, of which the square of this number would take a minute."""
+        self.write("result.json", json.dumps({**{f"k{i}": i for i in range(300000)}, "twist_error": 0.5}))
+        before = os.times()
+        self.assertEqual(self.ends("result.json")[0], 0)
+        after = os.times()
+        self.assertLess(after.children_user - before.children_user, 15)
+
+    def test_what_is_no_key_may_be_long(self):
+        for text in (f"# {5000 * '.'}{100 * ' 0.5'}\n", 2 * f"# {40 * '{'} a = {{\n"):
+            self.write("scene.toml", text + SHORT_SCENE)
+            self.run_program("solve", "scene.toml", "--plan")
+
+    def test_tables_in_an_override_are_counted_too(self):
+        self.write("scene.toml", SHORT_SCENE)
+        for key in (LONG_KEY, 60000 * "a." + "a"):
+            self.run_program("solve", "scene.toml", "--set", f"{key}=1", code=2, says="a key of 1 to 32 parts")
+            for value in (f"{{{key}=1}}", f"[{{{key}=1}}]", f"1\n{key}=1", "".join(f"{{{'.'.join(31 * 'a')}=" for _ in
+                                                                                   range(200)) + 200 * "}"):
+                said = self.run_program("solve", "scene.toml", "--set", f"grid.cells={value}", code=2, says=LONG)
+                self.assertLess(len(said), 4000)
+
+    def test_dots_in_a_string_are_no_parts_of_a_key(self):
+        name = " ".join(f"{i}.{i}" for i in range(1, 40))
+        for text in (f'"{name}"', f"'{name}'", f'"\\"{name}\\""', f'"""{name}"""', f"'''{name}\''''"):
+            self.write("scene.toml", f"name = {text}  # {name}\n{SHORT_SCENE}")
+            self.run_program("solve", "scene.toml", "--plan")
+            self.run_program("solve", "scene.toml", "--plan", "--set", f"name={text}")
+            self.write("scene.toml", f"name = {text}\n{'.'.join(33 * 'a')} = 1\n{SHORT_SCENE}")
+            self.run_program("solve", "scene.toml", code=2, says=("scene.toml:2", LONG))
 
     def test_no_text_reaches_the_terminal_as_commands(self):
         """A terminal obeys what stands behind an escape character."""

@@ -13,6 +13,7 @@
 #include <tuple>
 #include <utility>
 
+#include "convergence/results/json_text.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
 
@@ -266,14 +267,7 @@ bool has_times(const TimedBenchmark& benchmark) {
 }
 
 Json parse_benchmark_json(const std::string& text, const std::string& source) {
-  Json json;
-  try {
-    json = Json::parse(without_bare_nans(text));
-  } catch (const Json::parse_error& error) {
-    throw InputError(source, fmt::format("is no whole JSON (at byte {}); allowed: {}", error.byte, kAllowed));
-  } catch (const Json::exception& error) {  // a number out of range
-    throw InputError(source, fmt::format("is no JSON ({}); allowed: {}", error.what(), kAllowed));
-  }
+  Json json = convergence::parse_json(without_bare_nans(text), source, kAllowed);
   const auto is = [&](const char* key, Json::value_t type) {
     return json.is_object() && json.contains(key) && json[key].type() == type;
   };

@@ -81,7 +81,7 @@ int run_gates(const CLI::App& command, const GateRequest& request, std::ostream&
   judgements.insert(judgements.end(), judged.begin(), judged.end());
 
   result = gates_json(judgements);
-  text << gates_text(judgements);
+  text << plain_text(gates_text(judgements));
   if (request.github) text << gates_annotations(judgements);
   write_option_file("--junit", request.junit, gates_junit(judgements));
   write_option_file("--summary", request.summary, gates_markdown(judgements));

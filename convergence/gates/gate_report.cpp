@@ -11,6 +11,8 @@
 #include <string_view>
 #include <tuple>
 
+#include "solver/input/input_file.hpp"
+
 namespace slipstick::convergence {
 namespace {
 
@@ -136,8 +138,8 @@ std::string markdown_row(const Judgement& judgement) {
 /// What stands in a workflow command: properties end at commas and colons too.
 std::string annotation(std::string_view text, bool is_property) {
   std::string escaped;
-  for (const char c : text) {
-    const bool special = c == '%' || c == '\r' || c == '\n' || (is_property && (c == ':' || c == ','));
+  for (const char c : solver::printable(text)) {
+    const bool special = c == '%' || c == '\n' || (is_property && (c == ':' || c == ','));
     escaped += special ? fmt::format("%{:02X}", static_cast<int>(c)) : std::string(1, c);
   }
   return escaped;

@@ -11,10 +11,10 @@
 #include <string>
 #include <utility>
 
+#include "convergence/results/json_text.hpp"
 #include "convergence/studies/budget.hpp"
 #include "convergence/studies/study.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/input/input_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -97,12 +97,7 @@ void judge_studies(const std::vector<Gate>& gates, const ProcessPool& pool, Judg
 
 Json read_result(const Gate& gate) {
   const std::string made_by = gate.made_by.empty() ? "" : "; it is made by: " + gate.made_by;
-  try {
-    return Json::parse(
-        solver::read_input_file(gate.source, solver::kLargestJson, "a result file (JSON)" + made_by));
-  } catch (const Json::exception& error) {
-    throw InputError(gate.source.string(), fmt::format("is not JSON ({}){}", error.what(), made_by));
-  }
+  return read_json(gate.source, "a result file (JSON)" + made_by);
 }
 
 /// Each file is read once.

@@ -60,7 +60,7 @@ std::string law_heading(const ContactLaw& law, const std::string& before) {
   return fmt::format(
       "{0}Torsion of {1}, profile {2}: first loading and what follows from it, by slipstick law.\n"
       "{0}Units: {3}.\n",
-      before, on_one_line(law.contact.name), law.contact.profile->name(), units);
+      before, on_one_line(law.contact.name), on_one_line(law.contact.profile->name()), units);
 }
 
 }  // namespace slipstick::convergence

@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "convergence/results/json_text.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
@@ -54,14 +55,13 @@ std::vector<double> csv_column(const std::filesystem::path& file, const std::str
   return {values.begin(), values.end()};
 }
 
-std::vector<double> json_list(const std::filesystem::path& file, const nlohmann::json& json,
-                              const std::string& name) {
+std::vector<double> json_list(const std::filesystem::path& file, const Json& json, const std::string& name) {
   std::vector<double> values;
-  const nlohmann::json& list = json[name];
+  const Json& list = json[name];
   const bool are_numbers =
-      list.is_array() && std::ranges::all_of(list, [](const nlohmann::json& v) { return v.is_number(); });
+      list.is_array() && std::ranges::all_of(list, [](const Json& v) { return v.is_number(); });
   if (!are_numbers) throw InputError(file.string(), name, "...", "a list of numbers");
-  for (const nlohmann::json& value : list) values.push_back(value.get<double>());
+  for (const Json& value : list) values.push_back(value.get<double>());
   return values;
 }
 
@@ -90,13 +90,8 @@ LoopRecord collect(const std::filesystem::path& file, const std::vector<std::str
           optional(kLoadNames)};
 }
 
-LoopRecord read_json(const std::filesystem::path& file) {
-  nlohmann::json json;
-  try {
-    json = nlohmann::json::parse(solver::read_input_file(file, solver::kLargestJson, "a loop (JSON)"));
-  } catch (const nlohmann::json::exception& error) {
-    throw InputError(file.string(), fmt::format("is not JSON ({})", error.what()));
-  }
+LoopRecord read_json_loop(const std::filesystem::path& file) {
+  const Json json = read_json(file, "a loop (JSON)");
   std::vector<std::string> names;
   if (json.is_object()) {
     for (const auto& item : json.items()) names.push_back(item.key());
@@ -154,7 +149,7 @@ LoopRecord read_loop(const std::filesystem::path& file) {
   solver::require_input_file(file, solver::kLargestTable, "a loop (CSV or JSON)");
   LoopRecord loop =
       file.extension() == ".json"
-          ? read_json(file)
+          ? read_json_loop(file)
           : collect(file, table_names(file), [&](const std::string& name) { return csv_column(file, name); });
   require_sound(loop);
   return loop;

@@ -5,11 +5,13 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <map>
 #include <string>
 #include <string_view>
 #include <system_error>
 
 #include "solver/input/input_error.hpp"
+#include "solver/input/whole_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -29,6 +31,23 @@ bool is_output(const CLI::Option& option) {
 bool is_same_file(const fs::path& one, const fs::path& other) {
   std::error_code error;
   return fs::equivalent(one, other, error) && !error;
+}
+
+void require_outputs_apart(const CLI::App& command) {
+  std::map<fs::path, std::string> options;
+  for (const CLI::Option* const option : command.get_options()) {
+    if (!is_output(*option)) continue;
+    for (const std::string& output : option->results()) {
+      if (output == "-") continue;
+      std::error_code error;
+      const fs::path target = fs::weakly_canonical(solver::behind_links(fs::absolute(output, error)), error);
+      if (!fs::is_regular_file(target, error) && fs::exists(target, error)) continue;  // a device takes all
+      const auto [other, is_new] = options.emplace(target, option->get_name() + " " + output);
+      if (is_new) continue;
+      throw solver::InputError(fmt::format("{} {}", option->get_name(), output),
+                               fmt::format("is the file of {} too; allowed: another file", other->second));
+    }
+  }
 }
 
 }  // namespace
@@ -62,6 +81,7 @@ void require_inputs_kept(const CLI::App& command) {
     }
   }
   require_inputs_kept(command, inputs);
+  require_outputs_apart(command);
 }
 
 }  // namespace slipstick::convergence

@@ -18,7 +18,8 @@ void require_inputs_kept(const CLI::App& command, const std::vector<std::filesys
 void require_input_kept(const std::string& option, const std::string& output,
                         const std::vector<std::filesystem::path>& inputs);
 
-/// The same for the files that the command line names.
+/// The same for the files that the command line names; and where two outputs would be one file, as given or
+/// behind links.
 void require_inputs_kept(const CLI::App& command);
 
 }  // namespace slipstick::convergence

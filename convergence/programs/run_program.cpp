@@ -14,6 +14,9 @@
 #include <cstring>
 #include <stdexcept>
 #include <string_view>
+#include <system_error>
+
+#include "convergence/results/output.hpp"
 
 #ifdef __linux__
 #include <sys/prctl.h>
@@ -51,7 +54,9 @@ std::string trouble_of(int status) {
 }
 
 ProgramEnd not_started(int error) {
-  return {.started = false, .output = {}, .trouble = fmt::format("not started: {}", std::strerror(error))};
+  return {.started = false,
+          .output = {},
+          .trouble = "not started: " + failure_text(std::system_error(error, std::generic_category()))};
 }
 
 }  // namespace

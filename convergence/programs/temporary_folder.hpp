@@ -7,19 +7,19 @@
 #include <string>
 #include <system_error>
 
+#include "convergence/programs/run_program.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/whole_file.hpp"
 
 namespace slipstick::convergence {
 
-/// A folder that goes when this goes.
+/// A folder that goes when this goes, or this process, however that ends: a shell in a session of its own,
+/// which no signal to the process's group reaches, waits for the end of its input and removes the folder.
 class TemporaryFolder {
  public:
-  TemporaryFolder() {
-    std::string name = std::filesystem::temp_directory_path() / "slipstick-XXXXXX";
-    if (mkdtemp(name.data()) == nullptr) throw solver::InputError(name, solver::why_not_written(errno));
-    path_ = name;
-  }
+  TemporaryFolder()
+      : path_(make()),
+        remover_({"setsid", "sh", "-c", "cat > /dev/null; rm -rf -- \"$0\"", path_}, {.fed = true}) {}
   ~TemporaryFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
@@ -30,7 +30,14 @@ class TemporaryFolder {
   std::filesystem::path operator/(const char* file) const { return path_ / file; }
 
  private:
+  static std::string make() {
+    std::string name = std::filesystem::temp_directory_path() / "slipstick-XXXXXX";
+    if (mkdtemp(name.data()) == nullptr) throw solver::InputError(name, solver::why_not_written(errno));
+    return name;
+  }
+
   std::filesystem::path path_;
+  Program remover_;
 };
 
 }  // namespace slipstick::convergence

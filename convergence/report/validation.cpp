@@ -22,6 +22,7 @@
 #include "convergence/report/gallery.hpp"
 #include "convergence/report/headline.hpp"
 #include "convergence/report/peers.hpp"
+#include "convergence/results/json_text.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/result_cache.hpp"
@@ -170,8 +171,7 @@ Json cycle(const Json& result) {
 
 /// What the page in a folder said first, before it is written anew; null where there is none to read.
 Json earlier_headline(const fs::path& file) {
-  if (!fs::is_regular_file(file)) return {};
-  const Json report = Json::parse(read_text(file), nullptr, false);
+  const Json report = find_json(file);
   return report.is_object() && report.contains("headline") ? report["headline"] : Json{};
 }
 

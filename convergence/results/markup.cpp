@@ -5,12 +5,25 @@
 #include <algorithm>
 #include <cctype>
 #include <cstring>
+#include <nlohmann/json.hpp>
+
+#include "solver/input/input_file.hpp"
 
 namespace slipstick::convergence {
 
+std::string as_utf8(const std::string& bytes) {
+  using Json = nlohmann::json;
+  return Json::parse(Json(bytes).dump(-1, ' ', false, Json::error_handler_t::replace));
+}
+
 std::string xml_text(std::string_view text) {
+  constexpr std::string_view kNoCharacter = "\xef\xbf";  // before 0xbe and 0xbf in UTF-8: U+FFFE, U+FFFF
   std::string escaped;
-  for (const char c : text) {
+  for (const char c : as_utf8(solver::printable(text))) {
+    if (escaped.ends_with(kNoCharacter) && (c == '\xbe' || c == '\xbf')) {
+      escaped.replace(escaped.size() - kNoCharacter.size(), kNoCharacter.size(), "?");
+      continue;
+    }
     switch (c) {
       case '&':
         escaped += "&amp;";
@@ -29,7 +42,7 @@ std::string xml_text(std::string_view text) {
         escaped += fmt::format("&#{};", static_cast<int>(c));
         break;
       default:
-        if (static_cast<unsigned char>(c) >= 0x20) escaped += c;
+        escaped += c;
     }
   }
   return escaped;

@@ -10,8 +10,11 @@ namespace slipstick::convergence {
 /// GitHub cuts a comment off above 64 kB.
 inline constexpr std::size_t kMaxMarkdown = 64000;
 
-/// Text in XML, between tags or in an attribute: what is markup is escaped, control characters, which XML
-/// cannot hold, are left out.
+/// The same bytes where they are UTF-8; U+FFFD for what is not.
+std::string as_utf8(const std::string& bytes);
+
+/// Text in XML, between tags or in an attribute: what is markup is escaped, and what XML cannot hold
+/// replaced: control characters by \xNN, what is not UTF-8 by U+FFFD.
 std::string xml_text(std::string_view text);
 
 /// A word as a shell takes it, in quotes where it needs them.

@@ -6,8 +6,11 @@
 
 #include <cerrno>
 #include <cstdio>
+#include <new>
+#include <system_error>
 
 #include "solver/input/input_error.hpp"
+#include "solver/input/input_file.hpp"
 #include "solver/input/whole_file.hpp"
 
 namespace slipstick::convergence {
@@ -20,7 +23,8 @@ void naming(const std::string& option, const std::string& path, const Call& call
     call();
   } catch (const solver::InputError& error) {
     const std::string complaint = error.what();
-    throw solver::InputError(fmt::format("{} {}", option, path), complaint.substr(path.size() + 2));
+    const std::string_view named = solver::InputError(path, "").what();
+    throw solver::InputError(fmt::format("{} {}", option, path), complaint.substr(named.size()));
   }
 }
 
@@ -33,6 +37,37 @@ void require_output(const std::string& option, const std::string& path) {
 void write_option_file(const std::string& option, const std::string& path, const std::string& text) {
   if (path.empty()) return;
   naming(option, path, [&] { solver::write_whole_file(path, text); });
+}
+
+std::string plain_text(std::string_view text) {
+  const std::string printable = solver::printable(text);
+  const std::string_view all = printable;
+  std::string plain;
+  bool line_begins = true;  // a server may skip any blank, of which Unicode has many
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    const std::string_view rest = all.substr(i);
+    const bool commands = (line_begins && rest.starts_with("::")) || rest.starts_with("##[") ||
+                          rest.starts_with("##vso[") || rest.starts_with("##teamcity[");
+    plain += commands ? fmt::format("\\x{:02x}", all[i]) : std::string(1, all[i]);
+    const bool blank = all[i] == ' ' || all[i] == '\t' || static_cast<unsigned char>(all[i]) >= 0x80;
+    line_begins = all[i] == '\n' || (line_begins && blank);
+  }
+  return plain;
+}
+
+std::string failure_text(const std::exception& error) {
+  if (dynamic_cast<const std::bad_alloc*>(&error) != nullptr) {
+    return "memory ran out; allowed: fewer cells or side-by-side solves (--jobs), or more memory (ulimit "
+           "-v); "
+           "--memory-limit refuses in time what is too large";
+  }
+  const auto* const failure = dynamic_cast<const std::system_error*>(&error);
+  if (failure != nullptr && failure->code() == std::errc::resource_unavailable_try_again) {
+    return "no more threads or processes can be started; allowed: fewer of them (solver.threads, --jobs), or "
+           "a "
+           "higher limit (ulimit -u, ulimit -v)";
+  }
+  return error.what();
 }
 
 void hold_standard_streams() {

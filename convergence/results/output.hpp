@@ -1,5 +1,6 @@
 #pragma once
 
+#include <exception>
 #include <string>
 #include <string_view>
 
@@ -14,9 +15,16 @@ void require_output(const std::string& option, const std::string& path);
 /// Throws InputError naming option and path where it cannot be written.
 void write_option_file(const std::string& option, const std::string& path, const std::string& text);
 
+/// What an exception says; of memory, threads and processes that ran out also what to do.
+std::string failure_text(const std::exception& error);
+
 /// Makes the numbers of standard input, output and error those of no other file where they are closed: what
 /// is written to a closed standard output fails. To be called first.
 void hold_standard_streams();
+
+/// A text for people: printable, and without commands to a CI server, such as ::error or ##vso[, which names
+/// and reasons in it might hold: their first character is \xNN.
+std::string plain_text(std::string_view text);
 
 /// Throws InputError where the text cannot be written, with the system's reason.
 void write_standard_output(std::string_view text);

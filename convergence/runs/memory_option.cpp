@@ -11,6 +11,10 @@ void MemoryOption::add_to(CLI::App& command) {
                   "most memory that solving may take, e.g. 500MB, 4GiB, or bytes: what would take more is "
                   "refused; left out: what the machine has left")
       ->transform(CLI::AsSizeValue(kThousands).description(""))
+      ->transform([](std::string size) {  // called first
+        if (size.starts_with('-')) throw CLI::ValidationError("allowed: bytes above zero, as 500MB or 4GiB");
+        return size;
+      })
       ->type_name("SIZE");
 }
 

@@ -16,6 +16,7 @@
 #include <thread>
 #include <utility>
 
+#include "convergence/results/output.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/progress.hpp"
 #include "convergence/runs/result_cache.hpp"
@@ -148,7 +149,7 @@ class Batch {
   Json result_of(const PreparedRun& run, std::string failure) const {
     if (std::optional<Json> found = find(cache_, run)) return *std::move(found);
     if (failure.empty()) failure = "its result is not on disk";
-    std::cerr << fmt::format("slipstick: {}: {}\n", run_text(run.spec), failure);
+    std::cerr << plain_text(fmt::format("slipstick: {}: {}\n", run_text(run.spec), failure));
     return not_computed("failed", failure, run.spec);
   }
 

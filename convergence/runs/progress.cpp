@@ -5,6 +5,8 @@
 
 #include <iostream>
 
+#include "convergence/results/output.hpp"
+
 namespace slipstick::convergence {
 
 void Progress::finished(const std::string& label, double weight) {
@@ -18,7 +20,7 @@ void Progress::finished(const std::string& label, double weight) {
   said_ = now;
   const double seconds = std::chrono::duration<double>(now - start_).count();
   std::cerr << fmt::format("{}[{}/{}] {}, about {:.0f} s left{}", terminal ? "\r\033[K" : "", done_, total_,
-                           label, spent_ > 0.0 ? seconds / spent_ * left_ : 0.0,
+                           plain_text(label), spent_ > 0.0 ? seconds / spent_ * left_ : 0.0,
                            terminal && !last ? "" : "\n");
 }
 

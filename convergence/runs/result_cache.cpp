@@ -6,9 +6,11 @@
 #include <fstream>
 #include <ios>
 #include <nlohmann/json.hpp>
+#include <random>
 #include <utility>
 #include <vector>
 
+#include "convergence/results/json_text.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
 #include "solver/input/whole_file.hpp"
@@ -22,11 +24,11 @@ namespace fs = std::filesystem;
 constexpr std::uint64_t kPrime = 1099511628211ULL;
 
 /// The bytes of a regular file, if there is one.
-std::optional<std::string> bytes_of(const fs::path& file, std::uintmax_t largest) {
+std::optional<std::string> bytes_of(const fs::path& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return std::nullopt;
   try {
-    return solver::read_input_file(file, largest, "a regular file");
+    return solver::read_input_file(file, solver::kLargestTable, "a regular file");
   } catch (const solver::InputError&) {
     return std::nullopt;
   }
@@ -96,7 +98,7 @@ std::string program_identity(const fs::path& program) {
 void write_json_file(const fs::path& file, const Json& json) {
   // Names of files need not be UTF-8; JSON is.
   const std::string content = json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
-  if (bytes_of(file, solver::kLargestTable) != content) solver::write_whole_file(file, content);
+  if (bytes_of(file) != content) solver::write_whole_file(file, content);
 }
 
 ResultCache::ResultCache(fs::path folder, const fs::path& program)
@@ -113,8 +115,7 @@ ResultCache ResultCache::in(fs::path folder) const {
 
 std::optional<Json> ResultCache::find(const std::string& name, const std::string& cache_key,
                                       const fs::path& beside) const {
-  const auto bytes = bytes_of(file(name), solver::kLargestJson);
-  Json found = bytes ? Json::parse(*bytes, nullptr, false) : Json();
+  Json found = find_json(file(name));
   if (!found.is_object() || !found.contains("result") || !found["result"].is_object()) return std::nullopt;
   if (text_of(found) != text_of(entry(program_, cache_key, found["result"], beside))) return std::nullopt;
   return std::move(found["result"]);
@@ -124,6 +125,9 @@ void ResultCache::keep(const std::string& name, const std::string& cache_key, co
                        const fs::path& beside) const {
   std::error_code stays;  // the folder is the cache's own: a link or a pipe in a result's place is damage
   if (!fs::is_regular_file(fs::symlink_status(file(name), stays))) fs::remove(file(name), stays);
+  if (fs::is_directory(file(name), stays)) {  // with something in it, which may be somebody's
+    fs::rename(file(name), file(name) += fmt::format(".aside-{:08x}", std::random_device{}()), stays);
+  }
   write_json_file(file(name), entry(program_, cache_key, result, beside));
 }
 

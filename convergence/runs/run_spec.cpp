@@ -1,10 +1,10 @@
 #include "convergence/runs/run_spec.hpp"
 
 #include <fmt/core.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 
+#include "convergence/results/markup.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "solver/input/input_file.hpp"
 
@@ -21,12 +21,6 @@ std::string cache_key(const RunSpec& spec, const solver::Scene& scene) {
   return text;
 }
 
-/// As a file of JSON gives it back: tables and names of files may hold any bytes.
-std::string as_utf8(const std::string& bytes) {
-  const nlohmann::json text = bytes;
-  return nlohmann::json::parse(text.dump(-1, ' ', false, nlohmann::json::error_handler_t::replace));
-}
-
 }  // namespace
 
 PreparedRun prepare_run(const RunSpec& spec) {
@@ -35,7 +29,7 @@ PreparedRun prepare_run(const RunSpec& spec) {
                   .cache_key = {},
                   .name = {}};
   const std::string answer_depends_on = cache_key(spec, run.scene);
-  run.cache_key = as_utf8(answer_depends_on);
+  run.cache_key = as_utf8(answer_depends_on);  // as a file of JSON gives it back
   run.name = fmt::format("{}-{:016x}", spec.scene.stem().string(), checksum(answer_depends_on));
   return run;
 }

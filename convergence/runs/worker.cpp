@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "convergence/results/output.hpp"
 #include "convergence/results/result.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/result_cache.hpp"
@@ -128,7 +129,7 @@ int serve_runs(const fs::path& folder, std::optional<double> memory_limit) {
     } catch (const solver::OutOfMemory&) {
       throw;
     } catch (const solver::InputError& error) {  // of the scene it is part of the result
-      std::cerr << fmt::format("slipstick: {}\n", error.what());
+      std::cerr << plain_text(fmt::format("slipstick: {}\n", error.what()));
       return kNotKept;
     }
     std::cout << kFinished << std::flush;

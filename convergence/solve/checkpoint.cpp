@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "convergence/programs/run_program.hpp"
+#include "convergence/results/json_text.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "solver/history_state.hpp"
 #include "solver/input/dataset_reader.hpp"
@@ -121,10 +122,9 @@ Checkpoint::Checkpoint(std::filesystem::path file, const PreparedRun& run)
 std::shared_ptr<const FinishedSteps> Checkpoint::read() const {
   if (!std::filesystem::exists(file_)) return nullptr;
   const std::string text = as_text(numbers_in(file_, "history"));
-  const InputError damaged(file_.string(),
-                           "is no whole checkpoint; allowed: one that --checkpoint wrote, or "
-                           "another file, to begin at the first step");
-  const Json json = Json::parse(text, nullptr, false);
+  const std::string allowed = "one that --checkpoint wrote, or another file, to begin at the first step";
+  const InputError damaged(file_.string(), "is no whole checkpoint; allowed: " + allowed);
+  const Json json = parse_json(text, file_.string(), allowed);
   if (!json.is_object() || json.value("format", "") != kFormat) throw damaged;
   if (json.value("scene", "") != scene_) {
     throw InputError(file_.string(),

@@ -115,8 +115,8 @@ std::shared_ptr<const FinishedSteps> finished_in(const Checkpoint& checkpoint, c
   }
   std::shared_ptr<const FinishedSteps> finished = checkpoint.read();
   if (finished && solver::Ranks::first()) {
-    std::cerr << fmt::format("slipstick: goes on after step {}, from {}\n", finished->state->finished,
-                             request.checkpoint);
+    std::cerr << plain_text(fmt::format("slipstick: goes on after step {}, from {}\n",
+                                        finished->state->finished, request.checkpoint));
   }
   return finished;
 }

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include "solver/input/input_file.hpp"
+
 namespace slipstick::solver {
 namespace {
 
@@ -17,25 +19,16 @@ std::string cut(const std::string& text, std::size_t most) {
   return text.substr(0, most) + "...";
 }
 
-/// What a file says must not steer the terminal that shows it.
-std::string harmless(const std::string& text) {
-  constexpr char kDelete = 0x7f;
-  std::string printable;
-  for (const char c : text) {
-    const bool steers = (static_cast<unsigned char>(c) < ' ' && c != '\n' && c != '\t') || c == kDelete;
-    printable += steers ? fmt::format("\\x{:02x}", static_cast<unsigned char>(c)) : std::string(1, c);
-  }
-  return printable;
-}
-
 }  // namespace
 
 InputError::InputError(const std::string& file, const std::string& key, const std::string& value,
                        const std::string& allowed)
-    : std::invalid_argument(fmt::format("{}: {} = {}: allowed: {}", file, harmless(cut(key, kMaxShown)),
-                                        harmless(cut(value, kMaxShown)), allowed)) {}
+    : std::invalid_argument(fmt::format("{}: {} = {}: allowed: {}", printable(cut(file, kMaxComplaint)),
+                                        printable(cut(key, kMaxShown)), printable(cut(value, kMaxShown)),
+                                        allowed)) {}
 
 InputError::InputError(const std::string& file, const std::string& complaint)
-    : std::invalid_argument(fmt::format("{}: {}", file, harmless(cut(complaint, kMaxComplaint)))) {}
+    : std::invalid_argument(fmt::format("{}: {}", printable(cut(file, kMaxComplaint)),
+                                        printable(cut(complaint, kMaxComplaint)))) {}
 
 }  // namespace slipstick::solver

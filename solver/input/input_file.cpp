@@ -92,6 +92,22 @@ bool lies_within(const std::filesystem::path& file, const std::filesystem::path&
                        std::prev(around.end());
 }
 
+std::string printable(std::string_view text) {
+  constexpr unsigned char kDelete = 0x7f;
+  constexpr unsigned char kUpper = 0xc2;  // before 0x80 to 0x9f in UTF-8: control characters as well
+  std::string printable;
+  unsigned char before = 0;
+  for (const char each : text) {
+    const auto c = static_cast<unsigned char>(each);
+    const bool steers =
+        (c < ' ' && c != '\n' && c != '\t') || c == kDelete || (before == kUpper && c >= 0x80 && c < 0xa0);
+    if (steers && before == kUpper) printable.pop_back();
+    printable += steers ? fmt::format("\\x{:02x}", c) : std::string(1, each);
+    before = c;
+  }
+  return printable;
+}
+
 std::string shown(std::string_view text) {
   std::string printable;
   for (const char c : text.substr(0, kMaxShown)) {

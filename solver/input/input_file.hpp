@@ -29,6 +29,10 @@ std::string read_input_file(const std::filesystem::path& file, std::uintmax_t la
 /// Whether a file lies in a folder or below, or would; links are followed.
 bool lies_within(const std::filesystem::path& file, const std::filesystem::path& folder);
 
+/// A text that does not steer the terminal which shows it: control characters other than tab and end of line
+/// as \xNN.
+std::string printable(std::string_view text);
+
 /// What a file says, as a message shows it: its beginning, bytes other than printable ASCII as \xNN.
 std::string shown(std::string_view text);
 

@@ -12,6 +12,7 @@
 #include <exception>
 #include <fstream>
 #include <stdexcept>
+#include <system_error>
 
 #ifdef __linux__
 #include <sys/prctl.h>
@@ -83,16 +84,22 @@ std::string receive(int from, std::size_t largest) {
 
 std::string run_apart(const std::function<void(const Send&)>& work, std::size_t largest) {
   std::array<int, 2> ends{};
-  if (pipe2(ends.data(), O_CLOEXEC) != 0) return {};
+  const auto fail = [] {
+    throw std::system_error(errno, std::generic_category(), "no process to read with");
+  };
+  if (pipe2(ends.data(), O_CLOEXEC) != 0) fail();
   const pid_t child = fork();
   if (child == 0) {
     close(ends[0]);
     be_apart(work, ends[1]);
   }
+  const int error = errno;
   close(ends[1]);
   std::string bytes = child > 0 ? receive(ends[0], largest) : "";
   close(ends[0]);
-  while (child > 0 && waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
+  errno = error;
+  if (child < 0) fail();
+  while (waitpid(child, nullptr, 0) < 0 && errno == EINTR) {
   }
   return bytes;
 }

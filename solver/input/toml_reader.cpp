@@ -5,6 +5,8 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
+#include <cctype>
+#include <cstring>
 #include <map>
 #include <sstream>
 #include <stdexcept>
@@ -20,62 +22,63 @@ namespace {
 constexpr std::size_t kMisspelling = 3;
 /// Parts of a dotted key. No key that is read has more than five; keys nest 256 deep at most.
 constexpr std::size_t kMaxKeyParts = 32;
+constexpr const char* kLongKey = "a key of more than 32 parts; allowed: 32";
 
-/// Tables in tables end one another recursively: keys of a million parts would overrun the stack. What counts
-/// are words with dots between, wherever they stand (quoted ones may hold blanks), those of the tables in
-/// braces around them among them.
-void require_short_keys(const std::string& text, const std::string& file) {
-  std::size_t line = 1;
+/// Where the string or comment that begins at a place ends: the place behind it; the place itself where none
+/// begins there.
+std::size_t end_of_words(const std::string& text, std::size_t at) {
+  const char quote = text[at];
+  if (quote == '#') return std::min(text.find('\n', at), text.size());
+  if (quote != '"' && quote != '\'') return at;
+  const std::string lines(3, quote);
+  const std::string end = text.compare(at, 3, lines) == 0 ? lines : std::string(1, quote);
+  for (std::size_t i = at + end.size(); i < text.size(); ++i) {
+    if (quote == '"' && text[i] == '\\') {
+      ++i;
+    } else if (text.compare(i, end.size(), end) == 0) {
+      i += end.size();  // behind three quotes two more may stand, which belong to the string
+      return end == lines ? std::min(text.find_first_not_of(quote, i), i + 2) : i;
+    }
+  }
+  return text.size();
+}
+
+/// Tables in tables end one another recursively: keys of a million parts would overrun the stack. Parts are
+/// counted by the dots between them, outside of strings; those of the tables in braces around a key add up.
+/// Returns the line of the first key that is too long; 0: there is none.
+std::ptrdiff_t line_of_long_key(const std::string& text) {
+  struct Table {
+    std::size_t around = 0;  ///< parts of the keys in front of all open braces
+    std::size_t key = 1;     ///< of its key before the last '='
+  };
+  std::vector<Table> tables(1);
   std::size_t parts = 1;
-  std::size_t around = 0;           // parts of the keys of all open braces
-  std::vector<std::size_t> braces;  // and of each
-  std::size_t of_value = 1;         // parts of the key before the last '='
-  char last = '\n';                 // that is no blank
-  bool after_dot = false;
-  bool after_blank = false;
-  bool quoted = false;
-  for (const char c : text) {
-    if (c == '\n') ++line;
-    if (c == ' ' || c == '\t') {
-      after_blank = true;
+  for (std::size_t i = 0; i < text.size(); ++i) {
+    const std::size_t behind = end_of_words(text, i);
+    if (behind > i) {
+      i = behind - 1;
       continue;
     }
-    if (c == '{' && std::string_view("=,[").find(last) != std::string_view::npos) {
-      braces.push_back(last == '=' ? of_value : 1);
-      around += braces.back();
-    } else if (c == '}' && !braces.empty()) {
-      around -= braces.back();
-      braces.pop_back();
-    } else if (c == '\n') {
-      braces.clear();
-      around = 0;
+    const char c = text[i];
+    if (c == '.') ++parts;
+    if (c == '=') tables.back().key = parts;
+    if (c == '{') tables.push_back({.around = tables.back().around + tables.back().key});
+    if (c == '}' && tables.size() > 1) tables.pop_back();
+    const bool in_key =
+        std::isalnum(static_cast<unsigned char>(c)) != 0 || std::strchr("._- \t", c) != nullptr;
+    if (!in_key) parts = 1;
+    if (tables.back().around + parts > kMaxKeyParts) {
+      return 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
     }
-    last = c;
-    const bool other_word = after_blank && !after_dot && !quoted && c != '.';
-    after_blank = false;
-    if (other_word || c == '\n' || c == '=' || c == ',') {
-      if (c == '=') of_value = parts;
-      parts = 1;
-      after_dot = quoted = false;
-    } else if (c == '.') {
-      after_dot = true;
-    } else if (after_dot) {
-      after_dot = false;
-      ++parts;
-    }
-    if (around + parts > kMaxKeyParts) {
-      throw InputError(fmt::format("{}:{}", file, line),
-                       fmt::format("a key of more than {0} parts; allowed: {0}", kMaxKeyParts));
-    }
-    quoted = quoted || c == '"' || c == '\'';
   }
+  return 0;
 }
 
 toml::table parse(const std::string& text, const std::string& file) {
   if (text.find('\0') != std::string::npos) {
     throw InputError(file, "is a binary file; allowed: a TOML file");
   }
-  require_short_keys(text, file);
+  if (const auto line = line_of_long_key(text)) throw InputError(fmt::format("{}:{}", file, line), kLongKey);
   try {
     return toml::parse(text, file);
   } catch (const toml::parse_error& error) {
@@ -185,9 +188,11 @@ void SceneReader::apply_override(const std::string& assignment) {
   if (equals == std::string::npos || equals == 0) throw InputError(source, "allowed: key=value");
   const std::string key = assignment.substr(0, equals);
   const std::string value = assignment.substr(equals + 1);
+  const std::string settings = fmt::format("value = {}", value);
+  if (line_of_long_key(settings) != 0) throw InputError(source, kLongKey);
   toml::table parsed;
   try {
-    parsed = toml::parse(fmt::format("value = {}", value));
+    parsed = toml::parse(settings);
   } catch (const toml::parse_error&) {  // a bare word is a string
     parsed = toml::table{{"value", value}};
   }
@@ -197,7 +202,7 @@ void SceneReader::apply_override(const std::string& assignment) {
   std::vector<std::string> parts;
   while (std::getline(path, part, '.')) parts.push_back(part);
   if (parts.empty() || parts.size() > kMaxKeyParts) {
-    throw InputError(source, fmt::format("allowed: a key of 1 to {} parts", kMaxKeyParts));
+    throw InputError(source, "allowed: a key of 1 to 32 parts");
   }
   for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
     table = table_below(*table, parts[i]);

@@ -47,17 +47,6 @@ std::string stem_of_drafts(const fs::path& file) {
   return file.filename().string().substr(0, kLongestStem) + std::string(kDraft);
 }
 
-/// Where the links of a name lead; those of the system, such as /dev/stdout, are left alone: they are no
-/// names.
-fs::path behind_links(fs::path file) {
-  std::error_code error;
-  for (int link = 0; link < kMaxLinks && fs::is_symlink(fs::symlink_status(file, error)); ++link) {
-    if (fs::canonical(folder_of(file), error).string().starts_with("/proc/")) return file;
-    file = folder_of(file) / fs::read_symlink(file, error);
-  }
-  return file;
-}
-
 bool is_draft(const std::string& name, const std::string& stem) {
   return name.starts_with(stem) && name.size() == stem.size() + kDigits &&
          name.find_first_not_of("0123456789abcdef", stem.size()) == std::string::npos;
@@ -165,6 +154,15 @@ void write_plain(const fs::path& file, const struct stat* before,
 }
 
 }  // namespace
+
+fs::path behind_links(fs::path file) {
+  std::error_code error;
+  for (int link = 0; link < kMaxLinks && fs::is_symlink(fs::symlink_status(file, error)); ++link) {
+    if (fs::canonical(folder_of(file), error).string().starts_with("/proc/")) return file;
+    file = folder_of(file) / fs::read_symlink(file, error);
+  }
+  return file;
+}
 
 std::string why_not_written(int error) {
   std::string_view advice = "name another place";

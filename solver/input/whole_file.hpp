@@ -17,6 +17,10 @@ namespace slipstick::solver {
 void write_whole_file(const std::filesystem::path& file, const std::function<void(std::FILE*)>& write);
 void write_whole_file(const std::filesystem::path& file, std::string_view content);
 
+/// Where the links of a name lead; those of the system, such as /dev/stdout, are left alone: they are no
+/// names.
+std::filesystem::path behind_links(std::filesystem::path file);
+
 /// Makes a folder and those above it. Throws as above.
 void make_folder(const std::filesystem::path& folder);
 

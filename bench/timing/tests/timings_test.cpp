@@ -171,8 +171,8 @@ TEST(Timings, NamesMayHoldWhatLooksLikeNoNumber) {
 TEST(Timings, WhatIsNoSuchFileIsRefusedByName) {
   EXPECT_THAT(complaint("hello"), AllOf(HasSubstr("file.json"), HasSubstr("Google Benchmark")));
   const std::string whole = kFile;
-  EXPECT_THAT(complaint(whole.substr(0, whole.size() / 2)), HasSubstr("no whole JSON"));
-  EXPECT_THAT(complaint(""), HasSubstr("no whole JSON"));
+  EXPECT_THAT(complaint(whole.substr(0, whole.size() / 2)), HasSubstr("is not JSON"));
+  EXPECT_THAT(complaint(""), HasSubstr("is not JSON"));
   for (const char* other : {"{}", "[]", "3", R"({"benchmarks": []})", R"({"context": [], "benchmarks": []})",
                             R"({"context": {}, "benchmarks": {}})"}) {
     EXPECT_THAT(complaint(other), HasSubstr("no context and benchmarks")) << other;

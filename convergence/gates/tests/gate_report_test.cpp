@@ -68,7 +68,7 @@ TEST_F(GateJunit, IsReadBackByAParser) {
   EXPECT_THAT(seen,
               HasSubstr("failure {'message': 'x is 4, must be below 1 in size: 4 times the bound', 'type': "
                         "'failed'}"));
-  EXPECT_THAT(seen, HasSubstr("error {'message': 'no\\nsuch  scene <here>', 'type': 'refused'}"));
+  EXPECT_THAT(seen, HasSubstr("error {'message': 'no\\nsuch \\\\x01 scene <here>', 'type': 'refused'}"));
   EXPECT_THAT(
       seen, HasSubstr("skipped {'message': 'reported: x is 3, must be below 1 in size: 3 times the bound'}"));
   EXPECT_THAT(seen, HasSubstr("likely to blame: discretisation"));

@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 #include <hdf5.h>
 #include <hdf5_hl.h>
-#include <sys/stat.h>
-#include <unistd.h>
 
 #include <csignal>
 #include <filesystem>
@@ -31,15 +29,6 @@ using testing::HasSubstr;
 
 class BrokenInput : public SceneFile {
  protected:
-  fs::path fifo() const {
-    const fs::path file = folder_ / "fifo";
-    EXPECT_EQ(mkfifo(file.c_str(), 0600), 0);
-    return file;
-  }
-  std::string read_field(const std::string& text) const {
-    const fs::path file = write("field.csv", text);
-    return complaint([&] { read_columns(file, {"x1", "q1"}); });
-  }
   /// A file of one dataset "height" of whole numbers.
   fs::path dataset(const std::vector<hsize_t>& size, hsize_t chunk = 0) const {
     fs::path file = folder_ / "file.h5";
@@ -57,41 +46,6 @@ class BrokenInput : public SceneFile {
   }
 };
 
-TEST_F(BrokenInput, OnlyRegularFilesOfAReasonableSizeAreRead) {
-  const auto says = [](const fs::path& file) {
-    return complaint([&] { read_input_file(file, 1000, "a letter"); });
-  };
-  EXPECT_THAT(says("/dev/zero"), AllOf(HasSubstr("/dev/zero"), HasSubstr("a device"), HasSubstr("a letter")));
-  EXPECT_THAT(says(fifo()), AllOf(HasSubstr("fifo"), HasSubstr("a pipe")));
-  EXPECT_THAT(says(folder_), HasSubstr("cannot be read: it is a folder; allowed: a letter"));
-  EXPECT_THAT(says(folder_ / "none"), AllOf(HasSubstr("none: cannot be read"), HasSubstr("No such file")));
-  EXPECT_THAT(says(write("long", std::string(1001, 'a'))), HasSubstr("long: is larger than"));
-  EXPECT_EQ(read_input_file(write("fits", std::string(1000, 'a')), 1000, "a letter").size(), 1000U);
-}
-
-TEST_F(BrokenInput, TablesSayWhatIsWrongWithThem) {
-  EXPECT_THAT(read_field(""), HasSubstr("field.csv: has no column x1; its columns: none"));
-  EXPECT_THAT(read_field("x1,q1\n"), HasSubstr("holds no rows"));
-  EXPECT_THAT(read_field("x1,q1,x1\n1,2,3\n"), HasSubstr("two columns x1"));
-  EXPECT_THAT(read_field("x1,q1\n1,1e400\n"), AllOf(HasSubstr("field.csv:2"), HasSubstr("1e400")));
-  EXPECT_THAT(read_field("x1,q1\n1,2\n1,inf\n"), AllOf(HasSubstr("field.csv:3"), HasSubstr("inf")));
-  EXPECT_THAT(read_field(std::string("x1,q1\n1,2\0003\n", 13)),
-              AllOf(HasSubstr("field.csv:2"), HasSubstr("\\x00")));
-  EXPECT_THAT(read_field("x1,q1\n1,2,3\n"),
-              AllOf(HasSubstr("field.csv:2"), HasSubstr("3 values; allowed: 2")));
-  EXPECT_THAT(read_field("\xFF\xFEx\0001"), AllOf(HasSubstr("no column x1"), HasSubstr("\\xff\\xfe")));
-  EXPECT_THAT(read_field("x1,q1\n" + std::string(100'000, ',')),
-              HasSubstr("field.csv:2: more than 65536 values"));
-}
-
-TEST_F(BrokenInput, MessagesAreShortHoweverLongTheFileIs) {
-  const std::string endless(3'000'000, 'a');
-  EXPECT_LT(read_field(endless).size(), 3000U);
-  EXPECT_LT(read_field("x1,q1\n1," + endless).size(), 3000U);
-  EXPECT_LT(complaint([&] { read("name = \"n\"\n[upper]\nshape = \"" + endless + "\"\n"); }).size(), 3000U);
-  EXPECT_LT(complaint([&] { read(endless + " = 1\n" + kShortScene); }).size(), 3000U);
-}
-
 TEST_F(BrokenInput, MarksAndEndingsOfOtherSystemsDoNotMatter) {
   const auto columns =
       read_columns(write("field.csv", "\xEF\xBB\xBFq1,other,x1\r\n3,word,1\r\n\r\n4,,2\r\n"), {"x1", "q1"});
@@ -99,43 +53,11 @@ TEST_F(BrokenInput, MarksAndEndingsOfOtherSystemsDoNotMatter) {
   EXPECT_EQ(columns[1].values[0], 3.0);
 }
 
-TEST_F(BrokenInput, KeysAreNotEndless) {
-  std::string key = "a";
-  for (int i = 0; i < 32; ++i) key += " . \"a b\"";
-  const auto is_refused = HasSubstr("parts");
-  EXPECT_THAT(complaint([&] { read(key + " = 1\n" + kShortScene); }),
-              AllOf(is_refused, HasSubstr("scene.toml:1")));
-  EXPECT_THAT(complaint([&] { read(kShortScene + ("\n[" + key + "]\n")); }), is_refused);
-  EXPECT_THAT(complaint([&] { read(kShortScene, {key + "=1"}); }), is_refused);
-  std::string numbers = "# " + std::string(5000, '.');
-  for (int i = 0; i < 100; ++i) numbers += " 0.5";
-  EXPECT_EQ(read(numbers + "\n" + kShortScene).friction, 0.1);
-  std::string nested = "a.a.a.a.a.a.a.a = ";
-  for (int i = 0; i < 250; ++i) nested += "{ a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a.a = ";
-  nested += "1" + std::string(250, '}') + "\n";
-  EXPECT_THAT(complaint([&] { read(nested + kShortScene); }), AllOf(is_refused, HasSubstr("scene.toml:1")));
-  const std::string braces = "# {{{{{{{{{{{{{{{{{{{{{{{{{{{{{{{{{{{{{{{{{{{{{{ a = {\n";
-  EXPECT_EQ(read(braces + braces + kShortScene).friction, 0.1);
-}
-
 TEST_F(BrokenInput, WholeNumbersThatNoDoubleHoldsAreNumbersToo) {
   const Scene scene = read(kShortScene, {"load.normal=9223372036854775807"});
   EXPECT_EQ(scene.steps[0].normal, 0x1p63);
   EXPECT_THAT(complaint([&] { read(kShortScene, {"grid.cells=[9223372036854775807, 8]"}); }),
               HasSubstr("grid.cells"));
-}
-
-TEST_F(BrokenInput, HistoriesAndListsOfShapesHaveAnEnd) {
-  std::string steps = kShortScene;
-  for (int i = 0; i < 100'001; ++i) steps += "[[step]]\n";
-  EXPECT_THAT(complaint([&] { read(steps); }),
-              AllOf(HasSubstr("step = 100001 tables"), HasSubstr("at most 100000")));
-  EXPECT_THAT(complaint([&] { read(kShortScene, {"cycles=100001"}); }), HasSubstr("cycles = 100001"));
-  std::string shapes = kShortScene;
-  shapes.replace(shapes.find("shape ="), shapes.find("young") - shapes.find("shape ="), "");
-  for (int i = 0; i < 1001; ++i) shapes += "[[upper.shape]]\nshape = \"sphere\"\nradius = 1\n";
-  EXPECT_THAT(complaint([&] { read(shapes); }),
-              HasSubstr("upper.shape = 1001 tables: allowed: at most 1000"));
 }
 
 TEST_F(BrokenInput, DatasetsAreLookedAtBeforeMemoryIsTaken) {
