@@ -142,7 +142,7 @@ TEST(ExactProfiles, AgreeWhereOneIsAnother) {
 
 /// Hertz's pressure in a file, closer and closer towards the edge.
 std::string hertz_table(int points) {
-  const std::string file = ::testing::TempDir() + fmt::format("hertz_pressure_{}_{}.csv", points, ::getpid());
+  const std::string file = ::testing::TempDir() + fmt::format("hertz_pressure_{}.csv", points);
   std::ofstream table(file);
   table << "radius,pressure\n";
   for (int i = 0; i < points; ++i) {

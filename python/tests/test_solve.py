@@ -2,8 +2,12 @@
 import copy
 import gc
 import json
+import multiprocessing
 import os
+import pickle
 import signal
+import subprocess
+import sys
 import tempfile
 import threading
 import time
@@ -16,6 +20,54 @@ from unittest import mock
 import numpy as np
 import slipstick
 from scenes import SPHERE
+
+
+def solved_at(load):
+    return slipstick.solve(SPHERE, load__normal=load)
+
+
+AT_EXIT = """
+import atexit, slipstick
+from scenes import SPHERE
+atexit.register(lambda: print(solution.fields["pressure"].sum() * solution.cell_size[0] * solution.cell_size[1], traction.max()))
+solution = slipstick.solve(SPHERE)
+traction = solution.fields["q1"]
+"""
+
+
+class CopyTest(unittest.TestCase):
+    """A solution outlives the one that it was copied from, and its process."""
+
+    def test_copies_carry_their_values(self):
+        for how in (copy.copy, copy.deepcopy, lambda solution: pickle.loads(pickle.dumps(solution))):
+            solution = solved_at(900.0)
+            said = solution.to_dict(), solution.text, solution.message
+            fields = {name: field.copy() for name, field in solution.fields.items()}
+            copied = how(solution)
+            del solution
+            gc.collect()
+            others = [solved_at(700.0 + i) for i in range(3)]  # would reuse the memory
+            self.assertEqual((copied.to_dict(), copied.text, copied.message), said)
+            self.assertEqual(list(copied.fields), list(fields))
+            for name, field in fields.items():
+                np.testing.assert_array_equal(copied.fields[name], field)
+            self.assertEqual(len(others), 3)
+
+    def test_a_pool_returns_each_its_own(self):
+        loads = [500.0, 700.0, 900.0]
+        with multiprocessing.get_context("spawn").Pool(2) as pool:
+            for load, solution in zip(loads, pool.map(solved_at, loads), strict=True):
+                self.assertAlmostEqual(solution.fields["pressure"].sum() * np.prod(solution.cell_size), load, places=6)
+                with self.assertRaisesRegex(slipstick.InputError, "in its process"):
+                    solution.write("fields.csv")
+
+    def test_a_reader_at_exit_finds_it(self):
+        environment = os.environ | {"PYTHONPATH": os.pathsep.join([os.environ["PYTHONPATH"], str(Path(__file__).parent)])}
+        end = subprocess.run([sys.executable, "-B", "-c", AT_EXIT], capture_output=True, text=True, env=environment)
+        self.assertEqual((end.returncode, end.stderr), (0, ""))
+        load, traction = map(float, end.stdout.split())
+        self.assertAlmostEqual(load, 1000.0, places=6)
+        self.assertGreater(traction, 0)
 
 
 class SolveTest(unittest.TestCase):
@@ -199,12 +251,16 @@ class ProgressTest(unittest.TestCase):
         scene = {name: part for name, part in SPHERE.items() if name != "load"}
         scene["step"] = [{"normal": 1000.0, "moment_ratio": 0.8}, {"moment_ratio": -0.8}]
         scene["cycles"] = 2000
-        timer = threading.Timer(0.2, os.kill, (os.getpid(), signal.SIGINT))
-        timer.start()
-        start = time.monotonic()
+        before = signal.getsignal(signal.SIGINT)
+
+        def strike():
+            while signal.getsignal(signal.SIGINT) is before:  # until the solve has it
+                time.sleep(0.01)
+            os.kill(os.getpid(), signal.SIGINT)
+
+        threading.Thread(target=strike).start()
         with self.assertRaises(KeyboardInterrupt):
             slipstick.solve(scene)
-        print(f"ended after {time.monotonic() - start:.2f} s")
 
     def test_threads(self):
         loads = [0.1 * i for i in range(1, 9)]
