@@ -20,11 +20,50 @@ from unittest import mock
 import numpy as np
 import slipstick
 from scenes import SPHERE
+from slipstick._scene import toml_text
 
 
 def solved_at(load):
     return slipstick.solve(SPHERE, load__normal=load)
 
+
+# By ctypes alone: NumPy is not for trapped exceptions. Exact states at their ends, and solves on one thread and on two.
+TRAPPED = """
+import ctypes, sys
+library, libm = ctypes.CDLL(sys.argv[1]), ctypes.CDLL("libm.so.6")
+numbers = (ctypes.c_double * 5)(0, 1e-9, 0.3, 0.999, 1)
+results = (ctypes.c_double * 5)()
+traps = 1 | 4 | 8  # invalid, division by zero, overflow on x86
+assert libm.feenableexcept(traps) >= 0
+for profile in (b"hertz", b"cone", b"flat_punch", b"power:1.5", b"rounded_punch:0.5"):
+    for given in range(5):
+        for i in range(5):
+            number = ctypes.byref(numbers, 8 * i)
+            library.slipstick_exact(profile, given, ctypes.c_size_t(1), number, 4, ctypes.byref(results, 8 * i))
+for threads in (b"solver.threads=1", b"solver.threads=2"):
+    solution = ctypes.c_void_p()
+    assert library.slipstick_solve(sys.argv[2].encode(), None, ctypes.c_size_t(1), (ctypes.c_char_p * 1)(threads),
+                                   ctypes.c_double(0), None, None, ctypes.byref(solution)) == 0
+    library.slipstick_solution_free(solution)
+assert libm.fegetexcept() & 0x3f == traps, "the caller's traps are as they were"
+"""
+
+# A size that no other solve has planned.
+SEEDED = """
+import slipstick, sys
+from scenes import SPHERE
+
+def stop(iteration, change):
+    raise ZeroDivisionError
+
+scene = SPHERE | {"grid": {"cells": [44, 44]}}
+if len(sys.argv) > 1:
+    try:
+        slipstick.solve(scene, solver__rounding_seed=1, progress=stop, solver__model="full")
+    except ZeroDivisionError:
+        print("failed", file=sys.stderr)
+print(slipstick.solve(scene, solver__model="full").fields["q1"].tobytes().hex())
+"""
 
 AT_EXIT = """
 import atexit, slipstick
@@ -33,6 +72,56 @@ atexit.register(lambda: print(solution.fields["pressure"].sum() * solution.cell_
 solution = slipstick.solve(SPHERE)
 traction = solution.fields["q1"]
 """
+
+
+def run_script(text, *words):
+    environment = os.environ | {"PYTHONPATH": os.pathsep.join([os.environ["PYTHONPATH"], str(Path(__file__).parent)])}
+    return subprocess.run([sys.executable, "-B", "-c", text, *words], capture_output=True, text=True, env=environment)
+
+
+class ProcessTest(unittest.TestCase):
+    """What the library meets in the processes of others."""
+
+    def test_a_process_that_forks_while_threads_solve(self):
+        """Each new one solves too, to the same bits."""
+        def twist():
+            return slipstick.solve(SPHERE, grid__cells=[24, 24]).twist_angle
+
+        expected, ended = twist(), threading.Event()
+
+        def go_on():
+            while not ended.is_set():
+                twist()
+
+        threads = [threading.Thread(target=go_on) for _ in range(4)]
+        for thread in threads:
+            thread.start()
+        try:
+            for _ in range(20):
+                process = os.fork()
+                if process == 0:
+                    signal.alarm(120)  # one that waits for a lock of a thread that it does not have
+                    same = False
+                    try:
+                        same = twist() == expected and slipstick.solve(SPHERE, solver__rounding_seed=1).converged
+                    finally:
+                        os._exit(0 if same else 1)
+                self.assertEqual(os.waitpid(process, 0)[1], 0)
+        finally:
+            ended.set()
+            for thread in threads:
+                thread.join()
+
+    @unittest.skipUnless(os.uname().machine == "x86_64", "the numbers of exceptions are those of x86")
+    def test_trapped_exceptions_stay_the_callers(self):
+        end = run_script(TRAPPED, str(slipstick._library._NATIVE / "libslipstick.so"), toml_text(SPHERE))
+        self.assertEqual((end.returncode, end.stderr), (0, ""))
+
+    def test_a_failed_solve_with_a_seed_leaves_no_digit(self):
+        plain, after = run_script(SEEDED), run_script(SEEDED, "first")
+        self.assertEqual(after.stderr, "failed\n")
+        self.assertEqual(len(plain.stdout), 44 * 44 * 16 + 1)
+        self.assertEqual(after.stdout, plain.stdout)
 
 
 class CopyTest(unittest.TestCase):
@@ -62,8 +151,7 @@ class CopyTest(unittest.TestCase):
                     solution.write("fields.csv")
 
     def test_a_reader_at_exit_finds_it(self):
-        environment = os.environ | {"PYTHONPATH": os.pathsep.join([os.environ["PYTHONPATH"], str(Path(__file__).parent)])}
-        end = subprocess.run([sys.executable, "-B", "-c", AT_EXIT], capture_output=True, text=True, env=environment)
+        end = run_script(AT_EXIT)
         self.assertEqual((end.returncode, end.stderr), (0, ""))
         load, traction = map(float, end.stdout.split())
         self.assertAlmostEqual(load, 1000.0, places=6)
