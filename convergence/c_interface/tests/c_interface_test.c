@@ -249,7 +249,8 @@ static void test_solution(void) {
   slipstick_solution_free(NULL);
 }
 
-/* Cells of unequal sides, more of them along x1: x2 runs fastest, and each side is the step of its own axis. */
+/* Cells of unequal sides, more of them along x1: x2 runs fastest, and each side is the step of its own axis.
+ */
 static void test_unequal_cells(void) {
   const char* overrides[] = {"grid.cells=[48,32]", "grid.extent=[1.2e-3,1.4e-3]"};
   slipstick_solution* solution = solved(SLIPSTICK_OK, 0, 2, overrides);
