@@ -86,7 +86,7 @@ function(slipstick_tests name)
     return()
   endif()
   cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
-  add_executable(${name} ${ARG_SOURCES})
+  add_executable(${name} ${ARG_SOURCES} ${CMAKE_CURRENT_FUNCTION_LIST_DIR}/tests/temporary_folder.cpp)
   add_dependencies(tests ${name})
   target_precompile_headers(${name} REUSE_FROM slipstick_test_headers)
   # gcc 12 suspects std::string's operator+ where that comes out of a precompiled header.

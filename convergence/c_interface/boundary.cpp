@@ -23,9 +23,13 @@ const char* message() noexcept { return last_message.data(); }
 PlainNumbers::PlainNumbers() noexcept {
   static const locale_t plain = newlocale(LC_NUMERIC_MASK, "C", nullptr);
   before_ = uselocale(plain);
+  std::feholdexcept(&traps_);
 }
 
-PlainNumbers::~PlainNumbers() { uselocale(before_); }
+PlainNumbers::~PlainNumbers() {
+  std::fesetenv(&traps_);
+  uselocale(before_);
+}
 
 int status_of_exception() noexcept {
   try {

@@ -2,6 +2,7 @@
 
 #include <locale.h>
 
+#include <cfenv>
 #include <stdexcept>
 #include <string>
 
@@ -20,7 +21,8 @@ const char* message() noexcept;
 /// The status of the exception being handled, which becomes the message.
 int status_of_exception() noexcept;
 
-/// As long as it lives, the calling thread reads numbers as C writes them, whatever the caller's locale.
+/// As long as it lives, the calling thread, and those that it starts, read numbers as C writes them, whatever
+/// the caller's locale, and no floating-point exception is trapped, whatever the caller traps.
 class PlainNumbers {
  public:
   PlainNumbers() noexcept;
@@ -30,6 +32,7 @@ class PlainNumbers {
 
  private:
   locale_t before_;
+  std::fenv_t traps_{};
 };
 
 /// The status that the work returns, or that of what it throws.

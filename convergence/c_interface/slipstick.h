@@ -24,7 +24,7 @@ enum slipstick_status {
   SLIPSTICK_BAD_INPUT = 2,     /* the message names what is wrong, and what is allowed */
   SLIPSTICK_STOPPED = 3,       /* the caller's progress function asked for it */
   SLIPSTICK_NO_MEMORY = 4,
-  SLIPSTICK_FAILED = 5 /* anything else: a mistake of the library */
+  SLIPSTICK_FAILED = 5 /* threads that cannot start; anything else: a mistake of the library */
 };
 
 /* "0.1.0" */

@@ -1,5 +1,6 @@
 #include <fftw3.h>
 #include <fmt/core.h>
+#include <pthread.h>
 
 #include <chrono>
 #include <limits>
@@ -22,6 +23,10 @@
 #include "solver/input/input_error.hpp"
 #include "solver/input/toml_reader.hpp"
 #include "solver/scene/scene_keys.hpp"
+
+/// By which FFTW's threads library locks the planner; in no header.
+extern "C" void fftw_set_planner_hooks(void (*before)(), void (*after)());
+extern "C" void fftwf_set_planner_hooks(void (*before)(), void (*after)());
 
 struct slipstick_solution {
   slipstick::solver::Grid grid{};
@@ -48,11 +53,11 @@ struct Request {
 };
 
 /// Solves go side by side. Those that read or change what the process has once, HDF5's library and what FFTW
-/// remembers, go alone.
-std::shared_mutex solving;
+/// remembers, go alone. A forked process, where no other thread goes on, has a new one.
+std::shared_mutex* solving = new std::shared_mutex;
 class Turn {
  public:
-  explicit Turn(bool alone) : beside_(solving, std::defer_lock), alone_(solving, std::defer_lock) {
+  explicit Turn(bool alone) : beside_(*solving, std::defer_lock), alone_(*solving, std::defer_lock) {
     if (alone) {
       alone_.lock();
     } else {
@@ -77,12 +82,22 @@ void forget_plans_after(const Scene& scene) {
   fftwf_forget_wisdom();
 }
 
-/// Plans may be made by several threads at a time, by those of the caller too.
+/// Plans may be made by several threads at a time, by those of the caller too, and a process may fork
+/// meanwhile: the lock is our own, since FFTW's, fftw_make_planner_thread_safe(), would stay locked in a
+/// process forked while another thread held it.
+std::mutex planning;
+void begin_planning() { planning.lock(); }
+void end_planning() { planning.unlock(); }
+void be_alone() {
+  end_planning();
+  solving = new std::shared_mutex;
+}
 void share_planner() {
   static std::once_flag done;
   std::call_once(done, [] {
-    fftw_make_planner_thread_safe();
-    fftwf_make_planner_thread_safe();
+    fftw_set_planner_hooks(begin_planning, end_planning);
+    fftwf_set_planner_hooks(begin_planning, end_planning);
+    pthread_atfork(begin_planning, end_planning, be_alone);
   });
 }
 

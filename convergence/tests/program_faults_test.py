@@ -26,6 +26,16 @@ def limit_files(size):
     return limit
 
 
+def limit_memory():
+    resource.setrlimit(resource.RLIMIT_AS, (200 << 20, 200 << 20))  # 64 threads' stacks take 512 MB of it
+
+
+def limit_processes():
+    resource.setrlimit(resource.RLIMIT_NPROC, (1, 1))
+    if os.getuid() == 0:
+        os.setuid(65534)  # the limit does not hold for root
+
+
 def nobody_reads():
     reader, writer = os.pipe()
     os.close(reader)
@@ -150,6 +160,20 @@ class ProgramFaults(ProgramTest):
             self.assertTrue(complaint.startswith(f"slipstick: {name}"), complaint)
             self.assertIn("cannot be written: ", complaint)
             self.assertEqual(Path("out").read_text(), "")
+
+    def test_threads_that_cannot_start_are_said(self):
+        """And those that have started end, so that the program does."""
+        for limit in (limit_memory, limit_processes):
+            with self.subTest(limit.__name__):
+                try:
+                    runs = subprocess.run([PROGRAM, "--version"], preexec_fn=limit, capture_output=True).returncode == 0
+                except PermissionError:
+                    runs = False
+                if not runs:  # a sanitizer takes more memory; nobody may not read this folder
+                    self.skipTest("the program does not run under this limit")
+                self.ends((*SMALL, "--set", "solver.threads=1"), 0, limit)
+                complaint = self.ends((*SMALL, "--set", "solver.threads=64"), 2, limit)
+                self.assertIn("solver.threads = 64: allowed: up to ", complaint)
 
 
 if __name__ == "__main__":

@@ -11,10 +11,10 @@ import signal
 import subprocess
 import sys
 import tempfile
-import time
 import unittest
 from pathlib import Path
 
+from hold import Hold
 from kills_test import SCENE, without_times
 
 PROGRAM, GUIDE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
@@ -127,14 +127,14 @@ class ShardsTest(unittest.TestCase):
 
     def test_a_killed_shard_loses_its_current_run_alone(self):
         words = [PROGRAM, "study", "study.toml", "--shard", "1/1", "--output", "killed", "--jobs", "1"]
-        child = subprocess.Popen(words, cwd=self.folder, stderr=subprocess.DEVNULL, start_new_session=True)
-        end = time.monotonic() + PATIENCE
-        while len(self.kept("killed")) < 3 and time.monotonic() < end:
-            time.sleep(0.001)
+        hold = Hold(self.folder, "*killed/*.json", 4)
+        child = subprocess.Popen(words, cwd=self.folder, stderr=subprocess.DEVNULL, start_new_session=True,
+                                 env=hold.environment)
+        hold.process(child)
         os.killpg(child.pid, signal.SIGKILL)
         child.wait()
         before = self.kept("killed")
-        self.assertGreaterEqual(len(before), 3)
+        self.assertEqual(len(before), 3)
         self.run_program(*words[1:])
         after = self.kept("killed")
         self.assertEqual({name: after[name] for name in before}, before)

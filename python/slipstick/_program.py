@@ -1,7 +1,6 @@
 """The program that comes with the package: what judges (check, gate, study) is done by it, and its JSON is the result."""
 import json
 import os
-import signal
 import subprocess
 import sys
 import tempfile
@@ -17,11 +16,12 @@ _MESSAGE = "slipstick: "
 
 def run(command: str, *words: str | os.PathLike[str], progress: Callable[[str], object] | None = None) -> dict[str, Any]:
     """The result of a command that could judge, good or bad. progress is called with each line that says how far it is.
-    Ctrl-C ends the program too; what it finished stays where it keeps it."""
+    Ctrl-C ends the program too, and on Linux so does whatever ends this process; what it finished stays where it keeps
+    it."""
     with tempfile.TemporaryDirectory() as folder:
         output = Path(folder) / "result.json"
         process = subprocess.Popen(
-            [os.fspath(PROGRAM), command, *(os.fspath(word) for word in words), "--quiet", "--json", os.fspath(output)],
+            [os.fspath(PROGRAM), "--tied-to", str(os.getpid()), command, *(os.fspath(word) for word in words), "--quiet", "--json", os.fspath(output)],
             stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, errors="replace")
         assert process.stderr is not None
         said: list[str] = []
@@ -33,7 +33,7 @@ def run(command: str, *words: str | os.PathLike[str], progress: Callable[[str], 
                     progress(line.strip())
             code = process.wait()
         except BaseException:
-            process.send_signal(signal.SIGINT)
+            process.terminate()  # as Ctrl-C, which a shell's background job ignores
             process.wait()
             raise
         finally:

@@ -1,4 +1,5 @@
 """What the program does: it judges fields of other programs, gates and studies, and more."""
+import json
 import os
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
@@ -35,6 +36,15 @@ class Gates(Result):
     def passed(self) -> bool:
         return bool(self["exit_code"] == 0)
 
+    @property
+    def why(self) -> str:
+        """What speaks against them, a line each; empty where all hold."""
+        against = ("failed", "passed unexpectedly", "refused")
+        return "\n".join(f"{gate.id}: {gate.why}" for gate in self["gates"] if gate.outcome in against)
+
+    def __repr__(self) -> str:
+        return f"Gates(passed={self.passed}, why={self.why!r})"
+
 
 class Study(Result):
     """A study: its runs, orders of convergence and error budget."""
@@ -50,13 +60,18 @@ def _files(scene: Scene, field: Path_ | Mapping[str, npt.ArrayLike] | None = Non
             Path(name).write_text(text)
         names = [name]
         if isinstance(field, Mapping):
-            names.append(_written(field, os.path.join(folder, "field.csv")))
+            names.append(_written(field, os.path.join(folder, "field")))
         elif field is not None:
             names.append(os.fspath(field))
         yield names
 
 
 def _written(field: Mapping[str, npt.ArrayLike], file: str) -> str:
+    if not any(name in field for name in _COLUMNS):  # a loop
+        file += ".json"
+        Path(file).write_text(json.dumps({name: np.asarray(values, float).ravel().tolist() for name, values in field.items()}))
+        return file
+    file += ".csv"
     missing = [name for name in _COLUMNS if name not in field]
     if missing:
         raise InputError(f"the field has no {', '.join(missing)}; allowed: arrays {', '.join(_COLUMNS)}")
@@ -76,7 +91,8 @@ def check(scene: Scene, field: Path_ | Mapping[str, npt.ArrayLike], *, twist: fl
     """Judges tractions that any program computed for a scene: docs/guides/verify-your-solver.md explains each number.
 
     field: a file (.csv, .h5) or arrays by name: x1, x2 (m, cell centres), pressure, q1, q2 (Pa), one number a cell; the
-    fields of a Solution are such arrays. twist: rad, that the program reported. tolerance: the error that is allowed, in
+    fields of a Solution are such arrays. Or a loop, as a file or as arrays: moment (N m), rotation (rad), or force (N),
+    displacement (m), and perhaps time, normal_load. twist: rad, that the program reported. tolerance: the error that is allowed, in
     place of what the mesh leaves open. pressure_given: the pressure is not judged. discrete: good only if it solves its own grid's problem. strict: good only in the
     scene's own units and signs. overrides as of solve(). Relative paths in a scene that is no file begin nowhere: write
     them in full.

@@ -14,16 +14,34 @@ import numpy.typing as npt
 
 from . import _library
 from ._scene import Scene, assignments, text_of
-from .errors import NotConvergedWarning
+from .errors import InputError, NotConvergedWarning
 from .result import Result
 
 
 class _Handle:
-    """A solution of the library, freed with the last one that holds it."""
+    """A solution of the library, freed with the last one that holds it. In another process, or of a deep copy, there is
+    none."""
 
     def __init__(self, pointer: int) -> None:
         self.pointer = pointer
-        weakref.finalize(self, _library.function("solution_free"), pointer)
+        weakref.finalize(self, _library.function("solution_free"), pointer).atexit = False  # others may read until then
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(None), ()
+
+    def fields(self) -> "Fields":
+        cells, size = (ctypes.c_size_t * 2)(), (ctypes.c_double * 2)()
+        _library.checked(_library.function("solution_grid")(self.pointer, cells, size))
+        arrays = {}
+        while (name := _library.function("solution_field_name")(self.pointer, len(arrays))) is not None:
+            values, count = ctypes.POINTER(ctypes.c_double)(), ctypes.c_size_t()
+            _library.checked(_library.function("solution_field")(
+                self.pointer, name, _library.byref(values), _library.byref(count)))
+            memory = (ctypes.c_double * count.value).from_address(ctypes.addressof(values.contents))
+            memory.handle = self  # type: ignore[attr-defined]
+            arrays[name.decode()] = array = np.frombuffer(memoryview(memory), np.float64).reshape(cells[0], cells[1])
+            array.flags.writeable = False
+        return Fields(arrays)
 
 
 class Fields(Mapping[str, npt.NDArray[np.float64]]):
@@ -31,59 +49,47 @@ class Fields(Mapping[str, npt.NDArray[np.float64]]):
     last step), stick (1 or 0), dissipated (J/m^2), q1_exact, q2_exact (where known). Arrays of cells[0] x cells[1] that
     lie where the library has them, not to be written to; each keeps the solution alive."""
 
-    def __init__(self, handle: _Handle) -> None:
-        self._handle = handle
-        cells, size = (ctypes.c_size_t * 2)(), (ctypes.c_double * 2)()
-        _library.checked(_library.function("solution_grid")(handle.pointer, cells, size))
-        self._shape = (cells[0], cells[1])
+    def __init__(self, arrays: dict[str, npt.NDArray[np.float64]]) -> None:
+        self._arrays = arrays
 
     def __getitem__(self, name: str) -> npt.NDArray[np.float64]:
-        if name not in tuple(self):
+        if name not in self._arrays:
             raise KeyError(f"{name}; allowed: {', '.join(self) or 'none, there are no fields'}")
-        values, count = ctypes.POINTER(ctypes.c_double)(), ctypes.c_size_t()
-        _library.checked(_library.function("solution_field")(
-            self._handle.pointer, name.encode(), _library.byref(values), _library.byref(count)))
-        memory = (ctypes.c_double * count.value).from_address(ctypes.addressof(values.contents))
-        memory.handle = self._handle  # type: ignore[attr-defined]
-        field: npt.NDArray[np.float64] = np.frombuffer(memoryview(memory), np.float64).reshape(self._shape)
-        field.flags.writeable = False
-        return field
+        return self._arrays[name]
 
     def __iter__(self) -> Iterator[str]:
-        index = 0
-        while (name := _library.function("solution_field_name")(self._handle.pointer, index)) is not None:
-            yield name.decode()
-            index += 1
+        return iter(self._arrays)
 
     def __len__(self) -> int:
-        return sum(1 for _ in self)
+        return len(self._arrays)
 
     def __repr__(self) -> str:
-        return f"Fields({', '.join(self)}: {self._shape[0]} x {self._shape[1]})"
+        return f"Fields({', '.join(self)}{''.join(f': {x1.shape[0]} x {x1.shape[1]}' for x1 in [*self.values()][:1])})"
 
 
 class Solution(Result):
-    """A scene's answer: the numbers of its result as attributes (docs/reference/results.md), its fields, its text."""
+    """A scene's answer: the numbers of its result as attributes (docs/reference/results.md), its fields, its text. Pickled
+    or copied it takes them along; only write() stays with the process that solved."""
 
     def __init__(self, pointer: int, message: str) -> None:
-        self._handle = _Handle(pointer)
+        self._handle: _Handle | None = _Handle(pointer)
         super().__init__(json.loads(_library.text("solution_json", pointer)))
         self.message = message
         """Why it is not to be trusted; empty where it converged and reached the accuracy asked for."""
-        self.fields = Fields(self._handle)
+        self.fields = self._handle.fields()
+        self.text = _library.text("solution_text", pointer)
+        """The result as the program prints it."""
 
     @property
     def converged(self) -> bool:
         """Whether it is to be trusted."""
         return not self.message and self["status"] == "converged"
 
-    @property
-    def text(self) -> str:
-        """The result as the program prints it."""
-        return _library.text("solution_text", self._handle.pointer)
-
     def write(self, file: str | os.PathLike[str]) -> None:
         """Writes all fields where there is pressure: .csv, .h5 or .vti."""
+        if self._handle is None:
+            raise InputError("write: a solution that was pickled or copied has arrays, but no files of them; allowed: the one "
+                             "that solve() returned, in its process")
         _library.checked(_library.function("solution_write")(self._handle.pointer, _library.encoded(os.fspath(file))))
 
     def fields_frame(self) -> Any:

@@ -1,8 +1,11 @@
 """slipstick.check, gate and study: verdicts that theory gives, and what goes wrong."""
 import os
 import signal
+import subprocess
+import sys
 import tempfile
 import threading
+import time
 import unittest
 from pathlib import Path
 
@@ -11,6 +14,7 @@ import scenes
 import slipstick
 from slipstick._scene import toml_text
 
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores it
 SPHERE = scenes.SPHERE | {"grid": {"cells": [32, 32]}}
 GATE = """
 [[gate]]
@@ -61,6 +65,17 @@ class CheckTest(unittest.TestCase):
         field["q1"] = field["q1"] + 1e8 * (field["pressure"] == 0)
         self.assertFalse(slipstick.check(SPHERE, field).good)
 
+    def test_loops(self):
+        """The exact loop in the scene's units is good; that of another stiffness is not."""
+        exact = slipstick.solve(SPHERE, solver__model="exact", load__moment_ratio=0.5)
+        curve = slipstick.exact.curve([0.5, -0.5, 0.5], 40)
+        loop = {"moment": curve.moment * exact.moment / slipstick.exact.moment(moment_ratio=0.5),
+                "rotation": curve.twist * exact.twist_angle / slipstick.exact.twist(0.5)}
+        self.assertTrue(slipstick.check(SPHERE, loop).good)
+        self.assertFalse(slipstick.check(SPHERE, loop | {"rotation": 1.3 * loop["rotation"]}).good)
+        with self.assertRaisesRegex(slipstick.InputError, "has no rotation"):
+            slipstick.check(SPHERE, {"moment": loop["moment"]})
+
     def test_refusals(self):
         field = exact_field()
         with self.assertRaisesRegex(slipstick.InputError, "the field has no q2"):
@@ -87,8 +102,11 @@ class FilesTest(unittest.TestCase):
         self.assertTrue(gates.passed)
         self.assertLess(abs(gates.gates[0].value), 1e-2)
         self.assertTrue(any((self.folder / "kept").iterdir()))
+        self.assertEqual(gates.why, "")
         file.write_text(GATE.format(1e-7))
         self.assertFalse(slipstick.gate([file]).passed)
+        self.assertRegex(slipstick.gate([file]).why, "^twist: .*1e-07")
+        self.assertIn("missing.toml: cannot be read", repr(slipstick.gate("missing.toml")))
         file.write_text(GATE.format('"small"'))
         self.assertFalse(slipstick.gate(file).passed)
         with self.assertRaisesRegex(slipstick.InputError, "thrust"):
@@ -132,6 +150,36 @@ class FilesTest(unittest.TestCase):
         said = []
         self.assertEqual(slipstick.study(file, output=kept, progress=said.append).failed_runs.count, 0)
         self.assertIn("[", said[-1])
+
+
+    @unittest.skipUnless(sys.platform == "linux", "only Linux ends a process with its parent")
+    def test_a_killed_python_leaves_no_study(self):
+        (self.folder / "study.toml").write_text('name = "long"\nscene = "scene.toml"\ncells = [256, 288]\n'
+                                                'set = { "solver.operator" = "direct" }\n')  # minutes each
+        mark = f"SLIPSTICK_TEST_MARKER={self.folder}".encode()
+
+        def processes():
+            found = []
+            for process in Path("/proc").glob("[0-9]*"):
+                try:
+                    found += [int(process.name)] * (mark in (process / "environ").read_bytes().split(b"\0"))
+                except OSError:
+                    pass
+            return found
+
+        parent = subprocess.Popen(
+            [sys.executable, "-B", "-c", f"import slipstick; slipstick.study({str(self.folder / 'study.toml')!r}, jobs=2)"],
+            env=os.environ | {"SLIPSTICK_TEST_MARKER": str(self.folder), "TMPDIR": str(self.folder)})
+        self.addCleanup(lambda: [os.kill(process, signal.SIGKILL) for process in processes()])
+        while len(processes()) < 4:  # Python, the study, two that solve
+            self.assertIsNone(parent.poll())
+            time.sleep(0.01)
+        parent.kill()
+        parent.wait()
+        end = time.monotonic() + 120  # longer than it takes on any machine
+        while processes() and time.monotonic() < end:
+            time.sleep(0.01)
+        self.assertEqual(processes(), [])
 
 
 class MachineryTest(unittest.TestCase):

@@ -1,7 +1,11 @@
 #include "solver/grid/threads.hpp"
 
+#include <fmt/core.h>
+
 #include <atomic>
 #include <cstdint>
+#include <optional>
+#include <stdexcept>
 #include <utility>
 
 namespace slipstick::solver {
@@ -58,10 +62,16 @@ struct ThreadPool::Shared {
   }
 };
 
-ThreadPool::ThreadPool(int threads)
-    : shared_(std::make_unique<Shared>()), outer_(std::exchange(current, this)) {
-  for (int thread = 0; thread + 1 < threads; ++thread) {
-    others_.emplace_back([this] { work(); });
+ThreadPool::ThreadPool() : shared_(std::make_unique<Shared>()), outer_(std::exchange(current, this)) {}
+
+ThreadPool::ThreadPool(int threads) : ThreadPool() {  // so that the destructor stops those that have started
+  try {
+    while (available() < threads) others_.emplace_back([this] { work(); });
+  } catch (const std::exception&) {
+    throw std::runtime_error(fmt::format(
+        "solver.threads = {}: allowed: up to {} here, where the limits of memory and processes let "
+        "no more start",
+        threads, available()));
   }
 }
 
@@ -83,12 +93,8 @@ void ThreadPool::work() {
 int ThreadPool::available() { return current ? static_cast<int>(current->others_.size()) + 1 : 1; }
 
 void ThreadPool::run(int threads, Job job) {
-  if (threads > available()) {
-    std::vector<std::jthread> others;
-    for (int thread = 0; thread + 1 < threads; ++thread) others.emplace_back([=] { job(thread); });
-    job(threads - 1);
-    return;
-  }
+  std::optional<ThreadPool> own;
+  if (!current) own.emplace(threads);
   Shared& shared = *current->shared_;
   shared.job = job;
   shared.pending = threads;

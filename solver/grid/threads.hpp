@@ -9,10 +9,11 @@
 namespace slipstick::solver {
 
 /// Threads that wait for work as long as this object lives: those of one solve. Loops on the thread that made
-/// it are shared out to them; a loop that asks for more than there are starts its own.
+/// it are shared out to them; a loop without a pool makes its own.
 class ThreadPool {
  public:
   /// threads: in all, with the one that makes the pool. A pool within another one takes its place for a time.
+  /// Throws std::runtime_error where not all of them can be started.
   explicit ThreadPool(int threads);
   ~ThreadPool();
   ThreadPool(const ThreadPool&) = delete;
@@ -27,11 +28,12 @@ class ThreadPool {
     const void* work;
     void operator()(int thread) const { call(work, thread); }
   };
-  /// The job on so many threads at the same time, the last on the calling one. It must not throw.
+  /// The job's parts, as many as `threads`, on the threads that there are. It must not throw.
   static void run(int threads, Job job);
 
  private:
   struct Shared;
+  ThreadPool();
   void work();
 
   std::unique_ptr<Shared> shared_;

@@ -249,6 +249,23 @@ static void test_solution(void) {
   slipstick_solution_free(NULL);
 }
 
+/* Cells of unequal sides, more of them along x1: x2 runs fastest, and each side is the step of its own axis.
+ */
+static void test_unequal_cells(void) {
+  const char* overrides[] = {"grid.cells=[48,32]", "grid.extent=[1.2e-3,1.4e-3]"};
+  slipstick_solution* solution = solved(SLIPSTICK_OK, 0, 2, overrides);
+  size_t cells[2];
+  double size[2];
+  check(slipstick_solution_grid(solution, cells, size) == SLIPSTICK_OK && cells[0] == 48 && cells[1] == 32,
+        "unequal cells");
+  check(near(size[0], 1.2e-3 / 48, 1e-12) && near(size[1], 1.4e-3 / 32, 1e-12), "unequal sides");
+  const double* x1 = field(solution, "x1", 48 * 32);
+  const double* x2 = field(solution, "x2", 48 * 32);
+  check(near(x1[32] - x1[0], size[0], 1e-9) && x1[1] == x1[0], "x1 over rows");
+  check(near(x2[1] - x2[0], size[1], 1e-9) && x2[32] == x2[0], "x2 within a row");
+  slipstick_solution_free(solution);
+}
+
 static int stop_at_once(int iteration, double change, void* user) {
   check(iteration >= 0 && !(change < 0), "progress");
   ++*(int*)user;
@@ -356,6 +373,7 @@ int main(void) {
   }
   test_refusals();
   test_solution();
+  test_unequal_cells();
   test_ends();
   test_threads();
   test_locale();

@@ -15,7 +15,8 @@ from pathlib import Path
 PROGRAM, SCENES = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve()
 COUNT = int(sys.argv[3]) if len(sys.argv) > 3 else 4
 SEED = int(sys.argv[4]) if len(sys.argv) > 4 else 1
-FOLDER = Path(tempfile.mkdtemp())
+TEMPORARY = tempfile.TemporaryDirectory()  # goes with the program
+FOLDER = Path(TEMPORARY.name)
 AMPLITUDES = (0.01, 0.03, 0.1, 0.3, 1.0)  # two of them for each scene; the last must be found
 
 

@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -24,10 +23,7 @@ using FieldRow = std::array<double, 5>;
 using FieldRows = std::vector<FieldRow>;
 
 inline std::filesystem::path temporary_file(const std::string& name) {
-  const auto folder =
-      std::filesystem::path(testing::TempDir()) / ("slipstick-fields-" + std::to_string(getpid()));
-  std::filesystem::create_directories(folder);
-  return folder / name;
+  return std::filesystem::path(testing::TempDir()) / name;
 }
 
 inline std::filesystem::path write_rows(const FieldRows& rows, int digits = 17,

@@ -81,7 +81,6 @@ TEST(RoundingDigits, AreLostNextToTheLimit) {
   };
   EXPECT_GT(digits("0.5"), 11.0);
   EXPECT_LT(digits("0.9999999999"), digits("0.5") - 2.0);
-  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -12,10 +12,15 @@ import time
 import unittest
 from pathlib import Path
 
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
+from hold import Hold  # noqa: E402
+
 PROGRAM, SCENE = Path(sys.argv[1]).resolve(), Path(sys.argv[2]).resolve() / "paper.toml"
 MARKER = "SLIPSTICK_TEST_MARKER"
 PATIENCE = 120  # seconds, longer than it takes on any machine
 ON_LINUX = unittest.skipUnless(sys.platform == "linux", "only Linux shows which processes are the study's")
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores it, and so would a study
 
 
 def comes_true(condition, pause=0.01):
@@ -38,13 +43,19 @@ class Study(unittest.TestCase):
     def write(self, text, scene=SCENE):
         (self.folder / "study.toml").write_text(f'scene = "{scene}"\n{text}')
 
-    def start(self, name, jobs=0, **options):
+    def start(self, name, jobs=0, environment=os.environ, **options):
         """With its result and its messages in files of a name; in a group of its own, as from a terminal."""
         with open(self.folder / f"{name}.txt", "w") as out, open(self.folder / f"{name}.log", "w") as log:
             return subprocess.Popen(
                 [PROGRAM, "study", self.folder / "study.toml", "--output", self.folder / "points", "--json",
                  self.folder / f"{name}.json", "--jobs", str(jobs)],
-                stdout=out, stderr=log, env=os.environ | {MARKER: str(self.folder)}, start_new_session=True, **options)
+                stdout=out, stderr=log, env=environment | {MARKER: str(self.folder)}, start_new_session=True, **options)
+
+    def start_held(self, name, run, **options):
+        """The study, in whose points this run, counted from 1, is about to be kept; what holds it; and its worker."""
+        hold = Hold(self.folder, "*/points/*.json", run)
+        study = self.start(name, 1, hold.environment, **options)
+        return study, hold, hold.process(study)
 
     def run_study(self, name, code=0):
         self.assertEqual(self.start(name).wait(), code, self.text(f"{name}.log"))
@@ -66,38 +77,14 @@ class Study(unittest.TestCase):
                 pass
         return found
 
-    @staticmethod
-    def state(process):
-        """Its letter and its parent; X and 0 of one that is gone."""
-        try:
-            state, parent = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[:2]
-            return state, int(parent)
-        except OSError:
-            return "X", 0
-
-    def killed_after(self, runs, study):
-        """Kills the only worker in the middle of a run, once so many others are finished. One that computes whenever one
-        looks, so long after its last run, is not between two runs."""
-        kept = len(self.finished())
-        worker = next((one for one in self.processes() if self.state(one)[1] == study), 0)
-        for _ in range(15):
-            if not worker or kept < runs or len(self.finished()) != kept or self.state(worker)[0] != "R":
-                return False
-            time.sleep(0.001)
-        os.kill(worker, signal.SIGSTOP)
-        comes_true(lambda: self.state(worker)[0] in "TZX", 0)
-        in_a_run = len(self.finished()) == kept
-        os.kill(worker, signal.SIGKILL if in_a_run else signal.SIGCONT)
-        return in_a_run
-
     def test_goes_on_after_an_interrupt(self):
         """What is left is whole, and the same command goes on from it to the same result."""
-        first = self.start("first")
-        self.assertTrue(comes_true(self.finished, 0.001))
+        first, _, _ = self.start_held("first", 3)
         os.killpg(first.pid, signal.SIGINT)
         self.assertEqual(first.wait(), 2)
         self.assertIn("the same command goes on from there", self.text("first.log"))
         left = {file: file.stat().st_mtime_ns for file in self.finished()}
+        self.assertEqual(len(left), 2)
         for file in left:
             self.assertIsInstance(json.loads(file.read_text()), dict)
         self.run_study("second")
@@ -114,19 +101,14 @@ class Study(unittest.TestCase):
     def test_a_killed_worker_is_named_and_the_others_are_judged(self):
         """Whichever it is: the study says so, in its text and its result, and leaves with 1. What is not known is null with
         a reason and not zero."""
-        self.write('cells = [256, 320]\nquantities = ["twist_error"]\n')
+        self.write('cells = [32, 48]\nquantities = ["twist_error"]\n')
         # One at a time, the larger mesh first: the solve itself, to a tighter tolerance, then those of the other.
         for before in range(6):
             with self.subTest(before=before):
-                def is_killed():
-                    """Or the study has ended before the worker was caught in the run."""
-                    shutil.rmtree(self.folder / "points", ignore_errors=True)
-                    study = self.start("killed", jobs=1)
-                    self.assertTrue(comes_true(lambda: self.killed_after(before, study.pid) or study.poll() is not None))
-                    self.assertIn(study.wait(), (0, 1))
-                    return study.returncode == 1
-
-                self.assertTrue(comes_true(is_killed), self.text("killed.log"))
+                shutil.rmtree(self.folder / "points", ignore_errors=True)
+                study, _, worker = self.start_held("killed", before + 1)
+                os.kill(worker, signal.SIGKILL)
+                self.assertEqual(study.wait(), 1, self.text("killed.log"))
                 result = json.loads(self.text("killed.json"))
                 self.assertEqual(result["failed_runs"]["count"], 1)
                 self.assertIn("killed by signal 9", result["failed_runs"]["first"]["message"])
@@ -159,10 +141,10 @@ class Study(unittest.TestCase):
     def test_an_ignored_hang_up_stays_ignored(self):
         """nohup: what is ignored when the study starts stays so."""
         before = signal.signal(signal.SIGHUP, signal.SIG_IGN)
-        study = self.start("nohup", restore_signals=False)
+        study, hold, _ = self.start_held("nohup", 2, restore_signals=False)
         signal.signal(signal.SIGHUP, before)
-        self.assertTrue(comes_true(self.finished, 0.001))
         os.killpg(study.pid, signal.SIGHUP)
+        hold.release()
         self.assertEqual(study.wait(), 0, self.text("nohup.log"))
 
     def test_bad_input_is_exit_code_2(self):

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -194,9 +193,7 @@ TEST(FlatPunch, SinksInAsBoussinesqSays) {
 
 class HeightMap : public testing::Test {
  protected:
-  ~HeightMap() override { std::filesystem::remove(file_); }
-  std::filesystem::path file_ =
-      std::filesystem::path(testing::TempDir()) / ("normal_contact_" + std::to_string(::getpid()) + ".csv");
+  std::filesystem::path file_ = testing::TempDir() + "normal_contact.csv";
 };
 
 TEST_F(HeightMap, OfASphereGivesTheSpheresPressure) {
