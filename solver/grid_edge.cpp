@@ -72,7 +72,8 @@ ArrayXd continued(const Grid& grid, const Grid& larger, const ArrayXd& field) {
   return result;
 }
 
-/// The undeformed gap on a larger grid, at the level that it has on the model's.
+}  // namespace
+
 ArrayXd continued_gap(const Scene& scene, const Model& model, const Grid& larger) {
   std::vector<Surface> surfaces;
   for (const Surface& surface : scene.surfaces)
@@ -85,6 +86,8 @@ ArrayXd continued_gap(const Scene& scene, const Model& model, const Grid& larger
   const ArrayXd same_cell = continued(model.grid, larger, there);
   return gap + (model.gap[lowest] - (same_cell > 0.0).select(gap, 0.0).sum());
 }
+
+namespace {
 
 /// Displacement that opens the gap, by the pressure and, unless it is empty, a traction.
 ArrayXd opening(const Model& model, const Scene& scene, const Grid& grid, const ArrayXd& pressure,

@@ -14,4 +14,8 @@ namespace slipstick::solver {
 void require_contact_within_grid(const Scene& scene, const Model& model, const Step& step,
                                  const NormalSolution& normal, const Eigen::ArrayXd& traction = {});
 
+/// The undeformed gap on a larger grid of the same cells about the same centre, at the level that it has on
+/// the model's.
+Eigen::ArrayXd continued_gap(const Scene& scene, const Model& model, const Grid& larger);
+
 }  // namespace slipstick::solver

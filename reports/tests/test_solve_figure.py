@@ -19,7 +19,7 @@ sys.path.insert(0, str(REPORTS))
 
 import solve_figure  # noqa: E402
 from cells import ARROWS_ALONG, Cells  # noqa: E402
-from results import Unavailable, load  # noqa: E402
+from results import Fields, Unavailable, load  # noqa: E402
 
 CELL = (2e-6, 1e-6)
 
@@ -74,6 +74,16 @@ class Figure(unittest.TestCase):
         with redirect_stderr(io.StringIO()) as errors:
             exit_code = solve_figure.main(self.arguments(name))
         return exit_code, errors.getvalue()
+
+
+class Maps(Figure):
+    def test_have_their_rows_along_x2(self):
+        with h5py.File(self.folder / "map.h5", "w") as file:
+            for name, values in (("x1", [-2, 2, -2]), ("x2", [-2, -2, 0]), ("q1", [1, 2, 3])):
+                file[name] = np.array(values, float)
+        fields = Fields(self.folder / "map.h5", 2.0)
+        np.testing.assert_array_equal(fields.grid("q1"), [[1, np.nan, 2], [3, np.nan, np.nan], [np.nan] * 3])
+        np.testing.assert_array_equal(fields.extent, [-1.5, 1.5, -1.5, 1.5])
 
 
 class Names(Figure):

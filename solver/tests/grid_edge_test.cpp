@@ -268,6 +268,29 @@ TEST(GridEdge, IsLookedAtUnderFullCoupling) {
   EXPECT_EQ(refusal(enough), "");
 }
 
+/// Whatever lies beyond: also a body that is closer there.
+TEST(GridEdge, ContinuesTheGapAtItsOwnLevel) {
+  for (const auto& [surfaces, combine] :
+       {std::pair{std::vector{sphere(0.018, {-4e-4, 0.0}), sphere(0.018, {4e-4, 0.0})}, Combine::nearest},
+        {{sphere(0.018, {5e-4, 0.0})}, Combine::sum},
+        {{roughness()}, Combine::sum}}) {
+    Scene scene = scene_of(surfaces, {16, 12}, 2.5e-5, combine);
+    scene.ends_at_grid_edge = true;
+    const Model model = make_model(scene);
+    Grid larger = model.grid;
+    larger.n1 += 10;
+    larger.n2 += 6;
+    const Eigen::ArrayXd gap = continued_gap(scene, model, larger);
+    for (Index i = 0; i < model.grid.n1; ++i) {
+      EXPECT_LE((gap.segment((i + 5) * larger.n2 + 3, model.grid.n2) -
+                 model.gap.segment(i * model.grid.n2, model.grid.n2))
+                    .abs()
+                    .maxCoeff(),
+                1e-13 * gap.maxCoeff());
+    }
+  }
+}
+
 /// The contact is a sphere's, read from a file.
 class MappedSphere : public SceneFile {
  protected:
@@ -329,6 +352,10 @@ TEST_F(PressedEdge, OfAPressureFileHasToBeTheBodys) {
   EXPECT_THAT(refusal(pressed(at_edge)),
               AllOf(HasSubstr("grid.extent = [0.001, 0.001]"), HasSubstr("p.csv"), HasSubstr("outermost")));
   EXPECT_EQ(refusal(pressed(at_edge, {"upper.ends_at_grid_edge=true"})), "");
+  for (const char* one : {"0.000375,0.000125,1e9\n", "-0.000375,0.000125,1e9\n", "0.000125,0.000375,1e9\n",
+                          "0.000125,-0.000375,1e9\n"}) {
+    EXPECT_THAT(refusal(pressed(inside + one)), HasSubstr("outermost")) << one;
+  }
 }
 
 }  // namespace

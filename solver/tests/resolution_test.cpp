@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <numbers>
+#include <utility>
 
 #include "solver/model_solution.hpp"
 #include "solver/tests/paper_scene.hpp"
@@ -39,6 +41,21 @@ TEST(Resolution, OfAStripIsItsWidth) {
   // Four times area over outline tends to twice the width of a long strip, and staircases count pi/4.
   EXPECT_NEAR(found.stick_width, 4.0 * 1000.0 / (220.0 * 0.25 * 3.141592653589793), 1e-9);
   EXPECT_EQ(found.slip_width, 0.0);
+}
+
+// All of it sticks under a constant pressure: what h/r leaves everywhere, at a sharp edge and where slip is
+// narrow, with h/r = pi/(2 n) along an axis of n cells. Which of them is the longer does not matter.
+TEST(Resolution, OfAStripHasBothAxesInTheMean) {
+  const double cell = std::numbers::pi * std::sqrt((1.0 / (40 * 40) + 1.0 / (20 * 20)) / 8.0);
+  for (const auto& [n1, n2] : {std::pair{40, 20}, {20, 40}}) {
+    const Grid grid{n1 + 4, n2 + 6, 1.0, 1.0};
+    LoadStep loads{};
+    loads.problem.friction_bound =
+        (cell_x1(grid).abs() < 0.5 * n1 && cell_x2(grid).abs() < 0.5 * n2).cast<double>();
+    loads.limit.factor = INFINITY;
+    const Resolution found = resolution({}, {}, grid, loads, loads.problem.friction_bound);
+    EXPECT_NEAR(found.step, 0.26 * cell * cell + 0.22 * cell + 0.65 * std::pow(cell, 1.5), 1e-12) << n1;
+  }
 }
 
 TEST(Resolution, IsUnknownWhereNoCellSticksThoughOneShould) {

@@ -355,6 +355,12 @@ TEST(SecondRun, OnlyWhatItConfirmsCounts) {
   EXPECT_EQ(exit_code(confirm(of_finding(Finding::same), on_another_machine)), 2);
   const Comparison cleared = confirm(of_finding(Finding::slower), of_finding(Finding::same));
   EXPECT_THAT(cleared.benchmarks[0].remark, AllOf(HasSubstr("first run: slower"), HasSubstr("second: same")));
+  Comparison first = of_finding(Finding::slower);
+  Comparison second = first;
+  first.benchmarks[0].p_value = 0.04;
+  second.benchmarks[0].p_value = 0.002;
+  EXPECT_EQ(confirm(first, second).benchmarks[0].p_value, 0.002);  // of the test that decided
+  EXPECT_EQ(confirm(first, {}).benchmarks[0].p_value, 0.04);
 }
 
 }  // namespace

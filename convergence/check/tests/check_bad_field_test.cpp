@@ -196,7 +196,7 @@ TEST_F(CheckBadField, Twists) {
   const double twist = solution_.twist_angle;
   find_bad(rows_, scene_, AllOf(HasSubstr("twist is 50 % too low"), HasSubstr("one body only")), 0.5 * twist);
   find_bad(rows_, scene_, HasSubstr("twice the compliance"), 2.0 * twist);
-  find_bad(rows_, scene_, HasSubstr("degrees"), twist * 180.0 / std::numbers::pi);
+  find_bad(rows_, scene_, HasSubstr("a twist in degrees"), twist * 180.0 / std::numbers::pi);
   find_bad(rows_, scene_, AllOf(HasSubstr("twist is 3 % too high"), HasSubstr("not that of these tractions")),
            1.03 * twist);
   EXPECT_EQ(check_rows(rows_, scene_, -twist)["verdict"], "good");  // a matter of convention, and said so

@@ -18,6 +18,7 @@ namespace slipstick::convergence {
 namespace {
 
 using testing::AllOf;
+using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
 using testing::Not;
@@ -73,13 +74,42 @@ TEST_F(CheckConventions, StandInTheFirstLineAndStrictTakesNone) {
   EXPECT_EQ(check_field(scene_, write_rows(rows_), {.strict = true})["verdict"], "good");
 }
 
-// Under a force a mirrored frame is not the other body: only the moment turns round.
+/// The notes of a field that is good but for its conventions.
+std::vector<std::string> notes_of(const FieldRows& rows, const solver::Scene& scene) {
+  return find_good(rows, scene)["conventions"];
+}
+
+// Under a force a mirrored frame is not the other body: only the moment turns round. A body off the axis
+// stands on its other side, and is moved before.
 TEST(Check, ReadsALeftHandedFrame) {
-  const solver::Scene scene = scene_of("paper", 32, {"load.moment_ratio=0.5", "load.force=[30,20]"});
-  const FieldRows rows = changed(solved(scene), [](FieldRow& r) { r[1] = -r[1], r[4] = -r[4]; });
-  const Json result = find_good(rows, scene);
-  ASSERT_EQ(result["conventions"].size(), 1U);
-  EXPECT_THAT(result["conventions"][0].get<std::string>(), HasSubstr("left-handed"));
+  for (const auto& [name, moved] : {std::pair{"paper", 0U}, {"off_centre", 1U}}) {
+    const solver::Scene scene = scene_of(name, 32, {"load.moment_ratio=0.5", "load.force=[30,20]"});
+    const auto notes =
+        notes_of(changed(solved(scene), [](FieldRow& r) { r[1] = -r[1], r[4] = -r[4]; }), scene);
+    ASSERT_EQ(notes.size(), 1U + moved) << name;
+    EXPECT_THAT(notes.back(), HasSubstr("left-handed"));
+  }
+}
+
+// Of a force alone, too, along either axis.
+TEST(Check, ReadsTheOtherBodysTractionsUnderAForceAlone) {
+  for (const char* force : {"load.force=[60,0]", "load.force=[0,60]"}) {
+    const solver::Scene scene = scene_of("paper", 32, {"load.moment_ratio=0", force});
+    const FieldRows rows = solved(scene);
+    EXPECT_THAT(notes_of(rows, scene), IsEmpty()) << force;
+    EXPECT_THAT(notes_of(with_tractions_times(rows, -1.0), scene),
+                ElementsAre(HasSubstr("tractions look reversed")));
+  }
+}
+
+// The middle of the contact goes with the axes.
+TEST(Check, ReadsExchangedAxesOfAnEllipseOffTheOrigin) {
+  using std::swap;
+  const solver::Scene scene = scene_of("ellipse", 32, {"upper.at=[0,2e-4]"});
+  const FieldRows rows = solved(scene);
+  EXPECT_THAT(notes_of(rows, scene), IsEmpty());
+  EXPECT_THAT(notes_of(changed(rows, [](FieldRow& r) { swap(r[0], r[1]), swap(r[3], r[4]); }), scene),
+              ElementsAre(HasSubstr("axes look exchanged")));
 }
 
 TEST_F(CheckConventions, Axes) {
@@ -113,7 +143,10 @@ TEST_F(CheckConventions, OriginAndPartsOfACell) {
     return changed(rows_, [=](FieldRow& r) { r[0] += by, r[1] -= 0.5 * by; });
   };
   expect_same(moved(0.3 * cell), {});
-  expect_same(moved(40.0 * cell), {"moved there"});
+  const auto note =
+      fmt::format("stands ({:.4g}, {:.4g}) m from the scene's: moved there", 40.0 * cell, -20.0 * cell);
+  expect_same(moved(40.0 * cell), {note});
+  expect_same(changed(moved(40.0 * cell), [](FieldRow& r) { r[0] *= 1e3, r[1] *= 1e3; }), {"mm", note});
 }
 
 // A cell without pressure whose four neighbours have some: of two side by side neither is.
@@ -143,6 +176,20 @@ TEST_F(CheckConventions, FewDigits) {
     EXPECT_NEAR(result["stick_cells"], base_["stick_cells"].get<double>(), 2.0);
     EXPECT_LE(result["certificate"]["friction_bound"], 2e-5);
   }
+}
+
+// What few digits leave open is in the unit of the file.
+TEST_F(CheckConventions, FewDigitsInAnotherUnit) {
+  const auto file = [](const FieldRows& rows) { return write_rows(rows, 3); };
+  const Json in_pa = check_field(scene_, file(rows_));
+  const Json in_mpa = check_field(scene_, file(with_stresses_times(rows_, 1e-6)));
+  EXPECT_EQ(in_pa["verdict"], "good") << why(in_pa);
+  EXPECT_EQ(in_mpa["verdict"], "good") << why(in_mpa);
+  for (const char* key : {"gap", "allowed"}) {
+    EXPECT_NEAR(in_mpa["discrete"][key].get<double>() / in_pa["discrete"][key].get<double>(), 1.0, 1e-6)
+        << key;
+  }
+  EXPECT_EQ(in_mpa["discrete"]["holds"], in_pa["discrete"]["holds"]);
 }
 
 }  // namespace

@@ -249,6 +249,13 @@ TEST(Check, AccountsForTheDigitsOfEachColumn) {
   }
 }
 
+// One digit of the pressure is a tenth of it, up to a half: it breaks no bound, no load and no shape.
+TEST(Check, AccountsForOneDigitOfThePressure) {
+  const solver::Scene scene = scene_of("paper", 24);
+  find_good(changed(solved(scene), [](FieldRow& r) { r[2] = std::stod(fmt::format("{:.0e}", r[2])); }),
+            scene);
+}
+
 // At cell centres. Where the pressure changes within a cell or two that takes a finer grid.
 TEST(Check, FindsExactFieldsGood) {
   for (const auto& [name, cells] :

@@ -181,6 +181,21 @@ TEST(CheckThreshold, OfSlipDirectionsIsATenthOfADegreeAndTheMesh) {
   }
 }
 
+// Of two digits each component is open by a part of 0.05: in the mean sqrt(pi/2) times that of |q|, as an
+// angle, and twice. What noise the rounding is taken for, 0.003 at most, adds to it.
+TEST(CheckThreshold, OfSlipDirectionsIsTheAngleOfTheDigits) {
+  const RightField& field = right_field();
+  const FieldRows rows = changed(field.rows, [](FieldRow& row) {
+    for (const std::size_t c : {3, 4}) row[c] = std::stod(fmt::format("{:.1e}", row[c]));
+  });
+  const Json result = find_good(rows, field.scene);
+  const double of_digits = 0.05 * std::sqrt(0.5 * std::numbers::pi) * 180.0 / std::numbers::pi;
+  const double mesh = result["yardstick"]["slip_direction"];
+  const double ratio = (allowed(result, "slip_direction") - 0.1 - 2.0 * mesh) / (2.0 * of_digits);
+  EXPECT_GE(ratio, 0.95);
+  EXPECT_LE(ratio, 1.15);
+}
+
 // In stick cells, where no bound is met, a chessboard is off by what it is made to be: so far are the
 // tractions from the right ones.
 TEST(CheckThreshold, OfTractionsIsTwiceWhatRightFieldsShow) {

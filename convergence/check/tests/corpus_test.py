@@ -1,6 +1,7 @@
 """corpus_test.py PROGRAM SCENES [COUNT [SEED]]: right and wrong fields, made by a seed, and what slipstick check says of them.
 COUNT is that of the scenes (default 4; 30 make some 300 right and 1,000 wrong fields). Prints tables by mistake and amplitude.
-Fails where a right field is bad, where more than 1 bad field in 10 has no quantity, or more than 1 in 50 a wrong cause."""
+Fails where a right field is bad or one that is wrong in full is good, where more than 1 bad field in 10 has no quantity, or more
+than 1 in 50 a wrong cause."""
 
 import json
 import math
@@ -18,6 +19,7 @@ SEED = int(sys.argv[4]) if len(sys.argv) > 4 else 1
 TEMPORARY = tempfile.TemporaryDirectory()  # goes with the program
 FOLDER = Path(TEMPORARY.name)
 AMPLITUDES = (0.01, 0.03, 0.1, 0.3, 1.0)  # two of them for each scene; the last must be found
+WITHIN_MESH = ("frozen directions",)  # has no amplitude: where little slips it matters to no result
 
 
 def settings(keys):
@@ -149,7 +151,8 @@ def wrong_fields(rng, scene, keys, own, result, amplitude):
     quadrant = lambda x1, x2: x1 > middle[0] and x2 > middle[1]
     yield "a quadrant", where(quadrant, scaled(1 - a)), {}, None
     yield "half", where(lambda x1, x2: x1 > middle[0], scaled(1 - a)), {}, None
-    yield "q2", each(own, lambda x1, x2, p, q1, q2: (p, q1, q2 * (1 - a))), {}, None
+    if scene != "mindlin":  # its q2 is zero
+        yield "q2", each(own, lambda x1, x2, p, q1, q2: (p, q1, q2 * (1 - a))), {}, None
     yield "turned tractions", each(own, lambda x1, x2, p, q1, q2: (p, *turned(q1, q2, 0.5 * a))), {}, None
     cell = rng.choice([k for k, s in enumerate(size) if s > 0.5 * max(size)])
     yield "one cell", [r if k != cell else [*r[:3], r[3] * (1 - a), r[4] * (1 - a)] for k, r in enumerate(own)], {}, None
@@ -215,7 +218,8 @@ def main():
                         continue
                     wrong[name][amplitude, verdict["verdict"]] += 1
                     if verdict["verdict"] == "good":
-                        if amplitude == AMPLITUDES[-1]:
+                        if amplitude == AMPLITUDES[-1] and name not in WITHIN_MESH:
+                            numbers["in full but good"] += 1
                             print(f"wrong but good: {name}: {scene} {keys}: {verdict['why']}", flush=True)
                         continue
                     found = cause_in(verdict["details"])
@@ -239,7 +243,8 @@ def main():
     print(sum(right.values()), "right,", sum(sum(v for (_, k), v in f.items() if k != "refused") for f in wrong.values()), "wrong:",
           dict(numbers))
     bad_right = sum(count for (_, verdict), count in right.items() if verdict == "bad")
-    return int(bad_right > 0 or numbers["cause wrong"] * 50 > numbers["bad"] or numbers["without a quantity"] * 10 > numbers["bad"])
+    return int(bad_right > 0 or numbers["in full but good"] > 0 or numbers["cause wrong"] * 50 > numbers["bad"]
+               or numbers["without a quantity"] * 10 > numbers["bad"])
 
 
 if __name__ == "__main__":

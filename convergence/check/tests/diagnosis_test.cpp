@@ -65,16 +65,18 @@ GivenContact made_contact(const solver::Dimensionless& model, const Eigen::Array
   return {model, 1, {0.0, 0.0}, pressure, traction, none, none};
 }
 
-/// A contact with tractions by an operator of its own.
+/// A contact with tractions by an operator of its own. poisson: its Poisson compliance over the right one.
 GivenContact computed_with(const CrossKernel& cross, bool exchanged = false,
-                           const std::string& name = "ellipse") {
+                           const std::string& name = "ellipse", double poisson = 1.0) {
   const solver::Scene scene =
       solver::read_scene(std::string(SLIPSTICK_SCENES) + "/" + name + ".toml",
                          {name == "ellipse" ? "grid.cells=[24,12]" : "grid.cells=[20,20]"});
   const solver::Model model = solver::make_model(scene);
   const solver::Step& load = scene.steps.front();
   const Eigen::ArrayXd pressure = find_pressure(scene, model, load).pressure;
-  OtherKernel op(model.grid, model.pair, cross, exchanged);
+  solver::ElasticPair pair = model.pair;
+  pair.poisson_compliance *= poisson;
+  OtherKernel op(model.grid, pair, cross, exchanged);
   const auto solution = solve_by_projected_gradient(op, load_step(scene, model, load, pressure, {}).problem);
   EXPECT_EQ(solution.status, solver::Status::converged) << solution.message;
   return made_contact(model, pressure, solution.traction);
@@ -144,6 +146,22 @@ TEST(Diagnosis, DeterminesPoissonsRatioFromTheField) {
     ASSERT_TRUE(diagnosis.kernel) << ratio;
     EXPECT_THAT(diagnosis.kernel->name,
                 HasSubstr(fmt::format("Poisson's ratio of {} in place of 0.3", ratio)));
+  }
+}
+
+// Of bodies of unequal compliance it is the mean. One above 0.5 no body has.
+TEST(Diagnosis, DeterminesPoissonsRatioOfDissimilarBodies) {
+  for (const auto& [factor, ratio] : {std::pair{0.5, "0.16"}, {1.4, "0.45"}}) {
+    const Diagnosis diagnosis =
+        diagnose(computed_with(right_cross, false, "dissimilar", factor), {}, kAllowed);
+    ASSERT_TRUE(diagnosis.kernel) << factor;
+    EXPECT_THAT(diagnosis.kernel->name, HasSubstr(fmt::format("Poisson's ratio of {}", ratio)));
+    EXPECT_LE(diagnosis.kernel->gap, 1e-5);
+  }
+  for (const char* name : {"dissimilar", "ellipse"}) {
+    const Diagnosis diagnosis = diagnose(computed_with(right_cross, false, name, 1.8), {}, kAllowed);
+    EXPECT_THAT(diagnosis.tried,
+                testing::Each(testing::Field(&Hypothesis::name, testing::Not(HasSubstr("ratio of 0.")))));
   }
 }
 

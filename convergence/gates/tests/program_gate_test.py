@@ -81,6 +81,14 @@ class GateProgram(ProgramTest):
                        f"quantity = 'series.paper.rows[1].cells[0]'\nequals = {equals}\nbasis = 'asked for'\n")
             self.gate("gates.toml", code=code, says=says)
 
+    def test_judges_one_study_with_different_keys(self):
+        self.write("study.toml", f"scene = '{PAPER}'\ncells = [12, 16]\n")
+        self.write("gates.toml", "".join(
+            f"[[gate]]\nid = 'to {tolerance}'\nstudy = 'study.toml'\nset = {{ 'solver.tolerance' = {tolerance} }}\n"
+            f"quantity = 'series.paper.rows[1].requested'\nabove = {0.9 * tolerance}\nbelow = {1.1 * tolerance}\n"
+            "basis = 'asked for'\n" for tolerance in (1e-6, 1e-4)))
+        self.gate("gates.toml")
+
     def test_judges_result_files_of_any_program(self):
         self.write("gates.toml", COUNTED)
         self.gate("gates.toml", code=2, says=("work.json", "make counts"))

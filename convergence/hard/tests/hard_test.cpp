@@ -15,6 +15,8 @@
 #include "convergence/programs/run_program.hpp"
 #include "convergence/runs/variant.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/model.hpp"
+#include "solver/solve.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -200,6 +202,38 @@ TEST(HardJudgement, LooksAtTheNumberThatTheUncertaintyIsOf) {
   EXPECT_TRUE(std::isnan(value_of("moment")));  // missing
   result["resolved"]["absolute"] = 0.0;         // no load acts: what moves is rounding
   EXPECT_TRUE(std::isnan(value_of("twist_angle")));
+}
+
+// Away from the limit 1e-6; where 1e-5 of the load is missing to it, what a tolerance of 1e-8 is of that.
+TEST(HardJudgement, AllowsMoreOfAnAnswerNextToTheLimit) {
+  const auto allowed = [](const Json& factor) {
+    return same_answer({{"tolerance", 1e-8}, {"limit", {{"factor", factor}}}});
+  };
+  EXPECT_NEAR(allowed(2.0), 1.01e-6, 1e-12);
+  EXPECT_NEAR(allowed(1.0 + 1e-5), 1e-3 + 1e-6, 1e-9);
+  EXPECT_EQ(allowed(nullptr), 1e-6);
+}
+
+// The distance from the answer on four times the cells.
+TEST_F(HardFile, ProgramComparesWithFinerMeshes) {
+  std::string text = family("[family.set]\n\"grid.cells\" = [24, 12]\n");
+  text.replace(text.find("paper.toml"), 10, "patches.toml");
+  const ProgramEnd end = run_program(
+      {SLIPSTICK_PROGRAM, "hard", write(text), "--output", folder_ / "kept", "--json", "-", "--quiet"},
+      {.captured = Captured::output});
+  const Json row = Json::parse(end.output)["rows"][0];
+  std::vector<double> twists;
+  solver::Scene scene =
+      solver::read_scene(std::string(SLIPSTICK_SCENES) + "/patches.toml", {"grid.cells=[24,12]"});
+  const solver::Grid grid = solver::make_model(scene).grid_in_m();
+  scene.extent = {24.0 * grid.h1, 12.0 * grid.h2};
+  for (const int finer : {1, 2, 4}) {
+    scene.cells = {24 * finer, 12 * finer};
+    scene.substeps = finer;
+    twists.push_back(solver::solve(scene).twist_angle);
+  }
+  EXPECT_NEAR(row["finer_meshes.error"], std::abs(twists[0] / twists[2] - 1.0), 1e-7);
+  EXPECT_NEAR(row["finer_meshes.change"], std::abs(twists[1] / twists[2] - 1.0), 1e-7);
 }
 
 TEST(HardJudgement, ComparesSignsAndUnits) {

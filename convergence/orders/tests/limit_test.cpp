@@ -133,6 +133,12 @@ TEST(Limit, NoiseIsAFloor) {
   meshes.push_back({9e-4, meshes.back().value - 2 * noise, 0.0, 1, noise});
   EXPECT_EQ(least_squares_limit(meshes, 2.0).order.verdict, floor);
   EXPECT_EQ(richardson_limit(meshes, 2.0).order.verdict, floor);
+  for (const std::size_t noisy : {2U, 3U}) {  // either of the finest two alone
+    Meshes one = values(2.0, {1.0, 0.5, 0.25, 0.125});
+    one[noisy].noise = 0.2 * std::abs(one[3].value - one[2].value);
+    EXPECT_EQ(least_squares_limit(one, 2.0).order.verdict, floor) << noisy;
+    EXPECT_EQ(richardson_limit(one, 2.0).order.verdict, floor) << noisy;
+  }
 }
 
 TEST(Limit, FewMeshes) {

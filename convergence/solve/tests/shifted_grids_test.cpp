@@ -81,6 +81,20 @@ TEST(ShiftedGrids, LeaveNothingOfAStaircaseOfOnePeriodInTheirMean) {
   EXPECT_GT(mean.grids[0]["extent"][0], mean.grids[3]["extent"][0]);  // the finest last
 }
 
+// Grids whose twists are off by d and -d in turn scatter by sqrt(4/3) d.
+TEST(ShiftedGrids, ScatterByTheDeviationOfASample) {
+  const solver::Scene scene = shifted_scene("paper", {"grid.cells=[96,96]"});
+  double d = 1e-3;
+  const auto mean = mean_over_shifted_grids(scene, kTwist, ContactForm{}, convergence::contact_on_grid(scene),
+                                            [&](const solver::Scene& at, solver::Detail detail) {
+                                              auto answer =
+                                                  Staircase{.front = 1e-4, .height = 0.0}(at, detail);
+                                              answer.result["twist_angle"] = 2.0 * (1.0 + (d = -d));
+                                              return answer;
+                                            });
+  EXPECT_NEAR(mean.uncertainty, 0.35e-3 * std::sqrt(4.0 / 3.0), 1e-12);
+}
+
 // What is left out of a grid's answer changes no digit of the rest.
 TEST(ShiftedGrids, AreSolvedAlikeToAnyDetail) {
   const solver::Scene scene = shifted_scene("paper", {"grid.cells=[64,64]", "load.moment_ratio=0.9"});

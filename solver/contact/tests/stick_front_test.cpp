@@ -11,6 +11,7 @@
 #include <ostream>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "solver/contact/projected_gradient.hpp"
 #include "solver/scene/hertz_pressure.hpp"
@@ -177,17 +178,22 @@ TEST_P(MadeUpFront, TurnsWithTheContact) {
 
 // --- where it is counted ---
 
+/// Slip of a square grid's first quarter, and the same to the last bit in its images.
+Fields mirror_images(Fields fields) {
+  const Index n = fields.grid.n1;
+  for (Index i = 0; i < n * n; ++i) {
+    const Index image = std::min(i / n, n - 1 - i / n) * n + std::min(i % n, n - 1 - i % n);
+    for (const Index component : {Index{0}, n * n})
+      fields.slip[i + component] = fields.slip[image + component];
+  }
+  return fields;
+}
+
 /// Of fields with two mirror axes a quarter of the rays is fitted: one last bit of one cell, and all are.
 TEST(StickFront, OfAQuarterOfTheRaysIsThatOfAll) {
   for (const Index n : {96, 97}) {
     for (const double ring : {1.6, 1.3, 1.12}) {
-      Fields mirrored = sample({.a = 0.6, .b = 0.45, .ring = ring}, n);
-      for (Index i = 0; i < n * n; ++i) {
-        const Index image = std::min(i / n, n - 1 - i / n) * n + std::min(i % n, n - 1 - i % n);
-        for (const Index component : {Index{0}, n * n}) {
-          mirrored.slip[i + component] = mirrored.slip[image + component];
-        }
-      }
+      const Fields mirrored = mirror_images(sample({.a = 0.6, .b = 0.45, .ring = ring}, n));
       Fields nearly = mirrored;
       Index slipping = 0;
       while (nearly.slip[slipping] == 0.0) ++slipping;
@@ -198,6 +204,43 @@ TEST(StickFront, OfAQuarterOfTheRaysIsThatOfAll) {
       EXPECT_EQ(quarter.fitted, whole.fitted);
       EXPECT_EQ(quarter.why_counted, whole.why_counted);
     }
+  }
+}
+
+/// One cell that slips more than its images, or a pair that does, moves the front wherever it stands.
+TEST(StickFront, OfOneCellOfAMirroredPairIsTheSameOnEachSide) {
+  constexpr Index n = 64;
+  const Fields mirrored = mirror_images(sample({}, n));
+  const auto radius = [&](const std::vector<std::pair<Index, Index>>& disturbed) {
+    Fields fields = mirrored;
+    for (const auto& [i, j] : disturbed) {
+      for (const Index component : {Index{0}, n * n}) fields.slip[i * n + j + component] *= 8.0;
+    }
+    return fields.front().radius;
+  };
+  constexpr Index i = 44, j = 46, i_image = n - 1 - i, j_image = n - 1 - j;
+  ASSERT_GT(std::abs(mirrored.slip[i * n + j]), 0.0);
+  const double one = radius({{i, j}});
+  const double along1 = radius({{i, j}, {i_image, j}});
+  const double along2 = radius({{i, j}, {i, j_image}});
+  EXPECT_GT(std::abs(one / radius({}) - 1.0), 1e-6);
+  EXPECT_NEAR(radius({{i_image, j}}) / one, 1.0, 1e-12);
+  EXPECT_NEAR(radius({{i, j_image}}) / one, 1.0, 1e-12);
+  EXPECT_NEAR(radius({{i_image, j_image}}) / one, 1.0, 1e-12);
+  EXPECT_NEAR(radius({{i, j_image}, {i_image, j_image}}) / along1, 1.0, 1e-12);
+  EXPECT_NEAR(radius({{i_image, j}, {i_image, j_image}}) / along2, 1.0, 1e-12);
+}
+
+/// Slip that began within the stick area: the law's root lies there, and is believed up to half a cell.
+TEST(StickFront, IsNoFurtherFromTheCountedOneThanHalfACell) {
+  constexpr Index n = 128;
+  for (const double cells : {0.4, 0.6}) {
+    const double inward = cells * 2.0 / n;
+    Fields law = sample({.a = 0.5 - inward, .b = 0.5 - inward, .ring = 0.8 / (0.5 - inward)}, n);
+    law.stick = sample({}, n).stick;
+    const StickFront front = law.front();
+    EXPECT_EQ(front.radius == front.counted_radius, cells > 0.5);
+    if (cells < 0.5) EXPECT_NEAR(front.radius, 0.5 - inward, 0.02 * inward / cells);
   }
 }
 

@@ -1,0 +1,60 @@
+// What a checkpoint keeps, and that it is refused when a bit of it has changed.
+
+#include "convergence/solve/checkpoint.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "solver/history_state.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/input/input_file.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+class CheckpointFile : public testing::Test {
+ protected:
+  CheckpointFile() {
+    state_.contact.pressure = Eigen::ArrayXd::LinSpaced(4, 1.0, 4.0);
+    state_.contact.traction = Eigen::ArrayXd::LinSpaced(8, 5.0, 12.0);
+    state_.contact.slip = Eigen::ArrayXd::LinSpaced(8, 13.0, 20.0);
+    state_.normal.safeguards = {1, 2, 3, 4, "the first"};
+    checkpoint_.write(state_, Json::array());
+  }
+  ~CheckpointFile() override { std::filesystem::remove(file_); }
+
+  const std::filesystem::path file_ = std::filesystem::path(testing::TempDir()) /
+                                      ("slipstick-checkpoint-" + std::to_string(getpid()) + ".h5");
+  const Checkpoint checkpoint_{file_, prepare_run({.scene = SLIPSTICK_SCENES "/paper.toml"})};
+  solver::HistoryState state_;
+};
+
+TEST_F(CheckpointFile, KeepsEachSafeguardsCount) {
+  const solver::Safeguards kept = checkpoint_.read()->state->normal.safeguards;
+  EXPECT_EQ(kept.second_solves, 1);
+  EXPECT_EQ(kept.halvings, 2);
+  EXPECT_EQ(kept.gradient_steps, 3);
+  EXPECT_EQ(kept.breakdowns, 4);
+  EXPECT_EQ(kept.breakdown, "the first");
+}
+
+// The last bit of one value of any field.
+TEST_F(CheckpointFile, IsRefusedWithAnotherBit) {
+  const std::string whole = solver::read_input_file(file_, 1 << 20, "a checkpoint");
+  for (const double value : {3.0, 7.0, 15.0}) {
+    const std::string bytes(reinterpret_cast<const char*>(&value), sizeof value);
+    ASSERT_NE(whole.find(bytes), std::string::npos);
+    std::string other = whole;
+    other[whole.find(bytes)] ^= 1;
+    std::ofstream(file_, std::ios::binary) << other;
+    EXPECT_THROW(checkpoint_.read(), solver::InputError) << value;
+  }
+}
+
+}  // namespace
+}  // namespace slipstick::convergence
