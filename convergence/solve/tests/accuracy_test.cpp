@@ -1,4 +1,4 @@
-// How --accuracy chooses, what it reaches, and that it says so: on made data, in solves, by the program.
+// How --accuracy chooses, what it reaches, and that it says so: on made data and in solves.
 
 #include "convergence/solve/accuracy.hpp"
 
@@ -12,7 +12,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "convergence/programs/tests/program_run.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/solve/accurate_solve.hpp"
 #include "convergence/solve/reached.hpp"
@@ -28,26 +27,11 @@ using convergence::AccuracyOf;
 using convergence::AccuracyTarget;
 using convergence::ContactOnGrid;
 using convergence::Json;
-using testing::AllOf;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-const std::string kScenes = SLIPSTICK_SCENES;
-
-ProgramRun solve(const std::string& scene, const std::string& arguments) {
-  return run_program_with("solve " + kScenes + "/" + scene + ".toml " + arguments);
-}
-
-Json solved(const std::string& scene, const std::string& arguments, int exit_code = 0) {
-  const ProgramRun out = solve(scene, arguments + " --json -");
-  EXPECT_EQ(out.exit_code, exit_code) << out.output;
-  Json result = Json::parse(out.output, nullptr, false);
-  EXPECT_FALSE(result.is_discarded()) << out.output;
-  return result;
-}
-
 solver::Scene scene(const std::string& name, const std::vector<std::string>& overrides = {}) {
-  return solver::read_scene(fs::path(kScenes) / (name + ".toml"), overrides);
+  return solver::read_scene(fs::path(SLIPSTICK_SCENES) / (name + ".toml"), overrides);
 }
 
 /// Errors 1/cells^order.
@@ -185,71 +169,6 @@ TEST(Accuracy, SaysWhichGridWouldDoInstead) {
       HasSubstr(fmt::format("it would take {} x {} cells", cells[0].get<int>(), cells[1].get<int>())));
 }
 
-TEST(Accuracy, IsReachedOnGridsOfThePapersScene) {
-  for (const double wanted : {1e-2, 1e-3, 1e-4}) {
-    for (const double ratio : {0.5, 0.9}) {
-      const Json result = solved("paper", "--model auto --accuracy " + std::to_string(wanted) +
-                                              " --set load.moment_ratio=" + std::to_string(ratio));
-      EXPECT_LE(std::abs(result["twist_error"].get<double>()), wanted);
-      EXPECT_EQ(result["accuracy"]["reached"], std::abs(result["twist_error"].get<double>()));
-      EXPECT_EQ(result["accuracy"]["how"], "exact");
-      EXPECT_EQ(result["accuracy"]["wanted"], wanted);
-      EXPECT_LE(result["accuracy"]["attempts"].size(), 2U);  // such loads are those that meshes are chosen by
-      EXPECT_EQ(result["accuracy"]["attempts"].back()["cells"], result["cells"]);
-      EXPECT_GT(result["accuracy"]["predicted_seconds"].get<double>(), 0.0);
-    }
-  }
-}
-
-TEST(Accuracy, OfTractionsAndStickRadiusIsReached) {
-  const Json traction = solved("paper", "--model auto --accuracy 1e-2 --accuracy-of traction");
-  EXPECT_LE(traction["traction_error"]["l2"].get<double>(), 1e-2);
-  const Json stick = solved("paper", "--model auto --accuracy 1e-2 --accuracy-of stick_radius");
-  EXPECT_LE(std::abs(stick["stick_radius_error"].get<double>()), 1e-2);
-  EXPECT_EQ(stick["accuracy"]["quantity"], "stick_radius");
-}
-
-TEST(Accuracy, OfAnImposedTwistIsThatOfTheMoment) {
-  const Json result = solved("paper", "--model auto --accuracy 1e-3 --set load.twist=2e-3");
-  EXPECT_EQ(result["accuracy"]["quantity"], "moment");
-  EXPECT_EQ(result["accuracy"]["reached"], std::abs(result["moment_error"].get<double>()));
-  EXPECT_LE(result["accuracy"]["reached"].get<double>(), 1e-3);
-}
-
-TEST(Accuracy, OfAHistoryIsThatOfItsLastStep) {
-  const Json result = solved("fretting_torsion", "--model auto --accuracy 1e-2");
-  EXPECT_EQ(result["accuracy"]["reached"], std::abs(result["steps"].back()["twist_error"].get<double>()));
-}
-
-TEST(Accuracy, NeedsNoGridWhereThereIsAnExactAnswer) {
-  const Json result = solved("paper", "--accuracy 1e-9");
-  EXPECT_EQ(result["method"], "exact");
-  EXPECT_LE(result["accuracy"]["reached"].get<double>(), 1e-9);
-  EXPECT_TRUE(result["accuracy"]["grid_instead"].is_null());  // no grid gets there, and the reason is said
-  EXPECT_GT(solved("paper", "--accuracy 1e-3")["accuracy"]["grid_instead"]["seconds"].get<double>(), 0.0);
-  EXPECT_THAT(solve("paper", "--accuracy 1e-3").output, HasSubstr("on a grid"));
-  // Unless the user says that it be on a grid.
-  EXPECT_EQ(solved("paper", "--accuracy 1e-2 --set solver.model=full")["method"], "coulomb");
-  EXPECT_EQ(solve("paper", "--accuracy 1e-16").exit_code, 2);
-}
-
-/// Of an ellipse no exact twist is known: the estimate holds against a mesh three times as fine, and as many
-/// times the parts of the step.
-TEST(Accuracy, IsEstimatedOnAnEllipse) {
-  for (const double wanted : {1e-2, 1e-3}) {
-    const Json result = solved("ellipse", "--accuracy " + std::to_string(wanted));
-    solver::Scene finer =
-        scene("ellipse",
-              {convergence::cells_override(scene("ellipse"), 3 * result["cells"][0].get<solver::Index>())});
-    finer.substeps = 3 * result["accuracy"]["substeps"].get<int>();
-    const Json fine = convergence::solve_scene(finer).result;
-    const double error = result["twist_angle"].get<double>() / fine["twist_angle"].get<double>() - 1.0;
-    EXPECT_EQ(result["accuracy"]["how"], "estimated");
-    EXPECT_LE(result["accuracy"]["reached"].get<double>(), wanted);
-    EXPECT_LE(std::abs(error), result["accuracy"]["reached"].get<double>());
-  }
-}
-
 /// The sphere as if it had no exact answer: the estimate is above the error, and not by orders.
 TEST(Accuracy, IsEstimatedFromTwoMeshesAboveTheErrorThatIsThere) {
   const solver::Scene at = scene("paper", {"grid.cells=[64,64]"});
@@ -333,73 +252,6 @@ TEST(Accuracy, ThatIsNoNumberIsNeverReached) {
   EXPECT_FALSE(found.reached);
   EXPECT_EQ(solves, 1);
   EXPECT_TRUE(found.accuracy["reached"].is_null());
-}
-
-TEST(Accuracy, ThatCannotBeAskedForIsExitCode2) {
-  const auto refused = [](const std::string& name, const std::string& arguments, const std::string& says) {
-    const ProgramRun out = solve(name, arguments);
-    EXPECT_EQ(out.exit_code, 2) << arguments;
-    EXPECT_THAT(out.output, HasSubstr(says));
-  };
-  for (const char* error : {"0", "-1e-3", "nan", "2", "inf"}) {
-    refused("paper", "--accuracy " + std::string(error), "above 0 and below 1");
-  }
-  refused("paper", "--accuracy 1e-9 --model auto", "allowed on a grid");
-  refused("paper", "--accuracy 1e-3 --set grid.cells=[64,64]", "--set grid.cells=[64,64]");
-  refused("paper", "--accuracy 1e-3 --set solver.tolerance=1e-6", "left out beside --accuracy");
-  refused("paper", "--accuracy 1e-3 --model auto --set solver.method=paper", "solver.method");
-  refused("paper", "--accuracy 1e-3 --accuracy-of moment", "moment");
-  refused("mindlin", "--accuracy 1e-3 --model auto", "no torsion");
-  refused("honed_surface", "--accuracy 1e-3", "the grid is that of upper.file");
-}
-
-// A contact of millimetres in a square metre: no mesh that resolves it over all of that has an end.
-TEST(Accuracy, NeedsAnExtentInWhichTheContactIsSeen) {
-  const auto is_refused =
-      AllOf(HasSubstr("grid.extent = [1, 1]"), HasSubstr("less than one of [64, 64] cells"));
-  for (const char* options : {"--accuracy 0.1", "--accuracy 0.1 --plan", "--set grid.cells=[64,64]"}) {
-    const ProgramRun out = solve("turned_ellipse", std::string(options) + " --set 'grid.extent=[1, 1]'");
-    EXPECT_EQ(out.exit_code, 2) << options;
-    EXPECT_THAT(out.output, is_refused) << options;
-  }
-  // How large the contact of a sum will be is known after a solve alone.
-  const ProgramRun rough = solve("patches", "--accuracy 0.1 --set 'grid.extent=[1, 1]'");
-  EXPECT_EQ(rough.exit_code, 2);
-  EXPECT_THAT(rough.output,
-              AllOf(HasSubstr("grid.extent = [1, 1]"), HasSubstr("too few to choose a mesh by")));
-}
-
-TEST(Accuracy, SaysWhatItReplaces) {
-  const ProgramRun out = solve("paper", "--accuracy 1e-2 --model auto");
-  EXPECT_THAT(out.output,
-              AllOf(HasSubstr("replaced"), HasSubstr("grid.cells = [128, 128]"), HasSubstr("attempt")));
-}
-
-TEST(Plan, PredictsWhatASolveTakesAndStops) {
-  const std::string size = "--set grid.cells=[48,48] ";
-  const Json plan = solved("paper", size + "--plan");
-  const Json result = solved("paper", size);
-  EXPECT_FALSE(plan.contains("status"));
-  EXPECT_EQ(plan["plan"]["cells"], result["cells"]);
-  EXPECT_EQ(plan["plan"]["bytes"], result["predicted_bytes"]);
-  EXPECT_GT(plan["plan"]["seconds"].get<double>(), 0.0);
-  // Two tractions in each contact cell, an eighth of them: two mirror axes and the diagonal.
-  EXPECT_NEAR(plan["plan"]["unknowns"].get<double>(), result["contact_cells"].get<double>() / 4.0, 10.0);
-}
-
-TEST(Plan, OfAnAccuracyIsThatOfTheFirstAttempt) {
-  const Json plan = solved("paper", "--model auto --accuracy 1e-2 --plan");
-  const Json result = solved("paper", "--model auto --accuracy 1e-2");
-  EXPECT_EQ(plan["plan"]["cells"], result["accuracy"]["attempts"][0]["cells"]);
-  EXPECT_EQ(plan["plan"]["tolerance"], result["accuracy"]["attempts"][0]["tolerance"]);
-}
-
-TEST(Plan, HoldsForScenesOfAllKinds) {
-  for (const char* name : {"honed_surface", "unequal_patches", "fretting_force", "dissimilar"}) {
-    EXPECT_GT(solved(name, "--plan")["plan"]["bytes"].get<double>(), 0.0) << name;
-  }
-  EXPECT_TRUE(solved("paper", "--plan --model exact")["plan"]["cells"].is_null());
-  EXPECT_TRUE(solved("paper", "--plan --set solver.method=paper")["plan"]["seconds"].is_null());
 }
 
 }  // namespace

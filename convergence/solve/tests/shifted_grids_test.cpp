@@ -3,7 +3,6 @@
 #include "convergence/solve/shifted_grids.hpp"
 
 #include <fmt/core.h>
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -12,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "convergence/programs/tests/program_run.hpp"
 #include "convergence/solve/accurate_solve.hpp"
 #include "solver/scene/scene.hpp"
 #include "solver/solve.hpp"
@@ -24,7 +22,6 @@ using convergence::AccuracyOf;
 using convergence::ContactForm;
 using convergence::Json;
 using convergence::kShiftedGrids;
-using testing::HasSubstr;
 
 solver::Scene shifted_scene(const std::string& name, const std::vector<std::string>& overrides = {}) {
   return solver::read_scene(std::filesystem::path(SLIPSTICK_SCENES) / (name + ".toml"), overrides);
@@ -150,26 +147,6 @@ TEST(ShiftedGrids, AreForNumbersOfContactsThatEndSmoothlyOnGridsThatAreFree) {
   EXPECT_FALSE(take("paper", {}, AccuracyOf::stick_radius));
   EXPECT_TRUE(gains_by_smooth_cells(shifted_scene("paper"), AccuracyOf::stick_radius));
   EXPECT_FALSE(gains_by_smooth_cells(shifted_scene("flat_punch"), AccuracyOf::stick_radius));
-}
-
-// What shifting the grids, and smooth cell tractions, are for: an error far below that of one grid.
-TEST(ShiftedGrids, ReachFiveDigitsOfThePapersTwistOnSmallGrids) {
-  for (const char* ratio : {"0.5", "0.9"}) {
-    const ProgramRun out = run_program_with(std::string("solve ") + SLIPSTICK_SCENES +
-                                            "/paper.toml --model auto --accuracy 1e-5 " +
-                                            "--set load.moment_ratio=" + ratio + " --json -");
-    EXPECT_EQ(out.exit_code, 0) << out.output;
-    const Json result = Json::parse(out.output, nullptr, false);
-    EXPECT_LE(std::abs(result["twist_error"].get<double>()), 1e-5);
-    EXPECT_LE(result["cells"][0], 200);
-    EXPECT_EQ(result["cell_traction"], "smooth");
-    EXPECT_EQ(result["accuracy"]["attempts"][0]["grids"].size(), static_cast<std::size_t>(kShiftedGrids));
-    EXPECT_LE(result["accuracy"]["uncertainty"].get<double>(), 1e-5);
-  }
-  const ProgramRun text =
-      run_program_with(std::string("solve ") + SLIPSTICK_SCENES + "/ellipse.toml --accuracy 1e-3");
-  EXPECT_THAT(text.output, HasSubstr("uncertainty"));
-  EXPECT_THAT(text.output, HasSubstr("of the 4 grids whose mean it is"));
 }
 
 // Four grids of a slender contact err alike, since its stick area is no small copy of it.

@@ -1,0 +1,137 @@
+#!/usr/bin/env python3
+"""program_accuracy_test.py PROGRAM: what `slipstick solve --accuracy` reaches and says, and what --plan predicts."""
+
+import itertools
+import sys
+from pathlib import Path
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
+from program_run import SCENES, ProgramTest, main
+
+GRIDS = 4  # whose mean a number is on shifted grids
+
+
+def command(scene, words):
+    return ["solve", str(SCENES / f"{scene}.toml"), *words.split()]
+
+
+class Solve(ProgramTest):
+    def solved(self, scene, words):
+        return self.result(*command(scene, words))
+
+    def text(self, scene, words, **expected):
+        return self.run_program(*command(scene, words), **expected)
+
+
+class Accuracy(Solve):
+    def test_is_reached_on_grids_of_the_papers_scene(self):
+        for wanted, ratio in itertools.product((1e-2, 1e-3, 1e-4), (0.5, 0.9)):
+            result = self.solved("paper", f"--model auto --accuracy {wanted} --set load.moment_ratio={ratio}")
+            accuracy = result["accuracy"]
+            self.assertLessEqual(abs(result["twist_error"]), wanted)
+            self.assertEqual((accuracy["reached"], accuracy["how"], accuracy["wanted"]),
+                             (abs(result["twist_error"]), "exact", wanted))
+            self.assertLessEqual(len(accuracy["attempts"]), 2)  # such loads are those that meshes are chosen by
+            self.assertEqual(accuracy["attempts"][-1]["cells"], result["cells"])
+            self.assertGreater(accuracy["predicted_seconds"], 0)
+
+    def test_shifted_grids_reach_five_digits_of_the_papers_twist_on_small_grids(self):
+        for ratio in (0.5, 0.9):
+            result = self.solved("paper", f"--model auto --accuracy 1e-5 --set load.moment_ratio={ratio}")
+            self.assertLessEqual(abs(result["twist_error"]), 1e-5)
+            self.assertLessEqual(result["cells"][0], 200)
+            self.assertEqual(result["cell_traction"], "smooth")
+            self.assertEqual(len(result["accuracy"]["attempts"][0]["grids"]), GRIDS)
+            self.assertLessEqual(result["accuracy"]["uncertainty"], 1e-5)
+        self.text("ellipse", "--accuracy 1e-3", says=["uncertainty", f"of the {GRIDS} grids whose mean it is"])
+
+    def test_of_tractions_and_stick_radius_is_reached(self):
+        traction = self.solved("paper", "--model auto --accuracy 1e-2 --accuracy-of traction")
+        self.assertLessEqual(traction["traction_error"]["l2"], 1e-2)
+        stick = self.solved("paper", "--model auto --accuracy 1e-2 --accuracy-of stick_radius")
+        self.assertLessEqual(abs(stick["stick_radius_error"]), 1e-2)
+        self.assertEqual(stick["accuracy"]["quantity"], "stick_radius")
+
+    def test_of_an_imposed_twist_is_that_of_the_moment(self):
+        result = self.solved("paper", "--model auto --accuracy 1e-3 --set load.twist=2e-3")
+        self.assertEqual(result["accuracy"]["quantity"], "moment")
+        self.assertEqual(result["accuracy"]["reached"], abs(result["moment_error"]))
+        self.assertLessEqual(result["accuracy"]["reached"], 1e-3)
+
+    def test_of_a_history_is_that_of_its_last_step(self):
+        result = self.solved("fretting_torsion", "--model auto --accuracy 1e-2")
+        self.assertEqual(result["accuracy"]["reached"], abs(result["steps"][-1]["twist_error"]))
+
+    def test_needs_no_grid_where_there_is_an_exact_answer(self):
+        result = self.solved("paper", "--accuracy 1e-9")
+        self.assertEqual(result["method"], "exact")
+        self.assertLessEqual(result["accuracy"]["reached"], 1e-9)
+        self.assertIsNone(result["accuracy"]["grid_instead"])  # no grid gets there, and the reason is said
+        self.assertGreater(self.solved("paper", "--accuracy 1e-3")["accuracy"]["grid_instead"]["seconds"], 0)
+        self.text("paper", "--accuracy 1e-3", says="on a grid")
+        # Unless the user says that it be on a grid.
+        self.assertEqual(self.solved("paper", "--accuracy 1e-2 --set solver.model=full")["method"], "coulomb")
+
+    def test_is_estimated_on_an_ellipse(self):
+        # No exact twist is known: the estimate holds against a mesh and a path that are three times as fine.
+        for wanted in ("1e-2", "1e-3"):
+            result = self.solved("ellipse", f"--accuracy {wanted}")
+            accuracy = result["accuracy"]
+            cells = ",".join(str(3 * n) for n in result["cells"])
+            fine = self.solved("ellipse", f"--set grid.cells=[{cells}] --set solver.substeps={3 * accuracy['substeps']}")
+            self.assertEqual(accuracy["how"], "estimated")
+            self.assertLessEqual(accuracy["reached"], float(wanted))
+            self.assertLessEqual(abs(result["twist_angle"] / fine["twist_angle"] - 1), accuracy["reached"])
+
+    def test_that_cannot_be_asked_for_is_refused(self):
+        for scene, words, *says in (
+                *(("paper", f"--accuracy {error}", "above 0 and below 1") for error in ("0", "-1e-3", "nan", "2", "inf")),
+                ("paper", "--accuracy 1e-16"), ("paper", "--accuracy 1e-9 --model auto", "allowed on a grid"),
+                ("paper", "--accuracy 1e-3 --set grid.cells=[64,64]", "--set grid.cells=[64,64]"),
+                ("paper", "--accuracy 1e-3 --set solver.tolerance=1e-6", "left out beside --accuracy"),
+                ("paper", "--accuracy 1e-3 --model auto --set solver.method=paper", "solver.method"),
+                ("paper", "--accuracy 1e-3 --accuracy-of moment", "moment"),
+                ("mindlin", "--accuracy 1e-3 --model auto", "no torsion"),
+                ("honed_surface", "--accuracy 1e-3", "the grid is that of upper.file"),
+                # A contact of millimetres in a square metre: no mesh that resolves it over all of that has an end.
+                *(("turned_ellipse", f"{words} --set grid.extent=[1,1]", "grid.extent = [1, 1]",
+                   "less than one of [64, 64] cells")
+                  for words in ("--accuracy 0.1", "--accuracy 0.1 --plan", "--set grid.cells=[64,64]")),
+                # How large the contact of a sum will be is known after a solve alone.
+                ("patches", "--accuracy 0.1 --set grid.extent=[1,1]", "grid.extent = [1, 1]",
+                 "too few to choose a mesh by")):
+            self.text(scene, words, code=2, says=says)
+
+    def test_says_what_it_replaces(self):
+        self.text("paper", "--accuracy 1e-2 --model auto", says=["replaced", "grid.cells = [128, 128]", "attempt"])
+
+    def test_bad_uncertain_inputs_are_refused(self):
+        self.text("paper", "--model exact --uncertain fricton=5%", code=2, says="contact.friction")
+
+
+class Plan(Solve):
+    def test_predicts_what_a_solve_takes_and_stops(self):
+        size = "--set grid.cells=[48,48]"
+        found = self.solved("paper", f"{size} --plan")
+        plan, result = found["plan"], self.solved("paper", size)
+        self.assertNotIn("status", found)
+        self.assertEqual((plan["cells"], plan["bytes"]), (result["cells"], result["predicted_bytes"]))
+        self.assertGreater(plan["seconds"], 0)
+        # Two tractions in each contact cell, an eighth of them: two mirror axes and the diagonal.
+        self.assertAlmostEqual(plan["unknowns"], result["contact_cells"] / 4, delta=10)
+
+    def test_of_an_accuracy_is_that_of_the_first_attempt(self):
+        words = "--model auto --accuracy 1e-2"
+        plan, attempt = self.solved("paper", f"{words} --plan")["plan"], self.solved("paper", words)["accuracy"]["attempts"][0]
+        for key in ("cells", "tolerance"):
+            self.assertEqual(plan[key], attempt[key])
+
+    def test_holds_for_scenes_of_all_kinds(self):
+        for scene in ("honed_surface", "unequal_patches", "fretting_force", "dissimilar"):
+            self.assertGreater(self.solved(scene, "--plan")["plan"]["bytes"], 0, scene)
+        self.assertIsNone(self.solved("paper", "--plan --model exact")["plan"]["cells"])
+        self.assertIsNone(self.solved("paper", "--plan --set solver.method=paper")["plan"]["seconds"])
+
+
+if __name__ == "__main__":
+    main()
