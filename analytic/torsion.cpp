@@ -84,7 +84,10 @@ double solve(double value, double start, double high, Function f) {
     if (astray) next = low > 0 ? std::sqrt(low) * std::sqrt(high) : high / 16;
     x = next;
   }
-  throw std::runtime_error(fmt::format("no root found for {}: last at {}", value, x));
+  throw std::domain_error(
+      fmt::format("no root found for {}: last at {}, where doubles lose digits; allowed: further from the "
+                  "end of the range",
+                  value, x));
 }
 
 /// dM/d(c^3) is -(8/9) f with f = -c H': M over M_lim as a power series begins with this slope at c = 1.
