@@ -105,7 +105,8 @@ class Hertz final : public Profile {
   /// Eq. (1)'s bracket is Heuman's Lambda function; with Carlson's R_J it is one term, nothing to cancel.
   double stick_traction(StickRadius c, double r, double inward) const override {
     const auto [inside, rim] = analytic::rim(c, r, inward);
-    if (c.ratio < kTiny) return 2 / pi * std::atan2(r, std::sqrt(inside));  // (2/pi) arcsin(r/c)
+    if (c.ratio < kTiny)
+      return 2 / pi * std::atan2(r, std::sqrt(inward) * std::sqrt(c.ratio + r));  // (2/pi) arcsin(r/c)
     return 2 / (3 * pi) * r * std::sqrt(inside) * squared_modulus(c) / rim *
            carlson_rj(0, c.ratio * c.ratio, 1, inside / rim);
   }
@@ -167,7 +168,7 @@ class Cone final : public Profile {
     constexpr double kReach = 2;        // and reaches so many times the distance to what is singular
     static const gsl::GaussRule rule(20);
 
-    const double depth = std::sqrt(inward * (c.ratio + r));
+    const double depth = std::sqrt(inward) * std::sqrt(c.ratio + r);  // the product may underflow
     const double rim = std::sqrt((inward + c.complement) * (1 + r));
     const double rising = c.ratio + depth;  // s = (rising e^u + r^2/rising e^-u)/2 from u = 0 at s = c
     const double falling = r * (r / rising);
@@ -222,7 +223,8 @@ class FlatPunch final : public Profile {
   /// Legendre's Pi, complete, by Carlson's integrals (DLMF 19.25.2).
   double stick_traction(StickRadius c, double r, double inward) const override {
     const auto [inside, rim] = analytic::rim(c, r, inward);
-    if (c.ratio < kTiny) return 2 / pi * std::atan2(r, std::sqrt(inside));  // (2/pi) arcsin(r/c)
+    if (c.ratio < kTiny)
+      return 2 / pi * std::atan2(r, std::sqrt(inward) * std::sqrt(c.ratio + r));  // (2/pi) arcsin(r/c)
     const double rj = carlson_rj(0, c.ratio * c.ratio, 1, inside / rim);
     return 2 / pi * r * std::sqrt(inside) / rim *
            (complete_elliptic(c.ratio).k + squared_modulus(c) / (3 * rim) * rj);

@@ -35,7 +35,7 @@ double twist_gain(const Profile& profile, StickRadius c, StickRadius s) {
 
 /// integral_c^1 s^2 (H(c) - H(s)) weight(s) ds.
 template <class Weight>
-double slip_integral(const Profile& profile, StickRadius c, Weight weight) {
+double slip_integral(const Profile& profile, StickRadius c, double relative, Weight weight) {
   if (c.complement == 0) return 0;
   // s = 1 - (1 - c) t keeps the digits of 1 - s, and the gain over H(c) those of the smallest loads.
   const double deep = profile.twist_integral(c);
@@ -44,7 +44,7 @@ double slip_integral(const Profile& profile, StickRadius c, Weight weight) {
         const StickRadius s{.ratio = (1 - t) + c.ratio * t, .complement = c.complement * t};
         return s.ratio * s.ratio * (twist_gain(profile, c, s) / deep) * weight(s);
       },
-      0, 1);
+      0, 1, relative);
   return integral * deep * c.complement;
 }
 
@@ -56,7 +56,7 @@ StickRadius stick_radius(const TorsionState& state) {
 /// M = (8/3) mu (c^3 H(c) + 3 integral_c^1 s^2 H(s) ds), and the difference of the two is one integral.
 double slip_twist(const TorsionState& state, const Profile& profile) {
   return 3 / (2 * profile.load()) *
-         slip_integral(profile, stick_radius(state), [](StickRadius) { return 1.0; });
+         slip_integral(profile, stick_radius(state), 1e-14, [](StickRadius) { return 1.0; });
 }
 
 }  // namespace
@@ -148,9 +148,9 @@ double energy_lost_per_cycle(double moment_ratio, const Profile& profile) {
 
 /// The loop's area is 8 integral M dphi - 4 M phi over the first loading, which cancels; with M as in
 /// slip_twist, and by parts, (16/load^2) integral_c^1 s^2 H(s) (H(c) - H(s)) ds, which does not.
-double energy_lost_per_cycle(const TorsionState& state, const Profile& profile) {
+double energy_lost_per_cycle(const TorsionState& state, const Profile& profile, double relative) {
   return 16 / (profile.load() * profile.load()) *
-         slip_integral(profile, stick_radius(state),
+         slip_integral(profile, stick_radius(state), relative,
                        [&](StickRadius s) { return profile.twist_integral(s); });
 }
 

@@ -77,8 +77,10 @@ std::vector<CycleState> loading_curve(const std::vector<double>& turning_points,
 /// plus what an ulp of the argument costs. Zero while everything sticks, as under a flat punch up to its
 /// full_stick().
 double energy_lost_per_cycle(double moment_ratio, const Profile& profile = hertz_profile());
-/// The same by the state of first loading, for those that a ratio does not resolve.
-double energy_lost_per_cycle(const TorsionState& state, const Profile& profile = hertz_profile());
+/// The same by the state of first loading, for those that a ratio does not resolve; to a relative error, of
+/// which a larger one takes a table's profile a tenth of the time.
+double energy_lost_per_cycle(const TorsionState& state, const Profile& profile = hertz_profile(),
+                             double relative = 1e-14);
 
 /// What energy_lost_per_cycle tends to for small moments: (9/64) (W/(p0 a^2))/(-H'(1)) (M/(mu W a))^3, for a
 /// sphere (3/16) (M/(mu W a))^3; the cube of the amplitude is Deresiewicz's result (1954). Throws

@@ -83,9 +83,8 @@ double root(const std::function<double(double)>& f, double low, double high) {
   return gsl_root_fsolver_root(solver.get());
 }
 
-double integral(const std::function<double(double)>& f, double low, double high) {
+double integral(const std::function<double(double)>& f, double low, double high, double relative) {
   constexpr std::size_t kIntervals = 200;
-  constexpr double kRelative = 1e-14;  // an interval at the rounding of f is dropped before this is missed
 
   turn_abort_handler_off();
   Callback callback(f);
@@ -94,7 +93,7 @@ double integral(const std::function<double(double)>& f, double low, double high)
       own(gsl_integration_cquad_workspace_alloc(kIntervals), gsl_integration_cquad_workspace_free);
   double result = 0;
   const int status =
-      gsl_integration_cquad(&function, low, high, 0, kRelative, workspace.get(), &result, nullptr, nullptr);
+      gsl_integration_cquad(&function, low, high, 0, relative, workspace.get(), &result, nullptr, nullptr);
   callback.rethrow();
   check(status);
   return result;

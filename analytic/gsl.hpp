@@ -28,9 +28,9 @@ double evaluate(Function* function, Arguments... arguments) {
 /// The root of f in [low, high], to the last digits, by Brent's method. f must change sign there.
 double root(const std::function<double(double)>& f, double low, double high);
 
-/// The integral of f over [low, high] by doubly adaptive quadrature, as accurately as the rounding of f
-/// allows.
-double integral(const std::function<double(double)>& f, double low, double high);
+/// The integral of f over [low, high] by doubly adaptive quadrature, to a relative error, or as accurately as
+/// the rounding of f allows.
+double integral(const std::function<double(double)>& f, double low, double high, double relative = 1e-14);
 
 /// Gauss's rule, exact for degree 2 points - 1.
 class GaussRule {

@@ -84,7 +84,10 @@ double solve(double value, double start, double high, Function f) {
     if (astray) next = low > 0 ? std::sqrt(low) * std::sqrt(high) : high / 16;
     x = next;
   }
-  throw std::runtime_error(fmt::format("no root found for {}: last at {}", value, x));
+  throw std::domain_error(
+      fmt::format("no root found for {}: last at {}, where doubles lose digits; allowed: further from the "
+                  "end of the range",
+                  value, x));
 }
 
 /// dM/d(c^3) is -(8/9) f with f = -c H': M over M_lim as a power series begins with this slope at c = 1.
@@ -143,7 +146,8 @@ TorsionState from_moment_ratio(double moment_ratio, const Profile& profile) {
   if (moment_ratio >= 1)
     throw std::domain_error(
         fmt::format("M/M_lim = {} is gross slip; allowed: 0 <= M/M_lim < 1", moment_ratio));
-  if (!(moment_ratio >= 0)) out_of_range("M/M_lim", moment_ratio, "0 <= M/M_lim < 1");
+  if (!(moment_ratio == 0 || moment_ratio >= kMin))
+    out_of_range("M/M_lim", moment_ratio, "0, or 2.3e-308 <= M/M_lim < 1");
   // Beyond full stick 1 - M/M_lim is exact, and the share of slip has more digits than full stick's rest.
   const double excess = profile.full_stick() > 0 ? profile.slip_share() - (1 - moment_ratio) : moment_ratio;
   if (excess < 0) return fully_stuck(moment_ratio, 1 - moment_ratio, profile);

@@ -20,11 +20,11 @@ struct TorsionState {
 
 /// The state at a given load, stick radius or twist. Relative error of every member at most 8 eps for sphere,
 /// cone and flat punch, or 4 times what an ulp of the argument costs where that is more. Each throws
-/// std::domain_error, with the value and the range, outside moment_ratio in [0, 1), moment_deficit in
-/// [2.3e-308, 1], stick_ratio in [2.3e-308, 1], stick_complement in [0, 1), and for a twist below 0 or so
-/// large that the stick ratio underflows (sphere: 169). The deficit and the stiffness lose digits and
-/// underflow below c = 1e-102. A flat punch sticks everywhere up to full_stick(): its stick ratio is 1 at
-/// every load up to that one, and a stick ratio of 1 names the last of them.
+/// std::domain_error, with the value and the range, outside moment_ratio 0 or in [2.3e-308, 1),
+/// moment_deficit in [2.3e-308, 1], stick_ratio in [2.3e-308, 1], stick_complement in [0, 1), and for a twist
+/// below 0 or so large that the stick ratio underflows (sphere: 169). The deficit and the stiffness lose
+/// digits and underflow below c = 1e-102. A flat punch sticks everywhere up to full_stick(): its stick ratio
+/// is 1 at every load up to that one, and a stick ratio of 1 names the last of them.
 TorsionState from_moment_ratio(double moment_ratio, const Profile& profile = hertz_profile());
 TorsionState from_moment_deficit(double moment_deficit, const Profile& profile = hertz_profile());
 TorsionState from_stick_ratio(double stick_ratio, const Profile& profile = hertz_profile());

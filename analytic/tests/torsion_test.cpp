@@ -136,5 +136,13 @@ TEST(TorsionRange, RefusesWhatLiesOutside) {
   EXPECT_THROW(traction(from_stick_ratio(0.5), 1.1), std::domain_error);
 }
 
+/// Half way to the front of a tiny circle that sticks the traction is (2/pi) arcsin(1/2) of friction.
+TEST(TractionsOfTinyStickRadii, DoNotUnderflow) {
+  for (const double c : {1e-100, 1e-160, 1e-200, 1e-300}) {
+    EXPECT_NEAR(traction(from_stick_ratio(c), c / 2), 1.0 / 3, 1e-15) << c;
+  }
+  EXPECT_THROW(from_moment_ratio(5e-324), std::domain_error);
+}
+
 }  // namespace
 }  // namespace slipstick::analytic

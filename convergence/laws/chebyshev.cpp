@@ -17,8 +17,6 @@ constexpr std::size_t kNodes = 24;
 /// Points at which a piece is compared with the function.
 constexpr int kCompared = 40;
 
-double scale_of(double value, ErrorScale scale) { return scale == ErrorScale::one ? 1.0 : std::abs(value); }
-
 /// Interpolates at Chebyshev's points, the roots of the polynomial of degree kNodes.
 std::vector<double> interpolate(const std::function<double(double)>& f, double low, double high) {
   std::vector<double> values(kNodes);
@@ -49,13 +47,13 @@ void cut(std::vector<double>& coefficients, double allowed) {
   }
 }
 
-/// The largest error over its scale; infinite where f is not a number.
-double error_found(const ChebyshevPiece& piece, const std::function<double(double)>& f, ErrorScale scale) {
+/// The largest relative error; infinite where f is not a number.
+double error_found(const ChebyshevPiece& piece, const std::function<double(double)>& f) {
   double largest = 0.0;
   for (int i = 0; i < kCompared; ++i) {
     const double x = piece.low + (piece.high - piece.low) * (i + 0.5) / kCompared;
     const double value = f(x);
-    const double error = std::abs(piece(x) - value) / scale_of(value, scale);
+    const double error = std::abs(piece(x) / value - 1.0);
     largest = std::isfinite(error) ? std::max(largest, error) : INFINITY;
   }
   return largest;
@@ -88,7 +86,7 @@ std::size_t PiecewiseChebyshev::degree() const {
 }
 
 PiecewiseChebyshev fit_chebyshev(const std::function<double(double)>& f, const std::vector<double>& knots,
-                                 double tolerance, ErrorScale scale) {
+                                 double tolerance) {
   PiecewiseChebyshev fit;
   std::vector<std::pair<double, double>> left;  // the last is the leftmost
   for (std::size_t k = knots.size(); k-- > 1;) left.emplace_back(knots[k - 1], knots[k]);
@@ -96,10 +94,10 @@ PiecewiseChebyshev fit_chebyshev(const std::function<double(double)>& f, const s
     const auto [low, high] = left.back();
     left.pop_back();
     ChebyshevPiece piece{low, high, interpolate(f, low, high)};
-    const double least = std::min(scale_of(f(low + 1e-9 * (high - low)), scale), scale_of(f(high), scale));
+    const double least = std::min(std::abs(f(low + 1e-9 * (high - low))), std::abs(f(high)));
     cut(piece.coefficients, 0.25 * tolerance * least);
     const bool small = piece.coefficients.size() <= kMaxDegree + 1;
-    const double error = small ? error_found(piece, f, scale) : INFINITY;
+    const double error = small ? error_found(piece, f) : INFINITY;
     if (error <= 0.5 * tolerance) {
       fit.error = std::max(fit.error, error);
       fit.pieces.push_back(std::move(piece));

@@ -17,23 +17,20 @@ struct ChebyshevPiece {
 /// A function as polynomials on intervals that follow each other.
 struct PiecewiseChebyshev {
   std::vector<ChebyshevPiece> pieces;
-  double error = 0;  ///< the largest found, at points between those of the fit
+  double error = 0;  ///< the largest found, relative, at points between those of the fit
 
   /// Beyond either end the nearest piece goes on.
   double operator()(double x) const;
   std::size_t degree() const;  ///< the highest
 };
 
-/// What an error is measured by: the function's value, or 1.
-enum class ErrorScale { value, one };
-
 /// The highest degree of a piece.
 inline constexpr std::size_t kMaxDegree = 15;
 
 /// Fits f between the first and the last knot, with a piece's end at each knot and at halves between them
-/// where the tolerance asks for it; errors found are at most half the tolerance. Throws std::domain_error
-/// where 200 pieces do not reach it.
+/// where the tolerance asks for it; relative errors found are at most half the tolerance. Throws
+/// std::domain_error where 200 pieces do not reach it.
 PiecewiseChebyshev fit_chebyshev(const std::function<double(double)>& f, const std::vector<double>& knots,
-                                 double tolerance, ErrorScale scale);
+                                 double tolerance);
 
 }  // namespace slipstick::convergence

@@ -30,7 +30,8 @@ struct LawUnits {
 struct LawContact {
   std::string name;
   std::shared_ptr<const analytic::Profile> profile;
-  std::optional<LawUnits> units;  ///< none: dimensionless
+  std::optional<LawUnits> units;     ///< none: dimensionless
+  std::string prefix = "slipstick";  ///< of names in files: letters, digits and _, no digit first
 };
 
 /// The contact of a scene under its first normal load. Throws InputError, with the reason, for a scene whose

@@ -6,6 +6,7 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <regex>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -26,6 +27,7 @@ struct LawRequest {
   std::string scene;
   std::vector<std::string> overrides;
   std::string profile = "hertz";
+  std::string prefix = "slipstick";
   LawOptions options;
   std::vector<std::string> files;
 };
@@ -45,7 +47,9 @@ LawContact contact_of(const CLI::App& command, const LawRequest& request) {
 
 int run_law(const CLI::App& command, const LawRequest& request, std::ostream& text, Json& result) {
   for (const std::string& file : request.files) require_output("--write", file);
-  const ContactLaw law = make_contact_law(contact_of(command, request), request.options);
+  LawContact contact = contact_of(command, request);
+  contact.prefix = request.prefix;
+  const ContactLaw law = make_contact_law(contact, request.options);
   std::vector<std::string> texts;
   for (const std::string& file : request.files) texts.push_back(law_file(law, file));
   result = law_json(law);
@@ -82,8 +86,19 @@ std::function<int(std::ostream&, Json&)> add_law_command(CLI::App& app) {
       ->take_all()
       ->allow_extra_args(false);
   command
+      ->add_option(
+          "--prefix", request->prefix,
+          "begins the names in .h, .table and .inp, so that one program can take several laws; a name "
+          "in C")
+      ->check(CLI::Validator(
+          [](const std::string& word) {
+            return std::regex_match(word, std::regex("[A-Za-z_][A-Za-z0-9_]*")) ? "" : "allowed: a name in C";
+          },
+          "NAME"))
+      ->capture_default_str();
+  command
       ->add_option("--error", request->options.error,
-                   "relative, of moment and rotation in .h, .py and JSON; 1e-11 to 0.01")
+                   "relative, of moment, rotation and energy lost in .h, .py and JSON; 1e-11 to 0.01")
       ->capture_default_str();
   command
       ->add_option("--table-error", request->options.table_error, "over the limit, of the table; 1e-7 to 0.5")

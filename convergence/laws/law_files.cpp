@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <array>
+#include <cctype>
 
 #include "convergence/laws/program_parameters.hpp"
 #include "solver/input/input_error.hpp"
@@ -49,6 +50,12 @@ std::string law_file(const ContactLaw& law, const std::filesystem::path& path) {
   }
   throw solver::InputError(fmt::format("--write {}", path.string()),
                            "its ending says no format; allowed: .csv, .h, .py, .table, .inp, .xml, .sdf");
+}
+
+std::string capital_prefix_of(const ContactLaw& law) {
+  std::string prefix = law.contact.prefix;
+  for (char& letter : prefix) letter = static_cast<char>(std::toupper(static_cast<unsigned char>(letter)));
+  return prefix;
 }
 
 std::string law_heading(const ContactLaw& law, const std::string& before) {

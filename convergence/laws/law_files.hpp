@@ -16,12 +16,16 @@ std::string law_file(const ContactLaw& law, const std::filesystem::path& path);
 /// Its first lines, each with `before` in front: what the law is of, its units.
 std::string law_heading(const ContactLaw& law, const std::string& before);
 
+/// The prefix of the law's names, in capitals.
+std::string capital_prefix_of(const ContactLaw& law);
+
 std::string c_header(const ContactLaw& law);
 std::string python_module(const ContactLaw& law);
 
 /// Rows of first loading: rotation, moment, stick_ratio, tangent_stiffness, energy_lost_per_cycle.
 std::string csv_table(const ContactLaw& law);
-/// A section as LAMMPS' bond_style table reads them, energy and its negative derivative over the rotation.
+/// A section as LAMMPS' bond_style table reads them, energy and its negative derivative over the rotation, at
+/// equal steps: read with as many values as it has rows, LAMMPS takes these as they are.
 std::string lammps_table(const ContactLaw& law);
 /// Connector behaviours: nonlinear elastic first loading; the elements, elastic and plastic, in parallel.
 std::string abaqus_behaviours(const ContactLaw& law);

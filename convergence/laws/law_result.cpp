@@ -43,7 +43,9 @@ Json table_json(const ContactLaw& law) {
 }
 
 Json elements_json(const ContactLaw& law) {
-  Json json{{"error", law.elements.error}, {"loop_error", 3.0 * law.elements.error}};
+  Json json{{"error", law.elements.error},
+            {"loop_error", 3.0 * law.elements.error},
+            {"history_error", law.elements.history_error}};
   for (const auto& [stiffness, slip] : law.elements.elements) {
     json["stiffness"].push_back(stiffness * law.limit_moment() / law.rotation_unit());
     json["slip_moment"].push_back(slip * law.limit_moment());
@@ -107,6 +109,8 @@ Json law_json(const ContactLaw& law) {
                  {"last_twist", law.law.last_twist},
                  {"logarithm_per_twist", fit_json(law.law.logarithm)},
                  {"twist_per_logarithm", fit_json(law.law.twist)},
+                 {"first_logarithm", law.law.first_logarithm},
+                 {"loss_power", law.law.loss_power},
                  {"loss_factor", fit_json(law.law.loss_factor)}};
   json["table"] = table_json(law);
   json["elements"] = elements_json(law);
@@ -140,9 +144,10 @@ std::string law_text(const Json& r) {
                                      r["table"]["moment"].size(), r["table"]["error"].get<double>())) +
       text_line("elements",
                 fmt::format("{} in parallel: within {:.2g} of the limit on first loading, {:.2g} on "
-                            "loops",
+                            "loops between t and -t, {:.2g} after any rotations",
                             r["elements"]["stiffness"].size(), r["elements"]["error"].get<double>(),
-                            r["elements"]["loop_error"].get<double>())) +
+                            r["elements"]["loop_error"].get<double>(),
+                            r["elements"]["history_error"].get<double>())) +
       text_line("limit surface", fmt::format("{} loads; the ellipsoid through its ends is {} off",
                                              r["limit_surface"]["loads"].size(),
                                              percent(r["limit_surface"]["ellipsoid"]["error"]))) +

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <functional>
 #include <stdexcept>
 
@@ -15,6 +16,10 @@ namespace {
 using analytic::TorsionState;
 
 constexpr double kMinElementError = 1e-5;
+/// A file of some 10 MB.
+constexpr std::size_t kMaxEvenRows = 100000;
+/// Below that of 200 elements for each profile.
+constexpr double kMinCountedError = 1e-8;
 
 void require_error(double error, double least) {
   if (error >= least && error <= kMaxLineError) return;
@@ -77,16 +82,34 @@ Corner next_corner(const Corner& from, double stick_ratio, const TorsionState& l
   return {end.twist, std::min(1.0, end.moment_ratio + error)};
 }
 
-ParallelElements with_error(const analytic::Profile& profile, double error) {
+/// Of the lines' error, which falls and then rises between two corners, and falls behind the last.
+double total_variation(const std::vector<Corner>& corners, const analytic::Profile& profile) {
+  double sum = 0.0;
+  double from = 0.0;
+  for (std::size_t k = 1; k < corners.size(); ++k) {
+    const Corner& one = corners[k - 1];
+    const Corner& other = corners[k];
+    const double slope = (other.moment_ratio - one.moment_ratio) / (other.twist - one.twist);
+    const TorsionState state = touching(slope, profile);
+    const double least = one.moment_ratio + slope * (state.twist - one.twist) - state.moment_ratio;
+    const double to = other.moment_ratio - analytic::from_twist(other.twist, profile).moment_ratio;
+    sum += from + to - 2.0 * least;
+    from = to;
+  }
+  return sum + from;
+}
+
+/// Unless they are more than `most`: then so many and one more, which end too early.
+ParallelElements with_error(const analytic::Profile& profile, double error, std::size_t most = SIZE_MAX - 1) {
   const TorsionState last = analytic::from_moment_deficit(error, profile);
   std::vector<Corner> corners{{0.0, 0.0}};
-  for (double stick_ratio = 1.0; corners.back().moment_ratio < 1.0;) {
+  for (double stick_ratio = 1.0; corners.back().moment_ratio < 1.0 && corners.size() <= most + 1;) {
     if (corners.back().twist > 0.0) {
       stick_ratio = analytic::from_twist(corners.back().twist, profile).stick_ratio;
     }
     corners.push_back(next_corner(corners.back(), stick_ratio, last, error, profile));
   }
-  ParallelElements found{{}, error};
+  ParallelElements found{{}, error, total_variation(corners, profile)};
   const auto slope = [&](std::size_t k) {
     if (k == corners.size()) return 0.0;
     return (corners[k].moment_ratio - corners[k - 1].moment_ratio) /
@@ -123,6 +146,28 @@ StateTable tabulate(const analytic::Profile& profile, double error) {
   return table;
 }
 
+StateTable tabulate_evenly(const analytic::Profile& profile, double error) {
+  require_error(error, kMinLineError);
+  const TorsionState last = analytic::from_moment_deficit(error, profile);
+  double worst = INFINITY;
+  StateTable table{{}, error};
+  for (std::size_t steps = 32; worst > error;) {
+    if (steps > kMaxEvenRows) {
+      throw std::domain_error(fmt::format("more than {} even rows for an error of {}; allowed: a larger --table-error",
+                                          kMaxEvenRows, error));
+    }
+    table.rows = {analytic::from_moment_ratio(0.0, profile)};
+    worst = 0.0;
+    for (std::size_t i = 1; i <= steps; ++i) {
+      const double twist = last.twist * static_cast<double>(i) / static_cast<double>(steps);
+      table.rows.push_back(i == steps ? last : analytic::from_twist(twist, profile));
+      worst = std::max(worst, rise_above(table.rows[i - 1], table.rows[i], profile));
+    }
+    steps = static_cast<std::size_t>(1.1 * static_cast<double>(steps) * std::sqrt(worst / error)) + 1;
+  }
+  return table;
+}
+
 ParallelElements parallel_elements(const analytic::Profile& profile, double error) {
   require_error(error, kMinElementError);
   return with_error(profile, error);
@@ -132,12 +177,13 @@ ParallelElements parallel_elements(const analytic::Profile& profile, int count) 
   if (count < 1 || count > kMaxElements) {
     throw std::domain_error(fmt::format("{} elements; allowed: 1 to {}", count, kMaxElements));
   }
-  double low = std::log(kMinElementError);
+  double low = std::log(kMinCountedError);
   double high = std::log(kMaxLineError);
   constexpr int kHalvings = 30;
   for (int i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (low + high);
-    const bool few = with_error(profile, std::exp(middle)).elements.size() <= static_cast<std::size_t>(count);
+    const auto most = static_cast<std::size_t>(count);
+    const bool few = with_error(profile, std::exp(middle), most).elements.size() <= most;
     (few ? high : low) = middle;
   }
   return with_error(profile, std::exp(high));

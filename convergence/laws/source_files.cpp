@@ -65,7 +65,9 @@ std::string python_arrays(const std::string& name, const PiecewiseChebyshev& fit
 
 std::string source(const char* text, const ContactLaw& law, const std::string& heading,
                    std::vector<std::pair<std::string, std::string>> values) {
-  values.insert(values.end(), {{"@HEADING@", heading},
+  values.insert(values.end(), {{"@PREFIX@", law.contact.prefix},
+                               {"@CAPITALS@", capital_prefix_of(law)},
+                               {"@HEADING@", heading},
                                {"@ERROR@", fmt::format("{}", law.law.error)},
                                {"@LAST@", number(law.law.last_twist * law.rotation_unit())},
                                {"@LIMIT@", number(law.limit_moment())},
@@ -73,6 +75,8 @@ std::string source(const char* text, const ContactLaw& law, const std::string& h
                                {"@ROTATION_UNIT@", number(law.rotation_unit())},
                                {"@DEFICIT@", fmt::format("{}", kLastDeficit)},
                                {"@FULL_STICK@", number(law.law.full_stick)},
+                               {"@FIRST_LOGARITHM@", number(law.law.first_logarithm)},
+                               {"@LOSS_POWER@", number(law.law.loss_power)},
                                {"@PIECES_1@", fmt::format("{}", law.law.logarithm.pieces.size())},
                                {"@PIECES_2@", fmt::format("{}", law.law.twist.pieces.size())},
                                {"@PIECES_3@", fmt::format("{}", law.law.loss_factor.pieces.size())}});

@@ -19,9 +19,13 @@ struct LawRow {
   double energy;       ///< that went in on first loading: the loop of a cycle is that of Masing's rule
 };
 
+/// Relative, of energies in tables.
+constexpr double kLossError = 1e-10;
+
 LawRow law_row(const ContactLaw& law, const analytic::TorsionState& state) {
   const double unit = law.moment_unit() * law.rotation_unit();
-  const double lost = state.twist > 0.0 ? analytic::energy_lost_per_cycle(state, *law.contact.profile) : 0.0;
+  const double lost =
+      state.twist > 0.0 ? analytic::energy_lost_per_cycle(state, *law.contact.profile, kLossError) : 0.0;
   return {.rotation = state.twist * law.rotation_unit(),
           .moment = state.moment * law.moment_unit(),
           .energy_lost = lost * unit,
@@ -49,20 +53,27 @@ std::string csv_table(const ContactLaw& law) {
 
 std::string lammps_table(const ContactLaw& law) {
   const LammpsTwisting twisting = lammps_twisting(law);
+  const StateTable table = tabulate_evenly(*law.contact.profile, law.table.error);
+  const std::size_t count = table.rows.size();
   std::string text = law_heading(law, "# ");
   text += fmt::format(
-      "# First loading, in the format of bond_style table: rotation, energy, -moment. Linear in between the "
-      "moment\n"
-      "# is within {:.2g} of the limit. It knows no unloading. What pair_style granular holds:\n"
-      "#   twisting sds {:.10g} 0.0 {:.10g}\n"
-      "# has the exact limit and misses the moment by {:.1f} % of it at most; twisting marshall has a limit "
+      "# First loading, in the format of bond_style table: rotation, energy, -moment. With bond_style table "
+      "linear\n"
+      "# {1}, or spline {1}, LAMMPS takes these rows as they are, and the moment is within {0:.2g} of the "
+      "limit; with\n"
+      "# fewer values than rows it is not. It knows no unloading. What pair_style granular holds:\n"
+      "#   twisting sds {2:.10g} 0.0 {3:.10g}\n"
+      "# has the exact limit and misses the moment by {4:.1f} % of it at most; twisting marshall has a limit "
       "that is\n"
-      "# {:+.1f} % off.\n\n",
-      law.table.error, twisting.stiffness, twisting.arm, 100.0 * twisting.error,
+      "# {5:+.1f} % off.\n\n",
+      table.error, count, twisting.stiffness, twisting.arm, 100.0 * twisting.error,
       100.0 * twisting.marshall_cap_error);
-  text += fmt::format("SLIPSTICK_TWIST\nN {}\n\n", law.table.rows.size());
+  const double stiffness = law.moment_unit() / law.rotation_unit();
+  text += fmt::format("{}_TWIST\nN {} FP {:.17g} {:.17g}\n\n", capital_prefix_of(law), count,
+                      -table.rows.front().tangent_stiffness * stiffness,
+                      -table.rows.back().tangent_stiffness * stiffness);
   int index = 0;
-  for (const analytic::TorsionState& state : law.table.rows) {
+  for (const analytic::TorsionState& state : table.rows) {
     const LawRow row = law_row(law, state);
     text += fmt::format("{} {:.17g} {:.17g} {:.17g}\n", ++index, row.rotation, row.energy, -row.moment);
   }
@@ -70,18 +81,22 @@ std::string lammps_table(const ContactLaw& law) {
 }
 
 std::string abaqus_behaviours(const ContactLaw& law) {
+  const std::string prefix = capital_prefix_of(law);
   std::string text = law_heading(law, "** ");
   text += fmt::format(
-      "** SLIPSTICK_LOADING: first loading, elastic; linear in between the moment is within {:.2g} of the "
-      "limit.\n"
-      "** SLIPSTICK_ELEMENT_1 to {}: one connector each, side by side between the same two nodes. They lose "
+      "** {0}_LOADING: first loading, elastic; linear in between the moment is within {1:.2g} of the limit.\n"
+      "** {0}_ELEMENT_1 to {2}: one connector each, side by side between the same two nodes. They lose "
       "energy\n"
-      "** and follow Masing's rule, within {:.2g} of the limit on first loading and {:.2g} on loops.\n"
+      "** and follow Masing's rule, within {3:.2g} of the limit on first loading, {4:.2g} on loops between "
+      "a\n"
+      "** rotation and its negative, {5:.2g} after any rotations.\n"
       "** Component 4 is the rotation about the connector's first axis: the contact's normal.\n",
-      law.table.error, law.elements.elements.size(), law.elements.error, 3.0 * law.elements.error);
-  text +=
-      "*CONNECTOR BEHAVIOR, NAME=SLIPSTICK_LOADING, EXTRAPOLATION=CONSTANT\n"
-      "*CONNECTOR ELASTICITY, COMPONENT=4, NONLINEAR\n";
+      prefix, law.table.error, law.elements.elements.size(), law.elements.error, 3.0 * law.elements.error,
+      law.elements.history_error);
+  text += fmt::format(
+      "*CONNECTOR BEHAVIOR, NAME={}_LOADING, EXTRAPOLATION=CONSTANT\n"
+      "*CONNECTOR ELASTICITY, COMPONENT=4, NONLINEAR\n",
+      prefix);
   const auto& rows = law.table.rows;
   for (auto state = rows.rbegin(); state + 1 != rows.rend(); ++state) {
     const LawRow row = law_row(law, *state);
@@ -95,9 +110,9 @@ std::string abaqus_behaviours(const ContactLaw& law) {
   int index = 0;
   for (const auto& [stiffness, slip] : law.elements.elements) {
     text += fmt::format(
-        "*CONNECTOR BEHAVIOR, NAME=SLIPSTICK_ELEMENT_{}\n*CONNECTOR ELASTICITY, COMPONENT=4\n{:.15g}\n"
+        "*CONNECTOR BEHAVIOR, NAME={}_ELEMENT_{}\n*CONNECTOR ELASTICITY, COMPONENT=4\n{:.15g}\n"
         "*CONNECTOR PLASTICITY, COMPONENT=4\n*CONNECTOR HARDENING, TYPE=ISOTROPIC\n{:.15g}, 0.\n",
-        ++index, stiffness * limit / law.rotation_unit(), slip * limit);
+        prefix, ++index, stiffness * limit / law.rotation_unit(), slip * limit);
   }
   return text;
 }

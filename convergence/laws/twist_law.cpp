@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 #include <vector>
@@ -24,8 +25,19 @@ TorsionState at_logarithm(double logarithm, const analytic::Profile& profile) {
                                    : analytic::from_moment_deficit(std::exp(-logarithm), profile);
 }
 
-double loss_factor_of(const TorsionState& state, const analytic::Profile& profile) {
-  return analytic::energy_lost_per_cycle(state, profile) / (4.0 * state.moment * state.twist);
+/// What a cycle loses over 4 M phi, to a relative error.
+double loss_factor_of(const TorsionState& state, const analytic::Profile& profile, double error) {
+  return analytic::energy_lost_per_cycle(state, profile, error) / (4.0 * state.moment * state.twist);
+}
+
+/// The power of m, or of what slip adds to full stick, that the factor of the smallest losses goes with.
+double loss_power_of(const analytic::Profile& profile) {
+  if (profile.edge() > 0.0) return 2.0;
+  constexpr double kSmall = 1e-30;
+  const auto factor = [&](double m) {
+    return loss_factor_of(analytic::from_moment_ratio(m, profile), profile, 1e-14);
+  };
+  return std::log2(factor(2.0 * kSmall) / factor(kSmall));
 }
 
 /// From rest to the last state, with a knot where slip begins under a load.
@@ -51,7 +63,9 @@ double TwistLaw::twist_at(double moment_ratio) const {
 double TwistLaw::loss_factor_at(double moment_ratio) const {
   const double size = std::abs(moment_ratio);
   if (!(size <= 1.0 - kLastDeficit)) return NAN;
-  return size <= full_stick ? 0.0 : loss_factor(-std::log1p(-size));
+  if (size <= full_stick) return 0.0;
+  const double l = -std::log1p(-size);
+  return std::pow(l - first_logarithm, loss_power) * loss_factor(l);
 }
 
 TwistLaw fit_twist_law(const analytic::Profile& profile, double error) {
@@ -68,17 +82,21 @@ TwistLaw fit_twist_law(const analytic::Profile& profile, double error) {
     return logarithm_of(analytic::from_twist(t, profile)) / t;
   };
   const auto twist_per_logarithm = [&](double l) { return at_logarithm(l, profile).twist / l; };
-  const auto loss_factor = [&](double l) { return loss_factor_of(at_logarithm(l, profile), profile); };
+  const double loss_power = loss_power_of(profile);
+  constexpr double kPartOfError = 1e-2;  // that the integrals may have
+  const auto loss_factor = [&](double l) {
+    return loss_factor_of(at_logarithm(l, profile), profile, std::max(1e-14, kPartOfError * error)) /
+           std::pow(l - first_logarithm, loss_power);
+  };
   return {.moment_limit = profile.moment_limit(),
           .full_stick = has_full_stick ? profile.full_stick() : 0.0,
           .error = error,
           .last_twist = last_twist,
-          .logarithm =
-              fit_chebyshev(logarithm_per_twist, knots_of(first_slip, last_twist), error, ErrorScale::value),
-          .twist = fit_chebyshev(twist_per_logarithm, knots_of(first_logarithm, last_logarithm), error,
-                                 ErrorScale::value),
-          .loss_factor =
-              fit_chebyshev(loss_factor, knots_of(first_logarithm, last_logarithm), error, ErrorScale::one)};
+          .logarithm = fit_chebyshev(logarithm_per_twist, knots_of(first_slip, last_twist), error),
+          .twist = fit_chebyshev(twist_per_logarithm, knots_of(first_logarithm, last_logarithm), error),
+          .first_logarithm = first_logarithm,
+          .loss_power = loss_power,
+          .loss_factor = fit_chebyshev(loss_factor, {first_logarithm, last_logarithm}, error)};
 }
 
 }  // namespace slipstick::convergence

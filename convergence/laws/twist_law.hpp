@@ -12,20 +12,23 @@ namespace slipstick::convergence {
 ///
 /// Relative errors of m and t are at most `error`, and what an ulp of the argument costs, where 1 - m is at
 /// least kLastDeficit; a larger rotation carries the limit moment. What a cycle between m and -m loses is 4 M
-/// phi (phi that of m) times a factor whose error is at most `error`. After a reversal Masing's rule gives
-/// the moment, with errors up to three times that of first loading.
+/// phi (phi that of m) times (l - l_1)^p times a polynomial, l_1 where slip begins and p the power of the
+/// smallest losses: relative errors are at most `error` however little is lost (a sphere loses M^3, p = 1).
+/// After a reversal Masing's rule gives the moment, with errors up to three times that of first loading.
 struct TwistLaw {
-  double moment_limit;             ///< M_lim/(mu W a)
-  double full_stick;               ///< m up to which nothing slips: the law is linear there
-  double error;                    ///< stated
-  double last_twist;               ///< t where 1 - m is kLastDeficit
-  PiecewiseChebyshev logarithm;    ///< l/t over t
-  PiecewiseChebyshev twist;        ///< t/l over l
-  PiecewiseChebyshev loss_factor;  ///< over l
+  double moment_limit;           ///< M_lim/(mu W a)
+  double full_stick;             ///< m up to which nothing slips: the law is linear there
+  double error;                  ///< stated
+  double last_twist;             ///< t where 1 - m is kLastDeficit
+  PiecewiseChebyshev logarithm;  ///< l/t over t
+  PiecewiseChebyshev twist;      ///< t/l over l
+  double first_logarithm;        ///< l where slip begins
+  double loss_power;
+  PiecewiseChebyshev loss_factor;  ///< of (l - first_logarithm)^loss_power, over l
 
   double moment_ratio_at(double twist) const;        ///< m; any finite t
   double twist_at(double moment_ratio) const;        ///< t; |m| beyond 1 - kLastDeficit: infinite
-  double loss_factor_at(double moment_ratio) const;  ///< |m| at most 1 - kLastDeficit, else NaN
+  double loss_factor_at(double moment_ratio) const;  ///< of 4 M phi; |m| at most 1 - kLastDeficit, else NaN
 };
 
 /// dM/dphi over G a^3 while everything sticks: exact, and the same for each profile.

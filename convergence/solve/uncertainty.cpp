@@ -221,6 +221,7 @@ Json uncertainty_json(const Json& result, const std::vector<UncertainInput>& inp
   for (const auto& [name, words] : kOutputs) {
     const double value = number_at(result, name);
     if (std::isnan(value) || value == 0.0) continue;
+    if (std::string_view(name) == "moment_limit" && number_at(result, "moment") == 0.0) continue;
     Json output{{"value", value}};
     double squares = 0;
     Json parts = Json::array();

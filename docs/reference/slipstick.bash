@@ -18,8 +18,8 @@ _slipstick() {
       "check --columns" | "check --twist" | "check --tolerance" | "check --json") return ;;
       "check "*) [[ $current != -* ]] || words="--help --set --columns --twist --discrete --tolerance --pressure-given --strict --json --quiet" ;;
       "law --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
-      "law --profile" | "law --write" | "law --error" | "law --table-error" | "law --element-error" | "law --elements" | "law --limit-loads" | "law --json") return ;;
-      "law "*) [[ $current != -* ]] || words="--help --set --profile --write --error --table-error --element-error --elements --limit-loads --json --quiet" ;;
+      "law --profile" | "law --write" | "law --prefix" | "law --error" | "law --table-error" | "law --element-error" | "law --elements" | "law --limit-loads" | "law --json") return ;;
+      "law "*) [[ $current != -* ]] || words="--help --set --profile --write --prefix --error --table-error --element-error --elements --limit-loads --json --quiet" ;;
       "study --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "study --output" | "study --figure" | "study --jobs" | "study --memory-limit" | "study --shard" | "study --merge" | "study --json") return ;;
       "study "*) [[ $current != -* ]] || words="--help --set --output --figure --jobs --memory-limit --shard --merge --json --quiet" ;;
