@@ -102,8 +102,14 @@ class Fitter {
     found.parameters = state.parameters;
     found.moment = family.moment(state.path, state.start, state.parameters);
     const auto rows = static_cast<double>(path_.moment.size());
+    std::vector<double> apart;
     for (std::size_t row = 0; row < path_.moment.size(); ++row) {
-      found.offset += (path_.moment[row] - found.moment[row]) / rows;
+      apart.push_back(path_.moment[row] - found.moment[row]);
+    }
+    std::ranges::sort(apart);  // the mean without 2 % at each end, such as rows at a jump
+    const std::size_t cut = apart.size() / 50;
+    for (std::size_t k = cut; k < apart.size() - cut; ++k) {
+      found.offset += apart[k] / static_cast<double>(apart.size() - 2 * cut);
     }
     std::vector<double> error;
     double largest = 0.0;
