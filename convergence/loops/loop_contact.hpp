@@ -2,6 +2,8 @@
 
 #include <functional>
 #include <optional>
+#include <string>
+#include <vector>
 
 #include "solver/scene/scene.hpp"
 
@@ -14,6 +16,12 @@ struct LoopWords {
   const char* load_unit;    ///< N m
   const char* motion_unit;  ///< rad
   const char* rate_unit;    ///< of a thousandth: mrad/s
+};
+
+/// A law of first loading, and whose it is.
+struct NamedLoading {
+  std::string name;  ///< a cone
+  std::function<double(double)> loading;
 };
 
 /// The contact that a loop is held to: its exact law, as m = load over limit at t, the motion in its unit.
@@ -30,6 +38,9 @@ struct LoopContact {
   /// Of torsion: the limit of a uniform pressure over the exact one.
   std::optional<double> uniform_pressure_limit;
   std::optional<double> sphere_limit;  ///< of a sphere in torsion, M_lim/(mu W a), for the paper's Eq. (7)
+  /// The first loading of other profiles of the same radius, and their names.
+  std::vector<NamedLoading> other_profiles;
+  double law_error;  ///< relative, of loading
   LoopWords words;
 };
 

@@ -2,15 +2,25 @@
 
 #include <fmt/core.h>
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <optional>
 
 namespace slipstick::convergence {
 namespace {
 
-constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
+/// Errors of what slips may be larger than those of loads, in proportion to tolerance: at half of the limit
+/// slip takes about a tenth of the moment.
+constexpr double kSlipOverLoad = 10.0;
+/// Standard deviations that noise may explain.
+constexpr double kSlipSigmas = 4.0;
+/// Noise, in so many standard deviations, of what slips up to which a loop without loss is told from the
+/// exact one.
+constexpr double kSlipShown = 0.8;
+
+/// Variance of normal noise over that without its largest 2 %.
+constexpr double kUntrimmed = 1.15;
 
 double largest_of(const std::vector<double>& moment) {
   double largest = 0.0;
@@ -82,65 +92,115 @@ double masing_error(const LoopPath& path) {
   return rows > 0 ? std::sqrt(sum / rows) / largest_of(path.moment) : kUnknown;
 }
 
-bool areas_hold(const LoopJudgement& judgement, const LoopPath& path, double tolerance) {
-  const auto [low, high] = std::ranges::minmax_element(path.twist);
-  const double box = 2.0 * largest_of(path.moment) * (*high - *low);
-  return std::ranges::all_of(judgement.areas, [&](const LoopNumber& area) {
-    return std::abs(area.value - area.exact) <= 3.0 * tolerance * box;
-  });
+/// What is left of values when a straight line over the rotation is taken away.
+Eigen::VectorXd without_line(const LoopPath& path, const Eigen::VectorXd& values) {
+  const auto rows = static_cast<Eigen::Index>(path.twist.size());
+  Eigen::VectorXd twist = Eigen::Map<const Eigen::VectorXd>(path.twist.data(), rows);
+  twist.array() -= twist.mean();
+  const Eigen::VectorXd left = values.array() - values.mean();
+  return left - twist * (twist.dot(left) / twist.squaredNorm());
 }
 
-std::string percent_off(double residual) { return fmt::format("{:.2g} %", 100.0 * residual); }
+/// Slip takes the moment off the straight line of the stiffness at rest: how much of that the record shows,
+/// by least squares beside a line of its own, and what shape is left over.
+void judge_slip(LoopJudgement& judgement, const LoopPath& path, const LoopContact& contact) {
+  const auto rows = static_cast<Eigen::Index>(path.twist.size());
+  const auto map = [&](const std::vector<double>& values) {
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(values.data(), rows));
+  };
+  const Eigen::VectorXd slip =
+      without_line(path, contact.stiffness * map(path.twist) - map(judgement.exact.moment));
+  const Eigen::VectorXd error = without_line(path, map(judgement.exact.moment) - map(path.moment));
+  const double noise = judgement.noise * judgement.largest_load.value;
+  const double part = slip.dot(error) / slip.squaredNorm();
+  const double count = static_cast<double>(rows);
+  const double by_noise = noise * noise * (kUntrimmed * count + kSlipSigmas * std::sqrt(4.0 * count));
+  const double left = std::sqrt(std::max(0.0, (error - part * slip).squaredNorm() - by_noise));
+  judgement.slip_error = std::hypot(part, left / slip.norm());
+  judgement.slip_noise = noise / slip.norm();
+}
 
-/// The law that is wrong, or that none is known.
-void explain(LoopJudgement& judgement, const char* load, double tolerance) {
-  constexpr double kExplained = 0.5;  // of the exact law's residual, at most
-  const LoopHypothesis& likely = most_likely(judgement.fitted);
-  const bool explains = likely.residual <= std::max(2.0 * tolerance, 0.02) &&
-                        likely.residual <= kExplained * judgement.residual;
-  if (explains) {
-    judgement.law = likely.name;
-    judgement.why =
-        fmt::format("{} (the {} is {} off the exact law in the mean, {} off this one)", likely.sentence, load,
-                    percent_off(judgement.residual), percent_off(likely.residual));
-    return;
+std::string percent(double part) { return fmt::format("{:.2g} %", 100.0 * part); }
+
+/// A residual without what noise makes of it.
+double without_noise(double residual, double noise) {
+  return std::sqrt(std::max(0.0, residual * residual - noise * noise));
+}
+
+double noise_beside(const LoopPath& path, const LoopHypothesis& law) {
+  std::vector<double> error;
+  for (std::size_t row = 0; row < path.moment.size(); ++row)
+    error.push_back(path.moment[row] - law.moment[row]);
+  return row_noise(path, error);
+}
+
+/// What the verdict says of the energy lost.
+std::string slip_text(const LoopJudgement& judgement) {
+  if (!judgement.shows_slip()) {
+    return fmt::format("; the record cannot show the energy lost: its noise is {:.2g} % of the largest load",
+                       100.0 * judgement.noise);
   }
-  judgement.why = fmt::format(
-      "the {} is {} off the exact law in the mean, and none of the laws that were tried explains it", load,
-      percent_off(judgement.residual));
+  const std::size_t loops = judgement.areas.size();
+  if (loops == 0) return "";
+  return fmt::format(", the energy lost in {} {} is right", loops, loops == 1 ? "loop" : "loops");
 }
 
 }  // namespace
 
+bool LoopJudgement::shows_slip() const { return slip_noise * kSlipSigmas <= kSlipShown; }
+
 LoopJudgement judge_loop(const LoopPath& path, const LoopContact& contact, double tolerance) {
-  const std::vector<double> exact = follow(path, masing_law(contact.loading));
-  LoopJudgement judgement{.good = false,
-                          .why = "",
-                          .law = "",
-                          .residual = residual(path, exact),
-                          .stiffness = {slope_at_rest(path, path.moment), slope_at_rest(path, exact)},
-                          .largest_load = {largest_of(path.moment), largest_of(exact)},
-                          .presliding = {presliding_of(path, path.moment), presliding_of(path, exact)},
-                          .recovered = {recovered_part(path, path.moment), recovered_part(path, exact)},
-                          .areas = {},
-                          .masing_error = masing_error(path),
-                          .fitted = {}};
-  const std::vector<double> areas = loop_areas(path, path.moment);
-  const std::vector<double> exact_areas = loop_areas(path, exact);
-  for (std::size_t i = 0; i < areas.size(); ++i) judgement.areas.push_back({areas[i], exact_areas[i]});
-  judgement.good = judgement.residual <= tolerance && areas_hold(judgement, path, tolerance);
-  if (!judgement.good) {
-    judgement.fitted = fit_loop_laws(path, contact);
-    explain(judgement, contact.words.load, tolerance);
-    return judgement;
+  LoopJudgement judgement;
+  judgement.exact = fit_exact_law(path, contact);
+  const std::vector<double>& exact = judgement.exact.moment;
+  LoopPath own = path;
+  for (double& m : own.moment) m -= judgement.exact.offset;
+  for (double& t : own.twist) t += judgement.exact.start.shift;
+  std::vector<double> held = exact;
+  for (double& m : held) m -= judgement.exact.offset;
+  judgement.residual = judgement.exact.residual;
+  judgement.largest_load = {largest_of(own.moment), largest_of(held)};
+  if (judgement.exact.start.turned == 0.0) {
+    judgement.stiffness = {slope_at_rest(own, own.moment), slope_at_rest(own, held)};
+    judgement.presliding = {presliding_of(own, own.moment), presliding_of(own, held)};
+    judgement.recovered = {recovered_part(own, own.moment), recovered_part(own, held)};
+    judgement.masing_error = masing_error(own);
   }
+  const std::vector<double> areas = loop_areas(own, own.moment);
+  const std::vector<double> exact_areas = loop_areas(own, held);
+  for (std::size_t i = 0; i < areas.size(); ++i) judgement.areas.push_back({areas[i], exact_areas[i]});
+  judgement.noise =
+      std::max(noise_beside(path, judgement.exact) / judgement.largest_load.value, contact.law_error);
+  judge_slip(judgement, path, contact);
+  const double off = without_noise(judgement.residual, judgement.noise);
+  judgement.good = off <= std::hypot(tolerance, 0.5 * judgement.noise) &&
+                   judgement.slip_error <= kSlipOverLoad * tolerance + kSlipSigmas * judgement.slip_noise;
+  if (!judgement.good) return judgement;
   judgement.law = "exact";
   judgement.why = fmt::format("follows the exact law: the {} is {} off in the mean{}", contact.words.load,
-                              percent_off(judgement.residual),
-                              areas.empty() ? ""
-                                            : fmt::format(", the energy lost in {} {} is right", areas.size(),
-                                                          areas.size() == 1 ? "loop" : "loops"));
+                              percent(judgement.residual), slip_text(judgement));
   return judgement;
+}
+
+void explain(LoopJudgement& judgement, const LoopPath& path, const LoopContact& contact, double tolerance) {
+  constexpr double kExplained = 0.5;  // of the exact law's residual, at most
+  judgement.fitted = fit_wrong_laws(path, contact);
+  const LoopHypothesis& likely = *std::ranges::min_element(judgement.fitted, {}, &LoopHypothesis::cost);
+  const double noise = noise_beside(path, likely) / judgement.largest_load.value;
+  const double off = without_noise(judgement.residual, judgement.noise);
+  const double likely_off = without_noise(likely.residual, noise);
+  constexpr double kAtNoise = 1.1;  // a residual that noise alone makes, at most
+  const bool at_noise = likely.residual <= kAtNoise * noise && likely.cost < judgement.exact.cost;
+  if (at_noise || (likely_off <= std::max(2.0 * tolerance, 0.02) && likely_off <= kExplained * off)) {
+    judgement.law = likely.name;
+    judgement.why =
+        fmt::format("{} (the {} is {} off the exact law in the mean, {} off this one)", likely.sentence,
+                    contact.words.load, percent(judgement.residual), percent(likely.residual));
+    return;
+  }
+  judgement.why = fmt::format(
+      "the {} is {} off the exact law in the mean, and none of the laws that were tried explains it",
+      contact.words.load, percent(judgement.residual));
 }
 
 }  // namespace slipstick::convergence

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,8 @@
 #include "convergence/loops/loop_path.hpp"
 
 namespace slipstick::convergence {
+
+inline constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
 /// A number of the loop beside the exact law's at the same rotations; NaN where the loop does not say.
 struct LoopNumber {
@@ -16,22 +19,34 @@ struct LoopNumber {
 
 /// What a loop under one normal load shows, in the contact's units.
 struct LoopJudgement {
-  bool good;
-  std::string why;                ///< one sentence
-  std::string law;                ///< the name of the one that explains it; empty: none that was tried
-  double residual;                ///< of the exact law
-  LoopNumber stiffness;           ///< dm/dt over the first third of the largest moment
-  LoopNumber largest_load;        ///< m
-  LoopNumber presliding;          ///< t at half of the limit, on first loading
-  LoopNumber recovered;           ///< part of the rotation that the first unloading to no moment gives back
-  std::vector<LoopNumber> areas;  ///< of closed loops
-  double masing_error;            ///< of the first branch back from the loop's own first loading, enlarged
+  bool good = false;
+  std::string why;          ///< one sentence
+  std::string law;          ///< the name of the one that explains it; empty: none that was tried
+  double residual = 0.0;    ///< of the exact law
+  double noise = 0.0;       ///< of the moments from row to row, over the largest
+  double slip_error = 0.0;  ///< how far what slip takes off the moment is from the exact law's, over that
+  double slip_noise = 0.0;  ///< standard deviation of that, from the noise
+  LoopHypothesis exact;     ///< the exact law as the record starts
+  LoopNumber stiffness{kUnknown, kUnknown};     ///< dm/dt over the first third of the largest moment
+  LoopNumber largest_load{kUnknown, kUnknown};  ///< m
+  LoopNumber presliding{kUnknown, kUnknown};    ///< t at half of the limit, on first loading
+  LoopNumber recovered{kUnknown,
+                       kUnknown};  ///< part of the rotation that the first unloading to no moment gives back
+  std::vector<LoopNumber> areas;   ///< of closed loops
+  double masing_error = kUnknown;  ///< of the first branch back from the loop's own first loading, enlarged
   std::vector<LoopHypothesis> fitted;  ///< of a bad one
+
+  /// Whether slip shows above the noise: then stiffness and limit, or shape, are seen.
+  bool shows_slip() const;
 };
 
 /// The residual that a good loop may have, unless the user says otherwise.
 inline constexpr double kLoopTolerance = 0.01;
 
+/// Holds a loop to the exact law.
 LoopJudgement judge_loop(const LoopPath& path, const LoopContact& contact, double tolerance);
+
+/// Says which law a bad loop follows.
+void explain(LoopJudgement& judgement, const LoopPath& path, const LoopContact& contact, double tolerance);
 
 }  // namespace slipstick::convergence

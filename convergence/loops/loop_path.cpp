@@ -1,8 +1,8 @@
 #include "convergence/loops/loop_path.hpp"
 
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace slipstick::convergence {
 namespace {
@@ -11,6 +11,9 @@ namespace {
 constexpr double kReversal = 0.04;
 /// How well a loop has to close, as a part of its range.
 constexpr double kClosing = 0.02;
+/// Noise that is more than what rows of a smooth motion differ by in the fourth place, as a part of the
+/// range.
+constexpr double kVisibleNoise = 1e-4;
 
 struct Reversal {
   double twist;
@@ -20,7 +23,9 @@ struct Reversal {
 /// Whether `at` lies beyond `mark` for one who goes in the direction of `sign`.
 bool is_beyond(double at, double mark, double sign) { return sign * (at - mark) >= 0.0; }
 
-/// How many of the reversals still count at a rotation, for a branch that goes in the direction of `sign`.
+/// How many of the reversals still count at a rotation, for a branch that goes in the direction of `sign`: a
+/// branch that comes back to the reversal before its own goes on along the branch before that; beyond the
+/// largest rotation it is first loading.
 std::size_t remembered(const std::vector<Reversal>& reversals, double twist, double sign) {
   std::size_t count = reversals.size();
   while (count >= 2 && is_beyond(twist, reversals[count - 2].twist, sign)) count -= 2;
@@ -30,17 +35,80 @@ std::size_t remembered(const std::vector<Reversal>& reversals, double twist, dou
 
 double moment_at(const std::vector<Reversal>& reversals, std::size_t count, double twist,
                  const BranchLaw& law) {
-  if (count == 0) return law.loading(twist);
+  if (count == 0 || law.rule == BranchRule::elastic) return law.loading(twist);
   const Reversal& from = reversals[count - 1];
-  return from.moment + law.branch(twist - from.twist);
+  const double scale = law.rule == BranchRule::masing ? 2.0 : 1.0;
+  return from.moment + scale * law.loading((twist - from.twist) / scale);
+}
+
+/// A moment that grows with the stiffness at rest while it is below the largest so far, and along first
+/// loading beyond that.
+std::vector<double> harden(const LoopPath& path, const LoopStart& start, const BranchLaw& law) {
+  std::vector<double> moment;
+  const double first = path.twist[0] + start.shift;
+  double loaded = start.turned > 0.0 ? start.turned : std::abs(first);
+  double largest = law.loading(loaded);
+  double now = law.loading(first);
+  for (std::size_t row = 0; row < path.twist.size(); ++row) {
+    if (row > 0) now += law.stiffness * (path.twist[row] - path.twist[row - 1]);
+    if (std::abs(now) > largest) {
+      loaded += (std::abs(now) - largest) / law.stiffness;
+      largest = law.loading(loaded);
+      now = std::copysign(largest, now);
+    }
+    moment.push_back(now);
+  }
+  return moment;
+}
+
+/// The turns' rotations by parabolas through some rows before and after each.
+double smoothed_turn(const std::vector<double>& twist, std::size_t turn, std::size_t window) {
+  const auto end_of = [&](std::size_t from, std::size_t to) {  // of a parabola, at the turn
+    const auto rows = static_cast<Eigen::Index>(to - from + 1);
+    Eigen::MatrixX3d powers(rows, 3);
+    Eigen::VectorXd values(rows);
+    for (Eigen::Index i = 0; i < rows; ++i) {
+      const std::size_t row = from + static_cast<std::size_t>(i);
+      const double x = static_cast<double>(row) - static_cast<double>(turn);
+      powers.row(i) << 1.0, x, x * x;
+      values[i] = twist[row];
+    }
+    return Eigen::VectorXd(powers.colPivHouseholderQr().solve(values))[0];
+  };
+  return 0.5 * (end_of(turn - window, turn) + end_of(turn, turn + window));
 }
 
 }  // namespace
 
-std::vector<std::size_t> find_turns(const std::vector<double>& twist) {
+double trimmed_mean(std::vector<double> values) {
+  constexpr double kCounted = 0.98;
+  for (double& value : values) value = std::isfinite(value) ? value * value : INFINITY;
+  std::ranges::sort(values);
+  values.resize(
+      std::max<std::size_t>(1, static_cast<std::size_t>(kCounted * static_cast<double>(values.size()))));
+  double sum = 0.0;
+  for (const double square : values) sum += square;
+  return std::sqrt(sum / static_cast<double>(values.size()));
+}
+
+double row_noise(const LoopPath& path, const std::vector<double>& values) {
+  const double size = std::sqrt(70.0);  // 1, 4, 6, 4, 1
+  std::vector<double> differences;
+  for (std::size_t turn = 0; turn + 1 < path.turns.size(); ++turn) {
+    for (std::size_t row = path.turns[turn] + 1; row + 5 < path.turns[turn + 1]; ++row) {
+      const double* const v = &values[row];
+      differences.push_back((v[0] - 4.0 * v[1] + 6.0 * v[2] - 4.0 * v[3] + v[4]) / size);
+    }
+  }
+  return differences.empty() ? 0.0 : trimmed_mean(differences);
+}
+
+void find_turns(LoopPath& path) {
+  const std::vector<double>& twist = path.twist;
   const auto [low, high] = std::ranges::minmax_element(twist);
-  const double enough = kReversal * (*high - *low);
-  std::vector<std::size_t> turns{0};
+  const double range = *high - *low;
+  const double enough = kReversal * range;
+  path.turns = {0};
   std::size_t extreme = 0;
   double sign = 0.0;
   for (std::size_t row = 1; row < twist.size(); ++row) {
@@ -52,32 +120,43 @@ std::vector<std::size_t> find_turns(const std::vector<double>& twist) {
     } else if (sign * (twist[row] - twist[extreme]) > 0.0) {
       extreme = row;
     } else if (sign * (twist[extreme] - twist[row]) > enough) {
-      turns.push_back(extreme);
+      path.turns.push_back(extreme);
       extreme = row;
       sign = -sign;
     }
   }
-  turns.push_back(twist.size() - 1);
-  return turns;
+  path.turns.push_back(twist.size() - 1);
+  path.twist_noise = row_noise(path, twist);
+  path.turn_twist.clear();
+  for (const std::size_t turn : path.turns) path.turn_twist.push_back(twist[turn]);
+  if (!(path.twist_noise > kVisibleNoise * range)) return;
+  for (std::size_t k = 1; k + 1 < path.turns.size(); ++k) {
+    const std::size_t window =
+        std::min(path.turns[k] - path.turns[k - 1], path.turns[k + 1] - path.turns[k]) / 8;
+    if (window >= 6) path.turn_twist[k] = smoothed_turn(twist, path.turns[k], window);
+  }
 }
 
-BranchLaw masing_law(std::function<double(double)> loading) {
-  const auto enlarged = [loading](double twist) { return 2.0 * loading(0.5 * twist); };
-  return {std::move(loading), enlarged};
-}
-
-std::vector<double> follow(const LoopPath& path, const BranchLaw& law) {
+std::vector<double> follow(const LoopPath& path, const LoopStart& start, const BranchLaw& law) {
+  if (law.rule == BranchRule::no_slip_back) return harden(path, start, law);
   std::vector<double> moment(path.twist.size());
   std::vector<Reversal> reversals;
+  const double first = path.turn_twist[1] >= path.turn_twist[0] ? 1.0 : -1.0;
+  if (start.turned > 0.0) reversals.push_back({-first * start.turned, law.loading(-first * start.turned)});
+  const bool forgets = law.rule == BranchRule::masing;
   for (std::size_t turn = 0; turn + 1 < path.turns.size(); ++turn) {
-    const double end = path.twist[path.turns[turn + 1]];
-    const double sign = end >= path.twist[path.turns[turn]] ? 1.0 : -1.0;
+    const double sign = path.turn_twist[turn + 1] >= path.turn_twist[turn] ? 1.0 : -1.0;
+    const auto count = [&](double twist) {
+      return forgets ? remembered(reversals, twist, sign) : reversals.size();
+    };
     for (std::size_t row = path.turns[turn]; row <= path.turns[turn + 1]; ++row) {
-      const double twist = path.twist[row];
-      moment[row] = moment_at(reversals, remembered(reversals, twist, sign), twist, law);
+      const double twist = path.twist[row] + start.shift;
+      moment[row] = moment_at(reversals, count(twist), twist, law);
     }
-    reversals.resize(remembered(reversals, end, sign));
-    reversals.push_back({end, moment[path.turns[turn + 1]]});
+    const double end = path.turn_twist[turn + 1] + start.shift;
+    const double moment_there = moment_at(reversals, count(end), end, law);
+    reversals.resize(count(end));
+    reversals.push_back({end, moment_there});
   }
   return moment;
 }

@@ -259,7 +259,7 @@ class Loops(unittest.TestCase):
         path = drive((0.1,))[:301]
         moments = masing(path, exact, exact)
         self.assert_named(self.noisy(path, moments), "not_enlarged", "not enlarged twice", "Masing")
-        path = drive((0.25,))[:250]
+        path = drive((0.25,))[:190]  # until it would slip the other way
         moments = masing(path, exact, lambda change: STIFFNESS * change)
         self.assert_named(self.noisy(path, moments), "unloads_without_slip", "without slip", "Masing")
 
@@ -384,6 +384,46 @@ class Loops(unittest.TestCase):
             self.assertEqual(result["verdict"], "bad")
             self.assertIn(note, result["why"])
         self.assertEqual(self.check(self.write(path, moments), "--strict")["conventions"], [])
+
+    def test_small_loops_are_in_the_scenes_units(self):
+        """No unit is guessed from a peak far below the limit."""
+        for size in (1e-3, 3e-5):
+            path = drive((size, size))
+            for words in ((), ("--strict",)):
+                result = self.check(self.write(path, masing(path, exact), noise=1e-3), *words)
+                self.assertEqual((result["verdict"], result["conventions"]), ("good", []), result["why"])
+
+    def test_no_loss_where_there_is_some(self):
+        path = drive((2e-3, 2e-3))
+        line = [STIFFNESS * t for _, t in path]
+        result = self.check(self.write(path, line))
+        self.assertEqual((result["verdict"], result["loads"][0]["law"]), ("bad", "elastic"), result["why"])
+        self.assertIn("no slip: elastic", result["why"])
+        self.assertIn("cannot show the energy lost", self.check(self.write(path, line, noise=0.02))["why"])
+
+    def test_starts_at_a_reversal_with_offsets(self):
+        path = drive((0.25, 0.25))
+        rows = [[when, moment + 0.01, rotation - 0.002] for when, moment, rotation in self.write(path, masing(path, exact))[150:]]
+        result = self.check(rows)
+        self.assertEqual(result["verdict"], "good", result["why"])
+        self.assertGreater(result["loads"][0]["start"]["turned"], 0)
+
+    def test_every_pair_of_units_and_sign(self):
+        path = drive((0.4, ), rows=60)
+        moments = masing(path, exact)
+        for load, load_note in ((1, ""), (1e-3, "N mm"), (1e-6, "uN m"), (1e3, "kN m")):
+            for motion, motion_note in ((1, ""), (math.pi / 180, "degrees"), (1e-3, "mrad"), (1e-6, "urad")):
+                for sign in (1, -1):
+                    result = self.check(self.write(path, moments, noise=1e-3, moment_unit=sign * load, rotation_unit=motion))
+                    said = " ".join(result["conventions"])
+                    self.assertEqual(result["verdict"], "good", (load, motion, sign, result["why"]))
+                    for note in (load_note, motion_note, "other body" if sign < 0 else ""):
+                        self.assertIn(note, said)
+                    self.assertEqual(len(result["conventions"]), (load != 1) + (motion != 1) + (sign < 0))
+
+    def test_not_enlarged_on_full_cycles(self):
+        path = drive((0.25, 0.25))
+        self.assert_named(self.noisy(path, masing(path, exact, exact)), "not_enlarged", "not enlarged twice")
 
     def test_json_and_other_names(self):
         path = drive((0.25, 0.25))
