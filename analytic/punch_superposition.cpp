@@ -249,7 +249,8 @@ class Superposition : public Profile {
       return flat_punch_profile().moment_share(t).deficit / (t.ratio * t.ratio * t.ratio);
     });
     const double inner = distance_to_flat(c) > 0 ? second_moment_within(c) : 0;
-    return (inner + c.ratio * c.ratio * c.ratio * outer) / shape_.second_moment;
+    return (inner + c.ratio * (c.ratio * (c.ratio * outer))) /
+           shape_.second_moment;  // the cube could underflow
   }
 
   Shape shape_;
@@ -270,13 +271,13 @@ class Power final : public Superposition {
         exponent_(n) {}
 
  private:
-  double weight(double x, double inward, double) const override { return power(x, inward, exponent_ - 1); }
+  double weight(double x, double inward, double) const override { return power(x, inward) / x; }
   double second_moment_within(StickRadius c) const override {
-    return power(c.ratio, c.complement, exponent_ + 2) / (exponent_ + 2);
+    return power(c.ratio, c.complement) * c.ratio * c.ratio / (exponent_ + 2);
   }
-  /// A large power needs the digits of 1 - x.
-  static double power(double x, double inward, double exponent) {
-    return inward < 0.5 ? std::exp(exponent * std::log1p(-inward)) : std::pow(x, exponent);
+  /// x^n: n + 2 or n - 1, rounded, would cost digits of a small x, and a large n needs those of 1 - x.
+  double power(double x, double inward) const {
+    return inward < 0.5 ? std::exp(exponent_ * std::log1p(-inward)) : std::pow(x, exponent_);
   }
 
   double exponent_;

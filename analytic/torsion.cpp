@@ -84,10 +84,7 @@ double solve(double value, double start, double high, Function f) {
     if (astray) next = low > 0 ? std::sqrt(low) * std::sqrt(high) : high / 16;
     x = next;
   }
-  throw std::domain_error(
-      fmt::format("no root found for {}: last at {}, where doubles lose digits; allowed: further from the "
-                  "end of the range",
-                  value, x));
+  throw std::runtime_error(fmt::format("no root found for {}: last at {}", value, x));
 }
 
 /// dM/d(c^3) is -(8/9) f with f = -c H': M over M_lim as a power series begins with this slope at c = 1.
@@ -115,7 +112,8 @@ StickRadius stick_from_deficit(double deficit, const Profile& profile) {
   return stick(solve(deficit, std::cbrt(deficit), 1, [&](double at) {
     const StickRadius c = stick(at);
     const double value = profile.moment_share(c).deficit;
-    return Sample{.value = value, .power = 3 * at * at * at * slope_in_cube(c, profile) / value};
+    const double slope = at * slope_in_cube(c, profile);  // first: the cube alone could underflow
+    return Sample{.value = value, .power = 3 * slope * at * at / value};
   }));
 }
 

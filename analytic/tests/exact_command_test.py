@@ -4,6 +4,7 @@
 import json
 import math
 import sys
+from decimal import Decimal
 from math import pi
 from pathlib import Path
 
@@ -63,6 +64,14 @@ class Exact(ProgramTest):
         for value in "1e-300 1e-20 1e-12 1e-8 1e-6 1e-4 1e-2 0.5 0.999999".split():
             for key in ("deficit", "ratio"):
                 self.text(f"--moment-{key} {value} --radius 0,1e-9,0.3,1")
+
+    def test_follows_a_power_to_the_smallest_deficit(self):
+        # A power is similar to itself: 1 - M/M_lim ~ c^(N + 2) and the twist ~ c^(N - 1) near the limit.
+        for n in (0.01, 0.1, 0.5):
+            one, other = (self.json(f"--profile power:{n} --moment-deficit 1e{power}") for power in (-100, -307))
+            for key, exponent in (("stick_ratio", 1), ("twist", Decimal(n) - 1)):
+                scale = (Decimal(10).ln() * -207 / (Decimal(n) + 2) * exponent).exp()
+                self.near(float(Decimal(other[key]) / Decimal(one[key]) / scale), 1, 5e-15)
 
     def test_names_option_value_and_range(self):
         for words, *says in (
