@@ -60,8 +60,10 @@ gate: configure ## check the numbers that README.md promises, and counts of work
 	@digits() { $(BUILD)/slipstick digits convergence/scenes/paper.toml --set "grid.cells=[48,48]" \
 	    --set "load.moment_ratio=$$2" --output $(BUILD)/gates/digits --json "$(BUILD)/gates/$$1.json" --quiet; }; \
 	  digits digits 0.9 && digits digits-limit 0.999999 && digits digits-nothing 1e-9
-	@$(BUILD)/slipstick gate convergence/gates/quick.toml convergence/gates/digits.toml bench/gates/work.toml $(INSTRUCTION_GATES) --results $(BUILD)/gates \
-	  --output $(BUILD)/gates $(GATE_OPTIONS)
+	@"$$(sed -n 's/^SLIPSTICK_PYTHON:[A-Z]*=//p' $(BUILD)/CMakeCache.txt)" -B analytic/references/exact_errors.py \
+	  $(BUILD)/slipstick $(BUILD)/gates/exact.json
+	@$(BUILD)/slipstick gate $(patsubst %,convergence/gates/%.toml,quick digits exact) bench/gates/work.toml $(INSTRUCTION_GATES) \
+	  --results $(BUILD)/gates --output $(BUILD)/gates $(GATE_OPTIONS)
 
 hard: configure ## solve 700 hard scenes, each in several views; audit every one of them with NumPy (2 minutes)
 	$(call build,slipstick)

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "convergence/results/exact_result.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/results/result.hpp"
 #include "convergence/runs/failed_runs.hpp"
@@ -82,6 +83,9 @@ Json solve(const PreparedRun& run, const std::shared_ptr<solver::SolveCache>& ca
     before = std::exchange(latest, at);
   };
   try {
+    const bool exact = run.scene.model == solver::ModelChoice::exact;
+    if (exact && spec.fields.empty() && !spec.profile)
+      return exact_result(run.scene, require_oracle(run.scene), 0.0);
     solved = solve_scene(run.scene, {.on_step = on_step, .rounding = spec.rounding, .cache = cache});
   } catch (const solver::OutOfMemory&) {
     throw;
