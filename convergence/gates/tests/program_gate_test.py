@@ -2,6 +2,7 @@
 """program_gate_test.py PROGRAM: the exit codes and files of `slipstick gate`, with gates on a coarse grid."""
 
 import json
+import math
 import os
 import sys
 import xml.etree.ElementTree
@@ -52,6 +53,17 @@ class GateProgram(ProgramTest):
         self.gate("good.toml", "--only", "goood", code=2)
         self.gate(code=2)
         self.gate("missing.toml", code=2)
+
+    def test_judges_exact_answers_of_scenes(self):
+        def exact(scene, twist):
+            return (f"[[gate]]\nid = 'exact'\nscene = '{SCENES / scene}.toml'\nquantity = 'twist'\nbasis = '16/3 G a^3'\n"
+                    f"set = {{ 'solver.model' = 'exact', 'load.moment_ratio' = 0.5 }}\n"
+                    f"above = {twist * (1 - 1e-14)!r}\nbelow = {twist * (1 + 1e-14)!r}\n")
+
+        stuck = 3 / 16 * math.pi / 8  # a bonded punch's twist under pi/8 mu W a
+        self.gate(self.write("right.toml", exact("flat_punch", stuck)))
+        self.gate(self.write("wrong.toml", exact("flat_punch", stuck * (1 + 1e-9))), code=1)
+        self.gate(self.write("none.toml", exact("ellipse", stuck)), code=1, says="solver.model")
 
     def test_writes_its_reports_whatever_else_is_wrong(self):
         self.write("good.toml", gate("good", LOOSE))
