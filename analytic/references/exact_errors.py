@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
-"""exact_errors.py PROGRAM FILE.json: how far `slipstick exact` is from the values of certified_references.csv (proven)
-and profile_references.csv at 20 states of each of five profiles. Writes the largest error of each quantity, relative, in
-units of rounding (2^-52); null where the program gives no number. Values that the rounding of their argument could change
-by more are skipped.
+"""exact_errors.py PROGRAM FILE.json: how far `slipstick exact` is from the values of certified_references.csv (proven),
+of profile_references.csv and, for a table, of closed forms, at 20 states of each profile. Writes the largest error of
+each quantity, relative, in units of rounding (2^-52); null where the program gives no number. Values that the rounding
+of their argument could change by more are skipped.
 """
 
 import csv
@@ -11,12 +11,14 @@ import math
 import pathlib
 import subprocess
 import sys
+import tempfile
 from decimal import Decimal
 
 STATES = 20
-MAX_COST = 2.5  # |d ln quantity/d ln argument|: half a unit of the argument then costs little beside the bound, 10 units
+MAX_COST = 2.5  # |d ln quantity/d ln argument|: half a unit of the argument then costs 1.25 units
 UNIT = Decimal(2) ** -52
 PI = Decimal("3.14159265358979323846264338328")
+LINEAR = "linear.csv"
 QUANTITIES = {
     "moment": ("moment_ratio", "moment_deficit", "moment"),
     "stick_radius": ("stick_ratio", "stick_complement"),
@@ -59,6 +61,15 @@ def references():
         if Decimal(row["moment_deficit"]) < Decimal("0.5"):  # the way back costs no digits
             deficit = repr(float(row["moment_deficit"]))
             yield (profile, "moment_deficit", deficit), row["given"], "", Decimal(row["value"])
+    for k in range(STATES):  # doubles, and so exact as written
+        state = f"file:{LINEAR}", "stick_ratio", str(Decimal(1 + 50 * k) / 1024)
+        yield state, "twist", "", linear_twist(Decimal(state[2]))
+
+
+def linear_twist(c):
+    """Of the pressure 3 (1 - r), which a table reproduces: its H over 2 pi."""
+    x = (1 - c * c).sqrt()
+    return 3 * ((1 + x).ln() - c.ln() - x) / (2 * PI)
 
 
 def error(value, reference):
@@ -69,19 +80,23 @@ def error(value, reference):
     return float(abs(Decimal(value) / reference - 1) / UNIT)
 
 
-def errors(program, state, rows):
+def errors(program, folder, state, rows):
     """quantity and error, in units of rounding."""
     profile, given, value = state
     radii = [at for _, at, _ in rows if at]
     words = [program, "exact", "--profile", profile, "--" + given.replace("_", "-"), value, "--quiet", "--json", "-"]
-    found = json.loads(subprocess.run(words + (["--radius", ",".join(radii)] if radii else []), check=True,
-                                      stdout=subprocess.PIPE).stdout)
+    if radii:
+        words += ["--radius", ",".join(radii)]
+    found = json.loads(subprocess.run(words, check=True, cwd=folder, stdout=subprocess.PIPE).stdout)
     tractions = iter(found["traction"])
     for quantity, at, reference in rows:
         yield quantity, error(next(tractions)["value"] if at else found[quantity], reference)
 
 
-def main(program, output):
+def worst_errors(program, folder):
+    """By profile and quantity."""
+    rows = "".join(f"{k / 16},{3 - 3 * k / 16}\n" for k in range(17))
+    pathlib.Path(folder, LINEAR).write_text("radius,pressure\n" + rows, encoding="ascii")
     profiles = {}
     for state, *row in references():
         profiles.setdefault(state[0].partition(":")[0], {}).setdefault(state, []).append(row)
@@ -92,13 +107,19 @@ def main(program, output):
         names = list(states)
         every = {}
         for state in (names[k * len(names) // STATES] for k in range(STATES)):
-            for quantity, size in errors(program, state, states[state]):
+            for quantity, size in errors(program, folder, state, states[state]):
                 every.setdefault(quantity, []).append(size)
         worst[profile] = {}
         for name, quantities in QUANTITIES.items():
             sizes = [size for quantity in quantities for size in every.get(quantity, [])]
             if sizes:
                 worst[profile][name] = max(sizes) if math.isfinite(max(sizes)) else None
+    return worst
+
+
+def main(program, output):
+    with tempfile.TemporaryDirectory(prefix="slipstick-exact-") as folder:
+        worst = worst_errors(pathlib.Path(program).absolute(), folder)
     pathlib.Path(output).parent.mkdir(parents=True, exist_ok=True)
     pathlib.Path(output).write_text(json.dumps({"states": STATES, "worst": worst}, indent=2) + "\n", encoding="ascii")
 

@@ -9,11 +9,12 @@ unset MAKEFLAGS MAKELEVEL MFLAGS
 build="$folder/build"
 
 mkdir -p "$folder/programs" "$build/bench" "$build/analytic/certified"
-for program in "$folder"/programs/{cmake,ctest} "$build"/{slipstick,bench/slipstick_work} \
+for program in "$folder"/programs/{cmake,ctest,python} "$build"/{slipstick,bench/slipstick_work} \
   "$build/analytic/certified/slipstick_references"; do
   printf '#!/usr/bin/env bash\necho "%s $*" >> "$CALLS"\necho "%s was run"\n' "${program##*/}" "${program##*/}" > "$program"
   chmod +x "$program"
 done
+echo "SLIPSTICK_PYTHON:STRING=$folder/programs/python" > "$build/CMakeCache.txt"
 
 check() {  # <target> <targets that it builds>
   : > "$CALLS"
@@ -38,6 +39,7 @@ expect "what was left out is looked for again" configured
 check test tests
 expect "make test ends with the test runner's words" test "$(tail -n 1 "$folder/output")" = "ctest was run"
 check gate "slipstick slipstick_work"
+expect "make gate asks for exact answers" grep --quiet "exact_errors.py $build/slipstick $build/gates/exact.json" "$CALLS"
 check bench "slipstick slipstick_benchmarks"
 check references slipstick_references
 check install "slipstick slipstick_c"
