@@ -155,6 +155,11 @@ Json judgement_json(const Judgement& judgement) {
     json["quantity"] = gate.quantity;
     json["value"] = judgement.value;
     if (judgement.value.is_null()) json["value_reason"] = judgement.why;
+    if (!gate.of.empty()) {
+      json["of"] = gate.of.string();
+      json["within"] = gate.within;
+    }
+    if (!judgement.file_date.empty()) json["file_date"] = judgement.file_date;
     if (gate.below) json["below"] = *gate.below;
     if (gate.above) json["above"] = *gate.above;
     if (!gate.equals.is_null()) json["equals"] = gate.equals;
@@ -178,8 +183,9 @@ std::string gates_text(const std::vector<Judgement>& judgements) {
   for (const Judgement& judgement : judgements) {
     const Gate& gate = judgement.gate;
     if (was_read(judgement)) {
-      text += fmt::format("  {:<19} {:<{}}  {} = {}, {}\n", to_string(judgement.outcome), gate.id, width,
-                          gate.quantity, value_text(judgement.value), bound_text(gate));
+      text += fmt::format("  {:<19} {:<{}}  {} = {}, {}{}\n", to_string(judgement.outcome), gate.id, width,
+                          gate.quantity, value_text(judgement.value), bound_text(gate),
+                          judgement.file_date.empty() ? "" : " (file of " + judgement.file_date + ")");
     }
     if (!is_wrong(judgement.outcome)) continue;
     details += fmt::format("\n{}: {}\n", to_string(judgement.outcome), gate.id);
