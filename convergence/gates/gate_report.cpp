@@ -180,17 +180,19 @@ std::string gates_text(const std::vector<Judgement>& judgements) {
   for (const Judgement& judgement : judgements) width = std::max(width, judgement.gate.id.size());
   std::string text;
   std::string details;
+  std::map<std::string, std::string> dates;
   for (const Judgement& judgement : judgements) {
     const Gate& gate = judgement.gate;
+    if (!judgement.file_date.empty()) dates[gate.source.string()] = judgement.file_date;
     if (was_read(judgement)) {
-      text += fmt::format("  {:<19} {:<{}}  {} = {}, {}{}\n", to_string(judgement.outcome), gate.id, width,
-                          gate.quantity, value_text(judgement.value), bound_text(gate),
-                          judgement.file_date.empty() ? "" : " (file of " + judgement.file_date + ")");
+      text += fmt::format("  {:<19} {:<{}}  {} = {}, {}\n", to_string(judgement.outcome), gate.id, width,
+                          gate.quantity, value_text(judgement.value), bound_text(gate));
     }
     if (!is_wrong(judgement.outcome)) continue;
     details += fmt::format("\n{}: {}\n", to_string(judgement.outcome), gate.id);
     for (const std::string& line : explanation(judgement)) details += fmt::format("  {}\n", line);
   }
+  for (const auto& [file, date] : dates) text += fmt::format("  {} is of {}\n", file, date);
   return text + details + counts_text(judgements) + "\n";
 }
 
