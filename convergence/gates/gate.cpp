@@ -12,6 +12,7 @@
 #include "convergence/results/markup.hpp"
 #include "convergence/results/quantity.hpp"
 #include "convergence/runs/failed_runs.hpp"
+#include "solver/input/input_error.hpp"
 #include "solver/input/misspelling.hpp"
 
 namespace slipstick::convergence {
@@ -130,12 +131,17 @@ std::string died(const Gate& gate, const Json& result) {
   return result.is_object() ? failed_runs_text(result) : "";
 }
 
+/// What to say of a number of a solve that did not reach its tolerance; empty where it did.
+std::string unfinished(const Gate& gate, const Json& result) {
+  if (gate.quantity == "status" || word(result, "status") != "not_converged") return "";
+  return "the solve did not reach its tolerance" + because(word(result, "message"));
+}
+
 /// Why a gate does not hold; empty where it does.
 std::string fault(const Gate& gate, const Json& result, const FoundQuantity& found) {
   if (!is_value(found)) return missing_text(gate, result, found);
   if (!holds(gate, *found.value)) return out_of_bounds_text(gate, *found.value);
-  const bool unfinished = gate.quantity != "status" && word(result, "status") == "not_converged";
-  return unfinished ? "the solve did not reach its tolerance" + because(word(result, "message")) : "";
+  return unfinished(gate, result);
 }
 
 Outcome outcome_of(GateStatus status, bool held) {
@@ -196,6 +202,20 @@ Judgement judge(const Gate& gate, const Json& result) {
   return judgement;
 }
 
+Gate bounded_by(Gate gate, const Json& other) {
+  const FoundQuantity found = find_quantity(other, gate.quantity);
+  std::string why = died(gate, other);
+  if (why.empty()) why = is_value(found) ? unfinished(gate, other) : missing_text(gate, other, found);
+  if (why.empty() && !(found.value->is_number() && std::abs(found.value->get<double>()) > 0.0)) {
+    why = fmt::format("{} is {}", gate.quantity, found.value->dump());
+  }
+  if (!why.empty()) throw solver::InputError(gate.of.string(), why + "; allowed: a number that is not zero");
+  const double number = found.value->get<double>();
+  gate.below = number + gate.within * std::abs(number);
+  gate.above = number - gate.within * std::abs(number);
+  return gate;
+}
+
 Judgement refuse(const Gate& gate, const std::string& why) {
   Judgement judgement;
   judgement.gate = gate;
@@ -214,6 +234,11 @@ int exit_code(const std::vector<Judgement>& judgements) {
 }
 
 std::string bound_text(const Gate& gate) {
+  if (!gate.of.empty()) {
+    const std::string other =
+        gate.below ? fmt::format("{:.7g}, that", 0.5 * (*gate.below + *gate.above)) : "that";
+    return fmt::format("within {:g} of {} of {}", gate.within, other, gate.of.filename().string());
+  }
   if (gate.equals.is_number()) return fmt::format("equal to {}", gate.equals.get<double>());
   if (!gate.equals.is_null()) return "equal to " + gate.equals.dump();
   if (gate.below && gate.above) return fmt::format("between {} and {}", *gate.above, *gate.below);

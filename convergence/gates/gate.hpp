@@ -32,6 +32,9 @@ struct Gate {
   std::optional<double> below;           ///< alone: a bound on the size; with `above`: on the signed value
   std::optional<double> above;           ///< a bound on the signed value
   Json equals;                           ///< a word or a number; null: not asked
+  std::filesystem::path of;  ///< result, scene or study whose number this one is to be; empty: none
+  double within = 0.0;       ///< of the size of that number: how far from it this one may be
+  std::string newer_than;  ///< of a result file: the day that it must not be older than, as 2026-11-24 (UTC)
   double platform_spread = 0.0;  ///< by how much machines and compilers differ, in the quantity's unit
   std::string basis;             ///< where the bound comes from
   std::string reason;            ///< why the number matters
@@ -52,6 +55,7 @@ struct Judgement {
   std::string why;  ///< one sentence; empty where it passed
   std::string dominant_error;  ///< the largest part of the error budget; empty: not known
   double seconds = 0.0;        ///< that the result took; zero where an earlier gate looks at the same result
+  std::string file_date;       ///< day of the last change of a result file (UTC); empty for others
 };
 
 /// A gate needs this many times the error of what it is judged by: less, and a verdict says as much about the
@@ -73,6 +77,10 @@ double reference_error(const Json& result, const std::string& quantity);
 /// reference's error counts where the file states one: it may call anything an error, of benchmarks that
 /// failed as well as of a twist.
 Judgement judge(const Gate& gate, const Json& result);
+
+/// The gate with the bounds that `within` allows around what the other result has. Throws InputError where
+/// that is no number, zero, or of a solve that did not reach its tolerance.
+Gate bounded_by(Gate gate, const Json& other);
 
 /// A gate that cannot be judged, and why.
 Judgement refuse(const Gate& gate, const std::string& why);

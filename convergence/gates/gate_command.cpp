@@ -39,7 +39,7 @@ struct GateRequest {
 /// A gate whose source cannot be read says so when it is judged.
 std::vector<std::filesystem::path> files_behind(const std::vector<Gate>& gates) {
   std::vector<std::filesystem::path> files;
-  for (const Gate& gate : gates) {
+  for (const Gate& gate : with_others(gates)) {
     files.push_back(gate.source);
     if (gate.kind == GateSource::result) continue;
     try {

@@ -4,6 +4,8 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <chrono>
+#include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
 
@@ -39,18 +41,39 @@ void read_source(SceneReader& reader, const std::string& at, Gate& gate) {
   gate.overrides = reader.assignments(at + "set");
 }
 
+/// A day of the calendar, as 2026-11-24.
+bool is_day(const std::string& text) {
+  int year = 0, month = 0, day = 0, end = 0;
+  std::sscanf(text.c_str(), "%4d-%2d-%2d%n", &year, &month, &day, &end);
+  return text.size() == 10 && end == 10 && (std::chrono::year(year) / month / day).ok();
+}
+
 /// Any program's, so that only the gate file can say which.
 void read_result_source(SceneReader& reader, const std::string& at, const std::filesystem::path& folder,
                         Gate& gate) {
   if (!gate.overrides.empty()) {
     reader.fail(at + "set", "(given)", "left out beside result: a file is taken as it is");
   }
+  gate.newer_than = reader.text_or(at + "newer_than", "");
+  if (reader.has(at + "newer_than") && !is_day(gate.newer_than)) {
+    reader.fail(at + "newer_than", gate.newer_than, "a day as 2026-11-24, in quotes");
+  }
   gate.results_folder = folder;
   if (!folder.empty()) gate.source = folder / reader.text(at + "result");
   gate.made_by = reader.text_or("made_by", "");
 }
 
+/// How far from the number of another result.
+void read_relative(SceneReader& reader, const std::string& at, Gate& gate) {
+  gate.of = reader.path(at + "of");
+  gate.within = reader.number(at + "within");
+  for (const char* const key : {"below", "above", "equals"}) {
+    if (reader.has(at + key)) reader.fail(at + key, "beside of", "one or the other");
+  }
+}
+
 void read_bounds(SceneReader& reader, const std::string& at, Gate& gate) {
+  if (reader.has(at + "of") || reader.has(at + "within")) return read_relative(reader, at, gate);
   gate.below = reader.find_number(at + "below");
   gate.above = reader.find_number(at + "above");
   if (reader.has(at + "equals")) {
@@ -58,7 +81,7 @@ void read_bounds(SceneReader& reader, const std::string& at, Gate& gate) {
     gate.equals =
         reader.is_text(at + "equals") ? Json(reader.text(at + "equals")) : Json(reader.number(at + "equals"));
   } else if (!gate.below && !gate.above) {
-    reader.fail(at + "below", "(missing)", "below, above, both, or equals");
+    reader.fail(at + "below", "(missing)", "below, above, both, equals, or of and within");
   }
   const auto shown = [](double number) { return fmt::format("{:g}", number); };
   if (gate.below && gate.above && !(*gate.above < *gate.below)) {
@@ -114,7 +137,7 @@ void claim_ids(const std::vector<Gate>& gates, std::map<std::string, std::string
 const solver::SettingKeys& gate_keys() {
   using solver::KeyType;
   constexpr const char* kOne = "one of scene, study, result is required";
-  constexpr const char* kBound = "one of below, above, equals is required";
+  constexpr const char* kBound = "one of below, above, equals, of is required";
   static const solver::SettingKeys keys{
       {"made_by",
        KeyType::text,
@@ -147,6 +170,20 @@ const solver::SettingKeys& gate_keys() {
        "Bound that it stays above."},
       {"gate.equals", KeyType::number, "the quantity's", kBound, solver::kFinite,
        "The number, or in quotes the word, that it is to be; in place of the bounds."},
+      {"gate.of",
+       KeyType::file,
+       "",
+       kBound,
+       {},
+       "Result file (JSON), or scene or study (TOML, with the same `set`), whose number this one is to be."},
+      {"gate.within", KeyType::number, "", "required beside of", solver::kPositive,
+       "How far from that number, over its size."},
+      {"gate.newer_than",
+       KeyType::text,
+       "",
+       "none",
+       {},
+       "Day, as 2026-11-24 (UTC), that the last change of a result file must not be before."},
       {"gate.platform_spread", KeyType::number, "the quantity's", fmt::format("{:g}", Gate{}.platform_spread),
        solver::kNotNegative, "By how much machines and compilers differ."},
       {"gate.basis", KeyType::text, "", "required of an active gate", {}, "Where the bound comes from."},

@@ -155,6 +155,11 @@ Json judgement_json(const Judgement& judgement) {
     json["quantity"] = gate.quantity;
     json["value"] = judgement.value;
     if (judgement.value.is_null()) json["value_reason"] = judgement.why;
+    if (!gate.of.empty()) {
+      json["of"] = gate.of.string();
+      json["within"] = gate.within;
+    }
+    if (!judgement.file_date.empty()) json["file_date"] = judgement.file_date;
     if (gate.below) json["below"] = *gate.below;
     if (gate.above) json["above"] = *gate.above;
     if (!gate.equals.is_null()) json["equals"] = gate.equals;
@@ -175,8 +180,10 @@ std::string gates_text(const std::vector<Judgement>& judgements) {
   for (const Judgement& judgement : judgements) width = std::max(width, judgement.gate.id.size());
   std::string text;
   std::string details;
+  std::map<std::string, std::string> dates;
   for (const Judgement& judgement : judgements) {
     const Gate& gate = judgement.gate;
+    if (!judgement.file_date.empty()) dates[gate.source.string()] = judgement.file_date;
     if (was_read(judgement)) {
       text += fmt::format("  {:<19} {:<{}}  {} = {}, {}\n", to_string(judgement.outcome), gate.id, width,
                           gate.quantity, value_text(judgement.value), bound_text(gate));
@@ -185,6 +192,7 @@ std::string gates_text(const std::vector<Judgement>& judgements) {
     details += fmt::format("\n{}: {}\n", to_string(judgement.outcome), gate.id);
     for (const std::string& line : explanation(judgement)) details += fmt::format("  {}\n", line);
   }
+  for (const auto& [file, date] : dates) text += fmt::format("  {} is of {}\n", file, date);
   return text + details + counts_text(judgements) + "\n";
 }
 

@@ -1,11 +1,13 @@
 #include "convergence/gates/gate_run.hpp"
 
+#include <fmt/chrono.h>
 #include <fmt/core.h>
 
+#include <chrono>
 #include <cmath>
+#include <filesystem>
 #include <map>
 #include <nlohmann/json.hpp>
-#include <optional>
 #include <set>
 #include <stdexcept>
 #include <string>
@@ -20,19 +22,32 @@ namespace slipstick::convergence {
 namespace {
 
 using solver::InputError;
-using Judgements = std::vector<std::optional<Judgement>>;
+namespace fs = std::filesystem;
 
 double seconds_of(const Json& result) {
   const auto seconds = result.find("seconds");
   return seconds != result.end() && seconds->is_object() ? seconds->value("total", 0.0) : 0.0;
 }
 
-/// Which part of the error budget is the largest, where a gate on an error fails; it takes some more solves.
-std::string find_dominant_error(const Judgement& judgement, const PreparedRun& run, const ProcessPool& pool) {
+/// What a gate looks at: a result, or why there is none.
+struct Source {
+  Json result;
+  std::string refused;
+  double seconds = 0.0;
+  std::string file_date;
+};
+using Sources = std::vector<Source>;
+
+/// Which part of the error budget is the largest, where a gate on an error of a solve fails; it takes some
+/// more solves.
+std::string find_dominant_error(const Judgement& judgement, const ProcessPool& pool) {
   const Gate& gate = judgement.gate;
-  if (judgement.outcome != Outcome::failed || !judgement.value.is_number() || !is_error(gate.quantity))
+  if (gate.kind != GateSource::scene || judgement.outcome != Outcome::failed ||
+      !judgement.value.is_number() || !is_error(gate.quantity)) {
     return "";
-  const Budget budget = error_budget(run, gate.quantity, pool);
+  }
+  const Budget budget =
+      error_budget(prepare_run({.scene = gate.source, .overrides = gate.overrides}), gate.quantity, pool);
   const double parts = budget.discretisation + budget.iteration + budget.rounding + budget.reference;
   if (!std::isfinite(parts)) return "not known: solves that would tell have no such number";
   return fmt::format(
@@ -41,7 +56,7 @@ std::string find_dominant_error(const Judgement& judgement, const PreparedRun& r
       budget.reference);
 }
 
-void judge_scenes(const std::vector<Gate>& gates, const ProcessPool& pool, Judgements& judgements) {
+void solve_scenes(const std::vector<Gate>& gates, const ProcessPool& pool, Sources& sources) {
   std::vector<std::size_t> places;
   std::vector<PreparedRun> runs;
   for (std::size_t i = 0; i < gates.size(); ++i) {
@@ -50,20 +65,16 @@ void judge_scenes(const std::vector<Gate>& gates, const ProcessPool& pool, Judge
       runs.push_back(prepare_run({.scene = gates[i].source, .overrides = gates[i].overrides}));
       places.push_back(i);
     } catch (const InputError& error) {
-      judgements[i] = refuse(gates[i], error.what());
+      sources[i].refused = error.what();
     }
   }
   const std::vector<Json> results = pool.run_prepared(runs);
   std::set<std::string> timed;
   for (std::size_t k = 0; k < places.size(); ++k) {
-    if (results[k].value("out_of_memory", false)) {
-      judgements[places[k]] = refuse(gates[places[k]], results[k]["message"]);
-      continue;
-    }
-    Judgement judgement = judge(gates[places[k]], results[k]);
-    if (timed.insert(runs[k].name).second) judgement.seconds = seconds_of(results[k]);
-    judgement.dominant_error = find_dominant_error(judgement, runs[k], pool);
-    judgements[places[k]] = std::move(judgement);
+    Source& source = sources[places[k]];
+    source.result = results[k];
+    if (results[k].value("out_of_memory", false)) source.refused = results[k]["message"];
+    if (timed.insert(runs[k].name).second) source.seconds = seconds_of(results[k]);
   }
 }
 
@@ -79,47 +90,75 @@ Json study_result(const Gate& gate, const ProcessPool& pool) {
   }
 }
 
-/// Equal studies are run once.
-void judge_studies(const std::vector<Gate>& gates, const ProcessPool& pool, Judgements& judgements) {
-  std::map<std::pair<std::filesystem::path, std::vector<std::string>>, Json> results;
+/// The day of a file's last change.
+std::string date_of(const fs::path& file) {
+  const auto changed = std::chrono::file_clock::to_sys(fs::last_write_time(file));
+  return fmt::format("{:%Y-%m-%d}", fmt::gmtime(std::chrono::system_clock::to_time_t(
+                                        std::chrono::time_point_cast<std::chrono::seconds>(changed))));
+}
+
+Source read_result(const Gate& gate) {
+  const std::string made_by = gate.made_by.empty() ? "" : "; it is made by: " + gate.made_by;
+  Source source;
+  source.result = read_json(gate.source, "a result file (JSON)" + made_by);
+  source.file_date = date_of(gate.source);
+  return source;
+}
+
+/// Equal studies are run once, each file is read once.
+void take_others(const std::vector<Gate>& gates, const ProcessPool& pool, Sources& sources) {
+  std::map<std::pair<fs::path, std::vector<std::string>>, Source> known;
   for (std::size_t i = 0; i < gates.size(); ++i) {
     const Gate& gate = gates[i];
-    if (gate.kind != GateSource::study) continue;
+    if (gate.kind == GateSource::scene) continue;
+    const auto [found, is_new] = known.try_emplace({gate.source, gate.overrides});
     try {
-      auto [found, is_new] = results.try_emplace({gate.source, gate.overrides});
-      if (is_new) found->second = study_result(gate, pool);
-      judgements[i] = judge(gate, found->second);
+      if (is_new && gate.kind == GateSource::study) found->second.result = study_result(gate, pool);
+      if (is_new && gate.kind == GateSource::result) found->second = read_result(gate);
     } catch (const InputError& error) {
-      judgements[i] = refuse(gate, error.what());
+      found->second.refused = error.what();
     }
+    sources[i] = found->second;
   }
 }
 
-Json read_result(const Gate& gate) {
-  const std::string made_by = gate.made_by.empty() ? "" : "; it is made by: " + gate.made_by;
-  return read_json(gate.source, "a result file (JSON)" + made_by);
-}
-
-/// Each file is read once.
-void judge_results(const std::vector<Gate>& gates, Judgements& judgements) {
-  std::map<std::filesystem::path, Json> results;
-  for (std::size_t i = 0; i < gates.size(); ++i) {
-    const Gate& gate = gates[i];
-    if (gate.kind != GateSource::result) continue;
-    try {
-      if (!results.contains(gate.source)) results[gate.source] = read_result(gate);
-      judgements[i] = judge(gate, results.at(gate.source));
-    } catch (const InputError& error) {
-      judgements[i] = refuse(gate, error.what());
-    }
+Judgement judge(const Gate& gate, const Source& source, const Source* other) {
+  std::string refused = source.refused;
+  if (refused.empty() && other != nullptr) refused = other->refused;
+  if (refused.empty() && source.file_date < gate.newer_than) {
+    refused = fmt::format("{} is of {}; allowed: {} or later", gate.source.string(), source.file_date,
+                          gate.newer_than);
+  }
+  if (!refused.empty()) return refuse(gate, refused);
+  try {
+    return judge(other == nullptr ? gate : bounded_by(gate, other->result), source.result);
+  } catch (const InputError& error) {
+    return refuse(gate, error.what());
   }
 }
 
 }  // namespace
 
+std::vector<Gate> with_others(const std::vector<Gate>& gates) {
+  std::vector<Gate> all = gates;
+  for (const Gate& gate : gates) {
+    if (gate.of.empty()) continue;
+    Gate other = gate;
+    other.source = gate.of;
+    if (gate.of.extension() == ".json") {
+      other.kind = GateSource::result;
+      other.overrides.clear();
+    } else if (gate.kind == GateSource::result) {
+      other.kind = GateSource::scene;
+    }
+    all.push_back(std::move(other));
+  }
+  return all;
+}
+
 std::vector<PreparedRun> gate_runs(const std::vector<Gate>& gates, const ProcessPool& pool) {
   std::vector<PreparedRun> runs;
-  for (const Gate& gate : gates) {
+  for (const Gate& gate : with_others(gates)) {
     if (gate.kind == GateSource::result) continue;
     try {
       std::vector<RunSpec> specs{{.scene = gate.source, .overrides = gate.overrides}};
@@ -134,13 +173,19 @@ std::vector<PreparedRun> gate_runs(const std::vector<Gate>& gates, const Process
 }
 
 std::vector<Judgement> run_gates(const std::vector<Gate>& gates, const ProcessPool& pool) {
-  Judgements judgements(gates.size());
-  judge_scenes(gates, pool, judgements);
-  judge_studies(gates, pool, judgements);
-  judge_results(gates, judgements);
-  std::vector<Judgement> result;
-  for (std::optional<Judgement>& judgement : judgements) result.push_back(*std::move(judgement));
-  return result;
+  const std::vector<Gate> all = with_others(gates);
+  Sources sources(all.size());
+  solve_scenes(all, pool, sources);
+  take_others(all, pool, sources);
+  std::vector<Judgement> judgements;
+  std::size_t others = gates.size();
+  for (std::size_t i = 0; i < gates.size(); ++i) {
+    judgements.push_back(judge(gates[i], sources[i], gates[i].of.empty() ? nullptr : &sources[others++]));
+    judgements.back().seconds = sources[i].seconds;
+    judgements.back().file_date = sources[i].file_date;
+    judgements.back().dominant_error = find_dominant_error(judgements.back(), pool);
+  }
+  return judgements;
 }
 
 }  // namespace slipstick::convergence

@@ -124,11 +124,11 @@ void require_sound(const LoopRecord& loop) {
                                          loop.normal_load[row]));
     }
   }
-  const auto is_zero = [](const std::vector<double>& values) {
-    return std::ranges::all_of(values, [](double value) { return value == 0.0; });
+  const auto is_constant = [](const std::vector<double>& values) {
+    return std::ranges::all_of(values, [&](double value) { return value == values.front(); });
   };
-  if (is_zero(loop.load) || is_zero(loop.motion)) {
-    throw InputError(file, "load or motion is zero everywhere: there is no loop to judge");
+  if (is_constant(loop.load) || is_constant(loop.motion)) {
+    throw InputError(file, "load or motion never changes: there is no loop to judge");
   }
 }
 

@@ -6,6 +6,7 @@ import math
 import os
 import sys
 import xml.etree.ElementTree
+from datetime import datetime
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
@@ -64,6 +65,50 @@ class GateProgram(ProgramTest):
         self.gate(self.write("right.toml", exact("flat_punch", stuck)))
         self.gate(self.write("wrong.toml", exact("flat_punch", stuck * (1 + 1e-9))), code=1)
         self.gate(self.write("none.toml", exact("ellipse", stuck)), code=1, says="solver.model")
+
+    def test_a_result_file_is_not_older_than_asked(self):
+        self.write("work.json", counts(19))
+        old = COUNTED + 'newer_than = "2024-05-01"\n'
+        self.write("old.toml", old)
+        for day, code in (("2024-05-02", 0), ("2024-05-01", 0), ("2024-04-30", 2)):
+            noon = datetime.fromisoformat(day + "T12:00:00+00:00").timestamp()
+            os.utime(self.folder / "work.json", (noon, noon))
+            self.gate("old.toml", "--json", "gates.json", code=code, says=day)
+            found = json.loads((self.folder / "gates.json").read_text())["gates"][0]
+            self.assertEqual(found.get("file_date"), day)
+            self.assertEqual("allowed: 2024-05-01 or later" in found["why"], code == 2)
+        for day in ("2024-02-30", "yesterday", "2024-5-1", "2024-05-011"):
+            self.write("bad.toml", old.replace("2024-05-01", day))
+            self.gate("bad.toml", code=2, says=["newer_than", day, "a day as"])
+
+    def test_a_number_is_held_to_that_of_another_result(self):
+        relative = COUNTED.replace("above = 17\nbelow = 21", 'of = "before.json"\nwithin = 0.1')
+        self.write("relative.toml", relative)
+        self.write("before.json", counts(20))
+        for number, code in ((18.1, 0), (21.9, 0), (17.9, 1), (22.1, 1)):
+            self.write("work.json", counts(number))
+            self.gate("relative.toml", code=code, says="within 0.1 of 20, that of before.json")
+        self.write("before.json", counts(-20))
+        self.write("work.json", counts(-21))
+        self.gate("relative.toml")
+        for number in ("null", "0", '"many"'):
+            self.write("before.json", counts(number))
+            self.gate("relative.toml", code=2, says=["before.json", "a number that is not zero"])
+        (self.folder / "before.json").unlink()
+        self.gate("relative.toml", code=2, says="before.json")
+        for wrong, says in (("below = 3", "beside of"), ("within = 0", "within"), ("equals = 3", "beside of")):
+            self.write("wrong.toml", relative.replace("within = 0.1", "") + wrong if wrong.startswith("within")
+                       else relative + wrong)
+            self.gate("wrong.toml", code=2, says=says)
+        self.write("lone.toml", relative.replace("within = 0.1", ""))
+        self.gate("lone.toml", code=2, says="within")
+
+    def test_a_number_is_held_to_that_of_another_scene(self):
+        """At equal parts of their limits twists are as friction coefficients are."""
+        self.write("rough.toml", PAPER.read_text().replace("friction = 0.1", "friction = 0.2"))
+        for scene, within, code in ((PAPER, 1e-12, 0), ("rough.toml", 0.5001, 0), ("rough.toml", 0.4999, 1)):
+            self.write("scenes.toml", gate("twists", f"of = '{scene}'\nwithin = {within}", quantity="twist_angle"))
+            self.gate("scenes.toml", code=code, says=f"that of {Path(scene).name}")
 
     def test_writes_its_reports_whatever_else_is_wrong(self):
         self.write("good.toml", gate("good", LOOSE))

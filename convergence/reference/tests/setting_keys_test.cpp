@@ -52,7 +52,9 @@ basis = "theory"
 id = "c"
 result = "result.json"
 quantity = "number"
-equals = 1
+newer_than = "2026-11-24"
+of = "other.json"
+within = 1e-3
 basis = "theory"
 )";
 constexpr const char* kWholeCases = R"([[family]]

@@ -198,9 +198,8 @@ TEST_F(ProcessPoolTest, StopsWhereAResultCannotBeWritten) {
   const RunSpec blocked{.scene = kPaper, .overrides = {"grid.cells=[12,12]"}};
   const fs::path point = folder_ / "points" / (prepare_run(blocked).name + ".json");
   fs::create_directories(point / "in the way");
-  EXPECT_THAT(complaint(blocked), testing::HasSubstr(point.string() + ": cannot be written"));
-  fs::remove_all(point);
-  EXPECT_EQ(complaint(blocked), "");
+  EXPECT_EQ(complaint(blocked), "") << "a folder in a result's place is put aside";
+  EXPECT_TRUE(fs::is_regular_file(point));
   EXPECT_EQ(pool.run(done)["seconds"], first["seconds"]) << "it was solved again";
 }
 

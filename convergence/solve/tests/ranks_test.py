@@ -10,6 +10,9 @@ import sys
 import tempfile
 import time
 
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "tests"))
+from hold import Hold  # noqa: E402
+
 PROGRAM, SCENES, MPIRUN = sys.argv[1:4]
 # What may differ from run to run, or tells of the ranks.
 DIFFERS = ("seconds", "peak_bytes", "provenance", "ranks", "solver_bytes", "predicted_bytes")
@@ -108,11 +111,12 @@ def survives_a_death(folder):
     scene = ["solve", f"{SCENES}/fretting_torsion.toml", "--set", "grid.cells=[40,32]", "--set", "cycles=8"]
     kept = folder / "kept.h5"
     going = ["--checkpoint", str(kept), "--resume", "--json", str(folder / "resumed.json")]
-    with subprocess.Popen(command(3, [*scene, *going]), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True) as started:
-        victim = rank_to_kill(started)
-        while not kept.exists() and started.poll() is None:
-            time.sleep(0.01)
-        os.kill(victim, signal.SIGKILL)
+    hold = Hold(folder, "*kept.h5", 1, after=True)
+    with subprocess.Popen(command(3, [*scene, *going]), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                          env=hold.environment) as started:
+        hold.process(started)
+        os.kill(rank_to_kill(started), signal.SIGKILL)
+        hold.release()
         said = started.communicate()[0]
     assert started.returncode != 0, "the run went on without one of its ranks"
     assert "signal 9" in said, said
