@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "convergence/results/quantity.hpp"
+#include "convergence/solve/draws.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/toml_reader.hpp"
 
@@ -19,18 +20,25 @@ namespace slipstick::convergence {
 namespace {
 
 /// Names in results, and for a person.
-constexpr std::array<std::pair<const char*, const char*>, 8> kOutputs{{{"twist_angle", "twist"},
-                                                                       {"moment", "moment"},
-                                                                       {"moment_limit", "moment limit"},
-                                                                       {"stick_radius", "stick radius"},
-                                                                       {"contact_radius", "contact radius"},
-                                                                       {"peak_pressure", "peak pressure"},
-                                                                       {"approach", "approach"},
-                                                                       {"dissipated", "dissipated energy"}}};
+constexpr std::array<std::pair<const char*, const char*>, 10> kOutputs{
+    {{"twist_angle", "twist"},
+     {"displacement[0]", "displacement along x1"},
+     {"displacement[1]", "displacement along x2"},
+     {"moment", "moment"},
+     {"moment_limit", "moment limit"},
+     {"stick_radius", "stick radius"},
+     {"contact_radius", "contact radius"},
+     {"peak_pressure", "peak pressure"},
+     {"approach", "approach"},
+     {"dissipated", "dissipated energy"}}};
 constexpr double kExactStep = 1e-3;
 constexpr double kGridStep = 2e-2;
 constexpr int kSmallerSteps = 4;
 
+/// An output is rounding where it is such a part of its companion: 1e-17 or so in the scenes of symmetry.
+constexpr double kRounding = 1e-12;
+
+constexpr double kNormalAt95 = 1.645;  ///< standard uncertainties from the median of a normal distribution
 /// Added in squares, a third of the larger changes the sum by 5 %.
 constexpr double kNegligible = 1.0 / 3;
 
@@ -81,8 +89,6 @@ Json solve_at(const UncertainInput& input, double off, bool exact, const SolveWi
   return solve(overrides);
 }
 
-bool converged(const Json& result) { return result.value("status", "") == "converged"; }
-
 /// Results at symmetric places around an input, for a difference.
 struct Pair {
   Json above, below;
@@ -132,8 +138,12 @@ Differences differences(const UncertainInput& input, bool exact, const SolveWith
 }
 
 void set_numerical(Json& output, const Json& result, const std::string& name, bool exact) {
-  double error = std::abs(number_at(result, name + "_error"));
-  if (name == "twist_angle" && std::isnan(error)) error = number_at(result, "resolved.uncertainty");
+  const std::string whole = name.substr(0, name.find('['));
+  double error = std::abs(number_at(result, whole + "_error"));
+  const FoundQuantity resolved = find_quantity(result, "resolved.number");
+  if (std::isnan(error) && resolved.value != nullptr && *resolved.value == whole) {
+    error = number_at(result, "resolved.uncertainty");
+  }
   set_number(output, "numerical", error,
              exact ? "the exact answer has no mesh; it is within rounding"
                    : "neither an exact value nor an estimate is known");
@@ -151,13 +161,24 @@ std::string verdict(double inputs, const Json& output, bool exact) {
   return size + ": both matter";
 }
 
+/// Whether nothing but rounding is there: of a motion or moment beside another, and a limit without a moment.
+bool is_rounding(const Json& result, std::string_view name, double value) {
+  const double twist = std::abs(number_at(result, "twist_angle")) * number_at(result, "contact_radius");
+  const double moment = std::abs(number_at(result, "moment")) / number_at(result, "moment_limit");
+  const double displacement =
+      std::hypot(number_at(result, "displacement[0]"), number_at(result, "displacement[1]"));
+  if (name == "twist_angle") return twist <= kRounding * displacement;
+  if (name.starts_with("displacement")) return std::abs(value) <= kRounding * std::fmax(displacement, twist);
+  return name.starts_with("moment") && !(moment > kRounding);
+}
+
 /// Of the twist, or of the first output that the inputs change.
 std::string sentence(const Json& outputs, const std::vector<UncertainInput>& inputs, bool exact) {
   for (const auto& [name, words] : kOutputs) {
     if (!outputs.contains(name)) continue;
     const Json& output = outputs[name];
     const double relative = output["relative"].get<double>();
-    if (!(relative > 1e-9)) continue;
+    if (!(relative > kVaries)) continue;
     std::size_t largest = 0;
     const auto part = [&](std::size_t i) { return std::abs(output["parts"][i]["part"].get<double>()); };
     for (std::size_t i = 1; i < inputs.size(); ++i) {
@@ -165,6 +186,14 @@ std::string sentence(const Json& outputs, const std::vector<UncertainInput>& inp
     }
     const std::string all =
         inputs.size() == 1 ? "" : fmt::format(" (all inputs together {})", percent(relative));
+    if (output.contains("quantiles")) {
+      const Json& at = output["quantiles"];
+      const double spread = at["95 %"].get<double>() - at["5 %"].get<double>();
+      return fmt::format(
+          "{}'s {} matters most for the {}; {}", inputs[largest].key, percent(inputs[largest].relative),
+          words,
+          verdict(spread / (2 * kNormalAt95 * std::abs(output["value"].get<double>())), output, exact));
+    }
     return fmt::format("{}'s {} makes {} of the {}{}; {}", inputs[largest].key,
                        percent(inputs[largest].relative), percent(part(largest)), words, all,
                        verdict(relative, output, exact));
@@ -217,11 +246,10 @@ Json uncertainty_json(const Json& result, const std::vector<UncertainInput>& inp
                                {"relative", input.relative},
                                {"step", made.back().pairs.front().step}});
   }
-  Json& outputs = found["outputs"] = Json::object();
+  Json outputs = Json::object();
   for (const auto& [name, words] : kOutputs) {
     const double value = number_at(result, name);
-    if (std::isnan(value) || value == 0.0) continue;
-    if (std::string_view(name) == "moment_limit" && number_at(result, "moment") == 0.0) continue;
+    if (std::isnan(value) || value == 0.0 || is_rounding(result, name, value)) continue;
     Json output{{"value", value}};
     double squares = 0;
     Json parts = Json::array();
@@ -238,7 +266,10 @@ Json uncertainty_json(const Json& result, const std::vector<UncertainInput>& inp
     output["parts"] = std::move(parts);
     outputs[name] = std::move(output);
   }
+  Json draws = draw_inputs(result, inputs, solve, outputs);
   found["sentence"] = sentence(outputs, inputs, exact);
+  found["outputs"] = std::move(outputs);
+  if (!draws.is_null()) found["draws"] = std::move(draws);
   return found;
 }
 
@@ -251,10 +282,15 @@ std::string uncertainty_text(const Json& result) {
     const std::string numerical = output["numerical"].is_null()
                                       ? ""
                                       : ", numerical error " + percent(output["numerical"].get<double>());
-    text +=
-        text_line("uncertain", fmt::format("{} {} of {}{}", words, percent(output["relative"].get<double>()),
-                                           short_text(output["value"]), numerical));
+    std::string range = percent(output["relative"].get<double>()) + " of " + short_text(output["value"]);
+    if (output.contains("quantiles") && output["relative"].get<double>() > kVaries) {
+      const Json& at = output["quantiles"];
+      range = fmt::format("{} to {}, median {}", short_text(at["5 %"]), short_text(at["95 %"]),
+                          short_text(at["50 %"]));
+    }
+    text += text_line("uncertain", fmt::format("{} {}{}", words, range, numerical));
   }
+  if (found.contains("draws")) text += draws_text(found["draws"]);
   return text + text_line("matters", found["sentence"].get<std::string>());
 }
 
