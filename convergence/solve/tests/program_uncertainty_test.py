@@ -11,7 +11,7 @@ from statistics import NormalDist
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
 from program_run import SCENES, SHORT_SCENE, ProgramTest, main
 
-DRAWS = 100_000  # made here; the program makes 4096 exact ones, or 256
+DRAWS = 100_000  # made here; the program makes 16384 exact ones, or 256
 ELLIPSE = """[upper]
 shape = "ellipsoid"
 radius_1 = 0.03
@@ -49,18 +49,21 @@ class Derivatives(Uncertain):
             output = found["outputs"][name]
             for part, exponent in zip(output["parts"], exponents):
                 self.assertAlmostEqual(part["exponent"], exponent, delta=within, msg=f"{name}, {part['key']}")
-            standard = math.hypot(*(a * b for a, b in zip(exponents, [*relative, relative[-1]])))
+            standard = math.hypot(*(a * b for a, b in zip(exponents, [*relative, relative[-1]])))  # two bodies
             self.assertAlmostEqual(output["relative"], standard, delta=within)
-            self.assertAlmostEqual(output["standard"], output["relative"] * abs(output["value"]), delta=1e-12 * abs(output["value"]))
+            value = abs(output["value"])
+            self.assertAlmostEqual(output["standard"], output["relative"] * value, delta=1e-12 * value)
 
     def test_follow_the_power_laws_of_hertz(self):
         # At a given moment ratio the twist is mu W / (G a^2), the limit mu W a, and a^3 = W R / E* times constants.
         third, sixth = 1 / 3, 1 / 6
         words = "friction=5% load.normal=3% radius=1% young_modulus=2%"
-        laws = {"contact_radius": (0, third, third, -sixth, -sixth), "moment_limit": (1, 4 * third, third, -sixth, -sixth),
-                "moment": (1, 4 * third, third, -sixth, -sixth), "stick_radius": (0, third, third, -sixth, -sixth),
-                "peak_pressure": (0, third, -2 * third, third, third), "approach": (0, 2 * third, -third, -third, -third),
-                "twist_angle": (1, third, -2 * third, -sixth, -sixth), "dissipated": (2, 5 * third, -third, -third, -third)}
+        length, moment = (0, third, third, -sixth, -sixth), (1, 4 * third, third, -sixth, -sixth)
+        laws = {"contact_radius": length, "stick_radius": length, "moment": moment, "moment_limit": moment,
+                "peak_pressure": (0, third, -2 * third, third, third),
+                "approach": (0, 2 * third, -third, -third, -third),
+                "twist_angle": (1, third, -2 * third, -sixth, -sixth),
+                "dissipated": (2, 5 * third, -third, -third, -third)}
         for more in (["--model", "exact"], ["--set", "grid.cells=[48,48]"]):
             found = self.found(SCENES / "paper.toml", words, *more)
             self.holds_laws(found, words, laws, 1e-9)
@@ -70,7 +73,8 @@ class Derivatives(Uncertain):
     def test_follow_those_of_an_ellipse_on_a_grid(self):
         words = "friction=5% load.normal=3%"
         found = self.found(SCENES / "ellipse.toml", words)
-        self.holds_laws(found, words, {"twist_angle": (1, 1 / 3), "moment": (1, 4 / 3), "contact_radius": (0, 1 / 3)}, 1e-3)
+        laws = {"twist_angle": (1, 1 / 3), "moment": (1, 4 / 3), "contact_radius": (0, 1 / 3)}
+        self.holds_laws(found, words, laws, 1e-3)
         self.assertNotIn("draws", found)
 
     def test_of_one_body_alone(self):
@@ -83,7 +87,8 @@ class Derivatives(Uncertain):
         self.assertIn("a finer mesh matters more", found["sentence"])
 
     def test_steps_stay_below_the_limit(self):
-        found = self.found(SCENES / "paper.toml", "moment_ratio=1%", "--model", "exact", "--set", "load.moment_ratio=0.9999")
+        words = ["--model", "exact", "--set", "load.moment_ratio=0.9999"]
+        found = self.found(SCENES / "paper.toml", "moment_ratio=1%", *words)
         self.assertAlmostEqual(found["outputs"]["moment"]["relative"], 0.01, delta=1e-9)
 
     def test_of_forces_are_of_displacements_and_of_no_moment(self):
@@ -102,8 +107,8 @@ class Derivatives(Uncertain):
                 self.assertIn("displacement along x1", self.text(SCENES / "mindlin.toml", "friction=1%", *words))
 
     def test_bad_inputs_are_refused(self):
-        for word in ("fricton=5%", "shape=5%", "friction=5", "friction=-5%", "friction=five%", "friction", "friction=0%",
-                     "friction=100%", "friction=nan%", "=5%", "cells=5%", "friction=5% contact.friction=2%"):
+        for word in ("fricton=5%", "shape=5%", "friction=5", "friction=-5%", "friction=five%", "friction",
+                     "friction=0%", "friction=100%", "friction=nan%", "=5%", "cells=5%", "friction=5% contact.friction=2%"):
             self.text(SCENES / "paper.toml", word, "--model", "exact", code=2, says=["--uncertain", "allowed"])
 
 
@@ -119,7 +124,8 @@ class Draws(Uncertain):
             text = SHORT_SCENE.replace("1000", str(normal))
             limit = self.result("solve", self.write("scene.toml", text), "--model", "exact")["moment_limit"]
             scene = self.write("scene.toml", text.replace("moment_ratio = 0.5", f"moment = {moment * limit}"))
-            result = self.solve(scene, " ".join(f"{key}={100 * part}%" for key, part in parts.items()), "--model", "exact")
+            words = " ".join(f"{key}={100 * part}%" for key, part in parts.items())
+            result = self.solve(scene, words, "--model", "exact")
             drawn = []
             for _ in range(DRAWS):
                 friction, load = (1 + part * chance.gauss(0, 1) for part in parts.values())
@@ -132,7 +138,7 @@ class Draws(Uncertain):
     def holds(self, found, drawn):
         draws, output, answered = found["draws"], found["outputs"]["twist_angle"], len(drawn) / DRAWS
         sampling = math.sqrt(answered * (1 - answered) / DRAWS) + math.sqrt(answered * (1 - answered) / draws["number"])
-        self.assertLess(abs(1 - draws["sliding"] - draws["failed"] - answered), 3 * sampling)
+        self.assertLessEqual(abs(1 - draws["sliding"] - draws["failed"] - answered), 3 * sampling)
         for word, below in (("5 %", 0.05), ("50 %", 0.5), ("95 %", 0.95)):
             self.assertAlmostEqual(output["quantiles"][word] / drawn[int(below * len(drawn))], 1, delta=0.02)
 
@@ -141,7 +147,7 @@ class Draws(Uncertain):
         scene = self.write("scene.toml", SHORT_SCENE.replace("moment_ratio = 0.5", "moment = 0.02592919"))
         part = NormalDist().cdf(-0.1 / 0.18)
         for more in ([], ["--model", "exact"]):
-            self.assertAlmostEqual(self.found(scene, "friction=18%", *more)["draws"]["sliding"], part, delta=2 / 4096)
+            self.assertAlmostEqual(self.found(scene, "friction=18%", *more)["draws"]["sliding"], part, delta=2 / 16384)
         self.text(scene, "friction=18%", says=[f"{100 * part:.1f} % of the draws slide altogether", "median"])
 
     def test_of_an_ellipse_are_those_of_its_solves(self):
@@ -154,7 +160,8 @@ class Draws(Uncertain):
         for word, below in (("5 %", 0.05), ("50 %", 0.5), ("95 %", 0.95)):
             friction = 0.1 * (1 + spread * normal.inv_cdf(slides + (1 - below) * (1 - slides)))
             twist = self.result("solve", scene, "--set", f"contact.friction={friction}")["twist_angle"]
-            self.assertAlmostEqual(result["uncertainty"]["outputs"]["twist_angle"]["quantiles"][word] / twist, 1, delta=0.02)
+            found = result["uncertainty"]["outputs"]["twist_angle"]["quantiles"][word]
+            self.assertAlmostEqual(found / twist, 1, delta=0.02)
 
     def test_at_the_limit_are_no_percentage(self):
         for more in (["--model", "exact"], []):
@@ -166,8 +173,8 @@ class Draws(Uncertain):
     def test_without_an_answer_for_another_reason_are_told_apart(self):
         normal = NormalDist()
         draws = self.found(SCENES / "mindlin.toml", "friction=50%", "--model", "exact")["draws"]  # F = 0.6 mu W
-        self.assertAlmostEqual(draws["failed"], normal.cdf(-2), delta=2 / 4096)
-        self.assertAlmostEqual(draws["sliding"], normal.cdf(-0.8) - normal.cdf(-2), delta=4 / 4096)
+        self.assertAlmostEqual(draws["failed"], normal.cdf(-2), delta=2 / 16384)
+        self.assertAlmostEqual(draws["sliding"], normal.cdf(-0.8) - normal.cdf(-2), delta=4 / 16384)
         self.assertIn("contact.friction = -", draws["failed_reason"])
 
 
