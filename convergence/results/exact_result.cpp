@@ -99,6 +99,7 @@ Json exact_result(const solver::Scene& scene, const Oracle& oracle, double secon
   json["twist"] = oracle.state.twist;
   json["force"] = oracle.force;
   json["displacement"] = oracle.displacement;
+  set_number(json, "dissipated", oracle.dissipated, unknown);
   json["iterations"] = 0;
   json["operator_applications"] = 0;
   set_all_missing(json, {"certificate", "slip_direction"},

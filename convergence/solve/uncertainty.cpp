@@ -7,6 +7,8 @@
 #include <array>
 #include <charconv>
 #include <cmath>
+#include <map>
+#include <numbers>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -19,18 +21,37 @@ namespace slipstick::convergence {
 namespace {
 
 /// Names in results, and for a person.
-constexpr std::array<std::pair<const char*, const char*>, 8> kOutputs{{{"twist_angle", "twist"},
-                                                                       {"moment", "moment"},
-                                                                       {"moment_limit", "moment limit"},
-                                                                       {"stick_radius", "stick radius"},
-                                                                       {"contact_radius", "contact radius"},
-                                                                       {"peak_pressure", "peak pressure"},
-                                                                       {"approach", "approach"},
-                                                                       {"dissipated", "dissipated energy"}}};
-constexpr double kExactStep = 1e-3;
+constexpr std::array<std::pair<const char*, const char*>, 10> kOutputs{
+    {{"twist_angle", "twist"},
+     {"displacement[0]", "displacement along x1"},
+     {"displacement[1]", "displacement along x2"},
+     {"moment", "moment"},
+     {"moment_limit", "moment limit"},
+     {"stick_radius", "stick radius"},
+     {"contact_radius", "contact radius"},
+     {"peak_pressure", "peak pressure"},
+     {"approach", "approach"},
+     {"dissipated", "dissipated energy"}}};
+constexpr double kExactStep = 1e-5;
 constexpr double kGridStep = 2e-2;
 constexpr int kSmallerSteps = 4;
 
+/// An output is rounding where it is such a part of its companion: 1e-17 or so in the scenes of symmetry.
+constexpr double kRounding = 1e-12;
+
+/// Less of an output, relative, is rounding: the inputs do not change it.
+constexpr double kVaries = 1e-9;
+
+/// Percentages stand while outputs at one standard uncertainty are as near to the derivative's, over their
+/// own.
+constexpr double kLinear = 0.1;
+/// Draws in all: exact ones take 0.1 ms each; others, on so many cells a side at most, some 10 ms.
+constexpr std::size_t kExactDraws = 16384;
+constexpr std::size_t kGridDraws = 256;
+constexpr int kFewCells = 64;
+constexpr std::array<std::pair<const char*, double>, 3> kQuantiles{
+    {{"5 %", 0.05}, {"50 %", 0.5}, {"95 %", 0.95}}};
+constexpr double kNormalAt95 = 1.645;  ///< standard uncertainties from the median of a normal distribution
 /// Added in squares, a third of the larger changes the sum by 5 %.
 constexpr double kNegligible = 1.0 / 3;
 
@@ -72,16 +93,58 @@ bool stands_for(const std::string& name, const std::string& key) {
   return key == name || key.ends_with("." + name);
 }
 
-/// The result where one input is off by a part of itself. One body's modulus alone makes materials
-/// dissimilar; what the pressure then moves is radial and enters the torsion by its square, so that an exact
-/// answer, which does not know it, still has the derivative.
-Json solve_at(const UncertainInput& input, double off, bool exact, const SolveWith& solve) {
-  std::vector<std::string> overrides{fmt::format("{}={:.16e}", input.key, input.value * (1 + off))};
-  if (exact) overrides.emplace_back("contact.coupling=\"none\"");
-  return solve(overrides);
-}
-
 bool converged(const Json& result) { return result.value("status", "") == "converged"; }
+
+/// Solves of a scene with other inputs.
+struct Neighbours {
+  const std::vector<UncertainInput>& inputs;
+  const SolveWith& solve;
+  std::vector<std::string> overrides;
+  Json centre;  ///< at the scene's own inputs
+  bool exact;
+
+  /// The result with each input off by a part of itself; "message" says why there is no answer.
+  Json at(const std::vector<double>& off) const {
+    std::vector<std::string> changed = overrides;
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      changed.push_back(fmt::format("{}={:.16e}", inputs[i].key, inputs[i].value * (1 + off[i])));
+    }
+    try {
+      return solve(changed);
+    } catch (const solver::InputError& error) {
+      return Json{{"message", error.what()}};
+    }
+  }
+  Json at(std::size_t input, double off) const {
+    std::vector<double> all(inputs.size(), 0.0);
+    all[input] = off;
+    return at(all);
+  }
+};
+
+/// Exact where the result knows the exact answer, else on few cells, and on the scene's own if those do not
+/// do. One body's modulus alone makes materials dissimilar; what the pressure then moves is radial and enters
+/// the torsion by its square, so that an exact answer, which does not know it, still has the derivative.
+Neighbours neighbours(const Json& result, const std::vector<UncertainInput>& inputs, const SolveWith& solve) {
+  Neighbours made{.inputs = inputs, .solve = solve, .overrides = {}, .centre = result, .exact = false};
+  const auto takes = [&](std::vector<std::string> overrides) {
+    made.overrides = std::move(overrides);
+    made.centre = made.at(std::vector<double>(inputs.size(), 0.0));
+    return converged(made.centre);
+  };
+  made.exact = result.value("method", "") == "exact" || std::isfinite(number_at(result, "twist_error")) ||
+               std::isfinite(number_at(result, "displacement_error"));
+  if (made.exact && takes({"solver.model=\"exact\"", "contact.coupling=\"none\""})) return made;
+  made.exact = false;
+  const double size[] = {number_at(result, "cells[0]"), number_at(result, "cells[1]")};
+  const double larger = std::fmax(size[0], size[1]) / kFewCells;
+  if (larger > 1 && takes({fmt::format("grid.cells=[{:.0f},{:.0f}]", size[0] / larger, size[1] / larger)})) {
+    return made;
+  }
+  made.overrides.clear();
+  made.centre = result;
+  return made;
+}
 
 /// Results at symmetric places around an input, for a difference.
 struct Pair {
@@ -94,46 +157,25 @@ struct Pair {
   }
 };
 
-Pair pair_at(const UncertainInput& input, double step, bool exact, const SolveWith& solve) {
-  for (int smaller = 0;; ++smaller, step /= 4) {
-    const bool last = smaller == kSmallerSteps;
-    try {
-      Pair pair{.above = solve_at(input, step, exact, solve),
-                .below = solve_at(input, -step, exact, solve),
-                .step = step};
-      if (converged(pair.above) && converged(pair.below)) return pair;
-    } catch (const solver::InputError&) {
-      if (last) throw;
-    }
-    if (last) {
-      throw solver::InputError(fmt::format("--uncertain {}", input.key),
-                               fmt::format("no solve within {:.2g} of its value converges; allowed: inputs "
-                                           "whose neighbours can be solved",
-                                           step));
-    }
+Pair pair_at(const Neighbours& near, std::size_t input) {
+  double step = near.exact ? kExactStep : kGridStep;
+  for (int smaller = 0; smaller <= kSmallerSteps; ++smaller, step /= 4) {
+    Pair pair{.above = near.at(input, step), .below = near.at(input, -step), .step = step};
+    if (converged(pair.above) && converged(pair.below)) return pair;
   }
-}
-
-/// What one input makes of all outputs: one pair of results, or two to extrapolate from.
-struct Differences {
-  std::vector<Pair> pairs;
-
-  double slope(const char* output, double value) const {
-    const double coarse = pairs.front().slope(output, value);
-    return pairs.size() == 1 ? coarse : (4 * pairs.back().slope(output, value) - coarse) / 3;
-  }
-};
-
-Differences differences(const UncertainInput& input, bool exact, const SolveWith& solve) {
-  Differences found;
-  found.pairs.push_back(pair_at(input, exact ? kExactStep : kGridStep, exact, solve));
-  if (exact) found.pairs.push_back(pair_at(input, found.pairs.front().step / 2, exact, solve));
-  return found;
+  throw solver::InputError(fmt::format("--uncertain {}", near.inputs[input].key),
+                           fmt::format("no solve within {:.2g} of its value converges; allowed: inputs "
+                                       "whose neighbours can be solved",
+                                       4 * step));
 }
 
 void set_numerical(Json& output, const Json& result, const std::string& name, bool exact) {
-  double error = std::abs(number_at(result, name + "_error"));
-  if (name == "twist_angle" && std::isnan(error)) error = number_at(result, "resolved.uncertainty");
+  const std::string whole = name.substr(0, name.find('['));
+  double error = std::abs(number_at(result, (whole == "twist_angle" ? "twist" : whole) + "_error"));
+  const FoundQuantity resolved = find_quantity(result, "resolved.number");
+  if (std::isnan(error) && resolved.value != nullptr && *resolved.value == whole) {
+    error = number_at(result, "resolved.uncertainty");
+  }
   set_number(output, "numerical", error,
              exact ? "the exact answer has no mesh; it is within rounding"
                    : "neither an exact value nor an estimate is known");
@@ -151,13 +193,113 @@ std::string verdict(double inputs, const Json& output, bool exact) {
   return size + ": both matter";
 }
 
+/// Whether nothing but rounding is there: of a motion or moment beside another, and a limit without a moment.
+bool is_rounding(const Json& result, std::string_view name, double value) {
+  const double twist = std::abs(number_at(result, "twist_angle")) * number_at(result, "contact_radius");
+  const double moment = std::abs(number_at(result, "moment")) / number_at(result, "moment_limit");
+  const double displacement =
+      std::hypot(number_at(result, "displacement[0]"), number_at(result, "displacement[1]"));
+  if (name == "twist_angle") return twist <= kRounding * displacement;
+  if (name.starts_with("displacement")) return std::abs(value) <= kRounding * std::fmax(displacement, twist);
+  return name.starts_with("moment") && !(moment > kRounding);
+}
+
+/// Whether the derivatives do: each input alone, at one standard uncertainty, and at three there are answers.
+bool is_linear(const Json& outputs, const Neighbours& near) {
+  for (std::size_t i = 0; i < near.inputs.size(); ++i) {
+    const double relative = near.inputs[i].relative;
+    for (const double sign : {-1.0, 1.0}) {
+      if (!converged(near.at(i, 3 * sign * relative))) return false;
+      const Json found = near.at(i, sign * relative);
+      for (const auto& [name, output] : outputs.items()) {
+        const double centre = number_at(near.centre, name);
+        const double change = number_at(found, name) / centre - 1;
+        const double part = sign * output["parts"][i]["part"].get<double>();
+        const double standard = output["relative"].get<double>();
+        if (standard > kVaries && !(std::abs(change - part) <= kLinear * standard)) return false;
+      }
+    }
+  }
+  return true;
+}
+
+/// So many standard uncertainties are the part below of a normal distribution.
+double normal_quantile(double below) {
+  double low = -9, high = 9;
+  for (int halvings = 0; halvings < 60; ++halvings) {
+    const double middle = (low + high) / 2;
+    (std::erfc(-middle / std::numbers::sqrt2) / 2 < below ? low : high) = middle;
+  }
+  return low;
+}
+
+/// Off by such parts are the inputs in a draw: evenly spread points of a cube (Roberts' sequence, 2018), as
+/// deviates of normal distributions.
+std::vector<double> offsets(std::size_t draw, const std::vector<UncertainInput>& inputs) {
+  double root = 2;  // of root^(inputs + 1) = root + 1
+  for (int i = 0; i < 64; ++i) root = std::pow(1 + root, 1.0 / (static_cast<double>(inputs.size()) + 1));
+  std::vector<double> off;
+  double place = static_cast<double>(draw + 1);
+  for (const UncertainInput& input : inputs) {
+    place /= root;
+    off.push_back(input.relative * normal_quantile(std::fmod(place + 0.5, 1.0)));
+  }
+  return off;
+}
+
+bool slides(const Json& found) {
+  const std::string why = found.value("message", "");
+  return why.find("gross slip") != std::string::npos || why.find("slips everywhere") != std::string::npos ||
+         number_at(found, "limit.factor") <= 1 + 1e-6;
+}
+
+double quantile(const std::vector<double>& sorted, double below) {
+  const double place = below * static_cast<double>(sorted.size() - 1);
+  const auto from = static_cast<std::size_t>(place);
+  return std::lerp(sorted[from], sorted[std::min(from + 1, sorted.size() - 1)],
+                   place - static_cast<double>(from));
+}
+
+/// Draws all inputs, and gives each output the quantiles of the draws that have an answer.
+Json draw(const Neighbours& near, Json& outputs) {
+  const std::size_t number = near.exact ? kExactDraws : kGridDraws;
+  std::size_t sliding = 0, failed = 0;
+  std::string why;
+  std::map<std::string, std::vector<double>> drawn;
+  for (std::size_t i = 0; i < number; ++i) {
+    const Json found = near.at(offsets(i, near.inputs));
+    if (converged(found)) {
+      for (const auto& [name, output] : outputs.items()) {
+        const double scale = near.exact ? 1 : output["value"].get<double>() / number_at(near.centre, name);
+        const double value = scale * number_at(found, name);
+        if (std::isfinite(value)) drawn[name].push_back(value);
+      }
+    } else if (slides(found)) {
+      ++sliding;
+    } else {
+      ++failed;
+      why = found.value("message", "not converged");
+    }
+  }
+  for (auto& [name, values] : drawn) {
+    std::ranges::sort(values);
+    for (const auto& [word, below] : kQuantiles) outputs[name]["quantiles"][word] = quantile(values, below);
+  }
+  const auto part = [&](std::size_t count) {
+    return static_cast<double>(count) / static_cast<double>(number);
+  };
+  Json draws{{"number", number}, {"exact", near.exact}, {"sliding", part(sliding)}, {"failed", part(failed)}};
+  if (failed > 0) draws["failed_reason"] = why;
+  return draws;
+}
+
 /// Of the twist, or of the first output that the inputs change.
 std::string sentence(const Json& outputs, const std::vector<UncertainInput>& inputs, bool exact) {
   for (const auto& [name, words] : kOutputs) {
     if (!outputs.contains(name)) continue;
     const Json& output = outputs[name];
     const double relative = output["relative"].get<double>();
-    if (!(relative > 1e-9)) continue;
+    if (!(relative > kVaries)) continue;
     std::size_t largest = 0;
     const auto part = [&](std::size_t i) { return std::abs(output["parts"][i]["part"].get<double>()); };
     for (std::size_t i = 1; i < inputs.size(); ++i) {
@@ -165,11 +307,37 @@ std::string sentence(const Json& outputs, const std::vector<UncertainInput>& inp
     }
     const std::string all =
         inputs.size() == 1 ? "" : fmt::format(" (all inputs together {})", percent(relative));
+    if (output.contains("quantiles")) {
+      const Json& at = output["quantiles"];
+      const double spread = at["95 %"].get<double>() - at["5 %"].get<double>();
+      return fmt::format(
+          "{}'s {} matters most for the {}; {}", inputs[largest].key, percent(inputs[largest].relative),
+          words,
+          verdict(spread / (2 * kNormalAt95 * std::abs(output["value"].get<double>())), output, exact));
+    }
     return fmt::format("{}'s {} makes {} of the {}{}; {}", inputs[largest].key,
                        percent(inputs[largest].relative), percent(part(largest)), words, all,
                        verdict(relative, output, exact));
   }
   return "the inputs change none of the outputs";
+}
+
+std::string draws_text(const Json& draws) {
+  const auto part = [&](const char* name) {
+    return fmt::format("{:.1f} %", 100 * draws[name].get<double>());
+  };
+  std::string text =
+      fmt::format("from 5 % to 95 % of {} draws{}", draws["number"].get<int>(),
+                  draws["exact"].get<bool>() ? ", solved exactly" : " on at most 64 cells a side");
+  if (draws["sliding"].get<double>() > 0) {
+    text += fmt::format("; {} of the draws slide altogether: they have no answer and take no part",
+                        part("sliding"));
+  }
+  if (draws["failed"].get<double>() > 0) {
+    text += fmt::format("; {} have no other answer: {}", part("failed"),
+                        draws["failed_reason"].get<std::string>());
+  }
+  return text_line("draws", text);
 }
 
 }  // namespace
@@ -208,25 +376,25 @@ std::vector<UncertainInput> uncertain_inputs(const std::filesystem::path& scene,
 Json uncertainty_json(const Json& result, const std::vector<UncertainInput>& inputs, const SolveWith& solve) {
   const bool exact = result.value("method", "") == "exact";
   Json found;
-  std::vector<Differences> made;
+  const Neighbours near = neighbours(result, inputs, solve);
+  std::vector<Pair> pairs;
   found["inputs"] = Json::array();
-  for (const UncertainInput& input : inputs) {
-    made.push_back(differences(input, exact, solve));
-    found["inputs"].push_back({{"key", input.key},
-                               {"value", input.value},
-                               {"relative", input.relative},
-                               {"step", made.back().pairs.front().step}});
+  for (std::size_t i = 0; i < inputs.size(); ++i) {
+    pairs.push_back(pair_at(near, i));
+    found["inputs"].push_back({{"key", inputs[i].key},
+                               {"value", inputs[i].value},
+                               {"relative", inputs[i].relative},
+                               {"step", pairs[i].step}});
   }
-  Json& outputs = found["outputs"] = Json::object();
+  Json outputs = Json::object();
   for (const auto& [name, words] : kOutputs) {
     const double value = number_at(result, name);
-    if (std::isnan(value) || value == 0.0) continue;
-    if (std::string_view(name) == "moment_limit" && number_at(result, "moment") == 0.0) continue;
+    if (std::isnan(value) || value == 0.0 || is_rounding(result, name, value)) continue;
     Json output{{"value", value}};
     double squares = 0;
     Json parts = Json::array();
     for (std::size_t i = 0; i < inputs.size(); ++i) {
-      const double slope = made[i].slope(name, value);
+      const double slope = pairs[i].slope(name, number_at(near.centre, name));
       const double part = slope * inputs[i].relative;
       squares += part * part;
       parts.push_back({{"key", inputs[i].key}, {"exponent", slope}, {"part", part}});
@@ -238,7 +406,9 @@ Json uncertainty_json(const Json& result, const std::vector<UncertainInput>& inp
     output["parts"] = std::move(parts);
     outputs[name] = std::move(output);
   }
+  if (!is_linear(outputs, near)) found["draws"] = draw(near, outputs);
   found["sentence"] = sentence(outputs, inputs, exact);
+  found["outputs"] = std::move(outputs);
   return found;
 }
 
@@ -251,10 +421,16 @@ std::string uncertainty_text(const Json& result) {
     const std::string numerical = output["numerical"].is_null()
                                       ? ""
                                       : ", numerical error " + percent(output["numerical"].get<double>());
-    text +=
-        text_line("uncertain", fmt::format("{} {} of {}{}", words, percent(output["relative"].get<double>()),
-                                           short_text(output["value"]), numerical));
+    const double relative = output["relative"].get<double>();
+    std::string range = percent(relative > kVaries ? relative : 0) + " of " + short_text(output["value"]);
+    if (output.contains("quantiles") && relative > kVaries) {
+      const Json& at = output["quantiles"];
+      range = fmt::format("{} to {}, median {}", short_text(at["5 %"]), short_text(at["95 %"]),
+                          short_text(at["50 %"]));
+    }
+    text += text_line("uncertain", fmt::format("{} {}{}", words, range, numerical));
   }
+  if (found.contains("draws")) text += draws_text(found["draws"]);
   return text + text_line("matters", found["sentence"].get<std::string>());
 }
 

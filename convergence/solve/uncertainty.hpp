@@ -8,7 +8,7 @@
 
 #include "convergence/results/result_parts.hpp"
 
-/// What uncertain inputs make of a result, to first order: inputs vary independently of each other.
+/// What uncertain inputs make of a result: inputs vary independently of each other.
 namespace slipstick::convergence {
 
 /// A number of a scene that is known to so much.
@@ -28,11 +28,16 @@ std::vector<UncertainInput> uncertain_inputs(const std::filesystem::path& scene,
 /// The result of the scene with these overrides too. Throws InputError where there is none.
 using SolveWith = std::function<Json(const std::vector<std::string>& overrides)>;
 
-/// Each output's standard uncertainty, the part of each input and the numerical error, all relative, and a
-/// sentence that says which matters. Derivatives are central differences: of an exact answer over two steps
-/// of some 0.1 %, extrapolated, which leaves 1e-10 of them; of solves on a grid over one step of 2 %, of
-/// which the mesh's scatter is a small part. Steps shrink where the loads would be beyond the limit. Throws
-/// InputError where all steps are.
+/// Each output's standard uncertainty to first order, the part of each input and the numerical error, all
+/// relative, and a sentence that says which matters. Derivatives are central differences: of an exact answer,
+/// where the result knows it, over 1e-5, which leaves 1e-10 of them; else over 2 % of solves on at most 64
+/// cells a side, of which the mesh's scatter is a small part. Steps shrink where the loads would be beyond
+/// the limit. Throws InputError where all steps are.
+///
+/// "draws" are made where this does not do: where an input alone moves an output at one standard uncertainty
+/// otherwise than its derivative says, by a tenth of the output's standard uncertainty, or leaves no answer
+/// at three. They are the same in each run, from normal distributions; their parts without an answer stand
+/// there, and "quantiles" of the others at the outputs.
 Json uncertainty_json(const Json& result, const std::vector<UncertainInput>& inputs, const SolveWith& solve);
 
 /// The same for a person: one line an output, and the sentence.

@@ -1,0 +1,188 @@
+#!/usr/bin/env python3
+"""program_uncertainty_test.py PROGRAM: `slipstick solve --uncertain` against power laws, and draws made here."""
+
+import bisect
+import math
+import random
+import sys
+from pathlib import Path
+from statistics import NormalDist
+
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
+from program_run import SCENES, SHORT_SCENE, ProgramTest, main
+
+DRAWS = 100_000  # made here; the program makes 16384 exact ones, or 256
+ELLIPSE = """[upper]
+shape = "ellipsoid"
+radius_1 = 0.03
+radius_2 = 0.012
+young_modulus = 210e9
+poisson_ratio = 0.3
+[lower]
+young_modulus = 210e9
+poisson_ratio = 0.3
+[contact]
+friction = 0.1
+[load]
+normal = 1000
+moment = 0.02
+[grid]
+cells = [64, 32]
+"""
+
+
+class Uncertain(ProgramTest):
+    def solve(self, scene, words, *more):
+        return self.result("solve", scene, *more, "--uncertain", *words.split())
+
+    def found(self, scene, words, *more):
+        return self.solve(scene, words, *more)["uncertainty"]
+
+    def text(self, scene, words, *more, **expected):
+        return self.run_program("solve", scene, *more, "--uncertain", *words.split(), **expected)
+
+
+class Derivatives(Uncertain):
+    def holds_laws(self, found, words, laws, within):
+        relative = [float(word.split("=")[1][:-1]) / 100 for word in words.split()]
+        for name, exponents in laws.items():
+            output = found["outputs"][name]
+            for part, exponent in zip(output["parts"], exponents):
+                self.assertAlmostEqual(part["exponent"], exponent, delta=within, msg=f"{name}, {part['key']}")
+            standard = math.hypot(*(a * b for a, b in zip(exponents, [*relative, relative[-1]])))  # two bodies
+            self.assertAlmostEqual(output["relative"], standard, delta=within)
+            value = abs(output["value"])
+            self.assertAlmostEqual(output["standard"], output["relative"] * value, delta=1e-12 * value)
+
+    def test_follow_the_power_laws_of_hertz(self):
+        # At a given moment ratio the twist is mu W / (G a^2), the limit mu W a, and a^3 = W R / E* times constants.
+        third, sixth = 1 / 3, 1 / 6
+        words = "friction=5% load.normal=3% radius=1% young_modulus=2%"
+        length, moment = (0, third, third, -sixth, -sixth), (1, 4 * third, third, -sixth, -sixth)
+        laws = {"contact_radius": length, "stick_radius": length, "moment": moment, "moment_limit": moment,
+                "peak_pressure": (0, third, -2 * third, third, third),
+                "approach": (0, 2 * third, -third, -third, -third),
+                "twist_angle": (1, third, -2 * third, -sixth, -sixth),
+                "dissipated": (2, 5 * third, -third, -third, -third)}
+        for more in (["--model", "exact"], ["--set", "grid.cells=[48,48]"]):
+            found = self.found(SCENES / "paper.toml", words, *more)
+            self.holds_laws(found, words, laws, 1e-9)
+            self.assertNotIn("draws", found)
+        self.assertIn("a finer mesh tells nothing more", found["sentence"])
+
+    def test_follow_those_of_an_ellipse_on_a_grid(self):
+        words = "friction=5% load.normal=3%"
+        found = self.found(SCENES / "ellipse.toml", words)
+        laws = {"twist_angle": (1, 1 / 3), "moment": (1, 4 / 3), "contact_radius": (0, 1 / 3)}
+        self.holds_laws(found, words, laws, 1e-3)
+        self.assertNotIn("draws", found)
+
+    def test_of_one_body_alone(self):
+        found = self.found(SCENES / "paper.toml", "upper.young_modulus=2%", "--model", "exact")
+        self.assertEqual(len(found["inputs"]), 1)
+        self.assertAlmostEqual(found["outputs"]["contact_radius"]["relative"], 0.02 / 6, delta=1e-9)
+
+    def test_of_inputs_that_are_better_known_than_the_mesh_allows(self):
+        found = self.found(SCENES / "paper.toml", "friction=0.001%", "--set", "grid.cells=[16,16]")
+        self.assertIn("a finer mesh matters more", found["sentence"])
+
+    def test_steps_stay_below_the_limit(self):
+        words = ["--model", "exact", "--set", "load.moment_ratio=0.9999"]
+        found = self.found(SCENES / "paper.toml", "moment_ratio=1%", *words)
+        self.assertAlmostEqual(found["outputs"]["moment"]["relative"], 0.01, delta=1e-9)
+
+    def test_of_forces_are_of_displacements_and_of_no_moment(self):
+        for more in ([], ["--model", "exact"]):
+            for force, there in (([60, 0], {0}), ([30, -40], {0, 1})):
+                # Mindlin's displacement is 1 - (1 - F/(mu W))^(2/3) times mu times a constant.
+                words = ["--set", f"load.force={force}", "--set", "grid.cells=[48,48]", *more]
+                found = self.found(SCENES / "mindlin.toml", "friction=1%", *words)
+                outputs, left = found["outputs"], 1 - math.hypot(*force) / 100
+                self.assertEqual({i for i in (0, 1) if f"displacement[{i}]" in outputs}, there)
+                exponent = 1 - 2 / 3 * (1 - left) / (left ** (1 / 3) - left)
+                for i in there:
+                    self.assertAlmostEqual(outputs[f"displacement[{i}]"]["parts"][0]["exponent"], exponent, delta=1e-3)
+                self.assertFalse({"twist_angle", "moment", "moment_limit"} & set(outputs))
+                self.assertIn("displacement along x1", found["sentence"])
+                self.assertIn("displacement along x1", self.text(SCENES / "mindlin.toml", "friction=1%", *words))
+
+    def test_bad_inputs_are_refused(self):
+        for word in ("fricton=5%", "shape=5%", "friction=5", "friction=-5%", "friction=five%", "friction",
+                     "friction=0%", "friction=100%", "friction=nan%", "=5%", "cells=5%", "friction=5% contact.friction=2%"):
+            self.text(SCENES / "paper.toml", word, "--model", "exact", code=2, says=["--uncertain", "allowed"])
+
+
+class Draws(Uncertain):
+    def test_of_a_sphere_are_those_made_here(self, seed=20261, scenes=2):
+        # mu W / (G a^2) times the exact curve at constant pressure, which depends on M / (mu W^(4/3)) alone.
+        curve = self.result("exact", "--history", "0.999999999", "--points", "20000")["curve"]
+        ratios, twists = [p["moment_ratio"] for p in curve], [p["twist"] for p in curve]
+        chance = random.Random(seed)
+        for _ in range(scenes):
+            moment, normal = chance.uniform(0.4, 0.97), chance.uniform(500, 3000)
+            parts = {"friction": chance.uniform(0.05, 0.25), "load.normal": chance.uniform(0.02, 0.15)}
+            text = SHORT_SCENE.replace("1000", str(normal))
+            limit = self.result("solve", self.write("scene.toml", text), "--model", "exact")["moment_limit"]
+            scene = self.write("scene.toml", text.replace("moment_ratio = 0.5", f"moment = {moment * limit}"))
+            words = " ".join(f"{key}={100 * part}%" for key, part in parts.items())
+            result = self.solve(scene, words, "--model", "exact")
+            drawn = []
+            for _ in range(DRAWS):
+                friction, load = (1 + part * chance.gauss(0, 1) for part in parts.values())
+                ratio = moment / (friction * load ** (4 / 3)) if friction > 0 else 1
+                if ratio < ratios[-1]:
+                    drawn.append(friction * load ** (1 / 3) * interpolated(ratios, twists, ratio))
+            scale = result["twist_angle"] / interpolated(ratios, twists, moment)
+            self.holds(result["uncertainty"], [scale * twist for twist in sorted(drawn)])
+
+    def holds(self, found, drawn):
+        draws, output, answered = found["draws"], found["outputs"]["twist_angle"], len(drawn) / DRAWS
+        sampling = math.sqrt(answered * (1 - answered) / DRAWS) + math.sqrt(answered * (1 - answered) / draws["number"])
+        self.assertLessEqual(abs(1 - draws["sliding"] - draws["failed"] - answered), 3 * sampling)
+        for word, below in (("5 %", 0.05), ("50 %", 0.5), ("95 %", 0.95)):
+            self.assertAlmostEqual(output["quantiles"][word] / drawn[int(below * len(drawn))], 1, delta=0.02)
+
+    def test_of_the_papers_sphere_say_which_part_slides(self):
+        # It slides where the friction is below 0.9 of its value.
+        scene = self.write("scene.toml", SHORT_SCENE.replace("moment_ratio = 0.5", "moment = 0.02592919"))
+        part = NormalDist().cdf(-0.1 / 0.18)
+        for more in ([], ["--model", "exact"]):
+            self.assertAlmostEqual(self.found(scene, "friction=18%", *more)["draws"]["sliding"], part, delta=2 / 16384)
+        self.text(scene, "friction=18%", says=[f"{100 * part:.1f} % of the draws slide altogether", "median"])
+
+    def test_of_an_ellipse_are_those_of_its_solves(self):
+        # With the friction alone the twist falls: its quantiles are the twists at the friction's.
+        scene = self.write("ellipse.toml", ELLIPSE)
+        normal, spread = NormalDist(), 0.15
+        result = self.solve(scene, f"friction={100 * spread}%")
+        slides = normal.cdf((1 / result["limit"]["factor"] - 1) / spread)
+        self.assertAlmostEqual(result["uncertainty"]["draws"]["sliding"], slides, delta=2 / 256)
+        for word, below in (("5 %", 0.05), ("50 %", 0.5), ("95 %", 0.95)):
+            friction = 0.1 * (1 + spread * normal.inv_cdf(slides + (1 - below) * (1 - slides)))
+            twist = self.result("solve", scene, "--set", f"contact.friction={friction}")["twist_angle"]
+            found = result["uncertainty"]["outputs"]["twist_angle"]["quantiles"][word]
+            self.assertAlmostEqual(found / twist, 1, delta=0.02)
+
+    def test_at_the_limit_are_no_percentage(self):
+        for more in (["--model", "exact"], []):
+            text = self.text(SCENES / "paper.toml", "moment_ratio=5%", "--set", "load.moment_ratio=0.9996",
+                             "--set", "grid.cells=[48,48]", *more, says="49.7 % of the draws slide altogether")
+            self.assertRegex(text, "uncertain +twist [0-9.]+ to [0-9.]+, median")
+            self.assertNotIn("makes", text.split("matters")[1])
+
+    def test_without_an_answer_for_another_reason_are_told_apart(self):
+        normal = NormalDist()
+        draws = self.found(SCENES / "mindlin.toml", "friction=50%", "--model", "exact")["draws"]  # F = 0.6 mu W
+        self.assertAlmostEqual(draws["failed"], normal.cdf(-2), delta=2 / 16384)
+        self.assertAlmostEqual(draws["sliding"], normal.cdf(-0.8) - normal.cdf(-2), delta=4 / 16384)
+        self.assertIn("contact.friction = -", draws["failed_reason"])
+
+
+def interpolated(places, values, place):
+    i = min(max(bisect.bisect(places, place), 1), len(places) - 1)
+    part = (place - places[i - 1]) / (places[i] - places[i - 1])
+    return values[i - 1] + part * (values[i] - values[i - 1])
+
+
+if __name__ == "__main__":
+    main()
