@@ -235,13 +235,14 @@ int solve_accurately(solver::Scene scene, const SolveRequest& request, std::ostr
 
 void add_uncertainty(const std::vector<UncertainInput>& uncertain, const SolveRequest& request,
                      std::ostream& text, Json& result) {
+  const auto cache = std::make_shared<solver::SolveCache>();
   result["uncertainty"] = uncertainty_json(result, uncertain, [&](const std::vector<std::string>& changed) {
     std::vector<std::string> overrides = overrides_of(request);
     overrides.insert(overrides.end(), changed.begin(), changed.end());
     solver::Scene scene = solver::read_scene(request.scene, overrides);
     scene.memory_limit = request.memory.limit();
     if (scene.model == solver::ModelChoice::exact) return exact_result(scene, require_oracle(scene), 0);
-    return solve_scene(scene).result;
+    return solve_scene(scene, {.cache = cache}).result;
   });
   text << uncertainty_text(result);
 }

@@ -47,7 +47,7 @@ constexpr double kVaries = 1e-9;
 constexpr double kLinear = 0.1;
 /// Draws in all: exact ones take 0.1 ms each; others, on so many cells a side at most, some 10 ms.
 constexpr std::size_t kExactDraws = 16384;
-constexpr std::size_t kGridDraws = 256;
+constexpr std::size_t kGridDraws = 1024;
 constexpr int kFewCells = 64;
 constexpr std::array<std::pair<const char*, double>, 3> kQuantiles{
     {{"5 %", 0.05}, {"50 %", 0.5}, {"95 %", 0.95}}};

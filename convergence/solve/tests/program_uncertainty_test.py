@@ -11,7 +11,7 @@ from statistics import NormalDist
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "tests"))
 from program_run import SCENES, SHORT_SCENE, ProgramTest, main
 
-DRAWS = 100_000  # made here; the program makes 16384 exact ones, or 256
+DRAWS = 100_000  # made here; the program makes 16384 exact ones, or 1024
 ELLIPSE = """[upper]
 shape = "ellipsoid"
 radius_1 = 0.03
@@ -156,7 +156,7 @@ class Draws(Uncertain):
         normal, spread = NormalDist(), 0.15
         result = self.solve(scene, f"friction={100 * spread}%")
         slides = normal.cdf((1 / result["limit"]["factor"] - 1) / spread)
-        self.assertAlmostEqual(result["uncertainty"]["draws"]["sliding"], slides, delta=2 / 256)
+        self.assertAlmostEqual(result["uncertainty"]["draws"]["sliding"], slides, delta=2 / 1024)
         for word, below in (("5 %", 0.05), ("50 %", 0.5), ("95 %", 0.95)):
             friction = 0.1 * (1 + spread * normal.inv_cdf(slides + (1 - below) * (1 - slides)))
             twist = self.result("solve", scene, "--set", f"contact.friction={friction}")["twist_angle"]
