@@ -2,6 +2,7 @@
 
 #include <fmt/core.h>
 
+#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -57,12 +58,13 @@ LoopPath make_path(const LoopRecord& loop, std::size_t from, std::size_t to,
                    const LoopConventions& conventions, const LoopContact& contact) {
   const std::size_t step = (to - from + kMaxPathRows - 1) / kMaxPathRows;
   LoopPath path;
+  const auto time_of = [&](std::size_t row) {
+    return loop.time.empty() ? static_cast<double>(row) : loop.time[row];
+  };
   const auto add = [&](std::size_t row) {
     path.twist.push_back(loop.motion[row] * conventions.motion / contact.motion_unit);
     path.moment.push_back(loop.load[row] * conventions.load / contact.limit);
-    if (!loop.time.empty()) {
-      path.time.push_back((loop.time[row] - loop.time[from]) / (loop.time[to - 1] - loop.time[from]));
-    }
+    path.time.push_back((time_of(row) - time_of(from)) / (time_of(to - 1) - time_of(from)));
   };
   for (std::size_t row = from; row < to; row += step) add(row);
   if (!loop.time.empty()) path.duration = loop.time[to - 1] - loop.time[from];
@@ -211,38 +213,54 @@ double roughly_off(const LoopUnderLoad& loop) {
   return least;
 }
 
+/// Whether the load falls as the motion grows: it is that on the other body, whatever its unit.
+bool goes_the_other_way(const LoopPath& path) {
+  constexpr double kSurely = -0.9;
+  const auto rows = static_cast<Eigen::Index>(path.twist.size());
+  Eigen::VectorXd twist = Eigen::Map<const Eigen::VectorXd>(path.twist.data(), rows);
+  Eigen::VectorXd moment = Eigen::Map<const Eigen::VectorXd>(path.moment.data(), rows);
+  twist.array() -= twist.mean();
+  moment.array() -= moment.mean();
+  return twist.dot(moment) < kSurely * twist.norm() * moment.norm();
+}
+
 /// The units and the sign in which a loop that is far off in the scene's is near the exact law: stiffness and
 /// limit agree, or shape. Another unit is taken only where slip shows, since the stiffness alone does not say
 /// which one it is.
 LoopConventions find_conventions(const LoopRecord& record, std::size_t to, const LoopContact& contact,
                                  double tolerance) {
   constexpr double kNear = 0.35;
+  constexpr double kFar = 0.7;
   constexpr double kLargestWithoutSlip = 0.05;  // of the limit
-  LoopConventions found;
   const auto loop_in = [&](const LoopConventions& conventions) {
     return LoopUnderLoad{contact, make_path(record, 0, to, conventions, contact)};
   };
-  double least = roughly_off(loop_in(found));
-  const double as_given = least;
+  const LoopUnderLoad given = loop_in({});
+  const double as_given = roughly_off(given);
+  double least = std::min(kNear, 0.5 * as_given);
+  LoopConventions found;
+  if (goes_the_other_way(given.path))
+    found = {-1.0, 1.0, notes_of({1.0, ""}, {1.0, ""}, true, contact.words)};
+  const LoopConventions by_sign = found;
   for (const UnitName& load : record.of_force ? kForceUnits : kMomentUnits) {
     for (const UnitName& motion : record.of_force ? kLengthUnits : kRotationUnits) {
       for (const bool other_way : {false, true}) {
-        LoopConventions tried{other_way ? -load.size : load.size, motion.size,
-                              notes_of(load, motion, other_way, contact.words)};
-        const LoopUnderLoad loop = loop_in(tried);
-        const bool has_unit = load.size != 1.0 || motion.size != 1.0;
-        if (has_unit && largest(loop.path.moment) < kLargestWithoutSlip) continue;
-        const double off = roughly_off(loop);
-        if (!(off < std::min(kNear, 0.5 * least))) continue;
+        const LoopConventions tried{other_way ? -load.size : load.size, motion.size,
+                                    notes_of(load, motion, other_way, contact.words)};
+        const double off = roughly_off(loop_in(tried));
+        if (!(off < least)) continue;
         least = off;
         found = tried;
       }
     }
   }
-  constexpr double kFar = 0.7;
-  if (found.notes.empty()) return found;
-  if (as_given > kFar || judge_loop(loop_in(found).path, contact, tolerance).good) return found;
-  return {};
+  if (found.notes == by_sign.notes) return found;
+  const LoopUnderLoad loop = loop_in(found);
+  const bool slips = largest(loop.path.moment) >= kLargestWithoutSlip;
+  if (as_given > kFar && slips) return found;
+  const LoopJudgement judgement = judge_loop(loop.path, contact, tolerance);
+  const bool has_unit = found.motion != 1.0 || std::abs(found.load) != 1.0;
+  return judgement.good && (slips || !has_unit || judgement.shows_slip()) ? found : by_sign;
 }
 
 }  // namespace

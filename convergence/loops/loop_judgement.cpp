@@ -120,7 +120,9 @@ void judge_slip(LoopJudgement& judgement, const LoopPath& path, const LoopContac
   judgement.slip_noise = noise / slip.norm();
 }
 
-std::string percent(double part) { return fmt::format("{:.2g} %", 100.0 * part); }
+std::string percent(double part) {
+  return part < 1e-4 ? "under 0.01 %" : fmt::format("{:.2g} %", 100.0 * part);
+}
 
 /// A residual without what noise makes of it.
 double without_noise(double residual, double noise) {
@@ -145,13 +147,11 @@ std::string slip_text(const LoopJudgement& judgement) {
   return fmt::format(", the energy lost in {} {} is right", loops, loops == 1 ? "loop" : "loops");
 }
 
-}  // namespace
-
-bool LoopJudgement::shows_slip() const { return slip_noise * kSlipSigmas <= kSlipShown; }
-
-LoopJudgement judge_loop(const LoopPath& path, const LoopContact& contact, double tolerance) {
+/// Holds a loop to the exact law that goes on from one of these.
+LoopJudgement judge_from(const LoopPath& path, const LoopContact& contact, double tolerance,
+                         const std::vector<LoopStart>& starts) {
   LoopJudgement judgement;
-  judgement.exact = fit_exact_law(path, contact);
+  judgement.exact = fit_exact_law(path, contact, starts);
   const std::vector<double>& exact = judgement.exact.moment;
   LoopPath own = path;
   for (double& m : own.moment) m -= judgement.exact.offset;
@@ -180,6 +180,19 @@ LoopJudgement judge_loop(const LoopPath& path, const LoopContact& contact, doubl
   judgement.why = fmt::format("follows the exact law: the {} is {} off in the mean{}", contact.words.load,
                               percent(judgement.residual), slip_text(judgement));
   return judgement;
+}
+
+}  // namespace
+
+bool LoopJudgement::shows_slip() const { return slip_noise * kSlipSigmas <= kSlipShown; }
+
+LoopJudgement judge_loop(const LoopPath& path, const LoopContact& contact, double tolerance) {
+  const std::vector<LoopStart> starts = possible_starts(path);
+  if (!begins_at_zero(path)) return judge_from(path, contact, tolerance, starts);
+  LoopJudgement from_rest = judge_from(path, contact, tolerance, {{}});
+  if (from_rest.good) return from_rest;
+  LoopJudgement elsewhere = judge_from(path, contact, tolerance, starts);
+  return elsewhere.good ? elsewhere : from_rest;
 }
 
 void explain(LoopJudgement& judgement, const LoopPath& path, const LoopContact& contact, double tolerance) {
