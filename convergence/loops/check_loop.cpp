@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -131,11 +130,8 @@ Json under_load_json(const LoopUnderLoad& loop, const LoopJudgement& judgement) 
                    {"load_offset", exact.offset * limit}};
   json["stiffness"] = number_json(judgement.stiffness, limit / motion);
   json["largest_load"] = number_json(judgement.largest_load, limit);
-  json["presliding"] = number_json(judgement.presliding, motion);
-  json["recovered"] = number_json(judgement.recovered, 1.0);
   json["areas"] = Json::array();
   for (const LoopNumber& area : judgement.areas) json["areas"].push_back(number_json(area, limit * motion));
-  set_number(json, "masing_error", judgement.masing_error, kNotShown);
   json["tried"] = Json::array();
   for (const LoopHypothesis& law : judgement.fitted) {
     Json tried{{"law", law.name}, {"parameters", law.parameters}};
@@ -155,22 +151,13 @@ struct LoadExponent {
   }
 };
 LoadExponent load_exponent(const std::vector<LoopUnderLoad>& loops) {
-  double x_mean = 0.0;
-  double y_mean = 0.0;
-  std::vector<std::pair<double, double>> points;
+  std::vector<double> x;
+  std::vector<double> y;
   for (const LoopUnderLoad& loop : loops) {
-    points.emplace_back(std::log(loop.contact.normal_load),
-                        std::log(loop.contact.limit * largest(loop.path.moment)));
-    x_mean += points.back().first / static_cast<double>(loops.size());
-    y_mean += points.back().second / static_cast<double>(loops.size());
+    x.push_back(std::log(loop.contact.normal_load));
+    y.push_back(std::log(loop.contact.limit * largest(loop.path.moment)));
   }
-  double above = 0.0;
-  double below = 0.0;
-  for (const auto& [x, y] : points) {
-    above += (x - x_mean) * (y - y_mean);
-    below += (x - x_mean) * (x - x_mean);
-  }
-  return {above / below, loops.front().contact.limit_exponent};
+  return {line_through(x, y).slope, loops.front().contact.limit_exponent};
 }
 
 /// Whether all of these slide, so that their largest moments are limits.
@@ -192,36 +179,22 @@ std::vector<std::string> notes_of(const UnitName& load, const UnitName& motion, 
   return notes;
 }
 
-/// Root mean square of the load's distance from the exact law, from rest or over whole cycles, over the
-/// larger of both.
+/// Distance of the load from the exact law, from rest or over whole cycles, over the larger of both.
 double roughly_off(const LoopUnderLoad& loop) {
-  const auto [low, high] = std::ranges::minmax_element(loop.path.twist);
+  const std::vector<LoopStart> starts = possible_starts(loop.path);
   double least = std::numeric_limits<double>::infinity();
-  for (const LoopStart& start : {LoopStart{}, LoopStart{-loop.path.twist[0], 0.0},
-                                 LoopStart{-0.5 * (*low + *high), 0.5 * (*high - *low)}}) {
-    const std::vector<double> exact = follow(loop.path, start, {loop.contact.loading});
+  for (std::size_t k = 0; k < std::min<std::size_t>(starts.size(), 3); ++k) {
+    std::vector<double> exact = follow(loop.path, starts[k], {loop.contact.loading});
+    const double size = std::max(largest(exact), largest(loop.path.moment));
     double mean = 0.0;
     for (std::size_t row = 0; row < exact.size(); ++row) {
-      mean += (loop.path.moment[row] - exact[row]) / static_cast<double>(exact.size());
+      exact[row] -= loop.path.moment[row];
+      mean += exact[row] / static_cast<double>(exact.size());
     }
-    std::vector<double> error;
-    for (std::size_t row = 0; row < exact.size(); ++row) {
-      error.push_back(loop.path.moment[row] - exact[row] - mean);
-    }
-    least = std::min(least, trimmed_mean(error) / std::max(largest(exact), largest(loop.path.moment)));
+    for (double& error : exact) error -= mean;
+    least = std::min(least, trimmed_mean(exact) / size);
   }
   return least;
-}
-
-/// Whether the load falls as the motion grows: it is that on the other body, whatever its unit.
-bool goes_the_other_way(const LoopPath& path) {
-  constexpr double kSurely = -0.9;
-  const auto rows = static_cast<Eigen::Index>(path.twist.size());
-  Eigen::VectorXd twist = Eigen::Map<const Eigen::VectorXd>(path.twist.data(), rows);
-  Eigen::VectorXd moment = Eigen::Map<const Eigen::VectorXd>(path.moment.data(), rows);
-  twist.array() -= twist.mean();
-  moment.array() -= moment.mean();
-  return twist.dot(moment) < kSurely * twist.norm() * moment.norm();
 }
 
 /// The units and the sign in which a loop that is far off in the scene's is near the exact law: stiffness and
@@ -239,7 +212,8 @@ LoopConventions find_conventions(const LoopRecord& record, std::size_t to, const
   const double as_given = roughly_off(given);
   double least = std::min(kNear, 0.5 * as_given);
   LoopConventions found;
-  if (goes_the_other_way(given.path))
+  constexpr double kFalls = -0.9;  // the load as the motion grows, whatever their units
+  if (line_through(given.path.twist, given.path.moment).correlation < kFalls)
     found = {-1.0, 1.0, notes_of({1.0, ""}, {1.0, ""}, true, contact.words)};
   const LoopConventions by_sign = found;
   for (const UnitName& load : record.of_force ? kForceUnits : kMomentUnits) {
@@ -332,7 +306,6 @@ Json check_loop(const solver::Scene& scene, const std::filesystem::path& file, c
 std::string loop_text(const Json& r) {
   const bool of_force = r["of"] == "force";
   const char* const load_unit = of_force ? "N" : "N m";
-  const char* const motion_unit = of_force ? "m" : "rad";
   const auto beside = [](const Json& number, const char* unit) {
     return fmt::format("{} {} (exact {})", number_text(number["value"]), unit, number_text(number["exact"]));
   };
@@ -349,12 +322,7 @@ std::string loop_text(const Json& r) {
     text += text_line(of_force ? "force" : "moment",
                       fmt::format("{}, of the limit {} {}", beside(load["largest_load"], load_unit),
                                   number_text(load["limit"]), load_unit));
-    text += text_line("presliding", beside(load["presliding"], motion_unit) + " at half of the limit");
-    text += text_line("recovered",
-                      beside(load["recovered"], of_force ? "of the displacement" : "of the rotation"));
     for (const Json& area : load["areas"]) text += text_line("energy lost", beside(area, "J in a loop"));
-    text += text_line("Masing's rule",
-                      fmt::format("{} of the largest load off", short_text(load["masing_error"])));
   }
   return text;
 }

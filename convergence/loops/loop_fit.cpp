@@ -71,12 +71,13 @@ class Fitter {
     moment += columns * share;
     const Eigen::VectorXd error = moment - own;
     const double rms = trimmed_mean({error.begin(), error.end()});
-    constexpr double kPrice = 12.0;  // of a parameter, in units of chi squared
+    constexpr double kLargestPart = 0.8;  // beside a law: beyond that the law is the other one's
+    constexpr double kPrice = 12.0;       // of a parameter, in units of chi squared
     const auto count = static_cast<double>(parameters.size()) + (family_.beside.empty() ? 0.0 : 1.0) +
                        (start_is_free_ ? 2.0 : 0.0);
     found.residual = rms / (own.array() - found.offset).abs().maxCoeff();
     found.cost = static_cast<double>(own.size()) * std::log(rms * rms + floor_ * floor_) + kPrice * count;
-    if (!std::isfinite(found.cost) || found.part < 0.0) found.cost = kInfinity;
+    if (!std::isfinite(found.cost) || found.part < 0.0 || found.part > kLargestPart) found.cost = kInfinity;
     return found;
   }
 

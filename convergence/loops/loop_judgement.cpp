@@ -5,7 +5,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace slipstick::convergence {
 namespace {
@@ -38,58 +37,6 @@ double slope_at_rest(const LoopPath& path, const std::vector<double>& moment) {
     below += path.twist[row] * path.twist[row];
   }
   return below > 0.0 ? above / below : kUnknown;
-}
-
-/// The twist at which the moment crosses a value between two rows; none: it does not.
-std::optional<double> crossing(const LoopPath& path, const std::vector<double>& moment, std::size_t from,
-                               std::size_t to, double value) {
-  for (std::size_t row = from; row < to; ++row) {
-    const double before = moment[row] - value;
-    const double after = moment[row + 1] - value;
-    if (before * after > 0.0 || before == after) continue;
-    return path.twist[row] + (path.twist[row + 1] - path.twist[row]) * before / (before - after);
-  }
-  return std::nullopt;
-}
-
-double presliding_of(const LoopPath& path, const std::vector<double>& moment) {
-  const double sign = path.twist[path.turns[1]] >= path.twist[0] ? 1.0 : -1.0;
-  return std::abs(crossing(path, moment, 0, path.turns[1], 0.5 * sign).value_or(kUnknown));
-}
-
-double recovered_part(const LoopPath& path, const std::vector<double>& moment) {
-  if (path.turns.size() < 3) return kUnknown;
-  const double turned = path.twist[path.turns[1]];
-  const auto left = crossing(path, moment, path.turns[1], path.turns[2], 0.0);
-  return left ? (turned - *left) / turned : kUnknown;
-}
-
-/// The loop's own moment on first loading, between its rows.
-double own_loading(const LoopPath& path, double twist) {
-  for (std::size_t row = 0; row < path.turns[1]; ++row) {
-    const double one = std::abs(path.twist[row]);
-    const double other = std::abs(path.twist[row + 1]);
-    if (!(one <= twist && twist <= other) || one == other) continue;
-    const double m = std::abs(path.moment[row]);
-    return m + (std::abs(path.moment[row + 1]) - m) * (twist - one) / (other - one);
-  }
-  return kUnknown;
-}
-
-double masing_error(const LoopPath& path) {
-  if (path.turns.size() < 3) return kUnknown;
-  const std::size_t turn = path.turns[1];
-  const double sign = path.twist[turn] >= 0.0 ? 1.0 : -1.0;
-  double sum = 0.0;
-  int rows = 0;
-  for (std::size_t row = turn; row <= path.turns[2]; ++row) {
-    const double back = 0.5 * sign * (path.twist[turn] - path.twist[row]);
-    const double enlarged = path.moment[turn] - 2.0 * sign * own_loading(path, back);
-    if (std::isnan(enlarged)) continue;
-    sum += std::pow(path.moment[row] - enlarged, 2);
-    ++rows;
-  }
-  return rows > 0 ? std::sqrt(sum / rows) / largest_of(path.moment) : kUnknown;
 }
 
 /// What is left of values when a straight line over the rotation is taken away.
@@ -162,9 +109,6 @@ LoopJudgement judge_from(const LoopPath& path, const LoopContact& contact, doubl
   judgement.largest_load = {largest_of(own.moment), largest_of(held)};
   if (judgement.exact.start.turned == 0.0) {
     judgement.stiffness = {slope_at_rest(own, own.moment), slope_at_rest(own, held)};
-    judgement.presliding = {presliding_of(own, own.moment), presliding_of(own, held)};
-    judgement.recovered = {recovered_part(own, own.moment), recovered_part(own, held)};
-    judgement.masing_error = masing_error(own);
   }
   const std::vector<double> areas = loop_areas(own, own.moment);
   const std::vector<double> exact_areas = loop_areas(own, held);

@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -110,18 +109,6 @@ Parameters middle_of(Free free, double stiffness) {
   return middle;
 }
 
-/// Whether these moments are a line over the rotation, to a part of their size.
-bool is_line(const LoopPath& path, const std::vector<double>& moment, double within) {
-  const auto as_array = [](const std::vector<double>& values) -> Eigen::ArrayXd {
-    const auto rows = static_cast<Eigen::Index>(values.size());
-    const Eigen::Map<const Eigen::ArrayXd> map(values.data(), rows);
-    return map - map.mean();
-  };
-  const Eigen::ArrayXd m = as_array(moment);
-  const Eigen::ArrayXd t = as_array(path.twist);
-  return (m - t * ((m * t).sum() / t.square().sum())).matrix().norm() <= within * m.matrix().norm();
-}
-
 /// Makes families of wrong laws.
 class Families {
  public:
@@ -142,24 +129,24 @@ class Families {
            const std::vector<Free>& sets) {
     const bool slips = std::string(name) == "other_profile" || std::string(name) == "spring_and_cap";
     for (const Free free : sets) {
-      list_.push_back({name, middle_of(free, stiffness_),
-                       [=, this](const LoopPath& path, const LoopStart& start, const Parameters& p) {
-                         const auto [limit, stiffness] = limit_and_stiffness(free, p);
-                         const double most =
-                             kLargestStiffness * limit / (contact_.stiffness * range_of(path.twist));
-                         const bool is_other = !(limit >= 1.0 / kLargestLimit && limit <= kLargestLimit);
-                         const bool is_rigid =
-                             law.rule != BranchRule::elastic && stiffness > std::max(1.0, most);
-                         std::vector<double> moment = scaled(path, start, law, limit, stiffness);
-                         if (is_other || is_rigid || (slips && is_line(path, moment, line_within_))) {
-                           moment.assign(moment.size(), NAN);
-                         }
-                         return moment;
-                       },
-                       [=, this](const Parameters& p) {
-                         const auto [limit, stiffness] = limit_and_stiffness(free, p);
-                         return sentence + beside(limit, stiffness, contact_);
-                       }});
+      list_.push_back(
+          {name, middle_of(free, stiffness_),
+           [=, this](const LoopPath& path, const LoopStart& start, const Parameters& p) {
+             const auto [limit, stiffness] = limit_and_stiffness(free, p);
+             const double most = kLargestStiffness * limit / (contact_.stiffness * range_of(path.twist));
+             const bool is_other = !(limit >= 1.0 / kLargestLimit && limit <= kLargestLimit);
+             const bool is_rigid = law.rule != BranchRule::elastic && stiffness > std::max(1.0, most);
+             std::vector<double> moment = scaled(path, start, law, limit, stiffness);
+             if (is_other || is_rigid ||
+                 (slips && std::abs(line_through(path.twist, moment).correlation) >= of_a_line_)) {
+               moment.assign(moment.size(), NAN);
+             }
+             return moment;
+           },
+           [=, this](const Parameters& p) {
+             const auto [limit, stiffness] = limit_and_stiffness(free, p);
+             return sentence + beside(limit, stiffness, contact_);
+           }});
     }
   }
 
@@ -268,37 +255,6 @@ class Families {
     };
     regularised([](double r) { return std::tanh(r); }, std::atanh(0.5));
     regularised([](double r) { return std::clamp(r, -1.0, 1.0); }, 0.5);
-    add_rate_dependent_limit();
-  }
-
-  /// The limit at the largest mean rate of a branch, and how many times that it is at a tenth of it.
-  void add_rate_dependent_limit() {
-    std::vector<double> branch_rate(rate_.size());
-    for (std::size_t turn = 0; turn + 1 < path_.turns.size(); ++turn) {
-      const std::size_t from = path_.turns[turn];
-      const std::size_t to = path_.turns[turn + 1];
-      const double mean =
-          std::abs(path_.twist[to] - path_.twist[from]) / std::max(path_.time[to] - path_.time[from], 1e-12);
-      for (std::size_t row = from; row <= to; ++row) branch_rate[row] = mean;
-    }
-    const auto [slowest, fastest] = std::ranges::minmax_element(branch_rate);
-    if (!(*fastest > 1.5 * *slowest)) return;
-    const BranchLaw exact{contact_.loading};
-    list_.push_back(
-        {"rate_dependent_limit",
-         {1.0, 1.0},
-         [=, largest = *fastest](const LoopPath& path, const LoopStart& start, const Parameters& p) {
-           std::vector<double> limit;
-           for (const double r : branch_rate) {
-             const double decades = std::log10(std::max(r / largest, 1e-6));
-             limit.push_back(std::clamp(p[0] * std::pow(p[1], -decades), 0.05, 20.0));
-           }
-           return scaled(path, start, exact, limit, std::vector<double>(limit.size(), 1.0));
-         },
-         [this](const Parameters& p) {
-           return fmt::format("the limit depends on the rate of {}: {:+.0f} % for ten times the rate",
-                              contact_.words.motion, 100.0 * (1.0 / p[1] - 1.0));
-         }});
   }
 
   void add_drift() {
@@ -328,8 +284,10 @@ class Families {
   const LoopPath& path_;
   const LoopContact& contact_;
   double stiffness_ = range_of(path_.moment) / range_of(path_.twist) / contact_.stiffness;
-  /// A law that is a line to the record's noise, such as a flat punch before it slips, is a spring.
-  double line_within_ = std::max(1e-4, 2.0 * row_noise(path_, path_.moment) / range_of(path_.moment));
+  /// Correlation from which a law is a line to the record's noise, such as a flat punch before it slips: that
+  /// is a spring.
+  double of_a_line_ =
+      1.0 - 0.5 * std::pow(std::max(1e-4, 2.0 * row_noise(path_, path_.moment) / range_of(path_.moment)), 2);
   std::vector<double> rate_;
   double fastest_ = 0.0;
   std::vector<LoopFamily> list_;

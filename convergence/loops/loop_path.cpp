@@ -85,6 +85,16 @@ double range_of(const std::vector<double>& values) {
   return *high - *low;
 }
 
+LoopLine line_through(std::span<const double> x, std::span<const double> y) {
+  const auto centred = [](std::span<const double> values) -> Eigen::VectorXd {
+    const Eigen::Map<const Eigen::ArrayXd> map(values.data(), static_cast<Eigen::Index>(values.size()));
+    return map - map.mean();
+  };
+  const Eigen::VectorXd a = centred(x);
+  const Eigen::VectorXd b = centred(y);
+  return {a.dot(b) / a.squaredNorm(), a.dot(b) / (a.norm() * b.norm())};
+}
+
 double trimmed_mean(std::vector<double> values) {
   constexpr double kCounted = 0.98;
   for (double& value : values) value = std::isfinite(value) ? value * value : INFINITY;
@@ -174,15 +184,8 @@ std::vector<double> rates(const LoopPath& path) {
   for (std::size_t row = 0; row < rows; ++row) {
     const std::size_t from = row < window ? 0 : row - window;
     const std::size_t to = std::min(rows - 1, row + window);
-    double middle = 0.0;
-    for (std::size_t k = from; k <= to; ++k) middle += path.time[k] / static_cast<double>(to - from + 1);
-    double above = 0.0;
-    double below = 0.0;
-    for (std::size_t k = from; k <= to; ++k) {
-      above += (path.time[k] - middle) * path.twist[k];
-      below += (path.time[k] - middle) * (path.time[k] - middle);
-    }
-    rate[row] = above / below;
+    const std::size_t count = to - from + 1;
+    rate[row] = line_through({&path.time[from], count}, {&path.twist[from], count}).slope;
   }
   return rate;
 }

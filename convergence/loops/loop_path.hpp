@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace slipstick::convergence {
@@ -24,6 +25,13 @@ struct LoopPath {
 };
 
 double range_of(const std::vector<double>& values);
+
+/// A straight line through points, by least squares; correlation: 1 or -1 where they lie on it.
+struct LoopLine {
+  double slope;
+  double correlation;
+};
+LoopLine line_through(std::span<const double> x, std::span<const double> y);
 
 /// Fills in turns, turn_twist and twist_noise. A rotation turns back where it does by more than a part of its
 /// range, which noise does not.
