@@ -116,8 +116,8 @@ class Families {
     rate_ = rates(path);
     for (const double r : rate_) fastest_ = std::max(fastest_, std::abs(r));
     add_springs();
+    add_scaled();  // before rules: from a reversal on, twice the limit without enlarging is the same law
     add_rules();
-    add_scaled();
     add_curves();
     add_rate_laws();
     add_drift();
@@ -239,6 +239,7 @@ class Families {
           {"regularised",
            {1.0, 0.15},
            [=, this](const LoopPath&, const LoopStart&, const Parameters& p) {
+             if (p[1] < kSlowest) return std::vector<double>(rate_.size(), NAN);
              std::vector<double> moment;
              for (const double r : rate_) moment.push_back(p[0] * shape(r / (p[1] * fastest_)));
              return moment;
@@ -278,6 +279,8 @@ class Families {
 
   /// Limits over the exact one, beyond which a curve is another law's in disguise.
   static constexpr double kLargestLimit = 30.0;
+  /// Rates over the fastest: what creeps below them is rigid.
+  static constexpr double kSlowest = 0.03;
   /// Limits over the stiffness times the range of rotations: what is stiffer is called rigid.
   static constexpr double kLargestStiffness = 60.0;
 
