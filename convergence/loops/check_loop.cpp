@@ -57,12 +57,13 @@ LoopPath make_path(const LoopRecord& loop, std::size_t from, std::size_t to,
                    const LoopConventions& conventions, const LoopContact& contact) {
   const std::size_t step = (to - from + kMaxPathRows - 1) / kMaxPathRows;
   LoopPath path;
+  const auto time_of = [&](std::size_t row) {
+    return loop.time.empty() ? static_cast<double>(row) : loop.time[row];
+  };
   const auto add = [&](std::size_t row) {
     path.twist.push_back(loop.motion[row] * conventions.motion / contact.motion_unit);
     path.moment.push_back(loop.load[row] * conventions.load / contact.limit);
-    if (!loop.time.empty()) {
-      path.time.push_back((loop.time[row] - loop.time[from]) / (loop.time[to - 1] - loop.time[from]));
-    }
+    path.time.push_back((time_of(row) - time_of(from)) / (time_of(to - 1) - time_of(from)));
   };
   for (std::size_t row = from; row < to; row += step) add(row);
   if (!loop.time.empty()) path.duration = loop.time[to - 1] - loop.time[from];
@@ -129,11 +130,8 @@ Json under_load_json(const LoopUnderLoad& loop, const LoopJudgement& judgement) 
                    {"load_offset", exact.offset * limit}};
   json["stiffness"] = number_json(judgement.stiffness, limit / motion);
   json["largest_load"] = number_json(judgement.largest_load, limit);
-  json["presliding"] = number_json(judgement.presliding, motion);
-  json["recovered"] = number_json(judgement.recovered, 1.0);
   json["areas"] = Json::array();
   for (const LoopNumber& area : judgement.areas) json["areas"].push_back(number_json(area, limit * motion));
-  set_number(json, "masing_error", judgement.masing_error, kNotShown);
   json["tried"] = Json::array();
   for (const LoopHypothesis& law : judgement.fitted) {
     Json tried{{"law", law.name}, {"parameters", law.parameters}};
@@ -153,22 +151,13 @@ struct LoadExponent {
   }
 };
 LoadExponent load_exponent(const std::vector<LoopUnderLoad>& loops) {
-  double x_mean = 0.0;
-  double y_mean = 0.0;
-  std::vector<std::pair<double, double>> points;
+  std::vector<double> x;
+  std::vector<double> y;
   for (const LoopUnderLoad& loop : loops) {
-    points.emplace_back(std::log(loop.contact.normal_load),
-                        std::log(loop.contact.limit * largest(loop.path.moment)));
-    x_mean += points.back().first / static_cast<double>(loops.size());
-    y_mean += points.back().second / static_cast<double>(loops.size());
+    x.push_back(std::log(loop.contact.normal_load));
+    y.push_back(std::log(loop.contact.limit * largest(loop.path.moment)));
   }
-  double above = 0.0;
-  double below = 0.0;
-  for (const auto& [x, y] : points) {
-    above += (x - x_mean) * (y - y_mean);
-    below += (x - x_mean) * (x - x_mean);
-  }
-  return {above / below, loops.front().contact.limit_exponent};
+  return {line_through(x, y).slope, loops.front().contact.limit_exponent};
 }
 
 /// Whether all of these slide, so that their largest moments are limits.
@@ -190,23 +179,20 @@ std::vector<std::string> notes_of(const UnitName& load, const UnitName& motion, 
   return notes;
 }
 
-/// Root mean square of the load's distance from the exact law, from rest or over whole cycles, over the
-/// larger of both.
+/// Distance of the load from the exact law, from rest or over whole cycles, over the larger of both.
 double roughly_off(const LoopUnderLoad& loop) {
-  const auto [low, high] = std::ranges::minmax_element(loop.path.twist);
+  const std::vector<LoopStart> starts = possible_starts(loop.path);
   double least = std::numeric_limits<double>::infinity();
-  for (const LoopStart& start : {LoopStart{}, LoopStart{-loop.path.twist[0], 0.0},
-                                 LoopStart{-0.5 * (*low + *high), 0.5 * (*high - *low)}}) {
-    const std::vector<double> exact = follow(loop.path, start, {loop.contact.loading});
+  for (std::size_t k = 0; k < std::min<std::size_t>(starts.size(), 3); ++k) {
+    std::vector<double> exact = follow(loop.path, starts[k], {loop.contact.loading});
+    const double size = std::max(largest(exact), largest(loop.path.moment));
     double mean = 0.0;
     for (std::size_t row = 0; row < exact.size(); ++row) {
-      mean += (loop.path.moment[row] - exact[row]) / static_cast<double>(exact.size());
+      exact[row] -= loop.path.moment[row];
+      mean += exact[row] / static_cast<double>(exact.size());
     }
-    std::vector<double> error;
-    for (std::size_t row = 0; row < exact.size(); ++row) {
-      error.push_back(loop.path.moment[row] - exact[row] - mean);
-    }
-    least = std::min(least, trimmed_mean(error) / std::max(largest(exact), largest(loop.path.moment)));
+    for (double& error : exact) error -= mean;
+    least = std::min(least, trimmed_mean(exact) / size);
   }
   return least;
 }
@@ -217,32 +203,38 @@ double roughly_off(const LoopUnderLoad& loop) {
 LoopConventions find_conventions(const LoopRecord& record, std::size_t to, const LoopContact& contact,
                                  double tolerance) {
   constexpr double kNear = 0.35;
+  constexpr double kFar = 0.7;
   constexpr double kLargestWithoutSlip = 0.05;  // of the limit
-  LoopConventions found;
   const auto loop_in = [&](const LoopConventions& conventions) {
     return LoopUnderLoad{contact, make_path(record, 0, to, conventions, contact)};
   };
-  double least = roughly_off(loop_in(found));
-  const double as_given = least;
+  const LoopUnderLoad given = loop_in({});
+  const double as_given = roughly_off(given);
+  double least = std::min(kNear, 0.5 * as_given);
+  LoopConventions found;
+  constexpr double kFalls = -0.9;  // the load as the motion grows, whatever their units
+  if (line_through(given.path.twist, given.path.moment).correlation < kFalls)
+    found = {-1.0, 1.0, notes_of({1.0, ""}, {1.0, ""}, true, contact.words)};
+  const LoopConventions by_sign = found;
   for (const UnitName& load : record.of_force ? kForceUnits : kMomentUnits) {
     for (const UnitName& motion : record.of_force ? kLengthUnits : kRotationUnits) {
       for (const bool other_way : {false, true}) {
-        LoopConventions tried{other_way ? -load.size : load.size, motion.size,
-                              notes_of(load, motion, other_way, contact.words)};
-        const LoopUnderLoad loop = loop_in(tried);
-        const bool has_unit = load.size != 1.0 || motion.size != 1.0;
-        if (has_unit && largest(loop.path.moment) < kLargestWithoutSlip) continue;
-        const double off = roughly_off(loop);
-        if (!(off < std::min(kNear, 0.5 * least))) continue;
+        const LoopConventions tried{other_way ? -load.size : load.size, motion.size,
+                                    notes_of(load, motion, other_way, contact.words)};
+        const double off = roughly_off(loop_in(tried));
+        if (!(off < least)) continue;
         least = off;
         found = tried;
       }
     }
   }
-  constexpr double kFar = 0.7;
-  if (found.notes.empty()) return found;
-  if (as_given > kFar || judge_loop(loop_in(found).path, contact, tolerance).good) return found;
-  return {};
+  if (found.notes == by_sign.notes) return found;
+  const LoopUnderLoad loop = loop_in(found);
+  const bool slips = largest(loop.path.moment) >= kLargestWithoutSlip;
+  if (as_given > kFar && slips) return found;
+  const LoopJudgement judgement = judge_loop(loop.path, contact, tolerance);
+  const bool has_unit = found.motion != 1.0 || std::abs(found.load) != 1.0;
+  return judgement.good && (slips || !has_unit || judgement.shows_slip()) ? found : by_sign;
 }
 
 }  // namespace
@@ -314,7 +306,6 @@ Json check_loop(const solver::Scene& scene, const std::filesystem::path& file, c
 std::string loop_text(const Json& r) {
   const bool of_force = r["of"] == "force";
   const char* const load_unit = of_force ? "N" : "N m";
-  const char* const motion_unit = of_force ? "m" : "rad";
   const auto beside = [](const Json& number, const char* unit) {
     return fmt::format("{} {} (exact {})", number_text(number["value"]), unit, number_text(number["exact"]));
   };
@@ -331,12 +322,7 @@ std::string loop_text(const Json& r) {
     text += text_line(of_force ? "force" : "moment",
                       fmt::format("{}, of the limit {} {}", beside(load["largest_load"], load_unit),
                                   number_text(load["limit"]), load_unit));
-    text += text_line("presliding", beside(load["presliding"], motion_unit) + " at half of the limit");
-    text += text_line("recovered",
-                      beside(load["recovered"], of_force ? "of the displacement" : "of the rotation"));
     for (const Json& area : load["areas"]) text += text_line("energy lost", beside(area, "J in a loop"));
-    text += text_line("Masing's rule",
-                      fmt::format("{} of the largest load off", short_text(load["masing_error"])));
   }
   return text;
 }

@@ -5,7 +5,6 @@
 #include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace slipstick::convergence {
 namespace {
@@ -40,58 +39,6 @@ double slope_at_rest(const LoopPath& path, const std::vector<double>& moment) {
   return below > 0.0 ? above / below : kUnknown;
 }
 
-/// The twist at which the moment crosses a value between two rows; none: it does not.
-std::optional<double> crossing(const LoopPath& path, const std::vector<double>& moment, std::size_t from,
-                               std::size_t to, double value) {
-  for (std::size_t row = from; row < to; ++row) {
-    const double before = moment[row] - value;
-    const double after = moment[row + 1] - value;
-    if (before * after > 0.0 || before == after) continue;
-    return path.twist[row] + (path.twist[row + 1] - path.twist[row]) * before / (before - after);
-  }
-  return std::nullopt;
-}
-
-double presliding_of(const LoopPath& path, const std::vector<double>& moment) {
-  const double sign = path.twist[path.turns[1]] >= path.twist[0] ? 1.0 : -1.0;
-  return std::abs(crossing(path, moment, 0, path.turns[1], 0.5 * sign).value_or(kUnknown));
-}
-
-double recovered_part(const LoopPath& path, const std::vector<double>& moment) {
-  if (path.turns.size() < 3) return kUnknown;
-  const double turned = path.twist[path.turns[1]];
-  const auto left = crossing(path, moment, path.turns[1], path.turns[2], 0.0);
-  return left ? (turned - *left) / turned : kUnknown;
-}
-
-/// The loop's own moment on first loading, between its rows.
-double own_loading(const LoopPath& path, double twist) {
-  for (std::size_t row = 0; row < path.turns[1]; ++row) {
-    const double one = std::abs(path.twist[row]);
-    const double other = std::abs(path.twist[row + 1]);
-    if (!(one <= twist && twist <= other) || one == other) continue;
-    const double m = std::abs(path.moment[row]);
-    return m + (std::abs(path.moment[row + 1]) - m) * (twist - one) / (other - one);
-  }
-  return kUnknown;
-}
-
-double masing_error(const LoopPath& path) {
-  if (path.turns.size() < 3) return kUnknown;
-  const std::size_t turn = path.turns[1];
-  const double sign = path.twist[turn] >= 0.0 ? 1.0 : -1.0;
-  double sum = 0.0;
-  int rows = 0;
-  for (std::size_t row = turn; row <= path.turns[2]; ++row) {
-    const double back = 0.5 * sign * (path.twist[turn] - path.twist[row]);
-    const double enlarged = path.moment[turn] - 2.0 * sign * own_loading(path, back);
-    if (std::isnan(enlarged)) continue;
-    sum += std::pow(path.moment[row] - enlarged, 2);
-    ++rows;
-  }
-  return rows > 0 ? std::sqrt(sum / rows) / largest_of(path.moment) : kUnknown;
-}
-
 /// What is left of values when a straight line over the rotation is taken away.
 Eigen::VectorXd without_line(const LoopPath& path, const Eigen::VectorXd& values) {
   const auto rows = static_cast<Eigen::Index>(path.twist.size());
@@ -120,7 +67,9 @@ void judge_slip(LoopJudgement& judgement, const LoopPath& path, const LoopContac
   judgement.slip_noise = noise / slip.norm();
 }
 
-std::string percent(double part) { return fmt::format("{:.2g} %", 100.0 * part); }
+std::string percent(double part) {
+  return part < 1e-4 ? "under 0.01 %" : fmt::format("{:.2g} %", 100.0 * part);
+}
 
 /// A residual without what noise makes of it.
 double without_noise(double residual, double noise) {
@@ -145,13 +94,11 @@ std::string slip_text(const LoopJudgement& judgement) {
   return fmt::format(", the energy lost in {} {} is right", loops, loops == 1 ? "loop" : "loops");
 }
 
-}  // namespace
-
-bool LoopJudgement::shows_slip() const { return slip_noise * kSlipSigmas <= kSlipShown; }
-
-LoopJudgement judge_loop(const LoopPath& path, const LoopContact& contact, double tolerance) {
+/// Holds a loop to the exact law that goes on from one of these.
+LoopJudgement judge_from(const LoopPath& path, const LoopContact& contact, double tolerance,
+                         const std::vector<LoopStart>& starts) {
   LoopJudgement judgement;
-  judgement.exact = fit_exact_law(path, contact);
+  judgement.exact = fit_exact_law(path, contact, starts);
   const std::vector<double>& exact = judgement.exact.moment;
   LoopPath own = path;
   for (double& m : own.moment) m -= judgement.exact.offset;
@@ -162,9 +109,6 @@ LoopJudgement judge_loop(const LoopPath& path, const LoopContact& contact, doubl
   judgement.largest_load = {largest_of(own.moment), largest_of(held)};
   if (judgement.exact.start.turned == 0.0) {
     judgement.stiffness = {slope_at_rest(own, own.moment), slope_at_rest(own, held)};
-    judgement.presliding = {presliding_of(own, own.moment), presliding_of(own, held)};
-    judgement.recovered = {recovered_part(own, own.moment), recovered_part(own, held)};
-    judgement.masing_error = masing_error(own);
   }
   const std::vector<double> areas = loop_areas(own, own.moment);
   const std::vector<double> exact_areas = loop_areas(own, held);
@@ -180,6 +124,19 @@ LoopJudgement judge_loop(const LoopPath& path, const LoopContact& contact, doubl
   judgement.why = fmt::format("follows the exact law: the {} is {} off in the mean{}", contact.words.load,
                               percent(judgement.residual), slip_text(judgement));
   return judgement;
+}
+
+}  // namespace
+
+bool LoopJudgement::shows_slip() const { return slip_noise * kSlipSigmas <= kSlipShown; }
+
+LoopJudgement judge_loop(const LoopPath& path, const LoopContact& contact, double tolerance) {
+  const std::vector<LoopStart> starts = possible_starts(path);
+  if (!begins_at_zero(path)) return judge_from(path, contact, tolerance, starts);
+  LoopJudgement from_rest = judge_from(path, contact, tolerance, {{}});
+  if (from_rest.good) return from_rest;
+  LoopJudgement elsewhere = judge_from(path, contact, tolerance, starts);
+  return elsewhere.good ? elsewhere : from_rest;
 }
 
 void explain(LoopJudgement& judgement, const LoopPath& path, const LoopContact& contact, double tolerance) {

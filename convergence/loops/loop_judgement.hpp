@@ -29,12 +29,8 @@ struct LoopJudgement {
   LoopHypothesis exact;     ///< the exact law as the record starts
   LoopNumber stiffness{kUnknown, kUnknown};     ///< dm/dt over the first third of the largest moment
   LoopNumber largest_load{kUnknown, kUnknown};  ///< m
-  LoopNumber presliding{kUnknown, kUnknown};    ///< t at half of the limit, on first loading
-  LoopNumber recovered{kUnknown,
-                       kUnknown};  ///< part of the rotation that the first unloading to no moment gives back
-  std::vector<LoopNumber> areas;   ///< of closed loops
-  double masing_error = kUnknown;  ///< of the first branch back from the loop's own first loading, enlarged
-  std::vector<LoopHypothesis> fitted;  ///< of a bad one
+  std::vector<LoopNumber> areas;                ///< of closed loops
+  std::vector<LoopHypothesis> fitted;           ///< of a bad one
 
   /// Whether slip shows above the noise: then stiffness and limit, or shape, are seen.
   bool shows_slip() const;

@@ -80,6 +80,21 @@ double smoothed_turn(const std::vector<double>& twist, std::size_t turn, std::si
 
 }  // namespace
 
+double range_of(const std::vector<double>& values) {
+  const auto [low, high] = std::ranges::minmax_element(values);
+  return *high - *low;
+}
+
+LoopLine line_through(std::span<const double> x, std::span<const double> y) {
+  const auto centred = [](std::span<const double> values) -> Eigen::VectorXd {
+    const Eigen::Map<const Eigen::ArrayXd> map(values.data(), static_cast<Eigen::Index>(values.size()));
+    return map - map.mean();
+  };
+  const Eigen::VectorXd a = centred(x);
+  const Eigen::VectorXd b = centred(y);
+  return {a.dot(b) / a.squaredNorm(), a.dot(b) / (a.norm() * b.norm())};
+}
+
 double trimmed_mean(std::vector<double> values) {
   constexpr double kCounted = 0.98;
   for (double& value : values) value = std::isfinite(value) ? value * value : INFINITY;
@@ -105,8 +120,7 @@ double row_noise(const LoopPath& path, const std::vector<double>& values) {
 
 void find_turns(LoopPath& path) {
   const std::vector<double>& twist = path.twist;
-  const auto [low, high] = std::ranges::minmax_element(twist);
-  const double range = *high - *low;
+  const double range = range_of(twist);
   const double enough = kReversal * range;
   path.turns = {0};
   std::size_t extreme = 0;
@@ -162,24 +176,16 @@ std::vector<double> follow(const LoopPath& path, const LoopStart& start, const B
 }
 
 std::vector<double> rates(const LoopPath& path) {
-  constexpr std::size_t kHalfWindow = 4;
+  constexpr std::size_t kNoisyWindow = 4;
   const std::size_t rows = path.twist.size();
-  const auto time = [&](std::size_t row) {
-    return path.time.empty() ? static_cast<double>(row) / static_cast<double>(rows - 1) : path.time[row];
-  };
+  const bool is_noisy = path.twist_noise > kVisibleNoise * range_of(path.twist);
+  const std::size_t window = is_noisy ? kNoisyWindow : 1;
   std::vector<double> rate(rows);
   for (std::size_t row = 0; row < rows; ++row) {
-    const std::size_t from = row < kHalfWindow ? 0 : row - kHalfWindow;
-    const std::size_t to = std::min(rows - 1, row + kHalfWindow);
-    double middle = 0.0;
-    for (std::size_t k = from; k <= to; ++k) middle += time(k) / static_cast<double>(to - from + 1);
-    double above = 0.0;
-    double below = 0.0;
-    for (std::size_t k = from; k <= to; ++k) {
-      above += (time(k) - middle) * path.twist[k];
-      below += (time(k) - middle) * (time(k) - middle);
-    }
-    rate[row] = above / below;
+    const std::size_t from = row < window ? 0 : row - window;
+    const std::size_t to = std::min(rows - 1, row + window);
+    const std::size_t count = to - from + 1;
+    rate[row] = line_through({&path.time[from], count}, {&path.twist[from], count}).slope;
   }
   return rate;
 }

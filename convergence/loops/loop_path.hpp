@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <vector>
 
 namespace slipstick::convergence {
@@ -14,14 +15,23 @@ struct LoopStart {
 
 /// A loop in the contact's own units: rotations as t = G a^2 phi/(mu W), moments as m = M/M_lim.
 struct LoopPath {
-  std::vector<double> time;  ///< empty: not given; else from 0 to 1 over the record
-  double duration = 0.0;     ///< s
+  std::vector<double> time;  ///< from 0 to 1 over the record; where none is given, the rows'
+  double duration = 0.0;     ///< s; 0: no time is given
   std::vector<double> twist;
   std::vector<double> moment;
   std::vector<std::size_t> turns;  ///< rows at which the rotation turns back; the first row and the last
   std::vector<double> turn_twist;  ///< the rotation in these rows, less its noise
   double twist_noise = 0.0;        ///< standard deviation from row to row
 };
+
+double range_of(const std::vector<double>& values);
+
+/// A straight line through points, by least squares; correlation: 1 or -1 where they lie on it.
+struct LoopLine {
+  double slope;
+  double correlation;
+};
+LoopLine line_through(std::span<const double> x, std::span<const double> y);
 
 /// Fills in turns, turn_twist and twist_noise. A rotation turns back where it does by more than a part of its
 /// range, which noise does not.
@@ -44,8 +54,8 @@ struct BranchLaw {
 /// The law's moment in each row.
 std::vector<double> follow(const LoopPath& path, const LoopStart& start, const BranchLaw& law);
 
-/// dt/dtime in each row, over the record's length, smoothed over a few rows; rows count as time where none is
-/// given.
+/// dt/dtime in each row, over the record's length: over the rows next to it, or a few more where rotations
+/// are noisy.
 std::vector<double> rates(const LoopPath& path);
 
 /// Standard deviation from row to row of values that are smooth between the turns but for their noise, from

@@ -1,8 +1,8 @@
 """drawn_loops.py PROGRAM SCENES [--count N] [--seed S] [--keep FOLDER]: draws loops of the paper's sphere, N right and N wrong,
 and counts what slipstick check says of them. Laws are written here anew (numpy; Lubkin's by quadrature), nothing of the
 program's. Fails where a right loop is called bad, or where more than 1 in 20 wrong ones are called good or by a wrong name.
-A wrong loop counts as good with reason where it is no farther from the exact one than its noise; another name counts as right
-where its law with its parameters is no farther from the loop than that."""
+A wrong loop counts as good with reason where it is no farther from the exact one than its noise, or its slip is below that;
+another name counts as right where its law with its parameters is no farther from the loop than that."""
 
 import argparse
 import json
@@ -195,8 +195,8 @@ class Drawer:
         """(names that are right, clean moments, noise, rows)."""
         name = self.pick("stiffness", "limit", "factor", "limit_and_stiffness", "other_profile", "exponential", "spring_and_cap",
                          "rigid", "elastic", "not_enlarged", "unloads_without_slip", "regularised", "viscous", "equation_7", "unit")
-        # Eq. (7) has the exact law's first two terms: below that it is right within the tolerance.
-        amplitude = self.amplitude(0.3 if name == "equation_7" else 1e-3, 0.99)
+        # Eq. (7) has the exact law's first two terms: below 0.35 of the limit it is within the 1 % that a good loop may be off.
+        amplitude = self.amplitude(0.35 if name == "equation_7" else 1e-3, 0.99)
         time, t, rows = self.drive(amplitude)
         rate = np.gradient(t, time)
         top = np.abs(rate).max()
@@ -262,7 +262,7 @@ def law_of(name, p, time, t, start, why):
     if name == "viscous":
         return [law + p[0] * np.abs(law).max() * rate / top for law in (follow(exact), line(t))]
     if name == "regularised":
-        return [p[0] * np.tanh(rate / (p[1] * top))]
+        return [p[0] * shape(rate / (p[1] * top)) for shape in (np.tanh, lambda r: np.clip(r, -1, 1))]
     if name == "equation_7":
         return [follow(equation_7)]
     if name in curves:
@@ -270,10 +270,16 @@ def law_of(name, p, time, t, start, why):
     return []
 
 
-def off(one, other):
-    """Root mean square of the distance, without the offset, over the larger half range."""
+def same_rate(time, t):
+    rate = np.sort(np.abs(np.gradient(t, time)))
+    return rate[len(rate) // 10] > 0.999 * rate[-1]
+
+
+def off(one, other, part=1.0):
+    """Root mean square of the distance, without the offset, over the larger half range; of the nearest part of the rows."""
     gap = one - other
-    return float(np.sqrt(np.mean((gap - gap.mean())**2)) / (0.5 * np.ptp(other)))
+    gap = np.sort(np.abs(gap - gap.mean()))[:int(part * len(gap))]
+    return float(np.sqrt(np.mean(gap**2)) / (0.5 * np.ptp(other)))
 
 
 def main():
@@ -320,6 +326,10 @@ def main():
                 if conventions == (1, 1, 1):
                     judged -= 1
                     named_wrong += result["verdict"] != "good"
+                elif off(line(t), m) <= noise / 3 and wanted[2:] == [word for word in wanted[2:] if word in said] and \
+                        (result["verdict"] == "good" or "as in another unit" in said):
+                    fair += 1  # a line has a stiffness alone, which does not say whose unit differs
+                    judged -= 1
                 elif not all(word in said for word in wanted):
                     named_wrong += 1
                     print(told, conventions, result["verdict"], result["conventions"], why)
@@ -336,11 +346,12 @@ def main():
                 keep(file, f"wrong-{k}")
                 continue
             judged += 1
-            if law == name:
+            # At one rate, to and fro, moments that follow its sign are rigid and regularised.
+            if law == name or ({law, name} == {"rigid", "regularised"} and same_rate(time, t)):
                 continue
             tried = [entry for entry in result["loads"][0]["tried"] if entry["law"] == law]
-            best = min(tried, key=lambda entry: entry["residual"], default=None)
-            same = law and any(off(other, m) <= max(noise / 3, 1e-6) for other in law_of(law, best["parameters"], time, t, start, why))
+            same = any(off(other, m, 0.98) <= max(noise / 3, 1e-6)
+                       for entry in tried for other in law_of(law, entry["parameters"], time, t, start, why))
             if not same:
                 named_wrong += 1
                 print(told, f"{away:.2g} off, named {law}: {why}")

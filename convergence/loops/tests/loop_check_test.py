@@ -205,19 +205,24 @@ class Loops(unittest.TestCase):
         load = self.check(self.write(path, masing(path, exact)))["loads"][0]
         self.assertEqual(load["reversals"], 4)
         self.assertLess(load["residual"], 2e-4)
-        self.assertLess(load["masing_error"], 2e-3)
-        for key, within in (("stiffness", 1e-3), ("largest_load", 1e-3), ("presliding", 1e-2), ("recovered", 1e-2)):
+        for key, within in (("stiffness", 1e-3), ("largest_load", 1e-3)):
             self.assertAlmostEqual(load[key]["value"] / load[key]["exact"], 1, delta=within, msg=key)
         rotation = FRICTION * LOAD / (G * contact_radius(LOAD)**2)
         self.assertAlmostEqual(load["largest_load"]["value"] / (exact(0.25) * limit_moment(LOAD)), 1, 6)
-        half = T[bisect_left(M, 0.5)] * rotation
-        self.assertAlmostEqual(load["presliding"]["value"] / half, 1, 2)
         steps = [0.25 * i / 2000 for i in range(2001)]
         work = sum(0.25 / 2000 * (exact(one) + exact(other)) / 2 for one, other in zip(steps, steps[1:]))
         lost = (8 * work - 4 * exact(0.25) * 0.25) * limit_moment(LOAD) * rotation
         self.assertAlmostEqual(load["areas"][0]["value"] / lost, 1, 3)
         self.assertTrue(all(abs(area["value"] / area["exact"] - 1) < 1e-3 for area in load["areas"]))
-        self.assertGreater(len(load["areas"]), 0)
+
+    def test_how_many_loops_are_closed(self):
+        for amplitudes, rows, closed in (((0.25, 0.25), None, 2), ((0.1, 0.2), None, 1), ((0.25, ), None, 1), ((0.25, 0.25), 460, 1),
+                                         ((0.25, ), 301, 0)):
+            path = drive(amplitudes)[:rows]
+            result = self.check(self.write(path, self.growing(path)))
+            self.assertEqual(len(result["loads"][0]["areas"]), closed, (amplitudes, rows))
+            said = f"lost in {closed} loop{'s' if closed > 1 else ''} is right"
+            self.assertEqual(said in result["why"], closed > 0, result["why"])
 
     def noisy(self, path, moments, **more):
         return self.write(path, moments, noise=1e-3, **more)
@@ -285,21 +290,14 @@ class Loops(unittest.TestCase):
         self.assert_named(self.noisy(path, moments), "normal_load_drifts", "the normal load drifts")
         why = self.check(self.noisy(path, moments))["why"]
         self.assertAlmostEqual(float(why.split("by ")[1].split(" %")[0]), -25, delta=2)
-
-    def test_limit_that_depends_on_the_rate(self):
-        """Each cycle ten times as slow as the one before, with a limit 10 % higher."""
-        moments, path, when = [], [], 0.0
-        for cycle in range(3):
-            one, scale = drive((0.4,)), 1.1**cycle
-            moments += [scale * m for m in masing(one, lambda t: exact(t / scale))][150:450] if cycle else \
-                [m for m in masing(one, exact)]
-            rows = one[150:450] if cycle else one
-            for i, (_, t) in enumerate(rows):
-                when += 10.0**cycle / 150
-                path.append((when, t))
-        rows = self.noisy(path, moments)
-        self.assert_named(rows, "rate_dependent_limit", "for ten times the rate")
-        self.assertAlmostEqual(float(self.check(rows)["why"].split(": ")[1].split(" %")[0]), -9, delta=1)
+        for size in (0.02, 0.25):  # mostly the stiffness, which goes like W; and the limit as well
+            path = [(when, t * size / 0.25) for when, t in drive((0.25, ) * 6)]
+            moments = [w**(4 / 3) * m for w, m in
+                       zip(loads, masing([(when, t / w**(1 / 3)) for (when, t), w in zip(path, loads)], exact))]
+            tried = self.check(self.write(path, moments))["loads"][0]["tried"]
+            found = next(law for law in tried if law["law"] == "normal_load_drifts")
+            self.assertAlmostEqual(found["parameters"][0], 0.75, delta=2e-3)
+            self.assertLess(found["residual"], 1e-3)
 
     def test_other_limit_and_stiffness(self):
         path = drive((0.3, 0.3))
