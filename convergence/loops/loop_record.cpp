@@ -130,6 +130,16 @@ void require_sound(const LoopRecord& loop) {
   if (is_constant(loop.load) || is_constant(loop.motion)) {
     throw InputError(file, "load or motion never changes: there is no loop to judge");
   }
+  constexpr double kLargest = 1e100;  // in any unit; what is fitted squares them
+  for (const std::vector<double>* column : {&loop.load, &loop.motion, &loop.time}) {
+    const double size =
+        column->empty()
+            ? 1.0
+            : std::abs(*std::ranges::max_element(*column, {}, [](double value) { return std::abs(value); }));
+    if (!(size > 1.0 / kLargest && size < kLargest)) {
+      throw InputError(file, fmt::format("a column reaches {:g}; allowed: sizes within 1e-100..1e100", size));
+    }
+  }
 }
 
 }  // namespace
