@@ -234,7 +234,9 @@ LoopConventions find_conventions(const LoopRecord& record, std::size_t to, const
   if (as_given > kFar && slips) return found;
   const LoopJudgement judgement = judge_loop(loop.path, contact, tolerance);
   const bool has_unit = found.motion != 1.0 || std::abs(found.load) != 1.0;
-  return judgement.good && (slips || !has_unit || judgement.shows_slip()) ? found : by_sign;
+  // Slip of the record's own, not of a start far outside it.
+  const bool shows = judgement.shows_slip() && std::abs(judgement.exact.offset) <= range_of(loop.path.moment);
+  return judgement.good && (slips || !has_unit || shows) ? found : by_sign;
 }
 
 }  // namespace
