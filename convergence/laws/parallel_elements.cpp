@@ -153,8 +153,8 @@ StateTable tabulate_evenly(const analytic::Profile& profile, double error) {
   StateTable table{{}, error};
   for (std::size_t steps = 32; worst > error;) {
     if (steps > kMaxEvenRows) {
-      throw std::domain_error(fmt::format("more than {} even rows for an error of {}; allowed: a larger --table-error",
-                                          kMaxEvenRows, error));
+      throw std::domain_error(fmt::format(
+          "more than {} even rows for an error of {}; allowed: a larger --table-error", kMaxEvenRows, error));
     }
     table.rows = {analytic::from_moment_ratio(0.0, profile)};
     worst = 0.0;
