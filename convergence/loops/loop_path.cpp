@@ -7,8 +7,11 @@
 namespace slipstick::convergence {
 namespace {
 
-/// A reversal that counts, as a part of the range of rotations.
+/// A reversal that counts whatever the noise, as a part of the range of rotations; one that counts where
+/// noise, in so many standard deviations, is less than it; and the least of those.
 constexpr double kReversal = 0.04;
+constexpr double kNoiseSigmas = 8.0;
+constexpr double kLeastReversal = 1e-3;
 /// How well a loop has to close, as a part of its range.
 constexpr double kClosing = 0.02;
 /// Noise that is more than what rows of a smooth motion differ by in the fourth place, as a part of the
@@ -78,6 +81,29 @@ double smoothed_turn(const std::vector<double>& twist, std::size_t turn, std::si
   return 0.5 * (end_of(turn - window, turn) + end_of(turn, turn + window));
 }
 
+/// Rows at which the rotation turns back by more than enough, the first and the last.
+std::vector<std::size_t> turns_of(const std::vector<double>& twist, double enough) {
+  std::vector<std::size_t> turns{0};
+  std::size_t extreme = 0;
+  double sign = 0.0;
+  for (std::size_t row = 1; row < twist.size(); ++row) {
+    if (sign == 0.0) {
+      if (std::abs(twist[row] - twist[0]) > enough) {
+        sign = twist[row] > twist[0] ? 1.0 : -1.0;
+        extreme = row;
+      }
+    } else if (sign * (twist[row] - twist[extreme]) > 0.0) {
+      extreme = row;
+    } else if (sign * (twist[extreme] - twist[row]) > enough) {
+      turns.push_back(extreme);
+      extreme = row;
+      sign = -sign;
+    }
+  }
+  turns.push_back(twist.size() - 1);
+  return turns;
+}
+
 }  // namespace
 
 double range_of(const std::vector<double>& values) {
@@ -121,25 +147,9 @@ double row_noise(const LoopPath& path, const std::vector<double>& values) {
 void find_turns(LoopPath& path) {
   const std::vector<double>& twist = path.twist;
   const double range = range_of(twist);
-  const double enough = kReversal * range;
-  path.turns = {0};
-  std::size_t extreme = 0;
-  double sign = 0.0;
-  for (std::size_t row = 1; row < twist.size(); ++row) {
-    if (sign == 0.0) {
-      if (std::abs(twist[row] - twist[0]) > enough) {
-        sign = twist[row] > twist[0] ? 1.0 : -1.0;
-        extreme = row;
-      }
-    } else if (sign * (twist[row] - twist[extreme]) > 0.0) {
-      extreme = row;
-    } else if (sign * (twist[extreme] - twist[row]) > enough) {
-      path.turns.push_back(extreme);
-      extreme = row;
-      sign = -sign;
-    }
-  }
-  path.turns.push_back(twist.size() - 1);
+  path.turns = turns_of(twist, kReversal * range);
+  const double clear = kNoiseSigmas * row_noise(path, twist);
+  path.turns = turns_of(twist, std::clamp(clear, kLeastReversal * range, kReversal * range));
   path.twist_noise = row_noise(path, twist);
   path.turn_twist.clear();
   for (const std::size_t turn : path.turns) path.turn_twist.push_back(twist[turn]);
