@@ -239,6 +239,16 @@ LoopConventions find_conventions(const LoopRecord& record, std::size_t to, const
   return judgement.good && (slips || !has_unit || shows) ? found : by_sign;
 }
 
+/// Adds how the limits of several normal loads grow; what is wrong with that, empty where nothing is.
+std::string exponent_fault(const std::vector<LoopUnderLoad>& loops, Json& json) {
+  const LoadExponent exponent = load_exponent(loops);
+  json["load_exponent"] = {{"value", exponent.value}, {"exact", exponent.exact}};
+  if (!exponent.differs()) return "";
+  return fmt::format("the limit goes like the normal load to the power {:.2f}, not {:.2f}{}", exponent.value,
+                     exponent.exact,
+                     std::abs(exponent.value - 1.0) < 0.03 ? ": a contact radius that does not grow" : "");
+}
+
 }  // namespace
 
 Json check_loop(const solver::Scene& scene, const std::filesystem::path& file, const LoopOptions& options) {
@@ -288,13 +298,8 @@ Json check_loop(const solver::Scene& scene, const std::filesystem::path& file, c
   json["conventions"] = conventions.notes;
   json["tolerance"] = options.tolerance;
   if (loops.size() > 1 && all_slide(loops)) {
-    const LoadExponent exponent = load_exponent(loops);
-    json["load_exponent"] = {{"value", exponent.value}, {"exact", exponent.exact}};
-    if (exponent.differs()) {
-      why = fmt::format("the limit goes like the normal load to the power {:.2f}, not {:.2f}{}; {}",
-                        exponent.value, exponent.exact,
-                        std::abs(exponent.value - 1.0) < 0.03 ? ": a contact radius that does not grow" : "",
-                        why);
+    if (const std::string fault = exponent_fault(loops, json); !fault.empty()) {
+      why = fault + "; " + why;
       good = false;
     }
   }

@@ -188,7 +188,7 @@ std::string verdict(double inputs, const Json& output, bool exact) {
   if (output["numerical"].is_null()) return "the mesh's error is not known";
   const double mesh = output["numerical"].get<double>();
   const std::string size = "the mesh " + percent(mesh);
-  if (mesh <= kNegligible * inputs) return size + ": a finer mesh tells nothing more";
+  if (mesh <= kNegligible * inputs) return size + ": refinement would not reduce the uncertainty";
   if (inputs <= kNegligible * mesh) return size + ": a finer mesh matters more than better inputs";
   return size + ": both matter";
 }
