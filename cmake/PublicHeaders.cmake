@@ -10,7 +10,7 @@ set(SLIPSTICK_PUBLIC_HEADERS
   solver/contact/limit_load.hpp   # what a contact carries before all of it slides
   solver/grid/grid.hpp            # cells, and how fields lie over them
   solver/newton/safeguards.hpp    # what a solve did beside plain steps
-  solver/operator/operator_kind.hpp
+  solver/elasticity/operator_kind.hpp
   solver/input/field_file.hpp     # fields as CSV, HDF5, VTK
   solver/input/input_error.hpp    # what is thrown for bad input
   analytic/axisymmetric.hpp       # contacts by their pressure

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "solver/cache/solve_cache.hpp"
+#include "solver/elasticity/elasticity.hpp"
 #include "solver/grid/reduction.hpp"
-#include "solver/operator/elasticity.hpp"
 #include "solver/scene/hertz_pressure.hpp"
 #include "solver/scene/scene.hpp"
 #include "solver/scene/to_dimensionless.hpp"

@@ -11,6 +11,7 @@
 #include "solver/contact/full_coupling.hpp"
 #include "solver/contact/paper_method.hpp"
 #include "solver/contact/projected_gradient.hpp"
+#include "solver/elasticity/random_rounding.hpp"
 #include "solver/grid/mirror.hpp"
 #include "solver/grid/threads.hpp"
 #include "solver/grid_edge.hpp"
@@ -19,7 +20,6 @@
 #include "solver/load_path.hpp"
 #include "solver/load_step.hpp"
 #include "solver/model_solution.hpp"
-#include "solver/operator/random_rounding.hpp"
 #include "solver/pressure.hpp"
 #include "solver/within_double.hpp"
 

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "bench/suite/suite.hpp"
-#include "solver/operator/influence.hpp"
+#include "solver/elasticity/influence.hpp"
 
 namespace slipstick::bench {
 namespace {

@@ -18,10 +18,10 @@
 #include "bench/timing/bandwidth.hpp"
 #include "bench/timing/four_transforms.hpp"
 #include "bench/timing/side_by_side.hpp"
+#include "solver/elasticity/direct.hpp"
+#include "solver/elasticity/elasticity.hpp"
+#include "solver/elasticity/linear_operator.hpp"
 #include "solver/grid/mirror.hpp"
-#include "solver/operator/direct.hpp"
-#include "solver/operator/elasticity.hpp"
-#include "solver/operator/linear_operator.hpp"
 
 namespace slipstick::bench {
 namespace {

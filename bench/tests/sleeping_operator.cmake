@@ -3,7 +3,7 @@
 include("${CMAKE_CURRENT_LIST_DIR}/../../cmake/mutant.cmake")
 
 mutant(sleeping_operator
-  FILE solver/operator/convolution.cpp
+  FILE solver/elasticity/convolution.cpp
   FIND [[  transform_.forward_rows(traction);]]
   REPLACE [[  struct Sleep {
     std::chrono::steady_clock::time_point start = std::chrono::steady_clock::now();

@@ -7,7 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
-#include "solver/operator/linear_operator.hpp"
+#include "solver/elasticity/linear_operator.hpp"
 #include "solver/solve.hpp"
 
 namespace slipstick::bench {

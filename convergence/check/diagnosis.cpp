@@ -9,7 +9,7 @@
 #include "convergence/check/deviation.hpp"
 #include "convergence/check/fitted_motion.hpp"
 #include "solver/contact/certificate.hpp"
-#include "solver/operator/influence.hpp"
+#include "solver/elasticity/influence.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -4,8 +4,8 @@
 #include <chrono>
 #include <limits>
 
+#include "solver/elasticity/linear_operator.hpp"
 #include "solver/model.hpp"
-#include "solver/operator/linear_operator.hpp"
 
 namespace slipstick::convergence {
 namespace {

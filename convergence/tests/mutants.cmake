@@ -4,7 +4,7 @@ include("${CMAKE_CURRENT_LIST_DIR}/../../cmake/mutant.cmake")
 
 # A convolution whose transforms are as long as the grid: offsets beyond half of it come round from the other side.
 mutant(no_zero_padding
-  FILE solver/operator/convolution.cpp
+  FILE solver/elasticity/convolution.cpp
   FIND [[std::vector<double>& quadrant = quadrants[slot];]]
   REPLACE [[std::vector<double>& quadrant = quadrants[slot];
     const std::vector<double> open = quadrant;
@@ -21,14 +21,14 @@ mutant(no_zero_padding
 
 # The cross kernel, odd in both coordinates, taken to be even.
 mutant(k12_even
-  FILE solver/operator/influence.cpp
+  FILE solver/elasticity/influence.cpp
   FIND [[      return {-1, -1};]]
   REPLACE [[      return {1, 1};]]
   GATES full-64-twist full-64-traction-averaged-l2)
 
 # The cross kernel's sign, where symmetry leaves a quadrant and one traction field.
 mutant(k12_sign_in_a_quadrant
-  FILE solver/operator/mirrored_convolution.cpp
+  FILE solver/elasticity/mirrored_convolution.cpp
   FIND [[P::load(k11 + at + line) * P::load(plain + at + line) +]]
   REPLACE [[P::load(k11 + at + line) * P::load(plain + at + line) -]]
   GATES hertz-64-traction-l1)

@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "solver/contact/tangential_problem.hpp"
-#include "solver/operator/elasticity.hpp"
+#include "solver/elasticity/elasticity.hpp"
 
 namespace slipstick::solver {
 

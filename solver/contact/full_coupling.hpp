@@ -4,7 +4,7 @@
 
 #include "solver/contact/normal_contact.hpp"
 #include "solver/contact/tangential_problem.hpp"
-#include "solver/operator/elasticity.hpp"
+#include "solver/elasticity/elasticity.hpp"
 
 namespace slipstick::solver {
 

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "solver/contact/certificate.hpp"
+#include "solver/elasticity/elasticity.hpp"
 #include "solver/newton/safeguards.hpp"
-#include "solver/operator/elasticity.hpp"
 
 namespace slipstick::solver {
 

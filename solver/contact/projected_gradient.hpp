@@ -3,7 +3,7 @@
 #include <functional>
 
 #include "solver/contact/tangential_problem.hpp"
-#include "solver/operator/linear_operator.hpp"
+#include "solver/elasticity/linear_operator.hpp"
 
 namespace slipstick::solver {
 

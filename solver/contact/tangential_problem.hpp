@@ -7,9 +7,9 @@
 
 #include "solver/contact/limit_load.hpp"
 #include "solver/contact/normal_contact.hpp"
+#include "solver/elasticity/elasticity.hpp"
 #include "solver/grid/grid.hpp"
 #include "solver/newton/safeguards.hpp"
-#include "solver/operator/elasticity.hpp"
 
 namespace slipstick::solver {
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <utility>
 
+#include "solver/elasticity/elasticity.hpp"
 #include "solver/grid/grid_transfer.hpp"
 #include "solver/newton/natural_map_newton.hpp"
-#include "solver/operator/elasticity.hpp"
 
 namespace slipstick::solver {
 

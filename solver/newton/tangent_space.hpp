@@ -7,10 +7,10 @@
 #include <limits>
 #include <span>
 
+#include "solver/elasticity/inverse_symbol.hpp"
+#include "solver/elasticity/linear_operator.hpp"
 #include "solver/grid/sweep.hpp"
 #include "solver/newton/extension.hpp"
-#include "solver/operator/inverse_symbol.hpp"
-#include "solver/operator/linear_operator.hpp"
 
 namespace slipstick::solver {
 

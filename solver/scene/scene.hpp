@@ -8,8 +8,8 @@
 #include <variant>
 #include <vector>
 
+#include "solver/elasticity/operator_kind.hpp"
 #include "solver/grid/grid.hpp"
-#include "solver/operator/operator_kind.hpp"
 #include "solver/scene/surface.hpp"
 
 namespace slipstick::solver {

@@ -7,8 +7,8 @@
 #include <string>
 
 #include "solver/contact/coulomb_method.hpp"
+#include "solver/elasticity/direct.hpp"
 #include "solver/model_solution.hpp"
-#include "solver/operator/direct.hpp"
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/torsion_bench.hpp"
 

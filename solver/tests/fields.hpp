@@ -5,7 +5,7 @@
 #include <random>
 #include <span>
 
-#include "solver/operator/linear_operator.hpp"
+#include "solver/elasticity/linear_operator.hpp"
 
 namespace slipstick::solver {
 

@@ -7,11 +7,11 @@
 #include <span>
 #include <vector>
 
+#include "solver/elasticity/inverse_symbol.hpp"
+#include "solver/elasticity/linear_operator.hpp"
 #include "solver/grid/ranks.hpp"
 #include "solver/grid/sweep.hpp"
 #include "solver/newton/extension.hpp"
-#include "solver/operator/inverse_symbol.hpp"
-#include "solver/operator/linear_operator.hpp"
 #include "solver/tests/fields.hpp"
 
 /// Started by mpirun on any number of ranks, which find the bits that each finds on its own; on one it is a

@@ -12,7 +12,7 @@
 
 #include "convergence/check/given_contact.hpp"
 #include "solver/contact/projected_gradient.hpp"
-#include "solver/operator/influence.hpp"
+#include "solver/elasticity/influence.hpp"
 #include "solver/pressure.hpp"
 #include "solver/solve.hpp"
 

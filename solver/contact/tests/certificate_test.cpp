@@ -10,7 +10,7 @@
 #include <random>
 
 #include "solver/contact/paper_method.hpp"
-#include "solver/operator/direct.hpp"
+#include "solver/elasticity/direct.hpp"
 #include "solver/tests/dense_algebra.hpp"
 #include "solver/tests/limits.hpp"
 

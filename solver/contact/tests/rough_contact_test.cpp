@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "solver/contact/normal_contact.hpp"
-#include "solver/operator/influence.hpp"
+#include "solver/elasticity/influence.hpp"
 #include "solver/scene/roughness.hpp"
 
 namespace slipstick::solver {

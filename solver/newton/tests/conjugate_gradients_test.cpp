@@ -14,9 +14,9 @@
 #include <vector>
 
 #include "solver/allocations/allocations.hpp"
+#include "solver/elasticity/direct.hpp"
 #include "solver/newton/tangent_space.hpp"
 #include "solver/newton/tests/tangent_cg.hpp"
-#include "solver/operator/direct.hpp"
 #include "solver/tests/dense_algebra.hpp"
 #include "solver/tests/fields.hpp"
 

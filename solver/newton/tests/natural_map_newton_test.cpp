@@ -8,7 +8,7 @@
 #include <random>
 
 #include "solver/allocations/allocations.hpp"
-#include "solver/operator/elasticity.hpp"
+#include "solver/elasticity/elasticity.hpp"
 #include "solver/tests/fields.hpp"
 #include "solver/tests/torsion_bench.hpp"
 

@@ -5,9 +5,9 @@
 #include <array>
 #include <cmath>
 
+#include "solver/elasticity/inverse_symbol.hpp"
+#include "solver/elasticity/linear_operator.hpp"
 #include "solver/newton/tests/tangent_cg.hpp"
-#include "solver/operator/inverse_symbol.hpp"
-#include "solver/operator/linear_operator.hpp"
 #include "solver/tests/fields.hpp"
 
 namespace slipstick::solver {

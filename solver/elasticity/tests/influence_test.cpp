@@ -1,4 +1,4 @@
-#include "solver/operator/influence.hpp"
+#include "solver/elasticity/influence.hpp"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_integration.h>
@@ -12,8 +12,8 @@
 #include <numbers>
 #include <utility>
 
-#include "solver/operator/cell_integrals.hpp"
-#include "solver/operator/tests/components.hpp"
+#include "solver/elasticity/cell_integrals.hpp"
+#include "solver/elasticity/tests/components.hpp"
 
 namespace slipstick::solver {
 namespace {

@@ -1,12 +1,12 @@
-#include "solver/operator/influence.hpp"
+#include "solver/elasticity/influence.hpp"
 
 #include <algorithm>
 #include <cstdlib>
 #include <numbers>
 #include <stdexcept>
 
+#include "solver/elasticity/cell_integrals.hpp"
 #include "solver/grid/threads.hpp"
-#include "solver/operator/cell_integrals.hpp"
 
 namespace slipstick::solver {
 namespace {

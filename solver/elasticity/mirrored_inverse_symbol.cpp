@@ -1,4 +1,4 @@
-#include "solver/operator/mirrored_inverse_symbol.hpp"
+#include "solver/elasticity/mirrored_inverse_symbol.hpp"
 
 #include <algorithm>
 #include <cmath>

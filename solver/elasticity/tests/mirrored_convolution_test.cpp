@@ -1,4 +1,4 @@
-#include "solver/operator/mirrored_convolution.hpp"
+#include "solver/elasticity/mirrored_convolution.hpp"
 
 #include <gtest/gtest.h>
 
@@ -10,8 +10,8 @@
 #include <vector>
 
 #include "solver/allocations/allocations.hpp"
+#include "solver/elasticity/direct.hpp"
 #include "solver/grid/mirror.hpp"
-#include "solver/operator/direct.hpp"
 #include "solver/tests/fields.hpp"
 
 namespace slipstick::solver {

@@ -5,9 +5,9 @@
 #include <numbers>
 #include <utility>
 
-#include "solver/operator/cell_integrals.hpp"
-#include "solver/operator/influence.hpp"
-#include "solver/operator/tests/components.hpp"
+#include "solver/elasticity/cell_integrals.hpp"
+#include "solver/elasticity/influence.hpp"
+#include "solver/elasticity/tests/components.hpp"
 
 namespace slipstick::solver {
 namespace {

@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <memory>
 
-#include "solver/operator/linear_operator.hpp"
+#include "solver/elasticity/linear_operator.hpp"
 
 namespace slipstick::solver {
 

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
+#include "solver/elasticity/operator_kind.hpp"
 #include "solver/grid/grid.hpp"
-#include "solver/operator/operator_kind.hpp"
 
 /// Influence coefficients: displacement at a cell's centre due to a unit traction on another cell, for
 /// half-spaces (Boussinesq, Cerruti; Love 1929; Johnson 1985, section 3.6). They depend on the offset only.

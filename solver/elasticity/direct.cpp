@@ -1,4 +1,4 @@
-#include "solver/operator/direct.hpp"
+#include "solver/elasticity/direct.hpp"
 
 #include <algorithm>
 #include <cstdlib>

@@ -1,4 +1,4 @@
-#include "solver/operator/random_rounding.hpp"
+#include "solver/elasticity/random_rounding.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "solver/operator/convolution.hpp"
+#include "solver/elasticity/convolution.hpp"
 
 #include <algorithm>
 #include <set>

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <map>
 
-#include "solver/operator/linear_operator.hpp"
+#include "solver/elasticity/linear_operator.hpp"
 
 namespace slipstick::solver {
 

@@ -1,4 +1,4 @@
-#include "solver/operator/symbol_table.hpp"
+#include "solver/elasticity/symbol_table.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,8 +1,8 @@
-#include "solver/operator/linear_operator.hpp"
+#include "solver/elasticity/linear_operator.hpp"
 
-#include "solver/operator/convolution.hpp"
-#include "solver/operator/direct.hpp"
-#include "solver/operator/mirrored_convolution.hpp"
+#include "solver/elasticity/convolution.hpp"
+#include "solver/elasticity/direct.hpp"
+#include "solver/elasticity/mirrored_convolution.hpp"
 
 namespace slipstick::solver {
 

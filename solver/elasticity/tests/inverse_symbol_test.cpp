@@ -1,4 +1,4 @@
-#include "solver/operator/inverse_symbol.hpp"
+#include "solver/elasticity/inverse_symbol.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,10 +7,10 @@
 #include <stdexcept>
 #include <vector>
 
+#include "solver/elasticity/influence.hpp"
+#include "solver/elasticity/operator_kind.hpp"
 #include "solver/grid/grid.hpp"
 #include "solver/grid/ranks.hpp"
-#include "solver/operator/influence.hpp"
-#include "solver/operator/operator_kind.hpp"
 
 namespace slipstick::solver {
 

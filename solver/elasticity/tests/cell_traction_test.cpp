@@ -4,7 +4,7 @@
 #include <numbers>
 #include <utility>
 
-#include "solver/operator/influence.hpp"
+#include "solver/elasticity/influence.hpp"
 
 namespace slipstick::solver {
 namespace {

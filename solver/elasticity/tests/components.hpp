@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "solver/operator/influence.hpp"
+#include "solver/elasticity/influence.hpp"
 
 namespace slipstick::solver {
 

@@ -4,9 +4,9 @@
 #include <memory>
 #include <vector>
 
+#include "solver/elasticity/inverse_symbol.hpp"
+#include "solver/elasticity/symbol_table.hpp"
 #include "solver/fft/plane_transform.hpp"
-#include "solver/operator/inverse_symbol.hpp"
-#include "solver/operator/symbol_table.hpp"
 
 namespace slipstick::solver {
 

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "solver/cache/solve_cache.hpp"
-#include "solver/operator/inverse_symbol.hpp"
-#include "solver/operator/linear_operator.hpp"
+#include "solver/elasticity/inverse_symbol.hpp"
+#include "solver/elasticity/linear_operator.hpp"
 
 namespace slipstick::solver {
 

@@ -1,4 +1,4 @@
-#include "solver/operator/elasticity.hpp"
+#include "solver/elasticity/elasticity.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include "solver/operator/random_rounding.hpp"
+#include "solver/elasticity/random_rounding.hpp"
 
 namespace slipstick::solver {
 

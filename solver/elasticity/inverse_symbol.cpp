@@ -1,4 +1,4 @@
-#include "solver/operator/inverse_symbol.hpp"
+#include "solver/elasticity/inverse_symbol.hpp"
 
 #include <algorithm>
 #include <numeric>
@@ -6,9 +6,9 @@
 #include <type_traits>
 #include <vector>
 
+#include "solver/elasticity/mirrored_inverse_symbol.hpp"
+#include "solver/elasticity/symbol_table.hpp"
 #include "solver/fft/plane_transform.hpp"
-#include "solver/operator/mirrored_inverse_symbol.hpp"
-#include "solver/operator/symbol_table.hpp"
 
 namespace slipstick::solver {
 namespace {

@@ -3,10 +3,10 @@
 #include <optional>
 #include <vector>
 
+#include "solver/elasticity/linear_operator.hpp"
 #include "solver/fft/fftw.hpp"
 #include "solver/fft/half_sample_transform.hpp"
 #include "solver/fft/rank_transpose.hpp"
-#include "solver/operator/linear_operator.hpp"
 
 namespace slipstick::solver {
 

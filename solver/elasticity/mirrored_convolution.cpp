@@ -1,4 +1,4 @@
-#include "solver/operator/mirrored_convolution.hpp"
+#include "solver/elasticity/mirrored_convolution.hpp"
 
 #include <algorithm>
 #include <array>

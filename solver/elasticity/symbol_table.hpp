@@ -3,8 +3,8 @@
 #include <array>
 #include <vector>
 
+#include "solver/elasticity/influence.hpp"
 #include "solver/fft/fftw.hpp"
-#include "solver/operator/influence.hpp"
 
 namespace slipstick::solver {
 

@@ -1,4 +1,4 @@
-#include "solver/operator/cell_integrals.hpp"
+#include "solver/elasticity/cell_integrals.hpp"
 
 #include <gsl/gsl_integration.h>
 

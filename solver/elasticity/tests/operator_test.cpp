@@ -9,9 +9,9 @@
 #include <string>
 
 #include "solver/allocations/allocations.hpp"
-#include "solver/operator/convolution.hpp"
-#include "solver/operator/direct.hpp"
-#include "solver/operator/linear_operator.hpp"
+#include "solver/elasticity/convolution.hpp"
+#include "solver/elasticity/direct.hpp"
+#include "solver/elasticity/linear_operator.hpp"
 #include "solver/tests/fields.hpp"
 
 namespace slipstick::solver {

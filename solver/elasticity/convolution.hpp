@@ -4,8 +4,8 @@
 #include <complex>
 #include <vector>
 
+#include "solver/elasticity/linear_operator.hpp"
 #include "solver/fft/padded_transform.hpp"
-#include "solver/operator/linear_operator.hpp"
 
 namespace slipstick::solver {
 
