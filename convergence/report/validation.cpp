@@ -13,9 +13,7 @@
 
 #include "analytic/paper_equations.hpp"
 #include "analytic/torsion.hpp"
-#include "convergence/gates/gate_reader.hpp"
-#include "convergence/gates/gate_report.hpp"
-#include "convergence/gates/gate_run.hpp"
+#include "convergence/gates/gate.hpp"
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/report/exact_curves.hpp"

@@ -15,8 +15,6 @@ namespace {
 
 constexpr KeyType kNumber = KeyType::number;
 constexpr KeyType kWord = KeyType::word;
-/// Of keys that hold neither numbers nor words.
-const Range kAny{};
 const std::vector<std::string> kWithAxis{"sphere", "ellipsoid",  "cone",
                                          "power",  "flat_punch", "rounded_punch"};
 
