@@ -10,11 +10,8 @@
 
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/python_script.hpp"
-#include "convergence/programs/solve_figure.hpp"
-#include "convergence/programs/temporary_folder.hpp"
 #include "convergence/runs/run_options.hpp"
 #include "convergence/studies/study.hpp"
-#include "solver/input/whole_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -25,13 +22,6 @@ struct StudyRequest {
   std::string figure;
   RunOptions runs{.output = "build/studies"};
 };
-
-void draw(const std::string& figure, const Json& result) {
-  const TemporaryFolder folder;
-  solver::write_whole_file(folder / "study.json",
-                           result.dump(-1, ' ', false, Json::error_handler_t::replace));
-  run_report_script("study_figure.py", {"--", folder / "study.json", figure}, "the study is complete");
-}
 
 bool all_converged(const Json& result) {
   if (result["failed_runs"]["count"] != 0) return false;
@@ -71,7 +61,7 @@ int run_study_request(const CLI::App& command, const StudyRequest& request, std:
     result = run_study(study, pool);
   }
   text << study_text(result);
-  if (!request.figure.empty()) draw(request.figure, result);
+  if (!request.figure.empty()) draw_study(request.figure, result);
   return all_converged(result) ? 0 : 1;
 }
 
