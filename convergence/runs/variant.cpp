@@ -85,7 +85,7 @@ void measure_in_millimetres(Scene& scene) {
   }
 }
 
-/// What turns the upper body forth turns the lower one back.
+/// Swapping the bodies reverses all loads.
 void exchange(Scene& scene) {
   std::swap(scene.upper, scene.lower);
   for (solver::Step& step : scene.steps) {
