@@ -20,7 +20,7 @@ template <typename Real>
 class Convolution final : public Operator<Real> {
  public:
   /// Throws std::invalid_argument for a kernel of another shape than the normal, tangential or coupling one.
-  Convolution(const Grid& grid, BlockKernel kernel, const ElasticPair& pair, const OperatorOptions& options);
+  Convolution(const Grid& grid, BlockKernel kernel, const ElasticLaw& law, const OperatorOptions& options);
   static double sent_bytes(const Grid& grid, const BlockKernel& kernel);
   Index padded1() const { return transform_.padded1(); }
   Index padded2() const { return transform_.padded2(); }
@@ -35,7 +35,7 @@ class Convolution final : public Operator<Real> {
   using Multiply = void (*)(const Spectrum&, const Factors&, Index);
 
   void do_apply(std::span<const Real> traction, std::span<Real> displacement) override;
-  void set_spectra(const ElasticPair& pair, PaddedTransform<double>& transform);
+  void set_spectra(const ElasticLaw& law, PaddedTransform<double>& transform);
   void set_factors(Component component, const std::complex<double>* even, const std::complex<double>* odd,
                    Real* factors) const;
   std::size_t start(Index column, std::size_t slot) const;  ///< of a component's factors at a column

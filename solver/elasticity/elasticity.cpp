@@ -21,14 +21,14 @@ OperatorOptions options_of(const Elasticity& elasticity, const BlockKernel& kern
 template <typename Real>
 std::unique_ptr<InverseSymbol<Real>> symbol_of(const Elasticity& elasticity, const Grid& grid,
                                                const BlockKernel& kernel) {
-  return make_inverse_symbol<Real>(grid, kernel, elasticity.pair,
+  return make_inverse_symbol<Real>(grid, kernel, *elasticity.law,
                                    options_of(elasticity, kernel).diagonal ? Diagonal::yes : Diagonal::no,
                                    elasticity.threads, elasticity.at_edge);
 }
 
 std::unique_ptr<LinearOperator> new_operator(const Elasticity& elasticity, const Grid& grid,
                                              const BlockKernel& kernel) {
-  auto op = make_operator(elasticity.kind, grid, kernel, elasticity.pair, options_of(elasticity, kernel));
+  auto op = make_operator(elasticity.kind, grid, kernel, *elasticity.law, options_of(elasticity, kernel));
   return elasticity.rounding_seed == 0 ? std::move(op)
                                        : rounded_at_random(std::move(op), kernel, elasticity.rounding_seed);
 }
@@ -79,8 +79,8 @@ std::shared_ptr<SolveCache> Elasticity::usable_cache() const { return rounding_s
 
 CacheKey Elasticity::key(const char* what, const Grid& grid) const {
   CacheKey all(what);
-  all.add(pair.shear_compliance).add(pair.poisson_compliance).add(pair.normal_compliance).add(pair.mismatch);
-  all.add(pair.cell_traction).add(kind).add(threads).add(precision).add(diagonal).add(at_edge);
+  law->add_to(all);
+  all.add(kind).add(threads).add(precision).add(diagonal).add(at_edge);
   return all.add(grid.n1).add(grid.n2).add(grid.h1).add(grid.h2).add(grid.quadrant);
 }
 
@@ -122,7 +122,7 @@ GridOperators<double>::GridOperators(const Elasticity& elasticity, const Grid& g
 template <>
 GridOperators<float>::GridOperators(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel)
     : op(new_operator(elasticity, grid, kernel)),
-      single(make_single_operator(grid, kernel, elasticity.pair, options_of(elasticity, kernel))),
+      single(make_single_operator(grid, kernel, *elasticity.law, options_of(elasticity, kernel))),
       symbol(symbol_of<float>(elasticity, grid, kernel)) {}
 
 template <>

@@ -13,10 +13,10 @@ namespace slipstick::solver {
 template <typename Real>
 struct GridOperators;
 
-/// How displacements follow from tractions on whatever grid a method asks for: the elastic pair and the way
-/// to evaluate its operators.
+/// How displacements follow from tractions on whatever grid a method asks for: the elastic law and the way to
+/// evaluate its operators.
 struct Elasticity {
-  ElasticPair pair;
+  SharedLaw law;
   OperatorKind kind = OperatorKind::dcfft;
   int threads = 1;
   Precision precision = Precision::double_precision;

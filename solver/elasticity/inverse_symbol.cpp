@@ -62,13 +62,13 @@ void mix(Index count, Real sign, const Real* __restrict p11, const Real* __restr
 template <typename Real>
 class PeriodicInverseSymbol final : public InverseSymbol<Real> {
  public:
-  PeriodicInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair, int threads, bool at_edge)
+  PeriodicInverseSymbol(const Grid& grid, bool tangential, const ElasticLaw& law, int threads, bool at_edge)
       : grid_(grid),
         periodic_(padded(grid, at_edge)),
         fields_(tangential ? 2 : 1),
-        diagonal_(mean_inverse_symbol(periodic_, pair, tangential)),
+        diagonal_(mean_inverse_symbol(periodic_, law, tangential)),
         columns_(PlaneTransform<Real>::own_columns(shape(grid, periodic_, tangential))),
-        table_(periodic_, pair, entries(tangential), frequencies(columns_),
+        table_(periodic_, law, entries(tangential), frequencies(columns_),
                1.0 / (static_cast<double>(periodic_.length1) * static_cast<double>(periodic_.length2))),
         transform_(shape(grid, periodic_, tangential), threads) {}
 
@@ -152,14 +152,14 @@ void check_diagonal(const Grid& grid, bool tangential, Diagonal diagonal) {
 
 template <typename Real>
 std::unique_ptr<InverseSymbol<Real>> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel,
-                                                         const ElasticPair& pair, Diagonal diagonal,
+                                                         const ElasticLaw& law, Diagonal diagonal,
                                                          int threads, bool at_edge) {
   const bool tangential = is_tangential(kernel);
   check_diagonal(grid, tangential, diagonal);
   if (grid.quadrant) {
-    return std::make_unique<MirroredInverseSymbol<Real>>(grid, tangential, pair, diagonal, threads);
+    return std::make_unique<MirroredInverseSymbol<Real>>(grid, tangential, law, diagonal, threads);
   }
-  return std::make_unique<PeriodicInverseSymbol<Real>>(grid, tangential, pair, threads, at_edge);
+  return std::make_unique<PeriodicInverseSymbol<Real>>(grid, tangential, law, threads, at_edge);
 }
 
 template std::unique_ptr<InverseSymbol<double>> make_inverse_symbol<double>(const Grid&, const BlockKernel&,

@@ -42,7 +42,7 @@ class InverseSymbol {
 /// fields reach the edge of a whole grid.
 template <typename Real>
 std::unique_ptr<InverseSymbol<Real>> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel,
-                                                         const ElasticPair& pair,
+                                                         const ElasticLaw& law,
                                                          Diagonal diagonal = Diagonal::no, int threads = 1,
                                                          bool at_edge = false);
 

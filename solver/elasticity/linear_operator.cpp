@@ -20,11 +20,11 @@ namespace {
 
 template <typename Real>
 std::unique_ptr<Operator<Real>> make_convolution(const Grid& grid, const BlockKernel& kernel,
-                                                 const ElasticPair& pair, const OperatorOptions& options) {
+                                                 const ElasticLaw& law, const OperatorOptions& options) {
   if (grid.quadrant) {
-    return std::make_unique<MirroredConvolution<Real>>(grid, kernel, pair, options, options.diagonal);
+    return std::make_unique<MirroredConvolution<Real>>(grid, kernel, law, options, options.diagonal);
   }
-  return std::make_unique<Convolution<Real>>(grid, kernel, pair, options);
+  return std::make_unique<Convolution<Real>>(grid, kernel, law, options);
 }
 
 void require_whole(const Grid& grid) {
@@ -34,23 +34,23 @@ void require_whole(const Grid& grid) {
 }  // namespace
 
 std::unique_ptr<LinearOperator> make_operator(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
-                                              const ElasticPair& pair, const OperatorOptions& options) {
+                                              const ElasticLaw& law, const OperatorOptions& options) {
   if (kind != OperatorKind::dcfft) require_whole(grid);
   switch (kind) {
     case OperatorKind::dcfft:
-      return make_convolution<double>(grid, kernel, pair, options);
+      return make_convolution<double>(grid, kernel, law, options);
     case OperatorKind::direct:
-      return std::make_unique<DirectSum>(grid, kernel, pair, options);
+      return std::make_unique<DirectSum>(grid, kernel, law, options);
     case OperatorKind::dense:
-      return std::make_unique<DenseMatrix>(grid, kernel, pair);
+      return std::make_unique<DenseMatrix>(grid, kernel, law);
   }
   throw std::logic_error("unknown operator kind");
 }
 
 std::unique_ptr<Operator<float>> make_single_operator(const Grid& grid, const BlockKernel& kernel,
-                                                      const ElasticPair& pair,
+                                                      const ElasticLaw& law,
                                                       const OperatorOptions& options) {
-  return make_convolution<float>(grid, kernel, pair, options);
+  return make_convolution<float>(grid, kernel, law, options);
 }
 
 double predicted_sent_bytes(const Grid& grid, const BlockKernel& kernel) {

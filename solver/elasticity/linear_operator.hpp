@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "solver/elasticity/influence.hpp"
+#include "solver/elasticity/law/elastic_law.hpp"
 #include "solver/elasticity/operator_kind.hpp"
 #include "solver/grid/grid.hpp"
 #include "solver/grid/ranks.hpp"
@@ -98,11 +98,11 @@ struct OperatorOptions {
 /// On a quadrant it is the operator of the fields' mirror images. Throws std::invalid_argument where the kind
 /// (other than dcfft) or the kernel (coupling) has no such form.
 std::unique_ptr<LinearOperator> make_operator(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
-                                              const ElasticPair& pair, const OperatorOptions& options = {});
+                                              const ElasticLaw& law, const OperatorOptions& options = {});
 
 /// By discrete convolution and FFT in single precision.
 std::unique_ptr<Operator<float>> make_single_operator(const Grid& grid, const BlockKernel& kernel,
-                                                      const ElasticPair& pair,
+                                                      const ElasticLaw& law,
                                                       const OperatorOptions& options = {});
 
 /// What all ranks together will send in one application in double precision by discrete convolution.

@@ -94,7 +94,7 @@ std::size_t transformed_reals(Index frequencies) {
 
 template <typename Real>
 MirroredConvolution<Real>::MirroredConvolution(const Grid& quadrant, BlockKernel kernel,
-                                               const ElasticPair& pair, const OperatorOptions& options,
+                                               const ElasticLaw& law, const OperatorOptions& options,
                                                bool diagonal)
     : Operator<Real>(quadrant, checked(std::move(kernel), quadrant, diagonal)),
       diagonal_(diagonal),
@@ -113,8 +113,8 @@ MirroredConvolution<Real>::MirroredConvolution(const Grid& quadrant, BlockKernel
   own_column_groups_ = ranks_ ? Ranks::own_share(column_groups_) : Share{0, column_groups_};
   if (diagonal_) transformed_ = FftwBuffer<Real>(transformed_reals<Real>(along1_.frequencies()));
   const std::vector<Component> components = distinct_components(this->kernel(), diagonal_);
-  auto tables = influence_tables(components, pair, quadrant.h1, quadrant.h2, along1_.frequencies() + 1,
-                                 along2_.frequencies() + 1, threads_);
+  const Grid offsets{along1_.frequencies() + 1, along2_.frequencies() + 1, quadrant.h1, quadrant.h2};
+  auto tables = law.influence_tables(components, offsets, threads_);
   for (std::size_t c = 0; c < components.size(); ++c) {
     spectra_.push_back(kernel_spectrum(components[c], std::move(tables[c])));
   }

@@ -30,7 +30,7 @@ class MirroredConvolution final : public Operator<Real> {
  public:
   /// Throws std::invalid_argument where the grid is no quadrant, for a kernel that is neither normal nor
   /// tangential, and with `diagonal` for another kernel than the tangential one or unequal sides or cells.
-  MirroredConvolution(const Grid& quadrant, BlockKernel kernel, const ElasticPair& pair,
+  MirroredConvolution(const Grid& quadrant, BlockKernel kernel, const ElasticLaw& law,
                       const OperatorOptions& options, bool diagonal = false);
   static double sent_bytes(const Grid& quadrant, const BlockKernel& kernel);
 

@@ -138,7 +138,7 @@ void mix_with_other_half(Index count, const Real* __restrict p11, const Real* __
 }  // namespace
 
 template <typename Real>
-MirroredInverseSymbol<Real>::MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair,
+MirroredInverseSymbol<Real>::MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticLaw& law,
                                                    Diagonal diagonal, int threads)
     : grid_(grid),
       tangential_(tangential),
@@ -146,9 +146,9 @@ MirroredInverseSymbol<Real>::MirroredInverseSymbol(const Grid& grid, bool tangen
       t1_(transform_length(grid.n1)),
       t2_(transform_length(grid.n2)),
       half_(t2_ / 2 + 1),
-      diagonal_(mean_inverse_symbol(mirrored(grid), pair, tangential)),
+      diagonal_(mean_inverse_symbol(mirrored(grid), law, tangential)),
       columns_(PlaneTransform<Real>::own_columns(plane_of(grid, tangential, symmetric_))),
-      table_(mirrored(grid), pair, entries(tangential, diagonal == Diagonal::yes), frequencies(t2_, columns_),
+      table_(mirrored(grid), law, entries(tangential, diagonal == Diagonal::yes), frequencies(t2_, columns_),
              0.5 / (static_cast<double>(t1_) * static_cast<double>(t2_))),
       transform_(plane_of(grid, tangential, symmetric_), threads),
       scratch_(coefficient_size(half_, tangential_ && !symmetric_)),

@@ -33,7 +33,7 @@ template <typename Real>
 class MirroredInverseSymbol final : public InverseSymbol<Real> {
  public:
   /// With Diagonal::yes only the first component is transformed, of which the second is minus the transpose.
-  MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair, Diagonal diagonal,
+  MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticLaw& law, Diagonal diagonal,
                         int threads);
 
   void apply(std::span<Real> field) override;

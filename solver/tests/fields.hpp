@@ -5,6 +5,7 @@
 #include <random>
 #include <span>
 
+#include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/elasticity/linear_operator.hpp"
 
 namespace slipstick::solver {
@@ -30,7 +31,7 @@ typename Operator<Real>::Field applied(Operator<Real>& op, const typename Operat
 }
 
 /// Poisson's ratios and moduli whose mismatch is not zero.
-inline ElasticPair dissimilar_pair() { return elastic_pair({1.0, 0.3}, {2.5, 0.1}); }
+inline HalfSpaces dissimilar_pair() { return HalfSpaces(elastic_pair({1.0, 0.3}, {2.5, 0.1})); }
 
 /// A multiple of the identity, which may be what no elastic body is.
 class Multiple final : public LinearOperator {

@@ -97,8 +97,6 @@ const std::vector<BlockKernel>& kernels() {
   return all;
 }
 
-ElasticPair dissimilar_pair() { return elastic_pair({1.0, 0.3}, {2.5, 0.1}); }
-
 /// A grid too large for the dense matrix, of lengths that are prime and of which one is padded further.
 TEST(Convolution, OfPrimeLengthsIsTheDirectSum) {
   const Grid grid{101, 67, 1.0, 1.0};

@@ -24,7 +24,7 @@ constexpr double kSymbolRounding = 1e-13;
 constexpr double kFloatRounding = 1e-6;
 
 /// Shear modulus 2 for both, so that S = 1, N = nu and C33 = 1 - nu.
-ElasticPair pair_of(double nu) { return elastic_pair({2.0, nu}, {2.0, nu}); }
+HalfSpaces pair_of(double nu) { return HalfSpaces(elastic_pair({2.0, nu}, {2.0, nu})); }
 
 template <typename Real>
 void apply(InverseSymbol<Real>& symbol, Eigen::Array<Real, Eigen::Dynamic, 1>& field) {

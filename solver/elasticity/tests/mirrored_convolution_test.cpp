@@ -29,35 +29,35 @@ struct MirroredCase {
   std::string name;
   Grid grid;
   BlockKernel kernel;
-  ElasticPair pair;
+  SharedLaw law;
 };
 
 void PrintTo(const MirroredCase& tested, std::ostream* stream) { *stream << tested.name; }
 
 Grid quadrant(Index n1, Index n2, double h1 = 1.0, double h2 = 1.0) { return {n1, n2, h1, h2, true}; }
 
-ElasticPair similar_pair(double poisson_ratio) {
-  return elastic_pair({1.0, poisson_ratio}, {1.0, poisson_ratio});
+SharedLaw similar_pair(double poisson_ratio) {
+  return half_spaces({1.0, poisson_ratio}, {1.0, poisson_ratio});
 }
 
 std::vector<MirroredCase> mirrored_cases() {
   struct Pair {
     std::string name;
-    ElasticPair pair;
+    SharedLaw law;
   };
   const std::vector<Pair> pairs{{"nu0", similar_pair(0.0)},
                                 {"nu03", similar_pair(0.3)},
                                 {"nu05", similar_pair(0.5)},
-                                {"dissimilar", dissimilar_pair()}};
+                                {"dissimilar", half_spaces({1.0, 0.3}, {2.5, 0.1})}};
   const std::vector<Grid> grids{quadrant(1, 1),   quadrant(2, 3, 1.0, 0.5),   quadrant(5, 4),
                                 quadrant(16, 16), quadrant(33, 17),           quadrant(7, 31, 0.3, 1.0),
                                 quadrant(17, 17), quadrant(37, 5, 1e-3, 2e-3)};
   std::vector<MirroredCase> cases;
   for (const Grid& grid : grids) {
-    for (const auto& [name, pair] : pairs) {
+    for (const auto& [name, law] : pairs) {
       const std::string suffix = std::to_string(grid.n1) + "x" + std::to_string(grid.n2) + "_" + name;
-      cases.push_back({"normal_" + suffix, grid, normal_kernel(), pair});
-      cases.push_back({"tangential_" + suffix, grid, tangential_kernel(), pair});
+      cases.push_back({"normal_" + suffix, grid, normal_kernel(), law});
+      cases.push_back({"tangential_" + suffix, grid, tangential_kernel(), law});
     }
   }
   return cases;
@@ -80,7 +80,7 @@ Symmetry symmetry_of(const BlockKernel& kernel) {
 /// The same on the whole grid.
 ArrayXd apply_unfolded(const MirroredCase& tested, const ArrayXd& traction) {
   const Grid whole = whole_grid(tested.grid);
-  DirectSum op(whole, tested.kernel, tested.pair, OperatorOptions{});
+  DirectSum op(whole, tested.kernel, *tested.law, OperatorOptions{});
   return restrict_to_quadrant(whole, applied(op, unfold(tested.grid, traction, symmetry_of(tested.kernel))));
 }
 
@@ -88,7 +88,7 @@ class MirroredConvolutionTest : public testing::TestWithParam<MirroredCase> {
  protected:
   const Grid& grid() const { return GetParam().grid; }
   const BlockKernel& kernel() const { return GetParam().kernel; }
-  Mirrored make(int threads = 1) const { return {grid(), kernel(), GetParam().pair, {.threads = threads}}; }
+  Mirrored make(int threads = 1) const { return {grid(), kernel(), *GetParam().law, {.threads = threads}}; }
   ArrayXd random_traction(unsigned seed) const {
     return random_field(static_cast<Index>(kernel().inputs) * grid().cells(), seed);
   }
@@ -146,7 +146,7 @@ TEST_P(MirroredShape, GivesTheSameBitsAgainAndWithMoreThreads) {
 
 TEST_P(MirroredConvolutionTest, InSinglePrecisionIsNearToDouble) {
   Mirrored reference = make();
-  MirroredFloat single(grid(), kernel(), GetParam().pair, {});
+  MirroredFloat single(grid(), kernel(), *GetParam().law, {});
   const Eigen::ArrayXf traction = random_traction(9).cast<float>();
   EXPECT_LE(relative_difference(applied(single, traction).cast<double>(),
                                 applied(reference, ArrayXd(traction.cast<double>()))),

@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "solver/elasticity/influence.hpp"
+#include "solver/elasticity/law/half_spaces.hpp"
 
 namespace slipstick::solver {
 

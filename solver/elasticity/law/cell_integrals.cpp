@@ -1,4 +1,4 @@
-#include "solver/elasticity/cell_integrals.hpp"
+#include "solver/elasticity/law/cell_integrals.hpp"
 
 #include <gsl/gsl_integration.h>
 
