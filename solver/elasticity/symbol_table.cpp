@@ -38,14 +38,13 @@ std::vector<Symbol> inverse_symbols(const PeriodicGrid& grid, const ElasticLaw& 
   return inverses;
 }
 
-template <typename Real>
-SymbolTable<Real>::SymbolTable(const PeriodicGrid& grid, const ElasticLaw& law,
-                               const std::vector<SymbolEntry>& entries, const std::vector<Index>& columns,
-                               double factor)
+SymbolTable::SymbolTable(const PeriodicGrid& grid, const ElasticLaw& law,
+                         const std::vector<SymbolEntry>& entries, const std::vector<Index>& columns,
+                         double factor)
     : columns_(static_cast<Index>(columns.size())) {
   const Index rows = grid.length1 / 2 + 1;
   for (const SymbolEntry entry : entries) {
-    tables_[static_cast<std::size_t>(entry)] = FftwBuffer<Real>(static_cast<std::size_t>(rows * columns_));
+    tables_[static_cast<std::size_t>(entry)] = FftwBuffer(static_cast<std::size_t>(rows * columns_));
   }
   const bool tangential = entries.size() > 1;
   in_parts(ThreadPool::available(), rows, [&](int, Index first, Index last) {
@@ -55,7 +54,7 @@ SymbolTable<Real>::SymbolTable(const PeriodicGrid& grid, const ElasticLaw& law,
         const Symbol& symbol = inverses[static_cast<std::size_t>(column)];
         for (const SymbolEntry entry : entries) {
           const auto e = static_cast<std::size_t>(entry);
-          tables_[e].data()[f1 * columns_ + column] = static_cast<Real>(factor * symbol[e]);
+          tables_[e].data()[f1 * columns_ + column] = factor * symbol[e];
         }
       }
     }
@@ -89,8 +88,5 @@ std::array<double, 2> mean_inverse_symbol(const PeriodicGrid& grid, const Elasti
   const double frequencies = static_cast<double>(grid.length1) * static_cast<double>(grid.length2);
   return {sum[0] / frequencies, sum[1] / frequencies};
 }
-
-template class SymbolTable<double>;
-template class SymbolTable<float>;
 
 }  // namespace slipstick::solver

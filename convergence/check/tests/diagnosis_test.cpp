@@ -30,7 +30,7 @@ class OtherKernel final : public solver::LinearOperator {
  public:
   OtherKernel(const solver::Grid& grid, const solver::ElasticLaw& law, const CrossKernel& cross,
               bool exchanged)
-      : Operator<double>(grid, solver::tangential_kernel()), matrix_(2 * grid.cells(), 2 * grid.cells()) {
+      : LinearOperator(grid, solver::tangential_kernel()), matrix_(2 * grid.cells(), 2 * grid.cells()) {
     const std::array components{solver::Component::k11, solver::Component::k12, solver::Component::k22};
     const auto tables = law.influence_tables(components, grid);
     const Index cells = grid.cells();
