@@ -15,7 +15,7 @@ namespace slipstick::solver {
 ///
 /// Rows go forward; then each column goes forward, is multiplied by the kernel's spectrum and goes back while
 /// it is in cache; then rows go back. The kernel is even or odd in each coordinate, so its spectrum is real
-/// or imaginary and a quadrant of it is stored. It is computed in double precision for either double.
+/// or imaginary and a quadrant of it is stored.
 class Convolution final : public LinearOperator {
  public:
   /// Throws std::invalid_argument for a kernel of another shape than the normal, tangential or coupling one.
@@ -26,7 +26,7 @@ class Convolution final : public LinearOperator {
 
  private:
   using Spectrum = PaddedTransform::Spectrum;
-  /// Of the kernel's components at one column, row by row of the kernel.
+  /// Factors at one column, for the kernel's components, row by row.
   struct Factors {
     std::array<const double*, 4> quadrant;  ///< m1/2 + 1 even frequencies along x1 from 0, then the odd ones
     std::array<double, 4> sign;             ///< of the spectrum at negative frequencies along x1

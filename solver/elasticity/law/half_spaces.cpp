@@ -60,8 +60,8 @@ std::vector<double> corrected(const std::vector<double>& constant, Parity sign, 
   return smooth;
 }
 
-/// What second differences multiply a symbol by, at phases xi h of a wave from a cell to the next: 1 less the
-/// sum of theirs over 24.
+/// The factor of a symbol by second differences: 1 less the sum of theirs over 24. phase: xi h, of a wave
+/// from a cell to the next.
 double sharpening(CellTraction cell_traction, double phase1, double phase2) {
   if (cell_traction == CellTraction::constant) return 1.0;
   const double s1 = std::sin(0.5 * phase1);

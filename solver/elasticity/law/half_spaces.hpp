@@ -15,7 +15,7 @@ struct HalfSpace {
   double poisson_ratio;
 };
 
-/// What a pair of half-spaces looks like from the interface. Compliances add in K11, K12, K22, K33 and
+/// A pair of half-spaces as the interface sees it. Compliances add in K11, K12, K22, K33 and
 /// subtract in K13, K23.
 struct ElasticPair {
   double shear_compliance;    ///< 1/G = sum of 1/G_i

@@ -22,7 +22,7 @@ std::array<double, 6> composed(const ElasticPair& pair, const CellIntegrals& c) 
           -0.5 * half * pair.mismatch * c.y,       half * pair.normal_compliance * (c.xx + c.yy)};
 }
 
-/// Square cells are mirrored about the diagonal in groups of rows, one of which crosses it here: no value may
+/// Square cells are mirrored about the diagonal in groups of rows, and one group crosses it here: no value may
 /// be written by two threads.
 TEST(InfluenceTables, AreTheSameBitsOnAnyNumberOfThreads) {
   const HalfSpaces law(elastic_pair({1.0, 0.3}, {2.5, 0.1}));

@@ -26,7 +26,7 @@ constexpr double kTransforms = 1e-13;
 SharedLaw bodies() { return half_spaces({1.0, 0.3}, {2.5, 0.1}); }
 WinklerLayer layered() { return {bodies(), kNormal, kTangential}; }
 
-/// What the layer adds to the displacement of the loaded cell.
+/// The layer's own part of the displacement of the loaded cell.
 double added(const BlockKernel& kernel) {
   return kernel == normal_kernel() ? kNormal : kernel == tangential_kernel() ? kTangential : 0.0;
 }
@@ -38,7 +38,8 @@ TEST(WinklerLayer, AddsItsComplianceToTheDiagonalOfTheMatrix) {
     Eigen::MatrixXd expected = DenseMatrix(grid, kernel, *bodies()).matrix();
     expected.diagonal().array() += added(kernel);
     EXPECT_TRUE((with.matrix().array() == expected.array()).all());
-    if (kernel.inputs == kernel.outputs) EXPECT_EQ(with.matrix(), with.matrix().transpose());
+    if (kernel.inputs != kernel.outputs) continue;
+    EXPECT_EQ(with.matrix(), with.matrix().transpose());
   }
 }
 
