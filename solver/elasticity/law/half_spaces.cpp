@@ -1,11 +1,13 @@
-#include "solver/elasticity/influence.hpp"
+#include "solver/elasticity/law/half_spaces.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <numbers>
 #include <stdexcept>
 
-#include "solver/elasticity/cell_integrals.hpp"
+#include "solver/cache/solve_cache.hpp"
+#include "solver/elasticity/law/cell_integrals.hpp"
 #include "solver/grid/threads.hpp"
 
 namespace slipstick::solver {
@@ -38,11 +40,10 @@ void with_formula(Component component, const ElasticPair& pair, const Use& use) 
   throw std::logic_error("unknown component");
 }
 
-/// Of the second difference, along one axis, that is taken off a coefficient: a cell's mean of a field is the
-/// value at its centre and so much of that.
+/// A cell's mean of a field is the value at its centre and this part of the second differences.
 constexpr double kSecondDifference = 1.0 / 24.0;
 
-/// Of smooth cell tractions, from a table of constant ones that has one row and one column more.
+/// The table of smooth cell tractions, from one of constant ones that has one row and one column more.
 std::vector<double> corrected(const std::vector<double>& constant, Parity sign, Index m1, Index m2) {
   const auto at = [&](Index k1, Index k2) {
     const int factor = (k1 < 0 ? sign.x1 : 1) * (k2 < 0 ? sign.x2 : 1);
@@ -57,6 +58,15 @@ std::vector<double> corrected(const std::vector<double>& constant, Parity sign, 
     }
   }
   return smooth;
+}
+
+/// The factor of a symbol by second differences: 1 less the sum of theirs over 24. phase: xi h, of a wave
+/// from a cell to the next.
+double sharpening(CellTraction cell_traction, double phase1, double phase2) {
+  if (cell_traction == CellTraction::constant) return 1.0;
+  const double s1 = std::sin(0.5 * phase1);
+  const double s2 = std::sin(0.5 * phase2);
+  return 1.0 + (s1 * s1 + s2 * s2) / 6.0;
 }
 
 /// The same cell with the axes exchanged.
@@ -77,40 +87,23 @@ ElasticPair elastic_pair(const HalfSpace& lower, const HalfSpace& upper) {
   };
 }
 
-double least_eigenvalue(const ElasticPair& pair, double h1, double h2) {
-  constexpr double kMinOfSquareCells = 0.29;
-  return kMinOfSquareCells * std::min(h1, h2) *
-         std::min(pair.shear_compliance, pair.shear_compliance - pair.poisson_compliance);
+std::vector<std::vector<double>> HalfSpaces::influence_tables(std::span<const Component> components,
+                                                              const Grid& offsets, int threads) const {
+  if (cell_traction_ == CellTraction::constant) return tables_of_constant(components, offsets, threads);
+  const Grid one_more{offsets.n1 + 1, offsets.n2 + 1, offsets.h1, offsets.h2};
+  auto tables = tables_of_constant(components, one_more, threads);
+  for (std::size_t c = 0; c < components.size(); ++c) {
+    tables[c] = corrected(tables[c], parity(components[c]), offsets.n1, offsets.n2);
+  }
+  return tables;
 }
 
-Parity parity(Component component) {
-  switch (component) {
-    case Component::k12:
-      return {-1, -1};
-    case Component::k13:
-      return {-1, 1};
-    case Component::k23:
-      return {1, -1};
-    case Component::k11:
-    case Component::k22:
-    case Component::k33:
-      return {1, 1};
-  }
-  throw std::logic_error("unknown component");
-}
-
-std::vector<std::vector<double>> influence_tables(std::span<const Component> components,
-                                                  const ElasticPair& pair, double h1, double h2, Index m1,
-                                                  Index m2, int threads) {
-  if (pair.cell_traction == CellTraction::smooth) {
-    ElasticPair constant = pair;
-    constant.cell_traction = CellTraction::constant;
-    auto smooth = influence_tables(components, constant, h1, h2, m1 + 1, m2 + 1, threads);
-    for (std::size_t c = 0; c < components.size(); ++c) {
-      smooth[c] = corrected(smooth[c], parity(components[c]), m1, m2);
-    }
-    return smooth;
-  }
+std::vector<std::vector<double>> HalfSpaces::tables_of_constant(std::span<const Component> components,
+                                                                const Grid& offsets, int threads) const {
+  const Index m1 = offsets.n1;
+  const Index m2 = offsets.n2;
+  const double h1 = offsets.h1;
+  const double h2 = offsets.h2;
   std::vector<std::vector<double>> tables;
   for (std::size_t c = 0; c < components.size(); ++c) tables.emplace_back(static_cast<std::size_t>(m1 * m2));
   // Rows are integrated in groups, so that mirrored ones are written by whole cache lines.
@@ -126,7 +119,7 @@ std::vector<std::vector<double>> influence_tables(std::span<const Component> com
                     0.0, h1, h2);
     }
     for (std::size_t c = 0; c < components.size(); ++c) {
-      with_formula(components[c], pair, [&](const auto& formula) {
+      with_formula(components[c], pair_, [&](const auto& formula) {
         for (Index k1 = begin; k1 < end; ++k1) {
           const CellRow& row = rows[static_cast<std::size_t>(k1 - begin)];
           for (Index k2 = first; k2 < m2; ++k2)
@@ -152,9 +145,34 @@ std::vector<std::vector<double>> influence_tables(std::span<const Component> com
   return tables;
 }
 
-std::vector<double> influence_coefficients(Component component, const ElasticPair& pair, double h1, double h2,
-                                           Index m1, Index m2) {
-  return influence_tables(std::span(&component, 1), pair, h1, h2, m1, m2).front();
+void HalfSpaces::inverse_symbols(bool tangential, double h1, double h2, std::span<const PlaneWave> waves,
+                                 std::span<Symbol> inverses) const {
+  const double shear = pair_.shear_compliance;
+  const double poisson = pair_.poisson_compliance;
+  for (std::size_t i = 0; i < waves.size(); ++i) {
+    const auto [xi1, xi2, length] = waves[i];
+    const double modulus = length / sharpening(cell_traction_, xi1 * h1, xi2 * h2);
+    if (!tangential) {
+      inverses[i] = {modulus / pair_.normal_compliance, 0.0, 0.0};
+      continue;
+    }
+    const double transverse = modulus / shear;
+    const double n1 = xi1 / length;
+    const double n2 = xi2 / length;
+    const double excess = transverse * poisson / (shear - poisson);
+    inverses[i] = {transverse + excess * n1 * n1, excess * n1 * n2, transverse + excess * n2 * n2};
+  }
+}
+
+double HalfSpaces::least_eigenvalue(double h1, double h2) const {
+  constexpr double kMinOfSquareCells = 0.29;  // times h/G; computed, 0.2903, and rounded down
+  return kMinOfSquareCells * std::min(h1, h2) *
+         std::min(pair_.shear_compliance, pair_.shear_compliance - pair_.poisson_compliance);
+}
+
+void HalfSpaces::add_to(CacheKey& key) const {
+  key.add(pair_.shear_compliance).add(pair_.poisson_compliance).add(pair_.normal_compliance);
+  key.add(pair_.mismatch).add(cell_traction_);
 }
 
 }  // namespace slipstick::solver

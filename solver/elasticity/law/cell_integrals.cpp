@@ -1,4 +1,4 @@
-#include "solver/elasticity/cell_integrals.hpp"
+#include "solver/elasticity/law/cell_integrals.hpp"
 
 #include <gsl/gsl_integration.h>
 
@@ -120,7 +120,7 @@ void add_cells(CellRow& row, Index first_block, double x, double y, double step,
       if (far[lane] == 0.0) row.add(block * kLanes + lane, closed_form(x, ys[lane], h1, h2));
     }
     if ((far == 0.0).all()) continue;
-    // Near lanes, where quadrature would be poor or divide by zero, are moved off and left out.
+    // Near lanes, where quadrature would be poor or divide by zero, are moved off and not added.
     const Lanes moved = (far != 0.0).select(ys, kClosedFormOffset * h2);
     add_quadrature(row, block, x, moved, far, h1, h2,
                    gauss_rule(std::max(offset.minCoeff(), kClosedFormOffset)));

@@ -1,4 +1,4 @@
-#include "solver/elasticity/influence.hpp"
+#include "solver/elasticity/law/half_spaces.hpp"
 
 #include <gsl/gsl_errno.h>
 #include <gsl/gsl_integration.h>
@@ -12,8 +12,8 @@
 #include <numbers>
 #include <utility>
 
-#include "solver/elasticity/cell_integrals.hpp"
-#include "solver/elasticity/tests/components.hpp"
+#include "solver/elasticity/law/cell_integrals.hpp"
+#include "solver/elasticity/law/tests/components.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -26,7 +26,7 @@ constexpr HalfSpace kLower{1.0, 0.3};
 constexpr HalfSpace kUpper{2.5, 0.1};
 constexpr double kRigid = std::numeric_limits<double>::infinity();
 
-/// Of the adaptive quadrature, which asks for 1e-13 in each of two dimensions.
+/// The adaptive quadrature asks for a relative error of 1e-13 in each of two dimensions.
 constexpr double kQuadrature = 1e-12;
 /// A few roundings.
 constexpr double kRounding = 1e-15;
@@ -115,7 +115,7 @@ class Influence : public testing::Test {
 };
 
 double coefficient(Component component, const ElasticPair& pair, double h1, double h2, Index k1, Index k2) {
-  return influence_coefficients(component, pair, h1, h2, k1 + 1, k2 + 1).back();
+  return HalfSpaces(pair).influence_coefficients(component, {k1 + 1, k2 + 1, h1, h2}).back();
 }
 
 TEST_F(Influence, OfNearbyCellsEqualsAdaptiveQuadratureOfThePointLoads) {
@@ -151,7 +151,7 @@ TEST_F(Influence, OfNearbyCellsEqualsAdaptiveQuadratureOfThePointLoads) {
 
 __extension__ typedef __float128 Quad;  // NOLINT(modernize-use-using): __extension__ needs the declaration
 
-// Of libquadmath, whose header stands where only GCC finds it.
+// Functions of libquadmath. Its header stands where only GCC finds it.
 extern "C" {
 Quad asinhq(Quad x);
 Quad atanq(Quad x);
@@ -254,7 +254,7 @@ TEST_P(FarCells, GiveCoefficientsAsAccurate) {
       const auto exact =
           exact_integrals(static_cast<double>(k1), static_cast<double>(k2) * aspect, 1.0, aspect);
       const auto error = [&](Component component, double expected) {
-        return relative_error(influence_coefficients(component, pair, 1.0, aspect, k1 + 1, k2 + 1).back(),
+        return relative_error(coefficient(component, pair, 1.0, aspect, k1, k2),
                               expected);
       };
       const std::array errors{error(Component::k11, exact[0] + (1.0 - nu) * exact[1]),
@@ -304,7 +304,7 @@ TEST_F(Influence, IsEvenOrOddInEachCoordinate) {
   }
 }
 
-/// Of the point loads themselves, so that the table cannot be wrong together with the coefficients.
+/// Tested on the point loads themselves, so that the table cannot be wrong together with the coefficients.
 TEST_F(Influence, ParityIsThatOfThePointLoads) {
   for (const Component component : kComponents) {
     const double reference = pair_point_load(component, 0.8, 0.3);
@@ -319,8 +319,8 @@ void expect_coefficients(const ElasticPair& pair, double factor, const ElasticPa
                          double coupling_factor) {
   for (const Component component : kComponents) {
     const bool coupling = component == Component::k13 || component == Component::k23;
-    const auto computed = influence_coefficients(component, pair, 1.0, 1.3, 6, 5);
-    const auto expected = influence_coefficients(component, reference, 1.0, 1.3, 6, 5);
+    const auto computed = HalfSpaces(pair).influence_coefficients(component, {6, 5, 1.0, 1.3});
+    const auto expected = HalfSpaces(reference).influence_coefficients(component, {6, 5, 1.0, 1.3});
     for (std::size_t i = 0; i < computed.size(); ++i) {
       EXPECT_NEAR(computed[i], (coupling ? coupling_factor : factor) * expected[i],
                   kRounding * std::abs(expected[0] + 1));

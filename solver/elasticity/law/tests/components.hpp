@@ -2,14 +2,14 @@
 
 #include <array>
 
-#include "solver/elasticity/influence.hpp"
+#include "solver/elasticity/law/half_spaces.hpp"
 
 namespace slipstick::solver {
 
 inline constexpr std::array kComponents{Component::k11, Component::k12, Component::k22,
                                         Component::k13, Component::k23, Component::k33};
 
-/// What cell_integrals() promises, which influence_test.cpp holds against adaptive quadrature.
+/// The relative error that cell_integrals() promises. influence_test.cpp holds it against adaptive quadrature.
 inline constexpr double kPromised = 1e-13;
 
 }  // namespace slipstick::solver
