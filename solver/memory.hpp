@@ -9,7 +9,7 @@
 /// How much memory a solve may take.
 namespace slipstick::solver {
 
-/// What a scene asks for takes more memory than it may.
+/// A scene needs more memory than it may take.
 class OutOfMemory : public InputError {
  public:
   using InputError::InputError;
@@ -26,7 +26,7 @@ void keep_freed_blocks();
 /// "512 MiB", "1.5 GiB": three digits.
 std::string bytes_text(double bytes);
 
-/// What may be taken: the limit, or what is available where there is none.
+/// Bytes that may be taken: the limit, or the available memory where there is no limit.
 double memory_within(std::optional<double> limit);
 
 }  // namespace slipstick::solver

@@ -35,7 +35,7 @@ struct Dimensionless {
   double moment_unit() const { return force_unit() * length_unit; }
 };
 
-/// What is solved for a scene on its own grid.
+/// The problem that is solved for a scene on its own grid.
 struct Model : Dimensionless {
   std::optional<double> normal_load;  ///< the largest of the scene's steps
   Eigen::ArrayXd gap;  ///< undeformed, one value a cell; infinite where the bodies cannot touch

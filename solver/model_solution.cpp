@@ -16,7 +16,8 @@ namespace {
 
 using Eigen::ArrayXd;
 
-/// Energy lost to slip that may be none: so many gaps, and at most this part of the energy.
+/// Slip that dissipates less than this many duality gaps, and less than the second part of the energy, may be
+/// rounding.
 constexpr double kGapsOfNoSlip = 10.0;
 constexpr double kNoSlip = 1e-5;
 
@@ -119,7 +120,7 @@ struct Work {
   }
 };
 
-/// What became of the loads' work.
+/// Where the work of the loads went.
 void describe_energy(ModelSolution& solution, const LoadStep& loads) {
   const Model& model = solution.model;
   const TangentialSolution& tangential = solution.tangential;
@@ -186,7 +187,7 @@ Solution in_si(ModelSolution solution) {
 
 namespace {
 
-/// Of a pressure, over the cell's area.
+/// Moments of a pressure, over the cell's area.
 struct PressureMoments {
   double load = 0.0;
   double first1 = 0.0, first2 = 0.0;

@@ -23,7 +23,7 @@ struct Quantities {
 inline constexpr std::array kQuantities{&Quantities::twist, &Quantities::displacement, &Quantities::moment,
                                         &Quantities::force};
 
-/// What a mesh resolves of a contact's slip and stick.
+/// How well a mesh resolves a contact's slip and stick.
 struct Resolution {
   /// Cells across the stick area, in the mean: four times its area over its outline. Zero where no cell
   /// sticks.
@@ -43,7 +43,7 @@ struct Resolution {
 };
 inline constexpr double kPoorlyResolved = 0.1;
 
-/// What the parts of a solve took, by the wall clock.
+/// Wall-clock time of the parts of a solve, in s.
 struct Seconds {
   double setup = 0.0;
   double pressure = 0.0;

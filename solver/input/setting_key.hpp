@@ -21,7 +21,7 @@ std::string word_of(const Words<Value>& words, Value value) {
   throw std::logic_error("a value without a word");
 }
 
-/// What a number may be, in words and as a test; the test is false for NaN.
+/// The numbers that a key allows, in words and as a test; the test is false for NaN.
 struct Range {
   std::string words;
   std::function<bool(double)> contains;
@@ -50,7 +50,7 @@ struct SettingKey {
 using SettingKeys = std::vector<SettingKey>;
 
 inline constexpr const char* kRequired = "required";
-/// Of keys that hold neither numbers nor words.
+/// For keys that hold neither numbers nor words.
 inline const Range kAny{};
 
 /// Words as what a key may be.

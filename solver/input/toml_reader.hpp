@@ -12,12 +12,13 @@
 
 namespace slipstick::solver {
 
-/// What a TOML file says, or might: `file` is what messages call it and where its relative paths begin.
+/// The text of a TOML file, or text that stands for one. Messages call it `file`, and its relative paths
+/// begin there.
 struct SettingsText {
   std::string text;
   std::filesystem::path file;
 };
-/// What a file says. Throws InputError where it cannot be read.
+/// Reads a file. Throws InputError where it cannot be read.
 SettingsText settings_of(const std::filesystem::path& file);
 
 /// A TOML file whose keys are asked for one by one, by dotted path; an index picks one of an array of tables,

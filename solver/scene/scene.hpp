@@ -32,7 +32,7 @@ enum class Coupling { automatic, none, pressure, full };
 /// Which method finds the tractions.
 enum class Method { coulomb, projected_gradient, paper };
 
-/// What may be left out of the model: what symmetry and the contact's size allow; nothing; the grid itself,
+/// How much the model leaves out: all that symmetry and the contact's size allow; nothing; the grid itself,
 /// where the scene has an exact answer.
 enum class ModelChoice { automatic, full, exact };
 
@@ -81,7 +81,7 @@ struct Omission {
 /// Whether a step brings a tangential force or displacement.
 bool brings_translation(const Step& step);
 
-/// What a scene file says, checked, with defaults filled in; SI units, or any other consistent set.
+/// The content of a scene file, checked, with defaults filled in; SI units, or any other consistent set.
 struct Scene {
   std::filesystem::path source;  ///< the file it was read from
   std::string name;

@@ -21,10 +21,10 @@ const std::vector<std::string> kWithAxis{"sphere", "ellipsoid",  "cone",
 std::string shown(double number) { return fmt::format("{:g}", number); }
 std::string shown(const std::array<double, 2>& pair) { return fmt::format("[{:g}, {:g}]", pair[0], pair[1]); }
 
-/// What depends on another key is allowed as these words say; the reader asks with the numbers.
+/// Words for what depends on another key; the reader asks with the numbers.
 Range depending(const std::string& words) { return {words, nullptr}; }
 
-/// Of [upper], or of each [[upper.shape]].
+/// The keys of [upper], or of each [[upper.shape]].
 void add_shape(SettingKeys& keys, const std::string& table) {
   const Surface surface;
   const std::string at = table + ".";
@@ -113,7 +113,7 @@ void add_body(SettingKeys& keys, const std::string& table) {
   keys.insert(keys.end(), body.begin(), body.end());
 }
 
-/// Of [load], or of each [[step]], which leaves what it does not say as it was.
+/// The keys of [load], or of each [[step]], which leaves what it does not say as it was.
 void add_loads(SettingKeys& keys, const std::string& table, bool is_step) {
   const std::string at = table + ".";
   const auto first = [&](const std::string& otherwise) { return is_step ? "as before" : otherwise; };
@@ -169,8 +169,7 @@ void add_grid_and_solver(SettingKeys& keys, const Scene& scene) {
        one_of(kCellTractions),
        "What a cell's number stands for: traction that is constant over the cell; or the value at its centre "
        "of one that is smooth, which leaves smaller errors, of contacts whose pressure falls to zero at "
-       "their "
-       "edge."},
+       "their edge."},
       {"solver.substeps", kNumber, "", shown(scene.substeps), kSubsteps,
        "Parts that the loads of each step are brought in, each an implicit step. More of them make smaller "
        "what a result states as `resolved.path`."},

@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Of tractions and motions, what rounding leaves of those before.
+/// The part of earlier tractions and motions that rounding leaves.
 constexpr double kNothing = 1e-8;
 
 class Nothing : public SceneFile {

@@ -259,7 +259,7 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, Mindlin,
                          testing::Values(smooth_sphere(), turned_ellipsoid(), rough_sphere()),
                          [](const auto& tested) { return to_string(tested.param.back().shape); });
 
-/// Of bodies with nu = 0, K11 = K22 = K33 and K12 = 0, on the mesh too: under a force f mu W that does not
+/// Bodies with nu = 0 have K11 = K22 = K33 and K12 = 0, on the mesh too: under a force f mu W that does not
 /// turn the body any contact carries q = mu (p(W) - p((1 - f) W)) along it, and moves by mu times what the
 /// approach is less (Ciavarella 1998, Jaeger 1998). Where p((1 - f) W) > 0 the difference of K p is that of
 /// the approaches; elsewhere K p + h exceeds the approach, and slip is opposed to q.

@@ -101,8 +101,8 @@ TEST_F(BrokenInput, OnlyNumbersOfTheFileItselfAreRead) {
   EXPECT_THAT(says("none"), HasSubstr("no such dataset"));
 }
 
-// The library divides by the size of a chunk that the file says: a zero there ends the process. Newer versions
-// of the library refuse the file.
+// The library divides by the size of a chunk that the file says: a zero there ends the process. Newer
+// versions of the library refuse the file.
 TEST_F(BrokenInput, AFileThatCrashesTheLibraryIsNamed) {
   constexpr hsize_t kChunk = 0x5A17;
   const fs::path file = dataset({kChunk + 1}, kChunk);
