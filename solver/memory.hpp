@@ -20,7 +20,7 @@ class OutOfMemory : public InputError {
 double available_memory(const std::filesystem::path& root = "/");
 
 /// Blocks of up to some MiB that are freed stay with this process for the next ones, where its library can be
-/// told so: given back and asked for anew, their pages take a tenth of a quick solve. For a program's start.
+/// told so: to give pages back and ask for them again takes a tenth of a quick solve. For a program's start.
 void keep_freed_blocks();
 
 /// "512 MiB", "1.5 GiB": three digits.

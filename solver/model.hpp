@@ -58,7 +58,7 @@ bool has_translations(const Scene& scene, const Model& model, const Eigen::Array
 Reduction traction_part(const Scene& scene, const Model& model, const Eigen::ArrayXd& pressure,
                         const Eigen::ArrayXd& before = {});
 
-/// Notes what that and has_translations() leave out.
+/// Notes the omissions of traction_part() and has_translations() in the model.
 void note_omissions(Model& model, const Scene& scene, const Reduction& part, bool translations);
 
 /// How the model's displacements are computed on a part of its grid.

@@ -51,7 +51,7 @@ struct Seconds {
   double total = 0.0;
 };
 
-/// How much of an answer is worked out from its fields.
+/// How much is computed from the fields of an answer.
 enum class Detail {
   all,
   loads,  ///< loads and motions with their certificate: what a mean over grids takes. The stick radius is
@@ -92,7 +92,7 @@ struct Solution {
   double stick_radius_counted = 0.0;     ///< m, of a circle with the stick cells' area
   double approach = 0.0;                 ///< m
   Step loads;                            ///< those of the step, as the scene has them
-  int cycle = 1;                         ///< of so many times that the steps are gone through
+  int cycle = 1;                         ///< counted from 1
   double twist_angle = 0.0;              ///< rad, since the first step began
   std::array<double, 2> displacement{};  ///< m, likewise
   double moment = 0.0;                   ///< N m, carried by the tractions

@@ -40,7 +40,7 @@ class Handle {
 
 using PutBytes = std::function<void(const void* bytes, std::size_t count)>;
 
-/// What a dataset holds; first: where this rank's part begins.
+/// The content of a dataset; first: where this rank's part begins.
 struct Content {
   std::string name;
   hid_t type;

@@ -215,8 +215,8 @@ class TextTable {
     return found;
   }
 
-  /// Nothing at the end of a line is no value, beyond so many columns. Blanks are one separator however many;
-  /// a unit belongs to the name before it.
+  /// Empty values at the end of a line do not count, beyond so many columns. Blanks are one separator however
+  /// many; a unit belongs to the name before it.
   void split(std::string_view line, char separator, std::size_t columns) {
     values_.clear();
     const auto add = [&](std::string_view value) {

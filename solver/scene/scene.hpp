@@ -24,7 +24,7 @@ struct Material {
 /// each cell; a file.
 enum class PressureModel { solved, hertz, hertz_averaged, file };
 
-/// What couples normal and tangential tractions of dissimilar materials: the pressure's tangential
+/// How normal and tangential tractions of dissimilar materials couple: the pressure's tangential
 /// displacement where they are dissimilar, nothing, that displacement, and also the shear's normal
 /// displacement.
 enum class Coupling { automatic, none, pressure, full };
@@ -36,7 +36,7 @@ enum class Method { coulomb, projected_gradient, paper };
 /// where the scene has an exact answer.
 enum class ModelChoice { automatic, full, exact };
 
-/// What turns the upper body about the grid's origin. Signed: a history turns back.
+/// The load that turns the upper body about the grid's origin. Signed: a history turns back.
 struct MomentRatio {
   double value = 0.0;  ///< M over the limit of this pressure and mesh
 };
@@ -65,14 +65,14 @@ struct Step {
   TorsionLoad torsion = MomentRatio{0.0};
   std::array<double, 2> force{};                           ///< N, tangential, on the upper body; or else
   std::optional<std::array<double, 2>> displacement = {};  ///< m, imposed instead, since the first step
-  /// What no step of the file has said up to here: it is as [load] says in the first cycle, and as the last
-  /// step left it in those that follow.
+  /// Loads that no step of the file has set up to here: they are [load]'s in the first cycle, and those of
+  /// the last step in the cycles that follow.
   struct Unsaid {
     bool normal = false, torsion = false, translation = false;
   } unsaid = {};
 };
 
-/// Something that a scene lets the model leave out, and why its answer does not change by that.
+/// A part of the problem that the model leaves out, and why the answer does not change by that.
 struct Omission {
   std::string what;
   std::string why;

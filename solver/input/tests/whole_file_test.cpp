@@ -31,8 +31,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-/// A disk on which a file may have so many bytes, for as long as this lives. Nothing is to be printed
-/// meanwhile: standard output may be a file.
+/// Limits the size of files while it lives, as a full disk would. Nothing may be printed meanwhile: standard
+/// output may be a file.
 class SmallDisk {
  public:
   explicit SmallDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -145,7 +145,7 @@ TEST_F(WholeFile, KeepsItsPermissions) {
   EXPECT_EQ(fs::status(file_).permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
-/// What is no plain file is not put aside for one.
+/// A link or a device is not replaced by a plain file.
 TEST_F(WholeFile, WritesThroughLinksAndToDevices) {
   const fs::path link = folder_ / "link";
   fs::create_symlink(fs::path("result.json"), link);
@@ -247,7 +247,7 @@ TEST_F(WholeFile, FieldsAreWholeOrTheOldOnes) {
   }
 }
 
-/// No time is in the file, of which HDF5 keeps the second.
+/// HDF5 keeps the second in which a file was written, unless it is told not to.
 TEST_F(WholeFile, EqualFieldsAreEqualBytes) {
   const Grid grid{4, 2, 0.5, 0.25};
   const fs::path fields = folder_ / "fields.h5";

@@ -115,7 +115,7 @@ TEST_F(SceneFile, OverridesAreAppliedFirst) {
   EXPECT_EQ(scene.pressure, PressureModel::hertz);
   EXPECT_EQ(scene.name, "other");
   EXPECT_EQ(scene.op, OperatorKind::dense);
-  // What is wrong in the file but overridden does not matter.
+  // A wrong value in the file does not matter where it is overridden.
   std::string text = kShortScene;
   text.replace(text.find("friction = 0.1"), 14, "friction = \"x\"");
   EXPECT_EQ(read(text, {"contact.friction=0.2"}).friction, 0.2);
