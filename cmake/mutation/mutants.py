@@ -23,7 +23,7 @@ import runs
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("analytic", "solver", "convergence", "bench", "reports")
 # A mutant there could end other processes, or remove their files.
-DANGEROUS = ("solver/input/run_apart.cpp", "convergence/programs/run_program.cpp", "solver/input/whole_file.cpp")
+DANGEROUS = ("convergence/programs/run_program.cpp", "solver/input/whole_file.cpp")
 # Programs that `make test` does not build: they check their own results.
 NOT_TESTED = ("bench/suite/", "bench/work/work_counts_program.cpp", "analytic/certified/hardest.cpp",
               "analytic/certified/references.cpp", "analytic/certified/missing.cpp")
