@@ -1,4 +1,4 @@
-#include "convergence/gates/gate_report.hpp"
+#include "convergence/gates/gate.hpp"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
@@ -11,6 +11,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "convergence/results/markup.hpp"
 #include "solver/input/input_file.hpp"
 
 namespace slipstick::convergence {

@@ -1,4 +1,4 @@
-#include "convergence/gates/gate_run.hpp"
+#include "convergence/gates/gate.hpp"
 
 #include <fmt/chrono.h>
 #include <fmt/core.h>

@@ -11,7 +11,6 @@
 #include <utility>
 
 #include "convergence/hard/hard_judgement.hpp"
-#include "convergence/hard/method_comparison.hpp"
 #include "convergence/results/provenance.hpp"
 #include "solver/input/input_error.hpp"
 

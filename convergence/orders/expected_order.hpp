@@ -14,8 +14,12 @@ struct ExpectedOrder {
   std::string why;
 };
 
-/// Errors that a study looks at where there is an exact answer: paths into a result.
-const std::vector<std::string>& error_quantities();
+/// An error that a study looks at where there is an exact answer.
+struct ErrorQuantity {
+  std::string path;   ///< into a result
+  std::string label;  ///< for a person
+};
+const std::vector<ErrorQuantity>& error_quantities();
 
 /// Quantities that it looks at where there is none, or where it does not say them.
 const std::vector<std::string>& value_quantities();

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "convergence/gates/gate_reader.hpp"
+#include "convergence/gates/gate.hpp"
 #include "convergence/hard/hard_case.hpp"
 #include "convergence/reference/command_line.hpp"
 #include "convergence/reference/key_page.hpp"

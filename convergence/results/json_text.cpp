@@ -74,4 +74,8 @@ Json find_json(const std::filesystem::path& file) {
   }
 }
 
+std::string json_text(const Json& json, int indent) {
+  return json.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
 }  // namespace slipstick::convergence

@@ -101,9 +101,6 @@ std::string sum_of(const ContactState& contact, const std::string& text) {
   return fmt::format("{:016x}", sum);
 }
 
-/// One line; names of files need not be UTF-8, JSON is.
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
-
 std::string as_text(const Eigen::ArrayXd& bytes) {
   std::string text;
   for (const double byte : bytes) text += static_cast<char>(static_cast<unsigned char>(byte));
@@ -173,7 +170,7 @@ std::shared_ptr<const FinishedSteps> Checkpoint::read() const {
 void Checkpoint::write(const HistoryState& state, const Json& steps) const {
   const ContactState& contact = state.contact;
   const std::string text =
-      text_of({{"format", kFormat},
+      json_text({{"format", kFormat},
                {"scene", scene_},
                {"program", program_},
                {"finished", state.finished},

@@ -116,7 +116,7 @@ std::vector<std::pair<std::string, bool>> choose_quantities(const Study& study, 
     if (exact == result.end() || (exact->contains(path) && exact->at(path).is_null())) choose(path, false);
   }
   if (exact == result.end()) return chosen;
-  for (const std::string& path : error_quantities()) choose(path, true);
+  for (const ErrorQuantity& error : error_quantities()) choose(error.path, true);
   // Beside the radius the ratio says nothing new; of some contacts it is all that is known.
   if (std::isfinite(number_at(result, "stick_radius_error"))) {
     std::erase(chosen, std::pair<std::string, bool>("stick_ratio_error", true));

@@ -1,6 +1,6 @@
 // What is written about gates.
 
-#include "convergence/gates/gate_report.hpp"
+#include "convergence/gates/gate.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

@@ -7,7 +7,7 @@
 #include <fstream>
 #include <string>
 
-#include "convergence/gates/gate_reader.hpp"
+#include "convergence/gates/gate.hpp"
 #include "convergence/hard/hard_case.hpp"
 #include "convergence/studies/study.hpp"
 

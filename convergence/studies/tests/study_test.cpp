@@ -322,7 +322,7 @@ TEST(ExpectedOrder, EveryErrorHasOneWithAReasonWhereTheEdgeIsARoot) {
   const solver::Scene sphere = solver::read_scene(kPaper);
   const solver::Scene punch = solver::read_scene(std::string(SLIPSTICK_SCENES) + "/flat_punch.toml");
   const solver::Scene rough = solver::read_scene(std::string(SLIPSTICK_SCENES) + "/rough_sphere.toml");
-  for (const std::string& quantity : error_quantities()) {
+  for (const auto& [quantity, label] : error_quantities()) {
     EXPECT_GT(expected_order(quantity, sphere).value, 0.0) << quantity;
     EXPECT_FALSE(expected_order(quantity, sphere).why.empty());
     EXPECT_TRUE(std::isnan(expected_order(quantity, rough).value));
