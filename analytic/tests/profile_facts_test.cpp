@@ -34,7 +34,7 @@ AnyProfile tabulated(const char* name, double (*pressure)(double), int intervals
   return {.profile = tabulated_profile(name, points).profile, .roughness = 100};
 }
 
-const std::vector<AnyProfile>& profiles() {
+const std::vector<AnyProfile>& every_profile() {
   static const std::vector<AnyProfile> all = [] {
     std::vector<AnyProfile> list;
     for (const Profile* const closed : {&hertz_profile(), &cone_profile()})
@@ -42,9 +42,12 @@ const std::vector<AnyProfile>& profiles() {
     for (const double n : {0.01, 0.5, 1.5, 4.0, 30.0, 1000.0}) list.push_back({.profile = power_profile(n)});
     for (const double b : {0.0, 0.001, 0.5, 0.95, 1 - 1e-9})
       list.push_back({.profile = rounded_punch_profile(b)});
-    list.push_back(tabulated("linear", [](double r) { return 1 - r; }, 20, false));
-    list.push_back(tabulated("hertz", [](double r) { return std::sqrt((1 - r) * (1 + r)); }, 50, true));
-    list.push_back(tabulated("with an edge", [](double r) { return 2 - r * r; }, 17, false));
+    list.push_back(tabulated(
+        "linear", [](double r) { return 1 - r; }, 20, false));
+    list.push_back(tabulated(
+        "hertz", [](double r) { return std::sqrt((1 - r) * (1 + r)); }, 50, true));
+    list.push_back(tabulated(
+        "with an edge", [](double r) { return 2 - r * r; }, 17, false));
     return list;
   }();
   return all;
@@ -61,7 +64,7 @@ double moment_of_pressure(const Profile& profile, double power) {
 }
 
 TEST(AnyProfile, HasTheLoadOfItsPressure) {
-  for (const auto& [profile, roughness] : profiles()) {
+  for (const auto& [profile, roughness] : every_profile()) {
     EXPECT_NEAR(moment_of_pressure(*profile, 1) / profile->load(), 1, 1e-9 * roughness) << profile->name();
     EXPECT_NEAR(moment_of_pressure(*profile, 2) / profile->load() / profile->moment_limit(), 1,
                 1e-9 * roughness)
@@ -70,7 +73,7 @@ TEST(AnyProfile, HasTheLoadOfItsPressure) {
 }
 
 TEST(AnyProfile, HasTheMomentOfItsTractions) {
-  for (const auto& [each, roughness] : profiles())
+  for (const auto& [each, roughness] : every_profile())
     for (const double c : {0.05, 0.5, 0.9}) {
       const Profile& profile = *each;
       const auto stick = [&](double t) {
@@ -92,7 +95,7 @@ TEST(AnyProfile, HasTheMomentOfItsTractions) {
 
 /// dM/dphi = 16/3 G a_s^3, that of a bonded punch of radius a_s; and -c H' is the slope of H.
 TEST(AnyProfile, HasTheTangentStiffnessOfItsStickArea) {
-  for (const auto& [each, roughness] : profiles())
+  for (const auto& [each, roughness] : every_profile())
     for (const double c : {0.05, 0.3, 0.7, 0.93}) {
       const Profile& profile = *each;
       const double step = 1e-3 * c * (1 - c);
@@ -112,7 +115,7 @@ TEST(AnyProfile, HasTheTangentStiffnessOfItsStickArea) {
 }
 
 TEST(AnyProfile, KeepsTractionsBelowFrictionAndContinuous) {
-  for (const auto& [profile, roughness] : profiles())
+  for (const auto& [profile, roughness] : every_profile())
     for (const double c : {1e-100, 1e-9, 0.01, 0.5, 0.9, 0.999}) {
       EXPECT_EQ(profile->stick_traction(at(c), 0, c), 0) << profile->name();
       double before = 0;
