@@ -46,7 +46,7 @@ report: configure ## compute all that the page shows and write it (FULL=1: finer
 	@$(BUILD)/slipstick report --output $(BUILD)/report --benchmarks $(BUILD)/benchmarks $(if $(FULL),--full) $(REPORT_OPTIONS)
 	@echo "The page: $(CURDIR)/$(BUILD)/report/index.html"
 
-report-pdf: configure ## print the page that `make report` wrote into build/report/report.pdf (needs Chromium)
+report-pdf: configure ## print the page that `make report` wrote into build/report/report.pdf (needs chromium-driver and python3-selenium)
 	@"$$(sed -n 's/^SLIPSTICK_PYTHON:[A-Z]*=//p' $(BUILD)/CMakeCache.txt)" -B reports/pdf.py $(BUILD)/report/index.html \
 	  --output $(BUILD)/report/report.pdf
 

@@ -58,7 +58,7 @@ def _lines(axis):
 
 
 def _names(panel, axis):
-    """Of a panel, its abscissa and its ordinate; what axes share stands at one of them."""
+    """The labels of a panel's abscissa and ordinate; a label that axes share stands at one of them."""
     shared = axis.get_shared_x_axes().get_siblings(axis), axis.get_shared_y_axes().get_siblings(axis)
     x = next((other.get_xlabel() for other in (axis, *shared[0]) if other.get_xlabel()), "x")
     y = next((other.get_ylabel() for other in (axis, *shared[1]) if other.get_ylabel()), "y")

@@ -23,7 +23,7 @@ def without_comments(text):
 
 
 def end_of(text, start):
-    """Of a call's arguments, or of an assignment: where its bracket closes, or at the semicolon."""
+    """Where a call's arguments or an assignment end: at the closing bracket, or at the semicolon."""
     depth, i = 0, start
     while i < len(text):
         if text[i] == '"':

@@ -50,7 +50,7 @@ END
 
 
 def validator(name, part=None):
-    """Of a schema, or of one of its $defs."""
+    """The validator of a schema, or of one of its $defs."""
     schema = {"$ref": f"{SCHEMAS[name]['$id']}#/$defs/{part}"} if part else SCHEMAS[name]
     try:
         import referencing
