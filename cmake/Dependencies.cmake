@@ -41,7 +41,7 @@ if(SLIPSTICK_BENCHMARKS)
 endif()
 
 # FFTW's own CMake files are broken in several distributions; its pkg-config file is not.
-pkg_check_modules(FFTW QUIET IMPORTED_TARGET fftw3 fftw3f)
+pkg_check_modules(FFTW QUIET IMPORTED_TARGET fftw3)
 if(NOT FFTW_FOUND)
   message(FATAL_ERROR "FFTW 3 is missing. On Debian or Ubuntu: apt-get install libfftw3-dev.")
 endif()

@@ -12,11 +12,10 @@ from wording import plain, sci, seconds
 
 # (quantity, title of its panel)
 PANELS = (("twist", "twist"), ("traction_l2", "tractions, root mean square"), ("stick_radius", "stick radius"))
-DEFAULT = {"method": "coulomb", "operator": "dcfft", "model": "auto", "pressure": "solved", "precision": "double"}
+DEFAULT = {"method": "coulomb", "operator": "dcfft", "model": "auto", "pressure": "solved"}
 # What differs from the default, the first of these that does: key, words, look.
 KINDS = [("operator", "direct or dense operator", dict(color=style.GREY, marker="x")),
          ("model", "full model", dict(color=style.GREEN, marker="s", markersize=7, markerfacecolor="none")),
-         ("precision", "mixed precision", dict(color=style.SKY, marker="D")),
          ("pressure", "Hertz’s pressure", dict(color=style.VERMILION, marker="v"))]
 ENVELOPE = dict(color=style.BLACK, linewidth=1.0, alpha=0.8, zorder=1)
 
@@ -116,7 +115,7 @@ def details(scene):
     points = timed(scene)
     wrong = len(rows(scene, "points")) - len(points)
     left_out = f" Not timed, since their results are wrong: {wrong}." if wrong else ""
-    return (f"{len(points)} choices of method, operator, model, pressure, precision, mesh and tolerance; a point each: the "
+    return (f"{len(points)} choices of method, operator, model, pressure, mesh and tolerance; a point each: the "
             "median time, and the root mean square of the errors on several grids of the mesh, which lie differently under "
             "the contact. Numbers at the envelope are cells of the grid. The exact answer is stick radius, twist and "
             f"tractions in the cells of one mesh.{left_out}")
@@ -133,6 +132,6 @@ def milliseconds(time):
 def short(point, method=True):
     """What is not the default, and the mesh."""
     words = [point["method"].replace("_", " ") if point["method"] != "coulomb" else "Newton"] if method else []
-    words += [point[key].replace("_", " ") for key in ("operator", "model", "pressure", "precision")
+    words += [point[key].replace("_", " ") for key in ("operator", "model", "pressure")
               if point[key] != DEFAULT[key]]
     return ", ".join([*words, f"{point['cells']}² cells", f"tolerance {power_of_ten(point['tolerance'])}"])

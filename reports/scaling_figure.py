@@ -16,7 +16,6 @@ APPLICATIONS = {"application/dense": ("dense matrix", dict(color=style.VERMILION
                 "application/direct_2_threads": ("the same, 2 threads", dict(color=style.BLUE, **HOLLOW)),
                 "application/dcfft": ("convolution (DC-FFT)", dict(color=style.GREEN, **CIRCLE)),
                 "application/dcfft_2_threads": ("the same, 2 threads", dict(color=style.GREEN, **HOLLOW)),
-                "application/dcfft_single": ("single precision", dict(color=style.SKY, marker="D")),
                 "application/dcfft_quarter": ("a quadrant, by symmetry", dict(color=style.PURPLE, marker="^")),
                 "application/dcfft_quarter_with_diagonal": ("and about the diagonal", dict(color=style.BLACK, marker="v"))}
 SETUPS = {"setup/dense": "application/dense", "setup/direct": "application/direct", "setup/dcfft": "application/dcfft"}

@@ -229,7 +229,6 @@ Elasticity elasticity(const Scene& scene, const Model& model, const Reduction& p
   return {.pair = model.pair,
           .kind = scene.op,
           .threads = model.threads,
-          .precision = scene.precision,
           .diagonal = part.diagonal() && Ranks::number() == 1,
           .at_edge = scene.ends_at_grid_edge,
           .rounding_seed = static_cast<std::uint64_t>(scene.rounding_seed),

@@ -25,7 +25,7 @@ using Loads = std::vector<ByTolerance>;
 bool has_default_choices(const Json& point) {
   static const PlaneChoice usual;
   return point["method"] == usual.method && point["operator"] == usual.op && point["model"] == usual.model &&
-         point["pressure"] == usual.pressure && point["precision"] == usual.precision;
+         point["pressure"] == usual.pressure;
 }
 
 /// By cells along a side; meshes that were solved at every load.

@@ -50,7 +50,7 @@ void add_operators(Design& design, bool quick) {
 void add_one_at_a_time(Design& design, bool quick) {
   const Cells meshes = quick ? Cells{32, 64, 128} : Cells{16, 32, 64, 128, 256};
   const std::vector<PlaneChoice> choices{
-      {.model = "full"}, {.precision = "mixed"}, {.pressure = "hertz"}, {.pressure = "hertz_averaged"}};
+      {.model = "full"}, {.pressure = "hertz"}, {.pressure = "hertz_averaged"}};
   for (const PlaneChoice& choice : choices) {
     design.add(choice, meshes, kOneAtATime);
     if (!quick) design.add(choice, {512}, {1e-6});
@@ -77,7 +77,6 @@ std::vector<std::string> overrides(const PlaneChoice& choice) {
           fmt::format("solver.operator=\"{}\"", choice.op),
           fmt::format("solver.model=\"{}\"", choice.model),
           fmt::format("contact.pressure=\"{}\"", choice.pressure),
-          fmt::format("solver.precision=\"{}\"", choice.precision),
           fmt::format("grid.cells=[{0}, {0}]", choice.cells),
           fmt::format("solver.tolerance={}", choice.tolerance),
           "solver.threads=1"};

@@ -13,7 +13,6 @@ struct PlaneChoice {
   std::string op = "dcfft";
   std::string model = "auto";
   std::string pressure = "solved";
-  std::string precision = "double";
   solver::Index cells = 128;  ///< along each side
   double tolerance = 1e-8;
 

@@ -23,7 +23,6 @@ std::string choice_text(const Json& point) {
   add("operator", usual.op);
   add("model", usual.model);
   add("pressure", usual.pressure);
-  add("precision", usual.precision);
   return text;
 }
 

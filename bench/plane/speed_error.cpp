@@ -66,9 +66,8 @@ Json seconds_json(const Repetitions& times) {
 }
 
 Json choice_json(const PlaneChoice& choice) {
-  return {{"method", choice.method},      {"operator", choice.op},         {"model", choice.model},
-          {"pressure", choice.pressure},  {"precision", choice.precision}, {"cells", choice.cells},
-          {"tolerance", choice.tolerance}};
+  return {{"method", choice.method},     {"operator", choice.op}, {"model", choice.model},
+          {"pressure", choice.pressure}, {"cells", choice.cells}, {"tolerance", choice.tolerance}};
 }
 
 double root_mean_square(const std::vector<double>& values) {
@@ -106,8 +105,8 @@ std::vector<convergence::GridChoice> grids(const std::filesystem::path& scene, d
 
 /// Of the point's file.
 std::string file_name(double moment_ratio, const PlaneChoice& c) {
-  return fmt::format("plane-{}-{}-{}-{}-{}-{}-{}-{}", moment_ratio, c.method, c.op, c.model, c.pressure,
-                     c.precision, c.cells, c.tolerance);
+  return fmt::format("plane-{}-{}-{}-{}-{}-{}-{}", moment_ratio, c.method, c.op, c.model, c.pressure, c.cells,
+                     c.tolerance);
 }
 
 /// The whole exact answer: stick radius and twist from the load, then tractions in the cells of a grid.
@@ -130,8 +129,8 @@ Json measure_exact(const std::filesystem::path& file, double moment_ratio) {
 }
 
 std::string label(double moment_ratio, const PlaneChoice& c) {
-  return fmt::format("M/M_lim {}: {} {} {} {} {}, {} cells, tolerance {}", moment_ratio, c.method, c.op,
-                     c.model, c.pressure, c.precision, c.cells, c.tolerance);
+  return fmt::format("M/M_lim {}: {} {} {} {}, {} cells, tolerance {}", moment_ratio, c.method, c.op, c.model,
+                     c.pressure, c.cells, c.tolerance);
 }
 
 }  // namespace

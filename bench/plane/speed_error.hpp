@@ -8,7 +8,7 @@
 #include "bench/plane/plane_design.hpp"
 #include "convergence/results/result_parts.hpp"
 
-/// The speed-error plane: what each choice of method, operator, model, pressure, precision, mesh and
+/// The speed-error plane: what each choice of method, operator, model, pressure, mesh and
 /// tolerance costs, and the error that it buys.
 ///
 /// The result (JSON), times in seconds, errors relative:
@@ -19,7 +19,7 @@
 ///   scenes [
 ///     name, moment_ratio
 ///     points [        one a choice, in the design's order
-///       method, operator, model, pressure, precision, cells, tolerance      the choice
+///       method, operator, model, pressure, cells, tolerance      the choice
 ///       contact_cells   cells across the contact, mean over the grids
 ///       not_timed       why there is no time: the result is wrong; absent where there is one
 ///       seconds {median, low, high, repetitions}    whole solve, one thread; null where not timed

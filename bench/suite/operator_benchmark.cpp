@@ -29,14 +29,12 @@ namespace {
 using Eigen::ArrayXd;
 using solver::Grid;
 using solver::Index;
-using solver::Operator;
+using solver::LinearOperator;
 using solver::OperatorKind;
 using solver::OperatorOptions;
 
 /// Ten times what rounding does: of direct sums on 128 cells along a side 2e-14, of transforms on 1,024 less;
-/// in single precision 3e-7.
-template <typename Real>
-constexpr double kAllowedError = std::is_same_v<Real, double> ? 2e-13 : 3e-6;
+constexpr double kAllowedError = 2e-13;
 
 /// One way to apply the operator. All know a grid of cells x cells; `quarter` works on one quadrant of it.
 struct Form {
@@ -53,28 +51,20 @@ Grid grid_of(const Form& form, Index cells) {
   return form.quarter ? solver::quadrant_of(whole(cells)) : whole(cells);
 }
 
-template <typename Real>
-std::shared_ptr<Operator<Real>> make(const Form& form, const Grid& grid) {
-  if constexpr (std::is_same_v<Real, double>) {
-    return solver::make_operator(form.kind, grid, solver::tangential_kernel(), pair(), form.options);
-  } else {
-    return solver::make_single_operator(grid, solver::tangential_kernel(), pair(), form.options);
-  }
+std::shared_ptr<LinearOperator> make(const Form& form, const Grid& grid) {
+  return solver::make_operator(form.kind, grid, solver::tangential_kernel(), pair(), form.options);
 }
 
 /// About what the operator holds.
-template <typename Real>
 double bytes(const Form& form, const Grid& grid) {
   const solver::Elasticity elastic{.pair = pair(), .kind = form.kind, .diagonal = form.options.diagonal};
-  return sizeof(Real) / 8.0 * elastic.operator_bytes(grid, solver::tangential_kernel());
+  return elastic.operator_bytes(grid, solver::tangential_kernel());
 }
 
-template <typename Real>
-ArrayXd apply(Operator<Real>& op, const ArrayXd& traction) {
-  using Field = typename Operator<Real>::Field;
-  Field displacement(traction.size());
-  op.apply(Field(traction.cast<Real>()), displacement);
-  return displacement.template cast<double>();
+ArrayXd apply(LinearOperator& op, const ArrayXd& traction) {
+  ArrayXd displacement(traction.size());
+  op.apply(traction, displacement);
+  return displacement;
 }
 
 ArrayXd random_field(Index size) {
@@ -98,8 +88,7 @@ struct Reference {
   ArrayXd traction;
   ArrayXd displacement;
 
-  template <typename Real>
-  double error(Operator<Real>& op) const {
+  double error(LinearOperator& op) const {
     return (apply(op, traction) - displacement).abs().maxCoeff() / displacement.abs().maxCoeff();
   }
 };
@@ -107,7 +96,7 @@ struct Reference {
 /// Of a full field, by convolution on the whole grid.
 Reference by_convolution(const Form& form, Index cells) {
   const Grid grid = grid_of(form, cells);
-  const auto convolution = make<double>({}, whole(cells));
+  const auto convolution = make({}, whole(cells));
   ArrayXd traction = random_field(2 * grid.cells());
   if (!form.quarter) return {traction, apply(*convolution, traction)};
   if (form.options.diagonal) traction = with_diagonal_mirror(traction, grid);
@@ -154,44 +143,39 @@ double operations(OperatorKind kind, Index cells) {
   return 4.0 * 2.5 * padded * std::log2(padded);
 }
 
-template <typename Real>
 void compare_with_transforms(Prepared& prepared, Index cells, const std::function<void()>& application) {
   constexpr Patience kPatience{.seconds = 0.1, .rounds = 5, .most_seconds = 0.5};
-  FourTransforms<Real> transforms(cells);
+  FourTransforms transforms(cells);
   const auto times =
       side_by_side([&] { return seconds(application); }, [&] { return seconds(transforms); }, kPatience);
   prepared.counters["over_four_transforms"] = times.ratio;
 }
 
 /// What an application takes at the least, as a part of what it takes.
-void compare_with_reading(Prepared& prepared, const Operator<double>& op) {
+void compare_with_reading(Prepared& prepared, const LinearOperator& op) {
   const Eigen::MatrixXd& matrix = dynamic_cast<const solver::DenseMatrix&>(op).matrix();
   const std::span<const double> values(matrix.data(), static_cast<std::size_t>(matrix.size()));
   prepared.counters["bytes_per_second"] = rate(static_cast<double>(values.size_bytes()));
   prepared.counters["fraction_of_bandwidth"] = rate(seconds_to_read(values));
 }
 
-template <typename Real>
 Prepared application(const Form& form, Index cells) {
-  using Field = typename Operator<Real>::Field;
-  const auto op = make<Real>(form, grid_of(form, cells));
+  const auto op = make(form, grid_of(form, cells));
   const bool by_sums = form.kind == OperatorKind::dcfft && !form.quarter;
   const double error = (by_sums ? by_summation(cells) : by_convolution(form, cells)).error(*op);
-  const auto in = std::make_shared<Field>(random_field(2 * op->grid().cells()).template cast<Real>());
-  const auto out = std::make_shared<Field>(in->size());
+  const auto in = std::make_shared<ArrayXd>(random_field(2 * op->grid().cells()));
+  const auto out = std::make_shared<ArrayXd>(in->size());
   const auto work = [op, in, out] {
     op->apply(*in, *out);
     benchmark::DoNotOptimize(out->data());
   };
   Prepared prepared;
-  prepared.counters = {{"error", error}, {"bytes", bytes<Real>(form, op->grid())}};
-  if (!(error <= kAllowedError<Real>)) prepared.invalid_reason = "disagrees with its reference";
+  prepared.counters = {{"error", error}, {"bytes", bytes(form, op->grid())}};
+  if (!(error <= kAllowedError)) prepared.invalid_reason = "disagrees with its reference";
   prepared.timing = repeated(work);
   if (!form.quarter) prepared.counters["GFLOP/s"] = rate(1e-9 * operations(form.kind, cells));
-  if constexpr (std::is_same_v<Real, double>) {
-    if (form.kind == OperatorKind::dense) compare_with_reading(prepared, *op);
-  }
-  if (form.kind == OperatorKind::dcfft) compare_with_transforms<Real>(prepared, cells, work);
+  if (form.kind == OperatorKind::dense) compare_with_reading(prepared, *op);
+  if (form.kind == OperatorKind::dcfft) compare_with_transforms(prepared, cells, work);
   return prepared;
 }
 
@@ -199,13 +183,13 @@ Prepared application(const Form& form, Index cells) {
 Prepared set_up(const Form& form, Index cells) {
   const Grid grid = grid_of(form, cells);
   Prepared prepared;
-  prepared.counters["bytes"] = bytes<double>(form, grid);
-  prepared.timing = repeated([form, grid] { benchmark::DoNotOptimize(make<double>(form, grid)); });
+  prepared.counters["bytes"] = bytes(form, grid);
+  prepared.timing = repeated([form, grid] { benchmark::DoNotOptimize(make(form, grid)); });
   return prepared;
 }
 
 Prepared bare_transforms(Index cells) {
-  const auto transforms = std::make_shared<FourTransforms<double>>(cells);
+  const auto transforms = std::make_shared<FourTransforms>(cells);
   Prepared prepared;
   prepared.counters["GFLOP/s"] = rate(1e-9 * operations(OperatorKind::dcfft, cells));
   prepared.timing = repeated([transforms] { (*transforms)(); });
@@ -231,11 +215,10 @@ std::string name(const std::string& family, Index cells) {
   return family + "/cells:" + std::to_string(cells);
 }
 
-template <typename Real>
 void add_applications(Suite& suite, const std::string& variant, const Form& form,
                       const std::vector<Index>& sizes) {
   for (const Index cells : sizes) {
-    suite.add(name("application/" + variant, cells), [=] { return application<Real>(form, cells); });
+    suite.add(name("application/" + variant, cells), [=] { return application(form, cells); });
   }
 }
 
@@ -255,16 +238,15 @@ void add_operator_benchmarks(Suite& suite) {
   const OperatorOptions two_threads{.threads = 2};
   const Form quarter{.quarter = true};
 
-  add_applications<double>(suite, "dense", {.kind = OperatorKind::dense}, dense);
-  add_applications<double>(suite, "direct", {.kind = OperatorKind::direct}, direct);
-  add_applications<double>(suite, "direct_2_threads", {.kind = OperatorKind::direct, .options = two_threads},
-                           doubling(4, 128));
-  add_applications<double>(suite, "dcfft", {}, all);
-  add_applications<double>(suite, "dcfft_2_threads", {.options = two_threads}, doubling(4, 1024));
-  add_applications<float>(suite, "dcfft_single", {}, doubling(16, 1024));
-  add_applications<double>(suite, "dcfft_quarter", quarter, doubling(16, 1024));
-  add_applications<double>(suite, "dcfft_quarter_with_diagonal",
-                           {.options = {.diagonal = true}, .quarter = true}, doubling(16, 1024));
+  add_applications(suite, "dense", {.kind = OperatorKind::dense}, dense);
+  add_applications(suite, "direct", {.kind = OperatorKind::direct}, direct);
+  add_applications(suite, "direct_2_threads", {.kind = OperatorKind::direct, .options = two_threads},
+                   doubling(4, 128));
+  add_applications(suite, "dcfft", {}, all);
+  add_applications(suite, "dcfft_2_threads", {.options = two_threads}, doubling(4, 1024));
+  add_applications(suite, "dcfft_quarter", quarter, doubling(16, 1024));
+  add_applications(suite, "dcfft_quarter_with_diagonal", {.options = {.diagonal = true}, .quarter = true},
+                   doubling(16, 1024));
 
   add_set_ups(suite, "dense", {.kind = OperatorKind::dense}, dense);
   add_set_ups(suite, "direct", {.kind = OperatorKind::direct}, direct);

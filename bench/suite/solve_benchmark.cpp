@@ -53,7 +53,7 @@ Prepared whole_solve(const Scene& scene) {
 Prepared over_transforms(const Load& load) {
   Prepared prepared = whole_solve(load.scene());
   if (!prepared.invalid_reason.empty()) return prepared;
-  FourTransforms<double> transforms(load.cells);
+  FourTransforms transforms(load.cells);
   const SideBySide times =
       side_by_side([&] { return seconds_of(load.scene()); }, [&] { return seconds(transforms); });
   prepared.counters["over_four_transforms"] = times.ratio;
@@ -72,12 +72,6 @@ Prepared over(const Scene& scene, const Scene& other) {
 }
 
 Prepared symmetric_over_full(const Load& load) { return over(with_symmetry(load.scene()), load.scene()); }
-
-Prepared mixed_over_double(const Load& load) {
-  Scene mixed = load.scene();
-  mixed.precision = solver::Precision::mixed;
-  return over(mixed, load.scene());
-}
 
 Prepared tolerance_over_8_digits(const Load& load, int digits) {
   Scene scene = with_symmetry(load.scene());
@@ -121,8 +115,6 @@ void add_solve_benchmarks(Suite& suite) {
       const Load load{cells, permille};
       suite.add(prefix(load, 256) + "paired/symmetric_over_full" + load.name(),
                 [load] { return symmetric_over_full(load); });
-      suite.add(prefix(load, 512) + "paired/mixed_over_double" + load.name(),
-                [load] { return mixed_over_double(load); });
     }
   }
   for (const int digits : {4, 6, 10, 12}) {

@@ -71,32 +71,18 @@ using slipstick::solver::Index;
 extern "C" {
 // NOLINTBEGIN(bugprone-reserved-identifier, readability-identifier-naming): the linker's names
 decltype(fftw_plan_dft_1d) __real_fftw_plan_dft_1d;
-decltype(fftwf_plan_dft_1d) __real_fftwf_plan_dft_1d;
 decltype(fftw_plan_many_dft) __real_fftw_plan_many_dft;
-decltype(fftwf_plan_many_dft) __real_fftwf_plan_many_dft;
 decltype(fftw_plan_many_dft_r2c) __real_fftw_plan_many_dft_r2c;
-decltype(fftwf_plan_many_dft_r2c) __real_fftwf_plan_many_dft_r2c;
 decltype(fftw_plan_many_dft_c2r) __real_fftw_plan_many_dft_c2r;
-decltype(fftwf_plan_many_dft_c2r) __real_fftwf_plan_many_dft_c2r;
 
 fftw_plan __wrap_fftw_plan_dft_1d(int n, fftw_complex* in, fftw_complex* out, int sign, unsigned flags) {
   return count_plan(__real_fftw_plan_dft_1d(n, in, out, sign, flags), n);
-}
-fftwf_plan __wrap_fftwf_plan_dft_1d(int n, fftwf_complex* in, fftwf_complex* out, int sign, unsigned flags) {
-  return count_plan(__real_fftwf_plan_dft_1d(n, in, out, sign, flags), n);
 }
 fftw_plan __wrap_fftw_plan_many_dft(int rank, const int* n, int many, fftw_complex* in, const int* inembed,
                                     int istride, int idist, fftw_complex* out, const int* onembed,
                                     int ostride, int odist, int sign, unsigned flags) {
   return count_plan(__real_fftw_plan_many_dft(rank, n, many, in, inembed, istride, idist, out, onembed,
                                               ostride, odist, sign, flags),
-                    many * product(rank, n));
-}
-fftwf_plan __wrap_fftwf_plan_many_dft(int rank, const int* n, int many, fftwf_complex* in, const int* inembed,
-                                      int istride, int idist, fftwf_complex* out, const int* onembed,
-                                      int ostride, int odist, int sign, unsigned flags) {
-  return count_plan(__real_fftwf_plan_many_dft(rank, n, many, in, inembed, istride, idist, out, onembed,
-                                               ostride, odist, sign, flags),
                     many * product(rank, n));
 }
 fftw_plan __wrap_fftw_plan_many_dft_r2c(int rank, const int* n, int many, double* in, const int* inembed,
@@ -106,13 +92,6 @@ fftw_plan __wrap_fftw_plan_many_dft_r2c(int rank, const int* n, int many, double
                                                   ostride, odist, flags),
                     many * product(rank, n));
 }
-fftwf_plan __wrap_fftwf_plan_many_dft_r2c(int rank, const int* n, int many, float* in, const int* inembed,
-                                          int istride, int idist, fftwf_complex* out, const int* onembed,
-                                          int ostride, int odist, unsigned flags) {
-  return count_plan(__real_fftwf_plan_many_dft_r2c(rank, n, many, in, inembed, istride, idist, out, onembed,
-                                                   ostride, odist, flags),
-                    many * product(rank, n));
-}
 fftw_plan __wrap_fftw_plan_many_dft_c2r(int rank, const int* n, int many, fftw_complex* in,
                                         const int* inembed, int istride, int idist, double* out,
                                         const int* onembed, int ostride, int odist, unsigned flags) {
@@ -120,21 +99,11 @@ fftw_plan __wrap_fftw_plan_many_dft_c2r(int rank, const int* n, int many, fftw_c
                                                   ostride, odist, flags),
                     many * product(rank, n));
 }
-fftwf_plan __wrap_fftwf_plan_many_dft_c2r(int rank, const int* n, int many, fftwf_complex* in,
-                                          const int* inembed, int istride, int idist, float* out,
-                                          const int* onembed, int ostride, int odist, unsigned flags) {
-  return count_plan(__real_fftwf_plan_many_dft_c2r(rank, n, many, in, inembed, istride, idist, out, onembed,
-                                                   ostride, odist, flags),
-                    many * product(rank, n));
-}
 
 decltype(fftw_execute) __real_fftw_execute;
 decltype(fftw_execute_dft) __real_fftw_execute_dft;
-decltype(fftwf_execute_dft) __real_fftwf_execute_dft;
 decltype(fftw_execute_dft_r2c) __real_fftw_execute_dft_r2c;
-decltype(fftwf_execute_dft_r2c) __real_fftwf_execute_dft_r2c;
 decltype(fftw_execute_dft_c2r) __real_fftw_execute_dft_c2r;
-decltype(fftwf_execute_dft_c2r) __real_fftwf_execute_dft_c2r;
 
 void __wrap_fftw_execute(fftw_plan plan) {
   count_transform(plan);
@@ -144,25 +113,13 @@ void __wrap_fftw_execute_dft(fftw_plan plan, fftw_complex* in, fftw_complex* out
   count_transform(plan);
   __real_fftw_execute_dft(plan, in, out);
 }
-void __wrap_fftwf_execute_dft(fftwf_plan plan, fftwf_complex* in, fftwf_complex* out) {
-  count_transform(plan);
-  __real_fftwf_execute_dft(plan, in, out);
-}
 void __wrap_fftw_execute_dft_r2c(fftw_plan plan, double* in, fftw_complex* out) {
   count_transform(plan);
   __real_fftw_execute_dft_r2c(plan, in, out);
 }
-void __wrap_fftwf_execute_dft_r2c(fftwf_plan plan, float* in, fftwf_complex* out) {
-  count_transform(plan);
-  __real_fftwf_execute_dft_r2c(plan, in, out);
-}
 void __wrap_fftw_execute_dft_c2r(fftw_plan plan, fftw_complex* in, double* out) {
   count_transform(plan);
   __real_fftw_execute_dft_c2r(plan, in, out);
-}
-void __wrap_fftwf_execute_dft_c2r(fftwf_plan plan, fftwf_complex* in, float* out) {
-  count_transform(plan);
-  __real_fftwf_execute_dft_c2r(plan, in, out);
 }
 
 // slipstick::solver::integrate_row

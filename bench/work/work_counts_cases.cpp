@@ -67,7 +67,6 @@ std::vector<WorkCase> work_cases() {
       solve_case("paper-64-full", "paper", {"grid.cells=[64,64]", full}),
       solve_case("paper-128-auto", "paper", {"grid.cells=[128,128]"}),
       solve_case("paper-128-full", "paper", {"grid.cells=[128,128]", full}),
-      solve_case("paper-128-mixed", "paper", {"grid.cells=[128,128]", full, "solver.precision=mixed"}),
       solve_case("hertz-128", "paper", {"grid.cells=[128,128]", "contact.pressure=hertz"}),
       solve_case("ellipse-64", "ellipse", {"grid.cells=[64,32]"}),
       solve_case("force-64", "mindlin", {"grid.cells=[64,64]"}),

@@ -26,7 +26,6 @@
 
 /// By which FFTW's threads library locks the planner; in no header.
 extern "C" void fftw_set_planner_hooks(void (*before)(), void (*after)());
-extern "C" void fftwf_set_planner_hooks(void (*before)(), void (*after)());
 
 struct slipstick_solution {
   slipstick::solver::Grid grid{};
@@ -79,7 +78,6 @@ bool goes_alone(const Scene& scene) {
 void forget_plans_after(const Scene& scene) {
   if (scene.rounding_seed == 0) return;
   fftw_forget_wisdom();
-  fftwf_forget_wisdom();
 }
 
 /// Plans may be made by several threads at a time, by those of the caller too, and a process may fork
@@ -96,7 +94,6 @@ void share_planner() {
   static std::once_flag done;
   std::call_once(done, [] {
     fftw_set_planner_hooks(begin_planning, end_planning);
-    fftwf_set_planner_hooks(begin_planning, end_planning);
     pthread_atfork(begin_planning, end_planning, be_alone);
   });
 }

@@ -220,7 +220,6 @@ Json solve_result(const solver::Scene& scene, const Solution& solution, const Or
   json["method"] = to_string(scene.method);
   json["operator"] = to_string(scene.op);
   json["cell_traction"] = to_string(scene.cell_traction);
-  json["precision"] = to_string(scene.precision);
   json["pressure"] = to_string(scene.pressure);
   json["model"] = model_json(solution.left_out);
   json["cells"] = {grid.n1, grid.n2};

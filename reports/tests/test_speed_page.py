@@ -44,7 +44,7 @@ def scaling(**changes):
 
 
 def point(seconds, error, **choice):
-    choice = {"method": "coulomb", "operator": "dcfft", "model": "auto", "pressure": "solved", "precision": "double",
+    choice = {"method": "coulomb", "operator": "dcfft", "model": "auto", "pressure": "solved",
               "cells": 64, "tolerance": 1e-4} | choice
     time = None if seconds is None else {"median": seconds, "low": seconds, "high": seconds, "repetitions": 9}
     return choice | {"seconds": time, "error": {"twist": error, "traction_l2": 10 * error, "stick_radius": error}}

@@ -93,7 +93,7 @@ class OfStudies(unittest.TestCase):
 
 
 def timed_point(cells, **choice):
-    return {"method": "paper", "operator": "dcfft", "model": "auto", "pressure": "solved", "precision": "double",
+    return {"method": "paper", "operator": "dcfft", "model": "auto", "pressure": "solved",
             "cells": cells, "tolerance": 1e-4} | choice
 
 

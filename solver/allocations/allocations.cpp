@@ -25,7 +25,6 @@ decltype(malloc) __real_malloc;
 decltype(calloc) __real_calloc;
 decltype(realloc) __real_realloc;
 decltype(fftw_alloc_real) __real_fftw_alloc_real;
-decltype(fftwf_alloc_real) __real_fftwf_alloc_real;
 void* __real__Znwm(std::size_t size);
 void* __real__Znam(std::size_t size);
 void* __real__ZnwmSt11align_val_t(std::size_t size, std::align_val_t alignment);
@@ -57,10 +56,6 @@ void* __wrap__ZnwmSt11align_val_t(std::size_t size, std::align_val_t alignment) 
 double* __wrap_fftw_alloc_real(std::size_t reals) {
   count(reals * sizeof(double));
   return __real_fftw_alloc_real(reals);
-}
-float* __wrap_fftwf_alloc_real(std::size_t reals) {
-  count(reals * sizeof(float));
-  return __real_fftwf_alloc_real(reals);
 }
 // NOLINTEND(bugprone-reserved-identifier, readability-identifier-naming)
 }

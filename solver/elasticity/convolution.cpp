@@ -25,16 +25,16 @@ Index distinct_odd(Index m) { return (m + 1) / 2; }
 
 /// x_a[i] = sum over b of sign_ab factor_ab[step i] x_b[i], times the imaginary unit if the spectra are
 /// imaginary.
-template <std::size_t outputs, std::size_t inputs, bool imaginary, int step, typename Real>
-void multiply_run(std::array<Real*, 2> x, std::array<const Real*, 4> factor, std::array<Real, 4> sign,
+template <std::size_t outputs, std::size_t inputs, bool imaginary, int step>
+void multiply_run(std::array<double*, 2> x, std::array<const double*, 4> factor, std::array<double, 4> sign,
                   Index n) {
   for (Index i = 0; i < n; ++i) {
-    std::array<Real, outputs> re{};
-    std::array<Real, outputs> im{};
+    std::array<double, outputs> re{};
+    std::array<double, outputs> im{};
     for (std::size_t a = 0; a < outputs; ++a) {
       for (std::size_t b = 0; b < inputs; ++b) {
         const std::size_t ab = a * inputs + b;
-        const Real value = step > 0 ? factor[ab][i] : sign[ab] * factor[ab][-i];
+        const double value = step > 0 ? factor[ab][i] : sign[ab] * factor[ab][-i];
         re[a] += value * (imaginary ? -x[b][2 * i + 1] : x[b][2 * i]);
         im[a] += value * (imaginary ? x[b][2 * i] : x[b][2 * i + 1]);
       }
@@ -48,10 +48,10 @@ void multiply_run(std::array<Real*, 2> x, std::array<const Real*, 4> factor, std
 
 /// The first `distinct` frequencies of m with the factors as stored, the rest with mirrored ones, the last of
 /// which is factor[last].
-template <std::size_t outputs, std::size_t inputs, bool imaginary, typename Real>
-void multiply_half(const std::array<std::complex<Real>*, 2>& half, std::array<const Real*, 4> factor,
-                   const std::array<Real, 4>& sign, Index m, Index distinct, Index last) {
-  std::array<Real*, 2> x{reinterpret_cast<Real*>(half[0]), reinterpret_cast<Real*>(half[1])};
+template <std::size_t outputs, std::size_t inputs, bool imaginary>
+void multiply_half(const std::array<std::complex<double>*, 2>& half, std::array<const double*, 4> factor,
+                   const std::array<double, 4>& sign, Index m, Index distinct, Index last) {
+  std::array<double*, 2> x{reinterpret_cast<double*>(half[0]), reinterpret_cast<double*>(half[1])};
   multiply_run<outputs, inputs, imaginary, 1>(x, factor, sign, distinct);
   for (std::size_t field = 0; field < std::max(outputs, inputs); ++field) x[field] += 2 * distinct;
   for (std::size_t ab = 0; ab < outputs * inputs; ++ab) factor[ab] += last + m - distinct - 1;
@@ -60,8 +60,7 @@ void multiply_half(const std::array<std::complex<Real>*, 2>& half, std::array<co
 
 }  // namespace
 
-template <typename Real>
-auto Convolution<Real>::multiply_for(const BlockKernel& kernel) -> Multiply {
+auto Convolution::multiply_for(const BlockKernel& kernel) -> Multiply {
   const bool imaginary = std::all_of(kernel.components.begin(), kernel.components.end(), is_imaginary);
   const bool real = std::none_of(kernel.components.begin(), kernel.components.end(), is_imaginary);
   const auto shaped = []<std::size_t outputs, std::size_t inputs, bool odd>() -> Multiply {
@@ -80,10 +79,9 @@ auto Convolution<Real>::multiply_for(const BlockKernel& kernel) -> Multiply {
   throw std::invalid_argument("no convolution with a kernel of this shape");
 }
 
-template <typename Real>
-Convolution<Real>::Convolution(const Grid& grid, BlockKernel kernel, const ElasticPair& pair,
-                               const OperatorOptions& options)
-    : Operator<Real>(grid, std::move(kernel)),
+Convolution::Convolution(const Grid& grid, BlockKernel kernel, const ElasticPair& pair,
+                         const OperatorOptions& options)
+    : LinearOperator(grid, std::move(kernel)),
       transform_(grid, fields(this->kernel()), std::max(options.threads, 1)),
       components_(distinct_components(this->kernel())),
       spectra_(components_.size() * count(transform_.own_columns(grid).count() * (padded1() / 2 + 1))),
@@ -92,18 +90,17 @@ Convolution<Real>::Convolution(const Grid& grid, BlockKernel kernel, const Elast
     const auto found = std::find(components_.begin(), components_.end(), this->kernel().components[c]);
     slot_.at(c) = count(found - components_.begin());
   }
-  if constexpr (std::is_same_v<Real, double>) {
+  if constexpr (std::is_same_v<double, double>) {
     set_spectra(pair, transform_);
   } else {
-    PaddedTransform<double> transform(grid, 1, std::max(options.threads, 1));
+    PaddedTransform transform(grid, 1, std::max(options.threads, 1));
     set_spectra(pair, transform);
   }
 }
 
 /// The kernel is the sum of a quadrant of offsets and its three mirror images. With Q the quadrant's
 /// spectrum, found as any field's, the sum's is 2 Re or 2 i Im of Q(k1, k2) +- Q(-k1, k2).
-template <typename Real>
-void Convolution<Real>::set_spectra(const ElasticPair& pair, PaddedTransform<double>& transform) {
+void Convolution::set_spectra(const ElasticPair& pair, PaddedTransform& transform) {
   const Grid& grid = this->grid();
   auto quadrants =
       influence_tables(components_, pair, grid.h1, grid.h2, grid.n1, grid.n2, transform.threads());
@@ -112,7 +109,7 @@ void Convolution<Real>::set_spectra(const ElasticPair& pair, PaddedTransform<dou
     for (Index i = 0; i < grid.n1; ++i) quadrant[count(i * grid.n2)] *= 0.5;  // on the axes, images coincide
     for (Index j = 0; j < grid.n2; ++j) quadrant[count(j)] *= 0.5;
     transform.forward_rows(quadrant);
-    transform.through_columns(1, 0, [&](Index column, const PaddedTransform<double>::Spectrum& spectrum) {
+    transform.through_columns(1, 0, [&](Index column, const PaddedTransform::Spectrum& spectrum) {
       set_factors(components_[slot], spectrum.even[0], spectrum.odd[0],
                   spectra_.data() + start(column, slot));
     });
@@ -120,52 +117,44 @@ void Convolution<Real>::set_spectra(const ElasticPair& pair, PaddedTransform<dou
 }
 
 /// From one column of Q.
-template <typename Real>
-void Convolution<Real>::set_factors(Component component, const std::complex<double>* even,
-                                    const std::complex<double>* odd, Real* factors) const {
+void Convolution::set_factors(Component component, const std::complex<double>* even,
+                              const std::complex<double>* odd, double* factors) const {
   const Index m1 = padded1() / 2;
   const double scale = 2.0 / (static_cast<double>(padded1()) * static_cast<double>(padded2()));
   const double sign = parity(component).x1;
   const bool imaginary = is_imaginary(component);
   const auto factor = [&](const std::complex<double>& at, const std::complex<double>& mirrored) {
     const std::complex<double> sum = at + sign * mirrored;
-    return static_cast<Real>(scale * (imaginary ? sum.imag() : sum.real()));
+    return scale * (imaginary ? sum.imag() : sum.real());
   };
   *factors++ = factor(even[0], even[0]);
   for (Index k = 1; k < distinct_even(m1); ++k) *factors++ = factor(even[k], even[m1 - k]);
   for (Index k = 0; k < distinct_odd(m1); ++k) *factors++ = factor(odd[k], odd[m1 - 1 - k]);
 }
 
-template <typename Real>
-std::size_t Convolution<Real>::start(Index column, std::size_t slot) const {
+std::size_t Convolution::start(Index column, std::size_t slot) const {
   return (count(column) * components_.size() + slot) * count(padded1() / 2 + 1);
 }
 
-template <typename Real>
-auto Convolution<Real>::factors(Index column) const -> Factors {
+auto Convolution::factors(Index column) const -> Factors {
   Factors result{};
   for (std::size_t c = 0; c < this->kernel().components.size(); ++c) {
     result.quadrant[c] = spectra_.data() + start(column, slot_[c]);
-    result.sign[c] = static_cast<Real>(parity(this->kernel().components[c]).x1);
+    result.sign[c] = parity(this->kernel().components[c]).x1;
   }
   return result;
 }
 
-template <typename Real>
-double Convolution<Real>::sent_bytes(const Grid& grid, const BlockKernel& kernel) {
-  return static_cast<double>(kernel.inputs + kernel.outputs) * PaddedTransform<Real>::sent_bytes(grid);
+double Convolution::sent_bytes(const Grid& grid, const BlockKernel& kernel) {
+  return static_cast<double>(kernel.inputs + kernel.outputs) * PaddedTransform::sent_bytes(grid);
 }
 
-template <typename Real>
-void Convolution<Real>::do_apply(std::span<const Real> traction, std::span<Real> displacement) {
+void Convolution::do_apply(std::span<const double> traction, std::span<double> displacement) {
   transform_.forward_rows(traction);
   transform_.through_columns(this->inputs(), this->outputs(), [&](Index column, const Spectrum& spectrum) {
     multiply_(spectrum, factors(column), padded1() / 2);
   });
   transform_.backward_rows(displacement);
 }
-
-template class Convolution<double>;
-template class Convolution<float>;
 
 }  // namespace slipstick::solver

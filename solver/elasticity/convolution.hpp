@@ -15,9 +15,8 @@ namespace slipstick::solver {
 ///
 /// Rows go forward; then each column goes forward, is multiplied by the kernel's spectrum and goes back while
 /// it is in cache; then rows go back. The kernel is even or odd in each coordinate, so its spectrum is real
-/// or imaginary and a quadrant of it is stored. It is computed in double precision for either Real.
-template <typename Real>
-class Convolution final : public Operator<Real> {
+/// or imaginary and a quadrant of it is stored. It is computed in double precision for either double.
+class Convolution final : public LinearOperator {
  public:
   /// Throws std::invalid_argument for a kernel of another shape than the normal, tangential or coupling one.
   Convolution(const Grid& grid, BlockKernel kernel, const ElasticPair& pair, const OperatorOptions& options);
@@ -26,26 +25,26 @@ class Convolution final : public Operator<Real> {
   Index padded2() const { return transform_.padded2(); }
 
  private:
-  using Spectrum = typename PaddedTransform<Real>::Spectrum;
+  using Spectrum = PaddedTransform::Spectrum;
   /// Of the kernel's components at one column, row by row of the kernel.
   struct Factors {
-    std::array<const Real*, 4> quadrant;  ///< m1/2 + 1 even frequencies along x1 from 0, then the odd ones
-    std::array<Real, 4> sign;             ///< of the spectrum at negative frequencies along x1
+    std::array<const double*, 4> quadrant;  ///< m1/2 + 1 even frequencies along x1 from 0, then the odd ones
+    std::array<double, 4> sign;             ///< of the spectrum at negative frequencies along x1
   };
   using Multiply = void (*)(const Spectrum&, const Factors&, Index);
 
-  void do_apply(std::span<const Real> traction, std::span<Real> displacement) override;
-  void set_spectra(const ElasticPair& pair, PaddedTransform<double>& transform);
+  void do_apply(std::span<const double> traction, std::span<double> displacement) override;
+  void set_spectra(const ElasticPair& pair, PaddedTransform& transform);
   void set_factors(Component component, const std::complex<double>* even, const std::complex<double>* odd,
-                   Real* factors) const;
+                   double* factors) const;
   std::size_t start(Index column, std::size_t slot) const;  ///< of a component's factors at a column
   Factors factors(Index column) const;
   static Multiply multiply_for(const BlockKernel& kernel);
 
-  PaddedTransform<Real> transform_;
+  PaddedTransform transform_;
   std::vector<Component> components_;  ///< the distinct ones
   std::array<std::size_t, 4> slot_{};  ///< which of them stands at each place of the kernel
-  FftwBuffer<Real> spectra_;           ///< for each column, m1 + 1 factors of each component
+  FftwBuffer spectra_;                 ///< for each column, m1 + 1 factors of each component
   Multiply multiply_;
 };
 

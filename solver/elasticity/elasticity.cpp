@@ -18,12 +18,11 @@ OperatorOptions options_of(const Elasticity& elasticity, const BlockKernel& kern
   return {.threads = elasticity.threads, .diagonal = elasticity.diagonal && kernel.inputs == 2};
 }
 
-template <typename Real>
-std::unique_ptr<InverseSymbol<Real>> symbol_of(const Elasticity& elasticity, const Grid& grid,
-                                               const BlockKernel& kernel) {
-  return make_inverse_symbol<Real>(grid, kernel, elasticity.pair,
-                                   options_of(elasticity, kernel).diagonal ? Diagonal::yes : Diagonal::no,
-                                   elasticity.threads, elasticity.at_edge);
+std::unique_ptr<InverseSymbol> symbol_of(const Elasticity& elasticity, const Grid& grid,
+                                         const BlockKernel& kernel) {
+  return make_inverse_symbol(grid, kernel, elasticity.pair,
+                             options_of(elasticity, kernel).diagonal ? Diagonal::yes : Diagonal::no,
+                             elasticity.threads, elasticity.at_edge);
 }
 
 std::unique_ptr<LinearOperator> new_operator(const Elasticity& elasticity, const Grid& grid,
@@ -35,14 +34,14 @@ std::unique_ptr<LinearOperator> new_operator(const Elasticity& elasticity, const
 
 /// Doubles a cell of the padded grid: of a whole grid, of a quadrant, of one that its diagonal halves.
 using Held = std::array<double, 3>;
-/// What an operator by FFT holds, and what Newton's method holds beside it in double and in mixed precision.
+/// What an operator by FFT holds, and what Newton's method holds beside it.
 /// Counted on 256 x 256 cells, rounded up; convergence/solve/tests/memory_test.py measures them in processes.
 struct HeldOf {
-  Held op, newton, mixed;
+  Held op, newton;
 };
-constexpr HeldOf kNormal{{0.8, 1.6, 1.6}, {3.0, 3.2, 3.2}, {2.7, 3.3, 3.3}};
-constexpr HeldOf kTangential{{1.8, 4.15, 3.6}, {5.9, 5.95, 5.7}, {5.95, 6.9, 6.5}};
-constexpr HeldOf kCoupling{{1.55, 0.0, 0.0}, {}, {}};
+constexpr HeldOf kNormal{{0.8, 1.6, 1.6}, {3.0, 3.2, 3.2}};
+constexpr HeldOf kTangential{{1.8, 4.15, 3.6}, {5.9, 5.95, 5.7}};
+constexpr HeldOf kCoupling{{1.55, 0.0, 0.0}, {}};
 /// Shorter sides take as much as one of so many cells: lines are transformed in groups.
 constexpr Index kLeastSide = 16;
 /// Bytes of freed blocks that stay with the process, see keep_freed_blocks(): a matrix of the pressure does.
@@ -80,7 +79,7 @@ std::shared_ptr<SolveCache> Elasticity::usable_cache() const { return rounding_s
 CacheKey Elasticity::key(const char* what, const Grid& grid) const {
   CacheKey all(what);
   all.add(pair.shear_compliance).add(pair.poisson_compliance).add(pair.normal_compliance).add(pair.mismatch);
-  all.add(pair.cell_traction).add(kind).add(threads).add(precision).add(diagonal).add(at_edge);
+  all.add(pair.cell_traction).add(kind).add(threads).add(diagonal).add(at_edge);
   return all.add(grid.n1).add(grid.n2).add(grid.h1).add(grid.h2).add(grid.quadrant);
 }
 
@@ -102,8 +101,7 @@ double Elasticity::operator_bytes(const Grid& grid, const BlockKernel& kernel) c
 
 double Elasticity::newton_bytes(const Grid& grid, const BlockKernel& kernel) const {
   const HeldOf& held = held_of(kernel);
-  const Held& beside = precision == Precision::mixed ? held.mixed : held.newton;
-  return operator_bytes(grid, kernel) + padded_bytes(beside[form_of(*this, grid)], grid);
+  return operator_bytes(grid, kernel) + padded_bytes(held.newton[form_of(*this, grid)], grid);
 }
 
 Cached<LinearOperator> Elasticity::make(const Grid& grid, const BlockKernel& kernel) const {
@@ -114,42 +112,16 @@ Cached<LinearOperator> Elasticity::make(const Grid& grid, const BlockKernel& ker
   return op;
 }
 
-template <>
-GridOperators<double>::GridOperators(const Elasticity& elasticity, const Grid& grid,
-                                     const BlockKernel& kernel)
-    : op(new_operator(elasticity, grid, kernel)), symbol(symbol_of<double>(elasticity, grid, kernel)) {}
+GridOperators::GridOperators(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel)
+    : op(new_operator(elasticity, grid, kernel)), symbol(symbol_of(elasticity, grid, kernel)) {}
 
-template <>
-GridOperators<float>::GridOperators(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel)
-    : op(new_operator(elasticity, grid, kernel)),
-      single(make_single_operator(grid, kernel, elasticity.pair, options_of(elasticity, kernel))),
-      symbol(symbol_of<float>(elasticity, grid, kernel)) {}
-
-template <>
-Operator<double>& GridOperators<double>::inner() {
-  return *op;
-}
-
-template <>
-Operator<float>& GridOperators<float>::inner() {
-  return *single;
-}
-
-template <typename Real>
-Cached<GridOperators<Real>> Elasticity::make_all(const Grid& grid, const BlockKernel& kernel) const {
-  Cached<GridOperators<Real>> operators(
+Cached<GridOperators> Elasticity::make_all(const Grid& grid, const BlockKernel& kernel) const {
+  Cached<GridOperators> operators(
       usable_cache(), with_kernel(key("grid operators", grid), kernel),
-      [&] { return std::make_unique<GridOperators<Real>>(*this, grid, kernel); }, newton_bytes(grid, kernel));
+      [&] { return std::make_unique<GridOperators>(*this, grid, kernel); }, newton_bytes(grid, kernel));
   operators->op->restart_count();
-  operators->inner().restart_count();
   return operators;
 }
-
-template Cached<GridOperators<double>> Elasticity::make_all(const Grid&, const BlockKernel&) const;
-template Cached<GridOperators<float>> Elasticity::make_all(const Grid&, const BlockKernel&) const;
-
-template struct GridOperators<double>;
-template struct GridOperators<float>;
 
 double finest_grid_applications(const std::vector<GridWork>& grids) {
   double sum = 0.0;

@@ -10,7 +10,6 @@
 
 namespace slipstick::solver {
 
-template <typename Real>
 struct GridOperators;
 
 /// How displacements follow from tractions on whatever grid a method asks for: the elastic pair and the way
@@ -19,7 +18,6 @@ struct Elasticity {
   ElasticPair pair;
   OperatorKind kind = OperatorKind::dcfft;
   int threads = 1;
-  Precision precision = Precision::double_precision;
   bool diagonal = false;                   ///< see OperatorOptions; of the tangential operator
   bool at_edge = false;                    ///< whether the contact may reach the grid's edge
   std::uint64_t rounding_seed = 0;         ///< 0: rounded to nearest; else at random, in double precision
@@ -36,21 +34,15 @@ struct Elasticity {
 
   /// An operator that has not been applied yet.
   Cached<LinearOperator> make(const Grid& grid, const BlockKernel& kernel) const;
-  template <typename Real>
-  Cached<GridOperators<Real>> make_all(const Grid& grid, const BlockKernel& kernel) const;
+  Cached<GridOperators> make_all(const Grid& grid, const BlockKernel& kernel) const;
 };
 
-/// One grid's operators: in double precision for residuals, in Real for inner iterations (the same object
-/// where Real is double), and the inner iteration's preconditioner.
-template <typename Real>
+/// One grid's operator and its preconditioner.
 struct GridOperators {
   GridOperators(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel);
 
-  Operator<Real>& inner();
-
   std::unique_ptr<LinearOperator> op;
-  std::unique_ptr<Operator<Real>> single;  ///< empty where Real is double
-  std::unique_ptr<InverseSymbol<Real>> symbol;
+  std::unique_ptr<InverseSymbol> symbol;
 };
 
 /// Applications on all grids, in those of the last, finest one: each weighs by its cells.

@@ -33,8 +33,7 @@ std::vector<Index> frequencies(const Share& columns) {
 }
 
 /// Complex numbers times real ones.
-template <typename Real>
-void scale_complex(Index count, const Real* __restrict p, Real* __restrict z) {
+void scale_complex(Index count, const double* __restrict p, double* __restrict z) {
   for (Index k = 0; k < count; ++k) {
     z[2 * k] *= p[k];
     z[2 * k + 1] *= p[k];
@@ -42,15 +41,14 @@ void scale_complex(Index count, const Real* __restrict p, Real* __restrict z) {
 }
 
 /// Pairs of complex numbers times symmetric real matrices, whose p12 is to be taken times sign.
-template <typename Real>
-void mix(Index count, Real sign, const Real* __restrict p11, const Real* __restrict p12,
-         const Real* __restrict p22, Real* __restrict z1, Real* __restrict z2) {
+void mix(Index count, double sign, const double* __restrict p11, const double* __restrict p12,
+         const double* __restrict p22, double* __restrict z1, double* __restrict z2) {
   for (Index k = 0; k < count; ++k) {
-    const Real cross = sign * p12[k];
-    const Real real1 = z1[2 * k];
-    const Real imaginary1 = z1[2 * k + 1];
-    const Real real2 = z2[2 * k];
-    const Real imaginary2 = z2[2 * k + 1];
+    const double cross = sign * p12[k];
+    const double real1 = z1[2 * k];
+    const double imaginary1 = z1[2 * k + 1];
+    const double real2 = z2[2 * k];
+    const double imaginary2 = z2[2 * k + 1];
     z1[2 * k] = p11[k] * real1 + cross * real2;
     z1[2 * k + 1] = p11[k] * imaginary1 + cross * imaginary2;
     z2[2 * k] = cross * real1 + p22[k] * real2;
@@ -59,20 +57,19 @@ void mix(Index count, Real sign, const Real* __restrict p11, const Real* __restr
 }
 
 /// On a whole grid, padded with zeros to fast lengths.
-template <typename Real>
-class PeriodicInverseSymbol final : public InverseSymbol<Real> {
+class PeriodicInverseSymbol final : public InverseSymbol {
  public:
   PeriodicInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair, int threads, bool at_edge)
       : grid_(grid),
         periodic_(padded(grid, at_edge)),
         fields_(tangential ? 2 : 1),
         diagonal_(mean_inverse_symbol(periodic_, pair, tangential)),
-        columns_(PlaneTransform<Real>::own_columns(shape(grid, periodic_, tangential))),
+        columns_(PlaneTransform::own_columns(shape(grid, periodic_, tangential))),
         table_(periodic_, pair, entries(tangential), frequencies(columns_),
                1.0 / (static_cast<double>(periodic_.length1) * static_cast<double>(periodic_.length2))),
         transform_(shape(grid, periodic_, tangential), threads) {}
 
-  void apply(std::span<Real> field) override {
+  void apply(std::span<double> field) override {
     if (static_cast<Index>(field.size()) != fields_ * grid_.cells()) {
       throw std::invalid_argument("inverse symbol applied to a field of another size");
     }
@@ -83,8 +80,8 @@ class PeriodicInverseSymbol final : public InverseSymbol<Real> {
       });
     };
     each_row([&](int thread, Index f, Index i) { load(thread, f, i, field.data()); });
-    transform_.through_columns(fields_, [&](int, const PlaneColumns<Real>& columns) {
-      using Whole = std::integral_constant<Index, PlaneTransform<Real>::kColumns>;
+    transform_.through_columns(fields_, [&](int, const PlaneColumns& columns) {
+      using Whole = std::integral_constant<Index, PlaneTransform::kColumns>;
       columns.count == Whole::value ? multiply(columns, Whole()) : multiply(columns, columns.count);
     });
     each_row([&](int thread, Index f, Index i) { store(thread, f, i, field.data()); });
@@ -98,29 +95,29 @@ class PeriodicInverseSymbol final : public InverseSymbol<Real> {
   }
 
   /// Row i of a field forward.
-  void load(int thread, Index f, Index i, const Real* fields) {
-    Real* const row = transform_.own_row(thread);
+  void load(int thread, Index f, Index i, const double* fields) {
+    double* const row = transform_.own_row(thread);
     std::copy_n(fields + (f * grid_.n1 + i) * grid_.n2, grid_.n2, row);
-    std::fill(row + grid_.n2, row + periodic_.length2, Real(0));
+    std::fill(row + grid_.n2, row + periodic_.length2, 0.0);
     transform_.forward_sample(thread, f, i);
   }
 
-  void store(int thread, Index f, Index i, Real* fields) {
+  void store(int thread, Index f, Index i, double* fields) {
     transform_.backward_sample(thread, f, i);
     std::copy_n(transform_.own_row(thread), grid_.n2, fields + (f * grid_.n1 + i) * grid_.n2);
   }
 
   template <typename Count>
-  void multiply(const PlaneColumns<Real>& columns, Count count) {
+  void multiply(const PlaneColumns& columns, Count count) {
     const Index first = columns.first - columns_.first;
     for (Index k = 0; k < periodic_.length1; ++k) {
       const bool negative = 2 * k > periodic_.length1;
       const Index f = negative ? periodic_.length1 - k : k;
-      const Real* const p11 = table_.row(SymbolEntry::p11, f) + first;
+      const double* const p11 = table_.row(SymbolEntry::p11, f) + first;
       if (fields_ == 1) {
         scale_complex(count, p11, columns.row(0, k));
       } else {
-        mix(count, Real(negative ? -1 : 1), p11, table_.row(SymbolEntry::p12, f) + first,
+        mix(count, double(negative ? -1 : 1), p11, table_.row(SymbolEntry::p12, f) + first,
             table_.row(SymbolEntry::p22, f) + first, columns.row(0, k), columns.row(1, k));
       }
     }
@@ -131,8 +128,8 @@ class PeriodicInverseSymbol final : public InverseSymbol<Real> {
   Index fields_;
   std::array<double, 2> diagonal_;
   Share columns_;  ///< of this rank
-  SymbolTable<Real> table_;
-  PlaneTransform<Real> transform_;
+  SymbolTable table_;
+  PlaneTransform transform_;
 };
 
 bool is_tangential(const BlockKernel& kernel) {
@@ -150,23 +147,15 @@ void check_diagonal(const Grid& grid, bool tangential, Diagonal diagonal) {
 
 }  // namespace
 
-template <typename Real>
-std::unique_ptr<InverseSymbol<Real>> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel,
-                                                         const ElasticPair& pair, Diagonal diagonal,
-                                                         int threads, bool at_edge) {
+std::unique_ptr<InverseSymbol> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel,
+                                                   const ElasticPair& pair, Diagonal diagonal, int threads,
+                                                   bool at_edge) {
   const bool tangential = is_tangential(kernel);
   check_diagonal(grid, tangential, diagonal);
   if (grid.quadrant) {
-    return std::make_unique<MirroredInverseSymbol<Real>>(grid, tangential, pair, diagonal, threads);
+    return std::make_unique<MirroredInverseSymbol>(grid, tangential, pair, diagonal, threads);
   }
-  return std::make_unique<PeriodicInverseSymbol<Real>>(grid, tangential, pair, threads, at_edge);
+  return std::make_unique<PeriodicInverseSymbol>(grid, tangential, pair, threads, at_edge);
 }
-
-template std::unique_ptr<InverseSymbol<double>> make_inverse_symbol<double>(const Grid&, const BlockKernel&,
-                                                                            const ElasticPair&, Diagonal, int,
-                                                                            bool);
-template std::unique_ptr<InverseSymbol<float>> make_inverse_symbol<float>(const Grid&, const BlockKernel&,
-                                                                          const ElasticPair&, Diagonal, int,
-                                                                          bool);
 
 }  // namespace slipstick::solver

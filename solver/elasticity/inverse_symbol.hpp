@@ -24,14 +24,13 @@ enum class Diagonal { no, yes };
 ///
 /// On a quadrant the fields' mirror images are theirs by cosine and sine transforms: pressures even in both
 /// coordinates; q1 even in x1 and odd in x2, q2 the reverse. The operator is the one on the whole grid.
-template <typename Real>
 class InverseSymbol {
  public:
   virtual ~InverseSymbol() = default;
 
   /// Overwrites a field (1 or 2 times grid.cells() values) by its filtered values. Allocates nothing. With
   /// Diagonal::yes the second component is written, not read. Throws std::invalid_argument for other sizes.
-  virtual void apply(std::span<Real> field) = 0;
+  virtual void apply(std::span<double> field) = 0;
   /// Means of the diagonal symbols over all frequencies, one per component (for the normal kernel both are
   /// the same): the diagonal of the operator on a whole grid, and on a quadrant away from its axes.
   virtual std::array<double, 2> diagonal() const = 0;
@@ -40,10 +39,8 @@ class InverseSymbol {
 /// The kernel is the normal or the tangential one; others throw std::invalid_argument, as does Diagonal::yes
 /// where the grid is no quadrant that its diagonal halves or the kernel not tangential. at_edge: whether
 /// fields reach the edge of a whole grid.
-template <typename Real>
-std::unique_ptr<InverseSymbol<Real>> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel,
-                                                         const ElasticPair& pair,
-                                                         Diagonal diagonal = Diagonal::no, int threads = 1,
-                                                         bool at_edge = false);
+std::unique_ptr<InverseSymbol> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel,
+                                                   const ElasticPair& pair, Diagonal diagonal = Diagonal::no,
+                                                   int threads = 1, bool at_edge = false);
 
 }  // namespace slipstick::solver

@@ -18,13 +18,12 @@ BlockKernel shear_kernel() { return {1, 2, {Component::k13, Component::k23}}; }
 
 namespace {
 
-template <typename Real>
-std::unique_ptr<Operator<Real>> make_convolution(const Grid& grid, const BlockKernel& kernel,
+std::unique_ptr<LinearOperator> make_convolution(const Grid& grid, const BlockKernel& kernel,
                                                  const ElasticPair& pair, const OperatorOptions& options) {
   if (grid.quadrant) {
-    return std::make_unique<MirroredConvolution<Real>>(grid, kernel, pair, options, options.diagonal);
+    return std::make_unique<MirroredConvolution>(grid, kernel, pair, options, options.diagonal);
   }
-  return std::make_unique<Convolution<Real>>(grid, kernel, pair, options);
+  return std::make_unique<Convolution>(grid, kernel, pair, options);
 }
 
 void require_whole(const Grid& grid) {
@@ -38,7 +37,7 @@ std::unique_ptr<LinearOperator> make_operator(OperatorKind kind, const Grid& gri
   if (kind != OperatorKind::dcfft) require_whole(grid);
   switch (kind) {
     case OperatorKind::dcfft:
-      return make_convolution<double>(grid, kernel, pair, options);
+      return make_convolution(grid, kernel, pair, options);
     case OperatorKind::direct:
       return std::make_unique<DirectSum>(grid, kernel, pair, options);
     case OperatorKind::dense:
@@ -47,15 +46,9 @@ std::unique_ptr<LinearOperator> make_operator(OperatorKind kind, const Grid& gri
   throw std::logic_error("unknown operator kind");
 }
 
-std::unique_ptr<Operator<float>> make_single_operator(const Grid& grid, const BlockKernel& kernel,
-                                                      const ElasticPair& pair,
-                                                      const OperatorOptions& options) {
-  return make_convolution<float>(grid, kernel, pair, options);
-}
-
 double predicted_sent_bytes(const Grid& grid, const BlockKernel& kernel) {
-  return grid.quadrant ? MirroredConvolution<double>::sent_bytes(grid, kernel)
-                       : Convolution<double>::sent_bytes(grid, kernel);
+  return grid.quadrant ? MirroredConvolution::sent_bytes(grid, kernel)
+                       : Convolution::sent_bytes(grid, kernel);
 }
 
 }  // namespace slipstick::solver

@@ -30,26 +30,23 @@ BlockKernel shear_kernel();
 
 /// Fields of traction to fields of displacement on one grid. The methods know no more of elasticity than
 /// this, so that the three ways to evaluate it are interchangeable.
-///
-/// Real is double, or float where an iteration is corrected by residuals in double precision.
-template <typename Real>
-class Operator {
+class LinearOperator {
  public:
-  using Field = Eigen::Array<Real, Eigen::Dynamic, 1>;
+  using Field = Eigen::ArrayXd;
 
-  virtual ~Operator() = default;
-  Operator(const Operator&) = delete;
-  Operator& operator=(const Operator&) = delete;
+  virtual ~LinearOperator() = default;
+  LinearOperator(const LinearOperator&) = delete;
+  LinearOperator& operator=(const LinearOperator&) = delete;
 
   /// displacement = K * traction: outputs()*cells and inputs()*cells values. They may not overlap. Allocates
   /// nothing. Throws std::invalid_argument for other sizes.
-  void apply(std::span<const Real> traction, std::span<Real> displacement) {
+  void apply(std::span<const double> traction, std::span<double> displacement) {
     apply_own(traction, displacement);
     gather(grid_, displacement);
   }
 
   /// In this rank's rows alone, see Ranks, of which alone it needs the tractions.
-  void apply_own(std::span<const Real> traction, std::span<Real> displacement) {
+  void apply_own(std::span<const double> traction, std::span<double> displacement) {
     const auto cells = static_cast<std::size_t>(grid_.cells());
     if (traction.size() != inputs() * cells || displacement.size() != outputs() * cells) {
       throw std::invalid_argument("operator applied to fields of another size");
@@ -76,18 +73,16 @@ class Operator {
   void restart_count() { applications_ = 0; }
 
  protected:
-  Operator(const Grid& grid, BlockKernel kernel) : grid_(grid), kernel_(std::move(kernel)) {}
+  LinearOperator(const Grid& grid, BlockKernel kernel) : grid_(grid), kernel_(std::move(kernel)) {}
   const BlockKernel& kernel() const { return kernel_; }
 
  private:
-  virtual void do_apply(std::span<const Real> traction, std::span<Real> displacement) = 0;
+  virtual void do_apply(std::span<const double> traction, std::span<double> displacement) = 0;
 
   Grid grid_;
   BlockKernel kernel_;
   long applications_ = 0;
 };
-
-using LinearOperator = Operator<double>;
 
 struct OperatorOptions {
   int threads = 1;
@@ -99,11 +94,6 @@ struct OperatorOptions {
 /// (other than dcfft) or the kernel (coupling) has no such form.
 std::unique_ptr<LinearOperator> make_operator(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
                                               const ElasticPair& pair, const OperatorOptions& options = {});
-
-/// By discrete convolution and FFT in single precision.
-std::unique_ptr<Operator<float>> make_single_operator(const Grid& grid, const BlockKernel& kernel,
-                                                      const ElasticPair& pair,
-                                                      const OperatorOptions& options = {});
 
 /// What all ranks together will send in one application in double precision by discrete convolution.
 double predicted_sent_bytes(const Grid& grid, const BlockKernel& kernel);

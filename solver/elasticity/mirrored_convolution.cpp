@@ -31,7 +31,7 @@ std::vector<Component> distinct_components(const BlockKernel& kernel, bool diago
   return {Component::k11, Component::k12, Component::k22};
 }
 
-/// Real lines of h + 1 coefficients, from one to the next and from one coefficient to the next.
+/// double lines of h + 1 coefficients, from one to the next and from one coefficient to the next.
 struct KernelLines {
   Index count;
   Index distance;
@@ -42,18 +42,18 @@ struct KernelLines {
 /// ones. In place. Two lines are the real and the imaginary part of a complex one over the whole period,
 /// whose plan is found far sooner than that of a cosine transform.
 void transform_lines(double* values, const KernelLines& lines, Index h, bool odd, int threads) {
-  std::vector<FftwBuffer<double>> periods, transforms;
+  std::vector<FftwBuffer> periods, transforms;
   for (int thread = 0; thread < threads; ++thread) {
     periods.emplace_back(count(4 * h));
     transforms.emplace_back(count(4 * h));
   }
-  const FftwPlan<double> plan(Fftw<double>::plan(static_cast<int>(2 * h), periods[0].complex(),
-                                                 transforms[0].complex(), FFTW_FORWARD));
+  const FftwPlan plan(
+      plan_transform(static_cast<int>(2 * h), periods[0].complex(), transforms[0].complex(), FFTW_FORWARD));
   const double sign = odd ? -1.0 : 1.0;
   const Index ends = odd ? 1 : 0;  // where odd lines are taken to be zero, as their transforms are
   const auto transform_pair = [&](int thread, Index line) {
-    FftwBuffer<double>& period = periods[static_cast<std::size_t>(thread)];
-    FftwBuffer<double>& transformed = transforms[static_cast<std::size_t>(thread)];
+    FftwBuffer& period = periods[static_cast<std::size_t>(thread)];
+    FftwBuffer& transformed = transforms[static_cast<std::size_t>(thread)];
     double* const first = values + line * lines.distance;
     double* const second = line + 1 < lines.count ? first + lines.distance : first;
     double* const z = period.data();
@@ -65,7 +65,7 @@ void transform_lines(double* values, const KernelLines& lines, Index h, bool odd
         z[2 * k + i] = pair[count(i)];
       }
     }
-    Fftw<double>::execute(plan.get(), period.complex(), transformed.complex());
+    fftw_execute_dft(plan.get(), period.complex(), transformed.complex());
     const double* const sums = transformed.data();
     for (Index k = 0; k <= h; ++k) {
       second[k * lines.step] = odd ? sums[2 * k] : sums[2 * k + 1];
@@ -84,19 +84,16 @@ void transform_kernel(std::vector<double>& values, Index h1, Index h2, bool odd,
 }
 
 /// The exchanged coordinates of the last group's columns reach up to a group further.
-template <typename Real>
 std::size_t transformed_reals(Index frequencies) {
-  constexpr Index lines = HalfSampleTransform<Real>::kLines;
+  constexpr Index lines = HalfSampleTransform::kLines;
   return count((groups(frequencies, lines) * frequencies + lines) * lines);
 }
 
 }  // namespace
 
-template <typename Real>
-MirroredConvolution<Real>::MirroredConvolution(const Grid& quadrant, BlockKernel kernel,
-                                               const ElasticPair& pair, const OperatorOptions& options,
-                                               bool diagonal)
-    : Operator<Real>(quadrant, checked(std::move(kernel), quadrant, diagonal)),
+MirroredConvolution::MirroredConvolution(const Grid& quadrant, BlockKernel kernel, const ElasticPair& pair,
+                                         const OperatorOptions& options, bool diagonal)
+    : LinearOperator(quadrant, checked(std::move(kernel), quadrant, diagonal)),
       diagonal_(diagonal),
       threads_(std::max(options.threads, 1)),
       along1_(quadrant.n1),
@@ -111,7 +108,7 @@ MirroredConvolution<Real>::MirroredConvolution(const Grid& quadrant, BlockKernel
     ranks_.emplace(shared_matrix(row_groups_, column_groups_, quadrant.n1));
   }
   own_column_groups_ = ranks_ ? Ranks::own_share(column_groups_) : Share{0, column_groups_};
-  if (diagonal_) transformed_ = FftwBuffer<Real>(transformed_reals<Real>(along1_.frequencies()));
+  if (diagonal_) transformed_ = FftwBuffer(transformed_reals(along1_.frequencies()));
   const std::vector<Component> components = distinct_components(this->kernel(), diagonal_);
   auto tables = influence_tables(components, pair, quadrant.h1, quadrant.h2, along1_.frequencies() + 1,
                                  along2_.frequencies() + 1, threads_);
@@ -125,9 +122,7 @@ MirroredConvolution<Real>::MirroredConvolution(const Grid& quadrant, BlockKernel
 }
 
 /// 1/(p1 p2) included, which undoes the transforms' scale.
-template <typename Real>
-FftwBuffer<Real> MirroredConvolution<Real>::kernel_spectrum(Component component,
-                                                            std::vector<double> values) const {
+FftwBuffer MirroredConvolution::kernel_spectrum(Component component, std::vector<double> values) const {
   const Index h1 = along1_.frequencies();
   const Index h2 = along2_.frequencies();
   const bool odd = component == Component::k12;
@@ -138,14 +133,14 @@ FftwBuffer<Real> MirroredConvolution<Real>::kernel_spectrum(Component component,
   const Index column0 = component == Component::k11 ? h2 : 0;
   const Index first = own_column_groups_.first * kLines;
   const Index last = std::min(own_column_groups_.last * kLines, h2);
-  FftwBuffer<Real> spectrum(count(own_column_groups_.count() * kLines * h1));
+  FftwBuffer spectrum(count(own_column_groups_.count() * kLines * h1));
   const Index start = odd ? 1 : 0;
   in_parts(threads_, h1 - start, [&](int, Index begin, Index end) {
     for (Index k1 = start + begin; k1 < start + end; ++k1) {
       for (Index k2 = std::max(first, start); k2 < last; ++k2) {
         const Index from = (k1 == 0 ? row0 : k1) * (h2 + 1) + (k2 == 0 ? column0 : k2);
         spectrum.data()[((k2 - first) / kLines * h1 + k1) * kLines + k2 % kLines] =
-            static_cast<Real>(scale * values[count(from)]);
+            (scale * values[count(from)]);
       }
     }
   });
@@ -153,39 +148,33 @@ FftwBuffer<Real> MirroredConvolution<Real>::kernel_spectrum(Component component,
 }
 
 /// A block of kLines rows by kLines columns is an entry.
-template <typename Real>
-auto MirroredConvolution<Real>::shared_matrix(Index row_groups, Index column_groups, Index rows) -> Shape {
+auto MirroredConvolution::shared_matrix(Index row_groups, Index column_groups, Index rows) -> Shape {
   static_assert(RowBands::kRows % kLines == 0);
   return {row_groups, RowBands(rows).rows_of_rank() / kLines, column_groups, kLines * kLines};
 }
 
-template <typename Real>
-Share MirroredConvolution<Real>::own_row_groups(Index rows) {
+Share MirroredConvolution::own_row_groups(Index rows) {
   const Share own = RowBands(rows).own_rows();
   return {groups(own.first, kLines), groups(own.last, kLines)};
 }
 
-template <typename Real>
-Index MirroredConvolution<Real>::field_size(Index row_groups, Index column_groups, Index rows) {
+Index MirroredConvolution::field_size(Index row_groups, Index column_groups, Index rows) {
   if (Ranks::number() == 1) return row_groups * column_groups * kLines * kLines;
   return shared_matrix(row_groups, column_groups, rows).size();
 }
 
-template <typename Real>
-Parity MirroredConvolution<Real>::parity_of(Index field) const {
+Parity MirroredConvolution::parity_of(Index field) const {
   if (this->inputs() == 1) return {1, 1};
   return field == 0 ? Parity{1, -1} : Parity{-1, 1};
 }
 
-template <typename Real>
-double MirroredConvolution<Real>::sent_bytes(const Grid& quadrant, const BlockKernel& kernel) {
+double MirroredConvolution::sent_bytes(const Grid& quadrant, const BlockKernel& kernel) {
   const Shape matrix = shared_matrix(groups(quadrant.n1, kLines),
                                      groups(Transform::frequencies(quadrant.n2), kLines), quadrant.n1);
   return static_cast<double>(kernel.inputs + kernel.outputs) * matrix.sent_bytes();
 }
 
-template <typename Real>
-void MirroredConvolution<Real>::do_apply(std::span<const Real> traction, std::span<Real> displacement) {
+void MirroredConvolution::do_apply(std::span<const double> traction, std::span<double> displacement) {
   const auto in_groups = [this](Index total, const auto& work) {
     in_parts(threads_, total, [&work](int thread, Index first, Index last) {
       for (Index group = first; group < last; ++group) work(thread, group);
@@ -214,65 +203,61 @@ void MirroredConvolution<Real>::do_apply(std::span<const Real> traction, std::sp
   });
 }
 
-template <typename Real>
-void MirroredConvolution<Real>::rows_forward(int thread, Index field, Index group, const Real* values) {
+void MirroredConvolution::rows_forward(int thread, Index field, Index group, const double* values) {
   const Index n2 = this->grid().n2;
   const Index rows = std::min(kLines, this->grid().n1 - group * kLines);
-  const Real* const first = values + group * kLines * n2;
-  Real* const block = half_transformed(field, group);
-  if (std::all_of(first, first + rows * n2, [](Real value) { return value == 0; })) {
-    std::fill_n(block, row_group_stride(), Real(0));
+  const double* const first = values + group * kLines * n2;
+  double* const block = half_transformed(field, group);
+  if (std::all_of(first, first + rows * n2, [](double value) { return value == 0; })) {
+    std::fill_n(block, row_group_stride(), 0.0);
     return;
   }
   along2_.forward(row_workspaces_[count(thread)], {.data = first, .line_stride = n2, .count = rows},
                   parity_of(field).x2, [block](Index k2) { return block + k2 * kLines; });
 }
 
-template <typename Real>
-void MirroredConvolution<Real>::rows_backward(int thread, Index field, Index group, Real* values) {
+void MirroredConvolution::rows_backward(int thread, Index field, Index group, double* values) {
   const Index n2 = this->grid().n2;
   const Index rows = std::min(kLines, this->grid().n1 - group * kLines);
-  const Real* const block = half_transformed(field, group);
+  const double* const block = half_transformed(field, group);
   along2_.backward(row_workspaces_[count(thread)],
                    {.data = values + group * kLines * n2, .line_stride = n2, .count = rows},
                    parity_of(field).x2,
                    [block](Index k2) { return Transform::packets(block + k2 * kLines); });
 }
 
-template <typename Real>
-void MirroredConvolution<Real>::convolve_columns(int thread, Index group) {
+void MirroredConvolution::convolve_columns(int thread, Index group) {
   for (Index field = 0; field < fields(); ++field) {
     Workspace& work = column_workspace(thread, field);
-    along1_.forward(work, columns<const Real>(field, group), parity_of(field).x1,
+    along1_.forward(work, columns<const double>(field, group), parity_of(field).x1,
                     [&work](Index k1) { return work.row(k1); });
   }
   multiply(thread, group);
   for (Index field = 0; field < fields(); ++field) {
     Workspace& work = column_workspace(thread, field);
-    along1_.backward(work, columns<Real>(field, group), parity_of(field).x1,
+    along1_.backward(work, columns<double>(field, group), parity_of(field).x1,
                      [&work](Index k1) { return Transform::packets(work.row(k1)); });
   }
 }
 
 /// The spectra of odd fields and of odd kernels lack a factor of -i for each coordinate in which they are
 /// odd: K12's product with either field lacks (-i)^2.
-template <typename Real>
-void MirroredConvolution<Real>::multiply(int thread, Index group) {
-  using P = Packet<Real>;
+void MirroredConvolution::multiply(int thread, Index group) {
+  using P = Packet;
   const Index h1 = along1_.frequencies();
   const auto spectrum = [&](std::size_t component, Index k1) {
     return spectra_[component].data() + (group * h1 + k1) * kLines;
   };
   for (Index k1 = 0; k1 < h1; ++k1) {
-    Real* const first = column_workspace(thread, 0).row(k1);
-    const Real* const k11 = spectrum(0, k1);
+    double* const first = column_workspace(thread, 0).row(k1);
+    const double* const k11 = spectrum(0, k1);
     if (fields() == 1) {
       for (Index c = 0; c < kLines; c += P::kSize) P::store(first + c, P::load(k11 + c) * P::load(first + c));
       continue;
     }
-    Real* const second = column_workspace(thread, 1).row(k1);
-    const Real* const k12 = spectrum(1, k1);
-    const Real* const k22 = spectrum(2, k1);
+    double* const second = column_workspace(thread, 1).row(k1);
+    const double* const k12 = spectrum(1, k1);
+    const double* const k22 = spectrum(2, k1);
     for (Index c = 0; c < kLines; c += P::kSize) {
       const auto q1 = P::load(first + c);
       const auto q2 = P::load(second + c);
@@ -282,45 +267,39 @@ void MirroredConvolution<Real>::multiply(int thread, Index group) {
   }
 }
 
-template <typename Real>
-void MirroredConvolution<Real>::columns_forward_diagonal(int thread, Index group) {
-  Real* const block = transformed_.data() + group * along1_.frequencies() * kLines;
-  along1_.forward(column_workspace(thread, 0), columns<const Real>(0, group), parity_of(0).x1,
+void MirroredConvolution::columns_forward_diagonal(int thread, Index group) {
+  double* const block = transformed_.data() + group * along1_.frequencies() * kLines;
+  along1_.forward(column_workspace(thread, 0), columns<const double>(0, group), parity_of(0).x1,
                   [block](Index k1) { return block + k1 * kLines; });
 }
 
 /// The spectrum of q2 is that of -q1 with its coordinates exchanged: k12's sign is the other one than above.
-template <typename Real>
-void MirroredConvolution<Real>::columns_backward_diagonal(int thread, Index group) {
+void MirroredConvolution::columns_backward_diagonal(int thread, Index group) {
   const Index h = along1_.frequencies();
-  const Real* const k11 = spectra_[0].data() + group * h * kLines;
-  const Real* const k12 = spectra_[1].data() + group * h * kLines;
-  const Real* const plain = transformed_.data() + group * h * kLines;
-  const Real* const exchanged = transformed_.data() + group * kLines * kLines;
+  const double* const k11 = spectra_[0].data() + group * h * kLines;
+  const double* const k12 = spectra_[1].data() + group * h * kLines;
+  const double* const plain = transformed_.data() + group * h * kLines;
+  const double* const exchanged = transformed_.data() + group * kLines * kLines;
   const auto product = [=](Index k1) {
     return [=, at = k1 * kLines, column = exchanged + k1 / kLines * h * kLines + k1 % kLines](Index line) {
-      using P = Packet<Real>;
+      using P = Packet;
       return P::load(k11 + at + line) * P::load(plain + at + line) +
              P::load(k12 + at + line) * P::gather(column + line * kLines, kLines);
     };
   };
-  along1_.backward(column_workspace(thread, 0), columns<Real>(0, group), parity_of(0).x1, product);
+  along1_.backward(column_workspace(thread, 0), columns<double>(0, group), parity_of(0).x1, product);
 }
 
 /// Of a group of rows of u1, while it is in cache: u2(x2, x1) = -u1(x1, x2).
-template <typename Real>
-void MirroredConvolution<Real>::mirror_about_diagonal(Index group, std::span<Real> displacement) const {
+void MirroredConvolution::mirror_about_diagonal(Index group, std::span<double> displacement) const {
   const Index n = this->grid().n1;
   const Index first = group * kLines;
   const Index last = std::min(first + kLines, n);
-  const Real* const u1 = displacement.data();
-  Real* const u2 = displacement.data() + n * n;
+  const double* const u1 = displacement.data();
+  double* const u2 = displacement.data() + n * n;
   for (Index j = 0; j < n; ++j) {
     for (Index i = first; i < last; ++i) u2[j * n + i] = -u1[i * n + j];
   }
 }
-
-template class MirroredConvolution<double>;
-template class MirroredConvolution<float>;
 
 }  // namespace slipstick::solver

@@ -25,8 +25,7 @@ namespace slipstick::solver {
 ///
 /// With `diagonal`, of a square quadrant of square cells, the fields are also mirror images about the
 /// diagonal, q2(x1, x2) = -q1(x2, x1): q1 alone is read and transformed, u2 is u1's image. Half the work.
-template <typename Real>
-class MirroredConvolution final : public Operator<Real> {
+class MirroredConvolution final : public LinearOperator {
  public:
   /// Throws std::invalid_argument where the grid is no quadrant, for a kernel that is neither normal nor
   /// tangential, and with `diagonal` for another kernel than the tangential one or unequal sides or cells.
@@ -35,35 +34,35 @@ class MirroredConvolution final : public Operator<Real> {
   static double sent_bytes(const Grid& quadrant, const BlockKernel& kernel);
 
  private:
-  using Transform = HalfSampleTransform<Real>;
+  using Transform = HalfSampleTransform;
   using Workspace = typename Transform::Workspace;
   static constexpr Index kLines = Transform::kLines;
 
-  void do_apply(std::span<const Real> traction, std::span<Real> displacement) override;
+  void do_apply(std::span<const double> traction, std::span<double> displacement) override;
   /// values: its influence table.
-  FftwBuffer<Real> kernel_spectrum(Component component, std::vector<double> values) const;
-  void rows_forward(int thread, Index field, Index group, const Real* values);
-  void rows_backward(int thread, Index field, Index group, Real* values);
+  FftwBuffer kernel_spectrum(Component component, std::vector<double> values) const;
+  void rows_forward(int thread, Index field, Index group, const double* values);
+  void rows_backward(int thread, Index field, Index group, double* values);
   void convolve_columns(int thread, Index group);
   void multiply(int thread, Index group);
   void columns_forward_diagonal(int thread, Index group);
   void columns_backward_diagonal(int thread, Index group);
-  void mirror_about_diagonal(Index group, std::span<Real> displacement) const;
+  void mirror_about_diagonal(Index group, std::span<double> displacement) const;
 
   Index fields() const { return diagonal_ ? 1 : static_cast<Index>(this->inputs()); }
   Parity parity_of(Index field) const;
   Workspace& column_workspace(int thread, Index field) {
     return column_workspaces_[static_cast<std::size_t>(thread * fields() + field)];
   }
-  using Shape = typename RankTranspose<Real>::Shape;
+  using Shape = RankTranspose::Shape;
   static Shape shared_matrix(Index row_groups, Index column_groups, Index rows);
   static Share own_row_groups(Index rows);
   /// Values of half_transformed_ from one field to the next.
   static Index field_size(Index row_groups, Index column_groups, Index rows);
-  Real* of_field(Index field) { return half_transformed_.data() + field * field_size_; }
+  double* of_field(Index field) { return half_transformed_.data() + field * field_size_; }
   /// Values from one group of rows of half_transformed_ to the next, while rows are carried.
   Index row_group_stride() const { return column_groups_ * kLines * kLines; }
-  Real* half_transformed(Index field, Index row_group) {
+  double* half_transformed(Index field, Index row_group) {
     return of_field(field) + (row_group - own_row_groups_.first) * row_group_stride();
   }
   /// One of this rank's groups of columns of half_transformed_.
@@ -78,21 +77,18 @@ class MirroredConvolution final : public Operator<Real> {
   int threads_;
   Transform along1_;
   Transform along2_;
-  Index row_groups_;                       ///< groups of kLines rows of cells
-  Index column_groups_;                    ///< groups of kLines frequencies along x2
-  std::vector<FftwBuffer<Real>> spectra_;  ///< of the distinct components: h1 rows for each group of columns
-  Share own_row_groups_;                   ///< of this rank
+  Index row_groups_;                 ///< groups of kLines rows of cells
+  Index column_groups_;              ///< groups of kLines frequencies along x2
+  std::vector<FftwBuffer> spectra_;  ///< of the distinct components: h1 rows for each group of columns
+  Share own_row_groups_;             ///< of this rank
   Share own_column_groups_{};
   Index field_size_;
-  std::optional<RankTranspose<Real>> ranks_;  ///< where there are several
-  FftwBuffer<Real> half_transformed_;         ///< along x2 only: h2 rows for each field and group of rows; on
+  std::optional<RankTranspose> ranks_;        ///< where there are several
+  FftwBuffer half_transformed_;               ///< along x2 only: h2 rows for each field and group of rows; on
                                               ///< several ranks by groups of columns while these are carried
-  FftwBuffer<Real> transformed_;              ///< diagonal only: h1 rows for each group of columns
+  FftwBuffer transformed_;                    ///< diagonal only: h1 rows for each group of columns
   std::vector<Workspace> row_workspaces_;     ///< one for each thread
   std::vector<Workspace> column_workspaces_;  ///< one for each thread and field
 };
-
-extern template class MirroredConvolution<double>;
-extern template class MirroredConvolution<float>;
 
 }  // namespace slipstick::solver

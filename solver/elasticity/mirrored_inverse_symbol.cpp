@@ -48,9 +48,9 @@ Index coefficient_size(Index half, bool two_fields) { return (two_fields ? 10 : 
 Index twiddle_size(Index t1, Index half) { return 2 * (t1 / 2 + 1 + half); }
 
 /// n samples, those at even and at odd places times a sign each, padded to t.
-template <typename Real>
-void reorder(const Real* __restrict values, Index n, Real even, Real odd, Index t, Real* __restrict row) {
-  if (n < t) std::fill_n(row, t, Real(0));
+void reorder(const double* __restrict values, Index n, double even, double odd, Index t,
+             double* __restrict row) {
+  if (n < t) std::fill_n(row, t, 0.0);
   for (Index k = 0; k < n / 2; ++k) {
     row[k] = even * values[2 * k];
     row[t - 1 - k] = odd * values[2 * k + 1];
@@ -58,8 +58,8 @@ void reorder(const Real* __restrict values, Index n, Real even, Real odd, Index 
   if (n % 2 != 0) row[n / 2] = even * values[n - 1];
 }
 
-template <typename Real>
-void restore(const Real* __restrict row, Index n, Real even, Real odd, Index t, Real* __restrict values) {
+void restore(const double* __restrict row, Index n, double even, double odd, Index t,
+             double* __restrict values) {
   for (Index k = 0; k < n / 2; ++k) {
     values[2 * k] = even * row[k];
     values[2 * k + 1] = odd * row[t - 1 - k];
@@ -72,18 +72,19 @@ void restore(const Real* __restrict row, Index n, Real even, Real odd, Index t, 
 /// exp(-i (theta2 - theta1)), theta the arguments of the cosines. Written is twice
 ///
 ///     cc = Re(A + B)/2,  cs = -Im(A + B)/2,  sc = Im(B - A)/2,  ss = Re(B - A)/2.
-template <typename Real, typename Count>
-void separate_rows(Count count, Twiddles<Real> w, const Real* __restrict a, const Real* __restrict b,
-                   Real* __restrict cc, Real* __restrict cs, Real* __restrict sc, Real* __restrict ss) {
+template <typename Count>
+void separate_rows(Count count, Twiddles w, const double* __restrict a, const double* __restrict b,
+                   double* __restrict cc, double* __restrict cs, double* __restrict sc,
+                   double* __restrict ss) {
   for (Index k = 0; k < count; ++k) {
-    const Real sum_real = a[2 * k] + b[2 * k];
-    const Real sum_imaginary = a[2 * k + 1] + b[2 * k + 1];
-    const Real difference_real = a[2 * k] - b[2 * k];
-    const Real difference_imaginary = a[2 * k + 1] - b[2 * k + 1];
-    const Real sr = w.c2[k] * sum_real + w.s2[k] * sum_imaginary;
-    const Real si = w.c2[k] * sum_imaginary - w.s2[k] * sum_real;
-    const Real dr = w.c2[k] * difference_real + w.s2[k] * difference_imaginary;
-    const Real di = w.c2[k] * difference_imaginary - w.s2[k] * difference_real;
+    const double sum_real = a[2 * k] + b[2 * k];
+    const double sum_imaginary = a[2 * k + 1] + b[2 * k + 1];
+    const double difference_real = a[2 * k] - b[2 * k];
+    const double difference_imaginary = a[2 * k + 1] - b[2 * k + 1];
+    const double sr = w.c2[k] * sum_real + w.s2[k] * sum_imaginary;
+    const double si = w.c2[k] * sum_imaginary - w.s2[k] * sum_real;
+    const double dr = w.c2[k] * difference_real + w.s2[k] * difference_imaginary;
+    const double di = w.c2[k] * difference_imaginary - w.s2[k] * difference_real;
     cc[k] = w.c * sr + w.s * di;
     cs[k] = w.s * dr - w.c * si;
     sc[k] = w.s * sr - w.c * di;
@@ -92,18 +93,19 @@ void separate_rows(Count count, Twiddles<Real> w, const Real* __restrict a, cons
 }
 
 /// The inverse of separate_rows(), times 2.
-template <typename Real, typename Count>
-void join_rows(Count count, Twiddles<Real> w, const Real* __restrict cc, const Real* __restrict cs,
-               const Real* __restrict sc, const Real* __restrict ss, Real* __restrict a, Real* __restrict b) {
+template <typename Count>
+void join_rows(Count count, Twiddles w, const double* __restrict cc, const double* __restrict cs,
+               const double* __restrict sc, const double* __restrict ss, double* __restrict a,
+               double* __restrict b) {
   for (Index k = 0; k < count; ++k) {
-    const Real sr = w.c * cc[k] + w.s * sc[k];
-    const Real si = -w.c * cs[k] - w.s * ss[k];
-    const Real dr = w.s * cs[k] - w.c * ss[k];
-    const Real di = w.s * cc[k] - w.c * sc[k];
-    const Real sum_real = w.c2[k] * sr - w.s2[k] * si;
-    const Real sum_imaginary = w.c2[k] * si + w.s2[k] * sr;
-    const Real difference_real = w.c2[k] * dr - w.s2[k] * di;
-    const Real difference_imaginary = w.c2[k] * di + w.s2[k] * dr;
+    const double sr = w.c * cc[k] + w.s * sc[k];
+    const double si = -w.c * cs[k] - w.s * ss[k];
+    const double dr = w.s * cs[k] - w.c * ss[k];
+    const double di = w.s * cc[k] - w.c * sc[k];
+    const double sum_real = w.c2[k] * sr - w.s2[k] * si;
+    const double sum_imaginary = w.c2[k] * si + w.s2[k] * sr;
+    const double difference_real = w.c2[k] * dr - w.s2[k] * di;
+    const double difference_imaginary = w.c2[k] * di + w.s2[k] * dr;
     a[2 * k] = sum_real + difference_real;
     a[2 * k + 1] = sum_imaginary + difference_imaginary;
     b[2 * k] = sum_real - difference_real;
@@ -111,35 +113,33 @@ void join_rows(Count count, Twiddles<Real> w, const Real* __restrict cc, const R
   }
 }
 
-template <typename Real, typename Count>
-void scale(Count count, const Real* __restrict p, Real* __restrict x) {
+template <typename Count>
+void scale(Count count, const double* __restrict p, double* __restrict x) {
   for (Index k = 0; k < count; ++k) x[k] *= p[k];
 }
 
-template <typename Real, typename Count>
-void mix(Count count, const Real* __restrict p11, const Real* __restrict p12, const Real* __restrict p22,
-         Real* __restrict x1, Real* __restrict x2) {
+template <typename Count>
+void mix(Count count, const double* __restrict p11, const double* __restrict p12,
+         const double* __restrict p22, double* __restrict x1, double* __restrict x2) {
   for (Index k = 0; k < count; ++k) {
-    const Real first = x1[k];
+    const double first = x1[k];
     x1[k] = p11[k] * first + p12[k] * x2[k];
     x2[k] = p12[k] * first + p22[k] * x2[k];
   }
 }
 
 /// p11 x - p12 y, y every step-th value. The first p12 is zero, and there need be no first y.
-template <typename Real>
-void mix_with_other_half(Index count, const Real* __restrict p11, const Real* __restrict p12,
-                         const Real* __restrict x, const Real* __restrict y, Index step,
-                         Real* __restrict out) {
+void mix_with_other_half(Index count, const double* __restrict p11, const double* __restrict p12,
+                         const double* __restrict x, const double* __restrict y, Index step,
+                         double* __restrict out) {
   out[0] = p11[0] * x[0];
   for (Index k = 1; k < count; ++k) out[k] = p11[k] * x[k] - p12[k] * y[k * step];
 }
 
 }  // namespace
 
-template <typename Real>
-MirroredInverseSymbol<Real>::MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair,
-                                                   Diagonal diagonal, int threads)
+MirroredInverseSymbol::MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair,
+                                             Diagonal diagonal, int threads)
     : grid_(grid),
       tangential_(tangential),
       symmetric_(diagonal == Diagonal::yes),
@@ -147,7 +147,7 @@ MirroredInverseSymbol<Real>::MirroredInverseSymbol(const Grid& grid, bool tangen
       t2_(transform_length(grid.n2)),
       half_(t2_ / 2 + 1),
       diagonal_(mean_inverse_symbol(mirrored(grid), pair, tangential)),
-      columns_(PlaneTransform<Real>::own_columns(plane_of(grid, tangential, symmetric_))),
+      columns_(PlaneTransform::own_columns(plane_of(grid, tangential, symmetric_))),
       table_(mirrored(grid), pair, entries(tangential, diagonal == Diagonal::yes), frequencies(t2_, columns_),
              0.5 / (static_cast<double>(t1_) * static_cast<double>(t2_))),
       transform_(plane_of(grid, tangential, symmetric_), threads),
@@ -157,18 +157,16 @@ MirroredInverseSymbol<Real>::MirroredInverseSymbol(const Grid& grid, bool tangen
   fill_twiddles();
 }
 
-template <typename Real>
-void MirroredInverseSymbol<Real>::fill_twiddles() {
-  Real* next = twiddles_.data();
+void MirroredInverseSymbol::fill_twiddles() {
+  double* next = twiddles_.data();
   for (const Index t : {t1_, t2_}) {
     const double step = 0.5 * std::numbers::pi / static_cast<double>(t);
-    for (Index k = 0; k <= t / 2; ++k) *next++ = static_cast<Real>(std::cos(step * static_cast<double>(k)));
-    for (Index k = 0; k <= t / 2; ++k) *next++ = static_cast<Real>(std::sin(step * static_cast<double>(k)));
+    for (Index k = 0; k <= t / 2; ++k) *next++ = std::cos(step * static_cast<double>(k));
+    for (Index k = 0; k <= t / 2; ++k) *next++ = std::sin(step * static_cast<double>(k));
   }
 }
 
-template <typename Real>
-void MirroredInverseSymbol<Real>::apply(std::span<Real> field) {
+void MirroredInverseSymbol::apply(std::span<double> field) {
   const Index cells = grid_.cells();
   if (static_cast<Index>(field.size()) != (tangential_ ? 2 : 1) * cells) {
     throw std::invalid_argument("inverse symbol applied to a field of another size");
@@ -188,8 +186,8 @@ void MirroredInverseSymbol<Real>::apply(std::span<Real> field) {
     multiply_symmetric();
     transform_.backward_columns(1);
   } else {
-    transform_.through_columns(transformed, [&](int thread, const PlaneColumns<Real>& columns) {
-      using Whole = std::integral_constant<Index, PlaneTransform<Real>::kColumns>;
+    transform_.through_columns(transformed, [&](int thread, const PlaneColumns& columns) {
+      using Whole = std::integral_constant<Index, PlaneTransform::kColumns>;
       columns.count == Whole::value ? multiply(thread, columns, Whole())
                                     : multiply(thread, columns, columns.count);
     });
@@ -202,74 +200,65 @@ void MirroredInverseSymbol<Real>::apply(std::span<Real> field) {
 }
 
 /// Sample i of a field, and forward.
-template <typename Real>
-void MirroredInverseSymbol<Real>::load(int thread, Index f, Index i, const Real* values) {
+void MirroredInverseSymbol::load(int thread, Index f, Index i, const double* values) {
   const auto [even, odd] = signs(f, i);
   reorder(values + i * grid_.n2, grid_.n2, even, odd, t2_, transform_.own_row(thread));
   transform_.forward_sample(thread, f, i);
 }
 
-template <typename Real>
-void MirroredInverseSymbol<Real>::store(int thread, Index f, Index i, Real* values) {
+void MirroredInverseSymbol::store(int thread, Index f, Index i, double* values) {
   const auto [even, odd] = signs(symmetric_ ? 0 : f, i);
   transform_.backward_sample(thread, f, i);
   restore(transform_.own_row(thread), grid_.n2, even, odd, t2_, values + i * grid_.n2);
 }
 
 /// q1 is odd in x2 and q2 in x1: their samples at odd places take the other sign there.
-template <typename Real>
-std::array<Real, 2> MirroredInverseSymbol<Real>::signs(Index f, Index i) const {
+std::array<double, 2> MirroredInverseSymbol::signs(Index f, Index i) const {
   if (!tangential_) return {1, 1};
   if (f == 0) return {1, -1};
-  const auto sign = static_cast<Real>(i % 2 == 0 ? 1 : -1);
+  const double sign = i % 2 == 0 ? 1.0 : -1.0;
   return {sign, sign};
 }
 
-template <typename Real>
-auto MirroredInverseSymbol<Real>::coefficients(int thread, Index f) -> Coefficients {
-  Real* const first = scratch(thread) + 4 * f * half_;
+auto MirroredInverseSymbol::coefficients(int thread, Index f) -> Coefficients {
+  double* const first = scratch(thread) + 4 * f * half_;
   return {first, first + half_, first + 2 * half_, first + 3 * half_};
 }
 
 /// cos and sin at row k1 and in some columns.
-template <typename Real>
-Twiddles<Real> MirroredInverseSymbol<Real>::twiddles(Index k1, Index first_column) const {
-  const Real* const c1 = twiddles_.data();
-  const Real* const c2 = c1 + 2 * (t1_ / 2 + 1) + first_column;
+Twiddles MirroredInverseSymbol::twiddles(Index k1, Index first_column) const {
+  const double* const c1 = twiddles_.data();
+  const double* const c2 = c1 + 2 * (t1_ / 2 + 1) + first_column;
   return {c1[k1], c1[t1_ / 2 + 1 + k1], c2, c2 + half_};
 }
 
-template <typename Real>
 template <typename Count>
-void MirroredInverseSymbol<Real>::separate(int thread, const PlaneColumns<Real>& columns, Count count,
-                                           Index f, Index k1) {
+void MirroredInverseSymbol::separate(int thread, const PlaneColumns& columns, Count count, Index f,
+                                     Index k1) {
   const Coefficients to = coefficients(thread, f);
   separate_rows(count, twiddles(k1, columns.first), columns.row(f, k1),
                 columns.row(f, k1 == 0 ? 0 : t1_ - k1), to.cc, to.cs, to.sc, to.ss);
 }
 
-template <typename Real>
 template <typename Count>
-void MirroredInverseSymbol<Real>::join(int thread, const Coefficients& from,
-                                       const PlaneColumns<Real>& columns, Count count, Index f, Index k1) {
+void MirroredInverseSymbol::join(int thread, const Coefficients& from, const PlaneColumns& columns,
+                                 Count count, Index f, Index k1) {
   // Rows 0 and t1/2 are their own partners: what is written twice goes elsewhere once.
   const bool alone = k1 == 0 || 2 * k1 == t1_;
-  Real* const unused = scratch(thread) + scratch_ - 2 * half_;
+  double* const unused = scratch(thread) + scratch_ - 2 * half_;
   join_rows(count, twiddles(k1, columns.first), from.cc, from.cs, from.sc, from.ss, columns.row(f, k1),
             alone ? unused : columns.row(f, t1_ - k1));
 }
 
-template <typename Real>
 template <typename Work>
-void MirroredInverseSymbol<Real>::for_row_pairs(const Work& work) {
+void MirroredInverseSymbol::for_row_pairs(const Work& work) {
   in_parts(transform_.threads(), t1_ / 2 + 1, [&](int thread, Index first, Index last) {
     for (Index k1 = first; k1 < last; ++k1) work(thread, k1);
   });
 }
 
-template <typename Real>
 template <typename Count>
-void MirroredInverseSymbol<Real>::multiply(int thread, const PlaneColumns<Real>& columns, Count count) {
+void MirroredInverseSymbol::multiply(int thread, const PlaneColumns& columns, Count count) {
   const Index fields = tangential_ ? 2 : 1;
   for (Index k1 = 0; k1 <= t1_ / 2; ++k1) {
     for (Index f = 0; f < fields; ++f) separate(thread, columns, count, f, k1);
@@ -280,10 +269,8 @@ void MirroredInverseSymbol<Real>::multiply(int thread, const PlaneColumns<Real>&
 
 /// Cosines of the frequencies k of p; sines of t - k, which for the odd coordinate of q1 and of q2 is k: so
 /// q1's cs has the frequencies of q2's sc, and so on.
-template <typename Real>
 template <typename Count>
-void MirroredInverseSymbol<Real>::multiply_rows(int thread, const PlaneColumns<Real>& columns, Count count,
-                                                Index k1) {
+void MirroredInverseSymbol::multiply_rows(int thread, const PlaneColumns& columns, Count count, Index k1) {
   const Index first = columns.first - columns_.first;
   const auto low = [&](SymbolEntry entry) { return table_.row(entry, k1) + first; };
   const auto high = [&](SymbolEntry entry) { return table_.row(entry, t1_ - k1) + first; };
@@ -296,7 +283,7 @@ void MirroredInverseSymbol<Real>::multiply_rows(int thread, const PlaneColumns<R
     scale(count, high(SymbolEntry::p11) + sines, x.ss);
     return;
   }
-  const auto multiply_pair = [&](const auto& row, Index column, Real* x1, Real* x2) {
+  const auto multiply_pair = [&](const auto& row, Index column, double* x1, double* x2) {
     mix(count, row(SymbolEntry::p11) + column, row(SymbolEntry::p12) + column, row(SymbolEntry::p22) + column,
         x1, x2);
   };
@@ -309,16 +296,15 @@ void MirroredInverseSymbol<Real>::multiply_rows(int thread, const PlaneColumns<R
 
 /// The coefficients of q2 at (f1, f2) are minus those of q1 at (f2, f1): all of those are made first, in
 /// place of the transform.
-template <typename Real>
-void MirroredInverseSymbol<Real>::multiply_symmetric() {
+void MirroredInverseSymbol::multiply_symmetric() {
   for_row_pairs([&](int thread, Index k1) {
     const Coefficients x = coefficients(thread, 0);
     separate(thread, transform_.all_columns(), half_, 0, k1);
-    Real* const low = transform_.row(0, k1);
+    double* const low = transform_.row(0, k1);
     std::copy_n(x.cs, half_, low);
     std::copy_n(x.cc, half_, low + half_);
     if (k1 == 0 || 2 * k1 == t1_) return;
-    Real* const high = transform_.row(0, t1_ - k1);
+    double* const high = transform_.row(0, t1_ - k1);
     std::copy_n(x.ss, half_, high);
     std::copy_n(x.sc, half_, high + half_);
   });
@@ -329,12 +315,11 @@ void MirroredInverseSymbol<Real>::multiply_symmetric() {
 }
 
 /// Rows and columns hold the frequencies k, and t - k after them (rows: before the end).
-template <typename Real>
-void MirroredInverseSymbol<Real>::multiply_symmetric_rows(int thread, Index k1) {
+void MirroredInverseSymbol::multiply_symmetric_rows(int thread, Index k1) {
   const Coefficients to = coefficients(thread, 0);
   const Index step = transform_.row_stride();
-  const auto mix_row = [&](Index f1, Index column, Index other_column, Real* out) {
-    const Real* const other =
+  const auto mix_row = [&](Index f1, Index column, Index other_column, double* out) {
+    const double* const other =
         column == 0 ? transform_.row(0, 0) + other_column : transform_.row(0, t1_) + other_column;
     mix_with_other_half(half_, table_.row(SymbolEntry::p11, f1) + column,
                         table_.row(SymbolEntry::p12, f1) + column, transform_.row(0, f1) + column, other,
@@ -343,8 +328,8 @@ void MirroredInverseSymbol<Real>::multiply_symmetric_rows(int thread, Index k1) 
   mix_row(k1, 0, k1, to.cs);
   mix_row(k1, half_, k1, to.cc);
   if (k1 == 0) {  // no frequency t1 along x1, in which q1 is even
-    std::fill_n(to.ss, half_, Real(0));
-    std::fill_n(to.sc, half_, Real(0));
+    std::fill_n(to.ss, half_, 0.0);
+    std::fill_n(to.sc, half_, 0.0);
     return;
   }
   mix_row(t1_ - k1, 0, half_ + k1, to.ss);
@@ -352,11 +337,10 @@ void MirroredInverseSymbol<Real>::multiply_symmetric_rows(int thread, Index k1) 
 }
 
 /// The second component, from these rows of the first.
-template <typename Real>
-void MirroredInverseSymbol<Real>::store_transposed(Real* field, Index first_row, Index last_row) const {
+void MirroredInverseSymbol::store_transposed(double* field, Index first_row, Index last_row) const {
   constexpr Index kBlock = 32;  // rows whose columns are read together, while they are in cache
   const Index n = grid_.n1;
-  Real* const second = field + grid_.cells();
+  double* const second = field + grid_.cells();
   for (Index first = first_row; first < last_row; first += kBlock) {
     const Index last = std::min(first + kBlock, last_row);
     for (Index j = 0; j < n; ++j) {
@@ -364,8 +348,5 @@ void MirroredInverseSymbol<Real>::store_transposed(Real* field, Index first_row,
     }
   }
 }
-
-template class MirroredInverseSymbol<double>;
-template class MirroredInverseSymbol<float>;
 
 }  // namespace slipstick::solver

@@ -11,12 +11,11 @@
 namespace slipstick::solver {
 
 /// cos and sin of pi k1/(2 t1), and those of pi k2/(2 t2) for some k2.
-template <typename Real>
 struct Twiddles {
-  Real c;
-  Real s;
-  const Real* c2;
-  const Real* s2;
+  double c;
+  double s;
+  const double* c2;
+  const double* s2;
 };
 
 /// The inverse symbol on a quadrant: the periodic one on the mirrored field, whose period is 2 t1 x 2 t2
@@ -29,51 +28,50 @@ struct Twiddles {
 /// sine transform is a cosine transform of samples with alternating signs, t - k in place of its frequency k:
 /// the same four, in another order. So two rows of the transform at a time are turned into coefficients,
 /// multiplied and turned back.
-template <typename Real>
-class MirroredInverseSymbol final : public InverseSymbol<Real> {
+class MirroredInverseSymbol final : public InverseSymbol {
  public:
   /// With Diagonal::yes only the first component is transformed, of which the second is minus the transpose.
   MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair, Diagonal diagonal,
                         int threads);
 
-  void apply(std::span<Real> field) override;
+  void apply(std::span<double> field) override;
   std::array<double, 2> diagonal() const override { return diagonal_; }
 
  private:
   /// half_ values each, k2 = 0..t2/2, of the transform of reordered samples along x1 and x2: by cosines (c)
   /// of the frequency k or sines (s), which are the cosines of t - k.
   struct Coefficients {
-    Real* cc;
-    Real* cs;
-    Real* sc;
-    Real* ss;
+    double* cc;
+    double* cs;
+    double* sc;
+    double* ss;
   };
 
   /// Of each thread and field, and after them a row that is thrown away.
-  Real* scratch(int thread) { return coefficients_.data() + thread * scratch_; }
+  double* scratch(int thread) { return coefficients_.data() + thread * scratch_; }
   Coefficients coefficients(int thread, Index f);
   void fill_twiddles();
   /// By which samples at even and odd places of row i are to be multiplied.
-  std::array<Real, 2> signs(Index f, Index i) const;
-  void load(int thread, Index f, Index i, const Real* values);
-  void store(int thread, Index f, Index i, Real* values);
-  Twiddles<Real> twiddles(Index k1, Index first_column) const;
+  std::array<double, 2> signs(Index f, Index i) const;
+  void load(int thread, Index f, Index i, const double* values);
+  void store(int thread, Index f, Index i, double* values);
+  Twiddles twiddles(Index k1, Index first_column) const;
   /// Of some columns; count: how many they are, known to the compiler where these are whole cache lines.
   template <typename Count>
-  void separate(int thread, const PlaneColumns<Real>& columns, Count count, Index f, Index k1);
+  void separate(int thread, const PlaneColumns& columns, Count count, Index f, Index k1);
   template <typename Count>
-  void join(int thread, const Coefficients& from, const PlaneColumns<Real>& columns, Count count, Index f,
+  void join(int thread, const Coefficients& from, const PlaneColumns& columns, Count count, Index f,
             Index k1);
   /// work(thread, k1) for the rows k1 = 0..t1/2, with each of which goes t1 - k1.
   template <typename Work>
   void for_row_pairs(const Work& work);
   template <typename Count>
-  void multiply(int thread, const PlaneColumns<Real>& columns, Count count);
+  void multiply(int thread, const PlaneColumns& columns, Count count);
   template <typename Count>
-  void multiply_rows(int thread, const PlaneColumns<Real>& columns, Count count, Index k1);
+  void multiply_rows(int thread, const PlaneColumns& columns, Count count, Index k1);
   void multiply_symmetric();
   void multiply_symmetric_rows(int thread, Index k1);
-  void store_transposed(Real* field, Index first_row, Index last_row) const;
+  void store_transposed(double* field, Index first_row, Index last_row) const;
 
   Grid grid_;
   bool tangential_;
@@ -82,12 +80,12 @@ class MirroredInverseSymbol final : public InverseSymbol<Real> {
   Index t2_;
   Index half_;  ///< t2/2 + 1
   std::array<double, 2> diagonal_;
-  Share columns_;            ///< of this rank, of 0..t2/2
-  SymbolTable<Real> table_;  ///< those, then t2 less each of them
-  PlaneTransform<Real> transform_;
+  Share columns_;      ///< of this rank, of 0..t2/2
+  SymbolTable table_;  ///< those, then t2 less each of them
+  PlaneTransform transform_;
   Index scratch_;  ///< values that each thread has of the next
-  FftwBuffer<Real> coefficients_;
-  FftwBuffer<Real> twiddles_;  ///< cos and sin of pi k/(2 t1), k = 0..t1/2, then those of pi k/(2 t2)
+  FftwBuffer coefficients_;
+  FftwBuffer twiddles_;  ///< cos and sin of pi k/(2 t1), k = 0..t1/2, then those of pi k/(2 t2)
 };
 
 }  // namespace slipstick::solver

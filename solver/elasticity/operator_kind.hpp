@@ -11,7 +11,4 @@ enum class OperatorKind { dcfft, direct, dense };
 /// instead of the second, wherever the tractions are smooth.
 enum class CellTraction { constant, smooth };
 
-/// Precision of the inner iterations; residuals and certificates are always double.
-enum class Precision { double_precision, mixed };
-
 }  // namespace slipstick::solver

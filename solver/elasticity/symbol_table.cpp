@@ -44,14 +44,13 @@ std::array<double, 3> inverse_symbol(const PeriodicGrid& grid, const ElasticPair
   return {transverse + excess * n1 * n1, nyquist ? 0.0 : excess * n1 * n2, transverse + excess * n2 * n2};
 }
 
-template <typename Real>
-SymbolTable<Real>::SymbolTable(const PeriodicGrid& grid, const ElasticPair& pair,
-                               const std::vector<SymbolEntry>& entries, const std::vector<Index>& columns,
-                               double factor)
+SymbolTable::SymbolTable(const PeriodicGrid& grid, const ElasticPair& pair,
+                         const std::vector<SymbolEntry>& entries, const std::vector<Index>& columns,
+                         double factor)
     : columns_(static_cast<Index>(columns.size())) {
   const Index rows = grid.length1 / 2 + 1;
   for (const SymbolEntry entry : entries) {
-    tables_[static_cast<std::size_t>(entry)] = FftwBuffer<Real>(static_cast<std::size_t>(rows * columns_));
+    tables_[static_cast<std::size_t>(entry)] = FftwBuffer(static_cast<std::size_t>(rows * columns_));
   }
   const bool tangential = entries.size() > 1;
   in_parts(ThreadPool::available(), rows, [&](int, Index first, Index last) {
@@ -61,7 +60,7 @@ SymbolTable<Real>::SymbolTable(const PeriodicGrid& grid, const ElasticPair& pair
             inverse_symbol(grid, pair, tangential, f1, columns[static_cast<std::size_t>(column)]);
         for (const SymbolEntry entry : entries) {
           const auto e = static_cast<std::size_t>(entry);
-          tables_[e].data()[f1 * columns_ + column] = static_cast<Real>(factor * symbol[e]);
+          tables_[e].data()[f1 * columns_ + column] = factor * symbol[e];
         }
       }
     }
@@ -92,8 +91,5 @@ std::array<double, 2> mean_inverse_symbol(const PeriodicGrid& grid, const Elasti
   const double frequencies = static_cast<double>(grid.length1) * static_cast<double>(grid.length2);
   return {sum[0] / frequencies, sum[1] / frequencies};
 }
-
-template class SymbolTable<double>;
-template class SymbolTable<float>;
 
 }  // namespace slipstick::solver

@@ -35,20 +35,19 @@ std::array<double, 3> inverse_symbol(const PeriodicGrid& grid, const ElasticPair
                                      Index f1, Index f2);
 
 /// Rows f1 = 0..length1/2 of the entries in use, times a factor.
-template <typename Real>
 class SymbolTable {
  public:
   /// Each row holds the frequencies f2 in the order in which they are given.
   SymbolTable(const PeriodicGrid& grid, const ElasticPair& pair, const std::vector<SymbolEntry>& entries,
               const std::vector<Index>& columns, double factor);
 
-  const Real* row(SymbolEntry entry, Index f1) const {
+  const double* row(SymbolEntry entry, Index f1) const {
     return tables_[static_cast<std::size_t>(entry)].data() + f1 * columns_;
   }
 
  private:
   Index columns_;
-  std::array<FftwBuffer<Real>, 3> tables_;
+  std::array<FftwBuffer, 3> tables_;
 };
 
 /// Means of p11 and p22 (of p11 twice for the normal kernel) over the frequencies of both signs.

@@ -13,42 +13,31 @@ constexpr double kPi = std::numbers::pi;
 }  // namespace
 
 /// A multiple of 4, so that no packet of samples reaches over the end or from the front half into the back.
-template <typename Real>
-Index HalfSampleTransform<Real>::half_length(Index samples) {
-  return 2 * fast_length((samples + 1) / 2);
-}
+Index HalfSampleTransform::half_length(Index samples) { return 2 * fast_length((samples + 1) / 2); }
 
 /// A stride that is a power of two would put the same sample of all lines into the same set of the cache.
-template <typename Real>
-Index HalfSampleTransform<Real>::padded_line(Index half) {
-  return half + kPairs;
-}
+Index HalfSampleTransform::padded_line(Index half) { return half + kPairs; }
 
-template <typename Real>
-Index HalfSampleTransform<Real>::frequencies(Index samples) {
-  return 2 * half_length(samples);
-}
+Index HalfSampleTransform::frequencies(Index samples) { return 2 * half_length(samples); }
 
-template <typename Real>
-HalfSampleTransform<Real>::Workspace::Workspace(const HalfSampleTransform& transform)
+HalfSampleTransform::Workspace::Workspace(const HalfSampleTransform& transform)
     : half_(transform.half_),
       samples_(count(4 * kPairs * transform.line_stride_)),
       rows_(count(2 * half_ * kLines)) {}
 
-template <typename Real>
-HalfSampleTransform<Real>::HalfSampleTransform(Index samples)
+HalfSampleTransform::HalfSampleTransform(Index samples)
     : samples_(samples), half_(half_length(samples)), line_stride_(padded_line(half_)) {
   for (Index t = 0; t < half_; ++t) {
     const Index place = 2 * t < half_ ? t : t - half_;
     const double angle = -kPi * static_cast<double>(place) / static_cast<double>(half_);
-    const Real real = static_cast<Real>(std::cos(angle));
-    const Real imaginary = static_cast<Real>(std::sin(angle));
+    const double real = std::cos(angle);
+    const double imaginary = std::sin(angle);
     turn_real_.insert(turn_real_.end(), {real, real});
     turn_imaginary_.insert(turn_imaginary_.end(), {-imaginary, imaginary});
   }
   for (Index k = 0; k <= half_; ++k) {
     const double angle = -kPi * static_cast<double>(k) / static_cast<double>(4 * half_);
-    twiddle_.push_back({static_cast<Real>(std::cos(angle)), static_cast<Real>(std::sin(angle))});
+    twiddle_.push_back({std::cos(angle), std::sin(angle)});
   }
   Workspace work(*this);
   const int length = static_cast<int>(half_);
@@ -56,16 +45,13 @@ HalfSampleTransform<Real>::HalfSampleTransform(Index samples)
   constexpr int pairs = static_cast<int>(kPairs);
   auto* const lines = work.samples_.complex();
   auto* const rows = work.rows_.complex();
-  forward_ =
-      FftwPlan<Real>(Fftw<Real>::plan_lines({length, pairs, 1, stride, pairs, 1}, lines, rows, FFTW_FORWARD));
-  backward_ = FftwPlan<Real>(
-      Fftw<Real>::plan_lines({length, pairs, pairs, 1, 1, stride}, rows, lines, FFTW_BACKWARD));
+  forward_ = FftwPlan(plan_transforms({length, pairs, 1, stride, pairs, 1}, lines, rows, FFTW_FORWARD));
+  backward_ = FftwPlan(plan_transforms({length, pairs, pairs, 1, 1, stride}, rows, lines, FFTW_BACKWARD));
 }
 
-template <typename Real>
-void HalfSampleTransform<Real>::load(Workspace& work, const Lines<const Real>& lines, int parity) const {
-  static constexpr std::array<Real, static_cast<std::size_t>(kLines)> kZeros{};
-  const auto line = [&](Index l) -> Line<const Real> {
+void HalfSampleTransform::load(Workspace& work, const Lines<const double>& lines, int parity) const {
+  static constexpr std::array<double, static_cast<std::size_t>(kLines)> kZeros{};
+  const auto line = [&](Index l) -> Line<const double> {
     if (l >= lines.count) return {kZeros.data(), 0};
     return {lines.data + l * lines.line_stride, lines.piece_stride};
   };
@@ -74,16 +60,14 @@ void HalfSampleTransform<Real>::load(Workspace& work, const Lines<const Real>& l
   }
 }
 
-template <typename Real>
-void HalfSampleTransform<Real>::put(Real* plain, Index t, Vector z) const {
+void HalfSampleTransform::put(double* plain, Index t, Vector z) const {
   const Vector real = P::load(&turn_real_[count(2 * t)]);
   const Vector imaginary = P::load(&turn_imaginary_[count(2 * t)]);
   P::store(plain + 2 * t, z);
   P::store(turned(plain) + 2 * t, real * z + imaginary * P::exchanged(z));
 }
 
-template <typename Real>
-auto HalfSampleTransform<Real>::get(Real* plain, Index t) const -> Vector {
+auto HalfSampleTransform::get(double* plain, Index t) const -> Vector {
   const Vector real = P::load(&turn_real_[count(2 * t)]);
   const Vector imaginary = P::load(&turn_imaginary_[count(2 * t)]);
   const Vector z = P::load(turned(plain) + 2 * t);
@@ -91,13 +75,12 @@ auto HalfSampleTransform<Real>::get(Real* plain, Index t) const -> Vector {
 }
 
 /// Makhoul's order: samples 0, 2, 4, ... from the front, 1, 3, 5, ... from the back.
-template <typename Real>
-void HalfSampleTransform<Real>::load_pair(Real* plain, Line<const Real> first, Line<const Real> second,
-                                          int parity) const {
-  const Real sign = static_cast<Real>(parity);
+void HalfSampleTransform::load_pair(double* plain, Line<const double> first, Line<const double> second,
+                                    int parity) const {
+  const double sign = parity;
   Index front = 0;
   Index back = half_ - kNumbers;
-  const auto put_samples = [&](const Real* x, const Real* y) {
+  const auto put_samples = [&](const double* x, const double* y) {
     const auto [even, odd] = P::split(P::load(x), P::load(y));
     put(plain, front, even);
     put(plain, back, sign * odd);
@@ -121,10 +104,9 @@ void HalfSampleTransform<Real>::load_pair(Real* plain, Line<const Real> first, L
   for (; front <= back; front += kNumbers) put(plain, front, Vector{});
 }
 
-template <typename Real>
-void HalfSampleTransform<Real>::store(Workspace& work, const Lines<Real>& lines, int parity) const {
-  std::array<Real, static_cast<std::size_t>(kLines)> unwanted;
-  const auto line = [&](Index l) -> Line<Real> {
+void HalfSampleTransform::store(Workspace& work, const Lines<double>& lines, int parity) const {
+  std::array<double, static_cast<std::size_t>(kLines)> unwanted;
+  const auto line = [&](Index l) -> Line<double> {
     if (l >= lines.count) return {unwanted.data(), 0};
     return {lines.data + l * lines.line_stride, lines.piece_stride};
   };
@@ -133,13 +115,12 @@ void HalfSampleTransform<Real>::store(Workspace& work, const Lines<Real>& lines,
   }
 }
 
-template <typename Real>
-void HalfSampleTransform<Real>::store_pair(Real* plain, Line<Real> first, Line<Real> second,
-                                           int parity) const {
-  const Real sign = static_cast<Real>(parity);
+void HalfSampleTransform::store_pair(double* plain, Line<double> first, Line<double> second,
+                                     int parity) const {
+  const double sign = parity;
   Index front = 0;
   Index back = half_ - kNumbers;
-  const auto get_samples = [&](Real* x, Real* y) {
+  const auto get_samples = [&](double* x, double* y) {
     const typename P::Halves samples{get(plain, front), sign * get(plain, back)};
     P::store(x, P::real_part(samples));
     P::store(y, P::imaginary_part(samples));
@@ -162,23 +143,18 @@ void HalfSampleTransform<Real>::store_pair(Real* plain, Line<Real> first, Line<R
   }
 }
 
-template <typename Real>
-void HalfSampleTransform<Real>::transform_forward(Workspace& work) const {
+void HalfSampleTransform::transform_forward(Workspace& work) const {
   for (const Index part : {0, 1}) {
-    Fftw<Real>::execute(forward_.get(), work.samples_.complex() + part * kPairs * line_stride_,
-                        work.rows_.complex() + part * kPairs * half_);
+    fftw_execute_dft(forward_.get(), work.samples_.complex() + part * kPairs * line_stride_,
+                     work.rows_.complex() + part * kPairs * half_);
   }
 }
 
-template <typename Real>
-void HalfSampleTransform<Real>::transform_backward(Workspace& work) const {
+void HalfSampleTransform::transform_backward(Workspace& work) const {
   for (const Index part : {0, 1}) {
-    Fftw<Real>::execute(backward_.get(), work.rows_.complex() + part * kPairs * half_,
-                        work.samples_.complex() + part * kPairs * line_stride_);
+    fftw_execute_dft(backward_.get(), work.rows_.complex() + part * kPairs * half_,
+                     work.samples_.complex() + part * kPairs * line_stride_);
   }
 }
-
-template class HalfSampleTransform<double>;
-template class HalfSampleTransform<float>;
 
 }  // namespace slipstick::solver

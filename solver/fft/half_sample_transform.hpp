@@ -20,11 +20,10 @@ namespace slipstick::solver {
 /// Acoustics, Speech and Signal Processing 28, 1980) makes the cosine transform a Fourier transform of the
 /// same length h. As half of the samples are padding, its even frequencies are one transform of length m, and
 /// its odd ones another, of the samples turned by half a frequency: the padding is never transformed.
-template <typename Real>
 class HalfSampleTransform {
  public:
   /// One cache line to a row of the spectrum.
-  static constexpr Index kLines = 64 / static_cast<Index>(sizeof(Real));
+  static constexpr Index kLines = 64 / static_cast<Index>(sizeof(double));
 
   /// Where the lines lie: sample j of line l at data[(j / kLines) piece_stride + l line_stride + j % kLines].
   template <typename Value>
@@ -40,13 +39,13 @@ class HalfSampleTransform {
    public:
     explicit Workspace(const HalfSampleTransform& transform);
     /// A spectrum's row of kLines values, one for each line.
-    Real* row(Index k) { return rows_.data() + ((k % 2) * half_ + k / 2) * kLines; }
+    double* row(Index k) { return rows_.data() + ((k % 2) * half_ + k / 2) * kLines; }
 
    private:
     friend class HalfSampleTransform;
     Index half_;
-    FftwBuffer<Real> samples_;  ///< complex lines: as they are, then turned by half a frequency
-    FftwBuffer<Real> rows_;     ///< the even frequencies' rows, then the odd ones'
+    FftwBuffer samples_;  ///< complex lines: as they are, then turned by half a frequency
+    FftwBuffer rows_;     ///< the even frequencies' rows, then the odd ones'
   };
 
   /// samples >= 1.
@@ -58,7 +57,7 @@ class HalfSampleTransform {
 
   /// Writes row k of the lines' spectrum to target(k), which may be work.row(k). parity: +1 even, -1 odd.
   template <typename Target>
-  void forward(Workspace& work, const Lines<const Real>& lines, int parity, const Target& target) const {
+  void forward(Workspace& work, const Lines<const double>& lines, int parity, const Target& target) const {
     load(work, lines, parity);
     transform_forward(work);
     separate(work, parity, target);
@@ -67,23 +66,23 @@ class HalfSampleTransform {
   /// The inverse, times 2 h. source(k)(l) is the Packet of row k that starts with line l; it may be read from
   /// work.row(k).
   template <typename Source>
-  void backward(Workspace& work, const Lines<Real>& lines, int parity, const Source& source) const {
+  void backward(Workspace& work, const Lines<double>& lines, int parity, const Source& source) const {
     join(work, parity, source);
     transform_backward(work);
     store(work, lines, parity);
   }
 
   /// What a source returns for a row in memory.
-  static auto packets(const Real* row) {
+  static auto packets(const double* row) {
     return [row](Index line) { return P::load(row + line); };
   }
 
  private:
-  using P = Packet<Real>;
+  using P = Packet;
   using Vector = typename P::Vector;
   static constexpr Index kPairs = kLines / 2;
   static constexpr Index kNumbers = P::kSize / 2;  ///< complex numbers in a packet
-  using Samples = std::array<Real, static_cast<std::size_t>(P::kSize)>;
+  using Samples = std::array<double, static_cast<std::size_t>(P::kSize)>;
 
   /// One line: kLines samples at piece, the next ones a stride further.
   template <typename Value>
@@ -94,15 +93,15 @@ class HalfSampleTransform {
 
   static Index half_length(Index samples);
   static Index padded_line(Index half);
-  void load(Workspace& work, const Lines<const Real>& lines, int parity) const;
-  void load_pair(Real* plain, Line<const Real> first, Line<const Real> second, int parity) const;
-  void store(Workspace& work, const Lines<Real>& lines, int parity) const;
-  void store_pair(Real* plain, Line<Real> first, Line<Real> second, int parity) const;
+  void load(Workspace& work, const Lines<const double>& lines, int parity) const;
+  void load_pair(double* plain, Line<const double> first, Line<const double> second, int parity) const;
+  void store(Workspace& work, const Lines<double>& lines, int parity) const;
+  void store_pair(double* plain, Line<double> first, Line<double> second, int parity) const;
   /// Writes complex samples from t on to a line and to its turned copy.
-  void put(Real* plain, Index t, Vector z) const;
+  void put(double* plain, Index t, Vector z) const;
   /// What the inverse transforms of the two amount to.
-  Vector get(Real* plain, Index t) const;
-  Real* turned(Real* plain) const { return plain + 2 * kPairs * line_stride_; }
+  Vector get(double* plain, Index t) const;
+  double* turned(double* plain) const { return plain + 2 * kPairs * line_stride_; }
   void transform_forward(Workspace& work) const;
   void transform_backward(Workspace& work) const;
   template <typename Target>
@@ -111,19 +110,19 @@ class HalfSampleTransform {
   void join(Workspace& work, int parity, const Source& source) const;
 
   struct Twiddle {
-    Real c;
-    Real s;
+    double c;
+    double s;
   };
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
   Index samples_;
-  Index half_;                        ///< m, a multiple of 4
-  Index line_stride_;                 ///< complex numbers from one complex line to the next
-  std::vector<Real> turn_real_;       ///< exp(-i pi t/m), t = 0..m/2-1, -m/2..-1: its real part twice
-  std::vector<Real> turn_imaginary_;  ///< less its imaginary part, its imaginary part
-  std::vector<Twiddle> twiddle_;      ///< exp(-i pi k/(2 h)), k = 0..m
-  FftwPlan<Real> forward_;
-  FftwPlan<Real> backward_;
+  Index half_;                          ///< m, a multiple of 4
+  Index line_stride_;                   ///< complex numbers from one complex line to the next
+  std::vector<double> turn_real_;       ///< exp(-i pi t/m), t = 0..m/2-1, -m/2..-1: its real part twice
+  std::vector<double> turn_imaginary_;  ///< less its imaginary part, its imaginary part
+  std::vector<Twiddle> twiddle_;        ///< exp(-i pi k/(2 h)), k = 0..m
+  FftwPlan forward_;
+  FftwPlan backward_;
 };
 
 /// With Z the complex Fourier transform of a reordered pair of lines and w = c + i s = exp(-i pi k/(2 h)),
@@ -133,17 +132,16 @@ class HalfSampleTransform {
 ///     S_(h-k) = i (w Z_k - conj(w) Z_(h-k))   = i c (Z_k - Z_(h-k)) - s (Z_k + Z_(h-k)).
 ///
 /// A sine transform is a cosine transform of the samples with alternating signs, read backwards.
-template <typename Real>
 template <typename Target>
-void HalfSampleTransform<Real>::separate(Workspace& work, int parity, const Target& target) const {
+void HalfSampleTransform::separate(Workspace& work, int parity, const Target& target) const {
   const Index h = frequencies();
   for (Index line = 0; line < kLines; ++line) target(0)[line] = 2 * work.row(0)[line];
   for (Index k = 1; k <= half_; ++k) {
-    const Real* const near = work.row(k);
-    const Real* const far = work.row(h - k);
+    const double* const near = work.row(k);
+    const double* const far = work.row(h - k);
     const Index row = parity > 0 ? k : h - k;
-    Real* const low = target(row);
-    Real* const high = target(h - row);
+    double* const low = target(row);
+    double* const high = target(h - row);
     const auto [c, s] = twiddle_[at(k)];
     const Vector ic = P::alternating(-c, c);
     const Vector is = P::alternating(-s, s);
@@ -158,9 +156,8 @@ void HalfSampleTransform<Real>::separate(Workspace& work, int parity, const Targ
 
 /// Z_k = conj(w) (S_k - i S_(h-k)) = (c S_k - s S_(h-k)) - i (s S_k + c S_(h-k)), and Z_(h-k) is the sum of
 /// these terms.
-template <typename Real>
 template <typename Source>
-void HalfSampleTransform<Real>::join(Workspace& work, int parity, const Source& source) const {
+void HalfSampleTransform::join(Workspace& work, int parity, const Source& source) const {
   const Index h = frequencies();
   const auto constant = source(0);
   for (Index line = 0; line < kLines; line += P::kSize) P::store(work.row(0) + line, constant(line));
@@ -169,8 +166,8 @@ void HalfSampleTransform<Real>::join(Workspace& work, int parity, const Source& 
     const Index row = parity > 0 ? k : h - k;
     const auto low = source(row);
     const auto high = source(h - row);
-    Real* const near = work.row(k);
-    Real* const far = work.row(h - k);
+    double* const near = work.row(k);
+    double* const far = work.row(h - k);
     const auto [c, s] = twiddle_[at(k)];
     for (Index line = 0; line < kLines; line += P::kSize) {
       const Vector a = low(line);

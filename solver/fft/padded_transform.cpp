@@ -9,12 +9,10 @@ namespace {
 Index half_length(Index cells) { return fast_length(2 * cells - 1) / 2; }
 
 /// Products of finite numbers, without the checks for infinities of std::complex.
-template <typename Real>
-std::complex<Real> times(std::complex<Real> a, std::complex<Real> b) {
+std::complex<double> times(std::complex<double> a, std::complex<double> b) {
   return {a.real() * b.real() - a.imag() * b.imag(), a.real() * b.imag() + a.imag() * b.real()};
 }
-template <typename Real>
-std::complex<Real> times_conjugate(std::complex<Real> a, std::complex<Real> b) {
+std::complex<double> times_conjugate(std::complex<double> a, std::complex<double> b) {
   return {a.real() * b.real() + a.imag() * b.imag(), a.imag() * b.real() - a.real() * b.imag()};
 }
 
@@ -23,20 +21,18 @@ std::complex<Real> times_conjugate(std::complex<Real> a, std::complex<Real> b) {
 constexpr Index kAhead = 12;
 
 /// exp(-i pi j/m), 0 <= j < n.
-template <typename Real>
-std::vector<std::complex<Real>> twiddles(Index n, Index m) {
-  std::vector<std::complex<Real>> result;
+std::vector<std::complex<double>> twiddles(Index n, Index m) {
+  std::vector<std::complex<double>> result;
   for (Index j = 0; j < n; ++j) {
     const auto factor = std::polar(1.0, -std::numbers::pi * static_cast<double>(j) / static_cast<double>(m));
-    result.emplace_back(static_cast<Real>(factor.real()), static_cast<Real>(factor.imag()));
+    result.emplace_back(factor.real(), factor.imag());
   }
   return result;
 }
 
 }  // namespace
 
-template <typename Real>
-PaddedTransform<Real>::PaddedTransform(const Grid& grid, std::size_t fields, int threads)
+PaddedTransform::PaddedTransform(const Grid& grid, std::size_t fields, int threads)
     : grid_(grid),
       fields_(fields),
       threads_(threads),
@@ -44,8 +40,8 @@ PaddedTransform<Real>::PaddedTransform(const Grid& grid, std::size_t fields, int
       m2_(half_length(grid.n2)),
       stride1_(stride(m1_)),
       stride2_(stride(m2_)),
-      twiddle1_(twiddles<Real>(grid.n1, m1_)),
-      twiddle2_(twiddles<Real>(grid.n2, m2_)),
+      twiddle1_(twiddles(grid.n1, m1_)),
+      twiddle2_(twiddles(grid.n2, m2_)),
       zero_row_(count(grid.n2)),
       own_groups_(own_groups(grid)),
       field_size_(field_size(grid, columns(), stride1_)),
@@ -63,7 +59,7 @@ PaddedTransform<Real>::PaddedTransform(const Grid& grid, std::size_t fields, int
   for (int thread = 0; thread < threads; ++thread) scratch_.emplace_back(2 * count(size));
   const auto plan = [&](Index length, Index out, int direction) {
     auto* const start = scratch_.front().complex();
-    return FftwPlan<Real>(Fftw<Real>::plan(static_cast<int>(length), start, start + out, direction));
+    return FftwPlan(plan_transform(static_cast<int>(length), start, start + out, direction));
   };
   row_forward_ = plan(m2_, kRows * stride2_, FFTW_FORWARD);
   row_backward_ = plan(m2_, kRows * stride2_, FFTW_BACKWARD);
@@ -71,73 +67,60 @@ PaddedTransform<Real>::PaddedTransform(const Grid& grid, std::size_t fields, int
   column_backward_ = plan(m1_, stride1_, FFTW_BACKWARD);
 }
 
-template <typename Real>
-void PaddedTransform<Real>::execute(const FftwPlan<Real>& plan, Complex* in, Complex* out) {
-  using Number = typename Fftw<Real>::Complex;
-  Fftw<Real>::execute(plan.get(), reinterpret_cast<Number*>(in), reinterpret_cast<Number*>(out));
+void PaddedTransform::execute(const FftwPlan& plan, Complex* in, Complex* out) {
+  using Number = fftw_complex;
+  fftw_execute_dft(plan.get(), reinterpret_cast<Number*>(in), reinterpret_cast<Number*>(out));
 }
 
-template <typename Real>
-auto PaddedTransform<Real>::column(std::size_t field, Index column) -> Complex* {
+auto PaddedTransform::column(std::size_t field, Index column) -> Complex* {
   return as_complex(columns_) + static_cast<Index>(field * field_size_) + column * column_stride_;
 }
 
-template <typename Real>
-auto PaddedTransform<Real>::rows_of(std::size_t field, Index column, Index group) -> Complex* {
+auto PaddedTransform::rows_of(std::size_t field, Index column, Index group) -> Complex* {
   return as_complex(columns_) + static_cast<Index>(field * field_size_) + column * column_step_ +
          (group - own_groups_.first) * group_step_;
 }
 
-template <typename Real>
-std::size_t PaddedTransform<Real>::field_size(const Grid& grid, Index columns, Index stride1) {
+std::size_t PaddedTransform::field_size(const Grid& grid, Index columns, Index stride1) {
   if (Ranks::number() == 1) return count(columns * stride1);
   return count(shared_matrix(grid).size() / 2);
 }
 
 /// A group of rows in a column is an entry.
-template <typename Real>
-auto PaddedTransform<Real>::shared_matrix(const Grid& grid) -> typename RankTranspose<Real>::Shape {
+auto PaddedTransform::shared_matrix(const Grid& grid) -> RankTranspose::Shape {
   static_assert(RowBands::kRows % kRows == 0);
   return {(grid.n1 + kRows - 1) / kRows, RowBands(grid.n1).rows_of_rank() / kRows, half_length(grid.n2) + 1,
           2 * kRows};
 }
 
-template <typename Real>
-Share PaddedTransform<Real>::own_groups(const Grid& grid) {
+Share PaddedTransform::own_groups(const Grid& grid) {
   const Share rows = RowBands(grid.n1).own_rows();
   return {(rows.first + kRows - 1) / kRows, (rows.last + kRows - 1) / kRows};
 }
 
-template <typename Real>
-Share PaddedTransform<Real>::own_columns(const Grid& grid) {
-  return shared_matrix(grid).own_columns();
-}
+Share PaddedTransform::own_columns(const Grid& grid) { return shared_matrix(grid).own_columns(); }
 
-template <typename Real>
-void PaddedTransform<Real>::to_columns(std::size_t fields) {
+void PaddedTransform::to_columns(std::size_t fields) {
   for (std::size_t field = 0; field < fields; ++field) {
     ranks_->to_columns(columns_.data() + 2 * field * field_size_);
   }
 }
 
-template <typename Real>
-void PaddedTransform<Real>::to_rows(std::size_t fields) {
+void PaddedTransform::to_rows(std::size_t fields) {
   for (std::size_t field = 0; field < fields; ++field) {
     ranks_->to_rows(columns_.data() + 2 * field * field_size_);
   }
 }
 
-template <typename Real>
-auto PaddedTransform<Real>::spectrum_of(int thread) -> Spectrum {
+auto PaddedTransform::spectrum_of(int thread) -> Spectrum {
   Complex* const start = scratch(thread);
   return {{start, start + 2 * stride1_}, {start + stride1_, start + 3 * stride1_}};
 }
 
 /// work(thread, field, first row, where the field starts among its values) for all groups of kRows rows that
 /// this rank has.
-template <typename Real>
 template <typename Work>
-void PaddedTransform<Real>::in_groups(std::size_t values, const Work& work) {
+void PaddedTransform::in_groups(std::size_t values, const Work& work) {
   const Index groups = own_groups_.count();
   const Index fields = static_cast<Index>(values) / grid_.cells();
   in_parts(threads_, fields * groups, [&](int thread, Index first, Index last) {
@@ -148,31 +131,27 @@ void PaddedTransform<Real>::in_groups(std::size_t values, const Work& work) {
   });
 }
 
-template <typename Real>
-void PaddedTransform<Real>::forward_rows(std::span<const Real> fields) {
+void PaddedTransform::forward_rows(std::span<const double> fields) {
   in_groups(fields.size(), [&](int thread, std::size_t field, Index first_row, Index start) {
     forward_group(thread, field, first_row, fields.data() + start);
   });
 }
 
-template <typename Real>
-void PaddedTransform<Real>::backward_rows(std::span<Real> fields) {
+void PaddedTransform::backward_rows(std::span<double> fields) {
   in_groups(fields.size(), [&](int thread, std::size_t field, Index first_row, Index start) {
     backward_group(thread, field, first_row, fields.data() + start);
   });
 }
 
 /// Rows past the last are zero.
-template <typename Real>
-void PaddedTransform<Real>::forward_group(int thread, std::size_t field, Index first_row,
-                                          const Real* values) {
+void PaddedTransform::forward_group(int thread, std::size_t field, Index first_row, const double* values) {
   const Index n2 = grid_.n2;
   Complex* const halves = scratch(thread);
   Complex* const spectra = halves + kRows * stride2_;
   const auto row = [&](Index i) { return i < grid_.n1 ? values + i * n2 : zero_row_.data(); };
   for (Index r = 0; r < kRows; r += 2) {
-    const Real* const real = row(first_row + r);
-    const Real* const imaginary = row(first_row + r + 1);
+    const double* const real = row(first_row + r);
+    const double* const imaginary = row(first_row + r + 1);
     Complex* const even = halves + r * stride2_;
     Complex* const odd = even + stride2_;
     for (Index j = 0; j < n2; ++j) {
@@ -190,9 +169,8 @@ void PaddedTransform<Real>::forward_group(int thread, std::size_t field, Index f
 
 /// The spectra X and Y of two real rows from that of x + i y: 2 X(k) = Z(k) + conj Z(-k), 2 i Y(k) = Z(k) -
 /// conj Z(-k).
-template <typename Real>
-void PaddedTransform<Real>::separate(std::size_t field, Index first_row, const Complex* spectra) {
-  constexpr Real half(0.5);
+void PaddedTransform::separate(std::size_t field, Index first_row, const Complex* spectra) {
+  constexpr double half(0.5);
   const Index group = first_row / kRows;
   const auto separate_column = [&](Index to, Index k, Index mirrored, const Complex* pairs) {
     Complex* const out = rows_of(field, to, group);
@@ -213,8 +191,7 @@ void PaddedTransform<Real>::separate(std::size_t field, Index first_row, const C
 }
 
 /// The contrary of separate().
-template <typename Real>
-void PaddedTransform<Real>::join(std::size_t field, Index first_row, Complex* spectra) {
+void PaddedTransform::join(std::size_t field, Index first_row, Complex* spectra) {
   const Index group = first_row / kRows;
   const auto join_column = [&](Index from, Index k, Index mirrored, Complex* pairs) {
     const Complex* const in = rows_of(field, from, group);
@@ -232,8 +209,7 @@ void PaddedTransform<Real>::join(std::size_t field, Index first_row, Complex* sp
   for (Index k = 0; evens + k < columns(); ++k) join_column(evens + k, k, m2_ - 1 - k, spectra + stride2_);
 }
 
-template <typename Real>
-void PaddedTransform<Real>::backward_group(int thread, std::size_t field, Index first_row, Real* values) {
+void PaddedTransform::backward_group(int thread, std::size_t field, Index first_row, double* values) {
   const Index n2 = grid_.n2;
   Complex* const spectra = scratch(thread);
   Complex* const halves = spectra + kRows * stride2_;
@@ -244,7 +220,7 @@ void PaddedTransform<Real>::backward_group(int thread, std::size_t field, Index 
     }
     const Complex* const even = halves + r * stride2_;
     const Complex* const odd = even + stride2_;
-    Real* const real = values + (first_row + r) * n2;
+    double* const real = values + (first_row + r) * n2;
     const bool paired = first_row + r + 1 < grid_.n1;
     for (Index j = 0; j < n2; ++j) {
       const Complex value = even[j] + times_conjugate(odd[j], twiddle2_[count(j)]);
@@ -254,8 +230,7 @@ void PaddedTransform<Real>::backward_group(int thread, std::size_t field, Index 
   }
 }
 
-template <typename Real>
-void PaddedTransform<Real>::forward_column(int thread, std::size_t field, Index column_index) {
+void PaddedTransform::forward_column(int thread, std::size_t field, Index column_index) {
   const Spectrum spectrum = spectrum_of(thread);
   Complex* const values = column(field, column_index);
   Complex* const odd = turned(thread);
@@ -273,8 +248,7 @@ void PaddedTransform<Real>::forward_column(int thread, std::size_t field, Index 
   execute(column_forward_, odd, spectrum.odd[field]);
 }
 
-template <typename Real>
-void PaddedTransform<Real>::backward_column(int thread, std::size_t field, Index column_index) {
+void PaddedTransform::backward_column(int thread, std::size_t field, Index column_index) {
   const Spectrum spectrum = spectrum_of(thread);
   Complex* const values = column(field, column_index);
   Complex* const odd = turned(thread);
@@ -286,8 +260,5 @@ void PaddedTransform<Real>::backward_column(int thread, std::size_t field, Index
   const Index end = ranks_ ? column_stride_ : std::max(m1_, groups() * kRows);
   std::fill(values + grid_.n1, values + end, Complex());  // what the next transform counts on
 }
-
-template class PaddedTransform<double>;
-template class PaddedTransform<float>;
 
 }  // namespace slipstick::solver

@@ -27,10 +27,9 @@ namespace slipstick::solver {
 /// Each of several ranks carries its own rows of the fields and its share of the columns; between the two
 /// passes the plane goes from rank to rank, the half of it that is not zero. The values have the same bits on
 /// any number of ranks.
-template <typename Real>
 class PaddedTransform {
  public:
-  using Complex = std::complex<Real>;
+  using Complex = std::complex<double>;
   /// The columns' spectra of one frequency along x2: for each field the m1 even frequencies along x1 (0, 2,
   /// ...), then the odd ones.
   struct Spectrum {
@@ -52,8 +51,8 @@ class PaddedTransform {
   static Share own_columns(const Grid& grid);
 
   /// From the fields' n1*n2 values each to their columns, and back: this rank's rows of them.
-  void forward_rows(std::span<const Real> fields);
-  void backward_rows(std::span<Real> fields);
+  void forward_rows(std::span<const double> fields);
+  void backward_rows(std::span<double> fields);
 
   /// The first `inputs` columns forward, work(column, spectrum), the first `outputs` columns back, for all
   /// columns of this rank, numbered from 0; on several threads at the same time.
@@ -89,7 +88,7 @@ class PaddedTransform {
   Spectrum spectrum_of(int thread);
   Index groups() const { return (grid_.n1 + kRows - 1) / kRows; }
   /// What goes from rank to rank, and of that the rows of this one.
-  static typename RankTranspose<Real>::Shape shared_matrix(const Grid& grid);
+  static RankTranspose::Shape shared_matrix(const Grid& grid);
   static Share own_groups(const Grid& grid);
   /// Complex numbers that a field takes.
   static std::size_t field_size(const Grid& grid, Index columns, Index stride1);
@@ -101,15 +100,15 @@ class PaddedTransform {
   Complex* scratch(int thread) { return as_complex(scratch_[static_cast<std::size_t>(thread)]); }
   Complex* turned(int thread) { return scratch(thread) + 2 * static_cast<Index>(fields_) * stride1_; }
   Complex* padded(int thread) { return turned(thread) + stride1_; }
-  static Complex* as_complex(FftwBuffer<Real>& buffer) { return reinterpret_cast<Complex*>(buffer.data()); }
+  static Complex* as_complex(FftwBuffer& buffer) { return reinterpret_cast<Complex*>(buffer.data()); }
 
-  void forward_group(int thread, std::size_t field, Index first_row, const Real* values);
-  void backward_group(int thread, std::size_t field, Index first_row, Real* values);
+  void forward_group(int thread, std::size_t field, Index first_row, const double* values);
+  void backward_group(int thread, std::size_t field, Index first_row, double* values);
   void separate(std::size_t field, Index first_row, const Complex* spectra);
   void join(std::size_t field, Index first_row, Complex* spectra);
   void forward_column(int thread, std::size_t field, Index column);
   void backward_column(int thread, std::size_t field, Index column);
-  void execute(const FftwPlan<Real>& plan, Complex* in, Complex* out);
+  void execute(const FftwPlan& plan, Complex* in, Complex* out);
 
   Grid grid_;
   std::size_t fields_;
@@ -120,19 +119,19 @@ class PaddedTransform {
   Index stride2_;                  ///< from half a row's spectrum to the next
   std::vector<Complex> twiddle1_;  ///< w^j along x1, j < n1
   std::vector<Complex> twiddle2_;
-  std::vector<Real> zero_row_;
-  std::optional<RankTranspose<Real>> ranks_;  ///< where there are several
-  Share own_groups_;                          ///< of kRows rows
+  std::vector<double> zero_row_;
+  std::optional<RankTranspose> ranks_;  ///< where there are several
+  Share own_groups_;                    ///< of kRows rows
   std::size_t field_size_;
-  Index column_stride_;                    ///< from column to column while columns are carried
-  Index column_step_;                      ///< and while rows are
-  Index group_step_;                       ///< then from group to group of a column's rows
-  FftwBuffer<Real> columns_;               ///< of all fields
-  std::vector<FftwBuffer<Real>> scratch_;  ///< for each thread
-  FftwPlan<Real> row_forward_;
-  FftwPlan<Real> row_backward_;
-  FftwPlan<Real> column_forward_;
-  FftwPlan<Real> column_backward_;
+  Index column_stride_;              ///< from column to column while columns are carried
+  Index column_step_;                ///< and while rows are
+  Index group_step_;                 ///< then from group to group of a column's rows
+  FftwBuffer columns_;               ///< of all fields
+  std::vector<FftwBuffer> scratch_;  ///< for each thread
+  FftwPlan row_forward_;
+  FftwPlan row_backward_;
+  FftwPlan column_forward_;
+  FftwPlan column_backward_;
 };
 
 }  // namespace slipstick::solver

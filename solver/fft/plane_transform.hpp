@@ -21,25 +21,23 @@ struct PlaneShape {
 };
 
 /// Some columns of the fields' complex numbers: row k has those from the first one on.
-template <typename Real>
 struct PlaneColumns {
-  Real* start;
+  double* start;
   Index row_stride;
   Index field_stride;
   Index first;
   Index count;
-  Real* row(Index field, Index k) const { return start + field * field_stride + k * row_stride; }
+  double* row(Index field, Index k) const { return start + field * field_stride + k * row_stride; }
 };
 
 /// Real fields that are Fourier transformed: a workspace, the plans for it. Rows go one by one, from and to a
 /// thread's own (FFTW finds a plan three times as fast as in place), columns a cache line of them at a time;
 /// on so many threads, with the same result on any. Each of several ranks carries its own rows of samples and
 /// its share of the columns.
-template <typename Real>
 class PlaneTransform {
  public:
   /// Columns that lie in a cache line.
-  static constexpr Index kColumns = 64 / static_cast<Index>(2 * sizeof(Real));
+  static constexpr Index kColumns = 64 / static_cast<Index>(2 * sizeof(double));
 
   PlaneTransform(const PlaneShape& shape, int threads)
       : shape_(shape),
@@ -56,13 +54,13 @@ class PlaneTransform {
       own_rows_.emplace_back(count(row_stride_));
       if (!shape.whole) scratch_.emplace_back(count(scratch_size(shape)));
     }
-    row_forward_ = FftwPlan<Real>(Fftw<Real>::plan_row_forward(length, own_row(0), spectrum));
-    row_backward_ = FftwPlan<Real>(Fftw<Real>::plan_row_backward(length, spectrum, own_row(0)));
+    row_forward_ = FftwPlan(plan_row_forward(length, own_row(0), spectrum));
+    row_backward_ = FftwPlan(plan_row_backward(length, spectrum, own_row(0)));
     const int step = static_cast<int>(shape.whole ? row_stride_ / 2 : kColumns);
     auto* const columns = shape.whole ? spectrum : scratch_.front().complex();
     const FftwLines lines{static_cast<int>(shape.n1), static_cast<int>(kColumns), step, 1, step, 1};
-    column_forward_ = FftwPlan<Real>(Fftw<Real>::plan_lines(lines, columns, columns, FFTW_FORWARD));
-    column_backward_ = FftwPlan<Real>(Fftw<Real>::plan_lines(lines, columns, columns, FFTW_BACKWARD));
+    column_forward_ = FftwPlan(plan_transforms(lines, columns, columns, FFTW_FORWARD));
+    column_backward_ = FftwPlan(plan_transforms(lines, columns, columns, FFTW_BACKWARD));
   }
 
   int threads() const { return threads_; }
@@ -77,31 +75,31 @@ class PlaneTransform {
   }
 
   /// A thread's n2 values, before or after their transform.
-  Real* own_row(int thread) { return own_rows_[count(thread)].data(); }
+  double* own_row(int thread) { return own_rows_[count(thread)].data(); }
   /// Row of sample i: n2/2 + 1 complex numbers, each its real, then its imaginary part.
-  Real* sample(Index field, Index i) {
+  double* sample(Index field, Index i) {
     return row(field, shape_.whole ? shape_.place(i, shape_.n1) : i - own_samples_.first);
   }
   void forward_sample(int thread, Index field, Index i) {
-    Fftw<Real>::execute(row_forward_.get(), own_row(thread), numbers(sample(field, i)));
+    fftw_execute_dft_r2c(row_forward_.get(), own_row(thread), numbers(sample(field, i)));
   }
   /// Overwrites it.
   void backward_sample(int thread, Index field, Index i) {
-    Fftw<Real>::execute(row_backward_.get(), numbers(sample(field, i)), own_row(thread));
+    fftw_execute_dft_c2r(row_backward_.get(), numbers(sample(field, i)), own_row(thread));
   }
   /// Of a whole plane the rows without samples, in which transforms write.
   void clear_others(Index field) {
     in_parts(threads_, shape_.n1 - shape_.samples, [&](int, Index begin, Index end) {
       for (Index i = shape_.samples + begin; i < shape_.samples + end; ++i) {
-        std::fill_n(row(field, shape_.place(i, shape_.n1)), row_stride_, Real(0));
+        std::fill_n(row(field, shape_.place(i, shape_.n1)), row_stride_, 0.0);
       }
     });
   }
 
   /// A row of those that are kept.
-  Real* row(Index field, Index k) { return buffer_.data() + field * field_size_ + k * row_stride_; }
+  double* row(Index field, Index k) { return buffer_.data() + field * field_size_ + k * row_stride_; }
   /// All columns of a whole plane.
-  PlaneColumns<Real> all_columns() { return {buffer_.data(), row_stride_, field_size_, 0, columns_}; }
+  PlaneColumns all_columns() { return {buffer_.data(), row_stride_, field_size_, 0, columns_}; }
 
   /// This rank's columns of the fields forward, a cache line of them at a time, work(thread, these), and
   /// back; not of a whole plane.
@@ -110,20 +108,19 @@ class PlaneTransform {
     for (Index field = 0; field < fields; ++field) ranks_.to_columns(buffer_.data() + field * field_size_);
     const Share own = shared_matrix(shape_).own_columns();
     in_parts(threads_, own.count(), [&](int thread, Index begin, Index end) {
-      Real* const scratch = scratch_[count(thread)].data();
+      double* const scratch = scratch_[count(thread)].data();
       const Index size = 2 * kColumns * shape_.n1;
       for (Index batch = begin; batch < end; ++batch) {
         for (Index field = 0; field < fields; ++field) {
           read_batch(this->batch(field, batch), scratch + field * size);
-          Fftw<Real>::execute(column_forward_.get(), numbers(scratch + field * size),
-                              numbers(scratch + field * size));
+          fftw_execute_dft(column_forward_.get(), numbers(scratch + field * size),
+                           numbers(scratch + field * size));
         }
         const Index first = (own.first + batch) * kColumns;
-        work(thread,
-             PlaneColumns<Real>{scratch, 2 * kColumns, size, first, std::min(kColumns, columns_ - first)});
+        work(thread, PlaneColumns{scratch, 2 * kColumns, size, first, std::min(kColumns, columns_ - first)});
         for (Index field = 0; field < fields; ++field) {
-          Fftw<Real>::execute(column_backward_.get(), numbers(scratch + field * size),
-                              numbers(scratch + field * size));
+          fftw_execute_dft(column_backward_.get(), numbers(scratch + field * size),
+                           numbers(scratch + field * size));
           write_batch(scratch + field * size, this->batch(field, batch));
         }
       }
@@ -148,7 +145,7 @@ class PlaneTransform {
   Index row_stride() const { return row_stride_; }
 
  private:
-  static constexpr Index kLine = 64 / static_cast<Index>(sizeof(Real));  ///< reals in a cache line
+  static constexpr Index kLine = 64 / static_cast<Index>(sizeof(double));  ///< reals in a cache line
   /// Rows lie where the processor does not look ahead: they are asked for by hand, so many before their turn.
   static constexpr Index kAhead = 12;
 
@@ -158,7 +155,7 @@ class PlaneTransform {
     return (Ranks::number() > 1 ? lines : lines | 1) * kLine;
   }
   /// What goes from rank to rank: a cache line is an entry.
-  static typename RankTranspose<Real>::Shape shared_matrix(const PlaneShape& shape) {
+  static RankTranspose::Shape shared_matrix(const PlaneShape& shape) {
     return {shape.samples, RowBands(shape.samples).rows_of_rank(), batches(shape), 2 * kColumns};
   }
   static Index field_size(const PlaneShape& shape) {
@@ -169,24 +166,24 @@ class PlaneTransform {
 
   /// Where a batch of this rank's columns has the first of its samples, and how far it is to the next one: on
   /// one rank where rows are, on several where they have been carried.
-  Real* batch(Index field, Index batch) {
+  double* batch(Index field, Index batch) {
     const bool carried = Ranks::number() > 1;
     return row(field, 0) + batch * (carried ? shape_.samples : 1) * kLine;
   }
   Index sample_step() const { return Ranks::number() > 1 ? kLine : row_stride_; }
 
   /// Samples between there and where they are transformed.
-  void read_batch(const Real* from, Real* columns) const {
+  void read_batch(const double* from, double* columns) const {
     const Index step = sample_step();
     for (Index i = 0; i < shape_.samples; ++i) {
       __builtin_prefetch(from + (i + kAhead) * step);
       std::copy_n(from + i * step, kLine, columns + shape_.place(i, shape_.n1) * kLine);
     }
     for (Index i = shape_.samples; i < shape_.n1; ++i) {
-      std::fill_n(columns + shape_.place(i, shape_.n1) * kLine, kLine, Real(0));
+      std::fill_n(columns + shape_.place(i, shape_.n1) * kLine, kLine, 0.0);
     }
   }
-  void write_batch(const Real* columns, Real* to) const {
+  void write_batch(const double* columns, double* to) const {
     const Index step = sample_step();
     for (Index i = 0; i < shape_.samples; ++i) {
       __builtin_prefetch(to + (i + kAhead) * step, 1);
@@ -194,16 +191,14 @@ class PlaneTransform {
     }
   }
 
-  static typename Fftw<Real>::Complex* numbers(Real* row) {
-    return reinterpret_cast<typename Fftw<Real>::Complex*>(row);
-  }
+  static fftw_complex* numbers(double* row) { return reinterpret_cast<fftw_complex*>(row); }
   void forward_columns(Index field, Index batch) {
     auto* const columns = numbers(row(field, 0)) + batch * kColumns;
-    Fftw<Real>::execute(column_forward_.get(), columns, columns);
+    fftw_execute_dft(column_forward_.get(), columns, columns);
   }
   void backward_columns(Index field, Index batch) {
     auto* const columns = numbers(row(field, 0)) + batch * kColumns;
-    Fftw<Real>::execute(column_backward_.get(), columns, columns);
+    fftw_execute_dft(column_backward_.get(), columns, columns);
   }
 
   PlaneShape shape_;
@@ -212,14 +207,14 @@ class PlaneTransform {
   Index columns_;
   Share own_samples_;
   Index field_size_;  ///< reals from one field to the next
-  FftwBuffer<Real> buffer_;
-  RankTranspose<Real> ranks_;
-  std::vector<FftwBuffer<Real>> own_rows_;  ///< for each thread
-  std::vector<FftwBuffer<Real>> scratch_;   ///< for each thread: columns while they are transformed
-  FftwPlan<Real> row_forward_;
-  FftwPlan<Real> row_backward_;
-  FftwPlan<Real> column_forward_;
-  FftwPlan<Real> column_backward_;
+  FftwBuffer buffer_;
+  RankTranspose ranks_;
+  std::vector<FftwBuffer> own_rows_;  ///< for each thread
+  std::vector<FftwBuffer> scratch_;   ///< for each thread: columns while they are transformed
+  FftwPlan row_forward_;
+  FftwPlan row_backward_;
+  FftwPlan column_forward_;
+  FftwPlan column_backward_;
 };
 
 }  // namespace slipstick::solver

@@ -7,8 +7,7 @@
 namespace slipstick::solver {
 
 /// What a transform carries between ranks, between its pass over rows and that over columns; on one rank,
-/// which keeps all, it does nothing. Entries are some numbers of the type Real that stay together.
-template <typename Real>
+/// which keeps all, it does nothing. Entries are some numbers that stay together.
 class RankTranspose {
  public:
   struct Shape {
@@ -20,7 +19,7 @@ class RankTranspose {
     Share own_columns() const { return Ranks::own_share(columns); }
     SharedMatrix matrix() const {
       return {rows, rows_of_rank, columns, Ranks::block_of(columns, Ranks::number()),
-              static_cast<std::size_t>(entry) * sizeof(Real)};
+              static_cast<std::size_t>(entry) * sizeof(double)};
     }
     /// What all ranks together send for one way.
     double sent_bytes() const {
@@ -31,14 +30,14 @@ class RankTranspose {
         const Index others = columns - Ranks::share(columns, rank, Ranks::number()).count();
         entries += static_cast<double>(own) * static_cast<double>(others);
       }
-      return entries * static_cast<double>(entry) * sizeof(Real);
+      return entries * static_cast<double>(entry) * sizeof(double);
     }
     /// Numbers in this rank's part, rounded up to cache lines.
     Index size() const {
       if (Ranks::number() == 1) return rows * columns * entry;
-      constexpr Index line = 64 / static_cast<Index>(sizeof(Real));
+      constexpr Index line = 64 / static_cast<Index>(sizeof(double));
       const auto bytes = Ranks::communicator().size(matrix());
-      return (static_cast<Index>(bytes / sizeof(Real)) + line - 1) / line * line;
+      return (static_cast<Index>(bytes / sizeof(double)) + line - 1) / line * line;
     }
   };
 
@@ -46,10 +45,10 @@ class RankTranspose {
     if (Ranks::number() > 1) transposition_ = Ranks::communicator().transposition(shape.matrix());
   }
 
-  void to_columns(Real* buffer) const {
+  void to_columns(double* buffer) const {
     if (transposition_) transposition_->to_columns(buffer);
   }
-  void to_rows(Real* buffer) const {
+  void to_rows(double* buffer) const {
     if (transposition_) transposition_->to_rows(buffer);
   }
 

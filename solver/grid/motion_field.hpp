@@ -51,12 +51,11 @@ class MotionField {
   /// part += factor times as many values from `first` on.
   template <typename Part>
   void add_to(Part&& part, Index first, double factor) const {
-    using Real = typename std::decay_t<Part>::Scalar;
     const Row at = row(first);
     if (at.slope != 0.0) {
-      part += (factor * at.constant + (factor * at.slope) * x2(at, part.size())).template cast<Real>();
+      part += (factor * at.constant + (factor * at.slope) * x2(at, part.size()));
     } else if (at.constant != 0.0) {
-      part += static_cast<Real>(factor * at.constant);
+      part += factor * at.constant;
     }
   }
 

@@ -48,14 +48,12 @@ class Ranks {
   static Index block_of(Index count, int number) { return (count + number - 1) / number; }
 
   /// Makes a field of some rows whole on every rank, each of which has so many rows, the last ones fewer.
-  template <typename Real>
-  static void gather(std::span<Real> field, Index rows, Index rows_of_rank) {
+  static void gather(std::span<double> field, Index rows, Index rows_of_rank) {
     if (number() > 1)
       communicator().gather(field.data(), field.size_bytes() / size(rows), rows, rows_of_rank);
   }
   /// Brings the rows next to this rank's from the ranks that have them, so many on each side.
-  template <typename Real>
-  static void gather_beside(std::span<Real> field, Index rows, Index rows_of_rank, Index depth) {
+  static void gather_beside(std::span<double> field, Index rows, Index rows_of_rank, Index depth) {
     if (number() == 1 || rows == 0) return;
     communicator().gather_beside(field.data(), field.size_bytes() / size(rows), rows, rows_of_rank, depth);
   }
@@ -124,8 +122,7 @@ class RowBands {
 };
 
 /// Makes a field of any number of components whole on every rank.
-template <typename Real>
-void gather(const Grid& grid, std::span<Real> field) {
+inline void gather(const Grid& grid, std::span<double> field) {
   if (Ranks::number() == 1) return;
   const auto cells = static_cast<std::size_t>(grid.cells());
   if (cells == 0) return;

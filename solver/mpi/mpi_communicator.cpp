@@ -146,11 +146,11 @@ class MpiCommunicator final : public Communicator {
 class FftwTransposition final : public Transposition {
  public:
   FftwTransposition(MpiCommunicator& ranks, const SharedMatrix& matrix) : ranks_(ranks), matrix_(matrix) {
-    FftwBuffer<double> buffer(ranks.size(matrix) / sizeof(double));
+    FftwBuffer buffer(ranks.size(matrix) / sizeof(double));
     const auto plan = [&](Length rows, Length of_rank, Length columns, Length columns_of_rank) {
-      return FftwPlan<double>(fftw_mpi_plan_many_transpose(
-          rows, columns, MpiCommunicator::reals_of_entry(matrix), of_rank, columns_of_rank, buffer.data(),
-          buffer.data(), MPI_COMM_WORLD, FFTW_ESTIMATE));
+      return FftwPlan(fftw_mpi_plan_many_transpose(rows, columns, MpiCommunicator::reals_of_entry(matrix),
+                                                   of_rank, columns_of_rank, buffer.data(), buffer.data(),
+                                                   MPI_COMM_WORLD, FFTW_ESTIMATE));
     };
     to_columns_ = plan(matrix.rows, matrix.rows_of_rank, matrix.columns, matrix.columns_of_rank);
     to_rows_ = plan(matrix.columns, matrix.columns_of_rank, matrix.rows, matrix.rows_of_rank);
@@ -168,7 +168,7 @@ class FftwTransposition final : public Transposition {
   }
 
  private:
-  static void run(const FftwPlan<double>& plan, void* buffer) {
+  static void run(const FftwPlan& plan, void* buffer) {
     auto* const reals = static_cast<double*>(buffer);
     fftw_mpi_execute_r2r(plan.get(), reals, reals);
   }
@@ -181,8 +181,8 @@ class FftwTransposition final : public Transposition {
 
   MpiCommunicator& ranks_;
   SharedMatrix matrix_;
-  FftwPlan<double> to_columns_;
-  FftwPlan<double> to_rows_;
+  FftwPlan to_columns_;
+  FftwPlan to_rows_;
 };
 
 std::unique_ptr<Transposition> MpiCommunicator::transposition(const SharedMatrix& matrix) {

@@ -11,19 +11,19 @@ namespace slipstick::solver {
 using Eigen::ArrayXd;
 using Eigen::ArrayXf;
 
-using Pair = Packet<double>::Vector;
+using Pair = Packet::Vector;
 
 /// One component of a field in two cells, and zero for a second one that is past the last.
-template <typename Real>
-Pair pair(const Real* from, bool both) {
+template <typename Number>
+Pair pair(const Number* from, bool both) {
   return Pair{static_cast<double>(from[0]), both ? static_cast<double>(from[1]) : 0.0};
 }
 static Pair both(double value) { return Pair{value, value}; }
 
 /// Values next to each other in a row, of a field that is kept or worked out: the k-th pair of them.
-template <typename Real>
+template <typename Number>
 struct KeptRow {
-  const Real* from;
+  const Number* from;
   Pair operator()(Index k, bool both_cells) const { return pair(from + k, both_cells); }
 };
 struct MotionRow {
@@ -34,8 +34,8 @@ struct MotionRow {
   }
 };
 static MotionRow row_of(const MotionField& motion, Index first) { return {motion.row(first)}; }
-template <typename Real>
-KeptRow<Real> row_of(const Eigen::Array<Real, Eigen::Dynamic, 1>& field, Index first) {
+template <typename Number>
+KeptRow<Number> row_of(const Eigen::Array<Number, Eigen::Dynamic, 1>& field, Index first) {
   return {field.data() + first};
 }
 
@@ -90,13 +90,12 @@ double PositivePressures::gap(const ArrayXd& p, const ArrayXd& opening) const {
   });
 }
 
-template <typename Real>
 Index PositivePressures::linearise(const ArrayXd& z, double, const std::array<double, 2>&,
-                                   TangentSpace<Real>& space) const {
+                                   TangentSpace& space) const {
   const auto changed = sweep_.sum<Index>([&](Index first, Index last, Index& count) {
     for (Index i = first; i < last; ++i) {
       const bool contact = z[i] > 0.0;
-      count += (space.f1[i] != Real(0)) != contact;
+      count += (space.f1[i] != 0.0) != contact;
       space.set(i, contact);
     }
   });
@@ -244,9 +243,8 @@ double FrictionDiscs::gap_rounding(const ArrayXd& slip, const ArrayXd& displacem
   return kGapUnits * sum;
 }
 
-template <typename Real>
 Index FrictionDiscs::linearise(const ArrayXd& z, double rho, const std::array<double, 2>& mean,
-                               TangentSpace<Real>& space) const {
+                               TangentSpace& space) const {
   const Index n = cells();
   const auto changed = sweep_.sum<Index>([&](Index first, Index last, Index& count) {
     for (Index i = first; i < last; ++i) {
@@ -309,13 +307,4 @@ template LoadsAlong<3> FrictionDiscs::loads_along<3, ArrayXf>(const ArrayXd&,
                                                               const std::array<const ArrayXf*, 3>&,
                                                               const Eigen::Vector<double, 3>&,
                                                               const std::array<const MotionField*, 3>&) const;
-template Index PositivePressures::linearise(const ArrayXd&, double, const std::array<double, 2>&,
-                                            TangentSpace<double>&) const;
-template Index PositivePressures::linearise(const ArrayXd&, double, const std::array<double, 2>&,
-                                            TangentSpace<float>&) const;
-template Index FrictionDiscs::linearise(const ArrayXd&, double, const std::array<double, 2>&,
-                                        TangentSpace<double>&) const;
-template Index FrictionDiscs::linearise(const ArrayXd&, double, const std::array<double, 2>&,
-                                        TangentSpace<float>&) const;
-
 }  // namespace slipstick::solver

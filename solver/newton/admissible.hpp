@@ -26,7 +26,7 @@ inline bool is_certified(double gap, double rounding, double tolerance) {
 /// Besides that, for LoadBalance, the loads of its projection along given fields: loads_along(y, w, x, c).
 template <class Set>
 concept AdmissibleSet = requires(const Set& set, const Eigen::ArrayXd& s, Eigen::ArrayXd& q, double rho,
-                                 const std::array<double, 2>& mean, TangentSpace<double>& space) {
+                                 const std::array<double, 2>& mean, TangentSpace& space) {
   { Set::kComponents } -> std::convertible_to<Index>;  // values a cell: 1 or 2
   { set.cells() } -> std::same_as<Index>;
   { set.sweep() } -> std::same_as<const Sweep&>;                  // over those whose set is not zero alone
@@ -66,9 +66,7 @@ class PositivePressures {
   }
 
   /// State of each cell by the natural map at z = p - rho s.
-  template <typename Real>
-  Index linearise(const Eigen::ArrayXd& z, double, const std::array<double, 2>&,
-                  TangentSpace<Real>& space) const;
+  Index linearise(const Eigen::ArrayXd& z, double, const std::array<double, 2>&, TangentSpace& space) const;
 
   /// step += what brings each cell onto the face of its set on which the natural map puts it.
   void add_jump(const Eigen::ArrayXd& z, const Eigen::ArrayXd& p, Eigen::ArrayXd& step) const;
@@ -111,9 +109,8 @@ class FrictionDiscs {
 
   /// Stick where |z| <= mu p. Elsewhere q turns along its circle, against the stiffness (|z| - mu p)/(rho mu
   /// p), which is |s|/(mu p) where slip is opposed to traction already.
-  template <typename Real>
   Index linearise(const Eigen::ArrayXd& z, double rho, const std::array<double, 2>& mean,
-                  TangentSpace<Real>& space) const;
+                  TangentSpace& space) const;
 
   void add_jump(const Eigen::ArrayXd& z, const Eigen::ArrayXd& q, Eigen::ArrayXd& step) const;
 

@@ -40,22 +40,19 @@ struct CgSummary {
   std::string message() const;
 };
 
-template <typename Real>
-using CgField = Eigen::Array<Real, Eigen::Dynamic, 1>;
 /// A condition preconditioned, in single precision: any field near it will do.
 using CgTangent = Eigen::ArrayXf;
 
 /// In single precision, where mirror images stay each other's in sign and size, whichever way is rounded.
-template <typename Real>
-float to_tangent(Real value) {
+inline float to_tangent(double value) {
   return static_cast<float>(std::copysign(static_cast<float>(std::abs(value)), value));
 }
 
 /// The system's matrix, symmetric and positive definite where the iteration moves: fields are zero elsewhere,
 /// and only these cells of them are written. y = A x in two parts, of which the last shares a sweep over the
 /// cells with what is done after: transform(x, y), and store(first, last, x, y).
-template <class Map, typename Real>
-concept LinearMap = requires(Map& map, Index cell, const CgField<Real>& x, CgField<Real>& y) {
+template <class Map>
+concept LinearMap = requires(Map& map, Index cell, const Eigen::ArrayXd& x, Eigen::ArrayXd& y) {
   { map.cells() } -> std::convertible_to<const Sweep&>;
   map.transform(x, y);
   map.store(cell, cell, x, y);
@@ -65,8 +62,8 @@ concept LinearMap = requires(Map& map, Index cell, const CgField<Real>& x, CgFie
 /// is done before and after: load(first, last, r, z) for all cells of a z that is zero, transform(z), and
 /// store(first, last, r, z, y), where y may be z. project(first, last, y) leaves of y what lies in M's range;
 /// r lies there.
-template <class Map, typename Real>
-concept SplitMap = requires(Map& map, Index cell, const CgField<Real>& r, CgField<Real>& y) {
+template <class Map>
+concept SplitMap = requires(Map& map, Index cell, const Eigen::ArrayXd& r, Eigen::ArrayXd& y) {
   { map.cells() } -> std::convertible_to<const Sweep&>;
   map.load(cell, cell, r, y);
   map.transform(y);
@@ -75,23 +72,19 @@ concept SplitMap = requires(Map& map, Index cell, const CgField<Real>& r, CgFiel
 };
 
 /// a.b in the cells [first, last) of `cells`, in all components; products are summed in double precision.
-template <typename Real>
-double dot(Index cells, Index first, Index last, const CgField<Real>& a, const CgField<Real>& b) {
+inline double dot(Index cells, Index first, Index last, const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) {
   double sum = 0.0;
   for (Index start = first; start < a.size(); start += cells) {
-    sum += (a.segment(start, last - first).template cast<double>() *
-            b.segment(start, last - first).template cast<double>())
-               .sum();
+    sum += (a.segment(start, last - first) * b.segment(start, last - first)).sum();
   }
   return sum;
 }
 
 /// Fields that an iteration overwrites; not owned.
-template <typename Real>
 struct CgWorkspace {
-  CgField<Real>& d;
-  CgField<Real>& Ad;
-  CgField<Real>& y;
+  Eigen::ArrayXd& d;
+  Eigen::ArrayXd& Ad;
+  Eigen::ArrayXd& y;
 };
 
 /// Of two fields, and of one with the conditions and one with their tangents.
@@ -118,7 +111,7 @@ struct CgProducts {
 /// precision.
 ///
 /// Condition: what MotionField can do with values of one row. Conditions are not owned.
-template <typename Real, class Condition>
+template <class Condition>
 class CgConstraints {
  public:
   using Conditions = std::span<const Condition* const>;
@@ -130,8 +123,8 @@ class CgConstraints {
 
   /// Tangents that are the preconditioned conditions. False if these are not independent where the
   /// preconditioner lets fields move; then they must not be used. y, z: overwritten.
-  template <SplitMap<Real> Preconditioner>
-  bool prepare(Preconditioner& preconditioner, Conditions conditions, CgField<Real>& y, CgField<Real>& z) {
+  template <SplitMap Preconditioner>
+  bool prepare(Preconditioner& preconditioner, Conditions conditions, Eigen::ArrayXd& y, Eigen::ArrayXd& z) {
     count_ = conditions.size();
     std::ranges::copy(conditions, conditions_.begin());
     const Sweep& cells = preconditioner.cells();
@@ -152,7 +145,7 @@ class CgConstraints {
         preconditioner.store(first, last, y, z, z);
         add_products(cells, first, last, z, sum);
         for_components(cells, z, first, last, [&](Index start, Index n) {
-          tangents_[k].segment(start, n) = z.segment(start, n).unaryExpr(&to_tangent<Real>);
+          tangents_[k].segment(start, n) = z.segment(start, n).unaryExpr(&to_tangent);
         });
       });
       products.col(static_cast<Index>(k)) = first(with_z.conditions);
@@ -168,16 +161,16 @@ class CgConstraints {
 
   /// The same tangents in another range of the preconditioner. all: the cells that carry anything. z:
   /// overwritten. False as above.
-  template <SplitMap<Real> Preconditioner>
-  bool restrict_tangents(const Preconditioner& preconditioner, const Sweep& all, CgField<Real>& z) {
+  template <SplitMap Preconditioner>
+  bool restrict_tangents(const Preconditioner& preconditioner, const Sweep& all, Eigen::ArrayXd& z) {
     for (CgTangent& w : tangents_.first(count_)) {
       all.each([&](Index first, Index last) {
         for_components(all, z, first, last, [&](Index start, Index n) {
-          z.segment(start, n) = w.segment(start, n).template cast<Real>();
+          z.segment(start, n) = w.segment(start, n).cast<double>();
         });
         preconditioner.project(first, last, z);
         for_components(all, z, first, last, [&](Index start, Index n) {
-          w.segment(start, n) = z.segment(start, n).unaryExpr(&to_tangent<Real>);
+          w.segment(start, n) = z.segment(start, n).unaryExpr(&to_tangent);
         });
       });
     }
@@ -185,22 +178,20 @@ class CgConstraints {
   }
 
   /// sum += c_k.y in some cells
-  void add_products(const Sweep& cells, Index first, Index last, const CgField<Real>& y,
+  void add_products(const Sweep& cells, Index first, Index last, const Eigen::ArrayXd& y,
                     CgProducts& sum) const {
     for (std::size_t k = 0; k < count_; ++k) {
       for_components(cells, y, first, last, [&](Index start, Index n) {
-        sum.conditions[k] += conditions_[k]->dot(start, y.segment(start, n).template cast<double>());
+        sum.conditions[k] += conditions_[k]->dot(start, y.segment(start, n));
       });
     }
   }
   /// sum += w_k.r in some cells
-  void add_products_of_tangents(const Sweep& cells, Index first, Index last, const CgField<Real>& r,
+  void add_products_of_tangents(const Sweep& cells, Index first, Index last, const Eigen::ArrayXd& r,
                                 CgProducts& sum) const {
     for (std::size_t k = 0; k < count_; ++k) {
       for_components(cells, r, first, last, [&](Index start, Index n) {
-        sum.tangents[k] += (tangents_[k].segment(start, n).template cast<double>() *
-                            r.segment(start, n).template cast<double>())
-                               .sum();
+        sum.tangents[k] += (tangents_[k].segment(start, n).cast<double>() * r.segment(start, n)).sum();
       });
     }
   }
@@ -220,7 +211,7 @@ class CgConstraints {
 
   /// r -= the sum of multiplier_k c_k in some cells
   void take_conditions_out(const Sweep& cells, Index first, Index last, const Coefficients& multipliers,
-                           CgField<Real>& r) const {
+                           Eigen::ArrayXd& r) const {
     for (Index k = 0; k < count(); ++k) {
       for_components(cells, r, first, last, [&](Index start, Index n) {
         conditions_[at(k)]->add_to(r.segment(start, n), start, -multipliers[k]);
@@ -229,19 +220,19 @@ class CgConstraints {
   }
   /// y -= the sum of part_k w_k in some cells
   void take_tangents_out(const Sweep& cells, Index first, Index last, const Coefficients& parts,
-                         CgField<Real>& y) const {
+                         Eigen::ArrayXd& y) const {
     for (Index k = 0; k < count(); ++k) {
-      const auto part = static_cast<Real>(parts[k]);
+      const auto part = parts[k];
       for_components(cells, y, first, last, [&](Index start, Index n) {
-        y.segment(start, n) -= part * tangents_[at(k)].segment(start, n).template cast<Real>();
+        y.segment(start, n) -= part * tangents_[at(k)].segment(start, n).cast<double>();
       });
     }
   }
 
   /// x += the combination of tangents with these values of c_k.x.
-  template <SplitMap<Real> Preconditioner>
+  template <SplitMap Preconditioner>
   void add_with_values(const Preconditioner& preconditioner, const Coefficients& values,
-                       CgField<Real>& x) const {
+                       Eigen::ArrayXd& x) const {
     const Coefficients parts = -(of_tangents_ * values);
     const Sweep& cells = preconditioner.cells();
     cells.each([&](Index first, Index last) {
@@ -266,13 +257,13 @@ class CgConstraints {
   /// (C^T W)^-1 and its transpose, with tangents as far as they lie in the preconditioner's range, of which
   /// rounding to single precision takes them out; false if there is none.
   template <class Preconditioner>
-  bool factorise(const Preconditioner& preconditioner, CgField<Real>& z) {
+  bool factorise(const Preconditioner& preconditioner, Eigen::ArrayXd& z) {
     const Sweep& cells = preconditioner.cells();
     CoefficientMatrix products(count(), count());
     for (std::size_t k = 0; k < count_; ++k) {
       const auto column = cells.sum<CgProducts>([&](Index first, Index last, CgProducts& sum) {
         for_components(cells, z, first, last, [&](Index start, Index n) {
-          z.segment(start, n) = tangents_[k].segment(start, n).template cast<Real>();
+          z.segment(start, n) = tangents_[k].segment(start, n).cast<double>();
         });
         preconditioner.project(first, last, z);
         add_products(cells, first, last, z, sum);
@@ -294,13 +285,13 @@ class CgConstraints {
 /// has them at the start. r: the residual of x, its start; overwritten by what is left under the multipliers
 /// that are found. Stops when r has fallen by `reduction`. Each iteration applies both maps once and sweeps
 /// over the cells four times, twice of them within the maps. Allocates nothing.
-template <typename Real, LinearMap<Real> Map, SplitMap<Real> Preconditioner, class Condition>
-CgSummary projected_cg(Map& map, Preconditioner& preconditioner,
-                       const CgConstraints<Real, Condition>& constraints, CgField<Real>& r,
-                       const CgOptions& options, const CgWorkspace<Real>& work, CgField<Real>& x) {
-  CgField<Real>& d = work.d;
-  CgField<Real>& Ad = work.Ad;
-  CgField<Real>& y = work.y;
+template <LinearMap Map, SplitMap Preconditioner, class Condition>
+CgSummary projected_cg(Map& map, Preconditioner& preconditioner, const CgConstraints<Condition>& constraints,
+                       Eigen::ArrayXd& r, const CgOptions& options, const CgWorkspace& work,
+                       Eigen::ArrayXd& x) {
+  Eigen::ArrayXd& d = work.d;
+  Eigen::ArrayXd& Ad = work.Ad;
+  Eigen::ArrayXd& y = work.y;
   const Sweep& cells = map.cells();
   CgSummary summary;
   // y = r preconditioned, what has to be taken out of it, and the product of r with what that leaves.
@@ -317,7 +308,7 @@ CgSummary projected_cg(Map& map, Preconditioner& preconditioner,
     left = constraints.first(products.tangents);  // rounding, which must not grow
     return products.fields - (parts.size() > 0 ? parts.dot(left) : 0.0);
   };
-  const auto turn = [&](Real kept) {
+  const auto turn = [&](double kept) {
     cells.each([&](Index first, Index last) {
       constraints.take_tangents_out(cells, first, last, parts, y);
       preconditioner.project(first, last, y);
@@ -361,7 +352,7 @@ CgSummary projected_cg(Map& map, Preconditioner& preconditioner,
       summary.breakdown_at = curvature;
       return summary;
     }
-    const auto step = static_cast<Real>(square / curvature);
+    const auto step = square / curvature;
     const Coefficients multipliers =
         constraints.multipliers(left - static_cast<double>(step) * constraints.first(products.tangents));
     summary.multipliers += multipliers;
@@ -381,7 +372,7 @@ CgSummary projected_cg(Map& map, Preconditioner& preconditioner,
       break;
     }
     const double last = std::exchange(square, precondition());
-    turn(static_cast<Real>(square / last));
+    turn(square / last);
     if (!(square > options.reduction * options.reduction * first_square)) break;
   }
   // Below zero only by rounding, once converged.

@@ -26,8 +26,7 @@ constexpr Index kChunk = 256;
 
 }  // namespace
 
-template <typename Real>
-Extension<Real>::Extension(const Grid& grid)
+Extension::Extension(const Grid& grid)
     : grid_(grid),
       reach_(std::clamp(std::min(grid.n1, grid.n2) / kSidesOfReach, kLeastReach, kMostReach)),
       weight_(grid.cells()),
@@ -35,15 +34,13 @@ Extension<Real>::Extension(const Grid& grid)
       mixed_(Sweep::whole(0, grid.n2)),
       zeros_(Field::Zero(grid.n2)) {}
 
-template <typename Real>
-void Extension<Real>::bring_beside(Field& field) const {
-  Ranks::gather_beside(std::span<Real>(field.data(), static_cast<std::size_t>(field.size())), grid_.n1,
+void Extension::bring_beside(Field& field) const {
+  Ranks::gather_beside(std::span<double>(field.data(), static_cast<std::size_t>(field.size())), grid_.n1,
                        RowBands(grid_.n1).rows_of_rank(), reach_);
 }
 
 /// Counts free cells near each block; what is beyond the grid is not free.
-template <typename Real>
-void Extension<Real>::find_mixed(const Field& free) {
+void Extension::find_mixed(const Field& free) {
   const Share own = RowBands(grid_.n1).own_rows();
   const Index blocks = (grid_.n2 + kBlock - 1) / kBlock;
   const Index rows_near = 2 * reach_ + 1;
@@ -63,21 +60,19 @@ void Extension<Real>::find_mixed(const Field& free) {
     near = counts.middleCols(row - own.first, rows_near).rowwise().sum();
     for (Index block = 0; block < blocks; ++block) {
       const int count = near.template segment<3>(block).sum();
-      cells_of(weight_, row, block)
-          .setConstant(count > 0 && count < 3 * kBlock * rows_near ? Real(1) : Real(0));
+      cells_of(weight_, row, block).setConstant(count > 0 && count < 3 * kBlock * rows_near ? 1.0 : 0.0);
     }
   }
-  mixed_.assign(grid_.cells(), [&](Index cell) { return weight_[cell] != Real(0); });
+  mixed_.assign(grid_.cells(), [&](Index cell) { return weight_[cell] != 0.0; });
 }
 
 /// take(first, sums) for cells of mixed_: the sums over neighbours of a field, which is zero beyond the grid.
-template <typename Real>
 template <typename Take>
-void Extension<Real>::spread(const Field& in, const Take& take) const {
-  using Line = Eigen::Array<Real, kChunk + 2 * kMostReach, 1>;
+void Extension::spread(const Field& in, const Take& take) const {
+  using Line = Eigen::Array<double, kChunk + 2 * kMostReach, 1>;
   const auto add_beside = [&](const auto& at, auto&& sum) {
-    Real weight = kNearest;
-    for (Index k = 1; k <= reach_; ++k, weight *= Real(kDecay)) sum += weight * (at(-k) + at(k));
+    double weight = kNearest;
+    for (Index k = 1; k <= reach_; ++k, weight *= kDecay) sum += weight * (at(-k) + at(k));
   };
   const auto spread_in = [&](Index row, Index first, Index last) {
     const Index left = std::max<Index>(first - reach_, 0);
@@ -105,19 +100,17 @@ void Extension<Real>::spread(const Field& in, const Take& take) const {
   });
 }
 
-template <typename Real>
-void Extension<Real>::prepare(Field& free) {
+void Extension::prepare(Field& free) {
   bring_beside(free);
   find_mixed(free);
   clear(mixed_, work_);
   spread(free, [&](Index first, const auto& sums) {
     const auto is_free = free.segment(first, sums.size());
-    weight_.segment(first, sums.size()) = (Real(1) - is_free) / (sums + static_cast<Real>(kFade));
+    weight_.segment(first, sums.size()) = (1.0 - is_free) / (sums + kFade);
   });
 }
 
-template <typename Real>
-void Extension<Real>::extend(Field& y) {
+void Extension::extend(Field& y) {
   bring_beside(y);
   spread(y, [&](Index first, const auto& sums) {
     work_.segment(first, sums.size()) = weight_.segment(first, sums.size()) * sums;
@@ -126,8 +119,7 @@ void Extension<Real>::extend(Field& y) {
       [&](Index first, Index last) { y.segment(first, last - first) += work_.segment(first, last - first); });
 }
 
-template <typename Real>
-void Extension<Real>::gather(Field& y) {
+void Extension::gather(Field& y) {
   mixed_.each([&](Index first, Index last) {
     work_.segment(first, last - first) =
         weight_.segment(first, last - first) * y.segment(first, last - first);
@@ -136,17 +128,16 @@ void Extension<Real>::gather(Field& y) {
   spread(work_, [&](Index first, const auto& sums) { y.segment(first, sums.size()) += sums; });
 }
 
-template <typename Real>
-void Extension<Real>::hand_on(const Sweep& cells, const Field& free, Eigen::ArrayXd& p, Field& stays,
-                              Field& leaves) {
+void Extension::hand_on(const Sweep& cells, const Field& free, Eigen::ArrayXd& p, Field& stays,
+                        Field& leaves) {
   clear(cells, stays);
   clear(cells, leaves);
   const auto count = cells.sum<Index>([&](Index first, Index last, Index& sum) {
     for (Index i = first; i < last; ++i) {
-      if (free[i] != Real(0) && p[i] > 0.0) {
-        stays[i] = Real(1);
+      if (free[i] != 0.0 && p[i] > 0.0) {
+        stays[i] = 1.0;
       } else if (p[i] != 0.0) {
-        leaves[i] = static_cast<Real>(std::exchange(p[i], 0.0));
+        leaves[i] = std::exchange(p[i], 0.0);
         ++sum;
       }
     }
@@ -158,8 +149,5 @@ void Extension<Real>::hand_on(const Sweep& cells, const Field& free, Eigen::Arra
     for (Index i = first; i < last; ++i) p[i] += static_cast<double>(stays[i] * leaves[i]);
   });
 }
-
-template class Extension<double>;
-template class Extension<float>;
 
 }  // namespace slipstick::solver

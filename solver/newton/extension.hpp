@@ -13,10 +13,9 @@ namespace slipstick::solver {
 /// S E over all E that leave a field as it is there. E = 0 elsewhere, as a projector has it, cuts residuals
 /// off at the edges of the free cells and answers them several times too strongly; a decaying mean of what is
 /// near by comes close.
-template <typename Real>
 class Extension {
  public:
-  using Field = Eigen::Array<Real, Eigen::Dynamic, 1>;
+  using Field = Eigen::ArrayXd;
 
   /// Of scalar fields on a grid.
   explicit Extension(const Grid& grid);
@@ -48,8 +47,5 @@ class Extension {
   Sweep mixed_;   ///< over blocks of cells that have both kinds near them: elsewhere nothing is continued
   Field zeros_;   ///< a row beyond the grid
 };
-
-extern template class Extension<double>;
-extern template class Extension<float>;
 
 }  // namespace slipstick::solver

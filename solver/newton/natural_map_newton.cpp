@@ -39,14 +39,12 @@ NewtonSummary fail(NewtonSummary& summary, const std::string& why) {
 
 }  // namespace
 
-template <AdmissibleSet Set, typename Real>
-NaturalMapNewton<Set, Real>::NaturalMapNewton(const Set& set, const ConvexProgram& program,
-                                              LinearOperator& op, Operator<Real>& inner,
-                                              InverseSymbol<Real>& symbol)
+template <AdmissibleSet Set>
+NaturalMapNewton<Set>::NaturalMapNewton(const Set& set, const ConvexProgram& program, LinearOperator& op,
+                                        InverseSymbol& symbol)
     : set_(set),
       program_(program),
       op_(op),
-      inner_(inner),
       symbol_(symbol),
       mean_(symbol.diagonal()),
       rho_((kIsScalar ? kRhoOfPressure : kRho) * 0.5 * (mean_[0] + mean_[1])),
@@ -62,16 +60,15 @@ NaturalMapNewton<Set, Real>::NaturalMapNewton(const Set& set, const ConvexProgra
       y_(size()),
       trial_(size()),
       trial_u_(size()) {
-  if (!std::is_same_v<Real, double>) others_.fill(Field(size()));
   for (CgTangent& tangent : tangents_) tangent.resize(size());
   clear(set.sweep(), y_);
   clear(set.sweep(), trial_);
   for (const Condition& condition : program.imposed) c_.push_back(condition.c);
 }
 
-template <AdmissibleSet Set, typename Real>
-NewtonSummary NaturalMapNewton<Set, Real>::run(ArrayXd& q, const Coefficients& multipliers,
-                                               const NewtonOptions& options) {
+template <AdmissibleSet Set>
+NewtonSummary NaturalMapNewton<Set>::run(ArrayXd& q, const Coefficients& multipliers,
+                                         const NewtonOptions& options) {
   NewtonSummary summary;
   safeguards_ = {};
   has_tangents_ = false;
@@ -118,14 +115,13 @@ NewtonSummary NaturalMapNewton<Set, Real>::run(ArrayXd& q, const Coefficients& m
   }
 }
 
-template <AdmissibleSet Set, typename Real>
-long NaturalMapNewton<Set, Real>::applications() const {
-  const bool one = static_cast<const void*>(&op_) == static_cast<const void*>(&inner_);
-  return op_.applications() + (one ? 0 : inner_.applications());
+template <AdmissibleSet Set>
+long NaturalMapNewton<Set>::applications() const {
+  return op_.applications();
 }
 
-template <AdmissibleSet Set, typename Real>
-void NaturalMapNewton<Set, Real>::enter_admissible_set(ArrayXd& q) {
+template <AdmissibleSet Set>
+void NaturalMapNewton<Set>::enter_admissible_set(ArrayXd& q) {
   Coefficients x = Coefficients::Zero(balance_.count());
   if (balance_.solve(q, x)) balance_.add(x, q);
   set_.project(q);
@@ -133,32 +129,32 @@ void NaturalMapNewton<Set, Real>::enter_admissible_set(ArrayXd& q) {
   energy_ = energy(q, u_);
 }
 
-template <AdmissibleSet Set, typename Real>
+template <AdmissibleSet Set>
 template <typename Work>
-void NaturalMapNewton<Set, Real>::each(const Work& work) const {
+void NaturalMapNewton<Set>::each(const Work& work) const {
   set_.sweep().each([&](Index first, Index last) {
     for (Index start = 0; start < size(); start += set_.cells()) work(start + first, start + last);
   });
 }
 
-template <AdmissibleSet Set, typename Real>
+template <AdmissibleSet Set>
 template <typename Work>
-void NaturalMapNewton<Set, Real>::each_own(const Work& work) const {
+void NaturalMapNewton<Set>::each_own(const Work& work) const {
   set_.sweep().each_own([&](Index first, Index last) {
     for (Index start = 0; start < size(); start += set_.cells()) work(start + first, start + last);
   });
 }
 
-template <AdmissibleSet Set, typename Real>
+template <AdmissibleSet Set>
 template <typename Work>
-double NaturalMapNewton<Set, Real>::sum(const Work& work) const {
+double NaturalMapNewton<Set>::sum(const Work& work) const {
   return set_.sweep().template sum<double>([&](Index first, Index last, double& sum) {
     for (Index start = 0; start < size(); start += set_.cells()) sum += work(start + first, start + last);
   });
 }
 
-template <AdmissibleSet Set, typename Real>
-double NaturalMapNewton<Set, Real>::energy(const ArrayXd& q, const ArrayXd& u) const {
+template <AdmissibleSet Set>
+double NaturalMapNewton<Set>::energy(const ArrayXd& q, const ArrayXd& u) const {
   return sum([&](Index first, Index last) {
     double part = program_.energy(first, last, q, u);
     if (program_.energy_before == 0.0) return part;
@@ -170,27 +166,27 @@ double NaturalMapNewton<Set, Real>::energy(const ArrayXd& q, const ArrayXd& u) c
   });
 }
 
-template <AdmissibleSet Set, typename Real>
-void NaturalMapNewton<Set, Real>::write_slip(ArrayXd& s) const {
+template <AdmissibleSet Set>
+void NaturalMapNewton<Set>::write_slip(ArrayXd& s) const {
   each([&](Index first, Index last) { program_.write_slip(first, last, u_, multipliers_, s); });
 }
 
-template <AdmissibleSet Set, typename Real>
-Eigen::ArrayXd NaturalMapNewton<Set, Real>::take_slip() {
+template <AdmissibleSet Set>
+Eigen::ArrayXd NaturalMapNewton<Set>::take_slip() {
   clear(set_.sweep(), y_);
   write_slip(y_);
   return std::move(y_);
 }
 
 /// y = q - length * gradient, without the imposed conditions' part.
-template <AdmissibleSet Set, typename Real>
-void NaturalMapNewton<Set, Real>::descend(const ArrayXd& q, double length, ArrayXd& y) const {
+template <AdmissibleSet Set>
+void NaturalMapNewton<Set>::descend(const ArrayXd& q, double length, ArrayXd& y) const {
   each([&](Index first, Index last) { program_.descend(first, last, q, u_, length, y); });
 }
 
 /// The multipliers by the natural map, and y = q - rho s.
-template <AdmissibleSet Set, typename Real>
-bool NaturalMapNewton<Set, Real>::find_state(const ArrayXd& q) {
+template <AdmissibleSet Set>
+bool NaturalMapNewton<Set>::find_state(const ArrayXd& q) {
   descend(q, rho_, y_);
   Coefficients x = rho_ * multipliers_;
   if (!balance_.solve(y_, x)) return false;
@@ -199,8 +195,8 @@ bool NaturalMapNewton<Set, Real>::find_state(const ArrayXd& q) {
   return true;
 }
 
-template <AdmissibleSet Set, typename Real>
-double NaturalMapNewton<Set, Real>::relative_gap(const ArrayXd& q) {
+template <AdmissibleSet Set>
+double NaturalMapNewton<Set>::relative_gap(const ArrayXd& q) {
   elastic_ = sum([&](Index first, Index last) {
     program_.write_slip(first, last, u_, multipliers_, trial_u_);
     return 0.5 * (q.segment(first, last - first) * u_.segment(first, last - first)).sum();
@@ -213,17 +209,17 @@ double NaturalMapNewton<Set, Real>::relative_gap(const ArrayXd& q) {
 }
 
 /// Of the gap that relative_gap() has just found, over the larger of the two energies.
-template <AdmissibleSet Set, typename Real>
-bool NaturalMapNewton<Set, Real>::is_certified(double tolerance) const {
+template <AdmissibleSet Set>
+bool NaturalMapNewton<Set>::is_certified(double tolerance) const {
   const double energy = std::max(elastic_, program_.energy_before);
   return solver::is_certified(gap_ / energy, set_.gap_rounding(trial_u_, u_, program_.g) / energy, tolerance);
 }
 
-template <AdmissibleSet Set, typename Real>
-void NaturalMapNewton<Set, Real>::linearise() {
+template <AdmissibleSet Set>
+void NaturalMapNewton<Set>::linearise() {
   changed_ = set_.linearise(y_, rho_, mean_, space_);
   if (kIsScalar) extension_.prepare(space_.f1);
-  TangentPreconditioner<Real> map = preconditioner();
+  TangentPreconditioner map = preconditioner();
   if (has_tangents_ && tangents_are_near()) {
     has_tangents_ = constraints_.restrict_tangents(map, set_.sweep(), work().y);
     return;
@@ -234,15 +230,15 @@ void NaturalMapNewton<Set, Real>::linearise() {
 
 /// Whether those of an earlier step will do: hardly a cell has changed its state since the last step, and
 /// slip, which the tangent space's stiffness goes with, has not changed much since they were made.
-template <AdmissibleSet Set, typename Real>
-bool NaturalMapNewton<Set, Real>::tangents_are_near() const {
+template <AdmissibleSet Set>
+bool NaturalMapNewton<Set>::tangents_are_near() const {
   return static_cast<double>(changed_) <= kFewChanges * static_cast<double>(space_.free.count()) &&
          (multipliers_ - prepared_at_).norm() <= kNearMultipliers * multipliers_.norm();
 }
 
 /// Right-hand side -(s + stiffness q), of which the tangent space sees the turning part of q.
-template <AdmissibleSet Set, typename Real>
-void NaturalMapNewton<Set, Real>::write_residual(const ArrayXd& q) {
+template <AdmissibleSet Set>
+void NaturalMapNewton<Set>::write_residual(const ArrayXd& q) {
   each([&](Index first, Index last) {
     const Index n = last - first;
     program_.write_slip(first, last, u_, multipliers_, trial_u_);
@@ -250,17 +246,17 @@ void NaturalMapNewton<Set, Real>::write_residual(const ArrayXd& q) {
     if (Set::kComponents == 2) {
       s += space_.stiffness.segment(first % set_.cells(), n).template cast<double>() * q.segment(first, n);
     }
-    r_.segment(first, n) = -s.template cast<Real>();
+    r_.segment(first, n) = -s;
   });
 }
 
 /// loads: of the solution; empty: none. False where conjugate gradients broke down.
-template <AdmissibleSet Set, typename Real>
-bool NaturalMapNewton<Set, Real>::solve_linear(const ArrayXd& q, const LinearTarget& target,
-                                               const Coefficients& loads) {
+template <AdmissibleSet Set>
+bool NaturalMapNewton<Set>::solve_linear(const ArrayXd& q, const LinearTarget& target,
+                                         const Coefficients& loads) {
   write_residual(q);
-  TangentOperator<Real> map = tangent_operator();
-  TangentPreconditioner<Real> inverse = preconditioner();
+  TangentOperator map = tangent_operator();
+  TangentPreconditioner inverse = preconditioner();
   clear(set_.sweep(), x_);
   if (loads.size() > 0) {
     constraints_.add_with_values(inverse, loads, x_);
@@ -270,17 +266,17 @@ bool NaturalMapNewton<Set, Real>::solve_linear(const ArrayXd& q, const LinearTar
     each(
         [&](Index first, Index last) { r_.segment(first, last - first) -= Ax.segment(first, last - first); });
   }
-  const CgConstraints<Real, MotionField> none;
-  const CgSummary solved = projected_cg<Real>(map, inverse, has_tangents_ ? constraints_ : none, r_,
-                                              {target.reduction, target.max_iterations}, work(), x_);
+  const CgConstraints<MotionField> none;
+  const CgSummary solved = projected_cg(map, inverse, has_tangents_ ? constraints_ : none, r_,
+                                        {target.reduction, target.max_iterations}, work(), x_);
   if (!solved.broke_down()) return true;
   safeguards_ += {.breakdowns = 1, .breakdown = solved.message()};
   return false;
 }
 
 /// The loads that cells bring which jump onto the face of their set.
-template <AdmissibleSet Set, typename Real>
-Coefficients NaturalMapNewton<Set, Real>::jump_loads(const ArrayXd& q) {
+template <AdmissibleSet Set>
+Coefficients NaturalMapNewton<Set>::jump_loads(const ArrayXd& q) {
   clear(set_.sweep(), trial_);
   set_.add_jump(y_, q, trial_);
   Coefficients loads(balance_.count());
@@ -294,8 +290,8 @@ Coefficients NaturalMapNewton<Set, Real>::jump_loads(const ArrayXd& q) {
 
 /// The part of the way from q to the trial at which the energy is least, wherever that is: it is quadratic,
 /// of slope s.(trial - q), and y = q - rho s.
-template <AdmissibleSet Set, typename Real>
-double NaturalMapNewton<Set, Real>::least_energy_at(const ArrayXd& q) const {
+template <AdmissibleSet Set>
+double NaturalMapNewton<Set>::least_energy_at(const ArrayXd& q) const {
   const double slope = sum([&](Index first, Index last) {
     const Index n = last - first;
     return ((q.segment(first, n) - y_.segment(first, n)) * (trial_.segment(first, n) - q.segment(first, n)))
@@ -311,8 +307,8 @@ double NaturalMapNewton<Set, Real>::least_energy_at(const ArrayXd& q) const {
 }
 
 /// Whether the energy fell; then q and its displacement are the new ones.
-template <AdmissibleSet Set, typename Real>
-bool NaturalMapNewton<Set, Real>::accept_trial(ArrayXd& q) {
+template <AdmissibleSet Set>
+bool NaturalMapNewton<Set>::accept_trial(ArrayXd& q) {
   set_.project(trial_);
   op_.apply_own(trial_, trial_u_);
   const double before = energy_;
@@ -339,11 +335,11 @@ bool NaturalMapNewton<Set, Real>::accept_trial(ArrayXd& q) {
 }
 
 /// trial = q and this part of the linear solution and of the jumps.
-template <AdmissibleSet Set, typename Real>
-void NaturalMapNewton<Set, Real>::write_trial(const ArrayXd& q, double length) {
+template <AdmissibleSet Set>
+void NaturalMapNewton<Set>::write_trial(const ArrayXd& q, double length) {
   clear(set_.sweep(), trial_);
   each([&](Index first, Index last) {
-    trial_.segment(first, last - first) = x_.segment(first, last - first).template cast<double>();
+    trial_.segment(first, last - first) = x_.segment(first, last - first);
   });
   set_.add_jump(y_, q, trial_);
   each([&](Index first, Index last) {
@@ -353,8 +349,8 @@ void NaturalMapNewton<Set, Real>::write_trial(const ArrayXd& q, double length) {
   if constexpr (kIsScalar) extension_.hand_on(set_.sweep(), space_.f1, trial_, d_, r_);
 }
 
-template <AdmissibleSet Set, typename Real>
-bool NaturalMapNewton<Set, Real>::take_newton_step(ArrayXd& q, const LinearTarget& target) {
+template <AdmissibleSet Set>
+bool NaturalMapNewton<Set>::take_newton_step(ArrayXd& q, const LinearTarget& target) {
   if (!solve_linear(q, target)) return false;
   write_trial(q, 1.0);
   bool restored = restore_along_tangents();
@@ -376,8 +372,8 @@ bool NaturalMapNewton<Set, Real>::take_newton_step(ArrayXd& q, const LinearTarge
 }
 
 /// The loads of the projected trial, restored; false if that is not possible near by.
-template <AdmissibleSet Set, typename Real>
-bool NaturalMapNewton<Set, Real>::restore_along_tangents() {
+template <AdmissibleSet Set>
+bool NaturalMapNewton<Set>::restore_along_tangents() {
   if (!has_tangents_) return false;
   Coefficients x = Coefficients::Zero(balance_.count());
   const auto tangents = constraints_.tangents();
@@ -394,16 +390,16 @@ bool NaturalMapNewton<Set, Real>::restore_along_tangents() {
   return true;
 }
 
-template <AdmissibleSet Set, typename Real>
-bool NaturalMapNewton<Set, Real>::restore_along_conditions() {
+template <AdmissibleSet Set>
+bool NaturalMapNewton<Set>::restore_along_conditions() {
   Coefficients x = Coefficients::Zero(balance_.count());
   if (!balance_.solve(trial_, x)) return false;
   balance_.add(x, trial_);
   return true;
 }
 
-template <AdmissibleSet Set, typename Real>
-bool NaturalMapNewton<Set, Real>::take_gradient_step(ArrayXd& q) {
+template <AdmissibleSet Set>
+bool NaturalMapNewton<Set>::take_gradient_step(ArrayXd& q) {
   for (int halvings = 0; halvings <= kMaxGradientHalvings; halvings += 2) {
     const double length = std::ldexp(rho_, -halvings);
     clear(set_.sweep(), trial_);
@@ -420,16 +416,15 @@ bool NaturalMapNewton<Set, Real>::take_gradient_step(ArrayXd& q) {
 
 /// The multipliers to second order: those of a Newton step that keeps the loads. False if the gap at those
 /// multipliers is above the tolerance: then another step is due.
-template <AdmissibleSet Set, typename Real>
-bool NaturalMapNewton<Set, Real>::refine(const ArrayXd& q, double tolerance, NewtonSummary& summary) {
+template <AdmissibleSet Set>
+bool NaturalMapNewton<Set>::refine(const ArrayXd& q, double tolerance, NewtonSummary& summary) {
   linearise();
   if (!has_tangents_ || balance_.count() == 0) return true;
   write_residual(q);
   clear(set_.sweep(), x_);
-  TangentOperator<Real> map = tangent_operator();
-  TangentPreconditioner<Real> inverse = preconditioner();
-  const CgSummary step =
-      projected_cg<Real>(map, inverse, constraints_, r_, {0.0, kRefiningIterations}, work(), x_);
+  TangentOperator map = tangent_operator();
+  TangentPreconditioner inverse = preconditioner();
+  const CgSummary step = projected_cg(map, inverse, constraints_, r_, {0.0, kRefiningIterations}, work(), x_);
   if (step.broke_down()) return true;
   const Coefficients first_order = multipliers_;
   multipliers_ -= step.multipliers;
@@ -446,18 +441,16 @@ bool NaturalMapNewton<Set, Real>::refine(const ArrayXd& q, double tolerance, New
 
 /// An admissible state from which no step leads on, described as well as it can be: short of its tolerance,
 /// or within it where rounding keeps the multipliers of second order out.
-template <AdmissibleSet Set, typename Real>
-NewtonSummary NaturalMapNewton<Set, Real>::stop(const ArrayXd& q, const NewtonOptions& options,
-                                                NewtonSummary& summary, const std::string& why) {
+template <AdmissibleSet Set>
+NewtonSummary NaturalMapNewton<Set>::stop(const ArrayXd& q, const NewtonOptions& options,
+                                          NewtonSummary& summary, const std::string& why) {
   if (options.refine_multipliers) refine(q, summary.gap, summary);
   summary.gap = relative_gap(q);
   summary.converged = is_certified(options.tolerance);
   return summary.converged ? summary : fail(summary, why);
 }
 
-template class NaturalMapNewton<FrictionDiscs, double>;
-template class NaturalMapNewton<FrictionDiscs, float>;
-template class NaturalMapNewton<PositivePressures, double>;
-template class NaturalMapNewton<PositivePressures, float>;
+template class NaturalMapNewton<FrictionDiscs>;
+template class NaturalMapNewton<PositivePressures>;
 
 }  // namespace slipstick::solver

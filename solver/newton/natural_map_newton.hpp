@@ -42,7 +42,7 @@ struct NewtonSummary {
 /// over a product of small sets (Hintermueller, Ito and Kunisch 2003; for friction Alart and Curnier 1991).
 ///
 /// Each step fixes the state that the natural map gives to every cell and solves the linear problem in the
-/// tangent space by conjugate gradients, in the precision Real; the residual is always double. The step's end
+/// tangent space by conjugate gradients. The step's end
 /// is projected onto the admissible set and the loads restored along the tangent fields (K + stiffness)^-1 c,
 /// which disturb the multipliers alone. Near gross slip these fields bring the loads back to second order
 /// only, and cannot make up for what cells bring that jump onto their circles; where they fail the linear
@@ -51,15 +51,13 @@ struct NewtonSummary {
 /// at its least, which costs nothing: the set is convex. Where it does not fall at all the step is halved;
 /// where even that fails, steps of the projected gradient take over, which always descend.
 ///
-/// Compiled for both sets and both precisions of the inner iteration.
-template <AdmissibleSet Set, typename Real>
+/// Compiled for both sets.
+template <AdmissibleSet Set>
 class NaturalMapNewton {
  public:
   using ArrayXd = Eigen::ArrayXd;
 
-  /// op and inner evaluate the same displacements; with Real = double they may be one object.
-  NaturalMapNewton(const Set& set, const ConvexProgram& program, LinearOperator& op, Operator<Real>& inner,
-                   InverseSymbol<Real>& symbol);
+  NaturalMapNewton(const Set& set, const ConvexProgram& program, LinearOperator& op, InverseSymbol& symbol);
 
   /// Improves q, any field of the right size, until its certificate holds. Of several ranks each improves its
   /// own rows; so with what the others return.
@@ -75,23 +73,15 @@ class NaturalMapNewton {
   long applications() const;
 
  private:
-  using Field = CgField<Real>;
+  using Field = Eigen::ArrayXd;
   static constexpr bool kIsScalar = Set::kComponents == 1;
 
   Index size() const { return Set::kComponents * set_.cells(); }
-  TangentOperator<Real> tangent_operator() { return {inner_, space_}; }
-  TangentPreconditioner<Real> preconditioner() {
-    return {symbol_, space_, kIsScalar ? &extension_ : nullptr};
-  }
+  TangentOperator tangent_operator() { return {op_, space_}; }
+  TangentPreconditioner preconditioner() { return {symbol_, space_, kIsScalar ? &extension_ : nullptr}; }
 
-  /// For the linear problem: in double precision the fields of the trial, which is made after it.
-  CgWorkspace<Real> work() {
-    if constexpr (std::is_same_v<Real, double>) {
-      return {d_, trial_u_, trial_};
-    } else {
-      return {d_, others_[0], others_[1]};
-    }
-  }
+  /// For the linear problem: the fields of the trial, which is made after it.
+  CgWorkspace work() { return {d_, trial_u_, trial_}; }
 
   /// work(first, last) for the values of the cells that may carry something, and the sum of what it returns.
   template <typename Work>
@@ -128,16 +118,14 @@ class NaturalMapNewton {
   const Set& set_;
   const ConvexProgram& program_;
   LinearOperator& op_;
-  Operator<Real>& inner_;
-  InverseSymbol<Real>& symbol_;
+  InverseSymbol& symbol_;
   std::array<double, 2> mean_;
   double rho_;
   std::vector<CgTangent> tangents_;
-  CgConstraints<Real, MotionField> constraints_;
-  Field r_, x_, d_;              ///< of the linear problem: residual, solution, direction
-  std::array<Field, 2> others_;  ///< see work(); empty in double precision
-  TangentSpace<Real> space_;
-  Extension<Real> extension_;  ///< of scalars
+  CgConstraints<MotionField> constraints_;
+  Field r_, x_, d_;  ///< of the linear problem: residual, solution, direction
+  TangentSpace space_;
+  Extension extension_;  ///< of scalars
   LoadBalance<Set> balance_;
   std::vector<const MotionField*> c_;  ///< of the imposed conditions
   ArrayXd u_, y_, trial_, trial_u_;
@@ -152,9 +140,7 @@ class NaturalMapNewton {
   bool energy_fell_ = false;   ///< in the last step, by more than its rounding
 };
 
-extern template class NaturalMapNewton<FrictionDiscs, double>;
-extern template class NaturalMapNewton<FrictionDiscs, float>;
-extern template class NaturalMapNewton<PositivePressures, double>;
-extern template class NaturalMapNewton<PositivePressures, float>;
+extern template class NaturalMapNewton<FrictionDiscs>;
+extern template class NaturalMapNewton<PositivePressures>;
 
 }  // namespace slipstick::solver

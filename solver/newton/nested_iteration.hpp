@@ -40,12 +40,12 @@ concept NestedProblem = requires(Problem problem, const Grid& grid, LinearOperat
   { problem.coarsened(grid, grid) } -> std::same_as<Problem>;  // from the grid to the coarse one
 };
 
-/// Solves from the coarsest grid up, or from a guess, inner iterations in the precision Real. From coarse
+/// Solves from the coarsest grid up, or from a guess. From coarse
 /// grids only the change from start() is taken: start() itself is known in full. Of several ranks each has
 /// its own rows of the fields.
-template <typename Real, NestedProblem Problem>
-NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Problem problem,
-                              const NewtonOptions& options) {
+template <NestedProblem Problem>
+NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Problem problem,
+                             const NewtonOptions& options) {
   NestedSummary result;
   Coefficients multipliers;
   result.field = problem.guess();
@@ -60,7 +60,7 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
     coarse_options.progress = nullptr;
     Problem on_coarse = problem.coarsened(grid, coarse);
     const Eigen::ArrayXd start = on_coarse.start();
-    NestedSummary below = solve_nested_in<Real>(elasticity, coarse, std::move(on_coarse), coarse_options);
+    NestedSummary below = solve_on_grids(elasticity, coarse, std::move(on_coarse), coarse_options);
     result.grids = std::move(below.grids);
     result.safeguards = below.safeguards;
     gather(coarse, std::span(below.field.data(), static_cast<std::size_t>(below.field.size())));
@@ -74,11 +74,11 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
   }
   problem.keep_own_rows(grid);
 
-  const auto operators = elasticity.make_all<Real>(grid, problem.kernel());
+  const auto operators = elasticity.make_all(grid, problem.kernel());
   const auto admissible = problem.admissible();
   const ConvexProgram program = problem.program(*operators->op);
-  NaturalMapNewton<std::remove_const_t<decltype(admissible)>, Real> newton(
-      admissible, program, *operators->op, operators->inner(), *operators->symbol);
+  NaturalMapNewton<std::remove_const_t<decltype(admissible)>> newton(admissible, program, *operators->op,
+                                                                     *operators->symbol);
   NewtonOptions on_grid = options;
   on_grid.least_iterations = guessed ? 1 : 0;
   result.newton = newton.run(result.field, multipliers, on_grid);
@@ -90,14 +90,12 @@ NestedSummary solve_nested_in(const Elasticity& elasticity, const Grid& grid, Pr
   return result;
 }
 
-/// In the precision that is asked for. Field and slip are gathered when operators and workspaces are gone; of
-/// the displacement a rank has its own rows.
+/// solve_on_grids() with the field and the slip gathered when operators and workspaces are gone; of the
+/// displacement a rank has its own rows.
 template <NestedProblem Problem>
 NestedSummary solve_nested(const Elasticity& elasticity, const Grid& grid, Problem problem,
                            const NewtonOptions& options) {
-  NestedSummary result = elasticity.precision == Precision::mixed
-                             ? solve_nested_in<float>(elasticity, grid, std::move(problem), options)
-                             : solve_nested_in<double>(elasticity, grid, std::move(problem), options);
+  NestedSummary result = solve_on_grids(elasticity, grid, std::move(problem), options);
   for (Eigen::ArrayXd* const field : {&result.field, &result.slip}) {
     gather(grid, std::span(field->data(), static_cast<std::size_t>(field->size())));
   }

@@ -25,12 +25,11 @@ namespace slipstick::solver {
 /// free direction; one term alone is wrong by the ratio of the largest to the smallest wave number where the
 /// stiffness is large.
 ///
-/// Real is the precision of the inner iteration. The stiffness and what the preconditioner takes need not be
-/// exact, but the directions do: fields that leave them by more than their own rounding would feel the part
-/// of the slip that no traction can change, and no residual could fall below that.
-template <typename Real>
+/// The stiffness and what the preconditioner takes need not be exact, but the directions do: fields that
+/// leave them by more than their own rounding would feel the part of the slip that no traction can change,
+/// and no residual could fall below that.
 struct TangentSpace {
-  using Field = Eigen::Array<Real, Eigen::Dynamic, 1>;
+  using Field = Eigen::ArrayXd;
 
   /// Of vectors (2 components) or scalars (1), on the grid of some cells that may carry traction. No scalar
   /// is free, no vector on a line: a linearisation counts the cells that change.
@@ -52,9 +51,9 @@ struct TangentSpace {
 
   /// A cell that does not move, or moves freely.
   void set(Index cell, bool free) {
-    f1[cell] = Real(components() == 1 && free);
+    f1[cell] = components() == 1 && free ? 1.0 : 0.0;
     if (components() == 1) return;
-    f2[cell] = Real(0);
+    f2[cell] = 0.0;
     stiffness[cell] = free ? 0.0F : kLeastStiffness;
     scale[cell] = 1.0F;
     shift[cell] = 0.0F;
@@ -66,8 +65,8 @@ struct TangentSpace {
     constexpr double kLowOverMean = 1.0 / 12.0;
     const double low = kLowOverMean * mean;
     const double alpha = 1.0 / ((1.0 + along * low) * (1.0 + along * mean));
-    f1[cell] = static_cast<Real>(along1);
-    f2[cell] = static_cast<Real>(along2);
+    f1[cell] = along1;
+    f2[cell] = along2;
     stiffness[cell] = std::max(static_cast<float>(along), kLeastStiffness);
     scale[cell] = static_cast<float>(std::sqrt(alpha));
     shift[cell] = static_cast<float>(alpha * along * low * mean);
@@ -80,7 +79,7 @@ struct TangentSpace {
   void find_free() {
     const bool vectors = components() == 2;
     free.assign(f1.size(),
-                [&](Index i) { return f1[i] != Real(0) || (vectors && (f2[i] != Real(0) || !on_line(i))); });
+                [&](Index i) { return f1[i] != 0.0 || (vectors && (f2[i] != 0.0 || !on_line(i))); });
   }
 
   /// v: what of it may move, in some cells.
@@ -97,8 +96,8 @@ struct TangentSpace {
     }
   }
   /// (v1, v2) likewise, in one cell of vectors.
-  std::array<Real, 2> projected(Index i, Real v1, Real v2) const {
-    const Real along = f1[i] * v1 + f2[i] * v2;
+  std::array<double, 2> projected(Index i, double v1, double v2) const {
+    const double along = f1[i] * v1 + f2[i] * v2;
     return {on_line(i) ? along * f1[i] : v1, on_line(i) ? along * f2[i] : v2};
   }
 
@@ -109,7 +108,7 @@ struct TangentSpace {
       z.segment(first, n) = r.segment(first, n);
       return;
     }
-    const auto scaling = scale.segment(first, n).template cast<Real>();
+    const auto scaling = scale.segment(first, n).cast<double>();
     for (const Index start : {first, first + f1.size()}) {
       z.segment(start, n) = scaling * r.segment(start, n);
     }
@@ -123,8 +122,8 @@ struct TangentSpace {
       return;
     }
     for (Index i = first; i < last; ++i) {
-      const auto scaling = static_cast<Real>(scale[i]);
-      const auto shifting = static_cast<Real>(shift[i]);
+      const double scaling = scale[i];
+      const double shifting = shift[i];
       const auto [y1, y2] = projected(i, scaling * z[i], scaling * z[i + n]);
       y[i] = y1 + shifting * r[i];
       y[i + n] = y2 + shifting * r[i + n];
@@ -141,12 +140,11 @@ struct TangentSpace {
 };
 
 /// The linearised problem's matrix, K + stiffness, on the tangent space.
-template <typename Real>
 struct TangentOperator {
-  using Field = typename TangentSpace<Real>::Field;
+  using Field = TangentSpace::Field;
 
-  Operator<Real>& op;
-  const TangentSpace<Real>& space;
+  LinearOperator& op;
+  const TangentSpace& space;
 
   const Sweep& cells() const { return space.free; }
 
@@ -156,7 +154,7 @@ struct TangentOperator {
     if (space.components() == 1) return;
     const Index n = space.f1.size();
     for (Index i = first; i < last; ++i) {
-      const auto stiffness = static_cast<Real>(space.stiffness[i]);
+      const double stiffness = space.stiffness[i];
       const auto [y1, y2] = space.projected(i, y[i] + stiffness * x[i], y[i + n] + stiffness * x[i + n]);
       y[i] = y1;
       y[i + n] = y2;
@@ -165,13 +163,12 @@ struct TangentOperator {
 };
 
 /// Its preconditioner; what it returns lies in the tangent space.
-template <typename Real>
 struct TangentPreconditioner {
-  using Field = typename TangentSpace<Real>::Field;
+  using Field = TangentSpace::Field;
 
-  InverseSymbol<Real>& symbol;
-  const TangentSpace<Real>& space;
-  Extension<Real>* extension = nullptr;
+  InverseSymbol& symbol;
+  const TangentSpace& space;
+  Extension* extension = nullptr;
 
   const Sweep& cells() const { return space.free; }
 

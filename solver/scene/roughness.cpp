@@ -93,12 +93,11 @@ double slope_of(const ArrayXd& x, const ArrayXd& y) {
 ArrayXd series_power(const ArrayXd& field, int n) {
   const int half = n / 2 + 1;
   const auto samples = static_cast<std::size_t>(field.size());
-  FftwBuffer<double> in(samples);
-  FftwBuffer<double> out(2 * static_cast<std::size_t>(n) * static_cast<std::size_t>(half));
-  const FftwPlan<double> plan(
-      Fftw<double>::plan_plane_forward({{n, n}, {n, n}, {n, half}}, in.data(), out.complex()));
+  FftwBuffer in(samples);
+  FftwBuffer out(2 * static_cast<std::size_t>(n) * static_cast<std::size_t>(half));
+  const FftwPlan plan(fftw_plan_dft_r2c_2d(n, n, in.data(), out.complex(), FFTW_ESTIMATE));
   std::copy_n(field.data(), samples, in.data());
-  Fftw<double>::execute(plan.get(), in.data(), out.complex());
+  fftw_execute_dft_r2c(plan.get(), in.data(), out.complex());
   const Eigen::Map<const ArrayXd, 0, Eigen::InnerStride<2>> real(out.data(), Index{n} * half);
   const Eigen::Map<const ArrayXd, 0, Eigen::InnerStride<2>> imaginary(out.data() + 1, Index{n} * half);
   return (real.square() + imaginary.square()) / std::pow(n, 4);

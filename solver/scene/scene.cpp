@@ -141,7 +141,6 @@ std::string to_string(PressureModel model) { return word_of(kPressureModels, mod
 std::string to_string(OperatorKind kind) { return word_of(kOperators, kind); }
 std::string to_string(Method method) { return word_of(kMethods, method); }
 std::string to_string(CellTraction traction) { return word_of(kCellTractions, traction); }
-std::string to_string(Precision precision) { return word_of(kPrecisions, precision); }
 
 namespace {
 
@@ -171,7 +170,6 @@ Scene read_scene(SceneReader& reader, const std::filesystem::path& file) {
   scene.method = reader.choice_or("solver.method", scene.method, kMethods);
   scene.model = reader.choice_or("solver.model", scene.model, kModels);
   scene.cell_traction = reader.choice_or("solver.cell_traction", scene.cell_traction, kCellTractions);
-  scene.precision = reader.choice_or("solver.precision", scene.precision, kPrecisions);
   scene.op = reader.choice_or("solver.operator", scene.op, kOperators);
   scene.tolerance = reader.number_or("solver.tolerance", scene.tolerance);
   scene.max_iterations = static_cast<int>(reader.number_or("solver.max_iterations", scene.max_iterations));

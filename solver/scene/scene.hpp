@@ -104,7 +104,6 @@ struct Scene {
   ModelChoice model = ModelChoice::automatic;
   OperatorKind op = OperatorKind::dcfft;
   CellTraction cell_traction = CellTraction::constant;
-  Precision precision = Precision::double_precision;
   double tolerance = 1e-8;
   int max_iterations = 5000;
   int threads = 0;  ///< of one solve; 0: as its cells are worth it, up to one a processor
@@ -138,6 +137,5 @@ std::string to_string(PressureModel model);
 std::string to_string(OperatorKind kind);
 std::string to_string(Method method);
 std::string to_string(CellTraction traction);
-std::string to_string(Precision precision);
 
 }  // namespace slipstick::solver

@@ -173,8 +173,6 @@ void add_grid_and_solver(SettingKeys& keys, const Scene& scene) {
        "of one that is smooth, which leaves smaller errors, of contacts whose pressure falls to zero at "
        "their "
        "edge."},
-      {"solver.precision", kWord, "", word_of(kPrecisions, scene.precision), one_of(kPrecisions),
-       "Of inner iterations; the certificate is of double precision always."},
       {"solver.substeps", kNumber, "", shown(scene.substeps), kSubsteps,
        "Parts that the loads of each step are brought in, each an implicit step. More of them make smaller "
        "what a result states as `resolved.path`."},

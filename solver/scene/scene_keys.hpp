@@ -31,8 +31,6 @@ inline const Words<Method> kMethods{{"coulomb", Method::coulomb},
                                     {"paper", Method::paper}};
 inline const Words<ModelChoice> kModels{
     {"auto", ModelChoice::automatic}, {"full", ModelChoice::full}, {"exact", ModelChoice::exact}};
-inline const Words<Precision> kPrecisions{{"double", Precision::double_precision},
-                                          {"mixed", Precision::mixed}};
 inline const Words<CellTraction> kCellTractions{{"constant", CellTraction::constant},
                                                 {"smooth", CellTraction::smooth}};
 

@@ -165,11 +165,6 @@ class Validation {
               "solved, file (Hertz's pressure belongs to one sphere or ellipsoid at the origin, its axes "
               "along the grid's)");
     }
-    if (scene_.precision == Precision::mixed &&
-        (scene_.op != OperatorKind::dcfft || scene_.method != Method::coulomb)) {
-      refuse_("solver.precision", "\"mixed\"",
-              "double, or mixed with method = \"coulomb\" and operator = \"dcfft\"");
-    }
     if (find_height_map(scene_.surfaces) != nullptr && scene_.extent) {
       refuse_("grid.extent", "(given)", "left out for a height map: upper.spacing says it");
     }

@@ -22,9 +22,8 @@ inline double relative_difference(const Eigen::ArrayXd& a, const Eigen::ArrayXd&
   return largest(a - b) / largest(b);
 }
 
-template <typename Real>
-typename Operator<Real>::Field applied(Operator<Real>& op, const typename Operator<Real>::Field& traction) {
-  typename Operator<Real>::Field displacement(static_cast<Index>(op.outputs()) * op.grid().cells());
+inline Eigen::ArrayXd applied(LinearOperator& op, const Eigen::ArrayXd& traction) {
+  Eigen::ArrayXd displacement(static_cast<Index>(op.outputs()) * op.grid().cells());
   op.apply(traction, displacement);
   return displacement;
 }

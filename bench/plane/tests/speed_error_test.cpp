@@ -43,10 +43,21 @@ TEST(PlaneDesign, HoldsNoChoiceTwiceAndOnlyReadableOnes) {
 TEST(PlaneDesign, TriesEachChoiceSomewhere) {
   std::set<std::string> words;
   for (const PlaneChoice& choice : bench::plane_design(0.9, false)) {
-    words.insert({choice.method, choice.op, choice.model, choice.pressure, choice.precision});
+    words.insert({choice.method, choice.op, choice.model, choice.pressure});
   }
-  for (const char* word : {"coulomb", "paper", "projected_gradient", "dcfft", "direct", "dense", "auto",
-                           "full", "solved", "hertz", "hertz_averaged", "double", "mixed"}) {
+  for (const char* word : {
+           "coulomb",
+           "paper",
+           "projected_gradient",
+           "dcfft",
+           "direct",
+           "dense",
+           "auto",
+           "full",
+           "solved",
+           "hertz",
+           "hertz_averaged",
+       }) {
     EXPECT_TRUE(words.contains(word)) << word;
   }
 }
@@ -122,8 +133,8 @@ TEST(PlaneScene, GoesOnFromKeptPoints) {
 }
 
 Json made_point(const std::string& method, double cells, double seconds, double error) {
-  Json point{{"method", method},      {"operator", "dcfft"}, {"model", "auto"},  {"pressure", "solved"},
-             {"precision", "double"}, {"cells", cells},      {"tolerance", 1e-8}};
+  Json point{{"method", method},     {"operator", "dcfft"}, {"model", "auto"},
+             {"pressure", "solved"}, {"cells", cells},      {"tolerance", 1e-8}};
   point["seconds"] = {{"median", seconds}, {"low", seconds}, {"high", seconds}, {"repetitions", 5}};
   point["error"] = {{"twist", error}};
   return point;

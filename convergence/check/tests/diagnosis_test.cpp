@@ -30,7 +30,7 @@ class OtherKernel final : public solver::LinearOperator {
  public:
   OtherKernel(const solver::Grid& grid, const solver::ElasticPair& pair, const CrossKernel& cross,
               bool exchanged)
-      : Operator<double>(grid, solver::tangential_kernel()), matrix_(2 * grid.cells(), 2 * grid.cells()) {
+      : LinearOperator(grid, solver::tangential_kernel()), matrix_(2 * grid.cells(), 2 * grid.cells()) {
     const std::array components{solver::Component::k11, solver::Component::k12, solver::Component::k22};
     const auto tables = solver::influence_tables(components, pair, grid.h1, grid.h2, grid.n1, grid.n2);
     const Index cells = grid.cells();

@@ -130,7 +130,7 @@ TEST_F(ProcessPoolTest, ARunDoesNotDependOnThoseBeforeIt) {
       {.scene = kPaper, .overrides = {kCells, "load.moment_ratio=0.3"}},
       {.scene = kPaper, .overrides = {kCells, "grid.extent=[1e-4,1e-4]"}},  // refused
       {.scene = kPaper, .overrides = {kCells, "load.moment_ratio=0.3"}, .variant = Variant::mirrored},
-      {.scene = kPaper, .overrides = {kCells, "solver.precision='mixed'"}},
+      {.scene = kPaper, .overrides = {kCells, "solver.cell_traction='smooth'"}},
       {.scene = history(5000)},
       {.scene = kPaper, .overrides = {kCells, "load.moment_ratio=0.9"}, .rounding = Rounding::downward},
       {.scene = kPaper, .overrides = {kCells, "load.moment_ratio=0.4"}},

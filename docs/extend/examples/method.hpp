@@ -5,7 +5,7 @@
 
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/tangential_problem.hpp"
-#include "solver/operator/linear_operator.hpp"
+#include "solver/elasticity/linear_operator.hpp"
 
 namespace example {
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <utility>
 
-#include "solver/operator/linear_operator.hpp"
+#include "solver/elasticity/linear_operator.hpp"
 
 namespace example {
 
@@ -15,7 +15,7 @@ class CoatedHalfSpaces final : public solver::LinearOperator {
  public:
   /// compliance: displacement of the layer by a unit traction.
   CoatedHalfSpaces(std::unique_ptr<solver::LinearOperator> half_spaces, double compliance)
-      : Operator(half_spaces->grid(), solver::tangential_kernel()),
+      : LinearOperator(half_spaces->grid(), solver::tangential_kernel()),
         half_spaces_(std::move(half_spaces)),
         compliance_(compliance) {}
 

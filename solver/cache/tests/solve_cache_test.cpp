@@ -13,14 +13,14 @@
 namespace slipstick::solver {
 namespace {
 
-/// Scenes whose solves need the same things and others: of one grid under other loads, in other precision, by
-/// other operators and methods, on the whole grid, of dissimilar bodies in turns, step by step.
+/// Scenes whose solves need the same things and others: of one grid under other loads, with other cell
+/// tractions, by other operators and methods, on the whole grid, of dissimilar bodies in turns, step by step.
 std::vector<Scene> scenes_that_share() {
   const Scene paper = paper_scene(24, 0.6);
   std::vector<Scene> scenes{paper, paper_scene(24, 0.9), paper_scene(20, 0.6),
                             ellipsoid_scene(24, 0.02, 0.01, 0.5)};
   scenes.insert(scenes.end(), 9, paper);
-  scenes[4].precision = Precision::mixed;
+  scenes[4].cell_traction = CellTraction::smooth;
   scenes[5].op = OperatorKind::direct;
   scenes[6].method = Method::paper;
   scenes[7].model = ModelChoice::full;

@@ -19,7 +19,6 @@ using Complex = std::complex<double>;
 
 /// A few roundings in each of some ten stages, relative to the largest value.
 constexpr double kTransformRounding = 1e-14;
-constexpr double kSingleRounding = 1e-6;
 
 /// One cell, one row, one column; lengths whose padded half is odd, even, and longer than the grid.
 const std::vector<Grid>& shapes() {
@@ -31,8 +30,7 @@ const std::vector<Grid>& shapes() {
 
 std::string name(const Grid& grid) { return std::to_string(grid.n1) + " x " + std::to_string(grid.n2); }
 
-template <typename Real>
-std::span<Real> span_of(Eigen::Array<Real, Eigen::Dynamic, 1>& field) {
+std::span<double> span_of(Eigen::ArrayXd& field) {
   return {field.data(), static_cast<std::size_t>(field.size())};
 }
 
@@ -52,14 +50,14 @@ Complex plain_sum(const Grid& grid, const double* field, Index p1, Index p2, Ind
 TEST(PaddedTransform, IsThePlainSumAtEachFrequency) {
   for (const Grid& grid : shapes()) {
     SCOPED_TRACE(name(grid));
-    PaddedTransform<double> transform(grid, 2, 1);
+    PaddedTransform transform(grid, 2, 1);
     const Index p1 = transform.padded1();
     const Index p2 = transform.padded2();
     Eigen::ArrayXd fields = random_field(2 * grid.cells(), 1);
     transform.forward_rows(span_of(fields));
     const Index evens = p2 / 4 + 1;
     double worst = 0.0;
-    transform.through_columns(2, 0, [&](Index column, const PaddedTransform<double>::Spectrum& spectrum) {
+    transform.through_columns(2, 0, [&](Index column, const PaddedTransform::Spectrum& spectrum) {
       const Index f2 = column < evens ? 2 * column : 2 * (column - evens) + 1;
       for (Index f1 = 0; f1 < p1; ++f1) {
         for (std::size_t field = 0; field < 2; ++field) {
@@ -78,7 +76,7 @@ TEST(PaddedTransform, ThereAndBackMultipliesByThePaddedSize) {
   for (const Grid& grid : shapes()) {
     for (const int threads : {1, 3}) {
       SCOPED_TRACE(name(grid));
-      PaddedTransform<double> transform(grid, 2, threads);
+      PaddedTransform transform(grid, 2, threads);
       const auto padded = static_cast<double>(transform.padded1() * transform.padded2());
       const Eigen::ArrayXd fields = random_field(2 * grid.cells(), 2);
       for (int time = 0; time < 2; ++time) {  // the first must leave nothing behind
@@ -120,46 +118,6 @@ TEST(Convolution, RefusesAKernelOfAnotherShape) {
   for (const BlockKernel& kernel : {mixed, wide}) {
     EXPECT_THROW(make_operator(OperatorKind::dcfft, {4, 4, 1.0, 1.0}, kernel, dissimilar_pair()),
                  std::invalid_argument);
-  }
-}
-
-TEST(SingleConvolution, IsTheDoubleOneToSinglePrecision) {
-  std::vector<Grid> grids = shapes();
-  grids.insert(grids.end(), {{127, 101, 1.0, 0.7}, {64, 64, 1.0, 1.0}, {250, 3, 1.0, 1.0}});
-  double worst = 0.0;
-  for (const Grid& grid : grids) {
-    for (const BlockKernel& kernel : kernels()) {
-      SCOPED_TRACE(name(grid));
-      const auto single = make_single_operator(grid, kernel, dissimilar_pair());
-      const auto twice = make_operator(OperatorKind::dcfft, grid, kernel, dissimilar_pair());
-      const Eigen::ArrayXf traction =
-          random_field(static_cast<Index>(kernel.inputs) * grid.cells(), 4).cast<float>();
-      Eigen::ArrayXf computed(static_cast<Index>(kernel.outputs) * grid.cells());
-      Eigen::ArrayXd expected(computed.size());
-      single->apply(traction, computed);
-      twice->apply(traction.cast<double>(), expected);
-      const double largest = expected.abs().maxCoeff();
-      const double difference = (computed.cast<double>() - expected).abs().maxCoeff();
-      EXPECT_LE(difference, kSingleRounding * largest);
-      if (largest > 0.0) worst = std::max(worst, difference / largest);
-    }
-  }
-  RecordProperty("worst_difference", std::to_string(worst * 1e7) + "e-7");
-}
-
-TEST(SingleConvolution, GivesTheSameBitsAgainAndWithTwoThreads) {
-  for (const Grid& grid : shapes()) {
-    SCOPED_TRACE(name(grid));
-    const auto one = make_single_operator(grid, tangential_kernel(), dissimilar_pair(), {.threads = 1});
-    const auto two = make_single_operator(grid, tangential_kernel(), dissimilar_pair(), {.threads = 2});
-    const Eigen::ArrayXf traction = random_field(2 * grid.cells(), 5).cast<float>();
-    Eigen::ArrayXf first(traction.size());
-    Eigen::ArrayXf again(traction.size());
-    one->apply(traction, first);
-    for (Operator<float>* const op : {one.get(), two.get()}) {
-      op->apply(traction, again);
-      EXPECT_TRUE((again == first).all());
-    }
   }
 }
 

@@ -10,17 +10,16 @@
 namespace slipstick::solver {
 namespace {
 
-template <typename Real>
 class HalfSampleTransformTest : public testing::Test {
  protected:
-  using Transform = HalfSampleTransform<Real>;
+  using Transform = HalfSampleTransform;
   /// Lines or a spectrum: one row for each line or frequency.
-  using Matrix = Eigen::Array<Real, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+  using Matrix = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
   static constexpr Index kLines = Transform::kLines;
-  static constexpr double kTolerance = 20.0 * std::numeric_limits<Real>::epsilon();
+  static constexpr double kTolerance = 20.0 * std::numeric_limits<double>::epsilon();
 
   static Matrix spectrum(const Transform& transform, const Matrix& lines, int parity) {
-    typename Transform::Workspace work(transform);
+    Transform::Workspace work(transform);
     Matrix rows(transform.frequencies(), kLines);
     transform.forward(work, {.data = lines.data(), .line_stride = lines.cols(), .count = lines.rows()},
                       parity, [&](Index k) { return &rows(k, 0); });
@@ -39,23 +38,19 @@ class HalfSampleTransformTest : public testing::Test {
   }
 };
 
-using Precisions = testing::Types<double, float>;
-TYPED_TEST_SUITE(HalfSampleTransformTest, Precisions);
-
-TYPED_TEST(HalfSampleTransformTest, IsTheSumOfCosinesOrSines) {
-  using Matrix = typename TestFixture::Matrix;
+TEST_F(HalfSampleTransformTest, IsTheSumOfCosinesOrSines) {
   for (const Index samples : {1, 2, 3, 5, 8, 11, 16, 17, 30, 37, 64}) {
-    const HalfSampleTransform<TypeParam> transform(samples);
+    const HalfSampleTransform transform(samples);
     EXPECT_GE(transform.frequencies(), 2 * samples);
-    for (const Index count : {Index{1}, Index{2}, Index{5}, TestFixture::kLines}) {
+    for (const Index count : {Index{1}, Index{2}, Index{5}, kLines}) {
       const Matrix lines = Matrix::Random(count, samples);
       for (const int parity : {1, -1}) {
-        const Matrix rows = this->spectrum(transform, lines, parity);
-        const double tolerance = TestFixture::kTolerance * std::sqrt(static_cast<double>(samples));
+        const Matrix rows = spectrum(transform, lines, parity);
+        const double tolerance = kTolerance * std::sqrt(static_cast<double>(samples));
         for (Index line = 0; line < count; ++line) {
           for (Index k = 0; k < rows.rows(); ++k) {
             ASSERT_NEAR(static_cast<double>(rows(k, line)),
-                        this->by_definition(lines, line, k, rows.rows(), parity), tolerance);
+                        by_definition(lines, line, k, rows.rows(), parity), tolerance);
           }
         }
       }
@@ -63,19 +58,18 @@ TYPED_TEST(HalfSampleTransformTest, IsTheSumOfCosinesOrSines) {
   }
 }
 
-TYPED_TEST(HalfSampleTransformTest, ComesBackTimesAPeriod) {
-  using Matrix = typename TestFixture::Matrix;
+TEST_F(HalfSampleTransformTest, ComesBackTimesAPeriod) {
   for (const Index samples : {1, 3, 8, 21, 50}) {
-    const HalfSampleTransform<TypeParam> transform(samples);
-    typename HalfSampleTransform<TypeParam>::Workspace work(transform);
+    const HalfSampleTransform transform(samples);
+    typename HalfSampleTransform::Workspace work(transform);
     const Matrix lines = Matrix::Random(3, samples);
     for (const int parity : {1, -1}) {
-      const Matrix rows = this->spectrum(transform, lines, parity);
+      const Matrix rows = spectrum(transform, lines, parity);
       Matrix back = Matrix::Constant(4, samples, 7);
       transform.backward(work, {.data = back.data(), .line_stride = samples, .count = 3}, parity,
                          [&](Index k) { return transform.packets(&rows(k, 0)); });
-      const auto period = static_cast<TypeParam>(2 * transform.frequencies());
-      EXPECT_LE((back.topRows(3) / period - lines).abs().maxCoeff(), TestFixture::kTolerance);
+      const auto period = static_cast<double>(2 * transform.frequencies());
+      EXPECT_LE((back.topRows(3) / period - lines).abs().maxCoeff(), kTolerance);
       EXPECT_TRUE((back.row(3) == 7).all()) << "a line that does not exist must not be written";
     }
   }

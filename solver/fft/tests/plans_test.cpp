@@ -13,22 +13,19 @@ namespace {
 
 /// FFTW's own description.
 std::string text(fftw_plan plan) {
-  const FftwPlan<double> owned(plan);
+  const FftwPlan owned(plan);
   return std::unique_ptr<char, decltype(&std::free)>(fftw_sprint_plan(owned.get()), std::free).get();
 }
 
 /// The plans of an operator and of its preconditioner for lines of a length.
 std::vector<std::string> plans(int n) {
-  FftwBuffer<double> buffer(static_cast<std::size_t>(40 * n + 4 * (n + 16) * (n + 16)));
+  FftwBuffer buffer(static_cast<std::size_t>(40 * n + 4 * (n + 16) * (n + 16)));
   auto* const in = buffer.complex();
   auto* const out = in + 10 * n;
-  const FftwPlane plane{{n, n}, {n, n + 2}, {n, n / 2 + 1}};
-  return {text(Fftw<double>::plan(n, in, out, FFTW_FORWARD)),
-          text(Fftw<double>::plan_lines({n, 4, 1, n, 4, 1}, in, out, FFTW_FORWARD)),
-          text(Fftw<double>::plan_lines({n, 4, 4, 1, 1, n}, in, out, FFTW_BACKWARD)),
-          text(Fftw<double>::plan_plane_forward(plane, buffer.data(), in)),
-          text(Fftw<double>::plan_plane_backward(plane, in, buffer.data())),
-          text(Fftw<double>::plan(2 * n, in, out, FFTW_FORWARD))};
+  return {text(plan_transform(n, in, out, FFTW_FORWARD)),
+          text(plan_transforms({n, 4, 1, n, 4, 1}, in, out, FFTW_FORWARD)),
+          text(plan_transforms({n, 4, 4, 1, 1, n}, in, out, FFTW_BACKWARD)),
+          text(plan_transform(2 * n, in, out, FFTW_FORWARD))};
 }
 
 /// That a process which has planned much gets the same bits as a new one rests on this: an estimated plan

@@ -261,7 +261,7 @@ TEST(PressureGap, VanishesExactlyWhereOnlyTheClosestCellsPress) {
 
 // --- the linearised natural map ---
 
-Matrix2d projector(const TangentSpace<double>& space, Index cell) {
+Matrix2d projector(const TangentSpace& space, Index cell) {
   const auto [a11, a21] = space.projected(cell, 1.0, 0.0);
   const auto [a12, a22] = space.projected(cell, 0.0, 1.0);
   return (Matrix2d() << a11, a12, a21, a22).finished();
@@ -288,7 +288,7 @@ TEST(FrictionLinearised, IsTheDerivativeOfTheProjection) {
   const ArrayXd bound = random.bounds(kCells);
   const FrictionDiscs set(bound);
   const ArrayXd z = 0.6 * random.field(2 * kCells);
-  TangentSpace<double> space(2, kCells);
+  TangentSpace space(2, kCells);
   set.linearise(z, kRho, kMeans, space);
   Index slipping = 0;
   Index sticking = 0;
@@ -313,7 +313,7 @@ TEST(FrictionLinearised, KnowsHandMadeStates) {
   z << 6.0, 6.0, 1.0,  //
       8.0, -8.0, 2.0;
   const FrictionDiscs set(bound);
-  TangentSpace<double> space(2, 3);
+  TangentSpace space(2, 3);
   set.linearise(z, kRho, kMeans, space);
   EXPECT_EQ(projector(space, 0), Matrix2d::Identity());  // on its circle: sticks
   EXPECT_EQ(space.stiffness[0], 0.0);
@@ -329,7 +329,7 @@ TEST(FrictionLinearised, KnowsHandMadeStates) {
 TEST(FrictionLinearised, PreconditionerMatchesTheSymbolTwice) {
   Random random(14);
   const ArrayXd bound = random.bounds(kCells);
-  TangentSpace<double> space(2, kCells);
+  TangentSpace space(2, kCells);
   FrictionDiscs(bound).linearise(2.0 * random.field(2 * kCells), kRho, kMeans, space);
   for (Index i = 0; i < kCells; ++i) {
     if (bound[i] == 0.0) continue;
@@ -351,7 +351,7 @@ TEST(FrictionLinearised, CountsTheCellsThatChange) {
   ArrayXd bound(4);
   bound << 1.0, 1.0, 1.0, 0.0;
   const FrictionDiscs set(bound);
-  TangentSpace<double> space(2, 4);
+  TangentSpace space(2, 4);
   ArrayXd z = ArrayXd::Zero(8);
   set.linearise(z, kRho, kMeans, space);
   EXPECT_EQ(set.linearise(z, kRho, kMeans, space), 0);
@@ -369,13 +369,13 @@ TEST(FrictionLinearised, CountsTheCellsThatChange) {
 /// What the first linearisation counts must not depend on what the memory held before.
 TEST(FreshTangentSpace, HasNothingFree) {
   {
-    const TangentSpace<double> used = [] {
-      TangentSpace<double> space(2, 1000);
+    const TangentSpace used = [] {
+      TangentSpace space(2, 1000);
       for (Index i = 0; i < 1000; ++i) space.set_line(i, 0.6, 0.8, 3.0, 1.0);
       return space;
     }();
   }
-  const TangentSpace<double> space(2, 1000);
+  const TangentSpace space(2, 1000);
   for (const ArrayXd* field : {&space.f1, &space.f2}) EXPECT_TRUE((*field == 0.0).all());
   for (const ArrayXf* field : {&space.stiffness, &space.scale, &space.shift}) {
     EXPECT_TRUE((*field == 0.0F).all());
@@ -389,7 +389,7 @@ TEST(PressuresLinearised, AreFreeInContact) {
   ArrayXd z(4);
   z << 2.0, -1.0, 0.0, 3.0;
   const PositivePressures set(reachable);
-  TangentSpace<double> space(1, 4);
+  TangentSpace space(1, 4);
   for (Index i = 0; i < 4; ++i) space.set(i, false);
   EXPECT_EQ(set.linearise(z, kRho, kMeans, space), 1);
   EXPECT_TRUE((space.f1 == (ArrayXd(4) << 1.0, 0.0, 0.0, 0.0).finished()).all());

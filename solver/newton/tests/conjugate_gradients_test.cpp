@@ -39,9 +39,8 @@ constexpr int kMany = 500;
 std::vector<FieldCondition> one(const ArrayXd& condition) { return {{condition}}; }
 
 /// Cells that stick, slip against various stiffnesses, or carry nothing.
-template <typename Real>
-TangentSpace<Real> random_states(Index cells, unsigned seed) {
-  TangentSpace<Real> space(2, cells);
+TangentSpace random_states(Index cells, unsigned seed) {
+  TangentSpace space(2, cells);
   const ArrayXd random = random_field(3 * cells, seed);
   for (Index i = 0; i < cells; ++i) {
     if (random[i] < -0.6) {
@@ -59,7 +58,7 @@ TangentSpace<Real> random_states(Index cells, unsigned seed) {
 }
 
 /// A column for each way that a cell may move: the tangent space, spelled out.
-MatrixXd basis(const TangentSpace<double>& space) {
+MatrixXd basis(const TangentSpace& space) {
   const Index n = space.f1.size();
   std::vector<VectorXd> columns;
   const auto add = [&](Index i, double f1, double f2) {
@@ -88,11 +87,11 @@ struct CgBench {
   CgBench(const Grid& grid, bool vectors, unsigned seed)
       : size((vectors ? 2 : 1) * grid.cells()),
         op(grid, vectors ? tangential_kernel() : normal_kernel(), kPair),
-        symbol(make_inverse_symbol<double>(grid, vectors ? tangential_kernel() : normal_kernel(), kPair)),
+        symbol(make_inverse_symbol(grid, vectors ? tangential_kernel() : normal_kernel(), kPair)),
         cg(op, *symbol, size, kMaxConditions),
-        space(random_states<double>(grid.cells(), seed)) {
+        space(random_states(grid.cells(), seed)) {
     if (!vectors) {
-      space = TangentSpace<double>(1, grid.cells());
+      space = TangentSpace(1, grid.cells());
       const ArrayXd random = random_field(grid.cells(), seed);
       for (Index i = 0; i < grid.cells(); ++i) space.set(i, random[i] > -0.3);
       space.find_free();
@@ -118,7 +117,7 @@ struct CgBench {
     return free * dense_solution(saddle, right).head(n);
   }
   ArrayXd preconditioned(const ArrayXd& r) {
-    TangentPreconditioner<double> map{*symbol, space};
+    TangentPreconditioner map{*symbol, space};
     ArrayXd z = ArrayXd::Zero(size);
     ArrayXd y = z;
     ArrayXd in_range = r;
@@ -137,9 +136,9 @@ struct CgBench {
 
   Index size;
   DenseMatrix op;
-  std::unique_ptr<InverseSymbol<double>> symbol;
-  TangentCg<double> cg;
-  TangentSpace<double> space;
+  std::unique_ptr<InverseSymbol> symbol;
+  TangentCg cg;
+  TangentSpace space;
   MatrixXd free;
   MatrixXd tangent;
 };
@@ -339,15 +338,14 @@ TEST(ProjectedCg, SolvesASystemOfEquationsUnderConstraints) {
   const ArrayXd c = random_field(kSize, 4);
   const ArrayXd start = random_field(kSize, 5);
   std::vector<CgTangent> storage(1, CgTangent(kSize));
-  CgConstraints<double, FieldCondition> constraints{std::span(storage)};
+  CgConstraints<FieldCondition> constraints{std::span(storage)};
   const FieldCondition condition{c};
   ArrayXd d(kSize), Ad(kSize), y(kSize);
-  const CgWorkspace<double> work{d, Ad, y};
+  const CgWorkspace work{d, Ad, y};
   ASSERT_TRUE(constraints.prepare(preconditioner, std::array{&condition}, work.d, work.y));
   ArrayXd x = start;
   ArrayXd r = right - (map.matrix * start.matrix()).array();
-  const CgSummary summary =
-      projected_cg<double>(map, preconditioner, constraints, r, {1e-12, 4 * kSize}, work, x);
+  const CgSummary summary = projected_cg(map, preconditioner, constraints, r, {1e-12, 4 * kSize}, work, x);
   EXPECT_EQ(summary.status, CgStatus::reduced);
   EXPECT_LE(summary.iterations, 2 * kSize);
 
@@ -362,7 +360,7 @@ TEST(ProjectedCg, SolvesASystemOfEquationsUnderConstraints) {
 
   x = start;
   r = right - (map.matrix * start.matrix()).array();
-  const CgSummary stopped = projected_cg<double>(map, preconditioner, constraints, r, {1e-12, 2}, work, x);
+  const CgSummary stopped = projected_cg(map, preconditioner, constraints, r, {1e-12, 2}, work, x);
   EXPECT_EQ(stopped.status, CgStatus::iterations);
   EXPECT_NEAR((c * x).sum(), (c * start).sum(), 1e-12 * c.matrix().norm() * x.matrix().norm());
 }
@@ -406,9 +404,9 @@ TEST(Cg, AllocatesNothing) {
 CgSummary solve_with_multiple(double factor, double right) {
   const Grid grid{4, 4, 1.0, 1.0};
   Multiple op(grid, factor);
-  const auto symbol = make_inverse_symbol<double>(grid, tangential_kernel(), kPair);
-  TangentCg<double> cg(op, *symbol, 32, 1);
-  TangentSpace<double> space(2, 16);
+  const auto symbol = make_inverse_symbol(grid, tangential_kernel(), kPair);
+  TangentCg cg(op, *symbol, 32, 1);
+  TangentSpace space(2, 16);
   for (Index i = 0; i < 16; ++i) space.set(i, true);
   space.find_free();
   cg.residual() = random_field(32, 71);
@@ -422,24 +420,6 @@ TEST(CgBreakdown, IsNamed) {
   EXPECT_THAT(solve_with_multiple(0.0, 1.0).message(), HasSubstr("curvature 0"));
   EXPECT_THAT(solve_with_multiple(std::nan(""), 1.0).message(), HasSubstr("nan"));
   EXPECT_THAT(solve_with_multiple(2.0, std::nan("")).message(), HasSubstr("square is nan"));
-}
-
-// --- single precision ---
-
-TEST(CgInSinglePrecision, SolvesToItsRounding) {
-  const Grid grid{12, 10, 1.0, 1.0};
-  CgBench b(grid, true, 11);
-  const auto op = make_single_operator(grid, tangential_kernel(), kPair);
-  const auto symbol = make_inverse_symbol<float>(grid, tangential_kernel(), kPair);
-  TangentCg<float> cg(*op, *symbol, b.size, 1);
-  const TangentSpace<float> space = random_states<float>(grid.cells(), 11);
-  const ArrayXd r = random_field(b.size, 81);
-  const ArrayXd c = random_field(b.size, 82);
-  ASSERT_TRUE(cg.precondition(space, one(c)));
-  cg.residual() = r.cast<float>();
-  EXPECT_EQ(cg.solve_constrained(space, 1e-6, kMany).message(), "");
-  const VectorXd exact = b.constrained(r.matrix(), c.matrix());
-  EXPECT_LE((cg.solution().cast<double>().matrix() - exact).norm(), 1e-5 * exact.norm());
 }
 
 }  // namespace

@@ -12,7 +12,7 @@ using Eigen::ArrayXd;
 TEST(Extension, GathersAsTheAdjointOfWhatItExtends) {
   const Grid grid{9, 14, 1.0, 1.0};
   ArrayXd free = (ArrayXd::Random(grid.cells()) > 0.2).cast<double>();
-  Extension<double> extension(grid);
+  Extension extension(grid);
   extension.prepare(free);
   const ArrayXd x = free * ArrayXd::Random(grid.cells());
   const ArrayXd y = ArrayXd::Random(grid.cells());
@@ -43,7 +43,7 @@ TEST(Extension, MovesWithTheContact) {
     Eigen::ArrayXXd extended, gathered;
   };
   const auto continued = [&](Index row, Index column) {
-    Extension<double> extension(grid);
+    Extension extension(grid);
     ArrayXd free = placed(spot, row, column);
     extension.prepare(free);
     ArrayXd extended = placed(spot * values, row, column);
@@ -74,7 +74,7 @@ TEST(Extension, HandsNegativePressuresOnToTheCellsThatStay) {
   const ArrayXd before = ArrayXd::Random(grid.cells()) + 0.5;
   const ArrayXd stays = free * (before > 0.0).cast<double>();
   ArrayXd x = stays * ArrayXd::Random(grid.cells());
-  Extension<double> extension(grid);
+  Extension extension(grid);
   ArrayXd mask(grid.cells());
   ArrayXd leaves(grid.cells());
   ArrayXd after = before;
@@ -94,7 +94,7 @@ TEST(Extension, LeavesPositivePressuresOfFreeCellsAlone) {
   ArrayXd after = before;
   ArrayXd mask(grid.cells());
   ArrayXd leaves(grid.cells());
-  Extension<double> extension(grid);
+  Extension extension(grid);
   extension.hand_on(Sweep(free), free, after, mask, leaves);
   EXPECT_TRUE((after == before).all());
 }

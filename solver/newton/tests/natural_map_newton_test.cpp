@@ -19,7 +19,7 @@ using Eigen::ArrayXd;
 using testing::HasSubstr;
 
 /// A preconditioner that is none: it turns every residual round.
-class Reversing final : public InverseSymbol<double> {
+class Reversing final : public InverseSymbol {
  public:
   void apply(std::span<double> field) override {
     for (double& value : field) value = -value;
@@ -30,13 +30,11 @@ class Reversing final : public InverseSymbol<double> {
 /// The sphere's contact in torsion, as a convex program.
 class Newton : public testing::Test {
  protected:
-  using Method = NaturalMapNewton<FrictionDiscs, double>;
+  using Method = NaturalMapNewton<FrictionDiscs>;
 
   explicit Newton(Index cells = 24) : bench_(cells), q_(ArrayXd::Zero(2 * bench_.model.grid.cells())) {}
 
-  Method method(LinearOperator& op, InverseSymbol<double>& symbol) const {
-    return {discs_, program_, op, op, symbol};
-  }
+  Method method(LinearOperator& op, InverseSymbol& symbol) const { return {discs_, program_, op, symbol}; }
   NewtonSummary run(ArrayXd& q, const NewtonOptions& options = {}) {
     return method(*bench_.op, *symbol_).run(q, {}, options);
   }
@@ -48,8 +46,7 @@ class Newton : public testing::Test {
 
   Bench bench_;
   const Grid& grid_ = bench_.model.grid;
-  std::unique_ptr<InverseSymbol<double>> symbol_ =
-      make_inverse_symbol<double>(grid_, tangential_kernel(), bench_.model.pair);
+  std::unique_ptr<InverseSymbol> symbol_ = make_inverse_symbol(grid_, tangential_kernel(), bench_.model.pair);
   ArrayXd rotation_ = (bench_.bound > 0.0).cast<double>().replicate(2, 1) * rotation_field(grid_);
   MotionField turn_{grid_, 0.0, 0.0, 1.0};
   FrictionDiscs discs_{bench_.bound, grid_.n2};

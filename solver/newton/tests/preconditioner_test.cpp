@@ -16,7 +16,7 @@ namespace {
 /// A circle of radius a that sticks within a/2; beyond, traction turns, so that cells move along radii,
 /// against a stiffness that grows like slip, (r - c)^1.5, over a pressure that ends like a root.
 template <typename Function>
-void for_each_slipping(const Grid& grid, TangentSpace<double>& space, const Function& function) {
+void for_each_slipping(const Grid& grid, TangentSpace& space, const Function& function) {
   const double a = 0.5 * static_cast<double>(grid.n1) - 1.0;
   for (Index i = 0; i < grid.n1; ++i) {
     for (Index j = 0; j < grid.n2; ++j) {
@@ -38,9 +38,9 @@ const ElasticPair kSteel = elastic_pair({2.0, 0.3}, {2.0, 0.3});
 int iterations_needed(Index cells, bool two_terms) {
   const Grid grid{cells, cells, 1.0, 1.0};
   const auto op = make_operator(OperatorKind::dcfft, grid, tangential_kernel(), kSteel);
-  const auto symbol = make_inverse_symbol<double>(grid, tangential_kernel(), kSteel);
+  const auto symbol = make_inverse_symbol(grid, tangential_kernel(), kSteel);
   const std::array<double, 2> means = symbol->diagonal();
-  TangentSpace<double> space(2, grid.cells());
+  TangentSpace space(2, grid.cells());
   for_each_slipping(grid, space, [&](Index cell, double f1, double f2, double stiffness) {
     const double mean = f1 * f1 * means[0] + f2 * f2 * means[1];
     space.set_line(cell, f1, f2, stiffness, mean);
@@ -49,7 +49,7 @@ int iterations_needed(Index cells, bool two_terms) {
     space.shift[cell] = 0.0F;
   });
   space.find_free();
-  TangentCg<double> cg(*op, *symbol, 2 * grid.cells(), 0);
+  TangentCg cg(*op, *symbol, 2 * grid.cells(), 0);
   cg.residual() = random_field(2 * grid.cells(), 91);
   const CgSummary summary = cg.solve(space, 1e-6, 1000);
   EXPECT_EQ(summary.message(), "");

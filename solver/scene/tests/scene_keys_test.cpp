@@ -73,13 +73,13 @@ Wrong wrong_for(const SettingKey& key) {
 /// Those that have defaults.
 std::string members(const Scene& scene) {
   const Surface& surface = scene.surfaces[0];
-  return fmt::format(
-      "{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", static_cast<int>(scene.pressure),
-      static_cast<int>(scene.coupling), static_cast<int>(scene.method), static_cast<int>(scene.model),
-      static_cast<int>(scene.op), static_cast<int>(scene.cell_traction), static_cast<int>(scene.precision),
-      scene.tolerance, scene.max_iterations, scene.threads, scene.rounding_seed, scene.cycles,
-      scene.ends_at_grid_edge, scene.upper.young_modulus, scene.lower.young_modulus, surface.at[0],
-      surface.at[1], surface.angle, surface.inner_radius, surface.height_unit);
+  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}",
+                     static_cast<int>(scene.pressure), static_cast<int>(scene.coupling),
+                     static_cast<int>(scene.method), static_cast<int>(scene.model),
+                     static_cast<int>(scene.op), static_cast<int>(scene.cell_traction), scene.tolerance,
+                     scene.max_iterations, scene.threads, scene.rounding_seed, scene.cycles,
+                     scene.ends_at_grid_edge, scene.upper.young_modulus, scene.lower.young_modulus,
+                     surface.at[0], surface.at[1], surface.angle, surface.inner_radius, surface.height_unit);
 }
 
 class SceneKeys : public SceneFile {

@@ -77,11 +77,6 @@ const Mistake kMistakes[] = {
     {"solver.max_iterations", [](Scene& s) { s.max_iterations = 0; }},
     {"solver.threads", [](Scene& s) { s.threads = -1; }},
     {"solver.rounding_seed", [](Scene& s) { s.rounding_seed = -1; }},
-    {"solver.precision",
-     [](Scene& s) {
-       s.precision = Precision::mixed;
-       s.op = OperatorKind::direct;
-     }},
     {"solver.method",
      [](Scene& s) {
        s.method = Method::paper;
