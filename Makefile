@@ -28,14 +28,14 @@ help: ## show this list
 setup: ## install the missing Debian/Ubuntu packages (elsewhere: list them)
 	@cmake/setup
 
-# What was left out the last time is looked for again.
+# Packages that were missing the last time are looked for again.
 configure: setup
-	@if [ ! -f $(BUILD)/build.ninja ] || [ -s $(BUILD)/left_out.txt ]; then cmake --preset release; fi
+	@if [ ! -f $(BUILD)/build.ninja ] || [ -s $(BUILD)/not_built.txt ]; then cmake --preset release; fi
 
-# $(call build,targets): builds them, and says at the end what had to be left out.
+# $(call build,targets): builds them, and says at the end what was not built.
 define build
 @cmake --build $(BUILD) --target $(1)
-@if [ -s $(BUILD)/left_out.txt ]; then echo; cat $(BUILD)/left_out.txt; echo; fi >&2
+@if [ -s $(BUILD)/not_built.txt ]; then echo; cat $(BUILD)/not_built.txt; echo; fi >&2
 endef
 
 build: configure ## build everything, the program is build/slipstick

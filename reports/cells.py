@@ -56,7 +56,7 @@ class Cells:
         return max(self.extent[1] - self.extent[0], self.extent[3] - self.extent[2])
 
     def spacing(self, arrows=ARROWS_ALONG):
-        """Between so many arrows along the longer side, in metres: whole cells."""
+        """The distance of arrows, `arrows` of them along the longer side, in metres: whole cells."""
         cell = self.size.max()
         return cell * np.ceil(self.longer_side() / cell / arrows)
 

@@ -212,7 +212,7 @@ def cost(report, data_dir):
     shown = [(study.name, seconds(number(study.table[-1], "seconds.total")), _sci_at(study.table[-1], "twist_error"))
              for study in runs if study.load == runs[-1].load]
     return FigureEntry(
-        f"{shown[0][1]} s buy a twist that is right to {shown[0][2]}.",
+        f"A twist that is right to {shown[0][2]} takes {shown[0][1]} s.",
         "Down and left is better. The numbers beside one line are its cells a side; the other lines have the same "
         "meshes in the same order. Times are of one run on the machine named at the foot of the page.",
         "Two log-log panels of relative error against time, for twist and traction, one line for each pressure and "

@@ -39,7 +39,7 @@ class Series:
         return rows(self.content, "meshes")
 
     def order(self, quantity):
-        """The fit of a quantity, whose name may have dots."""
+        """The fit of a quantity; its name may have dots."""
         found = value(self.content, "order")
         if quantity not in found:
             raise Unavailable(f"series “{self.name}” has no order of “{quantity}”")

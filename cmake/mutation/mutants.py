@@ -26,7 +26,7 @@ DANGEROUS = ("solver/input/run_apart.cpp", "convergence/programs/run_program.cpp
 # Programs that `make test` does not build: they check their own results.
 NOT_TESTED = ("bench/suite/", "bench/work/work_counts_program.cpp", "analytic/certified/hardest.cpp",
               "analytic/certified/references.cpp", "analytic/certified/missing.cpp")
-SPARE = 1.7  # so many times the mutants are proposed: not all of them compile
+SPARE = 1.7  # proposed mutants for each that is wanted: not all of them compile
 
 
 def sources(folder):

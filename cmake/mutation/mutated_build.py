@@ -10,7 +10,7 @@ import rules
 from runs import PROGRAMS
 
 SWITCH = Path(__file__).with_name("switch.hpp")
-ROUNDS = 8  # of building; in each, what does not compile is left out
+ROUNDS = 8  # of building; each drops the mutants that do not compile
 
 
 class BuildFailed(Exception):

@@ -146,7 +146,7 @@ def extremes(code):
 
 
 def statements(code, is_python):
-    """An assignment or a call that is left out."""
+    """An assignment or a call is dropped."""
     keywords = "return|if|for|while|switch|do|else|throw|delete|new|break|continue|private|public|assert|raise|yield"
     for match in re.finditer(rf"(?<=[;{{}}])\s+(?!(?:{keywords})\b)(?=([\w.:>\[\]-]+(?: [-+*/|&]?= |\())(?!\s))", code):
         end = start = match.end()

@@ -33,8 +33,8 @@ class Suite:
 
     def words(self, folder):
         """In `folder`, where it may write; {} stands for it."""
-        left_out = "-" + ":".join(self.failing) if self.failing else ""
-        return [str(word).replace("{}", str(folder)) + (left_out if str(word).startswith("--gtest_filter") else "")
+        skipped = "-" + ":".join(self.failing) if self.failing else ""
+        return [str(word).replace("{}", str(folder)) + (skipped if str(word).startswith("--gtest_filter") else "")
                 for word in self.command]
 
 
@@ -80,7 +80,7 @@ def gates(source, build):
 
 
 def measure(suite, mutants, limit=None):
-    """Runs a suite without a mutant: what it reaches, how long it takes, what fails anyway. Says what is left out."""
+    """Runs a suite without a mutant: what it reaches, how long it takes, which tests fail anyway. Names the tests that are skipped."""
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
         reached = Path(folder, "reached")
         reached.write_bytes(bytes(mutants + 1))
@@ -91,12 +91,12 @@ def measure(suite, mutants, limit=None):
         suite.reached = {number for number, byte in enumerate(reached.read_bytes()) if byte}
     if code is None:
         suite.reached = set()
-        return f"{suite.name} takes more than {limit:g} s and is left out"
+        return f"{suite.name} takes more than {limit:g} s and is skipped"
     suite.failing = tuple(sorted(set(re.findall(r"^\[  FAILED  \] (\S+?)(?:,| \()", output, re.MULTILINE))))
     if code != 0 and not suite.failing:
         suite.reached = set()
-        return f"{suite.name} fails without a mutant and is left out:\n{output[-2000:]}"
-    return f"{', '.join(suite.failing)}: fails without a mutant and is left out" if suite.failing else ""
+        return f"{suite.name} fails without a mutant and is skipped:\n{output[-2000:]}"
+    return f"{', '.join(suite.failing)}: fails without a mutant and is skipped" if suite.failing else ""
 
 
 def verdict(suite, number):

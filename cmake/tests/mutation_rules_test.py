@@ -57,7 +57,7 @@ class Cpp(unittest.TestCase):
         self.assertEqual(cpp(line, "index"), {"x = 0.5 * a[1] + 3 * b.x1;", "x = 0.5 * a[0] + 3 * b.x2;"})
         self.assertEqual(cpp("x = 0.0; y = true;", "constant"), {"x = 1.0; y = true;", "x = 0.0; y = false;"})
 
-    def test_a_minimum_becomes_a_maximum_and_a_statement_is_left_out(self):
+    def test_a_minimum_becomes_a_maximum_and_a_statement_is_dropped(self):
         self.assertEqual(cpp("return std::min(a, b);", "extreme"), {"return std::max(a, b);"})
         self.assertEqual(cpp("g(a);\n  x += h({1, 2});\n  int y = 3;\n  return y;", "statement"),
                          {";\n  x += h({1, 2});\n  int y = 3;\n  return y;", "g(a);\n  ;\n  int y = 3;\n  return y;"})

@@ -31,7 +31,7 @@ quantity = "{{}}"
 basis = "made up"
 {{}}
 """
-# A program as Google Benchmark makes them, whose benchmarks all take so long.
+# A program as Google Benchmark makes them; each of its benchmarks takes MS milliseconds.
 BENCHMARKS = """#!/bin/sh
 for word in "$@"; do
   case "$word" in

@@ -8,7 +8,7 @@ import sys
 
 MAX_FILE_LINES = 450
 MAX_FUNCTION_LINES = 60
-OLD_TEXT = ("CHANGELOG.md", "LICENSE")  # what a past version was like is not written anew
+OLD_TEXT = ("CHANGELOG.md", "LICENSE")  # of the past, or not ours
 CPP = (".cpp", ".hpp", ".h", ".c")
 # A line that opens a scope which is no function: its body may hold many.
 OTHER_SCOPE = re.compile(r"\b(?:namespace|class|struct|union|enum|concept|extern)\b[^()]*$|=\s*$")

@@ -4,16 +4,13 @@ Nothing here depends on the page's words."""
 
 import json
 import re
-import sys
 import tempfile
 import unittest
 from pathlib import Path
-from unittest.mock import patch
 
 from made_report import run_render, save_quickly, small_report, write_data
 
 import browser
-import figures
 import pdf
 from test_study_figure import study, tolerance_study
 

@@ -4,22 +4,19 @@ import io
 import json
 import subprocess
 import sys
-import tempfile
 import unittest
 import xml.etree.ElementTree
 from contextlib import redirect_stderr
-from pathlib import Path
 
 import h5py
 import numpy as np
 from matplotlib.quiver import QuiverKey
 
-REPORTS = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(REPORTS))
+from made_report import REPORTS, Folder
 
-import solve_figure  # noqa: E402
-from cells import ARROWS_ALONG, Cells  # noqa: E402
-from results import Fields, Unavailable, load  # noqa: E402
+import solve_figure
+from cells import ARROWS_ALONG, Cells
+from results import Fields, Unavailable, load
 
 CELL = (2e-6, 1e-6)
 
@@ -37,11 +34,9 @@ def disc(n1, n2, x1=0.0, x2=0.0):
     return x1 + CELL[0] * i[inside], x2 + CELL[1] * j[inside]
 
 
-class Figure(unittest.TestCase):
+class Figure(Folder):
     def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name)
+        super().setUp()
         self.fields = self.folder / "fields.h5"
 
     def write(self, x1, x2, changes=None, **columns):
