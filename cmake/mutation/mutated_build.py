@@ -93,7 +93,7 @@ class MutatedBuild:
         """Those of `mutants` that compile, built into the tests of their folders and, with `gates`, into the program."""
         known = (self.build / "build.ninja").read_text()
         targets = [program for folder in {each.folder for each in mutants} for program in PROGRAMS[folder]
-                   if f"build {program}:" in known] + ["slipstick"] * gates
+                   if re.search(rf"^build {program}[ :]", known, re.MULTILINE)] + ["slipstick"] * gates
         for _ in range(ROUNDS):
             self.write_mutants(mutants)
             done = subprocess.run(["ninja", "-C", self.build, f"-j{jobs}", "-k", "0", *targets],
