@@ -9,12 +9,14 @@ from dataclasses import dataclass
 SWITCH = "::slipstick::mutation::"
 BRACKETS = {"(": ")", "[": "]", "{": "}"}
 # How tightly an operator binds. What is not listed ends an operand.
-LEVELS = {"||": 1, "or": 1, "&&": 2, "and": 2, "==": 3, "!=": 3, "<": 4, "<=": 4, ">": 4, ">=": 4, "<<": 5, ">>": 5,
+LEVELS = {"||": 1, "or": 1, "&&": 2, "and": 2, "==": 3, "!=": 3, "<": 4, "<=": 4, ">": 4, ">=": 4, "is": 4,
+          "is not": 4, "<<": 5, ">>": 5,
           "+": 6, "-": 6, "*": 7, "/": 7, "%": 7}
 SIGN_LEVEL = 8
 OPERATOR = r"(?:\|\||&&|<<|>>|[-+*/%=!<>]=|[-+*/%<>=?:]|(?:or|and|if|else|in|is|for|return|not|lambda)\b)"
 COMPARED = {"<": ("<=", ">="), "<=": ("<", ">"), ">": (">=", "<="), ">=": (">", "<")}  # another boundary; the opposite
-SWAPPED = {"+": "-", "-": "+", "*": "/", "/": "*", "==": "!=", "!=": "=="}
+SWAPPED = {"+": "-", "-": "+", "*": "/", "/": "*", "==": "!=", "!=": "==", "is": "is not",
+           "is not": "is"}
 IN_CPP = {"and": "&&", "or": "||", "True": "true", "False": "false"}
 # Declarations that the compiler computes, and labels.
 EXCLUDED_CPP = re.compile(r"\b(constexpr|consteval|static_assert|case|template|using|enum|typedef|concept)\b")
@@ -88,13 +90,15 @@ def operand_after(code, at, level):
 
 
 def operators(code):
-    for match in re.finditer(r"(?<=[^\s,(=\"])\s(<=|>=|==|!=|[-+*/<>])\s+(?=[^\s\"=])", code):
+    for match in re.finditer(r"(?<=[^\s,(=])\s(<=|>=|==|!=|is not|is|[-+*/<>])\s+(?=[^\s=])", code):
         sign, level = match.group(1), LEVELS[match.group(1)]
         first, last = operand_before(code, match.start(), level), operand_after(code, match.end(), level)
         for rule, other in zip(("boundary", "comparison"), COMPARED.get(sign, ())):
             yield Mutation(rule, *match.span(1), other, first, last)
+        if sign in "+-*/" and '"' in (code[match.start() - 1], code[match.end()]):
+            continue  # texts
         if sign in SWAPPED:
-            yield Mutation("comparison" if "=" in sign else "arithmetic", *match.span(1), SWAPPED[sign], first, last)
+            yield Mutation("arithmetic" if sign in "+-*/" else "comparison", *match.span(1), SWAPPED[sign], first, last)
         if sign in "+-":
             yield Mutation("term", match.start(), last, "", first, last)
 
@@ -148,7 +152,8 @@ def extremes(code):
 def statements(code, is_python):
     """An assignment or a call is dropped."""
     keywords = "return|if|for|while|switch|do|else|throw|delete|new|break|continue|private|public|assert|raise|yield"
-    for match in re.finditer(rf"(?<=[;{{}}])\s+(?!(?:{keywords})\b)(?=([\w.:>\[\]-]+(?: [-+*/|&]?= |\())(?!\s))", code):
+    assigned = "[-+*/|&]= " if is_python else "[-+*/|&]?= "  # a Python name that is not set ends the program
+    for match in re.finditer(rf"(?<=[;{{}}])\s+(?!(?:{keywords})\b)(?=([\w.:>\[\]-]+(?: {assigned}|\())(?!\s))", code):
         end = start = match.end()
         while end < len(code) and code[end] not in ";{}":
             end = partner(code, end) + 1 if code[end] in "([" else end + 1
