@@ -80,7 +80,7 @@ def gates(source, build):
 
 
 def measure(suite, mutants, limit=None):
-    """Runs a suite without a mutant: what it reaches, how long it takes, which tests fail anyway. Names the tests that are skipped."""
+    """Runs a suite without a mutant: what it reaches, how long it takes, which tests fail anyway. Names those as skipped."""
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
         reached = Path(folder, "reached")
         reached.write_bytes(bytes(mutants + 1))
