@@ -16,13 +16,13 @@ def least_distance(positions):
 
 
 class Cells:
-    """Lengths in metres; a cell size of None is taken to be the least distance of cells. Arrays over the contact's
+    """Lengths over `unit` metres; a cell size of None is taken to be the least distance of cells. Arrays over the contact's
     bounding rectangle have rows along x2, columns along x1.
     """
 
-    def __init__(self, path, cell_size):
+    def __init__(self, path, cell_size=None, unit=1.0):
         self.columns = Columns(path)
-        positions = np.stack([self.columns["x1"], self.columns["x2"]])
+        positions = np.stack([self.columns["x1"], self.columns["x2"]]) / unit
         self.size = np.array(cell_size or [least_distance(x) for x in positions])
         low = positions.min(axis=1)
         steps = (positions - low[:, None]) / self.size[:, None]

@@ -16,7 +16,7 @@ from made_report import REPORTS, Folder
 
 import solve_figure
 from cells import ARROWS_ALONG, Cells
-from results import Fields, Unavailable, load
+from results import Unavailable, load
 
 CELL = (2e-6, 1e-6)
 
@@ -76,9 +76,9 @@ class Maps(Figure):
         with h5py.File(self.folder / "map.h5", "w") as file:
             for name, values in (("x1", [-2, 2, -2]), ("x2", [-2, -2, 0]), ("q1", [1, 2, 3])):
                 file[name] = np.array(values, float)
-        fields = Fields(self.folder / "map.h5", 2.0)
-        np.testing.assert_array_equal(fields.grid("q1"), [[1, np.nan, 2], [3, np.nan, np.nan], [np.nan] * 3])
-        np.testing.assert_array_equal(fields.extent, [-1.5, 1.5, -1.5, 1.5])
+        cells = Cells(self.folder / "map.h5", (1.0, 1.0), 2.0)
+        np.testing.assert_array_equal(cells.grid(cells.columns["q1"]), [[1, np.nan, 2], [3, np.nan, np.nan]])
+        np.testing.assert_array_equal(cells.extent, [-1.5, 1.5, -1.5, 0.5])
 
 
 class Names(Figure):
