@@ -10,6 +10,7 @@
 
 #include "convergence/oracle/exact_shapes.hpp"
 #include "convergence/oracle/exact_theories.hpp"
+#include "solver/elasticity/law/law_kind.hpp"
 #include "solver/scene/last_digits.hpp"
 
 namespace slipstick::convergence {
@@ -33,6 +34,9 @@ bool is_coupled(const solver::Scene& scene) {
 std::string obstacle(const solver::Scene& scene) {
   std::string of_surface = obstacle(scene.surfaces);
   if (!of_surface.empty()) return of_surface;
+  if (scene.layer.kind != nullptr) {
+    return fmt::format("no exact solution is known here for layer.kind = \"{}\"", scene.layer.kind->word);
+  }
   if (scene.pressure == solver::PressureModel::file) return "the pressure comes from a file";
   if (scene.ends_at_grid_edge) return "the body may end at the grid's edge (upper.ends_at_grid_edge)";
   if (!(scene.friction > 0.0)) return "without friction there is no traction";
