@@ -53,7 +53,7 @@ struct Resultants {
 Resultants resultants_of(const ArrayXd& traction, const Grid& grid) {
   const MotionField rotation(grid, 0.0, 0.0, 1.0);
   const Index cells = grid.cells();
-  return Sweep::whole(cells, grid.n2).sum<Resultants>([&](Index first, Index last, Resultants& sum) {
+  return Sweep::whole(grid).sum<Resultants>([&](Index first, Index last, Resultants& sum) {
     const auto q1 = traction.segment(first, last - first);
     const auto q2 = traction.segment(first + cells, last - first);
     sum += {q1.sum(), q2.sum(), rotation.dot(first, q1) + rotation.dot(first + cells, q2)};
@@ -126,7 +126,7 @@ void describe_energy(ModelSolution& solution, const LoadStep& loads) {
   const double unit = model.grid.cell_area() * model.moment_unit();
   const Index cells = model.grid.cells();
   const ArrayXd& bound = loads.problem.friction_bound;
-  const Work work = Sweep::whole(cells, model.grid.n2).sum<Work>([&](Index first, Index last, Work& sum) {
+  const Work work = Sweep::whole(model.grid).sum<Work>([&](Index first, Index last, Work& sum) {
     const Index n = last - first;
     const auto q1 = tangential.traction.segment(first, n);
     const auto q2 = tangential.traction.segment(first + cells, n);
@@ -208,7 +208,7 @@ struct PressureMoments {
 double measure_contact_radius(const Dimensionless& model, const ArrayXd& pressure) {
   const Grid& grid = model.grid;
   const ArrayXd x2 = ArrayXd::NullaryExpr(grid.n2, [&](Index j) { return grid.x2(j); });
-  const Sweep rows = Sweep::whole(grid.cells(), grid.n2);
+  const Sweep rows = Sweep::whole(grid);
   const auto moments_about = [&](double c1, double c2) {
     return rows.sum<PressureMoments>([&](Index first, Index last, PressureMoments& sum) {
       const auto p = pressure.segment(first, last - first);

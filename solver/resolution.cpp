@@ -34,7 +34,7 @@ struct Area {
 /// field(cell): its value there.
 template <typename Field>
 Area measure(const Grid& grid, const Field& field) {
-  Area area = Sweep::whole(grid.cells(), grid.n2).sum<Area>([&](Index first, Index last, Area& sum) {
+  Area area = Sweep::whole(grid).sum<Area>([&](Index first, Index last, Area& sum) {
     const bool top = first < grid.n2;
     const bool bottom = last > grid.cells() - grid.n2;
     for (Index k = first; k < last; ++k) {

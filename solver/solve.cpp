@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <stdexcept>
 #include <utility>
 
@@ -13,6 +12,7 @@
 #include "solver/contact/projected_gradient.hpp"
 #include "solver/elasticity/random_rounding.hpp"
 #include "solver/grid/mirror.hpp"
+#include "solver/grid/own_rows.hpp"
 #include "solver/grid/threads.hpp"
 #include "solver/grid_edge.hpp"
 #include "solver/history_state.hpp"
@@ -53,8 +53,7 @@ TangentialProblem reduced(TangentialProblem& problem, const Reduction& part) {
 
 void expand(TangentialSolution& solution, const Reduction& part) {
   if (!part.trimmed() && !part.quadrant()) return;
-  ArrayXd& u = solution.elastic_displacement;
-  gather(part.grid(), std::span(u.data(), static_cast<std::size_t>(u.size())));
+  share_rows(part.grid(), solution.elastic_displacement);
   for (ArrayXd* const field : {&solution.traction, &solution.elastic_displacement, &solution.slip}) {
     *field = part.expanded(*field, torsion_symmetry());
   }
@@ -317,7 +316,7 @@ void solve_steps(const Scene& scene, const SolveOptions& options, const AfterSte
   std::shared_ptr<SolveCache> cache = options.cache;
   Stopwatch watch(cache.get());
   ModelSolution solution;
-  solution.model = make_model(scene);
+  solution.model = make_model(scene, options.ranks);
   const ThreadPool threads(solution.model.threads);
   const Memory memory = predicted_memory(scene, solution.model);
   solution.bytes = memory.solver;

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "solver/cache/solve_cache.hpp"
+#include "solver/grid/ranks.hpp"
 #include "solver/scene/scene.hpp"
 #include "solver/solution.hpp"
 
@@ -11,7 +12,7 @@ namespace slipstick::solver {
 
 struct HistoryState;
 
-/// Who is told how a solve goes on, and what it shares with others.
+/// Who is told how a solve goes on, and what it shares with other solves and other processes.
 struct SolveOptions {
   /// Called now and then, for the pressure and then for the tractions, with the iterations or applications so
   /// far and what the stopping test sees. What it throws ends the solve.
@@ -27,6 +28,8 @@ struct SolveOptions {
   /// have had without the break. Empty: from the first step.
   std::shared_ptr<const HistoryState> resumed = {};
   Detail detail = Detail::all;
+  /// The processes that share the solve; all of them call solve() alike.
+  Ranks ranks = {};
 };
 
 /// Solves a scene, step by step; returns the last one, or the first that did not converge. Throws InputError

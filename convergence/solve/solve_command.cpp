@@ -50,7 +50,8 @@ struct SolveRequest {
   std::string accuracy_of = "twist";
   std::vector<std::string> uncertain;
   bool plan = false;
-  int ranks = 1;
+  int planned_ranks = 1;
+  solver::Ranks ranks;  ///< that share the solve
   std::string checkpoint;
   bool resume = false;
   MemoryOption memory;
@@ -59,7 +60,7 @@ struct SolveRequest {
 
 /// One line on a terminal, rewritten; nothing elsewhere.
 void show_progress(int iteration, double change) {
-  if (isatty(STDERR_FILENO) != 0 && solver::Ranks::first())
+  if (isatty(STDERR_FILENO) != 0)
     std::cerr << fmt::format("\r\033[Kiteration {}, change {:.1e}\r", iteration, change);
 }
 
@@ -91,8 +92,8 @@ void write_files(const SolveRequest& request, const Json& result,
   if (!request.fields.empty() && !one_file_a_step(request.fields)) write_fields(request.fields);
   if (request.figure.empty()) return;
   // Other ranks have their cells to write, into the first one's file.
-  solver::Ranks::first() ? draw_figure(request.figure, result, write_fields)
-                         : write_fields(request.figure + ".h5");
+  request.ranks.first() ? draw_figure(request.figure, result, write_fields)
+                        : write_fields(request.figure + ".h5");
 }
 
 int answer_exactly(const solver::Scene& scene, const SolveRequest& request, std::ostream& text,
@@ -102,7 +103,8 @@ int answer_exactly(const solver::Scene& scene, const SolveRequest& request, std:
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result = exact_result(scene, oracle, seconds);
   text << exact_text(result);
-  write_files(request, result, [&](const auto& file) { write_exact_fields(file, scene, oracle); });
+  write_files(request, result,
+              [&](const auto& file) { write_exact_fields(file, scene, oracle, request.ranks); });
   return 0;
 }
 
@@ -114,7 +116,7 @@ std::shared_ptr<const FinishedSteps> finished_in(const Checkpoint& checkpoint, c
                              "is there already; allowed: --resume, to go on from it, or another file");
   }
   std::shared_ptr<const FinishedSteps> finished = checkpoint.read();
-  if (finished && solver::Ranks::first()) {
+  if (finished && request.ranks.first()) {
     std::cerr << plain_text(fmt::format("slipstick: goes on after step {}, from {}\n",
                                         finished->state->finished, request.checkpoint));
   }
@@ -135,7 +137,7 @@ SolvedScene solve_on(const solver::Scene& scene, const SolveRequest& request, So
   PacedCheckpoint paced(checkpoint);
   options.resumed = finished_in(checkpoint, request);
   if (options.resumed) step = options.resumed->state->finished;
-  if (solver::Ranks::first()) {
+  if (request.ranks.first()) {
     options.on_state = [&](const solver::HistoryState& state, const Json& steps) {
       paced.offer(state, steps);
     };
@@ -155,11 +157,12 @@ SolvedScene find_on_grid(const solver::Scene& scene, const SolveRequest& request
     write_solution_fields(file_of_step(request.fields, step), at, exact);
   };
   return solve_on(scene, request,
-                  {.progress = show_progress,
+                  {.progress = request.ranks.first() ? show_progress : nullptr,
                    .on_step = on_step,
                    .incomplete = &result,
                    .cache = cache,
-                   .detail = detail},
+                   .detail = detail,
+                   .ranks = request.ranks},
                   step);
 }
 
@@ -242,7 +245,7 @@ void add_uncertainty(const std::vector<UncertainInput>& uncertain, const SolveRe
     solver::Scene scene = solver::read_scene(request.scene, overrides);
     scene.memory_limit = request.memory.limit();
     if (scene.model == solver::ModelChoice::exact) return exact_result(scene, require_oracle(scene), 0);
-    return solve_scene(scene, {.cache = cache}).result;
+    return solve_scene(scene, {.cache = cache, .ranks = request.ranks}).result;
   });
   text << uncertainty_text(result);
 }
@@ -276,13 +279,13 @@ int run_solve(const CLI::App& command, const SolveRequest& request, std::ostream
   if (!request.fields.empty()) solver::require_field_format(request.fields);
   if (!request.figure.empty()) require_figure_format(request.figure);
   const solver::Scene scene = read_scene(request);
-  if (solver::Ranks::number() > 1) require_shared_by_ranks(request, scene);
+  if (request.ranks.several()) require_shared_by_ranks(request, scene);
   require_scene_kept(command, request, scene);
   require_output("--fields", request.fields);
   require_output("--checkpoint", request.checkpoint);
   if (request.accuracy) return solve_accurately(scene, request, text, result);
   if (request.plan) {
-    result["plan"] = plan_json(scene, request.ranks);
+    result["plan"] = plan_json(scene, request.planned_ranks);
     text << plan_text(result);
     return 0;
   }
@@ -296,8 +299,10 @@ int run_solve(const CLI::App& command, const SolveRequest& request, std::ostream
 
 }  // namespace
 
-std::function<int(std::ostream&, nlohmann::ordered_json&)> add_solve_command(CLI::App& app) {
+std::function<int(std::ostream&, nlohmann::ordered_json&)> add_solve_command(CLI::App& app,
+                                                                             const solver::Ranks& ranks) {
   const auto request = std::make_shared<SolveRequest>();
+  request->ranks = ranks;
   CLI::App* const command = app.add_subcommand("solve", "Solve a scene, on a grid or exactly");
   command->add_option("scene", request->scene, "scene file (TOML)")->required();
   command
@@ -328,7 +333,7 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_solve_command(CLI
   command->add_flag("--plan", request->plan, "predict memory and time of what would be solved, and stop")
       ->excludes(command->get_option("--uncertain"));
   command
-      ->add_option("--ranks", request->ranks,
+      ->add_option("--ranks", request->planned_ranks,
                    "with --plan: on so many ranks of MPI, of which the memory is that of one")
       ->needs(command->get_option("--plan"))
       ->excludes(command->get_option("--accuracy"))

@@ -41,7 +41,7 @@ class ProjectedGradient {
         q_(options.start.size() > 0 ? options.start : ArrayXd::Zero(t_.size())),
         Kq_(ArrayXd::Zero(t_.size())),
         rotation_(op.grid(), 0.0, 0.0, 1.0),
-        discs_(problem.friction_bound, op.grid().n2),
+        discs_(op.grid(), problem.friction_bound),
         balance_(discs_, imposed(problem, rotation_)),
         phi_(problem.twist.value_or(0.0)) {
     if (q_.size() != t_.size()) throw std::invalid_argument("start: tractions of another size");

@@ -106,11 +106,7 @@ constexpr double kLargestCorrection = 0.5;
 class FrontFinder {
  public:
   FrontFinder(const Grid& grid, const ArrayXd& friction_bound, const ArrayXd& slip, const ArrayXd& stick)
-      : grid_(grid),
-        all_(Sweep::whole(grid.cells(), grid.n2)),
-        bound_(friction_bound),
-        slip_(slip),
-        stick_(stick) {}
+      : grid_(grid), all_(Sweep::whole(grid)), bound_(friction_bound), slip_(slip), stick_(stick) {}
 
   StickFront run() {
     StickFront front;
@@ -154,7 +150,7 @@ class FrontFinder {
     find_centroid();
     mirrored_ = is_mirrored();
     cast_rays();
-    return gather_slipping_cells() ? "" : "the stick area is not one patch that its centroid sees all of";
+    return collect_slipping_cells() ? "" : "the stick area is not one patch that its centroid sees all of";
   }
 
   void fit(StickFront& front) {
@@ -306,7 +302,7 @@ class FrontFinder {
 
   /// Those that some window may take, by angle. False if a cell is not on the side of the counted front that
   /// its state says. Cells far from the front need no angle.
-  bool gather_slipping_cells() {
+  bool collect_slipping_cells() {
     const double nearest_front = counted_.minCoeff();
     const double farthest_front = counted_.maxCoeff();
     bool star_shaped = true;

@@ -56,13 +56,12 @@ std::size_t form_of(const Elasticity& elasticity, const Grid& grid) {
   return !grid.quadrant ? 0 : elasticity.diagonal ? 2 : 1;
 }
 
-/// This rank's part of the bytes of so many doubles a padded cell.
+/// This process's part of the bytes of so many doubles a padded cell.
 double padded_bytes(double doubles, const Grid& grid) {
   const auto padded = [](Index cells) {
     return static_cast<double>(fast_length(2 * std::max(cells, kLeastSide) - 1));
   };
-  const double part =
-      static_cast<double>(RowBands(grid.n1).own_rows().count()) / static_cast<double>(grid.n1);
+  const double part = static_cast<double>(own_rows(grid).count()) / static_cast<double>(grid.n1);
   return sizeof(double) * doubles * padded(grid.n1) * padded(grid.n2) * part;
 }
 
@@ -80,7 +79,7 @@ CacheKey Elasticity::key(const char* what, const Grid& grid) const {
   CacheKey all(what);
   all.add(pair.shear_compliance).add(pair.poisson_compliance).add(pair.normal_compliance).add(pair.mismatch);
   all.add(pair.cell_traction).add(kind).add(threads).add(diagonal).add(at_edge);
-  return all.add(grid.n1).add(grid.n2).add(grid.h1).add(grid.h2).add(grid.quadrant);
+  return all.add(grid.n1).add(grid.n2).add(grid.h1).add(grid.h2).add(grid.quadrant).add(grid.ranks.number());
 }
 
 double Elasticity::operator_bytes(const Grid& grid, const BlockKernel& kernel) const {

@@ -1,11 +1,12 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <memory>
 
-#include "solver/grid/grid.hpp"
-
 namespace slipstick::solver {
+
+using Eigen::Index;
 
 /// A matrix that ranks share, of entries of some bytes each. Of its rows every rank has so many, the last
 /// ones fewer or none; so of its columns.
@@ -31,8 +32,8 @@ class Transposition {
   Transposition() = default;
 };
 
-/// How ranks reach each other: what the library that knows MPI does for Ranks. All ranks call each of these
-/// alike.
+/// How ranks reach each other: what the library that knows MPI does for them. All ranks call each of these
+/// functions alike.
 class Communicator {
  public:
   virtual ~Communicator() = default;

@@ -59,7 +59,8 @@ Eigen::ArrayXd transform(const Weights& along1, const Weights& along2, const dou
 Grid coarser(const Grid& grid) {
   const auto fewer = [](Index n) { return (n + 1) / 2; };
   const auto ratio = [&](Index n) { return static_cast<double>(n) / static_cast<double>(fewer(n)); };
-  return {fewer(grid.n1), fewer(grid.n2), grid.h1 * ratio(grid.n1), grid.h2 * ratio(grid.n2), grid.quadrant};
+  return {fewer(grid.n1),           fewer(grid.n2), grid.h1 * ratio(grid.n1),
+          grid.h2 * ratio(grid.n2), grid.quadrant,  grid.ranks};
 }
 
 bool can_coarsen(const Grid& grid) {

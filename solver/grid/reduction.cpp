@@ -49,7 +49,7 @@ Grid trimmed_grid(const Grid& grid, const ArrayXd& contact) {
   const ConstComponent field(contact.data(), grid.n1, grid.n2);
   const Index rows = empty_margin(grid.n1, [&](Index i) { return (field.row(i) > 0.0).any(); });
   const Index columns = empty_margin(grid.n2, [&](Index j) { return (field.col(j) > 0.0).any(); });
-  return {grid.n1 - 2 * rows, grid.n2 - 2 * columns, grid.h1, grid.h2};
+  return {grid.n1 - 2 * rows, grid.n2 - 2 * columns, grid.h1, grid.h2, false, grid.ranks};
 }
 
 /// The middle part of a field, component by component.

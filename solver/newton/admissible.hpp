@@ -42,9 +42,10 @@ class PositivePressures {
  public:
   static constexpr Index kComponents = 1;
 
-  /// reachable: 1 where the bodies can touch, 0 elsewhere. row: see Sweep.
-  explicit PositivePressures(const Eigen::ArrayXd& reachable, Index row = 0)
-      : reachable_(reachable), sweep_(reachable, row) {}
+  /// reachable: 1 where the bodies can touch, 0 elsewhere; it is not owned.
+  PositivePressures(const Grid& grid, const Eigen::ArrayXd& reachable)
+      : reachable_(reachable), sweep_(grid, reachable) {}
+  explicit PositivePressures(const Eigen::ArrayXd& reachable) : reachable_(reachable), sweep_(reachable) {}
 
   Index cells() const { return reachable_.size(); }
   const Sweep& sweep() const { return sweep_; }
@@ -81,8 +82,9 @@ class FrictionDiscs {
  public:
   static constexpr Index kComponents = 2;
 
-  /// row: see Sweep.
-  explicit FrictionDiscs(const Eigen::ArrayXd& bound, Index row = 0) : bound_(bound), sweep_(bound, row) {}
+  /// bound: mu p of each cell; it is not owned.
+  FrictionDiscs(const Grid& grid, const Eigen::ArrayXd& bound) : bound_(bound), sweep_(grid, bound) {}
+  explicit FrictionDiscs(const Eigen::ArrayXd& bound) : bound_(bound), sweep_(bound) {}
 
   Index cells() const { return bound_.size(); }
   const Sweep& sweep() const { return sweep_; }

@@ -44,7 +44,8 @@ class SmallCholesky {
   Eigen::LLT<CoefficientMatrix> factor_;
 };
 
-/// Least squares of a tall system of full rank, and the pseudo-inverse of such a matrix; of any size.
+/// Least squares of a tall system of independent columns, and the pseudo-inverse of such a matrix; of any
+/// size.
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);
 

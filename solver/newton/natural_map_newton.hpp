@@ -59,8 +59,8 @@ class NaturalMapNewton {
 
   NaturalMapNewton(const Set& set, const ConvexProgram& program, LinearOperator& op, InverseSymbol& symbol);
 
-  /// Improves q, any field of the right size, until its certificate holds. Of several ranks each improves its
-  /// own rows; so with what the others return.
+  /// Improves q, any field of the right size, until its certificate holds: the grid's own rows of it, and of
+  /// the fields that the functions below return.
   /// multipliers: guesses of those of the imposed conditions, or empty.
   NewtonSummary run(ArrayXd& q, const Coefficients& multipliers, const NewtonOptions& options);
 
@@ -86,7 +86,7 @@ class NaturalMapNewton {
   /// work(first, last) for the values of the cells that may carry something, and the sum of what it returns.
   template <typename Work>
   void each(const Work& work) const;
-  /// For those of all cells of this rank.
+  /// For the cells of the grid's own rows.
   template <typename Work>
   void each_own(const Work& work) const;
   template <typename Work>

@@ -177,7 +177,7 @@ struct TangentPreconditioner {
   void transform(Field& z) {
     if (extension != nullptr) extension->extend(z);
     symbol.apply(std::span(z.data(), static_cast<std::size_t>(z.size())));
-    if (extension != nullptr) extension->gather(z);
+    if (extension != nullptr) extension->collect(z);
   }
   void store(Index first, Index last, const Field& r, const Field& z, Field& y) const {
     space.complete(first, last, z, r, y);

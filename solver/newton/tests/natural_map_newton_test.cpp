@@ -49,7 +49,7 @@ class Newton : public testing::Test {
   std::unique_ptr<InverseSymbol> symbol_ = make_inverse_symbol(grid_, tangential_kernel(), bench_.model.pair);
   ArrayXd rotation_ = (bench_.bound > 0.0).cast<double>().replicate(2, 1) * rotation_field(grid_);
   MotionField turn_{grid_, 0.0, 0.0, 1.0};
-  FrictionDiscs discs_{bench_.bound, grid_.n2};
+  FrictionDiscs discs_{grid_, bench_.bound};
   ConvexProgram program_{.g = nullptr, .imposed = {{&turn_, 0.8 * bench_.limit}}};
   ArrayXd q_;
 };
