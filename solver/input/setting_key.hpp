@@ -50,6 +50,8 @@ struct SettingKey {
 using SettingKeys = std::vector<SettingKey>;
 
 inline constexpr const char* kRequired = "required";
+/// Of keys that hold neither numbers nor words.
+inline const Range kAny{};
 
 /// Words as what a key may be.
 template <typename Value>

@@ -7,6 +7,7 @@
 #include <limits>
 #include <utility>
 
+#include "solver/elasticity/law/law_kind.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/toml_reader.hpp"
 #include "solver/scene/last_digits.hpp"
@@ -27,6 +28,15 @@ Material read_material(SceneReader& reader, const std::string& body) {
     return {std::numeric_limits<double>::infinity(), 0.0};
   }
   return {reader.number(body + ".young_modulus"), reader.number(body + ".poisson_ratio")};
+}
+
+Layer read_layer(SceneReader& reader) {
+  Layer layer{reader.choice_or<const LawKind*>("layer.kind", nullptr, layer_words())};
+  if (layer.kind == nullptr) return layer;
+  for (const LawParameter& parameter : layer.kind->parameters) {
+    layer.values.push_back(reader.number("layer." + parameter.key));
+  }
+  return layer;
 }
 
 /// What a table says of the torsion; what it does not say is as before.
@@ -153,6 +163,7 @@ Scene read_scene(SceneReader& reader, const std::filesystem::path& file) {
   scene.ends_at_grid_edge = reader.flag_or("upper.ends_at_grid_edge", scene.ends_at_grid_edge);
   scene.upper = read_material(reader, "upper");
   scene.lower = read_material(reader, "lower");
+  scene.layer = read_layer(reader);
 
   scene.friction = reader.number("contact.friction");
   scene.pressure = reader.choice_or("contact.pressure", scene.pressure, kPressureModels);
