@@ -22,7 +22,7 @@ Eigen::ArrayXd norms(const Eigen::ArrayXd& vectors) { return dot_products(vector
 
 namespace {
 
-/// Of a certificate, over cells.
+/// Sums over cells that a certificate is made of.
 struct CertificateSums {
   double friction = 0.0;  ///< of mu p
   double energy = 0.0;    ///< q.Kq/2
@@ -89,7 +89,7 @@ Certificate certificate_of(const Sweep& all, const FrictionDiscs& discs, const T
   const double energy_error = discs.energy_error(q, s, least_eigenvalue);
   certificate.energy_error = energy_error == 0.0 ? 0.0 : energy_error / energy;
   double rounding = discs.gap_rounding(s, u);
-  // Slip is then K q - K q_before - motion, of which the middle one is no larger than the three others.
+  // Slip is then K q - K q_before - motion; K q_before is no larger than the three other fields together.
   if (before.motion > 0.0) rounding = 2.0 * rounding + kGapUnits * before.motion * sums.friction;
   certificate.rounding = rounding == 0.0 ? 0.0 : rounding / energy;
   const double imbalance = std::abs(sums.moment - moment);

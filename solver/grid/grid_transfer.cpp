@@ -11,7 +11,7 @@ using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// A grid with fewer cells than this along a side no longer resembles the contact.
-constexpr Index kMinCells = 8;
+constexpr Index kMinSideCells = 8;
 
 /// Row i: the parts of coarse cell i that each fine cell covers.
 Weights overlaps(Index coarse, Index fine) {
@@ -65,7 +65,7 @@ Grid coarser(const Grid& grid) {
 
 bool can_coarsen(const Grid& grid) {
   const Index fewest = std::min(coarser(grid).n1, coarser(grid).n2) * (grid.quadrant ? 2 : 1);
-  return fewest >= kMinCells;
+  return fewest >= kMinSideCells;
 }
 
 Eigen::ArrayXd restrict_to(const Grid& coarse, const Grid& fine, const Eigen::ArrayXd& field) {

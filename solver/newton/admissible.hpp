@@ -13,7 +13,8 @@
 /// projection, and the tangent space of the natural map q = P(q - rho s).
 namespace slipstick::solver {
 
-/// Of displacements: units of rounding of transforms, and of loads, which are balanced to 1e-14.
+/// What rounding may do to displacements, relative: units of rounding of transforms, and of loads, which are
+/// balanced to 1e-14.
 inline constexpr double kGapUnits = 16.0 * std::numeric_limits<double>::epsilon();
 
 /// Whether a gap is within a tolerance, or within its rounding where that is larger. NaN is not.

@@ -24,7 +24,7 @@ struct SmallQr {
 };
 SmallQr small_qr(const CoefficientMatrix& matrix);
 
-/// Orthonormal columns of which the first has the direction of a vector, up to its sign.
+/// Orthonormal columns; the first has the direction of a vector, up to its sign.
 CoefficientMatrix orthonormal_basis(const Coefficients& vector);
 
 /// Cholesky's factor L of a small symmetric matrix L L^T.

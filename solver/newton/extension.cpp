@@ -15,7 +15,7 @@ constexpr Index kSidesOfReach = 64;
 constexpr double kNearest = 0.5;
 constexpr double kDecay = 0.7;
 /// Beside the neighbours' weights: what lets the continuation fade where few of them are free.
-/// Of 0.5, contacts of few cells take an eighth more applications.
+/// With 0.5, contacts of few cells take an eighth more applications.
 constexpr double kFade = 1.0;
 
 /// Cells of a row that are mixed together: the neighbours of one are in the blocks beside it at most.

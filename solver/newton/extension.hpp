@@ -17,7 +17,7 @@ class Extension {
  public:
   using Field = Eigen::ArrayXd;
 
-  /// Of scalar fields on a grid.
+  /// For scalar fields on a grid.
   explicit Extension(const Grid& grid);
 
   /// free: 1 in the cells that are, 0 elsewhere. A field that is given here need be known in the grid's own
@@ -29,9 +29,10 @@ class Extension {
   void collect(Field& y);
 
   /// Pressures below zero, and those of cells that are not free, go to the free cells beside them, by the
-  /// adjoint: it is close to what these answer once the others carry nothing. Merely cut off, they would
-  /// press the whole neighbourhood apart, and the next state would hold too few cells. cells: those of p that
-  /// may differ from zero. Overwrites the last two fields, and what prepare() left.
+  /// adjoint: it is close to what these answer once the others carry nothing. Clipping negative pressures
+  /// without handing them on would open the neighbourhood too far, and the next state would hold too few
+  /// cells. cells: those of p that may differ from zero. Overwrites the last two fields, and what prepare()
+  /// left.
   void hand_on(const Sweep& cells, const Field& free, Eigen::ArrayXd& p, Field& stays, Field& leaves);
 
  private:

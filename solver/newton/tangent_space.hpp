@@ -31,7 +31,7 @@ namespace slipstick::solver {
 struct TangentSpace {
   using Field = Eigen::ArrayXd;
 
-  /// Of vectors (2 components) or scalars (1), on the grid of some cells that may carry traction. No scalar
+  /// For vectors (2 components) or scalars (1), on the grid of some cells that may carry traction. No scalar
   /// is free, no vector on a line: a linearisation counts the cells that change.
   TangentSpace(Index components, const Sweep& cells)
       : f1(cells.size()),

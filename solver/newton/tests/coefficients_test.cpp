@@ -22,7 +22,7 @@ TEST(Coefficients, SolveARegularSystem) {
   }
 }
 
-// Of u v^T the pseudo-inverse is v u^T / (|u|^2 |v|^2).
+// The pseudo-inverse of u v^T is v u^T / (|u|^2 |v|^2).
 TEST(Coefficients, AreTheLeastThatSolveASingularSystem) {
   const Coefficients u = Coefficients::Random(3);
   const Coefficients v = Coefficients::Random(3);

@@ -18,7 +18,7 @@ namespace {
 using Eigen::ArrayXd;
 using testing::HasSubstr;
 
-/// A preconditioner that is none: it turns every residual round.
+/// A preconditioner that is not definite: it reverses every residual.
 class Reversing final : public InverseSymbol {
  public:
   void apply(std::span<double> field) override {
