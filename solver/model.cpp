@@ -47,8 +47,8 @@ double field_bytes(double fields, Index cells) {
   return fields * sizeof(double) * static_cast<double>(cells);
 }
 /// Cells left free on each side of the expected contact where the scene does not give an extent.
-constexpr double kMarginCells = 2.0;
-/// With cells longer than so many times their width every method crawls.
+constexpr double kExtentMarginCells = 2.0;
+/// Largest ratio of a cell's sides. Beyond it every method crawls.
 constexpr double kMaxSlender = 1000.0;
 
 HalfSpace half_space(const Material& material) {
@@ -119,7 +119,7 @@ Grid make_grid(const Scene& scene, const std::vector<Surface>& surfaces, double 
   std::array<double, 2> h{};
   for (std::size_t i = 0; i < 2; ++i) {
     const auto cells = static_cast<double>(scene.cells[i]);
-    const double margin = std::min(kMarginCells, cells / 8.0);
+    const double margin = std::min(kExtentMarginCells, cells / 8.0);
     h[i] = scene.extent ? (*scene.extent)[i] / cells : 2.0 * (*expected)[i] / (cells - 2.0 * margin);
     if (scene.extent && expected && surfaces.size() == 1 && scene.cells[i] > 1 &&
         h[i] > 2.0 * (*expected)[i]) {
@@ -145,7 +145,7 @@ ArrayXd make_gap(const Scene& scene, std::vector<Surface> surfaces, const Grid& 
   return gap;
 }
 
-/// Of so little nobody asks whether it is there.
+/// Bytes. Below this size the memory check is skipped.
 constexpr double kLittleMemory = 0x1p26;
 
 void require_memory(const Scene& scene, const Grid& grid, double bytes) {

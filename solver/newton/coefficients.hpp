@@ -37,7 +37,7 @@ class SmallCholesky {
   /// Whether the matrix is positive definite; solve() needs that.
   bool is_definite() const;
   Coefficients solve(const Coefficients& right) const;
-  /// Of L.
+  /// The diagonal of L.
   Coefficients diagonal() const;
 
  private:

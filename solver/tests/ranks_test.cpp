@@ -46,7 +46,7 @@ auto values(Field& field) {
   return std::span(field.data(), static_cast<std::size_t>(field.size()));
 }
 
-/// What work(grid) returns where this rank has the grid alone, and where all of them share it.
+/// Results of work(grid) where this rank has the grid alone, and where all of them share it.
 template <typename Work>
 void expect_same_bits(const Work& work, const char* what, Grid grid) {
   const auto alone = work(grid);

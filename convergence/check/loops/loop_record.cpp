@@ -156,7 +156,7 @@ bool is_loop_file(const std::filesystem::path& file) {
 }
 
 LoopRecord read_loop(const std::filesystem::path& file) {
-  solver::require_input_file(file, solver::kLargestTable, "a loop (CSV or JSON)");
+  solver::require_input_file(file, solver::kLargestTextTable, "a loop (CSV or JSON)");
   LoopRecord loop =
       file.extension() == ".json"
           ? read_json_loop(file)

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <functional>
 
+#include "solver/contact/full_coupling.hpp"
 #include "solver/contact/limit_load.hpp"
 #include "solver/contact/tangential_problem.hpp"
 #include "solver/history_state.hpp"
@@ -24,4 +26,13 @@ LoadStep load_step(const Scene& scene, const Model& model, const Step& step, con
 
 /// Throws InputError for gross slip, with what the contact carries and how it would slide.
 void require_carried(const Scene& scene, const Model& model, const Step& step, const LoadStep& loads);
+
+/// The tractions of a step under its pressure, on the whole grid; note_omissions() is told what was left out.
+/// Moves what only the solve needs out of loads.problem. goal: where a turn under full coupling wants less
+/// than all. progress: called now and then.
+TangentialSolution find_tractions(Model& model, const Scene& scene, LoadStep& loads,
+                                  const Eigen::ArrayXd& pressure, const ContactState& before,
+                                  const std::function<void(int iteration, double change)>& progress,
+                                  const TurnGoal& goal = {});
+
 }  // namespace slipstick::solver

@@ -1,10 +1,16 @@
-#include "solver/load_step.hpp"
+#include "solver/tractions.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
+#include "solver/contact/coulomb_method.hpp"
+#include "solver/contact/paper_method.hpp"
+#include "solver/contact/projected_gradient.hpp"
+#include "solver/grid/mirror.hpp"
+#include "solver/grid/own_rows.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::solver {
@@ -12,10 +18,10 @@ namespace {
 
 using Eigen::ArrayXd;
 
-/// Of pressures of mirror images that are equal but for the rounding of their solve, and of displacements by
-/// transforms.
-constexpr double kRounding = 1e-12;
-/// So close to 1 a factor of the loads is not worth printing.
+/// Relative difference of two pressures that are mirror images but for the rounding of their solve, and of
+/// displacements by transforms.
+constexpr double kMirrorRounding = 1e-12;
+/// A factor of the loads this close to 1 is not printed.
 constexpr double kNextTo = 1e-5;
 
 /// Tangential displacement by the change of pressure, Eq. (12).
@@ -27,7 +33,7 @@ ArrayXd pressure_displacement(const Scene& scene, const Model& model, const Arra
   op->apply(before.pressure.size() > 0 ? ArrayXd(pressure - before.pressure) : pressure, u);
   // A single cell does not move itself: what transforms leave there is no displacement.
   const double in_contact = ((pressure > 0.0).cast<double>().replicate(2, 1) * u).abs().maxCoeff();
-  return in_contact <= kRounding * u.abs().maxCoeff() ? ArrayXd() : u;
+  return in_contact <= kMirrorRounding * u.abs().maxCoeff() ? ArrayXd() : u;
 }
 
 /// How a body would slide, in words; lengths in the scene's unit.
@@ -73,7 +79,7 @@ std::string sliding_text(const LimitLoad& limit, double length_unit) {
 /// tractions anyway.
 void require_centred(const Scene& scene, const ArrayXd& pressure) {
   const double odd = 0.5 * (pressure - pressure.reverse()).abs().sum() / pressure.sum();
-  const double allowed = std::max(scene.tolerance, kRounding);
+  const double allowed = std::max(scene.tolerance, kMirrorRounding);
   if (odd <= allowed) return;
   throw InputError(
       scene.source.string(), "solver.method", fmt::format("\"{}\"", to_string(scene.method)),
@@ -118,6 +124,60 @@ double energy_before(const ArrayXd& pressure, const ContactState& before) {
   return before.energy * std::min(1.0, load * load / size);
 }
 
+/// The problem on a part of the grid, where a quadrant carries a quarter of the moment. Moves what only a
+/// solve needs out of the whole one.
+TangentialProblem reduced(TangentialProblem& problem, const Reduction& part) {
+  const double images = part.quadrant() ? 4.0 : 1.0;
+  TangentialProblem on_part{.friction_bound = part.restricted(std::move(problem.friction_bound)),
+                            .initial_displacement = part.restricted(std::move(problem.initial_displacement)),
+                            .moment = problem.moment,
+                            .twist = problem.twist,
+                            .force = problem.force,
+                            .displacement = problem.displacement,
+                            .start = part.restricted(std::move(problem.start)),
+                            .energy_before = problem.energy_before / images};
+  if (on_part.moment) *on_part.moment /= images;
+  return on_part;
+}
+
+void expand(TangentialSolution& solution, const Reduction& part) {
+  if (!part.trimmed() && !part.quadrant()) return;
+  ArrayXd& u = solution.elastic_displacement;
+  share_rows(part.grid(), u);
+  for (ArrayXd* const field : {&solution.traction, &solution.elastic_displacement, &solution.slip}) {
+    *field = part.expanded(*field, torsion_symmetry());
+  }
+  solution.stick = part.expanded(solution.stick, normal_symmetry());
+}
+
+/// gap: relative duality gap at which Coulomb's method may stop; 0: the scene's tolerance.
+TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduction& part,
+                            TangentialProblem problem, const std::function<void(int, double)>& progress,
+                            double gap) {
+  const Elasticity elastic = elasticity(scene, model, part);
+  if (scene.method == Method::coulomb) {
+    return solve_by_coulomb_method(elastic, part.grid(), std::move(problem),
+                                   {.tolerance = std::max(scene.tolerance, gap),
+                                    .max_applications = scene.max_iterations,
+                                    .refine_motion = gap == 0.0,
+                                    .progress = progress});
+  }
+  const auto op = elastic.make(part.grid(), tangential_kernel());
+  TangentialSolution solution =
+      scene.method == Method::paper
+          ? solve_by_paper_method(
+                *op, problem,
+                {.tolerance = scene.tolerance, .max_iterations = scene.max_iterations, .progress = progress})
+          : solve_by_projected_gradient(*op, problem,
+                                        {.tolerance = scene.tolerance,
+                                         .max_iterations = scene.max_iterations,
+                                         .start = {},
+                                         .progress = progress});
+  solution.grids = {
+      {part.grid().n1, part.grid().n2, op->applications(), solution.iterations, solution.change}};
+  return solution;
+}
+
 }  // namespace
 
 LoadStep load_step(const Scene& scene, const Model& model, const Step& step, const ArrayXd& pressure,
@@ -140,6 +200,19 @@ LoadStep load_step(const Scene& scene, const Model& model, const Step& step, con
 
 void require_carried(const Scene& scene, const Model& model, const Step& step, const LoadStep& loads) {
   if (!loads.carried()) refuse(scene, model, step, loads);
+}
+
+TangentialSolution find_tractions(Model& model, const Scene& scene, LoadStep& loads, const ArrayXd& pressure,
+                                  const ContactState& before,
+                                  const std::function<void(int, double)>& progress, const TurnGoal& goal) {
+  const Reduction part = traction_part(scene, model, pressure, before.pressure);
+  note_omissions(model, scene, part, loads.problem.force || loads.problem.displacement);
+  TangentialProblem problem = reduced(loads.problem, part);
+  problem.guess = part.restricted(goal.guess);
+  TangentialSolution solution = solve_on(scene, model, part, std::move(problem), progress, goal.gap);
+  expand(solution, part);
+  loads.problem.friction_bound = model.friction * pressure;
+  return solution;
 }
 
 }  // namespace slipstick::solver
