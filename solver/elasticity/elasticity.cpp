@@ -109,7 +109,8 @@ Cached<LinearOperator> Elasticity::make(const Grid& grid, const BlockKernel& ker
 }
 
 GridOperators::GridOperators(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel)
-    : op(new_operator(elasticity, grid, kernel)), symbol(make_inverse_symbol(grid, kernel, *elasticity.law, options_of(elasticity, kernel))) {}
+    : op(new_operator(elasticity, grid, kernel)),
+      symbol(make_inverse_symbol(grid, kernel, *elasticity.law, options_of(elasticity, kernel))) {}
 
 Cached<GridOperators> Elasticity::make_all(const Grid& grid, const BlockKernel& kernel) const {
   Cached<GridOperators> operators(
