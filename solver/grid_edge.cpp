@@ -92,7 +92,7 @@ namespace {
 /// Displacement that opens the gap, by the pressure and, unless it is empty, a traction.
 ArrayXd opening(const Model& model, const Scene& scene, const Grid& grid, const ArrayXd& pressure,
                 const ArrayXd& traction) {
-  const Elasticity elastic{.pair = model.pair, .threads = model.threads};
+  const Elasticity elastic{.law = model.law, .threads = model.threads};
   const bool pressed_only = traction.size() == 0;
   const Reduction part = pressed_only && scene.model != ModelChoice::full
                              ? Reduction(grid, pressure, ArrayXd::Ones(grid.cells()))

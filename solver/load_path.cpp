@@ -112,7 +112,7 @@ bool depends_on_path(const Scene& scene, const Model& model) {
   if (scene.method != Method::coulomb) return false;
   const bool one_pressure = std::ranges::all_of(
       scene.steps, [&](const Step& step) { return step.normal == scene.steps.front().normal; });
-  const bool similar = !model.pressure_coupling || model.pair.mismatch == 0.0;
+  const bool similar = !model.pressure_coupling || !model.law->couples();
   return !(one_pressure && similar && !model.forces && has_axis(scene));
 }
 

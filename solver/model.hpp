@@ -8,6 +8,7 @@
 
 #include "solver/cache/solve_cache.hpp"
 #include "solver/elasticity/elasticity.hpp"
+#include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/grid/reduction.hpp"
 #include "solver/scene/hertz_pressure.hpp"
 #include "solver/scene/scene.hpp"
@@ -22,7 +23,8 @@ struct Dimensionless {
   double length_unit;  ///< m
   double stress_unit;  ///< Pa
   Grid grid;
-  ElasticPair pair;
+  ElasticPair pair;  ///< the bodies
+  SharedLaw law;     ///< theirs, and that of what lies between them
   double friction;
   bool hertzian;           ///< the pressure is Hertz's, wherever the body stands, up to the mesh
   bool pressure_coupling;  ///< K13, K23 enter

@@ -89,7 +89,7 @@ void describe_tractions(ModelSolution& solution, const LoadStep& loads, const Ar
   solution.certificate = certify({tangential.traction, tangential.elastic_displacement, tangential.slip},
                                  problem.friction_bound, grid, problem.moment.value_or(moment),
                                  problem.displacement ? force : problem.force.value_or(std::array{0.0, 0.0}),
-                                 least_eigenvalue(model.pair, grid.h1, grid.h2),
+                                 model.law->least_eigenvalue(grid.h1, grid.h2),
                                  {problem.energy_before, inherits ? motion : 0.0});
 }
 

@@ -124,7 +124,7 @@ void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, c
   const KeptRounding rounding;  // what draws its own
   const Model& model = solution.model;
   solution.safeguards = {};
-  const LoadStep loads = model.shear_coupling && model.pair.mismatch != 0.0
+  const LoadStep loads = model.shear_coupling && model.law->couples()
                              ? solve_coupled(solution, scene, step, before, progress)
                              : solve_in_sequence(solution, scene, step, previous, before, progress);
   const TangentialSolution& tangential = solution.tangential;

@@ -71,7 +71,7 @@ Json verdict_json(const std::string& verdict, const std::string& reason, const J
   return json;
 }
 
-/// The grid of a result, written out, or one with so many times the cells along each axis.
+/// The grid of a result, written out, or one with `finer` times as many cells along each axis.
 std::vector<std::string> grid_of(const Json& result, int finer = 1) {
   const auto cells = result["cells"].get<std::array<int, 2>>();
   const auto size = result["cell_size"].get<std::array<double, 2>>();
@@ -139,7 +139,7 @@ bool needs_finer_meshes(const Trial& trial) {
 
 /// Whether a finer mesh may refuse what this one carries: a load so near the limit that the mesh decides.
 bool is_at_limit(const Json& result) {
-  constexpr double kMeshOfLimit = 1e-3;  ///< by so much the limit differs from mesh to mesh, relative
+  constexpr double kMeshOfLimit = 1e-3;  ///< the limit differs by this from mesh to mesh, relative
   return result.contains("limit") && result["limit"]["factor"].is_number() &&
          result["limit"]["factor"] < 1.0 + kMeshOfLimit;
 }

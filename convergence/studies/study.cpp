@@ -93,7 +93,7 @@ void add_tolerance_runs(const Study& study, const Series& series, std::vector<Ru
   }
 }
 
-/// Of each mesh, in the same order.
+/// Results to each tolerance, mesh by mesh.
 std::vector<std::vector<Json>> take_tolerance_results(const Study& study, const Series& series,
                                                       StudyRuns& batch) {
   std::vector<std::vector<Json>> by_mesh(series.meshes.size());

@@ -8,6 +8,7 @@
 #include <limits>
 #include <utility>
 
+#include "solver/elasticity/law/law_kind.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/toml_reader.hpp"
 #include "solver/scene/last_digits.hpp"
@@ -71,6 +72,15 @@ Material read_material(SceneReader& reader, const std::string& body) {
     return {std::numeric_limits<double>::infinity(), 0.0};
   }
   return {reader.number(body + ".young_modulus"), reader.number(body + ".poisson_ratio")};
+}
+
+Layer read_layer(SceneReader& reader) {
+  Layer layer{reader.choice_or<const LawKind*>("layer.kind", nullptr, layer_words())};
+  if (layer.kind == nullptr) return layer;
+  for (const LawParameter& parameter : layer.kind->parameters) {
+    layer.values.push_back(reader.number("layer." + parameter.key));
+  }
+  return layer;
 }
 
 /// Reads the torsion from a table; where the table has none, the torsion is as before.
@@ -199,6 +209,7 @@ Scene read_scene(SceneReader& reader, const std::filesystem::path& file) {
   scene.ends_at_grid_edge = reader.flag_or("upper.ends_at_grid_edge", scene.ends_at_grid_edge);
   scene.upper = read_material(reader, "upper");
   scene.lower = read_material(reader, "lower");
+  scene.layer = read_layer(reader);
 
   scene.friction = reader.number("contact.friction");
   scene.pressure = reader.choice_or("contact.pressure", scene.pressure, kPressureModels);

@@ -20,6 +20,14 @@ struct Material {
   double poisson_ratio = 0.0;
 };
 
+struct LawKind;
+
+/// What lies between the bodies, beside which they are half-spaces.
+struct Layer {
+  const LawKind* kind = nullptr;    ///< one of law_kinds(), law_kind.hpp; null: nothing lies between them
+  std::vector<double> values = {};  ///< of the kind's parameters, in SI units
+};
+
 /// Where the pressure comes from: solved on the same grid; Hertz's at cell centres; Hertz's averaged over
 /// each cell; a file.
 enum class PressureModel { solved, hertz, hertz_averaged, file };
@@ -91,6 +99,7 @@ struct Scene {
   bool ends_at_grid_edge = false;
   Material upper;
   Material lower;
+  Layer layer;
   double friction = 0.0;
   PressureModel pressure = PressureModel::solved;
   std::filesystem::path pressure_file;

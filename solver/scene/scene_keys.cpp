@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "solver/elasticity/law/law_kind.hpp"
 #include "solver/scene/roughness.hpp"
 #include "solver/scene/validate.hpp"
 
@@ -79,6 +80,20 @@ void add_body(SettingKeys& keys, const std::string& table) {
       {at + "young_modulus", kNumber, "Pa", kRequired, kPositive, "Young's modulus."},
       {at + "poisson_ratio", kNumber, "", kRequired, kPoisson, "Poisson's ratio."}};
   keys.insert(keys.end(), body.begin(), body.end());
+}
+
+/// The keys of [layer]: a word for the law, and the law's own numbers.
+void add_layer(SettingKeys& keys) {
+  keys.push_back({"layer.kind", kWord, "", word_of(layer_words(), Scene().layer.kind), one_of(layer_words()),
+                  "What lies between the bodies: nothing, or a thin layer that gives way where it is loaded and "
+                  "nowhere else (winkler)."});
+  for (const LawKind& kind : law_kinds()) {
+    for (const LawParameter& parameter : kind.parameters) {
+      keys.push_back({"layer." + parameter.key, kNumber, parameter.unit,
+                      fmt::format("required with kind = \"{}\"", kind.word), kNotNegative,
+                      fmt::format("{} Known with kind = \"{}\" alone.", parameter.meaning, kind.word)});
+    }
+  }
 }
 
 /// The keys of [load], or of each [[step]], which leaves what it does not say as it was.
@@ -163,6 +178,7 @@ SettingKeys make_scene_keys() {
   add_body(keys, "upper");
   add_shape(keys, "upper.shape");
   add_body(keys, "lower");
+  add_layer(keys);
   add_contact(keys, scene);
   add_loads(keys, "load", false);
   keys.push_back({"step", KeyType::tables, "", "the loads of `[load]`, at once",
@@ -176,6 +192,15 @@ SettingKeys make_scene_keys() {
 }
 
 }  // namespace
+
+const Words<const LawKind*>& layer_words() {
+  static const Words<const LawKind*> words = [] {
+    Words<const LawKind*> made{{"none", nullptr}};
+    for (const LawKind& kind : law_kinds()) made.emplace_back(kind.word, &kind);
+    return made;
+  }();
+  return words;
+}
 
 const SettingKeys& scene_keys() {
   static const SettingKeys keys = make_scene_keys();

@@ -210,7 +210,7 @@ TEST(Step, StartsFromTheTractionsBefore) {
                    0.1 * moment_limit(model.grid, model.friction * steps[0].normal.pressure));
   problem.start = steps[0].tangential.traction;
   const TangentialSolution alone =
-      solve_by_coulomb_method({model.pair}, model.grid, problem, {.tolerance = kGap, .progress = {}});
+      solve_by_coulomb_method({model.law}, model.grid, problem, {.tolerance = kGap, .progress = {}});
   EXPECT_LE(relative_difference(steps[1].tangential.traction, alone.traction), kSame);
   EXPECT_LE(relative_difference(steps[1].tangential.slip, alone.slip), kSame);
   EXPECT_NEAR((steps[1].twist_angle - steps[0].twist_angle) / alone.twist, 1.0, kSame);
@@ -346,7 +346,7 @@ TEST(Motion, TakesTheSamePathAsItsLoads) {
 
 double in_energy_norm(const ModelSolution& solution, const ArrayXd& q) {
   const Model& model = solution.model;
-  const auto op = make_operator(OperatorKind::direct, model.grid, tangential_kernel(), model.pair);
+  const auto op = make_operator(OperatorKind::direct, model.grid, tangential_kernel(), *model.law);
   ArrayXd u(q.size());
   op->apply(q, u);
   return (q * u).sum() * model.grid.cell_area() * model.moment_unit();

@@ -78,11 +78,11 @@ Certificate recomputed(const Scene& scene, const ModelSolution& solution, Operat
   const ArrayXd& q = solution.tangential.traction;
   const ArrayXd rotation = rotation_field(model.grid);
   ArrayXd u(q.size());
-  make_operator(kind, model.grid, tangential_kernel(), model.pair)->apply(q, u);
+  make_operator(kind, model.grid, tangential_kernel(), *model.law)->apply(q, u);
   ArrayXd slip = u - solution.tangential.twist * rotation;
   if (model.pressure_coupling) {
     ArrayXd by_pressure(q.size());
-    make_operator(kind, model.grid, coupling_kernel(), model.pair)->apply(pressure, by_pressure);
+    make_operator(kind, model.grid, coupling_kernel(), *model.law)->apply(pressure, by_pressure);
     slip += by_pressure;
   }
   slip *= (pressure > 0.0).cast<double>().replicate(2, 1);
@@ -265,7 +265,7 @@ TEST(ReducedModelCertificate, HoldsByPlainSums) {
     const Model& model = solution.model;
     const ArrayXd& p = solution.normal.pressure;
     ArrayXd u(p.size());
-    make_operator(OperatorKind::direct, model.grid, normal_kernel(), model.pair)->apply(p, u);
+    make_operator(OperatorKind::direct, model.grid, normal_kernel(), *model.law)->apply(p, u);
     const ArrayXd opening = u + model.gap;
     EXPECT_LE((p * (opening - opening.minCoeff())).sum(), 1.0001e-10 * 0.5 * (p * u).sum());
     EXPECT_NEAR(solution.normal_load / paper::kLoad, 1.0, 1e-11);

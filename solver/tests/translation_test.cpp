@@ -58,7 +58,7 @@ ArrayXd moved_vectors(const ArrayXd& field, Index n, const Image& image) {
 /// K q and the slip afresh, by direct summation.
 Certificate independent_certificate(const ModelSolution& solution, const Pair& force, double moment) {
   const Model& model = solution.model;
-  const auto op = make_operator(OperatorKind::direct, model.grid, tangential_kernel(), model.pair);
+  const auto op = make_operator(OperatorKind::direct, model.grid, tangential_kernel(), *model.law);
   const TangentialSolution& found = solution.tangential;
   ArrayXd u(found.traction.size());
   op->apply(found.traction, u);
@@ -339,9 +339,9 @@ TEST(OneCell, MovesByItsOwnCoefficient) {
   EXPECT_EQ(solution.contact_cells, 1);
   const HalfSpace steel{0.5 * paper::kYoungModulus / (1.0 + paper::kPoissonRatio), paper::kPoissonRatio};
   const double area = cell_size(scene) * cell_size(scene);
-  const ElasticPair pair = elastic_pair(steel, steel);
+  const HalfSpaces law(elastic_pair(steel, steel));
   const double compliance =
-      influence_coefficients(Component::k11, pair, cell_size(scene), cell_size(scene), 1, 1)[0] / area;
+      law.influence_coefficients(Component::k11, {1, 1, cell_size(scene), cell_size(scene)})[0] / area;
   EXPECT_NEAR(solution.displacement[0] / (30.0 * compliance), 1.0, kSame);
   EXPECT_NEAR(solution.displacement[1] / (-10.0 * compliance), 1.0, kSame);
   EXPECT_EQ(solution.twist_angle, 0.0);
