@@ -87,7 +87,7 @@ def lammps_rows(path):
 
 
 class Law(unittest.TestCase):
-    """Of the paper's sphere, in SI units, against the program's exact history."""
+    """The law of the paper's sphere, in SI units, against the program's exact history."""
 
     @classmethod
     def setUpClass(cls):

@@ -86,15 +86,13 @@ def scaled(law, limit=1.0, stiffness=1.0):
 
 def masing(t, law, before=()):
     """By the stack of reversals (twist, moment) that the contact remembers."""
-    stack, out = list(before), []
+    stack, out, direction = list(before), [], 0.0
     for last, now in zip(np.concatenate([[before[-1][0] if before else 0.0], t[:-1]]), t):
         sign = now - last
         if out and sign * direction < 0:
             stack.append((last, out[-1]))
         if sign:
             direction = sign
-        elif not out:
-            direction = 0.0
         while len(stack) >= 2 and direction * (now - stack[-2][0]) >= 0:
             del stack[-2:]
         if len(stack) == 1 and abs(now) >= abs(stack[0][0]) and (now - stack[0][0]) * direction > 0 and now * stack[0][0] <= 0:

@@ -1,5 +1,5 @@
-# cmake -D SOURCE_DIR=... -D WORK_DIR=... -P left_out_test.cmake: configures without FLINT, as on a machine that has none.
-# What is left out is named with what to install.
+# cmake -D SOURCE_DIR=... -D WORK_DIR=... -P not_built_test.cmake: configures without FLINT, as on a machine that has none.
+# Each part that is not built is named, with the packages to install.
 cmake_minimum_required(VERSION 3.25)
 file(REMOVE_RECURSE ${WORK_DIR})
 execute_process(
@@ -9,11 +9,11 @@ execute_process(
 if(NOT status EQUAL 0)
   message(FATAL_ERROR "configuring ended with ${status}:\n${output}")
 endif()
-file(READ ${WORK_DIR}/left_out.txt left_out)
+file(READ ${WORK_DIR}/not_built.txt not_built)
 foreach(words "certified digits" libflint-dev libflint-arb-dev)
-  string(FIND "${left_out}" "${words}" place)
+  string(FIND "${not_built}" "${words}" place)
   if(place EQUAL -1)
-    message(FATAL_ERROR "left_out.txt does not say “${words}”:\n${left_out}")
+    message(FATAL_ERROR "not_built.txt does not say “${words}”:\n${not_built}")
   endif()
 endforeach()
 file(REMOVE_RECURSE ${WORK_DIR})

@@ -1,4 +1,4 @@
-"""Says which Python packages a script lacks, and how to install them."""
+"""How each script here begins and ends: with the packages that it needs, and with an exit code."""
 
 import os
 import sys
@@ -20,3 +20,17 @@ def require(*names):
         os.chdir("/")
         import_module("matplotlib")
         os.chdir(here)
+
+
+def run(work, refused, output):
+    """The exit code of a script: 0, or 2 with a message where work() raises `refused` or cannot write a file."""
+    name = Path(work.__code__.co_filename).name
+    try:
+        work()
+    except refused as error:
+        print(f"{name}: {error}", file=sys.stderr)
+        return 2
+    except OSError as error:
+        print(f"{name}: {error.filename or output}: cannot be written: {error.strerror}", file=sys.stderr)
+        return 2
+    return 0
