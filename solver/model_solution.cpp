@@ -16,9 +16,9 @@ namespace {
 
 using Eigen::ArrayXd;
 
-/// Slip that dissipates less than this many duality gaps, and less than the second part of the energy, may be
-/// rounding.
+/// Duality gaps: slip that dissipates less may be rounding,
 constexpr double kGapsOfNoSlip = 10.0;
+/// where it dissipates less than this part of the elastic energy, too.
 constexpr double kNoSlip = 1e-5;
 
 double equal_area_radius(const Grid& grid, Index cells) {

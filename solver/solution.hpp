@@ -41,6 +41,7 @@ struct Resolution {
   /// steps, not of the contact.
   double uncertainty = 0.0;
 };
+/// Relative uncertainty from which on an answer is marked as poorly resolved.
 inline constexpr double kPoorlyResolved = 0.1;
 
 /// Wall-clock time of the parts of a solve, in s.
