@@ -40,9 +40,29 @@ double number(const TypedName& name) {
   return value;
 }
 
-/// A profile that lives as long as the program.
+/// One of the profiles that live as long as the program.
 NamedProfile lasting(const Profile& profile) {
   return {.profile = {&profile, [](const Profile*) {}}};
+}
+
+template <const Profile& (*profile)()>
+NamedProfile closed_form(const TypedName&) {
+  return lasting(profile());
+}
+template <const Profile& (*profile)(), Indentation (*indent)(double, double, double)>
+PressedContact press_closed_form(const TypedName&, const NormalLoad& load) {
+  return {lasting(profile()), indent(load.load, load.shape[0], load.effective_modulus)};
+}
+
+NamedProfile power(const TypedName& name) { return {.profile = power_profile(number(name))}; }
+PressedContact press_power(const TypedName& name, const NormalLoad& load) {
+  return analytic::press_power(number(name), load);
+}
+
+NamedProfile rounded_punch(const TypedName& name) { return {.profile = rounded_punch_profile(number(name))}; }
+PressedContact press_rounded_punch(const TypedName&, const NormalLoad& load) {
+  const auto pressed = indent_rounded_punch(load.load, load.shape[0], load.shape[1], load.effective_modulus);
+  return {{.profile = rounded_punch_profile(pressed.flat_ratio)}, pressed.contact};
 }
 
 NamedProfile tabulated(const TypedName& name) {
@@ -50,51 +70,30 @@ NamedProfile tabulated(const TypedName& name) {
   return {.profile = {table, table->profile.get()}, .table = table};
 }
 
-PressedContact press_rounded_punch(const NormalLoad& load) {
-  const auto pressed = indent_rounded_punch(load.load, load.shape[0], load.shape[1], load.effective_modulus);
-  return {{.profile = rounded_punch_profile(pressed.flat_ratio)}, pressed.contact};
-}
-
+/// A profile that users name.
 struct ProfileRow {
   std::string_view word;
-  std::string_view argument;  ///< what stands after the colon, as help writes it; empty: there is no colon
+  std::string_view argument;  ///< after the colon, as help writes it; empty: there is no colon
   std::string_view meaning;   ///< of the argument, for help
   NamedProfile (*make)(const TypedName& name);
-  /// Numbers of --shape, with commas between them, and their unit; empty: no load presses this profile.
-  std::string_view shape = {};
-  std::string_view unit = {};
-  PressedContact (*press)(const TypedName& name, const NormalLoad& load) = nullptr;
-  bool load_gives_argument = false;  ///< load and shape determine the argument, so that a name leaves it out
+  std::string_view shape;  ///< numbers of --shape, with commas between them; empty: no load presses it
+  std::string_view unit;   ///< of these numbers
+  PressedContact (*press)(const TypedName& name, const NormalLoad& load);
+  bool load_gives_argument = false;  ///< load and shape determine the argument: the name leaves it out
 };
 
 constexpr std::array kProfiles{
-    ProfileRow{"hertz", "", "", [](const TypedName&) { return lasting(hertz_profile()); }, "sphere radius",
-               "m",
-               [](const TypedName&, const NormalLoad& load) {
-                 return PressedContact{lasting(hertz_profile()),
-                                       indent_sphere(load.load, load.shape[0], load.effective_modulus)};
-               }},
-    ProfileRow{"cone", "", "", [](const TypedName&) { return lasting(cone_profile()); }, "slope", "",
-               [](const TypedName&, const NormalLoad& load) {
-                 return PressedContact{lasting(cone_profile()),
-                                       indent_cone(load.load, load.shape[0], load.effective_modulus)};
-               }},
-    ProfileRow{"flat_punch", "", "", [](const TypedName&) { return lasting(flat_punch_profile()); }, "radius",
-               "m",
-               [](const TypedName&, const NormalLoad& load) {
-                 return PressedContact{lasting(flat_punch_profile()),
-                                       indent_flat_punch(load.load, load.shape[0], load.effective_modulus)};
-               }},
-    ProfileRow{"power", "N", "gap ~ r^N",
-               [](const TypedName& name) { return NamedProfile{.profile = power_profile(number(name))}; },
-               "coefficient of r^N", "m^(1-N)",
-               [](const TypedName& name, const NormalLoad& load) { return press_power(number(name), load); }},
-    ProfileRow{
-        "rounded_punch", "B", "flat out to B = b/a",
-        [](const TypedName& name) { return NamedProfile{.profile = rounded_punch_profile(number(name))}; },
-        "flat radius, corner radius", "m",
-        [](const TypedName&, const NormalLoad& load) { return press_rounded_punch(load); }, true},
-    ProfileRow{"file", "P.csv", "columns radius, pressure; 16 points or more", tabulated},
+    ProfileRow{"hertz", "", "", closed_form<hertz_profile>,  //
+               "sphere radius", "m", press_closed_form<hertz_profile, indent_sphere>},
+    ProfileRow{"cone", "", "", closed_form<cone_profile>,  //
+               "slope", "", press_closed_form<cone_profile, indent_cone>},
+    ProfileRow{"flat_punch", "", "", closed_form<flat_punch_profile>,  //
+               "radius", "m", press_closed_form<flat_punch_profile, indent_flat_punch>},
+    ProfileRow{"power", "N", "gap ~ r^N", power,  //
+               "coefficient of r^N", "m^(1-N)", press_power},
+    ProfileRow{"rounded_punch", "B", "flat out to B = b/a", rounded_punch,  //
+               "flat radius, corner radius", "m", press_rounded_punch, true},
+    ProfileRow{"file", "P.csv", "columns radius, pressure; 16 points or more", tabulated, "", "", nullptr},
 };
 
 /// The name without or with the argument, "power:N".
@@ -117,11 +116,11 @@ std::string pressed_name(const ProfileRow& row) {
   return row.press ? written(row, !row.load_gives_argument) : std::string();
 }
 
-/// The row of a name that has an argument where `with_argument` says so; null: there is none.
-template <class Has>
-const ProfileRow* find_row(const TypedName& name, Has has_argument) {
+/// The row of a name, which may have an argument where `may_have_argument(row)`; null: there is none.
+template <class Rule>
+const ProfileRow* find_row(const TypedName& name, Rule may_have_argument) {
   for (const ProfileRow& row : kProfiles)
-    if (row.word == name.word && (has_argument(row) || name.whole == row.word)) return &row;
+    if (row.word == name.word && (may_have_argument(row) || name.whole == row.word)) return &row;
   return nullptr;
 }
 

@@ -86,7 +86,7 @@ def sent(n, ranks):
 
 
 def messages(ranks):
-    """Of all ranks in one application."""
+    """Messages that all ranks send in one application."""
     return FIELDS * 2 * ranks * (ranks - 1)
 
 
@@ -126,7 +126,7 @@ class Model:
         return self.rest * max(self.seconds(n) / machine.cores, MOVED * n * n / machine.bandwidth) / machine.nodes
 
     def sending(self, n, machine):
-        """Of one application, a rank a node, one message after the other."""
+        """Seconds of one application, a rank a node, one message after the other."""
         ranks = machine.nodes
         return (PRECONDITIONED * sent(n, ranks) / ranks / machine.network +
                 2.0 * messages(ranks) / ranks * machine.latency)
