@@ -96,66 +96,56 @@ constexpr std::array kProfiles{
     ProfileRow{"file", "P.csv", "columns radius, pressure; 16 points or more", tabulated, "", "", nullptr},
 };
 
-/// The name without or with the argument, "power:N".
-std::string written(const ProfileRow& row, bool with_argument) {
-  return with_argument && !row.argument.empty() ? fmt::format("{}:{}", row.word, row.argument)
-                                                : std::string(row.word);
+/// The name as help writes it, "power:N"; under a normal load, `pressed`, some have no argument.
+std::string written(const ProfileRow& row, bool pressed) {
+  const bool has_argument = !row.argument.empty() && !(pressed && row.load_gives_argument);
+  return has_argument ? fmt::format("{}:{}", row.word, row.argument) : std::string(row.word);
 }
 
-/// One text from each row that has one.
+/// A text from each row, or from each that a load presses.
 template <class Text>
-std::string joined(std::string_view separator, Text text) {
+std::string joined(std::string_view separator, bool pressed, Text text) {
   std::vector<std::string> texts;
   for (const ProfileRow& row : kProfiles)
-    if (std::string one = text(row); !one.empty()) texts.push_back(std::move(one));
+    if (!pressed || row.press) texts.push_back(text(row));
   return fmt::format("{}", fmt::join(texts, separator));
 }
 
-/// The name under which a load presses the profile; empty: none does.
-std::string pressed_name(const ProfileRow& row) {
-  return row.press ? written(row, !row.load_gives_argument) : std::string();
-}
-
-/// The row of a name, which may have an argument where `may_have_argument(row)`; null: there is none.
-template <class Rule>
-const ProfileRow* find_row(const TypedName& name, Rule may_have_argument) {
-  for (const ProfileRow& row : kProfiles)
-    if (row.word == name.word && (may_have_argument(row) || name.whole == row.word)) return &row;
+/// The row of a name; null: there is none.
+const ProfileRow* find_row(const TypedName& name, bool pressed) {
+  for (const ProfileRow& row : kProfiles) {
+    const bool may_have_argument = written(row, pressed) != row.word;
+    if (row.word == name.word && (may_have_argument || name.whole == row.word) && (!pressed || row.press))
+      return &row;
+  }
   return nullptr;
-}
-
-/// As many numbers as the row names.
-void require_shape(const ProfileRow& row, const TypedName& name, const std::vector<double>& shape) {
-  if (std::ssize(shape) != 1 + std::ranges::count(row.shape, ','))
-    throw std::invalid_argument(
-        fmt::format("profile \"{}\": shape {}; needed: {}", name.whole, fmt::join(shape, ","), row.shape));
 }
 
 }  // namespace
 
 NamedProfile find_profile(const std::string& name) {
   const TypedName typed = split(name);
-  const ProfileRow* const row =
-      find_row(typed, [](const ProfileRow& each) { return !each.argument.empty(); });
+  const ProfileRow* const row = find_row(typed, false);
   if (!row || (row->make == tabulated && typed.argument.empty()))
     throw std::invalid_argument(
         fmt::format("profile \"{}\"; allowed: {}", name,
-                    joined(", ", [](const ProfileRow& each) { return written(each, true); })));
+                    joined(", ", false, [](const ProfileRow& each) { return written(each, false); })));
   return row->make(typed);
 }
 
 PressedContact press(const std::string& profile_name, const NormalLoad& load) {
   const TypedName typed = split(profile_name);
-  const ProfileRow* const row = find_row(
-      typed, [](const ProfileRow& each) { return !each.argument.empty() && !each.load_gives_argument; });
-  if (!row || !row->press)
+  const ProfileRow* const row = find_row(typed, true);
+  if (!row)
     throw std::invalid_argument(
         fmt::format("profile \"{}\" with a normal load; allowed: {}", profile_name,
-                    joined(", ", [](const ProfileRow& each) {
+                    joined(", ", true, [](const ProfileRow& each) {
                       const char* const note = " (without a ratio: it follows from load and shape)";
-                      return pressed_name(each) + (each.load_gives_argument ? note : "");
+                      return written(each, true) + (each.load_gives_argument ? note : "");
                     })));
-  require_shape(*row, typed, load.shape);
+  if (std::ssize(load.shape) != 1 + std::ranges::count(row->shape, ','))
+    throw std::invalid_argument(fmt::format("profile \"{}\": shape {}; needed: {}", profile_name,
+                                            fmt::join(load.shape, ","), row->shape));
   return row->press(typed, load);
 }
 
@@ -165,15 +155,14 @@ PressedContact press_power(double exponent, const NormalLoad& load) {
 }
 
 std::string profile_words() {
-  return joined(" | ", [](const ProfileRow& row) {
-    return written(row, true) + (row.meaning.empty() ? "" : fmt::format(" ({})", row.meaning));
+  return joined(" | ", false, [](const ProfileRow& row) {
+    return written(row, false) + (row.meaning.empty() ? "" : fmt::format(" ({})", row.meaning));
   });
 }
 
 std::string shape_words() {
-  return joined("; ", [](const ProfileRow& row) {
-    if (!row.press) return std::string();
-    return fmt::format("{}: {}{}{}", pressed_name(row), row.shape, row.unit.empty() ? "" : ", ", row.unit);
+  return joined("; ", true, [](const ProfileRow& row) {
+    return fmt::format("{}: {}{}{}", written(row, true), row.shape, row.unit.empty() ? "" : ", ", row.unit);
   });
 }
 
