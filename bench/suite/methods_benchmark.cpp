@@ -36,7 +36,7 @@ struct Torsion {
 
 Torsion torsion_of(const Scene& scene) {
   const solver::Model model = solver::make_model(scene);
-  Torsion torsion{.elasticity = {.pair = model.pair}, .grid = model.grid, .problem = {}};
+  Torsion torsion{.elasticity = {.law = model.law}, .grid = model.grid, .problem = {}};
   torsion.problem.friction_bound =
       model.friction * solver::find_pressure(scene, model, scene.steps[0]).pressure;
   torsion.problem.moment = *solver::value_if<solver::MomentRatio>(scene.steps[0].torsion) *

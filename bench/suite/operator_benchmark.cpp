@@ -43,7 +43,7 @@ struct Form {
   bool quarter = false;
 };
 
-solver::ElasticPair pair() { return solver::elastic_pair({2.0, 0.3}, {2.0, 0.3}); }
+solver::SharedLaw law() { return solver::half_spaces({2.0, 0.3}, {2.0, 0.3}); }
 
 Grid whole(Index cells) { return {cells, cells, 1.0, 1.0}; }
 
@@ -52,12 +52,12 @@ Grid grid_of(const Form& form, Index cells) {
 }
 
 std::shared_ptr<LinearOperator> make(const Form& form, const Grid& grid) {
-  return solver::make_operator(form.kind, grid, solver::tangential_kernel(), pair(), form.options);
+  return solver::make_operator(form.kind, grid, solver::tangential_kernel(), *law(), form.options);
 }
 
 /// About what the operator holds.
 double bytes(const Form& form, const Grid& grid) {
-  const solver::Elasticity elastic{.pair = pair(), .kind = form.kind, .diagonal = form.options.diagonal};
+  const solver::Elasticity elastic{.law = law(), .kind = form.kind, .diagonal = form.options.diagonal};
   return elastic.operator_bytes(grid, solver::tangential_kernel());
 }
 
@@ -109,7 +109,7 @@ Reference by_convolution(const Form& form, Index cells) {
 Reference by_summation(Index cells) {
   constexpr std::array kComponents{solver::Component::k11, solver::Component::k12, solver::Component::k22};
   constexpr int kFurther = 6;
-  const auto tables = solver::influence_tables(kComponents, pair(), 1.0, 1.0, cells, cells);
+  const auto tables = law()->influence_tables(kComponents, {cells, cells, 1.0, 1.0});
   std::mt19937_64 generator(2);
   std::uniform_int_distribution<Index> place(0, cells - 1);
   std::vector<std::array<Index, 2>> loaded{{0, 0}, {0, cells - 1}, {cells - 1, 0}, {cells - 1, cells - 1}};

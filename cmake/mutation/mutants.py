@@ -22,7 +22,7 @@ import runs
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("analytic", "solver", "convergence", "bench", "reports")
 # A mutant there could end other processes, or remove their files.
-DANGEROUS = ("solver/input/run_apart.cpp", "convergence/programs/run_program.cpp", "solver/input/whole_file.cpp")
+DANGEROUS = ("convergence/programs/run_program.cpp", "solver/input/whole_file.cpp")
 # Programs that `make test` does not build: they check their own results.
 NOT_TESTED = ("bench/suite/", "bench/work/work_counts_program.cpp", "analytic/certified/hardest.cpp",
               "analytic/certified/references.cpp", "analytic/certified/missing.cpp")
@@ -73,6 +73,7 @@ def judge(mutants, build, options, say):
     """{mutant: how it was seen}; "" survives, None is not reached."""
     highest = max((each.number for each in mutants), default=0)
     folders = {each.folder for each in mutants} - {"reports"}
+    tests = runs.python_tests(build.source / "reports", say) if any(each.folder == "reports" for each in mutants) else []
     suites = {folder: list(runs.google_suites(build.build, folder)) for folder in folders}
     gate = runs.gates(build.source, build.build)
     with ThreadPoolExecutor(options.jobs) as pool:
@@ -83,7 +84,7 @@ def judge(mutants, build, options, say):
 
         def judge_one(mutant):
             if mutant.folder == "reports":
-                found = runs.python_killed_by(mutant, build.source / "reports")
+                found = runs.python_killed_by(mutant, tests, build.source / "reports")
             else:
                 found = runs.killed_by(mutant, suites[mutant.folder])
                 if not found and options.gates and mutant.number in gate.reached:

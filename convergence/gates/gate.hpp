@@ -8,14 +8,16 @@
 #include <vector>
 
 #include "convergence/results/result_parts.hpp"
+#include "convergence/runs/process_pool.hpp"
+#include "solver/input/setting_key.hpp"
 
 namespace slipstick::convergence {
 
-/// What follows from a gate: an active one must hold, an expected failure must not (so that the entry goes
-/// when the defect goes), of a reported one nothing follows.
+/// What follows from a gate: an active one must hold, an expected failure must not hold (so that the entry
+/// goes when the defect goes), and a reported one decides nothing.
 enum class GateStatus { active, expected_failure, report_only };
 
-/// Whose number it is: of a solve, of a study, of a file that any program wrote.
+/// Where the number comes from: a solve, a study, or a result file of any program.
 enum class GateSource { scene, study, result };
 
 /// A number of a result with the bounds that it must keep, as a gate file says it.
@@ -41,7 +43,7 @@ struct Gate {
   GateStatus status = GateStatus::active;
 };
 
-/// What became of a gate. Refused: it could not be judged.
+/// The verdict on a gate. Refused: it could not be judged.
 enum class Outcome { passed, failed, failed_as_expected, passed_unexpectedly, reported, refused };
 std::string to_string(Outcome outcome);
 
@@ -60,7 +62,7 @@ struct Judgement {
 
 /// A gate needs this many times the error of what it is judged by: less, and a verdict says as much about the
 /// reference, or about the machine, as about the program.
-inline constexpr double kMargin = 10.0;
+inline constexpr double kGateMargin = 10.0;
 
 /// Whether a quantity is the error of another, against an exact answer, or follows from one: by its path.
 bool is_error(const std::string& quantity);
@@ -72,10 +74,10 @@ double reference_error(const Json& result, const std::string& quantity);
 
 /// Judges a gate by the result of its scene or study, or by what its result file holds. A number that is
 /// missing, NaN or comes from a solve that did not reach its tolerance fails; a gate that is tighter than
-/// kMargin allows is refused. A solve that died, or a study some of whose runs failed, fails a gate of any
-/// status: that is neither the failure that was expected nor a number to report. Of a result file the
-/// reference's error counts where the file states one: it may call anything an error, of benchmarks that
-/// failed as well as of a twist.
+/// kGateMargin allows is refused. A solve that died, or a study some of whose runs failed, fails a gate of
+/// any status: that is neither the failure that was expected nor a number to report. In a result file the
+/// reference's error counts where the file states one: the file may call anything an error, such as a count
+/// of benchmarks that failed.
 Judgement judge(const Gate& gate, const Json& result);
 
 /// The gate with the bounds that `within` allows around what the other result has. Throws InputError where
@@ -89,10 +91,68 @@ Judgement refuse(const Gate& gate, const std::string& why);
 /// be. 1: else.
 int exit_code(const std::vector<Judgement>& judgements);
 
-/// What the gate asks for: "below 2e-05 in size".
+/// The bound in words: "below 2e-05 in size".
 std::string bound_text(const Gate& gate);
 
 /// The command that runs it alone.
 std::string rerun_command(const Gate& gate);
+
+// ---------------------------------------------------------------- gate files (gate_reader.cpp)
+
+/// Every key that a gate file may have; read_gates() reads by it.
+const solver::SettingKeys& gate_keys();
+
+/// The gates of several files, and what is wrong with those that cannot be read: one bad file does not
+/// spoil the others.
+struct GateFiles {
+  std::vector<Gate> gates;
+  std::vector<Judgement> unreadable;  ///< refused; the id is the file's name
+};
+
+/// The gates of a file (TOML: tables headed [[gate]], or [[group.gate]] below the keys that they share), in
+/// the order of their lines. Paths in it are relative to its folder, those of results to `results_folder`,
+/// unless that is empty. Throws InputError naming file, key, value and what is allowed.
+std::vector<Gate> read_gates(const std::filesystem::path& file,
+                             const std::filesystem::path& results_folder = {});
+
+/// The gates of several files, in their order. A file that uses an id a second time counts as unreadable.
+GateFiles read_gate_files(const std::vector<std::string>& files,
+                          const std::filesystem::path& results_folder = {});
+
+/// Those whose id is among `ids`; all where that is empty. Throws InputError for an id that no gate has,
+/// naming the nearest.
+std::vector<Gate> select_gates(const std::vector<Gate>& gates, const std::vector<std::string>& ids);
+
+// ---------------------------------------------------------------- their runs (gate_run.cpp)
+
+/// Computes what gates ask for, all scenes side by side and equal ones once, or reads it, and judges it. A
+/// gate whose scene, study or result cannot be read is refused; the others are judged all the same.
+std::vector<Judgement> run_gates(const std::vector<Gate>& gates, const ProcessPool& pool);
+
+/// The gates, and after them those that others are relative to, as gates of their own, in the same order.
+std::vector<Gate> with_others(const std::vector<Gate>& gates);
+
+/// The runs whose results these gates are judged by; where one fails, the parts of its error take some more.
+/// What cannot be read is left to run_gates().
+std::vector<PreparedRun> gate_runs(const std::vector<Gate>& gates, const ProcessPool& pool);
+
+// ---------------------------------------------------------------- what became of them (gate_report.cpp)
+
+/// For a person: a line a gate, then what there is to know of each that does not pass, and the count.
+std::string gates_text(const std::vector<Judgement>& judgements);
+
+/// JUnit's XML, as CI servers read it: a suite a file, a case a gate. Refused gates are errors; reported and
+/// expected failures are skipped.
+std::string gates_junit(const std::vector<Judgement>& judgements);
+
+/// A Markdown table, the worst first, shorter than kMaxMarkdown bytes: what does not fit is counted.
+std::string gates_markdown(const std::vector<Judgement>& judgements);
+
+/// Workflow commands of GitHub Actions, which put a message at the gate's line in its file: an error for each
+/// gate that fails or is refused.
+std::string gates_annotations(const std::vector<Judgement>& judgements);
+
+/// Every gate with value, bound, factor, outcome, and the counts.
+Json gates_json(const std::vector<Judgement>& judgements);
 
 }  // namespace slipstick::convergence

@@ -9,14 +9,10 @@
 #include <string>
 #include <vector>
 
-#include "convergence/gates/gate_reader.hpp"
-#include "convergence/gates/gate_report.hpp"
-#include "convergence/gates/gate_run.hpp"
+#include "convergence/gates/gate.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/results/output.hpp"
-#include "convergence/runs/interrupts.hpp"
-#include "convergence/runs/memory_option.hpp"
-#include "convergence/runs/shard_option.hpp"
+#include "convergence/runs/run_options.hpp"
 #include "convergence/studies/study.hpp"
 #include "solver/input/input_error.hpp"
 
@@ -28,11 +24,8 @@ struct GateRequest {
   std::vector<std::string> only;
   std::string junit;
   std::string summary;
-  std::string output = "build/gates";
   std::string results;
-  int jobs = 0;
-  MemoryOption memory;
-  ShardOption shards;
+  RunOptions runs{.output = "build/gates"};
   bool github = false;
 };
 
@@ -55,28 +48,22 @@ std::vector<std::filesystem::path> files_behind(const std::vector<Gate>& gates) 
   return files;
 }
 
-int run_gates(const CLI::App& command, const GateRequest& request, std::ostream& text,
-              nlohmann::ordered_json& result) {
-  const std::optional<Shard> shard = request.shards.shard();
+int run_gates(const CLI::App& command, const GateRequest& request, std::ostream& text, Json& result) {
+  const std::optional<Shard> shard = request.runs.wanted_shard();
   require_output("--junit", request.junit);
   require_output("--summary", request.summary);
   const GateFiles files = read_gate_files(request.files, request.results);
   require_inputs_kept(command, files_behind(files.gates));
   std::vector<Judgement> judgements = files.unreadable;
   const Interrupts interrupts;
-  const ProcessPool pool({.folder = request.output,
-                          .jobs = request.jobs,
-                          .memory_limit = request.memory.limit(),
-                          .program = kOwnProgram,
-                          .joined = request.shards.merged(),
-                          .interrupted = Interrupts::seen});
+  const ProcessPool pool = request.runs.pool();
   const std::vector<Gate> gates = select_gates(files.gates, request.only);
   if (shard) {
     result = run_shard(gate_runs(gates, pool), *shard, pool);
     text << shard_text(result);
     return is_complete(result) ? 0 : 1;
   }
-  if (!request.shards.merged().empty()) require_finished(gate_runs(gates, pool), pool);
+  if (!request.runs.merged.empty()) require_finished(gate_runs(gates, pool), pool);
   const std::vector<Judgement> judged = run_gates(gates, pool);
   judgements.insert(judgements.end(), judged.begin(), judged.end());
 
@@ -93,7 +80,7 @@ int run_gates(const CLI::App& command, const GateRequest& request, std::ostream&
 
 }  // namespace
 
-std::function<int(std::ostream&, nlohmann::ordered_json&)> add_gate_command(CLI::App& app) {
+RunCommand add_gate_command(CLI::App& app) {
   const auto request = std::make_shared<GateRequest>();
   CLI::App* const command =
       app.add_subcommand("gate", "Run accuracy gates: numbers with bounds that they must keep");
@@ -102,23 +89,16 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_gate_command(CLI:
   command->add_option("--junit", request->junit, "write JUnit XML, as CI servers read it, to this file");
   command->add_option("--summary", request->summary, "write a Markdown table, the worst first, below 64 kB");
   command->add_flag("--github", request->github, "print GitHub's annotations, at each failing gate's line");
-  command->add_option("--output", request->output, "folder where finished solves are kept")
-      ->capture_default_str();
   command->add_option("--results", request->results,
                       "folder of the result files that gates name, in place of the gate file's own");
-  command->add_option("--jobs", request->jobs, "solves at a time; 0: one a processor")
-      ->check(CLI::NonNegativeNumber)
-      ->capture_default_str();
-  request->memory.add_to(*command);
-  request->shards.add_to(*command, {"--junit", "--summary", "--github"});
+  request->runs.add_to(*command);
+  request->runs.add_shards_to(*command, {"--junit", "--summary", "--github"});
   command->footer(
       "Example:\n  slipstick gate convergence/gates/quick.toml --junit gates.xml --summary summary.md\n"
       "Exit code 0: all gates pass; 1: an active gate fails, or an expected failure passes; 2: something "
-      "could "
-      "not be judged, or no gate ran. Finished solves are kept: repeating an interrupted command goes on "
-      "from "
-      "there.");
-  return [command, request](std::ostream& text, nlohmann::ordered_json& result) {
+      "could not be judged, or no gate ran. Finished solves are kept: repeating an interrupted command goes "
+      "on from there.");
+  return [command, request](std::ostream& text, Json& result) {
     return run_gates(*command, *request, text, result);
   };
 }

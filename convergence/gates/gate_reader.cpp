@@ -1,4 +1,4 @@
-#include "convergence/gates/gate_reader.hpp"
+#include "convergence/gates/gate.hpp"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
@@ -8,6 +8,7 @@
 #include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "solver/input/input_error.hpp"
 #include "solver/input/misspelling.hpp"
@@ -26,19 +27,51 @@ const solver::Words<GateStatus> kStatuses{{"active", GateStatus::active},
 const solver::Words<GateSource> kSources{
     {"scene", GateSource::scene}, {"study", GateSource::study}, {"result", GateSource::result}};
 
-void read_source(SceneReader& reader, const std::string& at, Gate& gate) {
+/// Where the keys of one gate stand: in its own table, or in that of its group, which it adds to or replaces.
+class GateTable {
+ public:
+  /// group: empty where the gate stands in none.
+  GateTable(SceneReader& reader, std::string own, std::string group)
+      : reader_(reader), own_(std::move(own)), group_(std::move(group)) {}
+
+  const std::string& table() const { return own_; }
+  std::string own(const std::string& key) const { return own_ + "." + key; }
+
+  /// A key that a group may have for its gates.
+  std::string shared(const std::string& key) const {
+    const std::string in_group = group_ + "." + key;
+    const bool has_default = !group_.empty() && reader_.has(in_group);
+    return has_default && !reader_.has(own(key)) ? in_group : own(key);
+  }
+
+  /// Those of the group first: what comes later counts.
+  std::vector<std::string> assignments(const std::string& key) const {
+    std::vector<std::string> all;
+    if (!group_.empty()) all = reader_.assignments(group_ + "." + key);
+    const std::vector<std::string> added = reader_.assignments(own(key));
+    all.insert(all.end(), added.begin(), added.end());
+    return all;
+  }
+
+ private:
+  SceneReader& reader_;
+  std::string own_;
+  std::string group_;
+};
+
+void read_source(SceneReader& reader, const GateTable& at, Gate& gate) {
   std::vector<std::string> given;
   for (const auto& [key, kind] : kSources) {
-    if (!reader.has(at + key)) continue;
+    if (!reader.has(at.shared(key))) continue;
     given.push_back(key);
     gate.kind = kind;
   }
   if (given.size() != 1) {
-    reader.fail(at + "scene", given.empty() ? "(missing)" : "beside " + given.back(),
+    reader.fail(at.own("scene"), given.empty() ? "(missing)" : "beside " + given.back(),
                 "one of scene and study, a file (TOML), and result, a file (JSON)");
   }
-  gate.source = reader.path(at + given.front());
-  gate.overrides = reader.assignments(at + "set");
+  gate.source = reader.path(at.shared(given.front()));
+  gate.overrides = at.assignments("set");
 }
 
 /// A day of the calendar, as 2026-11-24.
@@ -48,47 +81,50 @@ bool is_day(const std::string& text) {
   return text.size() == 10 && end == 10 && (std::chrono::year(year) / month / day).ok();
 }
 
-/// Any program's, so that only the gate file can say which.
-void read_result_source(SceneReader& reader, const std::string& at, const std::filesystem::path& folder,
+/// Any program may have written the file: only the gate file can say which.
+void read_result_source(SceneReader& reader, const GateTable& at, const std::filesystem::path& folder,
                         Gate& gate) {
   if (!gate.overrides.empty()) {
-    reader.fail(at + "set", "(given)", "left out beside result: a file is taken as it is");
+    reader.fail(at.own("set"), "(given)", "left out beside result: a file is taken as it is");
   }
-  gate.newer_than = reader.text_or(at + "newer_than", "");
-  if (reader.has(at + "newer_than") && !is_day(gate.newer_than)) {
-    reader.fail(at + "newer_than", gate.newer_than, "a day as 2026-11-24, in quotes");
+  const std::string newer_than = at.shared("newer_than");
+  gate.newer_than = reader.text_or(newer_than, "");
+  if (reader.has(newer_than) && !is_day(gate.newer_than)) {
+    reader.fail(newer_than, gate.newer_than, "a day as 2026-11-24, in quotes");
   }
   gate.results_folder = folder;
-  if (!folder.empty()) gate.source = folder / reader.text(at + "result");
+  if (!folder.empty()) gate.source = folder / reader.text(at.shared("result"));
   gate.made_by = reader.text_or("made_by", "");
 }
 
 /// How far from the number of another result.
-void read_relative(SceneReader& reader, const std::string& at, Gate& gate) {
-  gate.of = reader.path(at + "of");
-  gate.within = reader.number(at + "within");
+void read_relative(SceneReader& reader, const GateTable& at, Gate& gate) {
+  gate.of = reader.path(at.own("of"));
+  gate.within = reader.number(at.own("within"));
   for (const char* const key : {"below", "above", "equals"}) {
-    if (reader.has(at + key)) reader.fail(at + key, "beside of", "one or the other");
+    if (reader.has(at.own(key))) reader.fail(at.own(key), "beside of", "one or the other");
   }
 }
 
-void read_bounds(SceneReader& reader, const std::string& at, Gate& gate) {
-  if (reader.has(at + "of") || reader.has(at + "within")) return read_relative(reader, at, gate);
-  gate.below = reader.find_number(at + "below");
-  gate.above = reader.find_number(at + "above");
-  if (reader.has(at + "equals")) {
-    if (gate.below || gate.above) reader.fail(at + "equals", "beside below or above", "one or the other");
-    gate.equals =
-        reader.is_text(at + "equals") ? Json(reader.text(at + "equals")) : Json(reader.number(at + "equals"));
+void read_bounds(SceneReader& reader, const GateTable& at, Gate& gate) {
+  if (reader.has(at.own("of")) || reader.has(at.own("within"))) return read_relative(reader, at, gate);
+  const std::string below = at.own("below");
+  const std::string above = at.own("above");
+  const std::string equals = at.own("equals");
+  gate.below = reader.find_number(below);
+  gate.above = reader.find_number(above);
+  if (reader.has(equals)) {
+    if (gate.below || gate.above) reader.fail(equals, "beside below or above", "one or the other");
+    gate.equals = reader.is_text(equals) ? Json(reader.text(equals)) : Json(reader.number(equals));
   } else if (!gate.below && !gate.above) {
-    reader.fail(at + "below", "(missing)", "below, above, both, equals, or of and within");
+    reader.fail(below, "(missing)", "below, above, both, equals, or of and within");
   }
   const auto shown = [](double number) { return fmt::format("{:g}", number); };
   if (gate.below && gate.above && !(*gate.above < *gate.below)) {
-    reader.fail(at + "above", shown(*gate.above), "less than below, " + shown(*gate.below));
+    reader.fail(above, shown(*gate.above), "less than below, " + shown(*gate.below));
   }
   if (gate.below && !gate.above && !(*gate.below > 0.0)) {
-    reader.fail(at + "below", shown(*gate.below), "positive where it stands alone, as a bound on the size");
+    reader.fail(below, shown(*gate.below), "positive where it stands alone, as a bound on the size");
   }
 }
 
@@ -98,24 +134,22 @@ std::string required_text(SceneReader& reader, const std::string& key) {
   return text;
 }
 
-Gate read_gate(SceneReader& reader, const std::filesystem::path& file,
-               const std::filesystem::path& results_folder, std::size_t index) {
-  const std::string table = fmt::format("gate[{}]", index);
-  const std::string at = table + ".";
+Gate read_gate(SceneReader& reader, const GateTable& at, const std::filesystem::path& file,
+               const std::filesystem::path& results_folder) {
   Gate gate;
   gate.file = file;
-  gate.line = reader.line(table);
-  gate.id = required_text(reader, at + "id");
-  gate.status = reader.choice_or(at + "status", gate.status, kStatuses);
+  gate.line = reader.line(at.table());
+  gate.id = required_text(reader, at.own("id"));
+  gate.status = reader.choice_or(at.shared("status"), gate.status, kStatuses);
   read_source(reader, at, gate);
   if (gate.kind == GateSource::result) read_result_source(reader, at, results_folder, gate);
-  gate.quantity = required_text(reader, at + "quantity");
+  gate.quantity = required_text(reader, at.own("quantity"));
   read_bounds(reader, at, gate);
-  gate.platform_spread = reader.number_or(at + "platform_spread", gate.platform_spread);
-  gate.reason = reader.text_or(at + "reason", "");
-  gate.basis = reader.text_or(at + "basis", "");
+  gate.platform_spread = reader.number_or(at.shared("platform_spread"), gate.platform_spread);
+  gate.reason = reader.text_or(at.shared("reason"), "");
+  gate.basis = reader.text_or(at.shared("basis"), "");
   if (gate.status == GateStatus::active && gate.basis.empty()) {
-    reader.fail(at + "basis", "(missing)", "where the bound of an active gate comes from");
+    reader.fail(at.own("basis"), "(missing)", "where the bound of an active gate comes from");
   }
   return gate;
 }
@@ -134,69 +168,95 @@ void claim_ids(const std::vector<Gate>& gates, std::map<std::string, std::string
 
 }  // namespace
 
-const solver::SettingKeys& gate_keys() {
+namespace {
+
+/// What a group may say for all its gates.
+solver::SettingKeys shared_keys() {
   using solver::KeyType;
   constexpr const char* kOne = "one of scene, study, result is required";
+  return {{"status", KeyType::word, "", solver::word_of(kStatuses, Gate{}.status), solver::one_of(kStatuses),
+           "Whether failing fails the run, passing does, or neither."},
+          {"scene", KeyType::file, "", kOne, solver::kAny,
+           "Scene file (TOML) that is solved, relative to this file."},
+          {"study", KeyType::file, "", kOne, solver::kAny, "Study file (TOML) that is run."},
+          {"result", KeyType::file, "", kOne, solver::kAny,
+           "Result file (JSON) of any program, taken as it is."},
+          {"set", KeyType::table, "", "none", solver::kAny, "Keys of the scene that differ from its file."},
+          {"newer_than", KeyType::text, "", "none", solver::kAny,
+           "Day, as 2026-11-24 (UTC), that the last change of a result file must not be before."},
+          {"platform_spread", KeyType::number, "the quantity's", fmt::format("{:g}", Gate{}.platform_spread),
+           solver::kNotNegative, "By how much machines and compilers differ."},
+          {"basis", KeyType::text, "", "required of an active gate", solver::kAny,
+           "Where the bound comes from."},
+          {"reason", KeyType::text, "", "none", solver::kAny, "What the gate is for."}};
+}
+
+/// What each gate says for itself.
+solver::SettingKeys own_keys() {
+  using solver::KeyType;
   constexpr const char* kBound = "one of below, above, equals, of is required";
-  static const solver::SettingKeys keys{
-      {"made_by",
-       KeyType::text,
-       "",
-       "none",
-       {},
+  return {{"id", KeyType::text, "", solver::kRequired, solver::kAny,
+           "Names the gate; no other gate of the run has it."},
+          {"quantity", KeyType::text, "", solver::kRequired, solver::kAny,
+           "Path of a number in the result, as --json writes it: steps[3].traction_error.averaged.l2."},
+          {"below", KeyType::number, "the quantity's", kBound, solver::kFinite,
+           "Bound that the number stays below; alone, of its size; with above, of the signed value."},
+          {"above", KeyType::number, "the quantity's", kBound, solver::kFinite,
+           "Bound that it stays above."},
+          {"equals", KeyType::number, "the quantity's", kBound, solver::kFinite,
+           "The number, or in quotes the word, that it is to be; in place of the bounds."},
+          {"of", KeyType::file, "", kBound, solver::kAny,
+           "Result file (JSON), or scene or study (TOML, with the same `set`), whose number this one is to "
+           "be."},
+          {"within", KeyType::number, "", "required beside of", solver::kPositive,
+           "How far from that number, over its size."}};
+}
+
+solver::SettingKeys all_keys() {
+  using solver::KeyType;
+  solver::SettingKeys keys{
+      {"made_by", KeyType::text, "", "none", solver::kAny,
        "Command that makes the results which gates of the file name; known beside such gates alone."},
-      {"gate", KeyType::tables, "", solver::kRequired, {}, "Tables `[[gate]]`, one for each gate."},
-      {"gate.id",
-       KeyType::text,
-       "",
-       solver::kRequired,
-       {},
-       "Names the gate; no other gate of the run has it."},
-      {"gate.status", KeyType::word, "", solver::word_of(kStatuses, Gate{}.status), solver::one_of(kStatuses),
-       "Whether failing fails the run, passing does, or neither."},
-      {"gate.scene", KeyType::file, "", kOne, {}, "Scene file (TOML) that is solved, relative to this file."},
-      {"gate.study", KeyType::file, "", kOne, {}, "Study file (TOML) that is run."},
-      {"gate.result", KeyType::file, "", kOne, {}, "Result file (JSON) of any program, taken as it is."},
-      {"gate.set", KeyType::table, "", "none", {}, "Keys of the scene that differ from its file."},
-      {"gate.quantity",
-       KeyType::text,
-       "",
-       solver::kRequired,
-       {},
-       "Path of a number in the result, as --json writes it: steps[3].traction_error.averaged.l2."},
-      {"gate.below", KeyType::number, "the quantity's", kBound, solver::kFinite,
-       "Bound that the number stays below; alone, of its size; with above, of the signed value."},
-      {"gate.above", KeyType::number, "the quantity's", kBound, solver::kFinite,
-       "Bound that it stays above."},
-      {"gate.equals", KeyType::number, "the quantity's", kBound, solver::kFinite,
-       "The number, or in quotes the word, that it is to be; in place of the bounds."},
-      {"gate.of",
-       KeyType::file,
-       "",
-       kBound,
-       {},
-       "Result file (JSON), or scene or study (TOML, with the same `set`), whose number this one is to be."},
-      {"gate.within", KeyType::number, "", "required beside of", solver::kPositive,
-       "How far from that number, over its size."},
-      {"gate.newer_than",
-       KeyType::text,
-       "",
-       "none",
-       {},
-       "Day, as 2026-11-24 (UTC), that the last change of a result file must not be before."},
-      {"gate.platform_spread", KeyType::number, "the quantity's", fmt::format("{:g}", Gate{}.platform_spread),
-       solver::kNotNegative, "By how much machines and compilers differ."},
-      {"gate.basis", KeyType::text, "", "required of an active gate", {}, "Where the bound comes from."},
-      {"gate.reason", KeyType::text, "", "none", {}, "What the gate is for."}};
+      {"gate", KeyType::tables, "", "none", solver::kAny, "Tables `[[gate]]`, one for each gate."},
+      {"group", KeyType::tables, "", "none", solver::kAny,
+       "Tables `[[group]]`: what several gates share, and these gates as `[[group.gate]]`. A key of the gate "
+       "replaces that of its group; what it says in `set` is added to it."}};
+  const auto add = [&](const std::string& table, const solver::SettingKeys& rows) {
+    for (solver::SettingKey key : rows) {
+      key.name = table + key.name;
+      keys.push_back(std::move(key));
+    }
+  };
+  add("gate.", own_keys());
+  add("gate.", shared_keys());
+  add("group.", shared_keys());
+  keys.push_back({"group.gate", KeyType::tables, "", "none", solver::kAny, "Tables, one for each gate."});
+  add("group.gate.", own_keys());
+  add("group.gate.", shared_keys());
+  return keys;
+}
+
+}  // namespace
+
+const solver::SettingKeys& gate_keys() {
+  static const solver::SettingKeys keys = all_keys();
   return keys;
 }
 
 std::vector<Gate> read_gates(const std::filesystem::path& file, const std::filesystem::path& results_folder) {
   SceneReader reader(file, {}, gate_keys());
   std::vector<Gate> gates;
-  const std::size_t count = reader.count("gate");
-  for (std::size_t i = 0; i < count; ++i) gates.push_back(read_gate(reader, file, results_folder, i));
+  const auto read = [&](const std::string& table, const std::string& group) {
+    gates.push_back(read_gate(reader, {reader, table, group}, file, results_folder));
+  };
+  for (std::size_t i = 0; i < reader.count("gate"); ++i) read(fmt::format("gate[{}]", i), "");
+  for (std::size_t i = 0; i < reader.count("group"); ++i) {
+    const std::string group = fmt::format("group[{}]", i);
+    const std::size_t count = reader.count(group + ".gate");
+    for (std::size_t k = 0; k < count; ++k) read(fmt::format("{}.gate[{}]", group, k), group);
+  }
   reader.reject_unknown();
+  std::ranges::stable_sort(gates, {}, &Gate::line);
   return gates;
 }
 

@@ -1,4 +1,4 @@
-#include "convergence/gates/gate_report.hpp"
+#include "convergence/gates/gate.hpp"
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
@@ -11,6 +11,7 @@
 #include <string_view>
 #include <tuple>
 
+#include "convergence/results/markup.hpp"
 #include "solver/input/input_file.hpp"
 
 namespace slipstick::convergence {
@@ -86,7 +87,7 @@ std::vector<std::string> explanation(const Judgement& judgement) {
   return lines;
 }
 
-/// What a case holds beside its name.
+/// The content of a case beside its name.
 std::string junit_verdict(const Judgement& judgement) {
   const std::string shown = was_read(judgement)
                                 ? fmt::format("{} = {}, must be {}", judgement.gate.quantity,
@@ -135,7 +136,7 @@ std::string markdown_row(const Judgement& judgement) {
                      factor_text(judgement), markdown_cell(remarks));
 }
 
-/// What stands in a workflow command: properties end at commas and colons too.
+/// Text in a workflow command; in a property commas and colons are escaped too.
 std::string annotation(std::string_view text, bool is_property) {
   std::string escaped;
   for (const char c : solver::printable(text)) {

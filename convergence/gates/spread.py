@@ -2,7 +2,7 @@
 """spread.py GATES.toml ONE.json OTHER.json...: do two builds of the program give the same numbers?
 
 The JSON files are of `slipstick gate GATES.toml --json`, by builds with other compilers or options. Each gate says by how
-much its number may differ between them (platform_spread); of those that do not, differences are shown. Exit code 0: all keep it; 1: some do
+much its number may differ between them (platform_spread); gates that do not say it show their differences. Exit code 0: all keep it; 1: some do
 not; 2: the files do not belong together."""
 
 import json
@@ -16,8 +16,14 @@ def values(path):
     return {gate["id"]: gate.get("value") for gate in json.loads(Path(path).read_text(encoding="utf-8"))["gates"]}
 
 
+def gates_in(path):
+    """The tables of all gates, with what their groups say for them."""
+    read = tomllib.loads(Path(path).read_text(encoding="utf-8"))
+    return read.get("gate", []) + [{**group, **gate} for group in read.get("group", []) for gate in group["gate"]]
+
+
 def difference(one, other):
-    """The difference of two numbers; 0 for equal words."""
+    """How far two numbers are apart; for words 0 where they are the same."""
     numbers = all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in (one, other))
     return abs(one - other) if numbers else 0.0 if one == other else math.inf
 
@@ -26,8 +32,7 @@ def main(words):
     if len(words) < 3:
         print(__doc__, file=sys.stderr)
         return 2
-    allowed = {gate["id"]: gate.get("platform_spread")
-               for gate in tomllib.loads(Path(words[0]).read_text(encoding="utf-8"))["gate"]}
+    allowed = {gate["id"]: gate.get("platform_spread") for gate in gates_in(words[0])}
     first, *others = map(values, words[1:])
     found = 0
     for path, other in zip(words[2:], others):

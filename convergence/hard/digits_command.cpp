@@ -8,27 +8,20 @@
 
 #include "convergence/hard/rounding_digits.hpp"
 #include "convergence/programs/output_options.hpp"
-#include "convergence/runs/interrupts.hpp"
-#include "convergence/runs/memory_option.hpp"
+#include "convergence/runs/run_options.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
 struct DigitsRequest {
   RunSpec spec;
-  std::string output = "build/digits";
   DigitsOptions options;
-  int jobs = 0;
-  MemoryOption memory;
+  RunOptions runs{.output = "build/digits"};
 };
 
 int run_digits(const CLI::App& command, const DigitsRequest& request, std::ostream& text, Json& result) {
   require_inputs_kept(command, input_files(solver::read_scene(request.spec.scene, request.spec.overrides)));
-  const ProcessPool pool({.folder = request.output,
-                          .jobs = request.jobs,
-                          .memory_limit = request.memory.limit(),
-                          .program = kOwnProgram,
-                          .interrupted = Interrupts::seen});
+  const ProcessPool pool = request.runs.pool();
   {
     const Interrupts interrupts;
     result = rounding_digits(request.spec, request.options, pool);
@@ -39,31 +32,23 @@ int run_digits(const CLI::App& command, const DigitsRequest& request, std::ostre
 
 }  // namespace
 
-std::function<int(std::ostream&, nlohmann::ordered_json&)> add_digits_command(CLI::App& app) {
+RunCommand add_digits_command(CLI::App& app) {
   const auto request = std::make_shared<DigitsRequest>();
   CLI::App* const command =
       app.add_subcommand("digits", "Which digits of an answer survive another rounding of every operation");
   command->add_option("scene", request->spec.scene, "scene file (TOML)")->required();
-  command->add_option("--set", request->spec.overrides, "key=value: override a key of the scene")
-      ->take_all()
-      ->allow_extra_args(false);
+  add_set_option(*command, request->spec.overrides, "override a key of the scene");
   command->add_option("--samples", request->options.samples, "solves that are rounded at random")
       ->capture_default_str()
       ->check(CLI::Range(1, 10'000));
   command->add_option("--seed", request->options.first_seed, "of the first of them")
       ->capture_default_str()
       ->check(CLI::Range(1, 1'000'000));
-  command->add_option("--output", request->output, "folder that keeps finished solves")
-      ->capture_default_str();
-  command->add_option("--jobs", request->jobs, "solves at a time; 0: one a processor, as memory allows")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
+  request->runs.add_to(*command);
   command->footer(
       "Example:\n  slipstick digits convergence/scenes/paper.toml --set grid.cells=[64,64]\nExit code 0: "
-      "done; "
-      "1: a solve did not converge; 2: bad input.");
-  request->memory.add_to(*command);
-  return [command, request](std::ostream& text, nlohmann::ordered_json& result) {
+      "done; 1: a solve did not converge; 2: bad input.");
+  return [command, request](std::ostream& text, Json& result) {
     return run_digits(*command, *request, text, result);
   };
 }

@@ -9,8 +9,7 @@
 
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/programs/output_options.hpp"
-#include "convergence/runs/interrupts.hpp"
-#include "convergence/runs/memory_option.hpp"
+#include "convergence/runs/run_options.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/whole_file.hpp"
 
@@ -20,12 +19,10 @@ namespace {
 struct HardRequest {
   std::vector<std::string> files;
   std::vector<std::string> overrides;
-  std::string output = "build/hard";
   std::string fields;
   std::vector<std::string> methods;
   bool once = false;
-  int jobs = 0;
-  MemoryOption memory;
+  RunOptions runs{.output = "build/hard"};
 };
 
 /// The fields' files are numbered: none of a scene's stands among them.
@@ -54,11 +51,7 @@ int run_hard(const CLI::App& command, const HardRequest& request, std::ostream& 
   }
   require_inputs_elsewhere(command, cases, request.fields);
   if (!request.fields.empty()) solver::make_folder(request.fields);
-  const ProcessPool pool({.folder = request.output,
-                          .jobs = request.jobs,
-                          .memory_limit = request.memory.limit(),
-                          .program = kOwnProgram,
-                          .interrupted = Interrupts::seen});
+  const ProcessPool pool = request.runs.pool();
   {
     const Interrupts interrupts;
     result = run_hard_cases(cases,
@@ -74,32 +67,24 @@ int run_hard(const CLI::App& command, const HardRequest& request, std::ostream& 
 
 }  // namespace
 
-std::function<int(std::ostream&, nlohmann::ordered_json&)> add_hard_command(CLI::App& app) {
+RunCommand add_hard_command(CLI::App& app) {
   const auto request = std::make_shared<HardRequest>();
   CLI::App* const command = app.add_subcommand(
       "hard", "Solve hard scenes by the hundred, each in several views; judge each answer");
   command->add_option("files", request->files, "files of families of scenes (TOML)")->required();
-  command->add_option("--set", request->overrides, "key=value: override a key of all scenes")
-      ->take_all()
-      ->allow_extra_args(false);
-  command->add_option("--output", request->output, "folder that keeps finished solves")
-      ->capture_default_str();
+  add_set_option(*command, request->overrides, "override a key of all scenes");
   command->add_option("--fields", request->fields, "folder that gets the fields of each case (CSV)");
   command->add_flag("--once", request->once,
                     "solve each scene as it stands alone, not mirrored, turned, on finer meshes, ...");
   command->add_option("--beside", request->methods, "methods that solve each scene too, to be compared")
       ->delimiter(',')
       ->check(CLI::IsMember({"coulomb", "projected_gradient", "paper"}));
-  command->add_option("--jobs", request->jobs, "solves at a time; 0: one a processor, as memory allows")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  request->memory.add_to(*command);
+  request->runs.add_to(*command);
   command->footer(
       "Example:\n  slipstick hard convergence/hard/*.toml --json hard.json\nFinished solves are kept: "
-      "repeating "
-      "an interrupted command goes on from there.\nExit code 0: every answer is certified or refused with a "
+      "repeating an interrupted command goes on from there.\nExit code 0: every answer is certified or refused with a "
       "reason; 1: some did not converge or are wrong, and are named; 2: bad input.");
-  return [command, request](std::ostream& text, nlohmann::ordered_json& result) {
+  return [command, request](std::ostream& text, Json& result) {
     return run_hard(*command, *request, text, result);
   };
 }

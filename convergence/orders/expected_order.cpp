@@ -68,31 +68,31 @@ ExpectedOrder of_number(const std::string& quantity, const solver::Scene& scene)
   }
   return {2.0,
           "centres are the points where constant cells err by h^2; the edges' h^(1/2) in a band of width h "
-          "enters "
-          "a minimum's value by its square"};
+          "enters a minimum's value by its square"};
 }
 
 }  // namespace
 
-const std::vector<std::string>& error_quantities() {
-  static const std::vector<std::string> paths{"twist_error",
-                                              "moment_error",
-                                              "moment_limit_error",
-                                              "displacement_error",
-                                              "stick_radius_error",
-                                              "stick_ratio_error",
-                                              "stick_radius_counted_error",
-                                              "contact_radius_error",
-                                              "peak_pressure_error",
-                                              "dissipated_error",
-                                              "traction_error.l1",
-                                              "traction_error.l2",
-                                              "traction_error.max",
-                                              "traction_error.averaged.l1",
-                                              "traction_error.averaged.l2",
-                                              "pressure_error.l1",
-                                              "pressure_error.l2"};
-  return paths;
+const std::vector<ErrorQuantity>& error_quantities() {
+  static const std::vector<ErrorQuantity> quantities{
+      {"twist_error", "twist"},
+      {"moment_error", "moment"},
+      {"moment_limit_error", "limit moment"},
+      {"displacement_error", "displacement"},
+      {"stick_radius_error", "stick radius"},
+      {"stick_ratio_error", "stick ratio"},
+      {"stick_radius_counted_error", "stick radius, counted"},
+      {"contact_radius_error", "contact radius"},
+      {"peak_pressure_error", "peak pressure"},
+      {"dissipated_error", "energy lost"},
+      {"traction_error.l1", "traction L1"},
+      {"traction_error.l2", "traction L2"},
+      {"traction_error.max", "traction max"},
+      {"traction_error.averaged.l1", "traction L1, cell averages"},
+      {"traction_error.averaged.l2", "traction L2, cell averages"},
+      {"pressure_error.l1", "pressure L1"},
+      {"pressure_error.l2", "pressure L2"}};
+  return quantities;
 }
 
 const std::vector<std::string>& value_quantities() {

@@ -2,9 +2,16 @@
 
 #include <fmt/core.h>
 
+#include <algorithm>
+#include <array>
+#include <nlohmann/json.hpp>
 #include <stdexcept>
 
 #include "convergence/programs/run_program.hpp"
+#include "convergence/programs/temporary_folder.hpp"
+#include "convergence/results/json_text.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/input/whole_file.hpp"
 
 namespace slipstick::convergence {
 
@@ -34,6 +41,32 @@ void run_report_script(const std::string& script, const std::vector<std::string>
     throw std::runtime_error(
         fmt::format("{}, but drawing failed ({} {} {})", done, python, script, end.trouble));
   }
+}
+
+void require_figure_format(const fs::path& figure) {
+  constexpr std::array kEndings{".svg", ".pdf", ".png"};
+  if (std::ranges::find(kEndings, figure.extension()) == kEndings.end()) {
+    throw solver::InputError("--figure", figure.string() + ": allowed endings: .svg, .pdf, .png");
+  }
+  solver::require_place_for(figure);
+}
+
+void draw_solve(const fs::path& figure, const Json& result,
+                const std::function<void(const fs::path&)>& write_fields) {
+  const TemporaryFolder folder;
+  const fs::path json = folder / "result.json";
+  const fs::path fields = folder / "fields.h5";
+  solver::write_whole_file(json, json_text(result));
+  write_fields(fields);
+  run_report_script("solve_figure.py", {"--output=" + figure.string(), json, fields},
+                    "the result is complete");
+}
+
+void draw_study(const fs::path& figure, const Json& result) {
+  const TemporaryFolder folder;
+  const fs::path json = folder / "study.json";
+  solver::write_whole_file(json, json_text(result));
+  run_report_script("study_figure.py", {"--", json, figure}, "the study is complete");
 }
 
 }  // namespace slipstick::convergence

@@ -12,7 +12,6 @@
 namespace slipstick::convergence {
 namespace {
 
-using Json = nlohmann::ordered_json;
 namespace paper = analytic::paper;
 
 std::string jump_at_stick_radius() {

@@ -1,5 +1,3 @@
-#include "convergence/report/exact_curves.hpp"
-
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -10,11 +8,11 @@
 #include "analytic/cycle.hpp"
 #include "analytic/paper_equations.hpp"
 #include "analytic/torsion.hpp"
+#include "convergence/report/validation.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
-using Json = nlohmann::ordered_json;
 using analytic::TorsionState;
 
 constexpr int kCurvePoints = 200;

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -14,8 +15,7 @@
 #include "convergence/report/headline.hpp"
 #include "convergence/report/validation.hpp"
 #include "convergence/runs/failed_runs.hpp"
-#include "convergence/runs/interrupts.hpp"
-#include "convergence/runs/memory_option.hpp"
+#include "convergence/runs/run_options.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
 
@@ -30,7 +30,7 @@ struct ReportRequest {
   std::string benchmarks = "build/benchmarks";
   bool quick = false;
   bool full = false;
-  MemoryOption memory;
+  std::optional<std::uint64_t> memory_limit;
 };
 
 /// Whether the page is newer than all that it is made from.
@@ -59,7 +59,7 @@ void draw(const fs::path& data, const fs::path& benchmarks, const fs::path& outp
                     "the results are in " + data.string());
 }
 
-int run_report(const ReportRequest& request, std::ostream& text, nlohmann::ordered_json& result) {
+int run_report(const ReportRequest& request, std::ostream& text, Json& result) {
   const fs::path inputs = project_file("convergence");
   const fs::path scene = request.scene.empty() ? inputs / "scenes" / "paper.toml" : fs::path(request.scene);
   const fs::path output = request.output;
@@ -67,10 +67,8 @@ int run_report(const ReportRequest& request, std::ostream& text, nlohmann::order
   if (solver::lies_within(scene, data)) {  // the program's own scenes are copied there
     throw solver::InputError(scene.string(), "lies in the page's data; allowed: a scene elsewhere");
   }
-  const ProcessPool pool({.folder = data / "points",
-                          .memory_limit = request.memory.limit(),
-                          .program = kOwnProgram,
-                          .interrupted = Interrupts::seen});
+  const ProcessPool pool =
+      RunOptions{.output = data / "points", .memory_limit = request.memory_limit}.pool();
   {
     const Interrupts interrupts;
     result = validate(scene, inputs, size_of(request), data, pool);
@@ -89,7 +87,7 @@ int run_report(const ReportRequest& request, std::ostream& text, nlohmann::order
 
 }  // namespace
 
-std::function<int(std::ostream&, nlohmann::ordered_json&)> add_report_command(CLI::App& app) {
+RunCommand add_report_command(CLI::App& app) {
   const auto request = std::make_shared<ReportRequest>();
   CLI::App* const command = app.add_subcommand("report", "Run the paper's validation and draw the page");
   command->add_option("scene", request->scene, "scene file; left out: the paper's own case");
@@ -101,14 +99,12 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_report_command(CL
       ->add_option("--benchmarks", request->benchmarks,
                    "folder that `slipstick bench` wrote; the page shows its times where there are some")
       ->capture_default_str();
-  request->memory.add_to(*command);
+  add_memory_option(*command, request->memory_limit);
   command->footer(
       "Example:\n  slipstick report --output build/report\nFinished solves are kept: repeating an "
-      "interrupted "
-      "command goes on from there.\nExit code 0: done; 1: a run of a study failed, and the page says so; 2: "
-      "it "
-      "could not be made.");
-  return [request](std::ostream& text, nlohmann::ordered_json& result) {
+      "interrupted command goes on from there.\nExit code 0: done; 1: a run of a study failed, and the page "
+      "says so; 2: it could not be made.");
+  return [request](std::ostream& text, Json& result) {
     return run_report(*request, text, result);
   };
 }

@@ -13,15 +13,12 @@
 
 #include "analytic/paper_equations.hpp"
 #include "analytic/torsion.hpp"
-#include "convergence/gates/gate_reader.hpp"
-#include "convergence/gates/gate_report.hpp"
-#include "convergence/gates/gate_run.hpp"
+#include "convergence/check/check.hpp"
+#include "convergence/gates/gate.hpp"
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/oracle/oracle.hpp"
-#include "convergence/report/exact_curves.hpp"
 #include "convergence/report/gallery.hpp"
 #include "convergence/report/headline.hpp"
-#include "convergence/report/peers.hpp"
 #include "convergence/results/json_text.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/failed_runs.hpp"
@@ -144,7 +141,7 @@ Json profile(double moment_ratio, Json result) {
           {"fields", fields_file(moment_ratio)}, {"result", std::move(result)}};
 }
 
-/// Of the ellipses, what there is without an exact answer.
+/// The numbers of the ellipses that need no exact answer.
 Json without_errors(const std::vector<Json>& results) {
   Json rows = Json::array();
   for (const Json& result : results) {
@@ -234,6 +231,35 @@ Json hard_results(const fs::path& folder, std::size_t step, const ProcessPool& p
   for (std::size_t i = 0; i < all.size(); i += step) shown.push_back(std::move(all[i]));
   return run_hard_cases(
       shown, {.variants = false, .finer_meshes = false, .methods = {"projected_gradient", "paper"}}, pool);
+}
+
+/// A field of check/fields/, at 0.9 of the limit moment.
+struct KnownField {
+  const char* program;
+  const char* file;
+  double twist;  ///< rad, that the program reported
+  const char* expected;
+};
+
+constexpr KnownField kFields[] = {{"CONTACT", "contact-64-0.9.csv", 2.361048651456917e-3, "good"},
+                                  {"CGContact", "cgcontact-64-0.9.csv", 2.21775472e-3, "bad"}};
+
+/// What `check` says of fields that other programs computed for the paper's sphere and whose worth is known:
+/// a row for each, with its program, the verdict and the one that is expected. `inputs` has the scenes
+/// (scenes/) and the fields (check/fields/).
+Json judge_peers(const std::filesystem::path& inputs) {
+  const solver::Scene scene = solver::read_scene(inputs / "scenes" / "paper.toml", {"load.moment_ratio=0.9"});
+  Json rows = Json::array();
+  for (const KnownField& field : kFields) {
+    const Json result = check_field(scene, inputs / "check" / "fields" / field.file, {.twist = field.twist});
+    Json& row = rows.emplace_back(
+        Json{{"program", field.program}, {"file", field.file}, {"expected", field.expected}});
+    for (const char* key : {"verdict", "why", "cells", "twist_error", "moment_error", "stick_radius_error",
+                            "traction_error", "certificate", "slip_direction", "judged"}) {
+      row[key] = result[key];
+    }
+  }
+  return rows;
 }
 
 }  // namespace

@@ -2,7 +2,6 @@
 
 #include <array>
 #include <filesystem>
-#include <nlohmann/json_fwd.hpp>
 #include <vector>
 
 #include "convergence/runs/process_pool.hpp"
@@ -36,12 +35,17 @@ std::vector<solver::Index> up_to(std::vector<solver::Index> cells, solver::Index
 /// report.json and the fields that the page draws, and returns report.json's content. Throws InputError for a
 /// scene that has no exact solution to compare with; std::runtime_error where a run has no result, and as the
 /// pool does.
-nlohmann::ordered_json validate(const std::filesystem::path& scene_file, const std::filesystem::path& inputs,
-                                const ValidationSize& size, const std::filesystem::path& folder,
-                                const ProcessPool& pool);
+Json validate(const std::filesystem::path& scene_file, const std::filesystem::path& inputs,
+              const ValidationSize& size, const std::filesystem::path& folder, const ProcessPool& pool);
 
 /// What is wrong in the paper's equations as printed, each with numbers as evidence, computed here or taken
 /// from the results of the paper's method on a circular and on elliptic contacts.
-nlohmann::ordered_json errata(const nlohmann::ordered_json& circle, const nlohmann::ordered_json& ellipses);
+Json errata(const Json& circle, const Json& ellipses);
+
+/// What the page shows of the exact side alone, no solve needed: for the sphere `curve` (stick radius and
+/// twist against moment), `equation_5_digits`, `approximations` (errors of laws in use) and
+/// `approximation_table`; for sphere, cone and flat punch `bodies`; `loop` (a history with an inner loop) and
+/// `cycle_energy`.
+Json exact_curves();
 
 }  // namespace slipstick::convergence

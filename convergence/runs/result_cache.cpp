@@ -18,7 +18,6 @@
 namespace slipstick::convergence {
 namespace {
 
-using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
 constexpr std::uint64_t kPrime = 1099511628211ULL;
@@ -28,14 +27,11 @@ std::optional<std::string> bytes_of(const fs::path& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return std::nullopt;
   try {
-    return solver::read_input_file(file, solver::kLargestTable, "a regular file");
+    return solver::read_input_file(file, solver::kLargestTextTable, "a regular file");
   } catch (const solver::InputError&) {
     return std::nullopt;
   }
 }
-
-/// On one line. Names of files need not be UTF-8; JSON is.
-std::string text_of(const Json& json) { return json.dump(-1, ' ', false, Json::error_handler_t::replace); }
 
 /// A file that belongs to a result, by its content.
 std::string file_text(const fs::path& file) {
@@ -60,7 +56,7 @@ Json entry(const std::string& program, const std::string& cache_key, const Json&
            const fs::path& beside) {
   Json kept{{"program", program}, {"cache_key", cache_key}, {"result", result}};
   if (!beside.empty()) kept["beside"] = file_text(beside);
-  kept["checksum"] = fmt::format("{:016x}", checksum(text_of(kept)));
+  kept["checksum"] = fmt::format("{:016x}", checksum(json_text(kept)));
   return kept;
 }
 
@@ -96,8 +92,7 @@ std::string program_identity(const fs::path& program) {
 }
 
 void write_json_file(const fs::path& file, const Json& json) {
-  // Names of files need not be UTF-8; JSON is.
-  const std::string content = json.dump(1, ' ', false, Json::error_handler_t::replace) + "\n";
+  const std::string content = json_text(json, 1) + "\n";
   if (bytes_of(file) != content) solver::write_whole_file(file, content);
 }
 
@@ -117,7 +112,7 @@ std::optional<Json> ResultCache::find(const std::string& name, const std::string
                                       const fs::path& beside) const {
   Json found = find_json(file(name));
   if (!found.is_object() || !found.contains("result") || !found["result"].is_object()) return std::nullopt;
-  if (text_of(found) != text_of(entry(program_, cache_key, found["result"], beside))) return std::nullopt;
+  if (json_text(found) != json_text(entry(program_, cache_key, found["result"], beside))) return std::nullopt;
   return std::move(found["result"]);
 }
 

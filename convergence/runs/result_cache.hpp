@@ -3,12 +3,12 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
-#include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
 #include <string_view>
 
 #include "convergence/programs/run_program.hpp"
+#include "convergence/results/result_parts.hpp"
 
 namespace slipstick::convergence {
 
@@ -27,16 +27,16 @@ class ResultCache {
 
   /// The result of a name, which is its file's without ending, if it is on disk. beside: a file that belongs
   /// to it, and that has to be the one that was there when it was kept; empty: none.
-  std::optional<nlohmann::ordered_json> find(const std::string& name, const std::string& cache_key,
-                                             const std::filesystem::path& beside = {}) const;
+  std::optional<Json> find(const std::string& name, const std::string& cache_key,
+                           const std::filesystem::path& beside = {}) const;
 
   /// Throws InputError if the result cannot be written.
-  void keep(const std::string& name, const std::string& cache_key, const nlohmann::ordered_json& result,
+  void keep(const std::string& name, const std::string& cache_key, const Json& result,
             const std::filesystem::path& beside = {}) const;
 
   /// The result from disk, or computed and then written. Throws as keep().
-  nlohmann::ordered_json find_or_compute(const std::string& name, const std::string& cache_key,
-                                         const std::function<nlohmann::ordered_json()>& compute) const;
+  Json find_or_compute(const std::string& name, const std::string& cache_key,
+                       const std::function<Json()>& compute) const;
 
  private:
   std::filesystem::path file(const std::string& name) const { return folder_ / (name + ".json"); }
@@ -45,8 +45,8 @@ class ResultCache {
   std::string program_;  ///< identifies the executable
 };
 
-/// Of bytes by which nobody wants to deceive: Fowler, Noll and Vo's hash (FNV-1a, 64 bits). of_before: that
-/// of those before them.
+/// A non-cryptographic checksum: Fowler, Noll and Vo's hash (FNV-1a, 64 bits). of_before: that of the bytes
+/// before these.
 std::uint64_t checksum(std::string_view bytes, std::uint64_t of_before = 14695981039346656037ULL);
 
 /// The same, of eight bytes at once: another sum than that of the bytes.
@@ -56,6 +56,6 @@ std::uint64_t checksum_of_word(std::uint64_t word, std::uint64_t of_before);
 std::string program_identity(const std::filesystem::path& program);
 
 /// Writes JSON as write_whole_file() does; a file that has this content already keeps its time.
-void write_json_file(const std::filesystem::path& file, const nlohmann::ordered_json& json);
+void write_json_file(const std::filesystem::path& file, const Json& json);
 
 }  // namespace slipstick::convergence

@@ -10,13 +10,8 @@
 
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/python_script.hpp"
-#include "convergence/programs/solve_figure.hpp"
-#include "convergence/programs/temporary_folder.hpp"
-#include "convergence/runs/interrupts.hpp"
-#include "convergence/runs/memory_option.hpp"
-#include "convergence/runs/shard_option.hpp"
+#include "convergence/runs/run_options.hpp"
 #include "convergence/studies/study.hpp"
-#include "solver/input/whole_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -24,19 +19,9 @@ namespace {
 struct StudyRequest {
   std::string study;
   std::vector<std::string> overrides;
-  std::string output = "build/studies";
   std::string figure;
-  int jobs = 0;
-  MemoryOption memory;
-  ShardOption shards;
+  RunOptions runs{.output = "build/studies"};
 };
-
-void draw(const std::string& figure, const Json& result) {
-  const TemporaryFolder folder;
-  solver::write_whole_file(folder / "study.json",
-                           result.dump(-1, ' ', false, Json::error_handler_t::replace));
-  run_report_script("study_figure.py", {"--", folder / "study.json", figure}, "the study is complete");
-}
 
 bool all_converged(const Json& result) {
   if (result["failed_runs"]["count"] != 0) return false;
@@ -64,51 +49,38 @@ int run_study_shard(const Study& study, const Shard& shard, const ProcessPool& p
 
 int run_study_request(const CLI::App& command, const StudyRequest& request, std::ostream& text,
                       Json& result) {
-  const std::optional<Shard> shard = request.shards.shard();
+  const std::optional<Shard> shard = request.runs.wanted_shard();
   if (!request.figure.empty()) require_figure_format(request.figure);
   const Study study = read_study(request.study, request.overrides);
   require_inputs_kept(command, input_files(solver::read_scene(study.scene, study.overrides)));
-  const ProcessPool pool({.folder = request.output,
-                          .jobs = request.jobs,
-                          .memory_limit = request.memory.limit(),
-                          .program = kOwnProgram,
-                          .joined = request.shards.merged(),
-                          .interrupted = Interrupts::seen});
+  const ProcessPool pool = request.runs.pool();
   if (shard) return run_study_shard(study, *shard, pool, text, result);
   {
     const Interrupts interrupts;
-    if (!request.shards.merged().empty()) require_finished(prepared_runs(study, pool), pool);
+    if (!request.runs.merged.empty()) require_finished(prepared_runs(study, pool), pool);
     result = run_study(study, pool);
   }
   text << study_text(result);
-  if (!request.figure.empty()) draw(request.figure, result);
+  if (!request.figure.empty()) draw_study(request.figure, result);
   return all_converged(result) ? 0 : 1;
 }
 
 }  // namespace
 
-std::function<int(std::ostream&, nlohmann::ordered_json&)> add_study_command(CLI::App& app) {
+RunCommand add_study_command(CLI::App& app) {
   const auto request = std::make_shared<StudyRequest>();
   CLI::App* const command = app.add_subcommand(
       "study", "Solve a scene on many meshes or to many tolerances; judge orders and errors");
   command->add_option("study", request->study, "study file (TOML)")->required();
-  command->add_option("--set", request->overrides, "key=value: override a key of the scene, for all series")
-      ->take_all()
-      ->allow_extra_args(false);
-  command->add_option("--output", request->output, "folder that keeps finished solves")
-      ->capture_default_str();
+  add_set_option(*command, request->overrides, "override a key of the scene, for all series");
   command->add_option("--figure", request->figure, "draw errors, orders and budget: .svg, .pdf or .png");
-  command->add_option("--jobs", request->jobs, "solves at a time; 0: one a processor, as memory allows")
-      ->capture_default_str()
-      ->check(CLI::NonNegativeNumber);
-  request->memory.add_to(*command);
-  request->shards.add_to(*command, {"--figure"});
+  request->runs.add_to(*command);
+  request->runs.add_shards_to(*command, {"--figure"});
   command->footer(
       "Example:\n  slipstick study convergence/studies/paper_mesh.toml --figure study.svg --json study.json\n"
       "Finished solves are kept: repeating an interrupted command goes on from there.\nExit code 0: done; 1: "
-      "some "
-      "solve did not converge or failed, and is marked; 2: bad input.");
-  return [command, request](std::ostream& text, nlohmann::ordered_json& result) {
+      "some solve did not converge or failed, and is marked; 2: bad input.");
+  return [command, request](std::ostream& text, Json& result) {
     return run_study_request(*command, *request, text, result);
   };
 }

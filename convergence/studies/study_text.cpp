@@ -1,12 +1,12 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
 
+#include "convergence/orders/expected_order.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/studies/study.hpp"
 
@@ -15,28 +15,8 @@ namespace {
 
 /// Short names of what is shown in tables; other quantities keep their path.
 std::string label(const std::string& path) {
-  static const std::vector<std::pair<std::string, std::string>> labels{
-      {"twist_error", "twist"},
-      {"moment_error", "moment"},
-      {"moment_limit_error", "limit moment"},
-      {"displacement_error", "displacement"},
-      {"stick_radius_error", "stick radius"},
-      {"stick_ratio_error", "stick ratio"},
-      {"stick_radius_counted_error", "stick radius, counted"},
-      {"contact_radius_error", "contact radius"},
-      {"peak_pressure_error", "peak pressure"},
-      {"dissipated_error", "energy lost"},
-      {"traction_error.l1", "traction L1"},
-      {"traction_error.l2", "traction L2"},
-      {"traction_error.max", "traction max"},
-      {"traction_error.averaged.l1", "traction L1, cell averages"},
-      {"traction_error.averaged.l2", "traction L2, cell averages"},
-      {"pressure_error.l1", "pressure L1"},
-      {"pressure_error.l2", "pressure L2"},
-  };
-  const auto found =
-      std::find_if(labels.begin(), labels.end(), [&](const auto& l) { return l.first == path; });
-  return found == labels.end() ? path : found->second;
+  const auto found = std::ranges::find(error_quantities(), path, &ErrorQuantity::path);
+  return found == error_quantities().end() ? path : found->label;
 }
 
 std::string error(const Json& value) {
@@ -83,7 +63,7 @@ std::string orders_text(const Json& series) {
   return text;
 }
 
-/// What errors are measured from.
+/// The values that errors are measured from.
 std::string basis_text(const Json& series) {
   const bool is_compared = series["meshes"].size() > 1;
   if (!is_compared && series["basis"] != "exact") return "no exact answer: values";

@@ -1,6 +1,6 @@
 // What a gate file may say.
 
-#include "convergence/gates/gate_reader.hpp"
+#include "convergence/gates/gate.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-class GateFile : public GateFolder {
+class GateFile : public ScratchFolder {
  protected:
   std::string complaint(const std::string& text) const {
     return solver::complaint([&] { read_gates(write("bad.toml", text)); });
@@ -74,6 +74,41 @@ status = "expected_failure"
   EXPECT_EQ(gates[2].source, "/elsewhere/cone.toml");
   EXPECT_EQ(gates[2].above, 1.0);
   EXPECT_EQ(gates[2].below, 7.0);
+}
+
+/// A gate's own keys count before its group's, `set` is both together, and gates come in the order of lines.
+TEST_F(GateFile, GatesOfAGroupShareItsKeys) {
+  const std::string group = R"([[group]]
+scene = "scenes/paper.toml"
+set = { "grid.cells" = [64, 64], "load.moment_ratio" = 0.5 }
+basis = "measured"
+platform_spread = 1e-9
+[[group.gate]]
+id = "of-group"
+quantity = "twist_error"
+below = 2e-5
+[[group.gate]]
+id = "own"
+set = { "load.moment_ratio" = 0.9 }
+quantity = "status"
+equals = "converged"
+basis = "asked for"
+)";
+  const std::vector<Gate> gates = read_gates(write("some.toml", group + kGate));
+  ASSERT_EQ(gates.size(), 3);
+  EXPECT_EQ(gates[0].id, "of-group");
+  EXPECT_EQ(gates[0].line, 6);
+  EXPECT_EQ(gates[0].source, folder_ / "scenes/paper.toml");
+  EXPECT_THAT(gates[0].overrides, testing::ElementsAre("grid.cells=[64, 64]", "load.moment_ratio=0.5"));
+  EXPECT_EQ(gates[0].basis, "measured");
+  EXPECT_EQ(gates[0].platform_spread, 1e-9);
+  EXPECT_THAT(gates[1].overrides,
+              testing::ElementsAre("grid.cells=[64, 64]", "load.moment_ratio=0.5", "load.moment_ratio=0.9"));
+  EXPECT_EQ(gates[1].basis, "asked for");
+  EXPECT_EQ(gates[2].id, "first") << "which stands in no group";
+  EXPECT_EQ(gates[2].platform_spread, 0.0);
+  EXPECT_THAT(complaint(group + "study = 'a.toml'\n"), HasSubstr("one of scene and study"));
+  EXPECT_THAT(complaint("[[group]]\nscene = 'a.toml'\nbelow = 1.0\n" + group), HasSubstr("below"));
 }
 
 TEST_F(GateFile, NeedsNoBasisToReportOnly) {

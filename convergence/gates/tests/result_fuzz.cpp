@@ -4,8 +4,7 @@
 #include <cstdlib>
 #include <string>
 
-#include "convergence/gates/gate_report.hpp"
-#include "convergence/gates/gate_run.hpp"
+#include "convergence/gates/gate.hpp"
 #include "solver/input/tests/fuzz_file.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {

@@ -3,7 +3,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "convergence/hard/method_comparison.hpp"
+#include "convergence/hard/hard_judgement.hpp"
 
 namespace slipstick::convergence {
 namespace {

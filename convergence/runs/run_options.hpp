@@ -1,0 +1,65 @@
+#pragma once
+
+#include <array>
+#include <csignal>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "convergence/runs/process_pool.hpp"
+#include "convergence/runs/shard.hpp"
+
+namespace CLI {
+class App;
+}
+
+/// Options that commands share which solve, and the signals that end them.
+namespace slipstick::convergence {
+
+/// --set, whose words are "key=value".
+void add_set_option(CLI::App& command, std::vector<std::string>& overrides, const std::string& help);
+
+/// --memory-limit, in bytes; none where it is not given.
+void add_memory_option(CLI::App& command, std::optional<std::uint64_t>& bytes);
+
+/// The options of commands that solve many scenes.
+struct RunOptions {
+  std::string output;                              ///< folder that keeps finished solves
+  int jobs = 0;                                    ///< see ProcessPoolOptions
+  std::optional<std::uint64_t> memory_limit = {};  ///< bytes
+  std::string shard = {};                          ///< as read_shard() takes it; empty: all runs
+  std::vector<std::string> merged = {};            ///< folders of other shards
+
+  /// --output, --jobs, --memory-limit.
+  void add_to(CLI::App& command);
+  /// --shard and --merge. Beside --shard the named options, which take what was judged, are refused.
+  void add_shards_to(CLI::App& command, const std::vector<std::string>& of_judgement);
+
+  /// None where --shard was not given. Throws InputError for a word that is no shard.
+  std::optional<Shard> wanted_shard() const;
+  /// What solves, with this program; an Interrupts that lives meanwhile stops it. Throws InputError where
+  /// --merge names what is no folder.
+  ProcessPool pool() const;
+};
+
+/// What asks a program to end, SIGINT, SIGTERM and SIGHUP, is noted for as long as this lives; what was
+/// ignored before, as under nohup, stays so. For the program's commands: a library leaves signals to its
+/// host.
+class Interrupts {
+ public:
+  Interrupts();
+  ~Interrupts();
+  Interrupts(const Interrupts&) = delete;
+  Interrupts& operator=(const Interrupts&) = delete;
+
+  /// Whether any has come.
+  static bool seen();
+
+ private:
+  static constexpr std::array kSignals{SIGINT, SIGTERM, SIGHUP};
+
+  std::array<struct sigaction, kSignals.size()> before_{};
+};
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,194 @@
+"""slipstick.check, gate and study: verdicts that theory gives, and what goes wrong."""
+import importlib.util
+import os
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+import unittest
+from pathlib import Path
+
+import numpy as np
+import scenes
+import slipstick
+from slipstick._scene import toml_text
+
+signal.signal(signal.SIGINT, signal.default_int_handler)  # a shell's background job ignores it
+SPHERE = scenes.SPHERE | {"grid": {"cells": [32, 32]}}
+GATE = """
+[[gate]]
+id = "twist"
+scene = "scene.toml"
+quantity = "twist_error"
+below = {}
+basis = "made up"
+"""
+
+
+def exact_field():
+    """The exact tractions of the scene at the cell centres of its grid."""
+    return dict(slipstick.solve(SPHERE, solver__model="exact").fields)
+
+
+class CheckTest(unittest.TestCase):
+    def test_good(self):
+        solution = slipstick.solve(SPHERE)
+        for field in (solution.fields, exact_field()):
+            verdict = slipstick.check(SPHERE, field)
+            self.assertTrue(verdict.good, verdict.why)
+        self.assertTrue(slipstick.check(SPHERE, solution, twist=solution.twist_angle, discrete=True).good)
+
+    def test_bad(self):
+        field = exact_field()
+        field["q1"], field["q2"] = 0.8 * field["q1"], 0.8 * field["q2"]  # carries 0.72 of the limit, not 0.9
+        verdict = slipstick.check(SPHERE, field)
+        self.assertEqual((verdict.good, verdict.verdict), (False, "bad"))
+        self.assertIn("moment", verdict.why)
+        self.assertAlmostEqual(verdict.moment_error, -0.2, delta=0.01)
+        self.assertIn("<th>verdict</th><td>bad</td>", verdict._repr_html_())
+
+    def test_options_and_overrides_arrive(self):
+        field = exact_field()
+        self.assertFalse(slipstick.check(SPHERE, field, tolerance=1e-9).good)
+        self.assertFalse(slipstick.check(SPHERE, field, load__moment_ratio=0.5).good)
+        self.assertFalse(slipstick.check(SPHERE, field, twist=1.0).good)
+        in_mpa = {name: values * (1e-6 if name in ("pressure", "q1", "q2") else 1) for name, values in field.items()}
+        self.assertTrue(slipstick.check(SPHERE, in_mpa).good)
+        self.assertFalse(slipstick.check(SPHERE, in_mpa, strict=True).good)
+        rounded = field | {"q1": field["q1"] * 1.0001, "q2": field["q2"] * 1.0001}  # within the mesh, but no solution on it
+        self.assertTrue(slipstick.check(SPHERE, rounded).good)
+        self.assertFalse(slipstick.check(SPHERE, rounded, discrete=True).good)
+
+    def test_cells_that_carry_a_traction_without_pressure_are_seen(self):
+        field = exact_field()
+        field["q1"] = field["q1"] + 1e8 * (field["pressure"] == 0)
+        self.assertFalse(slipstick.check(SPHERE, field).good)
+
+    def test_loops(self):
+        """The exact loop in the scene's units is good; that of another stiffness is not."""
+        exact = slipstick.solve(SPHERE, solver__model="exact", load__moment_ratio=0.5)
+        curve = slipstick.exact.curve([0.5, -0.5, 0.5], 40)
+        loop = {"moment": curve.moment * exact.moment / slipstick.exact.moment(moment_ratio=0.5),
+                "rotation": curve.twist * exact.twist_angle / slipstick.exact.twist(0.5)}
+        self.assertTrue(slipstick.check(SPHERE, loop).good)
+        self.assertFalse(slipstick.check(SPHERE, loop | {"rotation": 1.3 * loop["rotation"]}).good)
+        with self.assertRaisesRegex(slipstick.InputError, "has no rotation"):
+            slipstick.check(SPHERE, {"moment": loop["moment"]})
+
+    def test_refusals(self):
+        field = exact_field()
+        with self.assertRaisesRegex(slipstick.InputError, "the field has no q2"):
+            slipstick.check(SPHERE, {name: field[name] for name in ("x1", "x2", "pressure", "q1")})
+        with self.assertRaisesRegex(slipstick.InputError, "allowed: one a cell in each"):
+            slipstick.check(SPHERE, field | {"q2": np.zeros(3)})
+        with self.assertRaisesRegex(slipstick.InputError, "^nowhere.csv: cannot be read"):
+            slipstick.check(SPHERE, "nowhere.csv")
+        with self.assertRaisesRegex(slipstick.InputError, "contact.friction = -1"):
+            slipstick.check(SPHERE, field, contact__friction=-1.0)
+
+
+class FilesTest(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = Path(folder.name)
+        (self.folder / "scene.toml").write_text(toml_text(SPHERE))
+
+    def test_gates(self):
+        file = self.folder / "gates.toml"
+        file.write_text(GATE.format(1e-2))
+        gates = slipstick.gate(file, output=self.folder / "kept")
+        self.assertTrue(gates.passed)
+        self.assertLess(abs(gates.gates[0].value), 1e-2)
+        self.assertTrue(any((self.folder / "kept").iterdir()))
+        self.assertEqual(gates.why, "")
+        file.write_text(GATE.format(1e-7))
+        self.assertFalse(slipstick.gate([file]).passed)
+        self.assertRegex(slipstick.gate([file]).why, "^twist: .*1e-07")
+        self.assertIn("missing.toml: cannot be read", repr(slipstick.gate("missing.toml")))
+        file.write_text(GATE.format('"small"'))
+        self.assertFalse(slipstick.gate(file).passed)
+        with self.assertRaisesRegex(slipstick.InputError, "thrust"):
+            slipstick.gate(file, only=["thrust"])
+        file.write_text(GATE.format(1e-2) + GATE.format(1e-7).replace('"twist"', '"tight"'))
+        self.assertEqual([gate.outcome for gate in slipstick.gate(file).gates], ["passed", "failed"])
+        self.assertEqual([gate.id for gate in slipstick.gate(file, only=["tight"]).gates], ["tight"])
+
+    def test_study(self):
+        file = self.folder / "study.toml"
+        file.write_text('name = "small"\nscene = "scene.toml"\ncells = [16, 24, 32]\nshifts = 1\n')
+        study = slipstick.study(file, load__moment_ratio=0.5)
+        rows = [row for series in study.series.values() for row in series.rows]
+        self.assertEqual(sorted(row.cells[0] for row in rows), [16, 24, 32])
+        errors = [abs(row["twist_error"]) for row in rows]
+        self.assertLess(max(errors), 0.05)
+
+    def test_a_study_goes_on_after_ctrl_c(self):
+        file, kept = self.folder / "study.toml", self.folder / "kept"
+        cells = list(range(16, 272, 16))  # for minutes, were it not stopped
+        file.write_text(f'name = "long"\nscene = "scene.toml"\ncells = {cells}\nshifts = 4\n')
+
+        ended = threading.Event()
+
+        def strike():
+            while not ended.wait(0.01):
+                if any(kept.glob("**/*.json")):
+                    return os.kill(os.getpid(), signal.SIGINT)
+
+        striker = threading.Thread(target=strike)
+        striker.start()
+        try:
+            with self.assertRaises(KeyboardInterrupt):
+                slipstick.study(file, output=kept, jobs=1)
+        finally:
+            ended.set()
+            striker.join()
+        with self.assertRaises(ChildProcessError):  # nothing is left running
+            os.waitpid(-1, os.WNOHANG)
+        file.write_text(f'name = "long"\nscene = "scene.toml"\ncells = {cells[:3]}\nshifts = 1\n')
+        said = []
+        self.assertEqual(slipstick.study(file, output=kept, progress=said.append).failed_runs.count, 0)
+        self.assertIn("[", said[-1])
+
+
+    @unittest.skipUnless(sys.platform == "linux", "only Linux ends a process with its parent")
+    def test_a_killed_python_leaves_no_study(self):
+        (self.folder / "study.toml").write_text('name = "long"\nscene = "scene.toml"\ncells = [256, 288]\n'
+                                                'set = { "solver.operator" = "direct" }\n')  # minutes each
+        mark = f"SLIPSTICK_TEST_MARKER={self.folder}".encode()
+
+        def processes():
+            found = []
+            for process in Path("/proc").glob("[0-9]*"):
+                try:
+                    found += [int(process.name)] * (mark in (process / "environ").read_bytes().split(b"\0"))
+                except OSError:
+                    pass
+            return found
+
+        parent = subprocess.Popen(
+            [sys.executable, "-B", "-c", f"import slipstick; slipstick.study({str(self.folder / 'study.toml')!r}, jobs=2)"],
+            env=os.environ | {"SLIPSTICK_TEST_MARKER": str(self.folder), "TMPDIR": str(self.folder)})
+        self.addCleanup(lambda: [os.kill(process, signal.SIGKILL) for process in processes()])
+        while len(processes()) < 4:  # Python, the study, two that solve
+            self.assertIsNone(parent.poll())
+            time.sleep(0.01)
+        parent.kill()
+        parent.wait()
+        end = time.monotonic() + 120  # longer than it takes on any machine
+        while processes() and time.monotonic() < end:
+            time.sleep(0.01)
+        self.assertEqual(processes(), [])
+
+
+class MachineryTest(unittest.TestCase):
+    @unittest.skipUnless(importlib.util.find_spec("pandas"), "pandas is not installed")
+    def test_frames(self):
+        result = slipstick.Result({"rows": [{"a": 1, "b": {"c": 2}}, {"a": 3, "b": {"c": 4}}]})
+        self.assertEqual(list(result.to_frame()["b.c"]), [2, 4])
+
+
+if __name__ == "__main__":
+    unittest.main()
