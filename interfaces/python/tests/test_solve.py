@@ -1,8 +1,8 @@
 """slipstick.solve: facts, fields without copies, progress, Ctrl-C, what goes wrong."""
-import importlib.util
 import copy
 import gc
 import json
+import importlib.util
 import multiprocessing
 import os
 import pickle
