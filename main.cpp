@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analytic/exact_command.hpp"
+#include "analytic/command/exact_command.hpp"
 #include "bench/bench_command.hpp"
 #include "bench/compare/compare_command.hpp"
 #include "convergence/commands.hpp"

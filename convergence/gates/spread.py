@@ -23,7 +23,7 @@ def gates_in(path):
 
 
 def difference(one, other):
-    """How far two numbers are apart; for words 0 where they are the same."""
+    """The difference of two numbers; 0 for equal words."""
     numbers = all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in (one, other))
     return abs(one - other) if numbers else 0.0 if one == other else math.inf
 

@@ -1,4 +1,4 @@
-#include "analytic/exact_command.hpp"
+#include "analytic/command/exact_command.hpp"
 
 #include <fmt/core.h>
 
@@ -11,9 +11,10 @@
 #include <ostream>
 #include <stdexcept>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "analytic/exact_answer.hpp"
+#include "analytic/command/exact_text.hpp"
 
 namespace slipstick::analytic {
 
@@ -36,10 +37,6 @@ constexpr std::array kGiven{
           certified::Quantity::stick_complement},
     Given{"--twist", "G a^2 phi/(mu W), from 0", from_twist, certified::Quantity::twist},
 };
-
-constexpr const char* kProfiles =
-    "hertz | cone | flat_punch | power:N (gap ~ r^N) | rounded_punch:B (flat out to B = b/a) | "
-    "file:P.csv (columns radius, pressure; 16 points or more)";
 
 /// As typed. Numbers stay text for certified digits, which take them to be exactly what is written.
 struct Options {
@@ -169,13 +166,7 @@ void add_units_options(CLI::App& exact, Options& options) {
       exact.add_option("--normal-load", options.normal_load, "W, N: gives results in SI units too");
   CLI::Option* modulus = exact.add_option("--effective-modulus", options.effective_modulus,
                                           "E*, Pa, 1/E* = sum of (1 - nu_i^2)/E_i");
-  CLI::Option* shape =
-      exact
-          .add_option(
-              "--shape", options.shape,
-              "hertz: sphere radius, m; cone: slope; flat_punch: radius, m; power:N: coefficient of r^N, "
-              "m^(1-N); rounded_punch: flat radius, corner radius, m")
-          ->delimiter(',');
+  CLI::Option* shape = exact.add_option("--shape", options.shape, shape_words())->delimiter(',');
   load->needs(modulus)->needs(shape);
   modulus->needs(load);
   shape->needs(load);
@@ -198,7 +189,7 @@ std::function<int(std::ostream&, Json&)> add_exact_command(CLI::App& app) {
       ->add_option("--radius", options->radii,
                    "r/a, in [0, 1], where to give traction and pressure: r1,r2,...")
       ->delimiter(',');
-  exact->add_option("--profile", options->profile, kProfiles)->capture_default_str();
+  exact->add_option("--profile", options->profile, profile_words())->capture_default_str();
   add_units_options(*exact, *options);
   exact->footer(
       "Examples: slipstick exact --moment-ratio 0.9 --radius 0.2,0.5,0.8\n"

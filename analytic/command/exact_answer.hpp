@@ -1,7 +1,7 @@
 #pragma once
 
+#include <array>
 #include <functional>
-#include <iosfwd>
 #include <nlohmann/json_fwd.hpp>
 #include <optional>
 #include <string>
@@ -12,12 +12,35 @@
 #include "analytic/named_profile.hpp"
 #include "analytic/torsion.hpp"
 
-/// What `exact` finds for each kind of question, as JSON and as text.
+/// The answers of the command `exact`, as JSON.
 namespace slipstick::analytic {
 
 using Json = nlohmann::ordered_json;
 
-/// What turns dimensionless numbers into SI units, where the user gave it.
+/// A number that every state has, proven or not: its key in the JSON, and its name and symbol for a person.
+struct ExactQuantity {
+  const char* key;
+  const char* label;
+  const char* symbol;
+  double TorsionState::*member;
+  certified::Number certified::State::*certified;
+};
+inline constexpr std::array kExactQuantities{
+    ExactQuantity{"moment_ratio", "moment ratio", "M/M_lim", &TorsionState::moment_ratio,
+                  &certified::State::moment_ratio},
+    ExactQuantity{"moment_deficit", "moment deficit", "1 - M/M_lim", &TorsionState::moment_deficit,
+                  &certified::State::moment_deficit},
+    ExactQuantity{"stick_ratio", "stick ratio", "a_s/a", &TorsionState::stick_ratio,
+                  &certified::State::stick_ratio},
+    ExactQuantity{"stick_complement", "stick complement", "1 - a_s/a", &TorsionState::stick_complement,
+                  &certified::State::stick_complement},
+    ExactQuantity{"twist", "twist", "G a^2 phi/(mu W)", &TorsionState::twist, &certified::State::twist},
+    ExactQuantity{"moment", "moment", "M/(mu W a)", &TorsionState::moment, &certified::State::moment},
+    ExactQuantity{"tangent_stiffness", "tangent stiffness", "dM/dphi/(G a^3)",
+                  &TorsionState::tangent_stiffness, &certified::State::tangent_stiffness},
+};
+
+/// The normal side in SI units, and the constants that turn dimensionless results into SI units.
 struct Units {
   Indentation indentation;
   double load;                          ///< N
@@ -39,7 +62,6 @@ struct StateQuestion {
   std::optional<double> unload_to;  ///< M/M_lim
 };
 Json answer_state(const ExactContact& contact, const StateQuestion& question);
-void write_state(std::ostream& out, const ExactContact& contact, const Json& answer);
 
 /// A history of loads at constant normal load: turning points M/M_lim in turn.
 struct HistoryQuestion {
@@ -48,7 +70,6 @@ struct HistoryQuestion {
   std::vector<double> radii;
 };
 Json answer_history(const ExactContact& contact, const HistoryQuestion& question);
-void write_history(std::ostream& out, const ExactContact& contact, const Json& answer);
 
 /// One state of first loading with proven digits.
 struct CertifiedQuestion {
@@ -58,6 +79,5 @@ struct CertifiedQuestion {
   int digits;
 };
 Json answer_certified(const ExactContact& contact, const CertifiedQuestion& question);
-void write_certified(std::ostream& out, const ExactContact& contact, const Json& answer);
 
 }  // namespace slipstick::analytic
