@@ -223,8 +223,8 @@ class Budget(unittest.TestCase):
                       "all the iteration.", study_figure.draw(content).message)
 
     def test_a_tenth_is_not_above_a_tenth(self):
-        for iteration, words in ((0.1, "The mesh error of the twist is at least 1.0×10¹ times"), (0.095, "The mesh error of the twist is at least"),
-                                 (0.11, "On 4 of 4 meshes")):
+        for iteration, words in ((0.1, "The mesh error of the twist is at least 1.0×10¹ times"),
+                                 (0.095, "The mesh error of the twist is at least"), (0.11, "On 4 of 4 meshes")):
             content = study()
             for one in content["series"].values():
                 for row in one["budget"]:
