@@ -69,7 +69,7 @@ std::string in_cell_of_keys(const std::string& text) {
 std::string row(const SettingKey& key) {
   const std::string words = key.type == KeyType::flag ? "true, false" : key.allowed.words;
   const std::string shapes =
-      key.shapes.empty() ? "" : fmt::format(" Of `{}`.", fmt::join(key.shapes, "`, `"));
+      key.shapes.empty() ? "" : fmt::format(" For `{}`.", fmt::join(key.shapes, "`, `"));
   return fmt::format("| `{}` | {} | {} | {} | {} | {}{} |\n", last_part(key.name), type_text(key.type),
                      key.unit, key.otherwise, words, in_cell_of_keys(key.meaning), shapes);
 }

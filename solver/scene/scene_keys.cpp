@@ -126,7 +126,7 @@ void add_contact(SettingKeys& keys, const Scene& scene) {
        "Columns x1, x2 (m), pressure (Pa), one row for each contact cell: .csv or .h5. Known with pressure = "
        "\"file\" alone."},
       {"contact.coupling", kWord, "", word_of(kCouplings, scene.coupling), one_of(kCouplings),
-       "Of dissimilar bodies: the pressure's tangential displacement where they are dissimilar (auto); "
+       "For dissimilar bodies: the pressure's tangential displacement where they are dissimilar (auto); "
        "nothing; that displacement; also the shear's normal displacement."}};
   keys.insert(keys.end(), contact.begin(), contact.end());
 }

@@ -197,7 +197,7 @@ def strong(model, n):
 
 
 def pays_to(rows):
-    """The most nodes of which the last doubling gained half as much again."""
+    """The largest number of nodes at which the last doubling took at most two thirds of the time."""
     return max((after[0] for before, after in zip(rows, rows[1:]) if before[1] / after[1] >= GAIN), default=rows[0][0])
 
 
