@@ -14,7 +14,9 @@ SANITIZE ?=
 SANITIZER ?= asan-ubsan
 COMPILER ?=
 LINT_SINCE ?=
-# How many instructions a solve takes is gated where it is known of this compiler.
+# The interpreter that CMake found.
+PYTHON = "$$(sed -n 's/^SLIPSTICK_PYTHON:[A-Z]*=//p' $(BUILD)/CMakeCache.txt)"
+# The gates on instructions exist for some compilers.
 INSTRUCTION_GATES = $(wildcard bench/gates/instructions-gcc-$(firstword $(subst ., ,$(shell c++ -dumpversion))).toml)
 
 .DEFAULT_GOAL := help
@@ -28,14 +30,14 @@ help: ## show this list
 setup: ## install the missing Debian/Ubuntu packages (elsewhere: list them)
 	@cmake/setup
 
-# What was left out the last time is looked for again.
+# Packages that were missing the last time are looked for again.
 configure: setup
-	@if [ ! -f $(BUILD)/build.ninja ] || [ -s $(BUILD)/left_out.txt ]; then cmake --preset release; fi
+	@if [ ! -f $(BUILD)/build.ninja ] || [ -s $(BUILD)/not_built.txt ]; then cmake --preset release; fi
 
-# $(call build,targets): builds them, and says at the end what had to be left out.
+# $(call build,targets): builds them, and says at the end what was not built.
 define build
 @cmake --build $(BUILD) --target $(1)
-@if [ -s $(BUILD)/left_out.txt ]; then echo; cat $(BUILD)/left_out.txt; echo; fi >&2
+@if [ -s $(BUILD)/not_built.txt ]; then echo; cat $(BUILD)/not_built.txt; echo; fi >&2
 endef
 
 build: configure ## build everything, the program is build/slipstick
@@ -46,8 +48,8 @@ report: configure ## compute all that the page shows and write it (FULL=1: finer
 	@$(BUILD)/slipstick report --output $(BUILD)/report --benchmarks $(BUILD)/benchmarks $(if $(FULL),--full) $(REPORT_OPTIONS)
 	@echo "The page: $(CURDIR)/$(BUILD)/report/index.html"
 
-report-pdf: configure ## print the page that `make report` wrote into build/report/report.pdf (needs Chromium)
-	@"$$(sed -n 's/^SLIPSTICK_PYTHON:[A-Z]*=//p' $(BUILD)/CMakeCache.txt)" -B reports/pdf.py $(BUILD)/report/index.html \
+report-pdf: configure ## print the page that `make report` wrote into build/report/report.pdf (needs chromium-driver and python3-selenium)
+	@$(PYTHON) -B reports/pdf.py $(BUILD)/report/index.html \
 	  --output $(BUILD)/report/report.pdf
 
 test: configure ## run every test
@@ -60,21 +62,20 @@ gate: configure ## check the numbers that README.md promises, and counts of work
 	@digits() { $(BUILD)/slipstick digits convergence/scenes/paper.toml --set "grid.cells=[48,48]" \
 	    --set "load.moment_ratio=$$2" --output $(BUILD)/gates/digits --json "$(BUILD)/gates/$$1.json" --quiet; }; \
 	  digits digits 0.9 && digits digits-limit 0.999999 && digits digits-nothing 1e-9
-	@"$$(sed -n 's/^SLIPSTICK_PYTHON:[A-Z]*=//p' $(BUILD)/CMakeCache.txt)" -B analytic/references/exact_errors.py \
+	@$(PYTHON) -B analytic/references/exact_errors.py \
 	  $(BUILD)/slipstick $(BUILD)/gates/exact.json
 	@$(BUILD)/slipstick gate $(patsubst %,convergence/gates/%.toml,quick digits exact) bench/gates/work.toml $(INSTRUCTION_GATES) \
 	  --results $(BUILD)/gates --output $(BUILD)/gates $(GATE_OPTIONS)
 
 hard: configure ## solve 700 hard scenes, each in several views; audit every one of them with NumPy (2 minutes)
 	$(call build,slipstick)
-	@python="$$(sed -n 's/^SLIPSTICK_PYTHON:[A-Z]*=//p' $(BUILD)/CMakeCache.txt)"; status=0; mkdir -p $(BUILD)/hard; \
+	@status=0; mkdir -p $(BUILD)/hard; \
 	  $(BUILD)/slipstick hard convergence/hard/*.toml --output $(BUILD)/hard --fields $(BUILD)/hard/fields \
 	    --json $(BUILD)/hard/hard.json $(HARD_OPTIONS) || status=$$?; \
-	  [ $$status -gt 1 ] || "$$python" convergence/hard/audit.py $(BUILD)/hard/hard.json || status=1; exit $$status
+	  [ $$status -gt 1 ] || $(PYTHON) convergence/hard/audit.py $(BUILD)/hard/hard.json || status=1; exit $$status
 
 mutants: configure ## 240 small mistakes, made by rule: do tests and gates see them? (MUTANT_OPTIONS="--seed 2 --folder solver")
-	@python="$$(sed -n 's/^SLIPSTICK_PYTHON:[A-Z]*=//p' $(BUILD)/CMakeCache.txt)"; \
-	  "$$python" -B cmake/mutation/mutants.py $(MUTANT_OPTIONS)
+	@$(PYTHON) -B cmake/mutation/mutants.py $(MUTANT_OPTIONS)
 
 SANITIZED = build-$(SANITIZER)$(addprefix -,$(COMPILER))
 sanitize: setup ## run every test under sanitizers (SANITIZER=tsan: threads; COMPILER=clang++; a part: SANITIZE="operators analytic")
@@ -91,7 +92,7 @@ coverage: setup ## which lines of analytic, solver and convergence do the tests 
 	@build-coverage/slipstick report --quick --output build-coverage/report
 	@cmake/coverage build-coverage 95
 
-lint: setup ## check format and clang-tidy's rules, 14 or later (of what changed alone: LINT_SINCE=origin/main)
+lint: setup ## check format and clang-tidy's rules, 14 or later (only what changed: LINT_SINCE=origin/main)
 	@git ls-files '*.cpp' '*.hpp' | xargs clang-format --dry-run --Werror
 	@test -f build-dev/build.ninja || cmake --preset dev
 	@cmake --build build-dev --target slipstick_commit
@@ -99,7 +100,7 @@ lint: setup ## check format and clang-tidy's rules, 14 or later (of what changed
 	  | xargs --no-run-if-empty -n 4 -P $$(nproc) clang-tidy -p build-dev --quiet \
 	  --extra-arg=-Wno-unused-command-line-argument
 
-bench: configure ## time everything beside the error that it buys, and draw it
+bench: configure ## time everything, each time with its error, and draw it
 	$(call build,slipstick slipstick_benchmarks)
 	@$(BUILD)/slipstick bench $(BENCH_OPTIONS)
 
@@ -109,7 +110,7 @@ bench-against: configure ## is this tree slower than REV (origin/main)? (bench/a
 bench-trust: configure ## is a build never slower than itself, and 15 % always found? (a quarter of an hour)
 	@cmake --build $(BUILD) --target bench-trust
 
-references: configure ## make the table of proven values anew (2 minutes; needs FLINT with Arb)
+references: configure ## write the table of proven values again (2 minutes; needs FLINT with Arb)
 	$(call build,slipstick_references)
 	@$(BUILD)/analytic/certified/slipstick_references table --output analytic/references/certified_references.csv
 

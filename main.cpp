@@ -12,7 +12,7 @@
 #include <string_view>
 #include <vector>
 
-#include "analytic/exact_command.hpp"
+#include "analytic/command/exact_command.hpp"
 #include "bench/bench_command.hpp"
 #include "bench/compare/compare_command.hpp"
 #include "convergence/commands.hpp"
@@ -20,6 +20,10 @@
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/run_program.hpp"
 #include "convergence/results/output.hpp"
+#include "docs/generator/reference_command.hpp"
+#ifdef SLIPSTICK_INTERFACES
+#include "interfaces/laws/law_command.hpp"
+#endif
 #include "solver/grid/ranks.hpp"
 #include "solver/memory.hpp"
 
@@ -61,13 +65,18 @@ int run(int argc, char** argv) {
   app.set_version_flag("--version", std::string(SLIPSTICK_VERSION));
   app.require_subcommand(1);
 
-  const std::vector<Command> commands{
-      slipstick::analytic::add_exact_command(app),     slipstick::convergence::add_solve_command(app),
-      slipstick::convergence::add_check_command(app),  slipstick::convergence::add_law_command(app),
-      slipstick::convergence::add_study_command(app),  slipstick::convergence::add_gate_command(app),
-      slipstick::convergence::add_hard_command(app),   slipstick::convergence::add_digits_command(app),
-      slipstick::convergence::add_report_command(app), slipstick::bench::add_bench_command(app),
-      slipstick::bench::add_compare_command(app),      slipstick::convergence::add_reference_command(app)};
+  using namespace slipstick;
+  std::vector<Command> commands{analytic::add_exact_command(app), convergence::add_solve_command(app),
+                                convergence::add_check_command(app)};
+#ifdef SLIPSTICK_INTERFACES
+  commands.push_back(laws::add_law_command(app));
+#endif
+  for (const auto add :
+       {convergence::add_study_command, convergence::add_gate_command, convergence::add_hard_command,
+        convergence::add_digits_command, convergence::add_report_command, bench::add_bench_command,
+        bench::add_compare_command, docs::add_reference_command}) {
+    commands.push_back(add(app));
+  }
   const auto subcommands = app.get_subcommands([](const CLI::App*) { return true; });
   std::string json_path;
   bool quiet = false;

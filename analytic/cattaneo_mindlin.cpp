@@ -28,37 +28,11 @@ TangentialState state_at(double log_deficit, const SelfSimilarIndenter& indenter
           .tangent_stiffness = 4 * stick};
 }
 
-void require_slip_ring(const SelfSimilarIndenter& indenter) {
-  if (indenter.radius_power() == 0)
-    throw std::domain_error("a flat punch sticks everywhere at every force: its stick radius names no state");
-}
-
 }  // namespace
 
 TangentialState from_force_ratio(double force_ratio, const SelfSimilarIndenter& indenter) {
   if (!(force_ratio >= 0 && force_ratio < 1)) out_of_range("F/(mu W)", force_ratio, "0 <= F/(mu W) < 1");
   return state_at(std::log1p(-force_ratio), indenter);
-}
-
-TangentialState from_force_deficit(double force_deficit, const SelfSimilarIndenter& indenter) {
-  if (!(force_deficit > 0 && force_deficit <= 1))
-    out_of_range("1 - F/(mu W)", force_deficit, "0 < 1 - F/(mu W) <= 1");
-  TangentialState state = state_at(std::log(force_deficit), indenter);
-  state.force_deficit = force_deficit;
-  return state;
-}
-
-TangentialState from_stick_ratio(double stick_ratio, const SelfSimilarIndenter& indenter) {
-  require_slip_ring(indenter);
-  if (!(stick_ratio > 0 && stick_ratio <= 1)) out_of_range("c/a", stick_ratio, "0 < c/a <= 1");
-  return state_at(std::log(stick_ratio) / indenter.radius_power(), indenter);
-}
-
-TangentialState from_stick_complement(double stick_complement, const SelfSimilarIndenter& indenter) {
-  require_slip_ring(indenter);
-  if (!(stick_complement >= 0 && stick_complement < 1))
-    out_of_range("1 - c/a", stick_complement, "0 <= 1 - c/a < 1");
-  return state_at(std::log1p(-stick_complement) / indenter.radius_power(), indenter);
 }
 
 TangentialState from_displacement(double displacement, const SelfSimilarIndenter& indenter) {

@@ -25,15 +25,10 @@ struct TangentialState {
   double tangent_stiffness;  ///< (dF/ddelta)/(G_t a) = 4 c/a, that of a bonded circle of radius c
 };
 
-/// The state at a given force, stick radius or displacement. Relative error of every member a few eps, plus
-/// what an ulp of the argument costs. Each throws std::domain_error, with the value and the range, outside
-/// force_ratio in [0, 1), force_deficit in (0, 1], stick_ratio in (0, 1], stick_complement in [0, 1) and
-/// displacement in [0, (n + 1)/(4 n)). A flat punch sticks everywhere until F = mu W; its stick ratio, always
-/// 1, names no state, and the two functions of it refuse it.
+/// The state at a given force or displacement. Relative error of every member a few eps, plus what an ulp of
+/// the argument costs. Each throws std::domain_error, with the value and the range, outside force_ratio in
+/// [0, 1) and displacement in [0, (n + 1)/(4 n)).
 TangentialState from_force_ratio(double force_ratio, const SelfSimilarIndenter& indenter);
-TangentialState from_force_deficit(double force_deficit, const SelfSimilarIndenter& indenter);
-TangentialState from_stick_ratio(double stick_ratio, const SelfSimilarIndenter& indenter);
-TangentialState from_stick_complement(double stick_complement, const SelfSimilarIndenter& indenter);
 TangentialState from_displacement(double displacement, const SelfSimilarIndenter& indenter);
 
 /// Traction q/(mu p0) along F at radius r/a; absolute error a few eps of the pressure. Throws

@@ -8,20 +8,21 @@
 #include "analytic/indentation.hpp"
 #include "analytic/tabulated_pressure.hpp"
 
+/// The contact profiles that users name, `hertz` or `power:4`. One table holds them, in named_profile.cpp: a
+/// new profile is a file of its own and a row there.
 namespace slipstick::analytic {
 
-/// A contact profile as a user names it: hertz | cone | flat_punch | power:N | rounded_punch:B | file:P.csv.
 struct NamedProfile {
   std::shared_ptr<const Profile> profile;
-  /// Where the profile is a table's: its scale, and what else its points allow.
+  /// Where the profile is a table's: its scale and its points.
   std::shared_ptr<const TabulatedProfile> table = {};
 };
 
-/// Throws std::invalid_argument for a name that is none of these, and what the profile itself throws.
+/// Throws std::invalid_argument for a name that is none of profile_words(), and what the profile itself
+/// throws.
 NamedProfile find_profile(const std::string& name);
 
-/// What the normal side needs: `shape` is, in SI units, hertz: radius; cone: slope; flat_punch: radius;
-/// power:N: the gap's coefficient (m^(1-N)); rounded_punch: flat radius, corner radius.
+/// The normal load, and the body's shape in SI units, the numbers that shape_words() names.
 struct NormalLoad {
   double load;               ///< W, N
   double effective_modulus;  ///< E*, Pa
@@ -35,7 +36,12 @@ struct PressedContact {
 };
 PressedContact press(const std::string& profile_name, const NormalLoad& load);
 
-/// That of a power profile's load; load.shape holds the gap's coefficient.
+/// The contact of a gap like r^exponent; load.shape holds the gap's coefficient.
 PressedContact press_power(double exponent, const NormalLoad& load);
+
+/// For help: the words that find_profile() takes, "hertz | cone | power:N (gap ~ r^N) | ...".
+std::string profile_words();
+/// For help: the numbers that press() takes by profile, "hertz: sphere radius, m; cone: slope; ...".
+std::string shape_words();
 
 }  // namespace slipstick::analytic

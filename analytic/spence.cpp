@@ -310,28 +310,6 @@ StickRadius goodman_stick_radius(double friction, double beta) {
   return stick_at(goodman_artanh(friction / std::abs(beta)));
 }
 
-/// q = -d/dr integral_r^1 G(x)/sqrt(x^2 - r^2) dx, and the sphere's G(x) = x^2 integral_x^1 g(t)/t^3 dt from
-/// the flat punch's g, (2 beta/pi) artanh(t) within c and (2 mu/pi) t K(sqrt(1 - t^2)) beyond. What is beyond
-/// gives a slipping ring's traction as in torsion.
-double goodman_sphere_traction(double friction, double beta, double radius) {
-  const StickRadius stick = goodman_stick_radius(friction, beta);
-  const double r = radius;
-  if (!(r >= 0 && r <= 1)) throw std::domain_error(fmt::format("r/a = {}; allowed: 0 <= r/a <= 1", r));
-  const double c = stick.ratio;
-  const double inward = c < 0.5 ? c - r : (1 - r) - stick.complement;
-  if (inward <= 0) return friction * hertz_profile().pressure(r);
-  if (r == 0) return 0;
-  const double contrast = std::abs(beta);
-  const double at_front = 2 * friction / pi * hertz_profile().twist_integral(stick) / c;  // G(c)/c^2
-  const double beyond = at_front - contrast / pi * (std::atanh(c) * (1 - c) * (1 + c) / c + 1) / c;
-  const auto within = [&](double u) {
-    const double x = std::min(c, r * std::cosh(u));
-    return contrast / pi * ((1 + x * x) * std::atanh(x) - x) / (x * x) - beyond;
-  };
-  const double rest = r * gsl::integral(within, 0, std::acosh(c / r));
-  return rest + friction * hertz_profile().stick_traction(stick, r, inward);
-}
-
 FrictionalContact spence_contact(double friction, double beta) {
   require_dissimilar_bodies(friction, beta, 1.0 / 7, 10);
   const double contrast = std::abs(beta);

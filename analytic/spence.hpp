@@ -20,12 +20,6 @@ namespace slipstick::analytic {
 /// 0 < |beta| <= 1/2, 1/600 <= mu/|beta| <= 200.
 StickRadius goodman_stick_radius(double friction, double beta);
 
-/// Goodman's radial traction q/p0 at radius r/a under a sphere, p0 the peak pressure: mu p in the ring, less
-/// within; outwards on the body that the pressure draws inwards more. What slipped before it stuck leaves
-/// the stick area a relative displacement like r^2. Absolute error some eps. Throws std::domain_error as
-/// goodman_stick_radius does, and outside r/a in [0, 1].
-double goodman_sphere_traction(double friction, double beta, double radius);
-
 /// Normal contact with friction, all couplings kept.
 struct FrictionalContact {
   double stick_ratio;  ///< c/a

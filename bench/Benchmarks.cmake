@@ -1,14 +1,14 @@
 # The programs that measure.
 
 add_executable(slipstick_benchmarks
-  suite/checked_solve.cpp suite/exact_benchmark.cpp suite/history_benchmark.cpp suite/influence_benchmark.cpp
-  suite/memory_benchmark.cpp suite/methods_benchmark.cpp suite/normal_benchmark.cpp suite/operator_benchmark.cpp
-  suite/slipstick_benchmarks.cpp suite/solve_benchmark.cpp suite/suite.cpp)
+  suite/checked_solve.cpp suite/exact_benchmark.cpp suite/influence_benchmark.cpp suite/memory_benchmark.cpp
+  suite/normal_benchmark.cpp suite/operator_benchmark.cpp suite/slipstick_benchmarks.cpp suite/solve_benchmark.cpp
+  suite/suite.cpp)
 slipstick_configure(slipstick_benchmarks)
 target_precompile_headers(slipstick_benchmarks PRIVATE ${SLIPSTICK_HEADERS} <Eigen/Core> <nlohmann/json.hpp>
   <benchmark/benchmark.h>)
 target_link_libraries(slipstick_benchmarks PRIVATE slipstick::analytic slipstick_reference_tables
-  slipstick::bench   PkgConfig::FFTW GSL::gsl fmt::fmt benchmark::benchmark)
+  slipstick::bench PkgConfig::FFTW GSL::gsl fmt::fmt benchmark::benchmark)
 # Times stand beside errors: the exact side's against the references that the tests use, the solver's in the scenes that
 # come with the program.
 target_compile_definitions(slipstick_benchmarks PRIVATE SLIPSTICK_SCENES="${PROJECT_SOURCE_DIR}/convergence/scenes")

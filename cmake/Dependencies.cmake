@@ -1,16 +1,16 @@
 # Every dependency comes from the distribution; a missing one is named with its Debian/Ubuntu package.
 
-# slipstick_leave_out(<what> <why, and what to install>): said at the end of configuring, and by make after every build.
-function(slipstick_leave_out what why)
-  set_property(GLOBAL APPEND_STRING PROPERTY SLIPSTICK_LEFT_OUT "LEFT OUT: ${what}, because ${why}\n")
+# slipstick_not_built(<what> <why, and what to install>): said at the end of configuring, and by make after every build.
+function(slipstick_not_built what why)
+  set_property(GLOBAL APPEND_STRING PROPERTY SLIPSTICK_NOT_BUILT "NOT BUILT: ${what}, because ${why}\n")
 endfunction()
 
-# slipstick_say_what_is_left_out(): writes left_out.txt, empty where nothing is, and warns.
-function(slipstick_say_what_is_left_out)
-  get_property(left_out GLOBAL PROPERTY SLIPSTICK_LEFT_OUT)
-  file(WRITE "${PROJECT_BINARY_DIR}/left_out.txt" "${left_out}")
-  if(left_out)
-    message(WARNING "${left_out}")
+# slipstick_say_what_is_not_built(): writes not_built.txt, empty where all is built, and warns.
+function(slipstick_say_what_is_not_built)
+  get_property(not_built GLOBAL PROPERTY SLIPSTICK_NOT_BUILT)
+  file(WRITE "${PROJECT_BINARY_DIR}/not_built.txt" "${not_built}")
+  if(not_built)
+    message(WARNING "${not_built}")
   endif()
 endfunction()
 
@@ -64,13 +64,13 @@ if(NOT found_mpi)
   if(SLIPSTICK_MPI)
     message(FATAL_ERROR "SLIPSTICK_MPI: ${why}")
   endif()
-  slipstick_leave_out("solves on several ranks (mpirun) and their tests" "${why}")
+  slipstick_not_built("solves on several ranks (mpirun) and their tests" "${why}")
 endif()
 
 # Optional: proven digits.
 find_package(Arb QUIET)
 if(NOT Arb_FOUND)
-  slipstick_leave_out("certified digits (slipstick exact --certified) and their tests"
+  slipstick_not_built("certified digits (slipstick exact --certified) and their tests"
     "FLINT with Arb was not found: install libflint-dev and, before FLINT 3, libflint-arb-dev (or run `make setup`)")
 endif()
 
@@ -93,7 +93,7 @@ slipstick_find_python(found_python)
 if(found_python)
   set(SLIPSTICK_PYTHON "${found_python}" CACHE STRING "Python 3 with numpy, matplotlib, jinja2 and h5py" FORCE)
 else()
-  slipstick_leave_out("the page, all figures and their tests"
+  slipstick_not_built("the page, all figures and their tests"
     "no python3 can import numpy, matplotlib, jinja2 and h5py: install python3-numpy python3-matplotlib python3-jinja2 \
 python3-h5py (or run `make setup`), or set SLIPSTICK_PYTHON")
 endif()
@@ -105,7 +105,7 @@ if(SLIPSTICK_TESTS AND SLIPSTICK_PYTHON)
   if(status EQUAL 0)
     set(SLIPSTICK_JSONSCHEMA ON)
   else()
-    slipstick_leave_out("the test that holds results to docs/schema"
+    slipstick_not_built("the test that holds results to docs/schema"
       "${SLIPSTICK_PYTHON} cannot import jsonschema 4: install python3-jsonschema (or run `make setup`)")
   endif()
 endif()
@@ -114,6 +114,6 @@ endif()
 find_program(SLIPSTICK_VALGRIND valgrind)
 mark_as_advanced(SLIPSTICK_VALGRIND)
 if(SLIPSTICK_BENCHMARKS AND NOT SLIPSTICK_VALGRIND)
-  slipstick_leave_out("counts of instructions, without which gates on them fail"
+  slipstick_not_built("counts of instructions, without which gates on them fail"
     "valgrind was not found: install valgrind (or run `make setup`)")
 endif()

@@ -22,7 +22,7 @@ else()
   set(arb_libraries ${Arb_LIBRARY} ${Arb_FLINT_LIBRARY} ${Arb_MPFR_LIBRARY} ${Arb_GMP_LIBRARY})
 endif()
 
-# Headers and libraries may be of different installations: only a program that links tells.
+# Headers and libraries may come from different installations: only a program that links shows that they match.
 if(Arb_FLINT_INCLUDE_DIR AND Arb_HEADER_DIR AND arb_libraries AND NOT arb_libraries MATCHES "NOTFOUND")
   set(CMAKE_REQUIRED_INCLUDES ${Arb_FLINT_INCLUDE_DIR} ${Arb_HEADER_DIR})
   set(CMAKE_REQUIRED_LIBRARIES ${arb_libraries})

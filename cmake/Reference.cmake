@@ -11,7 +11,7 @@ if(SLIPSTICK_DOXYGEN)
     set_tests_properties(front_door.doxygen PROPERTIES TIMEOUT ${SLIPSTICK_TEST_HANGS})
   endif()
 else()
-  set(doxygen ${CMAKE_COMMAND} -E echo "LEFT OUT: the C++ reference, because doxygen is not installed")
+  set(doxygen ${CMAKE_COMMAND} -E echo "NOT BUILT: the C++ reference, because doxygen is not installed")
 endif()
 add_custom_target(reference
   COMMAND slipstick reference ${PROJECT_SOURCE_DIR}/docs/reference

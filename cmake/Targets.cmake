@@ -4,7 +4,7 @@ option(SLIPSTICK_CCACHE "Compile through ccache where it is installed" ON)
 find_program(SLIPSTICK_CCACHE_PROGRAM ccache)
 mark_as_advanced(SLIPSTICK_CCACHE_PROGRAM)
 if(SLIPSTICK_CCACHE AND SLIPSTICK_CCACHE_PROGRAM AND "${CMAKE_CXX_COMPILER_LAUNCHER}" MATCHES "^(.*ccache)?$")
-  # What a precompiled header defines, ccache has to take on trust.
+  # ccache cannot see what a precompiled header defines.
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros
     ${SLIPSTICK_CCACHE_PROGRAM})
 endif()
@@ -20,12 +20,12 @@ function(slipstick_configure target)
     $<$<BOOL:${SLIPSTICK_WERROR}>:-Werror> $<$<BOOL:${SLIPSTICK_NATIVE}>:-march=native>)
 endfunction()
 
-# For what compares, whose work is done in the two sides: -O3 takes it half as long again to compile.
+# For convergence/, which calls analytic/ and solver/ for its work: -O3 would take half as long again to compile.
 function(slipstick_compile_quickly target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O1>)
 endfunction()
 
-# For commands and tests: what they call is compiled elsewhere.
+# For commands and tests, which call code that is compiled elsewhere.
 function(slipstick_compile_unoptimised target)
   target_compile_options(${target} PRIVATE $<$<CONFIG:Release>:-O0>)
 endfunction()
@@ -40,7 +40,7 @@ function(slipstick_compile_by_folder target sources)
     set_source_files_properties(${source} PROPERTIES UNITY_GROUP "${folder}")
   endforeach()
 endfunction()
-# And those of a program, so many at a time that both of two cores have some.
+# The sources of a program are compiled six at a time, so that both of two cores have work.
 function(slipstick_compile_together target)
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${SLIPSTICK_UNITY} UNITY_BUILD_BATCH_SIZE 6)
 endfunction()

@@ -23,11 +23,6 @@ RunCommand add_digits_command(CLI::App& app);
 RunCommand add_gate_command(CLI::App& app);
 /// Adds `hard`: hard scenes by the hundred, each solved, seen otherwise and judged.
 RunCommand add_hard_command(CLI::App& app);
-/// Adds `law`: the contact law of a scene or a profile, as other programs want it.
-RunCommand add_law_command(CLI::App& app);
-/// Adds `reference`, which --help hides: it writes the pages of docs/reference, the manual page and the
-/// completion that are made from the program itself.
-RunCommand add_reference_command(CLI::App& app);
 /// Adds `report`: runs what the page needs and has it drawn.
 RunCommand add_report_command(CLI::App& app);
 /// Adds `solve`. Exit code 1 where the solve did not reach its tolerance.

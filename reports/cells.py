@@ -16,13 +16,13 @@ def least_distance(positions):
 
 
 class Cells:
-    """Lengths in metres; a cell size of None is taken to be the least distance of cells. Arrays over the contact's
+    """Lengths over `unit` metres; a cell size of None is taken to be the least distance of cells. Arrays over the contact's
     bounding rectangle have rows along x2, columns along x1.
     """
 
-    def __init__(self, path, cell_size):
+    def __init__(self, path, cell_size=None, unit=1.0):
         self.columns = Columns(path)
-        positions = np.stack([self.columns["x1"], self.columns["x2"]])
+        positions = np.stack([self.columns["x1"], self.columns["x2"]]) / unit
         self.size = np.array(cell_size or [least_distance(x) for x in positions])
         low = positions.min(axis=1)
         steps = (positions - low[:, None]) / self.size[:, None]
@@ -56,7 +56,7 @@ class Cells:
         return max(self.extent[1] - self.extent[0], self.extent[3] - self.extent[2])
 
     def spacing(self, arrows=ARROWS_ALONG):
-        """Between so many arrows along the longer side, in metres: whole cells."""
+        """The distance of arrows, `arrows` of them along the longer side, in metres: whole cells."""
         cell = self.size.max()
         return cell * np.ceil(self.longer_side() / cell / arrows)
 

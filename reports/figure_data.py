@@ -7,7 +7,7 @@ import re
 import numpy as np
 from matplotlib.container import BarContainer
 
-MOST_POINTS = 80  # of a line whose points get words: more are a curve
+MAX_POINTS = 80  # of a line, to get words at its points: more are a curve
 
 
 def csv_of(figure):
@@ -30,7 +30,7 @@ def with_words(figure, svg):
     for panel, axis in enumerate(figure.axes, 1):
         for line, name in _lines(axis):
             points = np.column_stack(line.get_data(orig=False)).astype(float)
-            if line.get_marker() in ("None", None, "", " ") or len(points) > MOST_POINTS:
+            if line.get_marker() in ("None", None, "", " ") or len(points) > MAX_POINTS:
                 continue
             words = _names(panel, axis)
             for (x, y), (right, up) in zip(points, axis.transData.transform(points)):
@@ -58,7 +58,7 @@ def _lines(axis):
 
 
 def _names(panel, axis):
-    """Of a panel, its abscissa and its ordinate; what axes share stands at one of them."""
+    """The labels of a panel's abscissa and ordinate; a label that axes share stands at one of them."""
     shared = axis.get_shared_x_axes().get_siblings(axis), axis.get_shared_y_axes().get_siblings(axis)
     x = next((other.get_xlabel() for other in (axis, *shared[0]) if other.get_xlabel()), "x")
     y = next((other.get_ylabel() for other in (axis, *shared[1]) if other.get_ylabel()), "y")

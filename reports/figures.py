@@ -16,16 +16,17 @@ import method_figures
 import peers_figure
 import studies
 import style
+from cells import Cells
 from figure_entry import LIMIT, LIMIT_WORDS, LOAD_LABEL, TWIST_LABEL, FigureEntry
-from results import Fields, column, nearest, number, rows, text, value
+from results import column, nearest, number, rows, text, value
 from wording import percent, plain, sci, seconds
 
 
 def shear_components(report, data_dir):
     profile = _highest_load(report)
-    fields, scale = _fields(report, profile, data_dir)
-    computed = [fields.grid(name) / scale for name in ("q1", "q2")]
-    errors = [np.abs(q - fields.grid(name) / scale) for q, name in zip(computed, ("q1_exact", "q2_exact"))]
+    fields, traction = _fields(report, profile, data_dir)
+    computed = [traction("q1"), traction("q2")]
+    errors = [np.abs(q - traction(name)) for q, name in zip(computed, ("q1_exact", "q2_exact"))]
     stick_ratio = number(profile, "stick_ratio")
     limit = np.nanmax(np.abs(computed))
 
@@ -52,9 +53,9 @@ def shear_components(report, data_dir):
 
 def traction_norm(report, data_dir):
     profile = _highest_load(report)
-    fields, scale = _fields(report, profile, data_dir)
-    computed = np.hypot(fields.grid("q1"), fields.grid("q2")) / scale
-    error = np.abs(computed - np.hypot(fields.grid("q1_exact"), fields.grid("q2_exact")) / scale)
+    fields, traction = _fields(report, profile, data_dir)
+    computed = np.hypot(traction("q1"), traction("q2"))
+    error = np.abs(computed - np.hypot(traction("q1_exact"), traction("q2_exact")))
     stick_ratio = number(profile, "stick_ratio")
 
     figure, axes = style.panels(1, 2, 3.0, sharex=True, sharey=True, squeeze=False)
@@ -66,7 +67,7 @@ def traction_norm(report, data_dir):
     figure.colorbar(left, ax=axes[0, 0], label="$|q|/(\\mu p_0)$", shrink=0.85)
     figure.colorbar(right, ax=axes[0, 1], label="error over $\\mu p_0$", extend="min", shrink=0.85)
     load, worst = _load(profile), np.unravel_index(np.nanargmax(error), error.shape)
-    place = np.hypot(*(fields.extent[0] + (np.array(worst) + 0.5) * fields.cell))
+    place = np.hypot(*(fields.extent[[2, 0]] + (np.array(worst) + 0.5) * fields.size[::-1]))
     return FigureEntry(
         f"The traction is furthest off, by {sci(error[worst])} μp₀, in a cell at r/a = {place:.3f}.",
         f"Inside the circle r = a<sub>s</sub> = {stick_ratio:.4f} a the surfaces stick, "
@@ -212,7 +213,7 @@ def cost(report, data_dir):
     shown = [(study.name, seconds(number(study.table[-1], "seconds.total")), _sci_at(study.table[-1], "twist_error"))
              for study in runs if study.load == runs[-1].load]
     return FigureEntry(
-        f"{shown[0][1]} s buy a twist that is right to {shown[0][2]}.",
+        f"A twist that is right to {shown[0][2]} takes {shown[0][1]} s.",
         "Down and left is better. The numbers beside one line are its cells a side; the other lines have the same "
         "meshes in the same order. Times are of one run on the machine named at the foot of the page.",
         "Two log-log panels of relative error against time, for twist and traction, one line for each pressure and "
@@ -314,6 +315,7 @@ def _highest_load(report):
 
 
 def _fields(report, profile, data_dir):
-    """The fields of a profile and mu p0, which scales its tractions."""
-    fields = Fields(data_dir / text(profile, "fields"), number(report, "contact.radius"))
-    return fields, number(profile, "result.friction") * number(report, "contact.peak_pressure")
+    """The cells of a profile over the contact radius, and a traction's grid over mu p0 by its name."""
+    fields = Cells(data_dir / text(profile, "fields"), unit=number(report, "contact.radius"))
+    scale = number(profile, "result.friction") * number(report, "contact.peak_pressure")
+    return fields, lambda name: fields.grid(fields.columns[name]) / scale

@@ -107,10 +107,10 @@ def message(scenes):
     done = [scene for scene in scenes if text(scene, "status") == "converged"]
     undone = len(scenes) - len(done)
     gap = max((number(scene, "gap") for scene in done), default=np.nan)
-    sentence = (f"{len(done)} scenes, in all of which Coulomb’s law holds to gap / energy = {sci(gap)}"
+    sentence = (f"Coulomb’s law holds in all {len(done)} scenes to gap / energy = {sci(gap)}"
                 + (f"; {undone} more did not converge" if undone else ""))
     if not judged:
         return sentence + "."
     worst = judged[int(np.argmax(errors))]
-    return (f"{sentence}. Of the {len(judged)} with an exact answer, half are within {sci(np.median(errors))} of it; "
+    return (f"{sentence}. Half of the {len(judged)} with an exact answer are within {sci(np.median(errors))} of it; "
             f"{escape(text(worst, 'title'))} is furthest off, by {percent(errors.max())}.")

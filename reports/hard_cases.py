@@ -9,7 +9,7 @@ from results import rows, text, value
 
 FIRST = "coulomb"
 RIGHT = ("certified", "agrees")
-# A verdict in words, and its colour. The letters of the map tell it without colour.
+# A verdict in words, its colour, and its mark on the map for those who see no colour.
 VERDICTS = {
     "right": ("certified, or agrees with the certified answer", style.GREEN, ""),
     "refused": ("refused with a reason", "#d9d9d9", "–"),
@@ -62,7 +62,7 @@ def methods(report, data_dir):
             profile.annotate(_name(method).split(" for ")[0], (work[-1], len(work)), xytext=(0, 3), ha="right",
                              textcoords="offset points", color=line.get_color(), fontsize=8,
                              path_effects=style.HALO)
-    profile.set(xscale="log", xlabel="applications of the operator", ylabel="scenes solved right within so many",
+    profile.set(xscale="log", xlabel="applications of the operator", ylabel="scenes solved right within as many",
                 ylim=(0, 1.1 * len(answers[FIRST])))
     handles = [bars.barh(0, 0, color=colour, label=words) for words, colour, _ in VERDICTS.values()]
     style.legend_on_top(figure, handles, 2)
@@ -75,10 +75,10 @@ def _texts(counts, total):
     first = counts[FIRST]
     numbers = [(f"{_name(method)}: {words}", str(found[verdict])) for method, found in counts.items()
                for verdict, (words, _, _) in VERDICTS.items() if found[verdict]]
-    message = (f"Of {total} hard scenes {_name(FIRST)} certifies {first['right']} and refuses {first['refused']} with a "
+    message = (f"{_name(FIRST)} certifies {first['right']} of {total} hard scenes and refuses {first['refused']} with a "
                f"reason; {first['not_converged'] + first['wrong']} do not converge or are wrong.")
     details = (
-        f"The scenes: loads next to nothing and next to the limit, ugly "
+        "The scenes: loads next to nothing and next to the limit, ugly "
         "contacts, extreme materials, odd grids. An answer agrees within 1&nbsp;% of twist, moment and energy of the "
         "certified one on the same grid; slip does not oppose traction where its mean angle is above one degree and costs "
         "more than 10⁻⁶ of the energy. <a href=\"#map\">The map</a> shows each scene.")

@@ -39,11 +39,11 @@ def methods(report, data_dir):
     turned = {name: _degrees(np.nanmax(column(found, "slip_direction.mean"))) for found, name, *_ in by_method(ellipses)}
     worst = max(by_method(ellipses), key=lambda each: np.nanmax(column(each[0], "slip_direction.mean")))[1]
     return FigureEntry(
-        f"On an ellipse slip fails to oppose traction by up to {turned[worst]} by {worst}, at every mesh.",
+        f"On an ellipse {worst} leaves slip misaligned with traction by up to {turned[worst]}, at every mesh.",
         f"The sphere is at {LIMIT}{plain(number(spheres[0], 'moment_ratio'))}, {_across(spheres)[-1]:.0f} cells a side. "
         "All work of Newton’s method is counted, that on coarser grids by its share of the cells; its applications hardly "
         "grow with the mesh. The paper’s method keeps the direction that a cell’s traction had when it began to slip, so no "
-        "mesh mends its error on an ellipse. Both of the others stop on the certificate at gap / energy = 10⁻⁸, the paper’s "
+        "mesh reduces its error on an ellipse. Both of the others stop on the certificate at gap / energy = 10⁻⁸, the paper’s "
         "method on Eq. (26).",
         "Three log-log panels against cells across the grid, one line a method: applications of the operator, time, and on "
         "an ellipse the mean angle between slip and the reverse of traction.", figure,

@@ -9,7 +9,7 @@ from pathlib import Path
 import browser
 from whole_file import write_whole
 
-MOST_PAGES = 29
+MAX_PAGES = 29
 MILLIMETRES = 25.4 / 72  # a point
 
 
@@ -45,8 +45,8 @@ def main(words=None):
         return 2
     pages = count_pages(content)
     print(f"{arguments.output}: {pages} pages, {len(content) / 1e6:.1f} MB")
-    if not 0 < pages <= MOST_PAGES:
-        print(f"pdf.py: {pages} pages, of which there may be {MOST_PAGES}", file=sys.stderr)
+    if not 0 < pages <= MAX_PAGES:
+        print(f"pdf.py: {pages} pages; allowed: {MAX_PAGES} at most", file=sys.stderr)
         return 1
     return 0
 

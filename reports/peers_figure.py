@@ -14,7 +14,7 @@ QUANTITIES = {"normal_load_error": "normal load", "contact_radius_error": "conta
               "friction_bound": "friction bound", "slip_direction": "slip direction", "gap": "gap of Coulomb’s law"}
 LOOKS = ({"color": style.GREEN, "marker": "s"}, {"color": style.VERMILION, "marker": "o"},
          {"color": style.BLUE, "marker": "^"})
-LEAST = 1e-6  # of what is allowed: smaller values stand there
+MIN_SHOWN = 1e-6  # of what is allowed; smaller values are drawn there
 
 
 def peers(report, data_dir):
@@ -24,13 +24,13 @@ def peers(report, data_dir):
     for program, look in zip(programs, LOOKS):
         judged = rows(program, "judged")
         over = np.abs(column(judged, "value")) / column(judged, "allowed")
-        axis.plot(np.maximum(over, LEAST), np.arange(len(judged)), linestyle="", label=f"{text(program, 'program')}: "
+        axis.plot(np.maximum(over, MIN_SHOWN), np.arange(len(judged)), linestyle="", label=f"{text(program, 'program')}: "
                   f"{text(program, 'verdict')}", **look)
     axis.axvspan(1, axis.get_xlim()[1] * 1e3, color=style.VERMILION, alpha=0.08, linewidth=0)
     axis.axvline(1, color=style.BLACK, linewidth=0.8)
     most = max(np.nanmax(np.abs(column(rows(each, "judged"), "value")) / column(rows(each, "judged"), "allowed"))
                for each in programs)
-    axis.set(xscale="log", xlim=(0.6 * LEAST, max(30.0, 3 * most)), yticks=range(len(names)), yticklabels=names,
+    axis.set(xscale="log", xlim=(0.6 * MIN_SHOWN, max(30.0, 3 * most)), yticks=range(len(names)), yticklabels=names,
              xlabel="error over what the mesh allows   (wrong right of the line →)")
     axis.invert_yaxis()
     style.legend_on_top(figure, axis.get_legend_handles_labels()[0], len(programs))
@@ -41,7 +41,7 @@ def peers(report, data_dir):
          if bad and right else f"{len(programs) - len(bad)} of {len(programs)} fields are right within their mesh."),
         "Tractions that other programs wrote for the paper’s sphere at 0.9 of the limit moment, 64 cells across the contact. "
         "What is allowed is what the mesh leaves open, measured on fields that are known to be right; slip directions are "
-        f"in degrees. Values below {sci(LEAST)} of it stand there.",
+        f"in degrees. Values below {sci(MIN_SHOWN)} of it are drawn there.",
         "Errors of each judged quantity over what is allowed, on a log scale, one row a quantity and one marker a program.",
         figure, [(f"{text(each, 'program')}: {words}", sci(abs(found))) for each in programs
                  for words, found in (("twist error", value(each, "twist_error")),

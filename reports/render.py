@@ -8,9 +8,9 @@ import re
 import sys
 from pathlib import Path
 
-import packages
+import script
 
-packages.require("numpy", "matplotlib", "jinja2", "h5py")
+script.require("numpy", "matplotlib", "jinja2", "h5py")
 
 import jinja2  # noqa: E402
 from markupsafe import Markup, escape  # noqa: E402
@@ -155,15 +155,8 @@ def main(words=None):
     parser.add_argument("--output", type=Path, required=True, help="folder for index.html and figures/")
     parser.add_argument("--benchmarks", type=Path, help="folder with scaling.json and plane.json, of `slipstick bench`")
     arguments = parser.parse_args(words)
-    try:
-        render(arguments.data_dir.resolve(), arguments.output.resolve(), arguments.benchmarks)
-    except results.InputError as error:
-        print(f"render.py: {error}", file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"render.py: {error.filename or arguments.output}: cannot be written: {error.strerror}", file=sys.stderr)
-        return 2
-    return 0
+    return script.run(lambda: render(arguments.data_dir.resolve(), arguments.output.resolve(), arguments.benchmarks),
+                      results.InputError, arguments.output)
 
 
 if __name__ == "__main__":

@@ -147,26 +147,3 @@ class Columns:
         if values.size == 0 or not np.isfinite(values).all():
             raise Unavailable(f"{self.name}: “{name}” is empty or has values that are not numbers")
         return values
-
-
-class Fields:
-    """The contact cells of one solution, put back on their square grid (rows along x2), empty outside the contact."""
-
-    def __init__(self, path, radius):
-        self.columns = Columns(path)
-        x1, x2 = self.columns["x1"] / radius, self.columns["x2"] / radius
-        positions = np.unique(np.round(np.concatenate([x1, x2]), 9))
-        self.cell = np.diff(positions).min() if positions.size > 1 else np.nan
-        low, high = positions[0] - self.cell / 2, positions[-1] + self.cell / 2
-        self.extent = (low, high, low, high)
-        steps = (positions - positions[0]) / self.cell
-        if not np.allclose(steps, np.round(steps), atol=1e-3):
-            raise Unavailable(f"{path.name}: the cells stand on no square grid")
-        self.size = int(round(steps[-1])) + 1
-        self.index = tuple(np.round((x - positions[0]) / self.cell).astype(int) for x in (x2, x1))
-
-    def grid(self, name):
-        """One dataset on the grid, NaN outside the contact."""
-        result = np.full((self.size, self.size), np.nan)
-        result[self.index] = self.columns[name]
-        return result

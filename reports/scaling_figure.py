@@ -5,9 +5,9 @@ from matplotlib.lines import Line2D
 
 import style
 from figure_entry import FigureEntry
-from results import Unavailable, column, number, rows, value
+from results import Unavailable, column, rows, value
 from studies import cell_ticks_at
-from wording import plain, sci
+from wording import plain
 
 CIRCLE, HOLLOW = dict(marker="o"), dict(marker="o", markerfacecolor="none")
 # Families of one application: words, look; the hollow ones run on two threads.
@@ -159,7 +159,7 @@ def setting_up(scaling):
     axes[1].set(ylabel="set-up over one application")
     style.legend_on_top(figure, handles, 3)
     return FigureEntry(
-        f"Setting up costs as much as so many applications: {'; '.join(sentences)}.",
+        f"The cost of setting up, in applications: {'; '.join(sentences)}.",
         "Influence coefficients, their transforms and FFTW’s plans for convolution; the matrix for the dense "
         "operator; tables of coefficients for direct summation. Done once for each grid.",
         "Two log-log panels against cells: time to set up, and that time over one application.", figure)

@@ -6,9 +6,9 @@ import sys
 import textwrap
 from pathlib import Path
 
-import packages
+import script
 
-packages.require("numpy", "matplotlib", "h5py")
+script.require("numpy", "matplotlib", "h5py")
 
 import numpy as np  # noqa: E402
 from matplotlib.collections import LineCollection  # noqa: E402
@@ -20,11 +20,11 @@ from cells import Cells  # noqa: E402
 from results import InputError, Unavailable, load, number, reason, text, value  # noqa: E402
 from wording import ANGLES, LENGTHS, STRESSES, percent, plain, quantity, sci, unit_for  # noqa: E402
 
-WIDE = 1.7  # a contact so many times as wide as high has its panels one above the other
+WIDE = 1.7  # width over height of the contact, from which on its panels stand one above the other
 SIDES = (0.35, 6.0)  # least and largest width over height of a panel; white space makes up for the rest
 LONGEST_ARROW = 0.055  # of the longer side of the contact's bounding rectangle
-LEAST_ARROW = 0.05  # shorter vectors, of the longest, get no arrow
-MOST_SEGMENTS = 2000  # an outline of more becomes a fine image, so that files stay small
+MIN_ARROW = 0.05  # shorter vectors, of the longest, get no arrow
+MAX_SEGMENTS = 2000  # an outline of more becomes a fine image, so that files stay small
 ROUNDING = 1e-9  # loads and motions below this part of their scale are those of rounding
 HEAD = 0.34  # inches for the message; a line of details takes DETAIL
 DETAIL = 0.19
@@ -91,7 +91,7 @@ def draw_slip(axis, solved):
     name, unit = unit_for(largest, LENGTHS)
     image = solved.image(axis, np.where(solved.sticks, np.nan, size / unit), style.SLIP, largest / unit)
     longest = LONGEST_ARROW * solved.cells.longer_side()
-    arrows = solved.arrows(axis, solved.slip, size > LEAST_ARROW * largest, largest / longest)
+    arrows = solved.arrows(axis, solved.slip, size > MIN_ARROW * largest, largest / longest)
     key = round_down(largest)
     axis.quiverkey(arrows, 0.94, 1 + 0.12 / solved.panel_height, key, f"{plain(key / unit)} {name}", labelpos="W",
                    labelsep=0.06)
@@ -108,7 +108,7 @@ def draw_traction(axis, solved):
         return None
     name, unit = unit_for(largest, STRESSES)
     image = solved.image(axis, size / unit, style.SEQUENTIAL)
-    where = size > LEAST_ARROW * largest
+    where = size > MIN_ARROW * largest
     solved.arrows(axis, solved.traction / np.where(where, size, 1.0), where,
                   1 / (0.8 * solved.cells.spacing()), color="white",
                   edgecolor=style.BLACK, linewidth=0.3)
@@ -174,7 +174,7 @@ def details(solved):
 
 def finish(axis, solved):
     segments = solved.cells.outline() / solved.length
-    many = len(segments) > MOST_SEGMENTS
+    many = len(segments) > MAX_SEGMENTS
     axis.add_collection(LineCollection(segments, colors=style.BLACK, linewidths=0.2 if many else 0.6,
                                        capstyle="projecting", rasterized=many))
     axis.set(xlim=solved.view[:, 0], ylim=solved.view[:, 1], aspect="equal")
@@ -210,19 +210,12 @@ def main(words=None):
     parser.add_argument("fields", type=Path, help="its contact cells, from `--fields` (HDF5)")
     parser.add_argument("--output", type=Path, required=True, help="figure to write: " + ", ".join(style.FORMATS))
     arguments = parser.parse_args(words)
-    try:
-        if arguments.output.suffix not in style.FORMATS:
-            raise InputError(f"{arguments.output}: allowed endings: {', '.join(style.FORMATS)}")
+
+    def work():
         result = load(arguments.result)
-        cells = Cells(arguments.fields, value(result, "cell_size"))
-        style.write(draw(Solved(result, cells)), arguments.output)
-    except (InputError, Unavailable) as error:
-        print(f"solve_figure.py: {error}", file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"solve_figure.py: {arguments.output}: cannot be written: {error.strerror}", file=sys.stderr)
-        return 2
-    return 0
+        style.write(draw(Solved(result, Cells(arguments.fields, value(result, "cell_size")))), arguments.output)
+
+    return script.run(work, (InputError, Unavailable), arguments.output)
 
 
 if __name__ == "__main__":

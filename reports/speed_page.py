@@ -5,9 +5,9 @@ import argparse
 import sys
 from pathlib import Path
 
-import packages
+import script
 
-packages.require("numpy", "matplotlib", "jinja2", "h5py")
+script.require("numpy", "matplotlib", "jinja2", "h5py")
 
 import jinja2  # noqa: E402
 
@@ -61,15 +61,8 @@ def main():
     parser.add_argument("data", type=Path, help="folder with scaling.json and plane.json")
     parser.add_argument("--output", type=Path, required=True, help="folder for index.html and figures/")
     arguments = parser.parse_args()
-    try:
-        render(arguments.data.resolve(), arguments.output.resolve())
-    except results.InputError as error:
-        print(f"speed_page.py: {error}", file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"speed_page.py: {error.filename or arguments.output}: cannot be written: {error.strerror}", file=sys.stderr)
-        return 2
-    return 0
+    return script.run(lambda: render(arguments.data.resolve(), arguments.output.resolve()), results.InputError,
+                      arguments.output)
 
 
 if __name__ == "__main__":

@@ -7,9 +7,9 @@ import textwrap
 from collections import Counter
 from pathlib import Path
 
-import packages
+import script
 
-packages.require("numpy", "matplotlib", "h5py")
+script.require("numpy", "matplotlib", "h5py")
 
 import numpy as np  # noqa: E402
 from matplotlib.lines import Line2D  # noqa: E402
@@ -107,7 +107,7 @@ def errors_panel(axis, series, quantity):
     handles = draw_errors(axis, series, quantity)
     expected_guides(axis, series, quantity, 4.0 * high)
     size_ticks(axis, series)
-    legend = min(0.055 * len(handles), 0.4)  # of the height, half of which lies beside the points
+    legend = min(0.055 * len(handles), 0.4)  # of the height; half of it lies beside the points
     decades = np.log10(8.0 * high / low)
     axis.set_ylim(low / 2 * 10 ** (-0.6 * legend * decades), 8.0 * high)
     axis.legend(handles=handles, loc="lower left", fontsize=6.8, handlelength=1.2, handletextpad=0.3,
@@ -115,7 +115,7 @@ def errors_panel(axis, series, quantity):
 
 
 def draw_budget(axis, series, quantity):
-    """Parts of the error on each mesh, side by side on a log scale; what is nought has no bar."""
+    """Parts of the error on each mesh, side by side on a log scale; a part that is zero has no bar."""
     table = series.budget(quantity)
     where = np.arange(len(table))
     width = 0.8 / len(PARTS)
@@ -259,7 +259,7 @@ def message(series, quantities):
                                   verdicts.most_common()]
         counted = ", ".join([f"{most} {'is' if most == 1 else 'are'} {first}",
                              *(f"{count} {words}" for words, count in others)])
-        sentences.append(f"Of {verdicts.total()} orders, {counted}.")
+        sentences.append(f"{verdicts.total()} orders: {counted}.")
         sentences += dominance(study_result.budget_series(series, quantities[0][1]), *quantities[0])
     stalled = [one for one in series if one.tolerances and _best(one, "certificate.gap") > 10 * _tightest(one)]
     for one in stalled:
@@ -287,7 +287,7 @@ def dominance(series, words, path):
     if np.isnan(times).all():
         return []
     if np.nanmin(times) >= 10:
-        return [f"The mesh makes at least {sci(np.nanmin(times))} times as much of the error of the {words} as all else."]
+        return [f"The mesh error of the {words} is at least {sci(np.nanmin(times))} times all its other errors together."]
     worst = int(np.nanargmin(times))
     largest = max(PARTS[1:], key=lambda part: np.nan_to_num(size[part][worst]))
     return [f"On {np.count_nonzero(times < 10)} of {len(table)} meshes other parts of the error of the {words} are above a "
@@ -336,17 +336,8 @@ def main(words=None):
     parser.add_argument("result", type=Path, help="result of `slipstick study --json`")
     parser.add_argument("figure", type=Path, help="figure to write: " + ", ".join(style.FORMATS))
     arguments = parser.parse_args(words)
-    try:
-        if arguments.figure.suffix not in style.FORMATS:
-            raise InputError(f"{arguments.figure}: allowed endings: {', '.join(style.FORMATS)}")
-        style.write(standalone(load(arguments.result)), arguments.figure)
-    except (InputError, Unavailable) as error:
-        print(f"study_figure.py: {error}", file=sys.stderr)
-        return 2
-    except OSError as error:
-        print(f"study_figure.py: {arguments.figure}: cannot be written: {error.strerror}", file=sys.stderr)
-        return 2
-    return 0
+    return script.run(lambda: style.write(standalone(load(arguments.result)), arguments.figure), (InputError, Unavailable),
+                      arguments.figure)
 
 
 if __name__ == "__main__":

@@ -19,7 +19,7 @@ KNOWN_COLOURS = {PRESSURE: {name: colour for name, (_, colour) in PRESSURES.item
 WORDS = {PRESSURE: {name: words for name, (words, _) in PRESSURES.items()},
          METHOD: {name: words for name, (words, _) in METHODS.items()}}
 
-# Of each, the first that a series has: its error against the exact answer, or its value.
+# A series takes the first that it has: the error against the exact answer, or the value.
 MAIN = [("twist", ("twist_error", "twist_angle")), ("traction, L2", ("traction_error.l2",)),
         ("stick radius", ("stick_radius_error", "stick_radius")),
         ("contact radius", ("contact_radius_error", "contact_radius"))]
@@ -39,7 +39,7 @@ class Series:
         return rows(self.content, "meshes")
 
     def order(self, quantity):
-        """The fit of a quantity, whose name may have dots."""
+        """The fit of a quantity; its name may have dots."""
         found = value(self.content, "order")
         if quantity not in found:
             raise Unavailable(f"series “{self.name}” has no order of “{quantity}”")

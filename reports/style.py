@@ -13,6 +13,7 @@ from matplotlib.figure import Figure
 from matplotlib.patheffects import withStroke
 
 import figure_data
+from results import InputError
 from whole_file import write_whole
 
 # Okabe and Ito (2008): distinguished with any colour vision.
@@ -98,13 +99,15 @@ def draw(figure, kind):
 
 
 def write(figure, path):
-    """Writes one file, of the kind that its ending says: one of FORMATS."""
+    """Writes one file, of the kind that its ending says. Throws InputError for an ending that is not one of FORMATS."""
+    if path.suffix not in FORMATS:
+        raise InputError(f"{path}: allowed endings: {', '.join(FORMATS)}")
     write_whole(path, draw(figure, path.suffix))
 
 
 def save(figure, stem):
-    """Writes stem.svg, stem.pdf and, but for mere maps, the numbers drawn as stem.csv; returns the SVG. Laid out once for
-    all: that takes as long as the rest. Nothing moves afterwards."""
+    """Writes stem.svg, stem.pdf and, except for maps, the numbers drawn as stem.csv; returns the SVG. The figure is laid out
+    once for all files, since that takes as long as the rest."""
     svg = figure_data.with_words(figure, draw(figure, ".svg").decode())
     write_whole(stem.with_suffix(".svg"), svg.encode())
     figure.set_layout_engine("none")

@@ -22,13 +22,13 @@ using Matrix = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMa
 /// Bodies that run into each other by less than this part of their displacement are open: a pressure solved
 /// to a complementarity gap of 1e-10 has displacements no better.
 constexpr double kOpen = 1e-5;
-/// Of a trial solve for an extent that is enough, along the longer side: the contact is known to a few
-/// hundredths of it.
+/// Cells along the longer side in a trial solve for a sufficient extent: they tell the contact's size to a
+/// few hundredths.
 constexpr Index kTrialCells = 64;
-/// Trials know no shear: where they find the extent enough, as under full coupling, it is to be so much
-/// larger.
+/// Factor of the extent that is proposed where the trials find the present one enough: they know no shear,
+/// and under full coupling shear widens the contact.
 constexpr double kShearReaches = 1.25;
-/// Each trial doubles the extent: beyond the last one the surface has no end.
+/// Each trial doubles the extent. A surface that goes on beyond the last one has no end.
 constexpr int kTrials = 8;
 
 bool reaches_edge(const Grid& grid, const ArrayXd& pressure) {
@@ -92,7 +92,7 @@ namespace {
 /// Displacement that opens the gap, by the pressure and, unless it is empty, a traction.
 ArrayXd opening(const Model& model, const Scene& scene, const Grid& grid, const ArrayXd& pressure,
                 const ArrayXd& traction) {
-  const Elasticity elastic{.pair = model.pair, .threads = model.threads};
+  const Elasticity elastic{.law = model.law, .threads = model.threads};
   const bool pressed_only = traction.size() == 0;
   const Reduction part = pressed_only && scene.model != ModelChoice::full
                              ? Reduction(grid, pressure, ArrayXd::Ones(grid.cells()))

@@ -8,7 +8,7 @@
 #include "solver/contact/normal_contact.hpp"
 #include "solver/solution.hpp"
 
-/// What one step of a history leaves to the next.
+/// The state that one step of a history leaves to the next.
 namespace slipstick::solver {
 
 /// Motion since the first step began, and loads, at the end of a step; in SI units.
@@ -24,9 +24,9 @@ StepEnd end_of(const Solution& solution);
 /// How far two ends lie apart.
 Quantities distance(const StepEnd& from, const StepEnd& to);
 
-/// What the mesh leaves open of the steps so far. Errors of steps add up, whatever their signs. But a contact
-/// forgets a loop once a larger one closes: no more counts than twice the largest size that was
-/// reached, at the relative error of the worst step.
+/// The mesh error of the steps so far. Errors of steps add up, whatever their signs. But a contact forgets a
+/// loop once a larger one closes: the sum is bounded by twice the largest size that was reached, at the
+/// relative error of the worst step.
 struct OpenHistory {
   Quantities sum;
   Quantities largest;
@@ -41,7 +41,7 @@ struct OpenHistory {
   Quantities mesh() const;
 };
 
-/// What a step starts from and ends with, in the model's units.
+/// The contact at the start or the end of a step, in the model's units.
 struct ContactState {
   Eigen::ArrayXd pressure;  ///< empty: the bodies have not touched yet
   Eigen::ArrayXd traction;  ///< 2*cells; empty likewise

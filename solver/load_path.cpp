@@ -19,21 +19,21 @@ using Eigen::ArrayXXd;
 
 /// Cells along a side of the coarse grid, in the geometric mean, and how many of them a contact has to fill
 /// there: on 16 to 64 cells a path's error differs by up to a quarter.
-constexpr double kCoarseCells = 16.0;
-constexpr double kCoarseAcross = 8.0;
+constexpr double kPathCells = 16.0;
+constexpr double kPathAcross = 8.0;
 /// Differences of parts are small, and each part leaves what the tolerance allows.
-constexpr double kCoarseTolerance = 1e-7;
+constexpr double kPathTolerance = 1e-7;
 /// Error of n parts over its difference from 4 n parts, so that 1 of 100 random histories is further off. An
 /// error that falls like 1/n would make it 4/3, but a single part is not there yet: 1.8 to 2.4 for pushes
 /// before twists and both at once, spheres and ellipsoids of up to 10 to 1; 3.0 for an ellipsoid of 2 to 1
 /// that is twisted to 0.9 of its limit.
-constexpr double kSafety = 3.3;
+constexpr double kPathSafety = 3.3;
 /// More where a step changes the normal load beside the others: a single part brings both at once, four parts
 /// one after the other, and they may agree by chance.
 constexpr double kBothAtOnce = 2.5;
 constexpr int kFinerPath = 4;
 /// Steps that are solved to estimate; a longer history's path is longer in proportion.
-constexpr std::size_t kMaxSteps = 60;
+constexpr std::size_t kMaxPathSteps = 60;
 
 Quantities times(double factor, Quantities quantities) {
   for (const auto number : kQuantities) quantities.*number *= factor;
@@ -42,7 +42,7 @@ Quantities times(double factor, Quantities quantities) {
 
 double between(double from, double to, double part) { return from + part * (to - from); }
 
-/// What the contact carries, or where it stands, as a load of this kind.
+/// The load that the contact carries, or its twist, as a load of this kind.
 TorsionLoad as_load(const TorsionLoad& kind, const StepEnd& at) {
   if (std::holds_alternative<Twist>(kind)) return Twist{at.twist};
   if (std::holds_alternative<Moment>(kind)) return Moment{at.moment};
@@ -85,7 +85,7 @@ bool has_axis(const Scene& scene) {
   return surface.shape != Shape::height_map && surface.shape != Shape::roughness;
 }
 
-/// Means over squares of so many samples; what does not fill one at the far ends is cut off.
+/// Means over squares of side x side samples; samples at the far ends that fill no square are cut off.
 ArrayXXd block_means(const ArrayXXd& heights, Index side) {
   return ArrayXXd::NullaryExpr(heights.rows() / side, heights.cols() / side, [&](Index i, Index j) {
     return heights.block(i * side, j * side, side, side).mean();
@@ -112,7 +112,7 @@ bool depends_on_path(const Scene& scene, const Model& model) {
   if (scene.method != Method::coulomb) return false;
   const bool one_pressure = std::ranges::all_of(
       scene.steps, [&](const Step& step) { return step.normal == scene.steps.front().normal; });
-  const bool similar = !model.pressure_coupling || model.pair.mismatch == 0.0;
+  const bool similar = !model.pressure_coupling || !model.law->couples();
   return !(one_pressure && similar && !model.forces && has_axis(scene));
 }
 
@@ -120,24 +120,24 @@ bool depends_on_path(const Scene& scene, const Model& model) {
 std::optional<Scene> coarse_scene(const Scene& scene) {
   if (scene.pressure == PressureModel::file) return std::nullopt;
   Scene coarse = scene;
-  coarse.tolerance = kCoarseTolerance;
+  coarse.tolerance = kPathTolerance;
   coarse.op = OperatorKind::dcfft;
   coarse.model = ModelChoice::automatic;
   coarse.threads = 1;
   coarse.surfaces = with_heights(std::move(coarse.surfaces));
   const Surface* const map = find_height_map(coarse.surfaces);
   if (map == nullptr) {
-    make_coarse(coarse, kCoarseCells);
+    make_coarse(coarse, kPathCells);
     if (!scene.extent) return coarse;
     const double across = cells_across(coarse);
-    if (across < kCoarseAcross) {
+    if (across < kPathAcross) {
       coarse.cells = scene.cells;
-      make_coarse(coarse, kCoarseCells * kCoarseAcross / std::max(across, 1.0));
+      make_coarse(coarse, kPathCells * kPathAcross / std::max(across, 1.0));
     }
     return coarse;
   }
   const Index side =
-      std::max(map->heights.rows(), map->heights.cols()) / static_cast<Index>(4.0 * kCoarseCells);
+      std::max(map->heights.rows(), map->heights.cols()) / static_cast<Index>(4.0 * kPathCells);
   if (side < 2) return coarse;
   for (Surface& surface : coarse.surfaces) {
     if (surface.shape != Shape::height_map) continue;
@@ -164,7 +164,7 @@ std::vector<StepEnd> ends_of(const Scene& scene) {
   return ends;
 }
 
-/// At most so many of its steps.
+/// Cuts the history to at most so many steps.
 void shorten(Scene& scene, std::size_t steps) {
   const std::size_t cycles = std::max<std::size_t>(1, steps / scene.steps.size());
   scene.cycles = static_cast<int>(std::min<std::size_t>(static_cast<std::size_t>(scene.cycles), cycles));
@@ -196,13 +196,13 @@ PathUncertainty::PathUncertainty(const Scene& scene, const Model& model)
   std::optional<Scene> coarse = coarse_scene(scene);
   broke_off_ = !coarse;
   if (broke_off_) return;
-  shorten(*coarse, kMaxSteps);
+  shorten(*coarse, kMaxPathSteps);
   const std::vector<StepEnd> ends = ends_of(*coarse);
   coarse->substeps *= kFinerPath;
   const std::vector<StepEnd> finer = ends_of(*coarse);
-  double safety = kSafety;
+  double safety = kPathSafety;
   for (std::size_t k = 0; k < std::min(ends.size(), finer.size()); ++k) {
-    if (k > 0 && changes_both(step_of(scene, k - 1), step_of(scene, k))) safety = kSafety * kBothAtOnce;
+    if (k > 0 && changes_both(step_of(scene, k - 1), step_of(scene, k))) safety = kPathSafety * kBothAtOnce;
     at_ends_.push_back(times(safety, distance(ends[k], finer[k])));
   }
   broke_off_ = at_ends_.size() < coarse->steps.size() * static_cast<std::size_t>(coarse->cycles);

@@ -3,10 +3,10 @@
 #include <cstddef>
 #include <vector>
 
-#include "solver/load_step.hpp"
 #include "solver/model.hpp"
 #include "solver/scene/scene.hpp"
 #include "solver/solution.hpp"
+#include "solver/tractions.hpp"
 
 /// How the loads of a step are brought: in parts, each an implicit step of its own. Each part opposes
 /// traction to its slip as a whole. So the answer depends on the number of parts wherever slip turns within a
@@ -20,8 +20,9 @@ namespace slipstick::solver {
 /// tangential loads; a single part brings both at once. The first step begins with its normal load.
 std::vector<Step> parts_of(const Scene& scene, const Step& step, const Step* previous, const StepEnd& before);
 
-/// What the number of parts leaves open at the end of each step of a scene. It is estimated on few cells, on
-/// which parts leave nearly the same errors as on many: from the same history in four times as many parts.
+/// The error that the number of parts leaves at the end of each step of a scene. It is estimated on few
+/// cells, on which parts leave nearly the same errors as on many: from the same history in four times as many
+/// parts.
 class PathUncertainty {
  public:
   /// Solves the two histories, unless the number of parts cannot matter: where a surface of revolution

@@ -45,8 +45,8 @@ struct GroupFiles {
 constexpr GroupFiles kVersion1{"memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"};
 constexpr GroupFiles kVersion2{"memory.max", "memory.current", "inactive_file"};
 
-/// What a group and those around it leave free. Inside a container a group's own folder is not seen, those
-/// around it are.
+/// Bytes that a group and the groups around it leave free. A container sees the folders of the groups around
+/// it, not the one of its own group.
 double left_by_groups(const fs::path& mount, fs::path group, const GroupFiles& files) {
   double least = INFINITY;
   for (;; group = group.parent_path()) {

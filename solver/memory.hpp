@@ -9,7 +9,7 @@
 /// How much memory a solve may take.
 namespace slipstick::solver {
 
-/// What a scene asks for takes more memory than it may.
+/// A scene needs more memory than it may take.
 class OutOfMemory : public InputError {
  public:
   using InputError::InputError;
@@ -20,13 +20,13 @@ class OutOfMemory : public InputError {
 double available_memory(const std::filesystem::path& root = "/");
 
 /// Blocks of up to some MiB that are freed stay with this process for the next ones, where its library can be
-/// told so: given back and asked for anew, their pages take a tenth of a quick solve. For a program's start.
+/// told so: to give pages back and ask for them again takes a tenth of a quick solve. For a program's start.
 void keep_freed_blocks();
 
 /// "512 MiB", "1.5 GiB": three digits.
 std::string bytes_text(double bytes);
 
-/// What may be taken: the limit, or what is available where there is none.
+/// Bytes that may be taken: the limit, or the available memory where there is no limit.
 double memory_within(std::optional<double> limit);
 
 }  // namespace slipstick::solver

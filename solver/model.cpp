@@ -12,6 +12,8 @@
 #include <utility>
 
 #include "solver/contact/coulomb_method.hpp"
+#include "solver/elasticity/law/half_spaces.hpp"
+#include "solver/elasticity/law/law_kind.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/memory.hpp"
 #include "solver/scene/last_digits.hpp"
@@ -44,8 +46,8 @@ double field_bytes(double fields, Index cells) {
   return fields * sizeof(double) * static_cast<double>(cells);
 }
 /// Cells left free on each side of the expected contact where the scene does not give an extent.
-constexpr double kMarginCells = 2.0;
-/// With cells longer than so many times their width every method crawls.
+constexpr double kExtentMarginCells = 2.0;
+/// Largest ratio of a cell's sides. Beyond it every method crawls.
 constexpr double kMaxSlender = 1000.0;
 
 HalfSpace half_space(const Material& material) {
@@ -105,8 +107,9 @@ Grid make_grid(const Scene& scene, const std::vector<Surface>& surfaces, double 
     return require_not_slender(scene, *grid);
   }
   const auto load = largest_normal(scene);
+  const bool known = load && scene.layer.kind == nullptr;
   const auto expected =
-      load ? expected_half_sides(surfaces, scene.combine, *load, effective_modulus) : std::nullopt;
+      known ? expected_half_sides(surfaces, scene.combine, *load, effective_modulus) : std::nullopt;
   if (!scene.extent && !expected) {
     throw InputError(scene.source.string(), "grid.extent", "(missing)",
                      "[L1, L2] in m, since how far the contact reaches is not known before it is solved");
@@ -115,7 +118,7 @@ Grid make_grid(const Scene& scene, const std::vector<Surface>& surfaces, double 
   std::array<double, 2> h{};
   for (std::size_t i = 0; i < 2; ++i) {
     const auto cells = static_cast<double>(scene.cells[i]);
-    const double margin = std::min(kMarginCells, cells / 8.0);
+    const double margin = std::min(kExtentMarginCells, cells / 8.0);
     h[i] = scene.extent ? (*scene.extent)[i] / cells : 2.0 * (*expected)[i] / (cells - 2.0 * margin);
     if (scene.extent && expected && surfaces.size() == 1 && scene.cells[i] > 1 &&
         h[i] > 2.0 * (*expected)[i]) {
@@ -141,7 +144,7 @@ ArrayXd make_gap(const Scene& scene, std::vector<Surface> surfaces, const Grid& 
   return gap;
 }
 
-/// Of so little nobody asks whether it is there.
+/// Bytes. Below this size the memory check is skipped.
 constexpr double kLittleMemory = 0x1p26;
 
 void require_memory(const Scene& scene, const Grid& grid, double bytes) {
@@ -198,10 +201,10 @@ void note_omissions(Model& model, const Scene& scene, const Reduction& part, boo
   const Grid& grid = part.grid();
   left_out = scene.left_out;
   if (!model.pressure_coupling) {
-    left_out.push_back({"K13, K23", model.pair.mismatch == 0.0
+    left_out.push_back({"K13, K23", !model.law->couples()
                                         ? "similar materials: pressure moves both surfaces alike"
                                         : "contact.coupling = \"none\""});
-  } else if (!model.shear_coupling && model.pair.mismatch != 0.0) {
+  } else if (!model.shear_coupling && model.law->couples()) {
     left_out.push_back(
         {"K31, K32", "shear leaves the pressure as it is, unless contact.coupling = \"full\""});
   }
@@ -226,7 +229,7 @@ void note_omissions(Model& model, const Scene& scene, const Reduction& part, boo
 }
 
 Elasticity elasticity(const Scene& scene, const Model& model, const Reduction& part) {
-  return {.pair = model.pair,
+  return {.law = model.law,
           .kind = scene.op,
           .threads = model.threads,
           .diagonal = part.diagonal() && Ranks::number() == 1,
@@ -272,6 +275,20 @@ int threads_for(const Scene& scene, const Grid& part) {
   return static_cast<int>(std::clamp<Index>(part.cells() / kCellsOfThread, 1, processors));
 }
 
+/// The bodies' law, and on top of it that of the layer.
+SharedLaw make_law(const Scene& scene, const Model& model) {
+  const SharedLaw bodies = std::make_shared<HalfSpaces>(model.pair, scene.cell_traction);
+  const auto& [kind, values] = scene.layer;
+  if (kind == nullptr) return bodies;
+  std::vector<double> dimensionless;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const double unit = std::pow(model.length_unit, kind->parameters[i].of_length) *
+                        std::pow(model.stress_unit, kind->parameters[i].of_stress);
+    dimensionless.push_back(to_dimensionless(values[i], unit));
+  }
+  return kind->make(bodies, dimensionless);
+}
+
 Model build_model(const Scene& scene) {
   ElasticPair pair = elastic_pair(half_space(scene.lower), half_space(scene.upper));
   if (are_alike(scene.upper, scene.lower)) pair.mismatch = 0.0;
@@ -286,7 +303,7 @@ Model build_model(const Scene& scene) {
                             (scene.coupling == Coupling::automatic && (full || pair.mismatch != 0.0));
   const bool shear_presses = model.shear_coupling && pair.mismatch != 0.0;
   model.hertzian = is_hertzian(surfaces) && scene.pressure != PressureModel::file && !shear_presses &&
-                   !scene.ends_at_grid_edge;
+                   scene.layer.kind == nullptr && !scene.ends_at_grid_edge;
   model.forces = std::any_of(scene.steps.begin(), scene.steps.end(), brings_translation);
   require_memory(scene, grid, field_bytes(kFieldsAround, grid.cells()));
   model.length_unit = grid.h1;
@@ -296,8 +313,8 @@ Model build_model(const Scene& scene) {
   model.pair = {.shear_compliance = 1.0,
                 .poisson_compliance = to_dimensionless(pair.poisson_compliance, compliance_unit),
                 .normal_compliance = to_dimensionless(pair.normal_compliance, compliance_unit),
-                .mismatch = to_dimensionless(pair.mismatch, compliance_unit),
-                .cell_traction = scene.cell_traction};
+                .mismatch = to_dimensionless(pair.mismatch, compliance_unit)};
+  model.law = make_law(scene, model);
   model.friction = scene.friction;
   if (const auto load = largest_normal(scene)) {
     model.normal_load = to_dimensionless(*load, model.force_unit());
@@ -312,7 +329,8 @@ Model build_model(const Scene& scene) {
                             : Reduction(model.grid);
   model.threads = threads_for(scene, model.pressure_part.grid());
 
-  if (const auto radii = hertzian_radii(surfaces); radii && model.normal_load) {
+  const auto radii = hertzian_radii(surfaces);
+  if (radii && model.normal_load && scene.layer.kind == nullptr) {
     model.hertz =
         hertz_contact(*model.normal_load, to_dimensionless((*radii)[0], model.length_unit),
                       to_dimensionless((*radii)[1], model.length_unit), model.pair.effective_modulus());

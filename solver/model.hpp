@@ -8,6 +8,7 @@
 
 #include "solver/cache/solve_cache.hpp"
 #include "solver/elasticity/elasticity.hpp"
+#include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/grid/reduction.hpp"
 #include "solver/scene/hertz_pressure.hpp"
 #include "solver/scene/scene.hpp"
@@ -22,7 +23,8 @@ struct Dimensionless {
   double length_unit;  ///< m
   double stress_unit;  ///< Pa
   Grid grid;
-  ElasticPair pair;
+  ElasticPair pair;  ///< the bodies
+  SharedLaw law;     ///< theirs, and that of what lies between them
   double friction;
   bool hertzian;           ///< the pressure is Hertz's, wherever the body stands, up to the mesh
   bool pressure_coupling;  ///< K13, K23 enter
@@ -35,7 +37,7 @@ struct Dimensionless {
   double moment_unit() const { return force_unit() * length_unit; }
 };
 
-/// What is solved for a scene on its own grid.
+/// The problem that is solved for a scene on its own grid.
 struct Model : Dimensionless {
   std::optional<double> normal_load;  ///< the largest of the scene's steps
   Eigen::ArrayXd gap;  ///< undeformed, one value a cell; infinite where the bodies cannot touch
@@ -58,7 +60,7 @@ bool has_translations(const Scene& scene, const Model& model, const Eigen::Array
 Reduction traction_part(const Scene& scene, const Model& model, const Eigen::ArrayXd& pressure,
                         const Eigen::ArrayXd& before = {});
 
-/// Notes what that and has_translations() leave out.
+/// Notes the omissions of traction_part() and has_translations() in the model.
 void note_omissions(Model& model, const Scene& scene, const Reduction& part, bool translations);
 
 /// How the model's displacements are computed on a part of its grid.

@@ -16,7 +16,8 @@ namespace {
 
 using Eigen::ArrayXd;
 
-/// Energy lost to slip that may be none: so many gaps, and at most this part of the energy.
+/// Slip that dissipates less than this many duality gaps, and less than the second part of the energy, may be
+/// rounding.
 constexpr double kGapsOfNoSlip = 10.0;
 constexpr double kNoSlip = 1e-5;
 
@@ -37,26 +38,14 @@ void describe_contact(ModelSolution& solution) {
   solution.contact_radius_counted = equal_area_radius(grid, solution.contact_cells) * model.length_unit;
 }
 
-/// Over the cell's area.
-struct Resultants {
-  double force1 = 0.0, force2 = 0.0;
-  double moment = 0.0;
-
-  Resultants& operator+=(const Resultants& other) {
-    force1 += other.force1;
-    force2 += other.force2;
-    moment += other.moment;
-    return *this;
-  }
-};
-
-Resultants resultants_of(const ArrayXd& traction, const Grid& grid) {
+/// Force along x1 and x2 and moment of the tractions, over the cell's area.
+std::array<double, 3> resultants_of(const ArrayXd& traction, const Grid& grid) {
   const MotionField rotation(grid, 0.0, 0.0, 1.0);
   const Index cells = grid.cells();
-  return Sweep::whole(cells, grid.n2).sum<Resultants>([&](Index first, Index last, Resultants& sum) {
+  return Sweep::whole(cells, grid.n2).sum<std::array<double, 3>>([&](Index first, Index last, auto& sum) {
     const auto q1 = traction.segment(first, last - first);
     const auto q2 = traction.segment(first + cells, last - first);
-    sum += {q1.sum(), q2.sum(), rotation.dot(first, q1) + rotation.dot(first + cells, q2)};
+    sum += std::array{q1.sum(), q2.sum(), rotation.dot(first, q1) + rotation.dot(first + cells, q2)};
   });
 }
 
@@ -73,7 +62,7 @@ void describe_tractions(ModelSolution& solution, const LoadStep& loads, const Ar
     solution.stick_radius_note = "everything sticks";
   } else if (solution.detail != Detail::all) {
     solution.stick_radius = solution.stick_radius_counted;
-    solution.stick_radius_note = "only counted: nobody asked for more";
+    solution.stick_radius_note = "cells counted; no sub-cell fit was asked for";
   } else if (slip.size() > 0) {
     const StickFront front = find_stick_front(grid, problem.friction_bound, slip, tangential.stick);
     solution.stick_radius = front.radius * model.length_unit;
@@ -84,9 +73,8 @@ void describe_tractions(ModelSolution& solution, const LoadStep& loads, const Ar
   }
   const double moment_unit = grid.cell_area() * model.moment_unit();
   const double force_unit = grid.cell_area() * model.force_unit();
-  const Resultants resultants = resultants_of(tangential.traction, grid);
-  const double moment = resultants.moment;
-  const std::array force{resultants.force1, resultants.force2};
+  const auto [force1, force2, moment] = resultants_of(tangential.traction, grid);
+  const std::array force{force1, force2};
   solution.moment = moment * moment_unit;
   solution.force = {force[0] * force_unit, force[1] * force_unit};
   solution.moment_limit = loads.moment_limit * moment_unit;
@@ -101,49 +89,37 @@ void describe_tractions(ModelSolution& solution, const LoadStep& loads, const Ar
   solution.certificate = certify({tangential.traction, tangential.elastic_displacement, tangential.slip},
                                  problem.friction_bound, grid, problem.moment.value_or(moment),
                                  problem.displacement ? force : problem.force.value_or(std::array{0.0, 0.0}),
-                                 least_eigenvalue(model.pair, grid.h1, grid.h2),
+                                 model.law->least_eigenvalue(grid.h1, grid.h2),
                                  {problem.energy_before, inherits ? motion : 0.0});
 }
 
-/// Over the moment's unit and the cell's area.
-struct Work {
-  double elastic = 0.0;
-  double dissipated = 0.0;
-  double of_loads = 0.0;
-
-  Work& operator+=(const Work& other) {
-    elastic += other.elastic;
-    dissipated += other.dissipated;
-    of_loads += other.of_loads;
-    return *this;
-  }
-};
-
-/// What became of the loads' work.
+/// Where the work of the loads went.
 void describe_energy(ModelSolution& solution, const LoadStep& loads) {
   const Model& model = solution.model;
   const TangentialSolution& tangential = solution.tangential;
   const double unit = model.grid.cell_area() * model.moment_unit();
   const Index cells = model.grid.cells();
   const ArrayXd& bound = loads.problem.friction_bound;
-  const Work work = Sweep::whole(cells, model.grid.n2).sum<Work>([&](Index first, Index last, Work& sum) {
-    const Index n = last - first;
-    const auto q1 = tangential.traction.segment(first, n);
-    const auto q2 = tangential.traction.segment(first + cells, n);
-    const auto s1 = tangential.slip.segment(first, n);
-    const auto s2 = tangential.slip.segment(first + cells, n);
-    const ArrayXd& u = tangential.elastic_displacement;
-    sum += {0.5 * (q1 * u.segment(first, n) + q2 * u.segment(first + cells, n)).sum(),
-            (bound.segment(first, n) * (s1.square() + s2.square()).sqrt()).sum(), -(q1 * s1 + q2 * s2).sum()};
-  });
-  solution.elastic_energy = work.elastic * unit;
-  solution.dissipated = work.dissipated * unit;
-  solution.work = work.of_loads * unit;
-  // Slip of which the gap leaves open whether it is any has no direction.
+  using Sums = std::array<double, 3>;  // over the moment's unit and the cell's area
+  const auto [elastic, dissipated, of_loads] =
+      Sweep::whole(cells, model.grid.n2).sum<Sums>([&](Index first, Index last, Sums& sum) {
+        const Index n = last - first;
+        const auto q1 = tangential.traction.segment(first, n);
+        const auto q2 = tangential.traction.segment(first + cells, n);
+        const auto s1 = tangential.slip.segment(first, n);
+        const auto s2 = tangential.slip.segment(first + cells, n);
+        const ArrayXd& u = tangential.elastic_displacement;
+        sum += Sums{0.5 * (q1 * u.segment(first, n) + q2 * u.segment(first + cells, n)).sum(),
+                    (bound.segment(first, n) * (s1.square() + s2.square()).sqrt()).sum(),
+                    -(q1 * s1 + q2 * s2).sum()};
+      });
+  solution.elastic_energy = elastic * unit;
+  solution.dissipated = dissipated * unit;
+  solution.work = of_loads * unit;
+  // Slip that may be rounding has no direction.
   const Certificate& certificate = solution.certificate;
-  const bool slips =
-      solution.stick_cells < solution.contact_cells &&
-      !(work.dissipated <= std::min(kGapsOfNoSlip * certificate.gap, kNoSlip) * certificate.energy);
+  const bool slips = solution.stick_cells < solution.contact_cells &&
+                     !(dissipated <= std::min(kGapsOfNoSlip * certificate.gap, kNoSlip) * certificate.energy);
   solution.slip_direction = slips ? slip_direction(tangential.traction, tangential.slip)
                                   : SlipDirection{std::nan(""), std::nan("")};
 }
@@ -184,46 +160,26 @@ Solution in_si(ModelSolution solution) {
   return solution;
 }
 
-namespace {
-
-/// Of a pressure, over the cell's area.
-struct PressureMoments {
-  double load = 0.0;
-  double first1 = 0.0, first2 = 0.0;
-  double second11 = 0.0, second12 = 0.0, second22 = 0.0;
-
-  PressureMoments& operator+=(const PressureMoments& other) {
-    load += other.load;
-    first1 += other.first1;
-    first2 += other.first2;
-    second11 += other.second11;
-    second12 += other.second12;
-    second22 += other.second22;
-    return *this;
-  }
-};
-
-}  // namespace
-
 double measure_contact_radius(const Dimensionless& model, const ArrayXd& pressure) {
   const Grid& grid = model.grid;
   const ArrayXd x2 = ArrayXd::NullaryExpr(grid.n2, [&](Index j) { return grid.x2(j); });
   const Sweep rows = Sweep::whole(grid.cells(), grid.n2);
+  using Moments =
+      std::array<double, 6>;  // zeroth, first (x1, x2) and second (11, 12, 22), over the cell's area
   const auto moments_about = [&](double c1, double c2) {
-    return rows.sum<PressureMoments>([&](Index first, Index last, PressureMoments& sum) {
+    return rows.sum<Moments>([&](Index first, Index last, Moments& sum) {
       const auto p = pressure.segment(first, last - first);
       const double y1 = grid.x1(first / grid.n2) - c1;
       const double load = p.sum();
       const double along2 = (p * (x2 - c2)).sum();
-      sum += {load, y1 * load, along2, y1 * y1 * load, y1 * along2, (p * (x2 - c2).square()).sum()};
+      sum += Moments{load, y1 * load, along2, y1 * y1 * load, y1 * along2, (p * (x2 - c2).square()).sum()};
     });
   };
-  const PressureMoments about_origin = moments_about(0.0, 0.0);
-  const PressureMoments about_centroid =
-      moments_about(about_origin.first1 / about_origin.load, about_origin.first2 / about_origin.load);
-  const auto mean = [&](double moment) { return moment / about_centroid.load; };
-  const double covariance = mean(about_centroid.second11) * mean(about_centroid.second22) -
-                            mean(about_centroid.second12) * mean(about_centroid.second12);
+  const Moments about_origin = moments_about(0.0, 0.0);
+  const Moments about_centroid =
+      moments_about(about_origin[1] / about_origin[0], about_origin[2] / about_origin[0]);
+  const auto mean = [&](std::size_t k) { return about_centroid[k] / about_centroid[0]; };
+  const double covariance = mean(3) * mean(5) - mean(4) * mean(4);
   const double radius = std::sqrt(5.0 * std::sqrt(std::max(covariance, 0.0)));
   // A contact one cell wide has no second moment.
   return model.hertzian && radius > 0.0 ? radius : equal_area_radius(model.grid, (pressure > 0.0).count());

@@ -3,9 +3,9 @@
 #include <functional>
 
 #include "solver/contact/normal_contact.hpp"
-#include "solver/load_step.hpp"
 #include "solver/model.hpp"
 #include "solver/solution.hpp"
+#include "solver/tractions.hpp"
 
 namespace slipstick::solver {
 

@@ -20,42 +20,29 @@ struct Area {
   std::array<double, 2> sides{};  ///< of cells that look along x1, x2
   double mean = 0.0;              ///< of the field
   double edge = 0.0;              ///< of the field along the outline
-
-  Area& operator+=(const Area& other) {
-    cells += other.cells;
-    sides[0] += other.sides[0];
-    sides[1] += other.sides[1];
-    mean += other.mean;
-    edge += other.edge;
-    return *this;
-  }
 };
 
 /// field(cell): its value there.
 template <typename Field>
 Area measure(const Grid& grid, const Field& field) {
-  Area area = Sweep::whole(grid.cells(), grid.n2).sum<Area>([&](Index first, Index last, Area& sum) {
-    const bool top = first < grid.n2;
-    const bool bottom = last > grid.cells() - grid.n2;
-    for (Index k = first; k < last; ++k) {
-      const double value = field(k);
-      if (value == 0.0) continue;
-      const int along1 = (top || field(k - grid.n2) == 0.0) + (bottom || field(k + grid.n2) == 0.0);
-      const int along2 = (k == first || field(k - 1) == 0.0) + (k + 1 == last || field(k + 1) == 0.0);
-      sum += {1.0,
-              0.0,
-              {static_cast<double>(along1), static_cast<double>(along2)},
-              value,
-              (along1 + along2) * value};
-    }
-  });
-  if (area.cells == 0.0) return area;
-  area.mean /= area.cells;
-  area.outline = area.sides[0] + area.sides[1];
-  area.edge /= area.outline;
+  using Sums =
+      std::array<double, 5>;  // cells, sides that look along x1 and x2, the field, the field by sides
+  const auto [cells, sides1, sides2, mean, edge] =
+      Sweep::whole(grid.cells(), grid.n2).sum<Sums>([&](Index first, Index last, Sums& sum) {
+        const bool top = first < grid.n2;
+        const bool bottom = last > grid.cells() - grid.n2;
+        for (Index k = first; k < last; ++k) {
+          const double value = field(k);
+          if (value == 0.0) continue;
+          const double along1 = (top || field(k - grid.n2) == 0.0) + (bottom || field(k + grid.n2) == 0.0);
+          const double along2 = (k == first || field(k - 1) == 0.0) + (k + 1 == last || field(k + 1) == 0.0);
+          sum += Sums{1.0, along1, along2, value, (along1 + along2) * value};
+        }
+      });
+  if (cells == 0.0) return {};
   // A staircase is longer than the curve that it follows, by 4/pi in the mean over all directions.
-  area.outline *= std::numbers::pi / 4.0;
-  return area;
+  const double outline = sides1 + sides2;
+  return {cells, std::numbers::pi / 4.0 * outline, {sides1, sides2}, mean / cells, edge / outline};
 }
 
 /// The friction bound where the body would turn, over the contact's cells nearest to there; 0 where that is

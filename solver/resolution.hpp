@@ -2,13 +2,13 @@
 
 #include <Eigen/Core>
 
-#include "solver/load_step.hpp"
 #include "solver/scene/scene.hpp"
 #include "solver/solution.hpp"
+#include "solver/tractions.hpp"
 
 namespace slipstick::solver {
 
-/// What the mesh resolves of a step, and the relative error that it leaves in the step's change of motion.
+/// How well the mesh resolves a step, and the relative error that it leaves in the step's change of motion.
 /// Cells of size h on a contact of radius r, h/r in the root mean square of both axes, leave these parts:
 /// - everywhere 0.26 (h/r)^2, and up to 0.22 h/r where the pressure does not fall to zero at the edge;
 /// - where slip is narrower than four cells, up to 0.65 (h/r)^1.5, since tractions rise towards a staircase

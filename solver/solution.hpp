@@ -23,7 +23,7 @@ struct Quantities {
 inline constexpr std::array kQuantities{&Quantities::twist, &Quantities::displacement, &Quantities::moment,
                                         &Quantities::force};
 
-/// What a mesh resolves of a contact's slip and stick.
+/// How well a mesh resolves a contact's slip and stick.
 struct Resolution {
   /// Cells across the stick area, in the mean: four times its area over its outline. Zero where no cell
   /// sticks.
@@ -43,7 +43,7 @@ struct Resolution {
 };
 inline constexpr double kPoorlyResolved = 0.1;
 
-/// What the parts of a solve took, by the wall clock.
+/// Wall-clock time of the parts of a solve, in s.
 struct Seconds {
   double setup = 0.0;
   double pressure = 0.0;
@@ -51,7 +51,7 @@ struct Seconds {
   double total = 0.0;
 };
 
-/// How much of an answer is worked out from its fields.
+/// How much is computed from the fields of an answer.
 enum class Detail {
   all,
   loads,  ///< loads and motions with their certificate: what a mean over grids takes. The stick radius is
@@ -92,7 +92,7 @@ struct Solution {
   double stick_radius_counted = 0.0;     ///< m, of a circle with the stick cells' area
   double approach = 0.0;                 ///< m
   Step loads;                            ///< those of the step, as the scene has them
-  int cycle = 1;                         ///< of so many times that the steps are gone through
+  int cycle = 1;                         ///< counted from 1
   double twist_angle = 0.0;              ///< rad, since the first step began
   std::array<double, 2> displacement{};  ///< m, likewise
   double moment = 0.0;                   ///< N m, carried by the tractions

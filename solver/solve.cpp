@@ -3,24 +3,19 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <span>
 #include <stdexcept>
 #include <utility>
 
-#include "solver/contact/coulomb_method.hpp"
 #include "solver/contact/full_coupling.hpp"
-#include "solver/contact/paper_method.hpp"
-#include "solver/contact/projected_gradient.hpp"
 #include "solver/elasticity/random_rounding.hpp"
-#include "solver/grid/mirror.hpp"
 #include "solver/grid/threads.hpp"
 #include "solver/grid_edge.hpp"
 #include "solver/history_state.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/load_path.hpp"
-#include "solver/load_step.hpp"
 #include "solver/model_solution.hpp"
 #include "solver/pressure.hpp"
+#include "solver/tractions.hpp"
 #include "solver/within_double.hpp"
 
 namespace slipstick::solver {
@@ -30,84 +25,17 @@ using Progress = std::function<void(int iteration, double change)>;
 
 using Eigen::ArrayXd;
 
-/// Sums over a million cells lose so much of their sum of sizes,
-constexpr double kLoadRounding = 1e-12;
-/// and the gap, in which they cancel, so much of the energy.
+/// Rounding of a sum over a million cells, relative to the sum of sizes.
+constexpr double kSumRounding = 1e-12;
+/// Rounding of the duality gap, in which sums cancel, relative to the energy.
 constexpr double kGapRounding = 1e-13;
 
-/// The problem on a part of the grid. A quadrant carries a quarter of the moment. What only a solve needs is
-/// taken.
-TangentialProblem reduced(TangentialProblem& problem, const Reduction& part) {
-  const double images = part.quadrant() ? 4.0 : 1.0;
-  TangentialProblem on_part{.friction_bound = part.restricted(std::move(problem.friction_bound)),
-                            .initial_displacement = part.restricted(std::move(problem.initial_displacement)),
-                            .moment = problem.moment,
-                            .twist = problem.twist,
-                            .force = problem.force,
-                            .displacement = problem.displacement,
-                            .start = part.restricted(std::move(problem.start)),
-                            .energy_before = problem.energy_before / images};
-  if (on_part.moment) *on_part.moment /= images;
-  return on_part;
-}
-
-void expand(TangentialSolution& solution, const Reduction& part) {
-  if (!part.trimmed() && !part.quadrant()) return;
-  ArrayXd& u = solution.elastic_displacement;
-  gather(part.grid(), std::span(u.data(), static_cast<std::size_t>(u.size())));
-  for (ArrayXd* const field : {&solution.traction, &solution.elastic_displacement, &solution.slip}) {
-    *field = part.expanded(*field, torsion_symmetry());
-  }
-  solution.stick = part.expanded(solution.stick, normal_symmetry());
-}
-
-/// gap: over the energy, that is enough for Coulomb's method; 0: as the scene asks.
-TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduction& part,
-                            TangentialProblem problem, const Progress& progress, double gap) {
-  const Elasticity elastic = elasticity(scene, model, part);
-  if (scene.method == Method::coulomb) {
-    return solve_by_coulomb_method(elastic, part.grid(), std::move(problem),
-                                   {.tolerance = std::max(scene.tolerance, gap),
-                                    .max_applications = scene.max_iterations,
-                                    .refine_motion = gap == 0.0,
-                                    .progress = progress});
-  }
-  const auto op = elastic.make(part.grid(), tangential_kernel());
-  TangentialSolution solution =
-      scene.method == Method::paper
-          ? solve_by_paper_method(
-                *op, problem,
-                {.tolerance = scene.tolerance, .max_iterations = scene.max_iterations, .progress = progress})
-          : solve_by_projected_gradient(*op, problem,
-                                        {.tolerance = scene.tolerance,
-                                         .max_iterations = scene.max_iterations,
-                                         .start = {},
-                                         .progress = progress});
-  solution.grids = {
-      {part.grid().n1, part.grid().n2, op->applications(), solution.iterations, solution.change}};
-  return solution;
-}
-
-/// Tractions under a pressure that is known. goal: of a turn under full coupling.
-TangentialSolution find_tractions(Model& model, const Scene& scene, LoadStep& loads, const ArrayXd& pressure,
-                                  const ContactState& before, const Progress& progress,
-                                  const TurnGoal& goal = {}) {
-  const Reduction part = traction_part(scene, model, pressure, before.pressure);
-  note_omissions(model, scene, part, loads.problem.force || loads.problem.displacement);
-  TangentialProblem problem = reduced(loads.problem, part);
-  problem.guess = part.restricted(goal.guess);
-  TangentialSolution solution = solve_on(scene, model, part, std::move(problem), progress, goal.gap);
-  expand(solution, part);
-  loads.problem.friction_bound = model.friction * pressure;
-  return solution;
-}
-
-/// What a result's certificate has to keep. The paper's method stops on change, Eq. (26), and freezes slip
-/// directions: it promises no gap. Loads and friction bounds are met as well as the tolerance says, or to
-/// rounding. The other methods have stopped on the gap of the part of the grid that they solved; that of the
-/// whole differs by rounding.
+/// The bounds that a result's certificate must keep. The paper's method stops on change, Eq. (26), and
+/// freezes slip directions: it promises no gap. Loads and friction bounds are met to the tolerance, or to
+/// rounding. The other methods have stopped on the gap of the part of the grid that they solved; the whole
+/// grid's differs by rounding.
 CertificateBounds promised(const Scene& scene) {
-  const double loads = std::max(scene.tolerance, kLoadRounding);
+  const double loads = std::max(scene.tolerance, kSumRounding);
   const double gap = scene.method == Method::paper ? std::numeric_limits<double>::infinity()
                                                    : scene.tolerance + kGapRounding;
   return {.gap = gap, .moment = loads, .force = loads, .friction_bound = loads};
@@ -196,7 +124,7 @@ void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, c
   const KeptRounding rounding;  // what draws its own
   const Model& model = solution.model;
   solution.safeguards = {};
-  const LoadStep loads = model.shear_coupling && model.pair.mismatch != 0.0
+  const LoadStep loads = model.shear_coupling && model.law->couples()
                              ? solve_coupled(solution, scene, step, before, progress)
                              : solve_in_sequence(solution, scene, step, previous, before, progress);
   const TangentialSolution& tangential = solution.tangential;
@@ -235,7 +163,7 @@ void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, c
   solution.seconds.total = solution.seconds.setup + watch.lap();
 }
 
-/// What a resumed history has of the step before. Throws std::invalid_argument for a state of another scene.
+/// Takes the step before from a resumed history. Throws std::invalid_argument for a state of another scene.
 void take_up(ModelSolution& solution, ContactState& state, const HistoryState& resumed, const Scene& scene) {
   const Index cells = solution.model.grid.cells();
   const ContactState& at = resumed.contact;
@@ -250,7 +178,7 @@ void take_up(ModelSolution& solution, ContactState& state, const HistoryState& r
   solution.normal.pressure = at.pressure;
 }
 
-/// What the steps up to this one leave open: the number, and how far it may be off.
+/// Fills in which number the steps up to this one leave open, and how far it may be off.
 void state_uncertainty(Solution& solution, const Scene& scene, std::size_t step) {
   Resolution& resolution = solution.resolution;
   const auto is_zero = [](const TorsionLoad& torsion) {
@@ -286,7 +214,7 @@ void hand_on(const SolveOptions& options, std::size_t finished, ContactState& st
   state = std::move(at.contact);
 }
 
-/// What adds up over the parts of a step.
+/// Numbers that add up over the parts of a step.
 struct Spent {
   Seconds seconds;
   double dissipated = 0.0, work = 0.0;
@@ -368,7 +296,7 @@ void solve_steps(const Scene& scene, const SolveOptions& options, const AfterSte
   }
 }
 
-/// What has been solved without units may be beyond double precision in the scene's.
+/// Throws where an answer that was found without units leaves double precision in the scene's units.
 void require_finite(const Solution& solution) {
   const bool finite = std::isfinite(solution.twist_angle) && std::isfinite(solution.moment) &&
                       solution.pressure.isFinite().all() && solution.traction.isFinite().all();

@@ -11,15 +11,15 @@ namespace slipstick::solver {
 
 struct HistoryState;
 
-/// Who is told how a solve goes on, and what it shares with others.
+/// Callbacks of a solve, and objects that it shares with others.
 struct SolveOptions {
   /// Called now and then, for the pressure and then for the tractions, with the iterations or applications so
   /// far and what the stopping test sees. What it throws ends the solve.
   std::function<void(int iteration, double change)> progress;
   /// Called at the end of each step of a history.
   std::function<void(const Solution&)> on_step = {};
-  /// What solves of one size share; empty: each step shares with the next. Changes no digit: seconds are
-  /// those that the solve takes by itself.
+  /// Objects that solves of one size share; empty: each step shares with the next. They change no digit, and
+  /// seconds are those of the solve by itself.
   std::shared_ptr<SolveCache> cache = {};
   /// Called at the end of each step that another follows, with what that one needs.
   std::function<void(const HistoryState&)> on_state = {};

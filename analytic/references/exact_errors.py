@@ -67,7 +67,7 @@ def references():
 
 
 def linear_twist(c):
-    """Of the pressure 3 (1 - r), which a table reproduces: its H over 2 pi."""
+    """H over 2 pi of the pressure 3 (1 - r), which a table reproduces."""
     x = (1 - c * c).sqrt()
     return 3 * ((1 + x).ln() - c.ln() - x) / (2 * PI)
 

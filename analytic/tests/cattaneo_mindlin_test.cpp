@@ -47,26 +47,21 @@ TEST(CattaneoMindlin, KeepsItsDigitsAtBothEnds) {
     const auto small = from_force_ratio(1e-100, indenter);
     EXPECT_NEAR(small.stick_complement / (power * 1e-100), 1, 4 * kEps);
     EXPECT_NEAR(small.displacement / 0.25e-100, 1, 4 * kEps);
-    const auto large = from_force_deficit(1e-100, indenter);
-    EXPECT_NEAR(large.stick_ratio / std::pow(1e-100, power), 1,
-                300 * kEps);  // ln 1e-100 has an ulp of 230 eps
-    EXPECT_EQ(large.force_deficit, 1e-100);
+    const auto large = from_force_ratio(1 - 0x1p-50, indenter);
+    EXPECT_NEAR(large.stick_ratio / std::exp2(-50 * power), 1, 32 * kEps);  // ln 2^-50 has an ulp of 32 eps
+    EXPECT_NEAR(large.force_deficit * 0x1p50, 1, 32 * kEps);
   }
 }
 
-TEST(CattaneoMindlin, ComesBackFromEveryMember) {
+TEST(CattaneoMindlin, ComesBackFromItsDisplacement) {
   for (const auto& indenter : kRound)
     for (const double f : {1e-9, 0.2, 0.7, 0.999}) {
       const auto state = from_force_ratio(f, indenter);
-      for (const auto& again :
-           {from_force_deficit(state.force_deficit, indenter), from_stick_ratio(state.stick_ratio, indenter),
-            from_stick_complement(state.stick_complement, indenter),
-            from_displacement(state.displacement, indenter)}) {
-        EXPECT_NEAR(again.force_ratio, f, 8 * kEps);
-        EXPECT_NEAR(again.force_deficit, state.force_deficit, 8 * kEps);
-        EXPECT_NEAR(again.displacement, state.displacement, 8 * kEps);
-        EXPECT_NEAR(again.stick_ratio, state.stick_ratio, 16 * kEps);
-      }
+      const auto again = from_displacement(state.displacement, indenter);
+      EXPECT_NEAR(again.force_ratio, f, 8 * kEps);
+      EXPECT_NEAR(again.force_deficit, state.force_deficit, 8 * kEps);
+      EXPECT_NEAR(again.displacement, state.displacement, 8 * kEps);
+      EXPECT_NEAR(again.stick_ratio, state.stick_ratio, 16 * kEps);
     }
 }
 
@@ -169,17 +164,11 @@ TEST(CattaneoMindlin, LosesTheCubeOfASmallForce) {
 }
 
 TEST(CattaneoMindlin, RefusesWhatLiesOutside) {
-  for (const double bad : {-0.1, 1.0, kNan}) {
+  for (const double bad : {-0.1, 1.0, kNan})
     EXPECT_THROW(from_force_ratio(bad, kSphere), std::domain_error) << bad;
-    EXPECT_THROW(from_force_deficit(1 - bad, kSphere), std::domain_error) << bad;
-    EXPECT_THROW(from_stick_complement(bad, kSphere), std::domain_error) << bad;
-    EXPECT_THROW(from_stick_ratio(1 - bad, kSphere), std::domain_error) << bad;
-  }
   for (const double bad : {-0.1, 0.375, kNan})
     EXPECT_THROW(from_displacement(bad, kSphere), std::domain_error) << bad;
   EXPECT_THAT([] { from_displacement(0.4, kSphere); }, ThrowsMessage<std::domain_error>(HasSubstr("0.375")));
-  EXPECT_THROW(from_stick_ratio(0.5, kFlat), std::domain_error);
-  EXPECT_THROW(from_stick_complement(0.5, kFlat), std::domain_error);
   const auto state = from_force_ratio(0.5, kSphere);
   for (const double bad : {-0.1, 1.1, kNan})
     EXPECT_THROW(traction(state, bad, kSphere), std::domain_error) << bad;

@@ -168,27 +168,22 @@ TEST(Indentation, LastsToExtremeMagnitudes) {
       std::pow(10, 50.0 / 1001), 1e-13);
 }
 
-TEST(Indentation, RefusesWhatIsNotPositive) {
-  for (const double bad : {0.0, -1.0, std::nan(""), HUGE_VAL}) {
-    EXPECT_THROW(indent_sphere(bad, 1, 1), std::domain_error);
-    EXPECT_THROW(indent_sphere(1, bad, 1), std::domain_error);
-    EXPECT_THROW(indent_sphere(1, 1, bad), std::domain_error);
-    EXPECT_THROW(indent_cone(bad, 1, 1), std::domain_error);
-    EXPECT_THROW(indent_cone(1, bad, 1), std::domain_error);
-    EXPECT_THROW(indent_cone(1, 1, bad), std::domain_error);
-    EXPECT_THROW(indent_flat_punch(bad, 1, 1), std::domain_error);
-    EXPECT_THROW(indent_flat_punch(1, bad, 1), std::domain_error);
-    EXPECT_THROW(indent_flat_punch(1, 1, bad), std::domain_error);
-    EXPECT_THROW(indent_power(bad, 2, 1, 1), std::domain_error);
-    EXPECT_THROW(indent_power(1, bad, 1, 1), std::domain_error);
-    EXPECT_THROW(indent_power(1, 2, bad, 1), std::domain_error);
-    EXPECT_THROW(indent_power(1, 2, 1, bad), std::domain_error);
-    EXPECT_THROW(indent_rounded_punch(bad, 1, 1, 1), std::domain_error);
-    EXPECT_THROW(indent_rounded_punch(1, 1, bad, 1), std::domain_error);
-    EXPECT_THROW(indent_rounded_punch(1, 1, 1, bad), std::domain_error);
+/// Each indenter's numbers, all 1 but the one at `place`.
+void indent_all(const std::function<double(int)>& at, int place) {
+  if (place < 3) {
+    EXPECT_THROW(indent_sphere(at(0), at(1), at(2)), std::domain_error) << place;
+    EXPECT_THROW(indent_cone(at(0), at(1), at(2)), std::domain_error) << place;
+    EXPECT_THROW(indent_flat_punch(at(0), at(1), at(2)), std::domain_error) << place;
   }
-  for (const double bad : {-1.0, std::nan(""), HUGE_VAL})
-    EXPECT_THROW(indent_rounded_punch(1, bad, 1, 1), std::domain_error);
+  EXPECT_THROW(indent_power(at(0), at(1), at(2), at(3)), std::domain_error) << place;
+  if (place != 1 || at(1) != 0) {  // a rounded punch may have no flat
+    EXPECT_THROW(indent_rounded_punch(at(0), at(1), at(2), at(3)), std::domain_error) << place;
+  }
+}
+
+TEST(Indentation, RefusesWhatIsNotPositive) {
+  for (const double bad : {0.0, -1.0, std::nan(""), HUGE_VAL})
+    for (const int place : {0, 1, 2, 3}) indent_all([&](int i) { return i == place ? bad : 1.0; }, place);
   EXPECT_THAT([] { indent_cone(1, -2, 1); },
               ThrowsMessage<std::domain_error>(HasSubstr("slope = -2; allowed: positive and finite")));
   EXPECT_THAT([] { indent_rounded_punch(1, -2, 1, 1); },

@@ -78,10 +78,5 @@ TEST_F(TableFile, MayBeginWithAByteOrderMark) {
   EXPECT_EQ(read_tabulated_profile(holding(table)).radius, 20);
 }
 
-TEST(TableFiles, ThatAreNotThereAreNamed) {
-  EXPECT_THAT([] { read_tabulated_profile("no/such/table.csv"); },
-              ThrowsMessage<std::invalid_argument>(HasSubstr("no/such/table.csv: cannot be read")));
-}
-
 }  // namespace
 }  // namespace slipstick::analytic

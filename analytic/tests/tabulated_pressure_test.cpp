@@ -17,6 +17,7 @@
 #include <vector>
 
 #include "analytic/gsl.hpp"
+#include "analytic/interpolation_errors.hpp"
 #include "analytic/punch_superposition.hpp"
 #include "analytic/tests/values.hpp"
 #include "analytic/torsion.hpp"
@@ -90,49 +91,6 @@ TEST(TabulatedProfile, HasTheMomentOfALinearPressure) {
   }
 }
 
-TEST(TabulatedProfile, HasTheMomentOfItsTractions) {
-  for (const auto& points :
-       {sample(linear, 20), sample(hertz, 50, true), sample([](double r) { return 2 - r * r; }, 17)}) {
-    const auto table = tabulated_profile("a table", points);
-    const Profile& profile = *table.profile;
-    for (const double c : {0.05, 0.5, 0.9}) {
-      const auto stick = [&](double t) {
-        const double r = c * std::sin(t);
-        const double inward = 2 * c * std::pow(std::sin((pi / 2 - t) / 2), 2);
-        return inward > 0 ? profile.stick_traction(at(c), r, inward) * r * r * c * std::cos(t) : 0;
-      };
-      const auto slip = [&](double r) { return profile.pressure(r) * r * r; };
-      double moment = gsl::integral(stick, 0, pi / 2);
-      double from = c;
-      for (const auto& point : points) {  // the interpolant is smooth between points only
-        if (point.radius <= c) continue;
-        moment += gsl::integral(slip, from, point.radius);
-        from = point.radius;
-      }
-      EXPECT_NEAR(
-          2 * pi * moment / (profile.moment_share(at(c)).excess * profile.moment_limit() * profile.load()), 1,
-          1e-8)
-          << points.size() << " points, c = " << c;
-    }
-  }
-}
-
-TEST(TabulatedProfile, KeepsTractionsBelowFrictionAndContinuous) {
-  const auto table = tabulated_profile("Hertz", sample(hertz, 40));
-  for (const double c : {1e-200, 1e-100, 1e-9, 0.01, 0.5, 0.875, 0.9999}) {
-    EXPECT_EQ(table.profile->stick_traction(at(c), 0, c), 0) << c;
-    for (const double f : {0.999, 0.5, 0.1, 1e-3, 1e-9, 1e-13}) {
-      const double r = c - c * f;
-      const double q = table.profile->stick_traction(at(c), r, c * f);
-      EXPECT_GT(q, 0) << c << ", " << r;
-      EXPECT_LE(q, table.profile->pressure(r) * (1 + 1e-13)) << c << ", " << r;
-    }
-    EXPECT_NEAR(table.profile->stick_traction(at(c), c - c * 1e-13, c * 1e-13) / table.profile->pressure(c),
-                1, 1e-4)
-        << c;
-  }
-}
-
 TEST(TabulatedProfile, DoesNotFailAtTheExtremes) {
   for (const auto& points :
        {sample(linear, 15), sample(hertz, 1000, true), sample([](double) { return 1; }, 15)}) {
@@ -153,22 +111,6 @@ TEST(TabulatedProfile, DoesNotFailAtTheExtremes) {
     const StickRadius whole{.ratio = 1, .complement = 0};
     EXPECT_EQ(table.profile->twist_integral(whole), 0);
     EXPECT_EQ(table.profile->moment_share(whole).excess, 0);
-  }
-}
-
-/// dM/dphi = 16/3 G a_s^3, that of a bonded punch of radius a_s.
-TEST(TabulatedProfile, HasTheTangentStiffnessOfItsStickArea) {
-  const auto table = tabulated_profile("Hertz", sample(hertz, 16, true));
-  for (const double c : {0.05, 0.3, 0.49, 0.7, 0.93}) {
-    const double step = 1e-4 * (1 - c);
-    const auto moment = [&](double s) {
-      return table.profile->moment_share(at(s)).excess * table.profile->moment_limit() *
-             table.profile->load();
-    };
-    const double twist =
-        table.profile->twist_integral(at(c + step)) - table.profile->twist_integral(at(c - step));
-    EXPECT_NEAR((moment(c + step) - moment(c - step)) / twist / (8.0 / 3 * c * c * c), 1, 1e-5) << c;
-    EXPECT_NEAR(-c * twist / (2 * step) / table.profile->twist_slope(at(c)), 1, 1e-5) << c;
   }
 }
 

@@ -17,21 +17,8 @@ namespace {
 using std::numbers::pi;
 using ::testing::HasSubstr;
 using testing::kFrom;
-using testing::kMember;
 using testing::relative_error;
 using ::testing::ThrowsMessage;
-
-/// Every member from every argument: 1e-14 and what one ulp of the argument costs.
-TEST(Torsion, AgreesWithReferences) {
-  for (const auto& row : testing::read_references("torsion_references.csv")) {
-    const TorsionState state = kFrom.at(row.text("given"))(row.argument("value"), hertz_profile());
-    for (const auto& [name, member] : kMember) {
-      const double cost = row.argument("cost_" + name);
-      EXPECT_LE(relative_error(state.*member, row.number(name)), 1e-14 + cost * kEps)
-          << name << " of " << row.line();
-    }
-  }
-}
 
 TEST(Torsion, FollowsTheAsymptotesAtBothEnds) {
   for (const double w : {1e-300, 1e-100, 1e-16}) {

@@ -19,13 +19,13 @@ constexpr double kIterationPart = 0.1;
 
 /// Points of one mesh and load by tolerance, tightest first.
 using ByTolerance = std::map<double, const Json*>;
-/// Of one mesh, the loads.
+/// The loads of one mesh.
 using Loads = std::vector<ByTolerance>;
 
 bool has_default_choices(const Json& point) {
   static const PlaneChoice usual;
-  return point["method"] == usual.method && point["operator"] == usual.op && point["model"] == usual.model &&
-         point["pressure"] == usual.pressure;
+  return std::ranges::all_of(kChoiceKeys,
+                             [&](const ChoiceKey& key) { return point[key.name] == usual.*key.word; });
 }
 
 /// By cells along a side; meshes that were solved at every load.

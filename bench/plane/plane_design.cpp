@@ -1,6 +1,7 @@
 #include "bench/plane/plane_design.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <utility>
@@ -72,14 +73,18 @@ void add_methods(Design& design, bool quick) {
 
 }  // namespace
 
+std::string choice_words(const PlaneChoice& choice, const char* separator) {
+  std::vector<std::string> words;
+  for (const ChoiceKey& key : kChoiceKeys) words.push_back(choice.*key.word);
+  return fmt::format("{}", fmt::join(words, separator));
+}
+
 std::vector<std::string> overrides(const PlaneChoice& choice) {
-  return {fmt::format("solver.method=\"{}\"", choice.method),
-          fmt::format("solver.operator=\"{}\"", choice.op),
-          fmt::format("solver.model=\"{}\"", choice.model),
-          fmt::format("contact.pressure=\"{}\"", choice.pressure),
-          fmt::format("grid.cells=[{0}, {0}]", choice.cells),
-          fmt::format("solver.tolerance={}", choice.tolerance),
-          "solver.threads=1"};
+  std::vector<std::string> all{fmt::format("grid.cells=[{0}, {0}]", choice.cells),
+                               fmt::format("solver.tolerance={}", choice.tolerance), "solver.threads=1"};
+  for (const ChoiceKey& key : kChoiceKeys)
+    all.push_back(fmt::format("{}=\"{}\"", key.scene_key, choice.*key.word));
+  return all;
 }
 
 std::vector<double> plane_moment_ratios(bool quick) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -7,7 +8,7 @@
 
 namespace slipstick::bench {
 
-/// What a solve on a grid leaves to choose, in the words of scene files.
+/// The choices that a solve on a grid leaves open, in the words of scene files.
 struct PlaneChoice {
   std::string method = "coulomb";
   std::string op = "dcfft";
@@ -19,13 +20,30 @@ struct PlaneChoice {
   bool operator==(const PlaneChoice&) const = default;
 };
 
+/// A choice among words: its key in the plane and in scene files. Everything that goes through the choices
+/// goes through this table.
+struct ChoiceKey {
+  const char* name;
+  const char* scene_key;
+  std::string PlaneChoice::*word;
+};
+inline constexpr std::array kChoiceKeys{
+    ChoiceKey{"method", "solver.method", &PlaneChoice::method},
+    ChoiceKey{"operator", "solver.operator", &PlaneChoice::op},
+    ChoiceKey{"model", "solver.model", &PlaneChoice::model},
+    ChoiceKey{"pressure", "contact.pressure", &PlaneChoice::pressure},
+};
+
+/// The words in the table's order, with a separator between them.
+std::string choice_words(const PlaneChoice& choice, const char* separator);
+
 /// As --set takes them, one thread.
 std::vector<std::string> overrides(const PlaneChoice& choice);
 
 /// Parts of the limit moment at which the paper's sphere is solved.
 std::vector<double> plane_moment_ratios(bool quick);
 
-/// What is tried at one of them: mesh and tolerance in all combinations for each method, and around the
+/// The choices tried at one of them: mesh and tolerance in all combinations for each method, and around the
 /// default each other choice on several meshes (at one moment ratio, or the design would take an hour). No
 /// choice twice.
 std::vector<PlaneChoice> plane_design(double moment_ratio, bool quick);

@@ -13,14 +13,8 @@
 namespace slipstick::bench {
 namespace {
 
-/// Keys whose words are judged; the mesh is what the others are judged by.
-const std::vector<std::string> kKeys{"method", "operator", "model", "pressure", "tolerance"};
 /// Errors that the table of times asks for.
 const std::vector<double> kWanted{1e-2, 1e-3, 1e-4, 1e-5};
-
-std::string word(const Json& value) {
-  return value.is_string() ? value.get<std::string>() : fmt::format("{:g}", value.get<double>());
-}
 
 double number_or_nan(const Json& value) {
   return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
@@ -31,7 +25,8 @@ std::vector<Way> ways_to(const Json& points, const std::string& quantity) {
   std::vector<Way> ways;
   for (const Json& point : points) {
     Way way;
-    for (const std::string& key : kKeys) way.choice[key] = word(point[key]);
+    for (const ChoiceKey& key : kChoiceKeys) way.choice[key.name] = point[key.name];
+    way.choice[kTolerance] = fmt::format("{:g}", point[kTolerance].get<double>());
     way.cells = point["cells"].get<double>();
     way.error = number_or_nan(point["error"][quantity]);
     const bool timed = point["seconds"].is_object();
@@ -122,7 +117,8 @@ void list_not_timed(Json& plane, const Json& scene) {
   for (const Json& point : scene["points"]) {
     if (!point.contains("not_timed")) continue;
     Json choice;
-    for (const std::string& key : kKeys) choice[key] = point[key];
+    for (const ChoiceKey& key : kChoiceKeys) choice[key.name] = point[key.name];
+    choice[kTolerance] = point[kTolerance];
     choice["cells"] = point["cells"];
     plane["not_timed"].push_back(
         {{"scene", scene["name"]}, {"choice", choice}, {"reason", point["not_timed"]}});

@@ -10,19 +10,15 @@ std::string seconds_text(const Json& seconds) {
   return seconds.is_number() ? fmt::format("{:.3g} s", seconds.get<double>()) : "-";
 }
 
-/// What a point chose, with what is the default left out.
+/// The choices of a point; those that are the default are left out.
 std::string choice_text(const Json& point) {
   static const PlaneChoice usual;
   std::string text = fmt::format("{0} x {0} cells, tolerance {1:g}", point["cells"].get<int>(),
                                  point["tolerance"].get<double>());
-  const auto add = [&](const char* key, const std::string& standard) {
-    const std::string word = point[key];
-    if (word != standard) text += fmt::format(", {} {}", key, word);
-  };
-  add("method", usual.method);
-  add("operator", usual.op);
-  add("model", usual.model);
-  add("pressure", usual.pressure);
+  for (const ChoiceKey& key : kChoiceKeys) {
+    const std::string word = point[key.name];
+    if (word != usual.*key.word) text += fmt::format(", {} {}", key.name, word);
+  }
   return text;
 }
 

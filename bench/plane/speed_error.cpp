@@ -9,7 +9,7 @@
 
 #include "bench/timing/invalid_reason.hpp"
 #include "bench/timing/repetitions.hpp"
-#include "bench/timing/side_by_side.hpp"
+#include "bench/timing/seconds.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/result_cache.hpp"
@@ -66,8 +66,11 @@ Json seconds_json(const Repetitions& times) {
 }
 
 Json choice_json(const PlaneChoice& choice) {
-  return {{"method", choice.method},     {"operator", choice.op}, {"model", choice.model},
-          {"pressure", choice.pressure}, {"cells", choice.cells}, {"tolerance", choice.tolerance}};
+  Json json;
+  for (const ChoiceKey& key : kChoiceKeys) json[key.name] = choice.*key.word;
+  json["cells"] = choice.cells;
+  json["tolerance"] = choice.tolerance;
+  return json;
 }
 
 double root_mean_square(const std::vector<double>& values) {
@@ -103,10 +106,10 @@ std::vector<convergence::GridChoice> grids(const std::filesystem::path& scene, d
   return convergence::make_series(study).front().meshes.front().grids;
 }
 
-/// Of the point's file.
-std::string file_name(double moment_ratio, const PlaneChoice& c) {
-  return fmt::format("plane-{}-{}-{}-{}-{}-{}-{}", moment_ratio, c.method, c.op, c.model, c.pressure, c.cells,
-                     c.tolerance);
+/// The name of the point's file.
+std::string file_name(double moment_ratio, const PlaneChoice& choice) {
+  return fmt::format("plane-{}-{}-{}-{}", moment_ratio, choice_words(choice, "-"), choice.cells,
+                     choice.tolerance);
 }
 
 /// The whole exact answer: stick radius and twist from the load, then tractions in the cells of a grid.
@@ -128,9 +131,9 @@ Json measure_exact(const std::filesystem::path& file, double moment_ratio) {
   return {{"seconds", seconds_json(times)}, {"error", error}, {"cells", kExactCells}};
 }
 
-std::string label(double moment_ratio, const PlaneChoice& c) {
-  return fmt::format("M/M_lim {}: {} {} {} {}, {} cells, tolerance {}", moment_ratio, c.method, c.op, c.model,
-                     c.pressure, c.cells, c.tolerance);
+std::string label(double moment_ratio, const PlaneChoice& choice) {
+  return fmt::format("M/M_lim {}: {}, {} cells, tolerance {}", moment_ratio, choice_words(choice, " "),
+                     choice.cells, choice.tolerance);
 }
 
 }  // namespace

@@ -9,12 +9,8 @@ namespace slipstick::bench {
 
 using solver::Scene;
 
-Scene shipped_scene(const std::string& name) {
-  return solver::read_scene(std::filesystem::path(SLIPSTICK_SCENES) / (name + ".toml"));
-}
-
 Scene paper_scene(solver::Index cells, double moment_ratio) {
-  Scene scene = shipped_scene("paper");
+  Scene scene = solver::read_scene(std::filesystem::path(SLIPSTICK_SCENES) / "paper.toml");
   scene.cells = {cells, cells};
   scene.steps[0].torsion = solver::MomentRatio{moment_ratio};
   scene.method = solver::Method::coulomb;
@@ -48,11 +44,6 @@ std::map<std::string, benchmark::Counter> counters(const CheckedSolution& checke
     if (std::isfinite(value)) result[name] = value;  // JSON has no NaN
   }
   return result;
-}
-
-void show_ratio(Prepared& prepared, const SideBySide& times) {
-  prepared.counters["ratio"] = times.ratio;
-  prepared.counters["ratio_cpu"] = times.cpu_ratio;
 }
 
 }  // namespace slipstick::bench

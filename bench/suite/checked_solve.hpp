@@ -3,7 +3,6 @@
 #include <string>
 
 #include "bench/suite/suite.hpp"
-#include "bench/timing/side_by_side.hpp"
 #include "convergence/oracle/errors.hpp"
 #include "solver/solve.hpp"
 
@@ -20,16 +19,11 @@ struct CheckedSolution {
 /// out of the model, solved pressure, one thread, tolerance 1e-8.
 solver::Scene paper_scene(solver::Index cells, double moment_ratio);
 
-/// A scene that comes with the program.
-solver::Scene shipped_scene(const std::string& name);
-
-/// Of a history, its last step; see invalid_reason(). Throws InputError where there is no exact answer.
+/// The errors are those of the last step, see invalid_reason(). Throws InputError where there is no exact
+/// answer.
 CheckedSolution solve_and_check(const solver::Scene& scene);
 
 /// Errors, certificate, work and memory.
 std::map<std::string, benchmark::Counter> counters(const CheckedSolution& checked);
-
-/// First over second, by the clock ("ratio") and by the processor's time ("ratio_cpu").
-void show_ratio(Prepared& prepared, const SideBySide& times);
 
 }  // namespace slipstick::bench

@@ -1,20 +1,17 @@
 // The exact side: stick ratio from a moment, twist and one traction, over inputs that span the range. Each
 // time stands beside the worst error over all proven references (error_eps, in units of 2.2e-16, and what is
-// allowed there: 8, or 4 times what an ulp of the input costs) and, since machines differ, as a multiple of
-// one call of GSL's Carlson R_D (per_RD).
+// allowed there: 8, or 4 times what an ulp of the input costs). exact/carlson_rd, one call of GSL's Carlson
+// R_D, is the unit for other machines.
 
 #include <fmt/core.h>
 #include <gsl/gsl_sf_ellint.h>
 
-#include <algorithm>
 #include <array>
 #include <cmath>
-#include <limits>
 #include <string>
 
 #include "analytic/references/replay.hpp"
 #include "bench/suite/suite.hpp"
-#include "bench/timing/side_by_side.hpp"
 
 namespace slipstick::bench {
 namespace {
@@ -31,33 +28,6 @@ Inputs spread() {
     inputs[i] = i % 2 == 0 ? place : std::pow(10.0, -12 * place);
   }
   return inputs;
-}
-
-/// Seconds of one call of f(i), i running over the inputs: the least of several runs.
-template <class Function>
-double seconds_per_call(Function f) {
-  constexpr int kRuns = 20;
-  constexpr std::size_t kCalls = 40 * kInputs;
-  double least = std::numeric_limits<double>::infinity();
-  for (int run = 0; run < kRuns; ++run) {
-    least = std::min(least, seconds([&] {
-                              for (std::size_t i = 0; i < kCalls; ++i)
-                                benchmark::DoNotOptimize(f(i % kInputs));
-                            }) / kCalls);
-  }
-  return least;
-}
-
-double seconds_per_carlson_rd() {
-  static const double seconds = [] {
-    const Inputs inputs = spread();
-    return seconds_per_call([&](std::size_t i) {
-      gsl_sf_result result;
-      gsl_sf_ellint_RD_e(0, inputs[i] * inputs[i], 1, GSL_PREC_DOUBLE, &result);
-      return result.val;
-    });
-  }();
-  return seconds;
 }
 
 /// The worst error of a quantity over the certified table and the hardest inputs known, by what is allowed.
@@ -77,7 +47,6 @@ Prepared judged(const std::string& profile, const std::string& given, const std:
 /// Times f(i), i running over the inputs, one call an iteration.
 template <class Function>
 Prepared timed(Prepared prepared, Function f) {
-  prepared.counters["per_RD"] = seconds_per_call(f) / seconds_per_carlson_rd();
   prepared.timing =
       repeated([f, i = std::size_t{0}]() mutable { benchmark::DoNotOptimize(f(i++ % kInputs)); });
   return prepared;

@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "bench/suite/suite.hpp"
-#include "solver/elasticity/influence.hpp"
+#include "solver/elasticity/law/half_spaces.hpp"
 
 namespace slipstick::bench {
 namespace {
@@ -75,7 +75,7 @@ double error(const std::vector<std::vector<double>>& tables, const solver::Elast
 
 Prepared tangential(Index cells) {
   const auto tables = [bodies = pair(), cells] {
-    return solver::influence_tables(kComponents, bodies, 1.0, 1.0, cells, cells);
+    return solver::HalfSpaces(bodies).influence_tables(kComponents, {cells, cells, 1.0, 1.0});
   };
   const double worst = error(tables(), pair(), cells);
   Prepared prepared;

@@ -15,7 +15,7 @@
 
 namespace {
 
-/// What the program does unless its own arguments, which come later, say otherwise.
+/// Defaults; the arguments of the command line come later and win.
 constexpr std::array kDefaults{"--benchmark_min_time=0.1", "--benchmark_filter=-^long/"};
 
 void say_where_times_come_from() {
@@ -44,8 +44,6 @@ void add_all_benchmarks(slipstick::bench::Suite& suite) {
   slipstick::bench::add_memory_benchmarks(suite);
   slipstick::bench::add_normal_benchmarks(suite);
   slipstick::bench::add_solve_benchmarks(suite);
-  slipstick::bench::add_methods_benchmarks(suite);
-  slipstick::bench::add_history_benchmarks(suite);
   slipstick::bench::add_exact_benchmarks(suite);
 }
 

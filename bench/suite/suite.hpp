@@ -23,7 +23,7 @@ std::function<void(benchmark::State&)> repeated(Work work) {
   };
 }
 
-/// What each iteration does once, so many times a second.
+/// A counter of work per second, of which each iteration does this much.
 inline benchmark::Counter rate(double of_one_iteration) {
   return {of_one_iteration, benchmark::Counter::kIsIterationInvariantRate};
 }
@@ -57,8 +57,6 @@ void add_operator_benchmarks(Suite& suite);
 void add_memory_benchmarks(Suite& suite);
 void add_normal_benchmarks(Suite& suite);
 void add_solve_benchmarks(Suite& suite);
-void add_methods_benchmarks(Suite& suite);
-void add_history_benchmarks(Suite& suite);
 void add_exact_benchmarks(Suite& suite);
 
 }  // namespace slipstick::bench

@@ -10,7 +10,6 @@ import subprocess
 import sys
 import time
 import unicodedata
-import unittest
 import xml.etree.ElementTree
 from pathlib import Path
 

@@ -5,7 +5,7 @@
 #include <unordered_map>
 
 #include "solver/allocations/allocations.hpp"
-#include "solver/elasticity/cell_integrals.hpp"
+#include "solver/elasticity/law/cell_integrals.hpp"
 
 namespace slipstick::bench {
 namespace {

@@ -31,9 +31,9 @@ WorkCase solve_case(const std::string& name, const std::string& scene_name,
 }
 
 std::unique_ptr<solver::LinearOperator> make_operator(solver::Index cells) {
-  const solver::ElasticPair pair = solver::elastic_pair({2.0, 0.3}, {2.0, 0.3});
+  const solver::HalfSpaces law(solver::elastic_pair({2.0, 0.3}, {2.0, 0.3}));
   return solver::make_operator(solver::OperatorKind::dcfft, {cells, cells, 1.0, 1.0},
-                               solver::tangential_kernel(), pair);
+                               solver::tangential_kernel(), law);
 }
 
 /// The tangential operator's coefficients and their transforms.

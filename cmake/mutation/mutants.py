@@ -15,19 +15,18 @@ from collections import Counter, defaultdict
 from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
-import cpp_rules
 import mutated_build
-import python_rules
+import rules
 import runs
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDERS = ("analytic", "solver", "convergence", "bench", "reports")
 # A mutant there could end other processes, or remove their files.
-DANGEROUS = ("solver/input/run_apart.cpp", "convergence/programs/run_program.cpp", "solver/input/whole_file.cpp")
+DANGEROUS = ("convergence/programs/run_program.cpp", "solver/input/whole_file.cpp")
 # Programs that `make test` does not build: they check their own results.
 NOT_TESTED = ("bench/suite/", "bench/work/work_counts_program.cpp", "analytic/certified/hardest.cpp",
               "analytic/certified/references.cpp", "analytic/certified/missing.cpp")
-SPARE = 1.7  # so many times the mutants are proposed: not all of them compile
+SPARE = 1.7  # proposed mutants for each that is wanted: not all of them compile
 
 
 def sources(folder):
@@ -40,10 +39,9 @@ def sources(folder):
 
 def sample(folder, count, chance):
     """`count` mutations of a folder, (file, text, mutation), rule by rule in turn, no two at the same place."""
-    rules = python_rules if folder == "reports" else cpp_rules
     by_rule = defaultdict(list)
     for name, text in sources(folder):
-        for mutation in rules.proposals(text):
+        for mutation in rules.proposals(text, folder == "reports"):
             by_rule[mutation.rule].append((name, text, mutation))
     for found in by_rule.values():
         chance.shuffle(found)
@@ -52,20 +50,11 @@ def sample(folder, count, chance):
         for rule in sorted(by_rule):
             while by_rule[rule]:
                 name, text, mutation = by_rule[rule].pop()
-                if folder == "reports" or not cpp_rules.overlaps(mutation, of_file[name]):
+                if not rules.overlaps(mutation, of_file[name]):
                     of_file[name].append(mutation)
                     taken.append((name, text, mutation))
                     break
     return taken[:count]
-
-
-def survivors(folder, file):
-    """The mutations of a folder that survived in an earlier report, (file, text, mutation)."""
-    survived = {(row["file"], row["rule"], row["before"], row["after"]) for row in json.loads(file.read_text())["mutants"]
-                if row["fate"] == "surviving"}
-    rules = python_rules if folder == "reports" else cpp_rules
-    return [(name, text, mutation) for name, text in sources(folder) for mutation in rules.proposals(text)
-            if (name, mutation.rule, *cpp_rules.lines(text, mutation)[1:]) in survived]
 
 
 def propose(options):
@@ -73,51 +62,36 @@ def propose(options):
     proposed, number = {}, 0
     for i, folder in enumerate(options.folder):
         wanted = options.count * (i + 1) // len(options.folder) - options.count * i // len(options.folder)
-        if options.again:
-            found = survivors(folder, options.again)
-            wanted = len(found)
-        else:
-            spare = 1 if folder == "reports" else SPARE
-            found = sample(folder, int(spare * wanted), random.Random(f"{options.seed} {folder}"))
+        spare = 1 if folder == "reports" else SPARE
+        found = sample(folder, int(spare * wanted), random.Random(f"{options.seed} {folder}"))
         proposed[folder] = wanted, [mutated_build.mutant_of(number + k, *each) for k, each in enumerate(found, 1)]
         number += len(found)
     return proposed
 
 
-def judge_cpp(mutants, build, options, say):
+def judge(mutants, build, options, say):
     """{mutant: how it was seen}; "" survives, None is not reached."""
     highest = max((each.number for each in mutants), default=0)
-    suites = {folder: list(runs.google_suites(build.build, folder)) for folder in {each.folder for each in mutants}}
+    folders = {each.folder for each in mutants} - {"reports"}
+    suites = {folder: list(runs.google_suites(build.build, folder)) for folder in folders}
     gate = runs.gates(build.source, build.build)
     with ThreadPoolExecutor(options.jobs) as pool:
-        everything = [suite for each in suites.values() for suite in each] + ([gate] if options.gates else [])
+        everything = [suite for each in suites.values() for suite in each] + ([gate] if options.gates and folders else [])
         for trouble in pool.map(lambda suite: runs.measure(suite, highest, options.seconds), everything):
             if trouble:
                 say(trouble)
 
-        def judge(mutant):
-            found = runs.killed_by(mutant, suites[mutant.folder])
-            if not found and options.gates and mutant.number in gate.reached:
-                found = runs.verdict(gate, mutant.number)
+        def judge_one(mutant):
+            if mutant.folder == "reports":
+                found = runs.python_killed_by(mutant, build.source / "reports")
+            else:
+                found = runs.killed_by(mutant, suites[mutant.folder])
+                if not found and options.gates and mutant.number in gate.reached:
+                    found = runs.verdict(gate, mutant.number)
             say(f"{mutant.file}:{mutant.line}: {found or 'survives'}")
             return found
 
-        return dict(zip(mutants, pool.map(judge, mutants)))
-
-
-def judge_python(mutants, reports, options, say):
-    suites = list(runs.python_suites(reports))
-    with ThreadPoolExecutor(options.jobs) as pool:
-        for trouble in pool.map(lambda each: runs.measure_python(each, reports, mutants, options.seconds), suites):
-            if trouble:
-                say(trouble)
-
-        def judge(mutant):
-            found = runs.python_killed_by(mutant, suites, reports)
-            say(f"{mutant.file}:{mutant.line}: {found or 'survives'}")
-            return found
-
-        return dict(zip(mutants, pool.map(judge, mutants)))
+        return dict(zip(mutants, pool.map(judge_one, mutants)))
 
 
 def reasons():
@@ -166,7 +140,6 @@ def parse(arguments):
     parser.add_argument("--jobs", type=int, default=2, help="that many at a time (2)")
     parser.add_argument("--work", type=Path, default=ROOT / "build-mutants", help="folder of the mutated build")
     parser.add_argument("--json", type=Path, help="the report as JSON")
-    parser.add_argument("--again", type=Path, metavar="JSON", help="those that survived in this report, and no others")
     parser.add_argument("--list", action="store_true", help="show the mutants that would be tried, and build nothing")
     options = parser.parse_args(arguments)
     options.folder = options.folder or list(FOLDERS)
@@ -189,23 +162,20 @@ def main(arguments):
         print(line, file=sys.stderr, flush=True)
 
     build = mutated_build.MutatedBuild(ROOT, options.work.resolve())
-    judged = {}
     try:
         build.copy_sources()
-        cpp = [each for folder, (_, mutants) in proposed.items() if folder != "reports" for each in mutants]
+        compiled = cpp = [each for folder, (_, mutants) in proposed.items() if folder != "reports" for each in mutants]
         if cpp:
             build.write_mutants(cpp)
             build.configure()
-            compiled = set(build.compile(cpp, options.jobs))
+            compiled = build.compile(cpp, options.jobs, options.gates)
             say(f"{len(compiled)} of {len(cpp)} C++ mutants compile")
-            taken = [each for wanted, mutants in proposed.values()
-                     for each in [each for each in mutants if each in compiled][:wanted]]
-            judged |= judge_cpp(taken, build, options, say)
     except mutated_build.BuildFailed as trouble:
         say(f"the mutants could not be built:\n{trouble}")
         return 2
-    if "reports" in proposed:
-        judged |= judge_python(proposed["reports"][1], build.source / "reports", options, say)
+    taken = [each for wanted, mutants in proposed.values()
+             for each in [each for each in mutants if each.folder == "reports" or each in compiled][:wanted]]
+    judged = judge(taken, build, options, say)
     rows, totals = report(judged, known)
     if options.json:
         options.json.write_text(json.dumps({"seed": options.seed, "totals": totals, "mutants": rows}, indent=1) + "\n")

@@ -6,10 +6,11 @@ import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
-import cpp_rules
+import rules
+from runs import PROGRAMS
 
 SWITCH = Path(__file__).with_name("switch.hpp")
-ROUNDS = 8  # of building; in each, what does not compile is left out
+ROUNDS = 8  # of building; each drops the mutants that do not compile
 
 
 class BuildFailed(Exception):
@@ -20,9 +21,9 @@ class BuildFailed(Exception):
 class Mutant:
     number: int
     file: str
-    mutation: cpp_rules.Mutation
+    mutation: rules.Mutation
     line: int
-    lines: range  # that its edits take
+    lines: range  # of the expression that it changes
     before: str
     after: str
 
@@ -32,9 +33,9 @@ class Mutant:
 
 
 def mutant_of(number, file, text, mutation):
-    line, before, after = cpp_rules.lines(text, mutation)
-    places = [text.count("\n", 0, at) + 1 for start, end, _ in mutation.edits for at in (start, end)]
-    return Mutant(number, file, mutation, line, range(min(places), max(places) + 1), before, after)
+    line, before, after = rules.lines(text, mutation)
+    first, last = (text.count("\n", 0, at) + 1 for at in (mutation.first, mutation.last))
+    return Mutant(number, file, mutation, line, range(first, last + 1), before, after)
 
 
 def write_if_changed(path, text):
@@ -74,7 +75,7 @@ class MutatedBuild:
             held = [(each.number, each.mutation) for each in mutants if each.file == name]
             if held:
                 head = f'#include "{SWITCH}"\n#line 1 "{self.source / name}"\n'
-                write_if_changed(self.source / name, head + cpp_rules.with_all(path.read_text(), held))
+                write_if_changed(self.source / name, head + rules.with_all(path.read_text(), held))
             else:
                 self.copy(name)
 
@@ -88,11 +89,14 @@ class MutatedBuild:
         if done.returncode != 0:
             raise BuildFailed(done.stdout[-4000:] + done.stderr[-4000:])
 
-    def compile(self, mutants, jobs):
-        """Those of `mutants` that compile, built."""
+    def compile(self, mutants, jobs, gates):
+        """Those of `mutants` that compile, built into the tests of their folders and, with `gates`, into the program."""
+        known = (self.build / "build.ninja").read_text()
+        targets = [program for folder in {each.folder for each in mutants} for program in PROGRAMS[folder]
+                   if re.search(rf"^build {program}[ :]", known, re.MULTILINE)] + ["slipstick"] * gates
         for _ in range(ROUNDS):
             self.write_mutants(mutants)
-            done = subprocess.run(["cmake", "--build", self.build, "--target", "tests", f"-j{jobs}", "--", "-k", "0"],
+            done = subprocess.run(["ninja", "-C", self.build, f"-j{jobs}", "-k", "0", *targets],
                                   capture_output=True, text=True)
             if done.returncode == 0:
                 return mutants

@@ -1,6 +1,5 @@
 """Test suites, what each reaches, and which of them see a mutant."""
 
-import json
 import os
 import re
 import resource
@@ -13,8 +12,11 @@ import time
 from dataclasses import dataclass, field
 from pathlib import Path
 
-# A mutant hangs when its test takes so many times the test's own time, and so many seconds more.
+import rules
+
+# A mutant hangs when its test takes TIMES its own time and MORE_SECONDS.
 TIMES, MORE_SECONDS = 5, 20
+PYTHON_SECONDS = 300  # a test file of reports/ takes up to 10
 BYTES = 8 << 30  # of address space
 PROGRAMS = {"analytic": ("analytic/analytic_tests", "analytic/certified/certified_tests"),
             "solver": ("solver/solver_tests", "solver/operators_tests"),
@@ -31,8 +33,8 @@ class Suite:
 
     def words(self, folder):
         """In `folder`, where it may write; {} stands for it."""
-        left_out = "-" + ":".join(self.failing) if self.failing else ""
-        return [str(word).replace("{}", str(folder)) + (left_out if str(word).startswith("--gtest_filter") else "")
+        skipped = "-" + ":".join(self.failing) if self.failing else ""
+        return [str(word).replace("{}", str(folder)) + (skipped if str(word).startswith("--gtest_filter") else "")
                 for word in self.command]
 
 
@@ -78,7 +80,7 @@ def gates(source, build):
 
 
 def measure(suite, mutants, limit=None):
-    """Runs a suite without a mutant: what it reaches, how long it takes, what fails anyway. Says what is left out."""
+    """Runs a suite without a mutant: what it reaches, how long it takes, which tests fail anyway. Names those as skipped."""
     with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
         reached = Path(folder, "reached")
         reached.write_bytes(bytes(mutants + 1))
@@ -89,12 +91,12 @@ def measure(suite, mutants, limit=None):
         suite.reached = {number for number, byte in enumerate(reached.read_bytes()) if byte}
     if code is None:
         suite.reached = set()
-        return f"{suite.name} takes more than {limit:g} s and is left out"
+        return f"{suite.name} takes more than {limit:g} s and is skipped"
     suite.failing = tuple(sorted(set(re.findall(r"^\[  FAILED  \] (\S+?)(?:,| \()", output, re.MULTILINE))))
     if code != 0 and not suite.failing:
         suite.reached = set()
-        return f"{suite.name} fails without a mutant and is left out:\n{output[-2000:]}"
-    return f"{', '.join(suite.failing)}: fails without a mutant and is left out" if suite.failing else ""
+        return f"{suite.name} fails without a mutant and is skipped:\n{output[-2000:]}"
+    return f"{', '.join(suite.failing)}: fails without a mutant and is skipped" if suite.failing else ""
 
 
 def verdict(suite, number):
@@ -118,79 +120,19 @@ def killed_by(mutant, suites):
     return "" if reaching else None
 
 
-# ---- Python: the mutated file lies in a copy of the folder.
-
-TRACED = """
-import json, os, runpy, sys
-folder, result, test, name = sys.argv[1:]
-lines = set()
-def line(frame, event, argument):
-    lines.add((frame.f_code.co_filename, frame.f_lineno))
-    return line
-def call(frame, event, argument):
-    return line(frame, event, argument) if frame.f_code.co_filename.startswith(folder) else None
-sys.settrace(call)
-sys.argv = [test, name]
-sys.path.insert(0, os.path.dirname(test))
-try:
-    runpy.run_path(test, run_name="__main__")
-finally:
-    sys.settrace(None)
-    json.dump(sorted(lines), open(result, "w"))
-"""
-
-
-CLASSES = """
-import importlib, sys, unittest
-sys.path.insert(0, "tests")
-for found in vars(importlib.import_module(sys.argv[1])).values():
-    if isinstance(found, type) and issubclass(found, unittest.TestCase) and found.__module__ == sys.argv[1]:
-        if unittest.defaultTestLoader.getTestCaseNames(found):
-            print(found.__name__)
-"""
-
-
-def python_suites(reports):
-    """Each class of tests."""
-    for test in sorted((reports / "tests").glob("test_*.py")):
-        listing = subprocess.run([sys.executable, "-B", "-c", CLASSES, test.stem], cwd=reports, capture_output=True,
-                                 text=True, check=True).stdout
-        for name in listing.split():
-            yield Suite(f"{test.stem}.{name}", [sys.executable, "-B", Path("tests", test.name), "--failfast", name])
-
-
-def measure_python(suite, reports, mutants, limit=None):
-    test, name = reports / suite.command[2], suite.command[4]
-    with tempfile.TemporaryDirectory(prefix="mutants-") as folder:
-        result = Path(folder, "lines.json")
-        start = time.monotonic()
-        code, output = run([sys.executable, "-B", "-c", TRACED, str(reports), str(result), str(test), name], folder, limit)
-        suite.seconds = time.monotonic() - start
-        lines = {tuple(each) for each in json.loads(result.read_text())} if result.is_file() else set()
-    if code is None:
-        return f"{suite.name} takes more than {limit:g} s and is left out"
-    if code != 0:
-        return f"{suite.name} fails without a mutant and is left out:\n{output[-2000:]}"
-    suite.reached = {each.number for each in mutants
-                     if any((str(reports.parent / each.file), line) in lines for line in each.lines)}
-    return ""
-
-
-def python_killed_by(mutant, suites, reports):
-    reaching = sorted((suite for suite in suites if mutant.number in suite.reached), key=lambda suite: suite.seconds)
-    if not reaching:
-        return None
+def python_killed_by(mutant, reports):
+    """The first test file of a copy of reports/ that fails, the one of the same name first."""
+    tests = sorted((reports / "tests").glob("test_*.py"), key=lambda test: test.stem != "test_" + Path(mutant.file).stem)
     with tempfile.TemporaryDirectory(prefix="mutants-", ignore_cleanup_errors=True) as folder:
         copied = Path(folder, "reports")
         shutil.copytree(reports, copied)
-        path = copied.parent / mutant.file
-        text, change = path.read_text(), mutant.mutation
-        path.write_text(text[:change.start] + change.shown + text[change.end:])
-        for suite in reaching:
-            code, output = run([str(word) for word in suite.command], copied, TIMES * suite.seconds + MORE_SECONDS)
+        path = Path(folder, mutant.file)
+        path.write_text(rules.mutated(path.read_text(), mutant.mutation))
+        for test in tests:
+            code, output = run([sys.executable, "-B", f"tests/{test.name}", "--failfast"], copied, PYTHON_SECONDS)
             if code is None:
-                return f"{suite.name}: time-out"
+                return f"{test.stem}: time-out"
             if code != 0:
                 failed = re.search(r"^(?:FAIL|ERROR): (\w+)", output, re.MULTILINE)
-                return f"{suite.name}.{failed.group(1)}" if failed else f"{suite.name}: code {code}"
+                return f"{test.stem}.{failed.group(1)}" if failed else f"{test.stem}: code {code}"
     return ""

@@ -5,10 +5,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <algorithm>
 #include <concepts>
 #include <cstdlib>
-#include <functional>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -42,7 +41,7 @@ inline bool on(int mutant) {
   return chosen.mutant == mutant;
 }
 
-/// An Eigen expression is evaluated, since its type says what is computed.
+/// The value. An Eigen expression is evaluated, since its type says what is computed.
 template <class T>
 auto plain(T&& value) {
   if constexpr (requires { value.eval(); }) {
@@ -51,124 +50,15 @@ auto plain(T&& value) {
     return std::decay_t<T>(std::forward<T>(value));
   }
 }
-template <class T>
-using Plain = decltype(plain(std::declval<T>()));
 
+/// What `original` returns; if the mutant is switched on, what `mutated` does. Mutants of strings would change wording only.
 template <class Mutated, class Original>
-concept CanReplace = std::same_as<Plain<Mutated>, Plain<Original>> ||
-    (std::is_arithmetic_v<Plain<Mutated>>&& std::is_arithmetic_v<Plain<Original>>);
-
-/// The first of two terms alone. Of strings it would change wording only.
-struct First {
-  template <class Left, class Right>
-  requires requires(Left left) {
-    left.eval();
-  } || std::is_arithmetic_v<std::decay_t<Left>> Left operator()(Left&& left, Right&&) const {
-    return std::forward<Left>(left);
-  }
-};
-
-/// A comparison of whole numbers: of others `<` and `<=` differ nowhere.
-template <class Comparison>
-struct OfWhole : Comparison {
-  template <class Left, class Right>
-  requires std::integral<std::decay_t<Left>> && std::integral<std::decay_t<Right>>
-  bool operator()(Left&& left, Right&& right) const {
-    return Comparison::operator()(std::forward<Left>(left), std::forward<Right>(right));
-  }
-};
-
-/// Stands between two operands, `a + Operator<std::plus<>, std::minus<>>{17} + b`, and so keeps precedence.
-template <class Original, class Mutated>
-struct Operator {
-  int mutant;
-};
-
-template <class Left, class Original, class Mutated>
-struct Half {
-  Left&& left;
-  int mutant;
-
-  template <class Right>
-  requires CanReplace<std::invoke_result_t<Mutated, Left, Right>, std::invoke_result_t<Original, Left, Right>>
-  auto with(Right&& right) && -> Plain<std::invoke_result_t<Original, Left, Right>> {
-    using Result = Plain<std::invoke_result_t<Original, Left, Right>>;
-    if (on(mutant))
-      return static_cast<Result>(plain(Mutated{}(std::forward<Left>(left), std::forward<Right>(right))));
-    return plain(Original{}(std::forward<Left>(left), std::forward<Right>(right)));
-  }
-};
-
-#define SLIPSTICK_BETWEEN(sign)                                                                   \
-  template <class Left, class Original, class Mutated>                                            \
-  Half<Left, Original, Mutated> operator sign(Left&& left, Operator<Original, Mutated> between) { \
-    return {std::forward<Left>(left), between.mutant};                                            \
-  }                                                                                               \
-  template <class Left, class Original, class Mutated, class Right>                               \
-  requires requires(Half<Left, Original, Mutated> half, Right && right) {                         \
-    std::move(half).with(std::forward<Right>(right));                                             \
-  }                                                                                               \
-  auto operator sign(Half<Left, Original, Mutated>&& half, Right&& right) {                       \
-    return std::move(half).with(std::forward<Right>(right));                                      \
-  }
-SLIPSTICK_BETWEEN(+)
-SLIPSTICK_BETWEEN(-)
-SLIPSTICK_BETWEEN(*)
-SLIPSTICK_BETWEEN(/)
-SLIPSTICK_BETWEEN(<)
-SLIPSTICK_BETWEEN(<=)
-SLIPSTICK_BETWEEN(>)
-SLIPSTICK_BETWEEN(>=)
-SLIPSTICK_BETWEEN(==)
-SLIPSTICK_BETWEEN(!=)
-#undef SLIPSTICK_BETWEEN
-
-/// `-x` as `minus{17}->*x`, which binds nearly as closely; mutated: `x`.
-struct minus {
-  int mutant;
-};
-template <class T>
-requires CanReplace<T, decltype(-std::declval<T>())>
-auto operator->*(minus sign, T&& value) -> Plain<decltype(-std::declval<T>())> {
-  if (on(sign.mutant)) return std::forward<T>(value);
-  return plain(-std::forward<T>(value));
+auto choose(int mutant, Mutated mutated, Original original) {
+  using Value = decltype(original());
+  static_assert(std::same_as<decltype(mutated()), Value> ||
+                (std::is_arithmetic_v<decltype(mutated())> && std::is_arithmetic_v<Value>));
+  static_assert(!std::same_as<Value, std::string>);
+  return on(mutant) ? static_cast<Value>(mutated()) : original();
 }
-
-/// `!x` as `negation{17}->*x`; mutated: `x`.
-struct negation {
-  int mutant;
-};
-template <class T>
-bool operator->*(negation sign, T&& value) {
-  return on(sign.mutant) ? static_cast<bool>(value) : !static_cast<bool>(value);
-}
-
-/// A literal; mutated: twice as large, or one more where it is whole, or not.
-template <class T>
-T constant(int mutant, T value) {
-  if (!on(mutant)) return value;
-  if constexpr (std::same_as<T, bool>) return !value;
-  if constexpr (std::floating_point<T>) return value == T(0) ? T(1) : 2 * value;
-  return static_cast<T>(value + 1);
-}
-
-/// The index 0 or 1; mutated: the other.
-inline int index(int mutant, int value) { return on(mutant) ? 1 - value : value; }
-
-/// std::min or std::max; mutated: the other.
-template <bool kLeast>
-struct Extreme {
-  int mutant;
-
-  template <class... T>
-  requires requires(T&&... values) { std::min(std::forward<T>(values)...); }
-  auto operator()(T&&... values) const {
-    return kLeast != on(mutant) ? std::min(std::forward<T>(values)...) : std::max(std::forward<T>(values)...);
-  }
-  template <class T>
-  T operator()(std::initializer_list<T> values) const {
-    return kLeast != on(mutant) ? std::min(values) : std::max(values);
-  }
-};
 
 }  // namespace slipstick::mutation

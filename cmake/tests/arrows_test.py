@@ -5,8 +5,8 @@ import pathlib
 import re
 import sys
 
-TOPS = ("analytic", "bench", "convergence", "solver")
-MOST_UNITS = 12
+TOPS = ("analytic", "bench", "convergence", "docs/generator", "interfaces", "solver")
+MAX_UNITS = 12
 LARGER = {"analytic": 20}  # flat: each unit is one theory
 OTHER_SIDE = {"analytic": ("solver", "convergence", "bench"), "solver": ("analytic", "convergence", "bench")}
 
@@ -47,8 +47,8 @@ def violations(root, arrows):
             if not is_allowed(included, folder, arrows[folder]):
                 yield f"{path} includes {included}: arrows.txt has no arrow from {folder} to there"
     for folder, names in sorted(units.items()):
-        if len(names) > LARGER.get(folder, MOST_UNITS):
-            yield f"{folder} holds {len(names)} units, allowed: {LARGER.get(folder, MOST_UNITS)}"
+        if len(names) > LARGER.get(folder, MAX_UNITS):
+            yield f"{folder} holds {len(names)} units, allowed: {LARGER.get(folder, MAX_UNITS)}"
     for folder in arrows.keys() - units.keys():
         yield f"arrows.txt: nothing in {folder}"
 

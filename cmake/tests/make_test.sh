@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
 # make_test.sh <source folder>: each target of the Makefile builds what it runs and no more, and says after building what
-# had to be left out. cmake, ctest and the programs are made up.
+# was not built. cmake, ctest and the programs are made up.
 set -uo pipefail
 cd "$1" || exit 1
 source cmake/tests/expect.sh
@@ -26,16 +26,16 @@ configured() { [[ "$(cat "$CALLS")" == *"cmake --preset release"* ]]; }
 
 check report slipstick
 expect "make report configures what was never configured" configured
-touch "$build/build.ninja" "$build/left_out.txt"
+touch "$build/build.ninja" "$build/not_built.txt"
 check report slipstick
 expect "make report does not configure again" not configured
-expect "nothing is left out" not says "LEFT OUT"
-echo "LEFT OUT: certified digits, because of this test" > "$build/left_out.txt"
+expect "everything is built" not says "NOT BUILT"
+echo "NOT BUILT: certified digits, because of this test" > "$build/not_built.txt"
 check report slipstick
-expect "what is left out is said after building" says "cmake was run
+expect "what is not built is said after building" says "cmake was run
 
-LEFT OUT: certified digits, because of this test"
-expect "what was left out is looked for again" configured
+NOT BUILT: certified digits, because of this test"
+expect "what was not built is looked for again" configured
 check test tests
 expect "make test ends with the test runner's words" test "$(tail -n 1 "$folder/output")" = "ctest was run"
 check gate "slipstick slipstick_work"

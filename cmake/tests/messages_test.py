@@ -11,7 +11,7 @@ BEGINNING = re.compile(
     r"|\b(?:InputError|(?!logic_)\w+_error|out_of_range|fail\w*|refuse\w*|finish|stop|set_missing|set_number)\s*\("
     r"|\b(?:message|why|warning|reason|advice|note|\w+_note|trouble)(?:\"\])?\s*\+?=(?![=\\])")
 RAISING = re.compile(r"\braise InputError\(")
-# Those whose every text says why something is not so.
+# Every text of these files says why something is not so.
 WHOLE = ("convergence/gates/gate.cpp", "convergence/check/diagnosis.cpp", "convergence/check/verdict.cpp",
          "convergence/oracle/oracle.cpp", "bench/compare/obstacles.cpp", "bench/timing/invalid_reason.cpp")
 LITERAL = re.compile(r'"((?:[^"\\\n]|\\.)*)"(?:\s*"((?:[^"\\\n]|\\.)*)")*')
@@ -23,7 +23,7 @@ def without_comments(text):
 
 
 def end_of(text, start):
-    """Of a call's arguments, or of an assignment: where its bracket closes, or at the semicolon."""
+    """Where a call's arguments or an assignment end: at the closing bracket, or at the semicolon."""
     depth, i = 0, start
     while i < len(text):
         if text[i] == '"':

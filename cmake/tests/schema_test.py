@@ -31,7 +31,7 @@ quantity = "{{}}"
 basis = "made up"
 {{}}
 """
-# A program as Google Benchmark makes them, whose benchmarks all take so long.
+# A program as Google Benchmark makes them; each of its benchmarks takes MS milliseconds.
 BENCHMARKS = """#!/bin/sh
 for word in "$@"; do
   case "$word" in
@@ -50,7 +50,7 @@ END
 
 
 def validator(name, part=None):
-    """Of a schema, or of one of its $defs."""
+    """The validator of a schema, or of one of its $defs."""
     schema = {"$ref": f"{SCHEMAS[name]['$id']}#/$defs/{part}"} if part else SCHEMAS[name]
     try:
         import referencing

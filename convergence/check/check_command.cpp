@@ -12,9 +12,9 @@
 #include <vector>
 
 #include "convergence/check/check.hpp"
-#include "convergence/loops/check_loop.hpp"
-#include "convergence/loops/loop_judgement.hpp"
-#include "convergence/loops/loop_record.hpp"
+#include "convergence/check/loops/check_loop.hpp"
+#include "convergence/check/loops/loop_judgement.hpp"
+#include "convergence/check/loops/loop_record.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "solver/input/input_error.hpp"

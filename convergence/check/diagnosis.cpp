@@ -9,7 +9,7 @@
 #include "convergence/check/deviation.hpp"
 #include "convergence/check/fitted_motion.hpp"
 #include "solver/contact/certificate.hpp"
-#include "solver/elasticity/influence.hpp"
+#include "solver/elasticity/law/half_spaces.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -46,25 +46,21 @@ ArrayXd at(const std::vector<Index>& points, const ArrayXd& field, Index cells) 
   return field.reshaped(cells, field.size() / cells)(points, Eigen::all).reshaped();
 }
 
-/// Displacements by tractions in parts: u = S shear + N (poisson + cross), with S and N the pair's shear and
-/// Poisson compliances. `mirrored` is `cross` with |K12| for K12; `exchanged` is `poisson` with K22 for K11
-/// and K11 for K22.
+/// The part of the displacements that cross contraction of the half-spaces makes, over their Poisson
+/// compliance: poisson + cross, by K11 and K22 and by K12. `mirrored` has |K12| instead of K12, `exchanged` has
+/// the part of K22 instead of that of K11 and the reverse.
 struct Displacements {
-  ArrayXd shear, poisson, cross, mirrored, exchanged;
+  ArrayXd poisson, cross, mirrored, exchanged;
 };
 
 Displacements sum_displacements(const GivenContact& contact, const Cells& cells) {
   const solver::Grid& grid = contact.grid;
-  const auto tables = [&](double shear, double poisson) {
-    const std::array components{solver::Component::k11, solver::Component::k22, solver::Component::k12};
-    return solver::influence_tables(components, {shear, poisson, 0.0, 0.0}, grid.h1, grid.h2, grid.n1,
-                                    grid.n2);
-  };
-  const auto shear = tables(1.0, 0.0);
-  const auto poisson = tables(0.0, 1.0);
+  const std::array components{solver::Component::k11, solver::Component::k22, solver::Component::k12};
+  const solver::HalfSpaces contraction({0.0, 1.0, 0.0, 0.0});
+  const auto poisson = contraction.influence_tables(components, grid);
   const auto count = static_cast<Index>(cells.points.size());
   Displacements u;
-  for (ArrayXd* part : {&u.shear, &u.poisson, &u.cross, &u.mirrored, &u.exchanged}) part->setZero(2 * count);
+  for (ArrayXd* part : {&u.poisson, &u.cross, &u.mirrored, &u.exchanged}) part->setZero(2 * count);
   for (Index k = 0; k < count; ++k) {
     const Index point = cells.points[static_cast<std::size_t>(k)];
     const Index i = point / grid.n2;
@@ -77,8 +73,6 @@ Displacements sum_displacements(const GivenContact& contact, const Cells& cells)
       const double q2 = contact.traction[source + grid.cells()];
       const double k12 = poisson[2][offset];
       const double signed_k12 = (k1 < 0) == (k2 < 0) ? k12 : -k12;
-      u.shear[k] += shear[0][offset] * q1;
-      u.shear[k + count] += shear[1][offset] * q2;
       u.poisson[k] += poisson[0][offset] * q1;
       u.poisson[k + count] += poisson[1][offset] * q2;
       u.exchanged[k] += poisson[1][offset] * q1;
@@ -110,12 +104,13 @@ class Trial {
       : cells_(choose_cells(contact)),
         u_(sum_displacements(contact, cells_)),
         pair_(contact.pair),
-        coupled_(contact.pressure_coupling && contact.pair.mismatch != 0.0) {
+        coupled_(contact.pressure_coupling && contact.law->couples()) {
     const Index count = contact.pressure.size();
     const auto here = [&](const ArrayXd& field) { return at(cells_.points, field, count); };
     const RigidMotions motions = rigid_motions(contact, load, std::nullopt);
     for (const ArrayXd& motion : motions.free) motions_.push_back(here(motion));
     imposed_ = here(motions.imposed);
+    elastic_ = here(contact.elastic_displacement);
     by_pressure_ = here(contact.displacement - contact.elastic_displacement);
     traction_ = here(contact.traction);
     bound_ = here(contact.friction_bound);
@@ -126,9 +121,9 @@ class Trial {
 
   Hypothesis of(const Assumption& assumption) const {
     const ArrayXd elastic =
-        pair_.shear_compliance * u_.shear +
-        pair_.poisson_compliance * (assumption.poisson * u_.poisson + assumption.cross * u_.cross +
-                                    assumption.mirrored * u_.mirrored + assumption.exchanged * u_.exchanged);
+        elastic_ + pair_.poisson_compliance *
+                       ((assumption.poisson - 1.0) * u_.poisson + (assumption.cross - 1.0) * u_.cross +
+                        assumption.mirrored * u_.mirrored + assumption.exchanged * u_.exchanged);
     const FittedMotion fitted = fit_motion(elastic + assumption.by_pressure * by_pressure_ - imposed_,
                                            traction_, at_least(assumption.friction * bound_), motions_);
     const double energy = 0.5 * (traction_ * elastic).sum();
@@ -141,7 +136,8 @@ class Trial {
   std::optional<Assumption> best_poisson_ratio() const {
     std::vector<ArrayXd> motions = motions_;
     motions.push_back(-(u_.poisson + u_.cross));
-    const ArrayXd without = pair_.shear_compliance * u_.shear + by_pressure_ - imposed_;
+    const ArrayXd without =
+        elastic_ - pair_.poisson_compliance * (u_.poisson + u_.cross) + by_pressure_ - imposed_;
     const FittedMotion fitted = fit_motion(without, traction_, at_least(bound_), motions);
     const double compliance = fitted.coefficients[fitted.coefficients.size() - 1];
     const double ratio = compliance / pair_.shear_compliance;
@@ -163,6 +159,7 @@ class Trial {
   bool coupled_;
   std::vector<ArrayXd> motions_;  ///< the rotation last
   ArrayXd imposed_;
+  ArrayXd elastic_;  ///< by the right law
   ArrayXd by_pressure_;
   ArrayXd traction_;
   ArrayXd bound_;

@@ -37,7 +37,7 @@ GivenContact::GivenContact(const solver::Dimensionless& bodies, int threads,
                            const std::array<double, 2>& middle, ArrayXd p, ArrayXd q,
                            ArrayXd rounding_of_bound, ArrayXd rounding_of_q)
     : Dimensionless(bodies),
-      elasticity{.pair = pair, .threads = threads},
+      elasticity{.law = law, .threads = threads},
       centre(middle),
       pressure(std::move(p)),
       friction_bound(friction * pressure),

@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "convergence/check/foreign_field.hpp"
-#include "solver/load_step.hpp"
 #include "solver/model.hpp"
+#include "solver/tractions.hpp"
 
 namespace slipstick::convergence {
 

@@ -67,12 +67,12 @@ std::string too_tight(const Gate& gate, const Json& result) {
     return "the result does not say how uncertain the exact answer is, so nothing says whether the gate is "
            "wide enough";
   }
-  const double needed = kMargin * (reference + gate.platform_spread);
+  const double needed = kGateMargin * (reference + gate.platform_spread);
   if (tolerance(gate) >= needed) return "";
   return fmt::format(
       "tighter than its reference allows: it leaves {:.3g}, and {:.3g} is needed, {:g} times the "
       "reference error {:.2g} and the platform spread {:.2g} together",
-      tolerance(gate), needed, kMargin, reference, gate.platform_spread);
+      tolerance(gate), needed, kGateMargin, reference, gate.platform_spread);
 }
 
 std::string because(const std::string& reason) { return reason.empty() ? "" : ": " + reason; }
@@ -83,7 +83,7 @@ std::string word(const Json& result, const char* key) {
              : "";
 }
 
-/// What came to a result.
+/// The work that made a result.
 std::string maker(GateSource kind) {
   switch (kind) {
     case GateSource::scene:
@@ -131,7 +131,7 @@ std::string died(const Gate& gate, const Json& result) {
   return result.is_object() ? failed_runs_text(result) : "";
 }
 
-/// What to say of a number of a solve that did not reach its tolerance; empty where it did.
+/// The reason against a number of a solve that did not reach its tolerance; empty where it did.
 std::string unfinished(const Gate& gate, const Json& result) {
   if (gate.quantity == "status" || word(result, "status") != "not_converged") return "";
   return "the solve did not reach its tolerance" + because(word(result, "message"));

@@ -43,7 +43,7 @@ struct Gate {
   GateStatus status = GateStatus::active;
 };
 
-/// What became of a gate. Refused: it could not be judged.
+/// The verdict on a gate. Refused: it could not be judged.
 enum class Outcome { passed, failed, failed_as_expected, passed_unexpectedly, reported, refused };
 std::string to_string(Outcome outcome);
 
@@ -62,7 +62,7 @@ struct Judgement {
 
 /// A gate needs this many times the error of what it is judged by: less, and a verdict says as much about the
 /// reference, or about the machine, as about the program.
-inline constexpr double kMargin = 10.0;
+inline constexpr double kGateMargin = 10.0;
 
 /// Whether a quantity is the error of another, against an exact answer, or follows from one: by its path.
 bool is_error(const std::string& quantity);
@@ -74,10 +74,10 @@ double reference_error(const Json& result, const std::string& quantity);
 
 /// Judges a gate by the result of its scene or study, or by what its result file holds. A number that is
 /// missing, NaN or comes from a solve that did not reach its tolerance fails; a gate that is tighter than
-/// kMargin allows is refused. A solve that died, or a study some of whose runs failed, fails a gate of any
-/// status: that is neither the failure that was expected nor a number to report. Of a result file the
-/// reference's error counts where the file states one: it may call anything an error, of benchmarks that
-/// failed as well as of a twist.
+/// kGateMargin allows is refused. A solve that died, or a study some of whose runs failed, fails a gate of
+/// any status: that is neither the failure that was expected nor a number to report. In a result file the
+/// reference's error counts where the file states one: the file may call anything an error, such as a count
+/// of benchmarks that failed.
 Judgement judge(const Gate& gate, const Json& result);
 
 /// The gate with the bounds that `within` allows around what the other result has. Throws InputError where
@@ -91,7 +91,7 @@ Judgement refuse(const Gate& gate, const std::string& why);
 /// be. 1: else.
 int exit_code(const std::vector<Judgement>& judgements);
 
-/// What the gate asks for: "below 2e-05 in size".
+/// The bound in words: "below 2e-05 in size".
 std::string bound_text(const Gate& gate);
 
 /// The command that runs it alone.
@@ -102,7 +102,7 @@ std::string rerun_command(const Gate& gate);
 /// Every key that a gate file may have; read_gates() reads by it.
 const solver::SettingKeys& gate_keys();
 
-/// What several gate files hold, and what is wrong with those that cannot be read: one bad file does not
+/// The gates of several files, and what is wrong with those that cannot be read: one bad file does not
 /// spoil the others.
 struct GateFiles {
   std::vector<Gate> gates;

@@ -87,7 +87,7 @@ std::vector<std::string> explanation(const Judgement& judgement) {
   return lines;
 }
 
-/// What a case holds beside its name.
+/// The content of a case beside its name.
 std::string junit_verdict(const Judgement& judgement) {
   const std::string shown = was_read(judgement)
                                 ? fmt::format("{} = {}, must be {}", judgement.gate.quantity,
@@ -136,7 +136,7 @@ std::string markdown_row(const Judgement& judgement) {
                      factor_text(judgement), markdown_cell(remarks));
 }
 
-/// What stands in a workflow command: properties end at commas and colons too.
+/// Text in a workflow command; in a property commas and colons are escaped too.
 std::string annotation(std::string_view text, bool is_property) {
   std::string escaped;
   for (const char c : solver::printable(text)) {

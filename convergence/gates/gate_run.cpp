@@ -29,7 +29,7 @@ double seconds_of(const Json& result) {
   return seconds != result.end() && seconds->is_object() ? seconds->value("total", 0.0) : 0.0;
 }
 
-/// What a gate looks at: a result, or why there is none.
+/// The result that a gate judges, or why there is none.
 struct Source {
   Json result;
   std::string refused;
@@ -78,7 +78,7 @@ void solve_scenes(const std::vector<Gate>& gates, const ProcessPool& pool, Sourc
   }
 }
 
-/// What cannot be judged as a study, with solves that did not converge for one, is a result that failed.
+/// A study that cannot be judged, for example since solves did not converge, is a result that failed.
 Json study_result(const Gate& gate, const ProcessPool& pool) {
   const Study study = read_study(gate.source, gate.overrides);
   try {

@@ -2,7 +2,7 @@
 """spread.py GATES.toml ONE.json OTHER.json...: do two builds of the program give the same numbers?
 
 The JSON files are of `slipstick gate GATES.toml --json`, by builds with other compilers or options. Each gate says by how
-much its number may differ between them (platform_spread); of those that do not, differences are shown. Exit code 0: all keep it; 1: some do
+much its number may differ between them (platform_spread); gates that do not say it show their differences. Exit code 0: all keep it; 1: some do
 not; 2: the files do not belong together."""
 
 import json
@@ -23,7 +23,7 @@ def gates_in(path):
 
 
 def difference(one, other):
-    """Of two numbers; of words 0 where they are the same."""
+    """The difference of two numbers; 0 for equal words."""
     numbers = all(isinstance(value, (int, float)) and not isinstance(value, bool) for value in (one, other))
     return abs(one - other) if numbers else 0.0 if one == other else math.inf
 

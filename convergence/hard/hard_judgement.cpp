@@ -13,9 +13,9 @@
 namespace slipstick::convergence {
 namespace {
 
-/// What a certificate of an answer that is called converged may show.
+/// A converged answer balances its loads to this, relative: rounding of sums over 1e6 cells, and room.
 constexpr double kBalanced = 1e-8;
-/// No mesh is better than its smallest errors.
+/// A stated uncertainty counts as at least this, relative: rounding and the stopping test leave as much.
 constexpr double kMinUncertainty = 1e-6;
 
 /// Answers that differ by less are one answer: what the literature calls good agreement.
@@ -64,7 +64,7 @@ double stated_uncertainty(const Json& result) {
   return explained ? std::numeric_limits<double>::infinity() : said;
 }
 
-/// Of a variant: what its number is of the first's.
+/// The number of a variant over that of the first view.
 double factor(const char* path, Variant variant) {
   constexpr double millimetres = 1e3;
   const std::string name = path;
@@ -112,15 +112,16 @@ JudgedCase judge_alone(const Json& result) {
   return {HardVerdict::certified, "", numbers};
 }
 
-/// What a number is measured by where it is zero, or would be without rounding.
+/// The size to compare a number with where it is zero, or would be without rounding.
 double natural_size(const Json& result, const std::string& path) {
   const double limit = number_at(result, "moment_limit");
   const double radius = number_at(result, "contact_radius");
   const double force = std::hypot(number_at(result, "force[0]"), number_at(result, "force[1]"));
   const double shift = std::hypot(number_at(result, "displacement[0]"), number_at(result, "displacement[1]"));
   const auto or_nothing = [](double size) { return std::isfinite(size) ? size : 0.0; };
-  // Of a state that has come back to nothing, what its certificate is relative to.
-  const double energy = std::fmax(number_at(result, "elastic_energy"), number_at(result, "certificate.energy"));
+  // A state that has come back to nothing is measured by the energy of its certificate.
+  const double energy =
+      std::fmax(number_at(result, "elastic_energy"), number_at(result, "certificate.energy"));
   if (path == "elastic_energy") return or_nothing(energy);
   if (path == "moment")
     return or_nothing(force * radius) + or_nothing(energy * radius / number_at(result, "approach"));

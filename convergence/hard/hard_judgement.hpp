@@ -41,7 +41,7 @@ MeshReference judge_by_finer(double value, double absolute, double twice, double
 /// number is missing.
 double variant_difference(const Json& result, const Json& seen, Variant variant);
 
-/// What equal problems may differ by, in the twist, the moment and energies: 1e-6, and next to the limit the
+/// How far equal problems may differ in the twist, the moment and energies: 1e-6, and next to the limit the
 /// tolerance over the part of the load that is missing to it, since the twist grows like the logarithm of
 /// that part.
 double same_answer(const Json& result);

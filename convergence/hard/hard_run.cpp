@@ -29,7 +29,7 @@ struct Trial {
 };
 
 /// Runs whose answers go back to the trials that asked for them.
-class Batch {
+class TrialRuns {
  public:
   void add(Trial& trial, RunSpec spec) {
     try {
@@ -71,7 +71,7 @@ Json verdict_json(const std::string& verdict, const std::string& reason, const J
   return json;
 }
 
-/// The grid of a result, written out, or one with so many times the cells along each axis.
+/// The grid of a result, written out, or one with `finer` times as many cells along each axis.
 std::vector<std::string> grid_of(const Json& result, int finer = 1) {
   const auto cells = result["cells"].get<std::array<int, 2>>();
   const auto size = result["cell_size"].get<std::array<double, 2>>();
@@ -103,7 +103,7 @@ void judge_too(Trial& trial, HardVerdict verdict, std::string reason) {
 }
 
 void judge_variants(std::vector<Trial>& trials, const ProcessPool& pool) {
-  Batch batch;
+  TrialRuns batch;
   for (Trial& trial : trials) {
     if (trial.judged.verdict != HardVerdict::certified) continue;
     for (const Variant variant : kVariants) {
@@ -139,7 +139,7 @@ bool needs_finer_meshes(const Trial& trial) {
 
 /// Whether a finer mesh may refuse what this one carries: a load so near the limit that the mesh decides.
 bool is_at_limit(const Json& result) {
-  constexpr double kMeshOfLimit = 1e-3;  ///< by so much the limit differs from mesh to mesh, relative
+  constexpr double kMeshOfLimit = 1e-3;  ///< the limit differs by this from mesh to mesh, relative
   return result.contains("limit") && result["limit"]["factor"].is_number() &&
          result["limit"]["factor"] < 1.0 + kMeshOfLimit;
 }
@@ -148,7 +148,7 @@ bool is_at_limit(const Json& result) {
 void judge_by_finer_meshes(std::vector<Trial>& trials, const ProcessPool& pool) {
   std::map<Trial*, std::vector<double>> found;
   std::set<Trial*> refused;
-  Batch batch;
+  TrialRuns batch;
   for (Trial& trial : trials) {
     if (!needs_finer_meshes(trial)) continue;
     for (const int finer : {2, 4}) {
@@ -182,7 +182,7 @@ void judge_by_finer_meshes(std::vector<Trial>& trials, const ProcessPool& pool) 
 void compare_methods(std::vector<Trial>& trials, const std::vector<std::string>& methods,
                      const ProcessPool& pool) {
   for (const std::string& method : methods) {
-    Batch batch;
+    TrialRuns batch;
     for (Trial& trial : trials) {
       RunSpec spec = trial.hard->run;
       spec.overrides.push_back(fmt::format("solver.method=\"{}\"", method));
@@ -242,7 +242,7 @@ Json method_counts(const std::vector<Trial>& trials, const std::string& method) 
 
 Json run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& options, const ProcessPool& pool) {
   std::vector<Trial> trials(cases.size());
-  Batch first;
+  TrialRuns first;
   for (std::size_t i = 0; i < cases.size(); ++i) {
     trials[i].hard = &cases[i];
     RunSpec spec = cases[i].run;

@@ -29,8 +29,6 @@ double digits_of(double deviation, double value) {
   return std::clamp(-std::log10(deviation / std::abs(value)), 0.0, kAllDigits);
 }
 
-bool is_converged(const Json& result) { return result.value("status", "") == "converged"; }
-
 Json digits_json(double value, const Digits& digits) {
   return {{"value", value}, {"digits", digits.value}, {"low", digits.low}, {"high", digits.high}};
 }

@@ -18,7 +18,8 @@ struct Digits {
 };
 inline constexpr double kAllDigits = 15.95;  ///< -log10 of half an ulp
 
-/// Of `value`, rounded to nearest, and at least one sample of it, rounded at random. NaN where any is.
+/// The digits of `value`, rounded to nearest, from at least one sample of it, rounded at random. NaN where
+/// any of them is NaN.
 Digits surviving_digits(double value, const std::vector<double>& samples);
 
 struct DigitsOptions {

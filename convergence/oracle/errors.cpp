@@ -151,7 +151,7 @@ class Images {
   bool turns_;  ///< tractions go round the axis, as (-x2, x1) does
 };
 
-/// Averages are taken over so many points of a cell along each side. An edge of the traction is a square
+/// Points of a cell along each side, over which averages are taken. An edge of the traction is a square
 /// root, of whose difference between centre and average this leaves about (1/12)^(3/2), 2 %.
 constexpr int kPointsAcross = 12;
 /// Steps of the tables of the exact traction near its edges, a cell: finer than the points.

@@ -18,6 +18,7 @@
 #include "analytic/named_profile.hpp"
 #include "analytic/spence.hpp"
 #include "analytic/tangential_history.hpp"
+#include "convergence/oracle/exact_shapes.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
@@ -37,32 +38,6 @@ Moduli moduli(const solver::Scene& scene) {
           .shear = 1.0 / sum_of([](double nu) { return 2.0 * (1.0 + nu); })};
 }
 
-/// The contact before torsion.
-analytic::PressedContact press(const solver::Surface& surface, double load, double effective_modulus) {
-  using solver::Shape;
-  const auto press_as = [&](const std::string& profile, const std::vector<double>& shape) {
-    return analytic::press(profile, {load, effective_modulus, shape});
-  };
-  switch (surface.shape) {
-    case Shape::sphere:
-      return press_as("hertz", {surface.radius});
-    case Shape::ellipsoid:  // of equal radii; others are PressedEllipse's
-      return press_as("hertz", {surface.radius_1});
-    case Shape::cone:
-      return press_as("cone", {surface.slope});
-    case Shape::flat_punch:
-      return press_as("flat_punch", {surface.radius});
-    case Shape::rounded_punch:
-      return press_as("rounded_punch", {surface.flat_radius, surface.corner_radius});
-    case Shape::power:
-      return analytic::press_power(surface.exponent, {load, effective_modulus, {surface.coefficient}});
-    case Shape::height_map:
-    case Shape::roughness:
-      break;
-  }
-  throw std::logic_error("a shape without an exact solution");
-}
-
 /// The highest pressure over p0: on the axis, at the edge, or, under what is flatter than a paraboloid, at
 /// the one maximum between them (golden section).
 double peak_of(const analytic::Profile& profile) {
@@ -77,19 +52,19 @@ double peak_of(const analytic::Profile& profile) {
   return std::max({profile.pressure(0.0), profile.pressure(high), profile.pressure(1.0)});
 }
 
-/// What the tests hold the functions of analytic/ to, at their worst (a rounded punch's), and a few roundings
-/// of the scene's units.
+/// Relative: the worst error that the tests of analytic/ allow (of a rounded punch), and a few roundings of
+/// the scene's units.
 constexpr double kUncertainty = 2e-14;
-/// Of Spence's stick ratio: ten digits of it stand still as his integral equations are refined.
+/// Relative, of Spence's stick ratio: ten digits stand still as his integral equations are refined.
 constexpr double kSpenceUncertainty = 1e-10;
 
-/// What makes dimensionless moments and twists those of the scene.
+/// The units of moments and twists, N m and rad.
 struct TorsionUnits {
   double moment;  ///< mu W a
   double twist;   ///< mu W/(G a^2)
 };
 
-/// What the theories share: an indenter's contact, and the pair's moduli.
+/// An indenter's contact and the pair's moduli, which all theories use.
 class Indentation {
  public:
   explicit Indentation(const solver::Scene& scene)
@@ -120,10 +95,11 @@ class Indentation {
   }
 
  private:
-  /// What the theory does not answer is the scene's: a shape that is none in double precision.
+  /// Throws InputError for a shape that is none in double precision.
   analytic::PressedContact pressed_shape(double load) const {
     try {
-      return press(surface_, load, pair_.effective);
+      const ExactShape shape = exact_shape(surface_).value();  // exact_history() has found that there is one
+      return analytic::press(shape.profile, {load, pair_.effective, shape.numbers});
     } catch (const std::domain_error& error) {
       throw solver::InputError(source_, fmt::format("[upper] has no exact contact: {}", error.what()));
     }
@@ -351,8 +327,7 @@ class PressedEllipse final : public ExactHistory {
                     .tangent_stiffness = unknown};
     oracle.only_normal =
         "normal contact only: no exact solution with friction is known here for shape = \"ellipsoid\" with "
-        "two "
-        "different radii";
+        "two different radii";
     return {oracle, ""};
   }
 

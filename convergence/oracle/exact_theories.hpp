@@ -6,11 +6,10 @@
 
 #include "convergence/oracle/oracle.hpp"
 
-/// The exact theories, each for scenes of which oracle.hpp knows that it holds.
+/// The exact theories; exact_history() knows for which scenes each holds.
 namespace slipstick::convergence {
 
-/// What the tangential displacement by pressure goes with, (1 - 2 nu)/(2 G): bodies of equal ones are
-/// similar.
+/// The factor of a body's tangential displacement by pressure, (1 - 2 nu)/(2 G), in 1/Pa.
 double mismatch(const solver::Material& material);
 
 /// Torsion under a constant normal load: first loading, then Masing's rule.

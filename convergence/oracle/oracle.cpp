@@ -8,27 +8,21 @@
 #include <optional>
 #include <vector>
 
+#include "convergence/oracle/exact_shapes.hpp"
 #include "convergence/oracle/exact_theories.hpp"
+#include "solver/elasticity/law/law_kind.hpp"
 #include "solver/scene/last_digits.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
-bool is_elliptic(const solver::Surface& surface) {
-  return surface.shape == solver::Shape::ellipsoid && surface.radius_1 != surface.radius_2;
-}
-
 /// Why a surface has no exact solution here; empty if it has one.
 std::string obstacle(const std::vector<solver::Surface>& surfaces) {
-  using solver::Shape;
   if (surfaces.size() > 1) return "no exact solution is known here for several shapes";
   const solver::Surface& surface = surfaces.front();
-  const char* detail = nullptr;
-  if (surface.shape == Shape::height_map || surface.shape == Shape::roughness) detail = "";
-  if (surface.shape == Shape::flat_punch && surface.inner_radius > 0.0) detail = " with an inner radius";
-  if (detail == nullptr) return "";
+  if (exact_shape(surface) || is_elliptic(surface)) return "";
   return fmt::format("no exact solution is known here for shape = \"{}\"{}", to_string(surface.shape),
-                     detail);
+                     surface.inner_radius > 0.0 ? " with an inner radius" : "");
 }
 
 /// Whether the pressure moves the two surfaces sideways by different amounts, and the scene wants to know.
@@ -40,6 +34,9 @@ bool is_coupled(const solver::Scene& scene) {
 std::string obstacle(const solver::Scene& scene) {
   std::string of_surface = obstacle(scene.surfaces);
   if (!of_surface.empty()) return of_surface;
+  if (scene.layer.kind != nullptr) {
+    return fmt::format("no exact solution is known here for layer.kind = \"{}\"", scene.layer.kind->word);
+  }
   if (scene.pressure == solver::PressureModel::file) return "the pressure comes from a file";
   if (scene.ends_at_grid_edge) return "the body may end at the grid's edge (upper.ends_at_grid_edge)";
   if (!(scene.friction > 0.0)) return "without friction there is no traction";
@@ -55,27 +52,8 @@ bool without_force(const solver::Step& step) {
   return !step.displacement && step.force == std::array<double, 2>{};
 }
 
-/// Of gaps like r^n.
-std::optional<double> gap_exponent(const solver::Surface& surface) {
-  using solver::Shape;
-  switch (surface.shape) {
-    case Shape::sphere:
-      return 2.0;
-    case Shape::ellipsoid:
-      return is_elliptic(surface) ? std::nullopt : std::optional(2.0);
-    case Shape::cone:
-      return 1.0;
-    case Shape::flat_punch:
-      return std::numeric_limits<double>::infinity();
-    case Shape::power:
-      return surface.exponent;
-    default:
-      return std::nullopt;
-  }
-}
-
-/// Of a direction given by two numbers.
-constexpr double kRounding = 1e-14;
+/// Two directions are one line where the sine between them is less: the rounding of two coordinates.
+constexpr double kSameLine = 1e-14;
 
 /// The line along which all forces act, as a unit vector; none if there are several.
 std::optional<std::array<double, 2>> line_of_forces(const std::vector<solver::Step>& steps) {
@@ -85,7 +63,7 @@ std::optional<std::array<double, 2>> line_of_forces(const std::vector<solver::St
     const double size = std::hypot(f1, f2);
     if (size == 0.0) continue;
     if (line == std::array<double, 2>{}) line = {f1 / size, f2 / size};
-    if (std::abs(line[0] * f2 - line[1] * f1) > kRounding * size) return std::nullopt;
+    if (std::abs(line[0] * f2 - line[1] * f1) > kSameLine * size) return std::nullopt;
   }
   return line;
 }
@@ -95,7 +73,7 @@ bool has_no_cross_contraction(const solver::Material& material) {
 }
 
 std::unique_ptr<ExactHistory> history_under_force(const solver::Scene& scene) {
-  const auto exponent = gap_exponent(scene.surfaces.front());
+  const std::optional<ExactShape> shape = exact_shape(scene.surfaces.front());
   const auto line = line_of_forces(scene.steps);
   if (std::any_of(scene.steps.begin(), scene.steps.end(), [](const auto& s) { return s.displacement; })) {
     return no_theory("the displacement is imposed, not the force");
@@ -104,8 +82,9 @@ std::unique_ptr<ExactHistory> history_under_force(const solver::Scene& scene) {
     return no_theory("Cattaneo's and Mindlin's solution is exact only where Poisson's ratios are 0");
   }
   if (!line) return no_theory("no exact solution is known here for forces along several lines");
-  if (!exponent) return no_theory("the contact does not stay similar to itself as the load changes");
-  return force_history(scene, *exponent, *line);
+  if (!shape || !shape->gap_exponent)
+    return no_theory("the contact does not stay similar to itself as the load changes");
+  return force_history(scene, *shape->gap_exponent, *line);
 }
 
 std::unique_ptr<ExactHistory> history_of_dissimilar(const solver::Scene& scene) {
@@ -116,7 +95,8 @@ std::unique_ptr<ExactHistory> history_of_dissimilar(const solver::Scene& scene) 
   const bool growing =
       scene.cycles == 1 && std::is_sorted(steps.begin(), steps.end(),
                                           [](const auto& a, const auto& b) { return *a.normal < *b.normal; });
-  if (!pressed_only || !growing || !gap_exponent(scene.surfaces.front())) {
+  const std::optional<ExactShape> shape = exact_shape(scene.surfaces.front());
+  if (!pressed_only || !growing || !shape || !shape->gap_exponent) {
     return no_theory(
         "the pressure's tangential displacement of dissimilar materials enters (contact.coupling)");
   }

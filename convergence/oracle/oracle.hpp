@@ -50,7 +50,7 @@ struct Oracle {
   /// of equal area to the similar ellipse through the place.
   double radius(double y1, double y2) const;
 
-  /// Of the contact, in m; a circle's are its radius.
+  /// Semi-axes of the contact, m; those of a circle are its radius.
   double longer_semi_axis() const;
   double shorter_semi_axis() const;
 

@@ -24,8 +24,8 @@ const std::vector<ErrorQuantity>& error_quantities();
 /// Quantities that it looks at where there is none, or where it does not say them.
 const std::vector<std::string>& value_quantities();
 
-/// Of an error, or of the error of a value, in a scene: by the pressure model and by how the indenter's
-/// pressure ends.
+/// The order of an error, or of a value's error, in a scene. It follows from the pressure model and from how
+/// the indenter's pressure ends.
 ExpectedOrder expected_order(const std::string& quantity, const solver::Scene& scene);
 
 }  // namespace slipstick::convergence

@@ -71,7 +71,7 @@ std::string fall_of_order(const Meshes& meshes) {
   return fmt::format("the order still falls, from {:.2f} to {:.2f} on the finest meshes", before, now);
 }
 
-/// What of the verdict the values alone decide; the interval decides the rest.
+/// The verdict: as far as the values decide it alone, else by the interval.
 Order judged(Order order, const Meshes& meshes, double expected, const std::string& left_out) {
   order = judged_by_interval(order, expected);
   const MeshSample& finest = meshes.back();
@@ -218,7 +218,7 @@ std::string method_of(const PowerFit& fit, bool with_order) {
                      fit.weighted ? ", weighted by 1/h" : "");
 }
 
-/// Of the finest mesh, by the method's rules.
+/// Uncertainty of the finest mesh by the method's rules.
 double grid_uncertainty(const PowerFit& fit, double order, const Meshes& meshes) {
   const double finest = meshes.back().size / meshes.front().size;
   double fitted = 0.0;

@@ -19,11 +19,11 @@ struct MeshSample {
 /// In the place of a number that there is none of.
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
-/// What all intervals hold, and what lies below the upper end of one.
+/// The probability that all intervals hold, and that below the upper end of a two-sided one.
 inline constexpr double kConfidence = 0.95;
 inline constexpr double kBothSides = 0.5 * (1.0 + kConfidence);
 
-/// What a sequence of meshes shows.
+/// The verdict on a sequence of meshes.
 enum class OrderVerdict { asymptotic, preasymptotic, superconvergent, oscillatory, floor, too_few };
 std::string to_string(OrderVerdict verdict);
 
@@ -39,14 +39,14 @@ MeshSequence coarsest_first(const std::vector<MeshSample>& samples);
 /// Three values are the fewest that a limit, a factor and an order can be determined from.
 inline constexpr std::size_t kMinMeshes = 3;
 
-/// An error, or the distance of two values, is distinguished from its noise where it is so many times as
+/// An error, or the distance of two values, is distinguished from its noise where it is this many times as
 /// large: a tenth of it then moves an order between meshes of twice the size by 0.15.
 inline constexpr double kAboveNoise = 10.0;
 
 /// Standard errors that a mean is believed to: 95 % of a normal distribution.
 inline constexpr double kBelievedScatter = 2.0;
 
-/// Of the mean over the grids.
+/// Standard error of the mean over the grids.
 double standard_error(const MeshSample& sample);
 
 /// How far a value may be from that of its mesh: noise, and scatter of the mean.

@@ -102,7 +102,7 @@ std::string drift(const Meshes& meshes, const Scatter& scatter, double order) {
   return fmt::format("the order still drifts, to {:.2f} between the two finest meshes", finest);
 }
 
-/// Whether the error has stopped to fall: an order near zero between the finest meshes, and not by scatter.
+/// Whether the error has stopped falling: an order near zero between the finest meshes, and not by scatter.
 bool stands_still(const Meshes& meshes, double expected) {
   const MeshSample& finest = meshes.back();
   const MeshSample& before = meshes[meshes.size() - 2];
@@ -134,7 +134,7 @@ Meshes magnitudes(Meshes errors) {
   return errors;
 }
 
-/// What speaks against a power law, before any interval is looked at; empty reason: nothing.
+/// The reason against a power law, before any interval is looked at; empty: none.
 std::pair<OrderVerdict, std::string> obstacle(const Meshes& distinguished, const Meshes& all,
                                               double expected) {
   const MeshSample& finest = all.back();
@@ -150,7 +150,7 @@ std::pair<OrderVerdict, std::string> obstacle(const Meshes& distinguished, const
   }
   if (stands_still(distinguished, expected)) {
     return {OrderVerdict::floor,
-            fmt::format("the error has stopped to fall: {:.3g} and {:.3g} on the two finest meshes",
+            fmt::format("the error has stopped falling: {:.3g} and {:.3g} on the two finest meshes",
                         distinguished[distinguished.size() - 2].value, distinguished.back().value)};
   }
   if (is_non_monotone(magnitudes(distinguished))) {

@@ -34,7 +34,7 @@ inline constexpr double kWidestHalf = 0.5;
 ///
 /// Verdict, the first that holds:
 /// - too_few: fewer than three meshes have a number, or an error above noise;
-/// - floor: the finest error is lost in noise or scatter, or has stopped to fall;
+/// - floor: the finest error is lost in noise or scatter, or has stopped falling;
 /// - oscillatory: the sign changes, other than once before the three finest meshes (the meshes before that
 ///   take no part), or the size rises on one mesh and falls on another;
 /// - preasymptotic: the order between the two finest meshes is not that of all, to kOrderMargin, and a
@@ -44,7 +44,7 @@ inline constexpr double kWidestHalf = 0.5;
 /// - asymptotic.
 Order fit_order(const std::vector<MeshSample>& errors, double expected);
 
-/// What the interval of a fitted order says where nothing else speaks against it: superconvergent,
+/// The verdict by the interval of a fitted order where nothing else speaks against it: superconvergent,
 /// preasymptotic or asymptotic, with the reason.
 Order judged_by_interval(Order order, double expected);
 

@@ -50,7 +50,7 @@ const GalleryScene kScenes[] = {
 /// A height map has its own grid.
 bool has_height_map(const solver::Scene& scene) { return solver::find_height_map(scene.surfaces) != nullptr; }
 
-/// Of what answers to a smooth contact as a whole.
+/// Order in the cell size of numbers that answer to a smooth contact as a whole.
 constexpr double kSmoothOrder = 2.0;
 
 std::string picture(const GalleryScene& scene) { return fmt::format("gallery-{}.h5", scene.stem); }

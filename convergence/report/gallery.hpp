@@ -22,7 +22,7 @@ struct GalleryScene {
   std::string title;
   std::string shows;  ///< one sentence
   GalleryQuantity quantity;
-  /// Of a height map, or of a random surface: finer meshes see more of it, so their values follow no power of
+  /// A height map or a random surface: finer meshes see more of it, so their values follow no power of
   /// the cell size and nothing is extrapolated.
   bool rough = false;
 };
@@ -30,8 +30,8 @@ struct GalleryScene {
 /// The scenes that show what can be solved.
 const std::vector<GalleryScene>& gallery_scenes();
 
-/// The runs of a scene from a folder on three meshes with so many cells along the longer side, coarsest first
-/// (of a height map at its own size alone); the last writes its contact cells into the folder `fields`.
+/// The runs of a scene from a folder on three meshes with `across` cells along the longer side, coarsest
+/// first (of a height map at its own size alone); the last writes its contact cells into the folder `fields`.
 std::vector<RunSpec> gallery_runs(const GalleryScene& scene, const std::filesystem::path& scenes,
                                   const std::array<solver::Index, 3>& across,
                                   const std::filesystem::path& fields);

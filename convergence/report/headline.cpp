@@ -15,8 +15,8 @@ namespace {
 /// The paper's sphere at a load at which methods differ.
 constexpr double kShownRatio = 0.9;
 
-/// Of the paper's sphere on its finest mesh: how wrong, how certain, how long.
-Json remembered(const Json& meshes) {
+/// The errors, the gap and the time of the paper's sphere on its finest mesh.
+Json headline_numbers(const Json& meshes) {
   const Json* finest = nullptr;
   for (const Json& row : meshes) {
     const bool shown =
@@ -165,7 +165,7 @@ Json headline(const Json& report) {
     counts["peers"][peer["program"].get<std::string>()] = peer["verdict"];
     good = good && peer["verdict"] == peer["expected"];
   }
-  const Json numbers = remembered(report["mesh"]);
+  const Json numbers = headline_numbers(report["mesh"]);
   Json lines = Json::array();
   const auto add = [&](const char* what, const std::string& line) { lines.push_back({what, line}); };
   add("Gates", gates_line(counts["gates"]));

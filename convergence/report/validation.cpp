@@ -141,7 +141,7 @@ Json profile(double moment_ratio, Json result) {
           {"fields", fields_file(moment_ratio)}, {"result", std::move(result)}};
 }
 
-/// Of the ellipses, what there is without an exact answer.
+/// The numbers of the ellipses that need no exact answer.
 Json without_errors(const std::vector<Json>& results) {
   Json rows = Json::array();
   for (const Json& result : results) {
@@ -244,9 +244,9 @@ struct KnownField {
 constexpr KnownField kFields[] = {{"CONTACT", "contact-64-0.9.csv", 2.361048651456917e-3, "good"},
                                   {"CGContact", "cgcontact-64-0.9.csv", 2.21775472e-3, "bad"}};
 
-/// What `check` says of fields that other programs computed for the paper's sphere and whose worth is known: a
-/// row for each, with its program, the verdict and the one that is expected. `inputs` has the scenes (scenes/)
-/// and the fields (check/fields/).
+/// What `check` says of fields that other programs computed for the paper's sphere and whose worth is known:
+/// a row for each, with its program, the verdict and the one that is expected. `inputs` has the scenes
+/// (scenes/) and the fields (check/fields/).
 Json judge_peers(const std::filesystem::path& inputs) {
   const solver::Scene scene = solver::read_scene(inputs / "scenes" / "paper.toml", {"load.moment_ratio=0.9"});
   Json rows = Json::array();

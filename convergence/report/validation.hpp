@@ -36,8 +36,7 @@ std::vector<solver::Index> up_to(std::vector<solver::Index> cells, solver::Index
 /// scene that has no exact solution to compare with; std::runtime_error where a run has no result, and as the
 /// pool does.
 Json validate(const std::filesystem::path& scene_file, const std::filesystem::path& inputs,
-                                const ValidationSize& size, const std::filesystem::path& folder,
-                                const ProcessPool& pool);
+              const ValidationSize& size, const std::filesystem::path& folder, const ProcessPool& pool);
 
 /// What is wrong in the paper's equations as printed, each with numbers as evidence, computed here or taken
 /// from the results of the paper's method on a circular and on elliptic contacts.

@@ -7,11 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "convergence/oracle/errors.hpp"
 #include "convergence/results/provenance.hpp"
-#include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/model.hpp"
 #include "solver/within_double.hpp"
 
 namespace slipstick::convergence {
@@ -110,37 +107,6 @@ Json exact_result(const solver::Scene& scene, const Oracle& oracle, double secon
   json["peak_bytes"] = peak_bytes();
   json["provenance"] = provenance(1);
   return json;
-}
-
-std::string exact_text(const Json& r) {
-  return fmt::format("{}: exact solution, profile {}\n", r["name"].get<std::string>(),
-                     r["profile"].get<std::string>()) +
-         status_text(r) + state_text(r) + model_text(r);
-}
-
-GridColumns exact_columns(const solver::Scene& scene, const Oracle& oracle) {
-  if (!oracle.shear) {
-    throw solver::InputError(
-        scene.source.string(), "solver.model", "\"exact\"",
-        "auto, full where fields are asked for (the exact solution says the stick ratio alone)");
-  }
-  solver::Scene sampled = scene;
-  sampled.op =
-      solver::OperatorKind::dcfft;  // no operator is made, so none of the larger ones need fit in memory
-  const solver::Grid grid = solver::make_model(sampled).grid_in_m();
-  const solver::Index cells = grid.cells();
-  const ExactFields fields = exact_fields(oracle, grid);
-  std::vector<solver::Column> columns{
-      {"x1", solver::cell_x1(grid)},       {"x2", solver::cell_x2(grid)},
-      {"pressure", fields.pressure},       {"q1", fields.traction.head(cells)},
-      {"q2", fields.traction.tail(cells)}, {"stick", (fields.radius < oracle.stick_radius).cast<double>()},
-  };
-  return {.grid = grid, .columns = std::move(columns), .pressure = fields.pressure};
-}
-
-void write_exact_fields(const std::filesystem::path& file, const solver::Scene& scene, const Oracle& oracle) {
-  const GridColumns fields = exact_columns(scene, oracle);
-  solver::write_fields(file, fields.grid, fields.columns, fields.pressure);
 }
 
 }  // namespace slipstick::convergence

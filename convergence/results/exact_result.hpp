@@ -10,8 +10,8 @@
 #include "solver/input/field_file.hpp"
 #include "solver/scene/scene.hpp"
 
-/// What `solve` gives where a scene asks for the exact answer, solver.model = "exact": the keys of a solve on
-/// a grid as far as they have a meaning without one.
+/// The result of `solve` where a scene asks for the exact answer, solver.model = "exact": the keys of a solve
+/// on a grid as far as they have a meaning without one.
 namespace slipstick::convergence {
 
 /// The scene's exact answer. Throws InputError, with the reason and what is allowed, where there is none.

@@ -22,7 +22,7 @@ struct Extent {
   std::size_t keys = 0;  ///< of the object that has most
 };
 
-/// Counts brackets and colons outside of strings. Of a text that is no JSON it holds up to the first fault.
+/// Counts brackets and colons outside of strings; right up to the first fault of a text that is no JSON.
 Extent extent_of(const std::string& text) {
   Extent extent;
   std::vector<std::size_t> keys{0};  // of all open objects, the text around them first

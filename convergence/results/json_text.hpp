@@ -13,8 +13,8 @@ namespace slipstick::convergence {
 /// holds some ten thousand.
 inline constexpr std::size_t kMaxJsonLevels = 200;
 
-/// What a text says. Throws InputError, naming `source` and what is allowed, for what is no JSON or nested
-/// deeper than kMaxJsonLevels. Keys keep their order, except where an object has thousands.
+/// The value that a text holds. Throws InputError, naming `source` and what is allowed, for what is no JSON
+/// or nested deeper than kMaxJsonLevels. Keys keep their order, except where an object has thousands.
 Json parse_json(const std::string& text, const std::string& source, const std::string& allowed);
 
 /// The same of a file of at most kLargestJson bytes.

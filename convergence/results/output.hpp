@@ -4,7 +4,7 @@
 #include <string>
 #include <string_view>
 
-/// What the program's commands hand out: files that options name, and standard output.
+/// Output of the program's commands: files that options name, and standard output.
 namespace slipstick::convergence {
 
 /// Throws InputError, naming the option, where no file can be written at the path; an empty path is none. To
@@ -15,7 +15,7 @@ void require_output(const std::string& option, const std::string& path);
 /// Throws InputError naming option and path where it cannot be written.
 void write_option_file(const std::string& option, const std::string& path, const std::string& text);
 
-/// What an exception says; of memory, threads and processes that ran out also what to do.
+/// The message of an exception; where memory, threads or processes ran out also what to do.
 std::string failure_text(const std::exception& error);
 
 /// Makes the numbers of standard input, output and error those of no other file where they are closed: what

@@ -4,7 +4,7 @@
 
 namespace slipstick::convergence {
 
-/// What made a result: version, commit, compiler, flags, libraries, processor, threads.
+/// How a result was made: version, commit, compiler, flags, libraries, processor, threads.
 nlohmann::ordered_json provenance(int threads);
 
 }  // namespace slipstick::convergence

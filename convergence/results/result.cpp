@@ -1,10 +1,7 @@
 #include "convergence/results/result.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -12,7 +9,6 @@
 #include "convergence/results/provenance.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "solver/grid/ranks.hpp"
-#include "solver/input/field_file.hpp"
 #include "solver/scene/roughness.hpp"
 
 namespace slipstick::convergence {
@@ -39,7 +35,7 @@ Json grids_json(const std::vector<solver::GridWork>& grids) {
   return rows;
 }
 
-/// Of each rank what it held at most and what it has sent: all ranks ask at the same time.
+/// The largest memory and what was sent, rank by rank: all ranks ask at the same time.
 Json ranks_json() {
   const solver::Communicator::Sent sent = solver::Ranks::sent();
   const std::vector<double> peaks = solver::Ranks::of_each(static_cast<double>(peak_bytes()));
@@ -108,9 +104,6 @@ void add_errors(Json& json, const Solution& solution, const OracleAnswer& exact)
 }
 
 const std::string kBroken = "the solve broke down, or there is no friction";
-/// Of two sums over the same cells.
-constexpr double kRounding = 1e-12;
-const std::string kNoSlip = "nothing slips";
 
 /// How far the loads are from what the contact can carry, and how it would slide.
 Json limit_json(const solver::LimitLoad& limit) {
@@ -270,199 +263,6 @@ void add_steps(Json& result, Json steps) {
   history["operator_applications"] = applications;
   history["seconds"] = seconds;
   result["steps"] = std::move(steps);
-}
-
-namespace {
-
-/// A line a step, of long histories the last ones.
-std::string steps_text(const Json& r) {
-  constexpr std::size_t most = 24;
-  const Json& steps = r["steps"];
-  std::string text = fmt::format("  {:<16} {:>11} {:>11} {:>11} {:>11} {:>11} {:>11}  {}\n", "step", "W (N)",
-                                 "M (N m)", "|F| (N)", "twist (rad)", "|delta| (m)", "lost (J)", "gap");
-  const std::size_t first = steps.size() > most ? steps.size() - most : 0;
-  if (first > 0) text += fmt::format("  ({} steps before)\n", first);
-  const auto size = [](const Json& pair) { return std::hypot(pair[0].get<double>(), pair[1].get<double>()); };
-  for (std::size_t i = first; i < steps.size(); ++i) {
-    const Json& step = steps[i];
-    text += fmt::format("  {:<16} {:>11} {:>11} {:>11.4g} {:>11} {:>11.4g} {:>11}  {}\n",
-                        step["name"].get<std::string>(), short_text(step["normal_load"]),
-                        short_text(step["moment"]), size(step["force"]), short_text(step["twist_angle"]),
-                        size(step["displacement"]), short_text(step["dissipated"]),
-                        short_text(step["certificate"]["gap"]));
-  }
-  return text + text_line("history", fmt::format("{} steps, {} J lost, gap/energy at most {}, {} operator "
-                                                 "applications, {} s",
-                                                 steps.size(), number_text(r["history"]["dissipated"]),
-                                                 number_text(r["history"]["worst_gap"]),
-                                                 number_text(r["history"]["operator_applications"]),
-                                                 number_text(r["history"]["seconds"])));
-}
-
-/// What the loads could rise to, and how the body would slide then.
-std::string limit_text(const Json& r) {
-  const Json& limit = r["limit"];
-  if (!limit["factor"].is_number()) return "";
-  const bool turns = limit.contains("centre");
-  const Json& pair = limit[turns ? "centre" : "direction"];
-  return text_line("limit", fmt::format("{} times these loads; it would slide {} ({}, {}){}",
-                                        number_text(limit["factor"]), turns ? "turning about" : "along",
-                                        short_text(pair[0]), short_text(pair[1]), turns ? " m" : ""));
-}
-
-/// What fields are off by, or why that is not known.
-std::string exact_answer_text(const Json& r) {
-  const Json& error = r["traction_error"];
-  if (!error.is_object()) {
-    return text_line("exact answer", "none: " + r["traction_error_reason"].get<std::string>());
-  }
-  if (error["l1"].is_number()) {
-    return text_line("traction error", fmt::format("{} in L1, {} in L2 (relative)", number_text(error["l1"]),
-                                                   number_text(error["l2"])));
-  }
-  if (r["exact"]["stick_ratio"].is_number()) return "";
-  return text_line("exact answer", r["exact"]["stick_ratio_reason"].get<std::string>()) +
-         text_line("pressure error",
-                   fmt::format("{} in L1, {} in L2 (relative)", number_text(r["pressure_error"]["l1"]),
-                               number_text(r["pressure_error"]["l2"])));
-}
-
-/// How pressure and shear were brought together.
-std::string coupling_text(const Json& r) {
-  if (!r.contains("turns")) return "";
-  return text_line("full coupling",
-                   fmt::format("{} turns of pressure and shear, complementarity gap {}",
-                               r["turns"].get<int>(), number_text(r["pressure_complementarity"])));
-}
-
-std::string words_of(const Json& resolved) {
-  const std::string number = resolved["number"];
-  return number == "twist_angle" ? "twist" : number;
-}
-
-std::string unit_of(const Json& resolved) {
-  const std::string number = resolved["number"];
-  return number == "twist_angle" ? "rad" : number == "displacement" ? "m" : number == "moment" ? "N m" : "N";
-}
-
-/// What the mesh resolves, and how far the answer may be off.
-std::string resolution_text(const Json& r) {
-  const Json& resolved = r["resolved"];
-  const bool open = resolved["absolute"] != 0.0;
-  std::string text =
-      text_line("resolved",
-                fmt::format("stick area {:.3g} cells wide, slip area {:.3g}",
-                            resolved["stick_width"].get<double>(), resolved["slip_width"].get<double>())) +
-      text_line("uncertain", open ? fmt::format("{} by {} {} ({}): mesh {}, length of steps {}",
-                                                words_of(resolved), short_text(resolved["absolute"]),
-                                                unit_of(resolved), percent_text(resolved["uncertainty"]),
-                                                short_text(resolved["mesh"]), short_text(resolved["path"]))
-                                  : "by about " + percent_text(resolved["uncertainty"]));
-  if (!resolved.contains("warning")) return text;
-  return text + text_line("warning", resolved["warning"].get<std::string>());
-}
-
-/// How far rounding let the certificate go, where that is not as far as the tolerance.
-std::string energy_text(const Json& r) {
-  const Json& gap = r["certificate"]["gap"];
-  const Json& energy = r["certificate"]["energy"];
-  const Json& held = r["elastic_energy"];
-  if (energy.is_number() && held.is_number() && energy > (1.0 + kRounding) * held.get<double>()) {
-    return text_line("", fmt::format("over {} J, which a state before held: an error is absolute, and these "
-                                     "tractions hold {} J",
-                                     number_text(energy), number_text(held)));
-  }
-  if (r["status"] != "converged" || r["method"] == "paper" || !gap.is_number() || gap <= r["tolerance"])
-    return "";
-  return text_line("", fmt::format("rounding hides the rest of the gap; the energy is within {} of the least",
-                                   number_text(r["certificate"]["energy_error"])));
-}
-
-}  // namespace
-
-std::string solve_text(const Json& r) {
-  std::string text =
-      fmt::format("{}: {} x {} cells, pressure {}, operator {}, method {}\n", r["name"].get<std::string>(),
-                  r["cells"][0].get<int>(), r["cells"][1].get<int>(), r["pressure"].get<std::string>(),
-                  r["operator"].get<std::string>(), r["method"].get<std::string>());
-  text += status_text(r) + state_text(r) + limit_text(r) + coupling_text(r);
-  text += exact_answer_text(r);
-  text += text_line("certificate",
-                    fmt::format("gap/energy {}, moment off by {}, |q| above mu p by {}",
-                                number_text(r["certificate"]["gap"]), number_text(r["certificate"]["moment"]),
-                                number_text(r["certificate"]["friction_bound"])));
-  text += energy_text(r);
-  const Json& direction = r["slip_direction"];
-  text += text_line("slip direction",
-                    direction.value("mean_reason", "") == kNoSlip
-                        ? kNoSlip
-                        : fmt::format("{} degrees off in the mean, {} at most (Coulomb: 0)",
-                                      number_text(direction["mean"]), number_text(direction["max"])));
-  text += resolution_text(r);
-  text += model_text(r);
-  return r.contains("steps") ? text + steps_text(r) : text;
-}
-
-std::vector<solver::FieldColumn> solution_columns(const Solution& solution, const OracleAnswer& exact) {
-  using solver::Index;
-  const solver::Grid grid = solution.grid;
-  const Index cells = grid.cells();
-  std::vector<solver::FieldColumn> columns;
-  const auto add = [&](const char* name, const auto& value) {
-    columns.push_back({name, [value](Index first, Index last, double* values) {
-                         for (Index cell = first; cell < last; ++cell) *values++ = value(cell);
-                       }});
-  };
-  const auto add_kept = [&](const char* name, const Eigen::ArrayXd& field, Index start) {
-    add(name, [&field, start](Index cell) { return field[start + cell]; });
-  };
-  add("x1", [grid](Index cell) { return grid.x1(cell / grid.n2); });
-  add("x2", [grid](Index cell) { return grid.x2(cell % grid.n2); });
-  add_kept("pressure", solution.pressure, 0);
-  add_kept("q1", solution.traction, 0);
-  add_kept("q2", solution.traction, cells);
-  add_kept("slip1", solution.slip, 0);
-  add_kept("slip2", solution.slip, cells);
-  add_kept("stick", solution.stick, 0);
-  add("dissipated", [&solution, cells](Index cell) {
-    const double s1 = solution.slip[cell];
-    const double s2 = solution.slip[cell + cells];
-    return solution.friction * solution.pressure[cell] * std::sqrt(s1 * s1 + s2 * s2);
-  });
-  if (exact.oracle && exact.oracle->shear) {
-    const auto fields = std::make_shared<const ExactFields>(exact_fields(*exact.oracle, grid));
-    add("q1_exact", [fields](Index cell) { return fields->traction[cell]; });
-    add("q2_exact", [fields, cells](Index cell) { return fields->traction[cells + cell]; });
-  }
-  return columns;
-}
-
-void write_solution_fields(const std::filesystem::path& file, const Solution& solution,
-                           const OracleAnswer& exact) {
-  solver::write_fields(file, solution.grid, solution_columns(solution, exact), solution.pressure);
-}
-
-Json profile_json(const solver::Solution& solution, const OracleAnswer& answer) {
-  if (!answer.oracle || !answer.oracle->shear) return Json::array();
-  const Oracle& oracle = *answer.oracle;
-  const ExactFields exact = exact_fields(oracle, solution.grid);
-  const double unit = 1.0 / (oracle.friction * oracle.reference_pressure);
-  const Eigen::ArrayXd value = unit * solver::norms(solution.traction);
-  const Eigen::ArrayXd exact_value = unit * solver::norms(exact.traction);
-  const solver::Grid& grid = solution.grid;
-  Json rows = Json::array();
-  const auto add = [&](solver::Index i, solver::Index j) {
-    const solver::Index cell = i * grid.n2 + j;
-    const double radius = std::hypot(grid.x1(i), grid.x2(j)) / oracle.contact_radius;
-    if (radius > 1.0) return;
-    rows.push_back({{"radius", radius},
-                    {"value", value[cell]},
-                    {"exact", exact_value[cell]},
-                    {"error", value[cell] - exact_value[cell]}});
-  };
-  for (solver::Index i = grid.n1 / 2; i < grid.n1; ++i) add(i, grid.n2 / 2);
-  for (solver::Index i = grid.n1 / 2 + 1; i < grid.n1; ++i) add(i, i);
-  return rows;
 }
 
 }  // namespace slipstick::convergence

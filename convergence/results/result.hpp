@@ -24,6 +24,9 @@ bool has_history(const solver::Scene& scene);
 /// Adds the steps of a history to the result of its last one, with their sums.
 void add_steps(Json& result, Json steps);
 
+/// Why slip has no direction in a result.
+inline constexpr const char* kNoSlip = "nothing slips";
+
 /// The same for a person: a few lines.
 std::string solve_text(const Json& result);
 

@@ -9,44 +9,6 @@
 #include <nlohmann/json.hpp>
 
 namespace slipstick::convergence {
-namespace {
-
-std::string error_text(const Json& result, const std::string& key) {
-  const auto found = result.find(key);
-  return found != result.end() && found->is_number() ? fmt::format("   (error {:+.1e})", found->get<double>())
-                                                     : "";
-}
-
-/// Forces and translations, where there are any.
-std::string translation_text(const Json& r) {
-  const auto pair = [](const Json& value) {
-    return fmt::format("[{}, {}]", number_text(value[0]), number_text(value[1]));
-  };
-  const auto size = [](const Json& value) {
-    return std::hypot(value[0].get<double>(), value[1].get<double>());
-  };
-  constexpr double rounding = 1e-12;
-  const double friction = r["friction"].get<double>() * r["normal_load"].get<double>();
-  std::string text;
-  if (size(r["force"]) > rounding * friction) text += text_line("force", pair(r["force"]) + " N");
-  if (size(r["displacement"]) > 0.0) {
-    text += text_line("displacement", pair(r["displacement"]) + " m" + error_text(r, "displacement_error"));
-  }
-  return text;
-}
-
-/// Without a radius to compare, the ratio, which an exact solution may say alone.
-std::string stick_text(const Json& r) {
-  const std::string error = error_text(r, "stick_radius_error");
-  std::string text = text_line("stick radius", number_text(r["stick_radius"]) + " m" + error);
-  if (error.empty()) {
-    text += text_line("stick ratio", number_text(r["stick_ratio"]) + error_text(r, "stick_ratio_error"));
-  }
-  return text;
-}
-
-}  // namespace
-
 void set_missing(Json& object, const std::string& key, const std::string& reason) {
   object[key] = nullptr;
   object[key + "_reason"] = reason;
@@ -170,61 +132,6 @@ std::string short_text(const Json& value) {
 
 std::string text_line(const std::string& label, const std::string& value) {
   return fmt::format("  {:<16} {}\n", label, value);
-}
-
-namespace {
-
-/// What a solve did beside plain steps; empty: nothing.
-std::string safeguards_text(const Json& r) {
-  if (!r.contains("safeguards")) return "";
-  std::string text;
-  for (const auto& [key, words] : {std::pair{"second_solves", "second linear solves"},
-                                   {"halvings", "halvings of a step"},
-                                   {"gradient_steps", "gradient steps"},
-                                   {"breakdowns", "breakdowns of conjugate gradients"}}) {
-    const int count = r["safeguards"][key].get<int>();
-    if (count > 0) text += fmt::format("{}{} {}", text.empty() ? "" : ", ", count, words);
-  }
-  if (r["safeguards"].contains("breakdown")) {
-    text += fmt::format(" (the first: {})", r["safeguards"]["breakdown"].get<std::string>());
-  }
-  return text;
-}
-
-}  // namespace
-
-std::string status_text(const Json& r) {
-  std::string text = text_line(
-      "status", fmt::format("{} ({} iterations, {} operator applications, {} s)",
-                            r["status"].get<std::string>(), r["iterations"].get<int>(),
-                            number_text(r["operator_applications"]), number_text(r["seconds"]["total"])));
-  if (r.contains("message")) text += text_line("why", r["message"].get<std::string>());
-  if (const std::string taken = safeguards_text(r); !taken.empty()) text += text_line("safeguards", taken);
-  return text;
-}
-
-std::string state_text(const Json& r) {
-  const Json& peak = r["peak_pressure"];
-  return text_line("normal load", number_text(r["normal_load"]) + " N") +
-         text_line("contact radius",
-                   number_text(r["contact_radius"]) + " m" + error_text(r, "contact_radius_error")) +
-         text_line("peak pressure", peak.is_number()
-                                        ? number_text(peak) + " Pa" + error_text(r, "peak_pressure_error")
-                                        : r["peak_pressure_reason"].get<std::string>()) +
-         text_line("moment", fmt::format("{} N m = {} of the limit {} N m", number_text(r["moment"]),
-                                         number_text(r["moment_ratio"]), number_text(r["moment_limit"])) +
-                                 error_text(r, "moment_error")) +
-         text_line("twist", number_text(r["twist_angle"]) + " rad" + error_text(r, "twist_error")) +
-         translation_text(r) + stick_text(r);
-}
-
-std::string model_text(const Json& r) {
-  std::string text;
-  for (const Json& omission : r["model"]["left_out"]) {
-    text += text_line("left out", fmt::format("{} ({})", omission["what"].get<std::string>(),
-                                              omission["why"].get<std::string>()));
-  }
-  return text;
 }
 
 }  // namespace slipstick::convergence

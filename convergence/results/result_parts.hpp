@@ -9,12 +9,12 @@
 #include "solver/contact/certificate.hpp"
 #include "solver/solution.hpp"
 
-/// What all results have in common, on a grid or not.
+/// Parts that all results have, on a grid or not.
 namespace slipstick::convergence {
 
 using Json = nlohmann::ordered_json;
 
-/// What does not exist is null, and its reason stands beside it.
+/// Sets a key to null, with the reason beside it.
 void set_missing(Json& object, const std::string& key, const std::string& reason);
 
 /// JSON has no NaN and no infinity: such a number is missing.
@@ -26,10 +26,10 @@ Json traction_error_json(const TractionError& error, const std::string& reason);
 
 Json certificate_json(const solver::Certificate& certificate, const std::string& reason);
 
-/// What the mesh resolves, with a warning where that is little.
+/// How well the mesh resolves the contact, with a warning where that is little.
 Json resolution_json(const solver::Resolution& resolution);
 
-/// What a model leaves out, as results have it.
+/// The parts of the problem that a model skips.
 Json model_json(const std::vector<solver::Omission>& left_out);
 
 /// The most memory that this process has held, in bytes.
@@ -46,11 +46,5 @@ std::string short_text(const Json& value);
 
 /// One line of a result's text.
 std::string text_line(const std::string& label, const std::string& value);
-
-/// The lines that say how the solve went, those of the contact's state with their errors where there are
-/// any, and those of what was left out.
-std::string status_text(const Json& result);
-std::string state_text(const Json& result);
-std::string model_text(const Json& result);
 
 }  // namespace slipstick::convergence

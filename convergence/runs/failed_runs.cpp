@@ -18,6 +18,8 @@ bool is_failed(const Json& result) {
   return status == "failed" || status == "refused";
 }
 
+bool is_converged(const Json& result) { return result.value("status", "") == "converged"; }
+
 std::string why_missing(const Json& result, const std::string& path) {
   const FoundQuantity found = find_quantity(result, path);
   if (found.value != nullptr && found.value->is_number()) return "";
@@ -29,7 +31,7 @@ void FailedRuns::add(const std::string& name, const Json& result) {
   const bool failed = is_failed(result);
   runs_[name] |= failed;
   if (!failed || !first_.is_null()) return;
-  first_ = {{"run", result.value("run", name)}, {"message", result.value("message", "nobody says why")}};
+  first_ = {{"run", result.value("run", name)}, {"message", result.value("message", "no reason is known")}};
 }
 
 Json FailedRuns::json() const {

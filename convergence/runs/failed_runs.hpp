@@ -9,11 +9,13 @@
 
 namespace slipstick::convergence {
 
-/// What stands for the result of a run that has none; see ProcessPool::run().
+/// The stand-in for the result of a run that has none; see ProcessPool::run().
 Json not_computed(const std::string& status, const std::string& message, const RunSpec& spec);
 
 /// Whether a run has no result: its process died, or what it was asked for cannot be had.
 bool is_failed(const Json& result);
+
+bool is_converged(const Json& result);
 
 /// Why a result lacks a number, or has none at its path; empty: it has it.
 std::string why_missing(const Json& result, const std::string& path);
@@ -32,8 +34,8 @@ class FailedRuns {
   Json first_;
 };
 
-/// What a result says of its failed runs: "1 of 35 runs failed; the first (paper, grid.cells=[96,96]): its
-/// process was killed by signal 9"; empty where none did, or none are counted.
+/// A sentence on the failed runs of a result: "1 of 35 runs failed; the first (paper, grid.cells=[96,96]):
+/// its process was killed by signal 9"; empty where none did, or none are counted.
 std::string failed_runs_text(const Json& result);
 
 }  // namespace slipstick::convergence

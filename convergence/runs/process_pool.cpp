@@ -106,9 +106,9 @@ constexpr double kMostOfMany = 128.0 * 0x1p20;
 bool is_alone(const Task& task) { return task.bytes > kMostOfMany || task.run->scene.rounding_seed != 0; }
 
 /// The work on some tasks, largest first.
-class Batch {
+class TaskQueue {
  public:
-  Batch(std::vector<Task> tasks, const ResultCache& cache, const ProcessPoolOptions& options)
+  TaskQueue(std::vector<Task> tasks, const ResultCache& cache, const ProcessPoolOptions& options)
       : options_(options),
         cache_(cache),
         tasks_(std::move(tasks)),
@@ -263,7 +263,7 @@ std::vector<Json> ProcessPool::run_prepared(const std::vector<PreparedRun>& runs
     }
   }
   if (!tasks.empty()) solver::require_writable(options_.folder);
-  for (auto& [name, result] : Batch(std::move(tasks), caches.own(), options_).work())
+  for (auto& [name, result] : TaskQueue(std::move(tasks), caches.own(), options_).work())
     known[name] = std::move(result);
   std::vector<Json> results;
   for (const PreparedRun& run : runs) results.push_back(known[run.name]);

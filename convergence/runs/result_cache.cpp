@@ -27,7 +27,7 @@ std::optional<std::string> bytes_of(const fs::path& file) {
   std::error_code error;
   if (!fs::is_regular_file(file, error)) return std::nullopt;
   try {
-    return solver::read_input_file(file, solver::kLargestTable, "a regular file");
+    return solver::read_input_file(file, solver::kLargestTextTable, "a regular file");
   } catch (const solver::InputError&) {
     return std::nullopt;
   }

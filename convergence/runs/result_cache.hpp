@@ -28,7 +28,7 @@ class ResultCache {
   /// The result of a name, which is its file's without ending, if it is on disk. beside: a file that belongs
   /// to it, and that has to be the one that was there when it was kept; empty: none.
   std::optional<Json> find(const std::string& name, const std::string& cache_key,
-                                             const std::filesystem::path& beside = {}) const;
+                           const std::filesystem::path& beside = {}) const;
 
   /// Throws InputError if the result cannot be written.
   void keep(const std::string& name, const std::string& cache_key, const Json& result,
@@ -36,7 +36,7 @@ class ResultCache {
 
   /// The result from disk, or computed and then written. Throws as keep().
   Json find_or_compute(const std::string& name, const std::string& cache_key,
-                                         const std::function<Json()>& compute) const;
+                       const std::function<Json()>& compute) const;
 
  private:
   std::filesystem::path file(const std::string& name) const { return folder_ / (name + ".json"); }

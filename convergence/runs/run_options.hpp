@@ -14,7 +14,7 @@ namespace CLI {
 class App;
 }
 
-/// What commands that solve have in common on their command lines.
+/// Options that commands share which solve, and the signals that end them.
 namespace slipstick::convergence {
 
 /// --set, whose words are "key=value".
@@ -25,11 +25,11 @@ void add_memory_option(CLI::App& command, std::optional<std::uint64_t>& bytes);
 
 /// The options of commands that solve many scenes.
 struct RunOptions {
-  std::string output;                                ///< folder that keeps finished solves
-  int jobs = 0;                                      ///< see ProcessPoolOptions
-  std::optional<std::uint64_t> memory_limit = {};    ///< bytes
-  std::string shard = {};                            ///< as read_shard() takes it; empty: all runs
-  std::vector<std::string> merged = {};              ///< folders of other shards
+  std::string output;                              ///< folder that keeps finished solves
+  int jobs = 0;                                    ///< see ProcessPoolOptions
+  std::optional<std::uint64_t> memory_limit = {};  ///< bytes
+  std::string shard = {};                          ///< as read_shard() takes it; empty: all runs
+  std::vector<std::string> merged = {};            ///< folders of other shards
 
   /// --output, --jobs, --memory-limit.
   void add_to(CLI::App& command);

@@ -44,7 +44,7 @@ std::vector<std::filesystem::path> input_files(const solver::Scene& scene) {
 }
 
 std::string read_text(const std::filesystem::path& file) {
-  return solver::read_input_file(file, solver::kLargestTable, "a regular file");
+  return solver::read_input_file(file, solver::kLargestTextTable, "a regular file");
 }
 
 std::string cells_override(const solver::Scene& scene, solver::Index across) {

@@ -45,7 +45,7 @@ std::vector<std::filesystem::path> input_files(const solver::Scene& scene);
 /// A whole file.
 std::string read_text(const std::filesystem::path& file);
 
-/// The override that gives a grid so many cells along its longer side, in the shape of the scene's own.
+/// The override that gives a grid `across` cells along its longer side, in the shape of the scene's own.
 std::string cells_override(const solver::Scene& scene, solver::Index across);
 
 /// The file that gets the fields of the step before the last: NAME-before.csv beside NAME.csv.

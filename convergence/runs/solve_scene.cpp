@@ -1,32 +1,14 @@
 #include "convergence/runs/solve_scene.hpp"
 
-#include <cfenv>
 #include <utility>
 
 #include "convergence/results/result.hpp"
+#include "solver/elasticity/random_rounding.hpp"
 #include "solver/history_state.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/within_double.hpp"
 
 namespace slipstick::convergence {
-namespace {
-
-/// Sets how this thread rounds, and sets it back.
-class RoundingScope {
- public:
-  explicit RoundingScope(Rounding rounding) : before_(std::fegetround()) {
-    std::fesetround(static_cast<int>(rounding));
-  }
-  ~RoundingScope() { std::fesetround(before_); }
-  RoundingScope(const RoundingScope&) = delete;
-  RoundingScope& operator=(const RoundingScope&) = delete;
-
- private:
-  int before_;
-};
-
-}  // namespace
-
 SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& options) {
   const auto history = solver::within_double(scene, [&] { return exact_history(scene); });
   SolvedScene solved;
@@ -41,7 +23,7 @@ SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& opt
     }
   }
   to_solver.on_step = [&](const solver::Solution& at) {
-    const RoundingScope scope(Rounding::nearest);
+    const solver::KeptRounding scope(static_cast<int>(Rounding::nearest));
     solved.exact = history->advance(at.loads);
     if (has_history(scene)) steps.push_back(step_result(scene, at, solved.exact));
     if (options.on_step) options.on_step(at, solved.exact);
@@ -50,7 +32,7 @@ SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& opt
     to_solver.on_state = [&](const solver::HistoryState& state) { options.on_state(state, steps); };
   }
   try {
-    const RoundingScope scope(options.rounding);
+    const solver::KeptRounding scope(static_cast<int>(options.rounding));
     solved.solution = solver::solve(scene, to_solver);
   } catch (const solver::InputError& error) {
     if (!steps.empty() && options.incomplete != nullptr) {

@@ -19,7 +19,7 @@ struct SolvedScene {
   Json result;
 };
 
-/// What is finished of a history: where it stands, and the results of its steps.
+/// The finished part of a history: where it stands, and the results of its steps.
 struct FinishedSteps {
   std::shared_ptr<const solver::HistoryState> state;
   Json results;
@@ -30,7 +30,7 @@ struct SolveSceneOptions {
   std::function<void(int iteration, double change)> progress = {};
   /// Called at the end of each step of a history, or of the one load.
   std::function<void(const solver::Solution&, const OracleAnswer&)> on_step = {};
-  /// Of the solve. The exact answer is always rounded to nearest: it is no part of what is tried.
+  /// How the solve rounds. The exact answer is always rounded to nearest.
   Rounding rounding = Rounding::nearest;
   /// Gets the result of a history that an InputError ends after its first step; it is thrown all the same.
   Json* incomplete = nullptr;

@@ -6,6 +6,8 @@
 #include <utility>
 #include <variant>
 
+#include "solver/elasticity/law/law_kind.hpp"
+
 namespace slipstick::convergence {
 namespace {
 
@@ -66,6 +68,11 @@ void measure_in_millimetres(Scene& scene) {
   constexpr double of_stress = 1.0 / (kMillimetres * kMillimetres);
   scene.upper.young_modulus *= of_stress;
   scene.lower.young_modulus *= of_stress;
+  for (std::size_t i = 0; i < scene.layer.values.size(); ++i) {
+    const solver::LawParameter& parameter = scene.layer.kind->parameters[i];
+    scene.layer.values[i] *=
+        std::pow(kMillimetres, parameter.of_length) * std::pow(of_stress, parameter.of_stress);
+  }
   for (Surface& s : scene.surfaces) {
     for (double* length : {&s.radius, &s.inner_radius, &s.radius_1, &s.radius_2, &s.flat_radius,
                            &s.corner_radius, &s.spacing[0], &s.spacing[1], &s.roughness.longest,
@@ -85,7 +92,7 @@ void measure_in_millimetres(Scene& scene) {
   }
 }
 
-/// What turns the upper body forth turns the lower one back.
+/// Swapping the bodies reverses all loads.
 void exchange(Scene& scene) {
   std::swap(scene.upper, scene.lower);
   for (solver::Step& step : scene.steps) {

@@ -28,12 +28,12 @@ constexpr double kRefinementMargin = 1.1;
 constexpr double kMaxRefinement = 4.0;
 /// Cells that a grid without a given extent leaves free around the expected contact, both sides together; and
 /// the fewest cells on which it does.
-constexpr double kMarginCells = 4.0;
-constexpr Index kMinCells = 16;
+constexpr double kFreeCells = 4.0;
+constexpr Index kMinGridCells = 16;
 /// Cells across the contact on the coarse grid that it is first looked at on: with fewer the extent is so
 /// much too large that the grids that follow would have no end, and the size of the contact is not known.
-constexpr double kMinAcross = 3.0;
-/// What is recommended in its place.
+constexpr double kMinContactCells = 3.0;
+/// Cells across the contact that the message recommends.
 constexpr double kWellAcross = 0.5 * static_cast<double>(kReferenceCells);
 
 /// The key whose file says the grid; null where it is free.
@@ -47,9 +47,9 @@ bool brings_torsion(const solver::TorsionLoad& load) {
          std::visit([](const auto& kind) { return kind.value != 0.0; }, load);
 }
 
-/// Of a scene whose grid is free.
+/// Throws InputError where the contact fills too few cells; of a scene whose grid is free.
 void require_contact_seen(const Scene& scene, double pressed, double cells_across) {
-  if (cells_across >= kMinAcross) return;
+  if (cells_across >= kMinContactCells) return;
   throw InputError(
       scene.source.string(), "grid.extent",
       scene.extent ? fmt::format("[{}, {}]", (*scene.extent)[0], (*scene.extent)[1]) : "(missing)",
@@ -147,13 +147,13 @@ ContactOnGrid contact_on_grid(const Scene& scene) {
   const double across = 2.0 * std::sqrt(pressed / M_PI);
   require_contact_seen(scene, pressed, across);
   return {.longer = static_cast<double>(kReferenceCells),
-          .margin = scene.extent ? 0.0 : kMarginCells,
+          .margin = scene.extent ? 0.0 : kFreeCells,
           .cells_across = across};
 }
 
 Index cells_for(const ContactOnGrid& contact, double across) {
   const double inside = (contact.longer - contact.margin) * across / contact.cells_across;
-  return std::max(kMinCells, multiple_of_four(inside + contact.margin));
+  return std::max(kMinGridCells, multiple_of_four(inside + contact.margin));
 }
 
 double cells_across(const ContactOnGrid& contact, Index cells) {

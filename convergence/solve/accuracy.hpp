@@ -21,7 +21,8 @@ struct AccuracyTarget {
   AccuracyOf of = AccuracyOf::twist;
 };
 
-/// What the error is of: a path into a result, and its name. The moment, where the twist is imposed.
+/// The quantity whose error is asked for: its name, and paths into a result. The moment, where the twist is
+/// imposed.
 struct AccuracyQuantity {
   std::string name;   ///< twist | moment | traction | stick_radius
   std::string error;  ///< path of its error against the exact answer
@@ -40,14 +41,14 @@ struct ContactOnGrid {
 /// if all of it were pressed. Throws InputError as make_model().
 ContactOnGrid contact_on_grid(const solver::Scene& scene);
 
-/// Cells along the longer side, a multiple of four, that put at least so many across the contact.
+/// Cells along the longer side, a multiple of four, that put at least `cells_across` across the contact.
 solver::Index cells_for(const ContactOnGrid& contact, double cells_across);
 double cells_across(const ContactOnGrid& contact, solver::Index cells);
 
 /// The scene on another mesh, in the shape of its own.
 solver::Scene with_cells(solver::Scene scene, solver::Index longer);
 
-/// Of a chosen solve; scene files may have one that is ten times tighter.
+/// The tightest tolerance of a chosen solve; scene files may have one that is ten times tighter.
 inline constexpr double kTightestTolerance = 1e-14;
 
 /// What is solved to reach a target.
@@ -64,7 +65,7 @@ void require_reachable(const solver::Scene& scene, const AccuracyTarget& target)
 /// Whether the exact side answers with this quantity.
 bool answers_exactly(const solver::Scene& scene, AccuracyOf of);
 
-/// What is said of an error that no grid reaches. least: what the finest would.
+/// The complaint about an error that no grid reaches. least: the error of the finest.
 solver::InputError out_of_reach(const solver::Scene& scene, const AccuracyTarget& target, double least);
 
 /// On a grid. estimated: its error will be estimated from two meshes, with a safety factor that the mesh has

@@ -58,12 +58,13 @@ double solves_of(const Scene& scene, const Approach& approach, AccuracyOf of) {
   return is_estimated(scene, of) ? kWithCoarserSolve : 1.0;
 }
 
-/// Of a target, what the length of steps may take; and the largest number of their parts.
+/// The part of a target that the length of steps may take; the largest number of their parts; and how often
+/// that number is raised on few cells.
 constexpr double kPathPart = 0.4;
 constexpr int kMaxSubsteps = 256;
 constexpr int kPathTrials = 4;
 
-/// What the length of steps leaves open of the number that is asked for, relative.
+/// The relative uncertainty of the wanted number that the length of steps leaves.
 double path_of(const solver::Solution& solution) {
   const solver::Resolution& resolved = solution.resolution;
   const double path = resolved.path.*resolved.number;
@@ -71,7 +72,7 @@ double path_of(const solver::Solution& solution) {
   return path > 0.0 ? path / std::abs(turns ? solution.twist_angle : solution.moment) : 0.0;
 }
 
-/// What is known of the number's error, where the answer states it.
+/// Puts the known error of the number where the answer states its uncertainty.
 void put_uncertainty(Json& result, double mesh, double path) {
   if (!result.contains("resolved")) return;
   Json& resolved = result["resolved"];
@@ -143,7 +144,7 @@ struct Attempt {
     const double mesh = error - path;
     return reached.error <= mesh && (std::isnan(uncertainty) || uncertainty <= mesh);
   }
-  /// What the next mesh has to lower.
+  /// The error that the next mesh has to lower.
   double to_lower() const { return std::fmax(reached.error, uncertainty); }
 };
 

@@ -21,14 +21,14 @@ struct AccurateAnswer {
 /// Refinements after the first attempt.
 inline constexpr int kMaxRefinements = 3;
 
-/// Chooses, solves, determines the error, refines. Of the twist of a smooth contact each attempt is the mean
-/// over shifted grids, which is reached once its uncertainty and, where it is known, its error are small
+/// Chooses, solves, determines the error, refines. For the twist of a smooth contact each attempt is the mean
+/// over shifted grids: it is reached once its uncertainty and, where it is known, its error are small
 /// enough. The scene's cells and tolerance are replaced. Throws InputError as choose_grid() and solve().
 AccurateAnswer solve_to_accuracy(const solver::Scene& scene, const AccuracyTarget& target,
                                  const GridSolve& solve);
 
-/// Of the first attempt, as plan_json(); of a mean over shifted grids with how many they are, `grids`, and
-/// the time of all.
+/// The plan of the first attempt, as plan_json(). For a mean over shifted grids it has their number, `grids`,
+/// and the time of all.
 Json accuracy_plan(const solver::Scene& scene, const AccuracyTarget& target);
 
 /// The account of an exact answer: its own uncertainty, and what a grid would have cost. Throws InputError

@@ -28,8 +28,8 @@ using solver::InputError;
 using solver::NormalSolution;
 
 constexpr const char* kFormat = "slipstick history 2";
-/// Most of the time that may go into writing.
-constexpr double kPart = 0.01;
+/// The part of the time that may go into writing.
+constexpr double kWritingPart = 0.01;
 /// Values of a dataset: those of the largest grid that is solved, twice.
 constexpr Eigen::Index kMaxValues = Eigen::Index{1} << 33;
 
@@ -92,7 +92,7 @@ std::vector<double> numbers_of(const Json& json) {
   return numbers;
 }
 
-/// Of the bits of all numbers and of the text: a file that was changed is no longer the history's.
+/// A checksum of the bits of all numbers and of the text: a file that was changed is refused.
 std::string sum_of(const ContactState& contact, const std::string& text) {
   std::uint64_t sum = checksum(text);
   for (const Eigen::ArrayXd* const field : {&contact.pressure, &contact.traction, &contact.slip}) {
@@ -171,16 +171,16 @@ void Checkpoint::write(const HistoryState& state, const Json& steps) const {
   const ContactState& contact = state.contact;
   const std::string text =
       json_text({{"format", kFormat},
-               {"scene", scene_},
-               {"program", program_},
-               {"finished", state.finished},
-               {"motion", {contact.motion.delta1, contact.motion.delta2, contact.motion.twist}},
-               {"end", end_json(contact.end)},
-               {"open", open_json(contact.open)},
-               {"energy", contact.energy},
-               {"normal", normal_json(state.normal)},
-               {"has_slip", contact.slip.size() > 0},
-               {"steps", steps}});
+                 {"scene", scene_},
+                 {"program", program_},
+                 {"finished", state.finished},
+                 {"motion", {contact.motion.delta1, contact.motion.delta2, contact.motion.twist}},
+                 {"end", end_json(contact.end)},
+                 {"open", open_json(contact.open)},
+                 {"energy", contact.energy},
+                 {"normal", normal_json(state.normal)},
+                 {"has_slip", contact.slip.size() > 0},
+                 {"steps", steps}});
   std::vector<solver::Column> columns{{"pressure", contact.pressure}, {"traction", contact.traction}};
   if (contact.slip.size() > 0) columns.push_back({"slip", contact.slip});
   write_datasets(file_, columns, {{"history", text}, {"checksum", sum_of(contact, text)}});
@@ -188,7 +188,7 @@ void Checkpoint::write(const HistoryState& state, const Json& steps) const {
 
 void PacedCheckpoint::offer(const HistoryState& state, const Json& steps) {
   const auto start = Clock::now();
-  if (written_ != Clock::time_point{} && kPart * (start - written_) < took_) return;
+  if (written_ != Clock::time_point{} && kWritingPart * (start - written_) < took_) return;
   checkpoint_.write(state, steps);
   written_ = Clock::now();
   took_ = written_ - start;

@@ -20,8 +20,8 @@ class Checkpoint {
 
   const std::filesystem::path& file() const { return file_; }
 
-  /// What the file holds; null where there is none. Throws InputError for a file of another scene or program,
-  /// and one that is damaged.
+  /// The content of the file; null where there is none. Throws InputError for a file of another scene or
+  /// program, and one that is damaged.
   std::shared_ptr<const FinishedSteps> read() const;
 
   /// Replaces the file by one that holds this, whole on the disk. Throws InputError where it cannot.

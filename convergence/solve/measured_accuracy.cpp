@@ -13,7 +13,7 @@
 namespace slipstick::convergence {
 namespace {
 
-/// Of the file's layout.
+/// Version of the file's layout.
 constexpr int kVersion = 1;
 
 /// y at x on the line through two points, all in logarithms.

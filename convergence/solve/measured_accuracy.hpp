@@ -6,11 +6,11 @@
 
 #include "solver/input/toml_reader.hpp"
 
-/// What solves of smooth contacts on meshes of several sizes were measured to err and to cost.
+/// Measured errors and costs of solves of smooth contacts on meshes of several sizes.
 namespace slipstick::convergence {
 
-/// What an accuracy is asked of: the twist (the moment, where the twist is imposed), the tractions (root mean
-/// square), the stick radius.
+/// The quantity that an accuracy is asked of: the twist (the moment, where the twist is imposed), the
+/// tractions (root mean square), the stick radius.
 enum class AccuracyOf { twist, traction, stick_radius };
 inline constexpr std::size_t kAccuracies = 3;
 
@@ -47,7 +47,7 @@ AccuracyData parse_accuracy_data(const std::string& toml);
 /// The same as text; `origin` says in a comment where it was measured.
 std::string accuracy_toml(const AccuracyData& data, const std::string& origin);
 
-/// What reaches an error.
+/// The mesh and the tolerance that reach an error.
 struct Needed {
   double cells_across;
   double tolerance;
@@ -57,13 +57,13 @@ struct Needed {
 /// among the three finest. The error must be positive.
 Needed needed_for(const AccuracyData& data, AccuracyOf of, double error);
 
-/// The error that so many cells across the contact leave, in the same way.
+/// The error on a mesh with `cells_across` cells across the contact, found in the same way.
 double error_with(const AccuracyData& data, AccuracyOf of, double cells_across);
 
 /// Power of the cell size with which the error falls on the finest measured meshes.
 double falling_order(const AccuracyData& data, AccuracyOf of);
 
-/// Work of a solve on so many cells across the contact to a tolerance.
+/// Work of a solve with `cells_across` cells across the contact to a tolerance.
 double work_of(const AccuracyData& data, double cells_across, double tolerance);
 
 }  // namespace slipstick::convergence

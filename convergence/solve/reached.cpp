@@ -18,10 +18,10 @@ namespace {
 using solver::Scene;
 using solver::Solution;
 
-/// Of a number from two meshes, and of a norm of differences (Roache 1998).
+/// Safety factors (Roache 1998) of a number from two meshes, and of a norm of differences.
 constexpr double kTwoMeshes = 3.0;
 constexpr double kOfNorm = 1.25;
-/// Where theory gives no order, as on rough surfaces.
+/// The order that is taken where theory gives none, as on rough surfaces.
 constexpr double kCautiousOrder = 1.0;
 
 double order_of(const AccuracyQuantity& quantity, const Scene& scene) {
@@ -39,7 +39,7 @@ Scene half_as_fine(const Scene& scene, const solver::Grid& grid) {
   return coarse;
 }
 
-/// What smooth contacts were measured to err by on a mesh like this: two meshes may agree by luck, since
+/// The measured error of smooth contacts on a mesh like this: two meshes may agree by luck, since
 /// errors of single numbers change their sign from mesh to mesh.
 double usual_error(const Solution& solution, AccuracyOf of) {
   const double side = std::sqrt(solution.grid.cell_area());
@@ -82,7 +82,7 @@ ReachedError reached_error(const Scene& scene, const Solution& solution, const J
   const double order = order_of(quantity, scene);
   const double estimate = quantity.value.empty() ? field_error(solution, coarse, order)
                                                  : number_error(solution, coarse, quantity.value, order);
-  if (!std::isfinite(estimate)) return {unknown, "estimated", "the value, or what is to be told, is zero"};
+  if (!std::isfinite(estimate)) return {unknown, "estimated", "the value, or its error, is zero"};
   return {std::max(estimate, usual_error(solution, of)), "estimated",
           fmt::format("from {} x {} cells, order {}", coarse.grid.n1, coarse.grid.n2, order)};
 }

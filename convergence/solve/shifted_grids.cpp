@@ -31,7 +31,7 @@ constexpr double kSmallStick = 0.5;
 constexpr double kSmallStickPower = 1.5;
 constexpr double kNarrowSlip = 0.25;
 constexpr double kNarrowSlipPower = 0.75;
-constexpr double kLeastPart = 0.02;
+constexpr double kMinRingPart = 0.02;
 /// The mean errs by less than so much of the scatter, the found or the expected one, whichever is larger: in
 /// more than 95 of 100 random scenes (convergence/solve/tests/coverage_test.cpp). The tip of a cone always
 /// stands on a cell's corner: its part of the error is not averaged. And edges are no sharp fronts on meshes
@@ -41,22 +41,22 @@ constexpr double kOfScatterOfTips = 0.7;
 constexpr double kOfScatterUnresolved = 1.5;
 constexpr double kWellStuck = 16.0;
 constexpr double kWellSlipping = 5.0;
-/// The mesh is chosen for so much less than is wanted, since scenes differ.
-constexpr double kSafety = 1.25;
-/// Meshes are tried from so many cells across on, each finer by so much.
+/// The mesh is chosen for the wanted error over this, since scenes differ.
+constexpr double kMeshSafety = 1.25;
+/// Cells across the contact of the first mesh that is tried, and the factor to the next.
 constexpr double kMinAcrossShifted = 12.0;
 constexpr double kFiner = 1.02;
-/// What iterations may leave, as gap over energy: over the wanted error, and the most.
+/// The tolerance (gap over energy): its ratio to the wanted error, and the loosest.
 constexpr double kToleranceOfError = 0.1;
 constexpr double kLoosest = 1e-4;
-/// Of the coarse grid; and the least stick radius in cells by which grids are spread, so that none is much
-/// coarser than the others.
-constexpr solver::Index kCoarseCells = 40;
-constexpr double kLeastStickCells = 4.0;
+/// Cells along the longer side of the coarse grid; and the smallest stick radius in cells by which grids are
+/// spread, so that none is much coarser than the others.
+constexpr solver::Index kFormCells = 40;
+constexpr double kMinStickCells = 4.0;
 
 double expected_scatter(double across, double stick_ratio) {
-  const double stick = std::max(stick_ratio, kLeastPart);
-  const double slip = std::max(1.0 - stick_ratio, kLeastPart);
+  const double stick = std::max(stick_ratio, kMinRingPart);
+  const double slip = std::max(1.0 - stick_ratio, kMinRingPart);
   const double harder = std::max(
       {1.0, std::pow(kSmallStick / stick, kSmallStickPower), std::pow(kNarrowSlip / slip, kNarrowSlipPower)});
   return kScatter * harder * std::pow(kScatterAcross / across, kShiftedOrder);
@@ -117,7 +117,7 @@ double slenderness(const solver::Solution& solution) {
 /// The scene's grid, and larger ones of as many cells.
 std::vector<Scene> shifted(const Scene& scene, double stick_cells) {
   const solver::Grid grid = solver::make_model(scene).grid_in_m();
-  const double growth = 1.0 / (kShiftedGrids * std::max(stick_cells, kLeastStickCells));
+  const double growth = 1.0 / (kShiftedGrids * std::max(stick_cells, kMinStickCells));
   std::vector<Scene> scenes(kShiftedGrids, scene);
   for (int k = 0; k < kShiftedGrids; ++k) {
     const double scale = 1.0 + growth * k;
@@ -168,7 +168,7 @@ bool takes_shifted_grids(const Scene& scene, AccuracyOf of) {
 ContactForm coarse_form(const Scene& scene) {
   ContactForm form;
   try {
-    const solver::Solution coarse = solver::solve(with_cells(scene, kCoarseCells));
+    const solver::Solution coarse = solver::solve(with_cells(scene, kFormCells));
     const double ratio = coarse.stick_radius / coarse.contact_radius;
     if (ratio >= 0.0 && ratio <= 1.0) form.stick_ratio = ratio;
     const double slender = slenderness(coarse);
@@ -181,8 +181,8 @@ ContactForm coarse_form(const Scene& scene) {
 
 AccuracyChoice choose_shifted(const Scene& scene, const ContactOnGrid& contact, const AccuracyTarget& target,
                               const ContactForm& form) {
-  const double aim = target.error / kSafety;
-  const double least = kSafety * expected_uncertainty(scene, kMaxCellsAcross, form);
+  const double aim = target.error / kMeshSafety;
+  const double least = kMeshSafety * expected_uncertainty(scene, kMaxCellsAcross, form);
   if (!(target.error >= least)) throw out_of_reach(scene, target, least);
   double across = kMinAcrossShifted;
   while (across < kMaxCellsAcross && expected_uncertainty(scene, across, form) > aim) across *= kFiner;

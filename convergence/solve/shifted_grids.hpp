@@ -29,7 +29,7 @@ bool gains_by_smooth_cells(const solver::Scene& scene, AccuracyOf of);
 /// stick radius keeps an error of its own, since it is fitted to the slip beside its edge.
 bool takes_shifted_grids(const solver::Scene& scene, AccuracyOf of);
 
-/// What a mesh is chosen by.
+/// The form of a contact, by which a mesh is chosen.
 struct ContactForm {
   double stick_ratio = 0.5;  ///< stick radius over contact radius
   double slender = 1.0;      ///< longer over shorter axis of the contact
@@ -42,7 +42,7 @@ ContactForm coarse_form(const solver::Scene& scene);
 AccuracyChoice choose_shifted(const solver::Scene& scene, const ContactOnGrid& contact,
                               const AccuracyTarget& target, const ContactForm& form);
 
-/// The mean over grids of so many cells and of growing extent.
+/// The mean over grids of equal cells and growing extent.
 struct ShiftedMean {
   SolvedScene answer;  ///< of the grid with the smallest cells; its result has the mean for its own value
   double error;        ///< of the mean, against the exact answer; NaN where there is none

@@ -2,18 +2,20 @@
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
+#include <gsl/gsl_cdf.h>
+#include <gsl/gsl_statistics_double.h>
 
 #include <algorithm>
 #include <array>
 #include <charconv>
 #include <cmath>
 #include <map>
-#include <numbers>
 #include <optional>
 #include <string_view>
 #include <utility>
 
 #include "convergence/results/quantity.hpp"
+#include "convergence/runs/failed_runs.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/toml_reader.hpp"
 
@@ -32,12 +34,14 @@ constexpr std::array<std::pair<const char*, const char*>, 10> kOutputs{
      {"peak_pressure", "peak pressure"},
      {"approach", "approach"},
      {"dissipated", "dissipated energy"}}};
+/// Relative steps of central differences, of exact answers and on a grid (see uncertainty_json()), and how
+/// often a step is quartered where a neighbour has no answer.
 constexpr double kExactStep = 1e-5;
 constexpr double kGridStep = 2e-2;
 constexpr int kSmallerSteps = 4;
 
 /// An output is rounding where it is such a part of its companion: 1e-17 or so in the scenes of symmetry.
-constexpr double kRounding = 1e-12;
+constexpr double kBesideCompanion = 1e-12;
 
 /// Less of an output, relative, is rounding: the inputs do not change it.
 constexpr double kVaries = 1e-9;
@@ -93,8 +97,6 @@ bool stands_for(const std::string& name, const std::string& key) {
   return key == name || key.ends_with("." + name);
 }
 
-bool converged(const Json& result) { return result.value("status", "") == "converged"; }
-
 /// Solves of a scene with other inputs.
 struct Neighbours {
   const std::vector<UncertainInput>& inputs;
@@ -130,7 +132,7 @@ Neighbours neighbours(const Json& result, const std::vector<UncertainInput>& inp
   const auto takes = [&](std::vector<std::string> overrides) {
     made.overrides = std::move(overrides);
     made.centre = made.at(std::vector<double>(inputs.size(), 0.0));
-    return converged(made.centre);
+    return is_converged(made.centre);
   };
   made.exact = result.value("method", "") == "exact" || std::isfinite(number_at(result, "twist_error")) ||
                std::isfinite(number_at(result, "displacement_error"));
@@ -161,7 +163,7 @@ Pair pair_at(const Neighbours& near, std::size_t input) {
   double step = near.exact ? kExactStep : kGridStep;
   for (int smaller = 0; smaller <= kSmallerSteps; ++smaller, step /= 4) {
     Pair pair{.above = near.at(input, step), .below = near.at(input, -step), .step = step};
-    if (converged(pair.above) && converged(pair.below)) return pair;
+    if (is_converged(pair.above) && is_converged(pair.below)) return pair;
   }
   throw solver::InputError(fmt::format("--uncertain {}", near.inputs[input].key),
                            fmt::format("no solve within {:.2g} of its value converges; allowed: inputs "
@@ -199,9 +201,10 @@ bool is_rounding(const Json& result, std::string_view name, double value) {
   const double moment = std::abs(number_at(result, "moment")) / number_at(result, "moment_limit");
   const double displacement =
       std::hypot(number_at(result, "displacement[0]"), number_at(result, "displacement[1]"));
-  if (name == "twist_angle") return twist <= kRounding * displacement;
-  if (name.starts_with("displacement")) return std::abs(value) <= kRounding * std::fmax(displacement, twist);
-  return name.starts_with("moment") && !(moment > kRounding);
+  if (name == "twist_angle") return twist <= kBesideCompanion * displacement;
+  if (name.starts_with("displacement"))
+    return std::abs(value) <= kBesideCompanion * std::fmax(displacement, twist);
+  return name.starts_with("moment") && !(moment > kBesideCompanion);
 }
 
 /// Whether the derivatives do: each input alone, at one standard uncertainty, and at three there are answers.
@@ -209,7 +212,7 @@ bool is_linear(const Json& outputs, const Neighbours& near) {
   for (std::size_t i = 0; i < near.inputs.size(); ++i) {
     const double relative = near.inputs[i].relative;
     for (const double sign : {-1.0, 1.0}) {
-      if (!converged(near.at(i, 3 * sign * relative))) return false;
+      if (!is_converged(near.at(i, 3 * sign * relative))) return false;
       const Json found = near.at(i, sign * relative);
       for (const auto& [name, output] : outputs.items()) {
         const double centre = number_at(near.centre, name);
@@ -223,16 +226,6 @@ bool is_linear(const Json& outputs, const Neighbours& near) {
   return true;
 }
 
-/// So many standard uncertainties are the part below of a normal distribution.
-double normal_quantile(double below) {
-  double low = -9, high = 9;
-  for (int halvings = 0; halvings < 60; ++halvings) {
-    const double middle = (low + high) / 2;
-    (std::erfc(-middle / std::numbers::sqrt2) / 2 < below ? low : high) = middle;
-  }
-  return low;
-}
-
 /// Off by such parts are the inputs in a draw: evenly spread points of a cube (Roberts' sequence, 2018), as
 /// deviates of normal distributions.
 std::vector<double> offsets(std::size_t draw, const std::vector<UncertainInput>& inputs) {
@@ -242,7 +235,7 @@ std::vector<double> offsets(std::size_t draw, const std::vector<UncertainInput>&
   double place = static_cast<double>(draw + 1);
   for (const UncertainInput& input : inputs) {
     place /= root;
-    off.push_back(input.relative * normal_quantile(std::fmod(place + 0.5, 1.0)));
+    off.push_back(input.relative * gsl_cdf_ugaussian_Pinv(std::fmod(place + 0.5, 1.0)));
   }
   return off;
 }
@@ -253,13 +246,6 @@ bool slides(const Json& found) {
          number_at(found, "limit.factor") <= 1 + 1e-6;
 }
 
-double quantile(const std::vector<double>& sorted, double below) {
-  const double place = below * static_cast<double>(sorted.size() - 1);
-  const auto from = static_cast<std::size_t>(place);
-  return std::lerp(sorted[from], sorted[std::min(from + 1, sorted.size() - 1)],
-                   place - static_cast<double>(from));
-}
-
 /// Draws all inputs, and gives each output the quantiles of the draws that have an answer.
 Json draw(const Neighbours& near, Json& outputs) {
   const std::size_t number = near.exact ? kExactDraws : kGridDraws;
@@ -268,7 +254,7 @@ Json draw(const Neighbours& near, Json& outputs) {
   std::map<std::string, std::vector<double>> drawn;
   for (std::size_t i = 0; i < number; ++i) {
     const Json found = near.at(offsets(i, near.inputs));
-    if (converged(found)) {
+    if (is_converged(found)) {
       for (const auto& [name, output] : outputs.items()) {
         const double scale = near.exact ? 1 : output["value"].get<double>() / number_at(near.centre, name);
         const double value = scale * number_at(found, name);
@@ -283,7 +269,10 @@ Json draw(const Neighbours& near, Json& outputs) {
   }
   for (auto& [name, values] : drawn) {
     std::ranges::sort(values);
-    for (const auto& [word, below] : kQuantiles) outputs[name]["quantiles"][word] = quantile(values, below);
+    for (const auto& [word, below] : kQuantiles) {
+      outputs[name]["quantiles"][word] =
+          gsl_stats_quantile_from_sorted_data(values.data(), 1, values.size(), below);
+    }
   }
   const auto part = [&](std::size_t count) {
     return static_cast<double>(count) / static_cast<double>(number);
@@ -293,7 +282,7 @@ Json draw(const Neighbours& near, Json& outputs) {
   return draws;
 }
 
-/// Of the twist, or of the first output that the inputs change.
+/// A sentence on the twist, or on the first output that the inputs change.
 std::string sentence(const Json& outputs, const std::vector<UncertainInput>& inputs, bool exact) {
   for (const auto& [name, words] : kOutputs) {
     if (!outputs.contains(name)) continue;

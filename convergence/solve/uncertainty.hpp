@@ -8,10 +8,10 @@
 
 #include "convergence/results/result_parts.hpp"
 
-/// What uncertain inputs make of a result: inputs vary independently of each other.
+/// The uncertainty of a result by that of its inputs, which vary independently of each other.
 namespace slipstick::convergence {
 
-/// A number of a scene that is known to so much.
+/// A number of a scene with its uncertainty.
 struct UncertainInput {
   std::string key;  ///< contact.friction, say
   double value;     ///< what the scene says

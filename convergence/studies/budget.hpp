@@ -8,8 +8,8 @@
 
 namespace slipstick::convergence {
 
-/// What the error of one result is made of. observed = discretisation + iteration; of rounding and reference
-/// only the size is known, and by so much the discretisation may be off.
+/// The parts of the error of one result. observed = discretisation + iteration; only the sizes of rounding
+/// and reference are known, and the discretisation may be off by as much.
 struct Budget {
   double observed = 0.0;        ///< signed
   double discretisation = 0.0;  ///< signed: what is left of it when the iteration goes on

@@ -17,9 +17,9 @@ namespace {
 constexpr int kMaxTightenings = 2;
 
 /// Collects runs, then hands out their results in the same order.
-class Batch {
+class StudyRuns {
  public:
-  Batch(const ProcessPool& pool, FailedRuns& failed) : pool_(pool), failed_(failed) {}
+  StudyRuns(const ProcessPool& pool, FailedRuns& failed) : pool_(pool), failed_(failed) {}
   std::vector<RunSpec>& runs() { return runs_; }
   void run() {
     results_ = pool_.run(runs_);
@@ -45,7 +45,7 @@ void add_runs(const Study& study, const Series& series, std::vector<RunSpec>& ru
   }
 }
 
-std::vector<MeshResults> take_results(const Series& series, Batch& batch) {
+std::vector<MeshResults> take_results(const Series& series, StudyRuns& batch) {
   std::vector<MeshResults> results;
   for (const Mesh& mesh : series.meshes) {
     MeshResults& at = results.emplace_back();
@@ -63,7 +63,7 @@ std::vector<std::vector<MeshResults>> solve_series(const Study& study, std::vect
   std::vector<std::vector<MeshResults>> results(all.size());
   std::vector<bool> open(all.size(), true);
   for (int pass = 0; pass <= kMaxTightenings; ++pass) {
-    Batch batch(pool, failed);
+    StudyRuns batch(pool, failed);
     for (std::size_t i = 0; i < all.size(); ++i) {
       if (open[i]) add_runs(study, all[i], batch.runs());
     }
@@ -93,9 +93,9 @@ void add_tolerance_runs(const Study& study, const Series& series, std::vector<Ru
   }
 }
 
-/// Of each mesh, in the same order.
+/// Results to each tolerance, mesh by mesh.
 std::vector<std::vector<Json>> take_tolerance_results(const Study& study, const Series& series,
-                                                      Batch& batch) {
+                                                      StudyRuns& batch) {
   std::vector<std::vector<Json>> by_mesh(series.meshes.size());
   for (std::vector<Json>& at : by_mesh) {
     for (std::size_t k = 0; k <= study.tolerances.size(); ++k) at.push_back(batch.next());
@@ -129,7 +129,7 @@ Json run_study(const Study& study, const ProcessPool& pool) {
     json["series"][all[i].name] = judge_series(study, all[i], results[i]);
   }
   if (varies_tolerance(study)) {
-    Batch batch(pool, failed);
+    StudyRuns batch(pool, failed);
     for (const Series& series : all) add_tolerance_runs(study, series, batch.runs());
     batch.run();
     for (std::size_t i = 0; i < all.size(); ++i) {

@@ -38,8 +38,8 @@ const solver::SettingKeys& study_keys();
 /// key, value and what is allowed.
 Study read_study(const std::filesystem::path& file, const std::vector<std::string>& overrides = {});
 
-/// What a study solves whatever comes out; tighter tolerances, where iterations show in the results, follow
-/// from these. Throws as make_series().
+/// The runs of a study that do not depend on results; tighter tolerances, where iterations show in the
+/// results, follow from these. Throws as make_series().
 std::vector<RunSpec> study_runs(const Study& study, std::optional<double> memory_limit = {});
 
 /// Solves, fits and judges: rows, orders, extrapolated values and budgets of each series, under

@@ -23,8 +23,6 @@ constexpr double kIterationPart = 0.1;
 /// A part of the budget that is this many spreads off is not explained by how the grid lies.
 constexpr double kSpreads = 2.0;
 
-bool is_converged(const Json& result) { return result.value("status", "") == "converged"; }
-
 /// A quantity through the meshes of a series.
 struct Curve {
   std::string quantity;
@@ -124,7 +122,7 @@ std::vector<std::pair<std::string, bool>> choose_quantities(const Study& study, 
   return chosen;
 }
 
-/// Of a curve of values: where it leads, and the curve of its errors relative to that.
+/// The limit of a curve of values; the curve becomes that of its errors relative to it.
 Limit find_limit(Curve& curve, const ExpectedOrder& expected) {
   const Limit limit = least_squares_limit(curve.samples, expected.value);
   const double scale = std::abs(limit.value);

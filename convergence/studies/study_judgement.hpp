@@ -4,7 +4,7 @@
 
 #include "convergence/studies/study_plan.hpp"
 
-/// What the results of a study say.
+/// The judgement of a study by its results.
 namespace slipstick::convergence {
 
 /// Orders, extrapolated values and budgets of a series, with the rows that they are determined from.

@@ -18,11 +18,11 @@ using solver::Index;
 
 /// Rounding is looked at on the finest mesh up to this, where it costs little.
 constexpr Index kRoundingCells = 128;
-/// Of several grids of one mesh the contact's edge comes to lie over two cells' width: the grids grow by so
-/// many cells in all.
+/// Cells by which the grids of one mesh grow in all: the contact's edge then takes places over two cells'
+/// width.
 constexpr double kShiftCells = 2.0;
 
-/// The grids of a mesh with so many cells along its longer side, in the shape of the scene's own.
+/// The grids of a mesh with `across` cells along its longer side, in the shape of the scene's own.
 Mesh make_mesh(const Study& study, const solver::Scene& of_series, const std::vector<std::string>& overrides,
                std::optional<Index> across) {
   solver::Scene scene = of_series;

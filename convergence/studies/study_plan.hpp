@@ -8,7 +8,7 @@
 
 #include "convergence/studies/study.hpp"
 
-/// What a study solves.
+/// The meshes of a study.
 namespace slipstick::convergence {
 
 /// One grid of a mesh.
@@ -33,7 +33,7 @@ struct Series {
   int tightenings = 0;
 };
 
-/// What was computed on one mesh, to the series' tolerance.
+/// The results on one mesh, to the series' tolerance.
 struct MeshResults {
   std::vector<Json> grids;
   Json tightened;             ///< the first grid's

@@ -13,9 +13,9 @@ namespace {
 using solver::Index;
 using solver::SceneReader;
 
-/// Of grids: below, a contact has no inside; above, one field takes gigabytes.
-constexpr double kMinCells = 8.0;
-constexpr double kMaxCells = 16384.0;
+/// Cells along the longer side: with fewer a contact has no inside; with more one field takes gigabytes.
+constexpr double kMinStudyCells = 8.0;
+constexpr double kMaxStudyCells = 16384.0;
 /// More say nothing new about the spread.
 constexpr double kMaxShifts = 32.0;
 /// Solves of a study, tightened and rounded ones not counted: more take days, and a wrong list may ask for
@@ -76,37 +76,21 @@ const solver::SettingKeys& study_keys() {
   using solver::KeyType;
   static const solver::SettingKeys keys{
       {"name", KeyType::text, "", "the file's name", {}, "Heads what is printed."},
-      {"scene",
-       KeyType::file,
-       "",
-       solver::kRequired,
-       solver::kAny,
+      {"scene", KeyType::file, "", solver::kRequired, solver::kAny,
        "Scene file (TOML), relative to the study's folder."},
       {"set", KeyType::table, "", "none", solver::kAny, "Keys of the scene that differ from its file."},
-      {"cells", KeyType::numbers, "", "the scene's own grid", solver::whole(kMinCells, kMaxCells),
+      {"cells", KeyType::numbers, "", "the scene's own grid", solver::whole(kMinStudyCells, kMaxStudyCells),
        "Cells along the longer side, a mesh each."},
       {"shifts", KeyType::number, "", fmt::format("{}", Study{}.shifts), solver::whole(1.0, kMaxShifts),
        "Grids of each mesh, whose cells lie differently under the edges: mean and spread in place of noise."},
       {"tolerances", KeyType::numbers, "", "the scene's own", solver::kPositive,
        "Tolerances to which each mesh is solved."},
-      {"vary",
-       KeyType::tables,
-       "",
-       "none",
-       solver::kAny,
+      {"vary", KeyType::tables, "", "none", solver::kAny,
        "Tables `[[vary]]`: every combination is a series of its own."},
-      {"vary.key",
-       KeyType::text,
-       "",
-       solver::kRequired,
-       solver::kAny,
+      {"vary.key", KeyType::text, "", solver::kRequired, solver::kAny,
        "The key of the scene that varies; not grid.cells, not solver.tolerance."},
       {"vary.values", KeyType::values, "", solver::kRequired, solver::kAny, "The values that it takes."},
-      {"quantities",
-       KeyType::texts,
-       "",
-       "all that have an expected order",
-       solver::kAny,
+      {"quantities", KeyType::texts, "", "all that have an expected order", solver::kAny,
        "Paths into a result, as of a gate's quantity."}};
   return keys;
 }

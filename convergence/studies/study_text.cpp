@@ -63,7 +63,7 @@ std::string orders_text(const Json& series) {
   return text;
 }
 
-/// What errors are measured from.
+/// The values that errors are measured from.
 std::string basis_text(const Json& series) {
   const bool is_compared = series["meshes"].size() > 1;
   if (!is_compared && series["basis"] != "exact") return "no exact answer: values";

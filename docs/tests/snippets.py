@@ -79,7 +79,7 @@ class Checkout:
         (folder / "build/bench/slipstick_benchmarks").symlink_to(benchmarks)
         build = self.program.parent
         (folder / "build/convergence").mkdir()
-        for name in ["convergence/c_interface", "python"]:
+        for name in ["interfaces/c", "python"]:
             (folder / "build" / name).symlink_to(build / name)
         (folder / "programs").mkdir()
         python = folder / "programs/python3"

@@ -97,6 +97,12 @@ class NamesTest(unittest.TestCase):
                     missing.append(f"{relative(page, ROOT)}:{line_of(text, span.start())}: {span[0]}")
         self.assertEqual("\n".join(missing), "")
 
+    def test_one_solve_goes_through_few_files_that_exist(self):
+        rows = re.findall(r"^\| (\d+) \| `([^`]+)` \|", (ROOT / "docs/one-solve.md").read_text(), re.M)
+        self.assertEqual([int(number) for number, _ in rows], list(range(1, len(rows) + 1)))
+        self.assertIn(len(rows), range(10, 19), "a reader opens 18 files at most")
+        self.assertEqual([file for _, file in rows if not (ROOT / file).is_file()], [])
+
     def test_functions_and_tests_of_the_equations_exist(self):
         rows = re.findall(r"^\| (\([^|]*) \|([^|]*)\|([^|]*)\|", (ROOT / "docs/theory.md").read_text(), re.M)
         self.assertEqual({number for row in rows for number in equations(row[0])}, set(range(1, 27)))

@@ -1,4 +1,4 @@
-"""test_snippets.py SOURCE_DIR PROGRAM: every block of README.md and docs/**/*.md does what a reader is told that it does,
+"""test_snippets.py SOURCE_DIR PROGRAM: every block of README.md and docs/**/*.md does what the page says,
 run from the text itself; and every command named in a sentence exists."""
 import pathlib
 import re

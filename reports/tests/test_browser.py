@@ -4,16 +4,13 @@ Nothing here depends on the page's words."""
 
 import json
 import re
-import sys
 import tempfile
 import unittest
 from pathlib import Path
-from unittest.mock import patch
 
 from made_report import run_render, save_quickly, small_report, write_data
 
 import browser
-import figures
 import pdf
 from test_study_figure import study, tolerance_study
 
@@ -63,12 +60,13 @@ def make_page(folder):
 class Page(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        if not browser.PROGRAM:
+        if browser.MISSING:
             raise unittest.SkipTest(browser.MISSING)
         cls.folder = Path(cls.enterClassContext(tempfile.TemporaryDirectory()))
         cls.file = make_page(cls.folder)
         cls.browser = cls.enterClassContext(browser.Browser())
         cls.browser.open(cls.file)
+        cls.asked = cls.browser.requests()
         cls.browser.evaluate(CHECKS)
 
     def setUp(self):
@@ -77,9 +75,9 @@ class Page(unittest.TestCase):
 
     def tearDown(self):
         """Whatever is done with the page, it neither complains nor asks for anything."""
-        self.assertEqual(self.browser.errors, [])
-        self.assertEqual([each for each in self.browser.requests if not each.startswith("data:")],
-                         [self.file.resolve().as_uri()])
+        type(self).asked += self.browser.requests()
+        self.assertEqual(self.browser.complaints(), [])
+        self.assertEqual([each for each in self.asked if not each.startswith("data:")], [self.file.resolve().as_uri()])
 
     def unfold(self):
         self.browser.evaluate("document.querySelectorAll('details').forEach((each) => { each.open = true; })")
@@ -156,7 +154,7 @@ class Page(unittest.TestCase):
         self.unfold()
         self.browser.evaluate("checks.focus()")
         before, directions = self.browser.evaluate("checks.focused()"), set()
-        for key in ("Enter", "Space"):
+        for key in ("ENTER", "SPACE"):
             self.browser.press(key)
             after = self.browser.evaluate("checks.focused()")
             self.assertTrue(after["focused"], "the focus stays where it was")
@@ -168,13 +166,13 @@ class Page(unittest.TestCase):
         content = self.browser.pdf()
         self.assertTrue(content.startswith(b"%PDF"))
         last = pdf.count_pages(content)
-        self.assertEqual(pdf.count_pages(self.browser.pdf(pages=str(last))), 1)
+        self.assertEqual(pdf.count_pages(self.browser.pdf([str(last)])), 1)
         with self.assertRaises(browser.BrowserError, msg="there is no page after the last"):
-            self.browser.pdf(pages=str(last + 1))
+            self.browser.pdf([str(last + 1)])
         (width, height), = pdf.paper_sizes(content)
         self.assertAlmostEqual(width, 210, delta=1)
         self.assertAlmostEqual(height, 297, delta=1)
 
 
 if __name__ == "__main__":
-    unittest.main(verbosity=1 if browser.PROGRAM else 2)  # why it is skipped
+    unittest.main(verbosity=2 if browser.MISSING else 1)  # why it is skipped

@@ -110,7 +110,7 @@ class OneFigure(Folder):
 
     def test_hard_scenes_in_numbers(self):
         entry = hard_cases.methods(small_report(), self.folder)
-        self.assertEqual(entry.message, "Of 5 hard scenes Newton’s method for Coulomb’s law certifies 4 and refuses 1 with a "
+        self.assertEqual(entry.message, "Newton’s method for Coulomb’s law certifies 4 of 5 hard scenes and refuses 1 with a "
                          "reason; 0 do not converge or are wrong.")
         self.assertEqual([number for words, number in entry.numbers if "paper" in words], ["1"] * 5)
         bars = [[bar.get_width() for bar in entry.figure.axes[0].patches[5 * i:5 * i + 5]] for i in (0, 1)]
@@ -171,8 +171,8 @@ class OneFigure(Folder):
 
     def test_what_the_gallery_says(self):
         entry = gallery_figure.gallery(self.report, self.folder)
-        self.assertIn("4 scenes, in all of which Coulomb’s law holds to gap / energy = 2.0×10⁻⁹.", entry.message)
-        self.assertIn("Of the 1 with an exact answer, half are within 4.0×10⁻² of it", entry.message)
+        self.assertIn("Coulomb’s law holds in all 4 scenes to gap / energy = 2.0×10⁻⁹.", entry.message)
+        self.assertIn("Half of the 1 with an exact answer are within 4.0×10⁻² of it", entry.message)
         panel = entry.figure.axes[0]
         self.assertEqual([text.get_text() for text in panel.texts], ["67\u00a0% sticks"])
         slip, sticks = (image.get_array() for image in panel.images)
@@ -201,7 +201,7 @@ class OneFigure(Folder):
 
     def test_gallery_owns_up_to_what_did_not_converge(self):
         self.report["gallery"][1]["status"] = "not_converged"
-        self.assertIn("3 scenes, in all of which", gallery_figure.gallery(self.report, self.folder).message)
+        self.assertIn("in all 3 scenes", gallery_figure.gallery(self.report, self.folder).message)
         self.assertIn("1 more did not converge", gallery_figure.gallery(self.report, self.folder).message)
 
     def test_gallery_without_its_fields(self):

@@ -241,7 +241,7 @@ class PageWithGaps(Folder):
 
     def test_the_methods_are_told_apart(self):
         entry = method_figures.methods(small_report(), self.folder)
-        self.assertIn("2.4° by the paper’s method", entry.message)
+        self.assertIn("the paper’s method leaves slip misaligned with traction by up to 2.4°", entry.message)
         self.assertIn(("ellipse, slip direction, Newton’s method for Coulomb’s law", "1.0×10⁻⁷ of a degree"), entry.numbers)
         report = small_report()
         del report["methods"][0]["operator_applications"]

@@ -4,22 +4,19 @@ import io
 import json
 import subprocess
 import sys
-import tempfile
 import unittest
 import xml.etree.ElementTree
 from contextlib import redirect_stderr
-from pathlib import Path
 
 import h5py
 import numpy as np
 from matplotlib.quiver import QuiverKey
 
-REPORTS = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(REPORTS))
+from made_report import REPORTS, Folder
 
-import solve_figure  # noqa: E402
-from cells import ARROWS_ALONG, Cells  # noqa: E402
-from results import Fields, Unavailable, load  # noqa: E402
+import solve_figure
+from cells import ARROWS_ALONG, Cells
+from results import Unavailable, load
 
 CELL = (2e-6, 1e-6)
 
@@ -37,11 +34,9 @@ def disc(n1, n2, x1=0.0, x2=0.0):
     return x1 + CELL[0] * i[inside], x2 + CELL[1] * j[inside]
 
 
-class Figure(unittest.TestCase):
+class Figure(Folder):
     def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name)
+        super().setUp()
         self.fields = self.folder / "fields.h5"
 
     def write(self, x1, x2, changes=None, **columns):
@@ -81,9 +76,9 @@ class Maps(Figure):
         with h5py.File(self.folder / "map.h5", "w") as file:
             for name, values in (("x1", [-2, 2, -2]), ("x2", [-2, -2, 0]), ("q1", [1, 2, 3])):
                 file[name] = np.array(values, float)
-        fields = Fields(self.folder / "map.h5", 2.0)
-        np.testing.assert_array_equal(fields.grid("q1"), [[1, np.nan, 2], [3, np.nan, np.nan], [np.nan] * 3])
-        np.testing.assert_array_equal(fields.extent, [-1.5, 1.5, -1.5, 1.5])
+        cells = Cells(self.folder / "map.h5", (1.0, 1.0), 2.0)
+        np.testing.assert_array_equal(cells.grid(cells.columns["q1"]), [[1, np.nan, 2], [3, np.nan, np.nan]])
+        np.testing.assert_array_equal(cells.extent, [-1.5, 1.5, -1.5, 0.5])
 
 
 class Names(Figure):

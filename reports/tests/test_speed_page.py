@@ -2,7 +2,6 @@
 
 import io
 import json
-import sys
 import tempfile
 import unittest
 from contextlib import redirect_stderr
@@ -11,17 +10,15 @@ from unittest.mock import patch
 
 from matplotlib.text import Text
 
-REPORTS = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(REPORTS))
+from made_report import save_nothing, save_quickly
 
-import plane_figure  # noqa: E402
-import render  # noqa: E402
-import scaling_figure  # noqa: E402
-import speed_page  # noqa: E402
-import speed_tables  # noqa: E402
-import style  # noqa: E402
-from results import Unavailable  # noqa: E402
-from made_report import save_nothing, save_quickly  # noqa: E402
+import plane_figure
+import render
+import scaling_figure
+import speed_page
+import speed_tables
+import style
+from results import Unavailable
 
 DENSE, DCFFT = "application/dense", "application/dcfft"
 

@@ -4,22 +4,19 @@ import io
 import json
 import subprocess
 import sys
-import tempfile
 import unittest
 from contextlib import redirect_stderr
-from pathlib import Path
 
 import numpy as np
 
-REPORTS = Path(__file__).resolve().parents[1]
-sys.path.insert(0, str(REPORTS))
+from made_report import REPORTS, Folder
 
-import study_figure  # noqa: E402
-import study_result  # noqa: E402
-import style  # noqa: E402
-import tables  # noqa: E402
-from results import Unavailable  # noqa: E402
-from wording import typeset  # noqa: E402
+import study_figure
+import study_result
+import style
+import tables
+from results import Unavailable
+from wording import typeset
 
 CELLS = (8, 16, 32, 64)
 QUANTITIES = ("twist_error", "traction_error.l2", "peak_pressure_error")
@@ -32,7 +29,7 @@ def order(**changes):
 
 
 def mesh(cells):
-    """Errors of 1 and 2 times the cell size squared, of which the coarsest is off by ten."""
+    """Errors of 1 and 2 times the cell size squared, the coarsest off by ten."""
     error = (10.0 if cells == CELLS[0] else 1.0) / cells**2
     return {"cells": [cells, cells // 2], "h": 1 / cells, "grids": 3,
             **{path: {"mean": -(k + 1) * error, "spread": 0.1 * error, "noise": 1e-12}
@@ -134,7 +131,7 @@ class Errors(unittest.TestCase):
             value=None, low=None, high=None, constant=None, verdict="too_few", sizes=[])
         texts = [entry.get_text() for entry in self.panel(content).get_legend().get_texts()]
         self.assertEqual(texts[-1], "no order: too few")
-        self.assertIn("Of 8 orders, 7 are asymptotic, 1 of too few meshes.", study_figure.draw(content).message)
+        self.assertIn("8 orders: 7 are asymptotic, 1 of too few meshes.", study_figure.draw(content).message)
 
     def test_spread_that_reaches_zero_leaves_the_panel(self):
         content = study()
@@ -189,7 +186,7 @@ class Errors(unittest.TestCase):
     def test_failed_runs_are_named_first(self):
         failed = {"count": 2, "of": 40, "first": {"run": "paper, rounded upward", "message": "killed by signal 9"}}
         text = study_figure.draw(study(failed_runs=failed)).message
-        self.assertTrue(text.startswith("2 of 40 runs failed; the first (paper, rounded upward): killed by signal 9. Of "))
+        self.assertTrue(text.startswith("2 of 40 runs failed; the first (paper, rounded upward): killed by signal 9. "))
         self.assertTrue(study_figure.draw(study(failed_runs={"count": 0, "of": 40})).message.startswith("Of "))
 
     def test_values_that_are_null_have_no_point(self):
@@ -216,7 +213,7 @@ class Budget(unittest.TestCase):
         self.assertIn("twist", axis.get_title())
 
     def test_message_says_what_dominates(self):
-        self.assertIn("at least 1.0×10⁵ times as much of the error of the twist", study_figure.draw(study()).message)
+        self.assertIn("The mesh error of the twist is at least 1.0×10⁵ times", study_figure.draw(study()).message)
 
     def test_message_says_what_is_too_large(self):
         content = study()
@@ -226,7 +223,7 @@ class Budget(unittest.TestCase):
                       "all the iteration.", study_figure.draw(content).message)
 
     def test_a_tenth_is_not_above_a_tenth(self):
-        for iteration, words in ((0.1, "The mesh makes at least 1.0×10¹ times"), (0.095, "The mesh makes at least"),
+        for iteration, words in ((0.1, "The mesh error of the twist is at least 1.0×10¹ times"), (0.095, "The mesh makes at least"),
                                  (0.11, "On 4 of 4 meshes")):
             content = study()
             for one in content["series"].values():
@@ -347,12 +344,7 @@ class Words(unittest.TestCase):
                          "off by √h, then h², like 1/√d; it’s 8.4×10⁻⁶")
 
 
-class Script(unittest.TestCase):
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name)
-
+class Script(Folder):
     def run_script(self, content, name):
         (self.folder / "study.json").write_text(content)
         with redirect_stderr(io.StringIO()) as errors:

@@ -35,19 +35,18 @@ class CacheKey {
   std::string bytes_;
 };
 
-/// What was made for one solve and waits for the next that needs the same: operators of a grid, solved
-/// pressures. Who takes something has what it would have made itself, to the last bit. Where there is no room
-/// for all, what was not needed for longest goes. For one solve at a time.
+/// Keeps operators of a grid and solved pressures for the next solve that needs the same. Cached objects are
+/// bit-identical to new ones. Where there is no room for all, the cache drops the one that was not needed for
+/// longest. It serves one solve at a time.
 class SolveCache {
  public:
-  /// Of so little memory nobody asks whether it is there.
+  /// Bytes. Below this size the memory check is skipped.
   static constexpr double kDefaultBytes = 32.0 * 0x1p20;
 
   explicit SolveCache(double max_bytes = kDefaultBytes);
 
-  /// A solve begins, beside which there is room for so many bytes. What was made under another rounding goes:
-  /// the plans of FFTW that are there at the same time share their tables of sines, so that it would leave
-  /// its trace in what is new.
+  /// A solve begins, and leaves `room` bytes for the cache. Objects that were made under another rounding go:
+  /// FFTW's plans share their tables of sines, so that old plans would change the digits of new ones.
   void begin_solve(double room);
 
   struct Thing {
@@ -57,8 +56,8 @@ class SolveCache {
   Thing take(const CacheKey& key);
   void keep(CacheKey key, Thing thing, double bytes);
 
-  /// What making those things took that were taken from solves before this one: so much longer it would have
-  /// taken by itself.
+  /// Seconds that making the things took which came from earlier solves: this solve alone would have taken so
+  /// much longer.
   double seconds_saved() const { return seconds_saved_; }
 
  private:

@@ -47,7 +47,7 @@ struct Inherited {
 };
 
 /// friction_bound: mu p of each cell; rotation: the field t = (-x2, x1); moment, force: M/Delta and F/Delta
-/// that were asked for. least_eigenvalue: of the operator, a lower bound (influence.hpp); with 0 the energy
+/// that were asked for. least_eigenvalue: of the operator, a lower bound (elastic_law.hpp); with 0 the energy
 /// error is the gap.
 Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound,
                     const Eigen::ArrayXd& rotation, double moment, const std::array<double, 2>& force = {},

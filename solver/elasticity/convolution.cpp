@@ -79,7 +79,7 @@ auto Convolution::multiply_for(const BlockKernel& kernel) -> Multiply {
   throw std::invalid_argument("no convolution with a kernel of this shape");
 }
 
-Convolution::Convolution(const Grid& grid, BlockKernel kernel, const ElasticPair& pair,
+Convolution::Convolution(const Grid& grid, BlockKernel kernel, const ElasticLaw& law,
                          const OperatorOptions& options)
     : LinearOperator(grid, std::move(kernel)),
       transform_(grid, fields(this->kernel()), std::max(options.threads, 1)),
@@ -91,19 +91,18 @@ Convolution::Convolution(const Grid& grid, BlockKernel kernel, const ElasticPair
     slot_.at(c) = count(found - components_.begin());
   }
   if constexpr (std::is_same_v<double, double>) {
-    set_spectra(pair, transform_);
+    set_spectra(law, transform_);
   } else {
     PaddedTransform transform(grid, 1, std::max(options.threads, 1));
-    set_spectra(pair, transform);
+    set_spectra(law, transform);
   }
 }
 
 /// The kernel is the sum of a quadrant of offsets and its three mirror images. With Q the quadrant's
 /// spectrum, found as any field's, the sum's is 2 Re or 2 i Im of Q(k1, k2) +- Q(-k1, k2).
-void Convolution::set_spectra(const ElasticPair& pair, PaddedTransform& transform) {
+void Convolution::set_spectra(const ElasticLaw& law, PaddedTransform& transform) {
   const Grid& grid = this->grid();
-  auto quadrants =
-      influence_tables(components_, pair, grid.h1, grid.h2, grid.n1, grid.n2, transform.threads());
+  auto quadrants = law.influence_tables(components_, grid, transform.threads());
   for (std::size_t slot = 0; slot < components_.size(); ++slot) {
     std::vector<double>& quadrant = quadrants[slot];
     for (Index i = 0; i < grid.n1; ++i) quadrant[count(i * grid.n2)] *= 0.5;  // on the axes, images coincide

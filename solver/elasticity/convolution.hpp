@@ -15,18 +15,18 @@ namespace slipstick::solver {
 ///
 /// Rows go forward; then each column goes forward, is multiplied by the kernel's spectrum and goes back while
 /// it is in cache; then rows go back. The kernel is even or odd in each coordinate, so its spectrum is real
-/// or imaginary and a quadrant of it is stored. It is computed in double precision for either double.
+/// or imaginary and a quadrant of it is stored.
 class Convolution final : public LinearOperator {
  public:
   /// Throws std::invalid_argument for a kernel of another shape than the normal, tangential or coupling one.
-  Convolution(const Grid& grid, BlockKernel kernel, const ElasticPair& pair, const OperatorOptions& options);
+  Convolution(const Grid& grid, BlockKernel kernel, const ElasticLaw& law, const OperatorOptions& options);
   static double sent_bytes(const Grid& grid, const BlockKernel& kernel);
   Index padded1() const { return transform_.padded1(); }
   Index padded2() const { return transform_.padded2(); }
 
  private:
   using Spectrum = PaddedTransform::Spectrum;
-  /// Of the kernel's components at one column, row by row of the kernel.
+  /// Factors at one column, for the kernel's components, row by row.
   struct Factors {
     std::array<const double*, 4> quadrant;  ///< m1/2 + 1 even frequencies along x1 from 0, then the odd ones
     std::array<double, 4> sign;             ///< of the spectrum at negative frequencies along x1
@@ -34,7 +34,7 @@ class Convolution final : public LinearOperator {
   using Multiply = void (*)(const Spectrum&, const Factors&, Index);
 
   void do_apply(std::span<const double> traction, std::span<double> displacement) override;
-  void set_spectra(const ElasticPair& pair, PaddedTransform& transform);
+  void set_spectra(const ElasticLaw& law, PaddedTransform& transform);
   void set_factors(Component component, const std::complex<double>* even, const std::complex<double>* odd,
                    double* factors) const;
   std::size_t start(Index column, std::size_t slot) const;  ///< of a component's factors at a column

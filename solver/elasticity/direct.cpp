@@ -19,10 +19,10 @@ inline void add(Index count, double factor, const double* __restrict from, doubl
 }
 
 /// A quadrant of coefficients unfolded by parity to offsets of both signs.
-std::vector<double> all_offsets(Component component, const ElasticPair& pair, const Grid& grid) {
+std::vector<double> all_offsets(Component component, const ElasticLaw& law, const Grid& grid) {
   const Index n1 = grid.n1;
   const Index n2 = grid.n2;
-  const std::vector<double> quadrant = influence_coefficients(component, pair, grid.h1, grid.h2, n1, n2);
+  const std::vector<double> quadrant = law.influence_coefficients(component, grid);
   const Parity sign = parity(component);
   std::vector<double> all;
   all.reserve(static_cast<std::size_t>((2 * n1 - 1) * (2 * n2 - 1)));
@@ -37,11 +37,11 @@ std::vector<double> all_offsets(Component component, const ElasticPair& pair, co
 
 }  // namespace
 
-DirectSum::DirectSum(const Grid& grid, BlockKernel kernel, const ElasticPair& pair,
+DirectSum::DirectSum(const Grid& grid, BlockKernel kernel, const ElasticLaw& law,
                      const OperatorOptions& options)
     : LinearOperator(grid, std::move(kernel)), threads_(std::max(options.threads, 1)) {
   for (const Component component : distinct(this->kernel())) {
-    coefficients_.emplace(component, all_offsets(component, pair, grid));
+    coefficients_.emplace(component, all_offsets(component, law, grid));
   }
 }
 
@@ -72,13 +72,13 @@ void DirectSum::do_apply(std::span<const double> traction, std::span<double> dis
   in_parts(threads_, n1, rows);
 }
 
-DenseMatrix::DenseMatrix(const Grid& grid, BlockKernel kernel, const ElasticPair& pair)
+DenseMatrix::DenseMatrix(const Grid& grid, BlockKernel kernel, const ElasticLaw& law)
     : LinearOperator(grid, std::move(kernel)) {
   const Index cells = grid.cells();
   matrix_.resize(static_cast<Index>(outputs()) * cells, static_cast<Index>(inputs()) * cells);
   for (std::size_t a = 0; a < outputs(); ++a) {
     for (std::size_t b = 0; b < inputs(); ++b) {
-      const std::vector<double> all = all_offsets(this->kernel().components[a * inputs() + b], pair, grid);
+      const std::vector<double> all = all_offsets(this->kernel().components[a * inputs() + b], law, grid);
       for (Index source = 0; source < cells; ++source) {
         for (Index point = 0; point < cells; ++point) {
           const Index k1 = point / grid.n2 - source / grid.n2 + grid.n1 - 1;

@@ -10,7 +10,7 @@ namespace slipstick::solver {
 /// Matrix-free summation over source cells; cells without traction cost nothing.
 class DirectSum final : public LinearOperator {
  public:
-  DirectSum(const Grid& grid, BlockKernel kernel, const ElasticPair& pair, const OperatorOptions& options);
+  DirectSum(const Grid& grid, BlockKernel kernel, const ElasticLaw& law, const OperatorOptions& options);
 
  private:
   void do_apply(std::span<const double> traction, std::span<double> displacement) override;
@@ -23,7 +23,7 @@ class DirectSum final : public LinearOperator {
 /// The whole matrix, for small grids: the plainest form to check the others against.
 class DenseMatrix final : public LinearOperator {
  public:
-  DenseMatrix(const Grid& grid, BlockKernel kernel, const ElasticPair& pair);
+  DenseMatrix(const Grid& grid, BlockKernel kernel, const ElasticLaw& law);
   const Eigen::MatrixXd& matrix() const { return matrix_; }
 
  private:

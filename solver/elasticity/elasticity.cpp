@@ -15,26 +15,21 @@ namespace {
 
 /// The diagonal's mirror is of use to the tangential kernel alone.
 OperatorOptions options_of(const Elasticity& elasticity, const BlockKernel& kernel) {
-  return {.threads = elasticity.threads, .diagonal = elasticity.diagonal && kernel.inputs == 2};
-}
-
-std::unique_ptr<InverseSymbol> symbol_of(const Elasticity& elasticity, const Grid& grid,
-                                         const BlockKernel& kernel) {
-  return make_inverse_symbol(grid, kernel, elasticity.pair,
-                             options_of(elasticity, kernel).diagonal ? Diagonal::yes : Diagonal::no,
-                             elasticity.threads, elasticity.at_edge);
+  return {.threads = elasticity.threads,
+          .diagonal = elasticity.diagonal && kernel.inputs == 2,
+          .at_edge = elasticity.at_edge};
 }
 
 std::unique_ptr<LinearOperator> new_operator(const Elasticity& elasticity, const Grid& grid,
                                              const BlockKernel& kernel) {
-  auto op = make_operator(elasticity.kind, grid, kernel, elasticity.pair, options_of(elasticity, kernel));
+  auto op = make_operator(elasticity.kind, grid, kernel, *elasticity.law, options_of(elasticity, kernel));
   return elasticity.rounding_seed == 0 ? std::move(op)
                                        : rounded_at_random(std::move(op), kernel, elasticity.rounding_seed);
 }
 
-/// Doubles a cell of the padded grid: of a whole grid, of a quadrant, of one that its diagonal halves.
+/// Doubles a cell of the padded grid, for each Part.
 using Held = std::array<double, 3>;
-/// What an operator by FFT holds, and what Newton's method holds beside it.
+/// What an operator by FFT holds, and what Newton's method holds beside it, whatever the law.
 /// Counted on 256 x 256 cells, rounded up; convergence/solve/tests/memory_test.py measures them in processes.
 struct HeldOf {
   Held op, newton;
@@ -42,9 +37,9 @@ struct HeldOf {
 constexpr HeldOf kNormal{{0.8, 1.6, 1.6}, {3.0, 3.2, 3.2}};
 constexpr HeldOf kTangential{{1.8, 4.15, 3.6}, {5.9, 5.95, 5.7}};
 constexpr HeldOf kCoupling{{1.55, 0.0, 0.0}, {}};
-/// Shorter sides take as much as one of so many cells: lines are transformed in groups.
-constexpr Index kLeastSide = 16;
-/// Bytes of freed blocks that stay with the process, see keep_freed_blocks(): a matrix of the pressure does.
+/// Cells. Shorter sides take as much memory as one of this many: lines are transformed in groups.
+constexpr Index kMinSide = 16;
+/// Bytes of freed blocks that stay with the process, see keep_freed_blocks(): those of the pressure's matrix.
 constexpr double kKeptBlocks = 8.0 * 0x1p20;
 
 const HeldOf& held_of(const BlockKernel& kernel) {
@@ -52,14 +47,15 @@ const HeldOf& held_of(const BlockKernel& kernel) {
   return kernel.inputs == 1 ? kNormal : kTangential;
 }
 
-std::size_t form_of(const Elasticity& elasticity, const Grid& grid) {
-  return !grid.quadrant ? 0 : elasticity.diagonal ? 2 : 1;
+/// The entry of Held for a grid.
+std::size_t place_of(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel) {
+  return static_cast<std::size_t>(part_of(grid, kernel, options_of(elasticity, kernel).diagonal));
 }
 
-/// This rank's part of the bytes of so many doubles a padded cell.
+/// This rank's part of the bytes of that many doubles a padded cell.
 double padded_bytes(double doubles, const Grid& grid) {
   const auto padded = [](Index cells) {
-    return static_cast<double>(fast_length(2 * std::max(cells, kLeastSide) - 1));
+    return static_cast<double>(fast_length(2 * std::max(cells, kMinSide) - 1));
   };
   const double part =
       static_cast<double>(RowBands(grid.n1).own_rows().count()) / static_cast<double>(grid.n1);
@@ -78,8 +74,8 @@ std::shared_ptr<SolveCache> Elasticity::usable_cache() const { return rounding_s
 
 CacheKey Elasticity::key(const char* what, const Grid& grid) const {
   CacheKey all(what);
-  all.add(pair.shear_compliance).add(pair.poisson_compliance).add(pair.normal_compliance).add(pair.mismatch);
-  all.add(pair.cell_traction).add(kind).add(threads).add(diagonal).add(at_edge);
+  law->add_to(all);
+  all.add(kind).add(threads).add(diagonal).add(at_edge);
   return all.add(grid.n1).add(grid.n2).add(grid.h1).add(grid.h2).add(grid.quadrant);
 }
 
@@ -87,7 +83,7 @@ double Elasticity::operator_bytes(const Grid& grid, const BlockKernel& kernel) c
   const std::set<Component> components(kernel.components.begin(), kernel.components.end());
   switch (kind) {
     case OperatorKind::dcfft:
-      return padded_bytes(held_of(kernel).op[form_of(*this, grid)], grid);
+      return padded_bytes(held_of(kernel).op[place_of(*this, grid, kernel)], grid);
     case OperatorKind::direct:
       return padded_bytes(static_cast<double>(components.size()), grid);
     case OperatorKind::dense: {
@@ -101,7 +97,7 @@ double Elasticity::operator_bytes(const Grid& grid, const BlockKernel& kernel) c
 
 double Elasticity::newton_bytes(const Grid& grid, const BlockKernel& kernel) const {
   const HeldOf& held = held_of(kernel);
-  return operator_bytes(grid, kernel) + padded_bytes(held.newton[form_of(*this, grid)], grid);
+  return operator_bytes(grid, kernel) + padded_bytes(held.newton[place_of(*this, grid, kernel)], grid);
 }
 
 Cached<LinearOperator> Elasticity::make(const Grid& grid, const BlockKernel& kernel) const {
@@ -113,7 +109,7 @@ Cached<LinearOperator> Elasticity::make(const Grid& grid, const BlockKernel& ker
 }
 
 GridOperators::GridOperators(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel)
-    : op(new_operator(elasticity, grid, kernel)), symbol(symbol_of(elasticity, grid, kernel)) {}
+    : op(new_operator(elasticity, grid, kernel)), symbol(make_inverse_symbol(grid, kernel, *elasticity.law, options_of(elasticity, kernel))) {}
 
 Cached<GridOperators> Elasticity::make_all(const Grid& grid, const BlockKernel& kernel) const {
   Cached<GridOperators> operators(

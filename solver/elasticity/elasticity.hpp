@@ -12,18 +12,18 @@ namespace slipstick::solver {
 
 struct GridOperators;
 
-/// How displacements follow from tractions on whatever grid a method asks for: the elastic pair and the way
-/// to evaluate its operators.
+/// How displacements follow from tractions on whatever grid a method asks for: the elastic law and the way to
+/// evaluate its operators.
 struct Elasticity {
-  ElasticPair pair;
+  SharedLaw law;
   OperatorKind kind = OperatorKind::dcfft;
   int threads = 1;
   bool diagonal = false;                   ///< see OperatorOptions; of the tangential operator
   bool at_edge = false;                    ///< whether the contact may reach the grid's edge
-  std::uint64_t rounding_seed = 0;         ///< 0: rounded to nearest; else at random, in double precision
+  std::uint64_t rounding_seed = 0;         ///< 0: rounded to nearest; else at random
   std::shared_ptr<SolveCache> cache = {};  ///< for operators that are needed again; empty: none
 
-  /// The cache, for what is the same whenever it is made: not so with measured plans and random rounding.
+  /// The cache; none under random rounding, where an operator made again is another one.
   std::shared_ptr<SolveCache> usable_cache() const;
   /// A key of these displacements on a grid.
   CacheKey key(const char* what, const Grid& grid) const;

@@ -13,11 +13,11 @@
 namespace slipstick::solver {
 namespace {
 
-/// Cells at least between opposite edges that fields reach; more bring nothing.
-constexpr Index kMargin = 2;
+/// Cells at least between opposite edges that fields reach. More lower no count of iterations.
+constexpr Index kCellsBetweenEdges = 2;
 
 PeriodicGrid padded(const Grid& grid, bool at_edge) {
-  const Index margin = at_edge ? kMargin : 0;
+  const Index margin = at_edge ? kCellsBetweenEdges : 0;
   return {fast_length(grid.n1 + margin), fast_length(grid.n2 + margin), grid.h1, grid.h2};
 }
 
@@ -40,7 +40,7 @@ void scale_complex(Index count, const double* __restrict p, double* __restrict z
   }
 }
 
-/// Pairs of complex numbers times symmetric real matrices, whose p12 is to be taken times sign.
+/// Multiplies pairs of complex numbers by symmetric real matrices, with sign times p12.
 void mix(Index count, double sign, const double* __restrict p11, const double* __restrict p12,
          const double* __restrict p22, double* __restrict z1, double* __restrict z2) {
   for (Index k = 0; k < count; ++k) {
@@ -59,15 +59,16 @@ void mix(Index count, double sign, const double* __restrict p11, const double* _
 /// On a whole grid, padded with zeros to fast lengths.
 class PeriodicInverseSymbol final : public InverseSymbol {
  public:
-  PeriodicInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair, int threads, bool at_edge)
+  PeriodicInverseSymbol(const Grid& grid, bool tangential, const ElasticLaw& law,
+                        const OperatorOptions& options)
       : grid_(grid),
-        periodic_(padded(grid, at_edge)),
+        periodic_(padded(grid, options.at_edge)),
         fields_(tangential ? 2 : 1),
-        diagonal_(mean_inverse_symbol(periodic_, pair, tangential)),
+        diagonal_(mean_inverse_symbol(periodic_, law, tangential)),
         columns_(PlaneTransform::own_columns(shape(grid, periodic_, tangential))),
-        table_(periodic_, pair, entries(tangential), frequencies(columns_),
+        table_(periodic_, law, entries(tangential), frequencies(columns_),
                1.0 / (static_cast<double>(periodic_.length1) * static_cast<double>(periodic_.length2))),
-        transform_(shape(grid, periodic_, tangential), threads) {}
+        transform_(shape(grid, periodic_, tangential), options.threads) {}
 
   void apply(std::span<double> field) override {
     if (static_cast<Index>(field.size()) != fields_ * grid_.cells()) {
@@ -117,7 +118,7 @@ class PeriodicInverseSymbol final : public InverseSymbol {
       if (fields_ == 1) {
         scale_complex(count, p11, columns.row(0, k));
       } else {
-        mix(count, double(negative ? -1 : 1), p11, table_.row(SymbolEntry::p12, f) + first,
+        mix(count, negative ? -1.0 : 1.0, p11, table_.row(SymbolEntry::p12, f) + first,
             table_.row(SymbolEntry::p22, f) + first, columns.row(0, k), columns.row(1, k));
       }
     }
@@ -132,30 +133,18 @@ class PeriodicInverseSymbol final : public InverseSymbol {
   PlaneTransform transform_;
 };
 
-bool is_tangential(const BlockKernel& kernel) {
-  if (kernel == tangential_kernel()) return true;
-  if (kernel == normal_kernel()) return false;
-  throw std::invalid_argument("only the normal and the tangential kernel have an inverse symbol");
-}
-
-void check_diagonal(const Grid& grid, bool tangential, Diagonal diagonal) {
-  if (diagonal == Diagonal::no) return;
-  if (!tangential || !grid.quadrant || grid.n1 != grid.n2 || grid.h1 != grid.h2) {
-    throw std::invalid_argument("only torsion on a square quadrant mirrors at the diagonal");
-  }
-}
-
 }  // namespace
 
 std::unique_ptr<InverseSymbol> make_inverse_symbol(const Grid& grid, const BlockKernel& kernel,
-                                                   const ElasticPair& pair, Diagonal diagonal, int threads,
-                                                   bool at_edge) {
-  const bool tangential = is_tangential(kernel);
-  check_diagonal(grid, tangential, diagonal);
-  if (grid.quadrant) {
-    return std::make_unique<MirroredInverseSymbol>(grid, tangential, pair, diagonal, threads);
+                                                   const ElasticLaw& law, const OperatorOptions& options) {
+  const bool tangential = kernel == tangential_kernel();
+  if (!tangential && kernel != normal_kernel()) {
+    throw std::invalid_argument("only the normal and the tangential kernel have an inverse symbol");
   }
-  return std::make_unique<PeriodicInverseSymbol>(grid, tangential, pair, threads, at_edge);
+  if (part_of(grid, kernel, options.diagonal) == Part::whole) {
+    return std::make_unique<PeriodicInverseSymbol>(grid, tangential, law, options);
+  }
+  return std::make_unique<MirroredInverseSymbol>(grid, tangential, law, options);
 }
 
 }  // namespace slipstick::solver

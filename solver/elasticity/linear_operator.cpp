@@ -16,32 +16,30 @@ BlockKernel coupling_kernel() { return {2, 1, {Component::k13, Component::k23}};
 
 BlockKernel shear_kernel() { return {1, 2, {Component::k13, Component::k23}}; }
 
-namespace {
-
-std::unique_ptr<LinearOperator> make_convolution(const Grid& grid, const BlockKernel& kernel,
-                                                 const ElasticPair& pair, const OperatorOptions& options) {
-  if (grid.quadrant) {
-    return std::make_unique<MirroredConvolution>(grid, kernel, pair, options, options.diagonal);
+Part part_of(const Grid& grid, const BlockKernel& kernel, bool diagonal) {
+  const bool tangential = kernel == tangential_kernel();
+  if (grid.quadrant && !tangential && kernel != normal_kernel()) {
+    throw std::invalid_argument("only the normal and the tangential kernel have a quadrant's mirrors");
   }
-  return std::make_unique<Convolution>(grid, kernel, pair, options);
+  if (!diagonal) return grid.quadrant ? Part::quadrant : Part::whole;
+  if (!tangential || !grid.quadrant || grid.n1 != grid.n2 || grid.h1 != grid.h2) {
+    throw std::invalid_argument("only torsion on a square quadrant mirrors at the diagonal");
+  }
+  return Part::diagonal;
 }
-
-void require_whole(const Grid& grid) {
-  if (grid.quadrant) throw std::invalid_argument("only dcfft knows quadrants");
-}
-
-}  // namespace
 
 std::unique_ptr<LinearOperator> make_operator(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
-                                              const ElasticPair& pair, const OperatorOptions& options) {
-  if (kind != OperatorKind::dcfft) require_whole(grid);
+                                              const ElasticLaw& law, const OperatorOptions& options) {
+  const bool whole = part_of(grid, kernel, options.diagonal) == Part::whole;
+  if (kind != OperatorKind::dcfft && !whole) throw std::invalid_argument("only dcfft knows quadrants");
   switch (kind) {
     case OperatorKind::dcfft:
-      return make_convolution(grid, kernel, pair, options);
+      if (whole) return std::make_unique<Convolution>(grid, kernel, law, options);
+      return std::make_unique<MirroredConvolution>(grid, kernel, law, options);
     case OperatorKind::direct:
-      return std::make_unique<DirectSum>(grid, kernel, pair, options);
+      return std::make_unique<DirectSum>(grid, kernel, law, options);
     case OperatorKind::dense:
-      return std::make_unique<DenseMatrix>(grid, kernel, pair);
+      return std::make_unique<DenseMatrix>(grid, kernel, law);
   }
   throw std::logic_error("unknown operator kind");
 }

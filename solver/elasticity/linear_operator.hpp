@@ -7,7 +7,7 @@
 #include <stdexcept>
 #include <vector>
 
-#include "solver/elasticity/influence.hpp"
+#include "solver/elasticity/law/elastic_law.hpp"
 #include "solver/elasticity/operator_kind.hpp"
 #include "solver/grid/grid.hpp"
 #include "solver/grid/ranks.hpp"
@@ -29,7 +29,7 @@ BlockKernel coupling_kernel();
 BlockKernel shear_kernel();
 
 /// Fields of traction to fields of displacement on one grid. The methods know no more of elasticity than
-/// this, so that the three ways to evaluate it are interchangeable.
+/// this, so that the three ways to sum and all laws are interchangeable.
 class LinearOperator {
  public:
   using Field = Eigen::ArrayXd;
@@ -84,16 +84,27 @@ class LinearOperator {
   long applications_ = 0;
 };
 
+/// The part of a contact whose fields are kept: all of its grid; the quadrant x1, x2 > 0, whose mirror images
+/// the other three are; a square quadrant whose tractions are mirror images about its diagonal as well,
+/// q2(x1, x2) = -q1(x2, x1), so that q1 alone is read and u2 is written as the image of u1.
+enum class Part { whole, quadrant, diagonal };
+
+/// The part that a grid holds of a kernel's fields. Pressures are even in both coordinates; q1 is even in x1
+/// and odd in x2, q2 the reverse. diagonal: whether the tractions mirror about the diagonal. Throws
+/// std::invalid_argument where kernel or grid have no such mirrors.
+Part part_of(const Grid& grid, const BlockKernel& kernel, bool diagonal);
+
+/// What an operator and its preconditioner are made with, beside grid, kernel and law.
 struct OperatorOptions {
   int threads = 1;
-  /// On a square quadrant, tangential: the fields are mirror images about the diagonal too.
-  bool diagonal = false;
+  bool diagonal = false;  ///< see part_of()
+  bool at_edge = false;   ///< whether fields reach the edge of a whole grid
 };
 
-/// On a quadrant it is the operator of the fields' mirror images. Throws std::invalid_argument where the kind
-/// (other than dcfft) or the kernel (coupling) has no such form.
+/// The operator of the fields that part_of() says. Throws what that throws, and std::invalid_argument for
+/// another kind than dcfft on a part of a grid.
 std::unique_ptr<LinearOperator> make_operator(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
-                                              const ElasticPair& pair, const OperatorOptions& options = {});
+                                              const ElasticLaw& law, const OperatorOptions& options = {});
 
 /// What all ranks together will send in one application in double precision by discrete convolution.
 double predicted_sent_bytes(const Grid& grid, const BlockKernel& kernel);

@@ -13,17 +13,6 @@ namespace {
 
 Index groups(Index lines, Index group) { return (lines + group - 1) / group; }
 
-BlockKernel checked(BlockKernel kernel, const Grid& grid, bool diagonal) {
-  if (!grid.quadrant) throw std::invalid_argument("a mirrored convolution needs the grid of a quadrant");
-  if (kernel != normal_kernel() && kernel != tangential_kernel()) {
-    throw std::invalid_argument("a mirrored convolution of another kernel than K33 or K11, K12, K22");
-  }
-  if (diagonal && (kernel != tangential_kernel() || grid.n1 != grid.n2 || grid.h1 != grid.h2)) {
-    throw std::invalid_argument("mirror images about the diagonal need torsion of a square of square cells");
-  }
-  return kernel;
-}
-
 /// The components whose spectra are kept, in the order of the products.
 std::vector<Component> distinct_components(const BlockKernel& kernel, bool diagonal) {
   if (kernel == normal_kernel()) return {Component::k33};
@@ -31,7 +20,7 @@ std::vector<Component> distinct_components(const BlockKernel& kernel, bool diago
   return {Component::k11, Component::k12, Component::k22};
 }
 
-/// double lines of h + 1 coefficients, from one to the next and from one coefficient to the next.
+/// Lines of h + 1 coefficients, from one to the next and from one coefficient to the next.
 struct KernelLines {
   Index count;
   Index distance;
@@ -40,7 +29,7 @@ struct KernelLines {
 
 /// Cosine transforms over half a period, 0..h, of lines that are even about both ends; sine transforms of odd
 /// ones. In place. Two lines are the real and the imaginary part of a complex one over the whole period,
-/// whose plan is found far sooner than that of a cosine transform.
+/// and FFTW plans that far sooner than a cosine transform.
 void transform_lines(double* values, const KernelLines& lines, Index h, bool odd, int threads) {
   std::vector<FftwBuffer> periods, transforms;
   for (int thread = 0; thread < threads; ++thread) {
@@ -91,10 +80,10 @@ std::size_t transformed_reals(Index frequencies) {
 
 }  // namespace
 
-MirroredConvolution::MirroredConvolution(const Grid& quadrant, BlockKernel kernel, const ElasticPair& pair,
-                                         const OperatorOptions& options, bool diagonal)
-    : LinearOperator(quadrant, checked(std::move(kernel), quadrant, diagonal)),
-      diagonal_(diagonal),
+MirroredConvolution::MirroredConvolution(const Grid& quadrant, BlockKernel kernel, const ElasticLaw& law,
+                                         const OperatorOptions& options)
+    : LinearOperator(quadrant, std::move(kernel)),
+      diagonal_(part_of(quadrant, this->kernel(), options.diagonal) == Part::diagonal),
       threads_(std::max(options.threads, 1)),
       along1_(quadrant.n1),
       along2_(quadrant.n2),
@@ -110,8 +99,8 @@ MirroredConvolution::MirroredConvolution(const Grid& quadrant, BlockKernel kerne
   own_column_groups_ = ranks_ ? Ranks::own_share(column_groups_) : Share{0, column_groups_};
   if (diagonal_) transformed_ = FftwBuffer(transformed_reals(along1_.frequencies()));
   const std::vector<Component> components = distinct_components(this->kernel(), diagonal_);
-  auto tables = influence_tables(components, pair, quadrant.h1, quadrant.h2, along1_.frequencies() + 1,
-                                 along2_.frequencies() + 1, threads_);
+  const Grid offsets{along1_.frequencies() + 1, along2_.frequencies() + 1, quadrant.h1, quadrant.h2};
+  auto tables = law.influence_tables(components, offsets, threads_);
   for (std::size_t c = 0; c < components.size(); ++c) {
     spectra_.push_back(kernel_spectrum(components[c], std::move(tables[c])));
   }
@@ -290,7 +279,7 @@ void MirroredConvolution::columns_backward_diagonal(int thread, Index group) {
   along1_.backward(column_workspace(thread, 0), columns<double>(0, group), parity_of(0).x1, product);
 }
 
-/// Of a group of rows of u1, while it is in cache: u2(x2, x1) = -u1(x1, x2).
+/// Writes u2(x2, x1) = -u1(x1, x2) from a group of rows of u1, while these are in cache.
 void MirroredConvolution::mirror_about_diagonal(Index group, std::span<double> displacement) const {
   const Index n = this->grid().n1;
   const Index first = group * kLines;

@@ -27,10 +27,9 @@ namespace slipstick::solver {
 /// diagonal, q2(x1, x2) = -q1(x2, x1): q1 alone is read and transformed, u2 is u1's image. Half the work.
 class MirroredConvolution final : public LinearOperator {
  public:
-  /// Throws std::invalid_argument where the grid is no quadrant, for a kernel that is neither normal nor
-  /// tangential, and with `diagonal` for another kernel than the tangential one or unequal sides or cells.
-  MirroredConvolution(const Grid& quadrant, BlockKernel kernel, const ElasticPair& pair,
-                      const OperatorOptions& options, bool diagonal = false);
+  /// Throws what part_of() throws for the grid of a quadrant.
+  MirroredConvolution(const Grid& quadrant, BlockKernel kernel, const ElasticLaw& law,
+                      const OperatorOptions& options);
   static double sent_bytes(const Grid& quadrant, const BlockKernel& kernel);
 
  private:

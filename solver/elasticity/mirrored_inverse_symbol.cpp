@@ -138,21 +138,21 @@ void mix_with_other_half(Index count, const double* __restrict p11, const double
 
 }  // namespace
 
-MirroredInverseSymbol::MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair,
-                                             Diagonal diagonal, int threads)
+MirroredInverseSymbol::MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticLaw& law,
+                                             const OperatorOptions& options)
     : grid_(grid),
       tangential_(tangential),
-      symmetric_(diagonal == Diagonal::yes),
+      symmetric_(options.diagonal),
       t1_(transform_length(grid.n1)),
       t2_(transform_length(grid.n2)),
       half_(t2_ / 2 + 1),
-      diagonal_(mean_inverse_symbol(mirrored(grid), pair, tangential)),
+      diagonal_(mean_inverse_symbol(mirrored(grid), law, tangential)),
       columns_(PlaneTransform::own_columns(plane_of(grid, tangential, symmetric_))),
-      table_(mirrored(grid), pair, entries(tangential, diagonal == Diagonal::yes), frequencies(t2_, columns_),
+      table_(mirrored(grid), law, entries(tangential, options.diagonal), frequencies(t2_, columns_),
              0.5 / (static_cast<double>(t1_) * static_cast<double>(t2_))),
-      transform_(plane_of(grid, tangential, symmetric_), threads),
+      transform_(plane_of(grid, tangential, symmetric_), options.threads),
       scratch_(coefficient_size(half_, tangential_ && !symmetric_)),
-      coefficients_(static_cast<std::size_t>(threads * scratch_)),
+      coefficients_(static_cast<std::size_t>(options.threads * scratch_)),
       twiddles_(static_cast<std::size_t>(twiddle_size(t1_, half_))) {
   fill_twiddles();
 }

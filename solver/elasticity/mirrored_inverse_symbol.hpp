@@ -25,14 +25,14 @@ struct Twiddles {
 /// odd ones backwards, times a twiddle factor (Makhoul, IEEE Transactions on Acoustics, Speech and Signal
 /// Processing 28, 1980); in two dimensions so along each. Coefficients of the frequencies k1 and t1 - k1 by
 /// k2 and t2 - k2 follow from the Fourier transform at (k1, k2) and (t1 - k1, k2) and from nothing else. A
-/// sine transform is a cosine transform of samples with alternating signs, t - k in place of its frequency k:
+/// sine transform is a cosine transform of samples with alternating signs, t - k instead of its frequency k:
 /// the same four, in another order. So two rows of the transform at a time are turned into coefficients,
 /// multiplied and turned back.
 class MirroredInverseSymbol final : public InverseSymbol {
  public:
-  /// With Diagonal::yes only the first component is transformed, of which the second is minus the transpose.
-  MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticPair& pair, Diagonal diagonal,
-                        int threads);
+  /// With options.diagonal the first component alone is transformed. The second is minus its transpose.
+  MirroredInverseSymbol(const Grid& grid, bool tangential, const ElasticLaw& law,
+                        const OperatorOptions& options);
 
   void apply(std::span<double> field) override;
   std::array<double, 2> diagonal() const override { return diagonal_; }
@@ -47,7 +47,7 @@ class MirroredInverseSymbol final : public InverseSymbol {
     double* ss;
   };
 
-  /// Of each thread and field, and after them a row that is thrown away.
+  /// A thread's memory: coefficients of each field, and after them a row that is thrown away.
   double* scratch(int thread) { return coefficients_.data() + thread * scratch_; }
   Coefficients coefficients(int thread, Index f);
   void fill_twiddles();
@@ -56,13 +56,13 @@ class MirroredInverseSymbol final : public InverseSymbol {
   void load(int thread, Index f, Index i, const double* values);
   void store(int thread, Index f, Index i, double* values);
   Twiddles twiddles(Index k1, Index first_column) const;
-  /// Of some columns; count: how many they are, known to the compiler where these are whole cache lines.
+  /// In some columns. count: their number, known to the compiler where they are whole cache lines.
   template <typename Count>
   void separate(int thread, const PlaneColumns& columns, Count count, Index f, Index k1);
   template <typename Count>
   void join(int thread, const Coefficients& from, const PlaneColumns& columns, Count count, Index f,
             Index k1);
-  /// work(thread, k1) for the rows k1 = 0..t1/2, with each of which goes t1 - k1.
+  /// work(thread, k1) for the rows k1 = 0..t1/2, each for itself and for row t1 - k1.
   template <typename Work>
   void for_row_pairs(const Work& work);
   template <typename Count>

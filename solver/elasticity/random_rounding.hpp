@@ -15,10 +15,11 @@ namespace slipstick::solver {
 std::unique_ptr<LinearOperator> rounded_at_random(std::unique_ptr<LinearOperator> op,
                                                   const BlockKernel& kernel, std::uint64_t seed);
 
-/// Keeps the direction of rounding that it finds, and restores it in the end.
+/// Keeps how this thread rounds, or sets it, and restores in the end what it found.
 class KeptRounding {
  public:
   KeptRounding() : found_(std::fegetround()) {}
+  explicit KeptRounding(int direction) : KeptRounding() { std::fesetround(direction); }
   ~KeptRounding() { std::fesetround(found_); }
   KeptRounding(const KeptRounding&) = delete;
   KeptRounding& operator=(const KeptRounding&) = delete;

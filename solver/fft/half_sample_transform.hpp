@@ -72,7 +72,7 @@ class HalfSampleTransform {
     store(work, lines, parity);
   }
 
-  /// What a source returns for a row in memory.
+  /// A source's answer for a row in memory.
   static auto packets(const double* row) {
     return [row](Index line) { return P::load(row + line); };
   }
@@ -99,7 +99,7 @@ class HalfSampleTransform {
   void store_pair(double* plain, Line<double> first, Line<double> second, int parity) const;
   /// Writes complex samples from t on to a line and to its turned copy.
   void put(double* plain, Index t, Vector z) const;
-  /// What the inverse transforms of the two amount to.
+  /// The sum of the inverse transforms of the two.
   Vector get(double* plain, Index t) const;
   double* turned(double* plain) const { return plain + 2 * kPairs * line_stride_; }
   void transform_forward(Workspace& work) const;

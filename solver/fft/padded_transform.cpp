@@ -16,8 +16,8 @@ std::complex<double> times_conjugate(std::complex<double> a, std::complex<double
   return {a.real() * b.real() + a.imag() * b.imag(), a.imag() * b.real() - a.real() * b.imag()};
 }
 
-/// Neighbouring columns lie pages apart, where the processor does not look ahead: they are asked for by hand,
-/// so many before their turn.
+/// Neighbouring columns lie pages apart, where the processor does not look ahead: they are prefetched
+/// this many columns before their turn.
 constexpr Index kAhead = 12;
 
 /// exp(-i pi j/m), 0 <= j < n.

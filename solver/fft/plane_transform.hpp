@@ -9,8 +9,8 @@
 
 namespace slipstick::solver {
 
-/// Fields of n1 x n2 values, of whose rows so many hold samples and the others are zero: sample i stands in
-/// row place(i, n1). whole: all rows are kept, for what is done with the whole plane; on one rank alone.
+/// Fields of n1 x n2 values. `samples` of the rows hold samples, sample i in row place(i, n1), and the others
+/// are zero. whole: all rows are kept, for work on the whole plane; on one rank alone.
 struct PlaneShape {
   Index n1;
   Index n2;
@@ -32,7 +32,7 @@ struct PlaneColumns {
 
 /// Real fields that are Fourier transformed: a workspace, the plans for it. Rows go one by one, from and to a
 /// thread's own (FFTW finds a plan three times as fast as in place), columns a cache line of them at a time;
-/// on so many threads, with the same result on any. Each of several ranks carries its own rows of samples and
+/// the number of threads changes no bit. Each of several ranks carries its own rows of samples and
 /// its share of the columns.
 class PlaneTransform {
  public:
@@ -87,7 +87,7 @@ class PlaneTransform {
   void backward_sample(int thread, Index field, Index i) {
     fftw_execute_dft_c2r(row_backward_.get(), numbers(sample(field, i)), own_row(thread));
   }
-  /// Of a whole plane the rows without samples, in which transforms write.
+  /// Zeroes the rows of a whole plane that hold no samples. Transforms write in them.
   void clear_others(Index field) {
     in_parts(threads_, shape_.n1 - shape_.samples, [&](int, Index begin, Index end) {
       for (Index i = shape_.samples + begin; i < shape_.samples + end; ++i) {
@@ -146,7 +146,7 @@ class PlaneTransform {
 
  private:
   static constexpr Index kLine = 64 / static_cast<Index>(sizeof(double));  ///< reals in a cache line
-  /// Rows lie where the processor does not look ahead: they are asked for by hand, so many before their turn.
+  /// Rows lie where the processor does not look ahead: they are prefetched this many before their turn.
   static constexpr Index kAhead = 12;
 
   static Index batches(const PlaneShape& shape) { return (shape.n2 / 2 + kColumns) / kColumns; }

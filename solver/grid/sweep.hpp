@@ -2,12 +2,20 @@
 
 #include <algorithm>
 #include <array>
+#include <cstddef>
 #include <vector>
 
 #include "solver/grid/ranks.hpp"
 #include "solver/grid/threads.hpp"
 
 namespace slipstick::solver {
+
+/// Adds several sums of one sweep at once.
+template <std::size_t N>
+std::array<double, N>& operator+=(std::array<double, N>& sums, const std::array<double, N>& more) {
+  for (std::size_t k = 0; k < N; ++k) sums[k] += more[k];
+  return sums;
+}
 
 /// Those cells of a grid that a loop visits, as intervals of neighbours: cells that carry no traction cost
 /// nothing. Sums are taken in bands of rows, see RowBands, and then in their order, whatever the threads of

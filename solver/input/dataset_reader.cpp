@@ -3,18 +3,16 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 #include <hdf5.h>
+#include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cstring>
-#include <exception>
+#include <csignal>
 #include <set>
 #include <stdexcept>
-#include <utility>
 
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
-#include "solver/input/run_apart.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -22,12 +20,8 @@ namespace {
 using Eigen::Index;
 using std::filesystem::path;
 
-/// Of numbers; the widest floating-point format in use has so many bytes.
+/// Bytes of the widest floating-point format in use.
 constexpr std::size_t kWidestNumber = 16;
-
-/// What the reading process sends of each dataset: this, then the values; of one that cannot be read a
-/// complaint, to the end.
-enum class Tag : char { values = '=', complaint = '!' };
 using Extent = std::array<Index, 2>;
 /// A file of more datasets and groups is not searched to its end.
 constexpr std::size_t kMaxNames = 100'000;
@@ -52,7 +46,7 @@ void require(bool good, const std::string& complaint) {
   if (!good) throw std::runtime_error(complaint);
 }
 
-/// Links may lead to other files, as may data that lie outside the file or are put together from others'.
+/// Throws for a link, which may lead to another file.
 void require_own_dataset(hid_t file, const std::string& name) {
   H5L_info_t link{};
   for (std::size_t end = 0; end != std::string::npos;) {
@@ -90,6 +84,7 @@ std::string find_group(hid_t file, const std::vector<std::string>& names) {
   return groups[0];
 }
 
+/// Throws for data that lie outside the file or are put together from other files.
 void require_own_data(hid_t dataset) {
   const Id creation(H5Dget_create_plist(dataset), H5Pclose, "cannot be read");
   const H5D_layout_t layout = H5Pget_layout(creation.get());
@@ -132,65 +127,31 @@ Dataset read_dataset(hid_t file, const std::string& name, int rank, Index most) 
   return values;
 }
 
-/// The work of the reading process.
-void send_datasets(const path& file, const std::vector<std::string>& names, int rank, Index most,
-                   const Send& send) {
-  std::string at;
-  try {
-    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
-    const Id hdf5(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "cannot be read as HDF5");
-    at = fmt::format("dataset {}: ", names[0]);
-    const std::string group = rank == kTableRank ? find_group(hdf5.get(), names) : "";
-    for (const std::string& name : names) {
-      at = fmt::format("dataset {}: ", name);
-      const Dataset values = read_dataset(hdf5.get(), group + name, rank, most);
-      const Tag tag = Tag::values;
-      const Extent extent{values.rows(), values.cols()};
-      send(&tag, sizeof tag);
-      send(extent.data(), sizeof extent);
-      send(values.data(), sizeof(double) * static_cast<std::size_t>(values.size()));
-    }
-  } catch (const std::exception& error) {
-    const Tag tag = Tag::complaint;
-    const std::string complaint = at + error.what();
-    send(&tag, sizeof tag);
-    send(complaint.data(), complaint.size());
-  }
-}
-
-/// Takes from what was received, from the front. Throws where there is too little left.
-class Received {
+/// Says which file it was, should the HDF5 library crash while this lives: the library has no defence against
+/// files that were damaged with intent. The process then ends with the program's exit code for bad input.
+class CrashMessage {
  public:
-  Received(std::string bytes, const path& file) : bytes_(std::move(bytes)), file_(file) {}
-
-  Dataset take_dataset(Index most) {
-    if (take<Tag>() == Tag::complaint) throw InputError(file_.string(), bytes_.substr(taken_));
-    const auto [rows, columns] = take<Extent>();
-    if (rows < 1 || columns < 1 || rows > most || columns > most / rows) fail();
-    Dataset values(rows, columns);
-    take(values.data(), sizeof(double) * static_cast<std::size_t>(values.size()));
-    return values;
+  explicit CrashMessage(const path& file) {
+    text = fmt::format("slipstick: {}: is damaged: the HDF5 library does not survive reading it\n",
+                       printable(file.string()));
+    struct sigaction say {};
+    say.sa_handler = [](int) {
+      constexpr int kBadInput = 2;
+      [[maybe_unused]] const ssize_t written = write(STDERR_FILENO, text.data(), text.size());
+      _exit(kBadInput);
+    };
+    for (std::size_t i = 0; i < kCrashes.size(); ++i) sigaction(kCrashes[i], &say, &before_[i]);
   }
+  ~CrashMessage() {
+    for (std::size_t i = 0; i < kCrashes.size(); ++i) sigaction(kCrashes[i], &before_[i], nullptr);
+  }
+  CrashMessage(const CrashMessage&) = delete;
+  CrashMessage& operator=(const CrashMessage&) = delete;
 
  private:
-  [[noreturn]] void fail() const {
-    throw InputError(file_.string(), "is damaged: the HDF5 library does not survive reading it");
-  }
-  void take(void* to, std::size_t size) {
-    if (bytes_.size() - taken_ < size) fail();
-    std::memcpy(to, bytes_.data() + taken_, size);
-    taken_ += size;
-  }
-  template <typename Value>
-  Value take() {
-    Value value{};
-    take(&value, sizeof value);
-    return value;
-  }
-
-  std::string bytes_;
-  const path& file_;
-  std::size_t taken_ = 0;
+  static constexpr std::array kCrashes{SIGSEGV, SIGBUS, SIGFPE, SIGABRT};
+  static inline std::string text;  // made before: a handler of signals may not allocate
+  std::array<struct sigaction, kCrashes.size()> before_{};
 };
 
 }  // namespace
@@ -198,12 +159,21 @@ class Received {
 std::vector<Dataset> read_datasets(const path& file, const std::vector<std::string>& names, int rank,
                                    Index most) {
   require_input_file(file, kLargestHdf5, "an HDF5 file");
-  const std::size_t largest =
-      names.size() * (sizeof(Tag) + sizeof(Extent) + sizeof(double) * static_cast<std::size_t>(most));
-  Received received(
-      run_apart([&](const Send& send) { send_datasets(file, names, rank, most, send); }, largest), file);
+  const CrashMessage crash(file);
   std::vector<Dataset> datasets;
-  for (std::size_t i = 0; i < names.size(); ++i) datasets.push_back(received.take_dataset(most));
+  std::string at;
+  try {
+    H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the library's own messages stay off the terminal
+    const Id hdf5(H5Fopen(file.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT), H5Fclose, "cannot be read as HDF5");
+    at = fmt::format("dataset {}: ", names[0]);
+    const std::string group = rank == kTableRank ? find_group(hdf5.get(), names) : "";
+    for (const std::string& name : names) {
+      at = fmt::format("dataset {}: ", name);
+      datasets.push_back(read_dataset(hdf5.get(), group + name, rank, most));
+    }
+  } catch (const std::runtime_error& error) {
+    throw InputError(file.string(), at + error.what());
+  }
   return datasets;
 }
 

@@ -40,7 +40,7 @@ class Handle {
 
 using PutBytes = std::function<void(const void* bytes, std::size_t count)>;
 
-/// What a dataset holds; first: where this rank's part begins.
+/// The content of a dataset; first: where this rank's part begins.
 struct Content {
   std::string name;
   hid_t type;
@@ -55,7 +55,7 @@ constexpr std::size_t kNames = std::size_t{1} << 16;  ///< bytes of a file besid
 
 [[noreturn]] void fail(int error) { throw std::system_error(error, std::generic_category()); }
 
-/// Of what was written, which is on the disk otherwise.
+/// The error of what was written; 0: it is on the disk.
 int error_of(std::FILE* file) {
   const bool done = std::ferror(file) == 0 && std::fflush(file) == 0 && fsync(fileno(file)) == 0;
   return done ? 0 : (errno != 0 ? errno : EIO);
@@ -142,7 +142,6 @@ void write_shared(const fs::path& path, const std::vector<Content>& contents) {
   bool begun = false;
   try {
     write_whole_file(path, [&](std::FILE* file) {
-      if (begun) fail(ENOENT);  // the others are done with a draft that is gone
       const Offsets offsets = lay_out(file, contents);
       begun = true;
       const std::string what = Ranks::of_first(fmt::format("{} {}", fmt::join(offsets, " "), name_of(file)));

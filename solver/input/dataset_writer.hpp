@@ -16,7 +16,7 @@ struct NamedText {
   std::string text;
 };
 
-/// Numbers under a name, worked out when they are written. Of several ranks each has a part of them.
+/// Numbers under a name, worked out when they are written. Each rank has a part of them.
 struct LongDataset {
   using Put = std::function<void(std::span<const double> values)>;
 

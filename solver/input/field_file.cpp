@@ -67,7 +67,7 @@ std::vector<Column> read_hdf5_columns(const path& file, const std::vector<std::s
 /// VTK image data as write_vti() writes it.
 std::vector<Column> read_vti_columns(const path& file, const std::vector<std::string>& names,
                                      const std::vector<std::string>& stored) {
-  const std::string text = read_input_file(file, kLargestTable, "VTK image data");
+  const std::string text = read_input_file(file, kLargestTextTable, "VTK image data");
   std::vector<Column> columns;
   for (std::size_t c = 0; c < names.size(); ++c) {
     const auto at = text.find(fmt::format(" Name=\"{}\"", stored[c]));

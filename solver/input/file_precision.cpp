@@ -10,9 +10,9 @@
 namespace slipstick::solver {
 namespace {
 
-/// What tells every double apart.
+/// Digits that distinguish every double.
 constexpr int kDigitsOfDouble = 17;
-/// Numbers of so many digits may be in single precision by chance.
+/// Numbers with no more digits may be in single precision by chance.
 constexpr int kDigitsOfSingle = 7;
 /// Numbers that need more decimals were not written with a fixed count of them.
 constexpr int kMaxDecimals = 20;

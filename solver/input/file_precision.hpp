@@ -4,13 +4,14 @@
 
 namespace slipstick::solver {
 
-/// How far a number in a file may be from the one that the program computed: by a part of its size, as where
-/// it was written with so many digits, or by so much, as where it was written with so many decimals.
+/// How far a number in a file may be from the one that the program computed: by a part of its size where it
+/// was written with a fixed count of digits, or by an amount where it was written with a fixed count of
+/// decimals.
 struct FilePrecision {
   double relative = 0.0;
   double absolute = 0.0;
 
-  /// Of each of some values.
+  /// The rounding of each value.
   Eigen::ArrayXd rounding(const Eigen::ArrayXd& values) const {
     return (relative * values.abs()).max(absolute);
   }

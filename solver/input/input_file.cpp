@@ -38,7 +38,7 @@ class InputFile {
     if (static_cast<std::uintmax_t>(status.st_size) > largest_) fail_for_size();
   }
 
-  /// What its size says need not be all: it may grow, and files of the system have none.
+  /// Reads to the end: a file may grow meanwhile, and files of the system have no size.
   std::string read() const {
     std::string text;
     std::array<char, 1 << 16> buffer;

@@ -13,8 +13,8 @@ inline constexpr std::uintmax_t kLargestSettings = std::uintmax_t{4} << 20;
 /// The result of a history of ten thousand steps; parsed, a JSON takes up to 25 times its text.
 inline constexpr std::uintmax_t kLargestJson = std::uintmax_t{128} << 20;
 /// Tables of numbers as text: all columns of a contact of five million cells.
-inline constexpr std::uintmax_t kLargestTable = std::uintmax_t{1} << 30;
-/// HDF5, of which only the datasets that are asked for are read.
+inline constexpr std::uintmax_t kLargestTextTable = std::uintmax_t{1} << 30;
+/// HDF5 files: only the datasets that are asked for are read.
 inline constexpr std::uintmax_t kLargestHdf5 = std::uintmax_t{16} << 30;
 
 /// Throws InputError, naming the file and `allowed` ("a TOML file"), for a folder, a device, a pipe, a file
@@ -33,7 +33,7 @@ bool lies_within(const std::filesystem::path& file, const std::filesystem::path&
 /// as \xNN.
 std::string printable(std::string_view text);
 
-/// What a file says, as a message shows it: its beginning, bytes other than printable ASCII as \xNN.
+/// The beginning of a file's text, as a message shows it: bytes other than printable ASCII as \xNN.
 std::string shown(std::string_view text);
 
 }  // namespace slipstick::solver

@@ -20,7 +20,7 @@ std::size_t edit_distance(const std::string& a, const std::string& b) {
 }
 
 std::string nearest_word(const std::string& word, const std::vector<std::string>& known) {
-  // Of a word that is endless the beginning tells as much.
+  // The beginning of an endless word tells as much as the word.
   constexpr std::size_t kMaxCompared = 100;
   const std::string compared = word.substr(0, kMaxCompared);
   const auto nearest = std::min_element(known.begin(), known.end(), [&](const auto& a, const auto& b) {

@@ -21,7 +21,7 @@ std::string word_of(const Words<Value>& words, Value value) {
   throw std::logic_error("a value without a word");
 }
 
-/// What a number may be, in words and as a test; the test is false for NaN.
+/// The numbers that a key allows, in words and as a test; the test is false for NaN.
 struct Range {
   std::string words;
   std::function<bool(double)> contains;
@@ -34,23 +34,23 @@ inline const Range kFinite{"finite", [](double x) { return std::isfinite(x); }};
 /// Whole numbers from low to high.
 Range whole(double low, double high);
 
-/// What a key holds.
+/// The type of a key's value.
 enum class KeyType { number, pair, numbers, word, text, texts, file, flag, values, table, tables };
 
 /// A key of a settings file. Its reader takes from here what is allowed, and the reference shows all of it.
 struct SettingKey {
   std::string name;  ///< dotted; in an array of tables without an index, as step.moment
   KeyType type;
-  std::string unit;       ///< empty where it has none
-  std::string otherwise;  ///< what holds where it is left out, as TOML has it or in words; or kRequired
-  Range allowed;          ///< of numbers; of words, their list
-  std::string meaning;    ///< one sentence
+  std::string unit;                      ///< empty where it has none
+  std::string otherwise;                 ///< the default, as TOML has it or in words; or kRequired
+  Range allowed;                         ///< of numbers; of words, their list
+  std::string meaning;                   ///< one sentence
   std::vector<std::string> shapes = {};  ///< of the indenter, that have it; empty: it depends on no shape
 };
 using SettingKeys = std::vector<SettingKey>;
 
 inline constexpr const char* kRequired = "required";
-/// Of keys that hold neither numbers nor words.
+/// For keys that hold neither numbers nor words.
 inline const Range kAny{};
 
 /// Words as what a key may be.

@@ -24,12 +24,12 @@ namespace {
 
 using std::filesystem::path;
 
-/// Values on a line: as many as a grid has cells along a side.
+/// Values on a line, at most: a grid has no more cells along a side.
 constexpr std::size_t kMaxColumns = 65536;
-/// Written by some programs at the beginning of a text.
+/// Some programs begin a text with it.
 constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
 constexpr std::string_view kBlanks = " \t\r";
-/// Where several fit, the first is meant: a comma may be a decimal mark, a blank may be for the eye.
+/// The first that fits holds: a comma may be a decimal mark, a blank may be for the eye.
 constexpr std::array kSeparators{';', '\t', ',', ' '};
 constexpr std::string_view kSeparatorsInWords =
     "commas, semicolons, tabs or blanks between columns; no commas between them where they are decimal marks";
@@ -91,7 +91,7 @@ class TextTable {
   explicit TextTable(const path& file)
       : file_(file),
         text_(read_input_file(
-            file, kLargestTable,
+            file, kLargestTextTable,
             "a table as text (CSV), VTK image data named .vti, or an HDF5 file named .h5 or .hdf5")) {
     if (text_.starts_with(kByteOrderMark)) next_ = kByteOrderMark.size();
   }
@@ -110,7 +110,7 @@ class TextTable {
     return found;
   }
 
-  /// Of columns whose names were told: a line of names before the rows says nothing.
+  /// Where the caller told the names, a line of names before the rows says nothing.
   void skip_header() {
     const auto [next, line] = std::pair(next_, line_);
     std::string_view first = next_line();
@@ -215,8 +215,8 @@ class TextTable {
     return found;
   }
 
-  /// Nothing at the end of a line is no value, beyond so many columns. Blanks are one separator however many;
-  /// a unit belongs to the name before it.
+  /// Empty values at the end of a line do not count, beyond so many columns. Blanks are one separator however
+  /// many; a unit belongs to the name before it.
   void split(std::string_view line, char separator, std::size_t columns) {
     values_.clear();
     const auto add = [&](std::string_view value) {

@@ -5,14 +5,13 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <cctype>
-#include <cstring>
 #include <map>
 #include <sstream>
 #include <stdexcept>
 
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
+#include "solver/input/long_key.hpp"
 #include "solver/input/misspelling.hpp"
 
 namespace slipstick::solver {
@@ -20,59 +19,7 @@ namespace {
 
 /// Edits that make a key look like a misspelling of another.
 constexpr std::size_t kMisspelling = 3;
-/// Parts of a dotted key. No key that is read has more than five; keys nest 256 deep at most.
-constexpr std::size_t kMaxKeyParts = 32;
-constexpr const char* kLongKey = "a key of more than 32 parts; allowed: 32";
-
-/// Where the string or comment that begins at a place ends: the place behind it; the place itself where none
-/// begins there.
-std::size_t end_of_words(const std::string& text, std::size_t at) {
-  const char quote = text[at];
-  if (quote == '#') return std::min(text.find('\n', at), text.size());
-  if (quote != '"' && quote != '\'') return at;
-  const std::string lines(3, quote);
-  const std::string end = text.compare(at, 3, lines) == 0 ? lines : std::string(1, quote);
-  for (std::size_t i = at + end.size(); i < text.size(); ++i) {
-    if (quote == '"' && text[i] == '\\') {
-      ++i;
-    } else if (text.compare(i, end.size(), end) == 0) {
-      i += end.size();  // behind three quotes two more may stand, which belong to the string
-      return end == lines ? std::min(text.find_first_not_of(quote, i), i + 2) : i;
-    }
-  }
-  return text.size();
-}
-
-/// Tables in tables end one another recursively: keys of a million parts would overrun the stack. Parts are
-/// counted by the dots between them, outside of strings; those of the tables in braces around a key add up.
-/// Returns the line of the first key that is too long; 0: there is none.
-std::ptrdiff_t line_of_long_key(const std::string& text) {
-  struct Table {
-    std::size_t around = 0;  ///< parts of the keys in front of all open braces
-    std::size_t key = 1;     ///< of its key before the last '='
-  };
-  std::vector<Table> tables(1);
-  std::size_t parts = 1;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    const std::size_t behind = end_of_words(text, i);
-    if (behind > i) {
-      i = behind - 1;
-      continue;
-    }
-    const char c = text[i];
-    if (c == '.') ++parts;
-    if (c == '=') tables.back().key = parts;
-    if (c == '{') tables.push_back({.around = tables.back().around + tables.back().key});
-    if (c == '}' && tables.size() > 1) tables.pop_back();
-    const bool in_key =
-        std::isalnum(static_cast<unsigned char>(c)) != 0 || std::strchr("._- \t", c) != nullptr;
-    if (!in_key) parts = 1;
-    if (tables.back().around + parts > kMaxKeyParts) {
-      return 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(i), '\n');
-    }
-  }
-  return 0;
-}
+const std::string kLongKey = fmt::format("a key of more than {0} parts; allowed: {0}", kMaxKeyParts);
 
 toml::table parse(const std::string& text, const std::string& file) {
   if (text.find('\0') != std::string::npos) {
@@ -111,34 +58,36 @@ bool is_array_of_tables(const toml::node& node) {
   return node.is_array() && node.is_homogeneous<toml::table>();
 }
 
-/// Dotted paths of all leaves of a table.
-void collect_leaves(const toml::table& table, const std::string& prefix, std::vector<std::string>& leaves) {
+/// A value of a table, and its dotted path.
+struct Leaf {
+  std::string key;
+  const toml::node* value;
+};
+
+/// Collects all leaves of a table. into_arrays: those of tables in arrays too, else such an array is a leaf.
+void collect_leaves(const toml::table& table, const std::string& prefix, bool into_arrays,
+                    std::vector<Leaf>& leaves) {
   for (const auto& [name, child] : table) {
     const std::string key = prefix + std::string(name.str());
     if (const toml::table* const inner = child.as_table()) {
-      collect_leaves(*inner, key + ".", leaves);
-    } else if (is_array_of_tables(child)) {
+      collect_leaves(*inner, key + ".", into_arrays, leaves);
+    } else if (into_arrays && is_array_of_tables(child)) {
       const toml::array& tables = *child.as_array();
       for (std::size_t i = 0; i < tables.size(); ++i) {
-        collect_leaves(*tables[i].as_table(), fmt::format("{}[{}].", key, i), leaves);
+        collect_leaves(*tables[i].as_table(), fmt::format("{}[{}].", key, i), true, leaves);
       }
     } else {
-      leaves.push_back(key);
+      leaves.push_back({key, &child});
     }
   }
 }
 
-/// "key=value" for all leaves of a table, keys dotted, values as TOML has them.
-void collect_assignments(const toml::table& table, const std::string& prefix,
-                         std::vector<std::string>& assignments) {
-  for (const auto& [name, child] : table) {
-    const std::string key = prefix + std::string(name.str());
-    if (const toml::table* const inner = child.as_table()) {
-      collect_assignments(*inner, key + ".", assignments);
-    } else {
-      assignments.push_back(fmt::format("{}={}", key, print(child)));
-    }
-  }
+std::vector<std::string> keys_of(const toml::table& table, const std::string& prefix = "") {
+  std::vector<Leaf> leaves;
+  collect_leaves(table, prefix, true, leaves);
+  std::vector<std::string> keys;
+  for (const Leaf& leaf : leaves) keys.push_back(leaf.key);
+  return keys;
 }
 
 /// The table that one part of a dotted path names, "name" or "name[index]": one without an index is made
@@ -154,7 +103,7 @@ SettingsText settings_of(const std::filesystem::path& file) {
   return {.text = read_input_file(file, kLargestSettings, "a TOML file"), .file = file};
 }
 
-struct SceneReader::Questions {
+struct SceneReader::ReadKeys {
   toml::table root;
   std::map<std::string, Range> keys;
   std::set<std::string> known;
@@ -177,7 +126,7 @@ SceneReader::SceneReader(const std::filesystem::path& file, const std::vector<st
 
 SceneReader::SceneReader(const SettingsText& settings, const std::vector<std::string>& overrides,
                          const SettingKeys& keys)
-    : file_(settings.file), toml_(new Questions{parse(settings.text, settings.file.string()), {}, {}}) {
+    : file_(settings.file), toml_(new ReadKeys{parse(settings.text, settings.file.string()), {}, {}}) {
   for (const SettingKey& key : keys) toml_->keys.emplace(key.name, key.allowed);
   for (const std::string& assignment : overrides) apply_override(assignment);
 }
@@ -202,7 +151,7 @@ void SceneReader::apply_override(const std::string& assignment) {
   std::vector<std::string> parts;
   while (std::getline(path, part, '.')) parts.push_back(part);
   if (parts.empty() || parts.size() > kMaxKeyParts) {
-    throw InputError(source, "allowed: a key of 1 to 32 parts");
+    throw InputError(source, fmt::format("allowed: a key of 1 to {} parts", kMaxKeyParts));
   }
   for (std::size_t i = 0; i + 1 < parts.size(); ++i) {
     table = table_below(*table, parts[i]);
@@ -241,9 +190,7 @@ void SceneReader::fail(const std::string& key, const std::string& value, const s
 
 /// A key that is missing may be there under a misspelt name: then that is what to say.
 void SceneReader::fail_missing(const std::string& key, const std::string& allowed) const {
-  std::vector<std::string> leaves;
-  collect_leaves(toml_->root, "", leaves);
-  for (const std::string& leaf : leaves) {
+  for (const std::string& leaf : keys_of(toml_->root)) {
     const bool similar = leaf.size() <= key.size() + kMisspelling && edit_distance(leaf, key) <= kMisspelling;
     if (similar && !toml_->known.contains(leaf)) fail_unknown(leaf);
   }
@@ -355,11 +302,11 @@ std::vector<std::string> SceneReader::assignments(const std::string& key) {
   const auto found = toml_->node(key);
   if (!found) return {};
   if (!found.is_table()) fail(key, print(*found.node()), "a table, { \"key\" = value }");
-  std::vector<std::string> leaves;
-  collect_leaves(*found.as_table(), key + ".", leaves);
-  toml_->known.insert(leaves.begin(), leaves.end());
+  for (const std::string& leaf : keys_of(*found.as_table(), key + ".")) toml_->known.insert(leaf);
+  std::vector<Leaf> leaves;
+  collect_leaves(*found.as_table(), "", false, leaves);
   std::vector<std::string> assignments;
-  collect_assignments(*found.as_table(), "", assignments);
+  for (const Leaf& leaf : leaves) assignments.push_back(fmt::format("{}={}", leaf.key, print(*leaf.value)));
   return assignments;
 }
 
@@ -377,9 +324,7 @@ std::string SceneReader::text_or(const std::string& key, const std::string& othe
 std::filesystem::path SceneReader::path(const std::string& key) { return file_.parent_path() / text(key); }
 
 void SceneReader::reject_unknown() const {
-  std::vector<std::string> leaves;
-  collect_leaves(toml_->root, "", leaves);
-  for (const std::string& leaf : leaves) {
+  for (const std::string& leaf : keys_of(toml_->root)) {
     if (!toml_->known.contains(leaf)) fail_unknown(leaf);
   }
 }

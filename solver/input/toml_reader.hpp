@@ -12,18 +12,19 @@
 
 namespace slipstick::solver {
 
-/// What a TOML file says, or might: `file` is what messages call it and where its relative paths begin.
+/// The text of a TOML file, or text that stands for one. Messages call it `file`, and its relative paths
+/// begin there.
 struct SettingsText {
   std::string text;
   std::filesystem::path file;
 };
-/// What a file says. Throws InputError where it cannot be read.
+/// Reads a file. Throws InputError where it cannot be read.
 SettingsText settings_of(const std::filesystem::path& file);
 
-/// A TOML file whose keys are asked for one by one, by dotted path; an index picks one of an array of tables,
-/// as in step[1].twist. What is allowed stands in the table of all keys; where it depends on other keys, the
-/// question says it. reject_unknown() at the end finds the keys that nobody asked for. Throws InputError; and
-/// std::logic_error for a question that the table does not know, unless that is empty.
+/// Reads the keys of a TOML file one by one, by dotted path; an index picks one of an array of tables, as in
+/// step[1].twist. The table of all keys says what is allowed; where that depends on other keys, the caller
+/// says it. reject_unknown() at the end finds keys that were not read. Throws InputError, and
+/// std::logic_error for a key that the table does not have, unless the table is empty.
 class SceneReader {
  public:
   SceneReader(const std::filesystem::path& file, const std::vector<std::string>& overrides,
@@ -62,8 +63,8 @@ class SceneReader {
   /// The elements of a list, at least one, as TOML writes them; none where the key is missing.
   std::vector<std::string> list(const std::string& key);
   bool flag_or(const std::string& key, bool otherwise);
-  /// What a table holds, as overrides: "key=value" with dotted keys, whatever they are; none where the table
-  /// is missing.
+  /// The content of a table as overrides: "key=value" with dotted keys, whatever they are; none where the
+  /// table is missing.
   std::vector<std::string> assignments(const std::string& key);
   std::string text(const std::string& key);
   std::string text_or(const std::string& key, const std::string& otherwise);
@@ -98,8 +99,8 @@ class SceneReader {
   std::string where(const std::string& key) const;
 
   std::filesystem::path file_;
-  struct Questions;  ///< the parsed file, the table of keys, and those that were asked for
-  std::shared_ptr<Questions> toml_;
+  struct ReadKeys;  ///< the parsed file, the table of keys, and those that were asked for
+  std::shared_ptr<ReadKeys> toml_;
   std::set<std::string> overridden_;
 };
 

@@ -7,7 +7,7 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <random>
+#include <memory>
 #include <system_error>
 #include <utility>
 
@@ -18,140 +18,85 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Between the name of a file and the digits that are its draft's own.
-constexpr std::string_view kDraft = ".part-";
-constexpr std::size_t kDigits = 8;
-/// Bytes of a file's name that are in its draft's: the name may be as long as the system allows, 255.
+/// Bytes of a file's name that its draft's name begins with: a name has 255 at most.
 constexpr std::size_t kLongestStem = 200;
-/// As many links as the system follows.
+/// The system follows as many links.
 constexpr int kMaxLinks = 40;
-/// A draft is made again where another process took it for abandoned, as it may before it is locked.
-constexpr int kMaxAttempts = 3;
 
 [[noreturn]] void refuse(const fs::path& file, int error) {
   throw InputError(file.string(), why_not_written(error));
 }
 
-/// A failed call of the system, by its errno.
-struct Failure {
-  int error;
-};
-
+/// For the result of a call of the system, which says why in errno.
 void require(bool done) {
-  if (!done) throw Failure{errno == 0 ? EIO : errno};
+  if (!done) throw std::system_error(errno == 0 ? EIO : errno, std::generic_category());
 }
 
 fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : "."; }
 
-std::string stem_of_drafts(const fs::path& file) {
-  return file.filename().string().substr(0, kLongestStem) + std::string(kDraft);
+/// Writes to an open file and closes it; then the system has all, or the disk.
+void fill(int descriptor, const std::function<void(std::FILE*)>& write, bool to_disk) {
+  require(descriptor >= 0);
+  std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(fdopen(descriptor, "wb"), std::fclose);
+  if (!stream) close(descriptor);
+  require(stream != nullptr);
+  write(stream.get());
+  require(std::ferror(stream.get()) == 0 && std::fflush(stream.get()) == 0);
+  if (to_disk) require(fsync(fileno(stream.get())) == 0);
+  require(std::fclose(stream.release()) == 0);
 }
 
-bool is_draft(const std::string& name, const std::string& stem) {
-  return name.starts_with(stem) && name.size() == stem.size() + kDigits &&
-         name.find_first_not_of("0123456789abcdef", stem.size()) == std::string::npos;
-}
-
-/// Who writes a draft has it locked, wherever that process runs: the system lets go when it ends. Numbers of
-/// processes tell less: one that is dead has its own until its parent asks.
-bool lock(int descriptor) { return flock(descriptor, LOCK_EX | LOCK_NB) == 0; }
-
-void remove_abandoned_drafts(const fs::path& file) {
-  std::error_code ignored;
-  const std::string stem = stem_of_drafts(file);
-  for (const auto& entry : fs::directory_iterator(folder_of(file), ignored)) {
-    if (!is_draft(entry.path().filename(), stem)) continue;
-    const int draft = open(entry.path().c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
-    if (draft < 0) continue;
-    if (lock(draft)) unlink(entry.path().c_str());
-    close(draft);
-  }
-}
-
-/// A stream that is closed.
-class Stream {
- public:
-  explicit Stream(int descriptor) {
-    require(descriptor >= 0);
-    file_ = fdopen(descriptor, "wb");
-    if (file_ == nullptr) close(descriptor);
-    require(file_ != nullptr);
-  }
-  ~Stream() {
-    if (file_ != nullptr) std::fclose(file_);
-  }
-  Stream(const Stream&) = delete;
-  Stream& operator=(const Stream&) = delete;
-
-  /// What `write` writes is with the system afterwards, or on the disk.
-  void take(const std::function<void(std::FILE*)>& write, bool to_disk) {
-    try {
-      write(file_);
-    } catch (const std::system_error& error) {  // as fmt::print() says it
-      throw Failure{error.code().value()};
-    }
-    require(std::ferror(file_) == 0 && std::fflush(file_) == 0);
-    if (to_disk) require(fsync(fileno(file_)) == 0);
-    require(std::fclose(std::exchange(file_, nullptr)) == 0);
-  }
-
- private:
-  std::FILE* file_ = nullptr;
-};
-
-/// A draft that takes the place of a file, or goes.
+/// A draft beside a file. It takes the file's place, or goes. Its writer has it locked until the writer ends,
+/// so that the next writer takes over what a killed one left, and nothing else.
 class Draft {
  public:
-  Draft(const fs::path& file, const struct stat* before) : file_(file) {
-    std::random_device random;
-    path_ = folder_of(file) / fmt::format("{}{:08x}", stem_of_drafts(file), random());
-    descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    require(descriptor_ >= 0);
-    lock(descriptor_);  // in vain where a file system knows none: there no draft is taken for abandoned
-    // Where the old file is somebody else's, its permissions are what can be kept of it.
-    if (before != nullptr) fchmod(descriptor_, before->st_mode & 07777);
+  explicit Draft(const fs::path& file) {
+    for (int number = 0; descriptor_ < 0; ++number) {
+      path_ = folder_of(file) /
+              fmt::format("{}.slipstick.part-{}", file.filename().string().substr(0, kLongestStem), number);
+      lock();
+    }
+    require(ftruncate(descriptor_, 0) == 0);
   }
   ~Draft() {
     if (!path_.empty()) unlink(path_.c_str());
-    if (descriptor_ >= 0) close(descriptor_);
+    close(descriptor_);
   }
   Draft(const Draft&) = delete;
   Draft& operator=(const Draft&) = delete;
 
-  void take(const std::function<void(std::FILE*)>& write) {
-    Stream(fcntl(descriptor_, F_DUPFD_CLOEXEC, 0)).take(write, true);
-  }
+  int descriptor() const { return descriptor_; }
 
-  void replace() {
-    require(std::rename(path_.c_str(), file_.c_str()) == 0);
+  void replace(const fs::path& file) {
+    require(std::rename(path_.c_str(), file.c_str()) == 0);
     path_.clear();
-    // That the name is on the disk too, some file systems cannot say.
-    const int folder = open(folder_of(file_).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+    // The name goes to the disk too, where the file system can do that.
+    const int folder = open(folder_of(file).c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
     if (folder < 0) return;
     fsync(folder);
     close(folder);
   }
 
  private:
-  const fs::path& file_;
+  /// Opens the draft, unless another process writes it. A new one is free where the file system has no locks.
+  void lock() {
+    descriptor_ = open(path_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    const bool is_new = descriptor_ >= 0;
+    require(is_new || errno == EEXIST);
+    if (!is_new) descriptor_ = open(path_.c_str(), O_WRONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+    if (descriptor_ < 0) return;
+    const bool locked = flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
+    struct stat open_one {
+    }, named{};
+    const bool own = locked ? fstat(descriptor_, &open_one) == 0 && stat(path_.c_str(), &named) == 0 &&
+                                  open_one.st_ino == named.st_ino && S_ISREG(named.st_mode)
+                            : is_new && errno != EWOULDBLOCK;
+    if (!own) close(std::exchange(descriptor_, -1));
+  }
+
   fs::path path_;
   int descriptor_ = -1;
 };
-
-void write_plain(const fs::path& file, const struct stat* before,
-                 const std::function<void(std::FILE*)>& write) {
-  remove_abandoned_drafts(file);
-  for (int attempt = 1;; ++attempt) {
-    try {
-      Draft draft(file, before);
-      draft.take(write);
-      return draft.replace();
-    } catch (const Failure& failure) {
-      const bool again = failure.error == ENOENT && fs::exists(folder_of(file)) && attempt < kMaxAttempts;
-      if (!again) throw;
-    }
-  }
-}
 
 }  // namespace
 
@@ -195,10 +140,15 @@ void write_whole_file(const fs::path& file, const std::function<void(std::FILE*)
     const fs::path target = behind_links(file);
     struct stat before {};
     const bool exists = stat(target.c_str(), &before) == 0;
-    if (!exists || S_ISREG(before.st_mode)) return write_plain(target, exists ? &before : nullptr, write);
-    Stream(open(target.c_str(), O_WRONLY | O_CLOEXEC)).take(write, false);
-  } catch (const Failure& failure) {
-    refuse(file, failure.error);
+    if (exists && !S_ISREG(before.st_mode))
+      return fill(open(target.c_str(), O_WRONLY | O_CLOEXEC), write, false);
+    Draft draft(target);
+    // Where the old file is somebody else's, its permissions are what can be kept.
+    if (exists) fchmod(draft.descriptor(), before.st_mode & 07777);
+    fill(fcntl(draft.descriptor(), F_DUPFD_CLOEXEC, 0), write, true);
+    draft.replace(target);
+  } catch (const std::system_error& error) {
+    refuse(file, error.code().value());
   }
 }
 

@@ -11,14 +11,13 @@ namespace slipstick::solver {
 
 /// Writes a file so that it is either the old one or the whole new one, whenever this process is killed or
 /// the machine stops: `write` fills a draft beside it, which goes to the disk and then takes its place. A
-/// link stays one; what is no plain file, /dev/stdout for one, is written to as it is. Drafts of the same
-/// file that killed processes left go. Throws InputError where it cannot be written, with the file, the
-/// system's reason and what to do; the file is then the old one.
+/// killed process leaves its draft, which the next writer of the file takes over. A link stays one; what is
+/// no plain file, /dev/stdout for one, is written to as it is. Throws InputError where the file cannot be
+/// written, with the system's reason and what to do; the file is then the old one.
 void write_whole_file(const std::filesystem::path& file, const std::function<void(std::FILE*)>& write);
 void write_whole_file(const std::filesystem::path& file, std::string_view content);
 
-/// Where the links of a name lead; those of the system, such as /dev/stdout, are left alone: they are no
-/// names.
+/// Where the links of a name lead. Links of the system, such as /dev/stdout, stay: they lead to no name.
 std::filesystem::path behind_links(std::filesystem::path file);
 
 /// Makes a folder and those above it. Throws as above.

@@ -15,13 +15,14 @@ namespace {
 using std::numbers::pi;
 
 /// Integrals over the direction theta in [0, pi) of sin^2/A^(3/2) and cos^2/A^(3/2), where
-/// A = cos^2/k^2 + sin^2 and k = a1/a2. They are to each other as R2 is to R1. Of tan and cot of theta they
+/// A = cos^2/k^2 + sin^2 and k = a1/a2. Their ratio is R2/R1. As integrals over tan and cot of theta they
 /// are Carlson's R_D, which loses no digits where the ellipse is nearly a circle.
 struct Curvatures {
   double along_1;
   double along_2;
 };
-/// Of the axis ratio's square, within which Carlson's integral and its products stay in double precision.
+/// Bound of the axis ratio's square, within which Carlson's integral and its products stay in double
+/// precision.
 constexpr double kMinSquare = 1e-180;
 
 Curvatures direction_integrals(double axis_ratio) {
@@ -84,7 +85,7 @@ Eigen::ArrayXd hertz_at_centres(const HertzContact& contact, const Grid& grid) {
   return contact.peak_pressure * square.max(0.0).sqrt();
 }
 
-/// Mirror images, of which each is a difference of large numbers, are the same to the last bit.
+/// Mirror images are the same to the last bit, though each is a difference of large numbers.
 Eigen::ArrayXd hertz_cell_averages(const HertzContact& contact, const Grid& grid) {
   const double h1 = grid.h1 / contact.semi_axis_1;
   const double h2 = grid.h2 / contact.semi_axis_2;

@@ -21,10 +21,10 @@ using RowMajorMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eig
 
 /// A wavelength that is a cut-off but for rounding belongs to the waves.
 constexpr double kCutOffRounding = 1e-9;
-/// Power below this part of the greatest is what transforms leave of none.
+/// Relative to the greatest power: below it lies what transforms leave where there is none.
 constexpr double kNoPower = 1e-20;
 
-/// Of wave vector 2 pi/period (i, j); one of each pair of opposite ones stands for both.
+/// A wave with the wave vector 2 pi/period (i, j); one of each pair of opposite ones stands for both.
 struct Wave {
   Index i;
   Index j;

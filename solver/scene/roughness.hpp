@@ -24,7 +24,7 @@ struct SpectrumRing {
   double power;       ///< unit^4
 };
 
-/// What a surface of waves is, measured from its heights over one period.
+/// Properties of a surface of waves, measured from its heights over one period.
 struct RoughnessSpectrum {
   double rms_height;
   double rms_slope;

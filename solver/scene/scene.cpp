@@ -4,19 +4,99 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
+#include "solver/elasticity/law/law_kind.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/toml_reader.hpp"
 #include "solver/scene/last_digits.hpp"
 #include "solver/scene/scene_keys.hpp"
 #include "solver/scene/surface_geometry.hpp"
-#include "solver/scene/surface_reader.hpp"
 #include "solver/scene/validate.hpp"
 
 namespace slipstick::solver {
 namespace {
+
+Roughness read_roughness(SceneReader& reader, const std::string& table) {
+  Roughness roughness;
+  roughness.seed = static_cast<std::uint64_t>(reader.number(table + ".seed"));
+  roughness.hurst = reader.number(table + ".hurst");
+  roughness.rms_slope = reader.number(table + ".rms_slope");
+  const double longest = reader.number(table + ".longest");
+  roughness.longest = longest;
+  roughness.period = reader.number_or(table + ".period", 4.0 * longest, period_for(longest));
+  roughness.shortest = reader.number(table + ".shortest", shortest_for(longest, roughness.period));
+  return roughness;
+}
+
+/// Parameters of a shape that has an axis.
+void read_body(SceneReader& reader, const std::string& table, Surface& surface) {
+  const auto parameter = [&](const char* key) { return reader.number(table + key); };
+  switch (surface.shape) {
+    case Shape::sphere:
+      surface.radius = parameter(".radius");
+      break;
+    case Shape::flat_punch: {
+      const double radius = surface.radius = parameter(".radius");
+      surface.inner_radius =
+          reader.number_or(table + ".inner_radius", surface.inner_radius, inner_radius_below(radius));
+      break;
+    }
+    case Shape::ellipsoid:
+      surface.radius_1 = parameter(".radius_1");
+      surface.radius_2 = parameter(".radius_2");
+      break;
+    case Shape::cone:
+      surface.slope = parameter(".slope");
+      break;
+    case Shape::rounded_punch:
+      surface.flat_radius = parameter(".flat_radius");
+      surface.corner_radius = parameter(".corner_radius");
+      break;
+    case Shape::power:
+      surface.exponent = reader.number(table + ".exponent");
+      surface.coefficient = parameter(".coefficient");
+      break;
+    case Shape::height_map:
+    case Shape::roughness:
+      throw std::logic_error("a surface without an axis");
+  }
+  surface.at = reader.find_pair(table + ".at").value_or(surface.at);
+  surface.angle = reader.number_or(table + ".angle", surface.angle);
+}
+
+Surface read_surface(SceneReader& reader, const std::string& table) {
+  Surface surface;
+  surface.shape = reader.choice(table + ".shape", kShapes);
+  if (surface.shape == Shape::height_map) {
+    surface.file = reader.path(table + ".file");
+    surface.spacing = reader.pair(table + ".spacing");
+    surface.height_unit = reader.choice_or(table + ".unit", surface.height_unit, kHeightUnits);
+  } else if (surface.shape == Shape::roughness) {
+    surface.roughness = read_roughness(reader, table);
+  } else {
+    read_body(reader, table, surface);
+  }
+  return surface;
+}
+
+/// The shapes of the indenter: one by the keys of [upper], or several by tables [[upper.shape]] with the same
+/// keys.
+std::vector<Surface> read_surfaces(SceneReader& reader) {
+  if (!reader.is_array("upper.shape")) return {read_surface(reader, "upper")};
+  std::vector<Surface> surfaces;
+  const std::size_t count = reader.count("upper.shape");
+  if (count > kMaxShapes) {
+    reader.fail("upper.shape", fmt::format("{} tables", count), fmt::format("at most {}", kMaxShapes));
+  }
+  for (std::size_t i = 0; i < count; ++i) {
+    surfaces.push_back(read_surface(reader, fmt::format("upper.shape[{}]", i)));
+  }
+  return surfaces;
+}
 
 Material read_material(SceneReader& reader, const std::string& body) {
   if (reader.flag_or(body + ".rigid", false)) {
@@ -29,7 +109,16 @@ Material read_material(SceneReader& reader, const std::string& body) {
   return {reader.number(body + ".young_modulus"), reader.number(body + ".poisson_ratio")};
 }
 
-/// What a table says of the torsion; what it does not say is as before.
+Layer read_layer(SceneReader& reader) {
+  Layer layer{reader.choice_or<const LawKind*>("layer.kind", nullptr, layer_words())};
+  if (layer.kind == nullptr) return layer;
+  for (const LawParameter& parameter : layer.kind->parameters) {
+    layer.values.push_back(reader.number("layer." + parameter.key));
+  }
+  return layer;
+}
+
+/// Reads the torsion from a table; where the table has none, the torsion is as before.
 void read_torsion(SceneReader& reader, const std::string& table, Step& step,
                   std::optional<TorsionLoad>& torsion) {
   const std::vector<std::string> keys{table + ".moment_ratio", table + ".moment", table + ".twist"};
@@ -47,7 +136,7 @@ void read_torsion(SceneReader& reader, const std::string& table, Step& step,
   if (twist) torsion = Twist{*twist};
 }
 
-/// Likewise of forces, or displacements in their place.
+/// Likewise forces, or displacements in their place.
 void read_translation(SceneReader& reader, const std::string& table, Step& step) {
   reader.prefer_overridden({table + ".force", table + ".displacement"});
   const auto force = reader.find_pair(table + ".force");
@@ -137,6 +226,7 @@ Step step_of(const Scene& scene, std::size_t k) {
   return step;
 }
 
+std::string to_string(Shape shape) { return word_of(kShapes, shape); }
 std::string to_string(PressureModel model) { return word_of(kPressureModels, model); }
 std::string to_string(OperatorKind kind) { return word_of(kOperators, kind); }
 std::string to_string(Method method) { return word_of(kMethods, method); }
@@ -149,10 +239,12 @@ Scene read_scene(SceneReader& reader, const std::filesystem::path& file) {
   scene.source = file;
   scene.name = reader.text_or("name", file.stem().string());
   scene.surfaces = read_surfaces(reader);
-  if (scene.surfaces.size() > 1) scene.combine = read_combine(reader);
+  if (scene.surfaces.size() > 1)
+    scene.combine = reader.choice_or("upper.combine", scene.combine, kCombinations);
   scene.ends_at_grid_edge = reader.flag_or("upper.ends_at_grid_edge", scene.ends_at_grid_edge);
   scene.upper = read_material(reader, "upper");
   scene.lower = read_material(reader, "lower");
+  scene.layer = read_layer(reader);
 
   scene.friction = reader.number("contact.friction");
   scene.pressure = reader.choice_or("contact.pressure", scene.pressure, kPressureModels);

@@ -20,11 +20,19 @@ struct Material {
   double poisson_ratio = 0.0;
 };
 
+struct LawKind;
+
+/// What lies between the bodies, beside which they are half-spaces.
+struct Layer {
+  const LawKind* kind = nullptr;    ///< one of law_kinds(), law_kind.hpp; null: nothing lies between them
+  std::vector<double> values = {};  ///< of the kind's parameters, in SI units
+};
+
 /// Where the pressure comes from: solved on the same grid; Hertz's at cell centres; Hertz's averaged over
 /// each cell; a file.
 enum class PressureModel { solved, hertz, hertz_averaged, file };
 
-/// What couples normal and tangential tractions of dissimilar materials: the pressure's tangential
+/// How normal and tangential tractions of dissimilar materials couple: the pressure's tangential
 /// displacement where they are dissimilar, nothing, that displacement, and also the shear's normal
 /// displacement.
 enum class Coupling { automatic, none, pressure, full };
@@ -32,11 +40,11 @@ enum class Coupling { automatic, none, pressure, full };
 /// Which method finds the tractions.
 enum class Method { coulomb, projected_gradient, paper };
 
-/// What may be left out of the model: what symmetry and the contact's size allow; nothing; the grid itself,
+/// How much the model leaves out: all that symmetry and the contact's size allow; nothing; the grid itself,
 /// where the scene has an exact answer.
 enum class ModelChoice { automatic, full, exact };
 
-/// What turns the upper body about the grid's origin. Signed: a history turns back.
+/// The load that turns the upper body about the grid's origin. Signed: a history turns back.
 struct MomentRatio {
   double value = 0.0;  ///< M over the limit of this pressure and mesh
 };
@@ -65,14 +73,14 @@ struct Step {
   TorsionLoad torsion = MomentRatio{0.0};
   std::array<double, 2> force{};                           ///< N, tangential, on the upper body; or else
   std::optional<std::array<double, 2>> displacement = {};  ///< m, imposed instead, since the first step
-  /// What no step of the file has said up to here: it is as [load] says in the first cycle, and as the last
-  /// step left it in those that follow.
+  /// Loads that no step of the file has set up to here: they are [load]'s in the first cycle, and those of
+  /// the last step in the cycles that follow.
   struct Unsaid {
     bool normal = false, torsion = false, translation = false;
   } unsaid = {};
 };
 
-/// Something that a scene lets the model leave out, and why its answer does not change by that.
+/// A part of the problem that the model leaves out, and why the answer does not change by that.
 struct Omission {
   std::string what;
   std::string why;
@@ -81,7 +89,7 @@ struct Omission {
 /// Whether a step brings a tangential force or displacement.
 bool brings_translation(const Step& step);
 
-/// What a scene file says, checked, with defaults filled in; SI units, or any other consistent set.
+/// The content of a scene file, checked, with defaults filled in; SI units, or any other consistent set.
 struct Scene {
   std::filesystem::path source;  ///< the file it was read from
   std::string name;
@@ -91,6 +99,7 @@ struct Scene {
   bool ends_at_grid_edge = false;
   Material upper;
   Material lower;
+  Layer layer;
   double friction = 0.0;
   PressureModel pressure = PressureModel::solved;
   std::filesystem::path pressure_file;

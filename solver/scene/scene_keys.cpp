@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "solver/elasticity/law/law_kind.hpp"
 #include "solver/scene/roughness.hpp"
 #include "solver/scene/validate.hpp"
 
@@ -21,86 +22,59 @@ const std::vector<std::string> kWithAxis{"sphere", "ellipsoid",  "cone",
 std::string shown(double number) { return fmt::format("{:g}", number); }
 std::string shown(const std::array<double, 2>& pair) { return fmt::format("[{:g}, {:g}]", pair[0], pair[1]); }
 
-/// What depends on another key is allowed as these words say; the reader asks with the numbers.
+/// Words for what depends on another key; the reader asks with the numbers.
 Range depending(const std::string& words) { return {words, nullptr}; }
 
-/// Of [upper], or of each [[upper.shape]].
+/// The keys of [upper], or of each [[upper.shape]].
 void add_shape(SettingKeys& keys, const std::string& table) {
   const Surface surface;
   const std::string at = table + ".";
-  const std::vector<std::string> rough{"roughness"};
-  const std::vector<std::string> map{"height_map"};
-  const SettingKeys shape{
-      {at + "shape", kWord, "", kRequired, one_of(kShapes),
-       "The shape of the indenter's surface; in `[upper]` either this word or tables `[[upper.shape]]`."},
-      {at + "radius",
-       kNumber,
-       "m",
-       kRequired,
-       kPositive,
-       "Radius of the sphere, or of the punch's face.",
-       {"sphere", "flat_punch"}},
-      {at + "inner_radius",
-       kNumber,
-       "m",
-       shown(surface.inner_radius),
-       depending(inner_radius_below(1.0).words),
-       "Radius of the hole that makes the punch an annulus.",
-       {"flat_punch"}},
-      {at + "radius_1",
-       kNumber,
-       "m",
-       kRequired,
-       kPositive,
-       "Radius of curvature along the ellipsoid's first axis.",
-       {"ellipsoid"}},
-      {at + "radius_2",
-       kNumber,
-       "m",
-       kRequired,
-       kPositive,
-       "Radius of curvature along its second axis.",
-       {"ellipsoid"}},
-      {at + "slope", kNumber, "", kRequired, kPositive, "Gap over radius.", {"cone"}},
-      {at + "flat_radius", kNumber, "m", kRequired, kPositive, "Radius of the flat face.", {"rounded_punch"}},
-      {at + "corner_radius",
-       kNumber,
-       "m",
-       kRequired,
-       kPositive,
-       "Radius of curvature beyond the face, where the gap is (r - flat_radius)^2/(2 corner_radius).",
-       {"rounded_punch"}},
-      {at + "exponent", kNumber, "", kRequired, kExponent, "The gap is coefficient r^exponent.", {"power"}},
-      {at + "coefficient",
-       kNumber,
-       "m^(1 - exponent)",
-       kRequired,
-       kPositive,
-       "Factor of that power.",
-       {"power"}},
-      {at + "at", KeyType::pair, "m", shown(surface.at), kFinite, "Where the shape's axis stands.",
-       kWithAxis},
-      {at + "angle", kNumber, "rad", shown(surface.angle), kFinite,
-       "From x1 to the shape's first axis, positive towards x2.", kWithAxis},
-      {at + "file", KeyType::file, "", kRequired, kAny,
-       "Heights, one a cell, larger where further away: a CSV matrix with a line for each x1, or the HDF5 "
-       "dataset `height`.",
-       map},
-      {at + "spacing", KeyType::pair, "m", kRequired, kPositive, "Distance of the file's samples.", map},
-      {at + "unit", kWord, "", word_of(kHeightUnits, surface.height_unit), one_of(kHeightUnits),
-       "Unit of the file's heights.", map},
-      {at + "seed", kNumber, "", kRequired, kSeeds, "Draws the phases of the random surface.", rough},
-      {at + "hurst", kNumber, "", kRequired, kHurst,
-       "Hurst's exponent: the power of a wave vector k goes like |k|^(-2 (1 + hurst)).", rough},
-      {at + "rms_slope", kNumber, "", kRequired, kPositive,
-       "Root mean square of the gradient's length, over a period.", rough},
-      {at + "longest", kNumber, "m", kRequired, kPositive, "Longest wavelength.", rough},
-      {at + "shortest", kNumber, "m", kRequired,
-       depending(fmt::format("from a {:g}th of the period, to half of longest", kMaxWaves)),
-       "Shortest wavelength.", rough},
-      {at + "period", kNumber, "m", "4 times longest", depending("at least longest, finite"),
-       "After so much the surface repeats itself.", rough}};
-  keys.insert(keys.end(), shape.begin(), shape.end());
+  using Shapes = std::vector<std::string>;
+  const Shapes rough{"roughness"};
+  const Shapes map{"height_map"};
+  const auto add = [&](const char* name, const std::string& unit, const std::string& otherwise,
+                       const Range& allowed, const std::string& meaning, const Shapes& shapes,
+                       KeyType type = kNumber) {
+    keys.push_back({at + name, type, unit, otherwise, allowed, meaning, shapes});
+  };
+  add("shape", "", kRequired, one_of(kShapes),
+      "The shape of the indenter's surface; in `[upper]` either this word or tables `[[upper.shape]]`.", {},
+      kWord);
+  add("radius", "m", kRequired, kPositive, "Radius of the sphere, or of the punch's face.",
+      {"sphere", "flat_punch"});
+  add("inner_radius", "m", shown(surface.inner_radius), depending(inner_radius_below(1.0).words),
+      "Radius of the hole that makes the punch an annulus.", {"flat_punch"});
+  add("radius_1", "m", kRequired, kPositive, "Radius of curvature along the ellipsoid's first axis.",
+      {"ellipsoid"});
+  add("radius_2", "m", kRequired, kPositive, "Radius of curvature along its second axis.", {"ellipsoid"});
+  add("slope", "", kRequired, kPositive, "Gap over radius.", {"cone"});
+  add("flat_radius", "m", kRequired, kPositive, "Radius of the flat face.", {"rounded_punch"});
+  add("corner_radius", "m", kRequired, kPositive,
+      "Radius of curvature beyond the face, where the gap is (r - flat_radius)^2/(2 corner_radius).",
+      {"rounded_punch"});
+  add("exponent", "", kRequired, kExponent, "The gap is coefficient r^exponent.", {"power"});
+  add("coefficient", "m^(1 - exponent)", kRequired, kPositive, "Factor of that power.", {"power"});
+  add("at", "m", shown(surface.at), kFinite, "Where the shape's axis stands.", kWithAxis, KeyType::pair);
+  add("angle", "rad", shown(surface.angle), kFinite,
+      "From x1 to the shape's first axis, positive towards x2.", kWithAxis);
+  add("file", "", kRequired, kAny,
+      "Heights, one a cell, larger where further away: a CSV matrix with a line for each x1, or the HDF5 "
+      "dataset `height`.",
+      map, KeyType::file);
+  add("spacing", "m", kRequired, kPositive, "Distance of the file's samples.", map, KeyType::pair);
+  add("unit", "", word_of(kHeightUnits, surface.height_unit), one_of(kHeightUnits),
+      "Unit of the file's heights.", map, kWord);
+  add("seed", "", kRequired, kSeeds, "Draws the phases of the random surface.", rough);
+  add("hurst", "", kRequired, kHurst,
+      "Hurst's exponent: the power of a wave vector k goes like |k|^(-2 (1 + hurst)).", rough);
+  add("rms_slope", "", kRequired, kPositive, "Root mean square of the gradient's length, over a period.",
+      rough);
+  add("longest", "m", kRequired, kPositive, "Longest wavelength.", rough);
+  add("shortest", "m", kRequired,
+      depending(fmt::format("from a {:g}th of the period, to half of longest", kMaxWaves)),
+      "Shortest wavelength.", rough);
+  add("period", "m", "4 times longest", depending("at least longest, finite"),
+      "After so much the surface repeats itself.", rough);
 }
 
 void add_body(SettingKeys& keys, const std::string& table) {
@@ -113,7 +87,21 @@ void add_body(SettingKeys& keys, const std::string& table) {
   keys.insert(keys.end(), body.begin(), body.end());
 }
 
-/// Of [load], or of each [[step]], which leaves what it does not say as it was.
+/// The keys of [layer]: a word for the law, and the law's own numbers.
+void add_layer(SettingKeys& keys) {
+  keys.push_back({"layer.kind", kWord, "", word_of(layer_words(), Scene().layer.kind), one_of(layer_words()),
+                  "What lies between the bodies: nothing, or a thin layer that gives way where it is loaded and "
+                  "nowhere else (winkler)."});
+  for (const LawKind& kind : law_kinds()) {
+    for (const LawParameter& parameter : kind.parameters) {
+      keys.push_back({"layer." + parameter.key, kNumber, parameter.unit,
+                      fmt::format("required with kind = \"{}\"", kind.word), kNotNegative,
+                      fmt::format("{} Known with kind = \"{}\" alone.", parameter.meaning, kind.word)});
+    }
+  }
+}
+
+/// The keys of [load], or of each [[step]], which leaves what it does not say as it was.
 void add_loads(SettingKeys& keys, const std::string& table, bool is_step) {
   const std::string at = table + ".";
   const auto first = [&](const std::string& otherwise) { return is_step ? "as before" : otherwise; };
@@ -169,8 +157,7 @@ void add_grid_and_solver(SettingKeys& keys, const Scene& scene) {
        one_of(kCellTractions),
        "What a cell's number stands for: traction that is constant over the cell; or the value at its centre "
        "of one that is smooth, which leaves smaller errors, of contacts whose pressure falls to zero at "
-       "their "
-       "edge."},
+       "their edge."},
       {"solver.substeps", kNumber, "", shown(scene.substeps), kSubsteps,
        "Parts that the loads of each step are brought in, each an implicit step. More of them make smaller "
        "what a result states as `resolved.path`."},
@@ -196,6 +183,7 @@ SettingKeys make_scene_keys() {
   add_body(keys, "upper");
   add_shape(keys, "upper.shape");
   add_body(keys, "lower");
+  add_layer(keys);
   add_contact(keys, scene);
   add_loads(keys, "load", false);
   keys.push_back({"step", KeyType::tables, "", "the loads of `[load]`, at once",
@@ -209,6 +197,15 @@ SettingKeys make_scene_keys() {
 }
 
 }  // namespace
+
+const Words<const LawKind*>& layer_words() {
+  static const Words<const LawKind*> words = [] {
+    Words<const LawKind*> made{{"none", nullptr}};
+    for (const LawKind& kind : law_kinds()) made.emplace_back(kind.word, &kind);
+    return made;
+  }();
+  return words;
+}
 
 const SettingKeys& scene_keys() {
   static const SettingKeys keys = make_scene_keys();

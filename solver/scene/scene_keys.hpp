@@ -13,6 +13,8 @@ inline const Words<Shape> kShapes{
     {"sphere", Shape::sphere},         {"ellipsoid", Shape::ellipsoid},         {"cone", Shape::cone},
     {"flat_punch", Shape::flat_punch}, {"rounded_punch", Shape::rounded_punch}, {"power", Shape::power},
     {"height_map", Shape::height_map}, {"roughness", Shape::roughness}};
+/// Every law's word, and "none" for no layer.
+const Words<const LawKind*>& layer_words();
 inline const Words<Combine> kCombinations{{"sum", Combine::sum}, {"nearest", Combine::nearest}};
 /// Each in m.
 inline const Words<double> kHeightUnits{{"m", 1.0}, {"mm", 1e-3}, {"um", 1e-6}, {"nm", 1e-9}};

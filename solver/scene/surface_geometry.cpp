@@ -21,7 +21,7 @@ namespace {
 using Eigen::ArrayXd;
 using std::numbers::pi;
 
-/// Of a sphere or an ellipsoid, along its own axes.
+/// Radii of curvature of a sphere or an ellipsoid, along its own axes.
 std::array<double, 2> paraboloid_radii(const Surface& surface) {
   if (surface.shape == Shape::sphere) return {surface.radius, surface.radius};
   return {surface.radius_1, surface.radius_2};
@@ -145,7 +145,7 @@ ArrayXd by_rows(const Surface& surface, const Grid& grid, const Height& height) 
   return heights;
 }
 
-/// Of the distance from the axis.
+/// height(r) gives the heights at distances from the axis.
 template <typename Height>
 ArrayXd by_distance(const Surface& surface, const Grid& grid, const Height& height) {
   ArrayXd r(grid.n2);

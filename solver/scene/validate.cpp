@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "solver/elasticity/law/law_kind.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/toml_reader.hpp"
 #include "solver/scene/hertz_pressure.hpp"
@@ -22,6 +23,7 @@ class Validation {
     check_surfaces();
     check_material("upper", scene_.upper);
     check_material("lower", scene_.lower);
+    check_layer();
     require("contact.friction", scene_.friction, kNotNegative);
     check_steps();
     check_grid();
@@ -100,6 +102,17 @@ class Validation {
     require(body + ".poisson_ratio", material.poisson_ratio, kPoisson);
   }
 
+  void check_layer() const {
+    const auto& [kind, values] = scene_.layer;
+    const std::size_t count = kind == nullptr ? 0 : kind->parameters.size();
+    if (values.size() != count) {
+      refuse_("layer.kind", fmt::format("{} numbers", values.size()), fmt::format("{}", count));
+    }
+    for (std::size_t i = 0; i < count; ++i) {
+      require("layer." + kind->parameters[i].key, values[i], kNotNegative);
+    }
+  }
+
   void check_steps() const {
     if (scene_.steps.empty() || scene_.steps.size() > kMaxSteps) {
       refuse_("step", fmt::format("{} steps", scene_.steps.size()), fmt::format("from 1 to {}", kMaxSteps));
@@ -160,6 +173,10 @@ class Validation {
     }
     const bool asks_hertz =
         scene_.pressure == PressureModel::hertz || scene_.pressure == PressureModel::hertz_averaged;
+    if (asks_hertz && scene_.layer.kind != nullptr) {
+      refuse_("contact.pressure", fmt::format("\"{}\"", to_string(scene_.pressure)),
+              "solved, file (Hertz's pressure belongs to half-spaces without a layer)");
+    }
     if (asks_hertz && !hertzian_radii(scene_.surfaces)) {
       refuse_("contact.pressure", fmt::format("\"{}\"", to_string(scene_.pressure)),
               "solved, file (Hertz's pressure belongs to one sphere or ellipsoid at the origin, its axes "

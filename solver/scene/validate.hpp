@@ -6,7 +6,7 @@
 #include "solver/input/toml_reader.hpp"
 #include "solver/scene/scene.hpp"
 
-/// What a scene's numbers may be, whether a file or a program says them.
+/// The numbers that a scene may hold, whether a file or a program sets them.
 namespace slipstick::solver {
 
 inline const Range kRatio{"above -1 and below 1 (1 is gross slip)",

@@ -8,7 +8,7 @@ namespace slipstick::solver {
 /// The solution of a regular system.
 Eigen::VectorXd dense_solution(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
 
-/// Of a symmetric matrix, rising.
+/// Eigenvalues of a symmetric matrix, rising.
 Eigen::VectorXd dense_eigenvalues(const Eigen::MatrixXd& matrix);
 
 }  // namespace slipstick::solver

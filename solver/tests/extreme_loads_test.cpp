@@ -69,7 +69,7 @@ class ExtremeLoads : public testing::TestWithParam<std::tuple<std::string, Load>
   }
   /// By direct summation.
   Certificate certificate(const TangentialProblem& problem, const TangentialSolution& solution) const {
-    const auto op = make_operator(OperatorKind::direct, body_.grid, tangential_kernel(), elasticity_.pair);
+    const auto op = make_operator(OperatorKind::direct, body_.grid, tangential_kernel(), *elasticity_.law);
     ArrayXd u(solution.traction.size());
     op->apply(solution.traction, u);
     const Index n = body_.grid.cells();
@@ -79,11 +79,11 @@ class ExtremeLoads : public testing::TestWithParam<std::tuple<std::string, Load>
     motion.tail(n) += solution.displacement[1];
     const ArrayXd contact = (body_.bound > 0.0).cast<double>().replicate(2, 1);
     return certify({solution.traction, u, contact * (u - motion)}, body_.bound, rotation, *problem.moment,
-                   *problem.force, least_eigenvalue(elasticity_.pair, body_.grid.h1, body_.grid.h2));
+                   *problem.force, elasticity_.law->least_eigenvalue(body_.grid.h1, body_.grid.h2));
   }
 
   LoadedBody body_ = body(std::get<0>(GetParam()));
-  Elasticity elasticity_{elastic_pair({2.0, 0.3}, {2.0, 0.3})};
+  Elasticity elasticity_{half_spaces({2.0, 0.3}, {2.0, 0.3})};
 };
 
 INSTANTIATE_TEST_SUITE_P(Bodies, ExtremeLoads,

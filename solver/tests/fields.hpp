@@ -5,6 +5,7 @@
 #include <random>
 #include <span>
 
+#include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/elasticity/linear_operator.hpp"
 
 namespace slipstick::solver {
@@ -29,7 +30,7 @@ inline Eigen::ArrayXd applied(LinearOperator& op, const Eigen::ArrayXd& traction
 }
 
 /// Poisson's ratios and moduli whose mismatch is not zero.
-inline ElasticPair dissimilar_pair() { return elastic_pair({1.0, 0.3}, {2.5, 0.1}); }
+inline HalfSpaces dissimilar_pair() { return HalfSpaces(elastic_pair({1.0, 0.3}, {2.5, 0.1})); }
 
 /// A multiple of the identity, which may be what no elastic body is.
 class Multiple final : public LinearOperator {

@@ -18,7 +18,7 @@ class LoadPath : public SceneFile {
     keys.insert(keys.end(), overrides.begin(), overrides.end());
     return solve(read(kShortScene + steps, keys));
   }
-  /// A push, and a twist in so many steps that are written out.
+  /// A push, and a twist that is written out in so many steps.
   static std::string push_and_twist(int steps) {
     std::string text = "[[step]]\nforce = [50, 0]\n";
     for (int k = 1; k <= steps; ++k) {

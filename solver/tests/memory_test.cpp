@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 using testing::AllOf;
 using testing::HasSubstr;
 
-/// What Linux says of its memory, in a folder that stands for its root.
+/// Linux's files about memory, in a folder that stands for its root.
 class AvailableMemory : public SceneFile {
  protected:
   void say(const std::string& file, const std::string& text) const {
@@ -33,7 +33,7 @@ TEST_F(AvailableMemory, IsWhatTheMachineHasLeft) {
   EXPECT_EQ(available_memory(folder_), 8.0 * 1024.0);
 }
 
-// Copies of files count as used and give way; a group without a limit says "max", or so much that it is none.
+// Cached files count as used and give way. A group without a limit says "max", or a number beyond any memory.
 TEST_F(AvailableMemory, IsWhatTheControlGroupsLeaveWhereThatIsLess) {
   say("proc/meminfo", "MemAvailable:  8 kB\n");
   say("proc/self/cgroup", "0::/outer/inner\n");

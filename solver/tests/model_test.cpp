@@ -179,7 +179,7 @@ TEST(Model, IsDimensionless) {
   EXPECT_NEAR(40.0 * model.length_unit, 2.0 * paper::kContactRadius + 4.0 * model.length_unit, 1e-15);
 }
 
-/// Few cells, of which a quadrant has a quarter, are left to one thread; who asks for some gets them.
+/// One thread takes few cells, and a quadrant has a quarter of them. A scene that asks for threads gets them.
 TEST(Model, HasThreadsThatAreWorthTheirCells) {
   const auto threads = [](Index cells, ModelChoice choice, int asked) {
     Scene scene = paper_scene(cells, 0.5);

@@ -6,7 +6,7 @@
 
 namespace slipstick::solver {
 
-/// Of the certificate: gap over energy. The last Newton step, whose states stand, goes far below it.
+/// Gap over energy of a certificate. The last Newton step, whose states stand, goes far below it.
 inline constexpr double kGap = 1e-13;
 /// Two answers of the same discrete problem, each with that gap, in the largest traction, in motions and in
 /// loads: the gap is of first order in the slip that is left in stick cells, so they agree to about its size

@@ -43,7 +43,7 @@ auto values(Field& field) {
   return std::span(field.data(), static_cast<std::size_t>(field.size()));
 }
 
-/// What `work` returns on this rank alone, and on all of them together.
+/// Results of `work` on this rank alone, and on all of them together.
 template <typename Work>
 void expect_same_bits(const Work& work, const char* what, const Grid& grid) {
   const auto alone = [&] {

@@ -21,8 +21,7 @@ class Resumed : public SceneFile {
  protected:
   struct Broken {};
 
-  /// Loads that leave nothing out of the state: more and less normal load, the same twice, turns back, and
-  /// forces.
+  /// Loads that use all of the state: more and less normal load, the same twice, turns back, and forces.
   std::string steps(const std::string& head) const {
     return head +
            "[[step]]\nname = \"on\"\nmoment_ratio = 0.5\n[[step]]\nname = \"further\"\nmoment_ratio = "

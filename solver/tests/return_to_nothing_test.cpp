@@ -12,7 +12,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// Of tractions and motions, what rounding leaves of those before.
+/// The part of earlier tractions and motions that rounding leaves.
 constexpr double kNothing = 1e-8;
 
 class Nothing : public SceneFile {
@@ -64,7 +64,8 @@ TEST_F(Nothing, IsLeftOfATwistAsMasingsRuleSays) {
   }
 }
 
-/// What is left meets Coulomb's law under the load that is left, over an energy that this can hold.
+/// The tractions that stay meet Coulomb's law under the load that stays, over an energy that this load can
+/// hold.
 TEST_F(Nothing, IsLeftOfTheNormalLoad) {
   for (const double load : {1.0, 1e-4}) {
     const auto steps =
@@ -87,7 +88,8 @@ TEST_F(Nothing, IsCarriedByOneCellOfDissimilarBodies) {
   EXPECT_TRUE(std::isnan(one.slip_direction.mean) && std::isnan(one.slip_direction.max));
 }
 
-/// What a step does not say stays as it was, in the second cycle too: to the bits of the steps written out.
+/// A load that a step leaves out stays as it was, in the second cycle too: to the bits of the steps written
+/// out.
 TEST_F(Nothing, IsForgottenBetweenCycles) {
   const std::vector<std::string> steps{"moment_ratio = 0.1", "normal = 700\nforce = [0, 0]"};
   const auto in_cycles = steps_of(steps, {"load.force=[30, 0]"}, "cycles = 2\n");
@@ -102,7 +104,7 @@ TEST_F(Nothing, IsForgottenBetweenCycles) {
   EXPECT_LE(in_cycles[1].slip_direction.mean, 1e-3);
 }
 
-/// A model leaves out what one without the last digit does, and gives the same twist.
+/// A model with a last digit leaves out the same as one without it, and gives the same twist.
 TEST_F(Nothing, IsTheCostOfALastDigit) {
   const Solution plain = solve(read(kShortScene));
   ASSERT_EQ(plain.left_out.size(), 5U);  // coupling, translations, the grid's rim, three quarters, one field

@@ -41,7 +41,7 @@ struct Bench {
     const Scene scene = paper_scene(cells, 0.0);
     model = make_model(scene);
     bound = friction * find_pressure(scene, model, scene.steps[0]).pressure;
-    op = make_operator(kind, model.grid, tangential_kernel(), model.pair);
+    op = make_operator(kind, model.grid, tangential_kernel(), *model.law);
     limit = moment_limit(model.grid, bound);
   }
   TangentialSolution twist_by_moment(double moment_ratio, double tolerance = kTight) const {

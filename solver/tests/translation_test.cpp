@@ -58,7 +58,7 @@ ArrayXd moved_vectors(const ArrayXd& field, Index n, const Image& image) {
 /// K q and the slip afresh, by direct summation.
 Certificate independent_certificate(const ModelSolution& solution, const Pair& force, double moment) {
   const Model& model = solution.model;
-  const auto op = make_operator(OperatorKind::direct, model.grid, tangential_kernel(), model.pair);
+  const auto op = make_operator(OperatorKind::direct, model.grid, tangential_kernel(), *model.law);
   const TangentialSolution& found = solution.tangential;
   ArrayXd u(found.traction.size());
   op->apply(found.traction, u);
@@ -80,8 +80,6 @@ Certificate independent_certificate(const ModelSolution& solution, const Pair& f
 TEST(OffCentreSphere, TurnsAsTheCentredOneAboutItsOwnAxis) {
   const ModelSolution centred = solved(sphere({0.0, 0.0}));
   const Index n = 40;
-  double worst_twist = 0.0;
-  double worst_traction = 0.0;
   for (const std::array<Index, 2>& cells : {std::array<Index, 2>{5, -7}, {-8, 0}, {1, 9}}) {
     const Scene scene = sphere({static_cast<double>(cells[0]), static_cast<double>(cells[1])});
     const ModelSolution off = solved(scene);
@@ -98,11 +96,7 @@ TEST(OffCentreSphere, TurnsAsTheCentredOneAboutItsOwnAxis) {
     ASSERT_TRUE(off.limit.centre);
     EXPECT_NEAR((*off.limit.centre)[0], centre[0], 1e-6 * length);
     EXPECT_NEAR((*off.limit.centre)[1], centre[1], 1e-6 * length);
-    worst_twist = std::max(worst_twist, std::abs(off.twist_angle / centred.twist_angle - 1.0));
-    worst_traction = std::max(worst_traction, relative_difference(off.tangential.traction, expected));
   }
-  RecordProperty("twist", std::to_string(worst_twist * 1e12) + "e-12");
-  RecordProperty("traction", std::to_string(worst_traction * 1e12) + "e-12");
 }
 
 /// Between the cells the mesh shows: its error in the twist is 1e-3 at ten cells a radius.
@@ -138,7 +132,6 @@ TEST(OffCentreSphere, TurnsAboutItsOwnAxisBetweenTheCells) {
                       std::abs((*off.limit.centre)[1] - centre[1]) / length});
   }
   EXPECT_LE(worst, 3e-3);
-  RecordProperty("worst", std::to_string(worst));
 }
 
 // --- symmetries ---
@@ -259,7 +252,7 @@ INSTANTIATE_TEST_SUITE_P(Surfaces, Mindlin,
                          testing::Values(smooth_sphere(), turned_ellipsoid(), rough_sphere()),
                          [](const auto& tested) { return to_string(tested.param.back().shape); });
 
-/// Of bodies with nu = 0, K11 = K22 = K33 and K12 = 0, on the mesh too: under a force f mu W that does not
+/// Bodies with nu = 0 have K11 = K22 = K33 and K12 = 0, on the mesh too: under a force f mu W that does not
 /// turn the body any contact carries q = mu (p(W) - p((1 - f) W)) along it, and moves by mu times what the
 /// approach is less (Ciavarella 1998, Jaeger 1998). Where p((1 - f) W) > 0 the difference of K p is that of
 /// the approaches; elsewhere K p + h exceeds the approach, and slip is opposed to q.
@@ -289,17 +282,13 @@ TEST_P(Mindlin, IsTheDifferenceOfTwoPressures) {
   EXPECT_LE(error, kSame);
   const double moved =
       paper::kFriction * (whole.solution.approach - less.solution.approach) * solution.model.length_unit;
-  double worst_motion = 0.0;
   for (std::size_t k = 0; k < 2; ++k) {
-    worst_motion = std::max(worst_motion, std::abs(solution.displacement[k] / (along[k] * moved) - 1.0));
+    EXPECT_NEAR(solution.displacement[k] / (along[k] * moved), 1.0, kSame);
   }
-  EXPECT_LE(worst_motion, kSame);
   EXPECT_EQ(solution.stick_cells, (less.solution.pressure > 0.0).count());
-  RecordProperty("traction", std::to_string(error * 1e9) + "e-9");
-  RecordProperty("displacement", std::to_string(worst_motion * 1e12) + "e-12");
 }
 
-// --- what may be left out ---
+// --- the full model ---
 
 TEST(FullModel, TurnsASymmetricContactAsTheReducedOne) {
   Scene scene = ellipsoid_scene(32, 1.5 * paper::kRadius, paper::kRadius, 0.7);
@@ -341,7 +330,7 @@ TEST(TwoPatches, TurnAboutAPointBetweenThem) {
   EXPECT_NEAR(solution.displacement[0], 0.0, kSame * std::abs(solution.displacement[1]));
 }
 
-/// It is pushed along, and nothing turns it.
+/// A force moves it, and nothing turns it.
 TEST(OneCell, MovesByItsOwnCoefficient) {
   Scene scene = paper_scene(3, 0.0);
   scene.extent = {2.9e-3, 2.9e-3};  // a cell is hardly smaller than the contact
@@ -350,9 +339,9 @@ TEST(OneCell, MovesByItsOwnCoefficient) {
   EXPECT_EQ(solution.contact_cells, 1);
   const HalfSpace steel{0.5 * paper::kYoungModulus / (1.0 + paper::kPoissonRatio), paper::kPoissonRatio};
   const double area = cell_size(scene) * cell_size(scene);
-  const ElasticPair pair = elastic_pair(steel, steel);
+  const HalfSpaces law(elastic_pair(steel, steel));
   const double compliance =
-      influence_coefficients(Component::k11, pair, cell_size(scene), cell_size(scene), 1, 1)[0] / area;
+      law.influence_coefficients(Component::k11, {1, 1, cell_size(scene), cell_size(scene)})[0] / area;
   EXPECT_NEAR(solution.displacement[0] / (30.0 * compliance), 1.0, kSame);
   EXPECT_NEAR(solution.displacement[1] / (-10.0 * compliance), 1.0, kSame);
   EXPECT_EQ(solution.twist_angle, 0.0);

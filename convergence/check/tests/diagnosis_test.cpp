@@ -12,7 +12,7 @@
 
 #include "convergence/check/given_contact.hpp"
 #include "solver/contact/projected_gradient.hpp"
-#include "solver/elasticity/influence.hpp"
+#include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/pressure.hpp"
 #include "solver/solve.hpp"
 
@@ -28,11 +28,11 @@ using CrossKernel = std::function<double(double k12, int sign)>;
 /// The tangential operator with another cross kernel, and perhaps with K11 and K22 exchanged, as a matrix.
 class OtherKernel final : public solver::LinearOperator {
  public:
-  OtherKernel(const solver::Grid& grid, const solver::ElasticPair& pair, const CrossKernel& cross,
+  OtherKernel(const solver::Grid& grid, const solver::ElasticLaw& law, const CrossKernel& cross,
               bool exchanged)
       : LinearOperator(grid, solver::tangential_kernel()), matrix_(2 * grid.cells(), 2 * grid.cells()) {
     const std::array components{solver::Component::k11, solver::Component::k12, solver::Component::k22};
-    const auto tables = solver::influence_tables(components, pair, grid.h1, grid.h2, grid.n1, grid.n2);
+    const auto tables = law.influence_tables(components, grid);
     const Index cells = grid.cells();
     for (Index to = 0; to < cells; ++to) {
       for (Index from = 0; from < cells; ++from) {
@@ -76,7 +76,7 @@ GivenContact computed_with(const CrossKernel& cross, bool exchanged = false,
   const Eigen::ArrayXd pressure = find_pressure(scene, model, load).pressure;
   solver::ElasticPair pair = model.pair;
   pair.poisson_compliance *= poisson;
-  OtherKernel op(model.grid, pair, cross, exchanged);
+  OtherKernel op(model.grid, solver::HalfSpaces(pair), cross, exchanged);
   const auto solution = solve_by_projected_gradient(op, load_step(scene, model, load, pressure, {}).problem);
   EXPECT_EQ(solution.status, solver::Status::converged) << solution.message;
   return made_contact(model, pressure, solution.traction);

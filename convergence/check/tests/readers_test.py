@@ -60,7 +60,7 @@ class Readers(unittest.TestCase):
         return {key: value for key, value in json.loads(ran.stdout).items() if key not in ("field", "provenance")}
 
     def assert_same(self, found, right):
-        """Of rows in another order, whose sums are rounded otherwise."""
+        """Equal but for rounding: other orders of rows sum otherwise."""
         for key in ("verdict", "contact_cells", "stick_cells"):
             self.assertEqual(found[key], right[key])
         for key in ("twist_angle", "moment", "normal_load", "stick_radius"):

@@ -1,41 +1,13 @@
 #pragma once
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
 #include <filesystem>
 #include <fstream>
-#include <sstream>
 #include <string>
 
 #include "convergence/programs/run_program.hpp"
+#include "convergence/tests/scratch_folder.hpp"
 
 namespace slipstick::convergence {
-
-/// A folder of its own for each test.
-class GateFolder : public testing::Test {
- protected:
-  void SetUp() override {
-    const auto* const test = testing::UnitTest::GetInstance()->current_test_info();
-    folder_ = std::filesystem::path(testing::TempDir()) /
-              ("slipstick-" + std::string(test->test_suite_name()) + test->name() + std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
-  }
-  void TearDown() override { std::filesystem::remove_all(folder_); }
-
-  std::string write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return folder_ / name;
-  }
-
-  std::string read(const std::string& name) const {
-    std::ostringstream text;
-    text << std::ifstream(folder_ / name).rdbuf();
-    return text.str();
-  }
-
-  std::filesystem::path folder_;
-};
 
 inline constexpr const char* kResultGate = R"([[gate]]
 id = "counted"

@@ -18,7 +18,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-class GateFile : public GateFolder {
+class GateFile : public ScratchFolder {
  protected:
   std::string complaint(const std::string& text) const {
     return solver::complaint([&] { read_gates(write("bad.toml", text)); });

@@ -52,7 +52,7 @@ TEST(GateReport, TextExplainsWhatDoesNotPass) {
   EXPECT_THAT(text, Not(HasSubstr("--only good")));
 }
 
-class GateJunit : public GateFolder {};
+class GateJunit : public ScratchFolder {};
 
 TEST_F(GateJunit, IsReadBackByAParser) {
   const std::string seen = parse_xml(write("junit.xml", gates_junit(one_of_each())));

@@ -1,10 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
@@ -14,6 +12,7 @@
 #include "convergence/hard/hard_judgement.hpp"
 #include "convergence/programs/run_program.hpp"
 #include "convergence/runs/variant.hpp"
+#include "convergence/tests/scratch_folder.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/model.hpp"
 #include "solver/solve.hpp"
@@ -27,21 +26,23 @@ using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::ThrowsMessage;
 
-class HardFile : public testing::Test {
+class HardFile : public ScratchFolder {
  protected:
-  HardFile() { fs::create_directories(folder_); }
-  ~HardFile() override { fs::remove_all(folder_); }
-
   fs::path write(const std::string& families) const {
-    fs::path file = folder_ / "families.toml";
-    std::ofstream(file) << families;
-    return file;
+    return ScratchFolder::write("families.toml", families);
   }
   static std::string family(const std::string& rest) {
     return "[[family]]\nname = 'small'\nwhy = 'made up'\nscene = '" SLIPSTICK_SCENES "/paper.toml'\n" + rest;
   }
-
-  fs::path folder_ = fs::path(testing::TempDir()) / ("slipstick-hard-" + std::to_string(getpid()));
+  /// What `hard` says of such families.
+  Json run(const std::string& families, int code, std::vector<std::string> options = {}) const {
+    std::vector<std::string> words{SLIPSTICK_PROGRAM, "hard", write(families), "--output", folder_ / "kept",
+                                   "--json",          "-",    "--quiet"};
+    words.insert(words.end(), options.begin(), options.end());
+    const ProgramEnd end = run_program(words, {.captured = Captured::output});
+    EXPECT_EQ(end.code, code);
+    return Json::parse(end.output);
+  }
 };
 
 TEST_F(HardFile, VariesItsKeysInAllCombinations) {
@@ -68,15 +69,11 @@ TEST_F(HardFile, NamesWhatIsWrong) {
   refused(family("speed = 3\n"), HasSubstr("speed"));
 }
 
-solver::Scene scene_of(const std::string& name) {
-  return solver::read_scene(std::string(SLIPSTICK_SCENES) + "/" + name + ".toml");
-}
-
 // A mirror twice and the other side twice are the first view; so are four quarter turns, but for a full
 // angle.
 TEST(Variant, ComesBack) {
   for (const char* name : {"turned_ellipse", "torsion_and_force", "off_centre", "imposed_displacement"}) {
-    const solver::Scene scene = scene_of(name);
+    const solver::Scene scene = example(name);
     for (const auto& [variant, times] :
          {std::pair{Variant::mirrored, 2}, {Variant::exchanged, 2}, {Variant::turned, 4}}) {
       solver::Scene seen = scene;
@@ -93,7 +90,7 @@ TEST(Variant, ComesBack) {
 }
 
 TEST(Variant, ShiftsByWholeCellsOfTheSameSize) {
-  solver::Scene scene = scene_of("paper");
+  solver::Scene scene = example("paper");
   scene.cells = {64, 48};
   scene.extent = {1.0e-3, 2.4e-3};
   const solver::Scene seen = seen_as(scene, Variant::shifted);
@@ -107,11 +104,11 @@ TEST(Variant, ShiftsByWholeCellsOfTheSameSize) {
 }
 
 TEST(Variant, IsRefusedWhereItWouldBeAnotherContact) {
-  EXPECT_NE(why_not(scene_of("rough_sphere"), Variant::turned), "");
-  EXPECT_EQ(why_not(scene_of("rough_sphere"), Variant::exchanged), "");
-  EXPECT_NE(why_not(scene_of("mindlin"), Variant::shifted), "");
-  EXPECT_EQ(why_not(scene_of("paper"), Variant::shifted), "");
-  EXPECT_THROW(seen_as(scene_of("paper"), Variant::shifted), std::invalid_argument);  // without its extent
+  EXPECT_NE(why_not(example("rough_sphere"), Variant::turned), "");
+  EXPECT_EQ(why_not(example("rough_sphere"), Variant::exchanged), "");
+  EXPECT_NE(why_not(example("mindlin"), Variant::shifted), "");
+  EXPECT_EQ(why_not(example("paper"), Variant::shifted), "");
+  EXPECT_THROW(seen_as(example("paper"), Variant::shifted), std::invalid_argument);  // without its extent
   EXPECT_THROW(variant_of("upside_down"), std::invalid_argument);
 }
 
@@ -175,7 +172,7 @@ TEST(HardJudgement, TellsRefusedFromNotConvergedFromDead) {
 }
 
 TEST(HardJudgement, HoldsAnAnswerToThoseOnFinerMeshes) {
-  // Of second order, 10 % off: the finer meshes are 2.5 and 0.625 % off.
+  // A value of second order, 10 % off: the finer meshes are 2.5 and 0.625 % off.
   EXPECT_TRUE(judge_by_finer(1.1, 0.11, 1.025, 1.00625).holds);
   EXPECT_NEAR(judge_by_finer(1.1, 0.1, 1.025, 1.00625).error, 0.09375 / 1.00625, 1e-15);
   EXPECT_FALSE(judge_by_finer(1.1, 0.05, 1.025, 1.00625).holds);
@@ -218,13 +215,9 @@ TEST(HardJudgement, AllowsMoreOfAnAnswerNextToTheLimit) {
 TEST_F(HardFile, ProgramComparesWithFinerMeshes) {
   std::string text = family("[family.set]\n\"grid.cells\" = [24, 12]\n");
   text.replace(text.find("paper.toml"), 10, "patches.toml");
-  const ProgramEnd end = run_program(
-      {SLIPSTICK_PROGRAM, "hard", write(text), "--output", folder_ / "kept", "--json", "-", "--quiet"},
-      {.captured = Captured::output});
-  const Json row = Json::parse(end.output)["rows"][0];
+  const Json row = run(text, 0)["rows"][0];
   std::vector<double> twists;
-  solver::Scene scene =
-      solver::read_scene(std::string(SLIPSTICK_SCENES) + "/patches.toml", {"grid.cells=[24,12]"});
+  solver::Scene scene = example("patches", {"grid.cells=[24,12]"});
   const solver::Grid grid = solver::make_model(scene).grid_in_m();
   scene.extent = {24.0 * grid.h1, 12.0 * grid.h2};
   for (const int finer : {1, 2, 4}) {
@@ -251,14 +244,10 @@ TEST(HardJudgement, ComparesSignsAndUnits) {
 }
 
 TEST_F(HardFile, ProgramJudgesEachCaseAndItsViews) {
-  const fs::path file = write(family("[family.set]\n\"grid.cells\" = [12, 12]\n"
-                                     "[[family.vary]]\nkey = 'load.moment_ratio'\nvalues = [0.5, 2.0]\n") +
-                              family("[[family.vary]]\nkey = 'solver.max_iterations'\nvalues = [1]\n"));
-  const ProgramEnd end =
-      run_program({SLIPSTICK_PROGRAM, "hard", file, "--output", folder_ / "kept", "--json", "-", "--quiet"},
-                  {.captured = Captured::output});
-  EXPECT_EQ(end.code, 1);
-  const Json result = Json::parse(end.output);
+  const Json result = run(family("[family.set]\n\"grid.cells\" = [12, 12]\n"
+                                 "[[family.vary]]\nkey = 'load.moment_ratio'\nvalues = [0.5, 2.0]\n") +
+                              family("[[family.vary]]\nkey = 'solver.max_iterations'\nvalues = [1]\n"),
+                          1);
   EXPECT_EQ(result["counts"], Json({{"certified", 1}, {"refused", 1}, {"not_converged", 1}, {"wrong", 0}}));
   const Json& views = result["rows"][0]["variants"];
   for (const Variant variant : kVariants) EXPECT_LE(views[to_string(variant)], 1e-10) << to_string(variant);
@@ -266,15 +255,9 @@ TEST_F(HardFile, ProgramJudgesEachCaseAndItsViews) {
 }
 
 TEST_F(HardFile, ProgramComparesMethods) {
-  const fs::path file =
-      write(family("[family.set]\n\"grid.cells\" = [12, 12]\n"
-                   "[[family.vary]]\nkey = 'load.moment_ratio'\nvalues = [0.5, 2.0]\n"));
-  const ProgramEnd end =
-      run_program({SLIPSTICK_PROGRAM, "hard", file, "--once", "--beside", "projected_gradient", "--output",
-                   folder_ / "kept", "--json", "-", "--quiet"},
-                  {.captured = Captured::output});
-  EXPECT_EQ(end.code, 0);
-  const Json result = Json::parse(end.output);
+  const Json result = run(family("[family.set]\n\"grid.cells\" = [12, 12]\n"
+                                 "[[family.vary]]\nkey = 'load.moment_ratio'\nvalues = [0.5, 2.0]\n"),
+                          0, {"--once", "--beside", "projected_gradient"});
   EXPECT_EQ(result["methods"]["projected_gradient"], Json({{"agrees", 1},
                                                            {"refused", 1},
                                                            {"not_converged", 0},

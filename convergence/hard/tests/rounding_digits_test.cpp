@@ -36,7 +36,7 @@ TEST(SurvivingDigits, AreFromNoneToAll) {
   EXPECT_THROW(surviving_digits(1.0, {}), std::invalid_argument);
 }
 
-// Of 400 made experiments with a known deviation, the interval holds the truth in about 95 %.
+// In about 95 % of 400 made experiments with a known deviation the interval holds the truth.
 TEST(SurvivingDigits, IntervalHoldsTheTruthAsOftenAsItSays) {
   std::mt19937_64 generator(7);
   std::normal_distribution<double> normal(0.0, 1e-6);

@@ -1,8 +1,8 @@
 """third_opinion_test.py PROGRAM FCLIB_SOLVE: contacts as FCLIB problems, solved by Siconos' nonsmooth Gauss-Seidel method.
 
 Pressure and tractions are found together there, from influence coefficients that audit.py integrates and from Coulomb's
-law as a cone. Of slipstick's answer it takes the approach and the rigid motion, which the contact is given, and where it
-is; cells around it have to open by themselves.
+law as a cone. slipstick's answer gives the approach, the rigid motion and the cells of the contact; cells around it have to
+open by themselves.
 """
 
 import json

@@ -14,7 +14,6 @@
 #include "analytic/named_profile.hpp"
 #include "analytic/torsion.hpp"
 #include "convergence/laws/contact_law.hpp"
-#include "convergence/laws/program_parameters.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "solver/input/input_error.hpp"
 
@@ -264,7 +263,7 @@ TEST(LimitSurface, LiesWithinItsGap) {
   EXPECT_GE(largest, 0.2 * coarse.gap);
 }
 
-TEST(ProgramParameters, NoSpringWithACapIsBetter) {
+TEST(BestSpring, NoSpringWithACapIsBetter) {
   for (const Profile* profile : kLawProfiles) {
     const ContactLaw law = make_contact_law({"x", {profile, [](const Profile*) {}}, {}}, {.limit_loads = 3});
     const auto error_of = [&](double stiffness) {
@@ -287,26 +286,6 @@ TEST(ProgramParameters, NoSpringWithACapIsBetter) {
 
 solver::Scene paper_scene(const std::vector<std::string>& overrides = {}) {
   return solver::read_scene(SLIPSTICK_SCENES "/paper.toml", overrides);
-}
-
-/// Pressure E (depth)/R over the sphere's shallow cap.
-TEST(ProgramParameters, DrakesSphereCarriesTheLoadAndTheExactLimit) {
-  const ContactLaw law = make_contact_law(law_contact(paper_scene()), {.limit_loads = 3});
-  const DrakeHydroelastic drake = drake_hydroelastic(law).value();
-  const double sphere = 0.018;
-  const double a = drake.contact_radius;
-  double load = 0.0;
-  double limit = 0.0;
-  constexpr int kRings = 100000;
-  for (int i = 0; i < kRings; ++i) {
-    const double r = a * (i + 0.5) / kRings;
-    const double ring = 2.0 * std::numbers::pi * r * a / kRings;
-    const double p = drake.modulus * (a * a - r * r) / (2.0 * sphere) / sphere;
-    load += p * ring;
-    limit += drake.mu_dynamic * p * r * ring;
-  }
-  EXPECT_NEAR(load, 1000.0, 1e-5);
-  EXPECT_NEAR(limit / law.limit_moment(), 1.0, 1e-8);
 }
 
 TEST(LawContact, IsTheScenesInSi) {

@@ -27,13 +27,13 @@ struct Compared {
   Errors errors;
 };
 
-Compared solve_paper(int cells, const std::string& pressure, const std::string& ratio) {
-  const solver::Scene paper =
-      scene("/paper.toml", {"grid.cells=[" + std::to_string(cells) + "," + std::to_string(cells) + "]",
-                            "contact.pressure=" + pressure, "load.moment_ratio=" + ratio});
-  const solver::Solution solution = solver::solve(paper);
+Compared solve_scene(const char* name, int cells, const std::string& ratio,
+                     const std::string& pressure = "solved") {
+  const solver::Scene body = scene(name, {fmt::format("grid.cells=[{0},{0}]", cells),
+                                          "contact.pressure=" + pressure, "load.moment_ratio=" + ratio});
+  const solver::Solution solution = solver::solve(body);
   EXPECT_EQ(solution.status, solver::Status::converged) << solution.message;
-  return {solution, compare(solution, *find_oracle(paper).oracle)};
+  return {solution, compare(solution, *find_oracle(body).oracle)};
 }
 
 // What the program promises at 128 cells with the pressure solved on the same grid.
@@ -42,7 +42,7 @@ constexpr double kTractionAt128 = 1e-2;
 
 TEST(Comparison, PaperMethodAt128Cells) {
   for (const char* ratio : {"0.5", "0.9"}) {
-    const Errors errors = solve_paper(128, "solved", ratio).errors;
+    const Errors errors = solve_scene("/paper.toml", 128, ratio).errors;
     EXPECT_LE(std::abs(errors.twist), kTwistAt128) << ratio;
     EXPECT_LE(errors.traction.at_centres.l1, kTractionAt128) << ratio;
   }
@@ -141,8 +141,8 @@ TEST(Comparison, ANumberThatIsNoneIsNotSkipped) {
 
 TEST(Comparison, ErrorsFallWithTheMesh) {
   for (const char* pressure : {"solved", "hertz", "hertz_averaged"}) {
-    const Compared coarse = solve_paper(32, pressure, "0.5");
-    const Compared fine = solve_paper(128, pressure, "0.5");
+    const Compared coarse = solve_scene("/paper.toml", 32, "0.5", pressure);
+    const Compared fine = solve_scene("/paper.toml", 128, "0.5", pressure);
     // Twist about h^2, traction about h^1.4 in L1 and h in L2, over a factor 4 in h; half an order is left
     // for the staircase of the stick area.
     EXPECT_LE(std::abs(fine.errors.twist), std::abs(coarse.errors.twist) * std::pow(4.0, -1.5)) << pressure;
@@ -155,22 +155,13 @@ TEST(Comparison, ErrorsFallWithTheMesh) {
 }
 
 TEST(Comparison, HertzSolvedEqualsHertzExact) {
-  const Compared at64 = solve_paper(64, "solved", "0.5");
-  const Compared at128 = solve_paper(128, "solved", "0.5");
+  const Compared at64 = solve_scene("/paper.toml", 64, "0.5");
+  const Compared at128 = solve_scene("/paper.toml", 128, "0.5");
   EXPECT_LE(std::abs(at128.errors.peak_pressure), 0.5 * std::abs(at64.errors.peak_pressure));
   EXPECT_LE(std::abs(at128.errors.contact_radius), 1e-4);
   EXPECT_LE(std::abs(at128.errors.moment_limit), 1e-4);
   const Oracle oracle = *find_oracle(scene("/paper.toml", {})).oracle;
   EXPECT_NEAR(at128.solution.approach / oracle.approach, 1.0, 1e-4);
-}
-
-Compared solve_scene(const char* name, int cells, const std::string& ratio) {
-  const solver::Scene body =
-      scene(name, {"grid.cells=[" + std::to_string(cells) + "," + std::to_string(cells) + "]",
-                   "load.moment_ratio=" + ratio});
-  const solver::Solution solution = solver::solve(body);
-  EXPECT_EQ(solution.status, solver::Status::converged) << solution.message;
-  return {solution, compare(solution, *find_oracle(body).oracle)};
 }
 
 // Under a cone the limit moment and the approach are off by h^2, tractions and pressure by h^1.5 to h^2 in
@@ -226,7 +217,7 @@ TEST(Comparison, LeavesOutWhatIsInfinite) {
 }
 
 // Both sides find Hertz's ellipse, by different integrals and different root-finders.
-TEST(Comparison, HertzEllipseOfBothWings) {
+TEST(Comparison, HertzEllipseOfBothSides) {
   constexpr double tolerance = 1e-13;
   for (const double ratio : {1.0, 1.0001, 1.5, 0.2, 10.0, 400.0, 1.0 / 400.0}) {
     const analytic::HertzEllipse exact = analytic::hertz_ellipse(3.0, ratio, 1.0, 7.0);
@@ -237,8 +228,8 @@ TEST(Comparison, HertzEllipseOfBothWings) {
   }
 }
 
-/// Of the pressure in L1 and L2, of contact radius, peak, limit moment and approach: sizes of errors, mean
-/// over three grids of nearly the same cells, which lie differently under the edge.
+/// Sizes of the errors of the pressure in L1 and L2, of contact radius, peak, limit moment and approach:
+/// means over three grids of nearly the same cells, which lie differently under the edge.
 Eigen::Array<double, 6, 1> mean_errors(solver::Scene body, solver::Index across) {
   const Oracle oracle = *find_oracle(body).oracle;
   const solver::Index shape = body.cells[0] / body.cells[1];

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <cmath>
 #include <filesystem>
@@ -12,6 +11,7 @@
 
 #include "analytic/torsion.hpp"
 #include "convergence/results/exact_result.hpp"
+#include "convergence/tests/scratch_folder.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/solve.hpp"
@@ -31,7 +31,7 @@ const std::vector<std::string> kBodies{"paper", "cone", "flat_punch"};
 
 solver::Scene exact_scene(const std::string& name, std::vector<std::string> overrides = {}) {
   overrides.emplace_back("solver.model=exact");
-  return solver::read_scene(std::string(SLIPSTICK_SCENES) + "/" + name + ".toml", overrides);
+  return example(name, overrides);
 }
 
 Json answer(const solver::Scene& scene) { return exact_result(scene, require_oracle(scene), 0.0); }
@@ -59,23 +59,6 @@ TEST(ExactModel, GivesTheNumbersOfTheExactSolution) {
       EXPECT_NEAR(number(result, "moment") / (state.moment * force * a), 1.0, kTolerance);
       EXPECT_NEAR(number(result, "twist_angle") / (state.twist * force / (shear_modulus * a * a)), 1.0,
                   kTolerance);
-    }
-  }
-}
-
-TEST(ExactModel, AnswersForTheMomentAndForTheTwist) {
-  for (const std::string& name : kBodies) {
-    const Json by_ratio = answer(exact_scene(name, {"load.moment_ratio=0.7"}));
-    for (const auto& [key, value] : {std::pair("load.moment", number(by_ratio, "moment")),
-                                     std::pair("load.twist", number(by_ratio, "twist_angle"))}) {
-      solver::Scene other = exact_scene(name);
-      other.steps[0].torsion = key == std::string("load.moment") ? solver::TorsionLoad(solver::Moment{value})
-                                                                 : solver::Twist{value};
-      const Json result = answer(other);
-      for (const char* number_key : {"moment_ratio", "moment", "twist_angle", "stick_radius", "twist"}) {
-        EXPECT_NEAR(number(result, number_key) / number(by_ratio, number_key), 1.0, kTolerance)
-            << name << ' ' << key << ' ' << number_key;
-      }
     }
   }
 }
@@ -163,21 +146,13 @@ TEST(ExactModel, IsNotForTheSolver) {
               ThrowsMessage<solver::InputError>(AllOf(HasSubstr("solver.model"), HasSubstr("auto, full"))));
 }
 
-class ExactFieldFile : public testing::Test {
+class ExactFieldFile : public ScratchFolder {
  protected:
-  ~ExactFieldFile() override { fs::remove_all(folder_); }
   std::vector<solver::Column> sampled(const solver::Scene& scene) const {
     const fs::path file = folder_ / "exact.csv";
     write_exact_fields(file, scene, require_oracle(scene));
     return solver::read_columns(file, {"x1", "x2", "pressure", "q1", "q2", "stick"});
   }
-
- private:
-  fs::path folder_ = [] {
-    fs::path folder = fs::path(testing::TempDir()) / ("slipstick-exact-fields-" + std::to_string(getpid()));
-    fs::create_directories(folder);
-    return folder;
-  }();
 };
 
 TEST_F(ExactFieldFile, HoldsPressureAndTractionsAtTheCellCentres) {

@@ -1,16 +1,15 @@
 #pragma once
 
+#include <cmath>
+#include <numbers>
 #include <string>
 #include <vector>
 
-#include "solver/scene/scene.hpp"
+#include "convergence/oracle/oracle.hpp"
+#include "convergence/tests/scratch_folder.hpp"
 
 /// Scenes whose loads go through several steps.
 namespace slipstick::convergence {
-
-inline solver::Scene scene_of(const std::string& name) {
-  return solver::read_scene(std::string(SLIPSTICK_SCENES) + "/" + name + ".toml");
-}
 
 /// Where Cattaneo's and Mindlin's solution is exact.
 inline solver::Scene without_contraction(solver::Scene scene) {
@@ -43,6 +42,33 @@ inline solver::Scene pushed(solver::Scene scene, const std::vector<Push>& pushes
     scene.steps[i].force = {0.6 * pushes[i].force, 0.8 * pushes[i].force};
   }
   return scene;
+}
+
+/// What pressure and shear carry: the integrals of p, |q| r and |q| over the contact.
+struct CarriedLoads {
+  double load = 0.0;
+  double moment = 0.0;
+  double force = 0.0;
+};
+
+/// By the midpoint rule in r = sin(t), which takes off what a flat punch's edge has too much, on both sides
+/// of the stick edge, where the traction has a vertical tangent.
+inline CarriedLoads loads_carried_by(const Oracle& oracle) {
+  constexpr int points = 4000;
+  constexpr double step = std::numbers::pi / 2 / points;
+  CarriedLoads carried;
+  for (const auto& [from, to] :
+       {std::pair(0.0, oracle.stick_radius), std::pair(oracle.stick_radius, oracle.contact_radius)}) {
+    for (int i = 0; i < points; ++i) {
+      const double t = step * (i + 0.5);
+      const double r = from + (to - from) * std::sin(t);
+      const double ring = step * (to - from) * std::cos(t) * 2.0 * std::numbers::pi * r;
+      carried.load += ring * oracle.pressure(r);
+      carried.moment += ring * r * oracle.traction(r);
+      carried.force += ring * oracle.traction(r);
+    }
+  }
+  return carried;
 }
 
 }  // namespace slipstick::convergence

@@ -47,7 +47,7 @@ Scene on_cells(Scene scene, Index cells) {
 
 double size(const std::array<double, 2>& vector) { return std::hypot(vector[0], vector[1]); }
 
-/// Of twist or displacement: whichever the scene has.
+/// The error of the twist or the displacement, whichever the scene has.
 double motion_error(const Errors& errors) {
   return std::isfinite(errors.twist) ? std::abs(errors.twist) : errors.displacement;
 }
@@ -66,11 +66,11 @@ constexpr double kMotionToGap = 1e-6;
 constexpr double kTractionToGap = 1e-3;
 
 const Scene& steel() {
-  static const Scene scene = scene_of("paper");
+  static const Scene scene = example("paper");
   return scene;
 }
 const Scene& plain() {
-  static const Scene scene = without_contraction(scene_of("paper"));
+  static const Scene scene = without_contraction(example("paper"));
   return scene;
 }
 
@@ -328,7 +328,7 @@ TEST(HistoryComparison, ASphereOffTheOriginTurnsAboutItsAxis) {
 
 /// Against a rigid body, nu = 0: beta = 1/2. mu = 0.2986 is Spence's.
 Scene against_rigid(const std::string& body, solver::Coupling coupling) {
-  Scene scene = without_contraction(scene_of(body));
+  Scene scene = without_contraction(example(body));
   scene.upper = {.young_modulus = INFINITY, .poisson_ratio = 0.0};
   scene.friction = 0.2986;
   scene.coupling = coupling;

@@ -2,17 +2,18 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <chrono>
 #include <csignal>
-#include <fstream>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <thread>
 
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/worker.hpp"
+#include "convergence/tests/scratch_folder.hpp"
+#include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -22,24 +23,18 @@ namespace fs = std::filesystem;
 const std::string kPaper = std::string(SLIPSTICK_SCENES) + "/paper.toml";
 const std::string kCells = "grid.cells=[16,16]";
 
-class ProcessPoolTest : public testing::Test {
+class ProcessPoolTest : public ScratchFolder {
  protected:
-  ProcessPoolTest() { fs::create_directories(folder_); }
-  ~ProcessPoolTest() override { fs::remove_all(folder_); }
-
   ProcessPoolOptions options() const { return {.folder = folder_ / "points", .program = SLIPSTICK_PROGRAM}; }
 
   /// The paper's scene, through steps of its moment.
   fs::path history(int most_iterations) const {
-    const fs::path scene = folder_ / ("history-" + std::to_string(most_iterations) + ".toml");
-    std::ofstream(scene) << read_text(kPaper).erase(read_text(kPaper).find("[load]"))
-                         << "[load]\nnormal = 1000.0\n[grid]\ncells = [16, 16]\n[solver]\nmax_iterations = "
-                         << most_iterations
-                         << "\n[[step]]\nmoment_ratio = 0.8\n[[step]]\nmoment_ratio = -0.8\n";
-    return scene;
+    const std::string most = std::to_string(most_iterations);
+    const std::string bodies = read_text(kPaper).erase(read_text(kPaper).find("[load]"));
+    return write("history-" + most + ".toml",
+                 bodies + "[load]\nnormal = 1000.0\n[grid]\ncells = [16, 16]\n[solver]\nmax_iterations = " +
+                     most + "\n[[step]]\nmoment_ratio = 0.8\n[[step]]\nmoment_ratio = -0.8\n");
   }
-
-  fs::path folder_ = fs::path(testing::TempDir()) / ("slipstick-process-pool-" + std::to_string(getpid()));
 };
 
 /// Names and places of all numbers and words.
@@ -53,39 +48,30 @@ std::vector<std::string> paths(const Json& result) {
 /// Whatever an answer depends on is in its key, so that no stale one is taken: the text of the scene and of
 /// each file that it reads, what is changed, how it is rounded and seen, what is asked for beside the result.
 TEST_F(ProcessPoolTest, AKeyHoldsAllThatAnAnswerDependsOn) {
-  const fs::path heights = folder_ / "heights.csv";
-  const fs::path scene = folder_ / "map.toml";
-  const auto write = [](const fs::path& file, const std::string& text) { std::ofstream(file) << text; };
   const std::string flat = "0,0,0\n0,0,0\n0,0,";
-  write(heights, flat + "0\n");
+  write("heights.csv", flat + "0\n");
   const std::string body =
       "name='map'\n[upper]\nshape='height_map'\nfile='heights.csv'\nspacing=[1e-5,1e-5]\nunit='um'\n"
       "ends_at_grid_edge=true\nyoung_modulus=210e9\npoisson_ratio=0.3\n[lower]\nyoung_modulus=210e9\n"
       "poisson_ratio=0.3\n[contact]\nfriction=0.1\n[load]\nnormal=10.0\nmoment_ratio=0.5\n";
-  write(scene, body);
-  const RunSpec spec{.scene = scene};
+  const RunSpec spec{.scene = write("map.toml", body)};
   const std::string key = prepare_run(spec).cache_key;
   EXPECT_EQ(prepare_run(spec).cache_key, key);
-  RunSpec other = spec;
-  other.overrides = {"contact.friction=0.2"};
-  EXPECT_NE(prepare_run(other).cache_key, key);
-  other = spec;
-  other.rounding = Rounding::upward;
-  EXPECT_NE(prepare_run(other).cache_key, key);
-  other = spec;
-  other.variant = Variant::exchanged;
-  EXPECT_NE(prepare_run(other).cache_key, key);
-  other = spec;
-  other.fields = folder_ / "fields.csv";
-  EXPECT_NE(prepare_run(other).cache_key, key);
-  other = spec;
-  other.profile = true;
-  EXPECT_NE(prepare_run(other).cache_key, key);
-  write(heights, flat + "0.001\n");
+  for (const auto& change : std::vector<std::function<void(RunSpec&)>>{
+           [](RunSpec& other) { other.overrides = {"contact.friction=0.2"}; },
+           [](RunSpec& other) { other.rounding = Rounding::upward; },
+           [](RunSpec& other) { other.variant = Variant::exchanged; },
+           [this](RunSpec& other) { other.fields = folder_ / "fields.csv"; },
+           [](RunSpec& other) { other.profile = true; }}) {
+    RunSpec other = spec;
+    change(other);
+    EXPECT_NE(prepare_run(other).cache_key, key);
+  }
+  write("heights.csv", flat + "0.001\n");
   EXPECT_NE(prepare_run(spec).cache_key, key) << "the heights are other ones";
-  write(heights, flat + "0\n");
+  write("heights.csv", flat + "0\n");
   EXPECT_EQ(prepare_run(spec).cache_key, key);
-  write(scene, body + "# another text\n");
+  write("map.toml", body + "# another text\n");
   EXPECT_NE(prepare_run(spec).cache_key, key);
 }
 
@@ -122,9 +108,9 @@ Json without_times(const Json& result) {
   return kept;
 }
 
-/// A worker solves many runs: what came before leaves no trace in a result.
+/// A worker solves many runs: what came before leaves no trace in a result. Equal runs are computed once.
 TEST_F(ProcessPoolTest, ARunDoesNotDependOnThoseBeforeIt) {
-  const std::vector<RunSpec> specs{
+  std::vector<RunSpec> specs{
       {.scene = kPaper, .overrides = {kCells}},
       {.scene = kPaper, .overrides = {kCells}, .rounding = Rounding::upward},
       {.scene = kPaper, .overrides = {kCells, "load.moment_ratio=0.3"}},
@@ -139,6 +125,8 @@ TEST_F(ProcessPoolTest, ARunDoesNotDependOnThoseBeforeIt) {
        .overrides = {"grid.cells=[96,96]", "load.moment_ratio=0.5"},
        .rounding = Rounding::downward},
       {.scene = kPaper, .overrides = {kCells, "solver.rounding_seed=7"}}};
+  const auto different = static_cast<std::ptrdiff_t>(specs.size());
+  specs.push_back(specs.front());
   ProcessPoolOptions together = options();
   together.jobs = 1;
   const std::vector<Json> results = ProcessPool(together).run(specs);
@@ -147,6 +135,7 @@ TEST_F(ProcessPoolTest, ARunDoesNotDependOnThoseBeforeIt) {
     apart.folder = folder_ / "apart" / std::to_string(i);
     EXPECT_EQ(without_times(results[i]), without_times(ProcessPool(apart).run(specs[i]))) << i;
   }
+  EXPECT_EQ(std::distance(fs::directory_iterator(together.folder), {}), different);
 }
 
 TEST_F(ProcessPoolTest, ARefusedRunHasNoFieldsAndSaysWhy) {
@@ -156,6 +145,7 @@ TEST_F(ProcessPoolTest, ARefusedRunHasNoFieldsAndSaysWhy) {
   EXPECT_EQ(refused["status"], "refused");
   EXPECT_THAT(refused["message"].get<std::string>(), testing::HasSubstr("grid.extent"));
   EXPECT_FALSE(fs::exists(spec.fields));
+  EXPECT_THROW(ProcessPool(options()).run(RunSpec{kPaper, {"load.moment_ration=0.5"}}), solver::InputError);
 }
 
 TEST_F(ProcessPoolTest, ARunWithoutItsFieldsIsNotFinished) {

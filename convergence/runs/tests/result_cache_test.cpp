@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <functional>
@@ -12,20 +11,16 @@
 #include <vector>
 
 #include "convergence/runs/run_spec.hpp"
+#include "convergence/tests/scratch_folder.hpp"
 #include "solver/tests/scene_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
-using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-class ResultCacheTest : public testing::Test {
+class ResultCacheTest : public ScratchFolder {
  protected:
-  ResultCacheTest() { std::filesystem::remove_all(folder_); }
-  ~ResultCacheTest() override { std::filesystem::remove_all(folder_); }
-  std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) / ("slipstick-result-cache-" + std::to_string(::getpid()));
   int computed_ = 0;
   Json compute() {
     ++computed_;
@@ -98,18 +93,17 @@ TEST_F(ResultCacheTest, WhatIsNoFileIsReplaced) {
 TEST_F(ResultCacheTest, IsNotFinishedWithoutWhatLiesBeside) {
   const fs::path beside = folder_ / "fields.h5";
   const ResultCache cache(folder_);
-  const auto write = [&](const std::string& text) { std::ofstream(beside) << text; };
   const auto finished = [&] { return cache.find("point", "a", beside).has_value(); };
-  write("all of it");
+  write("fields.h5", "all of it");
   cache.keep("point", "a", {{"value", 0.1}}, beside);
   EXPECT_TRUE(finished());
   for (const char* damaged : {"all", "", "all of ix"}) {
-    write(damaged);
+    write("fields.h5", damaged);
     EXPECT_FALSE(finished()) << damaged;
   }
   fs::remove(beside);
   EXPECT_FALSE(finished());
-  write("all of it");
+  write("fields.h5", "all of it");
   EXPECT_TRUE(finished());
 }
 
@@ -121,10 +115,7 @@ TEST_F(ResultCacheTest, AnotherProgramComputesAgain) {
 
 // What a result is kept under holds the scene's name and whole tables, which need not be UTF-8; JSON is.
 TEST_F(ResultCacheTest, ResultsOfScenesWithAnyNameAreFoundAgain) {
-  const fs::path scene = folder_ / "caf\xe9.toml";
-  fs::create_directories(folder_);
-  std::ofstream(scene) << solver::kShortScene;
-  const PreparedRun run = prepare_run({.scene = scene});
+  const PreparedRun run = prepare_run({.scene = write("caf\xe9.toml", solver::kShortScene)});
   const ResultCache cache(folder_ / "runs");
   cache.keep(run.name, run.cache_key, Json{{"name", "caf\xe9"}});
   EXPECT_TRUE(cache.find(run.name, run.cache_key).has_value());

@@ -143,7 +143,7 @@ TEST(AccuracyChoice, ScalesTheContactWithTheCellsOfAGivenExtent) {
   EXPECT_GT(cells_across(free, 256) / cells_across(free, 64), 4.0 * (1.0 + 2.0 / 64.0));
 }
 
-// Of a grid that stands in a file.
+// The grid stands in a file.
 TEST(AccuracyChoice, KnowsTheCellsAcrossAGridThatIsGiven) {
   solver::Scene at = scene("paper", {"grid.cells=[24,12]", "grid.extent=[2e-3,1e-3]"});
   at.pressure = solver::PressureModel::file;
@@ -207,9 +207,15 @@ convergence::SolvedScene made_answer(const solver::Scene& at, double constant, d
   return answer;
 }
 
+/// What an accuracy of a punch comes to whose errors are made.
+convergence::AccurateAnswer made_accuracy(double wanted, double constant, double order) {
+  return convergence::solve_to_accuracy(punch(), {wanted}, [=](const solver::Scene& at, solver::Detail) {
+    return made_answer(at, constant, order);
+  });
+}
+
 TEST(Accuracy, IsReachedByRefiningWhereTheFirstMeshIsTooCoarse) {
-  const auto found = convergence::solve_to_accuracy(
-      punch(), {1e-3}, [](const solver::Scene& at, solver::Detail) { return made_answer(at, 100.0, 2.0); });
+  const auto found = made_accuracy(1e-3, 100.0, 2.0);
   EXPECT_TRUE(found.reached);
   EXPECT_GE(found.accuracy["attempts"].size(), 2U);
   EXPECT_LE(found.accuracy["reached"].get<double>(), 1e-3);
@@ -221,21 +227,18 @@ TEST(Accuracy, IsReachedByRefiningWhereTheFirstMeshIsTooCoarse) {
 }
 
 TEST(Accuracy, IsGivenUpAfterThreeRefinements) {
-  const auto found = convergence::solve_to_accuracy(
-      punch(), {1e-2}, [](const solver::Scene& at, solver::Detail) { return made_answer(at, 0.02, 0.0); });
+  const auto found = made_accuracy(1e-2, 0.02, 0.0);
   EXPECT_FALSE(found.reached);
   EXPECT_EQ(found.accuracy["attempts"].size(), 4U);
   EXPECT_DOUBLE_EQ(found.accuracy["reached"], 0.02);
 }
 
 TEST(Accuracy, IsGivenUpWhereNoMeshThatMayBeChosenGetsThere) {
-  const auto found = convergence::solve_to_accuracy(
-      punch(), {1e-2}, [](const solver::Scene& at, solver::Detail) { return made_answer(at, 0.99, 0.0); });
+  const auto found = made_accuracy(1e-2, 0.99, 0.0);
   EXPECT_FALSE(found.reached);
   EXPECT_LE(found.accuracy["attempts"].size(), 4U);
   EXPECT_LE(found.accuracy["attempts"].back()["cells"][0].get<double>(), convergence::kMaxCellsAcross + 8.0);
-  const auto at_once = convergence::solve_to_accuracy(
-      punch(), {1e-5}, [](const solver::Scene& at, solver::Detail) { return made_answer(at, 0.99, 0.0); });
+  const auto at_once = made_accuracy(1e-5, 0.99, 0.0);
   EXPECT_EQ(at_once.accuracy["attempts"].size(), 1U);
   EXPECT_THAT(at_once.accuracy["not_reached"].get<std::string>(), HasSubstr("finer than 2048"));
 }

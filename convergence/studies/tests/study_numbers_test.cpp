@@ -42,7 +42,7 @@ struct MadeStudy {
     const double mean = sum / static_cast<double>(series.meshes[mesh].grids.size());
     return std::pow(mean / series.meshes[0].grids[0].size, power);
   }
-  /// Of a constant at size 1, that at the size of the coarsest mesh.
+  /// A constant at size 1, as it is at the size of the coarsest mesh.
   double at_coarsest(const Json& constant, double power = 2.0) const {
     return constant.get<double>() * std::pow(series.meshes[0].grids[0].size, power);
   }
@@ -125,7 +125,7 @@ TEST(StudyNumbers, OfValuesAreRelativeToTheirLimit) {
   const double scatter = std::sqrt(2.0) * 1e-6;  // of two grids, from their mean
   const Json& found = json["extrapolated"][quantity];
   expect_part(found["value"], limit, 1e-9);
-  // Of the mean of two: its noise, and two standard errors.
+  // The mean of two: its noise, and two standard errors.
   const double of_finest = iteration + rounding + 2.0 * scatter / std::sqrt(2.0);
   const double uncertainty = 1.25 * finest * std::abs(limit) + of_finest;
   expect_part(found["uncertainty"], uncertainty, 1e-5);

@@ -8,7 +8,6 @@
 #include <cfenv>
 #include <cmath>
 #include <csignal>
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <set>
 
@@ -16,8 +15,8 @@
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/orders/expected_order.hpp"
 #include "convergence/results/quantity.hpp"
-#include "convergence/runs/solve_scene.hpp"
 #include "convergence/studies/budget.hpp"
+#include "convergence/tests/scratch_folder.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/tests/complaint.hpp"
 #include "solver/model.hpp"
@@ -26,49 +25,23 @@ namespace slipstick::convergence {
 namespace {
 
 using testing::HasSubstr;
-namespace fs = std::filesystem;
 
 const std::string kPaper = std::string(SLIPSTICK_SCENES) + "/paper.toml";
 const std::string kEllipse = std::string(SLIPSTICK_SCENES) + "/ellipse.toml";
 
 std::string cells(int n) { return "grid.cells=[" + std::to_string(n) + "," + std::to_string(n) + "]"; }
 
-class StudyTest : public testing::Test {
+class StudyTest : public ScratchFolder {
  protected:
-  StudyTest() { fs::create_directories(folder_); }
-  ~StudyTest() override { fs::remove_all(folder_); }
-
   Study study(const std::string& text, const std::string& scene = kPaper) {
-    std::ofstream(folder_ / "study.toml") << "scene = \"" << scene << "\"\n" << text;
-    return read_study(folder_ / "study.toml");
+    return read_study(write("study.toml", "scene = \"" + scene + "\"\n" + text));
   }
   Json run(const std::string& text, const std::string& scene = kPaper) {
     return run_study(study(text, scene), pool_);
   }
 
-  fs::path folder_ = fs::path(testing::TempDir()) / ("slipstick-study-test-" + std::to_string(getpid()));
   ProcessPool pool_{{.folder = folder_ / "points", .program = SLIPSTICK_PROGRAM}};
 };
-
-TEST_F(StudyTest, ProcessesGiveWhatOneSolveGives) {
-  const std::vector<RunSpec> points{{kPaper, {cells(16)}}, {kPaper, {cells(24)}}, {kPaper, {cells(16)}}};
-  const std::vector<Json> results = pool_.run(points);
-  ASSERT_EQ(results.size(), 3U);
-  for (std::size_t i = 0; i < 3; ++i) {
-    EXPECT_EQ(results[i]["twist_angle"], solve_scene(prepare_run(points[i]).scene).result["twist_angle"]);
-  }
-  EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "points"), fs::directory_iterator()),
-            2);  // equal points are computed once
-}
-
-TEST_F(StudyTest, WhatCannotBeHadIsRefusedAndTheRestGoesOn) {
-  const std::vector<Json> results =
-      pool_.run({{kPaper, {cells(16), "load.moment=0.1"}}, {kPaper, {cells(16)}}});
-  EXPECT_EQ(results[0]["status"], "refused");
-  EXPECT_THAT(results[0]["message"].get<std::string>(), HasSubstr("moment"));
-  EXPECT_EQ(results[1]["status"], "converged");
-  EXPECT_THROW(pool_.run(RunSpec{kPaper, {"load.moment_ration=0.5"}}), solver::InputError);
-}
 
 /// Rounding all results up changes them, by about as much as the number of operations says: far less than the
 /// digits that matter.
@@ -173,7 +146,7 @@ TEST_F(StudyTest, WithoutAnExactAnswerTheLimitIsExtrapolated) {
   EXPECT_LE(limit["uncertainty"].get<double>(), 1e-2 * exact);
 }
 
-/// Of an ellipse the normal contact is known, of what friction does nothing.
+/// The normal contact of an ellipse is known, the effect of friction is not.
 TEST_F(StudyTest, WhatTheExactAnswerDoesNotSayIsExtrapolated) {
   const Json result = run("cells = [16, 24, 32]\n", kEllipse);
   const Json& series = result["series"]["ellipse"];
@@ -263,7 +236,7 @@ TEST_F(StudyTest, ASeriesThatCannotBeSolvedIsJudgedTooFew) {
   EXPECT_NE(result["series"]["5000"]["order"]["twist_error"]["verdict"], "too_few");
 }
 
-/// Of some contacts the ratio is all that is known; and a height map is its own grid.
+/// For some contacts the ratio is all that is known; and a height map is its own grid.
 TEST_F(StudyTest, LooksAtWhatTheSceneHas) {
   const Json spence = run("cells = [12, 16]\n", std::string(SLIPSTICK_SCENES) + "/spence.toml");
   EXPECT_TRUE(spence["series"]["spence"]["order"].contains("stick_ratio_error"));
@@ -319,9 +292,9 @@ TEST(TractionError, RegionsAddUpToTheWhole) {
 }
 
 TEST(ExpectedOrder, EveryErrorHasOneWithAReasonWhereTheEdgeIsARoot) {
-  const solver::Scene sphere = solver::read_scene(kPaper);
-  const solver::Scene punch = solver::read_scene(std::string(SLIPSTICK_SCENES) + "/flat_punch.toml");
-  const solver::Scene rough = solver::read_scene(std::string(SLIPSTICK_SCENES) + "/rough_sphere.toml");
+  const solver::Scene sphere = example("paper");
+  const solver::Scene punch = example("flat_punch");
+  const solver::Scene rough = example("rough_sphere");
   for (const auto& [quantity, label] : error_quantities()) {
     EXPECT_GT(expected_order(quantity, sphere).value, 0.0) << quantity;
     EXPECT_FALSE(expected_order(quantity, sphere).why.empty());

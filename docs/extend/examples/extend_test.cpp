@@ -6,11 +6,16 @@
 #include <memory>
 #include <numbers>
 #include <slipstick/torsion.hpp>
+#include <vector>
 
 #include "docs/extend/examples/method.hpp"
-#include "docs/extend/examples/operator.hpp"
 #include "docs/extend/examples/profile.hpp"
+#include "solver/contact/coulomb_method.hpp"
+#include "solver/contact/normal_contact.hpp"
+#include "solver/contact/paper_method.hpp"
 #include "solver/contact/projected_gradient.hpp"
+#include "solver/elasticity/law/half_spaces.hpp"
+#include "solver/elasticity/law/winkler_layer.hpp"
 
 namespace example {
 namespace {
@@ -43,16 +48,22 @@ struct Sphere {
     problem.friction_bound = (1.0 - square).max(0.0).sqrt();
     problem.twist = twist;
   }
-  std::unique_ptr<solver::LinearOperator> half_spaces() const {
+  /// G = 1, without cross contraction, under a layer of this compliance.
+  static solver::SharedLaw law(double compliance) {
     const solver::ElasticPair pair{
         .shear_compliance = 1.0, .poisson_compliance = 0.0, .normal_compliance = 1.0, .mismatch = 0.0};
-    return solver::make_operator(solver::OperatorKind::dcfft, grid, solver::tangential_kernel(), pair);
+    return std::make_shared<solver::WinklerLayer>(std::make_shared<solver::HalfSpaces>(pair), compliance,
+                                                  compliance);
+  }
+  std::unique_ptr<solver::LinearOperator> op(double compliance) const {
+    return solver::make_operator(solver::OperatorKind::dcfft, grid, solver::tangential_kernel(),
+                                 *law(compliance));
   }
 };
 
 TEST(ExampleMethod, FindsTheExactMoment) {
   const Sphere sphere(1.0);
-  const auto op = sphere.half_spaces();
+  const auto op = sphere.op(0.0);
   const solver::TangentialSolution solution = solve_by_plain_gradient(*op, sphere.problem, 1e-5, 5000);
   ASSERT_EQ(solution.status, solver::Status::converged) << solution.message;
   const double load = 2.0 / 3.0 * std::numbers::pi;  // mu W of mu p0 = a = 1
@@ -61,28 +72,47 @@ TEST(ExampleMethod, FindsTheExactMoment) {
   EXPECT_NEAR(moment / analytic::from_twist(1.0 / load).moment, 1.0, 0.01);
 }
 
-TEST(ExampleMethod, AgreesWithAnotherOnAnyOperator) {
+/// The example, and the solver's own.
+std::vector<solver::TangentialSolution> by_every_method(const Sphere& sphere, double compliance) {
+  const auto op = sphere.op(compliance);
+  return {solve_by_plain_gradient(*op, sphere.problem, 1e-8, 5000),
+          solver::solve_by_projected_gradient(*op, sphere.problem),
+          solver::solve_by_paper_method(*op, sphere.problem),
+          solver::solve_by_coulomb_method({.law = Sphere::law(compliance)}, sphere.grid, sphere.problem)};
+}
+
+TEST(ExampleLaw, IsTakenByEveryMethod) {
   const Sphere sphere(2.0);
-  CoatedHalfSpaces op(sphere.half_spaces(), 0.5);
-  const solver::TangentialSolution plain = solve_by_plain_gradient(op, sphere.problem, 1e-7, 5000);
-  const solver::TangentialSolution other = solver::solve_by_projected_gradient(
-      op, sphere.problem, {.tolerance = 1e-7, .start = {}, .progress = {}});
-  ASSERT_EQ(plain.status, solver::Status::converged) << plain.message;
-  ASSERT_EQ(other.status, solver::Status::converged) << other.message;
-  EXPECT_LT((plain.traction - other.traction).abs().maxCoeff(), 1e-2);
+  const auto solutions = by_every_method(sphere, 0.5);
+  for (const solver::TangentialSolution& solution : solutions) {
+    ASSERT_EQ(solution.status, solver::Status::converged) << solution.message;
+    EXPECT_LT((solution.traction - solutions.front().traction).abs().maxCoeff(), 1e-2);
+  }
 }
 
 /// Under a layer that takes nearly all of the displacement each cell stands alone: q = phi r/compliance, up
 /// to mu p.
-TEST(ExampleOperator, OfASoftLayerSticksWhereTheLayerAloneWould) {
+TEST(ExampleLaw, SticksWhereAVerySoftLayerAloneWould) {
   constexpr double kCompliance = 1e4;
   const Sphere sphere(kCompliance);
-  CoatedHalfSpaces op(sphere.half_spaces(), kCompliance);
-  const solver::TangentialSolution solution = solve_by_plain_gradient(op, sphere.problem, 1e-8, 5000);
-  ASSERT_EQ(solution.status, solver::Status::converged) << solution.message;
   const ArrayXd radius = solver::norms(solver::rotation_field(sphere.grid));
   const ArrayXd expected = radius.min(sphere.problem.friction_bound);
-  EXPECT_LT((solver::norms(solution.traction) - expected).abs().maxCoeff(), 1e-2);
+  for (const solver::TangentialSolution& solution : by_every_method(sphere, kCompliance)) {
+    ASSERT_EQ(solution.status, solver::Status::converged) << solution.message;
+    EXPECT_LT((solver::norms(solution.traction) - expected).abs().maxCoeff(), 1e-2);
+  }
+}
+
+/// And presses as Winkler's foundation: p = (approach - gap)/compliance.
+TEST(ExampleLaw, PressesAsAVerySoftLayerAloneWould) {
+  constexpr double kCompliance = 1e4;
+  const Sphere sphere(0.0);
+  const ArrayXd gap = solver::norms(solver::rotation_field(sphere.grid)).square();
+  const solver::NormalSolution solution = solver::solve_normal_contact(
+      {.law = Sphere::law(kCompliance)}, sphere.grid, {.gap = gap, .total_pressure = 1e-2});
+  ASSERT_EQ(solution.status, solver::Status::converged) << solution.message;
+  const ArrayXd expected = (solution.approach - gap).max(0.0) / kCompliance;
+  EXPECT_LT((solution.pressure - expected).abs().maxCoeff(), 1e-3 * expected.maxCoeff());
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ sys.path[:0] = [str(EXAMPLES), str(ROOT / "reports"), str(ROOT / "reports/tests"
 
 
 def rows(page):
-    """The rows of its tables whose first cell is a file: (file, words in code in the other cells)."""
+    """The rows of its tables that begin with a file: (file, words in code in the other cells)."""
     for first, rest in re.findall(r"^\| `([^`|]+)` \|(.*)\|$", page.read_text(), re.MULTILINE):
         if "/" in first:
             yield first, [word for word in re.findall(r"`([^`]+)`", rest) if not word.startswith("make ")]

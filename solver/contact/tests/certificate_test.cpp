@@ -198,13 +198,13 @@ class SmallProblem : public testing::Test {
   Certificate certify_at(const ArrayXd& q, double twist) const {
     const ArrayXd u = product(q);
     const ArrayXd s = u - twist * t_;
-    return certify({q, u, s}, bound_, t_, moment_, {}, least_eigenvalue(pair_, grid_.h1, grid_.h2));
+    return certify({q, u, s}, bound_, t_, moment_, {}, law_.least_eigenvalue(grid_.h1, grid_.h2));
   }
 
   Grid grid_{6, 6, 1.0, 1.0};
   ArrayXd t_ = rotation_field(grid_);
-  ElasticPair pair_ = elastic_pair({1.0, 0.3}, {2.5, 0.1});
-  DenseMatrix op_{grid_, tangential_kernel(), pair_};
+  HalfSpaces law_{elastic_pair({1.0, 0.3}, {2.5, 0.1})};
+  DenseMatrix op_{grid_, tangential_kernel(), law_};
   const Eigen::MatrixXd& K_ = op_.matrix();
   ArrayXd bound_, q_star_;
   double moment_ = 0.0;
@@ -281,11 +281,11 @@ INSTANTIATE_TEST_SUITE_P(Cells, LeastEigenvalue,
 
 TEST_P(LeastEigenvalue, IsBelowThoseOfAMatrixAndNotFarBelow) {
   const auto [h2, poisson_ratio] = GetParam();
-  const ElasticPair pair = elastic_pair({2.0, poisson_ratio}, {2.0, poisson_ratio});
-  const DenseMatrix matrix({12, 12, 1.0, h2}, tangential_kernel(), pair);
+  const HalfSpaces law(elastic_pair({2.0, poisson_ratio}, {2.0, poisson_ratio}));
+  const DenseMatrix matrix({12, 12, 1.0, h2}, tangential_kernel(), law);
   const double least = dense_eigenvalues(matrix.matrix())[0];
-  EXPECT_LT(least_eigenvalue(pair, 1.0, h2), least);
-  EXPECT_GT(least_eigenvalue(pair, 1.0, h2), 0.7 * least);
+  EXPECT_LT(law.least_eigenvalue(1.0, h2), least);
+  EXPECT_GT(law.least_eigenvalue(1.0, h2), 0.7 * least);
 }
 
 TEST(SlipDirection, IsTheAngleFromTheReverseOfTraction) {

@@ -43,13 +43,13 @@ struct CoulombBench {
   Grid grid;
   ArrayXd bound;
   double limit;
-  Elasticity elasticity{elastic_pair({2.0, 0.3}, {2.0, 0.3})};
+  Elasticity elasticity{half_spaces({2.0, 0.3}, {2.0, 0.3})};
 };
 
 /// K q and the slip afresh, by direct summation.
 Certificate independent_certificate(const CoulombBench& bench, const TangentialSolution& solution,
                                     double moment) {
-  const auto op = make_operator(OperatorKind::direct, bench.grid, tangential_kernel(), bench.elasticity.pair);
+  const auto op = make_operator(OperatorKind::direct, bench.grid, tangential_kernel(), *bench.elasticity.law);
   ArrayXd u(solution.traction.size());
   op->apply(solution.traction, u);
   const ArrayXd contact = (bench.bound > 0.0).cast<double>().replicate(2, 1);

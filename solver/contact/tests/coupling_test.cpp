@@ -31,7 +31,7 @@ const Material kRigid{kInfinity, 0.0};
 const Material kSpences{1.0, 0.0};
 
 ArrayXd applied(const BlockKernel& kernel, const Model& model, const ArrayXd& traction) {
-  return applied(*make_operator(OperatorKind::direct, model.grid, kernel, model.pair), traction);
+  return applied(*make_operator(OperatorKind::direct, model.grid, kernel, *model.law), traction);
 }
 
 ModelSolution solved(const Scene& scene) {
@@ -44,17 +44,17 @@ ModelSolution solved(const Scene& scene) {
 
 /// Betti: the work of shear in the displacements by pressure is that of the pressure in those by shear.
 TEST(ShearKernel, IsReciprocalToThePressures) {
-  const ElasticPair pair = elastic_pair({1.0, 0.2}, {3.0, 0.35});
+  const SharedLaw law = half_spaces({1.0, 0.2}, {3.0, 0.35});
   for (const Grid& grid : {Grid{9, 6, 1.0, 0.7}, Grid{16, 16, 1.0, 1.0}, Grid{1, 5, 1.0, 1.0}}) {
     const ArrayXd q = random_field(2 * grid.cells(), 1);
     const ArrayXd p = random_field(grid.cells(), 2);
     for (const OperatorKind kind : {OperatorKind::dcfft, OperatorKind::direct, OperatorKind::dense}) {
-      const ArrayXd along = applied(*make_operator(kind, grid, coupling_kernel(), pair), p);
-      ShearOpening opening({.pair = pair, .kind = kind}, grid);
+      const ArrayXd along = applied(*make_operator(kind, grid, coupling_kernel(), *law), p);
+      ShearOpening opening({.law = law, .kind = kind}, grid);
       const ArrayXd normal = opening(q);
       const double scale = std::sqrt(q.square().sum() * along.square().sum());
       EXPECT_NEAR((q * along).sum(), (p * normal).sum(), 1e-13 * scale);
-      EXPECT_NEAR((applied(*make_operator(kind, grid, shear_kernel(), pair), q) + normal).abs().maxCoeff(),
+      EXPECT_NEAR((applied(*make_operator(kind, grid, shear_kernel(), *law), q) + normal).abs().maxCoeff(),
                   0.0, 1e-13 * largest(normal));
     }
   }
@@ -64,8 +64,8 @@ TEST(ShearKernel, IsReciprocalToThePressures) {
 /// a compressible surface towards itself (Johnson 1985, Eq. 3.18), in relation to a rigid one.
 TEST(CouplingKernel, IsOddAndDrawsInwards) {
   const Grid grid{41, 41, 1.0, 1.0};
-  const ElasticPair pair = elastic_pair({1.0, 0.25}, {kInfinity, 0.0});
-  const auto op = make_operator(OperatorKind::dcfft, grid, coupling_kernel(), pair);
+  const HalfSpaces law(elastic_pair({1.0, 0.25}, {kInfinity, 0.0}));
+  const auto op = make_operator(OperatorKind::dcfft, grid, coupling_kernel(), law);
   ArrayXd p = ArrayXd::Zero(grid.cells());
   p[20 * 41 + 20] = 1.0;
   const ArrayXd u = applied(*op, p);
@@ -261,7 +261,7 @@ TEST(FullCoupling, EndsWherePlainTurnsEnd) {
     for (int turn = 0; turn < 40; ++turn) {
       const ArrayXd opening = -applied(shear_kernel(), model, traction);
       pressure =
-          solve_normal_contact({.pair = model.pair}, model.grid,
+          solve_normal_contact({.law = model.law}, model.grid,
                                {.gap = model.gap + opening, .total_pressure = total}, {.tolerance = kGap})
               .pressure;
       TangentialProblem problem{};
@@ -270,7 +270,7 @@ TEST(FullCoupling, EndsWherePlainTurnsEnd) {
       problem.moment = 0.4 * moment_limit(model.grid, problem.friction_bound);
       CoulombOptions full;
       full.tolerance = kGap;
-      traction = solve_by_coulomb_method({.pair = model.pair}, model.grid, problem, full).traction;
+      traction = solve_by_coulomb_method({.law = model.law}, model.grid, problem, full).traction;
     }
     EXPECT_LE(relative_difference(accelerated.normal.pressure, pressure), 1e-6) << friction;
     EXPECT_LE(relative_difference(accelerated.tangential.traction, traction), 1e-6) << friction;

@@ -232,10 +232,10 @@ INSTANTIATE_TEST_SUITE_P(Tolerances, Complementarity, testing::Values(1e-6, 1e-1
 
 TEST_P(Complementarity, HoldsToTheToleranceAskedFor) {
   const Model model = make_model(ellipsoid_scene(40, 0.03, 0.01, 0.5));
-  const auto op = make_operator(OperatorKind::dcfft, model.grid, normal_kernel(), model.pair);
+  const auto op = make_operator(OperatorKind::dcfft, model.grid, normal_kernel(), *model.law);
   const double total = *model.normal_load / model.grid.cell_area();
   const NormalSolution solution =
-      solve_normal_contact({.pair = model.pair}, model.grid, {model.gap, total}, {.tolerance = GetParam()});
+      solve_normal_contact({.law = model.law}, model.grid, {model.gap, total}, {.tolerance = GetParam()});
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   const ArrayXd& p = solution.pressure;
   EXPECT_TRUE((p >= 0.0).all());
@@ -259,7 +259,7 @@ TEST_P(Complementarity, HoldsToTheToleranceAskedFor) {
 /// found.
 TEST(Complementarity, HoldsOnAWavySurface) {
   const Grid grid{40, 40, 1.0, 1.0};
-  const Elasticity elasticity{elastic_pair({1.0, 0.3}, {1.0, 0.3})};
+  const Elasticity elasticity{half_spaces({1.0, 0.3}, {1.0, 0.3})};
   const auto op = elasticity.make(grid, normal_kernel());
   const ArrayXd x1 = cell_x1(grid);
   const ArrayXd x2 = cell_x2(grid);
@@ -282,9 +282,9 @@ TEST(Complementarity, HoldsOnAWavySurface) {
 /// A minimum, by its energy alone: no other admissible pressure has less.
 TEST(Complementarity, IsAMinimumOfTheEnergy) {
   const Model model = make_model(paper_scene(12, 0.5));
-  const auto op = make_operator(OperatorKind::dense, model.grid, normal_kernel(), model.pair);
+  const auto op = make_operator(OperatorKind::dense, model.grid, normal_kernel(), *model.law);
   const double total = *model.normal_load / model.grid.cell_area();
-  const NormalSolution solution = solve_normal_contact({.pair = model.pair, .kind = OperatorKind::dense},
+  const NormalSolution solution = solve_normal_contact({.law = model.law, .kind = OperatorKind::dense},
                                                        model.grid, {model.gap, total}, {.tolerance = 1e-14});
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   const auto energy = [&](const ArrayXd& p) {
@@ -318,7 +318,7 @@ TEST(Operators, GiveTheSamePressure) {
 class BadNormalProblem : public testing::Test {
  protected:
   Grid grid_{8, 8, 1.0, 1.0};
-  Elasticity elasticity_{elastic_pair({1.0, 0.3}, {1.0, 0.3}), OperatorKind::dense};
+  Elasticity elasticity_{half_spaces({1.0, 0.3}, {1.0, 0.3}), OperatorKind::dense};
   ArrayXd gap_ = 0.05 * (cell_x1(grid_).square() + cell_x2(grid_).square());
 };
 
@@ -350,7 +350,7 @@ TEST_F(BadNormalProblem, TooFewIterationsAreAStatusWithItsNumbers) {
 /// In one cell the load says it all: p = W/h^2, approach = K33 p.
 TEST(OneCell, CarriesTheLoad) {
   const Grid grid{1, 1, 1.0, 1.0};
-  const ElasticPair pair = elastic_pair({1.0, 0.3}, {std::numeric_limits<double>::infinity(), 0.0});
+  const HalfSpaces pair(elastic_pair({1.0, 0.3}, {std::numeric_limits<double>::infinity(), 0.0}));
   const NormalSolution solution = solve_normal_contact({pair}, grid, {ArrayXd::Zero(1), 3.0});
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   EXPECT_DOUBLE_EQ(solution.pressure[0], 3.0);
@@ -362,7 +362,7 @@ TEST(OneCell, OfManyTouches) {
   const Grid grid{9, 9, 1.0, 1.0};
   ArrayXd gap = cell_x1(grid).square() + cell_x2(grid).square();
   const NormalSolution solution =
-      solve_normal_contact({elastic_pair({1.0, 0.3}, {1.0, 0.3})}, grid, {gap, 0.01});
+      solve_normal_contact({half_spaces({1.0, 0.3}, {1.0, 0.3})}, grid, {gap, 0.01});
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   EXPECT_EQ((solution.pressure > 0.0).count(), 1);
   EXPECT_NEAR(solution.pressure[40], 0.01, 1e-14);

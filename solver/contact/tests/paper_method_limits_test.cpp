@@ -45,8 +45,8 @@ TEST(Unloaded, HasNoTraction) {
 /// One cell of a grid off the axis: q = M/r at right angles to its arm, and it turns by K q/r.
 TEST(OneCell, OffTheAxisCarriesTheMomentAlone) {
   const Grid grid{7, 7, 1.0, 1.0};
-  const ElasticPair pair = elastic_pair({1.0, 0.3}, {2.5, 0.1});
-  const auto op = make_operator(OperatorKind::dcfft, grid, tangential_kernel(), pair);
+  const HalfSpaces law(elastic_pair({1.0, 0.3}, {2.5, 0.1}));
+  const auto op = make_operator(OperatorKind::dcfft, grid, tangential_kernel(), law);
   ArrayXd bound = ArrayXd::Zero(49);
   const Index cell = 5 * 7 + 3;  // at (2, 0)
   bound[cell] = 1.0;
@@ -55,7 +55,7 @@ TEST(OneCell, OffTheAxisCarriesTheMomentAlone) {
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   EXPECT_NEAR(solution.traction[49 + cell], 0.6, kRounding);
   EXPECT_NEAR(solution.traction[cell], 0.0, kRounding);
-  const double self = influence_coefficients(Component::k22, pair, 1.0, 1.0, 1, 1).front();
+  const double self = law.influence_coefficients(Component::k22, {1, 1, 1.0, 1.0}).front();
   EXPECT_NEAR(solution.twist, self * 0.6 / 2.0, kRounding);
 }
 

@@ -172,7 +172,7 @@ TEST(Restick, BringsBackTheCellsThatTheInitialGuessMadeSlip) {
   ASSERT_GT((guess > bound).count(), 100);
 
   const auto op =
-      make_operator(OperatorKind::dcfft, grid, tangential_kernel(), elastic_pair({1.0, 0.3}, {1.0, 0.3}));
+      make_operator(OperatorKind::dcfft, grid, tangential_kernel(), *half_spaces({1.0, 0.3}, {1.0, 0.3}));
   const TangentialSolution solution = solve_by_paper_method(*op, under_moment(bound, kMomentRatio * limit));
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   const ArrayXd inside = (r < 0.8).cast<double>();  // the staircase of the edge is felt beyond

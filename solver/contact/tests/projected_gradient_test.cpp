@@ -35,7 +35,7 @@ struct GradientBench {
       : grid{cells, cells, 2.2 / static_cast<double>(cells), 1.4 / static_cast<double>(cells)},
         bound(hertz_cell_averages({1.0, 0.6, 1.0}, grid)),
         t(rotation_field(grid)),
-        op(make_operator(kind, grid, tangential_kernel(), elastic_pair({1.0, 0.3}, {1.0, 0.3}))),
+        op(make_operator(kind, grid, tangential_kernel(), *half_spaces({1.0, 0.3}, {1.0, 0.3}))),
         limit(moment_limit(grid, bound)) {}
 
   TangentialSolution solve(const TangentialProblem& problem, double gap = kGradientGap) const {

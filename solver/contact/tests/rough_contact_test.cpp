@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "solver/contact/normal_contact.hpp"
-#include "solver/elasticity/influence.hpp"
+#include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/scene/roughness.hpp"
 
 namespace slipstick::solver {
@@ -37,7 +37,7 @@ struct RoughFace {
     return pressure * kModulus * kSlope * static_cast<double>(grid.cells());
   }
 
-  Elasticity elasticity{.pair = elastic_pair({0.7 * kModulus, 0.3}, {0.7 * kModulus, 0.3}), .at_edge = true};
+  Elasticity elasticity{.law = half_spaces({0.7 * kModulus, 0.3}, {0.7 * kModulus, 0.3}), .at_edge = true};
   Grid grid;
   ArrayXd gap;
 };

@@ -361,7 +361,7 @@ TEST_P(CircularContact, SticksWithinLubkinsRadius) {
     const Grid grid{n, n, h, h};
     const ArrayXd bound = hertz_cell_averages({1.0, 1.0, 1.0}, grid);
     const auto op =
-        make_operator(OperatorKind::dcfft, grid, tangential_kernel(), elastic_pair({1.0, 0.3}, {1.0, 0.3}));
+        make_operator(OperatorKind::dcfft, grid, tangential_kernel(), *half_spaces({1.0, 0.3}, {1.0, 0.3}));
     ProjectedGradientOptions options;
     options.tolerance = 1e-10;
     const TangentialSolution solution = solve_by_projected_gradient(

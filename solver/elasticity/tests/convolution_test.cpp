@@ -95,9 +95,7 @@ const std::vector<BlockKernel>& kernels() {
   return all;
 }
 
-ElasticPair dissimilar_pair() { return elastic_pair({1.0, 0.3}, {2.5, 0.1}); }
-
-/// A grid too large for the dense matrix, of lengths that are prime and of which one is padded further.
+/// A grid too large for the dense matrix, of lengths that are prime. One is padded further.
 TEST(Convolution, OfPrimeLengthsIsTheDirectSum) {
   const Grid grid{101, 67, 1.0, 1.0};
   for (const BlockKernel& kernel : kernels()) {

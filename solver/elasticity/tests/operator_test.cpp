@@ -40,8 +40,8 @@ double coefficient(Component component, const Grid& grid, Index point, Index sou
   const Index k1 = point / grid.n2 - source / grid.n2;
   const Index k2 = point % grid.n2 - source % grid.n2;
   const int sign = (k1 < 0 ? parity(component).x1 : 1) * (k2 < 0 ? parity(component).x2 : 1);
-  const auto quadrant = influence_coefficients(component, dissimilar_pair(), grid.h1, grid.h2,
-                                               std::abs(k1) + 1, std::abs(k2) + 1);
+  const auto quadrant = dissimilar_pair().influence_coefficients(
+      component, {std::abs(k1) + 1, std::abs(k2) + 1, grid.h1, grid.h2});
   return sign * quadrant.back();
 }
 
@@ -236,7 +236,7 @@ TEST(BondedPunch, TurnsAsReissnerAndSagociSay) {
     const double a = 1.0;
     const Grid grid{n, n, 2.0 * a / static_cast<double>(n), 2.0 * a / static_cast<double>(n)};
     const auto op = make_operator(OperatorKind::dcfft, grid, tangential_kernel(),
-                                  elastic_pair({1.0, 0.3}, {std::numeric_limits<double>::infinity(), 0.0}));
+                                  *half_spaces({1.0, 0.3}, {std::numeric_limits<double>::infinity(), 0.0}));
     const ArrayXd q = bonded_punch_traction(grid, a);
     const ArrayXd t = rotation_field(grid);
     // The sum of x times q over cells replaces the moment's integral; its error is of second order in h,

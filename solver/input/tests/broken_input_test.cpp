@@ -5,9 +5,9 @@
 #include <hdf5.h>
 #include <hdf5_hl.h>
 
-#include <csignal>
+#include <cstdlib>
 #include <filesystem>
-#include <iterator>
+#include <iostream>
 #include <random>
 #include <string>
 #include <vector>
@@ -16,7 +16,6 @@
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
-#include "solver/input/run_apart.hpp"
 #include "solver/tests/scene_file.hpp"
 
 namespace slipstick::solver {
@@ -24,7 +23,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using testing::AllOf;
-using testing::AnyOf;
 using testing::HasSubstr;
 
 class BrokenInput : public SceneFile {
@@ -103,8 +101,9 @@ TEST_F(BrokenInput, OnlyNumbersOfTheFileItselfAreRead) {
   EXPECT_THAT(says("none"), HasSubstr("no such dataset"));
 }
 
-// The library divides by the size of a chunk that the file says: where that is zero it ends its process.
-TEST_F(BrokenInput, AFileThatKillsTheLibraryIsOneThatCannotBeRead) {
+// The library divides by the size of a chunk that the file says: a zero there ends the process. Newer
+// versions of the library refuse the file.
+TEST_F(BrokenInput, AFileThatCrashesTheLibraryIsNamed) {
   constexpr hsize_t kChunk = 0x5A17;
   const fs::path file = dataset({kChunk + 1}, kChunk);
   std::string bytes = read_input_file(file, 1 << 20, "");
@@ -113,9 +112,11 @@ TEST_F(BrokenInput, AFileThatKillsTheLibraryIsOneThatCannotBeRead) {
   ASSERT_NE(place, std::string::npos);
   bytes.replace(place, size.size(), std::string(size.size(), '\0'));
   write("file.h5", bytes);
-  EXPECT_THAT(
-      complaint([&] { read_datasets(file, {"height"}, 1, 1 << 20); }),
-      AllOf(HasSubstr(file.string()), AnyOf(HasSubstr("does not survive"), HasSubstr("is no dataset"))));
+  const auto read_and_end = [&] {
+    std::cerr << complaint([&] { read_datasets(file, {"height"}, 1, 1 << 20); });
+    std::exit(2);
+  };
+  EXPECT_EXIT(read_and_end(), testing::ExitedWithCode(2), "file.h5: .*(does not survive|is no dataset)");
 }
 
 TEST_F(BrokenInput, DamagedFieldsAreReadOrRefused) {
@@ -140,35 +141,6 @@ TEST_F(BrokenInput, DamagedFieldsAreReadOrRefused) {
     }
   }
   EXPECT_GT(refused, 10);
-}
-
-TEST(RunApart, ReturnsWhatWasSent) {
-  const std::string sent = run_apart(
-      [](const Send& send) {
-        send("ab", 2);
-        send("c", 1);
-      },
-      100);
-  EXPECT_EQ(sent, "abc");
-}
-
-TEST(RunApart, SurvivesWhateverBecomesOfTheWork) {
-  EXPECT_EQ(run_apart([](const Send&) { std::raise(SIGSEGV); }, 100), "");
-  EXPECT_EQ(run_apart([](const Send&) { std::abort(); }, 100), "");
-  EXPECT_EQ(run_apart([](const Send&) { throw std::runtime_error("no"); }, 100), "");
-  EXPECT_EQ(run_apart(
-                [](const Send& send) {
-                  const std::vector<char> much(std::size_t{1} << 40, 'x');
-                  send(much.data(), much.size());
-                },
-                100),
-            "");
-  EXPECT_EQ(run_apart(
-                [](const Send& send) {
-                  for (;;) send("endless", 7);
-                },
-                10),
-            "endlessend");
 }
 
 }  // namespace

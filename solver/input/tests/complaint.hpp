@@ -6,7 +6,7 @@
 
 namespace slipstick::solver {
 
-/// What a call complains of; nothing where it does not.
+/// The message of the InputError that a call throws; empty where it throws none.
 template <typename Call>
 std::string complaint(const Call& call) {
   try {

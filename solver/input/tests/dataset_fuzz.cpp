@@ -1,4 +1,4 @@
-// Any bytes are an HDF5 file with such datasets or are refused, whatever they do to the HDF5 library.
+// Any bytes are an HDF5 file with such datasets or are refused, unless they crash the HDF5 library.
 
 #include <cstdlib>
 

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <fstream>
 #include <iterator>
@@ -10,7 +9,7 @@
 #include <numbers>
 #include <sstream>
 
-#include "solver/input/tests/complaint.hpp"
+#include "solver/tests/scene_file.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -18,22 +17,13 @@ namespace {
 using Eigen::ArrayXd;
 using testing::HasSubstr;
 
-class FieldFile : public testing::Test {
+class FieldFile : public SceneFile {
  protected:
-  FieldFile() { std::filesystem::create_directories(folder_); }
-  ~FieldFile() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name) << text;
-    return folder_ / name;
-  }
-  static std::string read(const std::filesystem::path& file) {
+  static std::string text_of(const std::filesystem::path& file) {
     std::ifstream stream(file);
     return {std::istreambuf_iterator<char>(stream), {}};
   }
 
-  std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) / ("field_file_" + std::to_string(::getpid()));
   Grid grid_{3, 2, 0.5, 0.25};
   /// Values that lose bits where fewer than 17 digits are written.
   std::vector<Column> columns_{
@@ -113,7 +103,7 @@ TEST_F(FieldFile, VtiHasTheGridsExtentsAndOrder) {
   const auto file = folder_ / "fields.vti";
   Column numbered{"number", ArrayXd::LinSpaced(6, 0.0, 5.0)};  // i*2 + j
   write_fields(file, grid_, {numbered, columns_[0]}, ArrayXd::Zero(6));
-  const std::string text = read(file);
+  const std::string text = text_of(file);
   EXPECT_THAT(text, HasSubstr("WholeExtent=\"0 3 0 2 0 0\""));
   EXPECT_THAT(text, HasSubstr("<Piece Extent=\"0 3 0 2 0 0\">"));
   EXPECT_THAT(text, HasSubstr("Origin=\"-0.75 -0.25 0\""));

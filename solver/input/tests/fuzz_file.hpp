@@ -13,7 +13,7 @@
 
 #include "solver/input/input_error.hpp"
 
-/// What fuzz targets share.
+/// Files and refusals for the fuzz targets.
 namespace slipstick::solver {
 
 /// The file that gets a fuzzer's bytes, for a reader to open, in a folder of its own that goes when this

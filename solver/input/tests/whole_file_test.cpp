@@ -4,7 +4,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <signal.h>
-#include <sys/file.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -22,7 +21,6 @@
 #include <thread>
 #include <vector>
 
-#include "solver/input/dataset_writer.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/tests/complaint.hpp"
 
@@ -33,8 +31,8 @@ using testing::AllOf;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
 
-/// A disk on which a file may have so many bytes, for as long as this lives. Nothing is to be printed
-/// meanwhile: standard output may be a file.
+/// Limits the size of files while it lives, as a full disk would. Nothing may be printed meanwhile: standard
+/// output may be a file.
 class SmallDisk {
  public:
   explicit SmallDisk(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
@@ -113,22 +111,9 @@ TEST_F(WholeFile, IsOldOrNewWheneverTheWriterIsKilled) {
   EXPECT_EQ(files(), 1) << "drafts of the killed are left";
 }
 
-TEST_F(WholeFile, DraftsGoWithTheirWriterOnly) {
-  const fs::path dead = file_.string() + ".part-0123abcd";
-  const fs::path living = file_.string() + ".part-4567abcd";
-  const fs::path no_draft = file_.string() + ".part-2.txt";
-  for (const fs::path& other : {dead, living, no_draft}) std::ofstream(other) << "half";
-  const int writer = open(living.c_str(), O_WRONLY);
-  flock(writer, LOCK_EX);
-  write_whole_file(file_, "whole");
-  close(writer);
-  EXPECT_FALSE(fs::exists(dead));
-  EXPECT_TRUE(fs::exists(living));
-  EXPECT_TRUE(fs::exists(no_draft));
-}
-
-/// Nobody has asked yet how its writer ended, as in a container whose first process never does.
-TEST_F(WholeFile, ADraftOfTheKilledGoesAtOnce) {
+/// The next writer takes over a killed one's draft, also before anybody has asked how that one ended, and
+/// leaves a living one's alone.
+TEST_F(WholeFile, ADraftGoesWithItsWriterOnly) {
   std::array<int, 2> ends{};
   ASSERT_EQ(pipe(ends.data()), 0);
   const pid_t writer = fork();
@@ -140,14 +125,17 @@ TEST_F(WholeFile, ADraftOfTheKilledGoesAtOnce) {
   char begun = 0;
   EXPECT_EQ(read(ends[0], &begun, 1), 1);
   EXPECT_EQ(files(), 1);
+  write_whole_file(file_, "beside");
+  EXPECT_EQ(text(file_), "beside");
+  EXPECT_EQ(files(), 2);
   kill(writer, SIGKILL);
   siginfo_t end{};
   waitid(P_PID, static_cast<id_t>(writer), &end, WEXITED | WNOWAIT);
   write_whole_file(file_, "whole");
+  EXPECT_EQ(text(file_), "whole");
   EXPECT_EQ(files(), 1);
   waitpid(writer, nullptr, 0);
-  close(ends[0]);
-  close(ends[1]);
+  for (const int each : ends) close(each);
 }
 
 TEST_F(WholeFile, KeepsItsPermissions) {
@@ -157,7 +145,7 @@ TEST_F(WholeFile, KeepsItsPermissions) {
   EXPECT_EQ(fs::status(file_).permissions(), fs::perms::owner_read | fs::perms::owner_write);
 }
 
-/// What is no plain file is not put aside for one.
+/// A link or a device is not replaced by a plain file.
 TEST_F(WholeFile, WritesThroughLinksAndToDevices) {
   const fs::path link = folder_ / "link";
   fs::create_symlink(fs::path("result.json"), link);
@@ -193,32 +181,6 @@ TEST_F(WholeFile, AFullDeviceIsSaid) {
               AllOf(HasSubstr("/dev/full: cannot be written: No space left"), HasSubstr("make room")));
 }
 
-/// In a container of its own, where this process's number is nobody's, another may take the draft away.
-TEST_F(WholeFile, IsWrittenAgainWhereItsDraftWasTakenAway) {
-  int times = 0;
-  write_whole_file(file_, [&](std::FILE* stream) {
-    if (++times == 1) fs::remove_all(folder_), fs::create_directories(folder_);
-    std::fputs("whole", stream);
-  });
-  EXPECT_EQ(text(file_), "whole");
-  EXPECT_EQ(times, 2);
-  EXPECT_EQ(files(), 1);
-}
-
-/// HDF5 makes a file by its name, which one whose draft was taken away has no more.
-TEST_F(WholeFile, OfDatasetsIsWrittenAgainWhereItsDraftWasTakenAway) {
-  const fs::path file = folder_ / "datasets.h5";
-  int times = 0;
-  const Eigen::ArrayXd values = Eigen::ArrayXd::LinSpaced(5, 0.0, 1.0);
-  write_datasets(file, {{"values", 5, 0, [&](const LongDataset::Put& put) {
-                           if (++times == 1) fs::remove_all(folder_), fs::create_directories(folder_);
-                           put(std::span(values.data(), 5));
-                         }}});
-  EXPECT_EQ(times, 2);
-  EXPECT_EQ(files(), 1);
-  EXPECT_TRUE((read_columns(file, {"values"})[0].values == values).all());
-}
-
 TEST_F(WholeFile, MayHaveTheLongestName) {
   const fs::path longest = folder_ / std::string(255, 'n');
   write_whole_file(longest, "text");
@@ -243,7 +205,7 @@ TEST_F(WholeFile, WhatCannotBeWrittenIsNamed) {
   EXPECT_THAT(complaint([&] { make_folder(file_ / "under"); }), HasSubstr((file_ / "under").string()));
 }
 
-/// Of a folder that may not be written to, which root does not notice.
+/// Root may write anywhere, so that another user tries.
 TEST_F(WholeFile, AReadOnlyFolderIsSaid) {
   constexpr uid_t kNobody = 65534;
   fs::permissions(folder_, fs::perms::owner_read | fs::perms::owner_exec | fs::perms::others_read |
@@ -285,7 +247,7 @@ TEST_F(WholeFile, FieldsAreWholeOrTheOldOnes) {
   }
 }
 
-/// No time is in the file, of which HDF5 keeps the second.
+/// HDF5 keeps the second in which a file was written, unless it is told not to.
 TEST_F(WholeFile, EqualFieldsAreEqualBytes) {
   const Grid grid{4, 2, 0.5, 0.25};
   const fs::path fields = folder_ / "fields.h5";

@@ -29,7 +29,7 @@ using Eigen::MatrixXd;
 using Eigen::VectorXd;
 using testing::HasSubstr;
 
-const ElasticPair kPair = elastic_pair({2.0, 0.3}, {2.0, 0.3});
+const HalfSpaces kPair(elastic_pair({2.0, 0.3}, {2.0, 0.3}));
 /// By which residuals fall; those of random right-hand sides, most of which lies across the tangent space.
 constexpr double kReduction = 1e-13;
 /// Of the solution then: the systems of some tens of unknowns have condition numbers of some hundreds.

@@ -46,7 +46,7 @@ class Newton : public testing::Test {
 
   Bench bench_;
   const Grid& grid_ = bench_.model.grid;
-  std::unique_ptr<InverseSymbol> symbol_ = make_inverse_symbol(grid_, tangential_kernel(), bench_.model.pair);
+  std::unique_ptr<InverseSymbol> symbol_ = make_inverse_symbol(grid_, tangential_kernel(), *bench_.model.law);
   ArrayXd rotation_ = (bench_.bound > 0.0).cast<double>().replicate(2, 1) * rotation_field(grid_);
   MotionField turn_{grid_, 0.0, 0.0, 1.0};
   FrictionDiscs discs_{bench_.bound, grid_.n2};

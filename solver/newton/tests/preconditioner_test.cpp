@@ -33,7 +33,7 @@ void for_each_slipping(const Grid& grid, TangentSpace& space, const Function& fu
   }
 }
 
-const ElasticPair kSteel = elastic_pair({2.0, 0.3}, {2.0, 0.3});
+const HalfSpaces kSteel(elastic_pair({2.0, 0.3}, {2.0, 0.3}));
 
 int iterations_needed(Index cells, bool two_terms) {
   const Grid grid{cells, cells, 1.0, 1.0};

@@ -20,7 +20,7 @@ namespace {
 
 using testing::HasSubstr;
 
-/// What each shape needs.
+/// Required keys of each shape.
 const std::map<std::string, std::string> kShapeKeys{
     {"sphere", "radius = 1\n"},
     {"ellipsoid", "radius_1 = 1\nradius_2 = 2\n"},
@@ -52,7 +52,7 @@ struct Wrong {
 Wrong wrong_for(const SettingKey& key) {
   switch (key.type) {
     case KeyType::number:
-      // What depends on another key says its number: "at least longest = 1, finite".
+      // A range that depends on another key says its number: "at least longest = 1, finite".
       return {"\"no\"", "a number, " + key.allowed.words.substr(0, key.allowed.words.find(','))};
     case KeyType::pair:
       return {"1", "[a, b], two numbers, each " + key.allowed.words};
@@ -84,7 +84,7 @@ std::string members(const Scene& scene) {
 
 class SceneKeys : public SceneFile {
  protected:
-  /// What is said of a wrong value for a key.
+  /// The complaint about a wrong value for a key.
   std::string complaint_of(const SettingKey& key, const std::string& shape) const {
     const bool several = key.name.starts_with("upper.shape.") || key.name == "upper.combine";
     std::string name = key.name;

@@ -228,7 +228,7 @@ TEST(GapBelowADepth, OfAnEllipsoidIsItsOwnLevelsBox) {
   EXPECT_NEAR(own[1], 0.2, 10.0 * kEpsilon);
 }
 
-/// Of a sum the gap is larger than that of either, of the nearest it is that of one.
+/// The gap of a sum is larger than either one's; the gap of the nearest is that of one.
 TEST(GapBelowADepth, OfSeveralShapesIsTheNarrowestOrTheWidest) {
   const std::vector<Surface> crossed{ellipsoid(4.0, 1.0, 0.0), ellipsoid(0.25, 2.25, 0.0)};
   const auto sum = half_sides_below(crossed, Combine::sum, 0.02);

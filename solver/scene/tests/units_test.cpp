@@ -45,7 +45,6 @@ constexpr Index kCells = 48;
 Scene by_ratio() { return paper_scene(kCells, 0.5); }
 Scene by_moment() {
   Scene scene = paper_scene(kCells, 0.0);
-  scene.steps[0].torsion = {};
   scene.steps[0].torsion = Moment{0.9 * paper::kMomentLimit};
   return scene;
 }
@@ -93,7 +92,7 @@ INSTANTIATE_TEST_SUITE_P(Systems, OtherUnits,
                                          Units{"um_mN_GPa", 1e6, 1e3}, Units{"km_MN_Pa", 1e-3, 1e-6}),
                          [](const auto& tested) { return tested.param.name; });
 
-/// What the solvers work on keeps nothing of the units, not even their roundings.
+/// The model keeps nothing of the units, not even their roundings.
 TEST_P(OtherUnits, GiveTheSameModel) {
   for (const Scene& scene : {by_ratio(), by_moment(), over_an_extent()}) {
     const Model si = make_model(scene);

@@ -1,0 +1,83 @@
+#pragma once
+
+#include <array>
+#include <functional>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "analytic/certified/certified.hpp"
+#include "analytic/cycle.hpp"
+#include "analytic/named_profile.hpp"
+#include "analytic/torsion.hpp"
+
+/// The answers of the command `exact`, as JSON.
+namespace slipstick::analytic {
+
+using Json = nlohmann::ordered_json;
+
+/// A number that every state has, proven or not: its key in the JSON, and its name and symbol for a person.
+struct ExactQuantity {
+  const char* key;
+  const char* label;
+  const char* symbol;
+  double TorsionState::*member;
+  certified::Number certified::State::*certified;
+};
+inline constexpr std::array kExactQuantities{
+    ExactQuantity{"moment_ratio", "moment ratio", "M/M_lim", &TorsionState::moment_ratio,
+                  &certified::State::moment_ratio},
+    ExactQuantity{"moment_deficit", "moment deficit", "1 - M/M_lim", &TorsionState::moment_deficit,
+                  &certified::State::moment_deficit},
+    ExactQuantity{"stick_ratio", "stick ratio", "a_s/a", &TorsionState::stick_ratio,
+                  &certified::State::stick_ratio},
+    ExactQuantity{"stick_complement", "stick complement", "1 - a_s/a", &TorsionState::stick_complement,
+                  &certified::State::stick_complement},
+    ExactQuantity{"twist", "twist", "G a^2 phi/(mu W)", &TorsionState::twist, &certified::State::twist},
+    ExactQuantity{"moment", "moment", "M/(mu W a)", &TorsionState::moment, &certified::State::moment},
+    ExactQuantity{"tangent_stiffness", "tangent stiffness", "dM/dphi/(G a^3)",
+                  &TorsionState::tangent_stiffness, &certified::State::tangent_stiffness},
+};
+
+/// The normal side in SI units, and the constants that turn dimensionless results into SI units.
+struct Units {
+  Indentation indentation;
+  double load;                          ///< N
+  std::optional<double> friction;       ///< mu
+  std::optional<double> shear_modulus;  ///< combined G, 1/G = 1/G_1 + 1/G_2, Pa
+};
+
+/// The contact asked about.
+struct ExactContact {
+  std::string name;  ///< of the profile, as typed
+  NamedProfile profile;
+  std::optional<Units> units;
+};
+
+/// One state of first loading, tractions at some radii, and the way back from there to another moment.
+struct StateQuestion {
+  std::function<TorsionState(const Profile&)> state;
+  std::vector<double> radii;
+  std::optional<double> unload_to;  ///< M/M_lim
+};
+Json answer_state(const ExactContact& contact, const StateQuestion& question);
+
+/// A history of loads at constant normal load: turning points M/M_lim in turn.
+struct HistoryQuestion {
+  std::vector<double> turning_points;
+  int points_per_branch;
+  std::vector<double> radii;
+};
+Json answer_history(const ExactContact& contact, const HistoryQuestion& question);
+
+/// One state of first loading with proven digits.
+struct CertifiedQuestion {
+  certified::Quantity given;
+  std::string value;
+  std::vector<std::string> radii;
+  int digits;
+};
+Json answer_certified(const ExactContact& contact, const CertifiedQuestion& question);
+
+}  // namespace slipstick::analytic

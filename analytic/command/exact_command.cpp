@@ -1,0 +1,201 @@
+#include "analytic/command/exact_command.hpp"
+
+#include <fmt/core.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cstdlib>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
+#include <ostream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "analytic/command/exact_text.hpp"
+
+namespace slipstick::analytic {
+
+namespace {
+
+/// One way to name a state.
+struct Given {
+  const char* option;
+  const char* help;
+  TorsionState (*state)(double, const Profile&);
+  certified::Quantity quantity;
+};
+
+constexpr std::array kGiven{
+    Given{"--moment-ratio", "M/M_lim, in [0, 1)", from_moment_ratio, certified::Quantity::moment_ratio},
+    Given{"--moment-deficit", "1 - M/M_lim, in (0, 1]", from_moment_deficit,
+          certified::Quantity::moment_deficit},
+    Given{"--stick-ratio", "a_s/a, in (0, 1]", from_stick_ratio, certified::Quantity::stick_ratio},
+    Given{"--stick-complement", "1 - a_s/a, in [0, 1)", from_stick_complement,
+          certified::Quantity::stick_complement},
+    Given{"--twist", "G a^2 phi/(mu W), from 0", from_twist, certified::Quantity::twist},
+};
+
+/// As typed. Numbers stay text for certified digits, which take them to be exactly what is written.
+struct Options {
+  std::array<std::string, kGiven.size()> value;
+  std::array<const CLI::Option*, kGiven.size()> given{};
+  std::vector<std::string> radii;
+  std::string profile = "hertz";
+  std::optional<int> certified;
+  std::optional<double> unload_to;
+  std::vector<double> history;
+  int points = 50;
+  std::optional<double> normal_load;
+  std::optional<double> effective_modulus;
+  std::vector<double> shape;
+  std::optional<double> friction;
+  std::optional<double> shear_modulus;
+};
+
+/// An error of range or form, with the option that brought the value.
+template <class Function>
+auto naming(const std::string& option, Function function) {
+  try {
+    return function();
+  } catch (const std::logic_error& error) {
+    throw std::domain_error(fmt::format("{}: {}", option, error.what()));
+  }
+}
+
+double number(const std::string& text) {
+  char* end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  if (text.empty() || *end != '\0') throw std::domain_error(fmt::format("\"{}\" is not a number", text));
+  return value;
+}
+
+std::vector<double> radii(const Options& options) {
+  return naming("--radius", [&] {
+    std::vector<double> radii;
+    for (const std::string& text : options.radii) {
+      const double r = number(text);
+      if (!(r >= 0 && r <= 1)) throw std::domain_error(fmt::format("r/a = {}; allowed: 0 <= r/a <= 1", r));
+      radii.push_back(r);
+    }
+    return radii;
+  });
+}
+
+ExactContact contact(const Options& options) {
+  if (!options.normal_load)
+    return {.name = options.profile,
+            .profile = naming("--profile", [&] { return find_profile(options.profile); }),
+            .units = {}};
+  PressedContact pressed = naming("--shape", [&] {
+    return press(options.profile, {.load = *options.normal_load,
+                                   .effective_modulus = *options.effective_modulus,
+                                   .shape = options.shape});
+  });
+  return {.name = options.profile,
+          .profile = std::move(pressed.profile),
+          .units = Units{.indentation = pressed.indentation,
+                         .load = *options.normal_load,
+                         .friction = options.friction,
+                         .shear_modulus = options.shear_modulus}};
+}
+
+std::size_t given(const Options& options) {
+  for (std::size_t i = 0; i < kGiven.size(); ++i)
+    if (options.given[i]->count() > 0) return i;
+  throw std::invalid_argument("exact: no state given");
+}
+
+int run(const Options& options, std::ostream& out, Json& result) {
+  const ExactContact exact = contact(options);
+  if (!options.history.empty()) {
+    result = naming("--history", [&] {
+      return answer_history(
+          exact,
+          {.turning_points = options.history, .points_per_branch = options.points, .radii = radii(options)});
+    });
+    write_history(out, exact, result);
+    return 0;
+  }
+  const Given& from = kGiven[given(options)];
+  const std::string& text = options.value[given(options)];
+  if (options.certified) {
+    result = naming("--certified", [&] {
+      return answer_certified(
+          exact,
+          {.given = from.quantity, .value = text, .radii = options.radii, .digits = *options.certified});
+    });
+    write_certified(out, exact, result);
+    return 0;
+  }
+  const auto state = [&](const Profile& profile) {
+    return naming(from.option, [&] { return from.state(number(text), profile); });
+  };
+  result = answer_state(exact, {.state = state, .radii = radii(options), .unload_to = options.unload_to});
+  write_state(out, exact, result);
+  return 0;
+}
+
+void add_state_options(CLI::App& exact, Options& options) {
+  CLI::Option_group* given = exact.add_option_group("state", "exactly one of these");
+  for (std::size_t i = 0; i < kGiven.size(); ++i)
+    options.given[i] = given->add_option(kGiven[i].option, options.value[i], kGiven[i].help);
+  CLI::Option* history = given
+                             ->add_option("--history", options.history,
+                                          "M/M_lim at each turning point: m1,m2,...; gives the curve")
+                             ->delimiter(',');
+  given->require_option(1);
+  exact.add_option("--points", options.points, "points of the curve on each branch of the history")
+      ->check(CLI::Range(1, 1000000))
+      ->needs(history)
+      ->capture_default_str();
+  CLI::Option* unload = exact
+                            .add_option("--unload-to", options.unload_to,
+                                        "M/M_lim to unload to from the state, normal load constant")
+                            ->excludes(history);
+  exact.add_option("--certified", options.certified, "give each number with so many proven digits, 15..100")
+      ->check(CLI::Range(15, 100))
+      ->excludes(history)
+      ->excludes(unload);
+}
+
+void add_units_options(CLI::App& exact, Options& options) {
+  CLI::Option* load =
+      exact.add_option("--normal-load", options.normal_load, "W, N: gives results in SI units too");
+  CLI::Option* modulus = exact.add_option("--effective-modulus", options.effective_modulus,
+                                          "E*, Pa, 1/E* = sum of (1 - nu_i^2)/E_i");
+  CLI::Option* shape = exact.add_option("--shape", options.shape, shape_words())->delimiter(',');
+  load->needs(modulus)->needs(shape);
+  modulus->needs(load);
+  shape->needs(load);
+  CLI::Option* friction = exact.add_option("--friction", options.friction, "mu: gives moments in N m");
+  friction->needs(load)->check(CLI::PositiveNumber);
+  exact
+      .add_option("--shear-modulus", options.shear_modulus,
+                  "combined G, Pa, 1/G = 1/G_1 + 1/G_2: gives the twist in rad")
+      ->needs(friction)
+      ->check(CLI::PositiveNumber);
+}
+
+}  // namespace
+
+std::function<int(std::ostream&, Json&)> add_exact_command(CLI::App& app) {
+  CLI::App* exact = app.add_subcommand("exact", "exact solution of an axisymmetric contact in torsion");
+  const auto options = std::make_shared<Options>();
+  add_state_options(*exact, *options);
+  exact
+      ->add_option("--radius", options->radii,
+                   "r/a, in [0, 1], where to give traction and pressure: r1,r2,...")
+      ->delimiter(',');
+  exact->add_option("--profile", options->profile, profile_words())->capture_default_str();
+  add_units_options(*exact, *options);
+  exact->footer(
+      "Examples: slipstick exact --moment-ratio 0.9 --radius 0.2,0.5,0.8\n"
+      "          slipstick exact --moment-ratio 0.5 --certified 50\n"
+      "          slipstick exact --profile cone --history 0.8,-0.8,0.8 --json loop.json");
+  return [options](std::ostream& out, Json& result) { return run(*options, out, result); };
+}
+
+}  // namespace slipstick::analytic

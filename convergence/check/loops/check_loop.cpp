@@ -1,0 +1,337 @@
+#include "convergence/check/loops/check_loop.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <numbers>
+#include <vector>
+
+#include "convergence/check/loops/loop_contact.hpp"
+#include "convergence/check/loops/loop_judgement.hpp"
+#include "convergence/check/loops/loop_record.hpp"
+#include "convergence/laws/contact_law.hpp"
+#include "convergence/results/provenance.hpp"
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+const std::string kNotShown = "the loop does not show it";
+
+/// A contact under one normal load, and the loop in its units.
+struct LoopUnderLoad {
+  LoopContact contact;
+  LoopPath path;
+};
+
+/// How a record's units and signs differ from the scene's.
+struct LoopConventions {
+  double load = 1.0;    ///< N m, or N, of one unit
+  double motion = 1.0;  ///< rad, or m, of one unit
+  std::vector<std::string> notes;
+};
+
+struct UnitName {
+  double size;
+  const char* name;
+};
+const std::vector<UnitName> kMomentUnits{{1.0, ""}, {1e-3, "N mm"}, {1e-6, "mN mm, or uN m"}, {1e3, "kN m"}};
+const std::vector<UnitName> kRotationUnits{
+    {1.0, ""}, {std::numbers::pi / 180.0, "degrees"}, {1e-3, "mrad"}, {1e-6, "urad"}};
+const std::vector<UnitName> kForceUnits{{1.0, ""}, {1e-3, "mN"}, {1e3, "kN"}};
+const std::vector<UnitName> kLengthUnits{{1.0, ""}, {1e-3, "mm"}, {1e-6, "um"}, {1e-9, "nm"}};
+
+double largest(const std::vector<double>& values) {
+  double size = 0.0;
+  for (const double value : values) size = std::max(size, std::abs(value));
+  return size;
+}
+
+/// Rows of a path: as many as a fit needs.
+constexpr std::size_t kMaxPathRows = 2000;
+
+LoopPath make_path(const LoopRecord& loop, std::size_t from, std::size_t to,
+                   const LoopConventions& conventions, const LoopContact& contact) {
+  const std::size_t step = (to - from + kMaxPathRows - 1) / kMaxPathRows;
+  LoopPath path;
+  const auto time_of = [&](std::size_t row) {
+    return loop.time.empty() ? static_cast<double>(row) : loop.time[row];
+  };
+  const auto add = [&](std::size_t row) {
+    path.twist.push_back(loop.motion[row] * conventions.motion / contact.motion_unit);
+    path.moment.push_back(loop.load[row] * conventions.load / contact.limit);
+    path.time.push_back((time_of(row) - time_of(from)) / (time_of(to - 1) - time_of(from)));
+  };
+  for (std::size_t row = from; row < to; row += step) add(row);
+  if (!loop.time.empty()) path.duration = loop.time[to - 1] - loop.time[from];
+  find_turns(path);
+  return path;
+}
+
+/// Rows of one normal load, as it is given, follow each other.
+struct LoadRows {
+  std::size_t from;
+  std::size_t to;
+  double normal_load;
+};
+std::vector<LoadRows> rows_by_load(const LoopRecord& loop, double scene_load) {
+  constexpr double kSameLoad = 0.02;
+  if (loop.normal_load.empty()) return {{0, loop.load.size(), scene_load}};
+  std::vector<LoadRows> groups{{0, 1, loop.normal_load[0]}};
+  for (std::size_t row = 1; row < loop.normal_load.size(); ++row) {
+    if (std::abs(loop.normal_load[row] / groups.back().normal_load - 1.0) > kSameLoad) {
+      groups.push_back({row, row, loop.normal_load[row]});
+    }
+    groups.back().to = row + 1;
+  }
+  for (const LoadRows& group : groups) {
+    if (group.to - group.from >= kMinLoopRows) continue;
+    throw solver::InputError(
+        loop.file.string(),
+        fmt::format(
+            "rows {} to {}: normal_load = {} for {} rows; allowed: loops one after another, each under a "
+            "load of its own for at least {} rows",
+            group.from + 1, group.to, group.normal_load, group.to - group.from, kMinLoopRows));
+  }
+  return groups;
+}
+
+Json number_json(const LoopNumber& number, double unit) {
+  Json json;
+  set_number(json, "value", number.value * unit, kNotShown);
+  set_number(json, "exact", number.exact * unit, kNotShown);
+  return json;
+}
+
+Json under_load_json(const LoopUnderLoad& loop, const LoopJudgement& judgement) {
+  const double motion = loop.contact.motion_unit;
+  const double limit = loop.contact.limit;
+  Json json{{"normal_load", loop.contact.normal_load},
+            {"verdict", judgement.good ? "good" : "bad"},
+            {"why", judgement.why}};
+  if (judgement.law.empty()) {
+    set_missing(json, "law", "none of the laws that were tried explains it");
+  } else {
+    json["law"] = judgement.law;
+  }
+  json["rows"] = loop.path.twist.size();
+  json["reversals"] = loop.path.turns.size() - 2;
+  json["limit"] = limit;
+  set_number(json, "residual", judgement.residual, "not a number");
+  set_number(json, "noise", judgement.noise, "not a number");
+  set_number(json, "slip_error", judgement.slip_error, kNotShown);
+  set_number(json, "slip_noise", judgement.slip_noise, kNotShown);
+  const LoopHypothesis& exact = judgement.exact;
+  json["start"] = {{"turned", exact.start.turned * motion},
+                   {"motion_offset", exact.start.shift == 0.0 ? 0.0 : -exact.start.shift * motion},
+                   {"load_offset", exact.offset * limit}};
+  json["stiffness"] = number_json(judgement.stiffness, limit / motion);
+  json["largest_load"] = number_json(judgement.largest_load, limit);
+  json["areas"] = Json::array();
+  for (const LoopNumber& area : judgement.areas) json["areas"].push_back(number_json(area, limit * motion));
+  json["tried"] = Json::array();
+  for (const LoopHypothesis& law : judgement.fitted) {
+    Json tried{{"law", law.name}, {"parameters", law.parameters}};
+    set_number(tried, "residual", law.residual, "not a number");
+    json["tried"].push_back(tried);
+  }
+  return json;
+}
+
+/// d ln(largest moment)/d ln(normal load), by least squares, of the loops and of the limit.
+struct LoadExponent {
+  double value;
+  double exact;
+  bool differs() const {
+    constexpr double kSame = 0.05;
+    return !(std::abs(value - exact) <= kSame);
+  }
+};
+LoadExponent load_exponent(const std::vector<LoopUnderLoad>& loops) {
+  std::vector<double> x;
+  std::vector<double> y;
+  for (const LoopUnderLoad& loop : loops) {
+    x.push_back(std::log(loop.contact.normal_load));
+    y.push_back(std::log(loop.contact.limit * largest(loop.path.moment)));
+  }
+  return {line_through(x, y).slope, loops.front().contact.limit_exponent};
+}
+
+/// Whether all of these slide, so that their largest moments are limits.
+bool all_slide(const std::vector<LoopUnderLoad>& loops) {
+  return std::ranges::all_of(loops, [](const LoopUnderLoad& loop) {
+    return largest(follow(loop.path, {}, {loop.contact.loading})) > 0.95;
+  });
+}
+
+std::vector<std::string> notes_of(const UnitName& load, const UnitName& motion, bool other_way,
+                                  const LoopWords& words) {
+  std::vector<std::string> notes;
+  if (load.size != 1.0) notes.push_back(fmt::format("the {} is in {}", words.load, load.name));
+  if (motion.size != 1.0) notes.push_back(fmt::format("the {} is in {}", words.motion, motion.name));
+  if (other_way) {
+    notes.push_back(fmt::format("the {} is that on the other body, or the {} the other way round", words.load,
+                                words.motion));
+  }
+  return notes;
+}
+
+/// Distance of the load from the exact law, from rest or over whole cycles, over the larger of both.
+double roughly_off(const LoopUnderLoad& loop) {
+  const std::vector<LoopStart> starts = possible_starts(loop.path);
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < std::min<std::size_t>(starts.size(), 3); ++k) {
+    std::vector<double> exact = follow(loop.path, starts[k], {loop.contact.loading});
+    const double size = std::max(largest(exact), largest(loop.path.moment));
+    double mean = 0.0;
+    for (std::size_t row = 0; row < exact.size(); ++row) {
+      exact[row] -= loop.path.moment[row];
+      mean += exact[row] / static_cast<double>(exact.size());
+    }
+    for (double& error : exact) error -= mean;
+    least = std::min(least, trimmed_mean(exact) / size);
+  }
+  return least;
+}
+
+/// The units and the sign in which a loop that is far off in the scene's is near the exact law: stiffness and
+/// limit agree, or shape. Another unit is taken only where slip shows, since the stiffness alone does not say
+/// which one it is.
+LoopConventions find_conventions(const LoopRecord& record, std::size_t to, const LoopContact& contact,
+                                 double tolerance) {
+  constexpr double kNear = 0.35;
+  constexpr double kFar = 0.7;
+  constexpr double kLargestWithoutSlip = 0.05;  // of the limit
+  const auto loop_in = [&](const LoopConventions& conventions) {
+    return LoopUnderLoad{contact, make_path(record, 0, to, conventions, contact)};
+  };
+  const LoopUnderLoad given = loop_in({});
+  const double as_given = roughly_off(given);
+  double least = std::min(kNear, 0.5 * as_given);
+  LoopConventions found;
+  constexpr double kFalls = -0.9;  // the load as the motion grows, whatever their units
+  if (line_through(given.path.twist, given.path.moment).correlation < kFalls)
+    found = {-1.0, 1.0, notes_of({1.0, ""}, {1.0, ""}, true, contact.words)};
+  const LoopConventions by_sign = found;
+  for (const UnitName& load : record.of_force ? kForceUnits : kMomentUnits) {
+    for (const UnitName& motion : record.of_force ? kLengthUnits : kRotationUnits) {
+      for (const bool other_way : {false, true}) {
+        const LoopConventions tried{other_way ? -load.size : load.size, motion.size,
+                                    notes_of(load, motion, other_way, contact.words)};
+        const double off = roughly_off(loop_in(tried));
+        if (!(off < least)) continue;
+        least = off;
+        found = tried;
+      }
+    }
+  }
+  if (found.notes == by_sign.notes) return found;
+  const LoopUnderLoad loop = loop_in(found);
+  const bool slips = largest(loop.path.moment) >= kLargestWithoutSlip;
+  if (as_given > kFar && slips) return found;
+  const LoopJudgement judgement = judge_loop(loop.path, contact, tolerance);
+  const bool has_unit = found.motion != 1.0 || std::abs(found.load) != 1.0;
+  // Slip of the record's own, not of a start far outside it.
+  const bool shows = judgement.shows_slip() && std::abs(judgement.exact.offset) <= range_of(loop.path.moment);
+  return judgement.good && (slips || !has_unit || shows) ? found : by_sign;
+}
+
+/// Adds how the limits of several normal loads grow; what is wrong with that, empty where nothing is.
+std::string exponent_fault(const std::vector<LoopUnderLoad>& loops, Json& json) {
+  const LoadExponent exponent = load_exponent(loops);
+  json["load_exponent"] = {{"value", exponent.value}, {"exact", exponent.exact}};
+  if (!exponent.differs()) return "";
+  return fmt::format("the limit goes like the normal load to the power {:.2f}, not {:.2f}{}", exponent.value,
+                     exponent.exact,
+                     std::abs(exponent.value - 1.0) < 0.03 ? ": a contact radius that does not grow" : "");
+}
+
+}  // namespace
+
+Json check_loop(const solver::Scene& scene, const std::filesystem::path& file, const LoopOptions& options) {
+  law_contact(scene);  // or why there is none, before the loop is read
+  const LoopRecord record = read_loop(file);
+  const auto contact_under = record.of_force ? force_contact : torsion_contact;
+  const std::vector<LoadRows> groups = rows_by_load(record, *scene.steps.front().normal);
+  std::vector<LoopContact> contacts;
+  for (const LoadRows& group : groups) contacts.push_back(contact_under(scene, group.normal_load));
+  const auto loops_in = [&](const LoopConventions& conventions) {
+    std::vector<LoopUnderLoad> loops;
+    for (std::size_t i = 0; i < groups.size(); ++i) {
+      loops.push_back(
+          {contacts[i], make_path(record, groups[i].from, groups[i].to, conventions, contacts[i])});
+    }
+    return loops;
+  };
+  const auto judge_all = [&](const std::vector<LoopUnderLoad>& loops) {
+    std::vector<LoopJudgement> judgements;
+    for (const LoopUnderLoad& loop : loops) {
+      judgements.push_back(judge_loop(loop.path, loop.contact, options.tolerance));
+    }
+    return judgements;
+  };
+  std::vector<LoopUnderLoad> loops = loops_in({});
+  std::vector<LoopJudgement> judgements = judge_all(loops);
+  LoopConventions conventions;
+  if (!std::ranges::all_of(judgements, &LoopJudgement::good)) {
+    conventions = find_conventions(record, groups.front().to, contacts.front(), options.tolerance);
+  }
+  if (!conventions.notes.empty() && !options.strict) {
+    loops = loops_in(conventions);
+    judgements = judge_all(loops);
+  }
+  bool good = !(options.strict && !conventions.notes.empty());
+  std::string why = good ? "" : conventions.notes.front();
+  Json loads = Json::array();
+  for (std::size_t i = 0; i < loops.size(); ++i) {
+    if (!judgements[i].good) explain(judgements[i], loops[i].path, loops[i].contact, options.tolerance);
+    if (why.empty() || (good && !judgements[i].good)) why = judgements[i].why;
+    good = good && judgements[i].good;
+    loads.push_back(under_load_json(loops[i], judgements[i]));
+  }
+  Json json{{"name", scene.name}, {"loop", file.string()}, {"of", record.of_force ? "force" : "torsion"}};
+  json["verdict"] = "";
+  json["why"] = "";
+  json["conventions"] = conventions.notes;
+  json["tolerance"] = options.tolerance;
+  if (loops.size() > 1 && all_slide(loops)) {
+    if (const std::string fault = exponent_fault(loops, json); !fault.empty()) {
+      why = fault + "; " + why;
+      good = false;
+    }
+  }
+  json["verdict"] = good ? "good" : "bad";
+  json["why"] = why;
+  json["loads"] = loads;
+  json["provenance"] = provenance(1);
+  return json;
+}
+
+std::string loop_text(const Json& r) {
+  const bool of_force = r["of"] == "force";
+  const char* const load_unit = of_force ? "N" : "N m";
+  const auto beside = [](const Json& number, const char* unit) {
+    return fmt::format("{} {} (exact {})", number_text(number["value"]), unit, number_text(number["exact"]));
+  };
+  std::string text = fmt::format("{}: {}\n", r["verdict"].get<std::string>(), r["why"].get<std::string>());
+  text += text_line("loop", r["loop"].get<std::string>());
+  for (const Json& note : r["conventions"]) text += text_line("note", note.get<std::string>());
+  if (r.contains("load_exponent")) text += text_line("load exponent", beside(r["load_exponent"], ""));
+  for (const Json& load : r["loads"]) {
+    text +=
+        text_line("normal load", fmt::format("{} N, {} rows, {} reversals", number_text(load["normal_load"]),
+                                             load["rows"].get<int>(), load["reversals"].get<int>()));
+    text += text_line("stiffness", beside(load["stiffness"], of_force ? "N/m" : "N m/rad") +
+                                       ", up to a third of the largest load");
+    text += text_line(of_force ? "force" : "moment",
+                      fmt::format("{}, of the limit {} {}", beside(load["largest_load"], load_unit),
+                                  number_text(load["limit"]), load_unit));
+    for (const Json& area : load["areas"]) text += text_line("energy lost", beside(area, "J in a loop"));
+  }
+  return text;
+}
+
+}  // namespace slipstick::convergence

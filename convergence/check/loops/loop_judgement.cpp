@@ -1,0 +1,163 @@
+#include "convergence/check/loops/loop_judgement.hpp"
+
+#include <fmt/core.h>
+
+#include <Eigen/Dense>
+#include <algorithm>
+#include <cmath>
+
+namespace slipstick::convergence {
+namespace {
+
+/// Errors of what slips may be larger than those of loads, in proportion to tolerance: at half of the limit
+/// slip takes about a tenth of the moment.
+constexpr double kSlipOverLoad = 10.0;
+/// Standard deviations that noise may explain.
+constexpr double kSlipSigmas = 4.0;
+/// Noise, in so many standard deviations, of what slips up to which a loop without loss is told from the
+/// exact one.
+constexpr double kSlipShown = 0.8;
+
+/// Variance of normal noise over that without its largest 2 %.
+constexpr double kUntrimmed = 1.15;
+
+double largest_of(const std::vector<double>& moment) {
+  double largest = 0.0;
+  for (const double m : moment) largest = std::max(largest, std::abs(m));
+  return largest;
+}
+
+/// Slope of a line through the origin, over the first rows up to a part of the loop's largest moment.
+double slope_at_rest(const LoopPath& path, const std::vector<double>& moment) {
+  const double enough = largest_of(path.moment) / 3.0;
+  double above = 0.0;
+  double below = 0.0;
+  for (std::size_t row = 0; row <= path.turns[1] && std::abs(path.moment[row]) <= enough; ++row) {
+    above += path.twist[row] * moment[row];
+    below += path.twist[row] * path.twist[row];
+  }
+  return below > 0.0 ? above / below : kUnknown;
+}
+
+/// What is left of values when a straight line over the rotation is taken away.
+Eigen::VectorXd without_line(const LoopPath& path, const Eigen::VectorXd& values) {
+  const auto rows = static_cast<Eigen::Index>(path.twist.size());
+  Eigen::VectorXd twist = Eigen::Map<const Eigen::VectorXd>(path.twist.data(), rows);
+  twist.array() -= twist.mean();
+  const Eigen::VectorXd left = values.array() - values.mean();
+  return left - twist * (twist.dot(left) / twist.squaredNorm());
+}
+
+/// Slip takes the moment off the straight line of the stiffness at rest: how much of that the record shows,
+/// by least squares beside a line of its own, and what shape is left over.
+void judge_slip(LoopJudgement& judgement, const LoopPath& path, const LoopContact& contact) {
+  const auto rows = static_cast<Eigen::Index>(path.twist.size());
+  const auto map = [&](const std::vector<double>& values) {
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(values.data(), rows));
+  };
+  const Eigen::VectorXd slip =
+      without_line(path, contact.stiffness * map(path.twist) - map(judgement.exact.moment));
+  const Eigen::VectorXd error = without_line(path, map(judgement.exact.moment) - map(path.moment));
+  const double noise = judgement.noise * judgement.largest_load.value;
+  const double part = slip.dot(error) / slip.squaredNorm();
+  const double count = static_cast<double>(rows);
+  const double by_noise = noise * noise * (kUntrimmed * count + kSlipSigmas * std::sqrt(4.0 * count));
+  const double left = std::sqrt(std::max(0.0, (error - part * slip).squaredNorm() - by_noise));
+  judgement.slip_error = std::hypot(part, left / slip.norm());
+  judgement.slip_noise = noise / slip.norm();
+}
+
+std::string percent(double part) {
+  return part < 1e-4 ? "under 0.01 %" : fmt::format("{:.2g} %", 100.0 * part);
+}
+
+/// A residual without what noise makes of it.
+double without_noise(double residual, double noise) {
+  return std::sqrt(std::max(0.0, residual * residual - noise * noise));
+}
+
+double noise_beside(const LoopPath& path, const LoopHypothesis& law) {
+  std::vector<double> error;
+  for (std::size_t row = 0; row < path.moment.size(); ++row)
+    error.push_back(path.moment[row] - law.moment[row]);
+  return row_noise(path, error);
+}
+
+/// What the verdict says of the energy lost.
+std::string slip_text(const LoopJudgement& judgement) {
+  if (!judgement.shows_slip()) {
+    return fmt::format("; the record cannot show the energy lost: its noise is {:.2g} % of the largest load",
+                       100.0 * judgement.noise);
+  }
+  const std::size_t loops = judgement.areas.size();
+  if (loops == 0) return "";
+  return fmt::format(", the energy lost in {} {} is right", loops, loops == 1 ? "loop" : "loops");
+}
+
+/// Holds a loop to the exact law that goes on from one of these.
+LoopJudgement judge_from(const LoopPath& path, const LoopContact& contact, double tolerance,
+                         const std::vector<LoopStart>& starts) {
+  LoopJudgement judgement;
+  judgement.exact = fit_exact_law(path, contact, starts);
+  const std::vector<double>& exact = judgement.exact.moment;
+  LoopPath own = path;
+  for (double& m : own.moment) m -= judgement.exact.offset;
+  for (double& t : own.twist) t += judgement.exact.start.shift;
+  std::vector<double> held = exact;
+  for (double& m : held) m -= judgement.exact.offset;
+  judgement.residual = judgement.exact.residual;
+  judgement.largest_load = {largest_of(own.moment), largest_of(held)};
+  if (judgement.exact.start.turned == 0.0) {
+    judgement.stiffness = {slope_at_rest(own, own.moment), slope_at_rest(own, held)};
+  }
+  const std::vector<double> areas = loop_areas(own, own.moment);
+  const std::vector<double> exact_areas = loop_areas(own, held);
+  for (std::size_t i = 0; i < areas.size(); ++i) judgement.areas.push_back({areas[i], exact_areas[i]});
+  judgement.noise =
+      std::max(noise_beside(path, judgement.exact) / judgement.largest_load.value, contact.law_error);
+  judge_slip(judgement, path, contact);
+  const double off = without_noise(judgement.residual, judgement.noise);
+  judgement.good = off <= std::hypot(tolerance, 0.5 * judgement.noise) &&
+                   judgement.slip_error <= kSlipOverLoad * tolerance + kSlipSigmas * judgement.slip_noise;
+  if (!judgement.good) return judgement;
+  judgement.law = "exact";
+  judgement.why = fmt::format("follows the exact law: the {} is {} off in the mean{}", contact.words.load,
+                              percent(judgement.residual), slip_text(judgement));
+  return judgement;
+}
+
+}  // namespace
+
+bool LoopJudgement::shows_slip() const { return slip_noise * kSlipSigmas <= kSlipShown; }
+
+LoopJudgement judge_loop(const LoopPath& path, const LoopContact& contact, double tolerance) {
+  const std::vector<LoopStart> starts = possible_starts(path);
+  if (!begins_at_zero(path)) return judge_from(path, contact, tolerance, starts);
+  LoopJudgement from_rest = judge_from(path, contact, tolerance, {{}});
+  if (from_rest.good) return from_rest;
+  LoopJudgement elsewhere = judge_from(path, contact, tolerance, starts);
+  return elsewhere.good ? elsewhere : from_rest;
+}
+
+void explain(LoopJudgement& judgement, const LoopPath& path, const LoopContact& contact, double tolerance) {
+  constexpr double kExplained = 0.5;  // of the exact law's residual, at most
+  judgement.fitted = fit_wrong_laws(path, contact);
+  const LoopHypothesis& likely = *std::ranges::min_element(judgement.fitted, {}, &LoopHypothesis::cost);
+  const double noise = noise_beside(path, likely) / judgement.largest_load.value;
+  const double off = without_noise(judgement.residual, judgement.noise);
+  const double likely_off = without_noise(likely.residual, noise);
+  constexpr double kAtNoise = 1.1;  // a residual that noise alone makes, at most
+  const bool at_noise = likely.residual <= kAtNoise * noise && likely.cost < judgement.exact.cost;
+  if (at_noise || (likely_off <= std::max(2.0 * tolerance, 0.02) && likely_off <= kExplained * off)) {
+    judgement.law = likely.name;
+    judgement.why =
+        fmt::format("{} (the {} is {} off the exact law in the mean, {} off this one)", likely.sentence,
+                    contact.words.load, percent(judgement.residual), percent(likely.residual));
+    return;
+  }
+  judgement.why = fmt::format(
+      "the {} is {} off the exact law in the mean, and none of the laws that were tried explains it",
+      contact.words.load, percent(judgement.residual));
+}
+
+}  // namespace slipstick::convergence

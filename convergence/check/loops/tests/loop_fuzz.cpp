@@ -1,0 +1,29 @@
+// Any text is judged as a loop or is refused.
+
+#include "convergence/check/loops/check_loop.hpp"
+#include "solver/input/tests/fuzz_file.hpp"
+
+namespace {
+
+slipstick::solver::Scene sphere() {
+  slipstick::solver::Scene scene;
+  scene.surfaces.front().radius = 0.018;
+  scene.upper = scene.lower = {210e9, 0.3};
+  scene.friction = 0.1;
+  scene.steps.front().normal = 1000.0;
+  scene.cells = {8, 8};
+  return scene;
+}
+
+}  // namespace
+
+extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
+  using namespace slipstick;
+  static const solver::FuzzFile table("loop.csv");
+  static const solver::FuzzFile lists("loop.json");
+  static const solver::Scene scene = sphere();
+  const bool is_json = size > 0 && bytes[0] == '{';
+  const auto& path = (is_json ? lists : table).write(solver::text_of(bytes, size));
+  solver::read_or_refuse([&] { convergence::loop_text(convergence::check_loop(scene, path, {0.01})); });
+  return 0;
+}

@@ -1,0 +1,103 @@
+#include <cmath>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "convergence/oracle/errors.hpp"
+#include "convergence/results/exact_result.hpp"
+#include "convergence/results/result.hpp"
+#include "solver/input/field_file.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/model.hpp"
+
+namespace slipstick::convergence {
+
+std::vector<solver::FieldColumn> solution_columns(const solver::Solution& solution,
+                                                  const OracleAnswer& exact) {
+  using solver::Index;
+  const solver::Grid grid = solution.grid;
+  const Index cells = grid.cells();
+  std::vector<solver::FieldColumn> columns;
+  const auto add = [&](const char* name, const auto& value) {
+    columns.push_back({name, [value](Index first, Index last, double* values) {
+                         for (Index cell = first; cell < last; ++cell) *values++ = value(cell);
+                       }});
+  };
+  const auto add_kept = [&](const char* name, const Eigen::ArrayXd& field, Index start) {
+    add(name, [&field, start](Index cell) { return field[start + cell]; });
+  };
+  add("x1", [grid](Index cell) { return grid.x1(cell / grid.n2); });
+  add("x2", [grid](Index cell) { return grid.x2(cell % grid.n2); });
+  add_kept("pressure", solution.pressure, 0);
+  add_kept("q1", solution.traction, 0);
+  add_kept("q2", solution.traction, cells);
+  add_kept("slip1", solution.slip, 0);
+  add_kept("slip2", solution.slip, cells);
+  add_kept("stick", solution.stick, 0);
+  add("dissipated", [&solution, cells](Index cell) {
+    const double s1 = solution.slip[cell];
+    const double s2 = solution.slip[cell + cells];
+    return solution.friction * solution.pressure[cell] * std::sqrt(s1 * s1 + s2 * s2);
+  });
+  if (exact.oracle && exact.oracle->shear) {
+    const auto fields = std::make_shared<const ExactFields>(exact_fields(*exact.oracle, grid));
+    add("q1_exact", [fields](Index cell) { return fields->traction[cell]; });
+    add("q2_exact", [fields, cells](Index cell) { return fields->traction[cells + cell]; });
+  }
+  return columns;
+}
+
+void write_solution_fields(const std::filesystem::path& file, const solver::Solution& solution,
+                           const OracleAnswer& exact) {
+  solver::write_fields(file, solution.grid, solution_columns(solution, exact), solution.pressure);
+}
+
+Json profile_json(const solver::Solution& solution, const OracleAnswer& answer) {
+  if (!answer.oracle || !answer.oracle->shear) return Json::array();
+  const Oracle& oracle = *answer.oracle;
+  const ExactFields exact = exact_fields(oracle, solution.grid);
+  const double unit = 1.0 / (oracle.friction * oracle.reference_pressure);
+  const Eigen::ArrayXd value = unit * solver::norms(solution.traction);
+  const Eigen::ArrayXd exact_value = unit * solver::norms(exact.traction);
+  const solver::Grid& grid = solution.grid;
+  Json rows = Json::array();
+  const auto add = [&](solver::Index i, solver::Index j) {
+    const solver::Index cell = i * grid.n2 + j;
+    const double radius = std::hypot(grid.x1(i), grid.x2(j)) / oracle.contact_radius;
+    if (radius > 1.0) return;
+    rows.push_back({{"radius", radius},
+                    {"value", value[cell]},
+                    {"exact", exact_value[cell]},
+                    {"error", value[cell] - exact_value[cell]}});
+  };
+  for (solver::Index i = grid.n1 / 2; i < grid.n1; ++i) add(i, grid.n2 / 2);
+  for (solver::Index i = grid.n1 / 2 + 1; i < grid.n1; ++i) add(i, i);
+  return rows;
+}
+
+GridColumns exact_columns(const solver::Scene& scene, const Oracle& oracle) {
+  if (!oracle.shear) {
+    throw solver::InputError(
+        scene.source.string(), "solver.model", "\"exact\"",
+        "auto, full where fields are asked for (the exact solution says the stick ratio alone)");
+  }
+  solver::Scene sampled = scene;
+  sampled.op =
+      solver::OperatorKind::dcfft;  // no operator is made, so none of the larger ones need fit in memory
+  const solver::Grid grid = solver::make_model(sampled).grid_in_m();
+  const solver::Index cells = grid.cells();
+  const ExactFields fields = exact_fields(oracle, grid);
+  std::vector<solver::Column> columns{
+      {"x1", solver::cell_x1(grid)},       {"x2", solver::cell_x2(grid)},
+      {"pressure", fields.pressure},       {"q1", fields.traction.head(cells)},
+      {"q2", fields.traction.tail(cells)}, {"stick", (fields.radius < oracle.stick_radius).cast<double>()},
+  };
+  return {.grid = grid, .columns = std::move(columns), .pressure = fields.pressure};
+}
+
+void write_exact_fields(const std::filesystem::path& file, const solver::Scene& scene, const Oracle& oracle) {
+  const GridColumns fields = exact_columns(scene, oracle);
+  solver::write_fields(file, fields.grid, fields.columns, fields.pressure);
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,74 @@
+#include "docs/generator/reference_command.hpp"
+
+#include <CLI/CLI.hpp>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "convergence/gates/gate.hpp"
+#include "convergence/hard/hard_case.hpp"
+#include "convergence/studies/study.hpp"
+#include "docs/generator/command_line.hpp"
+#include "docs/generator/key_page.hpp"
+#include "solver/input/whole_file.hpp"
+#include "solver/scene/scene_keys.hpp"
+
+namespace slipstick::docs {
+namespace {
+
+/// Those that --set can give: of each table there is but one.
+std::vector<std::string> keys_of_one_table() {
+  std::vector<std::string> names;
+  for (const solver::SettingKey& key : solver::scene_keys()) {
+    const bool several = key.name.starts_with("upper.shape.") || key.name.starts_with("step");
+    if (!several) names.push_back(key.name);
+  }
+  return names;
+}
+
+std::map<std::string, std::string> pages(const CLI::App& app) {
+  const std::vector<CommandText> commands = command_texts(app);
+  return {
+      {"scene.md",
+       keys_markdown({"Keys of a scene",
+                      "What `slipstick solve SCENE.toml` and every command that takes a scene read. Units "
+                      "are SI, or any other\nconsistent set; `--set key=value` overrides any key, with its "
+                      "table: `--set load.moment_ratio=0.5`,\n`--set \"step[0].moment=2\"`. A word's "
+                      "meanings stand in the order of the words."},
+                     solver::scene_keys())},
+      {"study.md", keys_markdown({"Keys of a study", "What `slipstick study STUDY.toml` reads."},
+                                 convergence::study_keys())},
+      {"gate.md", keys_markdown({"Keys of a gate", "What `slipstick gate GATES.toml` reads."},
+                                convergence::gate_keys())},
+      {"hard.md", keys_markdown({"Keys of hard cases", "What `slipstick hard CASES.toml` reads."},
+                                convergence::hard_keys())},
+      {"commands.md", commands_markdown(commands)},
+      {"slipstick.1", commands_manual(commands, SLIPSTICK_VERSION)},
+      {"slipstick.bash", commands_completion(commands, keys_of_one_table())}};
+}
+
+}  // namespace
+
+convergence::RunCommand add_reference_command(CLI::App& app) {
+  const auto folder = std::make_shared<std::string>();
+  constexpr const char* kHidden = "";
+  CLI::App* const command =
+      app.add_subcommand("reference", "Write the reference that is made from the program");
+  command->group(kHidden);
+  command->add_option("folder", *folder, "folder that gets the pages")->required();
+  return [&app, folder](std::ostream& text, nlohmann::ordered_json&) {
+    solver::make_folder(*folder);
+    for (const auto& [name, content] : pages(app)) {
+      const std::filesystem::path file = std::filesystem::path(*folder) / name;
+      solver::write_whole_file(file, content);
+      text << file.string() << '\n';
+    }
+    return 0;
+  };
+}
+
+}  // namespace slipstick::docs

@@ -1,0 +1,198 @@
+#include <fmt/core.h>
+
+#include <array>
+#include <limits>
+#include <span>
+#include <stdexcept>
+#include <vector>
+
+#include "analytic/cycle.hpp"
+#include "analytic/named_profile.hpp"
+#include "analytic/torsion.hpp"
+#include "interfaces/c/boundary.hpp"
+
+namespace slipstick::c {
+namespace {
+
+using analytic::Profile;
+using analytic::TorsionState;
+
+using StateAt = TorsionState (*)(double, const Profile&);
+/// By enum slipstick_quantity: those that can be given, and all that are members of a state.
+constexpr std::array<StateAt, 5> kStateAt{analytic::from_moment_ratio, analytic::from_moment_deficit,
+                                          analytic::from_stick_ratio, analytic::from_stick_complement,
+                                          analytic::from_twist};
+constexpr std::array kMembers{
+    &TorsionState::moment_ratio,     &TorsionState::moment_deficit, &TorsionState::stick_ratio,
+    &TorsionState::stick_complement, &TorsionState::twist,          &TorsionState::moment,
+    &TorsionState::tangent_stiffness};
+
+analytic::NamedProfile profile_named(const char* name) {
+  require(name, "profile");
+  return analytic::find_profile(name);
+}
+
+StateAt state_by(int given) {
+  if (!(given >= 0 && given < static_cast<int>(kStateAt.size())))
+    throw std::invalid_argument(fmt::format("given = {}; allowed: 0 to {}", given, kStateAt.size() - 1));
+  return kStateAt[static_cast<std::size_t>(given)];
+}
+
+/// C's array; one of no elements may be null.
+template <class Value>
+std::span<Value> array(Value* values, std::size_t count, const char* name) {
+  if (count > 0) require(values, name);
+  return {values, count};
+}
+
+/// results[i] = function(values[i]); an error says which value it was.
+template <class Result, class Function>
+void for_each(std::span<const double> values, const char* name, std::span<Result> results,
+              const Function& function) {
+  std::size_t i = 0;
+  try {
+    for (; i < values.size(); ++i) results[i] = function(values[i]);
+  } catch (const std::logic_error& error) {
+    throw std::domain_error(fmt::format("{}[{}]: {}", name, i, error.what()));
+  }
+}
+
+slipstick_state in_c(const TorsionState& state) {
+  return {state.moment_ratio, state.moment_deficit, state.stick_ratio,      state.stick_complement,
+          state.twist,        state.moment,         state.tangent_stiffness};
+}
+
+slipstick_cycle_state in_c(const analytic::CycleState& state) {
+  return {state.moment_ratio,      state.moment,    state.twist, state.stick_ratio,
+          state.tangent_stiffness, state.dissipated};
+}
+
+double pressure_at(const Profile& profile, double radius) {
+  if (!(radius >= 0 && radius <= 1))
+    throw std::domain_error(fmt::format("r/a = {}; allowed: 0 <= r/a <= 1", radius));
+  return profile.pressure(radius);
+}
+
+void find_quantity(const Profile& profile, StateAt state_at, std::span<const double> values, int wanted,
+                   std::span<double> results) {
+  if (wanted == SLIPSTICK_ENERGY_LOST) {
+    return for_each(values, "values", results, [&](double value) {
+      return analytic::energy_lost_per_cycle(state_at(value, profile), profile);
+    });
+  }
+  if (!(wanted >= 0 && wanted < static_cast<int>(kMembers.size())))
+    throw std::invalid_argument(fmt::format("wanted = {}; allowed: 0 to {}", wanted, kMembers.size()));
+  const auto member = kMembers[static_cast<std::size_t>(wanted)];
+  for_each(values, "values", results, [&](double value) { return state_at(value, profile).*member; });
+}
+
+}  // namespace
+}  // namespace slipstick::c
+
+using namespace slipstick;
+
+int slipstick_exact(const char* profile, int given, size_t n, const double* values, int wanted,
+                    double* results) {
+  return c::guarded([&] {
+    c::find_quantity(*c::profile_named(profile).profile, c::state_by(given), c::array(values, n, "values"),
+                     wanted, c::array(results, n, "results"));
+    return SLIPSTICK_OK;
+  });
+}
+
+int slipstick_exact_states(const char* profile, int given, size_t n, const double* values,
+                           slipstick_state* states) {
+  return c::guarded([&] {
+    const analytic::NamedProfile named = c::profile_named(profile);
+    const c::StateAt state_at = c::state_by(given);
+    c::for_each(c::array(values, n, "values"), "values", c::array(states, n, "states"),
+                [&](double value) { return c::in_c(state_at(value, *named.profile)); });
+    return SLIPSTICK_OK;
+  });
+}
+
+int slipstick_exact_traction(const char* profile, int given, double value, size_t n, const double* radii,
+                             double* results) {
+  return c::guarded([&] {
+    const analytic::NamedProfile named = c::profile_named(profile);
+    const analytic::TorsionState state = c::state_by(given)(value, *named.profile);
+    c::for_each(c::array(radii, n, "radii"), "radii", c::array(results, n, "results"),
+                [&](double radius) { return analytic::traction(state, radius, *named.profile); });
+    return SLIPSTICK_OK;
+  });
+}
+
+int slipstick_exact_pressure(const char* profile, size_t n, const double* radii, double* results) {
+  return c::guarded([&] {
+    const analytic::NamedProfile named = c::profile_named(profile);
+    c::for_each(c::array(radii, n, "radii"), "radii", c::array(results, n, "results"),
+                [&](double radius) { return c::pressure_at(*named.profile, radius); });
+    return SLIPSTICK_OK;
+  });
+}
+
+int slipstick_exact_profile(const char* profile, slipstick_profile* result) {
+  return c::guarded([&] {
+    c::require(result, "result");
+    const analytic::NamedProfile named = c::profile_named(profile);
+    *result = {named.profile->load(), named.profile->moment_limit(), named.profile->full_stick()};
+    return SLIPSTICK_OK;
+  });
+}
+
+int slipstick_exact_history(const char* profile, size_t n, const double* moment_ratios,
+                            slipstick_cycle_state* states) {
+  return c::guarded([&] {
+    const analytic::NamedProfile named = c::profile_named(profile);
+    analytic::LoadingHistory history(*named.profile);
+    c::for_each(c::array(moment_ratios, n, "moment_ratios"), "moment_ratios", c::array(states, n, "states"),
+                [&](double moment_ratio) {
+                  history.load_to(moment_ratio);
+                  return c::in_c(history.state());
+                });
+    return SLIPSTICK_OK;
+  });
+}
+
+int slipstick_exact_curve(const char* profile, size_t n, const double* turning_points,
+                          size_t points_per_branch, slipstick_cycle_state* states) {
+  return c::guarded([&] {
+    c::require(states, "states");
+    if (points_per_branch > static_cast<size_t>(std::numeric_limits<int>::max()))
+      throw std::invalid_argument("points_per_branch is no number of points; allowed: 1 or more");
+    const analytic::NamedProfile named = c::profile_named(profile);
+    const auto turning = c::array(turning_points, n, "turning_points");
+    const std::vector<analytic::CycleState> curve = analytic::loading_curve(
+        {turning.begin(), turning.end()}, static_cast<int>(points_per_branch), *named.profile);
+    for (size_t i = 0; i < curve.size(); ++i) states[i] = c::in_c(curve[i]);
+    return SLIPSTICK_OK;
+  });
+}
+
+int slipstick_exact_history_traction(const char* profile, size_t n_moments, const double* moment_ratios,
+                                     size_t n_radii, const double* radii, double* results) {
+  return c::guarded([&] {
+    const analytic::NamedProfile named = c::profile_named(profile);
+    analytic::LoadingHistory history(*named.profile);
+    for (const double moment_ratio : c::array(moment_ratios, n_moments, "moment_ratios"))
+      history.load_to(moment_ratio);
+    c::for_each(c::array(radii, n_radii, "radii"), "radii", c::array(results, n_radii, "results"),
+                [&](double radius) { return history.traction(radius); });
+    return SLIPSTICK_OK;
+  });
+}
+
+int slipstick_exact_indentation(const char* profile, double load, double effective_modulus, size_t n_shape,
+                                const double* shape, slipstick_indentation* result) {
+  return c::guarded([&] {
+    c::require(profile, "profile");
+    c::require(result, "result");
+    const auto lengths = c::array(shape, n_shape, "shape");
+    const analytic::Indentation found = analytic::press(profile, {.load = load,
+                                                                  .effective_modulus = effective_modulus,
+                                                                  .shape = {lengths.begin(), lengths.end()}})
+                                            .indentation;
+    *result = {found.contact_radius, found.approach, found.reference_pressure};
+    return SLIPSTICK_OK;
+  });
+}

@@ -1,0 +1,308 @@
+#include <fftw3.h>
+#include <fmt/core.h>
+#include <pthread.h>
+
+#include <chrono>
+#include <limits>
+#include <memory>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <shared_mutex>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "convergence/results/exact_result.hpp"
+#include "convergence/results/quantity.hpp"
+#include "convergence/results/result.hpp"
+#include "convergence/runs/run_spec.hpp"
+#include "convergence/runs/solve_scene.hpp"
+#include "convergence/solve/accurate_solve.hpp"
+#include "interfaces/c/boundary.hpp"
+#include "solver/input/field_file.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/input/toml_reader.hpp"
+#include "solver/scene/scene_keys.hpp"
+
+/// By which FFTW's threads library locks the planner; in no header.
+extern "C" void fftw_set_planner_hooks(void (*before)(), void (*after)());
+
+struct slipstick_solution {
+  slipstick::solver::Grid grid{};
+  std::vector<slipstick::solver::Column> columns;
+  Eigen::ArrayXd pressure;
+  slipstick::convergence::Json result;
+  std::string json;
+  std::string text;
+};
+
+namespace slipstick::c {
+namespace {
+
+using convergence::Json;
+using solver::Scene;
+
+/// What a call of slipstick_solve() asks for.
+struct Request {
+  solver::SettingsText settings;
+  std::vector<std::string> overrides;
+  double accuracy;
+  slipstick_progress progress;
+  void* user;
+};
+
+/// Solves go side by side. Those that read or change what the process has once, HDF5's library and what FFTW
+/// remembers, go alone. A forked process, where no other thread goes on, has a new one.
+std::shared_mutex* solving = new std::shared_mutex;
+class Turn {
+ public:
+  explicit Turn(bool alone) : beside_(*solving, std::defer_lock), alone_(*solving, std::defer_lock) {
+    if (alone) {
+      alone_.lock();
+    } else {
+      beside_.lock();
+    }
+  }
+
+ private:
+  std::shared_lock<std::shared_mutex> beside_;
+  std::unique_lock<std::shared_mutex> alone_;
+};
+
+bool goes_alone(const Scene& scene) {
+  const bool reads_files = convergence::input_files(scene).size() > 1;
+  return reads_files || scene.rounding_seed != 0;
+}
+
+/// FFTW remembers plans, and those that it chose under other rounding give other digits.
+void forget_plans_after(const Scene& scene) {
+  if (scene.rounding_seed == 0) return;
+  fftw_forget_wisdom();
+}
+
+/// Plans may be made by several threads at a time, by those of the caller too, and a process may fork
+/// meanwhile: the lock is our own, since FFTW's, fftw_make_planner_thread_safe(), would stay locked in a
+/// process forked while another thread held it.
+std::mutex planning;
+void begin_planning() { planning.lock(); }
+void end_planning() { planning.unlock(); }
+void be_alone() {
+  end_planning();
+  solving = new std::shared_mutex;
+}
+void share_planner() {
+  static std::once_flag done;
+  std::call_once(done, [] {
+    fftw_set_planner_hooks(begin_planning, end_planning);
+    pthread_atfork(begin_planning, end_planning, be_alone);
+  });
+}
+
+Request request_of(const char* scene, const char* file, size_t n_overrides, const char* const* overrides) {
+  if (scene == nullptr) require(file, "file (where scene = NULL)");
+  if (n_overrides > 0) require(overrides, "overrides");
+  Request request{};
+  request.settings = scene != nullptr ? solver::SettingsText{scene, file != nullptr ? file : "scene"}
+                                      : solver::settings_of(file);
+  for (size_t i = 0; i < n_overrides; ++i) {
+    require(overrides[i], "an override");
+    request.overrides.emplace_back(overrides[i]);
+  }
+  return request;
+}
+
+convergence::SolvedScene find_on_grid(const Scene& scene, const Request& request,
+                                      const std::shared_ptr<solver::SolveCache>& cache = {},
+                                      solver::Detail detail = solver::Detail::all) {
+  const auto progress = [&](int iteration, double change) {
+    if (request.progress != nullptr && request.progress(iteration, change, request.user) != 0)
+      throw Stopped{};
+  };
+  return convergence::solve_scene(scene, {.progress = progress, .cache = cache, .detail = detail});
+}
+
+void keep(slipstick_solution& kept, const convergence::SolvedScene& solved) {
+  kept.grid = solved.solution.grid;
+  const solver::Index cells = kept.grid.cells();
+  for (const solver::FieldColumn& column : convergence::solution_columns(solved.solution, solved.exact)) {
+    kept.columns.push_back({column.name, Eigen::ArrayXd(cells)});
+    column.values(0, cells, kept.columns.back().values.data());
+  }
+  kept.pressure = solved.solution.pressure;
+  kept.result = solved.result;
+  kept.text = convergence::solve_text(kept.result);
+}
+
+void answer_exactly(slipstick_solution& kept, const Scene& scene) {
+  const auto start = std::chrono::steady_clock::now();
+  const convergence::Oracle oracle = convergence::require_oracle(scene);
+  const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+  kept.result = convergence::exact_result(scene, oracle, taken.count());
+  kept.text = convergence::exact_text(kept.result);
+  if (!oracle.shear) return;
+  convergence::GridColumns fields = convergence::exact_columns(scene, oracle);
+  kept.grid = fields.grid;
+  kept.columns = std::move(fields.columns);
+  kept.pressure = std::move(fields.pressure);
+}
+
+/// Why the answer is not to be trusted; empty where it is.
+std::string solve_as_it_stands(slipstick_solution& kept, const Scene& scene, const Request& request) {
+  if (scene.model == solver::ModelChoice::exact) {
+    answer_exactly(kept, scene);
+    return {};
+  }
+  const convergence::SolvedScene solved = find_on_grid(scene, request);
+  keep(kept, solved);
+  return solved.solution.status == solver::Status::converged ? std::string() : solved.solution.message;
+}
+
+/// The exact side answers where it can and the scene does not say otherwise.
+std::string solve_accurately(slipstick_solution& kept, Scene scene, const Request& request) {
+  const convergence::AccuracyTarget target{.error = request.accuracy};
+  const bool said =
+      solver::SceneReader(request.settings, request.overrides, solver::scene_keys()).has("solver.model");
+  if (!said && convergence::answers_exactly(scene, target.of)) scene.model = solver::ModelChoice::exact;
+  convergence::require_reachable(scene, target);
+  if (scene.model == solver::ModelChoice::exact) {
+    const Json account = convergence::exact_accuracy(scene, target);
+    answer_exactly(kept, scene);
+    kept.result["accuracy"] = account;
+    return {};
+  }
+  const auto cache = std::make_shared<solver::SolveCache>();
+  const convergence::AccurateAnswer answer =
+      convergence::solve_to_accuracy(scene, target, [&](const Scene& chosen, solver::Detail detail) {
+        return find_on_grid(chosen, request, cache, detail);
+      });
+  keep(kept, answer.answer);
+  kept.result["accuracy"] = answer.accuracy;
+  return answer.reached ? std::string() : convergence::accuracy_text(kept.result);
+}
+
+int solve(const Request& request, slipstick_solution& kept) {
+  share_planner();
+  const Scene scene =
+      solver::read_scene_text(request.settings.text, request.settings.file, request.overrides);
+  const Turn turn(goes_alone(scene));
+  const bool accurate = request.accuracy != 0;
+  std::string why;
+  try {
+    why = accurate ? solve_accurately(kept, scene, request) : solve_as_it_stands(kept, scene, request);
+  } catch (...) {
+    forget_plans_after(scene);
+    throw;
+  }
+  forget_plans_after(scene);
+  if (accurate) kept.text += convergence::accuracy_text(kept.result);
+  // Names of files need not be UTF-8; JSON is.
+  kept.json = kept.result.dump(2, ' ', false, Json::error_handler_t::replace);
+  if (why.empty() && kept.result.at("status") == "converged") return SLIPSTICK_OK;
+  set_message(why.c_str());
+  return SLIPSTICK_NOT_CONVERGED;
+}
+
+/// The number, or NaN and why.
+double number_at(const Json& result, const char* path, std::string& why) {
+  const convergence::FoundQuantity found = convergence::find_quantity(result, path);
+  if (found.value != nullptr && found.value->is_number()) return found.value->get<double>();
+  why = !found.reason.empty() ? fmt::format("{}: {}", path, found.reason)
+                              : fmt::format("{}; allowed: a number of the result", path);
+  return std::numeric_limits<double>::quiet_NaN();
+}
+
+}  // namespace
+}  // namespace slipstick::c
+
+using namespace slipstick;
+
+int slipstick_solve(const char* scene, const char* file, size_t n_overrides, const char* const* overrides,
+                    double accuracy, slipstick_progress progress, void* user, slipstick_solution** solution) {
+  return c::guarded([&] {
+    c::require(solution, "solution");
+    *solution = nullptr;
+    c::Request request = c::request_of(scene, file, n_overrides, overrides);
+    request.accuracy = accuracy;
+    request.progress = progress;
+    request.user = user;
+    auto kept = std::make_unique<slipstick_solution>();
+    const int status = c::solve(request, *kept);
+    *solution = kept.release();
+    return status;
+  });
+}
+
+void slipstick_solution_free(slipstick_solution* solution) { delete solution; }
+
+int slipstick_solution_number(const slipstick_solution* solution, const char* path, double* value) {
+  return c::guarded([&] {
+    c::require(solution, "solution");
+    c::require(path, "path");
+    c::require(value, "value");
+    std::string why;
+    *value = c::number_at(solution->result, path, why);
+    if (why.empty()) return SLIPSTICK_OK;
+    c::set_message(why.c_str());
+    return SLIPSTICK_BAD_INPUT;
+  });
+}
+
+const char* slipstick_solution_json(const slipstick_solution* solution) {
+  return solution != nullptr ? solution->json.c_str() : "";
+}
+
+const char* slipstick_solution_text(const slipstick_solution* solution) {
+  return solution != nullptr ? solution->text.c_str() : "";
+}
+
+int slipstick_solution_grid(const slipstick_solution* solution, size_t cells[2], double cell_size[2]) {
+  return c::guarded([&] {
+    c::require(solution, "solution");
+    c::require(cells, "cells");
+    c::require(cell_size, "cell_size");
+    cells[0] = static_cast<size_t>(solution->grid.n1);
+    cells[1] = static_cast<size_t>(solution->grid.n2);
+    cell_size[0] = solution->grid.h1;
+    cell_size[1] = solution->grid.h2;
+    return SLIPSTICK_OK;
+  });
+}
+
+int slipstick_solution_field(const slipstick_solution* solution, const char* name, const double** values,
+                             size_t* count) {
+  return c::guarded([&] {
+    c::require(solution, "solution");
+    c::require(name, "name");
+    c::require(values, "values");
+    c::require(count, "count");
+    std::string names;
+    for (const solver::Column& column : solution->columns) {
+      if (column.name == name) {
+        *values = column.values.data();
+        *count = static_cast<size_t>(column.values.size());
+        return SLIPSTICK_OK;
+      }
+      names += (names.empty() ? "" : ", ") + column.name;
+    }
+    throw std::invalid_argument(
+        fmt::format("field \"{}\"; allowed: {}", name, names.empty() ? "none, there are no fields" : names));
+  });
+}
+
+const char* slipstick_solution_field_name(const slipstick_solution* solution, size_t index) {
+  if (solution == nullptr || index >= solution->columns.size()) return nullptr;
+  return solution->columns[index].name.c_str();
+}
+
+int slipstick_solution_write(const slipstick_solution* solution, const char* file) {
+  return c::guarded([&] {
+    c::require(solution, "solution");
+    c::require(file, "file");
+    solver::require_field_format(file);
+    if (solution->columns.empty())
+      throw std::invalid_argument("the solution has no fields; allowed: one with fields");
+    const c::Turn turn(true);
+    solver::write_fields(file, solution->grid, solution->columns, solution->pressure);
+    return SLIPSTICK_OK;
+  });
+}

@@ -1,0 +1,66 @@
+"""The package as a whole: it declares C's functions as slipstick.h does, and brings all that it should."""
+import ctypes
+import pathlib
+import re
+import subprocess
+import sys
+import unittest
+
+import slipstick
+from slipstick import _library
+
+ROOT = pathlib.Path(__file__).parents[2]
+HEADER = re.sub(r"/\*.*?\*/", "", (ROOT / "interfaces/c/slipstick.h").read_text(), flags=re.S)
+
+
+def kind(parameter):
+    """How ctypes has to hand over a parameter of C."""
+    if "*" in parameter or "[" in parameter or "slipstick_progress" in parameter:
+        return "pointer"
+    return re.match(r"(?:const )?(\w+)", parameter.strip())[1]
+
+
+def ctypes_kind(argument):
+    return {ctypes.c_int: "int", ctypes.c_size_t: "size_t", ctypes.c_double: "double"}.get(argument, "pointer")
+
+
+class PackageTest(unittest.TestCase):
+    def test_declarations(self):
+        declared = {name: [] if parameters.strip() == "void" else [kind(part) for part in parameters.split(",")]
+                    for name, parameters in re.findall(r"\bslipstick_(\w+)\(([^;]*)\);", HEADER)}
+        self.assertGreaterEqual(len(declared), len(_library._SIGNATURES))
+        for name, (_, arguments) in _library._SIGNATURES.items():
+            self.assertEqual([ctypes_kind(argument) for argument in arguments], declared[name], name)
+
+    def test_structures(self):
+        structures = {name: re.findall(r"(\w+);", body)
+                      for body, name in re.findall(r"typedef struct \w+ \{(.*?)\} slipstick_(\w+);", HEADER, re.S)}
+        self.assertEqual(list(_library.STATE.names), structures["state"])
+        self.assertEqual(list(_library.CYCLE_STATE.names), structures["cycle_state"])
+        self.assertEqual([name for name, _ in _library.Profile._fields_], structures["profile"])
+        self.assertEqual([name for name, _ in _library.Indentation._fields_], structures["indentation"])
+
+    def test_statuses_and_quantities(self):
+        numbers = dict(re.findall(r"SLIPSTICK_(\w+) = (\d)", HEADER))
+        for name in ("OK", "NOT_CONVERGED", "BAD_INPUT", "STOPPED", "NO_MEMORY", "FAILED"):
+            self.assertEqual(getattr(_library, name), int(numbers[name]))
+        for number, name in enumerate(slipstick.exact._WANTED):
+            self.assertEqual(number, int(numbers[name.upper()]))
+
+    def test_it_is_typed_and_documented(self):
+        folder = pathlib.Path(slipstick.__file__).parent
+        self.assertTrue((folder / "py.typed").exists())
+        staged = {path.name for path in folder.glob("*.py")}
+        self.assertEqual(staged, {path.name for path in (ROOT / "interfaces/python/slipstick").glob("*.py")})
+        for name in slipstick.__all__:
+            self.assertTrue(name == "__version__" or getattr(slipstick, name).__doc__, name)
+
+    def test_the_program_comes_with_it(self):
+        run = subprocess.run([sys.executable, "-B", "-m", "slipstick", "--version"], capture_output=True, text=True)
+        self.assertEqual((run.returncode, run.stdout.strip()), (0, slipstick.__version__))
+        version = re.search(r"VERSION (\S+)", (ROOT / "CMakeLists.txt").read_text()[40:])[1]
+        self.assertEqual(slipstick.__version__, version)
+
+
+if __name__ == "__main__":
+    unittest.main()

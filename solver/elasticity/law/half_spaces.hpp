@@ -1,0 +1,78 @@
+#pragma once
+
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "solver/elasticity/law/elastic_law.hpp"
+#include "solver/elasticity/operator_kind.hpp"
+
+namespace slipstick::solver {
+
+/// Elastic half-space. shear_modulus may be infinite: a rigid body.
+struct HalfSpace {
+  double shear_modulus;
+  double poisson_ratio;
+};
+
+/// A pair of half-spaces as the interface sees it. Compliances add in K11, K12, K22, K33 and
+/// subtract in K13, K23.
+struct ElasticPair {
+  double shear_compliance;    ///< 1/G = sum of 1/G_i
+  double poisson_compliance;  ///< sum of nu_i/G_i
+  double normal_compliance;   ///< sum of (1 - nu_i)/G_i = 2/E*
+  double mismatch;            ///< (1 - 2 nu)/G of the lower less that of the upper; 0 for similar materials
+
+  double effective_modulus() const { return 2.0 / normal_compliance; }
+  double shear_modulus() const { return 1.0 / shear_compliance; }
+};
+
+ElasticPair elastic_pair(const HalfSpace& lower, const HalfSpace& upper);
+
+/// Two half-spaces (Boussinesq, Cerruti; Love 1929; Johnson 1985, section 3.6).
+class HalfSpaces final : public ElasticLaw {
+ public:
+  explicit HalfSpaces(const ElasticPair& pair, CellTraction cell_traction = CellTraction::constant)
+      : pair_(pair), cell_traction_(cell_traction) {}
+
+  /// One pass over the offsets serves all components, and square cells need only offsets on one side of the
+  /// diagonal.
+  ///
+  /// With CellTraction::smooth each coefficient is less by 1/24 of its second differences along both axes:
+  /// cells of constant traction lose the part (xi_1^2 h1^2 + xi_2^2 h2^2)/24 of a field's component of wave
+  /// vector xi, and that gives it back, whatever the contact's shape.
+  std::vector<std::vector<double>> influence_tables(std::span<const Component> components,
+                                                    const Grid& offsets, int threads = 1) const override;
+
+  /// Tractions of wave vector xi, n = xi/|xi|, move the surface by (S I - N n n^T)/|xi| times them along it
+  /// and by C33/|xi| times them across (transforms of the solutions of Cerruti and Boussinesq: 1/r becomes
+  /// 2 pi/|xi|, and r_i r_j/r^3 becomes 2 pi (I - n n^T)/|xi|). S and N are the shear and the Poisson
+  /// compliance, C33 the normal one. The first has the inverse |xi| (I + N/(S - N) n n^T)/S. The symbol of
+  /// smooth cell tractions is larger by what second differences multiply it by.
+  void inverse_symbols(bool tangential, double h1, double h2, std::span<const PlaneWave> waves,
+                       std::span<Symbol> inverses) const override;
+
+  /// The eigenvalues lie within the range of the kernel's symbol on the whole plane of cells. Its least value
+  /// belongs to the roughest fields: for square cells without cross contraction 0.2903 h/G where q changes
+  /// sign from cell to cell along both axes, 0.3712 times the shorter side over G where cells are oblong.
+  /// Cross contraction lowers it by 1 - nu at most, or raises it. Smooth cell tractions raise it, most for
+  /// the roughest fields.
+  double least_eigenvalue(double h1, double h2) const override;
+
+  bool couples() const override { return pair_.mismatch != 0.0; }
+  void add_to(CacheKey& key) const override;
+
+ private:
+  std::vector<std::vector<double>> tables_of_constant(std::span<const Component> components,
+                                                      const Grid& offsets, int threads) const;
+
+  ElasticPair pair_;
+  CellTraction cell_traction_;
+};
+
+/// A law to share.
+inline SharedLaw half_spaces(const HalfSpace& lower, const HalfSpace& upper) {
+  return std::make_shared<HalfSpaces>(elastic_pair(lower, upper));
+}
+
+}  // namespace slipstick::solver

@@ -1,0 +1,143 @@
+// Half-spaces under a layer that gives way as Winkler's: every method, every part of the grid, and both limits.
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "solver/contact/certificate.hpp"
+#include "solver/elasticity/law/law_kind.hpp"
+#include "solver/solve.hpp"
+#include "solver/tests/fields.hpp"
+#include "solver/tests/paper_scene.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+
+/// A compliance of the layer like that of the half-spaces below the contact, in m/Pa.
+const double kLikeBodies =
+    paper::kContactRadius * 4.0 * (1.0 + paper::kPoissonRatio) / paper::kYoungModulus;
+
+const LawKind& winkler() { return law_kinds().front(); }
+
+/// The paper's sphere on a grid that holds the contact under any layer here.
+Scene layered_scene(Index cells, double normal, double tangential, double moment_ratio = 0.6) {
+  Scene scene = paper_scene(cells, moment_ratio);
+  scene.extent = {{4.0 * paper::kContactRadius, 4.0 * paper::kContactRadius}};
+  scene.layer = {&winkler(), {normal, tangential}};
+  return scene;
+}
+
+Solution solved(const Scene& scene) {
+  const Solution solution = solve(scene);
+  EXPECT_EQ(solution.status, Status::converged) << solution.message;
+  return solution;
+}
+
+void expect_same(const Solution& a, const Solution& b, double tolerance) {
+  EXPECT_LE(relative_difference(a.pressure, b.pressure), tolerance);
+  EXPECT_LE(relative_difference(a.traction, b.traction), tolerance);
+  EXPECT_NEAR(a.twist_angle, b.twist_angle, tolerance * std::abs(b.twist_angle));
+}
+
+TEST(Layer, WithoutComplianceIsNoLayerToTheLastBit) {
+  const Scene layered = layered_scene(32, 0.0, 0.0);
+  Scene plain = layered;
+  plain.layer = {};
+  const Solution with = solved(layered);
+  const Solution without = solved(plain);
+  EXPECT_TRUE((with.pressure == without.pressure).all());
+  EXPECT_TRUE((with.traction == without.traction).all());
+  EXPECT_EQ(with.twist_angle, without.twist_angle);
+  EXPECT_EQ(with.certificate.gap, without.certificate.gap);
+}
+
+TEST(Layer, IsTheSameByEveryMethodOperatorAndPartOfTheGrid) {
+  Scene scene = layered_scene(24, kLikeBodies, 0.5 * kLikeBodies);
+  scene.tolerance = 1e-12;
+  const Solution reference = solved(scene);
+  EXPECT_LE(reference.certificate.gap, scene.tolerance);
+  EXPECT_GT(reference.stick_cells, 0);
+  EXPECT_LT(reference.stick_cells, reference.contact_cells);
+  struct Case {
+    std::string name;
+    void (*change)(Scene&);
+    double tolerance;
+  };
+  /// Projected gradients stop at the gap, to whose root tractions agree; so does the paper's method, whose
+  /// test is another.
+  for (const auto& [name, change, tolerance] :
+       {Case{"whole", [](Scene& s) { s.model = ModelChoice::full; }, kSame},
+        Case{"direct", [](Scene& s) { s.op = OperatorKind::direct; }, kSame},
+        Case{"dense", [](Scene& s) { s.op = OperatorKind::dense; }, kSame},
+        Case{"threads", [](Scene& s) { s.threads = 3; }, 0.0},
+        Case{"full coupling", [](Scene& s) { s.coupling = Coupling::full; }, kSame},
+        Case{"projected gradients", [](Scene& s) { s.method = Method::projected_gradient; }, 1e-5},
+        Case{"the paper's method", [](Scene& s) { s.method = Method::paper; }, 1e-4}}) {
+    SCOPED_TRACE(name);
+    Scene other = scene;
+    change(other);
+    const Solution solution = solved(other);
+    expect_same(solution, reference, tolerance);
+    EXPECT_LE(solution.certificate.gap, other.method == Method::paper ? 1e-3 : scene.tolerance);
+    EXPECT_GE(solution.predicted_bytes, solution.bytes);
+  }
+}
+
+TEST(Layer, UnderDissimilarBodiesIsTheSameOnEachPartOfTheGrid) {
+  for (const Coupling coupling : {Coupling::pressure, Coupling::full}) {
+    Scene scene = layered_scene(20, 0.3 * kLikeBodies, kLikeBodies);
+    scene.upper = {3.0 * paper::kYoungModulus, 0.1};
+    scene.coupling = coupling;
+    scene.tolerance = 1e-12;
+    const Solution reference = solved(scene);
+    scene.op = OperatorKind::direct;
+    expect_same(solved(scene), reference, kSame);
+  }
+}
+
+TEST(Layer, LetsTheContactGrowAndTurn) {
+  const Solution stiff = solved(layered_scene(32, 0.0, 0.0));
+  const Solution soft = solved(layered_scene(32, kLikeBodies, kLikeBodies));
+  EXPECT_GT(soft.contact_cells, stiff.contact_cells);
+  EXPECT_GT(soft.approach, stiff.approach);
+  EXPECT_GT(soft.twist_angle, stiff.twist_angle);
+}
+
+/// So compliant a layer leaves the half-spaces' part of the displacements below this.
+constexpr double kBodiesPart = 1e-4;
+
+/// Winkler's foundation alone: p = (approach - gap)/c, and each cell turns by itself up to its friction.
+TEST(Layer, ThatIsVeryCompliantIsWinklersFoundation) {
+  const double compliance = 1e6 * kLikeBodies;
+  Scene scene = paper_scene(32, 0.0);
+  const double reach = 0.1 * paper::kRadius;
+  scene.extent = {{2.4 * reach, 2.4 * reach}};
+  scene.layer = {&winkler(), {compliance, compliance}};
+  // W = pi R delta^2/c where a^2 = 2 R delta.
+  const double approach = reach * reach / (2.0 * paper::kRadius);
+  scene.steps[0].normal = M_PI * paper::kRadius * approach * approach / compliance;
+  scene.steps[0].torsion = Twist{0.5 * scene.friction * approach / reach};
+  const Solution solution = solved(scene);
+  const Grid& grid = solution.grid;
+  const ArrayXd square = cell_x1(grid).square() + cell_x2(grid).square();
+  const ArrayXd penetration = solution.approach - square / (2.0 * paper::kRadius);
+  const ArrayXd pressure = penetration.max(0.0) / compliance;
+  EXPECT_NEAR(solution.approach / approach, 1.0, 0.01);  // cells of the edge
+  EXPECT_LE(relative_difference(solution.pressure, pressure), kBodiesPart);
+  const ArrayXd sticking = solution.twist_angle * square.sqrt() / compliance;
+  const ArrayXd expected = sticking.min(scene.friction * pressure);
+  EXPECT_LE(relative_difference(norms(solution.traction), expected), kBodiesPart);
+  EXPECT_GT(solution.stick_cells, 0);
+  EXPECT_LT(solution.stick_cells, solution.contact_cells);
+  const ArrayXd across = solution.traction.head(grid.cells()) * cell_x1(grid) +
+                         solution.traction.tail(grid.cells()) * cell_x2(grid);
+  EXPECT_LE(across.abs().maxCoeff(), kBodiesPart * norms(solution.traction).maxCoeff() * reach);
+}
+
+}  // namespace
+}  // namespace slipstick::solver

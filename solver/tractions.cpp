@@ -1,0 +1,218 @@
+#include "solver/tractions.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <span>
+#include <utility>
+
+#include "solver/contact/coulomb_method.hpp"
+#include "solver/contact/paper_method.hpp"
+#include "solver/contact/projected_gradient.hpp"
+#include "solver/grid/mirror.hpp"
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+
+/// Relative difference of two pressures that are mirror images but for the rounding of their solve, and of
+/// displacements by transforms.
+constexpr double kMirrorRounding = 1e-12;
+/// A factor of the loads this close to 1 is not printed.
+constexpr double kNextTo = 1e-5;
+
+/// Tangential displacement by the change of pressure, Eq. (12).
+ArrayXd pressure_displacement(const Scene& scene, const Model& model, const ArrayXd& pressure,
+                              const ContactState& before) {
+  if (!model.pressure_coupling) return {};
+  const auto op = elasticity(scene, model, Reduction(model.grid)).make(model.grid, coupling_kernel());
+  ArrayXd u(2 * pressure.size());
+  op->apply(before.pressure.size() > 0 ? ArrayXd(pressure - before.pressure) : pressure, u);
+  // A single cell does not move itself: what transforms leave there is no displacement.
+  const double in_contact = ((pressure > 0.0).cast<double>().replicate(2, 1) * u).abs().maxCoeff();
+  return in_contact <= kMirrorRounding * u.abs().maxCoeff() ? ArrayXd() : u;
+}
+
+/// How a body would slide, in words; lengths in the scene's unit.
+std::string sliding_text(const LimitLoad& limit, double length_unit) {
+  if (limit.centre) {
+    return fmt::format("turning about ({:.4g}, {:.4g}) m", (*limit.centre)[0] * length_unit,
+                       (*limit.centre)[1] * length_unit);
+  }
+  const double size = std::hypot(limit.sliding.delta1, limit.sliding.delta2);
+  return fmt::format("along ({:.4g}, {:.4g})", limit.sliding.delta1 / size, limit.sliding.delta2 / size);
+}
+
+[[noreturn]] void refuse(const Scene& scene, const Model& model, const Step& step, const LoadStep& loads) {
+  const std::string file = scene.source.string();
+  const std::string sliding = sliding_text(loads.limit, model.length_unit);
+  const auto moment = value_if<Moment>(step.torsion);
+  if (moment && step.force == std::array<double, 2>{}) {
+    throw InputError(
+        file, step.key + ".moment", fmt::format("{} N m", *moment),
+        fmt::format(
+            "below {:.17g} N m in size, the limit moment of this pressure and mesh; at or above it the "
+            "contact slips everywhere, {}",
+            loads.moment_limit * model.grid.cell_area() * model.moment_unit(), sliding));
+  }
+  // Next to 1 the factor does not say which side of the limit the loads are on: their numbers do.
+  const double factor = loads.limit.factor;
+  const std::string times = std::abs(factor - 1.0) > kNextTo ? fmt::format("{:.6g} times these", factor)
+                                                             : fmt::format("these up to {:g}", kNextTo);
+  const auto ratio = value_if<MomentRatio>(step.torsion);
+  const bool turned = ratio && step.force == std::array<double, 2>{};
+  const double torsion = loads.problem.moment.value_or(0.0) * model.grid.cell_area() * model.moment_unit();
+  throw InputError(
+      file, step.key + (turned ? ".moment_ratio" : ".force"),
+      turned ? fmt::format("{}", *ratio) : fmt::format("[{}, {}] N", step.force[0], step.force[1]),
+      fmt::format("loads below what this pressure and mesh can carry, which is {}: [{:.17g}, {:.17g}] N and "
+                  "{:.17g} N m; at or beyond that the contact slips everywhere, {}",
+                  times, factor * step.force[0], factor * step.force[1], factor * torsion, sliding));
+}
+
+/// The other methods know torsion about the grid's origin alone: what half a turn does not bring onto itself
+/// leaves a force that nothing balances. Where all slips, the part of the pressure that is odd under half a
+/// turn bounds that force over mu times the load; it may be as large as what the tolerance leaves of the
+/// tractions anyway.
+void require_centred(const Scene& scene, const ArrayXd& pressure) {
+  const double odd = 0.5 * (pressure - pressure.reverse()).abs().sum() / pressure.sum();
+  const double allowed = std::max(scene.tolerance, kMirrorRounding);
+  if (odd <= allowed) return;
+  throw InputError(
+      scene.source.string(), "solver.method", fmt::format("\"{}\"", to_string(scene.method)),
+      fmt::format(
+          "coulomb, or a contact that half a turn about the origin brings onto itself: this method knows "
+          "torsion about the origin alone, and {:.3g} of this pressure is odd (allowed: {:.3g})",
+          odd, allowed));
+}
+
+void impose_turning(TangentialProblem& problem, const Model& model, const Step& step, double moment_limit,
+                    const RigidMotion& before) {
+  if (const auto twist = value_if<Twist>(step.torsion)) {
+    problem.twist = *twist - before.twist;
+  } else if (const auto ratio = value_if<MomentRatio>(step.torsion)) {
+    problem.moment = *ratio * moment_limit;
+  } else {
+    problem.moment =
+        to_dimensionless(std::get<Moment>(step.torsion).value, model.moment_unit()) / model.grid.cell_area();
+  }
+}
+
+void impose_translation(TangentialProblem& problem, const Model& model, const Step& step,
+                        const RigidMotion& before) {
+  if (step.displacement) {
+    problem.displacement = {to_dimensionless((*step.displacement)[0], model.length_unit) - before.delta1,
+                            to_dimensionless((*step.displacement)[1], model.length_unit) - before.delta2};
+  } else {
+    const double unit = model.force_unit();
+    const double area = model.grid.cell_area();
+    problem.force = {to_dimensionless(step.force[0], unit) / area,
+                     to_dimensionless(step.force[1], unit) / area};
+  }
+}
+
+/// An energy goes with the square of the loads over the contact's size: what the bounds cannot hold any more
+/// says nothing of what they do hold.
+double energy_before(const ArrayXd& pressure, const ContactState& before) {
+  if (before.energy == 0.0) return 0.0;
+  const double load = pressure.sum() / before.pressure.sum();
+  const double cells = static_cast<double>((pressure > 0.0).count());
+  const double size = std::sqrt(cells / static_cast<double>((before.pressure > 0.0).count()));
+  return before.energy * std::min(1.0, load * load / size);
+}
+
+/// The problem on a part of the grid, where a quadrant carries a quarter of the moment. Moves what only a
+/// solve needs out of the whole one.
+TangentialProblem reduced(TangentialProblem& problem, const Reduction& part) {
+  const double images = part.quadrant() ? 4.0 : 1.0;
+  TangentialProblem on_part{.friction_bound = part.restricted(std::move(problem.friction_bound)),
+                            .initial_displacement = part.restricted(std::move(problem.initial_displacement)),
+                            .moment = problem.moment,
+                            .twist = problem.twist,
+                            .force = problem.force,
+                            .displacement = problem.displacement,
+                            .start = part.restricted(std::move(problem.start)),
+                            .energy_before = problem.energy_before / images};
+  if (on_part.moment) *on_part.moment /= images;
+  return on_part;
+}
+
+void expand(TangentialSolution& solution, const Reduction& part) {
+  if (!part.trimmed() && !part.quadrant()) return;
+  ArrayXd& u = solution.elastic_displacement;
+  gather(part.grid(), std::span(u.data(), static_cast<std::size_t>(u.size())));
+  for (ArrayXd* const field : {&solution.traction, &solution.elastic_displacement, &solution.slip}) {
+    *field = part.expanded(*field, torsion_symmetry());
+  }
+  solution.stick = part.expanded(solution.stick, normal_symmetry());
+}
+
+/// gap: relative duality gap at which Coulomb's method may stop; 0: the scene's tolerance.
+TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduction& part,
+                            TangentialProblem problem, const std::function<void(int, double)>& progress,
+                            double gap) {
+  const Elasticity elastic = elasticity(scene, model, part);
+  if (scene.method == Method::coulomb) {
+    return solve_by_coulomb_method(elastic, part.grid(), std::move(problem),
+                                   {.tolerance = std::max(scene.tolerance, gap),
+                                    .max_applications = scene.max_iterations,
+                                    .refine_motion = gap == 0.0,
+                                    .progress = progress});
+  }
+  const auto op = elastic.make(part.grid(), tangential_kernel());
+  TangentialSolution solution =
+      scene.method == Method::paper
+          ? solve_by_paper_method(
+                *op, problem,
+                {.tolerance = scene.tolerance, .max_iterations = scene.max_iterations, .progress = progress})
+          : solve_by_projected_gradient(*op, problem,
+                                        {.tolerance = scene.tolerance,
+                                         .max_iterations = scene.max_iterations,
+                                         .start = {},
+                                         .progress = progress});
+  solution.grids = {
+      {part.grid().n1, part.grid().n2, op->applications(), solution.iterations, solution.change}};
+  return solution;
+}
+
+}  // namespace
+
+LoadStep load_step(const Scene& scene, const Model& model, const Step& step, const ArrayXd& pressure,
+                   const ContactState& before) {
+  if (scene.method != Method::coulomb) require_centred(scene, pressure);
+  LoadStep loads{};
+  TangentialProblem& problem = loads.problem;
+  problem.friction_bound = model.friction * pressure;
+  problem.initial_displacement = pressure_displacement(scene, model, pressure, before);
+  problem.start = before.traction;
+  problem.energy_before = energy_before(pressure, before);
+  const bool translations = has_translations(scene, model, pressure);
+  loads.moment_limit = translations ? free_moment_limit(model.grid, problem.friction_bound)
+                                    : moment_limit(model.grid, problem.friction_bound);
+  impose_turning(problem, model, step, loads.moment_limit, before.motion);
+  if (translations) impose_translation(problem, model, step, before.motion);
+  loads.limit = limit_of(problem, model.grid);
+  return loads;
+}
+
+void require_carried(const Scene& scene, const Model& model, const Step& step, const LoadStep& loads) {
+  if (!loads.carried()) refuse(scene, model, step, loads);
+}
+
+TangentialSolution find_tractions(Model& model, const Scene& scene, LoadStep& loads, const ArrayXd& pressure,
+                                  const ContactState& before,
+                                  const std::function<void(int, double)>& progress, const TurnGoal& goal) {
+  const Reduction part = traction_part(scene, model, pressure, before.pressure);
+  note_omissions(model, scene, part, loads.problem.force || loads.problem.displacement);
+  TangentialProblem problem = reduced(loads.problem, part);
+  problem.guess = part.restricted(goal.guess);
+  TangentialSolution solution = solve_on(scene, model, part, std::move(problem), progress, goal.gap);
+  expand(solution, part);
+  loads.problem.friction_bound = model.friction * pressure;
+  return solution;
+}
+
+}  // namespace slipstick::solver
