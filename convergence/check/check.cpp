@@ -64,7 +64,7 @@ void add_field(Json& json, const Examination& e) {
   json["centre"] = e.read.field.centre;
   json["contact_cells"] = (e.contact.pressure > 0.0).count();
   json["stick_cells"] = (e.stick > 0.0).count();
-  json["conventions"] = e.conventions;
+  json["conventions"] = e.read.conventions;
   for (const std::string& remark : e.read.remarks) json["conventions"].push_back(remark);
   json["mistakes"] = e.read.mistakes;
 }
@@ -152,7 +152,7 @@ std::string headline(const Examination& e, const Verdict& verdict, const CheckOp
   std::vector<std::string> wrong;
   for (const std::string& mistake : e.read.mistakes) wrong.push_back(short_note(mistake));
   if (options.strict) {
-    for (const std::string& convention : e.conventions) wrong.push_back(short_note(convention));
+    for (const std::string& convention : e.read.conventions) wrong.push_back(short_note(convention));
   }
   if (options.discrete && !verdict.discrete.holds()) wrong.push_back(verdict.discrete.wrong);
   if (wrong.empty()) return verdict.headline;
@@ -165,7 +165,7 @@ Json check_field(const solver::Scene& scene, const std::filesystem::path& file, 
   const Examination e = examine(scene, file, options.twist, options.pressure_given, options.columns);
   const Verdict verdict = reach_verdict(e, options.tolerance);
   const solver::StickFront stick = stick_front_of(e);
-  const bool fits = e.read.mistakes.empty() && !(options.strict && !e.conventions.empty());
+  const bool fits = e.read.mistakes.empty() && !(options.strict && !e.read.conventions.empty());
   const bool good = verdict.within_mesh() && fits && (!options.discrete || verdict.discrete.holds());
   Json json;
   json["name"] = scene.name;

@@ -77,17 +77,16 @@ Examination examine(const solver::Scene& scene, const std::filesystem::path& fil
   const solver::Step& load = scene.steps.front();
   const solver::Model model = solver::make_model(scene);
   const OracleAnswer exact = find_oracle(scene);
-  const Interpretation read = in_own_conventions(read_foreign_field(file, columns), scene, model, exact);
+  Interpretation read = in_own_conventions(read_foreign_field(file, columns), scene, model, exact);
   const GivenContact contact = make_given_contact(read.field, model, model.threads);
 
-  std::vector<std::string> conventions = read.conventions;
   const State fitted = find_state(contact, load, std::nullopt);
   std::optional<double> twist = given_twist;
   if (!twist) {
     twist = solver::value_if<solver::Twist>(load.torsion);
   } else if (is_turned_over(contact, *twist, fitted.twist)) {
     twist = -*twist;
-    conventions.emplace_back("the twist that was given counts the other way round");
+    read.conventions.emplace_back("the twist that was given counts the other way round");
   }
   const OracleAnswer pressed = seen_from(exact_normal_contact(scene), read.field.centre);
   const ReferenceOnGrid reference = find_reference_on_grid(
@@ -100,7 +99,6 @@ Examination examine(const solver::Scene& scene, const std::filesystem::path& fil
                           : known_moment(scene, exact, limit, contact.newton_metres());
   return {.scene = scene,
           .read = read,
-          .conventions = std::move(conventions),
           .exact = seen_from(exact, read.field.centre),
           .contact = contact,
           .reference = reference,

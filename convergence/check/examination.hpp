@@ -17,8 +17,7 @@ namespace slipstick::convergence {
 /// like those of `contact`; moments are over the cell area.
 struct Examination {
   solver::Scene scene;
-  Interpretation read;
-  std::vector<std::string> conventions;  ///< the field's, and that of its twist
+  Interpretation read;  ///< with the twist's convention
   OracleAnswer exact;                    ///< its centre is that of the field's grid
   GivenContact contact;
   ReferenceOnGrid reference;

@@ -12,7 +12,7 @@
 
 namespace slipstick::convergence {
 
-using find_precision;
+using solver::find_precision;
 using Eigen::ArrayXd;
 using solver::Index;
 using solver::InputError;
