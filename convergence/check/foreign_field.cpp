@@ -12,8 +12,8 @@
 
 namespace slipstick::convergence {
 
-using solver::find_precision;
 using Eigen::ArrayXd;
+using solver::find_precision;
 using solver::Index;
 using solver::InputError;
 
@@ -26,7 +26,7 @@ constexpr double kSamePlace = 1e-6;
 /// Cells of the bounding rectangle for each row of the file. Rough contacts and bodies side by side leave
 /// most cells free; a larger number is taken for a mistake in a position, unless the grid has few cells.
 constexpr double kMaxCellsPerRow = 100.0;
-constexpr double kFewCells = 65536.0;  // judged within seconds
+constexpr double kQuickGridCells = 65536.0;  // judged within seconds
 /// Length of a cell over its width. No contact is so slender: a larger ratio is a mistake in a column.
 constexpr double kMaxSlender = 1000.0;
 /// Rows are taken to be astray where at most this part of all rows lies beyond the widest gap,
@@ -143,7 +143,7 @@ void require_judgeable(const std::filesystem::path& file, const solver::Column& 
                        const solver::Column& x2, const Axis& axis2) {
   const auto rows = static_cast<double>(x1.values.size());
   const double cells = static_cast<double>(axis1.count) * static_cast<double>(axis2.count);
-  const double allowed = std::max(kFewCells, kMaxCellsPerRow * rows);
+  const double allowed = std::max(kQuickGridCells, kMaxCellsPerRow * rows);
   if (cells > allowed) {
     throw InputError(
         file.string(),
