@@ -174,21 +174,20 @@ namespace {
 solver::SettingKeys shared_keys() {
   using solver::KeyType;
   constexpr const char* kOne = "one of scene, study, result is required";
-  return {{"status", KeyType::word, "", solver::word_of(kStatuses, Gate{}.status), solver::one_of(kStatuses),
-           "Whether failing fails the run, passing does, or neither."},
-          {"scene", KeyType::file, "", kOne, solver::kAny,
-           "Scene file (TOML) that is solved, relative to this file."},
-          {"study", KeyType::file, "", kOne, solver::kAny, "Study file (TOML) that is run."},
-          {"result", KeyType::file, "", kOne, solver::kAny,
-           "Result file (JSON) of any program, taken as it is."},
-          {"set", KeyType::table, "", "none", solver::kAny, "Keys of the scene that differ from its file."},
-          {"newer_than", KeyType::text, "", "none", solver::kAny,
-           "Day, as 2026-11-24 (UTC), that the last change of a result file must not be before."},
-          {"platform_spread", KeyType::number, "the quantity's", fmt::format("{:g}", Gate{}.platform_spread),
-           solver::kNotNegative, "By how much machines and compilers differ."},
-          {"basis", KeyType::text, "", "required of an active gate", solver::kAny,
-           "Where the bound comes from."},
-          {"reason", KeyType::text, "", "none", solver::kAny, "What the gate is for."}};
+  return {
+      {"status", KeyType::word, "", solver::word_of(kStatuses, Gate{}.status), solver::one_of(kStatuses),
+       "Whether failing fails the run, passing does, or neither."},
+      {"scene", KeyType::file, "", kOne, solver::kAny,
+       "Scene file (TOML) that is solved, relative to this file."},
+      {"study", KeyType::file, "", kOne, solver::kAny, "Study file (TOML) that is run."},
+      {"result", KeyType::file, "", kOne, solver::kAny, "Result file (JSON) of any program, taken as it is."},
+      {"set", KeyType::table, "", "none", solver::kAny, "Keys of the scene that differ from its file."},
+      {"newer_than", KeyType::text, "", "none", solver::kAny,
+       "Day, as 2026-11-24 (UTC), that the last change of a result file must not be before."},
+      {"platform_spread", KeyType::number, "the quantity's", fmt::format("{:g}", Gate{}.platform_spread),
+       solver::kNotNegative, "By how much machines and compilers differ."},
+      {"basis", KeyType::text, "", "required of an active gate", solver::kAny, "Where the bound comes from."},
+      {"reason", KeyType::text, "", "none", solver::kAny, "What the gate is for."}};
 }
 
 /// What each gate says for itself.
@@ -201,8 +200,7 @@ solver::SettingKeys own_keys() {
            "Path of a number in the result, as --json writes it: steps[3].traction_error.averaged.l2."},
           {"below", KeyType::number, "the quantity's", kBound, solver::kFinite,
            "Bound that the number stays below; alone, of its size; with above, of the signed value."},
-          {"above", KeyType::number, "the quantity's", kBound, solver::kFinite,
-           "Bound that it stays above."},
+          {"above", KeyType::number, "the quantity's", kBound, solver::kFinite, "Bound that it stays above."},
           {"equals", KeyType::number, "the quantity's", kBound, solver::kFinite,
            "The number, or in quotes the word, that it is to be; in place of the bounds."},
           {"of", KeyType::file, "", kBound, solver::kAny,

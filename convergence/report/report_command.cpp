@@ -67,8 +67,7 @@ int run_report(const ReportRequest& request, std::ostream& text, Json& result) {
   if (solver::lies_within(scene, data)) {  // the program's own scenes are copied there
     throw solver::InputError(scene.string(), "lies in the page's data; allowed: a scene elsewhere");
   }
-  const ProcessPool pool =
-      RunOptions{.output = data / "points", .memory_limit = request.memory_limit}.pool();
+  const ProcessPool pool = RunOptions{.output = data / "points", .memory_limit = request.memory_limit}.pool();
   {
     const Interrupts interrupts;
     result = validate(scene, inputs, size_of(request), data, pool);
@@ -104,9 +103,7 @@ RunCommand add_report_command(CLI::App& app) {
       "Example:\n  slipstick report --output build/report\nFinished solves are kept: repeating an "
       "interrupted command goes on from there.\nExit code 0: done; 1: a run of a study failed, and the page "
       "says so; 2: it could not be made.");
-  return [request](std::ostream& text, Json& result) {
-    return run_report(*request, text, result);
-  };
+  return [request](std::ostream& text, Json& result) { return run_report(*request, text, result); };
 }
 
 }  // namespace slipstick::convergence

@@ -287,12 +287,6 @@ TEST(OrderVerdict, TwoTermsBecomeAsymptotic) {
   }
 }
 
-TEST(OrderVerdict, EveryoneHasAName) {
-  EXPECT_EQ(to_string(asymptotic), "asymptotic");
-  EXPECT_EQ(to_string(too_few), "too_few");
-  EXPECT_EQ(to_string(floor), "floor");
-}
-
 TEST(Order, RefusesSizesThatAreNone) {
   EXPECT_THROW(fit_order({{0.0, 1.0}}, 1.0), std::invalid_argument);
   EXPECT_THROW(fit_order({{std::nan(""), 1.0}}, 1.0), std::invalid_argument);

@@ -31,12 +31,6 @@ class ResultCacheTest : public ScratchFolder {
   }
 };
 
-TEST_F(ResultCacheTest, ComputesOnce) {
-  EXPECT_EQ(ask("a")["value"], 0.1);
-  EXPECT_EQ(ask("a")["value"], 0.1);
-  EXPECT_EQ(computed_, 1);
-}
-
 TEST_F(ResultCacheTest, AnotherKeyIsComputed) {
   ask("a");
   ask("b");
