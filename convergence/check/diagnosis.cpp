@@ -47,8 +47,8 @@ ArrayXd at(const std::vector<Index>& points, const ArrayXd& field, Index cells) 
 }
 
 /// The part of the displacements that cross contraction of the half-spaces makes, over their Poisson
-/// compliance: poisson + cross, by K11 and K22 and by K12. `mirrored` has |K12| instead of K12, `exchanged` has
-/// the part of K22 instead of that of K11 and the reverse.
+/// compliance: poisson + cross, by K11 and K22 and by K12. `mirrored` has |K12| instead of K12, `exchanged`
+/// has the part of K22 instead of that of K11 and the reverse.
 struct Displacements {
   ArrayXd poisson, cross, mirrored, exchanged;
 };
