@@ -16,7 +16,6 @@
 #include "bench/bench_command.hpp"
 #include "bench/compare/compare_command.hpp"
 #include "convergence/commands.hpp"
-#include "convergence/programs/command_word.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/run_program.hpp"
 #include "convergence/results/output.hpp"
