@@ -13,8 +13,7 @@
 #include <vector>
 
 #include "analytic/command/exact_command.hpp"
-#include "bench/bench_command.hpp"
-#include "bench/compare/compare_command.hpp"
+#include "bench/commands.hpp"
 #include "convergence/commands.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/run_program.hpp"
