@@ -41,7 +41,7 @@ void OpenHistory::add(const StepEnd& from, const StepEnd& to, const Resolution& 
 }
 
 Quantities OpenHistory::mesh() const {
-  constexpr double kLoops = 2.0;
+  constexpr double kLoops = 2.0;  // a loop goes from its largest size to the opposite one
   // A radius that is off by 1 % moves a twist by 3 % and a translation by 1 %.
   constexpr double kOfTranslation = 0.4;
   Quantities open;

@@ -17,9 +17,10 @@ namespace {
 
 using Eigen::ArrayXXd;
 
-/// Cells along a side of the coarse grid, in the geometric mean, and how many of them a contact has to fill
-/// there: on 16 to 64 cells a path's error differs by up to a quarter.
+/// Cells along a side of the coarse grid, in the geometric mean: on 16 to 64 cells a path's error differs by
+/// up to a quarter.
 constexpr double kPathCells = 16.0;
+/// Cells that the contact must fill there, at least, along its diameter.
 constexpr double kPathAcross = 8.0;
 /// Differences of parts are small, and each part leaves what the tolerance allows.
 constexpr double kPathTolerance = 1e-7;
@@ -31,6 +32,7 @@ constexpr double kPathSafety = 3.3;
 /// More where a step changes the normal load beside the others: a single part brings both at once, four parts
 /// one after the other, and they may agree by chance.
 constexpr double kBothAtOnce = 2.5;
+/// Parts of a step in the finer history, over those in the coarse one.
 constexpr int kFinerPath = 4;
 /// Steps that are solved to estimate; a longer history's path is longer in proportion.
 constexpr std::size_t kMaxPathSteps = 60;

@@ -28,7 +28,7 @@ Area measure(const Grid& grid, const Field& field) {
   using Sums =
       std::array<double, 5>;  // cells, sides that look along x1 and x2, the field, the field by sides
   const auto [cells, sides1, sides2, mean, edge] =
-      Sweep::whole(grid.cells(), grid.n2).sum<Sums>([&](Index first, Index last, Sums& sum) {
+      Sweep::whole(grid).sum<Sums>([&](Index first, Index last, Sums& sum) {
         const bool top = first < grid.n2;
         const bool bottom = last > grid.cells() - grid.n2;
         for (Index k = first; k < last; ++k) {
@@ -68,7 +68,7 @@ double open_twist(const Grid& grid, const LoadStep& loads, double limit_error) {
   // The loads do unit work in the sliding motion: over its twist that is a moment, with all lever arms.
   const double moment = grid.cell_area() / std::abs(loads.limit.sliding.twist);
   const auto unresolved = [&](double missing) {
-    constexpr double kPart = 0.5;
+    constexpr double kPart = 0.5;  // set with MeshErrors: a mesh keeps a stick radius of about half a cell
     const double stick_radius = std::cbrt(9.0 * missing / (8.0 * bound));
     return 0.5 * std::log1p(kPart * grid.cell_area() / (stick_radius * stick_radius));
   };
@@ -95,8 +95,9 @@ MeshErrors mesh_errors(PressureModel pressure) {
 }
 /// Where the pressure does not fall to zero at the edge, over the first power.
 constexpr double kSharpEdge = 0.22;
-/// Cells from which on slip, or the stick area, is wide.
+/// Width of the slip area, in cells, from which on it adds no error of its own.
 constexpr double kWideSlip = 4.0;
+/// Width of the stick area, in cells, likewise.
 constexpr double kWideStick = 8.0;
 
 }  // namespace

@@ -13,6 +13,7 @@ constexpr std::size_t kMaxComplaint = 2000;
 /// A character of several bytes stays whole.
 std::string cut(const std::string& text, std::size_t most) {
   if (text.size() <= most) return text;
+  // In UTF-8 all bytes of a character but the first are 10xxxxxx.
   constexpr unsigned char kContinues = 0x80;
   constexpr unsigned char kContinuesMask = 0xC0;
   while (most > 0 && (static_cast<unsigned char>(text[most]) & kContinuesMask) == kContinues) --most;

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
-#include <stdexcept>
 #include <utility>
 
 #include "solver/elasticity/law/law_kind.hpp"
@@ -20,65 +19,31 @@
 namespace slipstick::solver {
 namespace {
 
-Roughness read_roughness(SceneReader& reader, const std::string& table) {
-  Roughness roughness;
-  roughness.seed = static_cast<std::uint64_t>(reader.number(table + ".seed"));
-  roughness.hurst = reader.number(table + ".hurst");
-  roughness.rms_slope = reader.number(table + ".rms_slope");
-  const double longest = reader.number(table + ".longest");
-  roughness.longest = longest;
-  roughness.period = reader.number_or(table + ".period", 4.0 * longest, period_for(longest));
-  roughness.shortest = reader.number(table + ".shortest", shortest_for(longest, roughness.period));
-  return roughness;
-}
-
-/// Parameters of a shape that has an axis.
-void read_body(SceneReader& reader, const std::string& table, Surface& surface) {
-  const auto parameter = [&](const char* key) { return reader.number(table + key); };
-  switch (surface.shape) {
-    case Shape::sphere:
-      surface.radius = parameter(".radius");
-      break;
-    case Shape::flat_punch: {
-      const double radius = surface.radius = parameter(".radius");
-      surface.inner_radius =
-          reader.number_or(table + ".inner_radius", surface.inner_radius, inner_radius_below(radius));
-      break;
-    }
-    case Shape::ellipsoid:
-      surface.radius_1 = parameter(".radius_1");
-      surface.radius_2 = parameter(".radius_2");
-      break;
-    case Shape::cone:
-      surface.slope = parameter(".slope");
-      break;
-    case Shape::rounded_punch:
-      surface.flat_radius = parameter(".flat_radius");
-      surface.corner_radius = parameter(".corner_radius");
-      break;
-    case Shape::power:
-      surface.exponent = reader.number(table + ".exponent");
-      surface.coefficient = parameter(".coefficient");
-      break;
-    case Shape::height_map:
-    case Shape::roughness:
-      throw std::logic_error("a surface without an axis");
-  }
-  surface.at = reader.find_pair(table + ".at").value_or(surface.at);
-  surface.angle = reader.number_or(table + ".angle", surface.angle);
-}
-
 Surface read_surface(SceneReader& reader, const std::string& table) {
   Surface surface;
   surface.shape = reader.choice(table + ".shape", kShapes);
-  if (surface.shape == Shape::height_map) {
+  Roughness& roughness = surface.roughness;
+  if (surface.shape == Shape::roughness) {
+    roughness.seed = static_cast<std::uint64_t>(reader.number(table + ".seed"));
+  }
+  for (const ShapeNumber& number : shape_numbers()) {
+    if (number.belongs_to(surface.shape)) number.of(surface) = reader.number(table + "." + number.name);
+  }
+  if (surface.shape == Shape::flat_punch) {
+    surface.inner_radius =
+        reader.number_or(table + ".inner_radius", surface.inner_radius, inner_radius_below(surface.radius));
+  } else if (surface.shape == Shape::roughness) {
+    const double longest = roughness.longest;
+    roughness.period = reader.number_or(table + ".period", 4.0 * longest, period_for(longest));
+    roughness.shortest = reader.number(table + ".shortest", shortest_for(longest, roughness.period));
+  } else if (surface.shape == Shape::height_map) {
     surface.file = reader.path(table + ".file");
     surface.spacing = reader.pair(table + ".spacing");
     surface.height_unit = reader.choice_or(table + ".unit", surface.height_unit, kHeightUnits);
-  } else if (surface.shape == Shape::roughness) {
-    surface.roughness = read_roughness(reader, table);
-  } else {
-    read_body(reader, table, surface);
+  }
+  if (!is_measured(surface)) {
+    surface.at = reader.find_pair(table + ".at").value_or(surface.at);
+    surface.angle = reader.number_or(table + ".angle", surface.angle);
   }
   return surface;
 }

@@ -3,8 +3,10 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "solver/elasticity/law/law_kind.hpp"
@@ -32,28 +34,25 @@ void add_shape(SettingKeys& keys, const std::string& table) {
   using Shapes = std::vector<std::string>;
   const Shapes rough{"roughness"};
   const Shapes map{"height_map"};
-  const auto add = [&](const char* name, const std::string& unit, const std::string& otherwise,
+  const auto add = [&](const std::string& name, const std::string& unit, const std::string& otherwise,
                        const Range& allowed, const std::string& meaning, const Shapes& shapes,
                        KeyType type = kNumber) {
     keys.push_back({at + name, type, unit, otherwise, allowed, meaning, shapes});
   };
+  const auto add_numbers = [&](const auto& picked) {
+    for (const ShapeNumber& number : shape_numbers()) {
+      if (!picked(number)) continue;
+      Shapes words;
+      for (const Shape shape : number.shapes) words.push_back(word_of(kShapes, shape));
+      add(number.name, number.unit, kRequired, number.allowed, number.meaning, words);
+    }
+  };
   add("shape", "", kRequired, one_of(kShapes),
       "The shape of the indenter's surface; in `[upper]` either this word or tables `[[upper.shape]]`.", {},
       kWord);
-  add("radius", "m", kRequired, kPositive, "Radius of the sphere, or of the punch's face.",
-      {"sphere", "flat_punch"});
+  add_numbers([](const ShapeNumber& number) { return number.own != nullptr; });
   add("inner_radius", "m", shown(surface.inner_radius), depending(inner_radius_below(1.0).words),
       "Radius of the hole that makes the punch an annulus.", {"flat_punch"});
-  add("radius_1", "m", kRequired, kPositive, "Radius of curvature along the ellipsoid's first axis.",
-      {"ellipsoid"});
-  add("radius_2", "m", kRequired, kPositive, "Radius of curvature along its second axis.", {"ellipsoid"});
-  add("slope", "", kRequired, kPositive, "Gap over radius.", {"cone"});
-  add("flat_radius", "m", kRequired, kPositive, "Radius of the flat face.", {"rounded_punch"});
-  add("corner_radius", "m", kRequired, kPositive,
-      "Radius of curvature beyond the face, where the gap is (r - flat_radius)^2/(2 corner_radius).",
-      {"rounded_punch"});
-  add("exponent", "", kRequired, kExponent, "The gap is coefficient r^exponent.", {"power"});
-  add("coefficient", "m^(1 - exponent)", kRequired, kPositive, "Factor of that power.", {"power"});
   add("at", "m", shown(surface.at), kFinite, "Where the shape's axis stands.", kWithAxis, KeyType::pair);
   add("angle", "rad", shown(surface.angle), kFinite,
       "From x1 to the shape's first axis, positive towards x2.", kWithAxis);
@@ -65,11 +64,7 @@ void add_shape(SettingKeys& keys, const std::string& table) {
   add("unit", "", word_of(kHeightUnits, surface.height_unit), one_of(kHeightUnits),
       "Unit of the file's heights.", map, kWord);
   add("seed", "", kRequired, kSeeds, "Draws the phases of the random surface.", rough);
-  add("hurst", "", kRequired, kHurst,
-      "Hurst's exponent: the power of a wave vector k goes like |k|^(-2 (1 + hurst)).", rough);
-  add("rms_slope", "", kRequired, kPositive, "Root mean square of the gradient's length, over a period.",
-      rough);
-  add("longest", "m", kRequired, kPositive, "Longest wavelength.", rough);
+  add_numbers([](const ShapeNumber& number) { return number.rough != nullptr; });
   add("shortest", "m", kRequired,
       depending(fmt::format("from a {:g}th of the period, to half of longest", kMaxWaves)),
       "Shortest wavelength.", rough);
@@ -131,7 +126,7 @@ void add_contact(SettingKeys& keys, const Scene& scene) {
        "Columns x1, x2 (m), pressure (Pa), one row for each contact cell: .csv or .h5. Known with pressure = "
        "\"file\" alone."},
       {"contact.coupling", kWord, "", word_of(kCouplings, scene.coupling), one_of(kCouplings),
-       "Of dissimilar bodies: the pressure's tangential displacement where they are dissimilar (auto); "
+       "For dissimilar bodies: the pressure's tangential displacement where they are dissimilar (auto); "
        "nothing; that displacement; also the shear's normal displacement."}};
   keys.insert(keys.end(), contact.begin(), contact.end());
 }
@@ -211,6 +206,43 @@ const Words<const LawKind*>& layer_words() {
 const SettingKeys& scene_keys() {
   static const SettingKeys keys = make_scene_keys();
   return keys;
+}
+
+bool ShapeNumber::belongs_to(Shape shape) const { return std::ranges::find(shapes, shape) != shapes.end(); }
+
+const std::vector<ShapeNumber>& shape_numbers() {
+  using Name = const char*;
+  const auto own = [](Name name, Name unit, const Range& allowed, Name meaning, std::vector<Shape> shapes,
+                      double Surface::*at) {
+    return ShapeNumber{name, unit, allowed, meaning, std::move(shapes), at, nullptr};
+  };
+  const auto rough = [](Name name, Name unit, const Range& allowed, Name meaning, double Roughness::*at) {
+    return ShapeNumber{name, unit, allowed, meaning, {Shape::roughness}, nullptr, at};
+  };
+  static const std::vector<ShapeNumber> numbers{
+      own("radius", "m", kPositive, "Radius of the sphere, or of the punch's face.",
+          {Shape::sphere, Shape::flat_punch}, &Surface::radius),
+      own("radius_1", "m", kPositive, "Radius of curvature along the ellipsoid's first axis.",
+          {Shape::ellipsoid}, &Surface::radius_1),
+      own("radius_2", "m", kPositive, "Radius of curvature along its second axis.", {Shape::ellipsoid},
+          &Surface::radius_2),
+      own("slope", "", kPositive, "Gap over radius.", {Shape::cone}, &Surface::slope),
+      own("flat_radius", "m", kPositive, "Radius of the flat face.", {Shape::rounded_punch},
+          &Surface::flat_radius),
+      own("corner_radius", "m", kPositive,
+          "Radius of curvature beyond the face, where the gap is (r - flat_radius)^2/(2 corner_radius).",
+          {Shape::rounded_punch}, &Surface::corner_radius),
+      own("exponent", "", kExponent, "The gap is coefficient r^exponent.", {Shape::power},
+          &Surface::exponent),
+      own("coefficient", "m^(1 - exponent)", kPositive, "Factor of that power.", {Shape::power},
+          &Surface::coefficient),
+      rough("hurst", "", kHurst,
+            "Hurst's exponent: the power of a wave vector k goes like |k|^(-2 (1 + hurst)).",
+            &Roughness::hurst),
+      rough("rms_slope", "", kPositive, "Root mean square of the gradient's length, over a period.",
+            &Roughness::rms_slope),
+      rough("longest", "m", kPositive, "Longest wavelength.", &Roughness::longest)};
+  return numbers;
 }
 
 }  // namespace slipstick::solver

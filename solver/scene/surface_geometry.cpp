@@ -13,6 +13,7 @@
 #include "solver/scene/bracketed_root.hpp"
 #include "solver/scene/hertz_pressure.hpp"
 #include "solver/scene/roughness.hpp"
+#include "solver/scene/scene_keys.hpp"
 #include "solver/scene/to_dimensionless.hpp"
 
 namespace slipstick::solver {
@@ -271,10 +272,11 @@ std::optional<std::array<double, 2>> hertzian_radii(const std::vector<Surface>& 
 }
 
 Surface to_dimensionless(Surface surface, double unit) {
-  for (double* const length :
-       {&surface.radius, &surface.inner_radius, &surface.radius_1, &surface.radius_2, &surface.flat_radius,
-        &surface.corner_radius, &surface.at[0], &surface.at[1], &surface.spacing[0], &surface.spacing[1],
-        &surface.roughness.longest, &surface.roughness.shortest, &surface.roughness.period}) {
+  for (const ShapeNumber& number : shape_numbers()) {
+    if (number.unit == "m") number.of(surface) = to_dimensionless(number.of(surface), unit);
+  }
+  for (double* const length : {&surface.inner_radius, &surface.at[0], &surface.at[1], &surface.spacing[0],
+                               &surface.spacing[1], &surface.roughness.shortest, &surface.roughness.period}) {
     *length = to_dimensionless(*length, unit);
   }
   surface.coefficient = to_dimensionless(surface.coefficient, std::pow(unit, 1.0 - surface.exponent));

@@ -9,6 +9,7 @@
 #include "solver/scene/hertz_pressure.hpp"
 #include "solver/scene/roughness.hpp"
 #include "solver/scene/scene.hpp"
+#include "solver/scene/scene_keys.hpp"
 #include "solver/scene/surface_geometry.hpp"
 #include "solver/scene/validate.hpp"
 
@@ -52,43 +53,19 @@ class Validation {
   }
 
   void check_surface(const std::string& table, const Surface& surface) const {
-    const auto positive = [&](const char* key, double value) { require(table + key, value, kPositive); };
-    switch (surface.shape) {
-      case Shape::sphere:
-        positive(".radius", surface.radius);
-        break;
-      case Shape::flat_punch:
-        positive(".radius", surface.radius);
-        require(table + ".inner_radius", surface.inner_radius, inner_radius_below(surface.radius));
-        break;
-      case Shape::ellipsoid:
-        positive(".radius_1", surface.radius_1);
-        positive(".radius_2", surface.radius_2);
-        break;
-      case Shape::cone:
-        positive(".slope", surface.slope);
-        break;
-      case Shape::rounded_punch:
-        positive(".flat_radius", surface.flat_radius);
-        positive(".corner_radius", surface.corner_radius);
-        break;
-      case Shape::power:
-        require(table + ".exponent", surface.exponent, kExponent);
-        positive(".coefficient", surface.coefficient);
-        break;
-      case Shape::height_map:
-        for (const double spacing : surface.spacing) positive(".spacing", spacing);
-        positive(".unit", surface.height_unit);
-        break;
-      case Shape::roughness: {
-        const Roughness& roughness = surface.roughness;
-        require(table + ".hurst", roughness.hurst, kHurst);
-        positive(".rms_slope", roughness.rms_slope);
-        positive(".longest", roughness.longest);
-        require(table + ".period", roughness.period, period_for(roughness.longest));
-        require(table + ".shortest", roughness.shortest, shortest_for(roughness.longest, roughness.period));
-        break;
-      }
+    for (const ShapeNumber& number : shape_numbers()) {
+      if (number.belongs_to(surface.shape))
+        require(table + "." + number.name, number.of(surface), number.allowed);
+    }
+    if (surface.shape == Shape::flat_punch) {
+      require(table + ".inner_radius", surface.inner_radius, inner_radius_below(surface.radius));
+    } else if (surface.shape == Shape::roughness) {
+      const Roughness& roughness = surface.roughness;
+      require(table + ".period", roughness.period, period_for(roughness.longest));
+      require(table + ".shortest", roughness.shortest, shortest_for(roughness.longest, roughness.period));
+    } else if (surface.shape == Shape::height_map) {
+      for (const double spacing : surface.spacing) require(table + ".spacing", spacing, kPositive);
+      require(table + ".unit", surface.height_unit, kPositive);
     }
     for (const double at : surface.at) require(table + ".at", at, kFinite);
     require(table + ".angle", surface.angle, kFinite);

@@ -13,9 +13,12 @@ inline const Range kRatio{"above -1 and below 1 (1 is gross slip)",
                           [](double x) { return x > -1.0 && x < 1.0; }};
 inline const Range kPoisson{"above -1, at most 0.5", [](double x) { return x > -1.0 && x <= 0.5; }};
 inline const Range kTolerance{"from 1e-15 to below 1", [](double x) { return x >= 1e-15 && x < 1.0; }};
+/// Cells along a side. Memory ends long before.
 inline const Range kCells = whole(1, 65536);
+/// The largest round number that fits an int.
 inline const Range kIterations = whole(1, 1e9);
 inline const Range kRoundingSeeds = whole(0, 1e9);
+/// The error of a path goes like one over the parts, and the time of a solve like the parts.
 inline const Range kSubsteps = whole(1, 4096);
 inline const Range kThreads = whole(0, 1024);
 /// Powers of a cell's size stay within double precision.

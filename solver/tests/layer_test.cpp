@@ -34,7 +34,7 @@ Scene layered_scene(Index cells, double normal, double tangential, double moment
   return scene;
 }
 
-Solution solved(const Scene& scene) {
+Solution solved_scene(const Scene& scene) {
   const Solution solution = solve(scene);
   EXPECT_EQ(solution.status, Status::converged) << solution.message;
   return solution;
@@ -50,8 +50,8 @@ TEST(Layer, WithoutComplianceIsNoLayerToTheLastBit) {
   const Scene layered = layered_scene(32, 0.0, 0.0);
   Scene plain = layered;
   plain.layer = {};
-  const Solution with = solved(layered);
-  const Solution without = solved(plain);
+  const Solution with = solved_scene(layered);
+  const Solution without = solved_scene(plain);
   EXPECT_TRUE((with.pressure == without.pressure).all());
   EXPECT_TRUE((with.traction == without.traction).all());
   EXPECT_EQ(with.twist_angle, without.twist_angle);
@@ -61,7 +61,7 @@ TEST(Layer, WithoutComplianceIsNoLayerToTheLastBit) {
 TEST(Layer, IsTheSameByEveryMethodOperatorAndPartOfTheGrid) {
   Scene scene = layered_scene(24, kLikeBodies, 0.5 * kLikeBodies);
   scene.tolerance = 1e-12;
-  const Solution reference = solved(scene);
+  const Solution reference = solved_scene(scene);
   EXPECT_LE(reference.certificate.gap, scene.tolerance);
   EXPECT_GT(reference.stick_cells, 0);
   EXPECT_LT(reference.stick_cells, reference.contact_cells);
@@ -83,7 +83,7 @@ TEST(Layer, IsTheSameByEveryMethodOperatorAndPartOfTheGrid) {
     SCOPED_TRACE(name);
     Scene other = scene;
     change(other);
-    const Solution solution = solved(other);
+    const Solution solution = solved_scene(other);
     expect_same(solution, reference, tolerance);
     EXPECT_LE(solution.certificate.gap, other.method == Method::paper ? 1e-3 : scene.tolerance);
     EXPECT_GE(solution.predicted_bytes, solution.bytes);
@@ -96,9 +96,9 @@ TEST(Layer, UnderDissimilarBodiesIsTheSameOnEachPartOfTheGrid) {
     scene.upper = {3.0 * paper::kYoungModulus, 0.1};
     scene.coupling = coupling;
     scene.tolerance = 1e-12;
-    const Solution reference = solved(scene);
+    const Solution reference = solved_scene(scene);
     scene.op = OperatorKind::direct;
-    expect_same(solved(scene), reference, kSame);
+    expect_same(solved_scene(scene), reference, kSame);
   }
 }
 
@@ -109,8 +109,8 @@ TEST(Layer, NeedsAnExtent) {
 }
 
 TEST(Layer, LetsTheContactGrowAndTurn) {
-  const Solution stiff = solved(layered_scene(32, 0.0, 0.0));
-  const Solution soft = solved(layered_scene(32, kLikeBodies, kLikeBodies));
+  const Solution stiff = solved_scene(layered_scene(32, 0.0, 0.0));
+  const Solution soft = solved_scene(layered_scene(32, kLikeBodies, kLikeBodies));
   EXPECT_GT(soft.contact_cells, stiff.contact_cells);
   EXPECT_GT(soft.approach, stiff.approach);
   EXPECT_GT(soft.twist_angle, stiff.twist_angle);
@@ -130,7 +130,7 @@ TEST(Layer, ThatIsVeryCompliantIsWinklersFoundation) {
   const double approach = reach * reach / (2.0 * paper::kRadius);
   scene.steps[0].normal = M_PI * paper::kRadius * approach * approach / compliance;
   scene.steps[0].torsion = Twist{0.5 * scene.friction * approach / reach};
-  const Solution solution = solved(scene);
+  const Solution solution = solved_scene(scene);
   const Grid& grid = solution.grid;
   const ArrayXd square = cell_x1(grid).square() + cell_x2(grid).square();
   const ArrayXd penetration = solution.approach - square / (2.0 * paper::kRadius);

@@ -114,13 +114,22 @@ Scene with(Scene scene, const std::function<void(Scene&)>& change) {
   return scene;
 }
 
+Scene with_cells(Scene scene, Index n1, Index n2) {
+  scene.cells = {n1, n2};
+  return scene;
+}
+
+Scene with_extent(Scene scene, double side) {
+  scene.extent = {side, side};
+  return scene;
+}
+
 /// By default two cells on each side of the contact stay empty.
 std::vector<Case> cases() {
   const Scene sphere = paper_scene(32, 0.5);
   const Scene ellipsoid = ellipsoid_scene(32, 0.036, 0.018, 0.5);
   const auto imposed_twist = [](Scene& scene) { scene.steps[0].torsion = Twist{1e-3}; };
   const auto hertz_averaged = [](Scene& scene) { scene.pressure = PressureModel::hertz_averaged; };
-  const auto square_cells = [](Scene& scene) { scene.extent = std::array{1.5e-3, 1.5e-3}; };
   // Slips from its rim where the moment is above 0.85 of the limit.
   Scene punch = paper_scene(32, 0.95);
   punch.surfaces.front().shape = Shape::flat_punch;
@@ -129,32 +138,11 @@ std::vector<Case> cases() {
       {"sphere", sphere, true, true},
       {"sphere_nearly_slipping", paper_scene(24, 0.97), true, true},
       {"sphere_under_twist", with(sphere, imposed_twist), true, true},
-      {"sphere_oblong_cells",
-       with(sphere,
-            [](Scene& scene) {
-              scene.cells = std::array<Index, 2>{32, 24};
-            }),
-       true, false},
-      {"sphere_wide",
-       with(sphere,
-            [](Scene& scene) {
-              scene.extent = std::array{2e-3, 2e-3};
-            }),
-       true, true},
-      {"sphere_filling",
-       with(sphere,
-            [](Scene& scene) {
-              scene.extent = std::array{0.99e-3, 0.99e-3};
-            }),
-       true, true, false},
-      {"sphere_odd", with(sphere,
-                          [](Scene& scene) {
-                            scene.cells = std::array<Index, 2>{31, 31};
-                          })},
-      {"sphere_odd_along_x2", with(sphere,
-                                   [](Scene& scene) {
-                                     scene.cells = std::array<Index, 2>{32, 27};
-                                   })},
+      {"sphere_oblong_cells", with_cells(sphere, 32, 24), true, false},
+      {"sphere_wide", with_extent(sphere, 2e-3), true, true},
+      {"sphere_filling", with_extent(sphere, 0.99e-3), true, true, false},
+      {"sphere_odd", with_cells(sphere, 31, 31)},
+      {"sphere_odd_along_x2", with_cells(sphere, 32, 27)},
       {"sphere_dissimilar", with(sphere, [](Scene& scene) { scene.lower.young_modulus = 70e9; })},
       {"sphere_dissimilar_uncoupled",
        with(sphere,
@@ -164,7 +152,7 @@ std::vector<Case> cases() {
             }),
        true, true},
       {"ellipsoid_oblong_cells", ellipsoid, true, false},
-      {"ellipsoid_square_cells", with(ellipsoid, square_cells), true, false},
+      {"ellipsoid_square_cells", with_extent(ellipsoid, 1.5e-3), true, false},
       {"ellipsoid_under_twist", with(ellipsoid, imposed_twist), true, false},
       {"hertz_averaged", with(sphere, hertz_averaged), true, true},
       {"ellipsoid_hertz_averaged", with(ellipsoid, hertz_averaged), true, false},

@@ -25,24 +25,22 @@ struct Mistake {
 
 const double kInfinite = std::numeric_limits<double>::infinity();
 
-const Roughness kShortPeriod{
-    .seed = 1, .hurst = 0.8, .longest = 1e-4, .shortest = 2e-5, .rms_slope = 0.1, .period = 9e-5};
+const Surface kShortPeriod{
+    .shape = Shape::roughness,
+    .roughness = {
+        .seed = 1, .hurst = 0.8, .longest = 1e-4, .shortest = 2e-5, .rms_slope = 0.1, .period = 9e-5}};
 
 const Mistake kMistakes[] = {
     {"upper.shape", [](Scene& s) { s.surfaces.clear(); }},
     {"upper.radius", [](Scene& s) { s.surfaces[0].radius = 0.0; }},
     {"upper.angle", [](Scene& s) { s.surfaces[0].angle = kNaN; }},
-    {"upper.at",
-     [](Scene& s) {
-       s.surfaces[0].at = std::array{kInfinite, 0.0};
-     }},
+    {"upper.at", [](Scene& s) { s.surfaces[0].at[0] = kInfinite; }},
     {"upper.shape[1].slope", [](Scene& s) { s.surfaces.push_back({.shape = Shape::cone}); }},
     {"upper.inner_radius",
      [](Scene& s) { s.surfaces[0] = {.shape = Shape::flat_punch, .radius = 1e-3, .inner_radius = 1e-3}; }},
     {"upper.exponent", [](Scene& s) { s.surfaces[0] = {.shape = Shape::power, .exponent = 0.5}; }},
     {"upper.hurst", [](Scene& s) { s.surfaces[0] = {.shape = Shape::roughness}; }},
-    {"upper.period",
-     [](Scene& s) { s.surfaces[0] = {.shape = Shape::roughness, .roughness = kShortPeriod}; }},
+    {"upper.period", [](Scene& s) { s.surfaces[0] = kShortPeriod; }},
     {"upper.young_modulus", [](Scene& s) { s.upper.young_modulus = -1.0; }},
     {"lower.poisson_ratio", [](Scene& s) { s.lower.poisson_ratio = 0.6; }},
     {"lower.rigid", [](Scene& s) { s.upper.young_modulus = s.lower.young_modulus = kInfinite; }},
@@ -74,10 +72,7 @@ const Mistake kMistakes[] = {
     {"load.moment_ratio", [](Scene& s) { s.steps[0].torsion = MomentRatio{1.0}; }},
     {"load.moment", [](Scene& s) { s.steps[0].torsion = Moment{kNaN}; }},
     {"load.twist", [](Scene& s) { s.steps[0].torsion = Twist{kInfinite}; }},
-    {"load.force",
-     [](Scene& s) {
-       s.steps[0].force = std::array{kNaN, 0.0};
-     }},
+    {"load.force", [](Scene& s) { s.steps[0].force[0] = kNaN; }},
     {"load.displacement",
      [](Scene& s) {
        s.steps[0].force = {1.0, 0.0};
@@ -85,10 +80,7 @@ const Mistake kMistakes[] = {
      }},
     {"cycles", [](Scene& s) { s.cycles = 0; }},
     {"grid.cells", [](Scene& s) { s.cells = {}; }},
-    {"grid.extent",
-     [](Scene& s) {
-       s.extent = std::array{1e-3, -1e-3};
-     }},
+    {"grid.extent", [](Scene& s) { s.extent.emplace(); }},
     {"solver.tolerance", [](Scene& s) { s.tolerance = 0.0; }},
     {"solver.max_iterations", [](Scene& s) { s.max_iterations = 0; }},
     {"solver.threads", [](Scene& s) { s.threads = -1; }},
