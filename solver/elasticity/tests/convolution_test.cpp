@@ -90,26 +90,6 @@ TEST(PaddedTransform, ThereAndBackMultipliesByThePaddedSize) {
   }
 }
 
-const std::vector<BlockKernel>& kernels() {
-  static const std::vector<BlockKernel> all{normal_kernel(), tangential_kernel(), coupling_kernel()};
-  return all;
-}
-
-/// A grid too large for the dense matrix, of lengths that are prime. One is padded further.
-TEST(Convolution, OfPrimeLengthsIsTheDirectSum) {
-  const Grid grid{101, 67, 1.0, 1.0};
-  for (const BlockKernel& kernel : kernels()) {
-    const auto fft = make_operator(OperatorKind::dcfft, grid, kernel, dissimilar_pair());
-    const auto direct = make_operator(OperatorKind::direct, grid, kernel, dissimilar_pair());
-    const Eigen::ArrayXd traction = random_field(static_cast<Index>(kernel.inputs) * grid.cells(), 3);
-    Eigen::ArrayXd computed(static_cast<Index>(kernel.outputs) * grid.cells());
-    Eigen::ArrayXd expected(computed.size());
-    fft->apply(traction, computed);
-    direct->apply(traction, expected);
-    EXPECT_LE((computed - expected).abs().maxCoeff(), 10.0 * kTransformRounding * expected.abs().maxCoeff());
-  }
-}
-
 TEST(Convolution, RefusesAKernelOfAnotherShape) {
   const BlockKernel mixed{2, 1, {Component::k13, Component::k33}};
   const BlockKernel wide{1, 2, {Component::k11, Component::k12}};

@@ -1,14 +1,11 @@
 #include "solver/elasticity/law/half_spaces.hpp"
 
-#include <gsl/gsl_errno.h>
-#include <gsl/gsl_integration.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <memory>
 #include <numbers>
 #include <utility>
 
@@ -26,8 +23,6 @@ constexpr HalfSpace kLower{1.0, 0.3};
 constexpr HalfSpace kUpper{2.5, 0.1};
 constexpr double kRigid = std::numeric_limits<double>::infinity();
 
-/// The adaptive quadrature asks for a relative error of 1e-13 in each of two dimensions.
-constexpr double kQuadrature = 1e-12;
 /// A few roundings.
 constexpr double kRounding = 1e-15;
 
@@ -61,90 +56,8 @@ double pair_point_load(Component component, double x, double y) {
   return point_load(component, kLower, x, y) + opposite * point_load(component, kUpper, x, y);
 }
 
-/// Adaptive Gauss-Kronrod quadrature of any callable.
-template <typename Function>
-double integrate(const Function& f, double low, double high) {
-  constexpr std::size_t kIntervals = 200;
-  constexpr double kRelative = 1e-13;
-  const std::unique_ptr<gsl_integration_workspace, decltype(&gsl_integration_workspace_free)> workspace(
-      gsl_integration_workspace_alloc(kIntervals), gsl_integration_workspace_free);
-  gsl_function function{[](double x, void* callable) { return (*static_cast<const Function*>(callable))(x); },
-                        const_cast<Function*>(&f)};
-  double result = 0.0;
-  double error = 0.0;
-  // The status may say that rounding keeps the error bound above 1e-13: the comparison judges the result
-  // itself.
-  gsl_integration_qag(&function, low, high, 0.0, kRelative, kIntervals, GSL_INTEG_GAUSS61, workspace.get(),
-                      &result, &error);
-  return result;
-}
-
-/// Displacement at the origin of a cell's traction, the cell away from the origin.
-double integrate_cell(Component component, double x, double y, double h1, double h2) {
-  return integrate(
-      [&](double u) {
-        return integrate([&](double v) { return pair_point_load(component, u, v); }, y - 0.5 * h2,
-                         y + 0.5 * h2);
-      },
-      x - 0.5 * h1, x + 0.5 * h1);
-}
-
-/// The cell under the origin: all kernels go like 1/rho, so that in polar coordinates only the distance to
-/// the cell's edge is left of the radial integral.
-double integrate_self_cell(Component component, double h1, double h2) {
-  const double corner = std::atan2(h2, h1);
-  const auto along = [&](double theta) {
-    const double c = std::cos(theta);
-    const double s = std::sin(theta);
-    const double edge = std::min(0.5 * h1 / std::abs(c), 0.5 * h2 / std::abs(s));
-    return pair_point_load(component, c, s) * edge;
-  };
-  const std::array corners{-corner, corner, pi - corner, pi + corner, 2.0 * pi - corner};
-  double sum = 0.0;
-  for (std::size_t i = 0; i + 1 < corners.size(); ++i) sum += integrate(along, corners[i], corners[i + 1]);
-  return sum;
-}
-
-class Influence : public testing::Test {
- protected:
-  Influence() : handler_(gsl_set_error_handler_off()) {}
-  ~Influence() override { gsl_set_error_handler(handler_); }
-
- private:
-  gsl_error_handler_t* handler_;
-};
-
 double coefficient(Component component, const ElasticPair& pair, double h1, double h2, Index k1, Index k2) {
   return HalfSpaces(pair).influence_coefficients(component, {k1 + 1, k2 + 1, h1, h2}).back();
-}
-
-TEST_F(Influence, OfNearbyCellsEqualsAdaptiveQuadratureOfThePointLoads) {
-  const ElasticPair pair = elastic_pair(kLower, kUpper);
-  double worst = 0.0;
-  for (const double aspect : kAspects) {
-    for (const Component component : kComponents) {
-      for (Index k1 = 0; k1 < 5; ++k1) {
-        for (Index k2 = 0; k2 < 5; ++k2) {
-          const double x = static_cast<double>(k1);
-          const double y = static_cast<double>(k2) * aspect;
-          const Parity sign = parity(component);
-          const bool vanishes = (k1 == 0 && sign.x1 < 0) || (k2 == 0 && sign.x2 < 0);
-          const double computed = coefficient(component, pair, 1.0, aspect, k1, k2);
-          if (vanishes) {
-            EXPECT_EQ(computed, 0.0);
-            continue;
-          }
-          const double expected = k1 == 0 && k2 == 0 ? integrate_self_cell(component, 1.0, aspect)
-                                                     : integrate_cell(component, x, y, 1.0, aspect);
-          EXPECT_LE(std::abs(computed / expected - 1.0), kQuadrature)
-              << "component " << static_cast<int>(component) << " cell (" << k1 << ", " << k2
-              << "), h2/h1 = " << aspect;
-          worst = std::max(worst, std::abs(computed / expected - 1.0));
-        }
-      }
-    }
-  }
-  RecordProperty("worst_relative_error", std::to_string(worst * 1e15) + "e-15");
 }
 
 // --- quadruple precision ---
@@ -213,64 +126,19 @@ class FarCells : public testing::TestWithParam<double> {};
 
 TEST_P(FarCells, AgreeWithQuadruplePrecisionUpTo8192Cells) {
   const double aspect = GetParam();
-  double worst = 0.0;
-  std::pair<Index, Index> where;
   const auto offsets = sweep_offsets();
   for (const Index k1 : offsets) {
     for (const Index k2 : offsets) {
       const double error =
           worst_error(static_cast<double>(k1), static_cast<double>(k2) * aspect, 1.0, aspect);
       ASSERT_LE(error, kPromised) << "cell (" << k1 << ", " << k2 << ")";
-      if (error > worst) {
-        worst = error;
-        where = {k1, k2};
-      }
     }
   }
-  RecordProperty("worst_relative_error", std::to_string(worst * 1e15) + "e-15");
-  RecordProperty("worst_cell", std::to_string(where.first) + " " + std::to_string(where.second));
-}
-
-/// The coefficients that the integrals compose, for the extremes of Poisson's ratio too.
-TEST_P(FarCells, GiveCoefficientsAsAccurate) {
-  const double aspect = GetParam();
-  const auto relative_error = [](double computed, double expected) {
-    return std::abs(computed / expected - 1.0);
-  };
-  double worst = 0.0;
-  for (const double nu : {-0.9, 0.0, 0.3, 0.5}) {
-    const ElasticPair pair = elastic_pair({1.0 / (2.0 * pi), nu}, {kRigid, 0.0});  // 1/(2 pi G) = 1
-    for (const auto& cell : {std::pair<Index, Index>{0, 0},
-                             {0, 3},
-                             {3, 0},
-                             {2, 2},
-                             {0, 310},
-                             {310, 0},
-                             {97, 5},
-                             {0, 2048},
-                             {2048, 0}}) {
-      const Index k1 = cell.first;
-      const Index k2 = cell.second;
-      const auto exact =
-          exact_integrals(static_cast<double>(k1), static_cast<double>(k2) * aspect, 1.0, aspect);
-      const auto error = [&](Component component, double expected) {
-        return relative_error(coefficient(component, pair, 1.0, aspect, k1, k2), expected);
-      };
-      const std::array errors{error(Component::k11, exact[0] + (1.0 - nu) * exact[1]),
-                              error(Component::k22, exact[1] + (1.0 - nu) * exact[0]),
-                              error(Component::k33, (1.0 - nu) * (exact[0] + exact[1]))};
-      for (const double value : errors) {
-        ASSERT_LE(value, kPromised) << "cell (" << k1 << ", " << k2 << "), nu " << nu;
-        worst = std::max(worst, value);
-      }
-    }
-  }
-  RecordProperty("worst_relative_error", std::to_string(worst * 1e15) + "e-15");
 }
 
 INSTANTIATE_TEST_SUITE_P(Aspects, FarCells, testing::Values(1.0, 2.0, 0.3, 5.0, 1.4, 0.7, 1.499, 1.0 / 37.0));
 
-TEST_F(Influence, DoesNotDependOnTheUnitOfLength) {
+TEST(Influence, DoesNotDependOnTheUnitOfLength) {
   for (const double unit : {1e-9, 1e-3, 1.0, 1e6}) {
     for (const double aspect : kAspects) {
       for (const double k1 : {0.0, 1.0, 2.0, 3.0, 100.0}) {
@@ -283,7 +151,7 @@ TEST_F(Influence, DoesNotDependOnTheUnitOfLength) {
   }
 }
 
-TEST_F(Influence, IsEvenOrOddInEachCoordinate) {
+TEST(Influence, IsEvenOrOddInEachCoordinate) {
   for (const double aspect : kAspects) {
     for (const double x : {1.0, 2.0, 3.0, 57.0}) {
       for (const double y : {aspect, 2.0 * aspect, 3.0 * aspect, 57.0 * aspect}) {
@@ -304,7 +172,7 @@ TEST_F(Influence, IsEvenOrOddInEachCoordinate) {
 }
 
 /// Tested on the point loads themselves, so that the table cannot be wrong together with the coefficients.
-TEST_F(Influence, ParityIsThatOfThePointLoads) {
+TEST(Influence, ParityIsThatOfThePointLoads) {
   for (const Component component : kComponents) {
     const double reference = pair_point_load(component, 0.8, 0.3);
     EXPECT_DOUBLE_EQ(pair_point_load(component, -0.8, 0.3), parity(component).x1 * reference);
@@ -327,35 +195,40 @@ void expect_coefficients(const ElasticPair& pair, double factor, const ElasticPa
   }
 }
 
-TEST_F(Influence, ExchangeOfTheBodiesTurnsOnlyTheCoupling) {
+TEST(Influence, ExchangeOfTheBodiesTurnsOnlyTheCoupling) {
   expect_coefficients(elastic_pair(kUpper, kLower), 1.0, elastic_pair(kLower, kUpper), -1.0);
   EXPECT_NE(elastic_pair(kUpper, kLower).mismatch, 0.0);
 }
 
-TEST_F(Influence, OfEqualBodiesIsTwiceThatOfOneAndHasNoCoupling) {
+TEST(Influence, OfEqualBodiesIsTwiceThatOfOneAndHasNoCoupling) {
   const ElasticPair one = elastic_pair(kLower, {kRigid, 0.0});
   expect_coefficients(elastic_pair(kLower, kLower), 2.0, one, 0.0);
   EXPECT_EQ(elastic_pair(kLower, kLower).mismatch, 0.0);
 }
 
-TEST_F(Influence, OfIncompressibleOrProportionateBodiesHasNoCoupling) {
+TEST(Influence, OfIncompressibleOrProportionateBodiesHasNoCoupling) {
   EXPECT_EQ(elastic_pair({1.0, 0.5}, {7.0, 0.5}).mismatch, 0.0);
   // Dundurs' beta vanishes where (1 - 2 nu)/G agree: 0.5/1 = 1/2.
   EXPECT_EQ(elastic_pair({1.0, 0.25}, {2.0, 0.0}).mismatch, 0.0);
 }
 
-TEST_F(Influence, OfARigidBodyIsThatOfTheOtherAlone) {
-  for (const double poisson_of_rigid : {0.0, 0.2, 0.5}) {
-    const ElasticPair pair = elastic_pair(kLower, {kRigid, poisson_of_rigid});
-    for (const Component component : kComponents) {
-      const double computed = coefficient(component, pair, 1.0, 1.0, 200, 100);
-      EXPECT_NEAR(computed / point_load(component, kLower, 200.0, 100.0), 1.0, 1e-4);  // (1/200)^2
+/// Far off a cell's traction is a point load, up to (1/200)^2.
+TEST(Influence, OfAFarCellIsThatOfAPointLoad) {
+  const ElasticPair both = elastic_pair(kLower, kUpper);
+  for (const Component component : kComponents) {
+    EXPECT_NEAR(coefficient(component, both, 1.0, 1.0, 200, 100) / pair_point_load(component, 200.0, 100.0),
+                1.0, 1e-4);
+    for (const double poisson_of_rigid : {0.0, 0.2, 0.5}) {
+      const ElasticPair one = elastic_pair(kLower, {kRigid, poisson_of_rigid});
+      EXPECT_NEAR(
+          coefficient(component, one, 1.0, 1.0, 200, 100) / point_load(component, kLower, 200.0, 100.0), 1.0,
+          1e-4);
     }
   }
 }
 
 /// Love (1929): the mean displacement under a uniformly loaded square, at its centre.
-TEST_F(Influence, OfASquareOnItselfIsLoves) {
+TEST(Influence, OfASquareOnItselfIsLoves) {
   const double h = 0.7;
   const HalfSpace body{3.0, 0.3};
   const ElasticPair pair = elastic_pair(body, {kRigid, 0.0});
@@ -363,7 +236,7 @@ TEST_F(Influence, OfASquareOnItselfIsLoves) {
   EXPECT_NEAR(coefficient(Component::k33, pair, h, h, 0, 0) / expected, 1.0, 4.0 * kRounding);
 }
 
-TEST_F(Influence, EffectiveModuliAreThoseOfTheLiterature) {
+TEST(Influence, EffectiveModuliAreThoseOfTheLiterature) {
   const ElasticPair pair = elastic_pair(kLower, kUpper);
   const auto plane_strain = [](const HalfSpace& body) {  // (1 - nu^2)/E with E = 2 G (1 + nu)
     return (1.0 - body.poisson_ratio * body.poisson_ratio) /
