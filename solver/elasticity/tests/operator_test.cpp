@@ -61,9 +61,11 @@ struct OperatorCase {
 void PrintTo(const OperatorCase& tested, std::ostream* stream) { *stream << tested.name; }
 
 std::vector<OperatorCase> operator_cases() {
+  // One cell, one row, one column; lengths whose padded half is odd, even, and longer than the grid.
   const std::vector<Grid> grids{{1, 1, 1.0, 1.0},   {1, 7, 1.0, 1.0},   {7, 1, 0.5, 1.0},
                                 {16, 16, 1.0, 1.0}, {31, 33, 1.0, 0.3}, {64, 48, 1.0, 1.0},
-                                {13, 17, 1.0, 2.0}, {40, 9, 0.2, 1.0},  {2, 3, 1e-3, 1e-3}};
+                                {13, 17, 1.0, 2.0}, {40, 9, 0.2, 1.0},  {2, 3, 1e-3, 1e-3},
+                                {3, 5, 1.0, 1.0},   {11, 3, 1.0, 1.0},  {25, 20, 1.0, 1.0}};
   std::vector<OperatorCase> cases;
   for (const Grid& grid : grids) {
     const std::string shape = std::to_string(grid.n1) + "x" + std::to_string(grid.n2);
@@ -235,6 +237,15 @@ TEST(PartOf, RefusesFieldsThatHaveNotItsMirrors) {
   EXPECT_THROW(part_of({4, 4, 1.0, 0.5, true}, tangential_kernel(), true), std::invalid_argument);
   for (const OperatorKind kind : {OperatorKind::direct, OperatorKind::dense}) {
     EXPECT_THROW(make_operator(kind, square, tangential_kernel(), dissimilar_pair()), std::invalid_argument);
+  }
+}
+
+TEST(Convolution, RefusesAKernelOfAnotherShape) {
+  const BlockKernel mixed{2, 1, {Component::k13, Component::k33}};
+  const BlockKernel wide{1, 2, {Component::k11, Component::k12}};
+  for (const BlockKernel& kernel : {mixed, wide}) {
+    EXPECT_THROW(make_operator(OperatorKind::dcfft, {4, 4, 1.0, 1.0}, kernel, dissimilar_pair()),
+                 std::invalid_argument);
   }
 }
 
