@@ -10,6 +10,7 @@
 
 #include "solver/allocations/allocations.hpp"
 #include "solver/fft/fftw.hpp"
+#include "solver/grid/mirror.hpp"
 #include "solver/tests/fields.hpp"
 
 namespace slipstick::solver {
@@ -70,15 +71,6 @@ std::vector<SymbolCase> symbol_cases() {
   return cases;
 }
 
-/// q2(x1, x2) = -q1(x2, x1).
-ArrayXd symmetric(const ArrayXd& field, Index n) {
-  ArrayXd result = field;
-  for (Index i = 0; i < n; ++i) {
-    for (Index j = 0; j < n; ++j) result[n * n + i * n + j] = -field[j * n + i];
-  }
-  return result;
-}
-
 class InverseSymbolOf : public testing::TestWithParam<SymbolCase> {
  protected:
   std::unique_ptr<InverseSymbol> make(double nu = 0.3) const {
@@ -88,7 +80,7 @@ class InverseSymbolOf : public testing::TestWithParam<SymbolCase> {
   /// One of the fields that the operator is for.
   ArrayXd random(unsigned seed) const {
     const ArrayXd field = random_field(GetParam().size(), seed);
-    return GetParam().diagonal ? symmetric(field, GetParam().grid.n1) : field;
+    return GetParam().diagonal ? mirrored_about_diagonal(field, GetParam().grid.n1) : field;
   }
 };
 
@@ -134,7 +126,7 @@ TEST_P(InverseSymbolOf, IsPositiveAtTheEndsOfTheSpectrum) {
   for (const double nu : kRatios) {
     const auto symbol = make(nu);
     for (ArrayXd field : {rough, ArrayXd(ArrayXd::Ones(GetParam().size()))}) {
-      if (diagonal) field = symmetric(field, grid.n1);
+      if (diagonal) field = mirrored_about_diagonal(field, grid.n1);
       EXPECT_GT((field * applied(*symbol, field)).sum(), 0.0) << nu;
     }
   }
@@ -255,34 +247,15 @@ TEST(InverseSymbolDiagonal, IsThatOfTheOperator) {
   }
 }
 
-/// The field over the whole grid, from its quadrant x1, x2 > 0.
-ArrayXd mirrored(const ArrayXd& field, const Grid& quadrant) {
-  const Index n1 = quadrant.n1;
-  const Index n2 = quadrant.n2;
-  const Index fields = field.size() / quadrant.cells();
-  ArrayXd whole(4 * field.size());
-  for (Index f = 0; f < fields; ++f) {
-    for (Index i = 0; i < 2 * n1; ++i) {
-      for (Index j = 0; j < 2 * n2; ++j) {
-        const Index quarter_i = i < n1 ? n1 - 1 - i : i - n1;
-        const Index quarter_j = j < n2 ? n2 - 1 - j : j - n2;
-        const bool odd = fields == 2 && (f == 0 ? j < n2 : i < n1);
-        const double value = field[(f * n1 + quarter_i) * n2 + quarter_j];
-        whole[(2 * f * n1 + i) * 2 * n2 + j] = odd ? -value : value;
-      }
-    }
-  }
-  return whole;
-}
-
 TEST_P(QuadrantSymbol, IsThatOfTheWholeGrid) {
   const Grid& grid = GetParam().grid;
   const ArrayXd field = random(7);
   for (const double nu : kRatios) {
     const auto whole =
         make_inverse_symbol({2 * grid.n1, 2 * grid.n2, grid.h1, grid.h2}, GetParam().kernel(), pair_of(nu));
-    EXPECT_LE(relative_difference(mirrored(applied(*make(nu), field), grid),
-                                  applied(*whole, mirrored(field, grid))),
+    const Symmetry symmetry = GetParam().tangential ? torsion_symmetry() : normal_symmetry();
+    EXPECT_LE(relative_difference(unfold(grid, applied(*make(nu), field), symmetry),
+                                  applied(*whole, unfold(grid, field, symmetry))),
               kSymbolRounding)
         << nu;
   }
@@ -292,7 +265,7 @@ TEST_P(DiagonalSymbol, KeepsTheSymmetryExactly) {
   const Grid& grid = GetParam().grid;
   for (const double nu : kRatios) {
     const ArrayXd result = applied(*make(nu), random(8));
-    EXPECT_TRUE((result == symmetric(result, grid.n1)).all()) << nu;
+    EXPECT_TRUE((result == mirrored_about_diagonal(result, grid.n1)).all()) << nu;
     const auto quadrant = make_inverse_symbol(grid, GetParam().kernel(), pair_of(nu));
     EXPECT_LE(relative_difference(result, applied(*quadrant, random(8))), kSymbolRounding) << nu;
   }

@@ -107,11 +107,7 @@ TEST(WinklerLayer, AddsItsDisplacementHoweverTractionsAreSummed) {
     for (const BlockKernel& kernel : {normal_kernel(), tangential_kernel()}) {
       const OperatorOptions options{.threads = 1, .diagonal = diagonal && kernel.inputs == 2};
       ArrayXd q = random_field(static_cast<Index>(kernel.inputs) * grid.cells(), 1);
-      if (options.diagonal) {
-        for (Index i = 0; i < grid.n1; ++i) {
-          for (Index j = 0; j < grid.n2; ++j) q[grid.cells() + i * grid.n2 + j] = -q[j * grid.n2 + i];
-        }
-      }
+      if (options.diagonal) q = mirrored_about_diagonal(q, grid.n1);
       const ArrayXd u = applied(*make_operator(kind, grid, kernel, layered(), options), q);
       const ArrayXd without = applied(*make_operator(kind, grid, kernel, *bodies(), options), q);
       EXPECT_LE(relative_difference(u, without + added(kernel) * q), kTransforms);
