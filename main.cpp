@@ -44,29 +44,30 @@ void write_json(const std::string& path, const Json& result) {
 
 using slipstick::convergence::failure_text;
 using slipstick::convergence::plain_text;
+using slipstick::solver::JoinedRanks;
 using slipstick::solver::Ranks;
 
 /// Ranks that fail, fail alike: one of them says so.
-void complain(const std::exception& error) {
-  if (Ranks::first()) std::cerr << plain_text("slipstick: " + failure_text(error)) << '\n';
+void complain(const std::exception& error, const Ranks& ranks) {
+  if (ranks.first()) std::cerr << plain_text("slipstick: " + failure_text(error)) << '\n';
 }
 
 /// Writes beside an error that is said in any case.
-void keep(const std::function<void()>& write) {
+void keep(const std::function<void()>& write, const Ranks& ranks) {
   try {
     write();
   } catch (const std::exception& error) {
-    complain(error);
+    complain(error, ranks);
   }
 }
 
-int run(int argc, char** argv) {
+int run(int argc, char** argv, const Ranks& ranks) {
   CLI::App app{"slipstick: the elastic torsional contact with slip and stick, exact and numerical, compared"};
   app.set_version_flag("--version", std::string(SLIPSTICK_VERSION));
   app.require_subcommand(1);
 
   using namespace slipstick;
-  std::vector<Command> commands{analytic::add_exact_command(app), convergence::add_solve_command(app),
+  std::vector<Command> commands{analytic::add_exact_command(app), convergence::add_solve_command(app, ranks),
                                 convergence::add_check_command(app)};
 #ifdef SLIPSTICK_INTERFACES
   commands.push_back(laws::add_law_command(app));
@@ -92,7 +93,7 @@ int run(int argc, char** argv) {
     std::ostringstream output;
     std::ostringstream errors;
     const int left = app.exit(error, output, errors);
-    if (Ranks::first()) {
+    if (ranks.first()) {
       std::cerr << plain_text(errors.str());
       slipstick::convergence::write_standard_output(output.str());
     }
@@ -103,15 +104,15 @@ int run(int argc, char** argv) {
   Json result;
   bool commands_server = false;  // with commands of its own in the text, beside which it has made names plain
   const auto write_text = [&] {
-    if (quiet || !Ranks::first() || json_path == "-") return;
+    if (quiet || !ranks.first() || json_path == "-") return;
     slipstick::convergence::write_standard_output(commands_server ? text.str() : plain_text(text.str()));
   };
   // The file first: who reads the text may leave, and so end this process.
   const auto write_out = [&] {
     try {
-      if (!json_path.empty() && Ranks::first() && !result.empty()) write_json(json_path, result);
+      if (!json_path.empty() && ranks.first() && !result.empty()) write_json(json_path, result);
     } catch (const std::exception&) {
-      keep(write_text);
+      keep(write_text, ranks);
       throw;
     }
     write_text();
@@ -126,7 +127,7 @@ int run(int argc, char** argv) {
     try {
       exit_code = commands[i](text, result);
     } catch (const std::exception&) {
-      if (!result.empty()) keep(write_out);  // what was computed before the error is not lost
+      if (!result.empty()) keep(write_out, ranks);  // what was computed before the error is not lost
       throw;
     }
     write_out();
@@ -143,21 +144,22 @@ int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that grows too large is an error like a full disk
   try {
     slipstick::convergence::obey_tie(argc, argv);
-    // Other commands do not share their work: of them each process does all.
-    std::optional<Ranks> ranks;
-    if (std::find(argv + 1, argv + argc, std::string_view("solve")) != argv + argc) ranks.emplace();
+    // Other commands do not share their work: each process does all of it.
+    std::optional<JoinedRanks> joined;
+    if (std::find(argv + 1, argv + argc, std::string_view("solve")) != argv + argc) joined.emplace();
+    const Ranks ranks = joined ? joined->ranks() : Ranks();
     int exit_code = kCouldNotJudge;
     std::string failure;
     try {
-      exit_code = run(argc, argv);
+      exit_code = run(argc, argv, ranks);
     } catch (const std::exception& error) {
-      complain(error);
+      complain(error, ranks);
       failure = failure_text(error);
     }
-    Ranks::end(exit_code, failure);
+    if (joined) joined->end(exit_code, failure);
     return exit_code;
   } catch (const std::exception& error) {
-    complain(error);
+    complain(error, Ranks());
     return kCouldNotJudge;
   }
 }

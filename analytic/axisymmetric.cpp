@@ -163,9 +163,9 @@ class Cone final : public Profile {
   /// q = (2/pi) r integral_c^1 K/(s sqrt(s^2 - r^2)) ds. With s = r cosh(u) the integrand is smooth and falls
   /// like exp(-u); what is singular lies pi/2 off the axis, at s = 0.
   double stick_traction(StickRadius c, double r, double inward) const override {
-    constexpr double kNegligible = 40;  // beyond so much, exp(-u) leaves nothing
-    constexpr double kSteep = 12;       // one rule follows exp(-u) over so much
-    constexpr double kReach = 2;        // and reaches so many times the distance to what is singular
+    constexpr double kNegligible = 40;  // exp(-40) is below a unit of rounding
+    constexpr double kSteep = 12;       // one rule of 20 points follows exp(-u) so far, to all digits
+    constexpr double kReach = 2;        // longest panel, over its distance from the singular point
     static const gsl::GaussRule rule(20);
 
     const double depth = std::sqrt(inward) * std::sqrt(c.ratio + r);  // the product may underflow

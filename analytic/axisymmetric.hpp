@@ -32,7 +32,7 @@ class Profile {
   Profile& operator=(const Profile&) = delete;
 
   const std::string& name() const { return constants_.name; }
-  /// What p0 is, in words.
+  /// p0 in words.
   const std::string& reference_pressure() const { return constants_.reference_pressure; }
   /// W/(p0 a^2).
   double load() const { return constants_.load; }
@@ -57,7 +57,7 @@ class Profile {
   virtual double stick_traction(StickRadius stick, double radius, double inward) const = 0;
 
  protected:
-  /// What the functions of the same names return.
+  /// The values of the functions of the same names.
   struct Constants {
     std::string name;
     std::string reference_pressure;

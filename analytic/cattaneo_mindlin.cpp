@@ -16,7 +16,7 @@ namespace {
   throw std::domain_error(fmt::format("{} = {}; allowed: {}", name, value, allowed));
 }
 
-/// From ln(1 - F/(mu W)), of which everything is a power.
+/// The state at ln(1 - F/(mu W)): each member is a power of 1 - F/(mu W).
 TangentialState state_at(double log_deficit, const SelfSimilarIndenter& indenter) {
   const double power = indenter.radius_power();
   const double stick = std::exp(power * log_deficit);

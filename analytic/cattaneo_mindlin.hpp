@@ -8,7 +8,7 @@
 ///   q = mu (p(r; a) - p(r; c)), F = mu (W(a) - W(c)), delta = mu (G_n/G_t) (d(a) - d(c)),
 /// with the combined moduli 1/G_t = sum (2 - nu_i)/(2 G_i) and 1/G_n = sum (1 - nu_i)/G_i of the two bodies
 /// and p, W, d those of the same indenter pressed to either radius. Exact for nu_i = 0, where G_t = G_n is
-/// torsion's G; otherwise what is left out is the slip across F in the ring, which is not zero, while
+/// torsion's G; otherwise the slip across F in the ring is left out, which is not zero, while
 /// q there has no such component. For similar bodies only (Dundurs' beta = 0).
 ///
 /// Dimensionless: lengths over a, forces over mu W, displacement (of one body's far points against the

@@ -52,7 +52,7 @@ StickRadius stick_radius(const TorsionState& state) {
   return {.ratio = state.stick_ratio, .complement = state.stick_complement};
 }
 
-/// What slip adds to the twist on first loading. Without it the twist would be (3/16) M; by parts,
+/// The twist that slip adds on first loading. Without slip the twist would be (3/16) M; by parts,
 /// M = (8/3) mu (c^3 H(c) + 3 integral_c^1 s^2 H(s) ds), and the difference of the two is one integral.
 double slip_twist(const TorsionState& state, const Profile& profile) {
   return 3 / (2 * profile.load()) *
@@ -83,7 +83,7 @@ bool LoadingHistory::closes_loop_at(double moment_ratio) const {
 }
 
 void LoadingHistory::close_loop() {
-  // Of the loop that the oldest reversal belongs to, the other half is on the first-loading curve.
+  // The loop of the oldest reversal has its other half on the first-loading curve.
   const std::size_t last = turning_points_.size() - 1;
   lost_in_closed_loops_ += energy_lost_per_cycle(branch(last).amplitude, *profile_) / (last == 0 ? 2 : 1);
   turning_points_.resize(last == 0 ? 0 : last - 1);

@@ -22,7 +22,7 @@ struct CycleState {
   double dissipated;         ///< energy lost since the first loading began
 };
 
-/// What a contact remembers of its moments: the reversals that no later excursion has reached again. A branch
+/// A contact with its memory of moments: the reversals that no later excursion has reached again. A branch
 /// that reaches the reversal before its own closes a loop, forgets both, and goes on along the outer branch;
 /// one that leaves the largest |M| so far behind is the first-loading curve. Everything but the energy lost
 /// is a function of moment_ratio() and turning_points(), to the last bit.
@@ -45,7 +45,7 @@ class LoadingHistory {
   double traction(double radius) const;
 
   double moment_ratio() const { return moment_ratio_; }
-  /// The reversals remembered, the oldest and farthest first, as M/M_lim.
+  /// The reversals in memory, the oldest and farthest first, as M/M_lim.
   const std::vector<double>& turning_points() const { return turning_points_; }
 
  private:
@@ -82,7 +82,7 @@ double energy_lost_per_cycle(double moment_ratio, const Profile& profile = hertz
 double energy_lost_per_cycle(const TorsionState& state, const Profile& profile = hertz_profile(),
                              double relative = 1e-14);
 
-/// What energy_lost_per_cycle tends to for small moments: (9/64) (W/(p0 a^2))/(-H'(1)) (M/(mu W a))^3, for a
+/// The limit of energy_lost_per_cycle for small moments: (9/64) (W/(p0 a^2))/(-H'(1)) (M/(mu W a))^3, for a
 /// sphere (3/16) (M/(mu W a))^3; the cube of the amplitude is Deresiewicz's result (1954). Throws
 /// std::domain_error where H does not end with a finite slope: under a flat punch small moments lose nothing.
 double energy_lost_per_small_cycle(double moment_ratio, const Profile& profile = hertz_profile());

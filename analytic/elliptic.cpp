@@ -14,15 +14,16 @@ namespace slipstick::analytic {
 
 namespace {
 
-/// For k' up to 1/4, where so many powers of k'^2 leave less than 1e-17.
+/// Series serve up to this k'. There so many powers of k'^2 leave less than 1e-17 of the sum.
 constexpr double kLogarithmic = 0.25;
-constexpr std::size_t kTerms = 16;
+constexpr std::size_t kLogarithmicTerms = 16;
 
 double k_by_series(double kp) {
   static constexpr auto kLog = series::rounded(series::logarithmic_k().log);
   static constexpr auto kConstant = series::rounded(series::logarithmic_k().constant);
   const double x = kp * kp;
-  return -std::log(kp) * series::sum(kLog, x, kTerms) + series::sum(kConstant, x, kTerms);
+  return -std::log(kp) * series::sum(kLog, x, kLogarithmicTerms) +
+         series::sum(kConstant, x, kLogarithmicTerms);
 }
 
 CompleteElliptic by_series(double kp) {
@@ -30,7 +31,8 @@ CompleteElliptic by_series(double kp) {
   static constexpr auto kConstant = series::rounded(series::logarithmic_e().constant);
   const double x = kp * kp;
   const double k = k_by_series(kp);
-  const double e = -std::log(kp) * series::sum(kLog, x, kTerms) + series::sum(kConstant, x, kTerms);
+  const double e =
+      -std::log(kp) * series::sum(kLog, x, kLogarithmicTerms) + series::sum(kConstant, x, kLogarithmicTerms);
   return {.k = k, .e = e, .d = (k - e) / ((1 - kp) * (1 + kp))};
 }
 

@@ -149,8 +149,8 @@ HertzEllipse hertz_ellipse(double load, double radius_1, double radius_2, double
   const double b2 = ratio * ratio;
   const double a = std::cbrt(load * large_radius / (pi * effective_modulus) * carlson_rd(0, b2, 1));
   const double b = a * ratio;
-  // Of a semi-ellipsoid: its mean over the radii in one direction, 3 pi/16 of the ellipse's, then the mean of
-  // that over the directions, a 2 E/pi.
+  // The mean over the radii in one direction is 3 pi/16 of the ellipse's radius, the mean of that over the
+  // directions a 2 E/pi.
   const double friction_arm = 3.0 / 8 * a * complete_elliptic(std::min(ratio, 1.0)).e;
   return {.semi_axis_1 = radius_1 < radius_2 ? b : a,
           .semi_axis_2 = radius_1 < radius_2 ? a : b,

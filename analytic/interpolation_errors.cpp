@@ -13,7 +13,7 @@ namespace {
 
 using Points = std::vector<PressurePoint>;
 
-/// How far the interpolant without a point is off there; it must not be the first nor the last.
+/// The error at a point of the interpolant without it; the point is neither the first nor the last.
 double misfit(const Points& points, std::size_t left_out) {
   constexpr std::size_t kReach =
       3;  // two neighbours on either side shape a piece; the third, ends of its own
@@ -25,7 +25,7 @@ double misfit(const Points& points, std::size_t left_out) {
   return std::abs(interpolated_pressure(rest, points[left_out].radius) - points[left_out].pressure);
 }
 
-/// Of each point the largest misfit of it and its neighbours: one alone may vanish by chance.
+/// For each point the largest misfit among it and its neighbours: a single one may vanish by chance.
 std::vector<double> misfits_nearby(const Points& points) {
   constexpr std::size_t kNeighbours = 4;  // radii rounded to few digits err alike over a few points
   std::vector<double> misfits(points.size());
@@ -37,7 +37,7 @@ std::vector<double> misfits_nearby(const Points& points) {
   return largest;
 }
 
-/// Between two points, the first included: every second left out.
+/// Without every second point of a stretch, its first point included.
 Points thinned(const Points& points, std::size_t from, std::size_t to, std::size_t parity) {
   Points rest;
   for (std::size_t i = 0; i < points.size(); ++i)
@@ -45,7 +45,8 @@ Points thinned(const Points& points, std::size_t from, std::size_t to, std::size
   return rest;
 }
 
-/// Between two points, the first included: each pressure more by `by`, or less by up to half of it.
+/// With the pressures of a stretch, its first point included, moved by `factor` times `by`, but no lower than
+/// half.
 Points moved(Points points, std::size_t from, std::size_t to, const std::vector<double>& by, double factor) {
   for (std::size_t i = from; i < to; ++i)
     points[i].pressure = std::max(points[i].pressure + factor * by[i], points[i].pressure / 2);
@@ -117,7 +118,7 @@ std::vector<std::vector<Points>> other_points(const Points& points) {
 std::vector<double> interpolation_errors(
     const TabulatedProfile& table,
     const std::function<std::vector<double>(const Profile&, double mean_pressure)>& numbers) {
-  constexpr double kSafety = 2;
+  constexpr double kSafety = 2;           // covers every error of 14 pressures in 70 tables, see the test
   constexpr double kComputation = 1e-12;  // of the interpolant's own numbers
   const std::vector<double> values = numbers(*table.profile, table.mean_pressure);
   std::vector<double> errors;

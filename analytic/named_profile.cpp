@@ -40,9 +40,29 @@ double number(const TypedName& name) {
   return value;
 }
 
-/// A profile that lives as long as the program.
+/// One of the profiles that live as long as the program.
 NamedProfile lasting(const Profile& profile) {
   return {.profile = {&profile, [](const Profile*) {}}};
+}
+
+template <const Profile& (*profile)()>
+NamedProfile closed_form(const TypedName&) {
+  return lasting(profile());
+}
+template <const Profile& (*profile)(), Indentation (*indent)(double, double, double)>
+PressedContact press_closed_form(const TypedName&, const NormalLoad& load) {
+  return {lasting(profile()), indent(load.load, load.shape[0], load.effective_modulus)};
+}
+
+NamedProfile power(const TypedName& name) { return {.profile = power_profile(number(name))}; }
+PressedContact press_power(const TypedName& name, const NormalLoad& load) {
+  return analytic::press_power(number(name), load);
+}
+
+NamedProfile rounded_punch(const TypedName& name) { return {.profile = rounded_punch_profile(number(name))}; }
+PressedContact press_rounded_punch(const TypedName&, const NormalLoad& load) {
+  const auto pressed = indent_rounded_punch(load.load, load.shape[0], load.shape[1], load.effective_modulus);
+  return {{.profile = rounded_punch_profile(pressed.flat_ratio)}, pressed.contact};
 }
 
 NamedProfile tabulated(const TypedName& name) {
@@ -50,113 +70,82 @@ NamedProfile tabulated(const TypedName& name) {
   return {.profile = {table, table->profile.get()}, .table = table};
 }
 
-PressedContact press_rounded_punch(const NormalLoad& load) {
-  const auto pressed = indent_rounded_punch(load.load, load.shape[0], load.shape[1], load.effective_modulus);
-  return {{.profile = rounded_punch_profile(pressed.flat_ratio)}, pressed.contact};
-}
-
+/// A profile that users name.
 struct ProfileRow {
   std::string_view word;
-  std::string_view argument;  ///< what stands after the colon, as help writes it; empty: there is no colon
+  std::string_view argument;  ///< after the colon, as help writes it; empty: there is no colon
   std::string_view meaning;   ///< of the argument, for help
   NamedProfile (*make)(const TypedName& name);
-  /// Numbers of --shape, with commas between them, and their unit; empty: no load presses this profile.
-  std::string_view shape = {};
-  std::string_view unit = {};
-  PressedContact (*press)(const TypedName& name, const NormalLoad& load) = nullptr;
-  bool load_gives_argument = false;  ///< load and shape determine the argument, so that a name leaves it out
+  std::string_view shape;  ///< numbers of --shape, with commas between them; empty: no load presses it
+  std::string_view unit;   ///< of these numbers
+  PressedContact (*press)(const TypedName& name, const NormalLoad& load);
+  bool load_gives_argument = false;  ///< load and shape determine the argument: the name leaves it out
 };
 
 constexpr std::array kProfiles{
-    ProfileRow{"hertz", "", "", [](const TypedName&) { return lasting(hertz_profile()); }, "sphere radius",
-               "m",
-               [](const TypedName&, const NormalLoad& load) {
-                 return PressedContact{lasting(hertz_profile()),
-                                       indent_sphere(load.load, load.shape[0], load.effective_modulus)};
-               }},
-    ProfileRow{"cone", "", "", [](const TypedName&) { return lasting(cone_profile()); }, "slope", "",
-               [](const TypedName&, const NormalLoad& load) {
-                 return PressedContact{lasting(cone_profile()),
-                                       indent_cone(load.load, load.shape[0], load.effective_modulus)};
-               }},
-    ProfileRow{"flat_punch", "", "", [](const TypedName&) { return lasting(flat_punch_profile()); }, "radius",
-               "m",
-               [](const TypedName&, const NormalLoad& load) {
-                 return PressedContact{lasting(flat_punch_profile()),
-                                       indent_flat_punch(load.load, load.shape[0], load.effective_modulus)};
-               }},
-    ProfileRow{"power", "N", "gap ~ r^N",
-               [](const TypedName& name) { return NamedProfile{.profile = power_profile(number(name))}; },
-               "coefficient of r^N", "m^(1-N)",
-               [](const TypedName& name, const NormalLoad& load) { return press_power(number(name), load); }},
-    ProfileRow{
-        "rounded_punch", "B", "flat out to B = b/a",
-        [](const TypedName& name) { return NamedProfile{.profile = rounded_punch_profile(number(name))}; },
-        "flat radius, corner radius", "m",
-        [](const TypedName&, const NormalLoad& load) { return press_rounded_punch(load); }, true},
-    ProfileRow{"file", "P.csv", "columns radius, pressure; 16 points or more", tabulated},
+    ProfileRow{"hertz", "", "", closed_form<hertz_profile>,  //
+               "sphere radius", "m", press_closed_form<hertz_profile, indent_sphere>},
+    ProfileRow{"cone", "", "", closed_form<cone_profile>,  //
+               "slope", "", press_closed_form<cone_profile, indent_cone>},
+    ProfileRow{"flat_punch", "", "", closed_form<flat_punch_profile>,  //
+               "radius", "m", press_closed_form<flat_punch_profile, indent_flat_punch>},
+    ProfileRow{"power", "N", "gap ~ r^N", power,  //
+               "coefficient of r^N", "m^(1-N)", press_power},
+    ProfileRow{"rounded_punch", "B", "flat out to B = b/a", rounded_punch,  //
+               "flat radius, corner radius", "m", press_rounded_punch, true},
+    ProfileRow{"file", "P.csv", "columns radius, pressure; 16 points or more", tabulated, "", "", nullptr},
 };
 
-/// The name without or with the argument, "power:N".
-std::string written(const ProfileRow& row, bool with_argument) {
-  return with_argument && !row.argument.empty() ? fmt::format("{}:{}", row.word, row.argument)
-                                                : std::string(row.word);
+/// The name as help writes it, "power:N"; under a normal load, `pressed`, some have no argument.
+std::string written(const ProfileRow& row, bool pressed) {
+  const bool has_argument = !row.argument.empty() && !(pressed && row.load_gives_argument);
+  return has_argument ? fmt::format("{}:{}", row.word, row.argument) : std::string(row.word);
 }
 
-/// One text from each row that has one.
+/// A text from each row, or from each that a load presses.
 template <class Text>
-std::string joined(std::string_view separator, Text text) {
+std::string joined(std::string_view separator, bool pressed, Text text) {
   std::vector<std::string> texts;
   for (const ProfileRow& row : kProfiles)
-    if (std::string one = text(row); !one.empty()) texts.push_back(std::move(one));
+    if (!pressed || row.press) texts.push_back(text(row));
   return fmt::format("{}", fmt::join(texts, separator));
 }
 
-/// The name under which a load presses the profile; empty: none does.
-std::string pressed_name(const ProfileRow& row) {
-  return row.press ? written(row, !row.load_gives_argument) : std::string();
-}
-
-/// The row of a name that has an argument where `with_argument` says so; null: there is none.
-template <class Has>
-const ProfileRow* find_row(const TypedName& name, Has has_argument) {
-  for (const ProfileRow& row : kProfiles)
-    if (row.word == name.word && (has_argument(row) || name.whole == row.word)) return &row;
+/// The row of a name; null: there is none.
+const ProfileRow* find_row(const TypedName& name, bool pressed) {
+  for (const ProfileRow& row : kProfiles) {
+    const bool may_have_argument = written(row, pressed) != row.word;
+    if (row.word == name.word && (may_have_argument || name.whole == row.word) && (!pressed || row.press))
+      return &row;
+  }
   return nullptr;
-}
-
-/// As many numbers as the row names.
-void require_shape(const ProfileRow& row, const TypedName& name, const std::vector<double>& shape) {
-  if (std::ssize(shape) != 1 + std::ranges::count(row.shape, ','))
-    throw std::invalid_argument(
-        fmt::format("profile \"{}\": shape {}; needed: {}", name.whole, fmt::join(shape, ","), row.shape));
 }
 
 }  // namespace
 
 NamedProfile find_profile(const std::string& name) {
   const TypedName typed = split(name);
-  const ProfileRow* const row =
-      find_row(typed, [](const ProfileRow& each) { return !each.argument.empty(); });
+  const ProfileRow* const row = find_row(typed, false);
   if (!row || (row->make == tabulated && typed.argument.empty()))
     throw std::invalid_argument(
         fmt::format("profile \"{}\"; allowed: {}", name,
-                    joined(", ", [](const ProfileRow& each) { return written(each, true); })));
+                    joined(", ", false, [](const ProfileRow& each) { return written(each, false); })));
   return row->make(typed);
 }
 
 PressedContact press(const std::string& profile_name, const NormalLoad& load) {
   const TypedName typed = split(profile_name);
-  const ProfileRow* const row = find_row(
-      typed, [](const ProfileRow& each) { return !each.argument.empty() && !each.load_gives_argument; });
-  if (!row || !row->press)
+  const ProfileRow* const row = find_row(typed, true);
+  if (!row)
     throw std::invalid_argument(
         fmt::format("profile \"{}\" with a normal load; allowed: {}", profile_name,
-                    joined(", ", [](const ProfileRow& each) {
+                    joined(", ", true, [](const ProfileRow& each) {
                       const char* const note = " (without a ratio: it follows from load and shape)";
-                      return pressed_name(each) + (each.load_gives_argument ? note : "");
+                      return written(each, true) + (each.load_gives_argument ? note : "");
                     })));
-  require_shape(*row, typed, load.shape);
+  if (std::ssize(load.shape) != 1 + std::ranges::count(row->shape, ','))
+    throw std::invalid_argument(fmt::format("profile \"{}\": shape {}; needed: {}", profile_name,
+                                            fmt::join(load.shape, ","), row->shape));
   return row->press(typed, load);
 }
 
@@ -166,15 +155,14 @@ PressedContact press_power(double exponent, const NormalLoad& load) {
 }
 
 std::string profile_words() {
-  return joined(" | ", [](const ProfileRow& row) {
-    return written(row, true) + (row.meaning.empty() ? "" : fmt::format(" ({})", row.meaning));
+  return joined(" | ", false, [](const ProfileRow& row) {
+    return written(row, false) + (row.meaning.empty() ? "" : fmt::format(" ({})", row.meaning));
   });
 }
 
 std::string shape_words() {
-  return joined("; ", [](const ProfileRow& row) {
-    if (!row.press) return std::string();
-    return fmt::format("{}: {}{}{}", pressed_name(row), row.shape, row.unit.empty() ? "" : ", ", row.unit);
+  return joined("; ", true, [](const ProfileRow& row) {
+    return fmt::format("{}: {}{}{}", written(row, true), row.shape, row.unit.empty() ? "" : ", ", row.unit);
   });
 }
 

@@ -17,8 +17,8 @@ namespace slipstick::analytic {
 
 namespace {
 
-/// Bytes of a table: a hundred times what resolves any pressure.
-constexpr std::uintmax_t kLargestTable = std::uintmax_t{1} << 20;
+/// Bytes of a table, a hundred times as many as resolve any pressure.
+constexpr std::uintmax_t kLargestPressureTable = std::uintmax_t{1} << 20;
 /// Characters of a line that a message shows.
 constexpr std::size_t kMaxShown = 200;
 /// Written by some programs at the beginning of a text.
@@ -60,13 +60,13 @@ std::ifstream open_table(const std::string& file) {
   std::error_code error;
   const std::uintmax_t size = std::filesystem::file_size(file, error);
   std::ifstream stream;
-  if (!error && size <= kLargestTable) stream.open(file);
+  if (!error && size <= kLargestPressureTable) stream.open(file);
   if (!stream.is_open()) {
-    const std::string reason = size > kLargestTable && !error ? "it is larger"
-                               : error                        ? error.message()
-                                                              : "permission denied";
+    const std::string reason = size > kLargestPressureTable && !error ? "it is larger"
+                               : error                                ? error.message()
+                                                                      : "permission denied";
     throw std::invalid_argument(fmt::format("{}: cannot be read ({}); allowed: a CSV file of at most {} MiB",
-                                            file, reason, kLargestTable >> 20));
+                                            file, reason, kLargestPressureTable >> 20));
   }
   return stream;
 }

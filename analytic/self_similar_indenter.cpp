@@ -8,7 +8,7 @@ namespace slipstick::analytic {
 
 namespace {
 
-/// Of the closed forms those that there are.
+/// In closed form where there is one.
 std::shared_ptr<const Profile> profile_of_gap(double exponent) {
   const auto borrow = [](const Profile& profile) {
     return std::shared_ptr<const Profile>(std::shared_ptr<const Profile>(), &profile);

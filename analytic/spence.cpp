@@ -95,7 +95,7 @@ struct Node {
 class Mesh {
  public:
   Mesh(StickRadius stick, const GaussPanel& rule) : stick_(stick), rule_(rule) {
-    // What goes on in the last panels does not matter: g is bounded there.
+    // g is bounded in the last panels, so that their width does not matter.
     constexpr double kFinestAtFront = 1e-10;
     constexpr double kFinestAtEdge = 1e-10;
     const double slip = stick.complement;
@@ -190,7 +190,7 @@ class FrictionalPunch {
     g_ = matrix.partialPivLu().solve(right_side);
   }
 
-  /// Of g at the front.
+  /// The jump of g at the front.
   double jump() const {
     const auto front = static_cast<Eigen::Index>(mesh_.stick_nodes());
     return g_[front] - g_[front - 1];

@@ -288,7 +288,7 @@ InterpolatedPressure interpolate(const std::string& name, Points points) {
 double interpolated_pressure(const Points& points, double radius) {
   for (const Piece& piece : pieces_of(points))
     if (radius <= piece.high()) return piece.pressure(piece.high() - radius);
-  throw std::domain_error(fmt::format("radius = {}; allowed: up to {}", radius, points.back().radius));
+  throw std::logic_error("a radius beyond the last point");
 }
 
 TabulatedProfile tabulated_profile(const std::string& name, std::vector<PressurePoint> points,

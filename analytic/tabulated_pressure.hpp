@@ -22,8 +22,8 @@ struct InterpolatedPressure {
 };
 
 /// A pressure known at some radii only, in consistent units. Between them Steffen's interpolation (1990):
-/// piecewise cubic, monotone between any two points. Functions of the interpolant are good to 1e-13; how far
-/// they are from those of the pressure meant, interpolation_errors() estimates.
+/// piecewise cubic, monotone between any two points. Functions of the interpolant are good to 1e-13;
+/// interpolation_errors() estimates how far they are from those of the pressure meant.
 struct TabulatedProfile {
   std::unique_ptr<const Profile> profile;
   double radius;                      ///< a, the last radius

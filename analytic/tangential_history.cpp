@@ -49,7 +49,7 @@ void TangentialHistory::load_to(double normal_load, double force) {
 std::optional<TangentialHistory::Slip> TangentialHistory::ring_that_ends_before(double normal_load,
                                                                                 double force) const {
   const double start = this->normal_load();
-  // What the ring has to bring when the load has fallen so far; linear within a layer.
+  // The force that the ring lacks once the load has fallen so far; linear within a layer.
   const auto missing = [&](double load) {
     return (force - force_) * ((load - start) / (normal_load - start)) + force_between(load, start);
   };
@@ -103,7 +103,7 @@ TangentialHistory::Slip TangentialHistory::slip_inwards(double missing_force) {
 /// friction its load less what it has in common with the punch c, times the slip.
 double TangentialHistory::energy_lost(const Slip& slip, double normal_load) const {
   const double start = this->normal_load();
-  // What the front has gained in force says how far the step has come, and so what the load is.
+  // The force that the front has gained says how far the step has come, and so what the load is.
   const auto gained = [&](double front) {
     return (start - front) - slip.direction * force_between(front, start);
   };

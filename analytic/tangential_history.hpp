@@ -22,7 +22,7 @@ struct HistoryState {
   double dissipated;         ///< energy lost since the first contact; exact for nu_i = 0 only, as all else
 };
 
-/// What a contact remembers of its loads. The pressure is a superposition of flat punches, one for each load
+/// A contact with its memory of loads. The pressure is a superposition of flat punches, one for each load
 /// that the contact has grown through; the traction is the same superposition with every punch's part times
 /// mu and a share in [-1, 1]. New punches, as W grows by dW and F by dF, come with the share dF/(mu dW) and
 /// no slip where that is at most 1. Otherwise, and always where W does not grow, slip starts at the edge and

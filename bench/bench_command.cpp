@@ -33,8 +33,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 namespace fs = std::filesystem;
 
-/// What is compared unless a filter says otherwise: each part and the whole at two sizes, so small that it is
-/// done often.
+/// The default filter of a comparison: each part and the whole at two sizes, small enough for many rounds.
 constexpr const char* kCompared =
     "^(application/(direct|dcfft[a-z_]*)|influence/tangential|setup/dcfft[a-z_]*|normal/solve|solve/[a-z_]+)"
     "/cells:(64|256)(/permille:900)?$|^exact/.*/hertz$";
@@ -53,7 +52,7 @@ struct BenchRequest {
   bool quick = false;
 };
 
-/// What `solve --accuracy` picks by.
+/// Writes the file from which `solve --accuracy` picks mesh and tolerance.
 void keep_accuracy_data(const std::string& file, const Json& plane) {
   const std::string origin =
       fmt::format("Measured by slipstick bench on {}, {:%Y-%m-%d}.",

@@ -9,6 +9,7 @@ set(SLIPSTICK_PUBLIC_HEADERS
   solver/contact/certificate.hpp  # how far tractions, anyone's, are from Coulomb's law
   solver/contact/limit_load.hpp   # what a contact carries before all of it slides
   solver/grid/grid.hpp            # cells, and how fields lie over them
+  solver/grid/ranks.hpp           # the processes that share a grid: one, unless the program says otherwise
   solver/newton/safeguards.hpp    # what a solve did beside plain steps
   solver/elasticity/operator_kind.hpp
   solver/input/field_file.hpp     # fields as CSV, HDF5, VTK

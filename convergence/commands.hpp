@@ -8,6 +8,10 @@ namespace CLI {
 class App;
 }
 
+namespace slipstick::solver {
+class Ranks;
+}
+
 namespace slipstick::convergence {
 
 /// Runs a command that was given: writes what a person reads to the stream, fills the result, and returns the
@@ -26,7 +30,8 @@ RunCommand add_hard_command(CLI::App& app);
 /// Adds `report`: runs what the page needs and has it drawn.
 RunCommand add_report_command(CLI::App& app);
 /// Adds `solve`. Exit code 1 where the solve did not reach its tolerance.
-RunCommand add_solve_command(CLI::App& app);
+/// ranks: the processes that share its work.
+RunCommand add_solve_command(CLI::App& app, const solver::Ranks& ranks);
 /// Adds `study`: a scene on many meshes, to many tolerances, with varied keys, judged.
 RunCommand add_study_command(CLI::App& app);
 

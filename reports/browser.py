@@ -39,6 +39,7 @@ class Browser:
         for flag in (*FLAGS, *(["--no-sandbox"] if os.geteuid() == 0 else [])):  # the sandbox does not run as root
             options.add_argument(flag)
         options.set_capability("goog:loggingPrefs", {"browser": "ALL", "performance": "ALL"})
+        os.environ["NO_PROXY"] = os.environ["no_proxy"] = "localhost,127.0.0.1"  # the driver listens on this machine
         try:  # both programs are given by their paths, so that Selenium looks for none and downloads none
             self.driver = webdriver.Chrome(service=Service(DRIVER), options=options)
         except WebDriverException as error:

@@ -58,7 +58,12 @@ Grid surroundings(const Scene& scene, const Model& model, double approach) {
     const double most = std::max(1.0, std::ceil(0.5 * static_cast<double>(inside)));
     return inside + 2 * static_cast<Index>(std::clamp(beyond, 0.0, most));
   };
-  return {cells(grid.n1, half_sides[0], grid.h1), cells(grid.n2, half_sides[1], grid.h2), grid.h1, grid.h2};
+  return {cells(grid.n1, half_sides[0], grid.h1),
+          cells(grid.n2, half_sides[1], grid.h2),
+          grid.h1,
+          grid.h2,
+          false,
+          grid.ranks};
 }
 
 /// A field of one or more components on a larger grid of the same cells, zero beyond its own.

@@ -14,6 +14,7 @@
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/elasticity/law/law_kind.hpp"
+#include "solver/grid/own_rows.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/memory.hpp"
 #include "solver/scene/last_digits.hpp"
@@ -28,7 +29,7 @@ using Eigen::ArrayXd;
 /// Doubles a cell of the whole grid that a solve holds beside operators and workspaces. Measured, as all that
 /// follow, by convergence/solve/tests/memory_test.py.
 constexpr double kFieldsHeld = 4.0;
-/// Doubles a cell of the part that is solved; a rank has its own rows of it.
+/// Doubles a cell of the part that is solved; each of several processes has its own rows of it.
 constexpr double kFieldsOfPart = 5.0;
 /// Doubles a cell of the whole grid before and after the solve, when operators and workspaces are gone.
 constexpr double kFieldsAround = 12.5;
@@ -40,8 +41,8 @@ constexpr double kFieldsBefore = 37.0;
 /// and guesses. They stand in for much of the step before.
 constexpr double kFieldsOfTurns = 58.0;
 constexpr double kFieldsBeforeTurns = 21.0;
-/// The program and its libraries; on several ranks MPI's too.
-double program_bytes() { return (Ranks::number() > 1 ? 35.0 : 25.0) * 0x1p20; }
+/// The program and its libraries; where several processes share a grid MPI's too.
+double program_bytes(const Grid& grid) { return (grid.ranks.several() ? 35.0 : 25.0) * 0x1p20; }
 double field_bytes(double fields, Index cells) {
   return fields * sizeof(double) * static_cast<double>(cells);
 }
@@ -232,7 +233,7 @@ Elasticity elasticity(const Scene& scene, const Model& model, const Reduction& p
   return {.law = model.law,
           .kind = scene.op,
           .threads = model.threads,
-          .diagonal = part.diagonal() && Ranks::number() == 1,
+          .diagonal = part.diagonal() && !part.grid().ranks.several(),
           .at_edge = scene.ends_at_grid_edge,
           .rounding_seed = static_cast<std::uint64_t>(scene.rounding_seed),
           .cache = model.cache};
@@ -258,9 +259,9 @@ Memory predicted_memory(const Scene& scene, const Model& model) {
   const double tangential = newton ? elastic.newton_bytes(grid, tangential_kernel())
                                    : elastic.operator_bytes(grid, tangential_kernel());
   const double solver = std::max({normal, tangential, coupling});
-  const double of_part = newton ? field_bytes(kFieldsOfPart, RowBands(grid.n1).own_rows().count() * grid.n2)
+  const double of_part = newton ? field_bytes(kFieldsOfPart, own_rows(grid).count() * grid.n2)
                                 : field_bytes(kFieldsOfOthers, grid.cells());
-  return {solver, program_bytes() + std::max(fields + of_part, around - solver)};
+  return {solver, program_bytes(grid) + std::max(fields + of_part, around - solver)};
 }
 
 namespace {
@@ -270,7 +271,7 @@ constexpr Index kCellsOfThread = Index{1} << 15;
 
 int threads_for(const Scene& scene, const Grid& part) {
   if (scene.threads > 0) return scene.threads;
-  if (Ranks::number() > 1) return 1;  // ranks take the processors
+  if (part.ranks.several()) return 1;  // each process takes a processor
   const Index processors = std::max(1U, std::thread::hardware_concurrency());
   return static_cast<int>(std::clamp<Index>(part.cells() / kCellsOfThread, 1, processors));
 }
@@ -289,7 +290,7 @@ SharedLaw make_law(const Scene& scene, const Model& model) {
   return kind->make(bodies, dimensionless);
 }
 
-Model build_model(const Scene& scene) {
+Model build_model(const Scene& scene, const Ranks& ranks) {
   ElasticPair pair = elastic_pair(half_space(scene.lower), half_space(scene.upper));
   if (are_alike(scene.upper, scene.lower)) pair.mismatch = 0.0;
   require_memory_for_files(scene);
@@ -309,7 +310,7 @@ Model build_model(const Scene& scene) {
   model.length_unit = grid.h1;
   model.stress_unit = pair.shear_modulus();
   const double compliance_unit = pair.shear_compliance;
-  model.grid = {grid.n1, grid.n2, 1.0, to_dimensionless(grid.h2, grid.h1)};
+  model.grid = {grid.n1, grid.n2, 1.0, to_dimensionless(grid.h2, grid.h1), false, ranks};
   model.pair = {.shear_compliance = 1.0,
                 .poisson_compliance = to_dimensionless(pair.poisson_compliance, compliance_unit),
                 .normal_compliance = to_dimensionless(pair.normal_compliance, compliance_unit),
@@ -341,8 +342,8 @@ Model build_model(const Scene& scene) {
 
 }  // namespace
 
-Model make_model(const Scene& scene) {
-  return within_double(scene, [&] { return build_model(scene); });
+Model make_model(const Scene& scene, const Ranks& ranks) {
+  return within_double(scene, [&] { return build_model(scene, ranks); });
 }
 
 }  // namespace slipstick::solver

@@ -31,7 +31,7 @@ struct Dimensionless {
 
   /// The grid in m.
   Grid grid_in_m() const {
-    return {grid.n1, grid.n2, grid.h1 * length_unit, grid.h2 * length_unit, grid.quadrant};
+    return {grid.n1, grid.n2, grid.h1 * length_unit, grid.h2 * length_unit, grid.quadrant, grid.ranks};
   }
   double force_unit() const { return stress_unit * length_unit * length_unit; }
   double moment_unit() const { return force_unit() * length_unit; }
@@ -68,7 +68,8 @@ Elasticity elasticity(const Scene& scene, const Model& model, const Reduction& p
 
 /// Throws InputError for a height map that cannot be used, a surface that cannot touch, an extent that is
 /// missing or, as is known before the solve, too small; OutOfMemory for cells that do not fit in memory.
-Model make_model(const Scene& scene);
+/// ranks: the processes that share its grid.
+Model make_model(const Scene& scene, const Ranks& ranks = {});
 
 /// Memory that solving the scene takes, in bytes, at most: operators, workspaces, fields.
 struct Memory {

@@ -42,7 +42,7 @@ void describe_contact(ModelSolution& solution) {
 std::array<double, 3> resultants_of(const ArrayXd& traction, const Grid& grid) {
   const MotionField rotation(grid, 0.0, 0.0, 1.0);
   const Index cells = grid.cells();
-  return Sweep::whole(cells, grid.n2).sum<std::array<double, 3>>([&](Index first, Index last, auto& sum) {
+  return Sweep::whole(grid).sum<std::array<double, 3>>([&](Index first, Index last, auto& sum) {
     const auto q1 = traction.segment(first, last - first);
     const auto q2 = traction.segment(first + cells, last - first);
     sum += std::array{q1.sum(), q2.sum(), rotation.dot(first, q1) + rotation.dot(first + cells, q2)};
@@ -102,7 +102,7 @@ void describe_energy(ModelSolution& solution, const LoadStep& loads) {
   const ArrayXd& bound = loads.problem.friction_bound;
   using Sums = std::array<double, 3>;  // over the moment's unit and the cell's area
   const auto [elastic, dissipated, of_loads] =
-      Sweep::whole(cells, model.grid.n2).sum<Sums>([&](Index first, Index last, Sums& sum) {
+      Sweep::whole(model.grid).sum<Sums>([&](Index first, Index last, Sums& sum) {
         const Index n = last - first;
         const auto q1 = tangential.traction.segment(first, n);
         const auto q2 = tangential.traction.segment(first + cells, n);
@@ -163,7 +163,7 @@ Solution in_si(ModelSolution solution) {
 double measure_contact_radius(const Dimensionless& model, const ArrayXd& pressure) {
   const Grid& grid = model.grid;
   const ArrayXd x2 = ArrayXd::NullaryExpr(grid.n2, [&](Index j) { return grid.x2(j); });
-  const Sweep rows = Sweep::whole(grid.cells(), grid.n2);
+  const Sweep rows = Sweep::whole(grid);
   using Moments =
       std::array<double, 6>;  // zeroth, first (x1, x2) and second (11, 12, 22), over the cell's area
   const auto moments_about = [&](double c1, double c2) {

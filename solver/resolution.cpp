@@ -28,7 +28,7 @@ Area measure(const Grid& grid, const Field& field) {
   using Sums =
       std::array<double, 5>;  // cells, sides that look along x1 and x2, the field, the field by sides
   const auto [cells, sides1, sides2, mean, edge] =
-      Sweep::whole(grid.cells(), grid.n2).sum<Sums>([&](Index first, Index last, Sums& sum) {
+      Sweep::whole(grid).sum<Sums>([&](Index first, Index last, Sums& sum) {
         const bool top = first < grid.n2;
         const bool bottom = last > grid.cells() - grid.n2;
         for (Index k = first; k < last; ++k) {

@@ -68,8 +68,8 @@ struct Solution {
   Grid grid{};              ///< m
   Eigen::ArrayXd pressure;  ///< Pa
   Eigen::ArrayXd traction;  ///< Pa, (q1, q2) on the lower body
-  /// m, (u1, u2) by them, of the lower surface less that of the upper. Several ranks may have their own rows
-  /// alone.
+  /// m, (u1, u2) by them, of the lower surface less that of the upper. Where several processes share the
+  /// grid, each may have its own rows alone.
   Eigen::ArrayXd elastic_displacement;
   Eigen::ArrayXd slip;         ///< m, (s1, s2) in this step
   Eigen::ArrayXd stick;        ///< 1 where the bodies stick, else 0

@@ -245,7 +245,7 @@ void solve_steps(const Scene& scene, const SolveOptions& options, const AfterSte
   std::shared_ptr<SolveCache> cache = options.cache;
   Stopwatch watch(cache.get());
   ModelSolution solution;
-  solution.model = make_model(scene);
+  solution.model = make_model(scene, options.ranks);
   const ThreadPool threads(solution.model.threads);
   const Memory memory = predicted_memory(scene, solution.model);
   solution.bytes = memory.solver;

@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "solver/cache/solve_cache.hpp"
+#include "solver/grid/ranks.hpp"
 #include "solver/scene/scene.hpp"
 #include "solver/solution.hpp"
 
@@ -27,6 +28,8 @@ struct SolveOptions {
   /// have had without the break. Empty: from the first step.
   std::shared_ptr<const HistoryState> resumed = {};
   Detail detail = Detail::all;
+  /// The processes that share the solve; all of them call solve() alike.
+  Ranks ranks = {};
 };
 
 /// Solves a scene, step by step; returns the last one, or the first that did not converge. Throws InputError

@@ -4,13 +4,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <span>
 #include <utility>
 
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/contact/paper_method.hpp"
 #include "solver/contact/projected_gradient.hpp"
 #include "solver/grid/mirror.hpp"
+#include "solver/grid/own_rows.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::solver {
@@ -143,7 +143,7 @@ TangentialProblem reduced(TangentialProblem& problem, const Reduction& part) {
 void expand(TangentialSolution& solution, const Reduction& part) {
   if (!part.trimmed() && !part.quadrant()) return;
   ArrayXd& u = solution.elastic_displacement;
-  gather(part.grid(), std::span(u.data(), static_cast<std::size_t>(u.size())));
+  share_rows(part.grid(), u);
   for (ArrayXd* const field : {&solution.traction, &solution.elastic_displacement, &solution.slip}) {
     *field = part.expanded(*field, torsion_symmetry());
   }

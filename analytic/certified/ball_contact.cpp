@@ -153,7 +153,7 @@ std::optional<Ball> rough_root(const Equation& equation) {
 
 /// Let f(y) = 0 be the equation, and Y an interval about y: if y - f(y)/f'(Y) lies inside Y, it holds a root
 /// of f, the only one in Y (Moore 1966), and the only one at all, since load and twist grow with y. y is good
-/// to so many bits.
+/// to `good` bits.
 std::optional<Ball> proven_root(const Equation& equation, const Ball& y, slong good) {
   const Residual at = residual(equation, y);
   const Ball around = y + (4 * at.value / at.slope).symmetric();

@@ -16,7 +16,7 @@ namespace {
 constexpr int kMinDigits = 15;
 constexpr int kMaxDigits = 100;
 
-/// What is asked for, checked, as exact numbers.
+/// A question, checked, in exact numbers.
 struct Question {
   Kind kind;
   Rational exponent;

@@ -24,7 +24,7 @@ struct Profile {
 /// hertz | cone | flat_punch | power:N. Throws std::domain_error for other names.
 Profile profile_named(const std::string& name);
 
-/// What a state is given by.
+/// The quantity that names a state.
 enum class Quantity { moment_ratio, moment_deficit, stick_ratio, stick_complement, twist };
 
 /// Dimensionless as in torsion.hpp; each number has the digits asked for and a radius of at most 0.51 of the

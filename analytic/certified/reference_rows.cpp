@@ -27,7 +27,7 @@ const std::map<std::string, Number State::*> kMembers{{"moment_ratio", &State::m
                                                       {"stick_complement", &State::stick_complement},
                                                       {"twist", &State::twist}};
 
-/// What a state is asked at.
+/// The quantity and the value that name a state.
 struct Question {
   Profile profile;
   Quantity given;
@@ -61,7 +61,7 @@ double relative_slope(const Number& y0, const Number& y1, double x0, double x1) 
   return std::abs(arf_get_d(arb_midref(slope.get()), ARF_RND_NEAR));
 }
 
-/// What the value's two neighbours among the doubles make of the state.
+/// The states at the value's two neighbours among the doubles.
 class Change {
  public:
   Change(Question at, const std::vector<double>& radii)

@@ -68,7 +68,7 @@ Json cycle_json(const CycleState& state) {
           {"tangent_stiffness", state.tangent_stiffness}};
 }
 
-/// What the paper's equations give as printed.
+/// The values of the paper's equations as printed.
 Json printed_json(const TorsionState& state, const std::vector<double>& radii) {
   Json printed;
   printed["equation_1"] = at_radii(radii, [&](double r) { return paper::eq1_printed(state.stick_ratio, r); });
@@ -86,9 +86,9 @@ Json approximations_json(const TorsionState& state) {
   return laws;
 }
 
-/// What the interpolation of a table costs each number of its state, by the key of the number; null with a
-/// reason where another reading of the points has no such state. Energies and what unloading leaves have
-/// none.
+/// The error that a table's interpolation leaves in each number of the state, by the number's key; null with
+/// a reason where another reading of the points has no such state. Energies and the state after unloading
+/// have none.
 void put_error_estimate(Json& answer, const TabulatedProfile& table, const StateQuestion& question) {
   const std::vector<double>& radii = question.radii;
   const auto numbers = [&](const Profile& profile, double mean_pressure) {
@@ -118,7 +118,7 @@ void put_error_estimate(Json& answer, const TabulatedProfile& table, const State
   }
 }
 
-/// In SI units, as far as what was given reaches.
+/// The results in SI units, as many as the units given allow.
 Json units_json(const ExactContact& contact, double stick_ratio, double moment, double twist) {
   const Units& units = *contact.units;
   const double a = units.indentation.contact_radius;
@@ -135,7 +135,7 @@ Json units_json(const ExactContact& contact, double stick_ratio, double moment, 
   return json;
 }
 
-/// What makes a table's results numbers in its own units.
+/// The scale of a table, by which results become numbers in its own units.
 Json table_json(const TabulatedProfile& table) {
   return {{"contact_radius", table.radius},
           {"mean_pressure", table.mean_pressure},

@@ -58,7 +58,7 @@ void write_error(std::ostream& out, const Json& error) {
   out << fmt::format("   +/- {:.1e}", error.get<double>());
 }
 
-/// What is known of a table's errors.
+/// The errors of a table's numbers, or why there are none.
 void write_table_errors(std::ostream& out, const Json& answer) {
   if (!answer.contains("table")) return;
   if (has_error_estimate(answer)) {

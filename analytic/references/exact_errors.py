@@ -67,7 +67,7 @@ def references():
 
 
 def linear_twist(c):
-    """H over 2 pi of the pressure 3 (1 - r), which a table reproduces."""
+    """The twist under the pressure 3 (1 - r), which a table reproduces: H over 2 pi."""
     x = (1 - c * c).sqrt()
     return 3 * ((1 + x).ln() - c.ln() - x) / (2 * PI)
 

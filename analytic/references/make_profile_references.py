@@ -25,7 +25,7 @@ def digits(x):
 
 
 def K(s):
-    """K of modulus sqrt(1 - s^2)."""
+    """Elliptic integral of modulus sqrt(1 - s^2)."""
     return pi / (2 * agm(1, s))
 
 

@@ -35,7 +35,7 @@ double work_of_friction(const TorsionState& state, const Profile& profile) {
         },
         0, 1);
   };
-  // Short of the edge, where a flat punch's pressure is infinite: of its work this leaves out some sqrt(eps).
+  // Short of the edge, where a flat punch's pressure is infinite: sqrt(eps) of its work is left out.
   const double edge = 1 - kEps;
   return 2 * pi / std::pow(profile.load(), 2) *
          integral_between_roots([&](double r) { return profile.pressure(std::min(r, edge)) * slip(r) * r; },
@@ -122,7 +122,7 @@ TEST(EnergyLost, KeepsTheDigitsOfAMomentJustBeyondFullStick) {
   for (const auto& known : {Known{0.85, 0.002772036329860887973, 1.9228249682955457334e-6},
                             Known{0.86, 0.026959534347403746851, 0.0001833693634847616249},
                             Known{0.9, 0.13635684050612670018, 0.0048828889370936979207}}) {
-    // What half a unit in the share of slip, 0.15, costs beside the 8 units of everything.
+    // Half a unit in the share of slip, 0.15, costs this beside the 8 units of all members.
     const double excess = known.moment_ratio - punch.full_stick();
     const double share = kEps / 16 / excess;
     EXPECT_NEAR(from_moment_ratio(known.moment_ratio, punch).stick_complement / known.stick_complement, 1,

@@ -45,7 +45,7 @@ double displacement(const Profile& profile, double r) {
   return 4 / pi * (rings(r, -1) + rings(1 - r, 1));
 }
 
-/// What a rigid body asks for: within the contact the surface lies the gap below the approach.
+/// The condition of a rigid body: within the contact the surface lies the gap below the approach.
 void expect_fit(const Indentation& contact, const Profile& profile,
                 const std::function<double(double)>& gap) {
   const double unit = contact.reference_pressure * contact.contact_radius / kModulus;

@@ -1,10 +1,12 @@
 // What statics and friction ask of any profile. Pressure, load, moments and tractions come from separate
 // formulas, closed, superposed or interpolated.
 
+#include <fmt/core.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
 #include <numbers>
 #include <vector>
@@ -129,6 +131,36 @@ TEST(AnyProfile, KeepsTractionsBelowFrictionAndContinuous) {
       }
       EXPECT_NEAR(before / profile->pressure(c), 1, 2e-5 * roughness) << profile->name() << ", c = " << c;
     }
+}
+
+TEST(AnyProfile, IsMonotoneAndFiniteAtTheExtremes) {
+  std::vector<StickRadius> sticks;
+  for (const double c : {1e-100, 1e-60, 1e-20, 1e-12, 1e-6, 0.01, 0.2, 0.5, 0.8, 0.99})
+    sticks.push_back(at(c));
+  for (const double w : {1e-6, 1e-12, 1e-30, 1e-100}) sticks.push_back({.ratio = 1 - w, .complement = w});
+  for (const auto& [profile, roughness] : every_profile()) {
+    double twist = std::numeric_limits<double>::infinity();
+    double deficit = 0;
+    for (const auto& c : sticks) {
+      SCOPED_TRACE(fmt::format("{}, c = {}, 1 - c = {}", profile->name(), c.ratio, c.complement));
+      const auto share = profile->moment_share(c);
+      EXPECT_LT(profile->twist_integral(c), twist);
+      EXPECT_GT(profile->twist_integral(c), 0);
+      EXPECT_GE(share.deficit, deficit * (1 - 8 * kEps * roughness));
+      EXPECT_GE(share.deficit, 0);
+      EXPECT_GT(share.excess, 0);
+      EXPECT_GT(profile->twist_slope(c), 0);
+      for (const double f : {1e-13, 0.3, 1 - 1e-12}) {
+        const double q = profile->stick_traction(c, c.ratio - c.ratio * f, c.ratio * f);
+        EXPECT_TRUE(std::isfinite(q) && q > 0) << f;
+      }
+      twist = profile->twist_integral(c);
+      deficit = share.deficit;
+    }
+    const StickRadius whole{.ratio = 1, .complement = 0};
+    EXPECT_EQ(profile->twist_integral(whole), 0) << profile->name();
+    EXPECT_EQ(profile->moment_share(whole).excess, 0) << profile->name();
+  }
 }
 
 }  // namespace

@@ -189,30 +189,6 @@ TEST(Superposition, LeavesFullStickLinearly) {
   }
 }
 
-TEST(Superposition, IsMonotoneAndFiniteAtTheExtremes) {
-  for (const auto& profile : profiles()) {
-    double twist = std::numeric_limits<double>::infinity();
-    double deficit = 0;
-    std::vector<StickRadius> sticks{at(1e-100), at(1e-60), at(1e-20)};
-    sticks.insert(sticks.end(), kSticks.begin(), kSticks.end());
-    for (const double w : {1e-30, 1e-100}) sticks.push_back(before_edge(w));
-    for (const auto& c : sticks) {
-      const auto share = profile->moment_share(c);
-      EXPECT_LT(profile->twist_integral(c), twist) << profile->name() << ", c = " << c.ratio;
-      EXPECT_GE(share.deficit, deficit) << profile->name() << ", c = " << c.ratio;
-      EXPECT_GT(share.deficit, 0) << profile->name() << ", c = " << c.ratio;
-      EXPECT_GT(share.excess, 0) << profile->name() << ", c = " << c.ratio;
-      EXPECT_GT(profile->twist_slope(c), 0) << profile->name() << ", c = " << c.ratio;
-      for (const double f : {1e-13, 0.3, 1 - 1e-12}) {
-        const double q = profile->stick_traction(c, c.ratio - c.ratio * f, c.ratio * f);
-        EXPECT_TRUE(std::isfinite(q) && q > 0) << profile->name() << ", c = " << c.ratio << ", f = " << f;
-      }
-      twist = profile->twist_integral(c);
-      deficit = share.deficit;
-    }
-  }
-}
-
 /// H goes on growing down to the smallest stick radius, like ln(1/c) or faster, and a twist finds its state.
 TEST(PowerProfile, AnswersATwistForEveryExponent) {
   for (int i = 0; i <= 1000; ++i) {

@@ -8,7 +8,7 @@
 
 namespace slipstick::analytic::testing {
 
-/// Of f over [low, high], with square-root ends made smooth.
+/// The integral of f over [low, high], with square-root ends made smooth.
 inline double integral_between_roots(const std::function<double(double)>& f, double low, double high) {
   return gsl::integral(
       [&](double t) {

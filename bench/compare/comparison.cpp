@@ -20,7 +20,7 @@ namespace slipstick::bench {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-/// Edits over letters up to which two names look like one benchmark renamed.
+/// Edits over letters up to which two names look like one benchmark renamed: fft to dcfft is 0.15.
 constexpr double kRenaming = 0.4;
 
 using Benchmarks = std::vector<ComparedBenchmark>;
@@ -38,7 +38,7 @@ double median_seconds(const TimedBenchmark* benchmark) {
   return median(seconds);
 }
 
-/// Of a ratio, by the logarithms of times.
+/// The shift of the logarithms of times, which is the logarithm of their ratio.
 Shift log_ratio(const TimedBenchmark& base, const TimedBenchmark& now, bool paired) {
   std::vector<double> before = log_times(base);
   const std::vector<double> after = log_times(now);
@@ -82,23 +82,23 @@ Doubt doubt(const TimedBenchmark& base, const TimedBenchmark& now) {
   return {};
 }
 
-/// What is known of a benchmark without comparing times; null: the file does not hold it.
-ComparedBenchmark meet(const std::string& name, const TimedBenchmark* base, const TimedBenchmark* now) {
-  ComparedBenchmark met;
-  met.name = name;
-  met.base_seconds = median_seconds(base);
-  met.new_seconds = median_seconds(now);
-  met.base_repetitions = base == nullptr ? 0 : base->timings.size();
-  met.new_repetitions = now == nullptr ? 0 : now->timings.size();
-  met.ratio = met.low = met.high = met.p_value = met.smallest_found = kNaN;
+/// A benchmark of both files, before times are compared; null: the file does not hold it.
+ComparedBenchmark match(const std::string& name, const TimedBenchmark* base, const TimedBenchmark* now) {
+  ComparedBenchmark matched;
+  matched.name = name;
+  matched.base_seconds = median_seconds(base);
+  matched.new_seconds = median_seconds(now);
+  matched.base_repetitions = base == nullptr ? 0 : base->timings.size();
+  matched.new_repetitions = now == nullptr ? 0 : now->timings.size();
+  matched.ratio = matched.low = matched.high = matched.p_value = matched.smallest_found = kNaN;
   if (base == nullptr || now == nullptr) {
-    met.finding = now == nullptr ? Finding::only_in_base : Finding::only_in_new;
+    matched.finding = now == nullptr ? Finding::only_in_base : Finding::only_in_new;
   } else {
     const Doubt found = doubt(*base, *now);
-    met.finding = found.finding;
-    met.remark = found.why;
+    matched.finding = found.finding;
+    matched.remark = found.why;
   }
-  return met;
+  return matched;
 }
 
 struct Pair {
@@ -115,7 +115,7 @@ Finding judge(const ComparedBenchmark& benchmark, bool could_show, const Compari
   return benchmark.ratio < 1.0 + rules.effect ? Finding::same : Finding::undecided;
 }
 
-/// What the numbers do not say by themselves.
+/// A remark where the numbers alone could be misread.
 std::string remark_on(const ComparedBenchmark& benchmark, std::size_t enough, bool paired,
                       const ComparisonRules& rules) {
   if (benchmark.finding == Finding::too_few) {
@@ -178,7 +178,7 @@ void suggest_renaming(Benchmarks& benchmarks) {
 }
 
 /// Where times cannot be judged, the numbers stay and the verdicts go.
-void withdraw(Benchmarks& benchmarks) {
+void clear_verdicts(Benchmarks& benchmarks) {
   for (ComparedBenchmark& benchmark : benchmarks) {
     if (benchmark.finding > Finding::too_few) continue;
     benchmark.finding = Finding::not_judged;
@@ -186,10 +186,10 @@ void withdraw(Benchmarks& benchmarks) {
   }
 }
 
-bool is_suspicious(Finding finding) { return is_failure(finding) || finding == Finding::undecided; }
+bool needs_second_run(Finding finding) { return is_failure(finding) || finding == Finding::undecided; }
 
-/// A second run is a test of its own, of few benchmarks, so that chance speaks in it no more often than its
-/// level says: what the first found as much slower as counts, but not significantly, it may prove.
+/// A second run is a test of its own, of few benchmarks, so that it alarms by chance no more often than its
+/// level says. It may prove a slowdown that the first run found as large as counts, but not significant.
 Finding confirmed(Finding first, Finding second) {
   if (first == second || (first == Finding::undecided && second == Finding::slower)) return second;
   return is_fine(second) ? Finding::same : Finding::undecided;
@@ -212,21 +212,23 @@ std::string to_string(Finding finding) {
 bool is_failure(Finding finding) { return finding == Finding::slower || finding == Finding::failed; }
 bool is_fine(Finding finding) { return finding == Finding::same || finding == Finding::quicker; }
 
-Comparison compare(const Timings& base, const Timings& now, const ComparisonRules& rules) {
+Comparison compare(const TwoTimings& files, const ComparisonRules& rules) {
   if (!(rules.effect > 0.0 && rules.level > 0.0 && rules.level < 1.0)) {
     throw std::invalid_argument("an effect is above 0, a level between 0 and 1");
   }
+  const auto& [base, now] = files;
   Comparison comparison;
   comparison.paired = are_paired(base, now);
   std::vector<Pair> pairs;
   for (const TimedBenchmark& before : base.benchmarks) {
     const TimedBenchmark* const after = find(now, before.name);
-    comparison.benchmarks.push_back(meet(before.name, &before, after));
+    comparison.benchmarks.push_back(match(before.name, &before, after));
     if (comparison.benchmarks.back().finding != Finding::not_judged) continue;
     pairs.push_back({comparison.benchmarks.size() - 1, log_ratio(before, *after, comparison.paired)});
   }
   for (const TimedBenchmark& after : now.benchmarks) {
-    if (find(base, after.name) == nullptr) comparison.benchmarks.push_back(meet(after.name, nullptr, &after));
+    if (find(base, after.name) == nullptr)
+      comparison.benchmarks.push_back(match(after.name, nullptr, &after));
   }
   judge_all(comparison.benchmarks, pairs, comparison.paired, rules);
   suggest_renaming(comparison.benchmarks);
@@ -234,12 +236,11 @@ Comparison compare(const Timings& base, const Timings& now, const ComparisonRule
   Obstacles found = find_obstacles(base, now, rules);
   comparison.obstacles = std::move(found.obstacles);
   comparison.remarks = std::move(found.remarks);
-  if (!comparison.obstacles.empty()) withdraw(comparison.benchmarks);
+  if (!comparison.obstacles.empty()) clear_verdicts(comparison.benchmarks);
   return comparison;
 }
 
-void state_power(Comparison& comparison, const Timings& base, const Timings& now,
-                 const ComparisonRules& rules) {
+void state_power(Comparison& comparison, const TwoTimings& files, const ComparisonRules& rules) {
   const auto is_timed = [](const ComparedBenchmark& benchmark) { return std::isfinite(benchmark.ratio); };
   const auto timed = static_cast<double>(std::ranges::count_if(comparison.benchmarks, is_timed));
   const Search search{.effect = rules.effect,
@@ -248,24 +249,26 @@ void state_power(Comparison& comparison, const Timings& base, const Timings& now
   for (ComparedBenchmark& benchmark : comparison.benchmarks) {
     if (!is_timed(benchmark)) continue;
     benchmark.smallest_found =
-        smallest_found(log_times(*find(base, benchmark.name)), log_times(*find(now, benchmark.name)),
-                       comparison.paired, search);
+        smallest_found(log_times(*find(files.base, benchmark.name)),
+                       log_times(*find(files.now, benchmark.name)), comparison.paired, search);
   }
 }
 
 std::vector<std::string> suspicious(const Comparison& comparison) {
   std::vector<std::string> names;
   for (const ComparedBenchmark& benchmark : comparison.benchmarks) {
-    if (is_suspicious(benchmark.finding)) names.push_back(benchmark.name);
+    if (needs_second_run(benchmark.finding)) names.push_back(benchmark.name);
   }
   return names;
 }
 
-Timings select(const Timings& timings, const std::vector<std::string>& names) {
-  Timings selected = timings;
-  std::erase_if(selected.benchmarks, [&](const TimedBenchmark& benchmark) {
-    return std::ranges::find(names, benchmark.name) == names.end();
-  });
+TwoTimings select(const TwoTimings& files, const std::vector<std::string>& names) {
+  TwoTimings selected = files;
+  for (Timings* const file : {&selected.base, &selected.now}) {
+    std::erase_if(file->benchmarks, [&](const TimedBenchmark& benchmark) {
+      return std::ranges::find(names, benchmark.name) == names.end();
+    });
+  }
   return selected;
 }
 
@@ -273,7 +276,7 @@ Comparison confirm(const Comparison& first, const Comparison& second) {
   Comparison result = first;
   result.obstacles.insert(result.obstacles.end(), second.obstacles.begin(), second.obstacles.end());
   for (ComparedBenchmark& benchmark : result.benchmarks) {
-    if (!is_suspicious(benchmark.finding)) continue;
+    if (!needs_second_run(benchmark.finding)) continue;
     const auto again = std::ranges::find(second.benchmarks, benchmark.name, &ComparedBenchmark::name);
     const bool ran = again != second.benchmarks.end();
     benchmark.remark =

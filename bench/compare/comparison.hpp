@@ -8,24 +8,23 @@
 
 namespace slipstick::bench {
 
-/// What calls a benchmark slower or quicker.
+/// The rules by which a benchmark is called slower or quicker.
 struct ComparisonRules {
   double effect = 0.10;       ///< smallest change of the time that counts
   double level = 0.01;        ///< of significance, over all benchmarks of a comparison together (Holm 1979)
   bool same_machine = false;  ///< the caller vouches for that
   bool debug_library =
       false;  ///< Google Benchmark may say that it was built without NDEBUG, as Debian's does
-  /// Benchmarks that are known to wait in the new build, so that it is no sign of load: of a second run, what
-  /// waits in the first.
+  /// Benchmarks that are known to wait in the new build, so that it is no sign of load. For a second run:
+  /// those that wait in the first.
   std::vector<std::string> waiting = {};
-  /// Repetitions, over those of this run, of a second one of what is suspicious; 0: there will be none.
+  /// Repetitions of a second run of the suspicious benchmarks, over those of this run; 0: there is none.
   std::size_t second_run = 0;
 };
 
-/// What was found of one benchmark, first what its times say. Undecided: as much slower as counts, but not
+/// The verdict on one benchmark, first those that times give. Undecided: as much slower as counts, but not
 /// significantly so. Too few: its repetitions could show no change, however large. Failed: in the new file
-/// only. Not timed: it failed in the base, or left itself out. Not judged: an obstacle stands before all
-/// times.
+/// only. Not timed: it failed in the base, or skipped itself. Not judged: an obstacle forbids it.
 enum class Finding {
   same,
   slower,
@@ -67,25 +66,30 @@ struct Comparison {
   bool paired = false;                 ///< repetition by repetition
 };
 
+/// The two files of a comparison.
+struct TwoTimings {
+  Timings base;
+  Timings now;
+};
+
 /// Two files of one session are compared repetition by repetition (Wilcoxon's signed ranks on the logarithms
 /// of ratios), others as independent samples (Mann and Whitney's test), both exactly.
 /// Throws std::invalid_argument for an effect that is not above zero and a level that is not between 0 and 1.
-Comparison compare(const Timings& base, const Timings& now, const ComparisonRules& rules = {});
+Comparison compare(const TwoTimings& files, const ComparisonRules& rules = {});
 
-/// Says of each benchmark how much slower it would have to be to be found so, by repetitions that scatter as
-/// its own do; among as many benchmarks, of which it is the only one.
-void state_power(Comparison& comparison, const Timings& base, const Timings& now,
-                 const ComparisonRules& rules);
+/// Sets `smallest_found` of each benchmark: how much slower it must be to be found so, if it alone of so many
+/// benchmarks changes and its repetitions scatter as they do here.
+void state_power(Comparison& comparison, const TwoTimings& files, const ComparisonRules& rules);
 
-/// Benchmarks of which nothing should be said before a second run: slower, undecided or failed.
+/// Benchmarks that are to run a second time before anything is said: slower, undecided or failed.
 std::vector<std::string> suspicious(const Comparison& comparison);
 
 /// The benchmarks of these names only.
-Timings select(const Timings& timings, const std::vector<std::string>& names);
+TwoTimings select(const TwoTimings& files, const std::vector<std::string>& names);
 
-/// What is left of a comparison after its suspicious benchmarks ran again. Slower is what is as much slower
-/// as counts in both and significantly so in the second, failed what failed in both, undecided what the
-/// second could neither prove nor clear. The numbers stay the first run's, but for the chance.
+/// A comparison after its suspicious benchmarks ran again. A benchmark is slower if both runs find it as much
+/// slower as counts and the second one significantly so, failed if it failed in both, undecided if the second
+/// run could neither prove nor clear it. The numbers are the first run's, the chance is the second's.
 Comparison confirm(const Comparison& first, const Comparison& second);
 
 /// 1: a benchmark is slower or failed in the new file only. 2: else, where something could not be judged, or

@@ -93,7 +93,7 @@ Row row_of(const ComparedBenchmark& benchmark) {
 
 const Row kHeader{"benchmark", "base", "new", "new/base", "95 % interval", "verdict"};
 
-/// Letters, of which some take two bytes.
+/// The number of letters in UTF-8.
 std::size_t letters(const std::string& text) {
   return static_cast<std::size_t>(
       std::count_if(text.begin(), text.end(), [](unsigned char c) { return (c & 0xC0U) != 0x80U; }));
@@ -125,7 +125,7 @@ std::string heading(const ComparisonReport& report) {
                      report.comparison.paired ? "repetition by repetition" : "as independent runs");
 }
 
-/// What counts, in words.
+/// The rules of a verdict in words.
 std::string rules_text(const ComparisonRules& rules) {
   return fmt::format("what counts: {:.3g} % or more, by chance in {:.3g} of 100 such comparisons at most",
                      100.0 * rules.effect, 100.0 * rules.level);
@@ -148,7 +148,7 @@ std::string power_text(const std::vector<ComparedBenchmark>& benchmarks) {
                      percent(found.back().first));
 }
 
-/// What a reader needs beside the table, a paragraph each.
+/// Notes that a reader needs beside the table, a paragraph each.
 std::vector<std::string> notes(const ComparisonReport& report) {
   std::vector<std::string> lines;
   for (const std::string& obstacle : report.comparison.obstacles) {

@@ -6,7 +6,7 @@
 
 #include "bench/compare/comparison.hpp"
 
-/// What a comparison found, for those who read it: a person, a CI server, a script.
+/// The report of a comparison for a person, a CI server and a script.
 namespace slipstick::bench {
 
 /// All that a report shows.

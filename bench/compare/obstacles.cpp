@@ -14,15 +14,14 @@ namespace {
 
 /// A clock that is measured, not read, comes out a few percent different each time.
 constexpr double kClockTolerance = 0.05;
-/// Of the processors, what other programs may have kept busy when a run began. A run in one thread finds a
-/// free processor then; what it shares with the others (caches, memory, the heat that limits the clock) is
-/// left.
+/// The part of the processors that other programs may keep busy when a run begins. A run in one thread finds
+/// a free processor then; it still shares caches, memory and the heat that limits the clock.
 constexpr double kForeignLoad = 0.5;
 /// Time by the clock over the processor's: a quiet machine stays within a few percent of 1, three programs on
 /// two processors make it 1.5.
 constexpr double kWaiting = 1.25;
-/// What waits for nine tenths of its time does so by its nature: a machine that is as busy as that shows in
-/// its load average.
+/// A benchmark that waits for nine tenths of its time does so by its nature: a machine that is as busy as
+/// that shows in its load average.
 constexpr double kWaitingByNature = 10.0;
 /// A wait that a change put into the program is in some benchmarks, one for a loaded machine is in most.
 /// Fewer benchmarks than this decide nothing.

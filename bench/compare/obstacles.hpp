@@ -8,7 +8,7 @@
 
 namespace slipstick::bench {
 
-/// What stands in the way of comparing the times of two files.
+/// Reasons not to judge the times of two files.
 struct Obstacles {
   std::vector<std::string> obstacles;  ///< times cannot be judged: different machines, debug builds, load
   std::vector<std::string> remarks;    ///< they can be, but a reader must know it

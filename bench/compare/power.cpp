@@ -17,8 +17,8 @@ using Sample = std::vector<double>;
 constexpr int kDraws = 400;  ///< so that 0.9 is known to 0.015
 constexpr int kFound = 360;
 
-/// What is left of a sample without its median, as wide as without bias: so few numbers scatter less about
-/// their own centre than the next ones will.
+/// The differences of a sample from its median, widened: so few numbers scatter less about their own centre
+/// than the next ones will.
 Sample residuals(Sample sample) {
   const auto freedom = static_cast<double>(sample.size()) - 1.0;
   const double wider = std::sqrt(1.0 + 1.0 / freedom);
@@ -37,7 +37,7 @@ Sample all_of(const Sample& base, const Sample& now, bool paired) {
   return paired ? sorted_means(now) : sorted_differences(base, now);
 }
 
-/// What is drawn: differences of pairs, or both sides.
+/// The samples to draw from: differences of pairs, or both sides.
 struct Scatter {
   bool paired;
   Sample base;  ///< empty where they are paired

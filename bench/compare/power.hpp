@@ -5,7 +5,7 @@
 
 namespace slipstick::bench {
 
-/// What it takes that a benchmark is found slower.
+/// The rules by which a benchmark is found slower.
 struct Search {
   double effect = 0.0;  ///< smallest change that counts; found is what is estimated to be as large
   double level = 0.0;   ///< and significant at this level, by one benchmark

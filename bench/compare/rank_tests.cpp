@@ -1,6 +1,7 @@
 #include "bench/compare/rank_tests.hpp"
 
 #include <gsl/gsl_cdf.h>
+#include <gsl/gsl_sf_gamma.h>
 
 #include <algorithm>
 #include <cmath>
@@ -9,11 +10,13 @@
 #include <stdexcept>
 #include <utility>
 
+#include "bench/timing/median.hpp"
+
 namespace slipstick::bench {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Beyond either end of a 95 % interval.
+/// Chance beyond either end of a 95 % interval.
 constexpr double kTail = 0.025;
 
 /// Twice the mid-ranks, which are whole numbers, in the order of the values.
@@ -32,8 +35,8 @@ std::vector<std::size_t> doubled_ranks(std::span<const double> values) {
 }
 
 std::vector<std::size_t> doubled_ranks_without_ties(std::size_t count) {
-  std::vector<std::size_t> ranks(count);
-  for (std::size_t i = 0; i < count; ++i) ranks[i] = 2 * (i + 1);
+  std::vector<std::size_t> ranks(count, 2);
+  std::partial_sum(ranks.begin(), ranks.end(), ranks.begin());
   return ranks;
 }
 
@@ -41,10 +44,10 @@ std::size_t sum(std::span<const std::size_t> ranks) {
   return std::accumulate(ranks.begin(), ranks.end(), std::size_t{0});
 }
 
-/// The sum of some ranks, if chance picks them.
+/// The distribution of the sum of some ranks that chance picks.
 class RankSum {
  public:
-  /// Of each rank picked or not, both equally likely.
+  /// Each rank is picked or not, both equally likely.
   static RankSum of_any(std::span<const std::size_t> ranks) {
     const std::size_t largest = sum(ranks);
     RankSum distribution;
@@ -64,7 +67,7 @@ class RankSum {
     return distribution;
   }
 
-  /// Of `picked` of the ranks, all choices equally likely.
+  /// `picked` of the ranks are picked, all choices equally likely.
   static RankSum of_choice(std::span<const std::size_t> ranks, std::size_t picked) {
     const auto count = static_cast<double>(ranks.size());
     const double mean = static_cast<double>(sum(ranks)) / count;
@@ -108,8 +111,8 @@ class RankSum {
     return ways[picked];
   }
 
-  /// Chance of a deviation at most this far above the mean; doubled ranks are two apart, half of which is
-  /// the correction for continuity.
+  /// Chance of a deviation at most this far above the mean. Doubled ranks are two apart; half of that is the
+  /// correction for continuity.
   double normal(double deviation) const {
     if (!(variance_ > 0.0)) return 1.0;
     return gsl_cdf_ugaussian_P((deviation + 1.0) / std::sqrt(variance_));
@@ -145,10 +148,6 @@ void require_numbers(std::span<const double> sample) {
 }
 
 }  // namespace
-
-double median_of_sorted(const std::vector<double>& sorted) {
-  return 0.5 * (sorted[(sorted.size() - 1) / 2] + sorted[sorted.size() / 2]);
-}
 
 std::vector<double> sorted_means(std::span<const double> differences) {
   std::vector<double> means;
@@ -216,9 +215,7 @@ Shift rank_sum_shift(std::span<const double> base, std::span<const double> now) 
 double least_signed_rank_chance(std::size_t n) { return std::pow(0.5, static_cast<double>(n)); }
 
 double least_rank_sum_chance(std::size_t n, std::size_t m) {
-  double chance = 1.0;
-  for (std::size_t i = 1; i <= n; ++i) chance *= static_cast<double>(i) / static_cast<double>(m + i);
-  return chance;
+  return 1.0 / gsl_sf_choose(static_cast<unsigned>(n + m), static_cast<unsigned>(n));
 }
 
 std::vector<double> holm(const std::vector<double>& chances) {

@@ -16,22 +16,21 @@ struct Shift {
   double p_negative = 1.0;  ///< of ranks as low or lower
 };
 
-/// Means of all two of these differences, each with itself too, and differences of two samples, in order.
-/// Their median is Hodges and Lehmann's estimate; the shift is significant, on one side, where the one at
-/// signed_rank_place() or rank_sum_place(), counted from 1, is above zero; 0: it cannot be.
+/// The means of each two of these differences, also of one with itself; the differences of two samples;
+/// sorted. Their median is Hodges and Lehmann's estimate; the shift is significant, on one side, where the
+/// one at signed_rank_place() or rank_sum_place(), counted from 1, is above zero; 0: it cannot be.
 std::vector<double> sorted_means(std::span<const double> differences);
 std::vector<double> sorted_differences(std::span<const double> base, std::span<const double> now);
 std::size_t signed_rank_place(std::size_t n, double level);
 std::size_t rank_sum_place(std::size_t base, std::size_t now, double level);
-double median_of_sorted(const std::vector<double>& sorted);
 
-/// Of differences of pairs: Wilcoxon's signed ranks (1945), zeros left out. Throws std::invalid_argument for
-/// an empty sample and for numbers that are not finite; so does rank_sum_shift.
+/// The shift of differences of pairs by Wilcoxon's signed ranks (1945), zeros left out. Throws
+/// std::invalid_argument for an empty sample and for numbers that are not finite; so does rank_sum_shift.
 Shift signed_rank_shift(std::span<const double> differences);
 
-/// Of `now` over `base`, independent samples: Mann and Whitney's test (1947). Both tests count all
-/// arrangements of the ranks, ties as they are (mid-ranks), up to kMaxCounted numbers; beyond they take the
-/// normal distribution with corrections for ties and continuity.
+/// The shift of `now` over `base`, independent samples, by Mann and Whitney's test (1947). Both tests count
+/// all arrangements of the ranks, ties as they are (mid-ranks), up to kMaxCounted numbers; beyond they take
+/// the normal distribution with corrections for ties and continuity.
 Shift rank_sum_shift(std::span<const double> base, std::span<const double> now);
 inline constexpr std::size_t kMaxCounted = 60;
 

@@ -34,18 +34,17 @@ std::string with_filter(const std::string& line, const std::string& filter, cons
 
 ComparisonReport compare_twice(const TwoTimings& first, const ComparisonRules& rules, const Again& again) {
   ComparisonReport report{
-      first.base.file.string(), first.now.file.string(), rules, compare(first.base, first.now, rules), {}};
-  state_power(report.comparison, first.base, first.now, rules);
+      first.base.file.string(), first.now.file.string(), rules, compare(first, rules), {}};
+  state_power(report.comparison, first, rules);
   const std::vector<std::string> names = suspicious(report.comparison);
   if (names.empty() || !again) return report;
   ComparisonRules with_waiting = rules;
   with_waiting.waiting = report.comparison.waiting;
   with_waiting.second_run = 0;
   try {
-    const TwoTimings second = again(names);
-    const TwoTimings suspects{select(second.base, names), select(second.now, names)};
-    report.second = compare(suspects.base, suspects.now, with_waiting);
-    state_power(*report.second, suspects.base, suspects.now, with_waiting);
+    const TwoTimings second = select(again(names), names);
+    report.second = compare(second, with_waiting);
+    state_power(*report.second, second, with_waiting);
   } catch (const InputError& error) {
     report.second.emplace().obstacles.emplace_back(error.what());
   }

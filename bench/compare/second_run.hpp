@@ -9,15 +9,11 @@
 
 namespace slipstick::bench {
 
-struct TwoTimings {
-  Timings base;
-  Timings now;
-};
 /// Times some benchmarks once more.
 using Again = std::function<TwoTimings(const std::vector<std::string>& names)>;
 
-/// Compares, and states the power; what is suspicious once more, where `again` is not empty: only what both
-/// runs say counts. A second run that throws InputError leaves it undecided.
+/// Compares, states the power, and runs suspicious benchmarks a second time where `again` is not empty: only
+/// a verdict of both runs counts. A second run that throws InputError leaves them undecided.
 ComparisonReport compare_twice(const TwoTimings& first, const ComparisonRules& rules, const Again& again);
 
 /// Runs a command by the shell, {filter} in it replaced by the filter of these benchmarks, ready for the

@@ -24,7 +24,7 @@ std::string file_name(const std::string& benchmark) {
   return fmt::format("{}-{:016x}", name.substr(0, 80), std::hash<std::string>{}(benchmark));
 }
 
-/// What the timings depend on.
+/// Everything that the timings depend on.
 std::string cache_key(const fs::path& program, const std::string& name, const RunLength& length) {
   return fmt::format("{} of {} bytes, written at {}: {} for {} s, {} times", fs::absolute(program).string(),
                      fs::file_size(program), fs::last_write_time(program).time_since_epoch().count(), name,

@@ -75,7 +75,7 @@ std::vector<double> shared_tolerances(const Loads& loads) {
   return shared;
 }
 
-/// The loosest tolerance from which on the iteration changes no load's error by more than so much.
+/// The loosest tolerance at which, and below, the iteration changes no load's error by more than this.
 double loosest_tolerance(const Loads& loads, const std::string& quantity, double most_change) {
   double loosest = 0.0;
   const std::vector<double> tolerances = shared_tolerances(loads);

@@ -23,11 +23,11 @@ struct Way {
 /// Errors this near count as the same: those of one mesh differ by as much from grid to grid.
 inline constexpr double kSameError = 1.05;
 
-/// Places of the ways than which no other is at least as quick and as good, and better in one of the two;
-/// quickest first. Of ways with the same seconds and error all.
+/// Indices of the ways that no other way beats, quickest first. A way beats another if it is at least as
+/// quick and as good, and better in one of the two; of equal ways none beats another.
 std::vector<std::size_t> pareto_front(const std::vector<Way>& ways);
 
-/// The quickest way with an error of at most so much; none if no way is as good.
+/// The quickest way with at most this error; none if no way is as good.
 std::optional<std::size_t> quickest_to(const std::vector<Way>& ways, double error);
 
 /// The key of a choice that each way takes as it needs, as it does the mesh.

@@ -23,8 +23,8 @@ namespace slipstick::bench {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kBothSides = 0.975;  // of 95 %
-constexpr double kAsymptoticSpan = 8.0;
+constexpr double kUpperQuantile = 0.975;  // the upper end of a 95 % interval
+constexpr double kAsymptoticSpan = 8.0;   // largest size over the smallest that a power law is fitted to
 
 /// The logarithm of a time, its standard error and the degrees of freedom that this rests on.
 struct LogTime {
@@ -68,53 +68,31 @@ Times times_of(const Family& family) {
 
 PowerLaw no_law(std::string why_not) { return {kNaN, kNaN, kNaN, kNaN, {}, std::move(why_not)}; }
 
-/// A line through points: its slope with standard error, and its value at x = 0.
-struct Line {
-  double slope;
-  double slope_error;
-  double start;
-};
-
-Line fit_line(const std::vector<double>& x, const std::vector<double>& y) {
-  Line line{};
-  double start_variance = 0.0;
-  double covariance = 0.0;
-  double slope_variance = 0.0;
-  double squares = 0.0;
-  gsl_fit_linear(x.data(), 1, y.data(), 1, x.size(), &line.start, &line.slope, &start_variance, &covariance,
-                 &slope_variance, &squares);
-  line.slope_error = std::sqrt(slope_variance);
-  return line;
-}
-
+/// Least squares of relative residuals: each size weighs as 1/t^2.
 GrowthFit fit_growth(Growth growth, const Times& known) {
-  double ones = 0.0;  // sums over sizes of (1/t)^2, (1/t)(f/t), (f/t)^2, 1/t, f/t
-  double mixed = 0.0;
-  double squares = 0.0;
-  double one = 0.0;
-  double first = 0.0;
+  std::vector<double> x;
+  std::vector<double> seconds;
+  std::vector<double> weights;
   for (std::size_t i = 0; i < known.size(); ++i) {
-    const double seconds = std::exp(known.times[i].value);
-    const double f = grown(growth, known.cells[i]) / seconds;
-    ones += 1.0 / (seconds * seconds);
-    mixed += f / seconds;
-    squares += f * f;
-    one += 1.0 / seconds;
-    first += f;
+    x.push_back(grown(growth, known.cells[i]));
+    seconds.push_back(std::exp(known.times[i].value));
+    weights.push_back(1.0 / (seconds.back() * seconds.back()));
   }
-  const double determinant = ones * squares - mixed * mixed;
-  GrowthFit fit{growth,
-                (one * squares - first * mixed) / determinant,
-                (ones * first - mixed * one) / determinant,
-                0.0,
-                0.0,
-                false};
-  if (!(fit.overhead >= 0.0)) fit = {growth, 0.0, first / squares, 0.0, 0.0, false};
-  if (!(fit.factor >= 0.0)) fit = {growth, one / ones, 0.0, 0.0, 0.0, false};
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    const double model = fit.overhead + fit.factor * grown(growth, known.cells[i]);
-    const double left = model / std::exp(known.times[i].value) - 1.0;
-    fit.rms += left * left / static_cast<double>(known.size());
+  GrowthFit fit{growth, 0.0, 0.0, 0.0, 0.0, false};
+  double unused = 0.0;
+  gsl_fit_wlinear(x.data(), 1, weights.data(), 1, seconds.data(), 1, x.size(), &fit.overhead, &fit.factor,
+                  &unused, &unused, &unused, &unused);
+  if (!(fit.overhead >= 0.0)) {
+    fit.overhead = 0.0;
+    gsl_fit_wmul(x.data(), 1, weights.data(), 1, seconds.data(), 1, x.size(), &fit.factor, &unused, &unused);
+  }
+  if (!(fit.factor >= 0.0)) {
+    fit.factor = 0.0;
+    fit.overhead = gsl_stats_wmean(weights.data(), 1, seconds.data(), 1, x.size());
+  }
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const double left = (fit.overhead + fit.factor * x[i]) / seconds[i] - 1.0;
+    fit.rms += left * left / static_cast<double>(x.size());
     fit.largest = std::max(fit.largest, std::abs(left));
   }
   fit.rms = std::sqrt(fit.rms);
@@ -159,7 +137,7 @@ double drawn(const LogTime& time, const Generator& generator) {
 
 /// Sorted crossings.
 std::vector<double> drawn_crossings(const Race& both) {
-  constexpr std::size_t kDraws = 2000;  // leave the ends of a 95 % interval a percent of probability
+  constexpr std::size_t kDraws = 2000;  // the ends of a 95 % interval are then known to a percent
   const Generator generator(gsl_rng_alloc(gsl_rng_mt19937), gsl_rng_free);  // its seed is fixed
   std::vector<double> crossings;
   std::vector<double> ratios(both.log_cells.size());
@@ -184,7 +162,7 @@ TypicalSeconds typical(const std::vector<double>& seconds) {
   const auto time = log_time(seconds);
   if (!time) return {kNaN, kNaN, kNaN};
   const double half =
-      time->freedom > 0.0 ? time->error * gsl_cdf_tdist_Pinv(kBothSides, time->freedom) : kNaN;
+      time->freedom > 0.0 ? time->error * gsl_cdf_tdist_Pinv(kUpperQuantile, time->freedom) : kNaN;
   return {std::exp(time->value), std::exp(time->value - half), std::exp(time->value + half)};
 }
 
@@ -206,10 +184,15 @@ PowerLaw fit_power_law(const Family& family) {
   if (cells.size() < kMinSizes) {
     return no_law(fmt::format("{} sizes from {:g} cells up, {} are needed", cells.size(), from, kMinSizes));
   }
-  const Line line = fit_line(x, y);
+  double start = 0.0;
+  double slope = 0.0;
+  double slope_variance = 0.0;
+  double unused = 0.0;
+  gsl_fit_linear(x.data(), 1, y.data(), 1, x.size(), &start, &slope, &unused, &unused, &slope_variance,
+                 &unused);
   const double half =
-      line.slope_error * gsl_cdf_tdist_Pinv(kBothSides, static_cast<double>(cells.size() - 2));
-  return {line.slope, line.slope - half, line.slope + half, std::exp(line.start), cells, ""};
+      std::sqrt(slope_variance) * gsl_cdf_tdist_Pinv(kUpperQuantile, static_cast<double>(cells.size() - 2));
+  return {slope, slope - half, slope + half, std::exp(start), cells, ""};
 }
 
 std::string to_string(Growth growth) {
@@ -266,8 +249,8 @@ Crossover find_crossover(const Family& slow, const Family& quick) {
   }
   const std::vector<double> crossings = drawn_crossings(both);
   const auto last = static_cast<double>(crossings.size() - 1);
-  found.low = crossings[static_cast<std::size_t>(std::floor((1.0 - kBothSides) * last))];
-  found.high = crossings[static_cast<std::size_t>(std::ceil(kBothSides * last))];
+  found.low = crossings[static_cast<std::size_t>(std::floor((1.0 - kUpperQuantile) * last))];
+  found.high = crossings[static_cast<std::size_t>(std::ceil(kUpperQuantile * last))];
   return found;
 }
 

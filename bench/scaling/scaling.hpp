@@ -7,7 +7,7 @@
 /// How times grow with the cells along a side, and where one way to compute overtakes another.
 namespace slipstick::bench {
 
-/// In the place of a number that there is none of.
+/// Stands for a number that does not exist.
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// The repetitions of a benchmark at one size. Those that are no positive number take no part in anything.
@@ -28,7 +28,7 @@ struct TypicalSeconds {
 };
 TypicalSeconds typical(const std::vector<double>& seconds);
 
-/// What a law can be fitted to.
+/// Sizes that a law needs: two would fit any law.
 inline constexpr std::size_t kMinSizes = 3;
 
 /// t = constant cells^exponent, with the exponent's 95 % interval (Student's, from the residuals).

@@ -56,7 +56,7 @@ Family family_of(const Members& members) {
 
 constexpr const char* kNoTheory = "no theory is known here";
 
-/// What theory says of families whose names begin so.
+/// The growth by theory, by the beginning of a family's name.
 constexpr std::array<std::pair<std::string_view, Growth>, 10> kTheory{
     {{"application/dense", Growth::n4},
      {"application/direct", Growth::n4},

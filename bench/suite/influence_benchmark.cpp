@@ -21,8 +21,8 @@ using solver::Component;
 using solver::Index;
 
 constexpr std::array kComponents{Component::k11, Component::k12, Component::k22};
-/// Of the coefficients, 1e-13, and of the quadrature.
-constexpr double kAllowedError = 2e-13;
+/// Relative error of a coefficient, 1e-13, and as much for the quadrature.
+constexpr double kAllowedCoefficientError = 2e-13;
 
 solver::ElasticPair pair() { return solver::elastic_pair({2.0, 0.3}, {2.0, 0.3}); }
 
@@ -35,7 +35,7 @@ std::array<double, 3> point_load(const solver::ElasticPair& bodies, double x, do
   return {factor * (direct + turned * x * x), factor * turned * x * y, factor * (direct + turned * y * y)};
 }
 
-/// Of the unit cell at an offset of two cells or more, where this many points leave rounding alone.
+/// The unit cell's coefficients at an offset of two cells or more, where so many points leave rounding alone.
 std::array<double, 3> by_quadrature(const solver::ElasticPair& bodies, Index k1, Index k2) {
   constexpr std::size_t kPoints = 16;
   const std::unique_ptr<gsl_integration_glfixed_table, decltype(&gsl_integration_glfixed_table_free)> table(
@@ -82,7 +82,7 @@ Prepared tangential(Index cells) {
   prepared.counters["error"] = worst;
   prepared.counters["coefficients_per_second"] =
       rate(static_cast<double>(kComponents.size()) * static_cast<double>(cells * cells));
-  if (!(worst <= kAllowedError)) prepared.invalid_reason = "disagrees with quadrature";
+  if (!(worst <= kAllowedCoefficientError)) prepared.invalid_reason = "disagrees with quadrature";
   prepared.timing = repeated([tables] { benchmark::DoNotOptimize(tables()); });
   return prepared;
 }

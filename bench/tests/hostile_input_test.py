@@ -208,8 +208,8 @@ class HostileInput(ProgramTest):
             self.refused(name, "a folder")
             os.rmdir(name)
             os.mkfifo(name)
-            self.refused(name, "a pipe that nobody writes to")
-            # Reading a process's memory from its first address on fails, for whoever asks.
+            self.refused(name, "a pipe without a writer")
+            # No one can read a process's memory from its first address on.
             for target, what in (("/dev/zero", "a device"), (name, "a link to itself"),
                                  ("/proc/self/mem", "an error while reading")):
                 os.remove(name)
@@ -280,7 +280,7 @@ class HostileInput(ProgramTest):
             self.assertEqual(study().keys(), before.keys())
 
     def test_many_keys_cost_no_more_than_many_numbers(self):
-        """In processor time, of which the square of this number would take a minute."""
+        """In processor time: work that grew like the square of this number would take a minute."""
         self.write("result.json", json.dumps({**{f"k{i}": i for i in range(300000)}, "twist_error": 0.5}))
         before = os.times()
         self.assertEqual(self.ends("result.json")[0], 0)

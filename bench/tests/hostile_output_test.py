@@ -35,7 +35,7 @@ def mutated(content, random_numbers):
 
 
 def no_processes():
-    """As many as the user has already are too many; root is bound by no such limit, nobody is."""
+    """A limit of the processes that the user already has leaves no room for more. Root has no such limit; the user `nobody` has."""
     if os.geteuid() == 0:
         os.setgid(65534)
         os.setuid(65534)
@@ -144,7 +144,7 @@ class HostileOutput(ProgramTest):
         try:
             _, _, said = self.ends("check", "scene.toml", "field.h5", "--set", "solver.threads=1", preexec_fn=no_processes)
         except PermissionError:
-            self.skipTest("the limit does not hold for root, and nobody else may run the program where it is")
+            self.skipTest("the limit does not hold for root, and no other user may run the program where it is")
         self.assertNotIn("damaged", said)
         self.assertIn("no more threads or processes can be started; allowed: ", said)
 

@@ -34,7 +34,7 @@ class ProgramBench(ProgramTest):
         return str(self.folder / label)
 
     def against(self, factor, *options, code=0, says=()):
-        """Two builds, of which the new one takes so many times as long."""
+        """Two builds; the new one takes this many times as long."""
         self.run_program("bench", "--filter", "f", "--against", self.made_program("base", r"f/cells:8\n"), "--program",
                          self.made_program("now", r"f/cells:8\n", factor), "--output", "out", *options, code=code,
                          says=says)

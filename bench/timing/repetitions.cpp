@@ -10,11 +10,11 @@
 namespace slipstick::bench {
 namespace {
 
-/// At least three times; then until this many or so many seconds in all.
+/// Work is repeated at least this often, then until the second number or until so many seconds have passed.
 constexpr int kMinRepetitions = 3;
 constexpr int kMaxRepetitions = 9;
-constexpr double kSeconds = 1.0;
-/// Chance that the median lies below the interval.
+constexpr double kEnoughSeconds = 1.0;
+/// Chance that the median lies below a 95 % interval.
 constexpr double kTail = 0.025;
 
 }  // namespace
@@ -34,7 +34,7 @@ Repetitions repeat(const std::function<double()>& work) {
   std::vector<double> seconds;
   double total = 0.0;
   while (static_cast<int>(seconds.size()) < kMinRepetitions ||
-         (static_cast<int>(seconds.size()) < kMaxRepetitions && total < kSeconds)) {
+         (static_cast<int>(seconds.size()) < kMaxRepetitions && total < kEnoughSeconds)) {
     seconds.push_back(work());
     total += seconds.back();
   }

@@ -133,8 +133,8 @@ double seconds_per(const Reader& row) {
 /// Rows of a file, so that those which do not say what they are can be distinguished.
 using Names = std::set<std::string>;
 
-/// Of rows without run_type an aggregate is what is called after another row, or after nothing, if a mean and
-/// a deviation are called so.
+/// Whether a row without run_type is an aggregate: it is named after another row, or there are a mean and a
+/// deviation of one name.
 bool is_old_aggregate(const Reader& row, const Names& names) {
   const std::string name = row.text("name");
   for (const char* ending : {"_mean", "_median", "_stddev", "_cv", "_BigO", "_RMS"}) {

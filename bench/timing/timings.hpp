@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-/// What Google Benchmark's programs write (--benchmark_format=json), anyone's.
+/// Files of any program that uses Google Benchmark (--benchmark_format=json).
 namespace slipstick::bench {
 
 /// Finite and above zero.

@@ -10,7 +10,7 @@
 namespace slipstick::bench {
 namespace {
 
-/// Of allocations only what is not the program's and must be left out, negative.
+/// The counts so far. Allocations: only those that are not the program's, as negative numbers.
 WorkCounts counted;
 
 /// Points that each plan transforms. A plan that is destroyed may leave its address to another.

@@ -18,7 +18,7 @@ struct WorkCounts {
 /// CMakeLists.txt.
 WorkCounts work_counts();
 
-/// What was done between two counts.
+/// The work between two counts.
 WorkCounts operator-(const WorkCounts& after, const WorkCounts& before);
 
 }  // namespace slipstick::bench

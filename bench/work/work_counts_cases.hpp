@@ -8,7 +8,7 @@
 
 namespace slipstick::bench {
 
-/// What a solve says of its own work; zero of what is no solve.
+/// The work that a solve reports; zeros for a case that is no solve.
 struct SolveWork {
   double applications = 0.0;           ///< of the tangential operator, of all grids in those of the finest
   double pressure_applications = 0.0;  ///< of the normal operator, likewise

@@ -13,8 +13,8 @@ namespace slipstick::bench {
 /// Instructions executed, by the file that holds them: the program, each shared library.
 using Instructions = std::map<std::string, long>;
 
-/// What callgrind wrote, of its first event. Throws std::runtime_error for what is no such file, or where the
-/// parts do not add up to the total that it states.
+/// The counts of callgrind's first event in a file. Throws std::runtime_error for a file of another kind, or
+/// where the parts do not add up to the total that it states.
 Instructions read_callgrind(const std::filesystem::path& file);
 
 /// Does the work of a case once; what it prepares is outside of what run_callgrind() counts.

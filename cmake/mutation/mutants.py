@@ -73,6 +73,7 @@ def judge(mutants, build, options, say):
     """{mutant: how it was seen}; "" survives, None is not reached."""
     highest = max((each.number for each in mutants), default=0)
     folders = {each.folder for each in mutants} - {"reports"}
+    tests = runs.python_tests(build.source / "reports", say) if any(each.folder == "reports" for each in mutants) else []
     suites = {folder: list(runs.google_suites(build.build, folder)) for folder in folders}
     gate = runs.gates(build.source, build.build)
     with ThreadPoolExecutor(options.jobs) as pool:
@@ -83,7 +84,7 @@ def judge(mutants, build, options, say):
 
         def judge_one(mutant):
             if mutant.folder == "reports":
-                found = runs.python_killed_by(mutant, build.source / "reports")
+                found = runs.python_killed_by(mutant, tests, build.source / "reports")
             else:
                 found = runs.killed_by(mutant, suites[mutant.folder])
                 if not found and options.gates and mutant.number in gate.reached:

@@ -15,9 +15,8 @@ LEVELS = {"||": 1, "or": 1, "&&": 2, "and": 2, "==": 3, "!=": 3, "<": 4, "<=": 4
 SIGN_LEVEL = 8
 OPERATOR = r"(?:\|\||&&|<<|>>|[-+*/%=!<>]=|[-+*/%<>=?:]|(?:or|and|if|else|in|is|for|return|not|lambda)\b)"
 COMPARED = {"<": ("<=", ">="), "<=": ("<", ">"), ">": (">=", "<="), ">=": (">", "<")}  # another boundary; the opposite
-SWAPPED = {"+": "-", "-": "+", "*": "/", "/": "*", "==": "!=", "!=": "==", "is": "is not",
-           "is not": "is"}
-IN_CPP = {"and": "&&", "or": "||", "True": "true", "False": "false"}
+SWAPPED = {"+": "-", "-": "+", "*": "/", "/": "*", "==": "!=", "!=": "==",
+           "is": "is not", "is not": "is"}
 # Declarations that the compiler computes, and labels.
 EXCLUDED_CPP = re.compile(r"\b(constexpr|consteval|static_assert|case|template|using|enum|typedef|concept)\b")
 
@@ -107,8 +106,7 @@ def conditions(code):
     """Each term of `a && b` becomes true, each of `a || b` false: as if it were not there."""
     for match in re.finditer(r"\s(&&|\|\||and|or)\s+", code):
         word, level = match.group(1), LEVELS[match.group(1)]
-        shown = "True" if level == LEVELS["and"] else "False"
-        shown = shown if word.isalpha() else IN_CPP[shown]
+        shown = {"and": "True", "or": "False", "&&": "true", "||": "false"}[word]
         # The left operand of a && b && c is a && b: its own terms come with its own operator.
         left = operand_before(code, match.start(), level + 1)
         terms = [(match.end(), operand_after(code, match.end(), level))]

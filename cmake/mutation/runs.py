@@ -120,19 +120,32 @@ def killed_by(mutant, suites):
     return "" if reaching else None
 
 
-def python_killed_by(mutant, reports):
-    """The first test file of a copy of reports/ that fails, the one of the same name first."""
-    tests = sorted((reports / "tests").glob("test_*.py"), key=lambda test: test.stem != "test_" + Path(mutant.file).stem)
+def python_tests(reports, say):
+    """The test files of reports/ that pass without a mutant: not the browser's, which needs more address space."""
+    passing = []
+    for test in sorted((reports / "tests").glob("test_*.py")):
+        with tempfile.TemporaryDirectory(prefix="mutants-", ignore_cleanup_errors=True) as folder:
+            code, output = run([sys.executable, "-B", test], folder, PYTHON_SECONDS)
+        if code == 0:
+            passing.append(test.name)
+        else:
+            say(f"{test.stem} fails without a mutant and is skipped:\n{output[-2000:]}")
+    return passing
+
+
+def python_killed_by(mutant, tests, reports):
+    """The first of the test files that fails, the one of the mutated file's name first."""
+    own = f"test_{Path(mutant.file).stem}.py"
     with tempfile.TemporaryDirectory(prefix="mutants-", ignore_cleanup_errors=True) as folder:
         copied = Path(folder, "reports")
         shutil.copytree(reports, copied)
         path = Path(folder, mutant.file)
         path.write_text(rules.mutated(path.read_text(), mutant.mutation))
-        for test in tests:
-            code, output = run([sys.executable, "-B", f"tests/{test.name}", "--failfast"], copied, PYTHON_SECONDS)
+        for test in sorted(tests, key=lambda name: name != own):
+            code, output = run([sys.executable, "-B", f"tests/{test}", "--failfast"], copied, PYTHON_SECONDS)
             if code is None:
-                return f"{test.stem}: time-out"
+                return f"{test}: time-out"
             if code != 0:
                 failed = re.search(r"^(?:FAIL|ERROR): (\w+)", output, re.MULTILINE)
-                return f"{test.stem}.{failed.group(1)}" if failed else f"{test.stem}: code {code}"
+                return f"{test}.{failed.group(1)}" if failed else f"{test}: code {code}"
     return ""

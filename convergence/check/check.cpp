@@ -64,30 +64,27 @@ void add_field(Json& json, const Examination& e) {
   json["centre"] = e.read.field.centre;
   json["contact_cells"] = (e.contact.pressure > 0.0).count();
   json["stick_cells"] = (e.stick > 0.0).count();
-  json["conventions"] = e.conventions;
+  json["conventions"] = e.read.conventions;
   for (const std::string& remark : e.read.remarks) json["conventions"].push_back(remark);
   json["mistakes"] = e.read.mistakes;
 }
 
-struct StickArea {
-  double radius;  ///< m
-  double counted;
-  std::string note;
-};
-
-StickArea stick_area(const Examination& e) {
+/// The stick front in m.
+solver::StickFront stick_front_of(const Examination& e) {
   const GivenContact& c = e.contact;
-  const solver::StickFront front = find_stick_front(c.grid, c.friction_bound, e.state.slip, e.stick);
-  return {front.radius * c.length_unit, front.counted_radius * c.length_unit, front.why_counted};
+  solver::StickFront front = find_stick_front(c.grid, c.friction_bound, e.state.slip, e.stick);
+  front.radius *= c.length_unit;
+  front.counted_radius *= c.length_unit;
+  return front;
 }
 
-void add_state(Json& json, const Examination& e, const StickArea& stick) {
+void add_state(Json& json, const Examination& e, const solver::StickFront& stick) {
   const GivenContact& c = e.contact;
   json["normal_load"] = c.pressure.sum() * c.newtons();
   json["contact_radius"] = measure_contact_radius(c, c.pressure) * c.length_unit;
   set_number(json, "stick_radius", stick.radius, kBroken);
-  if (!stick.note.empty()) json["stick_radius_note"] = stick.note;
-  json["stick_radius_counted"] = stick.counted;
+  if (!stick.why_counted.empty()) json["stick_radius_note"] = stick.why_counted;
+  json["stick_radius_counted"] = stick.counted_radius;
   json["moment"] = c.moment() * c.newton_metres();
   json["moment_limit"] = e.moment_limit * c.newton_metres();
   const auto [f1, f2] = c.force();
@@ -98,7 +95,7 @@ void add_state(Json& json, const Examination& e, const StickArea& stick) {
   json["displacement"] = {e.state.displacement[0] * c.length_unit, e.state.displacement[1] * c.length_unit};
 }
 
-void add_errors(Json& json, const Examination& e, const StickArea& stick) {
+void add_errors(Json& json, const Examination& e, const solver::StickFront& stick) {
   if (!e.exact.oracle) {
     for (const char* key : {"twist_error", "moment_error", "stick_radius_error", "contact_radius_error",
                             "pressure_error", "traction_error"}) {
@@ -115,7 +112,7 @@ void add_errors(Json& json, const Examination& e, const StickArea& stick) {
   set_error("twist_error", e.state.twist, oracle.twist_angle);
   set_error("moment_error", c.moment() * c.newton_metres(), oracle.moment);
   set_error("stick_radius_error", stick.radius, oracle.stick_radius);
-  set_error("stick_radius_counted_error", stick.counted, oracle.stick_radius);
+  set_error("stick_radius_counted_error", stick.counted_radius, oracle.stick_radius);
   set_error("contact_radius_error", json["contact_radius"], oracle.contact_radius);
   const solver::Grid grid = c.grid_in_m();
   json["pressure_error"] =
@@ -124,7 +121,7 @@ void add_errors(Json& json, const Examination& e, const StickArea& stick) {
       traction_error_json(traction_error(c.stress_unit * c.traction, oracle, grid), unknown);
 }
 
-/// What the right answer on this mesh has.
+/// The numbers of the right answer on this mesh.
 Json reference_json(const Examination& e) {
   const ReferenceOnGrid& reference = e.reference;
   Json json;
@@ -145,17 +142,17 @@ Json reference_json(const Examination& e) {
   return json;
 }
 
-/// Up to its reason.
+/// A note without its reason.
 std::string short_note(const std::string& note) { return note.substr(0, note.find(':')); }
 
-/// Mistakes and the conventions that do not count, where the field is good without them, and else the first
-/// quantity that is wrong.
+/// The verdict's headline; before it mistakes, refused conventions and an unsolved grid's problem, where they
+/// alone make the field bad.
 std::string headline(const Examination& e, const Verdict& verdict, const CheckOptions& options) {
   if (!verdict.within_mesh()) return verdict.headline;
   std::vector<std::string> wrong;
   for (const std::string& mistake : e.read.mistakes) wrong.push_back(short_note(mistake));
   if (options.strict) {
-    for (const std::string& convention : e.conventions) wrong.push_back(short_note(convention));
+    for (const std::string& convention : e.read.conventions) wrong.push_back(short_note(convention));
   }
   if (options.discrete && !verdict.discrete.holds()) wrong.push_back(verdict.discrete.wrong);
   if (wrong.empty()) return verdict.headline;
@@ -167,8 +164,8 @@ std::string headline(const Examination& e, const Verdict& verdict, const CheckOp
 Json check_field(const solver::Scene& scene, const std::filesystem::path& file, const CheckOptions& options) {
   const Examination e = examine(scene, file, options.twist, options.pressure_given, options.columns);
   const Verdict verdict = reach_verdict(e, options.tolerance);
-  const StickArea stick = stick_area(e);
-  const bool fits = e.read.mistakes.empty() && !(options.strict && !e.conventions.empty());
+  const solver::StickFront stick = stick_front_of(e);
+  const bool fits = e.read.mistakes.empty() && !(options.strict && !e.read.conventions.empty());
   const bool good = verdict.within_mesh() && fits && (!options.discrete || verdict.discrete.holds());
   Json json;
   json["name"] = scene.name;
@@ -197,7 +194,7 @@ Json check_field(const solver::Scene& scene, const std::filesystem::path& file, 
 
 namespace {
 
-/// Sizes of errors need no more digits.
+/// The size of an error, in two digits.
 std::string judged_text(const Json& value) {
   return value.is_number() ? fmt::format("{:.1e}", value.get<double>()) : "-";
 }

@@ -16,6 +16,7 @@
 #include "convergence/check/loops/loop_judgement.hpp"
 #include "convergence/check/loops/loop_record.hpp"
 #include "convergence/programs/output_options.hpp"
+#include "convergence/runs/run_options.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/scene/scene.hpp"
@@ -71,11 +72,7 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI
           "loop: moment (N m), rotation (rad), or force (N), displacement (m), and perhaps time, "
           "normal_load: text or .json")
       ->required();
-  command
-      ->add_option("--set", request->overrides,
-                   "key=value: override a key of the scene, e.g. load.moment_ratio=0.5")
-      ->take_all()
-      ->allow_extra_args(false);
+  add_set_option(*command, request->overrides, "override a key of the scene, e.g. load.moment_ratio=0.5");
   command
       ->add_option(
           "--columns", request->check.columns,
@@ -84,14 +81,14 @@ std::function<int(std::ostream&, nlohmann::ordered_json&)> add_check_command(CLI
       ->delimiter(',')
       ->allow_extra_args(false);
   command->add_option("--twist", request->check.twist,
-                      "rad, that the program reported; without it the one that Coulomb's law fits best");
+                      "rad, that the program reported; without it your twist is not judged");
   command->add_flag(
       "--discrete", request->check.discrete,
       "good only if it solves its own grid's problem, of constant cells, up to iteration error");
   command->add_option(
       "--tolerance", request->check.tolerance,
-      "error of loads, twist and tractions that is allowed, in place of what the mesh leaves open; of a "
-      "loop's moment, root mean square, in place of 0.01");
+      "error of loads, twist and tractions that is allowed, instead of the one derived from the mesh; of a "
+      "loop's moment, root mean square, instead of 0.01");
   command->add_flag("--pressure-given", request->check.pressure_given,
                     "take the field's pressure as it is: judge its load and the tractions under it alone");
   command->add_flag("--strict", request->check.strict,

@@ -23,14 +23,13 @@ using Eigen::ArrayXd;
 using solver::Index;
 using solver::InputError;
 
-/// Units of one kind differ by thousands: a ratio nearer to one than the root of that is no question of
-/// units.
+/// Ratio of numbers in the same unit: below the root of 1000, by which units of one kind differ.
 constexpr double kSameUnit = 31.6;
 
-/// Where units had to be guessed the load has to confirm them.
+/// Relative error of the load that confirms guessed units.
 constexpr double kCorrectedLoad = 0.2;
 
-/// Sums over cells know a contact's middle up to this part of a cell.
+/// Part of a cell up to which sums over cells know a contact's middle.
 constexpr double kInPlace = 1e-2;
 
 struct Unit {
@@ -40,7 +39,7 @@ struct Unit {
 constexpr std::array<Unit, 4> kLengths{{{"m", 1.0}, {"mm", 1e-3}, {"micrometres", 1e-6}, {"nm", 1e-9}}};
 constexpr std::array<Unit, 4> kStresses{{{"Pa", 1.0}, {"kPa", 1e3}, {"MPa", 1e6}, {"GPa", 1e9}}};
 
-/// ratio: of the number in the file to the one expected.
+/// The unit that explains a ratio of the file's number to the expected one.
 std::optional<Unit> find_unit(const std::array<Unit, 4>& units, double ratio) {
   for (const Unit& unit : units) {
     const double left = ratio * unit.size;
@@ -53,7 +52,7 @@ double longer_side(const solver::Grid& grid) {
   return std::max(static_cast<double>(grid.n1) * grid.h1, static_cast<double>(grid.n2) * grid.h2);
 }
 
-/// About how wide the contact is, in m.
+/// The approximate width of the contact, in m.
 double expected_width(const solver::Model& model, const OracleAnswer& exact) {
   const bool known = exact.oracle && std::isfinite(exact.oracle->contact_radius);
   return known ? 2.0 * exact.oracle->longer_semi_axis() : longer_side(model.grid) * model.length_unit;
@@ -113,7 +112,7 @@ void correct_stress(Interpretation& read, const solver::Step& load) {
   }
 }
 
-/// Puts each field's cells, with x2 running down the columns, where `place` puts them.
+/// Rearranges each field by `place`, a function of its matrix, in which x2 runs down the columns.
 template <typename Place>
 void rearrange(ForeignField& field, const solver::Grid& from, const Place& place) {
   const auto placed = [&](const ArrayXd& values) {
@@ -134,7 +133,7 @@ double aspect(const ForeignField& field) {
   return variance(solver::cell_x1(field.grid)) / variance(solver::cell_x2(field.grid));
 }
 
-/// Only an elliptic contact along the axes shows it, wherever it stands.
+/// Only an elliptic contact along the axes shows whether they are exchanged, wherever it stands.
 void correct_axes(Interpretation& read, const solver::Scene& scene) {
   ForeignField& field = read.field;
   std::vector<solver::Surface> surfaces = scene.surfaces;
@@ -156,14 +155,14 @@ void correct_axes(Interpretation& read, const solver::Scene& scene) {
   rearrange(field, from, [](const auto& values) { return values.transpose(); });
 }
 
-/// A scene of one body that stands about an axis, with its own pressure.
+/// Whether the scene has one smooth body about an axis, whose pressure is computed.
 bool has_axis(const solver::Scene& scene) {
   return scene.surfaces.size() == 1 && scene.pressure != solver::PressureModel::file &&
          solver::find_height_map(scene.surfaces) == nullptr &&
          scene.surfaces.front().shape != solver::Shape::roughness;
 }
 
-/// A contact about an axis is put on it. One that stood a cell or more away was in other coordinates.
+/// Moves a contact onto its body's axis. A contact that stood a cell or more away was in other coordinates.
 void correct_origin(Interpretation& read, const solver::Scene& scene) {
   ForeignField& field = read.field;
   if (!has_axis(scene)) return;
@@ -181,8 +180,8 @@ void correct_origin(Interpretation& read, const solver::Scene& scene) {
       "the contact's middle stands ({:.4g}, {:.4g}) m from the scene's: moved there", off[0], off[1]));
 }
 
-/// How tractions may be written: those on the other body, in a left-handed frame, in another order of their
-/// columns; or, by mistake, with one component reversed. Applied in the order of the members.
+/// A way to write tractions: on the other body, in a left-handed frame, with exchanged columns, or by mistake
+/// with one component reversed. The members are applied in their order.
 struct Orientation {
   bool mirrored = false;   ///< x2 counts the other way, and q2 with it
   bool exchanged = false;  ///< q1 and q2
@@ -208,7 +207,7 @@ struct Orientation {
   }
 };
 
-/// middle: x2 of the mirror.
+/// The field with its orientation undone. middle: x2 of the mirror.
 ForeignField turned(ForeignField field, const Orientation& orientation, double middle) {
   const Index cells = field.grid.cells();
   if (orientation.mirrored) {
@@ -222,7 +221,7 @@ ForeignField turned(ForeignField field, const Orientation& orientation, double m
   return field;
 }
 
-/// How far the tractions' loads are from the scene's, as parts of the limits.
+/// The distance of the tractions' loads from the scene's, as a part of the limit loads.
 class LoadMismatch {
  public:
   LoadMismatch(const ForeignField& field, const solver::Scene& scene, const OracleAnswer& exact)
@@ -248,7 +247,7 @@ class LoadMismatch {
                             traction.tail(cells).sum() / friction_ - force_[1]);
   }
 
-  /// Of no traction at all.
+  /// The distance without any traction.
   double size() const {
     const double force = load_.displacement ? 0.0 : std::hypot(force_[0], force_[1]);
     return std::abs(moment_ ? *moment_ / limit_ : sense_) + force;
@@ -264,8 +263,8 @@ class LoadMismatch {
   std::array<double, 2> force_{};
 };
 
-/// Loads wrong by less than half stay what they are, an error of the field; else the orientation counts under
-/// which they come closest, the first of those that are as close. Mistakes come last.
+/// Loads that are wrong by less than half are an error of the field and stay. Otherwise the orientation is
+/// undone that brings them closest to the scene's, the first one of several; mistakes come last.
 void correct_orientation(Interpretation& read, const solver::Scene& scene, const OracleAnswer& exact) {
   constexpr std::array<Orientation, 9> kOrientations{{{.sign1 = -1.0, .sign2 = -1.0},
                                                       {.mirrored = true},
@@ -276,7 +275,7 @@ void correct_orientation(Interpretation& read, const solver::Scene& scene, const
                                                       {.sign2 = -1.0},
                                                       {.exchanged = true, .sign1 = -1.0},
                                                       {.exchanged = true, .sign2 = -1.0}}};
-  constexpr double kClearlyCloser = 1e-3;
+  constexpr double kClearlyCloser = 1e-3;  // part of the loads by which a later orientation has to be closer
   const LoadMismatch here(read.field, scene, exact);
   double least = 0.5 * here.size();
   if (!(here(read.field.traction) > least)) return;
@@ -294,7 +293,7 @@ void correct_orientation(Interpretation& read, const solver::Scene& scene, const
   (best->is_mistake() ? read.mistakes : read.conventions).push_back(best->text());
 }
 
-/// Cells without pressure between cells that have some: rows that the file lacks, perhaps.
+/// Remarks on cells without pressure between cells with pressure: the file may lack their rows.
 void note_holes(Interpretation& read) {
   const ForeignField& field = read.field;
   const Index n2 = field.grid.n2;

@@ -15,14 +15,13 @@ using Eigen::ArrayXd;
 using solver::Grid;
 using solver::Index;
 
-/// Slipping cells of a solution lie on their circle up to rounding.
+/// Part of mu p by which rounding may change |q| of a slipping cell.
 constexpr double kExactlyOnCircle = 1e-9;
-/// A median over fewer cells is one of the ring's edges.
+/// Cells of a slip ring: a median over fewer would show the ring's edges.
 constexpr std::size_t kMinSlipping = 8;
 
-/// Of the rigid motion, in the mean over the contact weighted with mu p, relative to the motion or to the
-/// displacements, whichever are larger; its sign is that of the change in size. With torsion alone it is the
-/// twist's.
+/// The error of the rigid motion in the mean over the contact, weighted with mu p and relative to the motion
+/// or to the displacements, whichever are larger. Its sign is that of the change in size.
 double motion_error(const GivenContact& c, const RightAnswer& right, const State& state) {
   const auto size = [&](const ArrayXd& motion) { return (c.friction_bound * solver::norms(motion)).sum(); };
   const auto about_origin = [&](const std::array<double, 2>& displacement, double twist) {
@@ -68,7 +67,7 @@ RightAnswer find_right_answer(const GivenContact& contact, const solver::Step& l
 }
 
 State find_state(const GivenContact& c, const solver::Step& load, std::optional<double> twist) {
-  // Where |q| exceeds its bound the gap would not be one.
+  // A gap is not negative only where |q| is within its bound.
   const ArrayXd bound =
       c.friction_bound.max(solver::norms(c.traction) * (c.friction_bound > 0.0).cast<double>());
   const RigidMotions motions = rigid_motions(c, load, twist);
@@ -112,7 +111,7 @@ std::vector<double> ring_excess(const GivenContact& contact, const RightAnswer& 
 }  // namespace
 
 std::optional<double> plateau_of_friction(const GivenContact& contact, const RightAnswer& right) {
-  constexpr double kConstant = 0.2;
+  constexpr double kConstant = 0.2;  // spread between the quartiles, over the median excess
   const std::vector<double> excess = ring_excess(contact, right);
   if (excess.empty()) return std::nullopt;
   const double middle = excess[excess.size() / 2];

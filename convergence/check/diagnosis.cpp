@@ -17,11 +17,11 @@ namespace {
 using Eigen::ArrayXd;
 using solver::Index;
 
-/// Pairs of cells that are summed over: about a second's work.
+/// Pairs of cells in a sum: about a second's work.
 constexpr double kMaxPairs = 1e8;
-/// An assumption explains a gap that it lowers to this part.
+/// An assumption explains a gap if it lowers it to this part.
 constexpr double kExplains = 0.1;
-/// A gap of the stick area that is no larger may be left by any iteration: no kernel is sought for it.
+/// Gap over energy of the stick area that any iteration may leave: no kernel is sought to explain it.
 constexpr double kNoStickGap = 10.0 * kIterationGap;
 
 /// The contact's cells as sources, and those at which displacements are summed.
@@ -47,8 +47,8 @@ ArrayXd at(const std::vector<Index>& points, const ArrayXd& field, Index cells) 
 }
 
 /// The part of the displacements that cross contraction of the half-spaces makes, over their Poisson
-/// compliance: poisson + cross, by K11 and K22 and by K12. `mirrored` has |K12| instead of K12, `exchanged` has
-/// the part of K22 instead of that of K11 and the reverse.
+/// compliance: poisson + cross, by K11 and K22 and by K12. `mirrored` has |K12| instead of K12, `exchanged`
+/// has the part of K22 instead of that of K11 and the reverse.
 struct Displacements {
   ArrayXd poisson, cross, mirrored, exchanged;
 };
@@ -86,15 +86,15 @@ Displacements sum_displacements(const GivenContact& contact, const Cells& cells)
   return u;
 }
 
-/// Parts of the law, each times what it is assumed to be of what it should be.
+/// An assumption about a program's law: the factor of each part of Displacements, and of others.
 struct Assumption {
   std::string name;
-  double poisson = 1.0;      ///< Poisson compliance in K11 and K22
-  double cross = 1.0;        ///< K12
-  double mirrored = 0.0;     ///< |K12|
-  double exchanged = 0.0;    ///< the Poisson compliance of K22 in K11 and of K11 in K22
-  double by_pressure = 1.0;  ///< K13 and K23
-  double friction = 1.0;
+  double poisson = 1.0;
+  double cross = 1.0;
+  double mirrored = 0.0;
+  double exchanged = 0.0;
+  double by_pressure = 1.0;  ///< of the displacement by pressure, K13 and K23
+  double friction = 1.0;     ///< of the friction coefficient
 };
 
 /// Evaluates assumptions on the chosen cells.
@@ -131,8 +131,8 @@ class Trial {
             fitted.coefficients[fitted.coefficients.size() - 1]};
   }
 
-  /// The Poisson's ratio that fits best, over the right one: one more coefficient in which slip is linear.
-  /// None: no body has it.
+  /// The Poisson's ratio that fits best, one more coefficient in which slip is linear; none where no body has
+  /// it.
   std::optional<Assumption> best_poisson_ratio() const {
     std::vector<ArrayXd> motions = motions_;
     motions.push_back(-(u_.poisson + u_.cross));
@@ -150,7 +150,7 @@ class Trial {
   }
 
  private:
-  /// Where |q| exceeds its bound the gap would not be one.
+  /// The bound, raised to |q| where |q| exceeds it: otherwise the gap could be negative.
   ArrayXd at_least(const ArrayXd& bound) const { return bound.max(solver::norms(traction_)); }
 
   Cells cells_;

@@ -16,8 +16,7 @@ using Eigen::ArrayXd;
 using solver::Index;
 using solver::InputError;
 
-/// A pressure is that of constant cells where it is off by no more than this part of what other right ones
-/// are.
+/// Error of a pressure of constant cells, over the error of other right pressures.
 constexpr double kConstantCells = 0.1;
 
 void require_judgeable(const solver::Scene& scene) {
@@ -33,7 +32,7 @@ void require_judgeable(const solver::Scene& scene) {
   }
 }
 
-/// The oracle as seen from the middle of the field's grid.
+/// The same answer with positions about `centre`.
 OracleAnswer seen_from(OracleAnswer exact, const std::array<double, 2>& centre) {
   if (!exact.oracle) return exact;
   for (std::size_t k = 0; k < 2; ++k) exact.oracle->centre[k] -= centre[k];
@@ -52,16 +51,16 @@ OracleAnswer exact_normal_contact(solver::Scene scene) {
   return find_oracle(scene);
 }
 
-/// Whether a twist is the one that fits the tractions but for its sign, and no rounding.
+/// Whether a twist differs from the one that fits the tractions in its sign, and is more than rounding.
 bool is_turned_over(const GivenContact& c, double twist, double fitted) {
-  constexpr double kSameSize = 0.1;
-  constexpr double kRounding = 1e-6;
+  constexpr double kSameSize = 0.1;        // relative
+  constexpr double kSmallestTwist = 1e-6;  // over the largest displacement
   return std::abs(twist + fitted) < kSameSize * std::abs(twist) &&
          std::abs(twist) * solver::norms(c.rotation).maxCoeff() >
-             kRounding * solver::norms(c.displacement).maxCoeff();
+             kSmallestTwist * solver::norms(c.displacement).maxCoeff();
 }
 
-/// The loads are those that the scene asks for, and else the field's own.
+/// The certificate under the loads that the scene asks for, otherwise under the field's own.
 solver::Certificate certify_field(const GivenContact& c, const solver::Step& load, const State& state,
                                   const std::optional<double>& moment) {
   const std::array<double, 2> asked{load.force[0] / c.newtons(), load.force[1] / c.newtons()};
@@ -78,17 +77,16 @@ Examination examine(const solver::Scene& scene, const std::filesystem::path& fil
   const solver::Step& load = scene.steps.front();
   const solver::Model model = solver::make_model(scene);
   const OracleAnswer exact = find_oracle(scene);
-  const Interpretation read = in_own_conventions(read_foreign_field(file, columns), scene, model, exact);
+  Interpretation read = in_own_conventions(read_foreign_field(file, columns), scene, model, exact);
   const GivenContact contact = make_given_contact(read.field, model, model.threads);
 
-  std::vector<std::string> conventions = read.conventions;
   const State fitted = find_state(contact, load, std::nullopt);
   std::optional<double> twist = given_twist;
   if (!twist) {
     twist = solver::value_if<solver::Twist>(load.torsion);
   } else if (is_turned_over(contact, *twist, fitted.twist)) {
     twist = -*twist;
-    conventions.emplace_back("the twist that was given counts the other way round");
+    read.conventions.emplace_back("the twist that was given counts the other way round");
   }
   const OracleAnswer pressed = seen_from(exact_normal_contact(scene), read.field.centre);
   const ReferenceOnGrid reference = find_reference_on_grid(
@@ -101,7 +99,6 @@ Examination examine(const solver::Scene& scene, const std::filesystem::path& fil
                           : known_moment(scene, exact, limit, contact.newton_metres());
   return {.scene = scene,
           .read = read,
-          .conventions = std::move(conventions),
           .exact = seen_from(exact, read.field.centre),
           .contact = contact,
           .reference = reference,

@@ -13,33 +13,31 @@
 
 namespace slipstick::convergence {
 
-/// A field that some program computed for a scene, with all that is worked out about it. Dimensionless, as
-/// its contact is; moments over the cell area.
+/// A field that another program computed for a scene, with all numbers that judge it. They are dimensionless
+/// like those of `contact`; moments are over the cell area.
 struct Examination {
   solver::Scene scene;
-  Interpretation read;
-  std::vector<std::string> conventions;  ///< the field's, and that of its twist
+  Interpretation read;  ///< with the twist's convention
   OracleAnswer exact;                    ///< its centre is that of the field's grid
   GivenContact contact;
   ReferenceOnGrid reference;
-  bool constant_cells;  ///< the pressure is one of constant cells: so are the tractions, then
-  bool pressure_given;  ///< it was not judged because the user said so
-  bool twist_given;
-  State state;                   ///< under the twist given or imposed, or else the one that fits
-  State fitted;                  ///< under the motion that Coulomb's law fits best
+  bool constant_cells;           ///< pressure, and so traction too, is constant in each cell
+  bool pressure_given;           ///< the user asked not to judge the pressure
+  bool twist_given;              ///< by the user or by the scene
+  State state;                   ///< under that twist, otherwise `fitted`
+  State fitted;                  ///< under the motion that fits best
   Deviation deviation;           ///< from the right answer
   Eigen::ArrayXd stick;          ///< cells
-  std::optional<double> moment;  ///< asked for; none: any
+  std::optional<double> moment;  ///< that the scene asks for; none: any
   double moment_limit;           ///< of the field's pressure
   solver::Certificate certificate;
   solver::SlipDirection direction;  ///< of noticeable slip
 };
 
 /// twist: the one that the program reported, in rad; none: the scene's, if it imposes one, or the one that
-/// Coulomb's law fits best. Throws InputError for what cannot be judged: a history, a scene without friction,
-/// and what read_foreign_field() and in_own_conventions() refuse; std::runtime_error where the
-/// reference's solve does not converge. pressure_given: it is not judged. columns: as
-/// read_foreign_field().
+/// fits Coulomb's law best. pressure_given: the pressure is not judged. columns: as in read_foreign_field().
+/// Throws InputError for a history, for a scene without friction, and where read_foreign_field() or
+/// in_own_conventions() does; std::runtime_error where the reference's solve does not converge.
 Examination examine(const solver::Scene& scene, const std::filesystem::path& file,
                     std::optional<double> twist, bool pressure_given = false,
                     const std::vector<std::string>& columns = {});

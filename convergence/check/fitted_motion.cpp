@@ -14,11 +14,10 @@ using Eigen::Index;
 using solver::CoefficientMatrix;
 using solver::Coefficients;
 
-/// From the root mean square of s down to what no digits of a file can distinguish from no slip.
-constexpr solver::Smoothing kSmoothing{.first = 1.0, .least = 1e-9};
+/// From the root mean square of s down to a slip that no file's digits distinguish from none.
+constexpr solver::Smoothing kSlipSmoothing{.first = 1.0, .least = 1e-9};
 
-/// Cells without a bound are zero in all fields. Bounds are over their sum, displacements over the root mean
-/// square of s at the start, weighted with the bound.
+/// A contact whose fields are zero in cells without a bound.
 struct Program {
   ArrayXd displacement, traction, bound;
   std::vector<ArrayXd> motions;
@@ -75,6 +74,7 @@ Coefficients least_slip(const Program& program) {
   return solver::SmallCholesky(matrix).solve(right);
 }
 
+/// Newton's method on bounds over their sum, and displacements over the root mean square of s at the start.
 Coefficients least_gap(Program program) {
   const double total = program.bound.sum();
   program.bound /= total;
@@ -89,9 +89,9 @@ Coefficients least_gap(Program program) {
   };
   const auto is_least = [](const SmoothedGap&, double) { return false; };
   const Coefficients scaled = start / scale;
-  return scale *
-         solver::minimise_smoothed(SmoothedGap{.z = scaled, .gradient = scaled}, kSmoothing, move, is_least)
-             .z;
+  return scale * solver::minimise_smoothed(SmoothedGap{.z = scaled, .gradient = scaled}, kSlipSmoothing, move,
+                                           is_least)
+                     .z;
 }
 
 }  // namespace

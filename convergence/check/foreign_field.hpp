@@ -7,26 +7,39 @@
 #include <vector>
 
 #include "solver/grid/grid.hpp"
+#include "solver/input/field_file.hpp"
 
 namespace slipstick::convergence {
 
-/// Pressure and shear tractions that some program computed, over the bounding rectangle of its contact cells.
-/// Cells that its file does not hold carry nothing.
+/// The regular grid on which the cells of a field lie, worked out from their positions.
+struct FieldGrid {
+  solver::Grid grid;                 ///< the cells' bounding rectangle, in the file's unit of length
+  std::array<double, 2> centre;      ///< of that rectangle, in the file's coordinates
+  std::vector<solver::Index> cells;  ///< for each row of the file its cell on the grid
+};
+
+/// x1, x2: positions of the cells' centres, in any order; their digits have to distinguish them. Cells may be
+/// missing. Throws InputError, with file, row and value, for positions on no regular grid, a cell that is
+/// given twice, and too few cells to judge.
+FieldGrid find_field_grid(const std::filesystem::path& file, const solver::Column& x1,
+                          const solver::Column& x2);
+
+/// Pressure and shear tractions that another program computed, over the bounding rectangle of its contact
+/// cells. A cell that its file does not hold carries nothing.
 struct ForeignField {
   std::filesystem::path file;
   solver::Grid grid;                 ///< m, about its own centre
   std::array<double, 2> centre;      ///< m, of the grid in the scene's coordinates
   Eigen::ArrayXd pressure;           ///< cells, Pa
   Eigen::ArrayXd traction;           ///< 2*cells, Pa, on the lower body
-  Eigen::ArrayXd pressure_rounding;  ///< cells: what the file's digits leave open
-  Eigen::ArrayXd traction_rounding;  ///< cells, of |q|
+  Eigen::ArrayXd pressure_rounding;  ///< cells, Pa: the error that the file's digits allow
+  Eigen::ArrayXd traction_rounding;  ///< cells, Pa: likewise of |q|
 };
 
-/// Reads the columns x1, x2, pressure, q1, q2, as solver::read_columns() does (`columns` are those of its
-/// options; others are ignored), with their numbers as they stand. Where the pressure is NaN or a cell
-/// without pressure has a traction that is NaN, there is no contact. Throws InputError for a column that is
-/// missing, another value that is not finite, a negative pressure, tractions that are all zero, and what
-/// find_field_grid() refuses.
+/// Reads the columns x1, x2, pressure, q1, q2 as solver::read_columns() does (`columns` as in its options;
+/// others are ignored). No unit is converted. There is no contact where the pressure is NaN, or where it is
+/// zero and a traction is NaN. Throws InputError for a column that is missing, another value that is not
+/// finite, a negative pressure, tractions that are all zero, and where find_field_grid() does.
 ForeignField read_foreign_field(const std::filesystem::path& file,
                                 const std::vector<std::string>& columns = {});
 

@@ -89,25 +89,28 @@ GivenContact make_given_contact(const ForeignField& field, const solver::Dimensi
           field.traction_rounding / stress};
 }
 
-ArrayXd resized(const Grid& from, const Grid& to, const ArrayXd& values) {
-  const Index rows = std::min(from.n1, to.n1);
-  const Index columns = std::min(from.n2, to.n2);
+namespace {
+
+/// Cells of the largest grid on which a scene's pressure is solved for comparison: about a minute's work.
+constexpr double kMaxSolvedCells = 2e7;
+
+/// Part of a cell by which the centres of two grids may differ.
+constexpr double kSameCells = 1e-3;
+
+/// The values of a grid at the same places of another one, whose first cell is cell (row, column) of the
+/// first; zero beyond it.
+ArrayXd shifted(const Grid& from, const ArrayXd& values, const Grid& to, Index row, Index column) {
   ArrayXd result = ArrayXd::Zero(to.cells());
-  result.reshaped(to.n2, to.n1).block((to.n2 - columns) / 2, (to.n1 - rows) / 2, columns, rows) =
-      values.reshaped(from.n2, from.n1).block((from.n2 - columns) / 2, (from.n1 - rows) / 2, columns, rows);
+  for (Index i = std::max(Index{0}, -row); i < std::min(to.n1, from.n1 - row); ++i) {
+    for (Index j = std::max(Index{0}, -column); j < std::min(to.n2, from.n2 - column); ++j) {
+      result[i * to.n2 + j] = values[(i + row) * from.n2 + j + column];
+    }
+  }
   return result;
 }
 
-namespace {
-
-/// Cells beyond which a scene's grid is not solved on cells of another one's size.
-constexpr double kMaxCells = 2e7;
-
-/// A part of a cell by which the centres of two grids may differ.
-constexpr double kSameCells = 1e-3;
-
-/// The same values where the cells of `from`, about the scene's origin, are those of `to` about `centre`, all
-/// in the unit of `to`'s cells.
+/// The values of a grid about the scene's origin on another one about `centre`; none where their cells do not
+/// coincide. Lengths are in the unit of `to`.
 std::optional<ArrayXd> moved(const Grid& from, const ArrayXd& values, const Grid& to,
                              const std::array<double, 2>& centre) {
   const double off1 = (centre[0] / to.h1) + 0.5 * static_cast<double>(from.n1 - to.n1);
@@ -117,18 +120,14 @@ std::optional<ArrayXd> moved(const Grid& from, const ArrayXd& values, const Grid
         stretched * static_cast<double>(std::max(from.n1, from.n2)) <= kSameCells)) {
     return std::nullopt;
   }
-  ArrayXd result = ArrayXd::Zero(to.cells());
-  for (Index i = 0; i < to.n1; ++i) {
-    for (Index j = 0; j < to.n2; ++j) {
-      const Index k = i + std::lround(off1);
-      const Index l = j + std::lround(off2);
-      if (k >= 0 && k < from.n1 && l >= 0 && l < from.n2) result[i * to.n2 + j] = values[k * from.n2 + l];
-    }
-  }
-  return result;
+  return shifted(from, values, to, std::lround(off1), std::lround(off2));
 }
 
 }  // namespace
+
+ArrayXd resized(const Grid& from, const Grid& to, const ArrayXd& values) {
+  return shifted(from, values, to, (from.n1 - to.n1) / 2, (from.n2 - to.n2) / 2);
+}
 
 std::optional<ArrayXd> scene_pressure(const GivenContact& contact, const solver::Scene& scene,
                                       const solver::Model& model, Grid& grid) {
@@ -139,11 +138,11 @@ std::optional<ArrayXd> scene_pressure(const GivenContact& contact, const solver:
   const double half2 = 0.5 * static_cast<double>(own.n2) * own.h2;
   const auto larger = [](Index n, double h, double half) {
     const double missing = half - 0.5 * static_cast<double>(n) * h;
-    return n + 2 * static_cast<Index>(std::clamp(std::ceil(missing / h), 0.0, kMaxCells));
+    return n + 2 * static_cast<Index>(std::clamp(std::ceil(missing / h), 0.0, kMaxSolvedCells));
   };
   grid.n1 = larger(grid.n1, grid.h1, half1 + std::abs(contact.centre[0]));
   grid.n2 = larger(grid.n2, grid.h2, half2 + std::abs(contact.centre[1]));
-  if (!(static_cast<double>(grid.n1) * static_cast<double>(grid.n2) <= kMaxCells)) return std::nullopt;
+  if (!(static_cast<double>(grid.n1) * static_cast<double>(grid.n2) <= kMaxSolvedCells)) return std::nullopt;
   const bool coupled = scene.coupling == solver::Coupling::full;
   if (coupled || scene.pressure == solver::PressureModel::file ||
       std::ranges::any_of(scene.surfaces, solver::is_measured)) {
@@ -201,7 +200,8 @@ solver::TangentialProblem own_problem(const GivenContact& contact, const solver:
   if (!problem.twist) {
     problem.moment = (contact.traction * solver::rotation_field(contact.grid)).sum();
   }
-  // The grid's centre moves with the body. Where it stands apart and the twist is free, that is not imposed.
+  // The problem's displacement is that of the grid's centre. If the twist is free, a centre off the origin
+  // moves by an unknown amount, and the force stands for the displacement.
   const auto& [c1, c2] = contact.centre;
   const double twist = problem.twist.value_or(0.0);
   if (load.displacement && (problem.twist || (c1 == 0.0 && c2 == 0.0))) {

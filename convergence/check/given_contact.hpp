@@ -11,15 +11,15 @@
 
 namespace slipstick::convergence {
 
-/// Of the largest mu p: only the tolerance of the normal contact distinguishes cells below it from empty
-/// ones.
+/// Part of the largest mu p. Only the tolerance of the normal contact distinguishes cells that carry less
+/// from empty ones.
 inline constexpr double kNextToNothing = 1e-3;
 
-/// A part of mu p by which a cell may miss its circle, or exceed it, where a solver stops at a tolerance.
+/// Part of mu p by which |q| of a slipping cell may differ from mu p where a solver stops at a tolerance.
 inline constexpr double kOnCircle = 1e-4;
 
-/// A contact whose pressure and tractions are given, on a grid of its own, with the displacements that the
-/// tractions cause by this project's operator.
+/// A contact with given pressure and tractions on a grid of its own, and the displacements that this
+/// project's operator computes from them.
 struct GivenContact : solver::Dimensionless {
   /// bodies: on the contact's grid; the others are the members of these names.
   GivenContact(const solver::Dimensionless& bodies, int threads, const std::array<double, 2>& middle,
@@ -31,8 +31,8 @@ struct GivenContact : solver::Dimensionless {
   Eigen::ArrayXd pressure;              ///< cells
   Eigen::ArrayXd friction_bound;        ///< cells: mu p
   Eigen::ArrayXd traction;              ///< 2*cells
-  Eigen::ArrayXd bound_rounding;        ///< cells: what the file's digits leave open of mu p
-  Eigen::ArrayXd traction_rounding;     ///< and of |q|
+  Eigen::ArrayXd bound_rounding;        ///< cells: error of mu p that the file's digits allow
+  Eigen::ArrayXd traction_rounding;     ///< cells: likewise of |q|
   Eigen::ArrayXd rotation;              ///< 2*cells: (-x2, x1) about the scene's origin
   Eigen::ArrayXd elastic_displacement;  ///< 2*cells: K q
   Eigen::ArrayXd displacement;          ///< 2*cells: K q and, of dissimilar materials, that by pressure
@@ -55,22 +55,22 @@ GivenContact make_given_contact(const ForeignField& field, const solver::Dimensi
 GivenContact with_fields(const GivenContact& contact, const solver::Grid& grid, Eigen::ArrayXd pressure,
                          Eigen::ArrayXd traction);
 
-/// Values of any grid about the same centre, with cells of the same size and an even number of them more or
-/// less along each axis: cut off or continued by zero.
+/// A field on a larger or smaller grid about the same centre, with cells of the same size: continued by zero
+/// or cut off. The numbers of cells along each axis differ by an even number.
 Eigen::ArrayXd resized(const solver::Grid& from, const solver::Grid& to, const Eigen::ArrayXd& values);
 
-/// The pressure of a scene's own normal contact in a contact's units, on `grid` about its centre and as far
-/// beyond as the scene's grid reaches: `grid` becomes that larger one. Measured surfaces, pressures from
-/// files and those that shear changes stand on the scene's grid alone: none, where its cells are not those
-/// of `grid`. None, too, without a normal load to solve for.
+/// The pressure of the scene's own normal contact, in the units of `contact`. `grid` is enlarged until it
+/// covers the scene's grid. None without a normal load. Measured surfaces, pressures from files and pressures
+/// that shear changes exist on the scene's grid only; none where its cells do not coincide with those of
+/// `grid`.
 std::optional<Eigen::ArrayXd> scene_pressure(const GivenContact& contact, const solver::Scene& scene,
                                              const solver::Model& model, solver::Grid& grid);
 
-/// Displacement fields of the scene's rigid motions that are not imposed: translations, unless the scene says
-/// how far, and rotation, unless the twist is given. `imposed`: the sum of those that are.
+/// The rigid motions of a contact as displacement fields. The twist is imposed if it is given, a translation
+/// if the scene says how far.
 struct RigidMotions {
-  std::vector<Eigen::ArrayXd> free;
-  Eigen::ArrayXd imposed;
+  std::vector<Eigen::ArrayXd> free;  ///< of unit size; the rotation last
+  Eigen::ArrayXd imposed;            ///< the sum of the imposed ones
 };
 RigidMotions rigid_motions(const GivenContact& contact, const solver::Step& load,
                            std::optional<double> twist);
@@ -78,11 +78,11 @@ RigidMotions rigid_motions(const GivenContact& contact, const solver::Step& load
 /// (-x2, x1) about the scene's origin: 2*cells. centre: of the grid, in the scene's coordinates.
 Eigen::ArrayXd rotation_about_origin(const solver::Grid& grid, const std::array<double, 2>& centre);
 
-/// The tangential problem that a contact with this pressure poses on its grid: under the motions that the
-/// scene imposes, and else under the tractions' own loads.
+/// The tangential problem of a contact with this pressure, on its grid: under the motions that the scene
+/// imposes, otherwise under the loads that the tractions carry.
 solver::TangentialProblem own_problem(const GivenContact& contact, const solver::Step& load);
 
-/// The displacement that a pressure on a grid causes, of dissimilar materials; empty where there is none.
+/// The tangential displacement that a pressure causes; empty unless the materials are dissimilar.
 Eigen::ArrayXd pressure_displacement(const GivenContact& contact, const solver::Grid& grid,
                                      const Eigen::ArrayXd& pressure);
 

@@ -16,17 +16,18 @@ using Eigen::ArrayXd;
 using solver::Grid;
 using solver::Index;
 
-/// Fine cells in one of the field's, along each axis: the middle one has its centre.
+/// Fine cells in a cell of the field, along each axis; the middle one has the same centre.
 constexpr Index kChildren = 3;
 constexpr double kChildrenOfCell = static_cast<double>(kChildren * kChildren);
-/// Centres that miss more of an exact pressure's load than this stand under one that is infinite at an edge.
+/// Part of an exact pressure's load that samples at cell centres may miss. A larger part shows that the
+/// pressure is infinite at an edge.
 constexpr double kMissedLoad = 1e-2;
-/// Standard deviation over |q| up to which a field may be taken for a right one with noise.
+/// Standard deviation over |q| of the largest noise that a right field is allowed.
 constexpr double kLargestNoise = 3e-3;
-/// Of a normal distribution: the upper quartile, in standard deviations.
+/// Upper quartile of a normal distribution, in standard deviations.
 constexpr double kQuartile = 0.6745;
 
-/// One more cell on each side: a contact may cover a part of cells whose centres it does not reach.
+/// One more cell on each side: a contact may cover parts of cells without reaching their centres.
 Grid padded(const Grid& grid) { return {grid.n1 + 2, grid.n2 + 2, grid.h1, grid.h2}; }
 
 Grid finer(const Grid& grid) {
@@ -34,7 +35,7 @@ Grid finer(const Grid& grid) {
   return {kChildren * grid.n1, kChildren * grid.n2, grid.h1 / parts, grid.h2 / parts};
 }
 
-/// Each fine cell of the padded grid has the value of the field's cell that it lies in.
+/// The field on fine cells of the padded grid, constant in each of the field's cells.
 ArrayXd handed_down(const Grid& grid, const ArrayXd& values) {
   const Grid fine = finer(padded(grid));
   ArrayXd down = ArrayXd::Zero(fine.cells());
@@ -46,7 +47,7 @@ ArrayXd handed_down(const Grid& grid, const ArrayXd& values) {
   return down;
 }
 
-/// One or several components, at the centres of the coarse cells.
+/// A fine field, of one or several components, at the centres of the coarse cells.
 ArrayXd sampled(const Grid& coarse, const ArrayXd& values) {
   const Grid fine = finer(coarse);
   const auto centres = Eigen::seq(kChildren / 2, Eigen::last, kChildren);
@@ -59,7 +60,7 @@ ArrayXd sampled(const Grid& coarse, const ArrayXd& values) {
   return result;
 }
 
-/// At the centres of a grid. None where they miss its load.
+/// The exact pressure at the centres of a grid; none where they miss too much of its load.
 std::optional<ArrayXd> exact_pressure(const Oracle& pressed, const GivenContact& contact, const Grid& grid,
                                       double load) {
   const ArrayXd x1 = solver::cell_x1(grid);
@@ -91,7 +92,7 @@ solver::TangentialSolution solve_finer(const GivenContact& contact, const solver
   return solve_problem(contact, fine, problem);
 }
 
-/// Loads of a field over an area in the grid's units, about the grid's centre.
+/// Loads that a field carries, about the grid's centre; areas are in the grid's units.
 struct Sums {
   double normal, moment, force1, force2;
 };
@@ -113,9 +114,9 @@ Grid field_grid_in_m(const GivenContact& contact, const Grid& grid) {
   return {grid.n1, grid.n2, grid.h1 * contact.length_unit, grid.h2 * contact.length_unit};
 }
 
-/// The scene's pressure on cells of the field's size, as far as its contact may reach.
+/// The scene's pressure on cells of the field's size, over the scene's whole grid.
 struct WidePressure {
-  Grid grid;  ///< the field's, padded, or a larger one
+  Grid grid;  ///< contains the field's grid with a cell on each side
   ArrayXd values;
 };
 
@@ -132,8 +133,8 @@ ArrayXd deviation_from(const ArrayXd& right, const ArrayXd& pressure) {
   return (pressure * (right.sum() / pressure.sum()) - right).abs();
 }
 
-/// The right pressure on a third of the cells' size, over the whole grid or the wide one: the exact one, or
-/// else solved there if that is wanted. None where it is not known.
+/// The right pressure on a grid of fine cells: the exact one, otherwise the solved one if `solve` says so.
+/// None where neither is known.
 std::optional<ArrayXd> fine_pressure(const GivenContact& contact, const solver::Scene& scene,
                                      const solver::Model& model, const std::optional<Oracle>& pressed,
                                      const Grid& fine, bool solve) {
@@ -145,67 +146,95 @@ std::optional<ArrayXd> fine_pressure(const GivenContact& contact, const solver::
   return solved ? std::optional(resized(same, fine, *solved)) : std::nullopt;
 }
 
+/// Measures the errors of right fields on a contact's grid.
+class MeshMeasurement {
+ public:
+  MeshMeasurement(const GivenContact& contact, const solver::Step& load, bool twist_reported)
+      : contact_(contact), load_(load), grid_(padded(contact.grid)), twist_reported_(twist_reported) {
+    errors_.pressures = errors_.tractions = ArrayXd::Zero(contact.pressure.size());
+  }
+
+  /// Right pressures of the wide grid, against the one solved on its cells.
+  void add_pressures(const WidePressure& wide, const ArrayXd& fine) {
+    for (const ArrayXd& p :
+         {sampled(wide.grid, fine), solver::restrict_to(wide.grid, finer(wide.grid), fine)}) {
+      const ArrayXd off = deviation_from(wide.values, p);
+      errors_.deviation.pressure = std::max(errors_.deviation.pressure, off.sum() / wide.values.sum());
+      errors_.pressures = errors_.pressures.max(resized(wide.grid, contact_.grid, off));
+    }
+  }
+
+  /// A right field whose program meant these loads and reported this twist.
+  void add_field(ArrayXd p, ArrayXd q, const Sums& meant, double twist) {
+    const GivenContact field = with_fields(contact_, grid_, std::move(p), std::move(q));
+    const LoadErrors loads =
+        load_errors(sums_of(grid_, field.pressure, field.traction), meant, contact_.friction);
+    errors_.loads = {.normal = std::max(errors_.loads.normal, loads.normal),
+                     .moment = std::max(errors_.loads.moment, loads.moment),
+                     .force = std::max(errors_.loads.force, loads.force)};
+    const State fitted = find_state(field, load_, std::nullopt);
+    const State reported = twist_reported_ ? find_state(field, load_, twist) : fitted;
+    const RightAnswer right = find_right_answer(field, load_);
+    Deviation deviation = find_deviation(field, right, reported, fitted);
+    deviation.pressure = errors_.deviation.pressure;
+    errors_.deviation = larger(errors_.deviation, deviation);
+    errors_.tractions =
+        errors_.tractions.max(resized(grid_, contact_.grid, solver::norms(field.traction - right.traction)));
+    errors_.direction =
+        std::max(errors_.direction, noticeable_direction(field, fitted, deviation.tractions).mean);
+  }
+
+  /// The exact answer shows an error that no finer mesh shows: its slip ring may be narrower than a cell.
+  void add_exact(const Oracle& exact) {
+    const ExactFields fields = exact_fields(exact, field_grid_in_m(contact_, grid_));
+    const double carried = fields.pressure.sum() * grid_.cell_area() / contact_.stress_unit;
+    const double normal = load_.normal.value_or(0.0) / contact_.force_unit();
+    if (!(std::abs(carried / normal - 1.0) <= kMissedLoad) || !fields.traction.allFinite()) return;
+    const bool torsion = exact.force == std::array<double, 2>{};
+    add_field(fields.pressure / contact_.stress_unit, fields.traction / contact_.stress_unit,
+              {normal, torsion ? exact.moment / contact_.moment_unit() : 0.0,
+               exact.force[0] / contact_.force_unit(), exact.force[1] / contact_.force_unit()},
+              exact.twist_angle);
+  }
+
+  /// A pressure that no finer mesh knows has the errors of its tractions, which end where it does.
+  void take_pressure_from_tractions() {
+    errors_.deviation.pressure = errors_.deviation.tractions;
+    errors_.pressures = errors_.tractions / contact_.friction;
+  }
+
+  const MeshErrors& errors() const { return errors_; }
+
+ private:
+  const GivenContact& contact_;
+  const solver::Step& load_;
+  Grid grid_;
+  bool twist_reported_;
+  MeshErrors errors_;
+};
+
 MeshErrors measure_mesh(const GivenContact& contact, const solver::Scene& scene, const solver::Model& model,
                         const Known& known, const std::optional<WidePressure>& wide) {
   const solver::Step& load = scene.steps.front();
   const Grid grid = padded(contact.grid);
   const Grid fine = finer(grid);
-  MeshErrors errors;
-  errors.pressures = errors.tractions = ArrayXd::Zero(contact.pressure.size());
-  const Grid whole = wide ? wide->grid : grid;
-  const auto found = fine_pressure(contact, scene, model, known.pressed, finer(whole), wide.has_value());
+  const Grid fine_whole = wide ? finer(wide->grid) : fine;
+  MeshMeasurement measurement(contact, load, known.twist);
+  const auto found = fine_pressure(contact, scene, model, known.pressed, fine_whole, wide.has_value());
   ArrayXd pressure = handed_down(contact.grid, contact.pressure);
   if (found) {
-    const ArrayXd here = resized(finer(whole), fine, *found);
+    const ArrayXd here = resized(fine_whole, fine, *found);
     if (here.sum() >= (1.0 - kMissedLoad) * found->sum()) pressure = here;
   }
-  if (found && wide) {
-    for (const ArrayXd& p : {sampled(whole, *found), solver::restrict_to(whole, finer(whole), *found)}) {
-      const ArrayXd off = deviation_from(wide->values, p);
-      errors.deviation.pressure = std::max(errors.deviation.pressure, off.sum() / wide->values.sum());
-      errors.pressures = errors.pressures.max(resized(whole, contact.grid, off));
-    }
-  }
+  if (found && wide) measurement.add_pressures(*wide, *found);
   const solver::TangentialSolution solution = solve_finer(contact, load, fine, pressure);
   const Sums sums = sums_of(fine, pressure, solution.traction);
-  const auto measure = [&](ArrayXd p, ArrayXd q, const Sums& meant, double twist) {
-    const GivenContact field = with_fields(contact, grid, std::move(p), std::move(q));
-    const LoadErrors loads =
-        load_errors(sums_of(grid, field.pressure, field.traction), meant, contact.friction);
-    errors.loads = {.normal = std::max(errors.loads.normal, loads.normal),
-                    .moment = std::max(errors.loads.moment, loads.moment),
-                    .force = std::max(errors.loads.force, loads.force)};
-    const State fitted = find_state(field, load, std::nullopt);
-    const State reported = known.twist ? find_state(field, load, twist) : fitted;
-    const RightAnswer right = find_right_answer(field, load);
-    Deviation deviation = find_deviation(field, right, reported, fitted);
-    deviation.pressure = errors.deviation.pressure;
-    errors.deviation = larger(errors.deviation, deviation);
-    errors.tractions =
-        errors.tractions.max(resized(grid, contact.grid, solver::norms(field.traction - right.traction)));
-    errors.direction =
-        std::max(errors.direction, noticeable_direction(field, fitted, deviation.tractions).mean);
-  };
-  measure(sampled(grid, pressure), sampled(grid, solution.traction), sums, solution.twist);
-  measure(restrict_to(grid, fine, pressure), restrict_to(grid, fine, solution.traction), sums,
-          solution.twist);
-  if (wide && !found) {  // a pressure that no finer mesh knows: as its tractions, which end where it does
-    errors.deviation.pressure = errors.deviation.tractions;
-    errors.pressures = errors.tractions / contact.friction;
-  }
-  if (!wide || !known.exact || !known.exact->shear) return errors;
-  // The exact answer itself has what no finer mesh shows: a slip ring that is narrower than its cells.
-  const Oracle& exact = *known.exact;
-  const ExactFields fields = exact_fields(exact, field_grid_in_m(contact, grid));
-  const double carried = fields.pressure.sum() * grid.cell_area() / contact.stress_unit;
-  const double normal = load.normal.value_or(0.0) / contact.force_unit();
-  if (!(std::abs(carried / normal - 1.0) <= kMissedLoad) || !fields.traction.allFinite()) return errors;
-  const bool torsion = exact.force == std::array<double, 2>{};
-  measure(fields.pressure / contact.stress_unit, fields.traction / contact.stress_unit,
-          {normal, torsion ? exact.moment / contact.moment_unit() : 0.0,
-           exact.force[0] / contact.force_unit(), exact.force[1] / contact.force_unit()},
-          exact.twist_angle);
-  return errors;
+  measurement.add_field(sampled(grid, pressure), sampled(grid, solution.traction), sums, solution.twist);
+  measurement.add_field(restrict_to(grid, fine, pressure), restrict_to(grid, fine, solution.traction), sums,
+                        solution.twist);
+  if (wide && !found) measurement.take_pressure_from_tractions();
+  if (wide && known.exact && known.exact->shear) measurement.add_exact(*known.exact);
+  return measurement.errors();
 }
 
 ScenePressure on_field(const GivenContact& contact, const WidePressure& wide) {
@@ -215,9 +244,9 @@ ScenePressure on_field(const GivenContact& contact, const WidePressure& wide) {
           .off = off.sum() / wide.values.sum()};
 }
 
-/// Standard deviation of |q| that a field shows where it slips, in each cell: in parts of mu p or of the
-/// largest mu p, whichever is more. With noise |q| stands above its bound as often as below; a program that
-/// keeps the bound has none.
+/// Standard deviation of |q| that a field shows where it slips, for each cell: in parts of mu p or of the
+/// largest mu p, whichever is more. Noisy values of |q| lie above mu p as often as below; a program that
+/// keeps |q| <= mu p shows no noise.
 ArrayXd noise_size(const GivenContact& contact, const RightAnswer& right) {
   const std::vector<Index> ring = slip_ring(contact, right);
   if (ring.empty()) return ArrayXd::Zero(contact.pressure.size());
@@ -235,8 +264,8 @@ ArrayXd noise_size(const GivenContact& contact, const RightAnswer& right) {
          (contact.friction_bound > 0.0).cast<double>();
 }
 
-/// What the right answer deviates from itself with errors of a given size, cell by cell: the worse one of a
-/// random draw and its opposite.
+/// The deviation of the right answer with random errors, whose standard deviation is given for each cell: the
+/// larger one of a draw and its opposite.
 Deviation disturbed(const GivenContact& contact, const RightAnswer& right, const solver::Step& load,
                     const ArrayXd& size) {
   if (!(size.maxCoeff() > 0.0)) return {};

@@ -8,47 +8,47 @@
 
 namespace slipstick::convergence {
 
-/// How far loads that a field carries may be from those that its program meant.
+/// Differences between the loads that a field carries and those that its program meant.
 struct LoadErrors {
   double normal = 0.0;  ///< relative
   double moment = 0.0;  ///< relative
   double force = 0.0;   ///< in parts of the sum of mu p
 };
 
-/// What a mesh does to a right field.
+/// Errors that a mesh causes in right fields, the larger one of several fields each.
 struct MeshErrors {
   Deviation deviation;       ///< from the right answer
   LoadErrors loads;          ///< by midpoints and edge cells
   double direction = 0.0;    ///< of noticeable slip, in the mean, degrees
-  Eigen::ArrayXd pressures;  ///< cells of the field's grid: how far right pressures are from the reference,
-  Eigen::ArrayXd tractions;  ///< and right tractions
+  Eigen::ArrayXd pressures;  ///< cells of the field's grid: distance of right pressures from the reference,
+  Eigen::ArrayXd tractions;  ///< and of right tractions
 };
 
 /// The scene's own pressure, solved on the field's cells.
 struct ScenePressure {
   Eigen::ArrayXd values;     ///< on the field's grid
-  Eigen::ArrayXd deviation;  ///< of the field's from it, under the same normal load
-  double off;  ///< sum of deviations, those outside of the field's grid too, over the pressure's
+  Eigen::ArrayXd deviation;  ///< of the field's pressure from it, under the same normal load
+  double off;                ///< sum of deviations, also outside of the field's grid, over that of `values`
 };
 
-/// What is to be expected of a right field on a given contact's grid, whatever its discretisation. It is
-/// measured on right fields: the solution on a mesh of cells a third as large, under the exact pressure where
-/// that is known, once averaged over this grid's cells and once sampled at their centres.
+/// The errors of right fields on a given contact's grid, whatever their discretisation. They are measured on
+/// the solution on cells a third as large, under the exact pressure where it is known: once averaged over
+/// this grid's cells and once sampled at their centres.
 struct ReferenceOnGrid {
   std::optional<ScenePressure> pressure;  ///< none: it cannot be solved on these cells, or is not wanted
   RightAnswer right;                      ///< with the field's own pressure and loads
-  MeshErrors mesh;                        ///< the larger ones of the two fields
-  Deviation rounding;                     ///< of the right answer, rounded like the field's file
-  Deviation noise;                        ///< and with as much noise as the field shows
-  Eigen::ArrayXd noise_size;              ///< cells: standard deviation, of |q|
+  MeshErrors mesh;
+  Deviation rounding;         ///< of the right answer with the digits of the field's file,
+  Deviation noise;            ///< and with as much noise as the field shows
+  Eigen::ArrayXd noise_size;  ///< cells: standard deviation of |q|
 };
 
-/// What a field's program and its user know of the contact.
+/// What is known of the contact beside the field.
 struct Known {
   std::optional<Oracle> pressed;  ///< the exact normal contact, about the grid's centre
-  std::optional<Oracle> exact;    ///< and the whole exact answer
-  bool twist;                     ///< the program reported its twist; so do the right fields then
-  bool pressure;                  ///< it is taken as given
+  std::optional<Oracle> exact;    ///< the exact answer, about the grid's centre
+  bool twist;                     ///< the program reported its twist; right fields then report theirs
+  bool pressure;                  ///< the field's pressure is taken as given
 };
 
 /// model: the scene's. Throws std::runtime_error where a solve does not converge.

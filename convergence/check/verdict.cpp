@@ -7,7 +7,9 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
+#include "convergence/check/allowed.hpp"
 #include "convergence/oracle/errors.hpp"
 #include "solver/model_solution.hpp"
 
@@ -16,30 +18,6 @@ namespace {
 
 using Eigen::ArrayXd;
 using solver::Index;
-
-constexpr double kDegrees = 180.0 / std::numbers::pi;
-/// The reference fields know the truth to a third of the mesh error, and other discretisations than its own
-/// have errors of the same size: twice what it measures is what a mesh accounts for.
-constexpr double kWholeMesh = 2.0;
-/// Errors drawn at random change what they disturb by as much as another draw does, within this factor.
-constexpr double kOtherDraws = 2.0;
-/// A sum over n cells of what ends at an edge like a square root: by Poisson's summation midpoints miss up
-/// to 4/pi^2 h^2/a^2 of it with the nearest images, and about 1/n with those of the stick area's edge; of two
-/// such sums twice that.
-constexpr double kQuadrature = 2.0;
-/// Degrees between slip and traction that matter to no result.
-constexpr double kUnseenAngle = 0.1;
-/// Where the pressure shows that the program's cells are constant, what is left of a gap is its iteration's,
-/// not the mesh's. So much of it stands for tractions good to a few hundredths.
-constexpr double kUnfinishedGap = 1e-3;
-/// Friction coefficients are not known to more digits.
-constexpr double kFrictionSlack = 1e-3;
-/// Of so many standard deviations no cell of a contact is off by chance.
-constexpr double kLargestDraw = 6.0;
-
-/// Of the normal contact: what a solver's tolerance of a thousandth leaves, in the mean and in a cell.
-constexpr double kNormalTolerance = 2e-3;
-constexpr double kCellTolerance = 5e-3;
 
 std::string percent(double part) {
   const double size = 100.0 * std::abs(part);
@@ -72,34 +50,9 @@ std::string most_text(const GivenContact& c, const ArrayXd& deviation) {
   return ", most at " + place_text(c, cell);
 }
 
-/// Each cell's values in the cells around it, without itself.
-template <typename Take>
-ArrayXd of_neighbours(const solver::Grid& grid, const ArrayXd& values, const Take& take) {
-  ArrayXd result(grid.cells());
-  std::vector<double> around;
-  for (Index cell = 0; cell < grid.cells(); ++cell) {
-    around.clear();
-    for (Index i = cell / grid.n2 - 1; i <= cell / grid.n2 + 1; ++i) {
-      for (Index j = cell % grid.n2 - 1; j <= cell % grid.n2 + 1; ++j) {
-        const Index other = i * grid.n2 + j;
-        if (i >= 0 && i < grid.n1 && j >= 0 && j < grid.n2 && other != cell) around.push_back(values[other]);
-      }
-    }
-    std::ranges::sort(around);
-    result[cell] = take(around);
-  }
-  return result;
-}
-
-/// The cell that is furthest beyond what the mesh, its neighbours, noise and digits explain. What right
-/// fields show may stand a cell further on, and where half of the neighbours are off the cell may be, too.
+/// The cell that is furthest beyond its allowed error.
 Judged judge_cells(const std::string& what, const std::string& key, const GivenContact& c, double scale,
-                   const ArrayXd& deviation, const ArrayXd& mesh, const ArrayXd& chance) {
-  const auto largest = [](const std::vector<double>& around) { return around.back(); };
-  const auto median = [](const std::vector<double>& around) { return around[around.size() / 2]; };
-  const ArrayXd allowed = kCellTolerance * scale + chance +
-                          kWholeMesh * (mesh.max(of_neighbours(c.grid, mesh, largest)) +
-                                        of_neighbours(c.grid, deviation, median));
+                   const ArrayXd& deviation, const ArrayXd& allowed) {
   Index cell = 0;
   (deviation / allowed).maxCoeff(&cell);
   return {key, deviation[cell] / scale, allowed[cell] / scale, "",
@@ -107,79 +60,14 @@ Judged judge_cells(const std::string& what, const std::string& key, const GivenC
                       percent(deviation[cell] / scale), allowed_text(allowed[cell] / scale))};
 }
 
-/// By how much rounding and noise may change sums over the contact, relative.
-double error_of_sums(const Examination& e) {
-  const GivenContact& c = e.contact;
-  return c.traction_rounding.sum() / solver::norms(c.traction).sum() +
-         c.bound_rounding.sum() / c.friction_bound.sum() +
-         kLargestDraw * std::sqrt(e.reference.noise_size.square().sum()) / c.friction_bound.sum();
+/// Judges a field in the mean and cell by cell; only the mean is put in words where it is wrong.
+void judge_field(std::vector<Judged>& judged, const Judged& mean, Judged cells) {
+  if (!mean.holds()) cells.wrong.clear();
+  judged.push_back(mean);
+  judged.push_back(std::move(cells));
 }
 
-/// By how much tractions that are wrong by a part may change the gap, over the energy.
-double gap_of_tolerance(const Examination& e, double tolerance) {
-  const GivenContact& c = e.contact;
-  const ArrayXd reach = solver::norms(e.state.slip) + solver::norms(c.displacement);
-  return tolerance * (c.friction_bound * reach).sum() / c.energy();
-}
-
-/// |q| <= mu p up to a file's digits and a solver's tolerance: else there is no gap.
-bool is_bounded(const GivenContact& c) {
-  const ArrayXd beyond = solver::norms(c.traction) - (1.0 + kOnCircle) * c.friction_bound -
-                         c.traction_rounding - c.bound_rounding;
-  return beyond.maxCoeff() <= kNextToNothing * kOnCircle * c.friction_bound.maxCoeff();
-}
-
-/// What is allowed of each quantity.
-struct Allowed {
-  double normal, moment, force;
-  double pressure;
-  double motion;
-  double tractions;
-  double friction;
-  double direction;  ///< degrees
-  double gap;
-  double discrete_gap;
-};
-
-Allowed find_allowed(const Examination& e, std::optional<double> tolerance) {
-  const ReferenceOnGrid& y = e.reference;
-  const double discrete_gap = kIterationGap + kOtherDraws * y.rounding.gap;
-  if (tolerance) {
-    const double t = *tolerance;
-    return {t, t, t, t, t, t, t, kDegrees * t, discrete_gap + gap_of_tolerance(e, t), discrete_gap};
-  }
-  const auto by_chance = [&](double Deviation::*part) {
-    return kOtherDraws * (y.noise.*part + y.rounding.*part);
-  };
-  const double quadrature = kQuadrature / static_cast<double>((e.contact.pressure > 0.0).count());
-  const double sums = error_of_sums(e);
-  // A program that solves this grid's problem knows its own sums and its own twist.
-  const bool discrete = e.constant_cells && is_bounded(e.contact) && e.deviation.gap <= discrete_gap;
-  const auto load = [&](double measured) {
-    return std::max(discrete ? 0.0 : kWholeMesh * measured, quadrature) + sums;
-  };
-  const double tractions = kWholeMesh * y.mesh.deviation.tractions + by_chance(&Deviation::tractions);
-  return {
-      .normal = load(y.mesh.loads.normal),
-      .moment = solver::value_if<solver::Twist>(e.scene.steps.front().torsion)
-                    ? std::max(kWholeMesh * y.mesh.deviation.moment, quadrature) + sums
-                    : load(y.mesh.loads.moment),
-      .force = load(y.mesh.loads.force),
-      .pressure = kNormalTolerance + kWholeMesh * y.mesh.deviation.pressure +
-                  kOtherDraws * (e.contact.bound_rounding.sum() + y.noise_size.sum()) /
-                      e.contact.friction_bound.sum(),
-      .motion = (discrete ? 0.0 : kWholeMesh * y.mesh.deviation.motion) + quadrature +
-                by_chance(&Deviation::motion),
-      .tractions = tractions,
-      .friction = kFrictionSlack + kWholeMesh * y.mesh.deviation.friction + by_chance(&Deviation::friction),
-      .direction = kUnseenAngle + kWholeMesh * y.mesh.direction + kDegrees * by_chance(&Deviation::tractions),
-      .gap = discrete_gap +
-             std::min(kWholeMesh * y.mesh.deviation.gap, e.constant_cells ? kUnfinishedGap : INFINITY) +
-             kOtherDraws * y.noise.gap,
-      .discrete_gap = discrete_gap};
-}
-
-/// Normal load and pressure. A contact may end a cell too early or too late.
+/// Judges normal load and pressure. A contact may end a cell too early or too late.
 void judge_pressure(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed) {
   const solver::Step& load = e.scene.steps.front();
   const GivenContact& c = e.contact;
@@ -198,20 +86,18 @@ void judge_pressure(std::vector<Judged>& judged, const Examination& e, const All
   }
   if (!e.reference.pressure) return;
   const ScenePressure& right = *e.reference.pressure;
-  judged.push_back(
+  judge_field(
+      judged,
       {"pressure", right.off, allowed.pressure, "",
        fmt::format("the contact has another shape: its pressure is {} off in the mean{}{}",
-                   percent(right.off), most_text(c, right.deviation), allowed_text(allowed.pressure))});
-  const ArrayXd chance =
-      (kLargestDraw * e.reference.noise_size + kOtherDraws * c.bound_rounding) / c.friction;
-  const bool everywhere = !judged.back().holds();
-  judged.push_back(judge_cells("the pressure", "pressure_cell", c, right.values.maxCoeff(), right.deviation,
-                               e.reference.mesh.pressures, chance));
-  if (everywhere) judged.back().wrong.clear();
+                   percent(right.off), most_text(c, right.deviation), allowed_text(allowed.pressure))},
+      judge_cells("the pressure", "pressure_cell", c, right.values.maxCoeff(), right.deviation,
+                  allowed.pressure_cells));
 }
 
-/// Against the moment asked for; a ratio of the limit moment may be one of the exact limit, or of that of the
-/// field's own pressure. Under an imposed twist against the one that it causes. None: none is known.
+/// The relative error of the moment, which the scene asks for or the imposed twist causes. A scene's ratio
+/// may refer to the exact limit moment or to the limit of the field's own pressure. None: the moment is not
+/// known.
 std::optional<double> moment_error(const Examination& e) {
   const solver::TorsionLoad& torsion = e.scene.steps.front().torsion;
   if (std::holds_alternative<solver::Twist>(torsion)) return e.deviation.moment;
@@ -234,21 +120,14 @@ void judge_loads(std::vector<Judged>& judged, const Examination& e, const Allowe
                                 allowed_text(allowed.force))});
 }
 
-/// By what part of mu p |q| exceeds it, beyond what the file's digits and noise leave open. In cells that
-/// carry next to nothing, of a part of the largest mu p.
-double friction_excess(const Examination& e) {
-  const GivenContact& c = e.contact;
-  const ArrayXd beyond = solver::norms(c.traction) - c.friction_bound - c.traction_rounding -
-                         c.bound_rounding - kLargestDraw * e.reference.noise_size;
-  return (beyond / c.friction_bound.max(kNextToNothing * c.friction_bound.maxCoeff())).maxCoeff();
-}
-
+/// Whether the scene has no tangential force and imposes no displacement.
 bool is_torsion(const solver::Scene& scene) {
   const solver::Step& load = scene.steps.front();
   return !load.displacement && load.force == std::array<double, 2>{};
 }
 
-/// A twist that was inferred from a field that breaks Coulomb's law means little: no sentence speaks of it.
+/// Judges motion and tractions. Where Coulomb's law is broken, an inferred twist means little: no sentence
+/// mentions it.
 void judge_motion(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed, bool lawful) {
   if (e.reference.right.scaled) return;  // the right motion and tractions are those of other loads
   const bool torsion = is_torsion(e.scene);
@@ -259,37 +138,35 @@ void judge_motion(std::vector<Judged>& judged, const Examination& e, const Allow
   if (!e.twist_given && !lawful) motion.wrong.clear();
   judged.push_back(motion);
   const GivenContact& c = e.contact;
-  const ArrayXd deviation = solver::norms(c.traction - e.reference.right.traction);
-  judged.push_back({"tractions", e.deviation.tractions, allowed.tractions, "",
-                    fmt::format("the tractions are {} off in the mean{}{}", percent(e.deviation.tractions),
-                                most_text(c, deviation), allowed_text(allowed.tractions))});
-  const ArrayXd chance =
-      kLargestDraw * e.reference.noise_size + kOtherDraws * (c.traction_rounding + c.bound_rounding);
-  const bool everywhere = !judged.back().holds();
-  judged.push_back(judge_cells("the traction", "traction_cell", c, c.friction_bound.maxCoeff(), deviation,
-                               e.reference.mesh.tractions, chance));
-  if (everywhere) judged.back().wrong.clear();
+  const ArrayXd deviation = traction_deviation(e);
+  judge_field(judged,
+              {"tractions", e.deviation.tractions, allowed.tractions, "",
+               fmt::format("the tractions are {} off in the mean{}{}", percent(e.deviation.tractions),
+                           most_text(c, deviation), allowed_text(allowed.tractions))},
+              judge_cells("the traction", "traction_cell", c, c.friction_bound.maxCoeff(), deviation,
+                          allowed.traction_cells));
 }
 
 void judge_coulomb(std::vector<Judged>& judged, const Examination& e, const Allowed& allowed) {
   judged.push_back(judge_error("|q|/p in the slip ring", "friction", e.deviation.friction, allowed.friction));
   const double excess = friction_excess(e);
-  judged.push_back({"friction_bound", excess, std::max(kFrictionSlack, allowed.friction - kFrictionSlack), "",
-                    fmt::format("|q| exceeds mu p by {}{}", percent(excess), allowed_text(kFrictionSlack))});
+  judged.push_back(
+      {"friction_bound", excess, allowed.friction_bound, "",
+       fmt::format("|q| exceeds mu p by {}{}", percent(excess), allowed_text(allowed.friction_bound))});
   const bool within_friction = judged.back().holds();
   judged.push_back({"slip_direction", e.direction.mean, allowed.direction, "",
                     fmt::format("slip is not opposed to traction: {:.2g} degrees off in the mean (allowed: "
                                 "{:.2g})",
                                 e.direction.mean, allowed.direction)});
-  if (!within_friction) return;  // what it sums is not positive then
+  if (!within_friction) return;  // the gap is a sum of positive parts only within friction
   judged.push_back({"gap", e.deviation.gap, allowed.gap, "Coulomb's law holds",
                     fmt::format("Coulomb's law is broken: the gap is {} of the energy{}",
                                 percent(e.deviation.gap), allowed_text(allowed.gap))});
 }
 
-/// Whether cell-constant tractions solve the problem of this very grid.
+/// Judges whether the field solves the problem of its own grid, with constant tractions in each cell.
 Judged judge_discrete(const Examination& e, const Allowed& allowed) {
-  return {"discrete", is_bounded(e.contact) ? e.certificate.gap : NAN, allowed.discrete_gap,
+  return {"discrete", keeps_friction_bound(e.contact) ? e.certificate.gap : NAN, allowed.discrete_gap,
           "it solves its own grid's problem", "it does not solve its own grid's problem"};
 }
 
@@ -314,14 +191,14 @@ bool has_right_pressure(const std::vector<Judged>& judged) {
   return holds(judged, "normal_load_error") && holds(judged, "pressure");
 }
 
-/// With the twist that it leads to.
+/// The kernel's name, with the twist that follows from it.
 std::string kernel_text(const Hypothesis& kernel, const Examination& e) {
   if (e.reference.right.scaled || !is_torsion(e.scene)) return kernel.name;
   return kernel.name + fmt::format(" (the twist is {:.6g} rad with that, {})", kernel.twist,
                                    off_text(relative_error(kernel.twist, e.reference.right.twist)));
 }
 
-/// What it may be that makes a twist wrong, by the ratio to the one that fits the tractions.
+/// The mistake that explains the ratio of the reported twist to the one that fits the tractions.
 std::string twist_mistake(const Examination& e, double allowed) {
   struct Ratio {
     double value;
@@ -333,7 +210,7 @@ std::string twist_mistake(const Examination& e, double allowed) {
   const std::array<Ratio, 5> ratios{{{lower / (lower + upper), "the compliance of one body only"},
                                      {upper / (lower + upper), "the compliance of one body only"},
                                      {2.0, "twice the compliance of the pair"},
-                                     {kDegrees, "a twist in degrees"},
+                                     {180.0 / std::numbers::pi, "a twist in degrees"},
                                      {-1.0, "a twist of the other sense"}}};
   for (const Ratio& ratio : ratios) {
     if (std::abs(e.state.twist / e.fitted.twist / ratio.value - 1.0) <= allowed) return ratio.words;
@@ -341,21 +218,12 @@ std::string twist_mistake(const Examination& e, double allowed) {
   return fmt::format("a twist that is not that of these tractions, {:.6g} rad", e.fitted.twist);
 }
 
-/// Whether all hold but those whose quantity begins with one of these words.
-bool all_hold_but(const std::vector<Judged>& judged, const std::vector<std::string>& words) {
-  return std::ranges::all_of(judged, [&](const Judged& item) {
-    return item.holds() || std::ranges::any_of(words, [&](const std::string& word) {
-             return item.quantity.starts_with(word);
-           });
-  });
-}
-
-/// Mistakes that leave a good field where they are taken back, and no others.
+/// Names only mistakes whose correction would leave a good field.
 std::vector<std::string> causes(const Examination& e, const std::vector<Judged>& judged,
                                 const std::optional<Diagnosis>& diagnosis, const Allowed& allowed) {
   std::vector<std::string> causes;
-  constexpr double kSampled = 1e-3;
-  constexpr double kCollapsed = 0.1;
+  constexpr double kSampled = 1e-3;   // relative error in L1 of exact values at cell centres, rounded
+  constexpr double kCollapsed = 0.1;  // gap that a kernel leaves, over the gap that it explains
   if (!has_right_pressure(judged) && e.exact.oracle && !std::isfinite(e.exact.oracle->peak_pressure) &&
       pressure_error(e.contact.stress_unit * e.contact.pressure, *e.exact.oracle, e.contact.grid_in_m()).l1 <=
           kSampled) {
@@ -363,11 +231,13 @@ std::vector<std::string> causes(const Examination& e, const std::vector<Judged>&
         "a pressure that is infinite at a place, sampled at cell centres in place of averaged");
   }
   if (!diagnosis || !has_right_pressure(judged)) return causes;
-  if (e.twist_given && !holds(judged, "twist") && all_hold_but(judged, {"twist"})) {
+  const bool others_hold = std::ranges::all_of(
+      judged, [](const Judged& item) { return item.holds() || item.quantity == "twist"; });
+  if (e.twist_given && !holds(judged, "twist") && others_hold) {
     causes.push_back(twist_mistake(e, allowed.motion));
     return causes;
   }
-  // To what the field's own problem leaves, and not because what the mesh accounts for is nearly as much.
+  // A cause has to lower the gap to what is allowed, and clearly: the mesh alone may nearly explain it.
   const double left = e.constant_cells ? allowed.discrete_gap : allowed.gap;
   const double gap = std::min(left, kCollapsed * diagnosis->reference_kernel.gap);
   if (const auto& friction = diagnosis->friction;
@@ -390,7 +260,7 @@ std::vector<std::string> causes(const Examination& e, const std::vector<Judged>&
   return causes;
 }
 
-/// What is wrong beside the first, what is right, and what that looks like.
+/// The likely causes, what else is wrong, and what is right.
 std::string details_of(const std::vector<Judged>& judged, const Judged& discrete,
                        const std::vector<std::string>& causes) {
   std::vector<std::string> right;
@@ -398,7 +268,7 @@ std::string details_of(const std::vector<Judged>& judged, const Judged& discrete
   const bool lawful = holds(judged, "slip_direction") && holds(judged, "gap") && holds(judged, "tractions") &&
                       holds(judged, "friction");
   for (const Judged& item : judged) {
-    if (item.holds() && item.quantity == "gap" && !lawful) continue;  // it would contradict the rest
+    if (item.holds() && item.quantity == "gap" && !lawful) continue;  // "Coulomb's law holds" would mislead
     const std::string& text = item.holds() ? item.right : item.wrong;
     if (!text.empty()) (item.holds() ? right : wrong).push_back(text);
   }
@@ -419,7 +289,7 @@ std::string headline_of(const Examination& e, const std::vector<Judged>& judged,
   std::string text = "right within its mesh";
   if (!e.reference.pressure) {
     text += e.pressure_given ? ", with the pressure taken as given"
-                             : ", with the pressure taken as it is (the scene's stands on other cells)";
+                             : ", with the pressure taken as it is (the scene's is solved on other cells)";
   }
   if (e.reference.right.scaled) return text;
   return text + fmt::format(": the tractions are {} off in the mean{}", percent(e.deviation.tractions),
@@ -438,7 +308,7 @@ Verdict reach_verdict(const Examination& e, std::optional<double> tolerance) {
   std::vector<Judged> law;
   judge_coulomb(law, e, allowed);
   const bool lawful = all_hold(law);
-  // Friction comes before what follows from it, the gap last.
+  // Friction comes first, then motion and tractions, which follow from it; slip direction and gap come last.
   const auto follows = law.begin() + 2;
   judged.insert(judged.end(), law.begin(), follows);
   judge_motion(judged, e, allowed, lawful);

@@ -9,32 +9,32 @@
 
 namespace slipstick::convergence {
 
-/// A number that must not exceed what is allowed. NaN exceeds everything.
+/// A number and its allowed maximum, which NaN exceeds.
 struct Judged {
   std::string quantity;
   double value;
   double allowed;
-  std::string right;  ///< how a sentence says that it holds; empty: it does not
-  std::string wrong;  ///< and that it is not: by how much, where, against what allowed
+  std::string right;  ///< words for the verdict where it holds; empty: none
+  std::string wrong;  ///< and where it does not: how much, where, and the maximum; empty: none
 
   bool holds() const { return value <= allowed; }
 };
 
-/// Two answers. Is the field right within its mesh: pressure, loads, motion, tractions and Coulomb's law, in
-/// the mean and cell by cell, each against what right fields of any discretisation have on this very mesh (or
-/// against the tolerance that a user asks for). And does it solve its own grid's problem, of cell-constant
-/// tractions, up to iteration error.
+/// Two answers. Is the field right within its mesh? Pressure, loads, motion, tractions and Coulomb's law are
+/// judged in the mean and cell by cell, against the errors of right fields of any discretisation on the same
+/// mesh, or against the user's tolerance. Does it solve its own grid's problem, with constant tractions in
+/// each cell, up to iteration error?
 struct Verdict {
   std::vector<Judged> judged;
   Judged discrete;
   std::optional<Diagnosis> diagnosis;  ///< of a field that is wrong
-  std::string headline;                ///< the first quantity that is wrong, or that all are right
-  std::string details;                 ///< what else is wrong, what is right, and the cause
+  std::string headline;                ///< names the first quantity that is wrong, or says that all are right
+  std::string details;                 ///< the cause, what else is wrong, and what is right
 
   bool within_mesh() const;
 };
 
-/// tolerance: on loads, motion and tractions, in place of what the mesh leaves open.
+/// tolerance: as in find_allowed().
 Verdict reach_verdict(const Examination& examination, std::optional<double> tolerance);
 
 }  // namespace slipstick::convergence

@@ -3,9 +3,11 @@
 #include <fmt/chrono.h>
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <filesystem>
+#include <iterator>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -14,6 +16,7 @@
 #include <utility>
 
 #include "convergence/results/json_text.hpp"
+#include "convergence/runs/run_batch.hpp"
 #include "convergence/studies/budget.hpp"
 #include "convergence/studies/study.hpp"
 #include "solver/input/input_error.hpp"
@@ -56,26 +59,24 @@ std::string find_dominant_error(const Judgement& judgement, const ProcessPool& p
       budget.reference);
 }
 
+/// Equal scenes are solved once, and the first gate has their time.
 void solve_scenes(const std::vector<Gate>& gates, const ProcessPool& pool, Sources& sources) {
-  std::vector<std::size_t> places;
-  std::vector<PreparedRun> runs;
+  RunBatch batch;
+  std::set<std::pair<fs::path, std::vector<std::string>>> timed;
   for (std::size_t i = 0; i < gates.size(); ++i) {
     if (gates[i].kind != GateSource::scene) continue;
+    const auto take = [&timed, &gate = gates[i], &source = sources[i]](const Json& result) {
+      source.result = result;
+      if (result.value("out_of_memory", false)) source.refused = result["message"];
+      if (timed.emplace(gate.source, gate.overrides).second) source.seconds = seconds_of(result);
+    };
     try {
-      runs.push_back(prepare_run({.scene = gates[i].source, .overrides = gates[i].overrides}));
-      places.push_back(i);
+      batch.add({.scene = gates[i].source, .overrides = gates[i].overrides}, take);
     } catch (const InputError& error) {
       sources[i].refused = error.what();
     }
   }
-  const std::vector<Json> results = pool.run_prepared(runs);
-  std::set<std::string> timed;
-  for (std::size_t k = 0; k < places.size(); ++k) {
-    Source& source = sources[places[k]];
-    source.result = results[k];
-    if (results[k].value("out_of_memory", false)) source.refused = results[k]["message"];
-    if (timed.insert(runs[k].name).second) source.seconds = seconds_of(results[k]);
-  }
+  batch.run(pool);
 }
 
 /// A study that cannot be judged, for example since solves did not converge, is a result that failed.
@@ -161,11 +162,12 @@ std::vector<PreparedRun> gate_runs(const std::vector<Gate>& gates, const Process
   for (const Gate& gate : with_others(gates)) {
     if (gate.kind == GateSource::result) continue;
     try {
-      std::vector<RunSpec> specs{{.scene = gate.source, .overrides = gate.overrides}};
-      if (gate.kind == GateSource::study) {
-        specs = study_runs(read_study(gate.source, gate.overrides), pool.memory_limit());
+      if (gate.kind == GateSource::scene) {
+        runs.push_back(prepare_run({.scene = gate.source, .overrides = gate.overrides}));
+        continue;
       }
-      for (const RunSpec& spec : specs) runs.push_back(prepare_run(spec));
+      std::ranges::move(study_runs(read_study(gate.source, gate.overrides), pool.memory_limit()),
+                        std::back_inserter(runs));
     } catch (const InputError&) {  // its gate is refused when it is judged
     }
   }

@@ -3,7 +3,7 @@
 
     audit.py hard.json [--every N]
 
-Influence coefficients are integrated and summed here anew (Cerruti's and Boussinesq's point loads; Johnson 1985,
+Influence coefficients are integrated and summed here a second time (Cerruti's and Boussinesq's point loads; Johnson 1985,
 sections 3.2 and 3.6), the scenes are read by Python's own TOML. From pressure and tractions follow displacements; from
 those the slip, Coulomb's law as a duality gap, the loads, the bound, the normal contact and its edge. One line for each
 case that is beyond what its tolerance promises; exit code 1 where there is one.

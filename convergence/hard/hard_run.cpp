@@ -12,6 +12,8 @@
 
 #include "convergence/hard/hard_judgement.hpp"
 #include "convergence/results/provenance.hpp"
+#include "convergence/runs/failed_runs.hpp"
+#include "convergence/runs/run_batch.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
@@ -28,41 +30,14 @@ struct Trial {
   std::filesystem::path fields = {};
 };
 
-/// Runs whose answers go back to the trials that asked for them.
-class TrialRuns {
- public:
-  void add(Trial& trial, RunSpec spec) {
-    try {
-      runs_.push_back(prepare_run(spec));
-      asked_.push_back({&trial, std::move(spec)});
-    } catch (const solver::InputError& error) {
-      refused_.push_back({&trial, std::move(spec), error.what()});
-    }
+/// Adds a run of a trial; one that cannot be read is refused at once.
+void add_run(RunBatch& batch, const RunSpec& spec, const RunBatch::Take& take) {
+  try {
+    batch.add(spec, take);
+  } catch (const solver::InputError& error) {
+    take(Json{{"status", "refused"}, {"message", error.what()}});
   }
-  /// answer(trial, spec, result), for each; what cannot be read is refused.
-  template <typename Answer>
-  void run(const ProcessPool& pool, const Answer& answer) {
-    const std::vector<Json> results = pool.run_prepared(runs_);
-    for (std::size_t i = 0; i < results.size(); ++i) answer(*asked_[i].trial, asked_[i].spec, results[i]);
-    for (const auto& [trial, spec, why] : refused_) {
-      answer(*trial, spec, Json{{"status", "refused"}, {"message", why}});
-    }
-  }
-
- private:
-  struct Asked {
-    Trial* trial;
-    RunSpec spec;
-  };
-  struct Refused {
-    Trial* trial;
-    RunSpec spec;
-    std::string why;
-  };
-  std::vector<PreparedRun> runs_;
-  std::vector<Asked> asked_;
-  std::vector<Refused> refused_;
-};
+}
 
 Json verdict_json(const std::string& verdict, const std::string& reason, const Json& numbers) {
   Json json{{"verdict", verdict}};
@@ -102,31 +77,34 @@ void judge_too(Trial& trial, HardVerdict verdict, std::string reason) {
   trial.judged.reason = std::move(reason);
 }
 
+void judge_variant(Trial& trial, Variant variant, const Json& result) {
+  const std::string name = to_string(variant);
+  const std::string status = result["status"];
+  const double difference =
+      status == "converged" ? variant_difference(trial.result, result, variant) : std::nan("");
+  set_number(trial.variants, name, difference, status);
+  if (status != "converged") {
+    const HardVerdict verdict = status == "not_converged" ? HardVerdict::not_converged : HardVerdict::wrong;
+    judge_too(trial, verdict, fmt::format("{} it is {}: {}", name, status, result.value("message", "")));
+  } else if (!(difference <= same_answer(trial.result))) {
+    judge_too(trial, HardVerdict::wrong, fmt::format("{} it differs by {:.3g}", name, difference));
+  }
+}
+
 void judge_variants(std::vector<Trial>& trials, const ProcessPool& pool) {
-  TrialRuns batch;
+  RunBatch batch;
   for (Trial& trial : trials) {
     if (trial.judged.verdict != HardVerdict::certified) continue;
     for (const Variant variant : kVariants) {
       if (const std::string reason = why_not(*trial.scene, variant); !reason.empty()) {
         set_missing(trial.variants, to_string(variant), reason);
       } else {
-        batch.add(trial, seen(trial, variant));
+        add_run(batch, seen(trial, variant),
+                [&trial, variant](const Json& result) { judge_variant(trial, variant, result); });
       }
     }
   }
-  batch.run(pool, [](Trial& trial, const RunSpec& spec, const Json& result) {
-    const std::string name = to_string(spec.variant);
-    const std::string status = result["status"];
-    const double difference =
-        status == "converged" ? variant_difference(trial.result, result, spec.variant) : std::nan("");
-    set_number(trial.variants, name, difference, status);
-    if (status != "converged") {
-      const HardVerdict verdict = status == "not_converged" ? HardVerdict::not_converged : HardVerdict::wrong;
-      judge_too(trial, verdict, fmt::format("{} it is {}: {}", name, status, result.value("message", "")));
-    } else if (!(difference <= same_answer(trial.result))) {
-      judge_too(trial, HardVerdict::wrong, fmt::format("{} it differs by {:.3g}", name, difference));
-    }
-  });
+  batch.run(pool);
 }
 
 /// Whether only finer meshes can say how far an answer is off.
@@ -148,21 +126,20 @@ bool is_at_limit(const Json& result) {
 void judge_by_finer_meshes(std::vector<Trial>& trials, const ProcessPool& pool) {
   std::map<Trial*, std::vector<double>> found;
   std::set<Trial*> refused;
-  TrialRuns batch;
+  RunBatch batch;
   for (Trial& trial : trials) {
     if (!needs_finer_meshes(trial)) continue;
     for (const int finer : {2, 4}) {
       RunSpec spec = trial.hard->run;
       for (std::string& key : grid_of(trial.result, finer)) spec.overrides.push_back(std::move(key));
       spec.overrides.push_back(fmt::format("solver.substeps={}", finer * trial.scene->substeps));
-      batch.add(trial, std::move(spec));
+      add_run(batch, spec, [&trial, &refused, &found](const Json& result) {
+        if (result["status"] == "refused" && is_at_limit(trial.result)) refused.insert(&trial);
+        found[&trial].push_back(is_converged(result) ? main_value(result) : std::nan(""));
+      });
     }
   }
-  batch.run(pool, [&](Trial& trial, const RunSpec&, const Json& result) {
-    const bool converged = result["status"] == "converged";
-    if (result["status"] == "refused" && is_at_limit(trial.result)) refused.insert(&trial);
-    found[&trial].push_back(converged ? main_value(result) : std::nan(""));
-  });
+  batch.run(pool);
   for (const auto& [trial, finer] : found) {
     Json& numbers = trial->judged.numbers;
     const MeshReference reference =
@@ -182,16 +159,16 @@ void judge_by_finer_meshes(std::vector<Trial>& trials, const ProcessPool& pool) 
 void compare_methods(std::vector<Trial>& trials, const std::vector<std::string>& methods,
                      const ProcessPool& pool) {
   for (const std::string& method : methods) {
-    TrialRuns batch;
+    RunBatch batch;
     for (Trial& trial : trials) {
       RunSpec spec = trial.hard->run;
       spec.overrides.push_back(fmt::format("solver.method=\"{}\"", method));
-      batch.add(trial, std::move(spec));
+      add_run(batch, spec, [&trial, &method](const Json& result) {
+        const ComparedAnswer compared = compare_answer(trial.result, result);
+        trial.methods[method] = verdict_json(to_string(compared.verdict), compared.reason, compared.numbers);
+      });
     }
-    batch.run(pool, [&](Trial& trial, const RunSpec&, const Json& result) {
-      const ComparedAnswer compared = compare_answer(trial.result, result);
-      trial.methods[method] = verdict_json(to_string(compared.verdict), compared.reason, compared.numbers);
-    });
+    batch.run(pool);
   }
 }
 
@@ -242,22 +219,22 @@ Json method_counts(const std::vector<Trial>& trials, const std::string& method) 
 
 Json run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& options, const ProcessPool& pool) {
   std::vector<Trial> trials(cases.size());
-  TrialRuns first;
+  RunBatch first;
   for (std::size_t i = 0; i < cases.size(); ++i) {
-    trials[i].hard = &cases[i];
+    Trial& trial = trials[i];
+    trial.hard = &cases[i];
     RunSpec spec = cases[i].run;
-    if (!options.fields.empty()) trials[i].fields = options.fields / fmt::format("{:05}.csv", i);
-    spec.fields = trials[i].fields;
+    if (!options.fields.empty()) trial.fields = options.fields / fmt::format("{:05}.csv", i);
+    spec.fields = trial.fields;
     spec.step_before = !spec.fields.empty();
-    first.add(trials[i], std::move(spec));
+    add_run(first, spec, [&trial](const Json& result) {
+      trial.result = result;
+      trial.judged = judge_alone(result);
+      if (trial.judged.verdict != HardVerdict::certified) return;
+      trial.scene = solver::read_scene(trial.hard->run.scene, trial.hard->run.overrides);
+    });
   }
-  first.run(pool, [](Trial& trial, const RunSpec& spec, const Json& result) {
-    trial.result = result;
-    trial.judged = judge_alone(result);
-    if (trial.judged.verdict == HardVerdict::certified) {
-      trial.scene = solver::read_scene(spec.scene, spec.overrides);
-    }
-  });
+  first.run(pool);
   if (options.variants) judge_variants(trials, pool);
   if (options.finer_meshes) judge_by_finer_meshes(trials, pool);
   compare_methods(trials, options.methods, pool);

@@ -12,7 +12,7 @@
 
 namespace slipstick::convergence {
 
-/// What makes the dimensionless law that of a scene, SI.
+/// The units in which the dimensionless law is a scene's, SI.
 struct LawUnits {
   double friction;
   double normal_load;                        ///< N
@@ -26,7 +26,7 @@ struct LawUnits {
   }
 };
 
-/// Whose law it is.
+/// The contact that a law describes.
 struct LawContact {
   std::string name;
   std::shared_ptr<const analytic::Profile> profile;
@@ -38,12 +38,12 @@ struct LawContact {
 /// torsion has no exact law.
 LawContact law_contact(const solver::Scene& scene);
 
-/// What a law may cost and how exact it has to be.
+/// Errors and sizes of a law's forms.
 struct LawOptions {
   double error = 1e-6;               ///< relative, of the polynomials
   double table_error = 1e-4;         ///< over the limit, of the table
   double element_error = 1e-2;       ///< over the limit, of the elements on first loading
-  std::optional<int> elements = {};  ///< so many, in place of their error
+  std::optional<int> elements = {};  ///< a number of elements, instead of their error
   int limit_loads = 65;
 };
 
@@ -53,7 +53,7 @@ struct SpringAndCap {
   double error;
 };
 
-/// The law in each form in which programs take it. Forms are dimensionless; units turn them into the scene's.
+/// The law in several forms. They are dimensionless; contact.units turn them into the scene's.
 struct ContactLaw {
   LawContact contact;
   TwistLaw law;

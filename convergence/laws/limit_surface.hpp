@@ -15,7 +15,7 @@ struct LimitLoad {
   double moment;  ///< M/M_lim
 };
 
-/// What a contact carries: forces in any direction, turned about the axis of moments.
+/// The loads that a contact carries. The surface is symmetric about the axis of moments.
 struct LimitSurface {
   std::vector<LimitLoad> loads;  ///< from the moment alone to the force alone
   /// Between loads next to each other the surface lies between their chord and their tangents, which are so
@@ -27,7 +27,7 @@ struct LimitSurface {
   LimitLoad ellipsoid_farthest;
 };
 
-/// By so many loads, whose motions are spread evenly; at least 3, or std::domain_error.
+/// Computes a number of loads, whose motions are spread evenly. Throws std::domain_error for fewer than 3.
 LimitSurface limit_surface(const analytic::Profile& profile, int loads);
 
 }  // namespace slipstick::convergence

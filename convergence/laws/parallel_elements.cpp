@@ -15,10 +15,11 @@ namespace {
 
 using analytic::TorsionState;
 
+/// Error of m that elements may be asked for; kMaxElements reach it.
 constexpr double kMinElementError = 1e-5;
-/// A file of some 10 MB.
+/// Rows of a table at equal steps: a file of some 10 MB.
 constexpr std::size_t kMaxEvenRows = 100000;
-/// Below that of 200 elements for each profile.
+/// Error of m; 200 elements have a larger one with each profile.
 constexpr double kMinCountedError = 1e-8;
 
 void require_error(double error, double least) {
@@ -82,7 +83,8 @@ Corner next_corner(const Corner& from, double stick_ratio, const TorsionState& l
   return {end.twist, std::min(1.0, end.moment_ratio + error)};
 }
 
-/// Of the lines' error, which falls and then rises between two corners, and falls behind the last.
+/// The total variation of the lines' error, which falls and rises between two corners and falls after the
+/// last.
 double total_variation(const std::vector<Corner>& corners, const analytic::Profile& profile) {
   double sum = 0.0;
   double from = 0.0;
@@ -99,7 +101,7 @@ double total_variation(const std::vector<Corner>& corners, const analytic::Profi
   return sum + from;
 }
 
-/// Unless they are more than `most`: then so many and one more, which end too early.
+/// The elements of an error; if they were more than `most`, the first `most + 1` of them.
 ParallelElements with_error(const analytic::Profile& profile, double error, std::size_t most = SIZE_MAX - 1) {
   const TorsionState last = analytic::from_moment_deficit(error, profile);
   std::vector<Corner> corners{{0.0, 0.0}};

@@ -37,7 +37,7 @@ struct ParallelElements {
   double moment_ratio_at(double twist) const;  ///< on first loading
 };
 
-/// The errors that these may have.
+/// The range of errors of m, and of numbers of elements, that may be asked for.
 inline constexpr double kMinLineError = 1e-7;
 inline constexpr double kMaxLineError = 0.5;
 inline constexpr int kMaxElements = 200;

@@ -25,12 +25,12 @@ TorsionState at_logarithm(double logarithm, const analytic::Profile& profile) {
                                    : analytic::from_moment_deficit(std::exp(-logarithm), profile);
 }
 
-/// What a cycle loses over 4 M phi, to a relative error.
+/// The energy that a cycle loses, over 4 M phi. error: relative.
 double loss_factor_of(const TorsionState& state, const analytic::Profile& profile, double error) {
   return analytic::energy_lost_per_cycle(state, profile, error) / (4.0 * state.moment * state.twist);
 }
 
-/// The power of m, or of what slip adds to full stick, that the factor of the smallest losses goes with.
+/// The exponent p of the smallest losses: their factor is proportional to m^p, or to (m - m of full stick)^p.
 double loss_power_of(const analytic::Profile& profile) {
   if (profile.edge() > 0.0) return 2.0;
   constexpr double kSmall = 1e-30;

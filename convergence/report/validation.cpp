@@ -23,6 +23,7 @@
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/result_cache.hpp"
+#include "convergence/runs/run_batch.hpp"
 #include "convergence/studies/study.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/whole_file.hpp"
@@ -115,20 +116,20 @@ Sections page_runs(const fs::path& scene, const fs::path& scenes, const Validati
 
 /// The results of each section, all computed side by side. Throws std::runtime_error where one is missing.
 std::map<std::string, std::vector<Json>> solve_all(const Sections& sections, const ProcessPool& pool) {
-  std::vector<RunSpec> all;
-  for (const auto& [name, runs] : sections) all.insert(all.end(), runs.begin(), runs.end());
-  const std::vector<Json> results = pool.run(all);
   std::map<std::string, std::vector<Json>> found;
-  auto next = results.begin();
+  RunBatch batch;
   for (const auto& [name, runs] : sections) {
-    for (std::size_t i = 0; i < runs.size(); ++i, ++next) {
-      if (is_failed(*next)) {
-        throw std::runtime_error(
-            fmt::format("{}: {}", (*next)["run"].get<std::string>(), (*next)["message"].get<std::string>()));
-      }
-      found[name].push_back(*next);
+    for (const RunSpec& run : runs) {
+      batch.add(run, [&into = found[name]](const Json& result) {
+        if (is_failed(result)) {
+          throw std::runtime_error(
+              fmt::format("{}: {}", result["run"].get<std::string>(), result["message"].get<std::string>()));
+        }
+        into.push_back(result);
+      });
     }
   }
+  batch.run(pool);
   return found;
 }
 

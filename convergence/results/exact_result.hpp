@@ -35,9 +35,11 @@ struct GridColumns {
 /// grid but its slips, which have no closed form. A cone's pressure is infinite on the axis, where an odd
 /// number of cells has a centre. Throws InputError for an answer without tractions and a grid that does not
 /// fit in memory.
-GridColumns exact_columns(const solver::Scene& scene, const Oracle& oracle);
+/// ranks: the processes that share the grid.
+GridColumns exact_columns(const solver::Scene& scene, const Oracle& oracle, const solver::Ranks& ranks = {});
 
 /// Writes these, where there is pressure. Throws InputError for a file that cannot be written too.
-void write_exact_fields(const std::filesystem::path& file, const solver::Scene& scene, const Oracle& oracle);
+void write_exact_fields(const std::filesystem::path& file, const solver::Scene& scene, const Oracle& oracle,
+                        const solver::Ranks& ranks = {});
 
 }  // namespace slipstick::convergence

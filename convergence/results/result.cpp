@@ -8,7 +8,7 @@
 #include "convergence/oracle/errors.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/results/result_parts.hpp"
-#include "solver/grid/ranks.hpp"
+#include "solver/grid/communicator.hpp"
 #include "solver/scene/roughness.hpp"
 
 namespace slipstick::convergence {
@@ -36,13 +36,13 @@ Json grids_json(const std::vector<solver::GridWork>& grids) {
 }
 
 /// The largest memory and what was sent, rank by rank: all ranks ask at the same time.
-Json ranks_json() {
-  const solver::Communicator::Sent sent = solver::Ranks::sent();
-  const std::vector<double> peaks = solver::Ranks::of_each(static_cast<double>(peak_bytes()));
-  return {{"number", solver::Ranks::number()},
+Json ranks_json(const solver::Ranks& ranks) {
+  const solver::Communicator::Sent sent = ranks.communicator().sent();
+  const std::vector<double> peaks = ranks.of_each(static_cast<double>(peak_bytes()));
+  return {{"number", ranks.number()},
           {"peak_bytes", peaks},
-          {"sent_bytes", solver::Ranks::of_each(sent.bytes)},
-          {"sent_messages", solver::Ranks::of_each(sent.messages)}};
+          {"sent_bytes", ranks.of_each(sent.bytes)},
+          {"sent_messages", ranks.of_each(sent.messages)}};
 }
 
 const std::string kNoPeak = "the exact pressure has no finite peak";
@@ -238,7 +238,7 @@ Json solve_result(const solver::Scene& scene, const Solution& solution, const Or
   json["predicted_bytes"] = solution.predicted_bytes;
   json["peak_bytes"] = peak_bytes();
   json["provenance"] = provenance(solution.threads);
-  if (solver::Ranks::number() > 1) json["ranks"] = ranks_json();
+  if (grid.ranks.several()) json["ranks"] = ranks_json(grid.ranks);
   return json;
 }
 

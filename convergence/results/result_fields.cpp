@@ -75,7 +75,7 @@ Json profile_json(const solver::Solution& solution, const OracleAnswer& answer) 
   return rows;
 }
 
-GridColumns exact_columns(const solver::Scene& scene, const Oracle& oracle) {
+GridColumns exact_columns(const solver::Scene& scene, const Oracle& oracle, const solver::Ranks& ranks) {
   if (!oracle.shear) {
     throw solver::InputError(
         scene.source.string(), "solver.model", "\"exact\"",
@@ -84,7 +84,7 @@ GridColumns exact_columns(const solver::Scene& scene, const Oracle& oracle) {
   solver::Scene sampled = scene;
   sampled.op =
       solver::OperatorKind::dcfft;  // no operator is made, so none of the larger ones need fit in memory
-  const solver::Grid grid = solver::make_model(sampled).grid_in_m();
+  const solver::Grid grid = solver::make_model(sampled, ranks).grid_in_m();
   const solver::Index cells = grid.cells();
   const ExactFields fields = exact_fields(oracle, grid);
   std::vector<solver::Column> columns{
@@ -95,8 +95,9 @@ GridColumns exact_columns(const solver::Scene& scene, const Oracle& oracle) {
   return {.grid = grid, .columns = std::move(columns), .pressure = fields.pressure};
 }
 
-void write_exact_fields(const std::filesystem::path& file, const solver::Scene& scene, const Oracle& oracle) {
-  const GridColumns fields = exact_columns(scene, oracle);
+void write_exact_fields(const std::filesystem::path& file, const solver::Scene& scene, const Oracle& oracle,
+                        const solver::Ranks& ranks) {
+  const GridColumns fields = exact_columns(scene, oracle, ranks);
   solver::write_fields(file, fields.grid, fields.columns, fields.pressure);
 }
 

@@ -14,7 +14,7 @@ SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& opt
   SolvedScene solved;
   Json steps = Json::array();
   solver::SolveOptions to_solver{
-      .progress = options.progress, .cache = options.cache, .detail = options.detail};
+      .progress = options.progress, .cache = options.cache, .detail = options.detail, .ranks = options.ranks};
   if (options.resumed) {
     steps = options.resumed->results;
     to_solver.resumed = options.resumed->state;

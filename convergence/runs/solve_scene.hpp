@@ -42,6 +42,8 @@ struct SolveSceneOptions {
   std::shared_ptr<const FinishedSteps> resumed = {};
   /// See solver::SolveOptions.
   solver::Detail detail = solver::Detail::all;
+  /// See solver::SolveOptions.
+  solver::Ranks ranks = {};
 };
 
 /// The one way in which a scene is solved on its grid and compared with its exact answer, by whichever

@@ -213,8 +213,9 @@ Json plan_json(const Scene& scene, int ranks) {
     set_missing(plan, "seconds", "the exact solution takes about a millisecond a step");
     return plan;
   }
-  const solver::Model model = solver::make_model(scene);
-  const auto& [n1, n2, h1, h2, quadrant] = model.grid;
+  const solver::PlannedRanks planned(ranks);
+  const solver::Model model = solver::make_model(scene, ranks > 1 ? planned.ranks() : solver::Ranks());
+  const auto [n1, n2] = std::array{model.grid.n1, model.grid.n2};
   const ContactOnGrid contact = contact_on_grid(scene);
   const double radius = 0.5 * cells_across(contact, std::max(n1, n2));
   const solver::Reduction& part = model.pressure_part;
@@ -222,13 +223,10 @@ Json plan_json(const Scene& scene, int ranks) {
   plan["cells"] = {n1, n2};
   plan["tolerance"] = scene.tolerance;
   plan["unknowns"] = std::round(2.0 * M_PI * radius * radius / mirrored);
+  plan["bytes"] = solver::predicted_memory(scene, model).total();
   if (ranks > 1) {
-    const solver::PlannedRanks planned(ranks);
-    plan["bytes"] = solver::predicted_memory(scene, model).total();
     plan["ranks"] = ranks;
     plan["sent_bytes"] = solver::predicted_sent_bytes(part.grid(), solver::tangential_kernel());
-  } else {
-    plan["bytes"] = solver::predicted_memory(scene, model).total();
   }
   set_number(plan, "seconds", predicted_seconds(scene, contact),
              "measured for method = \"coulomb\" with operator = \"dcfft\" alone");

@@ -52,7 +52,7 @@ constexpr double kLoosest = 1e-4;
 /// Cells along the longer side of the coarse grid; and the smallest stick radius in cells by which grids are
 /// spread, so that none is much coarser than the others.
 constexpr solver::Index kFormCells = 40;
-constexpr double kMinStickCells = 4.0;
+constexpr double kMinSpreadStickCells = 4.0;
 
 double expected_scatter(double across, double stick_ratio) {
   const double stick = std::max(stick_ratio, kMinRingPart);
@@ -117,7 +117,7 @@ double slenderness(const solver::Solution& solution) {
 /// The scene's grid, and larger ones of as many cells.
 std::vector<Scene> shifted(const Scene& scene, double stick_cells) {
   const solver::Grid grid = solver::make_model(scene).grid_in_m();
-  const double growth = 1.0 / (kShiftedGrids * std::max(stick_cells, kMinStickCells));
+  const double growth = 1.0 / (kShiftedGrids * std::max(stick_cells, kMinSpreadStickCells));
   std::vector<Scene> scenes(kShiftedGrids, scene);
   for (int k = 0; k < kShiftedGrids; ++k) {
     const double scale = 1.0 + growth * k;

@@ -39,7 +39,7 @@ void add_accuracy_options(CLI::App& command, SolveRequest& request) {
   command.add_flag("--plan", request.plan, "predict memory and time of what would be solved, and stop")
       ->excludes(command.get_option("--uncertain"));
   command
-      .add_option("--ranks", request.ranks,
+      .add_option("--ranks", request.planned_ranks,
                   "with --plan: on so many ranks of MPI, of which the memory is that of one")
       ->needs(command.get_option("--plan"))
       ->excludes(command.get_option("--accuracy"))
@@ -68,8 +68,9 @@ void add_file_options(CLI::App& command, SolveRequest& request) {
 
 }  // namespace
 
-RunCommand add_solve_command(CLI::App& app) {
+RunCommand add_solve_command(CLI::App& app, const solver::Ranks& ranks) {
   const auto request = std::make_shared<SolveRequest>();
+  request->processes = ranks;
   CLI::App* const command = app.add_subcommand("solve", "Solve a scene, on a grid or exactly");
   command->add_option("scene", request->scene, "scene file (TOML)")->required();
   add_set_option(*command, request->overrides, "override a key of the scene, e.g. load.moment_ratio=0.5");

@@ -28,7 +28,6 @@
 #include "convergence/solve/checkpoint.hpp"
 #include "convergence/solve/uncertainty.hpp"
 #include "solver/cache/solve_cache.hpp"
-#include "solver/grid/ranks.hpp"
 #include "solver/history_state.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
@@ -40,7 +39,7 @@ namespace {
 
 /// One line on a terminal, rewritten; nothing elsewhere.
 void show_progress(int iteration, double change) {
-  if (isatty(STDERR_FILENO) != 0 && solver::Ranks::first())
+  if (isatty(STDERR_FILENO) != 0)
     std::cerr << fmt::format("\r\033[Kiteration {}, change {:.1e}\r", iteration, change);
 }
 
@@ -72,8 +71,8 @@ void write_files(const SolveRequest& request, const Json& result,
   if (!request.fields.empty() && !one_file_a_step(request.fields)) write_fields(request.fields);
   if (request.figure.empty()) return;
   // Other ranks have their cells to write, into the first one's file.
-  solver::Ranks::first() ? draw_solve(request.figure, result, write_fields)
-                         : write_fields(request.figure + ".h5");
+  request.processes.first() ? draw_solve(request.figure, result, write_fields)
+                            : write_fields(request.figure + ".h5");
 }
 
 int answer_exactly(const solver::Scene& scene, const SolveRequest& request, std::ostream& text,
@@ -83,7 +82,8 @@ int answer_exactly(const solver::Scene& scene, const SolveRequest& request, std:
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   result = exact_result(scene, oracle, seconds);
   text << exact_text(result);
-  write_files(request, result, [&](const auto& file) { write_exact_fields(file, scene, oracle); });
+  write_files(request, result,
+              [&](const auto& file) { write_exact_fields(file, scene, oracle, request.processes); });
   return 0;
 }
 
@@ -95,7 +95,7 @@ std::shared_ptr<const FinishedSteps> finished_in(const Checkpoint& checkpoint, c
                              "is there already; allowed: --resume, to go on from it, or another file");
   }
   std::shared_ptr<const FinishedSteps> finished = checkpoint.read();
-  if (finished && solver::Ranks::first()) {
+  if (finished && request.processes.first()) {
     std::cerr << plain_text(fmt::format("slipstick: goes on after step {}, from {}\n",
                                         finished->state->finished, request.checkpoint));
   }
@@ -116,7 +116,7 @@ SolvedScene solve_on(const solver::Scene& scene, const SolveRequest& request, So
   PacedCheckpoint paced(checkpoint);
   options.resumed = finished_in(checkpoint, request);
   if (options.resumed) step = options.resumed->state->finished;
-  if (solver::Ranks::first()) {
+  if (request.processes.first()) {
     options.on_state = [&](const solver::HistoryState& state, const Json& steps) {
       paced.offer(state, steps);
     };
@@ -136,11 +136,12 @@ SolvedScene find_on_grid(const solver::Scene& scene, const SolveRequest& request
     write_solution_fields(file_of_step(request.fields, step), at, exact);
   };
   return solve_on(scene, request,
-                  {.progress = show_progress,
+                  {.progress = request.processes.first() ? show_progress : nullptr,
                    .on_step = on_step,
                    .incomplete = &result,
                    .cache = cache,
-                   .detail = detail},
+                   .detail = detail,
+                   .ranks = request.processes},
                   step);
 }
 
@@ -223,7 +224,7 @@ void add_uncertainty(const std::vector<UncertainInput>& uncertain, const SolveRe
     solver::Scene scene = solver::read_scene(request.scene, overrides);
     scene.memory_limit = request.memory_limit;
     if (scene.model == solver::ModelChoice::exact) return exact_result(scene, require_oracle(scene), 0);
-    return solve_scene(scene, {.cache = cache}).result;
+    return solve_scene(scene, {.cache = cache, .ranks = request.processes}).result;
   });
   text << uncertainty_text(result);
 }
@@ -259,13 +260,13 @@ int run_solve(const CLI::App& command, const SolveRequest& request, std::ostream
   if (!request.fields.empty()) solver::require_field_format(request.fields);
   if (!request.figure.empty()) require_figure_format(request.figure);
   const solver::Scene scene = read_scene(request);
-  if (solver::Ranks::number() > 1) require_shared_by_ranks(request, scene);
+  if (request.processes.several()) require_shared_by_ranks(request, scene);
   require_scene_kept(command, request, scene);
   require_output("--fields", request.fields);
   require_output("--checkpoint", request.checkpoint);
   if (request.accuracy) return solve_accurately(scene, request, text, result);
   if (request.plan) {
-    result["plan"] = plan_json(scene, request.ranks);
+    result["plan"] = plan_json(scene, request.planned_ranks);
     text << plan_text(result);
     return 0;
   }

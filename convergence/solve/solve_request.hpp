@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "convergence/results/result_parts.hpp"
+#include "solver/grid/ranks.hpp"
 
 namespace CLI {
 class App;
@@ -25,7 +26,8 @@ struct SolveRequest {
   std::string accuracy_of = "twist";
   std::vector<std::string> uncertain;  ///< "key=P%"
   bool plan = false;
-  int ranks = 1;
+  int planned_ranks = 1;         ///< of the plan
+  solver::Ranks processes = {};  ///< that share the solve
   std::string checkpoint;
   bool resume = false;
   std::optional<std::uint64_t> memory_limit;  ///< bytes

@@ -1,11 +1,13 @@
 #include "convergence/studies/study.hpp"
 
 #include <nlohmann/json.hpp>
+#include <numeric>
 #include <utility>
 #include <vector>
 
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/failed_runs.hpp"
+#include "convergence/runs/run_batch.hpp"
 #include "convergence/studies/budget.hpp"
 #include "convergence/studies/study_judgement.hpp"
 #include "convergence/studies/study_plan.hpp"
@@ -16,104 +18,95 @@ namespace {
 /// Times that a study tightens a tolerance by itself, from 1e-8 to 1e-12.
 constexpr int kMaxTightenings = 2;
 
-/// Collects runs, then hands out their results in the same order.
-class StudyRuns {
+/// Adds runs, and counts those that fail.
+class CountedRuns {
  public:
-  StudyRuns(const ProcessPool& pool, FailedRuns& failed) : pool_(pool), failed_(failed) {}
-  std::vector<RunSpec>& runs() { return runs_; }
-  void run() {
-    results_ = pool_.run(runs_);
-    for (std::size_t i = 0; i < runs_.size(); ++i) failed_.add(run_text(runs_[i]), results_[i]);
+  CountedRuns(RunBatch& batch, FailedRuns& failed) : batch_(batch), failed_(failed) {}
+  void add(const RunSpec& run, RunBatch::Take take) {
+    batch_.add(run, [&failed = failed_, name = run_text(run), take = std::move(take)](const Json& result) {
+      failed.add(name, result);
+      take(result);
+    });
   }
-  Json next() { return std::move(results_[taken_++]); }
 
  private:
-  const ProcessPool& pool_;
+  RunBatch& batch_;
   FailedRuns& failed_;
-  std::vector<RunSpec> runs_;
-  std::vector<Json> results_;
-  std::size_t taken_ = 0;
 };
 
-void add_runs(const Study& study, const Series& series, std::vector<RunSpec>& runs) {
-  for (const Mesh& mesh : series.meshes) {
-    for (const GridChoice& grid : mesh.grids) runs.push_back(make_run(study, grid, series.tolerance));
+/// The runs of a series to its tolerance; `results` is filled when they are solved, and must stay until then.
+void add_runs(const Study& study, const Series& series, CountedRuns runs, std::vector<MeshResults>& results) {
+  results.assign(series.meshes.size(), {});
+  for (std::size_t i = 0; i < series.meshes.size(); ++i) {
+    const Mesh& mesh = series.meshes[i];
+    MeshResults& at = results[i];
+    for (const GridChoice& grid : mesh.grids) {
+      runs.add(make_run(study, grid, series.tolerance),
+               [&at](const Json& result) { at.grids.push_back(result); });
+    }
     const BudgetRuns parts =
         budget_runs(make_run(study, mesh.grids.front(), series.tolerance), series.tolerance);
-    runs.push_back(parts.tightened);
-    if (mesh.rounded) runs.insert(runs.end(), parts.rounded.begin(), parts.rounded.end());
-  }
-}
-
-std::vector<MeshResults> take_results(const Series& series, StudyRuns& batch) {
-  std::vector<MeshResults> results;
-  for (const Mesh& mesh : series.meshes) {
-    MeshResults& at = results.emplace_back();
-    for (std::size_t k = 0; k < mesh.grids.size(); ++k) at.grids.push_back(batch.next());
-    at.tightened = batch.next();
+    runs.add(parts.tightened, [&at](const Json& result) { at.tightened = result; });
     if (!mesh.rounded) continue;
-    at.rounded = {batch.next(), batch.next()};
+    for (const RunSpec& run : parts.rounded) {
+      runs.add(run, [&at](const Json& result) { at.rounded.push_back(result); });
+    }
   }
-  return results;
 }
 
 /// Solves the series, again and to tighter tolerances where the iteration shows.
 std::vector<std::vector<MeshResults>> solve_series(const Study& study, std::vector<Series>& all,
                                                    const ProcessPool& pool, FailedRuns& failed) {
   std::vector<std::vector<MeshResults>> results(all.size());
-  std::vector<bool> open(all.size(), true);
-  for (int pass = 0; pass <= kMaxTightenings; ++pass) {
-    StudyRuns batch(pool, failed);
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      if (open[i]) add_runs(study, all[i], batch.runs());
-    }
-    batch.run();
-    bool any = false;
-    for (std::size_t i = 0; i < all.size(); ++i) {
-      if (!open[i]) continue;
-      results[i] = take_results(all[i], batch);
-      open[i] =
-          pass < kMaxTightenings && all[i].meshes.size() > 1 && needs_tightening(study, all[i], results[i]);
-      if (!open[i]) continue;
-      any = true;
+  std::vector<std::size_t> open(all.size());
+  std::iota(open.begin(), open.end(), std::size_t{0});
+  for (int pass = 0; !open.empty(); ++pass) {
+    RunBatch batch;
+    for (const std::size_t i : open) add_runs(study, all[i], {batch, failed}, results[i]);
+    batch.run(pool);
+    std::erase_if(open, [&](std::size_t i) {
+      return pass == kMaxTightenings || all[i].meshes.size() < 2 ||
+             !needs_tightening(study, all[i], results[i]);
+    });
+    for (const std::size_t i : open) {
       all[i].tolerance *= kTightening;
       ++all[i].tightenings;
     }
-    if (!any) break;
   }
   return results;
 }
 
 /// The tolerances that the study varies, and one tighter than all that stands for none.
-void add_tolerance_runs(const Study& study, const Series& series, std::vector<RunSpec>& runs) {
-  for (const Mesh& mesh : series.meshes) {
-    const GridChoice& grid = mesh.grids.front();
-    for (const double tolerance : study.tolerances) runs.push_back(make_run(study, grid, tolerance));
-    runs.push_back(make_run(study, grid, kTightening * study.tolerances.back()));
+/// Results mesh by mesh, filled as those of add_runs().
+void add_tolerance_runs(const Study& study, const Series& series, CountedRuns runs,
+                        std::vector<std::vector<Json>>& by_mesh) {
+  by_mesh.assign(series.meshes.size(), {});
+  for (std::size_t i = 0; i < series.meshes.size(); ++i) {
+    const GridChoice& grid = series.meshes[i].grids.front();
+    const auto add = [&](double tolerance) {
+      runs.add(make_run(study, grid, tolerance),
+               [&at = by_mesh[i]](const Json& result) { at.push_back(result); });
+    };
+    for (const double tolerance : study.tolerances) add(tolerance);
+    add(kTightening * study.tolerances.back());
   }
-}
-
-/// Results to each tolerance, mesh by mesh.
-std::vector<std::vector<Json>> take_tolerance_results(const Study& study, const Series& series,
-                                                      StudyRuns& batch) {
-  std::vector<std::vector<Json>> by_mesh(series.meshes.size());
-  for (std::vector<Json>& at : by_mesh) {
-    for (std::size_t k = 0; k <= study.tolerances.size(); ++k) at.push_back(batch.next());
-  }
-  return by_mesh;
 }
 
 bool varies_tolerance(const Study& study) { return study.tolerances.size() > 1; }
 
 }  // namespace
 
-std::vector<RunSpec> study_runs(const Study& study, std::optional<double> memory_limit) {
-  std::vector<RunSpec> runs;
-  for (const Series& series : make_series(study, memory_limit)) {
-    add_runs(study, series, runs);
-    if (varies_tolerance(study)) add_tolerance_runs(study, series, runs);
+std::vector<PreparedRun> study_runs(const Study& study, std::optional<double> memory_limit) {
+  RunBatch batch;
+  FailedRuns failed;
+  const std::vector<Series> all = make_series(study, memory_limit);
+  std::vector<std::vector<MeshResults>> results(all.size());
+  std::vector<std::vector<std::vector<Json>>> by_tolerance(all.size());
+  for (std::size_t i = 0; i < all.size(); ++i) {
+    add_runs(study, all[i], {batch, failed}, results[i]);
+    if (varies_tolerance(study)) add_tolerance_runs(study, all[i], {batch, failed}, by_tolerance[i]);
   }
-  return runs;
+  return batch.runs();
 }
 
 Json run_study(const Study& study, const ProcessPool& pool) {
@@ -129,12 +122,13 @@ Json run_study(const Study& study, const ProcessPool& pool) {
     json["series"][all[i].name] = judge_series(study, all[i], results[i]);
   }
   if (varies_tolerance(study)) {
-    StudyRuns batch(pool, failed);
-    for (const Series& series : all) add_tolerance_runs(study, series, batch.runs());
-    batch.run();
+    RunBatch batch;
+    std::vector<std::vector<std::vector<Json>>> by_mesh(all.size());
+    for (std::size_t i = 0; i < all.size(); ++i)
+      add_tolerance_runs(study, all[i], {batch, failed}, by_mesh[i]);
+    batch.run(pool);
     for (std::size_t i = 0; i < all.size(); ++i) {
-      const auto by_mesh = take_tolerance_results(study, all[i], batch);
-      json["series"][all[i].name]["tolerances"] = tolerance_rows(study, all[i], by_mesh, results[i]);
+      json["series"][all[i].name]["tolerances"] = tolerance_rows(study, all[i], by_mesh[i], results[i]);
     }
   }
   json["failed_runs"] = failed.json();

@@ -40,7 +40,7 @@ Study read_study(const std::filesystem::path& file, const std::vector<std::strin
 
 /// The runs of a study that do not depend on results; tighter tolerances, where iterations show in the
 /// results, follow from these. Throws as make_series().
-std::vector<RunSpec> study_runs(const Study& study, std::optional<double> memory_limit = {});
+std::vector<PreparedRun> study_runs(const Study& study, std::optional<double> memory_limit = {});
 
 /// Solves, fits and judges: rows, orders, extrapolated values and budgets of each series, under
 /// result["series"][name]; the name joins the varied values with "-", or is the scene's where nothing varies.

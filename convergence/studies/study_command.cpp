@@ -33,16 +33,10 @@ bool all_converged(const Json& result) {
   return true;
 }
 
-std::vector<PreparedRun> prepared_runs(const Study& study, const ProcessPool& pool) {
-  std::vector<PreparedRun> runs;
-  for (const RunSpec& run : study_runs(study, pool.memory_limit())) runs.push_back(prepare_run(run));
-  return runs;
-}
-
 int run_study_shard(const Study& study, const Shard& shard, const ProcessPool& pool, std::ostream& text,
                     Json& result) {
   const Interrupts interrupts;
-  result = run_shard(prepared_runs(study, pool), shard, pool);
+  result = run_shard(study_runs(study, pool.memory_limit()), shard, pool);
   text << shard_text(result);
   return is_complete(result) ? 0 : 1;
 }
@@ -57,7 +51,7 @@ int run_study_request(const CLI::App& command, const StudyRequest& request, std:
   if (shard) return run_study_shard(study, *shard, pool, text, result);
   {
     const Interrupts interrupts;
-    if (!request.runs.merged.empty()) require_finished(prepared_runs(study, pool), pool);
+    if (!request.runs.merged.empty()) require_finished(study_runs(study, pool.memory_limit()), pool);
     result = run_study(study, pool);
   }
   text << study_text(result);

@@ -37,18 +37,19 @@ Mesh make_mesh(const Study& study, const solver::Scene& of_series, const std::ve
     scene.memory_limit = of_series.memory_limit;
   }
   const solver::Model model = solver::make_model(scene);
-  const auto& [n1, n2, h1, h2, quadrant] = model.grid;
+  const solver::Grid& grid = model.grid;
   Mesh mesh;
   for (int k = 0; k < study.shifts; ++k) {
-    const double longer = static_cast<double>(std::max(n1, n2));
+    const double longer = static_cast<double>(std::max(grid.n1, grid.n2));
     const double growth = 1.0 + kShiftCells * k / (study.shifts * longer);
     const double unit = growth * model.length_unit;
-    GridChoice grid{own, {n1, n2}, unit * std::sqrt(h1 * h2)};
+    GridChoice choice{own, {grid.n1, grid.n2}, unit * std::sqrt(grid.cell_area())};
     if (k > 0) {
-      grid.overrides.push_back(fmt::format("grid.extent=[{}, {}]", unit * h1 * static_cast<double>(n1),
-                                           unit * h2 * static_cast<double>(n2)));
+      choice.overrides.push_back(fmt::format("grid.extent=[{}, {}]",
+                                             unit * grid.h1 * static_cast<double>(grid.n1),
+                                             unit * grid.h2 * static_cast<double>(grid.n2)));
     }
-    mesh.grids.push_back(std::move(grid));
+    mesh.grids.push_back(std::move(choice));
   }
   return mesh;
 }

@@ -52,7 +52,7 @@ def is_draft(path):
 
 
 class Command:
-    """A command whose output lies in one folder, with all that it writes."""
+    """A command and the one folder that it writes to."""
 
     def __init__(self, words, folder, results):
         self.words, self.folder, self.results = words, folder, results
@@ -63,7 +63,7 @@ class Command:
         return subprocess.Popen(self.words, env=environment, stdout=self.log, stderr=self.log, start_new_session=True)
 
     def processes(self):
-        """The command's, of which those that have ended show nothing."""
+        """The command's processes; those that have ended show nothing."""
         found, mark = [], f"{MARKER}={self.folder}".encode() + b"\0"
         for entry in Path("/proc").iterdir():
             try:
@@ -223,7 +223,7 @@ def main():
     parser.add_argument("--seed", type=int, default=1, help="of the moments")
     arguments = parser.parse_args()
     if not Path("/proc/self/environ").exists():
-        print("skipped: only Linux kills a process with its parent and shows which are whose")
+        print("skipped: only Linux kills a process with its parent and shows the parent of each")
         return 0
     random_numbers = random.Random(arguments.seed)
     faults = 0

@@ -115,7 +115,7 @@ class ProgramFaults(ProgramTest):
                           self.ends(command, 2, nobody_reads_and_no_signal))
 
     def test_a_full_standard_error_costs_nothing(self):
-        """Progress that nobody can read is no reason to stop."""
+        """A progress line without a reader is no reason to stop."""
         for command in self.commands():
             self.ends(command, 0, opened_as(2, "/dev/full"))
             self.assertGreater(Path("out").stat().st_size, 20)
@@ -169,7 +169,7 @@ class ProgramFaults(ProgramTest):
                     runs = subprocess.run([PROGRAM, "--version"], preexec_fn=limit, capture_output=True).returncode == 0
                 except PermissionError:
                     runs = False
-                if not runs:  # a sanitizer takes more memory; nobody may not read this folder
+                if not runs:  # a sanitizer takes more memory; the user `nobody` may not read this folder
                     self.skipTest("the program does not run under this limit")
                 self.ends((*SMALL, "--set", "solver.threads=1"), 0, limit)
                 complaint = self.ends((*SMALL, "--set", "solver.threads=64"), 2, limit)

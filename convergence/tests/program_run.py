@@ -41,7 +41,7 @@ class ProgramTest(unittest.TestCase):
         os.chdir(self.folder)
 
     def run_program(self, *words, code=0, says=()):
-        """What it prints; its exit code, or one of them, and parts of what it prints are as told."""
+        """What it prints, after a check of its exit code (`code`, or one of them) and of parts of what it prints (`says`)."""
         end = subprocess.run([PROGRAM, *words], stdout=subprocess.PIPE, stderr=subprocess.STDOUT)
         text = end.stdout.decode(errors="replace")
         self.assertIn(end.returncode, code if isinstance(code, tuple) else (code,), (words, text))

@@ -9,8 +9,12 @@
 #include <set>
 #include <sstream>
 
+#include "convergence/results/markup.hpp"
+
 namespace slipstick::docs {
 namespace {
+
+using convergence::markdown_cell;
 
 std::string replaced(std::string text, const std::string& old, const std::string& by) {
   for (std::size_t at = 0; (at = text.find(old, at)) != std::string::npos; at += by.size()) {
@@ -19,7 +23,7 @@ std::string replaced(std::string text, const std::string& old, const std::string
   return text;
 }
 
-/// "INT:INT in [1 - 9]" is the type with what a check adds to it.
+/// The type's name, with the range or the words that a check adds to it: "INT:INT in [1 - 9]".
 std::string value_of(const CLI::Option& option) {
   if (option.get_type_size() == 0) return "";
   std::string type = option.get_type_name();
@@ -33,7 +37,7 @@ std::string value_of(const CLI::Option& option) {
   return option.get_expected_min() == 2 ? type + " " + type : type;
 }
 
-/// Numbers as they were meant, whatever digits the library prints; of paths of this build their last part.
+/// The default as text: numbers in their shortest form, paths of this build by their last part.
 std::string default_of(const CLI::Option& option) {
   const std::string text = option.get_default_str();
   if (option.get_type_name().starts_with("FLOAT") && !text.empty()) {
@@ -53,7 +57,7 @@ std::vector<std::string> words_of(const std::string& value) {
   return words;
 }
 
-/// "Needs --a, --b.": in the order of their names, for the library has none.
+/// "; needs --a, --b", sorted, since the library keeps no order.
 std::string relation(const char* verb, const std::set<CLI::Option*>& options) {
   std::set<std::string> names;
   for (const CLI::Option* const option : options) names.insert(option->get_name());
@@ -80,7 +84,7 @@ void add_options(const CLI::App& app, const std::string& suffix, CommandText& co
   }
 }
 
-/// A group of options is a command without a name, and has a --help of its own.
+/// Adds a group of options, which the library treats as a command with a --help of its own.
 void add_group(const CLI::App& group, CommandText& command) {
   add_options(group, group.get_require_option_min() > 0 ? "; one of these is required" : "", command);
   std::erase_if(command.options, [](const OptionText& option) { return option.name.ends_with("--help"); });
@@ -96,14 +100,11 @@ std::string usage(const CommandText& command) {
   return line;
 }
 
-/// Of a table's cell.
-std::string in_cell(const std::string& text) { return replaced(replaced(text, "|", "\\|"), "<", "&lt;"); }
-
 std::string in_code(const std::string& text) {
   return text.empty() ? "" : fmt::format("`{}`", replaced(text, "|", "\\|"));
 }
 
-/// Of a manual page: a line must not begin with a dot or a quote.
+/// Text for a manual page, where no line may begin with a dot or a quote.
 std::string in_troff(const std::string& text) {
   std::string safe = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
   safe = replaced(replaced(safe, "\n.", "\n\\&."), "\n'", "\n\\&'");
@@ -130,7 +131,7 @@ std::string names_of(const std::vector<OptionText>& options) {
   return fmt::format("{}", fmt::join(names, " "));
 }
 
-/// What may follow the word before, within a command: an option's words, the keys of a scene, files, options.
+/// The cases of a command: after an option its words, the keys of a scene or files; otherwise all options.
 std::string completion_cases(const CommandText& command) {
   std::string cases;
   std::string with_files;
@@ -174,7 +175,7 @@ std::string commands_markdown(const std::vector<CommandText>& commands) {
       "differs from\nthem. `slipstick COMMAND --help` prints the same. What a command writes: "
       "[results](results.md); how it ends:\n[exit codes](exit-codes.md).\n\n| command | does |\n|---|---|\n";
   for (const CommandText& command : commands) {
-    page += fmt::format("| [`{0}`](#slipstick-{0}) | {1} |\n", command.name, in_cell(command.meaning));
+    page += fmt::format("| [`{0}`](#slipstick-{0}) | {1} |\n", command.name, markdown_cell(command.meaning));
   }
   for (const CommandText& command : commands) {
     page += fmt::format("\n## slipstick {}\n\n{}.\n\n```text\n{}\n```\n\n", command.name, command.meaning,
@@ -183,7 +184,7 @@ std::string commands_markdown(const std::vector<CommandText>& commands) {
     for (const auto* const options : {&command.files, &command.options}) {
       for (const OptionText& option : *options) {
         page += fmt::format("| `{}` | {} | {} | {} |\n", option.name, in_code(option.value),
-                            in_cell(option.otherwise), in_cell(option.meaning));
+                            markdown_cell(option.otherwise), markdown_cell(option.meaning));
       }
     }
     page += fmt::format("\n```text\n{}\n```\n", command.footer);

@@ -7,16 +7,16 @@ namespace CLI {
 class App;
 }
 
-/// What the program takes on its command line, as texts.
+/// The program's command line as text.
 namespace slipstick::docs {
 
 /// An option, or a file that stands without one.
 struct OptionText {
-  std::string name;                ///< "--json"; of positionals "scene"
+  std::string name;                ///< "--json", or without dashes for a file
   std::string value;               ///< "TEXT", "INT in [1 - 100]", "{a,b}"; empty: it takes none
-  std::string otherwise;           ///< what holds where it is left out; empty: nothing to say
-  std::string meaning;             ///< with what it needs and excludes
-  std::vector<std::string> words;  ///< the values that are allowed; empty: any of its type
+  std::string otherwise;           ///< the default, or "required"; empty: none
+  std::string meaning;             ///< with the options that it needs and excludes
+  std::vector<std::string> words;  ///< the allowed values; empty: any of its type
 };
 
 struct CommandText {
@@ -27,17 +27,16 @@ struct CommandText {
   std::vector<OptionText> options;
 };
 
-/// The commands of a program in their order, without those and the options that --help hides.
+/// The commands of a program in their order. Commands and options that --help hides are skipped.
 std::vector<CommandText> command_texts(const CLI::App& app);
 
-/// All of them as a page (Markdown).
+/// A page of all commands (Markdown).
 std::string commands_markdown(const std::vector<CommandText>& commands);
 
-/// As a manual page (troff, section 1).
+/// A manual page of all commands (troff, section 1).
 std::string commands_manual(const std::vector<CommandText>& commands, const std::string& version);
 
-/// As a script for bash that completes commands, options, the words and files that they take, and the keys of
-/// a scene after --set.
+/// A script for bash that completes commands, options, their words and files, and a scene's keys after --set.
 std::string commands_completion(const std::vector<CommandText>& commands,
                                 const std::vector<std::string>& scene_keys);
 

@@ -7,6 +7,8 @@
 #include <stdexcept>
 #include <vector>
 
+#include "convergence/results/markup.hpp"
+
 namespace slipstick::docs {
 namespace {
 
@@ -48,7 +50,7 @@ std::string table_of(const std::string& key) {
   return dot == std::string::npos ? "" : key.substr(0, dot);
 }
 
-/// Tables that may stand several times are headed by two brackets.
+/// A table's heading, with two brackets if the table may occur several times.
 std::string heading(const std::string& table, const SettingKeys& keys) {
   if (table.empty()) return "Above all tables";
   const bool several = table == "upper.shape" || std::ranges::any_of(keys, [&](const SettingKey& key) {
@@ -59,19 +61,12 @@ std::string heading(const std::string& table, const SettingKeys& keys) {
 
 std::string last_part(const std::string& key) { return key.substr(key.rfind('.') + 1); }
 
-/// A bar would end the cell.
-std::string in_cell_of_keys(const std::string& text) {
-  std::string safe;
-  for (const char c : text) safe += c == '|' ? "\\|" : std::string(1, c);
-  return safe;
-}
-
 std::string row(const SettingKey& key) {
   const std::string words = key.type == KeyType::flag ? "true, false" : key.allowed.words;
   const std::string shapes =
-      key.shapes.empty() ? "" : fmt::format(" Of `{}`.", fmt::join(key.shapes, "`, `"));
+      key.shapes.empty() ? "" : fmt::format(" For `{}`.", fmt::join(key.shapes, "`, `"));
   return fmt::format("| `{}` | {} | {} | {} | {} | {}{} |\n", last_part(key.name), type_text(key.type),
-                     key.unit, key.otherwise, words, in_cell_of_keys(key.meaning), shapes);
+                     key.unit, key.otherwise, words, convergence::markdown_cell(key.meaning), shapes);
 }
 
 std::vector<std::string> rows_of(const std::string& table, const SettingKeys& keys) {
@@ -82,7 +77,7 @@ std::vector<std::string> rows_of(const std::string& table, const SettingKeys& ke
   return rows;
 }
 
-/// A table's keys, or the first table before it that has all of them too.
+/// A table's keys, or a reference to the first table before it that has all of them.
 std::string table_text(const std::string& table, const std::vector<std::string>& before,
                        const SettingKeys& keys) {
   const std::vector<std::string> rows = rows_of(table, keys);

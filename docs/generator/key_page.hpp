@@ -6,7 +6,7 @@
 
 namespace slipstick::docs {
 
-/// What heads a page of keys.
+/// The head of a page of keys.
 struct PageHead {
   std::string title;
   std::string text;  ///< Markdown

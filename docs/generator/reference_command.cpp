@@ -20,7 +20,7 @@
 namespace slipstick::docs {
 namespace {
 
-/// Those that --set can give: of each table there is but one.
+/// The keys that --set can give: those of tables that occur once.
 std::vector<std::string> keys_of_one_table() {
   std::vector<std::string> names;
   for (const solver::SettingKey& key : solver::scene_keys()) {

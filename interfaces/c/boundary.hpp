@@ -5,6 +5,7 @@
 #include <cfenv>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 
 #include "interfaces/c/slipstick.h"
 
@@ -35,12 +36,18 @@ class PlainNumbers {
   std::fenv_t traps_{};
 };
 
-/// The status that the work returns, or that of what it throws.
+/// The status that the work returns, SLIPSTICK_OK if it returns none, or that of the exception that it
+/// throws.
 template <class Work>
 int guarded(const Work& work) noexcept {
   const PlainNumbers plain;
   try {
-    return work();
+    if constexpr (std::is_void_v<decltype(work())>) {
+      work();
+      return SLIPSTICK_OK;
+    } else {
+      return work();
+    }
   } catch (...) {
     return status_of_exception();
   }

@@ -18,7 +18,7 @@ using analytic::Profile;
 using analytic::TorsionState;
 
 using StateAt = TorsionState (*)(double, const Profile&);
-/// By enum slipstick_quantity: those that can be given, and all that are members of a state.
+/// By enum slipstick_quantity: the quantities that can be given, and those that are members of a state.
 constexpr std::array<StateAt, 5> kStateAt{analytic::from_moment_ratio, analytic::from_moment_deficit,
                                           analytic::from_stick_ratio, analytic::from_stick_complement,
                                           analytic::from_twist};
@@ -26,11 +26,6 @@ constexpr std::array kMembers{
     &TorsionState::moment_ratio,     &TorsionState::moment_deficit, &TorsionState::stick_ratio,
     &TorsionState::stick_complement, &TorsionState::twist,          &TorsionState::moment,
     &TorsionState::tangent_stiffness};
-
-analytic::NamedProfile profile_named(const char* name) {
-  require(name, "profile");
-  return analytic::find_profile(name);
-}
 
 StateAt state_by(int given) {
   if (!(given >= 0 && given < static_cast<int>(kStateAt.size())))
@@ -86,6 +81,16 @@ void find_quantity(const Profile& profile, StateAt state_at, std::span<const dou
   for_each(values, "values", results, [&](double value) { return state_at(value, profile).*member; });
 }
 
+/// Does the work with the profile of this name.
+template <class Work>
+int with_profile(const char* name, const Work& work) noexcept {
+  return guarded([&] {
+    require(name, "profile");
+    const analytic::NamedProfile named = analytic::find_profile(name);
+    work(*named.profile);
+  });
+}
+
 }  // namespace
 }  // namespace slipstick::c
 
@@ -93,92 +98,77 @@ using namespace slipstick;
 
 int slipstick_exact(const char* profile, int given, size_t n, const double* values, int wanted,
                     double* results) {
-  return c::guarded([&] {
-    c::find_quantity(*c::profile_named(profile).profile, c::state_by(given), c::array(values, n, "values"),
-                     wanted, c::array(results, n, "results"));
-    return SLIPSTICK_OK;
+  return c::with_profile(profile, [&](const analytic::Profile& shape) {
+    c::find_quantity(shape, c::state_by(given), c::array(values, n, "values"), wanted,
+                     c::array(results, n, "results"));
   });
 }
 
 int slipstick_exact_states(const char* profile, int given, size_t n, const double* values,
                            slipstick_state* states) {
-  return c::guarded([&] {
-    const analytic::NamedProfile named = c::profile_named(profile);
+  return c::with_profile(profile, [&](const analytic::Profile& shape) {
     const c::StateAt state_at = c::state_by(given);
     c::for_each(c::array(values, n, "values"), "values", c::array(states, n, "states"),
-                [&](double value) { return c::in_c(state_at(value, *named.profile)); });
-    return SLIPSTICK_OK;
+                [&](double value) { return c::in_c(state_at(value, shape)); });
   });
 }
 
 int slipstick_exact_traction(const char* profile, int given, double value, size_t n, const double* radii,
                              double* results) {
-  return c::guarded([&] {
-    const analytic::NamedProfile named = c::profile_named(profile);
-    const analytic::TorsionState state = c::state_by(given)(value, *named.profile);
+  return c::with_profile(profile, [&](const analytic::Profile& shape) {
+    const analytic::TorsionState state = c::state_by(given)(value, shape);
     c::for_each(c::array(radii, n, "radii"), "radii", c::array(results, n, "results"),
-                [&](double radius) { return analytic::traction(state, radius, *named.profile); });
-    return SLIPSTICK_OK;
+                [&](double radius) { return analytic::traction(state, radius, shape); });
   });
 }
 
 int slipstick_exact_pressure(const char* profile, size_t n, const double* radii, double* results) {
-  return c::guarded([&] {
-    const analytic::NamedProfile named = c::profile_named(profile);
+  return c::with_profile(profile, [&](const analytic::Profile& shape) {
     c::for_each(c::array(radii, n, "radii"), "radii", c::array(results, n, "results"),
-                [&](double radius) { return c::pressure_at(*named.profile, radius); });
-    return SLIPSTICK_OK;
+                [&](double radius) { return c::pressure_at(shape, radius); });
   });
 }
 
 int slipstick_exact_profile(const char* profile, slipstick_profile* result) {
-  return c::guarded([&] {
+  return c::with_profile(profile, [&](const analytic::Profile& shape) {
     c::require(result, "result");
-    const analytic::NamedProfile named = c::profile_named(profile);
-    *result = {named.profile->load(), named.profile->moment_limit(), named.profile->full_stick()};
-    return SLIPSTICK_OK;
+    *result = {shape.load(), shape.moment_limit(), shape.full_stick()};
   });
 }
 
 int slipstick_exact_history(const char* profile, size_t n, const double* moment_ratios,
                             slipstick_cycle_state* states) {
-  return c::guarded([&] {
-    const analytic::NamedProfile named = c::profile_named(profile);
-    analytic::LoadingHistory history(*named.profile);
+  return c::with_profile(profile, [&](const analytic::Profile& shape) {
+    analytic::LoadingHistory history(shape);
     c::for_each(c::array(moment_ratios, n, "moment_ratios"), "moment_ratios", c::array(states, n, "states"),
                 [&](double moment_ratio) {
                   history.load_to(moment_ratio);
                   return c::in_c(history.state());
                 });
-    return SLIPSTICK_OK;
   });
 }
 
 int slipstick_exact_curve(const char* profile, size_t n, const double* turning_points,
                           size_t points_per_branch, slipstick_cycle_state* states) {
-  return c::guarded([&] {
+  return c::with_profile(profile, [&](const analytic::Profile& shape) {
     c::require(states, "states");
     if (points_per_branch > static_cast<size_t>(std::numeric_limits<int>::max()))
       throw std::invalid_argument("points_per_branch is no number of points; allowed: 1 or more");
-    const analytic::NamedProfile named = c::profile_named(profile);
     const auto turning = c::array(turning_points, n, "turning_points");
-    const std::vector<analytic::CycleState> curve = analytic::loading_curve(
-        {turning.begin(), turning.end()}, static_cast<int>(points_per_branch), *named.profile);
+    const std::vector<analytic::CycleState> curve =
+        analytic::loading_curve({turning.begin(), turning.end()}, static_cast<int>(points_per_branch), shape);
     for (size_t i = 0; i < curve.size(); ++i) states[i] = c::in_c(curve[i]);
-    return SLIPSTICK_OK;
   });
 }
 
 int slipstick_exact_history_traction(const char* profile, size_t n_moments, const double* moment_ratios,
                                      size_t n_radii, const double* radii, double* results) {
-  return c::guarded([&] {
-    const analytic::NamedProfile named = c::profile_named(profile);
-    analytic::LoadingHistory history(*named.profile);
+  return c::with_profile(profile, [&](const analytic::Profile& shape) {
+    analytic::LoadingHistory history(shape);
     for (const double moment_ratio : c::array(moment_ratios, n_moments, "moment_ratios"))
       history.load_to(moment_ratio);
     c::for_each(c::array(radii, n_radii, "radii"), "radii", c::array(results, n_radii, "results"),
                 [&](double radius) { return history.traction(radius); });
-    return SLIPSTICK_OK;
   });
 }
 
@@ -193,6 +183,5 @@ int slipstick_exact_indentation(const char* profile, double load, double effecti
                                                                   .shape = {lengths.begin(), lengths.end()}})
                                             .indentation;
     *result = {found.contact_radius, found.approach, found.reference_pressure};
-    return SLIPSTICK_OK;
   });
 }

@@ -51,8 +51,8 @@ struct Request {
   void* user;
 };
 
-/// Solves go side by side. Those that read or change what the process has once, HDF5's library and what FFTW
-/// remembers, go alone. A forked process, where no other thread goes on, has a new one.
+/// Solves run side by side. A solve that reads files by HDF5's library or changes FFTW's wisdom, which the
+/// process has once, runs alone. A forked process, which has no other threads, gets a new lock.
 std::shared_mutex* solving = new std::shared_mutex;
 class Turn {
  public:
@@ -74,15 +74,14 @@ bool goes_alone(const Scene& scene) {
   return reads_files || scene.rounding_seed != 0;
 }
 
-/// FFTW remembers plans, and those that it chose under other rounding give other digits.
+/// FFTW would reuse plans that it made under another rounding, which give other digits.
 void forget_plans_after(const Scene& scene) {
   if (scene.rounding_seed == 0) return;
   fftw_forget_wisdom();
 }
 
-/// Plans may be made by several threads at a time, by those of the caller too, and a process may fork
-/// meanwhile: the lock is our own, since FFTW's, fftw_make_planner_thread_safe(), would stay locked in a
-/// process forked while another thread held it.
+/// The caller's threads may make plans, too, and a process may fork meanwhile. The lock is our own: FFTW's,
+/// fftw_make_planner_thread_safe(), would stay locked in a process forked while another thread held it.
 std::mutex planning;
 void begin_planning() { planning.lock(); }
 void end_planning() { planning.unlock(); }
@@ -146,7 +145,7 @@ void answer_exactly(slipstick_solution& kept, const Scene& scene) {
   kept.pressure = std::move(fields.pressure);
 }
 
-/// Why the answer is not to be trusted; empty where it is.
+/// Returns why the answer is not to be trusted; empty if it is.
 std::string solve_as_it_stands(slipstick_solution& kept, const Scene& scene, const Request& request) {
   if (scene.model == solver::ModelChoice::exact) {
     answer_exactly(kept, scene);
@@ -157,7 +156,7 @@ std::string solve_as_it_stands(slipstick_solution& kept, const Scene& scene, con
   return solved.solution.status == solver::Status::converged ? std::string() : solved.solution.message;
 }
 
-/// The exact side answers where it can and the scene does not say otherwise.
+/// Answers exactly where possible, unless the scene says otherwise. Returns as solve_as_it_stands().
 std::string solve_accurately(slipstick_solution& kept, Scene scene, const Request& request) {
   const convergence::AccuracyTarget target{.error = request.accuracy};
   const bool said =
@@ -202,7 +201,7 @@ int solve(const Request& request, slipstick_solution& kept) {
   return SLIPSTICK_NOT_CONVERGED;
 }
 
-/// The number, or NaN and why.
+/// The number; if there is none, NaN and `why`.
 double number_at(const Json& result, const char* path, std::string& why) {
   const convergence::FoundQuantity found = convergence::find_quantity(result, path);
   if (found.value != nullptr && found.value->is_number()) return found.value->get<double>();
@@ -264,7 +263,6 @@ int slipstick_solution_grid(const slipstick_solution* solution, size_t cells[2],
     cells[1] = static_cast<size_t>(solution->grid.n2);
     cell_size[0] = solution->grid.h1;
     cell_size[1] = solution->grid.h2;
-    return SLIPSTICK_OK;
   });
 }
 
@@ -280,7 +278,7 @@ int slipstick_solution_field(const slipstick_solution* solution, const char* nam
       if (column.name == name) {
         *values = column.values.data();
         *count = static_cast<size_t>(column.values.size());
-        return SLIPSTICK_OK;
+        return;
       }
       names += (names.empty() ? "" : ", ") + column.name;
     }
@@ -303,6 +301,5 @@ int slipstick_solution_write(const slipstick_solution* solution, const char* fil
       throw std::invalid_argument("the solution has no fields; allowed: one with fields");
     const c::Turn turn(true);
     solver::write_fields(file, solution->grid, solution->columns, solution->pressure);
-    return SLIPSTICK_OK;
   });
 }

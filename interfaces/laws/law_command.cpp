@@ -15,6 +15,7 @@
 #include "convergence/laws/contact_law.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/results/output.hpp"
+#include "convergence/runs/run_options.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "interfaces/laws/law_files.hpp"
 #include "interfaces/laws/law_result.hpp"
@@ -61,6 +62,26 @@ int run_law(const CLI::App& command, const LawRequest& request, std::ostream& te
   return 0;
 }
 
+void add_accuracy_options(CLI::App& command, LawOptions& options) {
+  command
+      .add_option("--error", options.error,
+                  "relative, of moment, rotation and energy lost in .h, .py and JSON; 1e-11 to 0.01")
+      ->capture_default_str();
+  command.add_option("--table-error", options.table_error, "over the limit, of the table; 1e-7 to 0.5")
+      ->capture_default_str();
+  CLI::Option* const error =
+      command.add_option("--element-error", options.element_error,
+                         "over the limit, of the elements in parallel on first loading; 1e-5 to 0.5");
+  error->capture_default_str();
+  command.add_option("--elements", options.elements, "so many elements, 1 to 200, with the least error")
+      ->excludes(error);
+  command
+      .add_option("--limit-loads", options.limit_loads,
+                  "points of the limit surface, from the moment alone to the force alone; at least 3")
+      ->check(CLI::Range(3, 10000))
+      ->capture_default_str();
+}
+
 }  // namespace
 
 convergence::RunCommand add_law_command(CLI::App& app) {
@@ -70,12 +91,8 @@ convergence::RunCommand add_law_command(CLI::App& app) {
   CLI::Option* const scene =
       command->add_option("scene", request->scene,
                           "scene file (TOML) with an exact answer: the law in SI units, at its first load");
-  command
-      ->add_option("--set", request->overrides,
-                   "key=value: override a key of the scene, e.g. load.normal=500")
-      ->take_all()
-      ->allow_extra_args(false)
-      ->needs(scene);
+  add_set_option(*command, request->overrides, "override a key of the scene, e.g. load.normal=500");
+  command->get_option("--set")->needs(scene);
   command
       ->add_option("--profile", request->profile,
                    "without a scene, dimensionless: hertz | cone | flat_punch | power:N | rounded_punch:B | "
@@ -99,27 +116,7 @@ convergence::RunCommand add_law_command(CLI::App& app) {
           },
           "NAME"))
       ->capture_default_str();
-  command
-      ->add_option("--error", request->options.error,
-                   "relative, of moment, rotation and energy lost in .h, .py and JSON; 1e-11 to 0.01")
-      ->capture_default_str();
-  command
-      ->add_option("--table-error", request->options.table_error, "over the limit, of the table; 1e-7 to 0.5")
-      ->capture_default_str();
-  CLI::Option* const error = command
-                                 ->add_option("--element-error", request->options.element_error,
-                                              "over the limit, of the elements in parallel on first loading; "
-                                              "1e-5 to 0.5")
-                                 ->capture_default_str();
-  command
-      ->add_option("--elements", request->options.elements,
-                   "so many elements, 1 to 200, with the least error")
-      ->excludes(error);
-  command
-      ->add_option("--limit-loads", request->options.limit_loads,
-                   "points of the limit surface, from the moment alone to the force alone; at least 3")
-      ->check(CLI::Range(3, 10000))
-      ->capture_default_str();
+  add_accuracy_options(*command, request->options);
   command->footer(
       "Examples: slipstick law convergence/scenes/paper.toml --write law.h --write law.inp --json law.json\n"
       "          slipstick law --profile cone --elements 8\n"

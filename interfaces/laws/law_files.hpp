@@ -15,7 +15,7 @@ using convergence::ContactLaw;
 /// that the law has not.
 std::string law_file(const ContactLaw& law, const std::filesystem::path& path);
 
-/// Its first lines, each with `before` in front: what the law is of, its units.
+/// The first lines of a file, each with `before` in front: the contact and the units.
 std::string law_heading(const ContactLaw& law, const std::string& before);
 
 /// The prefix of the law's names, in capitals.
@@ -32,7 +32,7 @@ std::string lammps_table(const ContactLaw& law);
 /// Connector behaviours: nonlinear elastic first loading; the elements, elastic and plastic, in parallel.
 std::string abaqus_behaviours(const ContactLaw& law);
 
-/// The law has to have what they need.
+/// MuJoCo needs units, Drake a sphere.
 std::string mujoco_default(const ContactLaw& law);
 std::string drake_model(const ContactLaw& law);
 

@@ -13,7 +13,7 @@ using convergence::Json;
 /// All forms of a law with their errors.
 Json law_json(const ContactLaw& law);
 
-/// What a person wants to know of it: a few lines.
+/// The result in a few lines of text.
 std::string law_text(const Json& result);
 
 }  // namespace slipstick::laws

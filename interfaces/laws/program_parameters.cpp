@@ -11,7 +11,7 @@ using namespace convergence;
 
 namespace {
 
-/// That the contact turns at 0.9 of the limit, in units of rotation.
+/// The rotation at 0.9 of the limit, in units of rotation.
 double presliding(const ContactLaw& law) {
   return law.rotation_unit() * analytic::from_moment_ratio(0.9, *law.contact.profile).twist;
 }

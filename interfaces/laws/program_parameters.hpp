@@ -6,7 +6,7 @@
 
 #include "convergence/laws/contact_law.hpp"
 
-/// What other programs' own friction laws can hold of a contact, and the error that remains.
+/// Parameters of other programs' own friction laws that fit a contact best, and the errors that remain.
 namespace slipstick::laws {
 
 using convergence::ContactLaw;
@@ -19,11 +19,11 @@ struct LammpsTwisting {
   double marshall_cap_error;  ///< of the limit that `twisting marshall` has under any stiffness
 };
 
-/// MuJoCo, condim 4, an elliptic cone: nothing turns below the cap.
+/// MuJoCo, condim 4, an elliptic cone: nothing rotates below the cap.
 struct MujocoFriction {
   double sliding;          ///< mu
   double torsional;        ///< m: the limit moment over the normal load
-  double lost_presliding;  ///< rad that the contact turns at 0.9 of the limit
+  double lost_presliding;  ///< rotation at 0.9 of the limit, rad
   double combined_error;   ///< the ellipsoid's, at worst
 };
 

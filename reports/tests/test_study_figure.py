@@ -187,7 +187,7 @@ class Errors(unittest.TestCase):
         failed = {"count": 2, "of": 40, "first": {"run": "paper, rounded upward", "message": "killed by signal 9"}}
         text = study_figure.draw(study(failed_runs=failed)).message
         self.assertTrue(text.startswith("2 of 40 runs failed; the first (paper, rounded upward): killed by signal 9. "))
-        self.assertTrue(study_figure.draw(study(failed_runs={"count": 0, "of": 40})).message.startswith("Of "))
+        self.assertTrue(study_figure.draw(study(failed_runs={"count": 0, "of": 40})).message.startswith("8 orders: "))
 
     def test_values_that_are_null_have_no_point(self):
         content = study()
@@ -223,8 +223,8 @@ class Budget(unittest.TestCase):
                       "all the iteration.", study_figure.draw(content).message)
 
     def test_a_tenth_is_not_above_a_tenth(self):
-        for iteration, words in ((0.1, "The mesh error of the twist is at least 1.0×10¹ times"), (0.095, "The mesh makes at least"),
-                                 (0.11, "On 4 of 4 meshes")):
+        for iteration, words in ((0.1, "The mesh error of the twist is at least 1.0×10¹ times"),
+                                 (0.095, "The mesh error of the twist is at least"), (0.11, "On 4 of 4 meshes")):
             content = study()
             for one in content["series"].values():
                 for row in one["budget"]:

@@ -22,7 +22,7 @@ Eigen::ArrayXd norms(const Eigen::ArrayXd& vectors) { return dot_products(vector
 
 namespace {
 
-/// Of a certificate, over cells.
+/// Sums over cells that a certificate is made of.
 struct CertificateSums {
   double friction = 0.0;  ///< of mu p
   double energy = 0.0;    ///< q.Kq/2
@@ -45,12 +45,13 @@ struct CertificateSums {
   }
 };
 
-/// Rotation: a field, or what works it out, in cells of one row. row: see Sweep.
+/// all: every cell; discs: those of the friction bound. Rotation: a field, or what works it out, in cells of
+/// one row.
 template <class Rotation>
-Certificate certificate_of(Index row, const TractionField& field, const Eigen::ArrayXd& friction_bound,
-                           const Rotation& rotation, double moment, const std::array<double, 2>& force,
-                           double least_eigenvalue, const Inherited& before) {
-  const Sweep all = Sweep::whole(friction_bound.size(), row);
+Certificate certificate_of(const Sweep& all, const FrictionDiscs& discs, const TractionField& field,
+                           const Eigen::ArrayXd& friction_bound, const Rotation& rotation, double moment,
+                           const std::array<double, 2>& force, double least_eigenvalue,
+                           const Inherited& before) {
   const Eigen::Index cells = friction_bound.size();
   const Eigen::ArrayXd& q = field.traction;
   const Eigen::ArrayXd& u = field.elastic_displacement;
@@ -85,11 +86,10 @@ Certificate certificate_of(Index row, const TractionField& field, const Eigen::A
   const double energy = before.energy > 0.0 && sums.energy <= before.energy ? before.energy : sums.energy;
   certificate.energy = energy;
   certificate.gap = sums.gap == 0.0 ? 0.0 : sums.gap / energy;
-  const FrictionDiscs discs(friction_bound, row);
   const double energy_error = discs.energy_error(q, s, least_eigenvalue);
   certificate.energy_error = energy_error == 0.0 ? 0.0 : energy_error / energy;
   double rounding = discs.gap_rounding(s, u);
-  // Slip is then K q - K q_before - motion, of which the middle one is no larger than the three others.
+  // Slip is then K q - K q_before - motion; K q_before is no larger than the three other fields together.
   if (before.motion > 0.0) rounding = 2.0 * rounding + kGapUnits * before.motion * sums.friction;
   certificate.rounding = rounding == 0.0 ? 0.0 : rounding / energy;
   const double imbalance = std::abs(sums.moment - moment);
@@ -105,14 +105,15 @@ Certificate certificate_of(Index row, const TractionField& field, const Eigen::A
 Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound,
                     const Eigen::ArrayXd& rotation, double moment, const std::array<double, 2>& force,
                     double least_eigenvalue) {
-  return certificate_of(0, field, friction_bound, rotation, moment, force, least_eigenvalue, {});
+  return certificate_of(Sweep::whole(friction_bound.size()), FrictionDiscs(friction_bound), field,
+                        friction_bound, rotation, moment, force, least_eigenvalue, {});
 }
 
 Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_bound, const Grid& grid,
                     double moment, const std::array<double, 2>& force, double least_eigenvalue,
                     const Inherited& before) {
-  return certificate_of(grid.n2, field, friction_bound, MotionField(grid, 0.0, 0.0, 1.0), moment, force,
-                        least_eigenvalue, before);
+  return certificate_of(Sweep::whole(grid), FrictionDiscs(grid, friction_bound), field, friction_bound,
+                        MotionField(grid, 0.0, 0.0, 1.0), moment, force, least_eigenvalue, before);
 }
 
 std::string beyond(const Certificate& certificate, const CertificateBounds& bounds) {

@@ -40,7 +40,7 @@ struct Certificate {
   double energy = 0.0;
 };
 
-/// What a step's state has of the one that it starts from.
+/// What a step's certificate takes over from the state that the step starts from.
 struct Inherited {
   double energy = 0.0;  ///< see Certificate::energy
   double motion = 0.0;  ///< of the step: the largest in the contact, in size
@@ -57,7 +57,7 @@ Certificate certify(const TractionField& field, const Eigen::ArrayXd& friction_b
                     double moment, const std::array<double, 2>& force = {}, double least_eigenvalue = 0.0,
                     const Inherited& before = {});
 
-/// What the members of a certificate may be. Infinite: anything but NaN.
+/// Upper bounds of the members of a certificate. Infinite: anything but NaN.
 struct CertificateBounds {
   double gap;
   double moment;

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "solver/contact/certificate.hpp"
+#include "solver/grid/own_rows.hpp"
 #include "solver/newton/nested_iteration.hpp"
 
 namespace slipstick::solver {
@@ -62,20 +63,20 @@ std::optional<double> given_of(const TangentialProblem& problem, Motion motion) 
 class TangentialOnGrid {
  public:
   TangentialOnGrid(const Grid& grid, TangentialProblem problem)
-      : row_(grid.n2),
+      : grid_(grid),
         problem_(std::move(problem)),
         motions_{MotionField(grid, 1.0), MotionField(grid, 0.0, 1.0), MotionField(grid, 0.0, 0.0, 1.0)} {}
 
   static BlockKernel kernel() { return tangential_kernel(); }
   static std::span<const Parity> parities() { return kTorsionParities; }
-  FrictionDiscs admissible() const { return FrictionDiscs(problem_.friction_bound, row_); }
+  FrictionDiscs admissible() const { return FrictionDiscs(grid_, problem_.friction_bound); }
   ArrayXd start() const {
     return problem_.start.size() > 0 ? problem_.start : ArrayXd::Zero(2 * problem_.friction_bound.size());
   }
   ArrayXd guess() const { return problem_.guess; }
-  void keep_own_rows(const Grid& grid) {
-    problem_.friction_bound = own_rows(grid, std::move(problem_.friction_bound));
-    problem_.initial_displacement = own_rows(grid, std::move(problem_.initial_displacement));
+  void keep_own_rows() {
+    problem_.friction_bound = in_own_rows(grid_, std::move(problem_.friction_bound));
+    problem_.initial_displacement = in_own_rows(grid_, std::move(problem_.initial_displacement));
   }
 
   /// Once: what it refers to takes the place of what the problem was given.
@@ -100,17 +101,17 @@ class TangentialOnGrid {
   }
 
   /// The same part of the limit loads on the coarse grid.
-  TangentialOnGrid coarsened(const Grid& grid, const Grid& coarse) const {
+  TangentialOnGrid coarsened(const Grid& coarse) const {
     TangentialProblem problem{
-        .friction_bound = restrict_to(coarse, grid, problem_.friction_bound),
-        .initial_displacement = restrict_to(coarse, grid, problem_.initial_displacement),
+        .friction_bound = restrict_to(coarse, grid_, problem_.friction_bound),
+        .initial_displacement = restrict_to(coarse, grid_, problem_.initial_displacement),
         .moment = problem_.moment,
         .twist = problem_.twist,
         .force = problem_.force,
         .displacement = problem_.displacement,
-        .start = restrict_to(coarse, grid, problem_.start),
-        .energy_before = problem_.energy_before * grid.cell_area() / coarse.cell_area()};
-    const double scaled = limit_of(problem, coarse).factor / limit_of(problem_, grid).factor;
+        .start = restrict_to(coarse, grid_, problem_.start),
+        .energy_before = problem_.energy_before * grid_.cell_area() / coarse.cell_area()};
+    const double scaled = limit_of(problem, coarse).factor / limit_of(problem_, grid_).factor;
     const double scale = std::isfinite(scaled) ? scaled : 1.0;  // no load: nothing to scale
     if (problem.moment) *problem.moment *= scale;
     if (problem.force) *problem.force = {scale * (*problem.force)[0], scale * (*problem.force)[1]};
@@ -120,7 +121,7 @@ class TangentialOnGrid {
  private:
   const MotionField& field(Motion motion) const { return motions_[static_cast<std::size_t>(motion)]; }
 
-  Index row_;
+  Grid grid_;
   TangentialProblem problem_;
   std::array<MotionField, 3> motions_;  ///< by Motion: (1, 0), (0, 1) and (-x2, x1)
   ArrayXd reference_;

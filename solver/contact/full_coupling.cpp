@@ -7,8 +7,8 @@
 #include <limits>
 #include <utility>
 
+#include "solver/contact/anderson.hpp"
 #include "solver/newton/admissible.hpp"
-#include "solver/newton/anderson.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -21,7 +21,7 @@ constexpr int kMaxTurns = 100;
 constexpr double kProgress = 0.1;
 constexpr std::size_t kLastGaps = 3;
 constexpr double kMinStep = 1.0 / 64.0;
-constexpr double kUnknown = std::numeric_limits<double>::infinity();
+constexpr double kNoGapYet = std::numeric_limits<double>::infinity();
 /// Gap that is enough in the first turn, and in the others as a part of the one that the last has left.
 constexpr double kFirstGap = 1e-2;
 constexpr double kPartOfGap = 0.03;
@@ -60,7 +60,7 @@ class Turns {
     double step = 1.0;
     double wanted = kFirstGap;
     for (solution_.turns = 1;; ++solution_.turns) {
-      // What fails roughly solved, as a load that a rough pressure does not carry, may not do so in full.
+      // A load that a roughly solved pressure does not carry may be carried by one that is solved in full.
       if (!take(wanted) && !take(0.0)) return std::move(solution_);
       const double largest = std::ranges::max(last_gaps_);
       measure();
@@ -137,8 +137,8 @@ class Turns {
   ArrayXd opening_, change_;
   ArrayXd pressure_, traction_;  ///< guesses; empty in the first turn
   Eigen::Array<bool, Eigen::Dynamic, 1> slips_;
-  double gap_ = kUnknown;
-  std::array<double, kLastGaps> last_gaps_{kUnknown, kUnknown, kUnknown};
+  double gap_ = kNoGapYet;
+  std::array<double, kLastGaps> last_gaps_{kNoGapYet, kNoGapYet, kNoGapYet};
   CoupledSolution solution_;
 };
 

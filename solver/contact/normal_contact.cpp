@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "solver/grid/own_rows.hpp"
 #include "solver/newton/nested_iteration.hpp"
 
 namespace slipstick::solver {
@@ -22,7 +23,7 @@ class PressureOnGrid {
   /// reachable: 1 where the bodies can touch; height: the undeformed gap there, 0 elsewhere.
   PressureOnGrid(const Grid& grid, ArrayXd reachable, ArrayXd height, double total_pressure,
                  ArrayXd guess = {})
-      : row_(grid.n2),
+      : grid_(grid),
         approach_(grid, 1.0),
         reachable_(std::move(reachable)),
         height_(std::move(height)),
@@ -31,28 +32,28 @@ class PressureOnGrid {
 
   static BlockKernel kernel() { return normal_kernel(); }
   static std::span<const Parity> parities() { return kPressureParities; }
-  PositivePressures admissible() const { return PositivePressures(reachable_, row_); }
+  PositivePressures admissible() const { return PositivePressures(grid_, reachable_); }
   ArrayXd start() const { return ArrayXd::Zero(reachable_.size()); }
   ArrayXd guess() const { return guess_; }
-  void keep_own_rows(const Grid& grid) {
-    reachable_ = own_rows(grid, std::move(reachable_));
-    height_ = own_rows(grid, std::move(height_));
+  void keep_own_rows() {
+    reachable_ = in_own_rows(grid_, std::move(reachable_));
+    height_ = in_own_rows(grid_, std::move(height_));
   }
   ConvexProgram program(LinearOperator&) const {
     return {.g = &height_, .imposed = {{&approach_, total_pressure_}}};
   }
 
   /// A coarse cell can touch where half of it can, at the mean height of that part.
-  PressureOnGrid coarsened(const Grid& grid, const Grid& coarse) const {
-    const ArrayXd part = restrict_to(coarse, grid, reachable_);
-    const ArrayXd height = restrict_to(coarse, grid, height_);
+  PressureOnGrid coarsened(const Grid& coarse) const {
+    const ArrayXd part = restrict_to(coarse, grid_, reachable_);
+    const ArrayXd height = restrict_to(coarse, grid_, height_);
     const ArrayXd reachable = (part >= std::min(0.5, part.maxCoeff())).cast<double>();
     return {coarse, reachable, (reachable > 0.0).select(height / part.max(0.25 * part.maxCoeff()), 0.0),
-            total_pressure_ * grid.cell_area() / coarse.cell_area()};
+            total_pressure_ * grid_.cell_area() / coarse.cell_area()};
   }
 
  private:
-  Index row_;
+  Grid grid_;
   MotionField approach_;
   ArrayXd reachable_;
   ArrayXd height_;

@@ -18,12 +18,12 @@ namespace {
 using Eigen::ArrayXd;
 
 constexpr int kCheckEvery = 10;
-/// So many iterations without a gap that is so much below the least so far are the end: rounding hides it.
-/// Contacts 512 cells across need 170 for eight digits.
-constexpr int kPatience = 500;
+/// The run ends after this many iterations without a gap below kFallen times the least one: rounding hides
+/// further progress. Contacts 512 cells across need 170 iterations for eight digits.
+constexpr int kIdleIterations = 500;
 constexpr double kFallen = 0.9;
 constexpr int kPowerIterations = 6;
-constexpr double kMargin = 1.05;
+constexpr double kStepMargin = 1.05;
 /// Below this part of a displacement, the difference of two is rounding.
 constexpr double kNoise = 1e-13;
 
@@ -41,7 +41,7 @@ class ProjectedGradient {
         q_(options.start.size() > 0 ? options.start : ArrayXd::Zero(t_.size())),
         Kq_(ArrayXd::Zero(t_.size())),
         rotation_(op.grid(), 0.0, 0.0, 1.0),
-        discs_(problem.friction_bound, op.grid().n2),
+        discs_(op.grid(), problem.friction_bound),
         balance_(discs_, imposed(problem, rotation_)),
         phi_(problem.twist.value_or(0.0)) {
     if (q_.size() != t_.size()) throw std::invalid_argument("start: tractions of another size");
@@ -73,7 +73,7 @@ class ProjectedGradient {
       if (!(gap_ > kFallen * least_gap_)) {
         least_gap_ = gap_;
         progressed_ = iteration_;
-      } else if (iteration_ - progressed_ >= kPatience) {
+      } else if (iteration_ - progressed_ >= kIdleIterations) {
         return finish(
             Status::not_converged,
             fmt::format("no further progress: gap {:.3g} after {} iterations, {:.3g} after {}, asked "
@@ -91,7 +91,7 @@ class ProjectedGradient {
   /// The largest eigenvalue belongs to a smooth field, a translation nearly, far above the others, so that a
   /// few power iterations from there (and from the rotation, which is orthogonal to it by symmetry) come
   /// within the margin from below: fewer applications than the rows' sums, which bound it on square contacts
-  /// only up to a third. descend() measures the curvature that it meets and mends a bound that is too low.
+  /// only up to a third. descend() measures the curvature that it meets and corrects a bound that is too low.
   void bound_largest_eigenvalue() {
     ArrayXd v = contact_ * (1.0 + t_ / t_.abs().maxCoeff());
     ArrayXd Kv(v.size());
@@ -99,7 +99,7 @@ class ProjectedGradient {
       v /= v.matrix().norm();
       op_.apply(v, Kv);
       v = contact_ * Kv;
-      L_ = kMargin * v.matrix().norm();
+      L_ = kStepMargin * v.matrix().norm();
       if (!std::isfinite(L_) || L_ == 0.0) return;
     }
   }
@@ -154,7 +154,7 @@ class ProjectedGradient {
       const double curvature = ((q_ - y_) * (Kq_ - Ky_)).sum();
       const double noise = kNoise * std::sqrt(square * Ky_.square().sum());
       if (!(curvature > L_ * square + noise)) return;  // NaN is for the certificate to see
-      L_ = kMargin * curvature / square;
+      L_ = kStepMargin * curvature / square;
     }
   }
 

@@ -12,7 +12,7 @@ namespace slipstick::solver {
 
 double moment_limit(const Grid& grid, const Eigen::ArrayXd& friction_bound) {
   const Eigen::ArrayXd x2 = Eigen::ArrayXd::NullaryExpr(grid.n2, [&](Index j) { return grid.x2(j); });
-  return Sweep::whole(grid.cells(), grid.n2).sum<double>([&](Index first, Index last, double& sum) {
+  return Sweep::whole(grid).sum<double>([&](Index first, Index last, double& sum) {
     const double x1 = grid.x1(first / grid.n2);
     sum += (friction_bound.segment(first, last - first) * (x1 * x1 + x2.square()).sqrt()).sum();
   });

@@ -52,13 +52,12 @@ std::size_t place_of(const Elasticity& elasticity, const Grid& grid, const Block
   return static_cast<std::size_t>(part_of(grid, kernel, options_of(elasticity, kernel).diagonal));
 }
 
-/// This rank's part of the bytes of that many doubles a padded cell.
+/// This process's part of the bytes of so many doubles a padded cell.
 double padded_bytes(double doubles, const Grid& grid) {
   const auto padded = [](Index cells) {
     return static_cast<double>(fast_length(2 * std::max(cells, kMinSide) - 1));
   };
-  const double part =
-      static_cast<double>(RowBands(grid.n1).own_rows().count()) / static_cast<double>(grid.n1);
+  const double part = static_cast<double>(own_rows(grid).count()) / static_cast<double>(grid.n1);
   return sizeof(double) * doubles * padded(grid.n1) * padded(grid.n2) * part;
 }
 
@@ -76,7 +75,7 @@ CacheKey Elasticity::key(const char* what, const Grid& grid) const {
   CacheKey all(what);
   law->add_to(all);
   all.add(kind).add(threads).add(diagonal).add(at_edge);
-  return all.add(grid.n1).add(grid.n2).add(grid.h1).add(grid.h2).add(grid.quadrant);
+  return all.add(grid.n1).add(grid.n2).add(grid.h1).add(grid.h2).add(grid.quadrant).add(grid.ranks.number());
 }
 
 double Elasticity::operator_bytes(const Grid& grid, const BlockKernel& kernel) const {
@@ -109,7 +108,8 @@ Cached<LinearOperator> Elasticity::make(const Grid& grid, const BlockKernel& ker
 }
 
 GridOperators::GridOperators(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel)
-    : op(new_operator(elasticity, grid, kernel)), symbol(make_inverse_symbol(grid, kernel, *elasticity.law, options_of(elasticity, kernel))) {}
+    : op(new_operator(elasticity, grid, kernel)),
+      symbol(make_inverse_symbol(grid, kernel, *elasticity.law, options_of(elasticity, kernel))) {}
 
 Cached<GridOperators> Elasticity::make_all(const Grid& grid, const BlockKernel& kernel) const {
   Cached<GridOperators> operators(

@@ -92,7 +92,11 @@ class PeriodicInverseSymbol final : public InverseSymbol {
 
  private:
   static PlaneShape shape(const Grid& grid, const PeriodicGrid& periodic, bool tangential) {
-    return {periodic.length1, periodic.length2, tangential ? 2 : 1, grid.n1};
+    return {.n1 = periodic.length1,
+            .n2 = periodic.length2,
+            .fields = tangential ? 2 : 1,
+            .samples = grid.n1,
+            .ranks = grid.ranks};
   }
 
   /// Row i of a field forward.

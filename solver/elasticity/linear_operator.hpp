@@ -10,7 +10,7 @@
 #include "solver/elasticity/law/elastic_law.hpp"
 #include "solver/elasticity/operator_kind.hpp"
 #include "solver/grid/grid.hpp"
-#include "solver/grid/ranks.hpp"
+#include "solver/grid/own_rows.hpp"
 
 namespace slipstick::solver {
 
@@ -42,10 +42,10 @@ class LinearOperator {
   /// nothing. Throws std::invalid_argument for other sizes.
   void apply(std::span<const double> traction, std::span<double> displacement) {
     apply_own(traction, displacement);
-    gather(grid_, displacement);
+    share_rows(grid_, displacement);
   }
 
-  /// In this rank's rows alone, see Ranks, of which alone it needs the tractions.
+  /// In the grid's own rows alone, where alone it needs the tractions.
   void apply_own(std::span<const double> traction, std::span<double> displacement) {
     const auto cells = static_cast<std::size_t>(grid_.cells());
     if (traction.size() != inputs() * cells || displacement.size() != outputs() * cells) {
@@ -106,7 +106,7 @@ struct OperatorOptions {
 std::unique_ptr<LinearOperator> make_operator(OperatorKind kind, const Grid& grid, const BlockKernel& kernel,
                                               const ElasticLaw& law, const OperatorOptions& options = {});
 
-/// What all ranks together will send in one application in double precision by discrete convolution.
+/// Bytes that all ranks together will send in one application in double precision by discrete convolution.
 double predicted_sent_bytes(const Grid& grid, const BlockKernel& kernel);
 
 }  // namespace slipstick::solver

@@ -89,14 +89,14 @@ MirroredConvolution::MirroredConvolution(const Grid& quadrant, BlockKernel kerne
       along2_(quadrant.n2),
       row_groups_(groups(quadrant.n1, kLines)),
       column_groups_(groups(along2_.frequencies(), kLines)),
-      own_row_groups_(own_row_groups(quadrant.n1)),
-      field_size_(field_size(row_groups_, column_groups_, quadrant.n1)),
+      own_row_groups_(own_row_groups(quadrant)),
+      field_size_(field_size(quadrant, column_groups_)),
       half_transformed_(count(fields() * field_size_)) {
-  if (Ranks::number() > 1) {
+  if (quadrant.ranks.several()) {
     if (diagonal_) throw std::invalid_argument("several ranks do not exchange rows and columns");
-    ranks_.emplace(shared_matrix(row_groups_, column_groups_, quadrant.n1));
+    ranks_.emplace(shared_matrix(quadrant, column_groups_));
   }
-  own_column_groups_ = ranks_ ? Ranks::own_share(column_groups_) : Share{0, column_groups_};
+  own_column_groups_ = ranks_ ? quadrant.ranks.own_share(column_groups_) : Share{0, column_groups_};
   if (diagonal_) transformed_ = FftwBuffer(transformed_reals(along1_.frequencies()));
   const std::vector<Component> components = distinct_components(this->kernel(), diagonal_);
   const Grid offsets{along1_.frequencies() + 1, along2_.frequencies() + 1, quadrant.h1, quadrant.h2};
@@ -137,19 +137,21 @@ FftwBuffer MirroredConvolution::kernel_spectrum(Component component, std::vector
 }
 
 /// A block of kLines rows by kLines columns is an entry.
-auto MirroredConvolution::shared_matrix(Index row_groups, Index column_groups, Index rows) -> Shape {
+auto MirroredConvolution::shared_matrix(const Grid& quadrant, Index column_groups) -> Shape {
   static_assert(RowBands::kRows % kLines == 0);
-  return {row_groups, RowBands(rows).rows_of_rank() / kLines, column_groups, kLines * kLines};
+  const RowBands bands(quadrant.n1, quadrant.ranks);
+  return {quadrant.ranks, groups(quadrant.n1, kLines), bands.rows_of_rank() / kLines, column_groups,
+          kLines * kLines};
 }
 
-Share MirroredConvolution::own_row_groups(Index rows) {
-  const Share own = RowBands(rows).own_rows();
+Share MirroredConvolution::own_row_groups(const Grid& quadrant) {
+  const Share own = own_rows(quadrant);
   return {groups(own.first, kLines), groups(own.last, kLines)};
 }
 
-Index MirroredConvolution::field_size(Index row_groups, Index column_groups, Index rows) {
-  if (Ranks::number() == 1) return row_groups * column_groups * kLines * kLines;
-  return shared_matrix(row_groups, column_groups, rows).size();
+Index MirroredConvolution::field_size(const Grid& quadrant, Index column_groups) {
+  if (!quadrant.ranks.several()) return groups(quadrant.n1, kLines) * column_groups * kLines * kLines;
+  return shared_matrix(quadrant, column_groups).size();
 }
 
 Parity MirroredConvolution::parity_of(Index field) const {
@@ -158,8 +160,7 @@ Parity MirroredConvolution::parity_of(Index field) const {
 }
 
 double MirroredConvolution::sent_bytes(const Grid& quadrant, const BlockKernel& kernel) {
-  const Shape matrix = shared_matrix(groups(quadrant.n1, kLines),
-                                     groups(Transform::frequencies(quadrant.n2), kLines), quadrant.n1);
+  const Shape matrix = shared_matrix(quadrant, groups(Transform::frequencies(quadrant.n2), kLines));
   return static_cast<double>(kernel.inputs + kernel.outputs) * matrix.sent_bytes();
 }
 

@@ -54,10 +54,10 @@ class MirroredConvolution final : public LinearOperator {
     return column_workspaces_[static_cast<std::size_t>(thread * fields() + field)];
   }
   using Shape = RankTranspose::Shape;
-  static Shape shared_matrix(Index row_groups, Index column_groups, Index rows);
-  static Share own_row_groups(Index rows);
+  static Shape shared_matrix(const Grid& quadrant, Index column_groups);
+  static Share own_row_groups(const Grid& quadrant);
   /// Values of half_transformed_ from one field to the next.
-  static Index field_size(Index row_groups, Index column_groups, Index rows);
+  static Index field_size(const Grid& quadrant, Index column_groups);
   double* of_field(Index field) { return half_transformed_.data() + field * field_size_; }
   /// Values from one group of rows of half_transformed_ to the next, while rows are carried.
   Index row_group_stride() const { return column_groups_ * kLines * kLines; }

@@ -25,7 +25,8 @@ PlaneShape plane_of(const Grid& grid, bool tangential, bool symmetric) {
           tangential ? 2 : 1,
           grid.n1,
           reordered,
-          symmetric};
+          symmetric,
+          grid.ranks};
 }
 
 /// Where frequencies f2 lie in a row of coefficients: those of cosines, then those of sines.

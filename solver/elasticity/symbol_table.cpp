@@ -61,8 +61,7 @@ SymbolTable::SymbolTable(const PeriodicGrid& grid, const ElasticLaw& law,
   });
 }
 
-std::array<double, 2> mean_inverse_symbol(const PeriodicGrid& grid, const ElasticLaw& law,
-                                          bool tangential) {
+std::array<double, 2> mean_inverse_symbol(const PeriodicGrid& grid, const ElasticLaw& law, bool tangential) {
   const auto signs = [](Index f, Index length) { return f == 0 || 2 * f == length ? 1.0 : 2.0; };
   const Index rows = grid.length1 / 2 + 1;
   std::vector<Index> columns(static_cast<std::size_t>(grid.length2 / 2 + 1));

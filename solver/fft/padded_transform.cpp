@@ -49,13 +49,13 @@ PaddedTransform::PaddedTransform(const Grid& grid, std::size_t fields, int threa
       column_step_(stride1_),
       group_step_(kRows),
       columns_(2 * fields * field_size_) {
-  if (Ranks::number() > 1) {
+  if (grid.ranks.several()) {
     ranks_.emplace(shared_matrix(grid));
     column_stride_ = groups() * kRows;
     column_step_ = kRows;
     group_step_ = columns() * kRows;
   }
-  const Index size = scratch_size(fields, stride1_, stride2_);
+  const Index size = scratch_size(grid, fields, stride1_, stride2_);
   for (int thread = 0; thread < threads; ++thread) scratch_.emplace_back(2 * count(size));
   const auto plan = [&](Index length, Index out, int direction) {
     auto* const start = scratch_.front().complex();
@@ -82,19 +82,19 @@ auto PaddedTransform::rows_of(std::size_t field, Index column, Index group) -> C
 }
 
 std::size_t PaddedTransform::field_size(const Grid& grid, Index columns, Index stride1) {
-  if (Ranks::number() == 1) return count(columns * stride1);
+  if (!grid.ranks.several()) return count(columns * stride1);
   return count(shared_matrix(grid).size() / 2);
 }
 
 /// A group of rows in a column is an entry.
 auto PaddedTransform::shared_matrix(const Grid& grid) -> RankTranspose::Shape {
   static_assert(RowBands::kRows % kRows == 0);
-  return {(grid.n1 + kRows - 1) / kRows, RowBands(grid.n1).rows_of_rank() / kRows, half_length(grid.n2) + 1,
-          2 * kRows};
+  return {grid.ranks, (grid.n1 + kRows - 1) / kRows, RowBands(grid.n1, grid.ranks).rows_of_rank() / kRows,
+          half_length(grid.n2) + 1, 2 * kRows};
 }
 
 Share PaddedTransform::own_groups(const Grid& grid) {
-  const Share rows = RowBands(grid.n1).own_rows();
+  const Share rows = own_rows(grid);
   return {(rows.first + kRows - 1) / kRows, (rows.last + kRows - 1) / kRows};
 }
 

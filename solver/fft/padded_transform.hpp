@@ -76,10 +76,10 @@ class PaddedTransform {
   /// A count of groups of kRows, rounded up to odd: numbers a power of two apart would compete for one cache
   /// set.
   static Index stride(Index length) { return ((length + kRows - 1) / kRows | 1) * kRows; }
-  /// A thread's memory holds a group of rows before and after its transform; or the two halves of each field's
-  /// column and one that is being turned, and on several ranks one that is being padded.
-  static Index scratch_size(std::size_t fields, Index stride1, Index stride2) {
-    const Index turned_and_padded = Ranks::number() > 1 ? 2 : 1;
+  /// A thread's memory holds a group of rows before and after its transform; or the two halves of each
+  /// field's column and one that is being turned, and on several ranks one that is being padded.
+  static Index scratch_size(const Grid& grid, std::size_t fields, Index stride1, Index stride2) {
+    const Index turned_and_padded = grid.ranks.several() ? 2 : 1;
     return std::max(2 * kRows * stride2, (2 * static_cast<Index>(fields) + turned_and_padded) * stride1);
   }
 

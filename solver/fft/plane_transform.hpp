@@ -18,6 +18,7 @@ struct PlaneShape {
   Index samples;
   Index (*place)(Index i, Index n1) = [](Index i, Index) { return i; };
   bool whole = false;
+  Ranks ranks = {};  ///< that share the samples
 };
 
 /// Some columns of the fields' complex numbers: row k has those from the first one on.
@@ -42,9 +43,9 @@ class PlaneTransform {
   PlaneTransform(const PlaneShape& shape, int threads)
       : shape_(shape),
         threads_(threads),
-        row_stride_(row_stride(shape.n2)),
+        row_stride_(row_stride(shape)),
         columns_(shape.n2 / 2 + 1),
-        own_samples_(RowBands(shape.samples).own_rows()),
+        own_samples_(RowBands(shape.samples, shape.ranks).own_rows()),
         field_size_(field_size(shape)),
         buffer_(count(shape.fields * field_size_)),
         ranks_(shared_matrix(shape)) {
@@ -150,16 +151,17 @@ class PlaneTransform {
   static constexpr Index kAhead = 12;
 
   static Index batches(const PlaneShape& shape) { return (shape.n2 / 2 + kColumns) / kColumns; }
-  static Index row_stride(Index n2) {
-    const Index lines = (n2 / 2 + kColumns) / kColumns;
-    return (Ranks::number() > 1 ? lines : lines | 1) * kLine;
+  static Index row_stride(const PlaneShape& shape) {
+    const Index lines = batches(shape);
+    return (shape.ranks.several() ? lines : lines | 1) * kLine;
   }
   /// What goes from rank to rank: a cache line is an entry.
   static RankTranspose::Shape shared_matrix(const PlaneShape& shape) {
-    return {shape.samples, RowBands(shape.samples).rows_of_rank(), batches(shape), 2 * kColumns};
+    return {shape.ranks, shape.samples, RowBands(shape.samples, shape.ranks).rows_of_rank(), batches(shape),
+            2 * kColumns};
   }
   static Index field_size(const PlaneShape& shape) {
-    if (Ranks::number() == 1) return (shape.whole ? shape.n1 : shape.samples) * row_stride(shape.n2);
+    if (!shape.ranks.several()) return (shape.whole ? shape.n1 : shape.samples) * row_stride(shape);
     return shared_matrix(shape).size();
   }
   static Index scratch_size(const PlaneShape& shape) { return shape.fields * 2 * kColumns * shape.n1; }
@@ -167,10 +169,10 @@ class PlaneTransform {
   /// Where a batch of this rank's columns has the first of its samples, and how far it is to the next one: on
   /// one rank where rows are, on several where they have been carried.
   double* batch(Index field, Index batch) {
-    const bool carried = Ranks::number() > 1;
+    const bool carried = shape_.ranks.several();
     return row(field, 0) + batch * (carried ? shape_.samples : 1) * kLine;
   }
-  Index sample_step() const { return Ranks::number() > 1 ? kLine : row_stride_; }
+  Index sample_step() const { return shape_.ranks.several() ? kLine : row_stride_; }
 
   /// Samples between there and where they are transformed.
   void read_batch(const double* from, double* columns) const {

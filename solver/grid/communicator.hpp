@@ -1,14 +1,15 @@
 #pragma once
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <memory>
 
-#include "solver/grid/grid.hpp"
-
 namespace slipstick::solver {
 
-/// A matrix that ranks share, of entries of some bytes each. Of its rows every rank has so many, the last
-/// ones fewer or none; so of its columns.
+using Eigen::Index;
+
+/// A matrix that ranks share, with entries of some bytes each. Every rank has rows_of_rank of its rows, the
+/// last ranks fewer or none; likewise of its columns.
 struct SharedMatrix {
   Index rows;
   Index rows_of_rank;
@@ -17,8 +18,8 @@ struct SharedMatrix {
   std::size_t entry;  ///< bytes, a multiple of 8
 };
 
-/// Carries such a matrix between ranks, in place: from their rows, in each of which the columns follow one
-/// another, to their columns, in each of which the rows do, and back. Moves numbers and changes none.
+/// Carries such a matrix between ranks, in place: from their rows, each with its columns one after the other,
+/// to their columns, each with its rows one after the other, and back. Moves numbers and changes none.
 class Transposition {
  public:
   virtual ~Transposition() = default;
@@ -31,8 +32,8 @@ class Transposition {
   Transposition() = default;
 };
 
-/// How ranks reach each other: what the library that knows MPI does for Ranks. All ranks call each of these
-/// alike.
+/// How ranks reach each other: what the library that knows MPI does for them. All ranks call each of these
+/// functions alike.
 class Communicator {
  public:
   virtual ~Communicator() = default;
@@ -42,10 +43,10 @@ class Communicator {
   virtual int number() const = 0;
   virtual int rank() const = 0;
 
-  /// Things of some bytes each, of which every rank has so many in its place, the last ones fewer: all of
-  /// them on every rank.
+  /// Brings all of `count` things of some bytes each to every rank. Every rank has of_rank of them in their
+  /// place, the last ranks fewer.
   virtual void gather(void* things, std::size_t bytes, Index count, Index of_rank) = 0;
-  /// Of such things those next to this rank's, so many on each side.
+  /// Brings those of such things that are next to this rank's, `depth` of them on each side.
   virtual void gather_beside(void* things, std::size_t bytes, Index count, Index of_rank, Index depth) = 0;
 
   /// Bytes in this rank's buffer.
@@ -53,7 +54,7 @@ class Communicator {
   /// For buffers of that size that FFTW has allocated.
   virtual std::unique_ptr<Transposition> transposition(const SharedMatrix& matrix) = 0;
 
-  /// What this rank has sent to others so far.
+  /// Bytes and messages that this rank has sent to others so far.
   struct Sent {
     double bytes = 0.0;
     double messages = 0.0;

@@ -2,9 +2,9 @@
 
 #include <Eigen/Core>
 
-namespace slipstick::solver {
+#include "solver/grid/ranks.hpp"
 
-using Eigen::Index;
+namespace slipstick::solver {
 
 /// A rectangle of n1 x n2 equal cells, centred at the origin or, as the quadrant x1, x2 > 0 of one twice as
 /// long and wide, with a corner there. A field over it is n1*n2 values, cell (i, j) at i*n2 + j: x2 runs
@@ -15,6 +15,7 @@ struct Grid {
   double h1;  ///< cell size along x1
   double h2;  ///< cell size along x2
   bool quadrant = false;
+  Ranks ranks = {};  ///< the processes that share its rows
 
   Index cells() const { return n1 * n2; }
   double cell_area() const { return h1 * h2; }

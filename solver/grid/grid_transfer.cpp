@@ -11,7 +11,7 @@ using Weights = Eigen::SparseMatrix<double, Eigen::RowMajor>;
 using Rows = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
 /// A grid with fewer cells than this along a side no longer resembles the contact.
-constexpr Index kMinCells = 8;
+constexpr Index kMinSideCells = 8;
 
 /// Row i: the parts of coarse cell i that each fine cell covers.
 Weights overlaps(Index coarse, Index fine) {
@@ -59,12 +59,13 @@ Eigen::ArrayXd transform(const Weights& along1, const Weights& along2, const dou
 Grid coarser(const Grid& grid) {
   const auto fewer = [](Index n) { return (n + 1) / 2; };
   const auto ratio = [&](Index n) { return static_cast<double>(n) / static_cast<double>(fewer(n)); };
-  return {fewer(grid.n1), fewer(grid.n2), grid.h1 * ratio(grid.n1), grid.h2 * ratio(grid.n2), grid.quadrant};
+  return {fewer(grid.n1),           fewer(grid.n2), grid.h1 * ratio(grid.n1),
+          grid.h2 * ratio(grid.n2), grid.quadrant,  grid.ranks};
 }
 
 bool can_coarsen(const Grid& grid) {
   const Index fewest = std::min(coarser(grid).n1, coarser(grid).n2) * (grid.quadrant ? 2 : 1);
-  return fewest >= kMinCells;
+  return fewest >= kMinSideCells;
 }
 
 Eigen::ArrayXd restrict_to(const Grid& coarse, const Grid& fine, const Eigen::ArrayXd& field) {

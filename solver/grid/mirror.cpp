@@ -16,7 +16,7 @@ Symmetry torsion_symmetry() { return {{1, -1}, {-1, 1}}; }
 
 Grid whole_grid(const Grid& quadrant) {
   if (!quadrant.quadrant) throw std::invalid_argument("only a quadrant's grid has mirror images");
-  return {2 * quadrant.n1, 2 * quadrant.n2, quadrant.h1, quadrant.h2};
+  return {2 * quadrant.n1, 2 * quadrant.n2, quadrant.h1, quadrant.h2, false, quadrant.ranks};
 }
 
 Grid quadrant_of(const Grid& whole) {
@@ -24,7 +24,7 @@ Grid quadrant_of(const Grid& whole) {
   if (whole.n1 % 2 != 0 || whole.n2 % 2 != 0) {
     throw std::invalid_argument("the quadrant of a grid with an odd number of cells");
   }
-  return {whole.n1 / 2, whole.n2 / 2, whole.h1, whole.h2, true};
+  return {whole.n1 / 2, whole.n2 / 2, whole.h1, whole.h2, true, whole.ranks};
 }
 
 Eigen::ArrayXd unfold(const Grid& quadrant, const Eigen::ArrayXd& field, const Symmetry& symmetry) {

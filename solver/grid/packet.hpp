@@ -27,7 +27,7 @@ struct Packet {
   /// Each complex number's real part in place of its imaginary part.
   static Vector exchanged(Vector p) { return __builtin_shufflevector(p, p, 1, 0); }
 
-  /// Of samples x + i y, those of even number and those of odd number, the latter from the last to the first.
+  /// Those samples x + i y of even number, and those of odd number from the last to the first.
   struct Halves {
     Vector even;
     Vector odd;
@@ -35,7 +35,7 @@ struct Packet {
   static Halves split(Vector x, Vector y) {
     return {__builtin_shufflevector(x, y, 0, 2), __builtin_shufflevector(x, y, 1, 3)};
   }
-  /// What x and y were.
+  /// x and y again.
   static Vector real_part(const Halves& halves) {
     return __builtin_shufflevector(halves.even, halves.odd, 0, 2);
   }

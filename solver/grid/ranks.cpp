@@ -11,22 +11,22 @@
 #include <stdexcept>
 #include <thread>
 
+#include "solver/grid/communicator.hpp"
+
 namespace slipstick::solver {
 namespace {
 
-/// In which mpirun and srun tell their processes how many they are.
-constexpr std::array kNumbers{"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
-/// Beside the program, or where it is installed: see the program's run path.
+/// mpirun and srun tell their processes in these variables how many they are.
+constexpr std::array kNumberVariables{"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
+/// The library stands beside the program, or where it is installed: see the program's run path.
 constexpr const char* kLibrary = "libslipstick_ranks.so";
 /// Fields of more bytes are given memory of their own: untouched at first, and given back when they end.
 constexpr int kOwnMemory = 1 << 20;
 /// Ranks that failed alike end within a moment of each other.
 constexpr std::chrono::seconds kOthersEnd{10};
 
-std::unique_ptr<Communicator> joined;
-
 int started() {
-  for (const char* name : kNumbers) {
+  for (const char* name : kNumberVariables) {
     if (const char* number = std::getenv(name)) return std::atoi(number);
   }
   return 1;
@@ -57,12 +57,48 @@ class Planned final : public Communicator {
 
 }  // namespace
 
-PlannedRanks::PlannedRanks(int number) : outer_(std::move(joined)) {
-  joined = std::make_unique<Planned>(number);
-}
-PlannedRanks::~PlannedRanks() { joined = std::move(outer_); }
+int Ranks::number() const { return several() ? communicator_->number() : 1; }
+int Ranks::rank() const { return several() ? communicator_->rank() : 0; }
 
-Ranks::Ranks() {
+Communicator& Ranks::communicator() const {
+  if (!several()) throw std::logic_error("one process alone has no communicator");
+  return *communicator_;
+}
+
+void Ranks::gather(std::span<double> field, Index rows, Index rows_of_rank) const {
+  if (!several() || rows == 0) return;
+  communicator_->gather(field.data(), field.size_bytes() / static_cast<std::size_t>(rows), rows,
+                        rows_of_rank);
+}
+
+void Ranks::gather_beside(std::span<double> field, Index rows, Index rows_of_rank, Index depth) const {
+  if (!several() || rows == 0) return;
+  communicator_->gather_beside(field.data(), field.size_bytes() / static_cast<std::size_t>(rows), rows,
+                               rows_of_rank, depth);
+}
+
+void Ranks::gather_shares(void* things, std::size_t bytes, Index count) const {
+  if (several()) communicator_->gather(things, bytes, count, block_of(count));
+}
+
+std::vector<double> Ranks::of_each(double own) const {
+  std::vector<double> all(static_cast<std::size_t>(number()), own);
+  gather_shares(std::span(all));
+  return all;
+}
+
+std::string Ranks::of_first(const std::string& own) const {
+  std::vector<std::array<char, 8192>> all(static_cast<std::size_t>(number()));
+  auto& text = all[static_cast<std::size_t>(rank())];
+  own.copy(text.data(), text.size() - 1);
+  gather_shares(std::span(all));
+  return all.front().data();
+}
+
+PlannedRanks::PlannedRanks(int number) : communicator_(std::make_unique<Planned>(number)) {}
+PlannedRanks::~PlannedRanks() = default;
+
+JoinedRanks::JoinedRanks() {
   if (started() <= 1) return;
   void* const library = dlopen(kLibrary, RTLD_NOW | RTLD_GLOBAL);
   void* const join = library != nullptr ? dlsym(library, kJoinRanks) : nullptr;
@@ -73,48 +109,26 @@ Ranks::Ranks() {
         "SLIPSTICK_MPI=ON, or start one process: " +
         std::string(why != nullptr ? why : kLibrary));
   }
-  joined.reset(reinterpret_cast<JoinRanks>(join)());
-  if (number() == 1) {
-    joined.reset();
+  communicator_.reset(reinterpret_cast<JoinRanks>(join)());
+  if (communicator_->number() == 1) {
+    communicator_.reset();
     throw std::runtime_error(
         "started on several ranks, each of which finds itself alone: mpirun is of another MPI "
         "than this build's; start it with that one's");
   }
   mallopt(M_MMAP_THRESHOLD, kOwnMemory);
-  for (const char* name : kNumbers) unsetenv(name);  // programs that this one starts are no ranks
+  for (const char* name : kNumberVariables) unsetenv(name);  // programs that this one starts are no ranks
 }
 
-Ranks::~Ranks() { joined.reset(); }
+JoinedRanks::~JoinedRanks() = default;
 
-int Ranks::number() { return joined ? joined->number() : 1; }
-int Ranks::rank() { return joined ? joined->rank() : 0; }
-Communicator& Ranks::communicator() {
-  if (!joined) throw std::logic_error("one rank on its own has no communicator");
-  return *joined;
-}
-Communicator::Sent Ranks::sent() { return joined ? joined->sent() : Communicator::Sent{}; }
-
-std::vector<double> Ranks::of_each(double own) {
-  std::vector<double> all(static_cast<std::size_t>(number()), own);
-  gather_shares(std::span(all));
-  return all;
-}
-
-std::string Ranks::of_first(const std::string& own) {
-  std::vector<std::array<char, 8192>> all(static_cast<std::size_t>(number()));
-  auto& text = all[static_cast<std::size_t>(rank())];
-  own.copy(text.data(), text.size() - 1);
-  gather_shares(std::span(all));
-  return all.front().data();
-}
-
-void Ranks::end(int exit_code, const std::string& failure) {
-  if (!joined) return;
+void JoinedRanks::end(int exit_code, const std::string& failure) {
+  if (!communicator_) return;
   const auto start = std::chrono::steady_clock::now();
-  while (!joined->have_all_ended()) {
+  while (!communicator_->have_all_ended()) {
     if (!failure.empty() && std::chrono::steady_clock::now() - start > kOthersEnd) {
-      std::fprintf(stderr, "slipstick: rank %d ends the run: %s\n", rank(), failure.c_str());
-      joined->abort(exit_code);
+      std::fprintf(stderr, "slipstick: rank %d ends the run: %s\n", communicator_->rank(), failure.c_str());
+      communicator_->abort(exit_code);
     }
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }

@@ -12,8 +12,8 @@ using Matrix = Eigen::Array<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMa
 using ConstComponent = Eigen::Map<const Matrix>;
 using MutableComponent = Eigen::Map<Matrix>;
 
-/// Images that differ by more than rounding are no images.
-constexpr double kRounding = 1e-13;
+/// Mirror images differ by this at most, relative: the rounding of a solve.
+constexpr double kImageRounding = 1e-13;
 
 /// Equal up to rounding, with infinite values in the same places.
 template <typename A, typename B>
@@ -22,7 +22,7 @@ bool same(const A& a, const B& b) {
     for (Index j = 0; j < a.cols(); ++j) {
       const double x = a(i, j);
       const double y = b(i, j);
-      if (x != y && !(std::abs(x - y) <= kRounding * std::min(std::abs(x), std::abs(y)))) return false;
+      if (x != y && !(std::abs(x - y) <= kImageRounding * std::min(std::abs(x), std::abs(y)))) return false;
     }
   }
   return true;
@@ -49,7 +49,7 @@ Grid trimmed_grid(const Grid& grid, const ArrayXd& contact) {
   const ConstComponent field(contact.data(), grid.n1, grid.n2);
   const Index rows = empty_margin(grid.n1, [&](Index i) { return (field.row(i) > 0.0).any(); });
   const Index columns = empty_margin(grid.n2, [&](Index j) { return (field.col(j) > 0.0).any(); });
-  return {grid.n1 - 2 * rows, grid.n2 - 2 * columns, grid.h1, grid.h2};
+  return {grid.n1 - 2 * rows, grid.n2 - 2 * columns, grid.h1, grid.h2, false, grid.ranks};
 }
 
 /// The middle part of a field, component by component.

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "solver/grid/ranks.hpp"
+#include "solver/grid/own_rows.hpp"
 #include "solver/grid/threads.hpp"
 
 namespace slipstick::solver {
@@ -17,24 +17,34 @@ std::array<double, N>& operator+=(std::array<double, N>& sums, const std::array<
   return sums;
 }
 
-/// Those cells of a grid that a loop visits, as intervals of neighbours: cells that carry no traction cost
-/// nothing. Sums are taken in bands of rows, see RowBands, and then in their order, whatever the threads of
-/// the pool and the ranks of the run that share the bands: so no result depends on the number of either.
+/// Those cells that a loop visits, as intervals of neighbours: cells that carry no traction cost nothing.
+/// Sums are taken in bands of rows, see RowBands, and then in the order of the bands, whatever threads of the
+/// pool and processes of the grid share the bands: so no result depends on the number of either.
 class Sweep {
  public:
-  /// None yet.
+  /// No cell yet, and rows that nobody shares.
   Sweep() = default;
-  /// Cells where a field, one value a cell, is not zero. row: cells of a row, which ranks share; intervals
-  /// end with their rows then. 0: there are none, and every rank visits all cells.
+  /// No cell of a grid yet: intervals end with its rows, which its processes share.
+  explicit Sweep(const Grid& grid) : row_(grid.n2), ranks_(grid.ranks) {}
+  /// Cells where a field, one value a cell, is not zero.
   template <typename Field>
-  explicit Sweep(const Field& field, Index row = 0) : row_(row) {
-    assign(field.size(), [&](Index cell) { return field[cell] != 0; });
+  Sweep(const Grid& grid, const Field& field) : Sweep(grid) {
+    assign_nonzero(field);
+  }
+  /// Likewise for cells without rows: every process visits them all.
+  template <typename Derived>
+  explicit Sweep(const Eigen::ArrayBase<Derived>& field) {
+    assign_nonzero(field);
   }
 
-  /// Over all cells, whatever they carry. row: see above.
-  static Sweep whole(Index cells, Index row = 0) {
+  /// Over all cells, whatever they carry.
+  static Sweep whole(const Grid& grid) {
+    Sweep sweep(grid);
+    sweep.assign(grid.cells(), [](Index) { return true; });
+    return sweep;
+  }
+  static Sweep whole(Index cells) {
     Sweep sweep;
-    sweep.row_ = row;
     sweep.assign(cells, [](Index) { return true; });
     return sweep;
   }
@@ -43,7 +53,7 @@ class Sweep {
   template <typename Contains>
   void assign(Index cells, const Contains& contains);
 
-  /// Cells of the grid, and those that are visited, by all ranks together.
+  /// Cells of the grid, and those that are visited, by all processes together.
   Index size() const { return size_; }
   Index count() const { return count_; }
 
@@ -59,7 +69,7 @@ class Sweep {
     });
   }
 
-  /// work(first, last) for all cells of this rank's rows, in as many parts as there are threads.
+  /// work(first, last) for all cells of this process's rows, in as many parts as there are threads.
   template <typename Work>
   void each_own(const Work& work) const {
     in_parts(threads(), own_.count(), [&](int, Index first, Index last) {
@@ -78,7 +88,7 @@ class Sweep {
       return sum;
     };
     if (bands_ == 1 && !shared()) return sum_of(0);
-    std::array<Sum, RowBands::kMost> sums;
+    std::array<Sum, RowBands::kMax> sums;
     const Index parts = threads();
     in_parts(threads(), parts, [&](int, Index first, Index last) {
       const std::size_t end = cut(last, parts);
@@ -86,7 +96,7 @@ class Sweep {
         sums[band] = sum_of(static_cast<Index>(band));
       }
     });
-    if (shared()) Ranks::gather_shares(std::span(sums).first(at(bands_)));
+    if (shared()) ranks_.gather_shares(std::span(sums).first(at(bands_)));
     Sum total = sums.front();
     for (Index band = 1; band < bands_; ++band) total += sums[at(band)];
     return total;
@@ -97,15 +107,21 @@ class Sweep {
     Index first;
     Index last;
   };
-  /// Of a band, at least, where rows do not say; with fewer than some such bands a second thread is not worth
-  /// it.
+  /// Cells of a band, at least, where there are no rows.
   static constexpr Index kCellsOfBand = 512;
-  static constexpr Index kFew = 8 * kCellsOfBand;
+  /// With fewer cells a second thread is not worth its start.
+  static constexpr Index kCellsOfOneThread = 8 * kCellsOfBand;
 
   static std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-  bool shared() const { return row_ > 0 && Ranks::number() > 1; }
-  RowBands bands() const { return row_ > 0 ? RowBands(size_ / row_) : RowBands(size_, kCellsOfBand); }
-  int threads() const { return visited_ < kFew ? 1 : ThreadPool::available(); }
+  template <typename Field>
+  void assign_nonzero(const Field& field) {
+    assign(field.size(), [&](Index cell) { return field.coeff(cell) != 0; });
+  }
+  bool shared() const { return row_ > 0 && ranks_.several(); }
+  RowBands bands() const {
+    return row_ > 0 ? RowBands(size_ / row_, ranks_) : RowBands(size_, {}, kCellsOfBand);
+  }
+  int threads() const { return visited_ < kCellsOfOneThread ? 1 : ThreadPool::available(); }
   /// The first band of a part, or past the last one: as many cells of a band are visited as its rows have of
   /// them, and each part gets about as many.
   std::size_t cut(Index part, Index parts) const {
@@ -117,18 +133,19 @@ class Sweep {
   }
 
   std::vector<Interval> intervals_;
-  std::array<Index, RowBands::kMost + 1> begin_{};   ///< the first interval of each band
-  std::array<Index, RowBands::kMost + 1> before_{};  ///< cells of this rank visited before each
-  Index row_ = 0;
+  std::array<Index, RowBands::kMax + 1> begin_{};   ///< the first interval of each band
+  std::array<Index, RowBands::kMax + 1> before_{};  ///< cells of this process visited before each
+  Index row_ = 0;                                   ///< cells of a row; 0: there are no rows
+  Ranks ranks_;
   Index size_ = 0;
   Index count_ = 0;
-  Index visited_ = 0;  ///< by this rank
+  Index visited_ = 0;  ///< by this process
   Index bands_ = 1;
   Share own_{0, 0};
   Share own_bands_{0, 1};
 };
 
-/// A field of any number of components: zero in this rank's rows.
+/// A field of any number of components: zero in this process's rows.
 template <typename Field>
 void clear(const Sweep& cells, Field& field) {
   cells.each_own([&](Index first, Index last) {
@@ -171,14 +188,14 @@ void Sweep::assign(Index cells, const Contains& contains) {
       ++visited_;
     }
   }
-  for (Index band = own_bands_.last; band <= RowBands::kMost; ++band) {
+  for (Index band = own_bands_.last; band <= RowBands::kMax; ++band) {
     begin_[at(band)] = static_cast<Index>(intervals_.size());
     before_[at(band)] = visited_;
   }
   count_ = visited_;
   if (!shared()) return;
   count_ = 0;
-  for (const double visited : Ranks::of_each(static_cast<double>(visited_)))
+  for (const double visited : ranks_.of_each(static_cast<double>(visited_)))
     count_ += static_cast<Index>(visited);
 }
 

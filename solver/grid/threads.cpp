@@ -11,7 +11,7 @@
 namespace slipstick::solver {
 namespace {
 
-/// Of this thread.
+/// The pool of this thread.
 thread_local ThreadPool* current = nullptr;
 
 /// So often a thread looks for what it waits for before it sleeps: loops follow each other within some
@@ -32,7 +32,7 @@ void wait_while(const std::atomic<Value>& value, Value old) {
 /// Parts of a job, each done by whoever takes it first: the thread that asks for them from the last part on,
 /// the others from the first. So it never waits for one that has no processor, but does that one's part.
 struct ThreadPool::Shared {
-  /// Those that nobody has taken yet.
+  /// The parts that nobody has taken yet.
   struct Parts {
     std::uint16_t first;
     std::uint16_t last;

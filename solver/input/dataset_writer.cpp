@@ -109,8 +109,8 @@ void write_values(std::FILE* file, const Offsets& offsets, const std::vector<Con
 }
 
 /// Whether all ranks have done their part: an error of the system that one of them has met; 0: none.
-int first_error(int own) {
-  for (const double error : Ranks::of_each(own)) {
+int first_error(int own, const Ranks& ranks) {
+  for (const double error : ranks.of_each(own)) {
     if (error != 0.0) return static_cast<int>(error);
   }
   return 0;
@@ -134,9 +134,9 @@ int write_into(const std::string& what, const std::vector<Content>& contents) {
   return 0;
 }
 
-void write_shared(const fs::path& path, const std::vector<Content>& contents) {
-  if (!Ranks::first()) {
-    first_error(write_into(Ranks::of_first({}), contents));
+void write_shared(const fs::path& path, const std::vector<Content>& contents, const Ranks& ranks) {
+  if (!ranks.first()) {
+    first_error(write_into(ranks.of_first({}), contents), ranks);
     return;
   }
   bool begun = false;
@@ -144,13 +144,13 @@ void write_shared(const fs::path& path, const std::vector<Content>& contents) {
     write_whole_file(path, [&](std::FILE* file) {
       const Offsets offsets = lay_out(file, contents);
       begun = true;
-      const std::string what = Ranks::of_first(fmt::format("{} {}", fmt::join(offsets, " "), name_of(file)));
-      if (const int error = first_error(write_into(what, contents))) fail(error);
+      const std::string what = ranks.of_first(fmt::format("{} {}", fmt::join(offsets, " "), name_of(file)));
+      if (const int error = first_error(write_into(what, contents), ranks)) fail(error);
     });
   } catch (...) {
     if (!begun) {
-      Ranks::of_first({});
-      first_error(0);
+      ranks.of_first({});
+      first_error(0, ranks);
     }
     throw;
   }
@@ -166,10 +166,10 @@ void require_room(const fs::path& path, const std::vector<Content>& contents) {
   }
 }
 
-/// shared: by all ranks.
-void write_hdf5(const fs::path& path, const std::vector<Content>& contents, bool shared) {
+/// ranks: those that have parts of the contents.
+void write_hdf5(const fs::path& path, const std::vector<Content>& contents, const Ranks& ranks) {
   require_room(path, contents);
-  if (shared) return write_shared(path, contents);
+  if (ranks.several()) return write_shared(path, contents, ranks);
   write_whole_file(path, [&](std::FILE* file) { write_values(file, lay_out(file, contents), contents); });
 }
 
@@ -186,10 +186,10 @@ void write_datasets(const fs::path& file, const std::vector<Column>& columns,
     add(column.name, H5T_NATIVE_DOUBLE, static_cast<std::size_t>(column.values.size()), column.values.data());
   }
   for (const NamedText& text : texts) add(text.name, H5T_NATIVE_UCHAR, text.text.size(), text.text.data());
-  write_hdf5(file, contents, false);
+  write_hdf5(file, contents, {});
 }
 
-void write_datasets(const fs::path& file, const std::vector<LongDataset>& datasets) {
+void write_datasets(const fs::path& file, const std::vector<LongDataset>& datasets, const Ranks& ranks) {
   std::vector<Content> contents;
   contents.reserve(datasets.size());
   for (const LongDataset& dataset : datasets) {
@@ -199,7 +199,7 @@ void write_datasets(const fs::path& file, const std::vector<LongDataset>& datase
            dataset.write([&](std::span<const double> values) { put(values.data(), values.size_bytes()); });
          }});
   }
-  write_hdf5(file, contents, Ranks::number() > 1);
+  write_hdf5(file, contents, ranks);
 }
 
 }  // namespace slipstick::solver

@@ -21,8 +21,8 @@ struct LongDataset {
   using Put = std::function<void(std::span<const double> values)>;
 
   std::string name;
-  Index size;                                 ///< of all ranks' parts
-  Index first = 0;                            ///< of this rank's part
+  Index size;                                 ///< of the parts of all processes
+  Index first = 0;                            ///< of this process's part
   std::function<void(const Put& put)> write;  ///< puts that part, piece by piece
 };
 
@@ -32,7 +32,8 @@ struct LongDataset {
 void write_datasets(const std::filesystem::path& file, const std::vector<Column>& columns,
                     const std::vector<NamedText>& texts = {});
 /// Likewise, holding a piece of one dataset at a time. All ranks call it, and write their parts into one
-/// file, which is in a place that all of them see. One of them that cannot write makes the first one throw.
-void write_datasets(const std::filesystem::path& file, const std::vector<LongDataset>& datasets);
+/// file, which is in a place that all of them see. If one of them cannot write, the first one throws.
+void write_datasets(const std::filesystem::path& file, const std::vector<LongDataset>& datasets,
+                    const Ranks& ranks = {});
 
 }  // namespace slipstick::solver

@@ -11,7 +11,7 @@
 #include <numeric>
 #include <utility>
 
-#include "solver/grid/ranks.hpp"
+#include "solver/grid/own_rows.hpp"
 #include "solver/input/dataset_reader.hpp"
 #include "solver/input/dataset_writer.hpp"
 #include "solver/input/input_error.hpp"
@@ -139,14 +139,14 @@ void write_vti(std::FILE* file, const Grid& grid, const std::vector<FieldColumn>
   fmt::print(file, "</CellData>\n</Piece>\n</ImageData>\n</VTKFile>\n");
 }
 
-/// Each rank has what is kept of its own rows, after that of the ranks before it.
+/// Each process has what is kept of its own rows, after that of the processes before it.
 void write_hdf5(const path& file, const Grid& grid, const std::vector<FieldColumn>& columns,
                 const ArrayXd& keep) {
-  const Share rows = RowBands(grid.n1).own_rows();
+  const Share rows = own_rows(grid);
   const Index first = rows.first * grid.n2;
   const auto own = static_cast<double>((keep.segment(first, rows.count() * grid.n2) != 0.0).count());
-  const std::vector<double> kept = Ranks::of_each(own);
-  const auto own_at = kept.begin() + Ranks::rank();
+  const std::vector<double> kept = grid.ranks.of_each(own);
+  const auto own_at = kept.begin() + grid.ranks.rank();
   std::vector<LongDataset> datasets;
   datasets.reserve(columns.size());
   for (const FieldColumn& column : columns) {
@@ -165,7 +165,7 @@ void write_hdf5(const path& file, const Grid& grid, const std::vector<FieldColum
                           }
                         }});
   }
-  write_datasets(file, datasets);
+  write_datasets(file, datasets, grid.ranks);
 }
 
 }  // namespace
@@ -209,7 +209,7 @@ void write_fields(const path& file, const Grid& grid, const std::vector<FieldCol
   if (is_hdf5(file)) {
     write_hdf5(file, grid, columns, keep);
   } else {
-    if (!Ranks::first()) return;
+    if (!grid.ranks.first()) return;
     const bool is_vti = file.extension() == ".vti";
     write_whole_file(file, [&](std::FILE* stream) {
       is_vti ? write_vti(stream, grid, columns) : write_csv(stream, grid, columns, keep);

@@ -52,8 +52,8 @@ void require_field_format(const std::filesystem::path& file);
 /// Writes columns over all cells of a grid: .csv and .h5 get the rows where `keep` is not zero; .vti (VTK
 /// image data, for ParaView) gets all cells. The file is the old one or the whole new one, and the same
 /// numbers give the same bytes. Memory holds a row of one column for .h5, a row for .csv and a column for
-/// .vti. All ranks call it: into .h5 each writes its own rows, other files the first one writes. Throws
-/// InputError if it cannot write.
+/// .vti. All processes of the grid call it: into .h5 each writes its own rows, other files the first one
+/// writes. Throws InputError if it cannot write.
 void write_fields(const std::filesystem::path& file, const Grid& grid,
                   const std::vector<FieldColumn>& columns, const Eigen::ArrayXd& keep);
 /// Columns that are kept.

@@ -15,7 +15,7 @@ namespace {
 
 using Length = std::ptrdiff_t;
 
-/// Of so many things of which each rank has of_rank, the last ones fewer, those of one.
+/// The things of one rank: [first, last).
 struct Part {
   Index first;
   Index last;
@@ -24,7 +24,7 @@ struct Part {
 Part part_of(int rank, Index count, Index of_rank) {
   return {std::min(rank * of_rank, count), std::min((rank + 1) * of_rank, count)};
 }
-/// The part of it that is in another; and it with what is next to it.
+/// The part that is in another one, and a part with what is next to it.
 Part within(Part part, Part other) {
   const Index first = std::max(part.first, other.first);
   return {first, std::max(first, std::min(part.last, other.last))};
@@ -33,7 +33,7 @@ Part widened(Part part, Index depth) {
   return part.count() == 0 ? part : Part{part.first - depth, part.last + depth};
 }
 
-/// Counts of bytes would not fit an int: things of so many bytes do.
+/// MPI counts in int, which many bytes would not fit: things of several bytes are counted instead.
 class Thing {
  public:
   explicit Thing(std::size_t bytes) {

@@ -13,7 +13,8 @@
 /// projection, and the tangent space of the natural map q = P(q - rho s).
 namespace slipstick::solver {
 
-/// Of displacements: units of rounding of transforms, and of loads, which are balanced to 1e-14.
+/// What rounding may do to displacements, relative: units of rounding of transforms, and of loads, which are
+/// balanced to 1e-14.
 inline constexpr double kGapUnits = 16.0 * std::numeric_limits<double>::epsilon();
 
 /// Whether a gap is within a tolerance, or within its rounding where that is larger. NaN is not.
@@ -42,9 +43,10 @@ class PositivePressures {
  public:
   static constexpr Index kComponents = 1;
 
-  /// reachable: 1 where the bodies can touch, 0 elsewhere. row: see Sweep.
-  explicit PositivePressures(const Eigen::ArrayXd& reachable, Index row = 0)
-      : reachable_(reachable), sweep_(reachable, row) {}
+  /// reachable: 1 where the bodies can touch, 0 elsewhere; it is not owned.
+  PositivePressures(const Grid& grid, const Eigen::ArrayXd& reachable)
+      : reachable_(reachable), sweep_(grid, reachable) {}
+  explicit PositivePressures(const Eigen::ArrayXd& reachable) : reachable_(reachable), sweep_(reachable) {}
 
   Index cells() const { return reachable_.size(); }
   const Sweep& sweep() const { return sweep_; }
@@ -81,8 +83,9 @@ class FrictionDiscs {
  public:
   static constexpr Index kComponents = 2;
 
-  /// row: see Sweep.
-  explicit FrictionDiscs(const Eigen::ArrayXd& bound, Index row = 0) : bound_(bound), sweep_(bound, row) {}
+  /// bound: mu p of each cell; it is not owned.
+  FrictionDiscs(const Grid& grid, const Eigen::ArrayXd& bound) : bound_(bound), sweep_(grid, bound) {}
+  explicit FrictionDiscs(const Eigen::ArrayXd& bound) : bound_(bound), sweep_(bound) {}
 
   Index cells() const { return bound_.size(); }
   const Sweep& sweep() const { return sweep_; }

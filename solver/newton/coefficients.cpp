@@ -66,10 +66,10 @@ Coefficients least_solution(const CoefficientMatrix& matrix, const Coefficients&
   GslVector q(tau_q), z(tau_z), space(work), from(b), to(x), left(residual);
   // A pivot below is rounding.
   const double tolerance = largest * std::numeric_limits<double>::epsilon() * static_cast<double>(n);
-  std::size_t rank = 0;
-  gsl_linalg_COD_decomp_e(a, q, z, &order, tolerance, &rank, space);
-  if (rank == 0) return unknown;  // numbers so large that their squares are infinite
-  gsl_linalg_COD_lssolve(a, q, z, &order, rank, from, to, left);
+  std::size_t independent = 0;
+  gsl_linalg_COD_decomp_e(a, q, z, &order, tolerance, &independent, space);
+  if (independent == 0) return unknown;  // numbers so large that their squares are infinite
+  gsl_linalg_COD_lssolve(a, q, z, &order, independent, from, to, left);
   return x;
 }
 

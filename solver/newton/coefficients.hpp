@@ -24,7 +24,7 @@ struct SmallQr {
 };
 SmallQr small_qr(const CoefficientMatrix& matrix);
 
-/// Orthonormal columns of which the first has the direction of a vector, up to its sign.
+/// Orthonormal columns; the first has the direction of a vector, up to its sign.
 CoefficientMatrix orthonormal_basis(const Coefficients& vector);
 
 /// Cholesky's factor L of a small symmetric matrix L L^T.
@@ -37,14 +37,15 @@ class SmallCholesky {
   /// Whether the matrix is positive definite; solve() needs that.
   bool is_definite() const;
   Coefficients solve(const Coefficients& right) const;
-  /// Of L.
+  /// The diagonal of L.
   Coefficients diagonal() const;
 
  private:
   Eigen::LLT<CoefficientMatrix> factor_;
 };
 
-/// Least squares of a tall system of full rank, and the pseudo-inverse of such a matrix; of any size.
+/// Least squares of a tall system of independent columns, and the pseudo-inverse of such a matrix; of any
+/// size.
 Eigen::VectorXd least_squares(const Eigen::MatrixXd& matrix, const Eigen::VectorXd& right);
 Eigen::MatrixXd pseudo_inverse(const Eigen::MatrixXd& matrix);
 

@@ -15,7 +15,7 @@
 
 namespace slipstick::solver {
 
-/// What ended an iteration.
+/// Why an iteration ended.
 enum class CgStatus {
   reduced,     ///< the residual fell as far as asked
   iterations,  ///< it did not within as many as allowed
@@ -49,8 +49,8 @@ inline float to_tangent(double value) {
 }
 
 /// The system's matrix, symmetric and positive definite where the iteration moves: fields are zero elsewhere,
-/// and only these cells of them are written. y = A x in two parts, of which the last shares a sweep over the
-/// cells with what is done after: transform(x, y), and store(first, last, x, y).
+/// and only these cells of them are written. y = A x in two parts; the second shares a sweep over the cells
+/// with what is done after it: transform(x, y), and store(first, last, x, y).
 template <class Map>
 concept LinearMap = requires(Map& map, Index cell, const Eigen::ArrayXd& x, Eigen::ArrayXd& y) {
   { map.cells() } -> std::convertible_to<const Sweep&>;
@@ -87,7 +87,7 @@ struct CgWorkspace {
   Eigen::ArrayXd& y;
 };
 
-/// Of two fields, and of one with the conditions and one with their tangents.
+/// Dot products of one sweep: of two fields, of one with the conditions, and of one with their tangents.
 struct CgProducts {
   using OfEach = std::array<double, kMaxConditions>;
   double fields = 0.0;
@@ -153,7 +153,7 @@ class CgConstraints {
     if (count_ == 0) return true;
     const SmallCholesky factor(products);
     if (!factor.is_definite()) return false;
-    // What is left of each when those before are taken out.
+    // The part of each condition that is left when those before it are taken out.
     if (!((factor.diagonal().array().square() / products.diagonal().array()) > kDependent).all())
       return false;
     return factorise(preconditioner, z);
@@ -200,11 +200,11 @@ class CgConstraints {
   Coefficients first(const CgProducts::OfEach& products) const {
     return Eigen::Map<const Eigen::VectorXd>(products.data(), count());
   }
-  /// What has to be taken out of a residual that has these products with the tangents: parts of conditions.
+  /// The parts of conditions that have to be taken out of a residual with these products with the tangents.
   Coefficients multipliers(const Coefficients& with_tangents) const {
     return count_ == 0 ? Coefficients() : Coefficients(of_conditions_ * with_tangents);
   }
-  /// And out of a direction that has these products with the conditions: parts of tangents.
+  /// The parts of tangents that have to be taken out of a direction with these products with the conditions.
   Coefficients parts(const Coefficients& with_conditions) const {
     return count_ == 0 ? Coefficients() : Coefficients(of_tangents_ * with_conditions);
   }
@@ -244,7 +244,8 @@ class CgConstraints {
   std::span<const CgTangent> tangents() const { return tangents_.first(count_); }
 
  private:
-  /// Conditions that depend on each other: one stick cell can be turned and pushed, but not told which.
+  /// Conditions depend on each other below this part that is independent: a single stick cell cannot say
+  /// whether it is turned or pushed.
   static constexpr double kDependent = 1e-12;
 
   static std::size_t at(Index k) { return static_cast<std::size_t>(k); }
@@ -281,6 +282,140 @@ class CgConstraints {
   CoefficientMatrix of_tangents_, of_conditions_;
 };
 
+/// Preconditioned conjugate gradients, see projected_cg(): what its iterations hand on. Nothing is owned.
+template <LinearMap Map, SplitMap Preconditioner, class Condition>
+class ProjectedCg {
+ public:
+  ProjectedCg(Map& map, Preconditioner& preconditioner, const CgConstraints<Condition>& constraints,
+              Eigen::ArrayXd& r, const CgWorkspace& work, Eigen::ArrayXd& x)
+      : map_(map),
+        preconditioner_(preconditioner),
+        constraints_(constraints),
+        cells_(map.cells()),
+        r_(r),
+        x_(x),
+        d_(work.d),
+        Ad_(work.Ad),
+        y_(work.y) {}
+
+  CgSummary run(const CgOptions& options) {
+    CgSummary summary;
+    double square = begin(summary);
+    const double first_square = square;
+    while (square > 0.0) {
+      if (summary.iterations == options.max_iterations) {
+        summary.status = CgStatus::iterations;
+        break;
+      }
+      ++summary.iterations;
+      if (!advance(square, summary)) return summary;
+      // The residual that is left is not measured where no reduction is asked for.
+      if (options.reduction == 0.0 && summary.iterations == options.max_iterations) {
+        summary.status = CgStatus::iterations;
+        break;
+      }
+      const double last = std::exchange(square, precondition());
+      turn(square / last);
+      if (!(square > options.reduction * options.reduction * first_square)) break;
+    }
+    // Below zero only by rounding, once converged.
+    if (!std::isfinite(square) || first_square < 0.0) {
+      summary.status = CgStatus::not_finite;
+      summary.breakdown_at = first_square < 0.0 ? first_square : square;
+    }
+    summary.reduction = first_square > 0.0 ? std::sqrt(std::max(square, 0.0) / first_square) : 0.0;
+    return summary;
+  }
+
+ private:
+  /// The first direction; returns the square of the residual.
+  double begin(CgSummary& summary) {
+    const auto products = cells_.sum<CgProducts>([&](Index first, Index last, CgProducts& sum) {
+      preconditioner_.project(first, last, r_);
+      constraints_.add_products_of_tangents(cells_, first, last, r_, sum);
+    });
+    summary.multipliers = constraints_.multipliers(constraints_.first(products.tangents));
+    clear(cells_, y_);
+    cells_.each([&](Index first, Index last) { load(first, last, summary.multipliers); });
+    const double square = precondition();
+    clear(cells_, d_);
+    turn(0);
+    return square;
+  }
+
+  /// Takes conditions out of the residual and begins to precondition it.
+  void load(Index first, Index last, const Coefficients& multipliers) {
+    constraints_.take_conditions_out(cells_, first, last, multipliers, r_);
+    preconditioner_.project(first, last, r_);
+    preconditioner_.load(first, last, r_, y_);
+  }
+
+  /// y = r preconditioned, the parts of tangents that have to be taken out of it, and the product of r with
+  /// what that leaves.
+  double precondition() {
+    preconditioner_.transform(y_);
+    const auto products = cells_.sum<CgProducts>([&](Index first, Index last, CgProducts& sum) {
+      preconditioner_.store(first, last, r_, y_, y_);
+      sum.fields += dot(cells_.size(), first, last, r_, y_);
+      constraints_.add_products(cells_, first, last, y_, sum);
+      constraints_.add_products_of_tangents(cells_, first, last, r_, sum);
+    });
+    parts_ = constraints_.parts(constraints_.first(products.conditions));
+    left_ = constraints_.first(products.tangents);
+    return products.fields - (parts_.size() > 0 ? parts_.dot(left_) : 0.0);
+  }
+
+  /// The next direction, with this part of the last one.
+  void turn(double kept) {
+    cells_.each([&](Index first, Index last) {
+      constraints_.take_tangents_out(cells_, first, last, parts_, y_);
+      preconditioner_.project(first, last, y_);
+      for (Index start = first; start < d_.size(); start += cells_.size()) {
+        auto part = d_.segment(start, last - first);
+        part = y_.segment(start, last - first) + kept * part;
+      }
+    });
+  }
+
+  /// A step along the direction. False, with its breakdown in the summary, where the curvature along it is
+  /// not positive.
+  bool advance(double square, CgSummary& summary) {
+    map_.transform(d_, Ad_);
+    const auto products = cells_.sum<CgProducts>([&](Index first, Index last, CgProducts& sum) {
+      map_.store(first, last, d_, Ad_);
+      sum.fields += dot(cells_.size(), first, last, d_, Ad_);
+      constraints_.add_products_of_tangents(cells_, first, last, Ad_, sum);
+    });
+    const double curvature = products.fields;
+    if (!(curvature > 0.0)) {
+      summary.status = CgStatus::indefinite;
+      summary.breakdown_at = curvature;
+      return false;
+    }
+    const double step = square / curvature;
+    const Coefficients multipliers =
+        constraints_.multipliers(left_ - step * constraints_.first(products.tangents));
+    summary.multipliers += multipliers;
+    clear(cells_, y_);
+    cells_.each([&](Index first, Index last) {
+      for (Index start = first; start < x_.size(); start += cells_.size()) {
+        x_.segment(start, last - first) += step * d_.segment(start, last - first);
+        r_.segment(start, last - first) -= step * Ad_.segment(start, last - first);
+      }
+      load(first, last, multipliers);
+    });
+    return true;
+  }
+
+  Map& map_;
+  Preconditioner& preconditioner_;
+  const CgConstraints<Condition>& constraints_;
+  const Sweep& cells_;
+  Eigen::ArrayXd &r_, &x_, &d_, &Ad_, &y_;
+  Coefficients parts_;  ///< of the tangents in y
+  Coefficients left_;   ///< products of the tangents with the residual: rounding, which must not grow
+};
+
 /// Preconditioned conjugate gradients for A x = r - sum of multiplier_k c_k with the constraints' c_k.x as x
 /// has them at the start. r: the residual of x, its start; overwritten by what is left under the multipliers
 /// that are found. Stops when r has fallen by `reduction`. Each iteration applies both maps once and sweeps
@@ -289,99 +424,7 @@ template <LinearMap Map, SplitMap Preconditioner, class Condition>
 CgSummary projected_cg(Map& map, Preconditioner& preconditioner, const CgConstraints<Condition>& constraints,
                        Eigen::ArrayXd& r, const CgOptions& options, const CgWorkspace& work,
                        Eigen::ArrayXd& x) {
-  Eigen::ArrayXd& d = work.d;
-  Eigen::ArrayXd& Ad = work.Ad;
-  Eigen::ArrayXd& y = work.y;
-  const Sweep& cells = map.cells();
-  CgSummary summary;
-  // y = r preconditioned, what has to be taken out of it, and the product of r with what that leaves.
-  Coefficients parts, left;
-  const auto precondition = [&] {
-    preconditioner.transform(y);
-    const auto products = cells.sum<CgProducts>([&](Index first, Index last, CgProducts& sum) {
-      preconditioner.store(first, last, r, y, y);
-      sum.fields += dot(cells.size(), first, last, r, y);
-      constraints.add_products(cells, first, last, y, sum);
-      constraints.add_products_of_tangents(cells, first, last, r, sum);
-    });
-    parts = constraints.parts(constraints.first(products.conditions));
-    left = constraints.first(products.tangents);  // rounding, which must not grow
-    return products.fields - (parts.size() > 0 ? parts.dot(left) : 0.0);
-  };
-  const auto turn = [&](double kept) {
-    cells.each([&](Index first, Index last) {
-      constraints.take_tangents_out(cells, first, last, parts, y);
-      preconditioner.project(first, last, y);
-      for (Index start = first; start < d.size(); start += cells.size()) {
-        auto part = d.segment(start, last - first);
-        part = y.segment(start, last - first) + kept * part;
-      }
-    });
-  };
-
-  const auto of_start = cells.sum<CgProducts>([&](Index first, Index last, CgProducts& sum) {
-    preconditioner.project(first, last, r);
-    constraints.add_products_of_tangents(cells, first, last, r, sum);
-  });
-  summary.multipliers = constraints.multipliers(constraints.first(of_start.tangents));
-  clear(cells, y);
-  cells.each([&](Index first, Index last) {
-    constraints.take_conditions_out(cells, first, last, summary.multipliers, r);
-    preconditioner.project(first, last, r);
-    preconditioner.load(first, last, r, y);
-  });
-  double square = precondition();
-  const double first_square = square;
-  clear(cells, d);
-  turn(0);
-  while (square > 0.0) {
-    if (summary.iterations == options.max_iterations) {
-      summary.status = CgStatus::iterations;
-      break;
-    }
-    ++summary.iterations;
-    map.transform(d, Ad);
-    const auto products = cells.sum<CgProducts>([&](Index first, Index last, CgProducts& sum) {
-      map.store(first, last, d, Ad);
-      sum.fields += dot(cells.size(), first, last, d, Ad);
-      constraints.add_products_of_tangents(cells, first, last, Ad, sum);
-    });
-    const double curvature = products.fields;
-    if (!(curvature > 0.0)) {
-      summary.status = CgStatus::indefinite;
-      summary.breakdown_at = curvature;
-      return summary;
-    }
-    const auto step = square / curvature;
-    const Coefficients multipliers =
-        constraints.multipliers(left - static_cast<double>(step) * constraints.first(products.tangents));
-    summary.multipliers += multipliers;
-    clear(cells, y);
-    cells.each([&](Index first, Index last) {
-      for (Index start = first; start < x.size(); start += cells.size()) {
-        x.segment(start, last - first) += step * d.segment(start, last - first);
-        r.segment(start, last - first) -= step * Ad.segment(start, last - first);
-      }
-      constraints.take_conditions_out(cells, first, last, multipliers, r);
-      preconditioner.project(first, last, r);
-      preconditioner.load(first, last, r, y);
-    });
-    // What is left of a residual that is not asked for is not measured.
-    if (options.reduction == 0.0 && summary.iterations == options.max_iterations) {
-      summary.status = CgStatus::iterations;
-      break;
-    }
-    const double last = std::exchange(square, precondition());
-    turn(square / last);
-    if (!(square > options.reduction * options.reduction * first_square)) break;
-  }
-  // Below zero only by rounding, once converged.
-  if (!std::isfinite(square) || first_square < 0.0) {
-    summary.status = CgStatus::not_finite;
-    summary.breakdown_at = first_square < 0.0 ? first_square : square;
-  }
-  summary.reduction = first_square > 0.0 ? std::sqrt(std::max(square, 0.0) / first_square) : 0.0;
-  return summary;
+  return ProjectedCg(map, preconditioner, constraints, r, work, x).run(options);
 }
 
 }  // namespace slipstick::solver

@@ -9,18 +9,18 @@ namespace {
 /// A cell's neighbours along each axis, up to this far off, count each for this part of the one nearer to it.
 /// Spots of a finer mesh have more cells: at 1,024, half of them in contact, a reach of two takes two fifths
 /// more applications. On coarse meshes more costs more than it spares.
-constexpr Index kLeastReach = 2;
-constexpr Index kMostReach = 8;
+constexpr Index kMinReach = 2;
+constexpr Index kMaxReach = 8;
 constexpr Index kSidesOfReach = 64;
 constexpr double kNearest = 0.5;
 constexpr double kDecay = 0.7;
 /// Beside the neighbours' weights: what lets the continuation fade where few of them are free.
-/// Of 0.5, contacts of few cells take an eighth more applications.
+/// With 0.5, contacts of few cells take an eighth more applications.
 constexpr double kFade = 1.0;
 
 /// Cells of a row that are mixed together: the neighbours of one are in the blocks beside it at most.
 constexpr Index kBlock = 16;
-static_assert(kBlock >= kMostReach);
+static_assert(kBlock >= kMaxReach);
 /// Cells of a row that are summed at once.
 constexpr Index kChunk = 256;
 
@@ -28,20 +28,15 @@ constexpr Index kChunk = 256;
 
 Extension::Extension(const Grid& grid)
     : grid_(grid),
-      reach_(std::clamp(std::min(grid.n1, grid.n2) / kSidesOfReach, kLeastReach, kMostReach)),
+      reach_(std::clamp(std::min(grid.n1, grid.n2) / kSidesOfReach, kMinReach, kMaxReach)),
       weight_(grid.cells()),
       work_(grid.cells()),
-      mixed_(Sweep::whole(0, grid.n2)),
+      mixed_(grid),
       zeros_(Field::Zero(grid.n2)) {}
-
-void Extension::bring_beside(Field& field) const {
-  Ranks::gather_beside(std::span<double>(field.data(), static_cast<std::size_t>(field.size())), grid_.n1,
-                       RowBands(grid_.n1).rows_of_rank(), reach_);
-}
 
 /// Counts free cells near each block; what is beyond the grid is not free.
 void Extension::find_mixed(const Field& free) {
-  const Share own = RowBands(grid_.n1).own_rows();
+  const Share own = own_rows(grid_);
   const Index blocks = (grid_.n2 + kBlock - 1) / kBlock;
   const Index rows_near = 2 * reach_ + 1;
   const auto cells_of = [&](auto& field, Index row, Index block) {
@@ -69,7 +64,7 @@ void Extension::find_mixed(const Field& free) {
 /// take(first, sums) for cells of mixed_: the sums over neighbours of a field, which is zero beyond the grid.
 template <typename Take>
 void Extension::spread(const Field& in, const Take& take) const {
-  using Line = Eigen::Array<double, kChunk + 2 * kMostReach, 1>;
+  using Line = Eigen::Array<double, kChunk + 2 * kMaxReach, 1>;
   const auto add_beside = [&](const auto& at, auto&& sum) {
     double weight = kNearest;
     for (Index k = 1; k <= reach_; ++k, weight *= kDecay) sum += weight * (at(-k) + at(k));
@@ -101,7 +96,7 @@ void Extension::spread(const Field& in, const Take& take) const {
 }
 
 void Extension::prepare(Field& free) {
-  bring_beside(free);
+  share_rows_beside(grid_, free, reach_);
   find_mixed(free);
   clear(mixed_, work_);
   spread(free, [&](Index first, const auto& sums) {
@@ -111,7 +106,7 @@ void Extension::prepare(Field& free) {
 }
 
 void Extension::extend(Field& y) {
-  bring_beside(y);
+  share_rows_beside(grid_, y, reach_);
   spread(y, [&](Index first, const auto& sums) {
     work_.segment(first, sums.size()) = weight_.segment(first, sums.size()) * sums;
   });
@@ -119,12 +114,12 @@ void Extension::extend(Field& y) {
       [&](Index first, Index last) { y.segment(first, last - first) += work_.segment(first, last - first); });
 }
 
-void Extension::gather(Field& y) {
+void Extension::collect(Field& y) {
   mixed_.each([&](Index first, Index last) {
     work_.segment(first, last - first) =
         weight_.segment(first, last - first) * y.segment(first, last - first);
   });
-  bring_beside(work_);
+  share_rows_beside(grid_, work_, reach_);
   spread(work_, [&](Index first, const auto& sums) { y.segment(first, sums.size()) += sums; });
 }
 
@@ -144,7 +139,7 @@ void Extension::hand_on(const Sweep& cells, const Field& free, Eigen::ArrayXd& p
   });
   if (count == 0) return;
   prepare(stays);
-  gather(leaves);
+  collect(leaves);
   cells.each([&](Index first, Index last) {
     for (Index i = first; i < last; ++i) p[i] += static_cast<double>(stays[i] * leaves[i]);
   });

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "solver/grid/ranks.hpp"
+#include "solver/grid/own_rows.hpp"
 #include "solver/grid/sweep.hpp"
 
 namespace slipstick::solver {
@@ -17,25 +17,25 @@ class Extension {
  public:
   using Field = Eigen::ArrayXd;
 
-  /// Of scalar fields on a grid.
+  /// For scalar fields on a grid.
   explicit Extension(const Grid& grid);
 
-  /// free: 1 in the cells that are, 0 elsewhere. Of several ranks each knows its own rows, and gets those
-  /// beside them in whatever is given to it.
+  /// free: 1 in the cells that are, 0 elsewhere. A field that is given here need be known in the grid's own
+  /// rows alone; the rows beside them are filled in.
   void prepare(Field& free);
   /// y, zero where no cell is free: its continuation is added there. Allocates nothing.
   void extend(Field& y);
   /// The adjoint: to y in the free cells it adds what it has where extend() writes. Allocates nothing.
-  void gather(Field& y);
+  void collect(Field& y);
 
   /// Pressures below zero, and those of cells that are not free, go to the free cells beside them, by the
-  /// adjoint: it is close to what these answer once the others carry nothing. Merely cut off, they would
-  /// press the whole neighbourhood apart, and the next state would hold too few cells. cells: those of p that
-  /// may differ from zero. Overwrites the last two fields, and what prepare() left.
+  /// adjoint: it is close to what these answer once the others carry nothing. Clipping negative pressures
+  /// without handing them on would open the neighbourhood too far, and the next state would hold too few
+  /// cells. cells: those of p that may differ from zero. Overwrites the last two fields, and what prepare()
+  /// left.
   void hand_on(const Sweep& cells, const Field& free, Eigen::ArrayXd& p, Field& stays, Field& leaves);
 
  private:
-  void bring_beside(Field& field) const;
   void find_mixed(const Field& free);
   template <typename Take>
   void spread(const Field& in, const Take& take) const;

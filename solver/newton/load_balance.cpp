@@ -17,7 +17,7 @@ constexpr int kNewtonIterations = 200;
 /// Parts of the majorant.
 constexpr double kMinDamping = 1e-12;
 constexpr double kMoreDamping = 100.0;
-/// Of a step, over the size of the field.
+/// The longest step, over the size of the field.
 constexpr double kMaxStride = 2.0;
 /// A step is good that takes a twentieth off what is missing, or brings this part of the decrease that its
 /// slope promises. Next to the limit Newton's steps take off a quarter, and the decrease is lost in rounding.
@@ -39,7 +39,7 @@ LoadBalance<Set>::LoadBalance(const Set& set, const std::vector<Condition>& cond
   }
 }
 
-/// Of the k-th condition's field with values.
+/// The product of the k-th condition's field with values.
 template <class Set>
 template <typename Values>
 double LoadBalance<Set>::product(Eigen::Index k, const Values& values) const {

@@ -7,6 +7,7 @@
 
 #include "solver/elasticity/elasticity.hpp"
 #include "solver/grid/grid_transfer.hpp"
+#include "solver/grid/own_rows.hpp"
 #include "solver/newton/natural_map_newton.hpp"
 
 namespace slipstick::solver {
@@ -33,16 +34,15 @@ concept NestedProblem = requires(Problem problem, const Grid& grid, LinearOperat
   { problem.kernel() } -> std::same_as<BlockKernel>;                       // of its operator
   { problem.parities() } -> std::convertible_to<std::span<const Parity>>;  // of its field's components
   { problem.admissible() } -> AdmissibleSet;
-  { problem.program(op) } -> std::same_as<ConvexProgram>;      // refers to the problem's own fields
-  { problem.start() } -> std::same_as<Eigen::ArrayXd>;         // known in full
-  { problem.guess() } -> std::same_as<Eigen::ArrayXd>;         // near the answer; empty: by coarser grids
-  {problem.keep_own_rows(grid)};                               // which are enough once it has been coarsened
-  { problem.coarsened(grid, grid) } -> std::same_as<Problem>;  // from the grid to the coarse one
+  { problem.program(op) } -> std::same_as<ConvexProgram>;  // refers to the problem's own fields
+  { problem.start() } -> std::same_as<Eigen::ArrayXd>;     // known in full
+  { problem.guess() } -> std::same_as<Eigen::ArrayXd>;     // near the answer; empty: by coarser grids
+  {problem.keep_own_rows()};                               // which are enough once it has been coarsened
+  { problem.coarsened(grid) } -> std::same_as<Problem>;    // on the coarse grid
 };
 
-/// Solves from the coarsest grid up, or from a guess. From coarse
-/// grids only the change from start() is taken: start() itself is known in full. Of several ranks each has
-/// its own rows of the fields.
+/// Solves from the coarsest grid up, or from a guess. From coarse grids only the change from start() is
+/// taken: start() itself is known in full. The result's fields are known in the grid's own rows.
 template <NestedProblem Problem>
 NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Problem problem,
                              const NewtonOptions& options) {
@@ -51,19 +51,19 @@ NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Pro
   result.field = problem.guess();
   const bool guessed = result.field.size() > 0;
   if (!guessed) result.field = problem.start();
-  result.field = own_rows(grid, std::move(result.field));
+  result.field = in_own_rows(grid, std::move(result.field));
   if (!guessed && can_coarsen(grid)) {
     const Grid coarse = coarser(grid);
     NewtonOptions coarse_options = options;
     coarse_options.tolerance = std::max(options.tolerance, coarse_tolerance(coarse));
     coarse_options.refine_multipliers = false;
     coarse_options.progress = nullptr;
-    Problem on_coarse = problem.coarsened(grid, coarse);
+    Problem on_coarse = problem.coarsened(coarse);
     const Eigen::ArrayXd start = on_coarse.start();
     NestedSummary below = solve_on_grids(elasticity, coarse, std::move(on_coarse), coarse_options);
     result.grids = std::move(below.grids);
     result.safeguards = below.safeguards;
-    gather(coarse, std::span(below.field.data(), static_cast<std::size_t>(below.field.size())));
+    share_rows(coarse, below.field);
     if (below.field.isFinite().all()) {
       const Eigen::ArrayXd change = prolong_to(grid, coarse, below.field - start, problem.parities());
       in_own_rows(grid, change.size(), [&](Index first, Index count) {
@@ -72,7 +72,7 @@ NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Pro
     }
     multipliers = below.newton.multipliers;
   }
-  problem.keep_own_rows(grid);
+  problem.keep_own_rows();
 
   const auto operators = elasticity.make_all(grid, problem.kernel());
   const auto admissible = problem.admissible();
@@ -90,14 +90,14 @@ NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Pro
   return result;
 }
 
-/// solve_on_grids() with the field and the slip gathered when operators and workspaces are gone; of the
-/// displacement a rank has its own rows.
+/// solve_on_grids() with the field and the slip made whole when operators and workspaces are gone; the
+/// displacement is known in the grid's own rows.
 template <NestedProblem Problem>
 NestedSummary solve_nested(const Elasticity& elasticity, const Grid& grid, Problem problem,
                            const NewtonOptions& options) {
   NestedSummary result = solve_on_grids(elasticity, grid, std::move(problem), options);
   for (Eigen::ArrayXd* const field : {&result.field, &result.slip}) {
-    gather(grid, std::span(field->data(), static_cast<std::size_t>(field->size())));
+    share_rows(grid, *field);
   }
   return result;
 }

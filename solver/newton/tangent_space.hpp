@@ -31,7 +31,7 @@ namespace slipstick::solver {
 struct TangentSpace {
   using Field = Eigen::ArrayXd;
 
-  /// Of vectors (2 components) or scalars (1), on the grid of some cells that may carry traction. No scalar
+  /// For vectors (2 components) or scalars (1), on the grid of some cells that may carry traction. No scalar
   /// is free, no vector on a line: a linearisation counts the cells that change.
   TangentSpace(Index components, const Sweep& cells)
       : f1(cells.size()),
@@ -177,7 +177,7 @@ struct TangentPreconditioner {
   void transform(Field& z) {
     if (extension != nullptr) extension->extend(z);
     symbol.apply(std::span(z.data(), static_cast<std::size_t>(z.size())));
-    if (extension != nullptr) extension->gather(z);
+    if (extension != nullptr) extension->collect(z);
   }
   void store(Index first, Index last, const Field& r, const Field& z, Field& y) const {
     space.complete(first, last, z, r, y);

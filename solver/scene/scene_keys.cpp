@@ -84,9 +84,10 @@ void add_body(SettingKeys& keys, const std::string& table) {
 
 /// The keys of [layer]: a word for the law, and the law's own numbers.
 void add_layer(SettingKeys& keys) {
-  keys.push_back({"layer.kind", kWord, "", word_of(layer_words(), Scene().layer.kind), one_of(layer_words()),
-                  "What lies between the bodies: nothing, or a thin layer that gives way where it is loaded and "
-                  "nowhere else (winkler)."});
+  keys.push_back(
+      {"layer.kind", kWord, "", word_of(layer_words(), Scene().layer.kind), one_of(layer_words()),
+       "What lies between the bodies: nothing, or a thin layer that gives way where it is loaded and "
+       "nowhere else (winkler)."});
   for (const LawKind& kind : law_kinds()) {
     for (const LawParameter& parameter : kind.parameters) {
       keys.push_back({"layer." + parameter.key, kNumber, parameter.unit,
@@ -125,7 +126,7 @@ void add_contact(SettingKeys& keys, const Scene& scene) {
        "Columns x1, x2 (m), pressure (Pa), one row for each contact cell: .csv or .h5. Known with pressure = "
        "\"file\" alone."},
       {"contact.coupling", kWord, "", word_of(kCouplings, scene.coupling), one_of(kCouplings),
-       "Of dissimilar bodies: the pressure's tangential displacement where they are dissimilar (auto); "
+       "For dissimilar bodies: the pressure's tangential displacement where they are dissimilar (auto); "
        "nothing; that displacement; also the shear's normal displacement."}};
   keys.insert(keys.end(), contact.begin(), contact.end());
 }

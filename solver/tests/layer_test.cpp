@@ -1,5 +1,7 @@
-// Half-spaces under a layer that gives way as Winkler's: every method, every part of the grid, and both limits.
+// Half-spaces under a layer that gives way as Winkler's: every method, every part of the grid, and both
+// limits.
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
@@ -9,6 +11,7 @@
 
 #include "solver/contact/certificate.hpp"
 #include "solver/elasticity/law/law_kind.hpp"
+#include "solver/input/tests/complaint.hpp"
 #include "solver/solve.hpp"
 #include "solver/tests/fields.hpp"
 #include "solver/tests/paper_scene.hpp"
@@ -19,8 +22,7 @@ namespace {
 using Eigen::ArrayXd;
 
 /// A compliance of the layer like that of the half-spaces below the contact, in m/Pa.
-const double kLikeBodies =
-    paper::kContactRadius * 4.0 * (1.0 + paper::kPoissonRatio) / paper::kYoungModulus;
+const double kLikeBodies = paper::kContactRadius * 4.0 * (1.0 + paper::kPoissonRatio) / paper::kYoungModulus;
 
 const LawKind& winkler() { return law_kinds().front(); }
 
@@ -98,6 +100,12 @@ TEST(Layer, UnderDissimilarBodiesIsTheSameOnEachPartOfTheGrid) {
     scene.op = OperatorKind::direct;
     expect_same(solved_scene(scene), reference, kSame);
   }
+}
+
+TEST(Layer, NeedsAnExtent) {
+  Scene scene = layered_scene(16, kLikeBodies, kLikeBodies);
+  scene.extent.reset();
+  EXPECT_THAT(complaint([&] { solve(scene); }), testing::HasSubstr("grid.extent = (missing)"));
 }
 
 TEST(Layer, LetsTheContactGrowAndTurn) {

@@ -9,7 +9,8 @@
 
 #include "solver/elasticity/inverse_symbol.hpp"
 #include "solver/elasticity/linear_operator.hpp"
-#include "solver/grid/ranks.hpp"
+#include "solver/grid/communicator.hpp"
+#include "solver/grid/own_rows.hpp"
 #include "solver/grid/sweep.hpp"
 #include "solver/newton/extension.hpp"
 #include "solver/tests/fields.hpp"
@@ -24,13 +25,15 @@ using Eigen::ArrayXd;
 /// Joins the ranks before the tests and leaves them afterwards.
 class RanksOfTheTests : public testing::Environment {
  public:
-  void SetUp() override { ranks_ = std::make_unique<Ranks>(); }
-  void TearDown() override { ranks_.reset(); }
+  void SetUp() override { joined_ = std::make_unique<JoinedRanks>(); }
+  void TearDown() override { joined_.reset(); }
+  Ranks ranks() const { return joined_->ranks(); }
 
  private:
-  std::unique_ptr<Ranks> ranks_;
+  std::unique_ptr<JoinedRanks> joined_;
 };
-const auto* const kRanks = testing::AddGlobalTestEnvironment(new RanksOfTheTests);
+auto* const kJoined = new RanksOfTheTests;
+const auto* const kEnvironment = testing::AddGlobalTestEnvironment(kJoined);
 
 /// Odd, prime and fast lengths, fewer rows than ranks, rows for some of the ranks alone.
 std::vector<Grid> grids() {
@@ -43,14 +46,12 @@ auto values(Field& field) {
   return std::span(field.data(), static_cast<std::size_t>(field.size()));
 }
 
-/// Results of `work` on this rank alone, and on all of them together.
+/// Results of work(grid) where this rank has the grid alone, and where all of them share it.
 template <typename Work>
-void expect_same_bits(const Work& work, const char* what, const Grid& grid) {
-  const auto alone = [&] {
-    const PlannedRanks one(1);
-    return work();
-  }();
-  const auto together = work();
+void expect_same_bits(const Work& work, const char* what, Grid grid) {
+  const auto alone = work(grid);
+  grid.ranks = kJoined->ranks();
+  const auto together = work(grid);
   ASSERT_EQ(alone.size(), together.size());
   EXPECT_TRUE((alone == together).all())
       << what << " on " << grid.n1 << " x " << grid.n2 << (grid.quadrant ? ", a quadrant" : "");
@@ -67,8 +68,8 @@ TEST(RanksShare, EveryRowBelongsToOneRank) {
   for (const Index count : {0, 1, 2, 5, 64, 1000}) {
     for (const int number : {1, 2, 3, 4, 7, 100}) {
       const PlannedRanks planned(number);
-      const RowBands bands(count);
-      EXPECT_LE(bands.count(), RowBands::kMost);
+      const RowBands bands(count, planned.ranks());
+      EXPECT_LE(bands.count(), RowBands::kMax);
       Index next = 0;
       for (int rank = 0; rank < number; ++rank) {
         const Share share = Ranks::share(bands.count(), rank, number);
@@ -83,77 +84,83 @@ TEST(RanksShare, EveryRowBelongsToOneRank) {
 }
 
 TEST(RanksOperator, HasTheBitsOfOneRank) {
-  for (Grid grid : grids()) {
+  for (Grid cells : grids()) {
     for (const bool quadrant : {false, true}) {
-      grid.quadrant = quadrant;
+      cells.quadrant = quadrant;
       for (const BlockKernel& kernel :
            {normal_kernel(), tangential_kernel(), coupling_kernel(), shear_kernel()}) {
         if (quadrant && kernel != normal_kernel() && kernel != tangential_kernel()) continue;
-        const ArrayXd traction = random_field(static_cast<Index>(kernel.inputs) * grid.cells(), 7);
+        const ArrayXd traction = random_field(static_cast<Index>(kernel.inputs) * cells.cells(), 7);
         expect_same_bits(
-            [&] {
+            [&](const Grid& grid) {
               const auto op = make_operator(OperatorKind::dcfft, grid, kernel, dissimilar_pair());
               return applied_twice(*op, traction);
             },
-            "displacements", grid);
+            "displacements", cells);
       }
     }
   }
 }
 
 TEST(RanksPreconditioner, HasTheBitsOfOneRank) {
-  for (Grid grid : grids()) {
+  for (Grid cells : grids()) {
     for (const bool quadrant : {false, true}) {
-      grid.quadrant = quadrant;
+      cells.quadrant = quadrant;
       for (const BlockKernel& kernel : {normal_kernel(), tangential_kernel()}) {
         expect_same_bits(
-            [&] {
+            [&](const Grid& grid) {
               ArrayXd field = random_field(static_cast<Index>(kernel.inputs) * grid.cells(), 5);
               const auto symbol = make_inverse_symbol(grid, kernel, dissimilar_pair());
               for (int again = 0; again < 2; ++again) symbol->apply(values(field));
-              gather(grid, values(field));
+              share_rows(grid, field);
               return field;
             },
-            "preconditioned fields", grid);
+            "preconditioned fields", cells);
       }
     }
   }
 }
 
 TEST(RanksExtension, HasTheBitsOfOneRank) {
-  for (const Grid& grid : grids()) {
+  for (const Grid& cells : grids()) {
     expect_same_bits(
-        [&] {
+        [&](const Grid& grid) {
           ArrayXd free = (random_field(grid.cells(), 3) > 0.0).cast<double>();
           ArrayXd field = free * random_field(grid.cells(), 4);
           Extension extension(grid);
           extension.prepare(free);
           extension.extend(field);
-          extension.gather(field);
-          gather(grid, values(field));
+          extension.collect(field);
+          share_rows(grid, field);
           return field;
         },
-        "continued fields", grid);
+        "continued fields", cells);
   }
 }
 
 TEST(RanksSweep, CountsAndSumsAsOneRank) {
-  for (const Grid& grid : grids()) {
+  for (const Grid& cells : grids()) {
     expect_same_bits(
-        [&] {
+        [&](const Grid& grid) {
           const ArrayXd field = random_field(grid.cells(), 9).max(0.0);
-          const Sweep cells(field, grid.n2);
-          const double sum = cells.sum<double>([&](Index first, Index last, double& part) {
+          const Sweep positive(grid, field);
+          const double sum = positive.sum<double>([&](Index first, Index last, double& part) {
             part += field.segment(first, last - first).sum();
           });
-          return ArrayXd{{static_cast<double>(cells.count()), sum}};
+          return ArrayXd{{static_cast<double>(positive.count()), sum}};
         },
-        "sums", grid);
+        "sums", cells);
   }
 }
 
+/// What this rank has sent so far.
+double sent_bytes() {
+  const Ranks ranks = kJoined->ranks();
+  return ranks.several() ? ranks.communicator().sent().bytes : 0.0;
+}
+
 double over_all_ranks(double own) {
-  const std::vector<double> all = Ranks::of_each(own);
+  const std::vector<double> all = kJoined->ranks().of_each(own);
   return std::accumulate(all.begin(), all.end(), 0.0);
 }
 
@@ -161,16 +168,16 @@ double over_all_ranks(double own) {
 /// two fields, of whole grids with the Nyquist column besides.
 TEST(RanksOperator, SendsWhatIsPredictedAndNoZeros) {
   for (const bool quadrant : {false, true}) {
-    const Grid grid{128, 96, 1.0, 1.0, quadrant};
+    const Grid grid{128, 96, 1.0, 1.0, quadrant, kJoined->ranks()};
     const auto op = make_operator(OperatorKind::dcfft, grid, tangential_kernel(), dissimilar_pair());
     const ArrayXd traction = random_field(2 * grid.cells(), 3);
     ArrayXd displacement(traction.size());
-    const double before = over_all_ranks(Ranks::sent().bytes);
-    const double after_asking = over_all_ranks(Ranks::sent().bytes);
+    const double before = over_all_ranks(sent_bytes());
+    const double after_asking = over_all_ranks(sent_bytes());
     op->apply_own(traction, displacement);
-    const double sent = over_all_ranks(Ranks::sent().bytes) - after_asking - (after_asking - before);
+    const double sent = over_all_ranks(sent_bytes()) - after_asking - (after_asking - before);
     EXPECT_EQ(sent, predicted_sent_bytes(grid, tangential_kernel()));
-    const double others = 1.0 - 1.0 / Ranks::number();
+    const double others = 1.0 - 1.0 / kJoined->ranks().number();
     EXPECT_LE(sent, 64.0 * static_cast<double>(grid.n1 * (grid.n2 + 1)) * others);
   }
 }

@@ -18,7 +18,7 @@
 #include <arb_hypgeom.h>
 #endif
 
-/// What is known of the contact by other ways than the code's, in balls.
+/// Known values of the contact in balls, by other ways than the code's.
 namespace slipstick::analytic::certified::known {
 
 constexpr slong kBits = 300;
@@ -49,7 +49,7 @@ inline Ball enclosure(const Number& number) { return exact(number.value) + exact
 
 inline bool overlap(const Ball& a, const Ball& b) { return a.finite() && b.finite() && !(a < b) && !(a > b); }
 
-/// Whether two enclosures meet, of which the second is good to this part of itself.
+/// Whether two enclosures meet, the second one no wider than this part of itself.
 inline ::testing::AssertionResult agree(const Number& number, const Ball& known,
                                         const std::string& within = "1e-38") {
   const Precision precision(kBits);
@@ -66,7 +66,7 @@ inline State at_stick_ratio(const Profile& profile, const std::string& c,
   return state(profile, Quantity::stick_ratio, c, radii, digits);
 }
 
-// What is known is computed here in other ways than in the code: pressures in place of superposed punches,
+// Other ways than the code's: pressures in place of superposed punches,
 // Arb's elliptic integrals in place of means, other variables of integration.
 
 inline ComplexBall elliptic(void (*f)(acb_t, const acb_t, slong), const ComplexBall& parameter,
@@ -77,7 +77,7 @@ inline ComplexBall elliptic(void (*f)(acb_t, const acb_t, slong), const ComplexB
   return result;
 }
 
-/// Of modulus sqrt(1 - s^2).
+/// K and E of modulus sqrt(1 - s^2).
 inline ComplexBall k_of(const ComplexBall& s, bool analytic = false) {
   return elliptic(acb_elliptic_k, 1 - s * s, analytic);
 }

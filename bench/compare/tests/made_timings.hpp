@@ -56,26 +56,17 @@ struct Noise {
   double drift = 0.0;  ///< of the speed, from one repetition to the next
 };
 
-struct TwoFiles {
-  Timings base;
-  Timings now;
-};
-
-inline Comparison compare(const TwoFiles& run, const ComparisonRules& rules = {}) {
-  return compare(run.base, run.now, rules);
-}
-
 /// Two files of equal benchmarks, but that the first `slower` ones take `factor` times as long in the new
 /// one.
-inline TwoFiles draw(std::mt19937_64& generator, std::size_t benchmarks, std::size_t repetitions, bool paired,
-                     const Noise& noise, std::size_t slower = 0, double factor = 1.0) {
+inline TwoTimings draw(std::mt19937_64& generator, std::size_t benchmarks, std::size_t repetitions,
+                       bool paired, const Noise& noise, std::size_t slower = 0, double factor = 1.0) {
   std::normal_distribution<double> normal;
   std::bernoulli_distribution is_outlier(noise.outliers);
   const auto disturbed = [&](double seconds) {
     return seconds * std::exp(noise.scatter * normal(generator)) *
            (is_outlier(generator) ? noise.outlier : 1.0);
   };
-  TwoFiles run{file_of("base.json", {}), file_of("new.json", {})};
+  TwoTimings run{file_of("base.json", {}), file_of("new.json", {})};
   if (paired) run.base.context.session = run.now.context.session = "one";
   for (std::size_t b = 0; b < benchmarks; ++b) {
     std::vector<double> before(repetitions);

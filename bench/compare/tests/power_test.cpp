@@ -19,7 +19,7 @@ struct Case {
   double effect = 0.1;
 };
 
-/// Of 500 changes, each of the size that a comparison of equal builds has just stated of the first benchmark.
+/// The part found of 500 changes, each as large as a comparison of equal builds has just stated.
 double part_found(const Case& each, std::mt19937_64& generator) {
   const ComparisonRules rules{.effect = each.effect, .level = each.level, .second_run = each.second_run};
   constexpr int kComparisons = 500;
@@ -28,9 +28,9 @@ double part_found(const Case& each, std::mt19937_64& generator) {
     const auto timed = [&](std::size_t times, double factor) {
       return draw(generator, 1, times * each.repetitions, each.paired, each.noise, 1, factor);
     };
-    const TwoFiles equal = timed(1, 1.0);
+    const TwoTimings equal = timed(1, 1.0);
     Comparison stated = compare(equal, rules);
-    state_power(stated, equal.base, equal.now, rules);
+    state_power(stated, equal, rules);
     const double factor = stated.benchmarks.front().smallest_found;
     EXPECT_GT(factor, 1.0 + each.effect);
     Comparison seen = compare(timed(1, factor), rules);
@@ -58,18 +58,16 @@ TEST(Power, AStatedChangeIsFoundNineTimesInTen) {
 
 TEST(Power, RepetitionsThatCanShowNothingFindNothing) {
   std::mt19937_64 generator(22);
-  const TwoFiles few = draw(generator, 1, 5, true, {});
-  const ComparisonReport report = compare_twice({few.base, few.now}, {}, {});
+  const TwoTimings few = draw(generator, 1, 5, true, {});
+  const ComparisonReport report = compare_twice(few, {}, {});
   EXPECT_EQ(report.comparison.benchmarks.front().smallest_found, std::numeric_limits<double>::infinity());
 }
 
 TEST(Power, ASmallerEffectIsFoundFromASmallerChangeOn) {
   std::mt19937_64 generator(23);
-  const TwoFiles files = draw(generator, 1, 20, true, {.scatter = 0.01, .outliers = 0.0});
+  const TwoTimings files = draw(generator, 1, 20, true, {.scatter = 0.01, .outliers = 0.0});
   const auto smallest = [&](double effect) {
-    return compare_twice({files.base, files.now}, {.effect = effect}, {})
-        .comparison.benchmarks[0]
-        .smallest_found;
+    return compare_twice(files, {.effect = effect}, {}).comparison.benchmarks[0].smallest_found;
   };
   EXPECT_LT(smallest(0.05), 1.10);
   EXPECT_GT(smallest(0.10), 1.10);
@@ -77,8 +75,8 @@ TEST(Power, ASmallerEffectIsFoundFromASmallerChangeOn) {
 
 TEST(Power, AnIntervalAboveOneIsNotCalledTheSame) {
   std::mt19937_64 generator(24);
-  const TwoFiles files = draw(generator, 1, 20, true, {.scatter = 0.02, .outliers = 0.0}, 1, 1.06);
-  const ComparisonReport report = compare_twice({files.base, files.now}, {}, {});
+  const TwoTimings files = draw(generator, 1, 20, true, {.scatter = 0.02, .outliers = 0.0}, 1, 1.06);
+  const ComparisonReport report = compare_twice(files, {}, {});
   EXPECT_NE(comparison_text(report).find("slower, below what counts"), std::string::npos);
   EXPECT_EQ(exit_code(report.comparison), 0);
 }

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <random>
@@ -102,20 +103,6 @@ TEST(RankSum, CountsAsTheRecurrenceDoes) {
   }
 }
 
-// Tails of the sum are thinner than normal ones (its kurtosis is -0.06 here): beyond counting, chances are a
-// fifth too large at one in a thousand, which is the safe side.
-TEST(RankSum, NormalBeyondCounting) {
-  const int n = 31;
-  for (const int u : {481, 420, 360, 300, 262}) {
-    const Shift shift = shift_with(static_cast<std::size_t>(u), 31, 31);
-    EXPECT_GT(shift.p_negative, 0.99 * chance_of_at_most(u, n, n)) << u;
-    EXPECT_LT(shift.p_negative, (u > 350 ? 1.01 : 1.2) * chance_of_at_most(u, n, n)) << u;
-    const Shift mirrored = shift_with(static_cast<std::size_t>(n * n - u), 31, 31);
-    EXPECT_DOUBLE_EQ(mirrored.p_positive, shift.p_negative);
-  }
-  EXPECT_GT(shift_with(0, 31, 31).p_negative, chance_of_at_most(0, n, n));
-}
-
 /// Halves for ties.
 double pairs_won(const std::vector<double>& base, const std::vector<double>& now) {
   double won = 0.0;
@@ -151,14 +138,6 @@ TEST(RankSum, CountsAllChoicesWhereThereAreTies) {
     EXPECT_NEAR(shift.p_positive, above / all, 1e-14);
     EXPECT_NEAR(shift.p_negative, below / all, 1e-14);
   }
-}
-
-TEST(RankSum, SeparatedSamplesHaveTheLeastChance) {
-  EXPECT_DOUBLE_EQ(least_rank_sum_chance(10, 10), 1.0 / 184756.0);
-  EXPECT_DOUBLE_EQ(least_rank_sum_chance(3, 5), 1.0 / 56.0);
-  EXPECT_NEAR(shift_with(100, 10, 10).p_positive * 184756.0, 1.0, 1e-12);
-  EXPECT_NEAR(shift_with(15, 5, 3).p_positive * 56.0, 1.0, 1e-12);
-  EXPECT_DOUBLE_EQ(shift_with(100, 10, 10).p_negative, 1.0);
 }
 
 // Critical values of the smaller sum, one-sided 2.5 % (Wilcoxon and Wilcox 1964).
@@ -220,40 +199,64 @@ std::vector<double> counted_signed_ranks(std::size_t n) {
   return chances;
 }
 
-TEST(SignedRank, NormalBeyondCounting) {
-  const std::size_t n = 61;
-  const std::vector<double> counted = counted_signed_ranks(n);
-  for (const std::size_t t : {945U, 800U, 700U, 600U, 540U}) {
-    const double exact = counted[t];
-    EXPECT_GT(signed_rank_shift(differences_with(t, n)).p_negative, 0.99 * exact) << t;
-    EXPECT_LT(signed_rank_shift(differences_with(t, n)).p_negative, (t > 690 ? 1.01 : 1.2) * exact) << t;
+// Tails of the sums are thinner than normal ones: beyond counting, chances are up to a fifth too large, which
+// is the safe side.
+TEST(RankTests, TakeTheNormalDistributionBeyondCounting) {
+  struct Case {
+    double found;
+    double exact;
+  };
+  std::vector<Case> cases;
+  const int n = 31;
+  for (const int u : {481, 420, 360, 300, 262}) {
+    const Shift shift = shift_with(static_cast<std::size_t>(u), 31, 31);
+    cases.push_back({shift.p_negative, chance_of_at_most(u, n, n)});
+    EXPECT_DOUBLE_EQ(shift_with(static_cast<std::size_t>(n * n - u), 31, 31).p_positive, shift.p_negative);
+  }
+  const std::vector<double> counted = counted_signed_ranks(61);
+  for (const std::size_t t : {945U, 800U, 700U, 600U, 540U})
+    cases.push_back({signed_rank_shift(differences_with(t, 61)).p_negative, counted[t]});
+  for (const auto& [found, exact] : cases) {
+    EXPECT_GT(found, 0.99 * exact) << exact;
+    EXPECT_LT(found, (exact > 0.02 ? 1.01 : 1.2) * exact) << exact;
   }
 }
 
-TEST(SignedRank, OneSignHasTheLeastChance) {
-  EXPECT_DOUBLE_EQ(least_signed_rank_chance(10), 1.0 / 1024.0);
-  EXPECT_DOUBLE_EQ(signed_rank_shift(differences_with(55, 10)).p_positive, 1.0 / 1024.0);
-  const std::size_t most = kMaxCounted * (kMaxCounted + 1) / 2;  // of as many as are counted
-  EXPECT_DOUBLE_EQ(signed_rank_shift(differences_with(most, kMaxCounted)).p_positive, std::exp2(-60.0));
+TEST(RankTests, SeparatedSamplesHaveTheLeastChance) {
+  for (const auto& [n, m, choices] : {std::tuple(10U, 10U, 184756.0), std::tuple(3U, 5U, 56.0)}) {
+    EXPECT_NEAR(least_rank_sum_chance(n, m) * choices, 1.0, 1e-14);
+    EXPECT_NEAR(shift_with(n * m, n, m).p_positive * choices, 1.0, 1e-12);
+    EXPECT_DOUBLE_EQ(shift_with(n * m, n, m).p_negative, 1.0);
+  }
+  for (const std::size_t n : {std::size_t{10}, kMaxCounted}) {  // as many as are counted
+    const double chance = std::exp2(-static_cast<double>(n));
+    EXPECT_DOUBLE_EQ(least_signed_rank_chance(n), chance);
+    EXPECT_DOUBLE_EQ(signed_rank_shift(differences_with(n * (n + 1) / 2, n)).p_positive, chance);
+  }
   EXPECT_DOUBLE_EQ(signed_rank_shift(std::vector<double>(5, 0.0)).p_positive, 1.0);
   EXPECT_DOUBLE_EQ(signed_rank_shift(std::vector<double>(5, 0.0)).p_negative, 1.0);
 }
 
 // By hand: means of two of -1, 2, 3 are -1, 0.5, 1, 2, 2.5, 3; differences of {1, 2} from {4, 8} 3, 7, 2, 6.
-TEST(HodgesLehmann, IsTheMedianOfMeansOrDifferences) {
-  EXPECT_DOUBLE_EQ(signed_rank_shift(std::vector{-1.0, 2.0, 3.0}).estimate, 1.5);
-  EXPECT_DOUBLE_EQ(rank_sum_shift(std::vector{1.0, 2.0}, std::vector{4.0, 8.0}).estimate, 4.5);
-}
-
-TEST(HodgesLehmann, IntervalIsInfiniteWhereNoneReaches95Percent) {
-  EXPECT_TRUE(std::isinf(signed_rank_shift(differences_with(9, 5)).high));
-  EXPECT_TRUE(std::isinf(signed_rank_shift(differences_with(9, 5)).low));
-  EXPECT_DOUBLE_EQ(signed_rank_shift(differences_with(21, 6)).low, 1.0);
-  EXPECT_DOUBLE_EQ(signed_rank_shift(differences_with(21, 6)).high, 6.0);
-  EXPECT_TRUE(std::isinf(rank_sum_shift(std::vector{1.0, 2.0, 3.0}, std::vector{4.0, 5.0, 6.0}).high));
-  const Shift four = rank_sum_shift(std::vector{1.0, 2.0, 3.0, 4.0}, std::vector{11.0, 12.0, 13.0, 14.0});
-  EXPECT_DOUBLE_EQ(four.low, 7.0);
-  EXPECT_DOUBLE_EQ(four.high, 13.0);
+// The interval is infinite where no one reaches 95 %.
+TEST(HodgesLehmann, IsTheMedianOfMeansOrDifferencesWithItsInterval) {
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();
+  struct Case {
+    Shift shift;
+    double estimate, low, high;
+  };
+  using Values = std::vector<double>;
+  for (const auto& [shift, estimate, low, high] :
+       {Case{signed_rank_shift(Values{-1.0, 2.0, 3.0}), 1.5, -kInfinity, kInfinity},
+        Case{signed_rank_shift(Values{1.0, 2.0, 3.0, 4.0, 5.0}), 3.0, -kInfinity, kInfinity},
+        Case{signed_rank_shift(differences_with(21, 6)), 3.5, 1.0, 6.0},
+        Case{rank_sum_shift(Values{1.0, 2.0}, Values{4.0, 8.0}), 4.5, -kInfinity, kInfinity},
+        Case{rank_sum_shift(Values{1.0, 2.0, 3.0}, Values{4.0, 5.0, 6.0}), 3.0, -kInfinity, kInfinity},
+        Case{rank_sum_shift(Values{1.0, 2.0, 3.0, 4.0}, Values{11.0, 12.0, 13.0, 14.0}), 10.0, 7.0, 13.0}}) {
+    EXPECT_DOUBLE_EQ(shift.estimate, estimate);
+    EXPECT_DOUBLE_EQ(shift.low, low);
+    EXPECT_DOUBLE_EQ(shift.high, high);
+  }
 }
 
 // As many means of two are beyond either end as sums of ranks stay in the tail: so the normal distribution
@@ -279,7 +282,7 @@ TEST(HodgesLehmann, IntervalBeyondCountingIsTheOneThatCountingGives) {
   EXPECT_EQ(above, below);
 }
 
-/// Out of so many, within three standard deviations.
+/// The share of hits, within three standard deviations.
 void expect_share(int hits, int draws, double share) {
   EXPECT_NEAR(static_cast<double>(hits) / draws, share, 3.0 * std::sqrt(share * (1.0 - share) / draws));
 }

@@ -11,7 +11,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   solver::read_or_refuse([&] {
     const bench::Timings timings =
         bench::parse_timings(std::string(solver::text_of(bytes, size)), "new.json");
-    const bench::ComparisonReport report{"base.json", "new.json", {}, bench::compare(timings, timings), {}};
+    const bench::ComparisonReport report{"base.json", "new.json", {}, bench::compare({timings, timings}), {}};
     bench::comparison_text(report);
     bench::comparison_markdown(report);
     bench::comparison_junit(report);

@@ -30,22 +30,12 @@ Way way_by(const std::string& method, double cells, double seconds, double error
           .error = error};
 }
 
-TEST(ParetoFront, HoldsThoseThatNoneBeats) {
+TEST(ParetoFront, HoldsTheWaysThatNoneBeats) {
   EXPECT_THAT(pareto_front({way(3.0, 0.1), way(1.0, 0.5), way(2.0, 0.5), way(4.0, 0.2)}), ElementsAre(1, 0));
-}
-
-TEST(ParetoFront, OfOneIsThatOneAndOfNoneEmpty) {
   EXPECT_THAT(pareto_front({way(1.0, 1.0)}), ElementsAre(0));
   EXPECT_THAT(pareto_front({}), IsEmpty());
-}
-
-TEST(ParetoFront, KeepsAllThatTie) {
-  EXPECT_THAT(pareto_front({way(1.0, 0.5), way(1.0, 0.5)}), ElementsAre(0, 1));
-  // As good and slower, as quick and worse: beaten.
+  EXPECT_THAT(pareto_front({way(1.0, 0.5), way(1.0, 0.5)}), ElementsAre(0, 1));  // both of a tie
   EXPECT_THAT(pareto_front({way(2.0, 0.5), way(1.0, 0.5), way(1.0, 0.6)}), ElementsAre(1));
-}
-
-TEST(ParetoFront, LeavesOutWhatIsNotANumber) {
   EXPECT_THAT(pareto_front({way(1.0, NAN), way(NAN, 0.1), way(2.0, 0.5), way(0.1, INFINITY)}),
               ElementsAre(2));
 }
@@ -72,12 +62,11 @@ TEST(DominatedChoices, NameWhatIsSurelySlowerAndByWhat) {
   EXPECT_DOUBLE_EQ(found[0].most, 5.0);
 }
 
-TEST(DominatedChoices, LeaveOpenWhatTimesDoNotTellApart) {
-  EXPECT_THAT(dominated_choices({way_by("one", 64, 1.0, 0.1), way_by("other", 64, 1.15, 0.1)}), IsEmpty());
-}
-
-TEST(DominatedChoices, LeaveWhatIsSlowerButBetter) {
-  EXPECT_THAT(dominated_choices({way_by("one", 64, 1.0, 0.1), way_by("other", 64, 10.0, 0.05)}), IsEmpty());
+TEST(DominatedChoices, AreNotThoseThatMayBeAsQuickOrAreBetterOrNotTimed) {
+  Way untimed = way_by("untimed", 64, NAN, 0.01);
+  untimed.low = untimed.high = NAN;
+  for (const Way& other : {way_by("other", 64, 1.15, 0.1), way_by("other", 64, 10.0, 0.05), untimed})
+    EXPECT_THAT(dominated_choices({way_by("one", 64, 1.0, 0.1), other}), IsEmpty());
 }
 
 TEST(DominatedChoices, SayFromWhichMeshOn) {
@@ -104,12 +93,6 @@ TEST(DominatedChoices, CompareOnlyWhatDiffersInThatKey) {
   const auto found = dominated_choices({full, other, rival});
   ASSERT_EQ(found.size(), 1U);
   EXPECT_EQ(found[0].word, "full");
-}
-
-TEST(DominatedChoices, IgnoreWhatIsNotTimed) {
-  Way quick = way_by("wrong", 64, NAN, 0.01);
-  quick.low = quick.high = NAN;
-  EXPECT_THAT(dominated_choices({quick, way_by("right", 64, 5.0, 0.01)}), IsEmpty());
 }
 
 }  // namespace

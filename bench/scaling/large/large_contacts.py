@@ -86,7 +86,7 @@ def sent(n, ranks):
 
 
 def messages(ranks):
-    """What all ranks send in one application."""
+    """Messages that all ranks send in one application."""
     return FIELDS * 2 * ranks * (ranks - 1)
 
 
@@ -126,7 +126,7 @@ class Model:
         return self.rest * max(self.seconds(n) / machine.cores, MOVED * n * n / machine.bandwidth) / machine.nodes
 
     def sending(self, n, machine):
-        """Seconds of sending in one application, a rank a node, one message after the other."""
+        """Seconds of one application, a rank a node, one message after the other."""
         ranks = machine.nodes
         return (PRECONDITIONED * sent(n, ranks) / ranks / machine.network +
                 2.0 * messages(ranks) / ranks * machine.latency)
@@ -197,7 +197,7 @@ def strong(model, n):
 
 
 def pays_to(rows):
-    """The most nodes of which the last doubling gained half as much again."""
+    """The largest number of nodes at which the last doubling took at most two thirds of the time."""
     return max((after[0] for before, after in zip(rows, rows[1:]) if before[1] / after[1] >= GAIN), default=rows[0][0])
 
 
@@ -222,7 +222,7 @@ def tables(counts):
     first = weak(model)[0]
     return {
         "laws": table(["law", "fitted to", "left out", "largest error there"], law_rows(model)),
-        "transposes": (f"{sum(row['ranks'] > 1 for row in counts['transposes'])} transposes were counted: bytes are right to "
+        "transposes": (f"Of {sum(row['ranks'] > 1 for row in counts['transposes'])} transposes counted, bytes are right to "
                        f"{100.0 * size_error:.1g} % and messages to {100.0 * message_error:.1g} %; the most that was sent is "
                        f"{part:.2f} of 64 N²."),
         "sizes": table(["cells", "memory", "flops", "bytes moved", f"time, {WORKSTATION.name}", f"time, {CLUSTER.name}"],

@@ -15,9 +15,8 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kRounding = 1e-12;
+constexpr double kRounding = 1e-12;  // relative, of logarithms and their fits
 const std::vector<double> kSizes{4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128};
 
 using Law = std::function<double(double cells)>;
@@ -42,7 +41,7 @@ Family drawn(const Law& law, double scatter, int repetitions, std::mt19937& rand
   return family;
 }
 
-/// Part of so many seeded trials that hold.
+/// The part of so many seeded trials that hold.
 double part_of(int trials, const std::function<bool()>& holds) {
   int count = 0;
   for (int i = 0; i < trials; ++i) count += holds() ? 1 : 0;
@@ -51,11 +50,6 @@ double part_of(int trials, const std::function<bool()>& holds) {
 
 double fourth(double cells) { return 2e-10 * std::pow(cells, 4); }
 double square(double cells) { return 3e-8 * cells * cells; }
-
-TEST(TypicalSeconds, IsTheMedian) {
-  EXPECT_DOUBLE_EQ(typical({3.0, 1.0, 2.0}).seconds, 2.0);
-  EXPECT_NEAR(typical({1.0, 4.0}).seconds, 2.0, kRounding);  // of the logarithms
-}
 
 TEST(TypicalSeconds, HoldsTheTruthInNinetyFiveOfAHundredDraws) {
   std::mt19937 random(1);
@@ -69,15 +63,14 @@ TEST(TypicalSeconds, HoldsTheTruthInNinetyFiveOfAHundredDraws) {
   }
 }
 
-TEST(TypicalSeconds, OfOneRepetitionHasNoInterval) {
+TEST(TypicalSeconds, IsTheMedianOfValidTimes) {
+  EXPECT_DOUBLE_EQ(typical({3.0, 1.0, 2.0}).seconds, 2.0);
+  EXPECT_NEAR(typical({1.0, 4.0}).seconds, 2.0, kRounding);  // of the logarithms
   EXPECT_DOUBLE_EQ(typical({2.0}).seconds, 2.0);
-  EXPECT_TRUE(std::isnan(typical({2.0}).low));
-  EXPECT_TRUE(std::isnan(typical({}).seconds));
-}
-
-TEST(TypicalSeconds, LeavesOutWhatIsNoTime) {
+  EXPECT_TRUE(std::isnan(typical({2.0}).low));  // one repetition has no interval
   EXPECT_DOUBLE_EQ(typical({kNaN, 2.0, -1.0, 2.0, 0.0, kInfinity, 2.0}).seconds, 2.0);
-  EXPECT_TRUE(std::isnan(typical({kNaN, 0.0}).seconds));
+  for (const std::vector<double>& none : {std::vector<double>{}, {kNaN, 0.0}})
+    EXPECT_TRUE(std::isnan(typical(none).seconds));
 }
 
 TEST(PowerLaw, OfExactPowersIsExact) {
@@ -173,7 +166,9 @@ TEST(GrowthFit, ResidualsAreRelative) {
   EXPECT_NEAR(fits[0].rms, 0.1 / std::sqrt(static_cast<double>(kSizes.size())), 0.01);
 }
 
-TEST(GrowthFit, HasNoNegativeOverhead) {
+TEST(GrowthFit, HasNoNegativeOverheadNorFactor) {
+  for (const GrowthFit& fit : fit_growths(exact([](double n) { return 1.0 / n; })))
+    EXPECT_EQ(fit.factor, 0.0);
   const auto fits = fit_growths(exact([](double n) { return std::pow(n, 5); }));
   for (const GrowthFit& fit : fits) {
     EXPECT_GE(fit.overhead, 0.0);
@@ -236,6 +231,9 @@ TEST(Crossover, IsTheMoreCertainTheLessTheScatter) {
     return std::log(found.high / found.low);
   };
   const double coarse = width(0.05);
+  const Family slow = drawn(fourth, 0.1, 5, random);
+  const Family quick = drawn(square, 0.1, 5, random);
+  EXPECT_EQ(find_crossover(slow, quick).low, find_crossover(slow, quick).low);  // the same each time
   EXPECT_LT(width(0.005), 0.3 * coarse);
   // Both medians' errors, 1.25 * 0.05 / sqrt(10) each, over the difference of the exponents, 95 % of
   // Student's.
@@ -249,14 +247,6 @@ TEST(Crossover, NearTheSmallestSizeMayLieBelowIt) {
   EXPECT_EQ(found.low, -kInfinity);
   EXPECT_GT(found.high, 4.0);
   EXPECT_LT(found.high, 12.0);
-}
-
-TEST(Crossover, IsTheSameEachTime) {
-  std::mt19937 random(7);
-  const Family slow = drawn(fourth, 0.1, 5, random);
-  const Family quick = drawn(square, 0.1, 5, random);
-  EXPECT_EQ(find_crossover(slow, quick).low, find_crossover(slow, quick).low);
-  EXPECT_EQ(find_crossover(slow, quick).high, find_crossover(slow, quick).high);
 }
 
 }  // namespace

@@ -27,11 +27,11 @@ struct LoopUnderLoad {
   LoopPath path;
 };
 
-/// How a record's units and signs differ from the scene's.
+/// The units and signs of a record.
 struct LoopConventions {
-  double load = 1.0;    ///< N m, or N, of one unit
-  double motion = 1.0;  ///< rad, or m, of one unit
-  std::vector<std::string> notes;
+  double load = 1.0;               ///< N m, or N, of one unit; negative: the other sign
+  double motion = 1.0;             ///< rad, or m, of one unit
+  std::vector<std::string> notes;  ///< how they differ from the scene's
 };
 
 struct UnitName {
@@ -44,13 +44,7 @@ const std::vector<UnitName> kRotationUnits{
 const std::vector<UnitName> kForceUnits{{1.0, ""}, {1e-3, "mN"}, {1e3, "kN"}};
 const std::vector<UnitName> kLengthUnits{{1.0, ""}, {1e-3, "mm"}, {1e-6, "um"}, {1e-9, "nm"}};
 
-double largest(const std::vector<double>& values) {
-  double size = 0.0;
-  for (const double value : values) size = std::max(size, std::abs(value));
-  return size;
-}
-
-/// Rows of a path: as many as a fit needs.
+/// Rows of a path: a fit gains nothing by more.
 constexpr std::size_t kMaxPathRows = 2000;
 
 LoopPath make_path(const LoopRecord& loop, std::size_t from, std::size_t to,
@@ -71,14 +65,14 @@ LoopPath make_path(const LoopRecord& loop, std::size_t from, std::size_t to,
   return path;
 }
 
-/// Rows of one normal load, as it is given, follow each other.
+/// Consecutive rows under one normal load.
 struct LoadRows {
   std::size_t from;
   std::size_t to;
   double normal_load;
 };
 std::vector<LoadRows> rows_by_load(const LoopRecord& loop, double scene_load) {
-  constexpr double kSameLoad = 0.02;
+  constexpr double kSameLoad = 0.02;  // relative difference of rows under one load
   if (loop.normal_load.empty()) return {{0, loop.load.size(), scene_load}};
   std::vector<LoadRows> groups{{0, 1, loop.normal_load[0]}};
   for (std::size_t row = 1; row < loop.normal_load.size(); ++row) {
@@ -141,13 +135,13 @@ Json under_load_json(const LoopUnderLoad& loop, const LoopJudgement& judgement) 
   return json;
 }
 
-/// d ln(largest moment)/d ln(normal load), by least squares, of the loops and of the limit.
+/// d ln(largest moment)/d ln(normal load), of the loops by least squares, and of the limit.
 struct LoadExponent {
   double value;
   double exact;
   bool differs() const {
-    constexpr double kSame = 0.05;
-    return !(std::abs(value - exact) <= kSame);
+    constexpr double kSameExponent = 0.05;
+    return !(std::abs(value - exact) <= kSameExponent);
   }
 };
 LoadExponent load_exponent(const std::vector<LoopUnderLoad>& loops) {
@@ -155,15 +149,15 @@ LoadExponent load_exponent(const std::vector<LoopUnderLoad>& loops) {
   std::vector<double> y;
   for (const LoopUnderLoad& loop : loops) {
     x.push_back(std::log(loop.contact.normal_load));
-    y.push_back(std::log(loop.contact.limit * largest(loop.path.moment)));
+    y.push_back(std::log(loop.contact.limit * largest_of(loop.path.moment)));
   }
   return {line_through(x, y).slope, loops.front().contact.limit_exponent};
 }
 
-/// Whether all of these slide, so that their largest moments are limits.
+/// Whether all loops reach gross slip, so that their largest moments are limits.
 bool all_slide(const std::vector<LoopUnderLoad>& loops) {
   return std::ranges::all_of(loops, [](const LoopUnderLoad& loop) {
-    return largest(follow(loop.path, {}, {loop.contact.loading})) > 0.95;
+    return largest_of(follow(loop.path, {}, {loop.contact.loading})) > 0.95;
   });
 }
 
@@ -179,13 +173,13 @@ std::vector<std::string> notes_of(const UnitName& load, const UnitName& motion, 
   return notes;
 }
 
-/// Distance of the load from the exact law, from rest or over whole cycles, over the larger of both.
+/// Distance of a loop's load from the exact law, over the larger of both, from rest or over whole cycles.
 double roughly_off(const LoopUnderLoad& loop) {
   const std::vector<LoopStart> starts = possible_starts(loop.path);
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < std::min<std::size_t>(starts.size(), 3); ++k) {
     std::vector<double> exact = follow(loop.path, starts[k], {loop.contact.loading});
-    const double size = std::max(largest(exact), largest(loop.path.moment));
+    const double size = std::max(largest_of(exact), largest_of(loop.path.moment));
     double mean = 0.0;
     for (std::size_t row = 0; row < exact.size(); ++row) {
       exact[row] -= loop.path.moment[row];
@@ -197,14 +191,13 @@ double roughly_off(const LoopUnderLoad& loop) {
   return least;
 }
 
-/// The units and the sign in which a loop that is far off in the scene's is near the exact law: stiffness and
-/// limit agree, or shape. Another unit is taken only where slip shows, since the stiffness alone does not say
-/// which one it is.
+/// The units and the sign in which a loop is near the exact law, if it is far from it in the scene's. Another
+/// unit is taken only where slip shows, since stiffness alone does not tell units apart.
 LoopConventions find_conventions(const LoopRecord& record, std::size_t to, const LoopContact& contact,
                                  double tolerance) {
-  constexpr double kNear = 0.35;
-  constexpr double kFar = 0.7;
-  constexpr double kLargestWithoutSlip = 0.05;  // of the limit
+  constexpr double kNear = 0.35;                // roughly_off() at most, in the right units
+  constexpr double kFar = 0.7;                  // and at least in wrong ones, where slip shows
+  constexpr double kLargestWithoutSlip = 0.05;  // load over the limit
   const auto loop_in = [&](const LoopConventions& conventions) {
     return LoopUnderLoad{contact, make_path(record, 0, to, conventions, contact)};
   };
@@ -230,16 +223,16 @@ LoopConventions find_conventions(const LoopRecord& record, std::size_t to, const
   }
   if (found.notes == by_sign.notes) return found;
   const LoopUnderLoad loop = loop_in(found);
-  const bool slips = largest(loop.path.moment) >= kLargestWithoutSlip;
+  const bool slips = largest_of(loop.path.moment) >= kLargestWithoutSlip;
   if (as_given > kFar && slips) return found;
   const LoopJudgement judgement = judge_loop(loop.path, contact, tolerance);
   const bool has_unit = found.motion != 1.0 || std::abs(found.load) != 1.0;
-  // Slip of the record's own, not of a start far outside it.
+  // The record itself shows slip, not a start far outside of it.
   const bool shows = judgement.shows_slip() && std::abs(judgement.exact.offset) <= range_of(loop.path.moment);
   return judgement.good && (slips || !has_unit || shows) ? found : by_sign;
 }
 
-/// Adds how the limits of several normal loads grow; what is wrong with that, empty where nothing is.
+/// Adds the exponent of the limit to the result. Returns the fault in words, empty where there is none.
 std::string exponent_fault(const std::vector<LoopUnderLoad>& loops, Json& json) {
   const LoadExponent exponent = load_exponent(loops);
   json["load_exponent"] = {{"value", exponent.value}, {"exact", exponent.exact}};

@@ -14,9 +14,9 @@
 namespace slipstick::convergence {
 namespace {
 
-/// Of the polynomials that stand for the exact law: what slips at 1e-5 of the limit is 3e-6 of the moment.
+/// Relative error of the polynomials for the exact law: slip at 1e-5 of the limit takes 3e-6 of the moment.
 constexpr double kLawError = 1e-10;
-/// And where a profile does not let them reach that.
+/// The same for profiles whose polynomials do not reach that.
 constexpr double kRoughLawError = 1e-5;
 
 TwistLaw twist_law(const analytic::Profile& profile) {
@@ -27,7 +27,7 @@ TwistLaw twist_law(const analytic::Profile& profile) {
   }
 }
 
-/// Profiles that may be taken for each other, and the exponents of their gaps.
+/// Profiles that a program may confuse, and the exponents of their gaps.
 struct OtherProfile {
   const char* name;
   const char* key;
@@ -56,7 +56,7 @@ solver::Scene under(const solver::Scene& scene, double normal_load) {
   return other;
 }
 
-/// Power of the normal load that the contact radius goes like.
+/// d ln(contact radius)/d ln(normal load).
 double radius_exponent(const solver::Scene& scene, const LawUnits& units) {
   constexpr double kMore = 1.001;
   const double larger = law_contact(under(scene, kMore * units.normal_load)).units->contact_radius;

@@ -14,7 +14,7 @@ Eigen::Map<const Eigen::VectorXd> as_vector(const std::vector<double>& values) {
   return {values.data(), static_cast<Eigen::Index>(values.size())};
 }
 
-/// 1 for the rows that are not among the 2 % farthest off, such as rows at a jump, else 0.
+/// 0 for the 2 % of rows that are farthest off, such as rows at a jump; 1 for the others.
 Eigen::ArrayXd rows_that_count(const Eigen::VectorXd& error) {
   std::vector<double> sizes(static_cast<std::size_t>(error.size()));
   Eigen::Map<Eigen::ArrayXd>(sizes.data(), error.size()) = error.array().abs();
@@ -23,7 +23,7 @@ Eigen::ArrayXd rows_that_count(const Eigen::VectorXd& error) {
   return (error.array().abs() <= sizes[static_cast<std::size_t>(last)]).cast<double>();
 }
 
-/// Parameters in steps of a factor around others, all of them together.
+/// All combinations of parameters that differ from the given ones by a few steps of a factor.
 std::vector<LoopParameters> around(const LoopParameters& middle) {
   std::vector<LoopParameters> points{{}};
   for (const double value : middle) {
@@ -71,8 +71,8 @@ class Fitter {
     moment += columns * share;
     const Eigen::VectorXd error = moment - own;
     const double rms = trimmed_mean({error.begin(), error.end()});
-    constexpr double kLargestPart = 0.8;  // beside a law: beyond that the law is the other one's
-    constexpr double kPrice = 12.0;       // of a parameter, in units of chi squared
+    constexpr double kLargestPart = 0.8;  // proportion beside a law; beyond it the law itself hardly counts
+    constexpr double kPrice = 12.0;       // chi squared that a parameter has to gain
     const auto count = static_cast<double>(parameters.size()) + (family_.beside.empty() ? 0.0 : 1.0) +
                        (start_is_free_ ? 2.0 : 0.0);
     found.residual = rms / (own.array() - found.offset).abs().maxCoeff();
@@ -99,8 +99,8 @@ class Fitter {
     Eigen::VectorXd right;
   };
 
-  /// Where a vector of unknowns leads: logarithms of parameters; the start's two numbers and the changes of
-  /// the turns' rotations over the range.
+  /// The law after a change of its unknowns: logarithms of parameters; over the range of rotations, the
+  /// start's two numbers and the rotations at the reversals.
   LoopHypothesis moved(const LoopHypothesis& from, const Eigen::VectorXd& x) const {
     LoopPath path = path_;
     LoopStart start = from.start;
@@ -116,7 +116,7 @@ class Fitter {
     return at(path, start, parameters);
   }
 
-  /// Normal equations of a step from x; the unknowns from `turns` on are known but for their noise.
+  /// Normal equations of a step from x. The unknowns from `turns` on are measured, with noise.
   Equations equations(const LoopHypothesis& from, const Eigen::VectorXd& x, Eigen::Index turns,
                       const LoopHypothesis& there) const {
     constexpr double kDifference = 1e-6;
@@ -206,7 +206,7 @@ std::vector<LoopStart> possible_starts(const LoopPath& path) {
 
 LoopHypothesis fit_family(const LoopPath& path, double law_error, const std::vector<LoopStart>& starts,
                           const LoopFamily& family) {
-  constexpr std::size_t kMaxStarts = 3;  // of families with parameters
+  constexpr std::size_t kMaxStarts = 3;  // that are tried with every combination of parameters
   Fitter fitter(path, law_error, family);
   LoopHypothesis best = fitter.from(starts[0], false);
   const std::size_t count = family.middle.empty() ? starts.size() : std::min(starts.size(), kMaxStarts);

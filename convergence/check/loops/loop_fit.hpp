@@ -10,39 +10,38 @@ namespace slipstick::convergence {
 
 using LoopParameters = std::vector<double>;
 
-/// Laws that differ in parameters, which are positive.
+/// A family of laws with positive parameters.
 struct LoopFamily {
   std::string name;       ///< one word
   LoopParameters middle;  ///< the fit starts around them
   std::function<std::vector<double>(const LoopPath&, const LoopStart&, const LoopParameters&)> moment;
-  std::function<std::string(const LoopParameters&)> sentence;  ///< what the law is in physical terms
-  /// In each row: what adds to the moment in some proportion, which becomes the first parameter. Empty:
-  /// nothing.
+  std::function<std::string(const LoopParameters&)> sentence;  ///< the law in physical terms
+  /// For each row a term that is added to the moment in some proportion, the first parameter; empty: none.
   std::vector<double> beside = {};
 };
 
-/// A law fitted to a loop, and where it lets the record start.
+/// A law fitted to a loop, with the start that it fits best.
 struct LoopHypothesis {
   std::string name;
   LoopParameters parameters;  ///< over the exact ones
-  double residual = 0.0;      ///< root of the mean square distance from the loop, over its largest moment
+  double residual = 0.0;      ///< root mean square distance from the loop, over its largest moment
   std::string sentence;
-  double cost = 0.0;  ///< what the likeliest one has least of
+  double cost = 0.0;  ///< the likeliest law has the lowest
   LoopStart start;
   double offset = 0.0;         ///< of the record's moments
-  double part = 0.0;           ///< proportion of what stands beside the law
+  double part = 0.0;           ///< proportion of LoopFamily::beside
   std::vector<double> moment;  ///< in each row, with the offset
 };
 
 /// Whether the record begins at zero, so that it may go on from rest.
 bool begins_at_zero(const LoopPath& path);
 
-/// Rest, and other states from which the record may go on; a fit varies those.
+/// Rest, and other states from which the record may start; a fit varies the others.
 std::vector<LoopStart> possible_starts(const LoopPath& path);
 
-/// Fits a family to a loop: its parameters, the record's start among those given, of which the first is held,
-/// the offset of its moments and, where rows are noisy, the rotations in its turns. law_error: of the laws,
-/// relative.
+/// Fits a family to a loop by its parameters, the record's start (the first of the given ones is fixed, the
+/// others are varied), the offset of its moments and, where rows are noisy, the rotations at its reversals.
+/// law_error: relative error of the laws.
 LoopHypothesis fit_family(const LoopPath& path, double law_error, const std::vector<LoopStart>& starts,
                           const LoopFamily& family);
 

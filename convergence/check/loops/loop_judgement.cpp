@@ -9,23 +9,16 @@
 namespace slipstick::convergence {
 namespace {
 
-/// Errors of what slips may be larger than those of loads, in proportion to tolerance: at half of the limit
-/// slip takes about a tenth of the moment.
+/// Allowed error of the moment that slip takes off, over that of the moment: at half of the limit slip takes
+/// off about a tenth.
 constexpr double kSlipOverLoad = 10.0;
 /// Standard deviations that noise may explain.
 constexpr double kSlipSigmas = 4.0;
-/// Noise, in so many standard deviations, of what slips up to which a loop without loss is told from the
-/// exact one.
+/// kSlipSigmas of noise over the moment that slip takes off: with more noise a loop without loss could not be
+/// distinguished from the exact one.
 constexpr double kSlipShown = 0.8;
-
-/// Variance of normal noise over that without its largest 2 %.
+/// Variance of normal noise over its variance without the largest 2 %.
 constexpr double kUntrimmed = 1.15;
-
-double largest_of(const std::vector<double>& moment) {
-  double largest = 0.0;
-  for (const double m : moment) largest = std::max(largest, std::abs(m));
-  return largest;
-}
 
 /// Slope of a line through the origin, over the first rows up to a part of the loop's largest moment.
 double slope_at_rest(const LoopPath& path, const std::vector<double>& moment) {
@@ -36,10 +29,10 @@ double slope_at_rest(const LoopPath& path, const std::vector<double>& moment) {
     above += path.twist[row] * moment[row];
     below += path.twist[row] * path.twist[row];
   }
-  return below > 0.0 ? above / below : kUnknown;
+  return above / below;  // NaN: no row is near rest
 }
 
-/// What is left of values when a straight line over the rotation is taken away.
+/// Values less their straight line over the rotation.
 Eigen::VectorXd without_line(const LoopPath& path, const Eigen::VectorXd& values) {
   const auto rows = static_cast<Eigen::Index>(path.twist.size());
   Eigen::VectorXd twist = Eigen::Map<const Eigen::VectorXd>(path.twist.data(), rows);
@@ -48,8 +41,8 @@ Eigen::VectorXd without_line(const LoopPath& path, const Eigen::VectorXd& values
   return left - twist * (twist.dot(left) / twist.squaredNorm());
 }
 
-/// Slip takes the moment off the straight line of the stiffness at rest: how much of that the record shows,
-/// by least squares beside a line of its own, and what shape is left over.
+/// Slip makes the moment smaller than the stiffness at rest would. Finds by least squares how much of that
+/// the record shows, beside any straight line, and how far its shape differs.
 void judge_slip(LoopJudgement& judgement, const LoopPath& path, const LoopContact& contact) {
   const auto rows = static_cast<Eigen::Index>(path.twist.size());
   const auto map = [&](const std::vector<double>& values) {
@@ -71,7 +64,7 @@ std::string percent(double part) {
   return part < 1e-4 ? "under 0.01 %" : fmt::format("{:.2g} %", 100.0 * part);
 }
 
-/// A residual without what noise makes of it.
+/// A residual less the part that noise adds.
 double without_noise(double residual, double noise) {
   return std::sqrt(std::max(0.0, residual * residual - noise * noise));
 }
@@ -83,7 +76,7 @@ double noise_beside(const LoopPath& path, const LoopHypothesis& law) {
   return row_noise(path, error);
 }
 
-/// What the verdict says of the energy lost.
+/// The verdict's words on the energy lost.
 std::string slip_text(const LoopJudgement& judgement) {
   if (!judgement.shows_slip()) {
     return fmt::format("; the record cannot show the energy lost: its noise is {:.2g} % of the largest load",
@@ -94,7 +87,7 @@ std::string slip_text(const LoopJudgement& judgement) {
   return fmt::format(", the energy lost in {} {} is right", loops, loops == 1 ? "loop" : "loops");
 }
 
-/// Holds a loop to the exact law that goes on from one of these.
+/// Compares a loop with the exact law from one of these starts.
 LoopJudgement judge_from(const LoopPath& path, const LoopContact& contact, double tolerance,
                          const std::vector<LoopStart>& starts) {
   LoopJudgement judgement;
@@ -140,13 +133,13 @@ LoopJudgement judge_loop(const LoopPath& path, const LoopContact& contact, doubl
 }
 
 void explain(LoopJudgement& judgement, const LoopPath& path, const LoopContact& contact, double tolerance) {
-  constexpr double kExplained = 0.5;  // of the exact law's residual, at most
+  constexpr double kExplained = 0.5;  // residual of a law that explains the loop, over the exact law's
   judgement.fitted = fit_wrong_laws(path, contact);
   const LoopHypothesis& likely = *std::ranges::min_element(judgement.fitted, {}, &LoopHypothesis::cost);
   const double noise = noise_beside(path, likely) / judgement.largest_load.value;
   const double off = without_noise(judgement.residual, judgement.noise);
   const double likely_off = without_noise(likely.residual, noise);
-  constexpr double kAtNoise = 1.1;  // a residual that noise alone makes, at most
+  constexpr double kAtNoise = 1.1;  // residual over noise where noise alone makes it
   const bool at_noise = likely.residual <= kAtNoise * noise && likely.cost < judgement.exact.cost;
   if (at_noise || (likely_off <= std::max(2.0 * tolerance, 0.02) && likely_off <= kExplained * off)) {
     judgement.law = likely.name;

@@ -13,7 +13,12 @@ namespace {
 
 using Parameters = LoopParameters;
 
-/// Moments of a law whose limit and stiffness are scaled, row by row.
+/// Relative difference within which a limit or a stiffness is the exact one, or a named one.
+constexpr double kSameFactor = 0.02;
+/// The same for the stiffness of a wrong compliance.
+constexpr double kSameStiffness = 0.03;
+
+/// Moments of a law with limit and stiffness scaled by other factors in each row.
 std::vector<double> scaled(LoopPath path, LoopStart start, const BranchLaw& law,
                            const std::vector<double>& limit, const std::vector<double>& stiffness) {
   const auto at = [&](std::size_t row, double twist) {
@@ -36,41 +41,38 @@ std::vector<double> scaled(const LoopPath& path, const LoopStart& start, const B
 
 bool is_near(double value, double wanted, double within) { return std::abs(value / wanted - 1.0) <= within; }
 
-/// Whether a stiffness over the exact one is more than a law's: a unit's.
+/// Whether a stiffness over the exact one shows another unit, not another law.
 bool is_far(double stiffness) { return !(stiffness > 0.1 && stiffness < 10.0); }
 
-/// m at which a law with this limit slips, in words.
+/// Words for a limit over the exact one.
 std::string slips_at(double limit, const LoopContact& contact) {
-  constexpr double kSame = 0.02;
   const auto& uniform = contact.uniform_pressure_limit;
-  if (is_near(limit, 1.0, kSame)) return "slips at the limit";
+  if (is_near(limit, 1.0, kSameFactor)) return "slips at the limit";
   return fmt::format("slips at {:.2f} of the limit{}", limit,
-                     uniform && is_near(limit, *uniform, kSame) ? ": uniform pressure assumed" : "");
+                     uniform && is_near(limit, *uniform, kSameFactor) ? ": uniform pressure assumed" : "");
 }
 
-/// The stiffness at rest, in words; what is wrong with it, unless something else is.
+/// Words for a stiffness at rest over the exact one.
 std::string stiffness_text(double stiffness, const LoopContact& contact) {
-  constexpr double kSame = 0.03;
   if (is_far(stiffness)) {
     return fmt::format("the stiffness at rest is {:.3g} of the exact one, as in another unit", stiffness);
   }
   std::string text = fmt::format("the stiffness at rest is {:.2f} of the exact one", stiffness);
-  if (is_near(stiffness, contact.one_body_upper, kSame) ||
-      is_near(stiffness, contact.one_body_lower, kSame)) {
+  if (is_near(stiffness, contact.one_body_upper, kSameStiffness) ||
+      is_near(stiffness, contact.one_body_lower, kSameStiffness)) {
     return text + ": the compliance of one body only, the other taken to be rigid";
   }
-  if (is_near(stiffness, 0.5, kSame)) text += ": twice the compliance of the pair";
+  if (is_near(stiffness, 0.5, kSameStiffness)) text += ": twice the compliance of the pair";
   return text;
 }
 
-/// What follows a law's own words: its limit and stiffness, where they are not the exact ones.
+/// Words for limit and stiffness, where they are not the exact ones; they follow the law's own words.
 std::string beside(double limit, double stiffness, const LoopContact& contact) {
-  constexpr double kSame = 0.02;
-  return (is_near(limit, 1.0, kSame) ? "" : "; " + slips_at(limit, contact)) +
-         (is_near(stiffness, 1.0, kSame) ? "" : "; " + stiffness_text(stiffness, contact));
+  return (is_near(limit, 1.0, kSameFactor) ? "" : "; " + slips_at(limit, contact)) +
+         (is_near(stiffness, 1.0, kSameFactor) ? "" : "; " + stiffness_text(stiffness, contact));
 }
 
-/// Moment of Eq. (7) at t, by bisection; the limit from where it reaches it.
+/// Moment of the paper's Eq. (7) at t, by bisection; beyond its largest t the limit.
 double equation_7_moment(double twist, double moment_limit) {
   const auto* const law = analytic::approximations().data();  // the first is Eq. (7)
   double low = 0.0;
@@ -83,10 +85,10 @@ double equation_7_moment(double twist, double moment_limit) {
   return std::copysign(0.5 * (low + high) / moment_limit, twist);
 }
 
-/// Which of limit and stiffness a family varies.
+/// The factors of limit and stiffness that a family varies.
 enum class Free { none, limit, stiffness, factor, both };
 
-/// Limit and stiffness that parameters stand for.
+/// The factors of limit and stiffness for these parameters.
 std::pair<double, double> limit_and_stiffness(Free free, const Parameters& p) {
   switch (free) {
     case Free::none:
@@ -102,7 +104,7 @@ std::pair<double, double> limit_and_stiffness(Free free, const Parameters& p) {
   }
 }
 
-/// Where a fit starts, by the mean stiffness of the record over the exact one.
+/// The parameters at which a fit starts. stiffness: the record's mean stiffness over the exact one.
 Parameters middle_of(Free free, double stiffness) {
   Parameters middle(free == Free::none ? 0 : free == Free::both ? 2 : 1, 1.0);
   if ((free == Free::stiffness || free == Free::both) && is_far(stiffness)) middle.back() = stiffness;
@@ -163,8 +165,8 @@ class Families {
       list_.back().sentence = [=, this](const Parameters& p) {
         const auto [limit, stiffness] = limit_and_stiffness(free, p);
         return slips_at(limit, contact_) + "; a spring up to there, without partial slip; " +
-               (is_near(stiffness, 1.0, 0.02) ? "the stiffness at rest is right"
-                                              : stiffness_text(stiffness, contact_));
+               (is_near(stiffness, 1.0, kSameFactor) ? "the stiffness at rest is right"
+                                                     : stiffness_text(stiffness, contact_));
       };
     }
   }
@@ -189,9 +191,9 @@ class Families {
     one("limit", Free::limit, [&](const Parameters& p) { return slips_at(p[0], contact_); });
     one("factor", Free::factor, [&](const Parameters& p) {
       return fmt::format("all {}s are {:.2f} times the exact ones", contact_.words.load, p[0]) +
-             (is_near(p[0], 2.0, 0.02)   ? ": counted twice"
-              : is_near(p[0], 0.5, 0.02) ? ": halved"
-                                         : "");
+             (is_near(p[0], 2.0, kSameFactor)   ? ": counted twice"
+              : is_near(p[0], 0.5, kSameFactor) ? ": halved"
+                                                : "");
     });
     one("limit_and_stiffness", Free::both, [&](const Parameters& p) {
       return slips_at(p[0], contact_) + "; " + stiffness_text(p[1], contact_);
@@ -277,18 +279,18 @@ class Families {
                      }});
   }
 
-  /// Limits over the exact one, beyond which a curve is another law's in disguise.
+  /// Limit over the exact one; at larger ones, and below the inverse, the curve imitates another law.
   static constexpr double kLargestLimit = 30.0;
-  /// Rates over the fastest: what creeps below them is rigid.
+  /// Rate of creep over the fastest rate; slower creep is a rigid law's.
   static constexpr double kSlowest = 0.03;
-  /// Limits over the stiffness times the range of rotations: what is stiffer is called rigid.
+  /// Stiffness times the range of rotations over the limit; stiffer laws are called rigid.
   static constexpr double kLargestStiffness = 60.0;
 
   const LoopPath& path_;
   const LoopContact& contact_;
   double stiffness_ = range_of(path_.moment) / range_of(path_.twist) / contact_.stiffness;
-  /// Correlation from which a law is a line to the record's noise, such as a flat punch before it slips: that
-  /// is a spring.
+  /// Correlation at which the record's noise hides the difference between a law and a line, as for a flat
+  /// punch before it slips: such a law is a spring.
   double of_a_line_ =
       1.0 - 0.5 * std::pow(std::max(1e-4, 2.0 * row_noise(path_, path_.moment) / range_of(path_.moment)), 2);
   std::vector<double> rate_;

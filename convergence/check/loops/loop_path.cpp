@@ -7,15 +7,15 @@
 namespace slipstick::convergence {
 namespace {
 
-/// A reversal that counts whatever the noise, as a part of the range of rotations; one that counts where
-/// noise, in so many standard deviations, is less than it; and the least of those.
+/// Part of the range of rotations by which a reversal turns back at most before it counts,
 constexpr double kReversal = 0.04;
+/// and at least;
+constexpr double kMinReversal = 1e-3;
+/// in between it counts beyond so many standard deviations of noise.
 constexpr double kNoiseSigmas = 8.0;
-constexpr double kLeastReversal = 1e-3;
-/// How well a loop has to close, as a part of its range.
+/// Part of a loop's range within which it has to close.
 constexpr double kClosing = 0.02;
-/// Noise that is more than what rows of a smooth motion differ by in the fourth place, as a part of the
-/// range.
+/// Part of the range: smaller fourth differences are those of a smooth motion, larger ones are noise.
 constexpr double kVisibleNoise = 1e-4;
 
 struct Reversal {
@@ -23,12 +23,12 @@ struct Reversal {
   double moment;
 };
 
-/// Whether `at` lies beyond `mark` for one who goes in the direction of `sign`.
+/// Whether `at` lies beyond `mark` in the direction of `sign`.
 bool is_beyond(double at, double mark, double sign) { return sign * (at - mark) >= 0.0; }
 
-/// How many of the reversals still count at a rotation, for a branch that goes in the direction of `sign`: a
-/// branch that comes back to the reversal before its own goes on along the branch before that; beyond the
-/// largest rotation it is first loading.
+/// The number of reversals that still count at a rotation, on a branch in the direction of `sign`. A branch
+/// that comes back to the reversal before its own continues the branch before that; beyond the largest
+/// rotation it is first loading.
 std::size_t remembered(const std::vector<Reversal>& reversals, double twist, double sign) {
   std::size_t count = reversals.size();
   while (count >= 2 && is_beyond(twist, reversals[count - 2].twist, sign)) count -= 2;
@@ -44,8 +44,8 @@ double moment_at(const std::vector<Reversal>& reversals, std::size_t count, doub
   return from.moment + scale * law.loading((twist - from.twist) / scale);
 }
 
-/// A moment that grows with the stiffness at rest while it is below the largest so far, and along first
-/// loading beyond that.
+/// Moments of BranchRule::no_slip_back: with the stiffness at rest below the largest moment so far, along
+/// first loading beyond it.
 std::vector<double> harden(const LoopPath& path, const LoopStart& start, const BranchLaw& law) {
   std::vector<double> moment;
   const double first = path.twist[0] + start.shift;
@@ -64,7 +64,7 @@ std::vector<double> harden(const LoopPath& path, const LoopStart& start, const B
   return moment;
 }
 
-/// The turns' rotations by parabolas through some rows before and after each.
+/// The rotation at a reversal, from parabolas through some rows before and after it.
 double smoothed_turn(const std::vector<double>& twist, std::size_t turn, std::size_t window) {
   const auto end_of = [&](std::size_t from, std::size_t to) {  // of a parabola, at the turn
     const auto rows = static_cast<Eigen::Index>(to - from + 1);
@@ -105,6 +105,12 @@ std::vector<std::size_t> turns_of(const std::vector<double>& twist, double enoug
 }
 
 }  // namespace
+
+double largest_of(const std::vector<double>& values) {
+  double size = 0.0;
+  for (const double value : values) size = std::max(size, std::abs(value));
+  return size;
+}
 
 double range_of(const std::vector<double>& values) {
   const auto [low, high] = std::ranges::minmax_element(values);
@@ -149,7 +155,7 @@ void find_turns(LoopPath& path) {
   const double range = range_of(twist);
   path.turns = turns_of(twist, kReversal * range);
   const double clear = kNoiseSigmas * row_noise(path, twist);
-  path.turns = turns_of(twist, std::clamp(clear, kLeastReversal * range, kReversal * range));
+  path.turns = turns_of(twist, std::clamp(clear, kMinReversal * range, kReversal * range));
   path.twist_noise = row_noise(path, twist);
   path.turn_twist.clear();
   for (const std::size_t turn : path.turns) path.turn_twist.push_back(twist[turn]);

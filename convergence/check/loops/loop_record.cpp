@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <string>
 
+#include "convergence/check/loops/loop_path.hpp"
 #include "convergence/results/json_text.hpp"
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
@@ -27,7 +28,7 @@ const std::vector<std::string> kDisplacementNames{"displacement"};
 const std::vector<std::string> kTimeNames{"time", "t"};
 const std::vector<std::string> kLoadNames{"normal_load", "normal_force"};
 
-/// The one of these names that is there; empty: none.
+/// The first of these names that is present; empty: none.
 std::string present(const std::vector<std::string>& there, const std::vector<std::string>& names) {
   for (const std::string& name : names) {
     if (std::ranges::find(there, name) != there.end()) return name;
@@ -41,7 +42,7 @@ bool is_of_force(const std::vector<std::string>& there) {
          !present(there, kDisplacementNames).empty();
 }
 
-/// As the table's header writes them, in small letters.
+/// The names in the table's header, in small letters.
 std::vector<std::string> table_names(const std::filesystem::path& file) {
   std::vector<std::string> names = solver::text_table_names(file);
   for (std::string& name : names) {
@@ -130,12 +131,9 @@ void require_sound(const LoopRecord& loop) {
   if (is_constant(loop.load) || is_constant(loop.motion)) {
     throw InputError(file, "load or motion never changes: there is no loop to judge");
   }
-  constexpr double kLargest = 1e100;  // in any unit; what is fitted squares them
+  constexpr double kLargest = 1e100;  // in any unit; the fit squares values
   for (const std::vector<double>* column : {&loop.load, &loop.motion, &loop.time}) {
-    const double size =
-        column->empty()
-            ? 1.0
-            : std::abs(*std::ranges::max_element(*column, {}, [](double value) { return std::abs(value); }));
+    const double size = column->empty() ? 1.0 : largest_of(*column);
     if (!(size > 1.0 / kLargest && size < kLargest)) {
       throw InputError(file, fmt::format("a column reaches {:g}; allowed: sizes within 1e-100..1e100", size));
     }

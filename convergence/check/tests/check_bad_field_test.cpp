@@ -64,7 +64,7 @@ TEST_P(CheckCoarseBadField, StoppedAtAGapOfOnePercent) {
   find_bad(rows_of(stopped), scene_, Not(HasSubstr("it looks like")));
 }
 
-// The moment is as it should be, and so is every cell's bound. |q|/p tells.
+// The moment is right, and every cell is within its bound. |q|/p shows the mistake.
 TEST_P(CheckCoarseBadField, FrictionTwoPercentLowUnderTheSameMoment) {
   find_bad(solved(scene_of(GetParam().scene, GetParam().cells,
                            {fmt::format("load.moment={}", solution_.moment), "contact.friction=0.098"})),
@@ -73,7 +73,7 @@ TEST_P(CheckCoarseBadField, FrictionTwoPercentLowUnderTheSameMoment) {
                  HasSubstr("friction coefficient of 0.098 in place of 0.1")));
 }
 
-// The twist that is wrong is that which was given, and no sentence calls it right.
+// The given twist is wrong, and no sentence calls it right.
 TEST_P(CheckCoarseBadField, TwistOnePercentHigh) {
   find_bad(rows_, scene_,
            AllOf(HasSubstr("the twist is 1 % too high"), HasSubstr("not that of these tractions"),
@@ -106,7 +106,7 @@ TEST_F(CheckBadField, AnotherFrictionCoefficient) {
   }
 }
 
-// Half of what it carries, and all of its neighbours: no mean over the contact sees it.
+// One cell carries half, its neighbours all: no mean over the contact shows it.
 TEST(CheckBadCell, IsHalved) {
   for (const int cells : {24, 40, 64, 96}) {
     const solver::Scene scene = scene_of("paper", cells);

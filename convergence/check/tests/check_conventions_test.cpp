@@ -50,7 +50,7 @@ TEST_F(CheckConventions, SignsAndComponents) {
   expect_same(changed(rows_, [](FieldRow& r) { swap(r[3], r[4]); }), {"q1 and q2 look exchanged"});
 }
 
-// No frame and no body has it.
+// No frame and no body explains one reversed component.
 TEST_F(CheckConventions, NoComponentIsReversedAlone) {
   for (const std::size_t component : {3, 4}) {
     const Json result = find_bad(changed(rows_, [=](FieldRow& r) { r[component] = -r[component]; }), scene_,
@@ -79,8 +79,8 @@ std::vector<std::string> notes_of(const FieldRows& rows, const solver::Scene& sc
   return find_good(rows, scene)["conventions"];
 }
 
-// Under a force a mirrored frame is not the other body: only the moment turns round. A body off the axis
-// stands on its other side, and is moved before.
+// Under a force a mirrored frame differs from the other body: it reverses the moment alone. A body off the
+// axis then stands on the other side of it, and is moved first.
 TEST(Check, ReadsALeftHandedFrame) {
   for (const auto& [name, moved] : {std::pair{"paper", 0U}, {"off_centre", 1U}}) {
     const solver::Scene scene = scene_of(name, 32, {"load.moment_ratio=0.5", "load.force=[30,20]"});
@@ -91,7 +91,7 @@ TEST(Check, ReadsALeftHandedFrame) {
   }
 }
 
-// Of a force alone, too, along either axis.
+// The force may stand alone, along either axis.
 TEST(Check, ReadsTheOtherBodysTractionsUnderAForceAlone) {
   for (const char* force : {"load.force=[60,0]", "load.force=[0,60]"}) {
     const solver::Scene scene = scene_of("paper", 32, {"load.moment_ratio=0", force});
@@ -178,7 +178,7 @@ TEST_F(CheckConventions, FewDigits) {
   }
 }
 
-// What few digits leave open is in the unit of the file.
+// Rounding is in the unit of the file.
 TEST_F(CheckConventions, FewDigitsInAnotherUnit) {
   const auto file = [](const FieldRows& rows) { return write_rows(rows, 3); };
   const Json in_pa = check_field(scene_, file(rows_));

@@ -1,5 +1,5 @@
-// Where the verdict turns: a right field with one thing wrong by a known amount, just below and just above
-// what docs/guides/verify-your-solver.md allows.
+// The verdict at its thresholds: a right field with one thing wrong by a known amount, just below and just
+// above the amount that docs/guides/verify-your-solver.md allows.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -22,15 +22,6 @@ using testing::HasSubstr;
 constexpr double kBelow = 0.9;
 constexpr double kAbove = 1.1;
 
-/// What is said of one quantity.
-Json judgement(const Json& result, const std::string& quantity) {
-  for (const Json& item : result["judged"]) {
-    if (item["quantity"] == quantity) return item;
-  }
-  ADD_FAILURE() << "nothing is said of " << quantity;
-  return {};
-}
-
 /// A scene, its solution on its own grid and that as a field.
 struct RightField {
   solver::Scene scene;
@@ -45,31 +36,26 @@ const RightField& right_field() {
   return field;
 }
 
-// 2/n with n contact cells, where the field solves its own grid's problem.
-TEST(CheckThreshold, OfNormalLoadsIsTheQuadrature) {
+// A field that solves its own grid's problem is allowed 2/n, with n contact cells.
+TEST(CheckThreshold, OfLoadsAndTwistIsTheQuadrature) {
   const RightField& field = right_field();
+  const double twist = field.solution.twist_angle;
   for (const double sign : {1.0, -1.0}) {
-    const auto off = [&](double times) {
-      return with_stresses_times(field.rows, 1.0 + sign * times * field.of_cells(2.0));
+    const double below = 1.0 + sign * kBelow * field.of_cells(2.0);
+    const double above = 1.0 + sign * kAbove * field.of_cells(2.0);
+    const auto at_moment = [&](double factor) {
+      return solved(scene_of("paper", 32, {fmt::format("load.moment_ratio={}", 0.9 * factor)}));
     };
-    find_good(off(kBelow), field.scene);
-    find_bad(off(kAbove), field.scene, HasSubstr("the normal load"));
+    find_good(with_stresses_times(field.rows, below), field.scene);
+    find_bad(with_stresses_times(field.rows, above), field.scene, HasSubstr("the normal load"));
+    find_good(at_moment(below), field.scene);
+    find_bad(at_moment(above), field.scene, HasSubstr("the moment is"));
+    find_good(field.rows, field.scene, below * twist);
+    find_bad(field.rows, field.scene, HasSubstr("the twist is"), above * twist);
   }
 }
 
-TEST(CheckThreshold, OfMomentsIsTheQuadrature) {
-  const RightField& field = right_field();
-  for (const double sign : {1.0, -1.0}) {
-    const auto off = [&](double times) {
-      const double ratio = 0.9 * (1.0 + sign * times * field.of_cells(2.0));
-      return solved(scene_of("paper", 32, {fmt::format("load.moment_ratio={}", ratio)}));
-    };
-    find_good(off(kBelow), field.scene);
-    find_bad(off(kAbove), field.scene, HasSubstr("the moment is"));
-  }
-}
-
-// In parts of mu W, which is 100 N.
+// Forces are parts of mu W, which is 100 N.
 TEST(CheckThreshold, OfForcesIsTheQuadrature) {
   const auto scene = [](double more) {
     return scene_of("paper", 32, {"load.moment_ratio=0.5", fmt::format("load.force=[{}, 20]", 30.0 + more)});
@@ -79,18 +65,7 @@ TEST(CheckThreshold, OfForcesIsTheQuadrature) {
   find_bad(solved(scene(kAbove * field.of_cells(200.0))), field.scene, HasSubstr("the tangential force"));
 }
 
-TEST(CheckThreshold, OfTheTwistOfADiscreteSolutionIsTheQuadrature) {
-  const RightField& field = right_field();
-  for (const double sign : {1.0, -1.0}) {
-    const auto twist = [&](double times) {
-      return (1.0 + sign * times * field.of_cells(2.0)) * field.solution.twist_angle;
-    };
-    find_good(field.rows, field.scene, twist(kBelow));
-    find_bad(field.rows, field.scene, HasSubstr("the twist is"), twist(kAbove));
-  }
-}
-
-// One cell. The contact radius goes with the modulus to the power -1/3.
+// One cell. The contact radius is proportional to the modulus to the power -1/3.
 TEST(CheckThreshold, OfTheContactRadiusIsOneCell) {
   const RightField& field = right_field();
   const double radius = find_oracle(field.scene).oracle->contact_radius;
@@ -105,7 +80,7 @@ TEST(CheckThreshold, OfTheContactRadiusIsOneCell) {
   }
 }
 
-/// The rows with some of them changed: those whose |q|/(mu p) is in a range.
+/// The rows, with those changed for which |q|/(mu p) is in a range.
 FieldRows with_part(const RightField& field, double least, double most,
                     const std::function<void(FieldRow&)>& change) {
   return changed(field.rows, [&](FieldRow& row) {
@@ -181,14 +156,11 @@ TEST(CheckThreshold, OfSlipDirectionsIsATenthOfADegreeAndTheMesh) {
   }
 }
 
-// Of two digits each component is open by a part of 0.05: in the mean sqrt(pi/2) times that of |q|, as an
-// angle, and twice. What noise the rounding is taken for, 0.003 at most, adds to it.
+// Two digits leave each component open by a part of 0.05: in the mean over |q|, sqrt(pi/2) times that as an
+// angle, and twice. The rounding also counts as noise, of 0.003 at most.
 TEST(CheckThreshold, OfSlipDirectionsIsTheAngleOfTheDigits) {
   const RightField& field = right_field();
-  const FieldRows rows = changed(field.rows, [](FieldRow& row) {
-    for (const std::size_t c : {3, 4}) row[c] = std::stod(fmt::format("{:.1e}", row[c]));
-  });
-  const Json result = find_good(rows, field.scene);
+  const Json result = find_good(with_digits(field.rows, {3, 4}, 2), field.scene);
   const double of_digits = 0.05 * std::sqrt(0.5 * std::numbers::pi) * 180.0 / std::numbers::pi;
   const double mesh = result["yardstick"]["slip_direction"];
   const double ratio = (allowed(result, "slip_direction") - 0.1 - 2.0 * mesh) / (2.0 * of_digits);
@@ -196,8 +168,8 @@ TEST(CheckThreshold, OfSlipDirectionsIsTheAngleOfTheDigits) {
   EXPECT_LE(ratio, 1.15);
 }
 
-// In stick cells, where no bound is met, a chessboard is off by what it is made to be: so far are the
-// tractions from the right ones.
+// A chessboard in stick cells meets no bound: the tractions are as far from the right ones as the test makes
+// them.
 TEST(CheckThreshold, OfTractionsIsTwiceWhatRightFieldsShow) {
   const RightField& field = right_field();
   const Json right = check_rows(field.rows, field.scene);
@@ -222,8 +194,7 @@ TEST(CheckThreshold, OfTractionsIsTwiceWhatRightFieldsShow) {
   }
 }
 
-// 1e-5 is what any iteration leaves, beside twice what right fields show: of constant cells no more than
-// 1e-3.
+// Any iteration is allowed 1e-5, and the mesh twice what right fields show, at most 1e-3 with constant cells.
 TEST(CheckThreshold, OfTheGapIsTheIterationsAndTheMeshs) {
   struct Gap {
     double allowed;
@@ -266,8 +237,8 @@ FieldRows averaged(FieldRows rows, const Oracle& oracle) {
   return rows;
 }
 
-// The worse of two right fields, the samples at the cells' centres and the means over the cells, says what a
-// mesh accounts for. Of the exact ones they are what check measures by a solve on cells a third as large.
+// The mesh error is that of the worse one of two right fields, samples at the cells' centres and means over
+// the cells. check measures it by a solve on cells a third as large; here the exact fields show it.
 TEST(CheckThreshold, OfTheMeshIsWhatExactFieldsShow) {
   const solver::Scene& scene = right_field().scene;
   const FieldRows at_centres = sampled(scene);
@@ -284,7 +255,7 @@ TEST(CheckThreshold, OfTheMeshIsWhatExactFieldsShow) {
   EXPECT_LE(mesh["slip_direction"].get<double>() / worse("slip_direction"), 2.5);
 }
 
-// What samples of an exact field miss of a force, in parts of mu W, and of the normal load.
+// Samples of an exact field miss a part of the normal load, and a force in parts of mu W.
 TEST(CheckThreshold, OfLoadsIsWhatExactFieldsMiss) {
   const solver::Scene scene = scene_of("mindlin", 32);
   const FieldRows rows = sampled(scene);

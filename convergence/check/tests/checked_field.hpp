@@ -40,13 +40,6 @@ inline FieldRows sampled(const solver::Scene& scene) {
   return read_rows(file);
 }
 
-inline double allowed(const Json& result, const std::string& quantity) {
-  for (const Json& item : result["judged"]) {
-    if (item["quantity"] == quantity) return item["allowed"];
-  }
-  return NAN;
-}
-
 inline Json check_peer(const std::string& name, std::optional<double> twist = {}) {
   return check_field(scene_of("paper"), kFields + "/" + name + "-64-0.9.csv", {.twist = twist});
 }
@@ -73,6 +66,26 @@ inline FieldRows with_tractions_times(const FieldRows& rows, double factor) {
 
 inline FieldRows with_stresses_times(const FieldRows& rows, double factor) {
   return changed(rows, [=](FieldRow& r) { r[2] *= factor, r[3] *= factor, r[4] *= factor; });
+}
+
+/// The same rows with some columns in a few digits.
+inline FieldRows with_digits(const FieldRows& rows, const std::vector<std::size_t>& columns, int digits) {
+  return changed(rows, [&](FieldRow& row) {
+    for (const std::size_t c : columns) row[c] = std::stod(fmt::format("{:.{}e}", row[c], digits - 1));
+  });
+}
+
+/// The item of result["judged"] for a quantity.
+inline Json judgement(const Json& result, const std::string& quantity) {
+  for (const Json& item : result["judged"]) {
+    if (item["quantity"] == quantity) return item;
+  }
+  ADD_FAILURE() << "nothing is said of " << quantity;
+  return {};
+}
+
+inline double allowed(const Json& result, const std::string& quantity) {
+  return judgement(result, quantity)["allowed"];
 }
 
 }  // namespace slipstick::convergence

@@ -82,15 +82,15 @@ GivenContact computed_with(const CrossKernel& cross, bool exchanged = false,
   return made_contact(model, pressure, solution.traction);
 }
 
-/// What a mesh of so few cells accounts for.
+/// Gap over energy that a mesh of so few cells explains.
 constexpr double kAllowed = 1e-3;
 
 TEST(Diagnosis, NamesTheKernelThatWasUsed) {
   const std::vector<std::pair<CrossKernel, std::string>> mistakes{
-      {[](double k12, int) { return -std::abs(k12); }, "mirrored as an even function"},
-      {[](double k12, int) { return std::abs(k12); }, "mirrored as an even function"},
       {[](double, int) { return 0.0; }, "K12 missing"},
-      {[](double k12, int sign) { return -sign * k12; }, "K12 of the wrong sign"}};
+      {[](double k12, int sign) { return -sign * k12; }, "K12 of the wrong sign"},
+      {[](double k12, int) { return -std::abs(k12); }, "mirrored as an even function"},
+      {[](double k12, int) { return std::abs(k12); }, "mirrored as an even function"}};
   for (const auto& [cross, name] : mistakes) {
     const Diagnosis diagnosis = diagnose(computed_with(cross), {}, kAllowed);
     ASSERT_TRUE(diagnosis.kernel) << name;
@@ -98,6 +98,10 @@ TEST(Diagnosis, NamesTheKernelThatWasUsed) {
     EXPECT_LE(diagnosis.kernel->gap, 1e-6) << name;
     EXPECT_GT(diagnosis.reference_kernel.gap, kAllowed) << name;
     EXPECT_FALSE(diagnosis.friction) << name;
+    if (cross(1.0, 1) == cross(1.0, -1) && cross(1.0, 1) != 0.0) continue;
+    const Diagnosis of_sphere = diagnose(computed_with(cross, false, "paper"), {}, 0.1);
+    ASSERT_TRUE(of_sphere.kernel) << name;
+    EXPECT_THAT(of_sphere.kernel->name, HasSubstr(name));
   }
 }
 
@@ -107,17 +111,6 @@ TEST(Diagnosis, DistinguishesExchangedKernelsFromPoissonsRatio) {
   ASSERT_TRUE(diagnosis.kernel);
   EXPECT_EQ(diagnosis.kernel->name, "the kernels K11 and K22 exchanged");
   EXPECT_LE(diagnosis.kernel->gap, 1e-6);
-}
-
-TEST(Diagnosis, NamesTheCrossKernelOfASphere) {
-  const std::vector<std::pair<CrossKernel, std::string>> mistakes{
-      {[](double, int) { return 0.0; }, "K12 missing"},
-      {[](double k12, int sign) { return -sign * k12; }, "K12 of the wrong sign"}};
-  for (const auto& [cross, name] : mistakes) {
-    const Diagnosis diagnosis = diagnose(computed_with(cross, false, "paper"), {}, 0.1);
-    ASSERT_TRUE(diagnosis.kernel) << name;
-    EXPECT_THAT(diagnosis.kernel->name, HasSubstr(name));
-  }
 }
 
 TEST(Diagnosis, FindsNoMistakeInTheRightKernel) {
@@ -149,7 +142,7 @@ TEST(Diagnosis, DeterminesPoissonsRatioFromTheField) {
   }
 }
 
-// Of bodies of unequal compliance it is the mean. One above 0.5 no body has.
+// The ratio of bodies of unequal compliance is their mean. No body has one above 0.5.
 TEST(Diagnosis, DeterminesPoissonsRatioOfDissimilarBodies) {
   for (const auto& [factor, ratio] : {std::pair{0.5, "0.16"}, {1.4, "0.45"}}) {
     const Diagnosis diagnosis =

@@ -106,17 +106,29 @@ double interpolated(const StateTable& table, double twist) {
   return std::min(1.0, part) * (above->moment_ratio - low.moment_ratio) + low.moment_ratio;
 }
 
+/// The largest distance of a law's m from the exact one, up to a twist.
+template <class Law>
+double largest_error(const Profile& profile, double last, int count, const Law& moment_ratio_at) {
+  double largest = 0.0;
+  for (const double t : twists_to(last, count)) {
+    largest = std::max(largest, std::abs(moment_ratio_at(t) - analytic::from_twist(t, profile).moment_ratio));
+  }
+  return largest;
+}
+
+/// Whether a stated error is the largest that there is.
+void expect_error(double largest, double stated, const Profile& profile) {
+  EXPECT_LE(largest, stated * (1.0 + 1e-6)) << profile.name();
+  EXPECT_GE(largest, 0.9 * stated) << profile.name();
+}
+
 TEST(StateTable, IsWithinItsErrorAndNoFinerThanThat) {
   for (const Profile* profile : kLawProfiles) {
     for (const double error : {1e-2, 1e-5}) {
       const StateTable table = tabulate(*profile, error);
-      double largest = 0.0;
-      for (const double t : twists_to(2.0 * table.rows.back().twist, 2000)) {
-        const double exact = analytic::from_twist(t, *profile).moment_ratio;
-        largest = std::max(largest, std::abs(interpolated(table, t) - exact));
-      }
-      EXPECT_LE(largest, error * (1.0 + 1e-6)) << profile->name();
-      EXPECT_GE(largest, 0.9 * error) << profile->name();
+      expect_error(largest_error(*profile, 2.0 * table.rows.back().twist, 2000,
+                                 [&](double t) { return interpolated(table, t); }),
+                   error, *profile);
     }
   }
 }
@@ -131,13 +143,8 @@ TEST(ParallelElements, AreWithinTheirErrorOnFirstLoading) {
         slip += element.slip;
       }
       EXPECT_NEAR(slip, 1.0, 1e-12);
-      double largest = 0.0;
-      for (const double t : twists_to(1.0, 4000)) {
-        const double exact = analytic::from_twist(t, *profile).moment_ratio;
-        largest = std::max(largest, std::abs(found.moment_ratio_at(t) - exact));
-      }
-      EXPECT_LE(largest, error * (1.0 + 1e-6)) << profile->name();
-      EXPECT_GE(largest, 0.9 * error) << profile->name();
+      expect_error(largest_error(*profile, 1.0, 4000, [&](double t) { return found.moment_ratio_at(t); }),
+                   error, *profile);
     }
   }
 }
@@ -224,7 +231,7 @@ TEST(LimitSurface, IsTheSumOfFrictionAboutAPoint) {
   }
 }
 
-/// Motion by motion: no load on the surface exceeds the support of a motion at which it is not the load.
+/// The load of each motion supports the surface: no other load lies beyond it.
 TEST(LimitSurface, IsConvexWithItsMotionsAsNormals) {
   for (const Profile* profile : kLawProfiles) {
     const LimitSurface surface = limit_surface(*profile, 17);
@@ -267,14 +274,9 @@ TEST(BestSpring, NoSpringWithACapIsBetter) {
   for (const Profile* profile : kLawProfiles) {
     const ContactLaw law = make_contact_law({"x", {profile, [](const Profile*) {}}, {}}, {.limit_loads = 3});
     const auto error_of = [&](double stiffness) {
-      double largest = 0.0;
-      std::vector<double> twists = twists_to(1.5, 1000);
-      twists.push_back(1.0 / stiffness);
-      for (const double t : twists) {
-        largest = std::max(
-            largest, std::abs(std::min(1.0, stiffness * t) - analytic::from_twist(t, *profile).moment_ratio));
-      }
-      return largest;
+      const double at_cap = 1.0 - analytic::from_twist(1.0 / stiffness, *profile).moment_ratio;
+      return std::max(
+          at_cap, largest_error(*profile, 1.5, 1000, [&](double t) { return std::min(1.0, stiffness * t); }));
     };
     const SpringAndCap& best = law.best_spring;
     EXPECT_NEAR(error_of(best.stiffness), best.error, 1e-4);

@@ -302,6 +302,10 @@ TEST(Oracle, SaysWhyThereIsNone) {
   EXPECT_NE(reason("/cone.toml", {"load.moment=0.0035"}).find("gross slip"), std::string::npos);
   EXPECT_NE(reason("/paper.toml", {"load.twist=1e3"}).find("range"), std::string::npos);
   EXPECT_NE(reason("/paper.toml", {"contact.friction=0"}).find("friction"), std::string::npos);
+  EXPECT_NE(reason("/paper.toml", {"grid.extent=[2e-3,2e-3]", "layer.kind=winkler",
+                                   "layer.normal_compliance=0", "layer.tangential_compliance=1e-15"})
+                .find("layer.kind"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -29,7 +29,7 @@ inline std::vector<pid_t> marked_processes(const std::string& value) {
   for (const auto& entry : std::filesystem::directory_iterator("/proc", error)) {
     const pid_t process = std::atoi(entry.path().filename().c_str());
     if (process <= 0) continue;
-    // Of a process that has ended and is not yet waited for, this is empty.
+    // The file is empty for a process that has ended and is not yet waited for.
     if (file_text(entry.path() / "environ").find(assignment) != std::string::npos) found.push_back(process);
   }
   return found;

@@ -52,7 +52,7 @@ class Study(unittest.TestCase):
                 stdout=out, stderr=log, env=environment | {MARKER: str(self.folder)}, start_new_session=True, **options)
 
     def start_held(self, name, run, **options):
-        """The study, in whose points this run, counted from 1, is about to be kept; what holds it; and its worker."""
+        """A study that is about to keep this run, counted from 1, among its points; what holds it; and its worker."""
         hold = Hold(self.folder, "*/points/*.json", run)
         study = self.start(name, 1, hold.environment, **options)
         return study, hold, hold.process(study)

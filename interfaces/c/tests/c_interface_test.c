@@ -137,21 +137,23 @@ static void test_refusals(void) {
             says("values[1]: M/M_lim = 1 is gross slip; allowed: 0 <= M/M_lim < 1"),
         "gross slip is refused, with its place");
   check(results[0] != 7 && results[1] == 7 && results[2] == 7, "results after it are as they were");
-  values[1] = NAN;
-  check(slipstick_exact("hertz", 0, 3, values, SLIPSTICK_TWIST, results) == SLIPSTICK_BAD_INPUT,
-        "NaN is refused");
-  check(slipstick_exact("hertz", 5, 1, values, 0, results) == SLIPSTICK_BAD_INPUT && says("given = 5"),
-        "given");
-  check(slipstick_exact("hertz", 0, 1, values, 8, results) == SLIPSTICK_BAD_INPUT && says("wanted = 8"),
-        "wanted");
-  check(slipstick_exact("sphere", 0, 1, values, 0, results) == SLIPSTICK_BAD_INPUT && says("\"sphere\""),
-        "profile");
-  check(slipstick_exact(NULL, 0, 1, values, 0, results) == SLIPSTICK_BAD_INPUT && says("profile = NULL"),
-        "no profile");
-  check(slipstick_exact("hertz", 0, 1, NULL, 0, results) == SLIPSTICK_BAD_INPUT && says("values = NULL"),
-        "no values");
-  check(slipstick_exact("hertz", 0, 1, values, 0, NULL) == SLIPSTICK_BAD_INPUT && says("results = NULL"),
-        "no results");
+  const struct {
+    const char* profile;
+    int given;
+    const double* values;
+    int wanted;
+    double* results;
+    const char* words;
+  } refused[] = {
+      {"hertz", 0, &(double){NAN}, 0, results, "values[0]"}, {"hertz", 5, values, 0, results, "given = 5"},
+      {"hertz", 0, values, 8, results, "wanted = 8"},        {"sphere", 0, values, 0, results, "\"sphere\""},
+      {NULL, 0, values, 0, results, "profile = NULL"},       {"hertz", 0, NULL, 0, results, "values = NULL"},
+      {"hertz", 0, values, 0, NULL, "results = NULL"}};
+  for (size_t i = 0; i < sizeof refused / sizeof *refused; ++i)
+    check(slipstick_exact(refused[i].profile, refused[i].given, 1, refused[i].values, refused[i].wanted,
+                          refused[i].results) == SLIPSTICK_BAD_INPUT &&
+              says(refused[i].words),
+          refused[i].words);
   check(slipstick_exact("hertz", 0, 0, NULL, 0, NULL) == SLIPSTICK_OK, "an empty array may be NULL");
   values[0] = 1.5;
   check(slipstick_exact_pressure("hertz", 1, values, results) == SLIPSTICK_BAD_INPUT &&
@@ -230,8 +232,17 @@ static void test_solution(void) {
   if (written != NULL) fclose(written);
   remove("c_interface_test.csv");
 
+  slipstick_solution_free(solution);
+  slipstick_solution_free(exact);
+  slipstick_solution_free(NULL);
+}
+
+/* Numbers, fields and formats that do not exist. */
+static void test_refusals_of_a_solution(void) {
+  const char* exact_model[] = {"solver.model=exact"};
+  slipstick_solution* exact = solved(SLIPSTICK_OK, 0, 1, exact_model);
   double value = 0;
-  check(slipstick_solution_number(solution, "twist_angel", &value) == SLIPSTICK_BAD_INPUT && isnan(value) &&
+  check(slipstick_solution_number(exact, "twist_angel", &value) == SLIPSTICK_BAD_INPUT && isnan(value) &&
             says("twist_angel"),
         "a number that does not exist");
   check(slipstick_solution_number(exact, "twist_error", &value) == SLIPSTICK_BAD_INPUT &&
@@ -239,14 +250,11 @@ static void test_solution(void) {
         "a number that is missing says why");
   const double* none = NULL;
   size_t nothing = 0;
-  check(slipstick_solution_field(solution, "q3", &none, &nothing) == SLIPSTICK_BAD_INPUT &&
+  check(slipstick_solution_field(exact, "q3", &none, &nothing) == SLIPSTICK_BAD_INPUT &&
             says("allowed: x1, x2"),
         "a field that does not exist");
-  check(slipstick_solution_write(solution, "fields.txt") == SLIPSTICK_BAD_INPUT,
-        "a format that does not exist");
-  slipstick_solution_free(solution);
+  check(slipstick_solution_write(exact, "fields.txt") == SLIPSTICK_BAD_INPUT, "a format that does not exist");
   slipstick_solution_free(exact);
-  slipstick_solution_free(NULL);
 }
 
 /* Cells of unequal sides, more of them along x1: x2 runs fastest, and each side is the step of its own axis.
@@ -373,6 +381,7 @@ int main(void) {
   }
   test_refusals();
   test_solution();
+  test_refusals_of_a_solution();
   test_unequal_cells();
   test_ends();
   test_threads();

@@ -50,7 +50,7 @@ def module(path):
 
 
 class Spline:
-    """The cubic through points whose slopes at both ends are given."""
+    """The cubic through points, with given slopes at both ends."""
 
     def __init__(self, x, y, first, last):
         self.x, self.y, n = x, y, len(x)
@@ -251,7 +251,7 @@ class Profiles(unittest.TestCase):
         return law, module(self.folder / "law.py")
 
     def test_lammps_reads_its_table(self):
-        """It draws a cubic through a table's points, takes as many values as it is told, and then draws lines or cubics."""
+        """It draws a cubic through a table's points, takes a given number of its values, and then draws lines or cubics."""
         for profile in ("hertz", "cone", "flat_punch", "power:2", "rounded_punch:0.5"):
             _, exact = self.law_of(profile)
             rows, first, last = lammps_rows(self.folder / "law.table")

@@ -38,7 +38,7 @@ def run(command: str, *words: str | os.PathLike[str], progress: Callable[[str], 
             raise
         finally:
             process.stderr.close()
-        if code in (0, 1) or (code == 2 and not said and output.exists()):  # of gates, some of which were refused
+        if code in (0, 1) or (code == 2 and not said and output.exists()):  # some gates were refused
             result: dict[str, Any] = json.loads(output.read_text())
             return result
     message = "".join(said).strip() or f"slipstick {command} ended with {code}"

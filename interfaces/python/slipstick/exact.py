@@ -199,7 +199,7 @@ def history(moment_ratios: npt.ArrayLike, profile: str = "hertz") -> np.recarray
 
 
 def curve(turning_points: npt.ArrayLike, points_per_branch: int = 50, profile: str = "hertz") -> np.recarray:
-    """The curve through these turning points M/M_lim, for drawing: the unloaded state, and so many on each branch.
+    """The curve through these turning points M/M_lim, for drawing: the unloaded state, and this many on each branch.
 
     >>> len(curve([0.9, -0.9], points_per_branch=10))
     21

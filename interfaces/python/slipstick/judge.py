@@ -92,10 +92,10 @@ def check(scene: Scene, field: Path_ | Mapping[str, npt.ArrayLike], *, twist: fl
 
     field: a file (.csv, .h5) or arrays by name: x1, x2 (m, cell centres), pressure, q1, q2 (Pa), one number a cell; the
     fields of a Solution are such arrays. Or a loop, as a file or as arrays: moment (N m), rotation (rad), or force (N),
-    displacement (m), and perhaps time, normal_load. twist: rad, that the program reported. tolerance: the error that is allowed, in
-    place of what the mesh leaves open. pressure_given: the pressure is not judged. discrete: good only if it solves its own grid's problem. strict: good only in the
-    scene's own units and signs. overrides as of solve(). Relative paths in a scene that is no file begin nowhere: write
-    them in full.
+    displacement (m), and perhaps time, normal_load. twist: rad, that the program reported. tolerance: the error that is
+    allowed, instead of the one derived from the mesh. pressure_given: the pressure is not judged. discrete: good only if
+    it solves its own grid's problem. strict: good only in the scene's own units and signs. overrides as of solve().
+    Relative paths in a scene that is no file begin nowhere: write them in full.
     """
     options: list[str] = []
     if twist is not None:

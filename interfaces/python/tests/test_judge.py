@@ -1,4 +1,5 @@
 """slipstick.check, gate and study: verdicts that theory gives, and what goes wrong."""
+import importlib.util
 import os
 import signal
 import subprocess
@@ -183,11 +184,8 @@ class FilesTest(unittest.TestCase):
 
 
 class MachineryTest(unittest.TestCase):
+    @unittest.skipUnless(importlib.util.find_spec("pandas"), "pandas is not installed")
     def test_frames(self):
-        try:
-            import pandas  # noqa: F401
-        except ImportError:
-            self.skipTest("pandas is not installed")
         result = slipstick.Result({"rows": [{"a": 1, "b": {"c": 2}}, {"a": 3, "b": {"c": 4}}]})
         self.assertEqual(list(result.to_frame()["b.c"]), [2, 4])
 

@@ -2,6 +2,7 @@
 import copy
 import gc
 import json
+import importlib.util
 import multiprocessing
 import os
 import pickle
@@ -257,11 +258,8 @@ class SolveTest(unittest.TestCase):
             with self.assertRaisesRegex(slipstick.InputError, "allowed: .h5"):
                 solution.write(Path(folder) / "fields.doc")
 
+    @unittest.skipUnless(importlib.util.find_spec("pandas"), "pandas is not installed")
     def test_frames(self):
-        try:
-            import pandas  # noqa: F401
-        except ImportError:
-            self.skipTest("pandas is not installed")
         frame = slipstick.solve(SPHERE).fields_frame()
         self.assertTrue((frame.pressure > 0).all())
 

@@ -112,7 +112,8 @@ class MadeUpFront : public testing::TestWithParam<MadeUpShape> {};
 INSTANTIATE_TEST_SUITE_P(Shapes, MadeUpFront, testing::ValuesIn(kShapes),
                          [](const auto& shape) { return std::string(shape.param.name); });
 
-/// Of order 2.6 at least while the window, in cells, covers less and less of the ring; then jitter is left.
+/// The order is 2.6 at least while the window, in cells, covers less and less of the ring; then jitter is
+/// left.
 TEST_P(MadeUpFront, IsFoundAtAHighOrder) {
   const MadeUpShape& shape = GetParam();
   const Errors coarse = worst(shape.made_up, 64);
@@ -189,7 +190,7 @@ Fields mirror_images(Fields fields) {
   return fields;
 }
 
-/// Of fields with two mirror axes a quarter of the rays is fitted: one last bit of one cell, and all are.
+/// Where fields have two mirror axes, a quarter of the rays is fitted: one last bit of one cell, and all are.
 TEST(StickFront, OfAQuarterOfTheRaysIsThatOfAll) {
   for (const Index n : {96, 97}) {
     for (const double ring : {1.6, 1.3, 1.12}) {

@@ -50,12 +50,13 @@ class WinklerLayer final : public ElasticLaw {
   }
 
   static LawKind kind() {
-    return {.word = "winkler",
-            .parameters = {{"normal_compliance", "m/Pa", 1, -1, "How far the layer gives way to a pressure."},
-                           {"tangential_compliance", "m/Pa", 1, -1, "How far it gives way to a shear traction."}},
-            .make = [](const SharedLaw& bodies, std::span<const double> compliances) -> SharedLaw {
-              return std::make_shared<WinklerLayer>(bodies, compliances[0], compliances[1]);
-            }};
+    return {
+        .word = "winkler",
+        .parameters = {{"normal_compliance", "m/Pa", 1, -1, "How far the layer gives way to a pressure."},
+                       {"tangential_compliance", "m/Pa", 1, -1, "How far it gives way to a shear traction."}},
+        .make = [](const SharedLaw& bodies, std::span<const double> compliances) -> SharedLaw {
+          return std::make_shared<WinklerLayer>(bodies, compliances[0], compliances[1]);
+        }};
   }
 
  private:

@@ -5,11 +5,9 @@
 #include <Eigen/Core>
 #include <cmath>
 #include <ostream>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "solver/allocations/allocations.hpp"
 #include "solver/elasticity/direct.hpp"
 #include "solver/grid/mirror.hpp"
 #include "solver/tests/fields.hpp"
@@ -87,7 +85,6 @@ class MirroredConvolutionTest : public testing::TestWithParam<MirroredCase> {
  protected:
   const Grid& grid() const { return GetParam().grid; }
   const BlockKernel& kernel() const { return GetParam().kernel; }
-  Mirrored make(int threads = 1) const { return {grid(), kernel(), *GetParam().law, {.threads = threads}}; }
   ArrayXd random_traction(unsigned seed) const {
     return random_field(static_cast<Index>(kernel().inputs) * grid().cells(), seed);
   }
@@ -104,64 +101,18 @@ class MirroredConvolutionTest : public testing::TestWithParam<MirroredCase> {
 INSTANTIATE_TEST_SUITE_P(Shapes, MirroredConvolutionTest, testing::ValuesIn(mirrored_cases()),
                          [](const auto& tested) { return tested.param.name; });
 
-/// Facts that no material changes, for one pair.
-class MirroredShape : public MirroredConvolutionTest {};
-
-std::vector<MirroredCase> mirrored_shapes() {
-  std::vector<MirroredCase> cases = mirrored_cases();
-  std::erase_if(cases, [](const MirroredCase& tested) { return !tested.name.ends_with("dissimilar"); });
-  return cases;
-}
-
-INSTANTIATE_TEST_SUITE_P(Shapes, MirroredShape, testing::ValuesIn(mirrored_shapes()),
-                         [](const auto& tested) { return tested.param.name; });
-
 TEST_P(MirroredConvolutionTest, IsTheDirectSumOfTheUnfoldedField) {
-  Mirrored mirrored = make();
+  Mirrored mirrored(grid(), kernel(), *GetParam().law, {});
   for (const ArrayXd& traction : {random_traction(1), random_traction_inside(2)}) {
     EXPECT_LE(relative_difference(applied(mirrored, traction), apply_unfolded(GetParam(), traction)),
               kAgreement);
   }
 }
 
-TEST_P(MirroredShape, OfNothingIsNothing) {
-  Mirrored mirrored = make();
-  applied(mirrored, random_traction(4));  // must leave nothing behind
-  EXPECT_EQ(applied(mirrored, ArrayXd(0.0 * random_traction(4))).abs().maxCoeff(), 0.0);
-}
-
-TEST_P(MirroredShape, GivesTheSameBitsAgainAndWithMoreThreads) {
-  Mirrored one = make();
-  const ArrayXd traction = random_traction_inside(7);
-  const ArrayXd first = applied(one, traction);
-  applied(one, random_traction(8));
-  EXPECT_TRUE((applied(one, traction) == first).all());
-  for (const int threads : {2, 3}) {
-    Mirrored several = make(threads);
-    applied(several, random_traction(8));
-    EXPECT_TRUE((applied(several, traction) == first).all());
-  }
-}
-
-void expect_no_allocation(const Grid& grid, const BlockKernel& kernel, bool diagonal) {
-  const long before_setup = allocations();
-  MirroredConvolution mirrored(grid, kernel, dissimilar_pair(), {.diagonal = diagonal});
-  EXPECT_GT(allocations(), before_setup) << "the count itself must work";
-  Eigen::ArrayXd traction = random_field(static_cast<Index>(kernel.inputs) * grid.cells(), 10);
-  Eigen::ArrayXd displacement(traction.size());
-  const long before = allocations();
-  mirrored.apply(traction, displacement);
-  EXPECT_EQ(allocations(), before);
-}
-
-TEST_P(MirroredShape, AllocatesNothingInAnApplication) { expect_no_allocation(grid(), kernel(), false); }
-
 class DiagonalConvolutionTest : public testing::TestWithParam<Index> {
  protected:
   Grid grid() const { return quadrant(GetParam(), GetParam(), 0.3, 0.3); }
-  MirroredConvolution make(int threads = 1) const {
-    return {grid(), tangential_kernel(), dissimilar_pair(), {.threads = threads, .diagonal = true}};
-  }
+  Mirrored make() const { return {grid(), tangential_kernel(), dissimilar_pair(), {.diagonal = true}}; }
 };
 
 INSTANTIATE_TEST_SUITE_P(Sizes, DiagonalConvolutionTest, testing::Values(1, 2, 3, 8, 13, 16, 17, 33, 50));
@@ -186,41 +137,6 @@ TEST_P(DiagonalConvolutionTest, GivesExactlySymmetricDisplacementsAndReadsQ1Only
   for (Index i = 0; i < n; ++i) {
     for (Index j = 0; j < n; ++j) ASSERT_EQ(u[n * n + i * n + j], -u[j * n + i]);
   }
-}
-
-TEST_P(DiagonalConvolutionTest, GivesTheSameBitsWithMoreThreads) {
-  const ArrayXd traction = random_diagonal_field(grid(), 15);
-  Mirrored one = make();
-  const ArrayXd first = applied(one, traction);
-  for (const int threads : {2, 3}) {
-    Mirrored several = make(threads);
-    EXPECT_TRUE((applied(several, traction) == first).all());
-    EXPECT_TRUE((applied(several, traction) == first).all());
-  }
-}
-
-TEST_P(DiagonalConvolutionTest, AllocatesNothingInAnApplication) {
-  expect_no_allocation(grid(), tangential_kernel(), true);
-}
-
-TEST(MirroredConvolutionRefuses, WhatHasNotItsSymmetry) {
-  const auto make = [](const Grid& grid, const BlockKernel& kernel, bool diagonal) {
-    const Mirrored mirrored(grid, kernel, dissimilar_pair(), {.diagonal = diagonal});
-  };
-  EXPECT_NO_THROW(make(quadrant(4, 4), tangential_kernel(), true));
-  EXPECT_THROW(make({4, 4, 1.0, 1.0}, tangential_kernel(), true), std::invalid_argument);
-  EXPECT_THROW(make(quadrant(4, 4), coupling_kernel(), false), std::invalid_argument);
-  EXPECT_THROW(make(quadrant(4, 4), {1, 1, {Component::k11}}, false), std::invalid_argument);
-  EXPECT_THROW(make(quadrant(4, 4), normal_kernel(), true), std::invalid_argument);
-  EXPECT_THROW(make(quadrant(4, 5), tangential_kernel(), true), std::invalid_argument);
-  EXPECT_THROW(make(quadrant(4, 4, 1.0, 0.5), tangential_kernel(), true), std::invalid_argument);
-}
-
-TEST(MirroredConvolutionRefuses, FieldsOfAnotherSize) {
-  Mirrored mirrored(quadrant(3, 4), tangential_kernel(), dissimilar_pair(), {});
-  ArrayXd displacement(24);
-  EXPECT_THROW(mirrored.apply(ArrayXd::Ones(12), displacement), std::invalid_argument);
-  EXPECT_EQ(mirrored.applications(), 0);
 }
 
 }  // namespace

@@ -49,6 +49,13 @@ struct OperatorCase {
   std::string name;
   Grid grid;
   BlockKernel kernel;
+  bool diagonal = false;
+
+  bool whole() const { return !grid.quadrant; }
+  std::vector<OperatorKind> kinds() const {
+    if (whole()) return {kKinds.begin(), kKinds.end()};
+    return {OperatorKind::dcfft};
+  }
 };
 
 void PrintTo(const OperatorCase& tested, std::ostream* stream) { *stream << tested.name; }
@@ -64,13 +71,22 @@ std::vector<OperatorCase> operator_cases() {
     cases.push_back({"tangential_" + shape, grid, tangential_kernel()});
     cases.push_back({"coupling_" + shape, grid, coupling_kernel()});
   }
+  for (const Grid& grid :
+       {Grid{1, 1, 1.0, 1.0, true}, Grid{2, 3, 1.0, 0.5, true}, Grid{17, 17, 0.3, 0.3, true},
+        Grid{33, 17, 1.0, 1.0, true}, Grid{7, 31, 0.3, 1.0, true}}) {
+    const std::string shape = "quadrant_" + std::to_string(grid.n1) + "x" + std::to_string(grid.n2);
+    cases.push_back({"normal_" + shape, grid, normal_kernel()});
+    cases.push_back({"tangential_" + shape, grid, tangential_kernel()});
+    if (grid.n1 == grid.n2) cases.push_back({"diagonal_" + shape, grid, tangential_kernel(), true});
+  }
   return cases;
 }
 
 class Operator : public testing::TestWithParam<OperatorCase> {
  protected:
-  std::unique_ptr<LinearOperator> make(OperatorKind kind, const OperatorOptions& options = {}) const {
-    return make_operator(kind, GetParam().grid, GetParam().kernel, dissimilar_pair(), options);
+  std::unique_ptr<LinearOperator> make(OperatorKind kind, int threads = 1) const {
+    const auto& [name, grid, kernel, diagonal] = GetParam();
+    return make_operator(kind, grid, kernel, dissimilar_pair(), {.threads = threads, .diagonal = diagonal});
   }
   ArrayXd random_traction(unsigned seed) const {
     return random_field(static_cast<Index>(GetParam().kernel.inputs) * GetParam().grid.cells(), seed);
@@ -80,21 +96,27 @@ class Operator : public testing::TestWithParam<OperatorCase> {
 INSTANTIATE_TEST_SUITE_P(Shapes, Operator, testing::ValuesIn(operator_cases()),
                          [](const auto& tested) { return tested.param.name; });
 
-/// Traction and displacement in the same direction: all but the coupling.
-class SquareOperator : public Operator {};
-
-std::vector<OperatorCase> square_cases() {
+std::vector<OperatorCase> cases_without(bool (*left_out)(const OperatorCase&)) {
   std::vector<OperatorCase> cases = operator_cases();
-  std::erase_if(cases,
-                [](const OperatorCase& tested) { return tested.kernel.inputs != tested.kernel.outputs; });
+  std::erase_if(cases, left_out);
   return cases;
 }
 
-INSTANTIATE_TEST_SUITE_P(Shapes, SquareOperator, testing::ValuesIn(square_cases()),
+/// Traction and displacement in the same direction, both components read: all but the coupling and the
+/// diagonal.
+class SquareOperator : public Operator {};
+class WholeOperator : public Operator {};
+
+INSTANTIATE_TEST_SUITE_P(Shapes, SquareOperator, testing::ValuesIn(cases_without([](const OperatorCase& c) {
+                           return c.kernel.inputs != c.kernel.outputs || c.diagonal;
+                         })),
+                         [](const auto& tested) { return tested.param.name; });
+INSTANTIATE_TEST_SUITE_P(Shapes, WholeOperator,
+                         testing::ValuesIn(cases_without([](const OperatorCase& c) { return !c.whole(); })),
                          [](const auto& tested) { return tested.param.name; });
 
-TEST_P(Operator, IsTheSameByFftDirectSumAndMatrix) {
-  const auto& [name, grid, kernel] = GetParam();
+TEST_P(WholeOperator, IsTheSameByFftDirectSumAndMatrix) {
+  const auto& [name, grid, kernel, diagonal] = GetParam();
   const auto fft = make(OperatorKind::dcfft);
   const auto direct = make(OperatorKind::direct);
   const auto dense = make(OperatorKind::dense);
@@ -138,7 +160,7 @@ TEST(DenseMatrix, HoldsTheCoefficientOfEachOffset) {
 }
 
 TEST_P(SquareOperator, IsSymmetricAndPositiveDefinite) {
-  for (const OperatorKind kind : kKinds) {
+  for (const OperatorKind kind : GetParam().kinds()) {
     const auto op = make(kind);
     const ArrayXd x = random_traction(5);
     const ArrayXd y = random_traction(6);
@@ -155,24 +177,27 @@ TEST_P(SquareOperator, IsSymmetricAndPositiveDefinite) {
   }
 }
 
-TEST_P(Operator, GivesTheSameBitsAgainAndWithTwoThreads) {
+TEST_P(Operator, GivesTheSameBitsAgainAndWithMoreThreads) {
   const ArrayXd traction = random_field_with_zero_rows(GetParam().grid, GetParam().kernel.inputs, 7);
   const ArrayXd other = random_traction(8);
-  for (const OperatorKind kind : kKinds) {
-    const auto one = make(kind, {.threads = 1});
-    const auto two = make(kind, {.threads = 2});
+  for (const OperatorKind kind : GetParam().kinds()) {
+    const auto one = make(kind);
     const ArrayXd first = applied(*one, traction);
     applied(*one, other);  // must leave nothing behind
     EXPECT_TRUE((applied(*one, traction) == first).all());
-    EXPECT_TRUE((applied(*two, traction) == first).all());
-    EXPECT_TRUE((applied(*two, traction) == first).all());
-    EXPECT_EQ(one->applications(), 3);
+    EXPECT_EQ(applied(*one, ArrayXd(0.0 * traction)).abs().maxCoeff(), 0.0);
+    EXPECT_EQ(one->applications(), 4);
+    for (const int threads : {2, 3}) {
+      const auto several = make(kind, threads);
+      EXPECT_TRUE((applied(*several, traction) == first).all());
+      EXPECT_TRUE((applied(*several, traction) == first).all());
+    }
   }
 }
 
 TEST_P(Operator, AllocatesNothingInAnApplication) {
   const ArrayXd traction = random_traction(9);
-  for (const OperatorKind kind : kKinds) {
+  for (const OperatorKind kind : GetParam().kinds()) {
     const long before_setup = allocations();
     const auto op = make(kind);
     EXPECT_GT(allocations(), before_setup) << "the count itself must work";
@@ -185,7 +210,7 @@ TEST_P(Operator, AllocatesNothingInAnApplication) {
 }
 
 TEST_P(Operator, RefusesFieldsOfAnotherSize) {
-  for (const OperatorKind kind : kKinds) {
+  for (const OperatorKind kind : GetParam().kinds()) {
     const auto op = make(kind);
     const auto cells = static_cast<std::size_t>(op->grid().cells());
     std::vector<double> traction(op->inputs() * cells + 1);
@@ -198,6 +223,22 @@ TEST_P(Operator, RefusesFieldsOfAnotherSize) {
                  std::invalid_argument);
     EXPECT_THROW(op->apply({}, {}), std::invalid_argument);
     EXPECT_EQ(op->applications(), 0);
+  }
+}
+
+TEST(PartOf, RefusesFieldsThatHaveNotItsMirrors) {
+  const Grid square{4, 4, 1.0, 1.0, true};
+  EXPECT_EQ(part_of({4, 5, 1.0, 1.0}, coupling_kernel(), false), Part::whole);
+  EXPECT_EQ(part_of(square, normal_kernel(), false), Part::quadrant);
+  EXPECT_EQ(part_of(square, tangential_kernel(), true), Part::diagonal);
+  EXPECT_THROW(part_of(square, coupling_kernel(), false), std::invalid_argument);
+  EXPECT_THROW(part_of(square, {1, 1, {Component::k11}}, false), std::invalid_argument);
+  EXPECT_THROW(part_of(square, normal_kernel(), true), std::invalid_argument);
+  EXPECT_THROW(part_of({4, 4, 1.0, 1.0}, tangential_kernel(), true), std::invalid_argument);
+  EXPECT_THROW(part_of({4, 5, 1.0, 1.0, true}, tangential_kernel(), true), std::invalid_argument);
+  EXPECT_THROW(part_of({4, 4, 1.0, 0.5, true}, tangential_kernel(), true), std::invalid_argument);
+  for (const OperatorKind kind : {OperatorKind::direct, OperatorKind::dense}) {
+    EXPECT_THROW(make_operator(kind, square, tangential_kernel(), dissimilar_pair()), std::invalid_argument);
   }
 }
 

@@ -156,7 +156,7 @@ LoadsAlong<1> along(const Set& set, const ArrayXd& y, const Direction& direction
 
 TYPED_TEST(Admissible, LoadAlongALineIsThatOfItsProjection) {
   const ArrayXd shape = this->shape(5);
-  const TypeParam set(shape, kGrid.n2);
+  const TypeParam set(kGrid, shape);
   Random random(6);
   const ArrayXd y = random.field(size_of<TypeParam>());
   const ArrayXf single = random.field(size_of<TypeParam>()).template cast<float>();
@@ -174,7 +174,7 @@ TYPED_TEST(Admissible, LoadAlongALineIsThatOfItsProjection) {
 
 TYPED_TEST(Admissible, LoadAlongAMotionIsThatAlongItsField) {
   const ArrayXd shape = this->shape(7);
-  const TypeParam set(shape, kGrid.n2);
+  const TypeParam set(kGrid, shape);
   Random random(8);
   const ArrayXd y = random.field(size_of<TypeParam>());
   const ArrayXf field = kept(size_of<TypeParam>()).template cast<float>();

@@ -14,7 +14,7 @@ CoefficientMatrix random_matrix(Eigen::Index rows, Eigen::Index columns) {
   return CoefficientMatrix::Random(rows, columns);
 }
 
-TEST(Coefficients, SolveASystemOfFullRank) {
+TEST(Coefficients, SolveARegularSystem) {
   for (Eigen::Index n = 1; n <= kMaxConditions; ++n) {
     const CoefficientMatrix matrix = random_matrix(n, n) + 2.0 * CoefficientMatrix::Identity(n, n);
     const Coefficients x = Coefficients::Random(n);
@@ -22,8 +22,8 @@ TEST(Coefficients, SolveASystemOfFullRank) {
   }
 }
 
-// Of u v^T the pseudo-inverse is v u^T / (|u|^2 |v|^2).
-TEST(Coefficients, AreTheLeastThatSolveASystemOfRankOne) {
+// The pseudo-inverse of u v^T is v u^T / (|u|^2 |v|^2).
+TEST(Coefficients, AreTheLeastThatSolveASingularSystem) {
   const Coefficients u = Coefficients::Random(3);
   const Coefficients v = Coefficients::Random(3);
   const Coefficients right = Coefficients::Random(3);

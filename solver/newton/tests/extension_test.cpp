@@ -9,7 +9,7 @@ namespace {
 
 using Eigen::ArrayXd;
 
-TEST(Extension, GathersAsTheAdjointOfWhatItExtends) {
+TEST(Extension, CollectsAsTheAdjointOfWhatItExtends) {
   const Grid grid{9, 14, 1.0, 1.0};
   ArrayXd free = (ArrayXd::Random(grid.cells()) > 0.2).cast<double>();
   Extension extension(grid);
@@ -18,12 +18,12 @@ TEST(Extension, GathersAsTheAdjointOfWhatItExtends) {
   const ArrayXd y = ArrayXd::Random(grid.cells());
   ArrayXd extended = x;
   extension.extend(extended);
-  ArrayXd gathered = y;
-  extension.gather(gathered);
+  ArrayXd collected = y;
+  extension.collect(collected);
   EXPECT_TRUE((free * extended == x).all());
   EXPECT_GT(((1.0 - free) * extended).abs().maxCoeff(), 0.0);
   // Sums of some hundreds of numbers of size one round by less.
-  EXPECT_NEAR((extended * y).sum(), (x * gathered).sum(), 1e-12);
+  EXPECT_NEAR((extended * y).sum(), (x * collected).sum(), 1e-12);
 }
 
 /// A spot's continuation moves with it, bit by bit, also to where the grid ends, which is like cells that are
@@ -40,29 +40,29 @@ TEST(Extension, MovesWithTheContact) {
     return field;
   };
   struct Continued {
-    Eigen::ArrayXXd extended, gathered;
+    Eigen::ArrayXXd extended, collected;
   };
   const auto continued = [&](Index row, Index column) {
     Extension extension(grid);
     ArrayXd free = placed(spot, row, column);
     extension.prepare(free);
     ArrayXd extended = placed(spot * values, row, column);
-    ArrayXd gathered = placed(values, row, column);
+    ArrayXd collected = placed(values, row, column);
     extension.extend(extended);
-    extension.gather(gathered);
-    gathered *= free;
+    extension.collect(collected);
+    collected *= free;
     const auto window = [&](const ArrayXd& field) -> Eigen::ArrayXXd {
       return Eigen::Map<const Eigen::ArrayXXd>(field.data(), grid.n2, grid.n1)
           .block(column, row, kColumns, kRows);
     };
-    return Continued{window(extended), window(gathered)};
+    return Continued{window(extended), window(collected)};
   };
   const Continued here = continued(200, 200);
   EXPECT_TRUE(((here.extended != 0.0) || (spot != 0.0)).all());  // holes are narrower than the reach
   for (const auto& [row, column] : {std::pair<Index, Index>{203, 205}, {187, 211}, {0, 0}, {422, 460}}) {
     const Continued there = continued(row, column);
     EXPECT_TRUE((there.extended == here.extended).all()) << row << ", " << column;
-    EXPECT_TRUE((there.gathered == here.gathered).all()) << row << ", " << column;
+    EXPECT_TRUE((there.collected == here.collected).all()) << row << ", " << column;
   }
 }
 

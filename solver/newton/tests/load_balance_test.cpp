@@ -96,7 +96,7 @@ TEST_P(Balance, MeetsLoadsUpToTheirLimit) {
   long most = 0;
   for (unsigned seed = 1; seed <= 10; ++seed) {
     Body body(GetParam(), seed);
-    const FrictionDiscs discs(body.bound, body.grid.n2);
+    const FrictionDiscs discs(body.grid, body.bound);
     for (const double part : {0.0, 0.3, 0.9, 0.99, 0.999}) {
       for (const double size : {0.1, 1.0, 1e3}) {
         const ArrayXd y = size * body.random(2 * body.grid.cells(), -1.0, 1.0);
@@ -119,7 +119,7 @@ TEST_P(Balance, MeetsLoadsUpToTheirLimit) {
 TEST_P(Balance, MeetsSmallLoadsToTheirOwnSize) {
   for (unsigned seed = 1; seed <= 10; ++seed) {
     Body body(GetParam(), seed);
-    const FrictionDiscs discs(body.bound, body.grid.n2);
+    const FrictionDiscs discs(body.grid, body.bound);
     for (const double part : {1e-6, 1e-9, 1e-12}) {
       const ArrayXd y = part * body.random(2 * body.grid.cells(), -1.0, 1.0);
       const std::vector<double> loads = body.loads(part);
@@ -136,7 +136,7 @@ TEST_P(Balance, MeetsSmallLoadsToTheirOwnSize) {
 TEST_P(Balance, IsFoundFromFarAway) {
   for (unsigned seed = 21; seed <= 26; ++seed) {
     Body body(GetParam(), seed);
-    const FrictionDiscs discs(body.bound, body.grid.n2);
+    const FrictionDiscs discs(body.grid, body.bound);
     const ArrayXd y = body.random(2 * body.grid.cells(), -1.0, 1.0);
     const std::vector<double> loads = body.loads(0.8);
     const LoadBalance balance(discs, body.conditions(loads));
@@ -164,7 +164,7 @@ std::vector<ArrayXf> answers(Body& body) {
 TEST_P(Balance, IsMetAlongOtherFields) {
   for (unsigned seed = 31; seed <= 40; ++seed) {
     Body body(GetParam(), seed);
-    const FrictionDiscs discs(body.bound, body.grid.n2);
+    const FrictionDiscs discs(body.grid, body.bound);
     const ArrayXd y = 0.8 * body.random(2 * body.grid.cells(), -1.0, 1.0);
     ArrayXd q = y;
     discs.project(q);
@@ -191,7 +191,7 @@ TEST_P(Balance, KnowsWhatCannotBeCarried) {
   long most = 0;
   for (unsigned seed = 41; seed <= 46; ++seed) {
     Body body(GetParam(), seed);
-    const FrictionDiscs discs(body.bound, body.grid.n2);
+    const FrictionDiscs discs(body.grid, body.bound);
     const ArrayXd y = body.random(2 * body.grid.cells(), -1.0, 1.0);
     for (const double part : {1.001, 1.1, 10.0}) {
       const LoadBalance balance(discs, body.conditions(body.loads(part)));
@@ -206,7 +206,7 @@ TEST_P(Balance, KnowsWhatCannotBeCarried) {
 
 TEST_P(Balance, KnowsWhatIsNotANumber) {
   Body body(GetParam(), 51);
-  const FrictionDiscs discs(body.bound, body.grid.n2);
+  const FrictionDiscs discs(body.grid, body.bound);
   ArrayXd y = body.random(2 * body.grid.cells(), -1.0, 1.0);
   const LoadBalance balance(discs, body.conditions(body.loads(0.5)));
   Index slipping = 0;
@@ -221,7 +221,7 @@ TEST_P(Balance, KnowsWhatIsNotANumber) {
 
 TEST_P(Balance, AllocatesNothing) {
   Body body(GetParam(), 61);
-  const FrictionDiscs discs(body.bound, body.grid.n2);
+  const FrictionDiscs discs(body.grid, body.bound);
   const ArrayXd y = body.random(2 * body.grid.cells(), -1.0, 1.0);
   const LoadBalance balance(discs, body.conditions(body.loads(0.9)));
   for (const double far : {0.0, 1e6}) {
@@ -234,7 +234,7 @@ TEST_P(Balance, AllocatesNothing) {
 
 TEST(BalanceOfNothing, IsMet) {
   Body body(1, 71);
-  const FrictionDiscs discs(body.bound, body.grid.n2);
+  const FrictionDiscs discs(body.grid, body.bound);
   Coefficients x;
   EXPECT_TRUE(LoadBalance(discs, {}).solve(body.random(2 * body.grid.cells(), -1.0, 1.0), x));
 }

@@ -18,7 +18,7 @@ namespace {
 using Eigen::ArrayXd;
 using testing::HasSubstr;
 
-/// A preconditioner that is none: it turns every residual round.
+/// A preconditioner that is not definite: it reverses every residual.
 class Reversing final : public InverseSymbol {
  public:
   void apply(std::span<double> field) override {
@@ -49,7 +49,7 @@ class Newton : public testing::Test {
   std::unique_ptr<InverseSymbol> symbol_ = make_inverse_symbol(grid_, tangential_kernel(), *bench_.model.law);
   ArrayXd rotation_ = (bench_.bound > 0.0).cast<double>().replicate(2, 1) * rotation_field(grid_);
   MotionField turn_{grid_, 0.0, 0.0, 1.0};
-  FrictionDiscs discs_{bench_.bound, grid_.n2};
+  FrictionDiscs discs_{grid_, bench_.bound};
   ConvexProgram program_{.g = nullptr, .imposed = {{&turn_, 0.8 * bench_.limit}}};
   ArrayXd q_;
 };

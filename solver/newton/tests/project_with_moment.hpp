@@ -12,7 +12,7 @@ namespace slipstick::solver {
 inline double project_with_moment(Eigen::ArrayXd& q, const Eigen::ArrayXd& bound, const Grid& grid,
                                   double moment, double guess = 0.0) {
   const MotionField t(grid, 0.0, 0.0, 1.0);
-  const FrictionDiscs discs(bound, grid.n2);
+  const FrictionDiscs discs(grid, bound);
   const LoadBalance balance(discs, {{&t, moment}});
   Coefficients alpha = Coefficients::Constant(1, guess);
   if (!balance.solve(q, alpha)) return std::numeric_limits<double>::quiet_NaN();

@@ -43,6 +43,8 @@ std::string scene_with(const std::string& shape, bool several) {
          (shape == "height_map" ? "" : "extent = [1, 1]\n");
 }
 
+const std::string kLayer = "[layer]\nkind = \"winkler\"\nnormal_compliance = 1\ntangential_compliance = 1\n";
+
 /// A value that the type has not, and the end of the message about it.
 struct Wrong {
   std::string value;
@@ -73,13 +75,13 @@ Wrong wrong_for(const SettingKey& key) {
 /// Those that have defaults.
 std::string members(const Scene& scene) {
   const Surface& surface = scene.surfaces[0];
-  return fmt::format("{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}",
-                     static_cast<int>(scene.pressure), static_cast<int>(scene.coupling),
-                     static_cast<int>(scene.method), static_cast<int>(scene.model),
-                     static_cast<int>(scene.op), static_cast<int>(scene.cell_traction), scene.tolerance,
-                     scene.max_iterations, scene.threads, scene.rounding_seed, scene.cycles,
-                     scene.ends_at_grid_edge, scene.upper.young_modulus, scene.lower.young_modulus,
-                     surface.at[0], surface.at[1], surface.angle, surface.inner_radius, surface.height_unit);
+  return fmt::format(
+      "{} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {} {}", scene.layer.kind == nullptr,
+      static_cast<int>(scene.pressure), static_cast<int>(scene.coupling), static_cast<int>(scene.method),
+      static_cast<int>(scene.model), static_cast<int>(scene.op), static_cast<int>(scene.cell_traction),
+      scene.tolerance, scene.max_iterations, scene.threads, scene.rounding_seed, scene.cycles,
+      scene.ends_at_grid_edge, scene.upper.young_modulus, scene.lower.young_modulus, surface.at[0],
+      surface.at[1], surface.angle, surface.inner_radius, surface.height_unit);
 }
 
 class SceneKeys : public SceneFile {
@@ -90,9 +92,8 @@ class SceneKeys : public SceneFile {
     std::string name = key.name;
     if (several && key.name != "upper.combine") name.replace(0, 12, "upper.shape[1].");
     if (name.starts_with("step.")) name.replace(0, 5, "step[0].");
-    return complaint([&] {
-      read_scene(write("scene.toml", scene_with(shape, several)), {name + "=" + wrong_for(key).value});
-    });
+    const std::string text = scene_with(shape, several) + (key.name.starts_with("layer.") ? kLayer : "");
+    return complaint([&] { read_scene(write("scene.toml", text), {name + "=" + wrong_for(key).value}); });
   }
 };
 

@@ -6,6 +6,7 @@
 #include <functional>
 #include <limits>
 
+#include "solver/elasticity/law/law_kind.hpp"
 #include "solver/input/tests/complaint.hpp"
 #include "solver/scene/scene.hpp"
 #include "solver/solve.hpp"
@@ -43,6 +44,23 @@ const Mistake kMistakes[] = {
     {"upper.young_modulus", [](Scene& s) { s.upper.young_modulus = -1.0; }},
     {"lower.poisson_ratio", [](Scene& s) { s.lower.poisson_ratio = 0.6; }},
     {"lower.rigid", [](Scene& s) { s.upper.young_modulus = s.lower.young_modulus = kInfinite; }},
+    {"layer.kind",
+     [](Scene& s) {
+       s.layer = {&law_kinds()[0], {1e-12}};
+     }},
+    {"layer.normal_compliance",
+     [](Scene& s) {
+       s.layer = {&law_kinds()[0], {-1e-12, 1e-12}};
+     }},
+    {"layer.tangential_compliance",
+     [](Scene& s) {
+       s.layer = {&law_kinds()[0], {1e-12, kNaN}};
+     }},
+    {"contact.pressure",
+     [](Scene& s) {
+       s.layer = {&law_kinds()[0], {1e-12, 1e-12}};
+       s.pressure = PressureModel::hertz;
+     }},
     {"contact.friction", [](Scene& s) { s.friction = kNaN; }},
     {"contact.coupling",
      [](Scene& s) {

@@ -1,5 +1,5 @@
 """drawn_loops.py PROGRAM SCENES [--count N] [--seed S] [--keep FOLDER]: draws loops of the paper's sphere, N right and N wrong,
-and counts what slipstick check says of them. Laws are written here anew (numpy; Lubkin's by quadrature), nothing of the
+and counts what slipstick check says of them. Laws are written here a second time (numpy; Lubkin's by quadrature), nothing of the
 program's. Fails where a right loop is called bad, or where more than 1 in 20 wrong ones are called good or by a wrong name.
 A wrong loop counts as good with reason where it is no farther from the exact one than its noise, or its slip is below that;
 another name counts as right where its law with its parameters is no farther from the loop than that."""
@@ -133,7 +133,7 @@ class Drawer:
         return options[self.draw.integers(len(options))]
 
     def drive(self, amplitude, cycles=None):
-        """Time and twist: from rest to an amplitude, back and forth, in two shapes and several rows a branch."""
+        """Time and twist: from rest to an amplitude, to its negative and back, in two shapes and several rows a branch."""
         rows = int(self.pick(40, 80, 150, 300))
         cycles = cycles or int(self.pick(1, 2, 3))
         ends = np.concatenate([[0.0], amplitude * np.tile([1.0, -1.0], cycles), [amplitude]]) * self.pick(1, 1, -1)
@@ -314,7 +314,7 @@ def main():
             name, amplitude, noise, table, time, t, m, start, conventions = drawer.wrong()
             result, file = check(table)
             law, why = result["loads"][0].get("law"), result["why"]
-            told = f"wrong {k}: {name}, t {amplitude:.2g}, noise {noise:g}, start {start}:"
+            shown = f"wrong {k}: {name}, t {amplitude:.2g}, noise {noise:g}, start {start}:"
             if name == "unit":
                 judged += 1
                 load, motion, sign = conventions
@@ -326,11 +326,11 @@ def main():
                     named_wrong += result["verdict"] != "good"
                 elif off(line(t), m) <= noise / 3 and wanted[2:] == [word for word in wanted[2:] if word in said] and \
                         (result["verdict"] == "good" or "as in another unit" in said):
-                    fair += 1  # a line has a stiffness alone, which does not say whose unit differs
+                    fair += 1  # a line has only a stiffness, which does not say which unit differs
                     judged -= 1
                 elif not all(word in said for word in wanted):
                     named_wrong += 1
-                    print(told, conventions, result["verdict"], result["conventions"], why)
+                    print(shown, conventions, result["verdict"], result["conventions"], why)
                     keep(file, f"wrong-{k}")
                 continue
             away = off(drawer.right_moments(t, start), m)
@@ -340,7 +340,7 @@ def main():
                     continue
                 judged += 1
                 good += 1
-                print(told, f"{away:.2g} off, good: {why}")
+                print(shown, f"{away:.2g} off, good: {why}")
                 keep(file, f"wrong-{k}")
                 continue
             judged += 1
@@ -352,7 +352,7 @@ def main():
                        for entry in tried for other in law_of(law, entry["parameters"], time, t, start, why))
             if not same:
                 named_wrong += 1
-                print(told, f"{away:.2g} off, named {law}: {why}")
+                print(shown, f"{away:.2g} off, named {law}: {why}")
                 keep(file, f"wrong-{k}")
     print(f"{options.count} right: {bad} bad; {judged} wrong and not within their noise ({fair} within it): {good} good, "
           f"{named_wrong} with a wrong cause")

@@ -80,10 +80,6 @@ def equation_7(t):
 STIFFNESS = 16 / 3 / (3 * math.pi / 16)
 
 
-def spring(t):
-    return min(max(STIFFNESS * t, -1), 1)
-
-
 def drive(amplitudes=(0.25, 0.25, 0.25), rows=150, shape="triangle"):
     """(time, t): there and back between each amplitude and its negative, one second a branch."""
     ends = [0.0] + [sign * a for a in amplitudes for sign in (1, -1)] + [amplitudes[-1]]
@@ -227,24 +223,31 @@ class Loops(unittest.TestCase):
     def noisy(self, path, moments, **more):
         return self.write(path, moments, noise=1e-3, **more)
 
-    def test_spring_with_the_exact_limit(self):
-        path = drive((0.4, 0.4))
-        moments = masing(path, lambda t: min(max(0.44 * STIFFNESS * t, -1), 1))
-        self.assert_named(self.noisy(path, moments), "spring_and_cap", "slips at the limit", "without partial slip",
-                          "0.44 of the exact")
-
-    def test_cap_of_a_uniform_pressure(self):
-        cap = 2 / 3 / (3 * math.pi / 16)
-        path = drive((0.3, 0.3))
-        moments = masing(path, lambda t: min(max(STIFFNESS * t, -cap), cap))
-        self.assert_named(self.noisy(path, moments), "spring_and_cap", "slips at 1.13 of the limit: uniform pressure assumed")
-        path = drive((1.0, 1.0))
-        moments = [cap * m for m in masing(path, lambda t: exact(t / cap))]
-        self.assert_named(self.noisy(path, moments), "limit", "slips at 1.13 of the limit: uniform pressure assumed")
-
-    def test_equation_7(self):
-        path = drive((0.25, 0.25))
-        self.assert_named(self.noisy(path, masing(path, equation_7)), "equation_7", "Eq. (7)")
+    def test_wrong_laws_are_named(self):
+        def clipped(stiffness, cap=1.0):
+            return lambda t: min(max(stiffness * STIFFNESS * t, -cap), cap)
+        path, uniform = drive((0.25, 0.25)), 2 / 3 / (3 * math.pi / 16)
+        small, wide, full = drive((0.1,))[:301], drive((0.3, 0.3)), drive((1.0, 1.0))
+        one_way = drive((0.25,))[:190]  # until it would slip the other way
+        spring = drive((0.4, 0.4))
+        for law, driven, moments, *sentence in (
+                ("spring_and_cap", spring, masing(spring, clipped(0.44)), "slips at the limit", "without partial slip",
+                 "0.44 of the exact"),
+                ("spring_and_cap", wide, masing(wide, clipped(1, uniform)), "slips at 1.13 of the limit: uniform pressure assumed"),
+                ("limit", full, [uniform * m for m in masing(full, lambda t: exact(t / uniform))],
+                 "slips at 1.13 of the limit: uniform pressure assumed"),
+                ("limit_and_stiffness", wide, [0.68 * m for m in masing(wide, lambda t: exact(t * 1.5 / 0.68))], "slips at 0.68",
+                 "1.50 of the exact"),
+                ("equation_7", path, masing(path, equation_7), "Eq. (7)"),
+                ("elastic", path, [exact(t) for _, t in path], "no energy is lost"),
+                ("not_enlarged", small, masing(small, exact, exact), "not enlarged twice", "Masing"),
+                ("not_enlarged", path, masing(path, exact, exact), "not enlarged twice"),
+                ("unloads_without_slip", one_way, masing(one_way, exact, lambda change: STIFFNESS * change), "without slip", "Masing"),
+                ("stiffness", path, masing(path, lambda t: exact(2 * t)), "one body only"),
+                ("factor", path, [2 * m for m in masing(path, exact)], "2.00 times", "counted twice"),
+                ("rigid", path, masing(path, clipped(1e6)), "no presliding: the law is rigid")):
+            with self.subTest(law=law, words=sentence):
+                self.assert_named(self.noisy(driven, moments), law, *sentence)
 
     def test_regularised_velocity_law(self):
         for shape in (math.tanh, lambda x: min(max(x, -1), 1)):
@@ -257,29 +260,6 @@ class Loops(unittest.TestCase):
             why = self.check(self.write(path, moments))["why"]
             said = float(why.split("at ")[1].split(" mrad")[0])
             self.assertAlmostEqual(said / rate, 1, delta=0.1)
-
-    def test_no_masing(self):
-        path = drive((0.25, 0.25))
-        self.assert_named(self.noisy(path, [exact(t) for _, t in path]), "elastic", "no energy is lost")
-        path = drive((0.1,))[:301]
-        moments = masing(path, exact, exact)
-        self.assert_named(self.noisy(path, moments), "not_enlarged", "not enlarged twice", "Masing")
-        path = drive((0.25,))[:190]  # until it would slip the other way
-        moments = masing(path, exact, lambda change: STIFFNESS * change)
-        self.assert_named(self.noisy(path, moments), "unloads_without_slip", "without slip", "Masing")
-
-    def test_one_body_rigid(self):
-        path = drive((0.25, 0.25))
-        self.assert_named(self.noisy(path, masing(path, lambda t: exact(2 * t))), "stiffness", "one body only")
-
-    def test_factor_2(self):
-        path = drive((0.25, 0.25))
-        self.assert_named(self.noisy(path, [2 * m for m in masing(path, exact)]), "factor", "2.00 times", "counted twice")
-
-    def test_rigid(self):
-        path = drive((0.25, 0.25))
-        moments = masing(path, lambda t: min(max(1e6 * t, -1), 1))
-        self.assert_named(self.noisy(path, moments), "rigid", "no presliding: the law is rigid")
 
     def test_normal_load_that_drifts(self):
         """The load falls by a quarter: limit like W^(4/3), rotations like W^(1/3)."""
@@ -298,11 +278,6 @@ class Loops(unittest.TestCase):
             found = next(law for law in tried if law["law"] == "normal_load_drifts")
             self.assertAlmostEqual(found["parameters"][0], 0.75, delta=2e-3)
             self.assertLess(found["residual"], 1e-3)
-
-    def test_other_limit_and_stiffness(self):
-        path = drive((0.3, 0.3))
-        moments = [0.68 * m for m in masing(path, lambda t: exact(t * 1.5 / 0.68))]
-        self.assert_named(self.noisy(path, moments), "limit_and_stiffness", "slips at 0.68", "1.50 of the exact")
 
     def test_unknown_law(self):
         path = drive((0.25, 0.25))
@@ -426,10 +401,6 @@ class Loops(unittest.TestCase):
                     for note in (load_note, motion_note, "other body" if sign < 0 else ""):
                         self.assertIn(note, said)
                     self.assertEqual(len(result["conventions"]), (load != 1) + (motion != 1) + (sign < 0))
-
-    def test_not_enlarged_on_full_cycles(self):
-        path = drive((0.25, 0.25))
-        self.assert_named(self.noisy(path, masing(path, exact, exact)), "not_enlarged", "not enlarged twice")
 
     def test_json_and_other_names(self):
         path = drive((0.25, 0.25))

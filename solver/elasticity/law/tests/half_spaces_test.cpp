@@ -22,8 +22,8 @@ std::array<double, 6> composed(const ElasticPair& pair, const CellIntegrals& c) 
           -0.5 * half * pair.mismatch * c.y,       half * pair.normal_compliance * (c.xx + c.yy)};
 }
 
-/// Square cells are mirrored about the diagonal in groups of rows, and one group crosses it here: no value may
-/// be written by two threads.
+/// Square cells are mirrored about the diagonal in groups of rows, and one group crosses it here: no value
+/// may be written by two threads.
 TEST(InfluenceTables, AreTheSameBitsOnAnyNumberOfThreads) {
   const HalfSpaces law(elastic_pair({1.0, 0.3}, {2.5, 0.1}));
   for (const auto& [m1, m2] : {std::pair<Index, Index>{77, 21}, {21, 77}, {61, 61}, {93, 42}}) {

@@ -254,8 +254,7 @@ TEST_P(FarCells, GiveCoefficientsAsAccurate) {
       const auto exact =
           exact_integrals(static_cast<double>(k1), static_cast<double>(k2) * aspect, 1.0, aspect);
       const auto error = [&](Component component, double expected) {
-        return relative_error(coefficient(component, pair, 1.0, aspect, k1, k2),
-                              expected);
+        return relative_error(coefficient(component, pair, 1.0, aspect, k1, k2), expected);
       };
       const std::array errors{error(Component::k11, exact[0] + (1.0 - nu) * exact[1]),
                               error(Component::k22, exact[1] + (1.0 - nu) * exact[0]),

@@ -33,7 +33,8 @@ double added(const BlockKernel& kernel) {
 
 TEST(WinklerLayer, AddsItsComplianceToTheDiagonalOfTheMatrix) {
   const Grid grid{5, 4, 1.0, 0.6};
-  for (const BlockKernel& kernel : {normal_kernel(), tangential_kernel(), coupling_kernel(), shear_kernel()}) {
+  for (const BlockKernel& kernel :
+       {normal_kernel(), tangential_kernel(), coupling_kernel(), shear_kernel()}) {
     const DenseMatrix with(grid, kernel, layered());
     Eigen::MatrixXd expected = DenseMatrix(grid, kernel, *bodies()).matrix();
     expected.diagonal().array() += added(kernel);
@@ -44,14 +45,17 @@ TEST(WinklerLayer, AddsItsComplianceToTheDiagonalOfTheMatrix) {
 }
 
 TEST(WinklerLayer, HasTheSameComplianceForSmoothCellTractions) {
-  const auto smooth = std::make_shared<HalfSpaces>(elastic_pair({1.0, 0.3}, {2.5, 0.1}), CellTraction::smooth);
+  const auto smooth =
+      std::make_shared<HalfSpaces>(elastic_pair({1.0, 0.3}, {2.5, 0.1}), CellTraction::smooth);
   const Grid offsets{4, 4, 1.0, 1.0};
   auto expected = smooth->influence_coefficients(Component::k33, offsets);
   expected.front() += kNormal;
-  EXPECT_EQ(WinklerLayer(smooth, kNormal, kTangential).influence_coefficients(Component::k33, offsets), expected);
+  EXPECT_EQ(WinklerLayer(smooth, kNormal, kTangential).influence_coefficients(Component::k33, offsets),
+            expected);
 }
 
-const std::vector<PlaneWave> kWaves{{0.0, 0.0, 0.1}, {0.3, 0.0, 0.3}, {0.0, 2.0, 2.0}, {0.5, -1.2, 1.3}, {3.0, 4.0, 5.0}};
+const std::vector<PlaneWave> kWaves{
+    {0.0, 0.0, 0.1}, {0.3, 0.0, 0.3}, {0.0, 2.0, 2.0}, {0.5, -1.2, 1.3}, {3.0, 4.0, 5.0}};
 
 TEST(WinklerLayer, WithoutComplianceIsTheBodiesToTheLastBit) {
   const WinklerLayer none(bodies(), 0.0, 0.0);

@@ -1,6 +1,6 @@
 // Where the cells of a file lie, and how exactly it says so.
 
-#include "convergence/check/field_grid.hpp"
+#include "convergence/check/foreign_field.hpp"
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>

@@ -1,4 +1,4 @@
-#include "solver/newton/anderson.hpp"
+#include "solver/contact/anderson.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,36 @@
+#pragma once
+
+#include <functional>
+#include <nlohmann/json.hpp>
+#include <utility>
+#include <vector>
+
+#include "convergence/runs/process_pool.hpp"
+
+namespace slipstick::convergence {
+
+/// Runs that are solved side by side, each with the function that takes its result.
+class RunBatch {
+ public:
+  using Take = std::function<void(const Json& result)>;
+
+  /// Throws InputError for a scene that cannot be read.
+  void add(const RunSpec& spec, Take take) {
+    runs_.push_back(prepare_run(spec));
+    takes_.push_back(std::move(take));
+  }
+
+  const std::vector<PreparedRun>& runs() const { return runs_; }
+
+  /// Solves all, then hands out the results in the order of add(). Throws as ProcessPool::run().
+  void run(const ProcessPool& pool) const {
+    const std::vector<Json> results = pool.run_prepared(runs_);
+    for (std::size_t i = 0; i < results.size(); ++i) takes_[i](results[i]);
+  }
+
+ private:
+  std::vector<PreparedRun> runs_;
+  std::vector<Take> takes_;
+};
+
+}  // namespace slipstick::convergence
