@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "solver/contact/certificate.hpp"
-#include "solver/contact/coulomb_method.hpp"
 #include "solver/model_solution.hpp"
 #include "solver/tests/press.hpp"
 #include "solver/tests/scene_file.hpp"
@@ -200,22 +199,6 @@ TEST(Step, ThatChangesNothingChangesNothing) {
   }
 }
 
-/// Its problem is that of any start.
-TEST(Step, StartsFromTheTractionsBefore) {
-  const Scene scene = twisted(24, {0.7, 0.1});
-  const auto steps = history(scene);
-  const Model& model = steps[0].model;
-  TangentialProblem problem =
-      under_moment(model.friction * steps[0].normal.pressure,
-                   0.1 * moment_limit(model.grid, model.friction * steps[0].normal.pressure));
-  problem.start = steps[0].tangential.traction;
-  const TangentialSolution alone =
-      solve_by_coulomb_method({model.law}, model.grid, problem, {.tolerance = kGap, .progress = {}});
-  EXPECT_LE(relative_difference(steps[1].tangential.traction, alone.traction), kSame);
-  EXPECT_LE(relative_difference(steps[1].tangential.slip, alone.slip), kSame);
-  EXPECT_NEAR((steps[1].twist_angle - steps[0].twist_angle) / alone.twist, 1.0, kSame);
-}
-
 /// The part of the grid that a step is solved on follows its pressure and the one before.
 TEST(Step, IsTheSameOnTheReducedGrid) {
   Scene scene = twisted(28, {0.5, 0.3, -0.6, 0.2});
@@ -230,37 +213,6 @@ TEST(Step, IsTheSameOnTheReducedGrid) {
     EXPECT_NEAR(other.twist_angle / reduced[k].twist_angle, 1.0, 1e-7);
     EXPECT_NEAR(other.dissipated / reduced[k].dissipated, 1.0, 1e-7);
   }
-}
-
-/// Slip turns every cell along its circle about the axis, on the mesh but for the noise in its direction:
-/// of two steps the second does not undo what the first has left of that. It fades with the mesh.
-TEST(Torsion, InTwoStepsIsNearlyAsInOne) {
-  double last = 1.0;
-  for (const Index cells : {16, 32, 64}) {
-    const auto steps = history(twisted(cells, {0.45, 0.9}));
-    const auto once = history(twisted(cells, {0.9}));
-    const ArrayXd difference = steps[1].tangential.traction - once[0].tangential.traction;
-    const double traction = norms(difference).sum() / norms(once[0].tangential.traction).sum();
-    EXPECT_LT(traction, 0.6 * last);
-    last = traction;
-  }
-  EXPECT_LT(last, 1e-5);  // measured 3e-6
-}
-
-TEST(Torsion, ReversesByMasingsRule) {
-  const auto steps = history(twisted(48, {0.8, 0.2, -0.8, 0.8}));
-  const auto part = history(twisted(48, {0.3}));
-  const double peak = steps[0].twist_angle;
-  const std::array<double, 3> errors{(peak - steps[1].twist_angle) / (2.0 * part[0].twist_angle) - 1.0,
-                                     steps[2].twist_angle / -peak - 1.0, steps[3].twist_angle / peak - 1.0};
-  for (std::size_t k = 0; k < errors.size(); ++k) {
-    EXPECT_LE(std::abs(errors[k]), 2e-6) << k;  // the noise in directions, squared: measured 3e-7
-  }
-}
-
-TEST(Torsion, ForgetsSmallCyclesInAGreaterOne) {
-  const auto steps = history(twisted(32, {0.8, 0.3, 0.6, 0.8}));
-  EXPECT_NEAR(steps[3].twist_angle / steps[0].twist_angle, 1.0, 5e-5);  // measured 9e-6
 }
 
 /// However many steps have led there.

@@ -196,30 +196,5 @@ TEST(Model, HasThreadsThatAreWorthTheirCells) {
   EXPECT_EQ(threads(512, ModelChoice::full, 1), 1);
 }
 
-TEST(Model, SaysWhatItLeavesOut) {
-  Scene scene = paper_scene(16, 0.5);
-  const auto mentions = [&](const std::string& what) {
-    Model model = make_model(scene);
-    note_omissions(model, scene, Reduction(model.grid), false);
-    for (const Omission& omission : model.left_out) {
-      if (omission.what == what) return !omission.why.empty();
-    }
-    return false;
-  };
-  EXPECT_TRUE(mentions("K13, K23"));
-  EXPECT_FALSE(mentions("K31, K32"));
-  EXPECT_TRUE(mentions("translations"));
-  scene.lower.young_modulus = 70e9;
-  EXPECT_TRUE(make_model(scene).pressure_coupling);
-  EXPECT_FALSE(mentions("K13, K23"));
-  EXPECT_TRUE(mentions("K31, K32"));
-  scene.coupling = Coupling::full;
-  EXPECT_TRUE(make_model(scene).shear_coupling);
-  EXPECT_FALSE(mentions("K31, K32"));
-  scene.coupling = Coupling::none;
-  EXPECT_FALSE(make_model(scene).pressure_coupling);
-  EXPECT_TRUE(mentions("K13, K23"));
-}
-
 }  // namespace
 }  // namespace slipstick::solver

@@ -11,7 +11,9 @@ namespace slipstick::solver {
 namespace {
 
 TEST_F(SceneFile, IsReadKeyByKey) {
-  const Scene scene = read(kScene);
+  const Scene scene = read(std::string("name = \"paper\"\n") + kShortScene,
+                           {"grid.cells=[128, 96]", "grid.extent=[0.0011, 0.0012]", "solver.tolerance=1e-7",
+                            "solver.max_iterations=70", "solver.threads=2"});
   EXPECT_EQ(scene.source, folder_ / "scene.toml");
   EXPECT_EQ(scene.name, "paper");
   EXPECT_EQ(scene.surfaces.front().shape, Shape::sphere);
