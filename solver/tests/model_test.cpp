@@ -79,10 +79,8 @@ class HeightMapFile : public SceneFile {
  protected:
   Model model(const std::string& heights, const std::vector<std::string>& overrides = {}) const {
     write("heights.csv", heights);
-    std::string text = kShortScene;
-    const std::string sphere = "shape = \"sphere\"\nradius = 0.018\n";
-    text.replace(text.find(sphere), sphere.size(),
-                 "shape = \"height_map\"\nfile = \"heights.csv\"\nspacing = [1e-5, 2e-5]\n");
+    std::string text =
+        with_surface("shape = \"height_map\"\nfile = \"heights.csv\"\nspacing = [1e-5, 2e-5]\n");
     text.erase(text.find("[grid]"));
     return make_model(read(text, overrides));
   }
@@ -137,13 +135,11 @@ TEST_F(HeightMapFile, HasThePointsOfTheOthers) {
   write("wide.csv", "1e-6,2e-6\n2e-6,3e-6\n");
   write("heights.csv", "3e-6,2e-6,3e-6\n2e-6,1e-6,2e-6\n");
   const auto complaint_of = [&](const std::string& file, const std::string& spacing) {
-    std::string text = kShortScene;
+    std::string text = with_surface(
+        "shape = [{shape = \"height_map\", file = \"heights.csv\", spacing = [1e-5, 2e-5]}, "
+        "{shape = \"height_map\", file = \"" +
+        file + "\", spacing = " + spacing + "}]\n");
     text.erase(text.find("[grid]"));
-    const std::string sphere = "shape = \"sphere\"\nradius = 0.018\n";
-    text.replace(text.find(sphere), sphere.size(),
-                 "shape = [{shape = \"height_map\", file = \"heights.csv\", spacing = [1e-5, 2e-5]}, "
-                 "{shape = \"height_map\", file = \"" +
-                     file + "\", spacing = " + spacing + "}]\n");
     return complaint([&] { make_model(read(text)); });
   };
   EXPECT_EQ(complaint_of("heights.csv", "[1e-5, 2e-5]"), "");

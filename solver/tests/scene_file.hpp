@@ -30,6 +30,13 @@ moment_ratio = 0.9
 cells = [32, 32]
 )";
 
+/// The short scene with other keys for its sphere, and tables at the end.
+inline std::string with_surface(const std::string& keys, const std::string& tables = "") {
+  std::string text = kShortScene;
+  const std::string sphere = "shape = \"sphere\"\nradius = 0.018\n";
+  return text.replace(text.find(sphere), sphere.size(), keys) + tables;
+}
+
 class SceneFile : public testing::Test {
  protected:
   SceneFile() { std::filesystem::create_directories(folder_); }

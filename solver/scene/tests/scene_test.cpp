@@ -43,13 +43,6 @@ TEST_F(SceneFile, NeedsNoMoreThanTheProblem) {
   EXPECT_EQ(read(std::string(kShortScene) + "[solver]\n").tolerance, scene.tolerance);
 }
 
-/// The short scene with other keys for its sphere.
-std::string with_surface(const std::string& keys, const std::string& tables = "") {
-  std::string text = kShortScene;
-  const std::string sphere = "shape = \"sphere\"\nradius = 0.018\n";
-  return text.replace(text.find(sphere), sphere.size(), keys) + tables;
-}
-
 TEST_F(SceneFile, HasEachShapeWithItsKeys) {
   const auto shape = [&](const std::string& keys) { return read(with_surface(keys)).surfaces.front(); };
   const Surface sphere = read(kShortScene).surfaces.front();
