@@ -5,6 +5,8 @@
 
 #include <functional>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "solver/elasticity/law/law_kind.hpp"
 #include "solver/input/tests/complaint.hpp"
@@ -30,6 +32,9 @@ const Surface kShortPeriod{
     .roughness = {
         .seed = 1, .hurst = 0.8, .longest = 1e-4, .shortest = 2e-5, .rms_slope = 0.1, .period = 9e-5}};
 
+/// A layer of the first kind, whose parameters are two compliances.
+Layer layer_of(std::vector<double> values) { return {&law_kinds()[0], std::move(values)}; }
+
 const Mistake kMistakes[] = {
     {"upper.shape", [](Scene& s) { s.surfaces.clear(); }},
     {"upper.radius", [](Scene& s) { s.surfaces[0].radius = 0.0; }},
@@ -44,21 +49,18 @@ const Mistake kMistakes[] = {
     {"upper.young_modulus", [](Scene& s) { s.upper.young_modulus = -1.0; }},
     {"lower.poisson_ratio", [](Scene& s) { s.lower.poisson_ratio = 0.6; }},
     {"lower.rigid", [](Scene& s) { s.upper.young_modulus = s.lower.young_modulus = kInfinite; }},
-    {"layer.kind",
-     [](Scene& s) {
-       s.layer = {&law_kinds()[0], {1e-12}};
-     }},
+    {"layer.kind", [](Scene& s) { s.layer = layer_of({1e-12}); }},
     {"layer.normal_compliance",
      [](Scene& s) {
-       s.layer = {&law_kinds()[0], {-1e-12, 1e-12}};
+       s.layer = layer_of({-1e-12, 1e-12});
      }},
     {"layer.tangential_compliance",
      [](Scene& s) {
-       s.layer = {&law_kinds()[0], {1e-12, kNaN}};
+       s.layer = layer_of({1e-12, kNaN});
      }},
     {"contact.pressure",
      [](Scene& s) {
-       s.layer = {&law_kinds()[0], {1e-12, 1e-12}};
+       s.layer = layer_of({1e-12, 1e-12});
        s.pressure = PressureModel::hertz;
      }},
     {"contact.friction", [](Scene& s) { s.friction = kNaN; }},
