@@ -5,7 +5,6 @@
 
 #include <functional>
 #include <limits>
-#include <utility>
 #include <vector>
 
 #include "solver/elasticity/law/law_kind.hpp"
@@ -33,9 +32,12 @@ const Surface kShortPeriod{
         .seed = 1, .hurst = 0.8, .longest = 1e-4, .shortest = 2e-5, .rms_slope = 0.1, .period = 9e-5}};
 
 /// A layer of the first kind, whose parameters are two compliances.
-Layer layer_of(std::vector<double> values) { return {&law_kinds()[0], std::move(values)}; }
+template <typename... Values>
+Layer layer_of(Values... values) {
+  return {&law_kinds()[0], {values...}};
+}
 
-const Mistake kMistakes[] = {
+const std::vector<Mistake> kWrongBodies{
     {"upper.shape", [](Scene& s) { s.surfaces.clear(); }},
     {"upper.radius", [](Scene& s) { s.surfaces[0].radius = 0.0; }},
     {"upper.angle", [](Scene& s) { s.surfaces[0].angle = kNaN; }},
@@ -49,18 +51,12 @@ const Mistake kMistakes[] = {
     {"upper.young_modulus", [](Scene& s) { s.upper.young_modulus = -1.0; }},
     {"lower.poisson_ratio", [](Scene& s) { s.lower.poisson_ratio = 0.6; }},
     {"lower.rigid", [](Scene& s) { s.upper.young_modulus = s.lower.young_modulus = kInfinite; }},
-    {"layer.kind", [](Scene& s) { s.layer = layer_of({1e-12}); }},
-    {"layer.normal_compliance",
-     [](Scene& s) {
-       s.layer = layer_of({-1e-12, 1e-12});
-     }},
-    {"layer.tangential_compliance",
-     [](Scene& s) {
-       s.layer = layer_of({1e-12, kNaN});
-     }},
+    {"layer.kind", [](Scene& s) { s.layer = layer_of(1e-12); }},
+    {"layer.normal_compliance", [](Scene& s) { s.layer = layer_of(-1e-12, 1e-12); }},
+    {"layer.tangential_compliance", [](Scene& s) { s.layer = layer_of(1e-12, kNaN); }},
     {"contact.pressure",
      [](Scene& s) {
-       s.layer = layer_of({1e-12, 1e-12});
+       s.layer = layer_of(1e-12, 1e-12);
        s.pressure = PressureModel::hertz;
      }},
     {"contact.friction", [](Scene& s) { s.friction = kNaN; }},
@@ -69,6 +65,9 @@ const Mistake kMistakes[] = {
        s.coupling = Coupling::full;
        s.pressure = PressureModel::hertz;
      }},
+};
+
+const std::vector<Mistake> kWrongLoadsAndGrids{
     {"step", [](Scene& s) { s.steps.clear(); }},
     {"load.normal", [](Scene& s) { s.steps[0].normal.reset(); }},
     {"load.moment_ratio", [](Scene& s) { s.steps[0].torsion = MomentRatio{1.0}; }},
@@ -95,12 +94,14 @@ const Mistake kMistakes[] = {
 };
 
 TEST(Validate, NamesTheKeyOfEachMistake) {
-  for (const auto& [key, make] : kMistakes) {
-    Scene scene = paper_scene(16, 0.5);
-    scene.source.clear();
-    EXPECT_EQ(complaint([&] { validate(scene); }), "") << key;
-    make(scene);
-    EXPECT_THAT(complaint([&] { solve(scene); }), HasSubstr(std::string("scene: ") + key + " = "));
+  for (const std::vector<Mistake>& mistakes : {kWrongBodies, kWrongLoadsAndGrids}) {
+    for (const auto& [key, make] : mistakes) {
+      Scene scene = paper_scene(16, 0.5);
+      scene.source.clear();
+      EXPECT_EQ(complaint([&] { validate(scene); }), "") << key;
+      make(scene);
+      EXPECT_THAT(complaint([&] { solve(scene); }), HasSubstr(std::string("scene: ") + key + " = "));
+    }
   }
 }
 
