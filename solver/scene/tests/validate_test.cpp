@@ -37,6 +37,16 @@ Layer layer_of(Values... values) {
   return {&law_kinds()[0], {values...}};
 }
 
+void expect_named(const std::vector<Mistake>& mistakes) {
+  for (const auto& [key, make] : mistakes) {
+    Scene scene = paper_scene(16, 0.5);
+    scene.source.clear();
+    EXPECT_EQ(complaint([&] { validate(scene); }), "") << key;
+    make(scene);
+    EXPECT_THAT(complaint([&] { solve(scene); }), HasSubstr(std::string("scene: ") + key + " = "));
+  }
+}
+
 const std::vector<Mistake> kWrongBodies{
     {"upper.shape", [](Scene& s) { s.surfaces.clear(); }},
     {"upper.radius", [](Scene& s) { s.surfaces[0].radius = 0.0; }},
@@ -67,6 +77,8 @@ const std::vector<Mistake> kWrongBodies{
      }},
 };
 
+TEST(Validate, NamesTheKeyOfAWrongBody) { expect_named(kWrongBodies); }
+
 const std::vector<Mistake> kWrongLoadsAndGrids{
     {"step", [](Scene& s) { s.steps.clear(); }},
     {"load.normal", [](Scene& s) { s.steps[0].normal.reset(); }},
@@ -93,17 +105,7 @@ const std::vector<Mistake> kWrongLoadsAndGrids{
      }},
 };
 
-TEST(Validate, NamesTheKeyOfEachMistake) {
-  for (const std::vector<Mistake>& mistakes : {kWrongBodies, kWrongLoadsAndGrids}) {
-    for (const auto& [key, make] : mistakes) {
-      Scene scene = paper_scene(16, 0.5);
-      scene.source.clear();
-      EXPECT_EQ(complaint([&] { validate(scene); }), "") << key;
-      make(scene);
-      EXPECT_THAT(complaint([&] { solve(scene); }), HasSubstr(std::string("scene: ") + key + " = "));
-    }
-  }
-}
+TEST(Validate, NamesTheKeyOfWrongLoadsAndGrids) { expect_named(kWrongLoadsAndGrids); }
 
 TEST(Validate, ASceneAsItIsConstructedLacksItsShape) {
   EXPECT_THAT(complaint([] { validate(Scene()); }), HasSubstr("upper.radius = 0: allowed: positive"));
