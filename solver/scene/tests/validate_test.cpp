@@ -37,14 +37,24 @@ Layer layer_of(Values... values) {
   return {&law_kinds()[0], {values...}};
 }
 
-void expect_named(const std::vector<Mistake>& mistakes) {
-  for (const auto& [key, make] : mistakes) {
-    Scene scene = paper_scene(16, 0.5);
-    scene.source.clear();
-    EXPECT_EQ(complaint([&] { validate(scene); }), "") << key;
-    make(scene);
-    EXPECT_THAT(complaint([&] { solve(scene); }), HasSubstr(std::string("scene: ") + key + " = "));
-  }
+void press_a_layer_by_hertz(Scene& s) {
+  s.layer = layer_of(1e-12, 1e-12);
+  s.pressure = PressureModel::hertz;
+}
+
+void couple_hertz_fully(Scene& s) {
+  s.coupling = Coupling::full;
+  s.pressure = PressureModel::hertz;
+}
+
+void push_and_displace(Scene& s) {
+  s.steps[0].force = {1.0, 0.0};
+  s.steps[0].displacement = {1e-6, 0.0};
+}
+
+void push_by_the_papers_method(Scene& s) {
+  s.method = Method::paper;
+  s.steps[0].force = {1.0, 0.0};
 }
 
 const std::vector<Mistake> kWrongBodies{
@@ -64,18 +74,20 @@ const std::vector<Mistake> kWrongBodies{
     {"layer.kind", [](Scene& s) { s.layer = layer_of(1e-12); }},
     {"layer.normal_compliance", [](Scene& s) { s.layer = layer_of(-1e-12, 1e-12); }},
     {"layer.tangential_compliance", [](Scene& s) { s.layer = layer_of(1e-12, kNaN); }},
-    {"contact.pressure",
-     [](Scene& s) {
-       s.layer = layer_of(1e-12, 1e-12);
-       s.pressure = PressureModel::hertz;
-     }},
+    {"contact.pressure", press_a_layer_by_hertz},
     {"contact.friction", [](Scene& s) { s.friction = kNaN; }},
-    {"contact.coupling",
-     [](Scene& s) {
-       s.coupling = Coupling::full;
-       s.pressure = PressureModel::hertz;
-     }},
+    {"contact.coupling", couple_hertz_fully},
 };
+
+void expect_named(const std::vector<Mistake>& mistakes) {
+  for (const auto& [key, make] : mistakes) {
+    Scene scene = paper_scene(16, 0.5);
+    scene.source.clear();
+    EXPECT_EQ(complaint([&] { validate(scene); }), "") << key;
+    make(scene);
+    EXPECT_THAT(complaint([&] { solve(scene); }), HasSubstr(std::string("scene: ") + key + " = "));
+  }
+}
 
 TEST(Validate, NamesTheKeyOfAWrongBody) { expect_named(kWrongBodies); }
 
@@ -86,11 +98,7 @@ const std::vector<Mistake> kWrongLoadsAndGrids{
     {"load.moment", [](Scene& s) { s.steps[0].torsion = Moment{kNaN}; }},
     {"load.twist", [](Scene& s) { s.steps[0].torsion = Twist{kInfinite}; }},
     {"load.force", [](Scene& s) { s.steps[0].force[0] = kNaN; }},
-    {"load.displacement",
-     [](Scene& s) {
-       s.steps[0].force = {1.0, 0.0};
-       s.steps[0].displacement = {1e-6, 0.0};
-     }},
+    {"load.displacement", push_and_displace},
     {"cycles", [](Scene& s) { s.cycles = 0; }},
     {"grid.cells", [](Scene& s) { s.cells = {}; }},
     {"grid.extent", [](Scene& s) { s.extent.emplace(); }},
@@ -98,11 +106,7 @@ const std::vector<Mistake> kWrongLoadsAndGrids{
     {"solver.max_iterations", [](Scene& s) { s.max_iterations = 0; }},
     {"solver.threads", [](Scene& s) { s.threads = -1; }},
     {"solver.rounding_seed", [](Scene& s) { s.rounding_seed = -1; }},
-    {"solver.method",
-     [](Scene& s) {
-       s.method = Method::paper;
-       s.steps[0].force = {1.0, 0.0};
-     }},
+    {"solver.method", push_by_the_papers_method},
 };
 
 TEST(Validate, NamesTheKeyOfWrongLoadsAndGrids) { expect_named(kWrongLoadsAndGrids); }
