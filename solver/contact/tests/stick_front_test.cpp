@@ -119,9 +119,6 @@ TEST_P(MadeUpFront, IsFoundAtAHighOrder) {
   const Errors coarse = worst(shape.made_up, 64);
   const Errors fine = worst(shape.made_up, 128);
   const Errors finest = worst(shape.made_up, 256);
-  RecordProperty("errors",
-                 fmt::format("{:.2e} {:.2e} {:.2e}, counted {:.2e} {:.2e} {:.2e}", coarse.fitted, fine.fitted,
-                             finest.fitted, coarse.counted, fine.counted, finest.counted));
   EXPECT_LE(fine.fitted, coarse.fitted / 6.0);
   EXPECT_LE(finest.fitted, fine.fitted / 2.0);
   EXPECT_LE(fine.fitted, shape.at_128);
@@ -375,7 +372,6 @@ TEST_P(CircularContact, SticksWithinLubkinsRadius) {
   };
   const Errors coarse = errors(64);
   const Errors fine = errors(128);
-  RecordProperty("errors", fmt::format("{:.2e} {:.2e}", coarse.fitted, fine.fitted));
   EXPECT_LE(coarse.fitted, 1.3e-3);
   EXPECT_LE(fine.fitted, 4e-4);
   EXPECT_LE(5.0 * coarse.fitted, coarse.counted);
