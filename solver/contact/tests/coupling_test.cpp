@@ -240,35 +240,6 @@ TEST(FullCoupling, EndsWhateverTheFriction) {
   }
 }
 
-/// The plain turns, each problem solved in full from nothing, and nothing combined, until no pressure
-/// changes.
-TEST(FullCoupling, EndsWherePlainTurnsEnd) {
-  for (const double friction : {0.3, 3.0}) {
-    Scene scene = dissimilar(Coupling::full, 0.4, 20);
-    scene.friction = friction;
-    const ModelSolution accelerated = solved(scene);
-    const Model& model = accelerated.model;
-    const double total = accelerated.normal.pressure.sum();
-    ArrayXd pressure, traction = ArrayXd::Zero(2 * model.grid.cells());
-    for (int turn = 0; turn < 40; ++turn) {
-      const ArrayXd opening = -applied(shear_kernel(), model, traction);
-      pressure =
-          solve_normal_contact({.law = model.law}, model.grid,
-                               {.gap = model.gap + opening, .total_pressure = total}, {.tolerance = kGap})
-              .pressure;
-      TangentialProblem problem{};
-      problem.friction_bound = model.friction * pressure;
-      problem.initial_displacement = applied(coupling_kernel(), model, pressure);
-      problem.moment = 0.4 * moment_limit(model.grid, problem.friction_bound);
-      CoulombOptions full;
-      full.tolerance = kGap;
-      traction = solve_by_coulomb_method({.law = model.law}, model.grid, problem, full).traction;
-    }
-    EXPECT_LE(relative_difference(accelerated.normal.pressure, pressure), 1e-6) << friction;
-    EXPECT_LE(relative_difference(accelerated.tangential.traction, traction), 1e-6) << friction;
-  }
-}
-
 // --- Goodman, Spence ---
 
 Scene spence(Shape shape, Coupling coupling, Index cells) {
