@@ -11,6 +11,7 @@
 
 #include "solver/contact/paper_method.hpp"
 #include "solver/elasticity/direct.hpp"
+#include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/tests/dense_algebra.hpp"
 #include "solver/tests/limits.hpp"
 
