@@ -200,8 +200,8 @@ TEST_F(BadNormalProblem, TooFewIterationsAreAStatusWithItsNumbers) {
 /// In one cell the load says it all: p = W/h^2, approach = K33 p.
 TEST(OneCell, CarriesTheLoad) {
   const Grid grid{1, 1, 1.0, 1.0};
-  const HalfSpaces pair(elastic_pair({1.0, 0.3}, {std::numeric_limits<double>::infinity(), 0.0}));
-  const NormalSolution solution = solve_normal_contact({pair}, grid, {ArrayXd::Zero(1), 3.0});
+  const Elasticity elasticity{half_spaces({1.0, 0.3}, {std::numeric_limits<double>::infinity(), 0.0})};
+  const NormalSolution solution = solve_normal_contact(elasticity, grid, {ArrayXd::Zero(1), 3.0});
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   EXPECT_DOUBLE_EQ(solution.pressure[0], 3.0);
   EXPECT_NEAR(solution.approach, 3.0 * 0.7 / (2.0 * pi) * 4.0 * std::log(1.0 + std::numbers::sqrt2), 1e-14);
