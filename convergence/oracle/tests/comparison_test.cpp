@@ -7,12 +7,10 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "analytic/indentation.hpp"
 #include "convergence/oracle/errors.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/results/result.hpp"
 #include "solver/model.hpp"
-#include "solver/scene/hertz_pressure.hpp"
 #include "solver/solve.hpp"
 
 namespace slipstick::convergence {
@@ -39,14 +37,6 @@ Compared solve_scene(const char* name, int cells, const std::string& ratio,
 // What the program promises at 128 cells with the pressure solved on the same grid.
 constexpr double kTwistAt128 = 2e-4;
 constexpr double kTractionAt128 = 1e-2;
-
-TEST(Comparison, PaperMethodAt128Cells) {
-  for (const char* ratio : {"0.5", "0.9"}) {
-    const Errors errors = solve_scene("/paper.toml", 128, ratio).errors;
-    EXPECT_LE(std::abs(errors.twist), kTwistAt128) << ratio;
-    EXPECT_LE(errors.traction.at_centres.l1, kTractionAt128) << ratio;
-  }
-}
 
 /// Bodies between a sphere and a flat punch. Twist about h^2, pressure about h^1.5 in L1 for its steep edge,
 /// over a factor 4 in h; half an order is left for the staircase of contact and stick area.
@@ -213,18 +203,6 @@ TEST(Comparison, LeavesOutWhatIsInfinite) {
     for (const FieldError& field : {odd.errors.pressure, odd.errors.traction.at_centres}) {
       for (const double error : {field.l1, field.l2, field.max}) EXPECT_TRUE(std::isfinite(error)) << name;
     }
-  }
-}
-
-// Both sides find Hertz's ellipse, by different integrals and different root-finders.
-TEST(Comparison, HertzEllipseOfBothSides) {
-  constexpr double tolerance = 1e-13;
-  for (const double ratio : {1.0, 1.0001, 1.5, 0.2, 10.0, 400.0, 1.0 / 400.0}) {
-    const analytic::HertzEllipse exact = analytic::hertz_ellipse(3.0, ratio, 1.0, 7.0);
-    const solver::HertzContact numerical = solver::hertz_contact(3.0, ratio, 1.0, 7.0);
-    EXPECT_NEAR(numerical.semi_axis_1 / exact.semi_axis_1, 1.0, tolerance) << ratio;
-    EXPECT_NEAR(numerical.semi_axis_2 / exact.semi_axis_2, 1.0, tolerance) << ratio;
-    EXPECT_NEAR(numerical.peak_pressure / exact.peak_pressure, 1.0, tolerance) << ratio;
   }
 }
 
