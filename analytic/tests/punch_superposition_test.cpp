@@ -10,7 +10,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "analytic/gsl.hpp"
 #include "analytic/references/references.hpp"
 #include "analytic/tests/values.hpp"
 #include "analytic/torsion.hpp"
@@ -91,25 +90,6 @@ TEST(Superposition, AgreesWithReferences) {
   }
 }
 
-TEST(PowerProfile, OfFourHasItsPolynomial) {
-  const auto profile = power_profile(4);
-  for (const double r : {0.0, 0.1, 0.5, 0.9, 0.9999}) {
-    const double v = std::sqrt((1 - r) * (1 + r));
-    EXPECT_NEAR(profile->pressure(r) / (v * (1 - 2 * v * v / 3)), 1, kFewRoundings) << r;
-  }
-}
-
-/// H = integral_r^1 p/sqrt: for n = 4 in closed form, by integral_0^inf of p(c cosh u).
-TEST(PowerProfile, HasTheTwistOfItsPressure) {
-  for (const double n : {0.5, 1.5, 4.0, 30.0})
-    for (const double c : {0.1, 0.5, 0.9}) {
-      const auto profile = power_profile(n);
-      const double h = gsl::integral(
-          [&](double u) { return profile->pressure(std::min(1.0, c * std::cosh(u))); }, 0, std::acosh(1 / c));
-      EXPECT_NEAR(profile->twist_integral(at(c)) / h, 1, 1e-9) << n << ", " << c;
-    }
-}
-
 TEST(PowerProfile, TellsItsPeakAndItsMean) {
   for (const double n : {0.01, 0.7, 1.0})
     EXPECT_EQ(power_profile(n)->pressure(0), std::numeric_limits<double>::infinity()) << n;
@@ -146,16 +126,6 @@ TEST(RoundedPunchProfile, TendsToTheFlatPunch) {
         << gap;
     EXPECT_LT(profile->moment_share(before_edge(gap * 1e-6)).excess, 1e-3) << gap;
   }
-}
-
-TEST(Superposition, TractionsBeginLinearlyAtTheCentre) {
-  for (const auto& profile : profiles())
-    for (const double c : {1e-6, 0.5, 0.99}) {
-      const double r = c * 1e-9;
-      EXPECT_NEAR(profile->stick_traction(at(c), 2 * r, c - 2 * r) / profile->stick_traction(at(c), r, c - r),
-                  2, 32 * kEps)
-          << profile->name();
-    }
 }
 
 /// 1 - M/M_lim ~ c^3 for a finite pressure p(0), by (8/3) integral_0^c s^3 (-H') ds with -s H' -> p(0); under

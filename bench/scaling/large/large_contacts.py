@@ -222,7 +222,7 @@ def tables(counts):
     first = weak(model)[0]
     return {
         "laws": table(["law", "fitted to", "left out", "largest error there"], law_rows(model)),
-        "transposes": (f"Of {sum(row['ranks'] > 1 for row in counts['transposes'])} transposes counted, bytes are right to "
+        "transposes": (f"{sum(row['ranks'] > 1 for row in counts['transposes'])} transposes were counted: bytes are right to "
                        f"{100.0 * size_error:.1g} % and messages to {100.0 * message_error:.1g} %; the most that was sent is "
                        f"{part:.2f} of 64 N²."),
         "sizes": table(["cells", "memory", "flops", "bytes moved", f"time, {WORKSTATION.name}", f"time, {CLUSTER.name}"],
