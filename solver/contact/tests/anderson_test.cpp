@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "solver/grid/grid.hpp"
+
 namespace slipstick::solver {
 namespace {
 

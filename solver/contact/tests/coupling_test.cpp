@@ -106,7 +106,6 @@ TEST(NoMismatch, UncouplesEveryModel) {
     }
     scene.coupling = Coupling::none;
     const ModelSolution none = solved(scene);
-    double worst = 0.0;
     for (const Coupling coupling : {Coupling::automatic, Coupling::pressure, Coupling::full}) {
       scene.coupling = coupling;
       const ModelSolution other = solved(scene);
@@ -115,10 +114,7 @@ TEST(NoMismatch, UncouplesEveryModel) {
       EXPECT_NEAR(other.twist_angle / none.twist_angle, 1.0, kSame);
       EXPECT_NEAR(other.displacement[0] / none.displacement[0], 1.0, kSame);
       EXPECT_EQ(other.turns, 1);
-      worst = std::max({worst, relative_difference(other.normal.pressure, none.normal.pressure),
-                        relative_difference(other.tangential.traction, none.tangential.traction)});
     }
-    RecordProperty(similar ? "similar" : "dissimilar", std::to_string(worst * 1e15) + "e-15");
   }
 }
 
@@ -218,14 +214,12 @@ TEST(FullCoupling, HoldsBothLawsAtOnce) {
     EXPECT_LE(std::max(fresh.moment, fresh.force), kRounding);
     EXPECT_GT(solution.turns, 1);
     EXPECT_EQ(solution.contact_radius, solution.contact_radius_counted) << "no longer Hertz's pressure";
-    RecordProperty("turns_" + std::to_string(std::lround(-std::log10(tolerance))), solution.turns);
   }
 }
 
 /// Friction that holds everything, or a push close to sliding, where shear follows pressure and pressure
 /// shear: an answer, or a status that says why there is none.
 TEST(FullCoupling, EndsWhateverTheFriction) {
-  int unsettled = 0;
   for (const double friction : {0.3, 1.0, 3.0, 30.0}) {
     for (const double push : {0.0, 0.9, 0.99}) {
       Scene scene = dissimilar(Coupling::full, 0.0, 16);
@@ -241,39 +235,8 @@ TEST(FullCoupling, EndsWhateverTheFriction) {
         EXPECT_LE(solution.normal.complementarity, 1e-8);
       } else {
         EXPECT_NE(solution.message, "");
-        ++unsettled;
       }
     }
-  }
-  RecordProperty("unsettled", unsettled);
-}
-
-/// The plain turns, each problem solved in full from nothing, and nothing combined, until no pressure
-/// changes.
-TEST(FullCoupling, EndsWherePlainTurnsEnd) {
-  for (const double friction : {0.3, 3.0}) {
-    Scene scene = dissimilar(Coupling::full, 0.4, 20);
-    scene.friction = friction;
-    const ModelSolution accelerated = solved(scene);
-    const Model& model = accelerated.model;
-    const double total = accelerated.normal.pressure.sum();
-    ArrayXd pressure, traction = ArrayXd::Zero(2 * model.grid.cells());
-    for (int turn = 0; turn < 40; ++turn) {
-      const ArrayXd opening = -applied(shear_kernel(), model, traction);
-      pressure =
-          solve_normal_contact({.law = model.law}, model.grid,
-                               {.gap = model.gap + opening, .total_pressure = total}, {.tolerance = kGap})
-              .pressure;
-      TangentialProblem problem{};
-      problem.friction_bound = model.friction * pressure;
-      problem.initial_displacement = applied(coupling_kernel(), model, pressure);
-      problem.moment = 0.4 * moment_limit(model.grid, problem.friction_bound);
-      CoulombOptions full;
-      full.tolerance = kGap;
-      traction = solve_by_coulomb_method({.law = model.law}, model.grid, problem, full).traction;
-    }
-    EXPECT_LE(relative_difference(accelerated.normal.pressure, pressure), 1e-6) << friction;
-    EXPECT_LE(relative_difference(accelerated.tangential.traction, traction), 1e-6) << friction;
   }
 }
 
@@ -317,7 +280,6 @@ TEST_P(Spence, HoldsUnderAFlatPunch) {
     const double cell = 2.0 / static_cast<double>(cells - 4);  // over the punch's radius
     const double error = counted_stick_ratio(solution) - exact_stick_ratio(GetParam());
     EXPECT_LE(std::abs(error), 0.25 * cell);
-    RecordProperty("error_in_cells_" + std::to_string(cells), std::to_string(error / cell));
   }
 }
 
@@ -334,7 +296,6 @@ TEST(SpenceScenes, CostFewApplications) {
   solve_in_model_units(sphere,
                        [&](const ModelSolution& step) { applications += step.operator_applications; });
   EXPECT_LE(applications, 300.0);
-  RecordProperty("sphere", std::to_string(applications));
 }
 
 /// Mean stick ratio over the end of a sphere's loading, each step by the same factor, from a 64th of the
@@ -371,8 +332,6 @@ TEST_P(Spence, HoldsInEachStepOfAGrowingContact) {
   EXPECT_LT(few, many);
   EXPECT_LT(many, exact);
   EXPECT_NEAR(2.0 * many - few, exact, 0.5 * 2.0 / static_cast<double>(cells)) << "a quarter of a cell";
-  RecordProperty("steps_10", std::to_string(few));
-  RecordProperty("steps_20", std::to_string(many));
 }
 
 /// With friction enough to hold everything a punch is bonded: stiffer than without friction by ln(3 - 4 nu)
@@ -386,7 +345,6 @@ TEST(BondedPunch, IsStifferByTheLogarithmOfThree) {
     EXPECT_EQ(bonded.stick_cells, bonded.contact_cells);
     scene.coupling = Coupling::none;
     errors.push_back(solved(scene).approach / (std::log(3.0) * bonded.approach) - 1.0);
-    RecordProperty("error_" + std::to_string(cells), std::to_string(errors.back()));
   }
   EXPECT_LT(std::abs(errors[1]), 4e-3);
   EXPECT_NEAR(2.0 * errors[1] - errors[0], 0.0, 3e-4);

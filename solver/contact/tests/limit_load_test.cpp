@@ -119,16 +119,6 @@ TEST(LimitMoment, MovesWithTheContact) {
   expect_centre(moved.limit({0.0, 0.0, 1.0}), moved.grid.x1(i0 + 7), moved.grid.x2(j0 + 7));
 }
 
-TEST(LimitMoment, IsLessThanAboutAnyOtherCentre) {
-  const LimitContact contact = rough(3);
-  const LimitLoad limit = contact.limit({0.0, 0.0, 1.0});
-  for (const double turn : {0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0}) {
-    const double c1 = (*limit.centre)[0] + 1e-3 * std::cos(turn);
-    const double c2 = (*limit.centre)[1] + 1e-3 * std::sin(turn);
-    EXPECT_LT(limit.factor, friction_in(contact, {c2, -c1, 1.0}));
-  }
-}
-
 TEST(LimitMoment, OfTwoEqualCellsIsTheirForceTimesTheirDistance) {
   LimitContact pair = empty(7, 5);
   pair(0, 1) = pair(6, 4) = 3.0;
@@ -148,16 +138,6 @@ TEST(LimitMoment, OfAStrongAndAWeakCellTurnsAboutTheStrongOne) {
     expect_relative(pair.moment(), weak * std::hypot(6 * 0.25, 3 * 0.25));
     expect_centre(pair.limit({0.0, 0.0, 1.0}), pair.grid.x1(6), pair.grid.x2(4));
   }
-}
-
-TEST(LimitMoment, OfCellsOnALineTurnsAboutTheirMedian) {
-  LimitContact line = empty(9, 4);
-  line(0, 2) = 1.0;
-  line(3, 2) = 2.0;
-  line(4, 2) = 0.5;
-  line(8, 2) = 2.0;
-  expect_relative(line.moment(), 0.25 * (3 * 1.0 + 1 * 0.5 + 5 * 2.0));
-  expect_centre(line.limit({0.0, 0.0, 1.0}), line.grid.x1(3), line.grid.x2(2));
 }
 
 // Along the line friction has no curvature, only kinks, and here two neighbours that both are medians.
@@ -222,20 +202,6 @@ TEST(LimitForce, IsAllOfTheFrictionThroughTheCentreOfASymmetricContact) {
 TEST(LimitForce, BesideTheCentreIsLess) {
   const LimitContact contact = rough(7);
   EXPECT_LT(contact.limit({0.3, -0.4, 0.0}).factor, 0.999 * contact.sum() / 0.5);
-}
-
-TEST(LimitLoad, OfADiscAndARingUnderForceAndMomentIsALeastSum) {
-  // Turning centres lie on the axis across the force, by symmetry.
-  for (const LimitContact& contact : {hertz_disc(16), hertz_disc(17), ring(25)}) {
-    for (const double force : {0.05, 1.0, 8.0}) {
-      const auto friction = [&](double delta1) {
-        return friction_in(contact, {delta1, 0.0, 1.0 - force * delta1});
-      };
-      const LimitLoad limit = contact.limit({force, 0.0, 1.0});
-      expect_relative(limit.factor, golden_section_minimum(friction, -2.0 / force, 2.0 / force));
-      EXPECT_NEAR(limit.sliding.delta2, 0.0, kMotion);
-    }
-  }
 }
 
 TEST(LimitLoad, OfAnyContactIsALeastSum) {

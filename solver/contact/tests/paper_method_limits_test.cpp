@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 
+#include "solver/contact/projected_gradient.hpp"
 #include "solver/input/tests/complaint.hpp"
 #include "solver/model_solution.hpp"
 #include "solver/tests/scene_file.hpp"
@@ -26,15 +27,18 @@ TEST(Unloaded, HasNoTraction) {
   for (const TangentialProblem& problem :
        {under_moment(bench.bound, 0.0), under_twist(bench.bound, 0.0), under_moment(0.0 * bench.bound, 0.0),
         under_twist(0.0 * bench.bound, 1e-3)}) {
-    const TangentialSolution solution = solve_by_paper_method(*bench.op, problem);
-    EXPECT_EQ(solution.status, Status::converged) << solution.message;
-    EXPECT_EQ(largest(solution.traction), 0.0);
-    EXPECT_EQ(solution.twist, problem.twist.value_or(0.0));
-    const Certificate certificate = certify({solution.traction, solution.elastic_displacement, solution.slip},
-                                            problem.friction_bound, rotation_field(bench.model.grid), 0.0);
-    EXPECT_EQ(certificate.gap, 0.0);
-    EXPECT_EQ(certificate.moment, 0.0);
-    EXPECT_LE(certificate.friction_bound, 0.0);
+    for (const TangentialSolution& solution :
+         {solve_by_paper_method(*bench.op, problem), solve_by_projected_gradient(*bench.op, problem)}) {
+      EXPECT_EQ(solution.status, Status::converged) << solution.message;
+      EXPECT_EQ(largest(solution.traction), 0.0);
+      EXPECT_EQ(solution.twist, problem.twist.value_or(0.0));
+      const Certificate certificate =
+          certify({solution.traction, solution.elastic_displacement, solution.slip}, problem.friction_bound,
+                  rotation_field(bench.model.grid), 0.0);
+      EXPECT_EQ(certificate.gap, 0.0);
+      EXPECT_EQ(certificate.moment, 0.0);
+      EXPECT_LE(certificate.friction_bound, 0.0);
+    }
   }
   Scene frictionless = paper_scene(16, 0.5);
   frictionless.friction = 0.0;
@@ -85,20 +89,6 @@ TEST(OneCell, OnTheAxisIsNoStickArea) {
   }
 }
 
-/// A linear operator of the test's own.
-class FakeOperator final : public LinearOperator {
- public:
-  FakeOperator(const Grid& grid, double factor)
-      : LinearOperator(grid, tangential_kernel()), factor_(factor) {}
-
- private:
-  void do_apply(std::span<const double> traction, std::span<double> displacement) override {
-    std::transform(traction.begin(), traction.end(), displacement.begin(),
-                   [this](double q) { return factor_ * q; });
-  }
-  double factor_;
-};
-
 TEST(Breakdown, OfTooFewIterationsIsNamedWithItsNumbers) {
   const Bench bench(24);
   PaperOptions options = to_tolerance(1e-9);
@@ -118,7 +108,7 @@ TEST(Breakdown, OfNumbersThatAreNotFiniteIsNamed) {
   const Bench bench(24);
   for (const double factor :
        {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
-    FakeOperator broken(bench.model.grid, factor);
+    Multiple broken(bench.model.grid, factor);
     const TangentialSolution solution =
         solve_by_paper_method(broken, under_moment(bench.bound, 0.5 * bench.limit));
     EXPECT_EQ(solution.status, Status::not_converged);
@@ -129,7 +119,7 @@ TEST(Breakdown, OfNumbersThatAreNotFiniteIsNamed) {
 
 TEST(Breakdown, OfAnOperatorThatIsNotPositiveDefiniteIsNamed) {
   const Bench bench(24);
-  FakeOperator indefinite(bench.model.grid, -1.0);
+  Multiple indefinite(bench.model.grid, -1.0);
   const TangentialSolution solution =
       solve_by_paper_method(indefinite, under_moment(bench.bound, 0.5 * bench.limit));
   EXPECT_EQ(solution.status, Status::not_converged);

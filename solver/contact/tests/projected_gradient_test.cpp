@@ -169,20 +169,6 @@ TEST(EllipticContact, IsNotWithoutTractionWhereThePressureMovesTheSurfaces) {
   }
 }
 
-/// The paper's method freezes slip directions; how far its energy is off, its own certificate bounds.
-TEST(EllipticContact, HasLessEnergyThanThePapersMethodLeaves) {
-  const GradientBench bench(24);
-  const ArrayXd no_load = ArrayXd::Zero(bench.t.size());
-  const TangentialProblem problem = under_moment(bench.bound, 0.9 * bench.limit);
-  const TangentialSolution solution = bench.solve(problem);
-  const TangentialSolution paper = solve_by_paper_method(*bench.op, problem, to_tolerance(1e-11));
-  const double energy = 0.5 * (paper.traction * paper.elastic_displacement).sum();
-  const double excess =
-      (bench.energy(paper.traction, no_load) - bench.energy(solution.traction, no_load)) / energy;
-  EXPECT_GT(excess, 1e-6);
-  EXPECT_LE(excess, bench.gap_of(paper));
-}
-
 /// |q - q*|_K^2/2 is at most the gap: a looser solution differs from a tight one by no more.
 TEST(EllipticContact, IsAsNearAsItsGapPromises) {
   const GradientBench bench(24);
@@ -196,19 +182,6 @@ TEST(EllipticContact, IsAsNearAsItsGapPromises) {
     EXPECT_LT(loose.iterations, tight.iterations);
     const ArrayXd error = loose.traction - tight.traction;
     EXPECT_LE(bench.energy(error, 0.0 * error), 2.0 * tolerance * energy);
-  }
-}
-
-TEST(Circle, TurnsAsThePapersMethodSays) {
-  const Bench bench(24);
-  for (const double ratio : {0.1, 0.5, 0.9}) {
-    const TangentialSolution solution = solve_by_projected_gradient(
-        *bench.op, under_moment(bench.bound, ratio * bench.limit), to_gap(kGradientGap));
-    ASSERT_EQ(solution.status, Status::converged) << solution.message;
-    const TangentialSolution paper = bench.twist_by_moment(ratio);
-    EXPECT_NEAR(solution.twist / paper.twist, 1.0, 1e-4);  // the frozen directions, a gap of 1e-6 or so
-    EXPECT_TRUE((solution.stick == paper.stick).all());
-    EXPECT_LE(bench.certify_solution(solution, ratio * bench.limit).force, 1e-8);
   }
 }
 
@@ -257,20 +230,6 @@ TEST(FullStick, UnderATinyMoment) {
   ASSERT_EQ(solution.status, Status::converged) << solution.message;
   EXPECT_EQ(solution.stick.sum(), static_cast<double>((bench.bound > 0.0).count()));
   EXPECT_NEAR(bench.moment_of(solution.traction) / bench.limit, 1e-3, kRounding);
-}
-
-TEST(Unloaded, HasNoTractionByProjectedGradientEither) {
-  const Bench bench(16);
-  for (const TangentialProblem& problem :
-       {under_moment(bench.bound, 0.0), under_twist(bench.bound, 0.0), under_moment(0.0 * bench.bound, 0.0),
-        under_twist(0.0 * bench.bound, 1e-3)}) {
-    const TangentialSolution solution = solve_by_projected_gradient(*bench.op, problem);
-    EXPECT_EQ(solution.status, Status::converged) << solution.message;
-    EXPECT_EQ(largest(solution.traction), 0.0);
-    EXPECT_EQ(largest(solution.slip), 0.0);
-    EXPECT_EQ(solution.twist, problem.twist.value_or(0.0));
-    EXPECT_EQ(solution.stick.sum(), static_cast<double>((problem.friction_bound > 0.0).count()));
-  }
 }
 
 TEST(ProjectedGradient, RefusesWhatNoTractionCanCarry) {

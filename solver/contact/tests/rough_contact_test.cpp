@@ -42,7 +42,7 @@ struct RoughFace {
   ArrayXd gap;
 };
 
-/// The aim is 40 and its bound 60 of them, on any mesh.
+/// Applications on any mesh: at most, and where spots have many cells.
 constexpr double kMostApplications = 60.0;
 constexpr double kWantedApplications = 40.0;
 constexpr double kTolerance = 1e-10;

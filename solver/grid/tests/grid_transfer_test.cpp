@@ -113,24 +113,6 @@ TEST_P(Transfer, ProlongationIsExactForBilinearFields) {
   }
 }
 
-/// The rotation (-x2, x1) passes through zero on the axis that its component is odd about.
-TEST_P(Transfer, ProlongationOfARotationIsExactUpToTheOuterCentres) {
-  const ArrayXd prolonged = prolong_to(fine_, coarse_, rotation_field(coarse_), torsion_symmetry());
-  const ArrayXd exact = rotation_field(fine_);
-  ASSERT_EQ(prolonged.size(), exact.size());
-  for (Index i = 0; i < fine_.n1; ++i) {
-    for (Index j = 0; j < fine_.n2; ++j) {
-      const Index cell = i * fine_.n2 + j;
-      const double outer_1 = coarse_.x1(coarse_.n1 - 1);
-      const double outer_2 = coarse_.x2(coarse_.n2 - 1);
-      const double x1 = std::clamp(fine_.x1(i), -outer_1, outer_1);
-      const double x2 = std::clamp(fine_.x2(j), -outer_2, outer_2);
-      EXPECT_NEAR(prolonged[cell], -x2, kRounding * 10.0 * exact.abs().maxCoeff());
-      EXPECT_NEAR(prolonged[cell + fine_.cells()], x1, kRounding * 10.0 * exact.abs().maxCoeff());
-    }
-  }
-}
-
 class QuadrantTransfer : public testing::TestWithParam<Grid> {};
 INSTANTIATE_TEST_SUITE_P(Sizes, QuadrantTransfer, testing::ValuesIn(kGrids), [](const auto& tested) {
   return std::to_string(tested.param.n1) + "x" + std::to_string(tested.param.n2);
@@ -151,22 +133,6 @@ TEST_P(QuadrantTransfer, IsThatOfTheMirrorImages) {
   const ArrayXd restricted = restrict_to(whole_grid(coarse), whole_grid(fine), unfold(fine, on_fine, all));
   EXPECT_LE(largest_difference(unfold(coarse, restrict_to(coarse, fine, on_fine), all), restricted),
             10.0 * kRounding);
-}
-
-/// Not all centres lie beside the same neighbours, so the mirror's sign must be seen.
-TEST(QuadrantProlongation, FollowsTheParity) {
-  const Grid fine{2, 2, 1.0, 1.0, true};
-  const Grid coarse = coarser(fine);
-  ASSERT_EQ(coarse.cells(), 1);
-  // Fine centres at 1/4 and 3/4 of the coarse cell, its own at 1/2, the image's at -1/2: 3/4 - 1/4 of it.
-  const ArrayXd odd = prolong_to(fine, coarse, ArrayXd::Ones(1), Symmetry{{-1, 1}});
-  EXPECT_DOUBLE_EQ(odd[0], 0.5);
-  EXPECT_DOUBLE_EQ(odd[1], 0.5);
-  EXPECT_DOUBLE_EQ(odd[2], 1.0);
-  EXPECT_DOUBLE_EQ(odd[3], 1.0);
-  const ArrayXd other = prolong_to(fine, coarse, ArrayXd::Ones(1), Symmetry{{1, -1}});
-  EXPECT_DOUBLE_EQ(other[1], 1.0);
-  EXPECT_DOUBLE_EQ(other[2], 0.5);
 }
 
 TEST(CanCoarsen, EndsWithAFewCellsAlongEachSide) {
@@ -190,15 +156,6 @@ TEST(CanCoarsen, EndsWithAFewCellsAlongEachSide) {
       EXPECT_LT(across, 32) << n1 << " x " << n2;
     }
   }
-}
-
-/// A long thin grid is as coarse as its short side allows.
-TEST(CanCoarsen, LooksAtTheShorterSide) {
-  EXPECT_TRUE(can_coarsen({64, 64, 1.0, 1.0}));
-  EXPECT_FALSE(can_coarsen({4096, 3, 1.0, 1.0}));
-  EXPECT_FALSE(can_coarsen({3, 4096, 1.0, 1.0}));
-  EXPECT_TRUE(can_coarsen({8, 64, 1.0, 1.0, true}));
-  EXPECT_FALSE(can_coarsen({8, 64, 1.0, 1.0, false}));
 }
 
 }  // namespace

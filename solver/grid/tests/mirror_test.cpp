@@ -29,24 +29,16 @@ TEST(Mirror, QuadrantOfTheWholeGridIsTheSame) {
   EXPECT_TRUE(again.quadrant);
 }
 
-TEST(Mirror, RotationHasTorsionsSymmetry) {
-  const ArrayXd whole = rotation_field(whole_grid(kQuadrant));
-  EXPECT_TRUE((unfold(kQuadrant, rotation_field(kQuadrant), torsion_symmetry()) == whole).all());
-  EXPECT_TRUE((restrict_to_quadrant(whole_grid(kQuadrant), whole) == rotation_field(kQuadrant)).all());
-}
-
-TEST(Mirror, NormalFieldsAreEven) {
-  const auto bowl = [](const Grid& grid) -> ArrayXd {
-    return (cell_x1(grid).square() + 3.0 * cell_x2(grid).square()).exp();
-  };
+TEST(Mirror, UnfoldsFieldsByTheirSymmetry) {
   const Grid whole = whole_grid(kQuadrant);
-  EXPECT_TRUE((unfold(kQuadrant, bowl(kQuadrant), normal_symmetry()) == bowl(whole)).all());
-  EXPECT_TRUE((restrict_to_quadrant(whole, bowl(whole)) == bowl(kQuadrant)).all());
-}
-
-TEST(Mirror, OddInBothIsTheProductOfTheCoordinates) {
-  const auto saddle = [](const Grid& grid) -> ArrayXd { return cell_x1(grid) * cell_x2(grid); };
-  EXPECT_TRUE((unfold(kQuadrant, saddle(kQuadrant), {{-1, -1}}) == saddle(whole_grid(kQuadrant))).all());
+  const auto expect = [&](const auto& field, const Symmetry& symmetry) {
+    EXPECT_TRUE((unfold(kQuadrant, field(kQuadrant), symmetry) == field(whole)).all());
+    EXPECT_TRUE((restrict_to_quadrant(whole, field(whole)) == field(kQuadrant)).all());
+  };
+  expect(rotation_field, torsion_symmetry());
+  expect([](const Grid& grid) -> ArrayXd { return cell_x1(grid).square() + 3.0 * cell_x2(grid).square(); },
+         normal_symmetry());
+  expect([](const Grid& grid) -> ArrayXd { return cell_x1(grid) * cell_x2(grid); }, {{-1, -1}});
 }
 
 TEST(Mirror, RefusesOtherGridsAndSizes) {

@@ -172,20 +172,15 @@ TEST(Trimming, KeepsTheOriginInTheMiddle) {
   EXPECT_FALSE(Reduction(kOblong, contact, contact).quadrant());
 }
 
-TEST(Trimming, LooksAtEveryRowOfAnOblongGrid) {
-  ArrayXd contact = ArrayXd::Zero(kOblong.cells());
-  contact[cell(kOblong, kOblong.n1 - 1, 0)] = 1.0;
-  const Reduction part(kOblong, contact);
-  expect_grid(part.grid(), kOblong);
-  EXPECT_EQ(part.restricted(contact).sum(), 1.0);
-}
-
-TEST(Trimming, LeavesAFullGridAlone) {
-  ArrayXd contact = ArrayXd::Zero(kOblong.cells());
-  contact[0] = 1.0;
-  const Reduction part(kOblong, contact);
-  EXPECT_FALSE(part.trimmed());
-  expect_grid(part.grid(), kOblong);
+TEST(Trimming, LeavesAGridWithContactInACornerAlone) {
+  for (const Index corner : {Index{0}, cell(kOblong, kOblong.n1 - 1, 0)}) {
+    ArrayXd contact = ArrayXd::Zero(kOblong.cells());
+    contact[corner] = 1.0;
+    const Reduction part(kOblong, contact);
+    EXPECT_FALSE(part.trimmed());
+    expect_grid(part.grid(), kOblong);
+    EXPECT_EQ(part.restricted(contact).sum(), 1.0);
+  }
   EXPECT_FALSE(Reduction(kOblong).trimmed());
   EXPECT_FALSE(Reduction(kOblong).quadrant());
 }

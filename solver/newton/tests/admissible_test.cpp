@@ -306,24 +306,6 @@ TEST(FrictionLinearised, IsTheDerivativeOfTheProjection) {
   EXPECT_GT(sticking, 5);
 }
 
-TEST(FrictionLinearised, KnowsHandMadeStates) {
-  ArrayXd bound(3);
-  bound << 10.0, 5.0, 0.0;
-  ArrayXd z(6);
-  z << 6.0, 6.0, 1.0,  //
-      8.0, -8.0, 2.0;
-  const FrictionDiscs set(bound);
-  TangentSpace space(2, 3);
-  set.linearise(z, kRho, kMeans, space);
-  EXPECT_EQ(projector(space, 0), Matrix2d::Identity());  // on its circle: sticks
-  EXPECT_EQ(space.stiffness[0], 0.0);
-  const Eigen::Vector2d along(0.8, 0.6);  // across z = (6, -8)
-  EXPECT_LE((projector(space, 1) - along * along.transpose()).cwiseAbs().maxCoeff(), 1e-15);
-  // q = (3, -4) slips by s = (q - z)/rho, of length 5/rho: |s|/(mu p) = 1/rho.
-  EXPECT_FLOAT_EQ(space.stiffness[1], static_cast<float>(1.0 / kRho));
-  EXPECT_EQ(space.free.count(), 2);
-}
-
 /// The two terms of the preconditioner together are 1/(1/xi + stiffness) at the mean along the line and at a
 /// twelfth of it.
 TEST(FrictionLinearised, PreconditionerMatchesTheSymbolTwice) {

@@ -375,19 +375,6 @@ TEST(Cg, HasNothingToDoWithoutAResidual) {
   EXPECT_EQ(b.op.applications(), 0);
 }
 
-TEST(Cg, AllocatesNothing) {
-  CgBench b({6, 6, 1.0, 1.0}, true, 10);
-  const ArrayXd c = random_field(72, 61);
-  const ArrayXd r = random_field(72, 62);
-  b.cg.precondition(b.space, one(c));
-  const long before = allocations();
-  b.cg.precondition_again(b.space);
-  b.cg.residual() = r;
-  b.cg.solve_constrained(b.space, 1e-10, kMany);
-  b.cg.solve_constrained(b.space, 0.0, 5);
-  EXPECT_EQ(allocations(), before);
-}
-
 // --- breakdowns ---
 
 CgSummary solve_with_multiple(double factor, double right) {

@@ -93,7 +93,6 @@ INSTANTIATE_TEST_SUITE_P(Conditions, Balance, testing::Values(1, 2, 3));
 
 TEST_P(Balance, MeetsLoadsUpToTheirLimit) {
   double worst = 0.0;
-  long most = 0;
   for (unsigned seed = 1; seed <= 10; ++seed) {
     Body body(GetParam(), seed);
     const FrictionDiscs discs(body.grid, body.bound);
@@ -104,7 +103,6 @@ TEST_P(Balance, MeetsLoadsUpToTheirLimit) {
         const LoadBalance balance(discs, body.conditions(loads));
         Coefficients x = Coefficients::Zero(GetParam());
         ASSERT_TRUE(balance.solve(y, x)) << part << " of the limit, |y| up to " << size << ", seed " << seed;
-        most = std::max(most, balance.evaluations());
         ArrayXd z = y;
         balance.add(x, z);
         worst = std::max(worst, body.missing(z, loads));
@@ -112,8 +110,6 @@ TEST_P(Balance, MeetsLoadsUpToTheirLimit) {
     }
   }
   EXPECT_LE(worst, kMet);
-  RecordProperty("worst", std::to_string(worst * 1e15) + "e-15");
-  RecordProperty("most_evaluations", std::to_string(most));
 }
 
 TEST_P(Balance, MeetsSmallLoadsToTheirOwnSize) {
@@ -140,7 +136,9 @@ TEST_P(Balance, IsFoundFromFarAway) {
     const ArrayXd y = body.random(2 * body.grid.cells(), -1.0, 1.0);
     const std::vector<double> loads = body.loads(0.8);
     const LoadBalance balance(discs, body.conditions(loads));
-    for (const double far : {-1e3, 1e3, 1e6}) {
+    std::vector<double> starts{-1e3, 1e3, 1e6};
+    if (GetParam() == 1) starts.push_back(std::numeric_limits<double>::quiet_NaN());
+    for (const double far : starts) {
       Coefficients x = far * body.random(GetParam(), -1.0, 1.0).matrix();
       ASSERT_TRUE(balance.solve(y, x)) << far << ", seed " << seed;
       ArrayXd z = y;
@@ -201,7 +199,6 @@ TEST_P(Balance, KnowsWhatCannotBeCarried) {
     }
   }
   EXPECT_LE(most, 450);  // two searches of 200 steps, few of them tried twice
-  RecordProperty("most_evaluations", std::to_string(most));
 }
 
 TEST_P(Balance, KnowsWhatIsNotANumber) {
@@ -236,7 +233,13 @@ TEST(BalanceOfNothing, IsMet) {
   Body body(1, 71);
   const FrictionDiscs discs(body.grid, body.bound);
   Coefficients x;
-  EXPECT_TRUE(LoadBalance(discs, {}).solve(body.random(2 * body.grid.cells(), -1.0, 1.0), x));
+  const ArrayXd y = body.random(2 * body.grid.cells(), -1.0, 1.0);
+  EXPECT_TRUE(LoadBalance(discs, {}).solve(y, x));
+  const ArrayXd no_friction = ArrayXd::Zero(body.grid.cells());
+  const FrictionDiscs nothing(body.grid, no_friction);
+  x = Coefficients::Zero(1);
+  EXPECT_TRUE(LoadBalance(nothing, body.conditions({0.0})).solve(y, x));
+  EXPECT_EQ(x[0], 0.0);
 }
 
 }  // namespace

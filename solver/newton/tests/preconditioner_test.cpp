@@ -62,9 +62,6 @@ TEST(TwoTermPreconditioner, NeedsHardlyMoreIterationsOnFinerGrids) {
   const int coarse = iterations_needed(32, true);
   const int fine = iterations_needed(128, true);
   const int one_term = iterations_needed(128, false);
-  RecordProperty("two_terms_32", coarse);
-  RecordProperty("two_terms_128", fine);
-  RecordProperty("one_term_128", one_term);
   EXPECT_LE(fine, coarse + 3);
   EXPECT_LT(2 * fine, one_term);
 }

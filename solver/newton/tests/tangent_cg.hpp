@@ -49,9 +49,6 @@ class TangentCg {
 
   bool precondition(const TangentSpace& space, std::vector<FieldCondition> conditions) {
     conditions_ = std::move(conditions);
-    return precondition_again(space);
-  }
-  bool precondition_again(const TangentSpace& space) {
     std::array<const FieldCondition*, kMaxConditions> each{};
     std::ranges::transform(conditions_, each.begin(), [](const FieldCondition& c) { return &c; });
     TangentPreconditioner inverse{symbol_, space};
