@@ -32,26 +32,24 @@ PlainNumbers::~PlainNumbers() {
 }
 
 int status_of_exception() noexcept {
+  const auto failed = [](const char* message, int status) {
+    set_message(message);
+    return status;
+  };
   try {
     throw;
   } catch (const Stopped&) {
-    set_message("stopped by the caller's progress function");
-    return SLIPSTICK_STOPPED;
+    return failed("stopped by the caller's progress function", SLIPSTICK_STOPPED);
   } catch (const std::invalid_argument& error) {
-    set_message(error.what());
-    return SLIPSTICK_BAD_INPUT;
+    return failed(error.what(), SLIPSTICK_BAD_INPUT);
   } catch (const std::domain_error& error) {
-    set_message(error.what());
-    return SLIPSTICK_BAD_INPUT;
+    return failed(error.what(), SLIPSTICK_BAD_INPUT);
   } catch (const std::bad_alloc&) {
-    set_message("memory is used up");
-    return SLIPSTICK_NO_MEMORY;
+    return failed("memory is used up", SLIPSTICK_NO_MEMORY);
   } catch (const std::exception& error) {
-    set_message(error.what());
-    return SLIPSTICK_FAILED;
+    return failed(error.what(), SLIPSTICK_FAILED);
   } catch (...) {
-    set_message("an unknown exception");
-    return SLIPSTICK_FAILED;
+    return failed("an unknown exception", SLIPSTICK_FAILED);
   }
 }
 

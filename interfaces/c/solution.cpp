@@ -56,11 +56,11 @@ struct Request {
 std::shared_mutex* solving = new std::shared_mutex;
 class Turn {
  public:
-  explicit Turn(bool alone) : beside_(*solving, std::defer_lock), alone_(*solving, std::defer_lock) {
+  explicit Turn(bool alone) {
     if (alone) {
-      alone_.lock();
+      alone_ = std::unique_lock(*solving);
     } else {
-      beside_.lock();
+      beside_ = std::shared_lock(*solving);
     }
   }
 
@@ -74,11 +74,13 @@ bool goes_alone(const Scene& scene) {
   return reads_files || scene.rounding_seed != 0;
 }
 
-/// FFTW would reuse plans that it made under another rounding, which give other digits.
-void forget_plans_after(const Scene& scene) {
-  if (scene.rounding_seed == 0) return;
-  fftw_forget_wisdom();
-}
+/// FFTW would reuse plans that it made under another rounding, which give other digits: they end with this.
+struct PlansOfOneRounding {
+  bool drawn;
+  ~PlansOfOneRounding() {
+    if (drawn) fftw_forget_wisdom();
+  }
+};
 
 /// The caller's threads may make plans, too, and a process may fork meanwhile. The lock is our own: FFTW's,
 /// fftw_make_planner_thread_safe(), would stay locked in a process forked while another thread held it.
@@ -185,14 +187,9 @@ int solve(const Request& request, slipstick_solution& kept) {
       solver::read_scene_text(request.settings.text, request.settings.file, request.overrides);
   const Turn turn(goes_alone(scene));
   const bool accurate = request.accuracy != 0;
-  std::string why;
-  try {
-    why = accurate ? solve_accurately(kept, scene, request) : solve_as_it_stands(kept, scene, request);
-  } catch (...) {
-    forget_plans_after(scene);
-    throw;
-  }
-  forget_plans_after(scene);
+  const PlansOfOneRounding plans{scene.rounding_seed != 0};
+  const std::string why =
+      accurate ? solve_accurately(kept, scene, request) : solve_as_it_stands(kept, scene, request);
   if (accurate) kept.text += convergence::accuracy_text(kept.result);
   // Names of files need not be UTF-8; JSON is.
   kept.json = kept.result.dump(2, ' ', false, Json::error_handler_t::replace);

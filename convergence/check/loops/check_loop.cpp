@@ -135,25 +135,6 @@ Json under_load_json(const LoopUnderLoad& loop, const LoopJudgement& judgement) 
   return json;
 }
 
-/// d ln(largest moment)/d ln(normal load), of the loops by least squares, and of the limit.
-struct LoadExponent {
-  double value;
-  double exact;
-  bool differs() const {
-    constexpr double kSameExponent = 0.05;
-    return !(std::abs(value - exact) <= kSameExponent);
-  }
-};
-LoadExponent load_exponent(const std::vector<LoopUnderLoad>& loops) {
-  std::vector<double> x;
-  std::vector<double> y;
-  for (const LoopUnderLoad& loop : loops) {
-    x.push_back(std::log(loop.contact.normal_load));
-    y.push_back(std::log(loop.contact.limit * largest_of(loop.path.moment)));
-  }
-  return {line_through(x, y).slope, loops.front().contact.limit_exponent};
-}
-
 /// Whether all loops reach gross slip, so that their largest moments are limits.
 bool all_slide(const std::vector<LoopUnderLoad>& loops) {
   return std::ranges::all_of(loops, [](const LoopUnderLoad& loop) {
@@ -232,14 +213,22 @@ LoopConventions find_conventions(const LoopRecord& record, std::size_t to, const
   return judgement.good && (slips || !has_unit || shows) ? found : by_sign;
 }
 
-/// Adds the exponent of the limit to the result. Returns the fault in words, empty where there is none.
+/// Adds d ln(largest moment)/d ln(normal load) to the result, of the loops by least squares and of the limit.
+/// Returns the fault in words, empty where there is none.
 std::string exponent_fault(const std::vector<LoopUnderLoad>& loops, Json& json) {
-  const LoadExponent exponent = load_exponent(loops);
-  json["load_exponent"] = {{"value", exponent.value}, {"exact", exponent.exact}};
-  if (!exponent.differs()) return "";
-  return fmt::format("the limit goes like the normal load to the power {:.2f}, not {:.2f}{}", exponent.value,
-                     exponent.exact,
-                     std::abs(exponent.value - 1.0) < 0.03 ? ": a contact radius that does not grow" : "");
+  constexpr double kSameExponent = 0.05;
+  std::vector<double> x;
+  std::vector<double> y;
+  for (const LoopUnderLoad& loop : loops) {
+    x.push_back(std::log(loop.contact.normal_load));
+    y.push_back(std::log(loop.contact.limit * largest_of(loop.path.moment)));
+  }
+  const double value = line_through(x, y).slope;
+  const double exact = loops.front().contact.limit_exponent;
+  json["load_exponent"] = {{"value", value}, {"exact", exact}};
+  if (std::abs(value - exact) <= kSameExponent) return "";
+  return fmt::format("the limit goes like the normal load to the power {:.2f}, not {:.2f}{}", value, exact,
+                     std::abs(value - 1.0) < 0.03 ? ": a contact radius that does not grow" : "");
 }
 
 }  // namespace
