@@ -190,14 +190,6 @@ INSTANTIATE_TEST_SUITE_P(OfManyShapes, ShrinkingGrid, testing::ValuesIn(bodies()
 
 // --- bodies that end, and bodies whose surface beyond the grid is unknown ---
 
-TEST(GridEdge, MayBeAPunchsOwn) {
-  // 20 cells across: the outermost cells are pressed, and beyond them there is no body.
-  const ModelSolution filled = solve_in_model_units(scene_of({flat_punch(5.01e-4)}, {20, 20}, 5.02e-5));
-  const ModelSolution roomy = solve_in_model_units(scene_of({flat_punch(5.01e-4)}, {30, 30}, 5.02e-5));
-  EXPECT_EQ(filled.contact_cells, roomy.contact_cells);
-  EXPECT_NEAR(filled.twist_angle / roomy.twist_angle, 1.0, 1e-6);
-}
-
 TEST(GridEdge, MustHoldAllBodiesSideBySide) {
   const std::vector<Surface> apart{sphere(0.018), sphere(0.018, {5e-3, 0.0})};
   EXPECT_THAT(refusal(scene_of(apart, {32, 32}, 5e-5, Combine::nearest)),

@@ -32,17 +32,6 @@ TEST(Resolution, WidthsOfACircleAndItsRingAreThoseOfTheCircles) {
   EXPECT_NEAR(found.slip_width, 16.0, 1.6);
 }
 
-TEST(Resolution, OfAStripIsItsWidth) {
-  const Grid grid{100, 20, 1.0, 1.0};
-  LoadStep loads{};
-  loads.problem.friction_bound = (cell_x2(grid).abs() < 5.0).cast<double>();
-  loads.limit.factor = INFINITY;
-  const Resolution found = resolution({}, {}, grid, loads, loads.problem.friction_bound);
-  // Four times area over outline tends to twice the width of a long strip, and staircases count pi/4.
-  EXPECT_NEAR(found.stick_width, 4.0 * 1000.0 / (220.0 * 0.25 * 3.141592653589793), 1e-9);
-  EXPECT_EQ(found.slip_width, 0.0);
-}
-
 // All of it sticks under a constant pressure: what h/r leaves everywhere, at a sharp edge and where slip is
 // narrow, with h/r = pi/(2 n) along an axis of n cells. Which of them is the longer does not matter.
 TEST(Resolution, OfAStripHasBothAxesInTheMean) {

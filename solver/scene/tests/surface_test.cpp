@@ -184,23 +184,6 @@ TEST(ExpectedContact, OfPowersIsThatOfSphereAndCone) {
               10.0 * kEpsilon);
 }
 
-/// The rectangle touches the turned ellipse on all sides.
-TEST(ExpectedContact, OfATurnedEllipsoidIsTheEllipsesBox) {
-  const HertzContact contact = hertz_contact(3.0, 4.0, 1.0, 5.0);
-  for (const double angle : {0.0, 0.4, 2.0, -1.1, 0.5 * pi}) {
-    std::array<double, 2> reach{};
-    for (int i = 0; i < 10000; ++i) {
-      const double t = 2.0 * pi * i / 10000;
-      const double u = contact.semi_axis_1 * std::cos(t);
-      const double v = contact.semi_axis_2 * std::sin(t);
-      reach[0] = std::max(reach[0], std::cos(angle) * u - std::sin(angle) * v);
-      reach[1] = std::max(reach[1], std::sin(angle) * u + std::cos(angle) * v);
-    }
-    const auto half_sides = *expected_half_sides({ellipsoid(4.0, 1.0, angle)}, Combine::sum, 3.0, 5.0);
-    for (std::size_t i = 0; i < 2; ++i) EXPECT_NEAR(half_sides[i] / reach[i], 1.0, 1e-6);
-  }
-}
-
 TEST(ExpectedContact, HoldsAllBodiesSideBySide) {
   const std::vector<Surface> bodies{moved(punch(1.0, 0.0), -3.0, 0.5), moved(punch(2.0, 0.0), 1.0, -2.5)};
   EXPECT_EQ(expected_half_sides(bodies, Combine::nearest, 1.0, 1.0), (std::array{4.0, 4.5}));
@@ -259,15 +242,6 @@ TEST(Hertz, HoldsForOneParaboloidThatStandsStraight) {
 }
 
 // --- contacts that are known from others ---
-
-TEST(TurnedEllipsoid, ByARightAngleHasItsRadiiExchanged) {
-  const ModelSolution turned = solve_in_model_units(scene_of({ellipsoid(0.03, 0.01, 0.5 * pi)}, 32));
-  const ModelSolution exchanged = solve_in_model_units(scene_of({ellipsoid(0.01, 0.03, 0.0)}, 32));
-  EXPECT_TRUE(turned.model.pressure_part.quadrant());
-  EXPECT_LE((turned.normal.pressure - exchanged.normal.pressure).abs().maxCoeff(),
-            kSolved * exchanged.normal.pressure.maxCoeff());
-  EXPECT_NEAR(turned.twist_angle / exchanged.twist_angle, 1.0, 1e-7);  // certificates of 1e-8
-}
 
 /// Between the axes there is no mirror, and the contact is that at 0 degrees on another mesh: approach and
 /// contact area agree to the second order in h, 1/20 of the short semi-axis.
