@@ -13,10 +13,8 @@
 #include <vector>
 
 #include "analytic/command/exact_command.hpp"
-#include "bench/bench_command.hpp"
-#include "bench/compare/compare_command.hpp"
+#include "bench/commands.hpp"
 #include "convergence/commands.hpp"
-#include "convergence/programs/command_word.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/run_program.hpp"
 #include "convergence/results/output.hpp"
@@ -61,6 +59,42 @@ void keep(const std::function<void()>& write, const Ranks& ranks) {
   }
 }
 
+/// Runs a command that was parsed and writes its result: JSON to `json_path`, text unless `quiet`. Returns
+/// the exit code.
+int run_command(const Command& command, const CLI::App& parsed, const std::string& json_path, bool quiet,
+                const Ranks& ranks) {
+  slipstick::convergence::require_inputs_kept(parsed);
+  if (json_path != "-") slipstick::convergence::require_output("--json", json_path);
+  std::ostringstream text;
+  Json result;
+  const auto write_text = [&] {
+    if (quiet || !ranks.first() || json_path == "-") return;
+    // With --github the text holds commands of the server; names beside them were made plain before.
+    const CLI::Option* const github = parsed.get_option_no_throw("--github");
+    const bool commands_server = github != nullptr && github->count() > 0;
+    slipstick::convergence::write_standard_output(commands_server ? text.str() : plain_text(text.str()));
+  };
+  // The file first: a reader of the text may leave, and so end this process.
+  const auto write_out = [&] {
+    try {
+      if (!json_path.empty() && ranks.first() && !result.empty()) write_json(json_path, result);
+    } catch (const std::exception&) {
+      keep(write_text, ranks);
+      throw;
+    }
+    write_text();
+  };
+  int exit_code = kCouldNotJudge;
+  try {
+    exit_code = command(text, result);
+  } catch (const std::exception&) {
+    if (!result.empty()) keep(write_out, ranks);  // what was computed before the error is not lost
+    throw;
+  }
+  write_out();
+  return exit_code;
+}
+
 int run(int argc, char** argv, const Ranks& ranks) {
   CLI::App app{"slipstick: the elastic torsional contact with slip and stick, exact and numerical, compared"};
   app.set_version_flag("--version", std::string(SLIPSTICK_VERSION));
@@ -100,38 +134,8 @@ int run(int argc, char** argv, const Ranks& ranks) {
     return left == 0 ? 0 : kCouldNotJudge;
   }
 
-  std::ostringstream text;
-  Json result;
-  bool commands_server = false;  // with commands of its own in the text, beside which it has made names plain
-  const auto write_text = [&] {
-    if (quiet || !ranks.first() || json_path == "-") return;
-    slipstick::convergence::write_standard_output(commands_server ? text.str() : plain_text(text.str()));
-  };
-  // The file first: who reads the text may leave, and so end this process.
-  const auto write_out = [&] {
-    try {
-      if (!json_path.empty() && ranks.first() && !result.empty()) write_json(json_path, result);
-    } catch (const std::exception&) {
-      keep(write_text, ranks);
-      throw;
-    }
-    write_text();
-  };
   for (std::size_t i = 0; i < commands.size(); ++i) {
-    if (!subcommands[i]->parsed()) continue;
-    slipstick::convergence::require_inputs_kept(*subcommands[i]);
-    if (json_path != "-") slipstick::convergence::require_output("--json", json_path);
-    const CLI::Option* const github = subcommands[i]->get_option_no_throw("--github");
-    commands_server = github != nullptr && github->count() > 0;
-    int exit_code = kCouldNotJudge;
-    try {
-      exit_code = commands[i](text, result);
-    } catch (const std::exception&) {
-      if (!result.empty()) keep(write_out, ranks);  // what was computed before the error is not lost
-      throw;
-    }
-    write_out();
-    return exit_code;
+    if (subcommands[i]->parsed()) return run_command(commands[i], *subcommands[i], json_path, quiet, ranks);
   }
   return kCouldNotJudge;
 }

@@ -9,7 +9,6 @@
 #include <stdexcept>
 #include <string_view>
 
-#include "analytic/pressure_table.hpp"
 #include "analytic/punch_superposition.hpp"
 
 namespace slipstick::analytic {

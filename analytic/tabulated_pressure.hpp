@@ -45,6 +45,11 @@ using PointPlace = std::function<std::string(std::size_t)>;
 TabulatedProfile tabulated_profile(const std::string& name, std::vector<PressurePoint> points,
                                    const PointPlace& where);
 
+/// The same from a CSV file, see pressure_table.cpp: a radius and a pressure a line, perhaps under the header
+/// `radius,pressure`; empty lines and lines that begin with # do not count. Throws with file and line, and
+/// for a file that cannot be read.
+TabulatedProfile read_tabulated_profile(const std::string& file);
+
 /// The interpolant of points whose radii end at 1; `name` is the profile's.
 InterpolatedPressure interpolate(const std::string& name, std::vector<PressurePoint> points);
 

@@ -23,7 +23,7 @@ target_compile_definitions(slipstick_work_counts PRIVATE SLIPSTICK_SCENES="${PRO
 foreach(function
     fftw_plan_dft_1d fftw_plan_many_dft
     fftw_plan_many_dft_r2c fftw_plan_many_dft_c2r
-    fftw_execute fftw_execute_dft fftw_execute_dft_r2c
+    fftw_execute_dft fftw_execute_dft_r2c
     fftw_execute_dft_c2r
     _ZN9slipstick6solver13integrate_rowERNS0_7CellRowEldddd)
   target_link_options(slipstick_work_counts INTERFACE -Wl,--wrap=${function})

@@ -1,5 +1,3 @@
-#include "bench/bench_command.hpp"
-
 #include <fmt/chrono.h>
 #include <fmt/core.h>
 #include <CLI/CLI.hpp>
@@ -12,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/commands.hpp"
 #include "bench/compare/ab_run.hpp"
 #include "bench/compare/survey.hpp"
 #include "bench/plane/accuracy_from_plane.hpp"
@@ -126,7 +125,7 @@ Exit code 0: done, nothing is slower; 1: something is; 2: it could not be judged
 
 }  // namespace
 
-std::function<int(std::ostream&, nlohmann::ordered_json&)> add_bench_command(CLI::App& app) {
+RunCommand add_bench_command(CLI::App& app) {
   const auto request = std::make_shared<BenchRequest>();
   CLI::App* const command = app.add_subcommand("bench", "Time everything beside the error that it buys");
   command->add_option("--program", request->program, "program of Google Benchmark")->capture_default_str();

@@ -1,6 +1,7 @@
 #include "solver/solve.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
@@ -215,28 +216,26 @@ void hand_on(const SolveOptions& options, std::size_t finished, ContactState& st
 }
 
 /// Numbers that add up over the parts of a step.
-struct Spent {
-  Seconds seconds;
-  double dissipated = 0.0, work = 0.0;
-  double operator_applications = 0.0, pressure_applications = 0.0;
-
+class Spent {
+ public:
+  explicit Spent(double setup) { seconds_.setup = setup; }
   void add(const Solution& part) {
-    seconds.pressure += part.seconds.pressure;
-    seconds.traction += part.seconds.traction;
-    seconds.total += part.seconds.total;
-    dissipated += part.dissipated;
-    work += part.work;
-    operator_applications += part.operator_applications;
-    pressure_applications += part.pressure_applications;
+    seconds_.pressure += part.seconds.pressure;
+    seconds_.traction += part.seconds.traction;
+    seconds_.total += part.seconds.total;
+    for (std::size_t k = 0; k < kSummed.size(); ++k) sums_[k] += part.*kSummed[k];
   }
   void put(Solution& step) {
-    seconds.total += seconds.setup;
-    step.seconds = seconds;
-    step.dissipated = dissipated;
-    step.work = work;
-    step.operator_applications = operator_applications;
-    step.pressure_applications = pressure_applications;
+    seconds_.total += seconds_.setup;
+    step.seconds = seconds_;
+    for (std::size_t k = 0; k < kSummed.size(); ++k) step.*kSummed[k] = sums_[k];
   }
+
+ private:
+  static constexpr std::array kSummed{&Solution::dissipated, &Solution::work,
+                                      &Solution::operator_applications, &Solution::pressure_applications};
+  Seconds seconds_;
+  std::array<double, kSummed.size()> sums_{};
 };
 
 /// Step by step, until one does not converge. after_step may take the solution's fields where it is the last.
@@ -273,8 +272,7 @@ void solve_steps(const Scene& scene, const SolveOptions& options, const AfterSte
     const std::vector<Step> parts = parts_of(scene, step, previous, state.end);
     solution.cycle = static_cast<int>(k / of_cycle) + 1;
     const bool last = k + 1 == all;
-    Spent spent;
-    if (k == first) spent.seconds.setup = solution.seconds.setup;
+    Spent spent(k == first ? solution.seconds.setup : 0.0);
     for (const Step& part : parts) {
       solution.seconds = {};
       const bool ends = last && &part == &parts.back();

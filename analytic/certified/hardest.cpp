@@ -4,7 +4,6 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <functional>
 #include <map>
 #include <random>
 #include <stdexcept>
@@ -74,23 +73,15 @@ class File {
       for (const Row& row : testing::read_rows(path_)) keep(row);
   }
 
-  bool add_if_harder(const ReferenceRow& reference) {
+  void add_if_harder(const ReferenceRow& reference) {
     const Row row = as_row(reference);
     const auto known = hardest_.find(key(row));
-    if (known != hardest_.end() && !(hardness(row) > known->second)) return false;
-    add(reference);
-    return true;
-  }
-
-  void add(const ReferenceRow& reference) {
-    const Row row = as_row(reference);
-    if (std::ranges::find(lines_, row.line()) != lines_.end()) return;
-    keep(row);
+    if (known == hardest_.end() || hardness(row) > known->second) keep(row);
   }
 
   void write() const {
     std::ofstream out(path_);
-    out << head("slipstick_references search and add, which never drop a row");
+    out << head("slipstick_references search, which never drops a row");
     for (const std::string& line : lines_) out << line << '\n';
     if (!out.flush()) throw std::runtime_error("cannot write " + path_);
   }
@@ -130,48 +121,37 @@ Input beside(const Input& input, std::mt19937_64& generator) {
   return {.value = std::min(input.value * (1 + step), 1 - 1e-16), .fraction = input.fraction};
 }
 
-/// An input that was hard for one quantity.
+/// The hardest input of a quantity so far.
 struct Candidate {
   Input input;
   ReferenceRow row;
-  double hardness;
+  double hardness = 0;
 };
+using Candidates = std::map<std::string, Candidate>;  ///< by quantity
 
-/// The hardest candidates of each quantity.
-class Candidates {
- public:
-  void consider(const std::string& profile, const Function& function, const Input& input) try {
-    for (ReferenceRow& row : rows(profile, function, input)) {
-      std::vector<Candidate>& list = by_quantity_[row.quantity];
-      const double hard = hardness(as_row(row));
-      list.push_back({.input = input, .row = std::move(row), .hardness = hard});
-      std::ranges::sort(list, std::greater{}, &Candidate::hardness);
-      list.resize(std::min(list.size(), kKept));
-    }
-  } catch (const std::domain_error&) {
-    // outside the range of the function
+void consider(const std::string& profile, const Function& function, const Input& input,
+              Candidates& candidates) try {
+  for (const ReferenceRow& row : rows(profile, function, input)) {
+    Candidate& best = candidates[row.quantity];
+    const double hard = hardness(as_row(row));
+    if (hard > best.hardness) best = {.input = input, .row = row, .hardness = hard};
   }
-
-  std::vector<Candidate> all() const {
-    std::vector<Candidate> all;
-    for (const auto& [quantity, list] : by_quantity_) all.insert(all.end(), list.begin(), list.end());
-    return all;
-  }
-
- private:
-  static constexpr std::size_t kKept = 3;
-  std::map<std::string, std::vector<Candidate>> by_quantity_;
-};
+} catch (const std::domain_error&) {
+  // outside the range of the function
+}
 
 void search(const std::string& profile, const Function& function, const Search& options, File& file) {
-  constexpr int kBeside = 10;
+  constexpr int kBeside = 30;  // inputs tried about each of the hardest
   std::mt19937_64 generator(options.seed);
   Candidates candidates;
-  for (int i = 0; i < options.samples; ++i) candidates.consider(profile, function, draw(function, generator));
-  for (const Candidate& candidate : candidates.all())
+  for (int i = 0; i < options.samples; ++i)
+    consider(profile, function, draw(function, generator), candidates);
+  const Candidates sampled = candidates;
+  for (const auto& [quantity, candidate] : sampled)
     for (int i = 0; i < kBeside; ++i)
-      candidates.consider(profile, function, beside(candidate.input, generator));
-  for (const Candidate& candidate : candidates.all()) file.add_if_harder(candidate.row);
+      consider(profile, function, beside(candidate.input, generator), candidates);
+  for (const auto& [quantity, candidate] : candidates)
+    if (candidate.hardness > 0) file.add_if_harder(candidate.row);
 }
 
 }  // namespace
@@ -182,17 +162,6 @@ void search_hardest(const Search& options) {
     for (const std::string& profile : kProfiles) search(profile, function, options, file);
     file.write();
   }
-}
-
-void add_hardest(const std::string& folder, const std::vector<std::string>& input) {
-  const Function function{.given = input.at(1), .traction = input.size() > 3};
-  const double value = std::stod(input.at(2));
-  File file(folder + '/' + function.file());
-  if (function.traction)
-    file.add(traction_row(input[0], function.given, value, std::stod(input[3]), kFileDigits));
-  else
-    for (const ReferenceRow& row : state_rows(input[0], function.given, value, kFileDigits)) file.add(row);
-  file.write();
 }
 
 }  // namespace slipstick::analytic::certified

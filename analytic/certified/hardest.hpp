@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <string>
-#include <vector>
 
 /// The hardest inputs known of each function of the double path: one file a function (what is given, or
 /// `traction`), rows as in the table of proven values, which every test run replays.
@@ -18,8 +17,5 @@ struct Search {
 /// worst; adds to each file those that beat all that it has of that profile and quantity, by error over what
 /// is allowed.
 void search_hardest(const Search& search);
-
-/// Adds the rows of one input: profile, given, value and, for a traction, radius.
-void add_hardest(const std::string& folder, const std::vector<std::string>& input);
 
 }  // namespace slipstick::analytic::certified

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <map>
 #include <stdexcept>
 
 #include "analytic/certified/ball_text.hpp"
@@ -14,18 +13,6 @@ namespace slipstick::analytic::certified {
 namespace {
 
 constexpr int kCostDigits = 60;  // what a double's neighbour changes has 40 of them left
-
-const std::map<std::string, Quantity> kQuantities{{"moment_ratio", Quantity::moment_ratio},
-                                                  {"moment_deficit", Quantity::moment_deficit},
-                                                  {"stick_ratio", Quantity::stick_ratio},
-                                                  {"stick_complement", Quantity::stick_complement},
-                                                  {"twist", Quantity::twist}};
-
-const std::map<std::string, Number State::*> kMembers{{"moment_ratio", &State::moment_ratio},
-                                                      {"moment_deficit", &State::moment_deficit},
-                                                      {"stick_ratio", &State::stick_ratio},
-                                                      {"stick_complement", &State::stick_complement},
-                                                      {"twist", &State::twist}};
 
 /// The quantity and the value that name a state.
 struct Question {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -8,6 +9,19 @@
 
 /// Proven values at doubles, as the tests and studies of code in doubles compare with them.
 namespace slipstick::analytic::certified {
+
+/// Quantities by name: those that name a state, and those of a row.
+inline const std::map<std::string, Quantity> kQuantities{{"moment_ratio", Quantity::moment_ratio},
+                                                         {"moment_deficit", Quantity::moment_deficit},
+                                                         {"stick_ratio", Quantity::stick_ratio},
+                                                         {"stick_complement", Quantity::stick_complement},
+                                                         {"twist", Quantity::twist}};
+
+inline const std::map<std::string, Number State::*> kMembers{{"moment_ratio", &State::moment_ratio},
+                                                             {"moment_deficit", &State::moment_deficit},
+                                                             {"stick_ratio", &State::stick_ratio},
+                                                             {"stick_complement", &State::stick_complement},
+                                                             {"twist", &State::twist}};
 
 /// One row of a table: a quantity of the state where `given` has `value`, both names as in TorsionState, or
 /// the traction at the radius `at`. Doubles stand for themselves exactly.

@@ -113,15 +113,9 @@ int main(int argc, char** argv) try {
       ->capture_default_str();
   hardest->add_option("--seed", search.seed, "of the inputs")->capture_default_str();
 
-  std::vector<std::string> input;
-  CLI::App* add = app.add_subcommand("add", "add one input to its file: each bug found belongs there");
-  add->add_option("--folder", search.folder, "of the files")->required();
-  add->add_option("input", input, "PROFILE GIVEN VALUE [RADIUS]")->required()->expected(3, 4);
-
   CLI11_PARSE(app, argc, argv);
   if (table->parsed()) write_table(path, digits);
   if (hardest->parsed()) search_hardest(search);
-  if (add->parsed()) add_hardest(search.folder, input);
 } catch (const std::exception& error) {
   std::fputs((std::string("slipstick_references: ") + error.what() + '\n').c_str(), stderr);
   return 2;

@@ -11,7 +11,6 @@
 
 #include "analytic/elliptic.hpp"
 #include "analytic/gsl.hpp"
-#include "analytic/tests/quadrature.hpp"
 #include "analytic/tests/values.hpp"
 
 namespace slipstick::analytic::tangential {

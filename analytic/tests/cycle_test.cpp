@@ -11,7 +11,6 @@
 #include <stdexcept>
 #include <vector>
 
-#include "analytic/tests/quadrature.hpp"
 #include "analytic/tests/values.hpp"
 
 namespace slipstick::analytic {

@@ -8,7 +8,6 @@
 #include <vector>
 
 #include "analytic/cycle.hpp"
-#include "analytic/tests/quadrature.hpp"
 #include "analytic/tests/values.hpp"
 
 namespace slipstick::analytic {

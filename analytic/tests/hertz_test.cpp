@@ -42,18 +42,6 @@ double displacement(const HertzEllipse& contact, double modulus, double x1, doub
   return contact.peak_pressure * sum * (pi / kDirections) / (pi * modulus);
 }
 
-TEST(HertzCircle, AgreesWithJohnson) {  // Johnson 1985, Eqs. (4.22)-(4.24), in terms of a
-  const auto contact = indent_sphere(kLoadOfEllipse, kRadiusOfEllipse, kModulusOfEllipse);
-  EXPECT_NEAR(
-      pi * contact.reference_pressure * kRadiusOfEllipse / (2 * kModulusOfEllipse) / contact.contact_radius,
-      1, 1e-15);
-  EXPECT_NEAR(2.0 / 3 * contact.reference_pressure * pi * contact.contact_radius * contact.contact_radius /
-                  kLoadOfEllipse,
-              1, 1e-15);
-  EXPECT_NEAR(contact.approach * kRadiusOfEllipse / (contact.contact_radius * contact.contact_radius), 1,
-              1e-15);
-}
-
 TEST(HertzEllipse, OfEqualRadiiIsTheCircle) {
   const auto circle = indent_sphere(kLoadOfEllipse, kRadiusOfEllipse, kModulusOfEllipse);
   const auto ellipse = hertz_ellipse(kLoadOfEllipse, kRadiusOfEllipse, kRadiusOfEllipse, kModulusOfEllipse);
@@ -79,16 +67,6 @@ TEST(HertzEllipse, DisplacesTheSurfaceByApproachLessGap) {
   }
 }
 
-TEST(HertzEllipse, CarriesTheLoad) {
-  for (const double ratio : {1.0, 3.0, 20.0, 1e3, 1e6}) {
-    const auto contact =
-        hertz_ellipse(kLoadOfEllipse, kRadiusOfEllipse, kRadiusOfEllipse * ratio, kModulusOfEllipse);
-    EXPECT_NEAR(
-        2.0 / 3 * contact.peak_pressure * pi * contact.semi_axis_1 * contact.semi_axis_2 / kLoadOfEllipse, 1,
-        1e-15);
-  }
-}
-
 /// Johnson 1985, Eqs. (4.26), in D = (K - E)/e^2 and B = K - D, which do not cancel: 1/R_1 = 2 p0 b/(E* a^2)
 /// D, 1/R_2 = 2 p0/(E* b) B, approach p0 b K/E*; by means, where the contact itself is found by Carlson's
 /// forms.
@@ -105,6 +83,7 @@ TEST(HertzEllipse, HasTheCurvaturesOfTheGapAtAnyRatio) {
     EXPECT_NEAR(unit * b / (a * a) * d * kRadiusOfEllipse, 1, kTolerance) << ratio;
     EXPECT_NEAR(unit / b * (k - d) * kRadiusOfEllipse / ratio, 1, kTolerance) << ratio;
     EXPECT_NEAR(unit / 2 * b * k / contact.approach, 1, kTolerance) << ratio;
+    EXPECT_NEAR(2.0 / 3 * contact.peak_pressure * pi * a * b / kLoadOfEllipse, 1, kTolerance) << ratio;
   }
 }
 

@@ -1,4 +1,4 @@
-#include "analytic/pressure_table.hpp"
+#include "analytic/tabulated_pressure.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

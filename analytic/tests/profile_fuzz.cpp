@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "analytic/pressure_table.hpp"
+#include "analytic/tabulated_pressure.hpp"
 #include "analytic/torsion.hpp"
 
 namespace {

@@ -60,11 +60,9 @@ void expect_same(const Profile& profile, const Profile& expected, double scale, 
   }
 }
 
-TEST(PowerProfile, OfTwoIsTheSphere) { expect_same(*power_profile(2), hertz_profile(), 1, kFewRoundings); }
-
-TEST(PowerProfile, OfOneIsTheCone) { expect_same(*power_profile(1), cone_profile(), 1, kFewRoundings); }
-
-TEST(RoundedPunchProfile, WithoutAFlatIsTheSphere) {
+TEST(Superposition, IsTheClosedFormWhereThereIsOne) {
+  expect_same(*power_profile(2), hertz_profile(), 1, kFewRoundings);
+  expect_same(*power_profile(1), cone_profile(), 1, kFewRoundings);
   expect_same(*rounded_punch_profile(0), hertz_profile(), 1.5, kFewRoundings);
 }
 

@@ -1,5 +1,3 @@
-#include "bench/compare/compare_command.hpp"
-
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
@@ -11,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/commands.hpp"
 #include "bench/compare/comparison.hpp"
 #include "bench/compare/comparison_report.hpp"
 #include "bench/compare/second_run.hpp"
@@ -99,7 +98,7 @@ so significantly; or the machines differ, were loaded, or the builds are debug b
 
 }  // namespace
 
-std::function<int(std::ostream&, nlohmann::ordered_json&)> add_compare_command(CLI::App& app) {
+RunCommand add_compare_command(CLI::App& app) {
   const auto request = std::make_shared<CompareRequest>();
   CLI::App* const command =
       app.add_subcommand("compare", "Compare two files of Google Benchmark: is anything slower?");

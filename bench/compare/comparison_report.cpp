@@ -109,11 +109,9 @@ std::string table(const std::vector<ComparedBenchmark>& benchmarks) {
   std::string text;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const Row& row = rows[r];
-    std::string line = "  " + row[0] + std::string(widths[0] - letters(row[0]), ' ');
-    for (std::size_t i = 1; i + 1 < row.size(); ++i) {
-      line += "  " + std::string(widths[i] - letters(row[i]), ' ') + row[i];
-    }
-    text += line + "  " + row.back() + "\n";
+    text += fmt::format("  {:<{}}", row[0], widths[0]);  // fmt pads by letters too
+    for (std::size_t i = 1; i + 1 < row.size(); ++i) text += fmt::format("  {:>{}}", row[i], widths[i]);
+    text += "  " + row.back() + "\n";
     if (r > 0 && !benchmarks[r - 1].remark.empty() && benchmarks[r - 1].remark != row.back())
       text += "      " + benchmarks[r - 1].remark + "\n";
   }

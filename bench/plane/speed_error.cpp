@@ -9,7 +9,6 @@
 
 #include "bench/timing/invalid_reason.hpp"
 #include "bench/timing/repetitions.hpp"
-#include "bench/timing/seconds.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/result_cache.hpp"

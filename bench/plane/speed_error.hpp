@@ -11,31 +11,8 @@
 /// The speed-error plane: what each choice of method, operator, model, pressure, mesh and
 /// tolerance costs, and the error that it buys.
 ///
-/// The result (JSON), times in seconds, errors relative:
-///
-///   quick
-///   quantities       [{name: twist | traction_l1 | traction_l2 | stick_radius, label}]
-///   application_seconds  of one application on the reference grid, the unit for other machines
-///   scenes [
-///     name, moment_ratio
-///     points [        one a choice, in the design's order
-///       method, operator, model, pressure, cells, tolerance      the choice
-///       contact_cells   cells across the contact, mean over the grids
-///       not_timed       why there is no time: the result is wrong; absent where there is one
-///       seconds {median, low, high, repetitions}    whole solve, one thread; null where not timed
-///       error {twist, traction_l1, traction_l2, stick_radius}   root mean square over the grids; null (with
-///                       NAME_reason) where a number is missing
-///       errors {the same: [signed, of each grid]}
-///       gap, applications, pressure_applications, bytes         of the first grid, the one that is timed
-///     ]
-///     exact {seconds {...}, error, cells}   the exact side: stick radius, twist and tractions in all cells
-///     envelope {QUANTITY: [indices into points, quickest first]}   the exact side not among them
-///     time_to [{quantity, error, method, point (index) | null, reason, seconds}]  method also "any", "exact"
-///   ]
-///   dominated [{scene, quantity, key, value, by, everywhere, from_cells, times_slower {median, low, high},
-///               points, text}]
-///   not_timed [{scene, choice, reason}]
-///   provenance
+/// The result is docs/schema/plane.schema.json: times in seconds, errors relative, `errors` signed and of
+/// each grid, `error` their root mean square, work and certificate of the first grid, which is the one timed.
 namespace slipstick::bench {
 
 using convergence::Json;

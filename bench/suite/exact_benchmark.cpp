@@ -52,11 +52,7 @@ Prepared timed(Prepared prepared, Function f) {
   return prepared;
 }
 
-const analytic::Profile& profile(const std::string& name) {
-  return name == "hertz"  ? analytic::hertz_profile()
-         : name == "cone" ? analytic::cone_profile()
-                          : analytic::flat_punch_profile();
-}
+const analytic::Profile& profile(const std::string& name) { return *analytic::find_profile(name).profile; }
 
 Prepared stick_ratio_from_moment(const std::string& name) {
   return timed(judged(name, "moment_ratio", "stick_ratio"),

@@ -17,6 +17,7 @@
 #include "bench/suite/suite.hpp"
 #include "solver/elasticity/direct.hpp"
 #include "solver/elasticity/elasticity.hpp"
+#include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/elasticity/linear_operator.hpp"
 #include "solver/grid/mirror.hpp"
 

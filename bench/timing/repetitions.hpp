@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <functional>
 #include <vector>
 
@@ -13,6 +14,14 @@ struct Repetitions {
   double high = 0.0;
   int number = 0;
 };
+
+/// Seconds that work takes, by the clock.
+template <typename Work>
+double seconds(Work&& work) {
+  const auto start = std::chrono::steady_clock::now();
+  work();
+  return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
 
 /// Throws std::invalid_argument for no seconds at all.
 Repetitions summarise(std::vector<double> seconds);

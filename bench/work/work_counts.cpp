@@ -100,15 +100,10 @@ fftw_plan __wrap_fftw_plan_many_dft_c2r(int rank, const int* n, int many, fftw_c
                     many * product(rank, n));
 }
 
-decltype(fftw_execute) __real_fftw_execute;
 decltype(fftw_execute_dft) __real_fftw_execute_dft;
 decltype(fftw_execute_dft_r2c) __real_fftw_execute_dft_r2c;
 decltype(fftw_execute_dft_c2r) __real_fftw_execute_dft_c2r;
 
-void __wrap_fftw_execute(fftw_plan plan) {
-  count_transform(plan);
-  __real_fftw_execute(plan);
-}
 void __wrap_fftw_execute_dft(fftw_plan plan, fftw_complex* in, fftw_complex* out) {
   count_transform(plan);
   __real_fftw_execute_dft(plan, in, out);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <stdexcept>
 
+#include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/elasticity/linear_operator.hpp"
 #include "solver/solve.hpp"
 

@@ -51,7 +51,8 @@ auto plain(T&& value) {
   }
 }
 
-/// What `original` returns; if the mutant is switched on, what `mutated` does. Mutants of strings would change wording only.
+/// What `original` returns; if the mutant is switched on, what `mutated` does. Mutants of strings would
+/// change wording only.
 template <class Mutated, class Original>
 auto choose(int mutant, Mutated mutated, Original original) {
   using Value = decltype(original());

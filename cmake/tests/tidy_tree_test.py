@@ -21,7 +21,7 @@ def functions(lines):
     """(first line, length) of each function: clang-format closes it at the indent where it began."""
     begin = 0
     while begin < len(lines):
-        opened = re.match(r"( *)(?!//|\*|#|\}|namespace|class|struct|union|enum|extern|public|private)\S", lines[begin])
+        opened = re.match(r"( *)(?!//|\*|#|\{|\}|namespace|class|struct|union|enum|extern|public|private)\S", lines[begin])
         end = begin
         if opened and ("(" in lines[begin] or lines[begin].startswith("template")):
             while end + 1 < len(lines) and not lines[end].rstrip().endswith(("{", ";", "}")):

@@ -18,7 +18,7 @@ namespace slipstick::convergence {
 struct Examination {
   solver::Scene scene;
   Interpretation read;  ///< with the twist's convention
-  OracleAnswer exact;                    ///< its centre is that of the field's grid
+  OracleAnswer exact;   ///< its centre is that of the field's grid
   GivenContact contact;
   ReferenceOnGrid reference;
   bool constant_cells;           ///< pressure, and so traction too, is constant in each cell

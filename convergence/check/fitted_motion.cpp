@@ -1,7 +1,6 @@
 #include "convergence/check/fitted_motion.hpp"
 
 #include <cmath>
-#include <stdexcept>
 
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/smoothed_friction.hpp"
@@ -98,8 +97,6 @@ Coefficients least_gap(Program program) {
 
 FittedMotion fit_motion(const ArrayXd& displacement, const ArrayXd& traction, const ArrayXd& friction_bound,
                         const std::vector<ArrayXd>& motions) {
-  if (motions.size() > solver::kMaxConditions)
-    throw std::invalid_argument("more motions than a fit can have");
   const ArrayXd contact = (friction_bound > 0.0).cast<double>();
   const auto within = [&](const ArrayXd& field) { return ArrayXd(contact.replicate(2, 1) * field); };
   Program program{within(displacement), within(traction), friction_bound, {}};

@@ -15,9 +15,8 @@ struct FittedMotion {
   Eigen::ArrayXd gap;                 ///< cells: s.q + mu p |s|, each zero under Coulomb's law
 };
 
-/// displacement, traction: 2*cells; friction_bound: cells; motions: fields of 2*cells, linearly independent
-/// where the bound is positive. Throws std::invalid_argument for more than kMaxConditions motions. Cells
-/// without a bound do not count, and have no slip.
+/// displacement, traction: 2*cells; friction_bound: cells; motions: at most kMaxConditions fields of 2*cells,
+/// linearly independent where the bound is positive. Cells without a bound do not count, and have no slip.
 FittedMotion fit_motion(const Eigen::ArrayXd& displacement, const Eigen::ArrayXd& traction,
                         const Eigen::ArrayXd& friction_bound, const std::vector<Eigen::ArrayXd>& motions);
 

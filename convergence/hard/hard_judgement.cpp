@@ -130,11 +130,11 @@ double natural_size(const Json& result, const std::string& path) {
 }
 
 double main_value(const Json& result) {
-  const std::string path = "/" + result["resolved"].value("number", "");
-  const double value = number_at(result, path.c_str());
-  const double size = std::isnan(value) ? std::hypot(number_at(result, (path + "0").c_str()),
-                                                     number_at(result, (path + "1").c_str()))
-                                        : value;
+  const std::string path = result["resolved"].value("number", "");
+  const double value = number_at(result, path);
+  const double size = std::isnan(value)
+                          ? std::hypot(number_at(result, path + "[0]"), number_at(result, path + "[1]"))
+                          : value;
   const bool nothing_acts = number_at(result, "resolved.absolute") == 0.0;
   return size == 0.0 || nothing_acts ? std::numeric_limits<double>::quiet_NaN() : size;
 }

@@ -53,21 +53,6 @@ double TwistLaw::moment_ratio_at(double t) const {
   return std::copysign(-std::expm1(-size * logarithm(size)), t);
 }
 
-double TwistLaw::twist_at(double moment_ratio) const {
-  const double size = std::abs(moment_ratio);
-  if (size > 1.0 - kLastDeficit) return std::copysign(INFINITY, moment_ratio);
-  const double l = -std::log1p(-size);
-  return std::copysign(l * twist(l), moment_ratio);
-}
-
-double TwistLaw::loss_factor_at(double moment_ratio) const {
-  const double size = std::abs(moment_ratio);
-  if (!(size <= 1.0 - kLastDeficit)) return NAN;
-  if (size <= full_stick) return 0.0;
-  const double l = -std::log1p(-size);
-  return std::pow(l - first_logarithm, loss_power) * loss_factor(l);
-}
-
 TwistLaw fit_twist_law(const analytic::Profile& profile, double error) {
   if (!(error >= kMinLawError && error <= kMaxLawError)) {
     throw std::domain_error(

@@ -26,9 +26,7 @@ struct TwistLaw {
   double loss_power;
   PiecewiseChebyshev loss_factor;  ///< of (l - first_logarithm)^loss_power, over l
 
-  double moment_ratio_at(double twist) const;        ///< m; any finite t
-  double twist_at(double moment_ratio) const;        ///< t; |m| beyond 1 - kLastDeficit: infinite
-  double loss_factor_at(double moment_ratio) const;  ///< of 4 M phi; |m| at most 1 - kLastDeficit, else NaN
+  double moment_ratio_at(double twist) const;  ///< m; any finite t
 };
 
 /// dM/dphi over G a^3 while everything sticks: exact, and the same for each profile.

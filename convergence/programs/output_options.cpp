@@ -9,8 +9,10 @@
 #include <string>
 #include <string_view>
 #include <system_error>
+#include <vector>
 
 #include "solver/input/input_error.hpp"
+#include "solver/input/misspelling.hpp"
 #include "solver/input/whole_file.hpp"
 
 namespace slipstick::convergence {
@@ -82,6 +84,18 @@ void require_inputs_kept(const CLI::App& command) {
   }
   require_inputs_kept(command, inputs);
   require_outputs_apart(command);
+}
+
+void require_command(const CLI::App& app, int argc, const char* const* argv) {
+  const std::string word = argc > 1 ? argv[1] : "";
+  if (word.empty() || word.starts_with("-")) return;
+  std::vector<std::string> shown;
+  for (const CLI::App* const command : app.get_subcommands([](const CLI::App*) { return true; })) {
+    if (command->get_name() == word) return;
+    if (!command->get_group().empty()) shown.emplace_back(command->get_name());
+  }
+  throw solver::InputError(word, fmt::format("is no command; the nearest is {}, slipstick --help lists all",
+                                             solver::nearest_word(word, shown)));
 }
 
 }  // namespace slipstick::convergence

@@ -22,4 +22,9 @@ void require_input_kept(const std::string& option, const std::string& output,
 /// behind links.
 void require_inputs_kept(const CLI::App& command);
 
+/// Throws InputError for a first word that is neither an option nor a command, naming the nearest command
+/// that
+/// --help shows.
+void require_command(const CLI::App& app, int argc, const char* const* argv);
+
 }  // namespace slipstick::convergence

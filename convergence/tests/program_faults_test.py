@@ -90,7 +90,7 @@ class ProgramFaults(ProgramTest):
         self.ends(("--help",), 2, full)
 
     def test_closed_streams_are_no_files_of_others(self):
-        """Files and pipes that get their numbers are not taken for them: HDF5 is written, read in a process of its own,
+        """Files and pipes that get their numbers are not taken for them: HDF5 is written and read,
         and studies have processes."""
         self.ends((*SMALL, "--quiet", "--fields", "whole.h5"), 0)
         check = ("check", PAPER, "whole.h5")

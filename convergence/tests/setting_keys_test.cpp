@@ -42,9 +42,10 @@ below = 1
 platform_spread = 1e-9
 basis = "theory"
 reason = "all keys"
-[[gate]]
-id = "b"
+[[group]]
 study = "study.toml"
+[[group.gate]]
+id = "b"
 quantity = "verdict"
 equals = "asymptotic"
 basis = "theory"

@@ -1,17 +1,11 @@
 #include "solver/elasticity/convolution.hpp"
 
 #include <algorithm>
-#include <set>
 #include <stdexcept>
 #include <type_traits>
 
 namespace slipstick::solver {
 namespace {
-
-std::vector<Component> distinct_components(const BlockKernel& kernel) {
-  const std::set<Component> distinct(kernel.components.begin(), kernel.components.end());
-  return {distinct.begin(), distinct.end()};
-}
 
 std::size_t fields(const BlockKernel& kernel) { return std::max(kernel.inputs, kernel.outputs); }
 
@@ -83,7 +77,7 @@ Convolution::Convolution(const Grid& grid, BlockKernel kernel, const ElasticLaw&
                          const OperatorOptions& options)
     : LinearOperator(grid, std::move(kernel)),
       transform_(grid, fields(this->kernel()), std::max(options.threads, 1)),
-      components_(distinct_components(this->kernel())),
+      components_(this->kernel().distinct()),
       spectra_(components_.size() * count(transform_.own_columns(grid).count() * (padded1() / 2 + 1))),
       multiply_(multiply_for(this->kernel())) {
   for (std::size_t c = 0; c < this->kernel().components.size(); ++c) {

@@ -2,16 +2,11 @@
 
 #include <algorithm>
 #include <cstdlib>
-#include <set>
 
 #include "solver/grid/threads.hpp"
 
 namespace slipstick::solver {
 namespace {
-
-std::set<Component> distinct(const BlockKernel& kernel) {
-  return {kernel.components.begin(), kernel.components.end()};
-}
 
 /// The loop that the time goes into, in which nothing overlaps.
 inline void add(Index count, double factor, const double* __restrict from, double* __restrict to) {
@@ -40,7 +35,7 @@ std::vector<double> all_offsets(Component component, const ElasticLaw& law, cons
 DirectSum::DirectSum(const Grid& grid, BlockKernel kernel, const ElasticLaw& law,
                      const OperatorOptions& options)
     : LinearOperator(grid, std::move(kernel)), threads_(std::max(options.threads, 1)) {
-  for (const Component component : distinct(this->kernel())) {
+  for (const Component component : this->kernel().distinct()) {
     coefficients_.emplace(component, all_offsets(component, law, grid));
   }
 }

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <set>
 #include <stdexcept>
 #include <utility>
 
@@ -79,12 +78,11 @@ CacheKey Elasticity::key(const char* what, const Grid& grid) const {
 }
 
 double Elasticity::operator_bytes(const Grid& grid, const BlockKernel& kernel) const {
-  const std::set<Component> components(kernel.components.begin(), kernel.components.end());
   switch (kind) {
     case OperatorKind::dcfft:
       return padded_bytes(held_of(kernel).op[place_of(*this, grid, kernel)], grid);
     case OperatorKind::direct:
-      return padded_bytes(static_cast<double>(components.size()), grid);
+      return padded_bytes(static_cast<double>(kernel.distinct().size()), grid);
     case OperatorKind::dense: {
       const double matrix = sizeof(double) * static_cast<double>(kernel.inputs * kernel.outputs) *
                             std::pow(static_cast<double>(grid.cells()), 2);

@@ -16,14 +16,9 @@ namespace {
 /// Cells at least between opposite edges that fields reach. More lower no count of iterations.
 constexpr Index kCellsBetweenEdges = 2;
 
-PeriodicGrid padded(const Grid& grid, bool at_edge) {
+Grid padded(const Grid& grid, bool at_edge) {
   const Index margin = at_edge ? kCellsBetweenEdges : 0;
   return {fast_length(grid.n1 + margin), fast_length(grid.n2 + margin), grid.h1, grid.h2};
-}
-
-std::vector<SymbolEntry> entries(bool tangential) {
-  if (!tangential) return {SymbolEntry::p11};
-  return {SymbolEntry::p11, SymbolEntry::p12, SymbolEntry::p22};
 }
 
 std::vector<Index> frequencies(const Share& columns) {
@@ -66,8 +61,8 @@ class PeriodicInverseSymbol final : public InverseSymbol {
         fields_(tangential ? 2 : 1),
         diagonal_(mean_inverse_symbol(periodic_, law, tangential)),
         columns_(PlaneTransform::own_columns(shape(grid, periodic_, tangential))),
-        table_(periodic_, law, entries(tangential), frequencies(columns_),
-               1.0 / (static_cast<double>(periodic_.length1) * static_cast<double>(periodic_.length2))),
+        table_(periodic_, law, tangential ? 3 : 1, frequencies(columns_),
+               1.0 / (static_cast<double>(periodic_.n1) * static_cast<double>(periodic_.n2))),
         transform_(shape(grid, periodic_, tangential), options.threads) {}
 
   void apply(std::span<double> field) override {
@@ -91,9 +86,9 @@ class PeriodicInverseSymbol final : public InverseSymbol {
   std::array<double, 2> diagonal() const override { return diagonal_; }
 
  private:
-  static PlaneShape shape(const Grid& grid, const PeriodicGrid& periodic, bool tangential) {
-    return {.n1 = periodic.length1,
-            .n2 = periodic.length2,
+  static PlaneShape shape(const Grid& grid, const Grid& periodic, bool tangential) {
+    return {.n1 = periodic.n1,
+            .n2 = periodic.n2,
             .fields = tangential ? 2 : 1,
             .samples = grid.n1,
             .ranks = grid.ranks};
@@ -103,7 +98,7 @@ class PeriodicInverseSymbol final : public InverseSymbol {
   void load(int thread, Index f, Index i, const double* fields) {
     double* const row = transform_.own_row(thread);
     std::copy_n(fields + (f * grid_.n1 + i) * grid_.n2, grid_.n2, row);
-    std::fill(row + grid_.n2, row + periodic_.length2, 0.0);
+    std::fill(row + grid_.n2, row + periodic_.n2, 0.0);
     transform_.forward_sample(thread, f, i);
   }
 
@@ -115,9 +110,9 @@ class PeriodicInverseSymbol final : public InverseSymbol {
   template <typename Count>
   void multiply(const PlaneColumns& columns, Count count) {
     const Index first = columns.first - columns_.first;
-    for (Index k = 0; k < periodic_.length1; ++k) {
-      const bool negative = 2 * k > periodic_.length1;
-      const Index f = negative ? periodic_.length1 - k : k;
+    for (Index k = 0; k < periodic_.n1; ++k) {
+      const bool negative = 2 * k > periodic_.n1;
+      const Index f = negative ? periodic_.n1 - k : k;
       const double* const p11 = table_.row(SymbolEntry::p11, f) + first;
       if (fields_ == 1) {
         scale_complex(count, p11, columns.row(0, k));
@@ -129,7 +124,7 @@ class PeriodicInverseSymbol final : public InverseSymbol {
   }
 
   Grid grid_;
-  PeriodicGrid periodic_;
+  Grid periodic_;
   Index fields_;
   std::array<double, 2> diagonal_;
   Share columns_;  ///< of this rank

@@ -1,10 +1,17 @@
 #include "solver/elasticity/linear_operator.hpp"
 
+#include <set>
+
 #include "solver/elasticity/convolution.hpp"
 #include "solver/elasticity/direct.hpp"
 #include "solver/elasticity/mirrored_convolution.hpp"
 
 namespace slipstick::solver {
+
+std::vector<Component> BlockKernel::distinct() const {
+  const std::set<Component> all(components.begin(), components.end());
+  return {all.begin(), all.end()};
+}
 
 BlockKernel normal_kernel() { return {1, 1, {Component::k33}}; }
 

@@ -19,6 +19,7 @@ struct BlockKernel {
   std::size_t outputs;
   std::size_t inputs;
   std::vector<Component> components;
+  std::vector<Component> distinct() const;
   bool operator==(const BlockKernel&) const = default;
 };
 

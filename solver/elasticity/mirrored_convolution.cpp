@@ -13,13 +13,6 @@ namespace {
 
 Index groups(Index lines, Index group) { return (lines + group - 1) / group; }
 
-/// The components whose spectra are kept, in the order of the products.
-std::vector<Component> distinct_components(const BlockKernel& kernel, bool diagonal) {
-  if (kernel == normal_kernel()) return {Component::k33};
-  if (diagonal) return {Component::k11, Component::k12};
-  return {Component::k11, Component::k12, Component::k22};
-}
-
 /// Lines of h + 1 coefficients, from one to the next and from one coefficient to the next.
 struct KernelLines {
   Index count;
@@ -98,7 +91,8 @@ MirroredConvolution::MirroredConvolution(const Grid& quadrant, BlockKernel kerne
   }
   own_column_groups_ = ranks_ ? quadrant.ranks.own_share(column_groups_) : Share{0, column_groups_};
   if (diagonal_) transformed_ = FftwBuffer(transformed_reals(along1_.frequencies()));
-  const std::vector<Component> components = distinct_components(this->kernel(), diagonal_);
+  std::vector<Component> components = this->kernel().distinct();
+  if (diagonal_) components.pop_back();  // K22 is the mirror image of K11
   const Grid offsets{along1_.frequencies() + 1, along2_.frequencies() + 1, quadrant.h1, quadrant.h2};
   auto tables = law.influence_tables(components, offsets, threads_);
   for (std::size_t c = 0; c < components.size(); ++c) {

@@ -12,7 +12,7 @@ namespace {
 /// Half a period.
 Index transform_length(Index cells) { return fast_length(2 * cells) / 2; }
 
-PeriodicGrid mirrored(const Grid& grid) {
+Grid mirrored(const Grid& grid) {
   return {2 * transform_length(grid.n1), 2 * transform_length(grid.n2), grid.h1, grid.h2};
 }
 
@@ -37,11 +37,8 @@ std::vector<Index> frequencies(Index t, const Share& columns) {
   return result;
 }
 
-std::vector<SymbolEntry> entries(bool tangential, bool symmetric) {
-  if (!tangential) return {SymbolEntry::p11};
-  if (symmetric) return {SymbolEntry::p11, SymbolEntry::p12};  // p22 is the transpose of p11
-  return {SymbolEntry::p11, SymbolEntry::p12, SymbolEntry::p22};
-}
+/// With mirror images about the diagonal p22 is the transpose of p11.
+std::size_t entries_in_use(bool tangential, bool symmetric) { return tangential ? (symmetric ? 2 : 3) : 1; }
 
 /// Values in the scratch memory, four coefficients for each field and a complex row, and of all twiddle
 /// factors.
@@ -149,7 +146,7 @@ MirroredInverseSymbol::MirroredInverseSymbol(const Grid& grid, bool tangential, 
       half_(t2_ / 2 + 1),
       diagonal_(mean_inverse_symbol(mirrored(grid), law, tangential)),
       columns_(PlaneTransform::own_columns(plane_of(grid, tangential, symmetric_))),
-      table_(mirrored(grid), law, entries(tangential, options.diagonal), frequencies(t2_, columns_),
+      table_(mirrored(grid), law, entries_in_use(tangential, options.diagonal), frequencies(t2_, columns_),
              0.5 / (static_cast<double>(t1_) * static_cast<double>(t2_))),
       transform_(plane_of(grid, tangential, symmetric_), options.threads),
       scratch_(coefficient_size(half_, tangential_ && !symmetric_)),

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numbers>
 #include <numeric>
+#include <span>
 
 #include "solver/grid/threads.hpp"
 
@@ -14,57 +15,50 @@ double frequency(Index f, Index length, double h) {
   return 2.0 * std::numbers::pi * static_cast<double>(f) / (static_cast<double>(length) * h);
 }
 
-}  // namespace
-
-double PeriodicGrid::xi1(Index f) const { return frequency(f, length1, h1); }
-double PeriodicGrid::xi2(Index f) const { return frequency(f, length2, h2); }
-
-std::vector<Symbol> inverse_symbols(const PeriodicGrid& grid, const ElasticLaw& law, bool tangential,
-                                    Index f1, std::span<const Index> f2) {
+std::vector<Symbol> inverse_symbols(const Grid& grid, const ElasticLaw& law, bool tangential, Index f1,
+                                    std::span<const Index> f2) {
   std::vector<PlaneWave> waves;
   waves.reserve(f2.size());
+  const double smallest = std::min(frequency(1, grid.n1, grid.h1), frequency(1, grid.n2, grid.h2));
   for (const Index f : f2) {
     const bool zero = f1 == 0 && f == 0;
-    const double xi1 = grid.xi1(f1);
-    const double xi2 = grid.xi2(f);
-    waves.push_back({xi1, xi2, zero ? 0.5 * std::min(grid.xi1(1), grid.xi2(1)) : std::hypot(xi1, xi2)});
+    const double xi1 = frequency(f1, grid.n1, grid.h1);
+    const double xi2 = frequency(f, grid.n2, grid.h2);
+    waves.push_back({xi1, xi2, zero ? 0.5 * smallest : std::hypot(xi1, xi2)});
   }
   std::vector<Symbol> inverses(f2.size());
   law.inverse_symbols(tangential, grid.h1, grid.h2, waves, inverses);
   for (std::size_t i = 0; i < f2.size(); ++i) {
-    const bool nyquist = 2 * f1 == grid.length1 || 2 * f2[i] == grid.length2;
+    const bool nyquist = 2 * f1 == grid.n1 || 2 * f2[i] == grid.n2;
     if (tangential && nyquist) inverses[i][1] = 0.0;
   }
   return inverses;
 }
 
-SymbolTable::SymbolTable(const PeriodicGrid& grid, const ElasticLaw& law,
-                         const std::vector<SymbolEntry>& entries, const std::vector<Index>& columns,
-                         double factor)
+}  // namespace
+
+SymbolTable::SymbolTable(const Grid& grid, const ElasticLaw& law, std::size_t entries,
+                         const std::vector<Index>& columns, double factor)
     : columns_(static_cast<Index>(columns.size())) {
-  const Index rows = grid.length1 / 2 + 1;
-  for (const SymbolEntry entry : entries) {
-    tables_[static_cast<std::size_t>(entry)] = FftwBuffer(static_cast<std::size_t>(rows * columns_));
-  }
-  const bool tangential = entries.size() > 1;
+  const Index rows = grid.n1 / 2 + 1;
+  for (std::size_t e = 0; e < entries; ++e)
+    tables_[e] = FftwBuffer(static_cast<std::size_t>(rows * columns_));
   in_parts(ThreadPool::available(), rows, [&](int, Index first, Index last) {
     for (Index f1 = first; f1 < last; ++f1) {
-      const std::vector<Symbol> inverses = inverse_symbols(grid, law, tangential, f1, columns);
-      for (Index column = 0; column < columns_; ++column) {
-        const Symbol& symbol = inverses[static_cast<std::size_t>(column)];
-        for (const SymbolEntry entry : entries) {
-          const auto e = static_cast<std::size_t>(entry);
-          tables_[e].data()[f1 * columns_ + column] = factor * symbol[e];
-        }
+      const std::vector<Symbol> inverses = inverse_symbols(grid, law, entries > 1, f1, columns);
+      for (std::size_t e = 0; e < entries; ++e) {
+        double* const row = tables_[e].data() + f1 * columns_;
+        for (std::size_t column = 0; column < columns.size(); ++column)
+          row[column] = factor * inverses[column][e];
       }
     }
   });
 }
 
-std::array<double, 2> mean_inverse_symbol(const PeriodicGrid& grid, const ElasticLaw& law, bool tangential) {
+std::array<double, 2> mean_inverse_symbol(const Grid& grid, const ElasticLaw& law, bool tangential) {
   const auto signs = [](Index f, Index length) { return f == 0 || 2 * f == length ? 1.0 : 2.0; };
-  const Index rows = grid.length1 / 2 + 1;
-  std::vector<Index> columns(static_cast<std::size_t>(grid.length2 / 2 + 1));
+  const Index rows = grid.n1 / 2 + 1;
+  std::vector<Index> columns(static_cast<std::size_t>(grid.n2 / 2 + 1));
   std::iota(columns.begin(), columns.end(), Index{0});
   std::vector<std::array<double, 2>> of_rows(static_cast<std::size_t>(rows));
   in_parts(ThreadPool::available(), rows, [&](int, Index first, Index last) {
@@ -72,7 +66,7 @@ std::array<double, 2> mean_inverse_symbol(const PeriodicGrid& grid, const Elasti
       auto& sum = of_rows[static_cast<std::size_t>(f1)];
       const std::vector<Symbol> inverses = inverse_symbols(grid, law, tangential, f1, columns);
       for (const Index f2 : columns) {
-        const double weight = signs(f1, grid.length1) * signs(f2, grid.length2);
+        const double weight = signs(f1, grid.n1) * signs(f2, grid.n2);
         const Symbol& symbol = inverses[static_cast<std::size_t>(f2)];
         sum[0] += weight * symbol[0];
         sum[1] += weight * symbol[tangential ? 2 : 0];
@@ -84,7 +78,7 @@ std::array<double, 2> mean_inverse_symbol(const PeriodicGrid& grid, const Elasti
     sum[0] += row[0];
     sum[1] += row[1];
   }
-  const double frequencies = static_cast<double>(grid.length1) * static_cast<double>(grid.length2);
+  const double frequencies = static_cast<double>(grid.n1) * static_cast<double>(grid.n2);
   return {sum[0] / frequencies, sum[1] / frequencies};
 }
 

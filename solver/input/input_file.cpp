@@ -16,7 +16,7 @@
 namespace slipstick::solver {
 namespace {
 
-/// A file open for reading. Opening does not wait for somebody to write into a pipe.
+/// A regular file open for reading. Opening does not wait for somebody to write into a pipe.
 class InputFile {
  public:
   InputFile(const std::filesystem::path& file, std::uintmax_t largest, const std::string& allowed)
@@ -32,7 +32,7 @@ class InputFile {
 
   void require_regular() const {
     struct stat status {};
-    if (descriptor_ < 0 || fstat(descriptor_, &status) != 0) fail_with(errno);
+    if (descriptor_ < 0 || fstat(descriptor_, &status) != 0) fail(std::generic_category().message(errno));
     if (S_ISDIR(status.st_mode)) fail("it is a folder");
     if (!S_ISREG(status.st_mode)) fail("it is a device or a pipe");
     if (static_cast<std::uintmax_t>(status.st_size) > largest_) fail_for_size();
@@ -45,7 +45,7 @@ class InputFile {
     for (;;) {
       const ssize_t size = ::read(descriptor_, buffer.data(), buffer.size());
       if (size < 0 && errno == EINTR) continue;
-      if (size < 0) fail_with(errno);
+      if (size < 0) fail(std::generic_category().message(errno));
       if (size == 0) return text;
       text.append(buffer.data(), static_cast<std::size_t>(size));
       if (text.size() > largest_) fail_for_size();
@@ -56,7 +56,6 @@ class InputFile {
   [[noreturn]] void fail(const std::string& reason) const {
     throw InputError(file_.string(), fmt::format("cannot be read: {}; allowed: {}", reason, allowed_));
   }
-  [[noreturn]] void fail_with(int error) const { fail(std::generic_category().message(error)); }
   [[noreturn]] void fail_for_size() const {
     throw InputError(file_.string(), fmt::format("is larger than {} MiB; allowed: {} of at most that size",
                                                  largest_ >> 20, allowed_));

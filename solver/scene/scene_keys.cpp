@@ -84,10 +84,10 @@ void add_body(SettingKeys& keys, const std::string& table) {
 
 /// The keys of [layer]: a word for the law, and the law's own numbers.
 void add_layer(SettingKeys& keys) {
-  keys.push_back(
-      {"layer.kind", kWord, "", word_of(layer_words(), Scene().layer.kind), one_of(layer_words()),
-       "What lies between the bodies: nothing, or a thin layer that gives way where it is loaded and "
-       "nowhere else (winkler)."});
+  std::string meaning = "What lies between the bodies: nothing";
+  for (const LawKind& kind : law_kinds()) meaning += fmt::format(", or {} ({})", kind.meaning, kind.word);
+  keys.push_back({"layer.kind", kWord, "", word_of(layer_words(), Scene().layer.kind), one_of(layer_words()),
+                  meaning + "."});
   for (const LawKind& kind : law_kinds()) {
     for (const LawParameter& parameter : kind.parameters) {
       keys.push_back({"layer." + parameter.key, kNumber, parameter.unit,

@@ -128,22 +128,6 @@ TEST_P(ExtremeLoads, NextToNoneAreLinear) {
   }
 }
 
-// The same through a scene: the twist of 1e-10 of a load is 1e-10 of its twist, and a twist of 1e-12 rad
-// needs no luck either.
-TEST(SmallLoads, OfASceneEndWell) {
-  const ModelSolution small = solve_in_model_units(paper_scene(32, 1e-10));
-  const ModelSolution larger = solve_in_model_units(paper_scene(32, 1e-7));
-  ASSERT_EQ(small.status, Status::converged) << small.message;
-  EXPECT_NEAR(small.twist_angle / larger.twist_angle, 1e-3, 1e-12);
-
-  Scene turned = paper_scene(32, 0.0);
-  turned.steps[0].torsion = Twist{1e-12};
-  const ModelSolution by_twist = solve_in_model_units(turned);
-  ASSERT_EQ(by_twist.status, Status::converged) << by_twist.message;
-  EXPECT_NEAR(by_twist.moment / by_twist.twist_angle, larger.moment / larger.twist_angle,
-              1e-7 * larger.moment / larger.twist_angle);
-}
-
 // Dissimilar bodies with next to no friction slip nearly everywhere under their pressure alone: tractions
 // cannot be written to more digits than their gap asks for.
 TEST(SmallFriction, BetweenDissimilarBodiesEndsWell) {

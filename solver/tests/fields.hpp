@@ -17,6 +17,12 @@ inline Eigen::ArrayXd random_field(Index size, unsigned seed) {
   return Eigen::ArrayXd::NullaryExpr(size, [&] { return uniform(generator); });
 }
 
+/// A vector field on n x n cells with its second component set to q2(x1, x2) = -q1(x2, x1).
+inline Eigen::ArrayXd mirrored_about_diagonal(Eigen::ArrayXd field, Index n) {
+  field.tail(n * n).reshaped(n, n) = -field.head(n * n).reshaped(n, n).transpose();
+  return field;
+}
+
 /// NaN where a value is NaN, as is their difference.
 inline double largest(const Eigen::ArrayXd& values) { return values.abs().maxCoeff<Eigen::PropagateNaN>(); }
 inline double relative_difference(const Eigen::ArrayXd& a, const Eigen::ArrayXd& b) {

@@ -299,10 +299,8 @@ class MappedSphere : public SceneFile {
       heights += "\n";
     }
     write("heights.csv", heights);
-    std::string text = kShortScene;
-    const std::string shape = "shape = \"sphere\"\nradius = 0.018\n";
-    text.replace(text.find(shape), shape.size(),
-                 "shape = \"height_map\"\nfile = \"heights.csv\"\nspacing = [3e-5, 3e-5]\n");
+    std::string text =
+        with_surface("shape = \"height_map\"\nfile = \"heights.csv\"\nspacing = [3e-5, 3e-5]\n");
     text.erase(text.find("[grid]"));
     return read(text, overrides);
   }

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "solver/contact/certificate.hpp"
-#include "solver/contact/coulomb_method.hpp"
 #include "solver/model_solution.hpp"
 #include "solver/tests/press.hpp"
 #include "solver/tests/scene_file.hpp"
@@ -149,28 +148,6 @@ TEST_F(Pushed, SlidesWhenTheLoadHasFallenTooFar) {
   EXPECT_THAT(refused, HasSubstr("along (0.6, 0.8)"));
 }
 
-/// Rising together, with dF/dW < mu, nothing that touches slips: q = (dF/dW) p(W). A step measures the slip
-/// of the cells that come into contact in it from its start: first order in the step.
-TEST_F(Pushed, SticksWhileLoadAndForceRiseTogether) {
-  const double slope = 0.5;
-  const ArrayXd expected = slope * carried(1.0);
-  std::vector<double> errors;
-  for (const int count : {5, 10, 20}) {
-    std::vector<Part> parts;
-    for (int i = 1; i <= count; ++i) {
-      const double part = static_cast<double>(i) / count;
-      parts.push_back({part, slope * part});
-    }
-    take_steps(parts);
-    const ArrayXd q = history(scene_).back().tangential.traction;
-    errors.push_back(norms(q - expected).sum() / norms(expected).sum());
-  }
-  for (std::size_t i = 1; i < errors.size(); ++i) {
-    EXPECT_GT(errors[i - 1] / errors[i], 1.6);
-    EXPECT_LT(errors[i - 1] / errors[i], 2.5);
-  }
-}
-
 // --- torsion: exact but for the mesh ---
 
 /// Cells across the contact; ends of the steps over the limit moment.
@@ -200,22 +177,6 @@ TEST(Step, ThatChangesNothingChangesNothing) {
   }
 }
 
-/// Its problem is that of any start.
-TEST(Step, StartsFromTheTractionsBefore) {
-  const Scene scene = twisted(24, {0.7, 0.1});
-  const auto steps = history(scene);
-  const Model& model = steps[0].model;
-  TangentialProblem problem =
-      under_moment(model.friction * steps[0].normal.pressure,
-                   0.1 * moment_limit(model.grid, model.friction * steps[0].normal.pressure));
-  problem.start = steps[0].tangential.traction;
-  const TangentialSolution alone =
-      solve_by_coulomb_method({model.law}, model.grid, problem, {.tolerance = kGap, .progress = {}});
-  EXPECT_LE(relative_difference(steps[1].tangential.traction, alone.traction), kSame);
-  EXPECT_LE(relative_difference(steps[1].tangential.slip, alone.slip), kSame);
-  EXPECT_NEAR((steps[1].twist_angle - steps[0].twist_angle) / alone.twist, 1.0, kSame);
-}
-
 /// The part of the grid that a step is solved on follows its pressure and the one before.
 TEST(Step, IsTheSameOnTheReducedGrid) {
   Scene scene = twisted(28, {0.5, 0.3, -0.6, 0.2});
@@ -230,37 +191,6 @@ TEST(Step, IsTheSameOnTheReducedGrid) {
     EXPECT_NEAR(other.twist_angle / reduced[k].twist_angle, 1.0, 1e-7);
     EXPECT_NEAR(other.dissipated / reduced[k].dissipated, 1.0, 1e-7);
   }
-}
-
-/// Slip turns every cell along its circle about the axis, on the mesh but for the noise in its direction:
-/// of two steps the second does not undo what the first has left of that. It fades with the mesh.
-TEST(Torsion, InTwoStepsIsNearlyAsInOne) {
-  double last = 1.0;
-  for (const Index cells : {16, 32, 64}) {
-    const auto steps = history(twisted(cells, {0.45, 0.9}));
-    const auto once = history(twisted(cells, {0.9}));
-    const ArrayXd difference = steps[1].tangential.traction - once[0].tangential.traction;
-    const double traction = norms(difference).sum() / norms(once[0].tangential.traction).sum();
-    EXPECT_LT(traction, 0.6 * last);
-    last = traction;
-  }
-  EXPECT_LT(last, 1e-5);  // measured 3e-6
-}
-
-TEST(Torsion, ReversesByMasingsRule) {
-  const auto steps = history(twisted(48, {0.8, 0.2, -0.8, 0.8}));
-  const auto part = history(twisted(48, {0.3}));
-  const double peak = steps[0].twist_angle;
-  const std::array<double, 3> errors{(peak - steps[1].twist_angle) / (2.0 * part[0].twist_angle) - 1.0,
-                                     steps[2].twist_angle / -peak - 1.0, steps[3].twist_angle / peak - 1.0};
-  for (std::size_t k = 0; k < errors.size(); ++k) {
-    EXPECT_LE(std::abs(errors[k]), 2e-6) << k;  // the noise in directions, squared: measured 3e-7
-  }
-}
-
-TEST(Torsion, ForgetsSmallCyclesInAGreaterOne) {
-  const auto steps = history(twisted(32, {0.8, 0.3, 0.6, 0.8}));
-  EXPECT_NEAR(steps[3].twist_angle / steps[0].twist_angle, 1.0, 5e-5);  // measured 9e-6
 }
 
 /// However many steps have led there.
@@ -375,33 +305,6 @@ TEST(Energy, GoesIntoHeatAndElasticity) {
     stored = step.elastic_energy;
     twist = step.twist_angle;
     at = step.displacement;
-  }
-}
-
-/// A cell that starts to slip within a step is what the straight line between the step's ends misses: of
-/// second order.
-TEST(Energy, LostInACycleIsTheLoopsArea) {
-  std::vector<double> errors;
-  for (const int count : {4, 8, 16}) {
-    std::vector<double> moments{0.8};
-    for (const double towards : {-1.0, 1.0}) {
-      for (int i = 1; i <= count; ++i) {
-        moments.push_back(towards * 0.8 * (2.0 * static_cast<double>(i) / count - 1.0));
-      }
-    }
-    const auto steps = history(twisted(24, moments));
-    double area = 0.0;
-    double dissipated = 0.0;
-    for (std::size_t k = 1; k < steps.size(); ++k) {
-      area +=
-          0.5 * (steps[k].moment + steps[k - 1].moment) * (steps[k].twist_angle - steps[k - 1].twist_angle);
-      dissipated += steps[k].dissipated;
-    }
-    errors.push_back(std::abs(area / dissipated - 1.0));
-  }
-  for (std::size_t i = 1; i < errors.size(); ++i) {
-    EXPECT_GT(errors[i - 1] / errors[i], 3.0);
-    EXPECT_LT(errors[i - 1] / errors[i], 5.0);
   }
 }
 

@@ -42,14 +42,13 @@ class Resumed : public SceneFile {
     EXPECT_EQ(one.message, other.message) << at;
     EXPECT_EQ(one.cycle, other.cycle) << at;
     EXPECT_EQ(one.loads.name, other.loads.name) << at;
-    EXPECT_EQ(one.twist_angle, other.twist_angle) << at;
     EXPECT_EQ(one.displacement, other.displacement) << at;
-    EXPECT_EQ(one.approach, other.approach) << at;
-    EXPECT_EQ(one.stick_radius, other.stick_radius) << at;
+    for (const auto number :
+         {&Solution::twist_angle, &Solution::approach, &Solution::stick_radius, &Solution::dissipated,
+          &Solution::operator_applications, &Solution::pressure_applications}) {
+      EXPECT_EQ(one.*number, other.*number) << at;
+    }
     EXPECT_EQ(one.certificate.gap, other.certificate.gap) << at;
-    EXPECT_EQ(one.dissipated, other.dissipated) << at;
-    EXPECT_EQ(one.operator_applications, other.operator_applications) << at;
-    EXPECT_EQ(one.pressure_applications, other.pressure_applications) << at;
     EXPECT_EQ(one.pressure_iterations, other.pressure_iterations) << at;
     EXPECT_EQ(one.resolution.absolute, other.resolution.absolute) << at;
     EXPECT_EQ(one.resolution.path.displacement, other.resolution.path.displacement) << at;

@@ -54,16 +54,6 @@ TEST_F(Nothing, IsLeftWhereAllStuck) {
   }
 }
 
-/// Masing's rule: what stays is phi(m) - 2 phi(m/2), and nothing where no cell slipped.
-TEST_F(Nothing, IsLeftOfATwistAsMasingsRuleSays) {
-  for (const double ratio : {0.003, 0.05, 0.5}) {
-    const auto steps = steps_of({fmt::format("moment_ratio = {}", ratio), "moment_ratio = 0"});
-    const auto half = steps_of({fmt::format("moment_ratio = {}", 0.5 * ratio)});
-    const double first = steps[0].twist_angle;
-    EXPECT_NEAR(steps[1].twist_angle / first, 1.0 - 2.0 * half[0].twist_angle / first, 1e-6) << ratio;
-  }
-}
-
 /// The tractions that stay meet Coulomb's law under the load that stays, over an energy that this load can
 /// hold.
 TEST_F(Nothing, IsLeftOfTheNormalLoad) {

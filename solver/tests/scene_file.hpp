@@ -13,35 +13,6 @@
 
 namespace slipstick::solver {
 
-inline constexpr const char* kScene = R"(name = "paper"
-[upper]
-shape = "sphere"
-radius = 0.018
-young_modulus = 210e9
-poisson_ratio = 0.3
-[lower]
-young_modulus = 210e9
-poisson_ratio = 0.3
-[contact]
-friction = 0.1
-pressure = "solved"
-coupling = "auto"
-[load]
-normal = 1000.0
-moment_ratio = 0.9
-force = [0.0, 0.0]
-[grid]
-cells = [128, 96]
-extent = [0.0011, 0.0012]
-[solver]
-method = "paper"
-operator = "dcfft"
-tolerance = 1e-7
-max_iterations = 70
-threads = 2
-model = "auto"
-)";
-
 inline constexpr const char* kShortScene = R"([upper]
 shape = "sphere"
 radius = 0.018
@@ -58,6 +29,13 @@ moment_ratio = 0.9
 [grid]
 cells = [32, 32]
 )";
+
+/// The short scene with other keys for its sphere, and tables at the end.
+inline std::string with_surface(const std::string& keys, const std::string& tables = "") {
+  std::string text = kShortScene;
+  const std::string sphere = "shape = \"sphere\"\nradius = 0.018\n";
+  return text.replace(text.find(sphere), sphere.size(), keys) + tables;
+}
 
 class SceneFile : public testing::Test {
  protected:

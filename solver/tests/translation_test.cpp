@@ -55,25 +55,6 @@ ArrayXd moved_vectors(const ArrayXd& field, Index n, const Image& image) {
   return result;
 }
 
-/// K q and the slip afresh, by direct summation.
-Certificate independent_certificate(const ModelSolution& solution, const Pair& force, double moment) {
-  const Model& model = solution.model;
-  const auto op = make_operator(OperatorKind::direct, model.grid, tangential_kernel(), *model.law);
-  const TangentialSolution& found = solution.tangential;
-  ArrayXd u(found.traction.size());
-  op->apply(found.traction, u);
-  const ArrayXd contact = (solution.normal.pressure > 0.0).cast<double>();
-  const ArrayXd rotation = rotation_field(model.grid);
-  ArrayXd slip = u - found.twist * rotation;
-  slip.head(contact.size()) -= found.displacement[0];
-  slip.tail(contact.size()) -= found.displacement[1];
-  slip *= contact.replicate(2, 1);
-  const double area = model.grid.cell_area();
-  return certify({found.traction, u, slip}, model.friction * solution.normal.pressure, rotation,
-                 moment / (area * model.moment_unit()),
-                 {force[0] / (area * model.force_unit()), force[1] / (area * model.force_unit())});
-}
-
 // --- off-centre contacts ---
 
 /// A body free to move turns about where it touches.
@@ -114,24 +95,6 @@ TEST(OffCentreSphere, StandsNextToGrossSlip) {
     }
     EXPECT_NEAR(twists[1] / twists[0], 1.0, known) << missing;
   }
-}
-
-TEST(OffCentreSphere, TurnsAboutItsOwnAxisBetweenTheCells) {
-  const ModelSolution centred = solved(sphere({0.0, 0.0}));
-  double worst = 0.0;
-  for (const Pair& cells : {Pair{0.5, 0.5}, Pair{2.3, -4.1}, Pair{-6.7, 3.2}}) {
-    const Scene scene = sphere(cells);
-    const ModelSolution off = solved(scene);
-    const Pair& centre = scene.surfaces[0].at;
-    const double length = paper::kContactRadius;
-    worst = std::max({worst, std::abs(off.twist_angle / centred.twist_angle - 1.0),
-                      std::abs(off.moment_limit / centred.moment_limit - 1.0),
-                      std::abs(off.displacement[0] / off.twist_angle - centre[1]) / length,
-                      std::abs(off.displacement[1] / off.twist_angle + centre[0]) / length,
-                      std::abs((*off.limit.centre)[0] - centre[0]) / length,
-                      std::abs((*off.limit.centre)[1] - centre[1]) / length});
-  }
-  EXPECT_LE(worst, 3e-3);
 }
 
 // --- symmetries ---
@@ -177,26 +140,6 @@ TEST(ForceAndMoment, TurnWithTheGrid) {
   const double size = std::hypot(one.displacement[0], one.displacement[1]);
   EXPECT_NEAR(turned.displacement[0], -one.displacement[1], kSame * size);
   EXPECT_NEAR(turned.displacement[1], one.displacement[0], kSame * size);
-}
-
-TEST(ForceAndMoment, AreCertifiedByDirectSummation) {
-  for (const double moment_ratio : {0.0, 0.3, 0.7}) {
-    for (const double tolerance : {1e-8, 1e-12}) {
-      Scene scene = pushed(0.6, 0.4, moment_ratio);
-      scene.tolerance = tolerance;
-      const ModelSolution solution = solved(scene);
-      const double moment = moment_ratio * solution.moment_limit;
-      const Certificate fresh = independent_certificate(solution, scene.steps[0].force, moment);
-      for (const Certificate& certificate : {solution.certificate, fresh}) {
-        EXPECT_LE(certificate.gap, tolerance + 1e-13);
-        EXPECT_LE(certificate.moment, kRounding);
-        EXPECT_LE(certificate.force, kRounding);
-        EXPECT_LE(certificate.friction_bound, kRounding);
-      }
-      EXPECT_GT(solution.stick_cells, 20);
-      EXPECT_LT(solution.stick_cells, solution.contact_cells - 20);
-    }
-  }
 }
 
 /// Loads and motions are each other's answers, in every mixture.
@@ -286,48 +229,6 @@ TEST_P(Mindlin, IsTheDifferenceOfTwoPressures) {
     EXPECT_NEAR(solution.displacement[k] / (along[k] * moved), 1.0, kSame);
   }
   EXPECT_EQ(solution.stick_cells, (less.solution.pressure > 0.0).count());
-}
-
-// --- the full model ---
-
-TEST(FullModel, TurnsASymmetricContactAsTheReducedOne) {
-  Scene scene = ellipsoid_scene(32, 1.5 * paper::kRadius, paper::kRadius, 0.7);
-  scene.tolerance = kGap;
-  const ModelSolution reduced = solved(scene);
-  scene.model = ModelChoice::full;
-  const ModelSolution full = solved(scene);
-  EXPECT_TRUE(reduced.model.left_out.size() > full.model.left_out.size());
-  EXPECT_NEAR(full.twist_angle / reduced.twist_angle, 1.0, 1e-10);
-  EXPECT_NEAR(full.moment_limit / reduced.moment_limit, 1.0, 1e-10);
-  EXPECT_LE(std::hypot(full.displacement[0], full.displacement[1]),
-            1e-9 * full.twist_angle * full.contact_radius);
-  EXPECT_LE(relative_difference(full.tangential.traction, reduced.tangential.traction), kSame);
-}
-
-// --- several patches ---
-
-TEST(TwoPatches, TurnAboutAPointBetweenThem) {
-  Scene scene = sphere({0.0, 0.0}, 48);
-  const double h = cell_size(scene);
-  scene.surfaces = {scene.surfaces[0], scene.surfaces[0]};
-  scene.surfaces[0].at = {-10.0 * h, 0.0};
-  scene.surfaces[1].at = {11.0 * h, 0.0};
-  scene.surfaces[1].radius *= 0.5;
-  scene.combine = Combine::nearest;
-  scene.steps[0].torsion = MomentRatio{0.8};
-  const ModelSolution solution = solved(scene);
-  EXPECT_LE(solution.certificate.moment, kRounding);
-  EXPECT_LE(solution.certificate.force, kRounding);
-  EXPECT_LE(solution.certificate.gap, kGap);
-  const Certificate fresh = independent_certificate(solution, {}, 0.8 * solution.moment_limit);
-  EXPECT_LE(fresh.gap, 2.0 * kGap);
-  EXPECT_LE(std::max(fresh.force, fresh.moment), kRounding);
-  ASSERT_TRUE(solution.limit.centre);
-  EXPECT_NEAR((*solution.limit.centre)[1], 0.0, 1e-6 * h);
-  EXPECT_GT((*solution.limit.centre)[0], -10.0 * h);
-  EXPECT_LT((*solution.limit.centre)[0], 11.0 * h);
-  // Its own mirror image: what moves along the line between the patches cancels.
-  EXPECT_NEAR(solution.displacement[0], 0.0, kSame * std::abs(solution.displacement[1]));
 }
 
 /// A force moves it, and nothing turns it.

@@ -39,15 +39,6 @@ TEST(Certified, HasTheTwistAndMomentOfItsPressure) {
     }
 }
 
-TEST(Certified, HasTheMomentOfItsTwist) {
-  const Precision precision(200);
-  for (const Profile& profile : {kHertz, kCone})
-    for (const std::string c : {"0.1", "0.3", "0.49", "0.51", "0.9"})
-      EXPECT_TRUE(
-          agree(at_stick_ratio(profile, c).moment, moment_from_twist(profile.kind, exact(c)) / load(profile)))
-          << c;
-}
-
 TEST(Certified, HasTheLimitMoments) {
   const Precision precision(kBits);
   const auto limit = [&](const Profile& profile) {
@@ -104,7 +95,7 @@ TEST(Certified, GoesRoundBetweenAllQuantities) {
   for (const Profile& profile : {kHertz, kCone, kFlatPunch, power("1.5")})
     for (const std::string c : {"1e-12", "0.3", "0.8", "0.99999999"}) {
       const State start = at_stick_ratio(profile, c, {}, 60);
-      for (const auto& [name, quantity] : kQuantity) {
+      for (const auto& [name, quantity] : kQuantities) {
         const State back = state(profile, quantity, (start.*kMember.at(name)).value, {}, 15);
         EXPECT_TRUE(abs(enclosure(back.stick_ratio) / exact(c) - 1) < exact("1e-14"))
             << name << ", c = " << c;

@@ -9,6 +9,7 @@
 
 #include "analytic/certified/ball_text.hpp"
 #include "analytic/certified/certified.hpp"
+#include "analytic/certified/reference_rows.hpp"
 
 #if __has_include(<flint/acb_elliptic.h>)
 #include <flint/acb_elliptic.h>
@@ -28,19 +29,12 @@ inline const Profile kCone{Kind::cone};
 inline const Profile kFlatPunch{Kind::flat_punch};
 inline Profile power(const std::string& exponent) { return {Kind::power, exponent}; }
 
-inline const std::map<std::string, Quantity> kQuantity{{"moment_ratio", Quantity::moment_ratio},
-                                                       {"moment_deficit", Quantity::moment_deficit},
-                                                       {"stick_ratio", Quantity::stick_ratio},
-                                                       {"stick_complement", Quantity::stick_complement},
-                                                       {"twist", Quantity::twist}};
-
-inline const std::map<std::string, Number State::*> kMember{{"moment_ratio", &State::moment_ratio},
-                                                            {"moment_deficit", &State::moment_deficit},
-                                                            {"stick_ratio", &State::stick_ratio},
-                                                            {"stick_complement", &State::stick_complement},
-                                                            {"twist", &State::twist},
-                                                            {"moment", &State::moment},
-                                                            {"tangent_stiffness", &State::tangent_stiffness}};
+/// All members of a state.
+inline const std::map<std::string, Number State::*> kMember = [] {
+  auto members = kMembers;
+  members.insert({{"moment", &State::moment}, {"tangent_stiffness", &State::tangent_stiffness}});
+  return members;
+}();
 
 inline Ball exact(const std::string& text) { return read_exactly("text", text).ball(); }
 
@@ -130,12 +124,6 @@ inline Integrals from_pressure(const Profile& profile, const Ball& c) {
     return integral(integrand, 0, pi() / 2);
   };
   return {.twist = integrate(false), .moment = 8 * integrate(true)};
-}
-
-/// M/(mu p0 a^3) from the twist: 8/3 integral_c^1 s^2 e ds.
-inline Ball moment_from_twist(Kind kind, const Ball& c) {
-  const auto integrand = [&](const ComplexBall& s, bool analytic) { return s * s * fall(kind, s, analytic); };
-  return 8 * integral(integrand, c, 1) / 3;
 }
 
 /// q/(mu p0) inside the stick radius: 2/pi r integral_c^1 e/(s sqrt(s^2 - r^2)) ds.

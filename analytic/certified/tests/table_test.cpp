@@ -41,7 +41,7 @@ TEST(CertifiedTable, HasTheClosedCostsOfTheSphere) {
   const Precision precision(kBits);
   for (const auto& row : testing::read_rows(SLIPSTICK_REFERENCES "/certified_references.csv")) {
     if (row.text("profile") != "hertz" || row.text("quantity") == "traction") continue;
-    const Quantity given = kQuantity.at(row.text("given"));
+    const Quantity given = kQuantities.at(row.text("given"));
     const State found = state(kHertz, given, row.text("value"), {}, 30);
     const Ball c = enclosure(found.stick_ratio);
     const Ball e = e_of(c).real();

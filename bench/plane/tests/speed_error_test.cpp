@@ -45,8 +45,8 @@ TEST(PlaneDesign, TriesEachChoiceSomewhere) {
   for (const PlaneChoice& choice : bench::plane_design(0.9, false)) {
     words.insert({choice.method, choice.op, choice.model, choice.pressure});
   }
-  for (const char* word : {"coulomb", "paper", "projected_gradient", "dcfft", "direct", "dense", "auto", "full",
-                           "solved", "hertz", "hertz_averaged"}) {
+  for (const char* word : {"coulomb", "paper", "projected_gradient", "dcfft", "direct", "dense", "auto",
+                           "full", "solved", "hertz", "hertz_averaged"}) {
     EXPECT_TRUE(words.contains(word)) << word;
   }
 }

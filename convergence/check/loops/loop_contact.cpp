@@ -115,7 +115,7 @@ LoopContact torsion_contact(const solver::Scene& scene, double normal_load) {
           .sphere_limit = is_sphere ? std::optional(law.moment_limit) : std::nullopt,
           .other_profiles = others,
           .law_error = law.error,
-          .words = {"moment", "rotation", "N m", "rad", "mrad/s"}};
+          .words = {"moment", "rotation", "mrad/s"}};
 }
 
 LoopContact force_contact(const solver::Scene& scene, double normal_load) {
@@ -144,7 +144,7 @@ LoopContact force_contact(const solver::Scene& scene, double normal_load) {
           .sphere_limit = {},
           .other_profiles = others,
           .law_error = kLawError,
-          .words = {"force", "displacement", "N", "m", "mm/s"}};
+          .words = {"force", "displacement", "mm/s"}};
 }
 
 }  // namespace slipstick::convergence

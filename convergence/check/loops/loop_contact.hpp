@@ -11,11 +11,9 @@ namespace slipstick::convergence {
 
 /// Names of a loop's quantities and units in sentences.
 struct LoopWords {
-  const char* load;         ///< moment
-  const char* motion;       ///< rotation
-  const char* load_unit;    ///< N m
-  const char* motion_unit;  ///< rad
-  const char* rate_unit;    ///< of a thousandth: mrad/s
+  const char* load;       ///< moment
+  const char* motion;     ///< rotation
+  const char* rate_unit;  ///< of a thousandth: mrad/s
 };
 
 /// The first loading of a named profile.

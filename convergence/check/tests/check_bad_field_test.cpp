@@ -161,12 +161,6 @@ TEST_F(CheckBadField, SaysFirstWhatIsWrongByHowMuchAndWhere) {
   EXPECT_THAT(good, AllOf(Not(HasSubstr("inferred")), Not(HasSubstr("gap/energy"))));
 }
 
-TEST_F(CheckBadField, OneCellBeyondFriction) {
-  FieldRows rows = rows_;
-  for (const std::size_t c : {3, 4}) rows[100][c] *= 1.01;
-  find_bad(rows, scene_, HasSubstr("|q| exceeds mu p by 1 %"));
-}
-
 // The normal contact's tolerance decides whether such a cell touches at all.
 TEST_F(CheckBadField, NotACellThatCarriesNextToNothing) {
   FieldRows rows = rows_;
@@ -185,27 +179,12 @@ TEST_F(CheckBadField, TractionsTurnedByFiveDegrees) {
            scene_, AllOf(HasSubstr("slip is not opposed to traction"), Not(HasSubstr("K12"))));
 }
 
-TEST_F(CheckBadField, LoadAndPressure) {
-  find_bad(with_stresses_times(rows_, 0.95), scene_, HasSubstr("the normal load is 5 % too low"));
-  solver::Scene scene = scene_;
-  scene.steps.front().torsion = solver::MomentRatio{0.85};
-  find_bad(rows_, scene, HasSubstr("the moment is 5.9 % too high"));
-}
-
 TEST_F(CheckBadField, Twists) {
   const double twist = solution_.twist_angle;
   find_bad(rows_, scene_, AllOf(HasSubstr("twist is 50 % too low"), HasSubstr("one body only")), 0.5 * twist);
   find_bad(rows_, scene_, HasSubstr("twice the compliance"), 2.0 * twist);
   find_bad(rows_, scene_, HasSubstr("a twist in degrees"), twist * 180.0 / std::numbers::pi);
-  find_bad(rows_, scene_, AllOf(HasSubstr("twist is 3 % too high"), HasSubstr("not that of these tractions")),
-           1.03 * twist);
   EXPECT_EQ(check_rows(rows_, scene_, -twist)["verdict"], "good");  // a matter of convention, and said so
-}
-
-TEST_F(CheckBadField, StoppedTooEarly) {
-  solver::Scene scene =
-      scene_of("ellipse", 48, {"solver.method=projected_gradient", "solver.max_iterations=3"});
-  find_bad(solved(scene), scene, Not(HasSubstr("it looks like")));
 }
 
 TEST_F(CheckBadField, OneCellMissing) {

@@ -130,16 +130,6 @@ TEST(Gate, ReferenceCountsForErrorsOnly) {
   EXPECT_THAT(unknown.why, HasSubstr("does not say"));
 }
 
-TEST(Gate, SaysWhyARunHasNoNumber) {
-  for (const auto& [status, words] :
-       {std::pair{"failed", "the solve failed"}, {"refused", "the solve was refused"}}) {
-    const Judgement judgement =
-        judge(below("twist_error", 1e-3), {{"status", status}, {"message", "beyond the limit"}});
-    EXPECT_NE(judgement.outcome, Outcome::passed);
-    EXPECT_THAT(judgement.why, AllOf(HasSubstr(words), HasSubstr("beyond the limit"))) << status;
-  }
-}
-
 TEST(Gate, NearestReferenceIsTheOneThatCounts) {
   const Json result{
       {"exact", {{"relative_uncertainty", 1e-2}}},
@@ -202,21 +192,6 @@ TEST(Gate, RunsThatDiedFailAGateOfAnyStatus) {
   }
   study["failed_runs"]["count"] = 0;
   EXPECT_EQ(judge(below("x", 1.0), study).outcome, Outcome::passed);
-}
-
-TEST(Gate, ExitCodeIsThatOfTheWorst) {
-  const auto judged = [](GateStatus status, double value) {
-    return judge(with_status(below("x", 1.0), status), solve_with("x", value));
-  };
-  const Judgement passed = judged(GateStatus::active, 0.5);
-  const Judgement failed = judged(GateStatus::active, 2.0);
-  const Judgement reported = judged(GateStatus::report_only, 2.0);
-  const Judgement expected = judged(GateStatus::expected_failure, 2.0);
-  const Judgement refused = refuse(gate_on("x"), "no such file");
-  EXPECT_EQ(exit_code({}), 2);
-  EXPECT_EQ(exit_code({passed, reported, expected}), 0);
-  EXPECT_EQ(exit_code({passed, failed, passed}), 1);
-  EXPECT_EQ(exit_code({failed, refused, passed}), 2);
 }
 
 }  // namespace

@@ -1,6 +1,5 @@
 // Contact laws against the exact law, at points that no fit has seen.
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -9,20 +8,17 @@
 #include <stdexcept>
 #include <vector>
 
-#include "analytic/cycle.hpp"
 #include "analytic/elliptic.hpp"
 #include "analytic/named_profile.hpp"
 #include "analytic/torsion.hpp"
 #include "convergence/laws/contact_law.hpp"
 #include "convergence/oracle/oracle.hpp"
-#include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
 using analytic::Profile;
 using analytic::TorsionState;
-using testing::HasSubstr;
 
 const std::vector<const Profile*> kLawProfiles{&analytic::hertz_profile(), &analytic::cone_profile(),
                                                &analytic::flat_punch_profile()};
@@ -41,15 +37,11 @@ std::vector<double> twists_to(double last, int count) {
 void expect_law_within(const Profile& profile, double error, int count) {
   const TwistLaw law = fit_twist_law(profile, error);
   double moment_error = 0.0;
-  double twist_error = 0.0;
   for (const double t : twists_to(law.last_twist, count)) {
     const TorsionState state = analytic::from_twist(t, profile);
     moment_error = std::max(moment_error, std::abs(law.moment_ratio_at(t) / state.moment_ratio - 1.0));
-    if (state.moment_deficit < 1e-15 / error) continue;  // an ulp of m costs more than the error
-    twist_error = std::max(twist_error, std::abs(law.twist_at(state.moment_ratio) / t - 1.0));
   }
   EXPECT_LE(moment_error, error) << profile.name();
-  EXPECT_LE(twist_error, error) << profile.name();
 }
 
 TEST(TwistLaw, IsWithinItsStatedError) {
@@ -60,28 +52,11 @@ TEST(TwistLaw, IsWithinItsStatedError) {
   expect_law_within(*analytic::find_profile("rounded_punch:0.5").profile, 1e-3, 50);
 }
 
-TEST(TwistLaw, KnowsWhatACycleLoses) {
-  for (const Profile* profile : kLawProfiles) {
-    const TwistLaw law = fit_twist_law(*profile, 1e-6);
-    for (double deficit = 0.999; deficit > 1e-10; deficit *= 0.83) {
-      const TorsionState state = analytic::from_moment_deficit(deficit, *profile);
-      if (state.moment_ratio <= law.full_stick) continue;
-      const double all = 4.0 * state.moment * state.twist;
-      const double lost = analytic::energy_lost_per_cycle(state, *profile);
-      EXPECT_NEAR(law.loss_factor_at(state.moment_ratio) * all / lost, 1.0, 1e-6)
-          << profile->name() << " at " << deficit;
-    }
-  }
-}
-
 TEST(TwistLaw, EndsAtTheLimit) {
   const TwistLaw law = fit_twist_law(analytic::hertz_profile(), 1e-6);
   EXPECT_EQ(law.moment_ratio_at(2.0 * law.last_twist), 1.0);
   EXPECT_EQ(law.moment_ratio_at(-2.0 * law.last_twist), -1.0);
   EXPECT_EQ(law.moment_ratio_at(0.0), 0.0);
-  EXPECT_EQ(law.twist_at(1.0), INFINITY);
-  EXPECT_EQ(law.twist_at(-1.5), -INFINITY);
-  EXPECT_TRUE(std::isnan(law.loss_factor_at(1.0)));
   EXPECT_EQ(law.moment_ratio_at(-0.1), -law.moment_ratio_at(0.1));
 }
 
@@ -149,40 +124,6 @@ TEST(ParallelElements, AreWithinTheirErrorOnFirstLoading) {
   }
 }
 
-/// Springs and sliders one by one, without Masing's rule.
-class Sliders {
- public:
-  explicit Sliders(const ParallelElements& of) : of_(of), carried_(of.elements.size(), 0.0) {}
-  double turn_by(double twist) {
-    double sum = 0.0;
-    for (std::size_t i = 0; i < carried_.size(); ++i) {
-      const auto& [stiffness, slip] = of_.elements[i];
-      sum += carried_[i] = std::clamp(carried_[i] + stiffness * twist, -slip, slip);
-    }
-    return sum;
-  }
-
- private:
-  const ParallelElements& of_;
-  std::vector<double> carried_;
-};
-
-TEST(ParallelElements, FollowLoopsWithinThreeTimesThat) {
-  for (const Profile* profile : kLawProfiles) {
-    const ParallelElements found = parallel_elements(*profile, 1e-2);
-    for (const double m : {0.3, 0.7, 0.95, 0.999}) {
-      const auto curve = analytic::loading_curve({m, -m, m}, 100, *profile);
-      Sliders sliders(found);
-      double at = 0.0;
-      for (const auto& state : curve) {
-        EXPECT_NEAR(sliders.turn_by(state.twist - at), state.moment_ratio, 3.0 * found.error)
-            << profile->name() << " at " << state.moment_ratio;
-        at = state.twist;
-      }
-    }
-  }
-}
-
 TEST(ParallelElements, GiveMoreForMore) {
   double before = 1.0;
   for (const int count : {1, 2, 4, 8, 16, 200}) {
@@ -246,30 +187,6 @@ TEST(LimitSurface, IsConvexWithItsMotionsAsNormals) {
   }
 }
 
-TEST(LimitSurface, LiesWithinItsGap) {
-  const Profile& profile = analytic::hertz_profile();
-  const LimitSurface coarse = limit_surface(profile, 9);
-  double largest = 0.0;
-  for (const LimitLoad& load : limit_surface(profile, 129).loads) {
-    double beyond_chord = 0.0;
-    for (std::size_t i = 1; i < coarse.loads.size(); ++i) {
-      const LimitLoad& one = coarse.loads[i - 1];
-      const LimitLoad& other = coarse.loads[i];
-      const double force = other.force - one.force;
-      const double moment = other.moment - one.moment;
-      const double chord = (one.force * moment - one.moment * force);
-      const double across = (load.force * moment - load.moment * force);
-      const bool between = one.force * load.moment <= one.moment * load.force + 1e-12 &&
-                           other.force * load.moment >= other.moment * load.force - 1e-12;
-      if (between) beyond_chord = across / chord - 1.0;
-    }
-    EXPECT_GE(beyond_chord, -1e-9);
-    largest = std::max(largest, beyond_chord);
-  }
-  EXPECT_LE(largest, coarse.gap);
-  EXPECT_GE(largest, 0.2 * coarse.gap);
-}
-
 TEST(BestSpring, NoSpringWithACapIsBetter) {
   for (const Profile* profile : kLawProfiles) {
     const ContactLaw law = make_contact_law({"x", {profile, [](const Profile*) {}}, {}}, {.limit_loads = 3});
@@ -294,16 +211,7 @@ TEST(LawContact, IsTheScenesInSi) {
   const ContactLaw law = make_contact_law(law_contact(paper_scene({"load.normal=500"})), {.limit_loads = 3});
   const OracleAnswer exact = find_oracle(paper_scene({"load.normal=500"}));
   EXPECT_NEAR(law.limit_moment() / exact.oracle->moment_limit, 1.0, 1e-13);
-  EXPECT_NEAR(law.law.twist_at(0.9) * law.rotation_unit() / exact.oracle->twist_angle, 1.0, 1e-6);
-}
-
-TEST(LawContact, SaysWhyThereIsNone) {
-  try {
-    law_contact(solver::read_scene(SLIPSTICK_SCENES "/ellipse.toml"));
-    FAIL();
-  } catch (const solver::InputError& error) {
-    EXPECT_THAT(error.what(), HasSubstr("ellipsoid"));
-  }
+  EXPECT_NEAR(law.law.moment_ratio_at(exact.oracle->twist_angle / law.rotation_unit()), 0.9, 1e-6);
 }
 
 }  // namespace

@@ -115,31 +115,6 @@ TEST(ExactModel, SaysThatTheScenesCouplingIsLeftOut) {
   EXPECT_EQ(result["model"]["left_out"][1]["what"], "K13, K23");
 }
 
-TEST(ExactModel, IsRefusedWhereNoExactSolutionIsKnown) {
-  const auto refused = [](const solver::Scene& refused_scene, const std::string& reason) {
-    EXPECT_THAT([&] { require_oracle(refused_scene); },
-                ThrowsMessage<solver::InputError>(AllOf(HasSubstr(refused_scene.source.string()),
-                                                        HasSubstr("solver.model = \"exact\""),
-                                                        HasSubstr("auto, full"), HasSubstr(reason))));
-  };
-  refused(exact_scene("ellipse"), "ellipsoid");
-  refused(exact_scene("dissimilar"), "coupling");
-  refused(exact_scene("paper", {"contact.friction=0"}), "friction");
-  solver::Scene height_map = exact_scene("paper");
-  height_map.surfaces.front().shape = solver::Shape::height_map;
-  refused(height_map, "height_map");
-}
-
-TEST(ExactModel, RefusesALoadThatTheContactCannotCarry) {
-  const auto refused = [](const std::string& load, const std::string& reason) {
-    EXPECT_THAT([&] { require_oracle(exact_scene("cone", {load})); },
-                ThrowsMessage<solver::InputError>(AllOf(
-                    HasSubstr("cone.toml"), HasSubstr(load.substr(0, load.find('='))), HasSubstr(reason))));
-  };
-  refused("load.moment=0.0035", "gross slip");
-  refused("load.twist=1e6", "underflows");
-}
-
 // The solver has no exact answers.
 TEST(ExactModel, IsNotForTheSolver) {
   EXPECT_THAT([] { solver::solve(exact_scene("paper")); },

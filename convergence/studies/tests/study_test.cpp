@@ -93,22 +93,12 @@ TEST_F(StudyTest, ALooseToleranceShowsInTheBudget) {
       error_budget(prepare_run({kEllipse, {"grid.cells=[32,16]"}}), "twist_error", pool_).observed));
 }
 
-TEST_F(StudyTest, PartsOfTheBudgetAddUpOnEveryMesh) {
-  const Json result = run("cells = [12, 16, 24, 32, 48]\nshifts = 3\n");
-  const Json& series = result["series"]["paper"];
-  EXPECT_EQ(series["rows"].size(), 15U);
+TEST_F(StudyTest, EveryGridOfAMeshLiesDifferently) {
+  const Json rows = run("cells = [12, 16, 24, 32, 48]\nshifts = 3\n")["series"]["paper"]["rows"];
   std::set<double> sizes;
-  for (const Json& row : series["rows"]) sizes.insert(row["h"].get<double>());
-  EXPECT_EQ(sizes.size(), 15U);  // every grid lies differently
-  ASSERT_FALSE(series["budget"].empty());
-  for (const Json& line : series["budget"]) {
-    const double observed = line["observed"].get<double>();
-    EXPECT_NEAR(line["discretisation"].get<double>() + line["iteration"].get<double>(), observed,
-                1e-12 * std::abs(observed));
-    if (line["trend"].is_null()) continue;
-    EXPECT_NEAR(line["trend"].get<double>() + line["staircase"].get<double>(),
-                line["discretisation"].get<double>(), 1e-12 * std::abs(line["trend"].get<double>()));
-  }
+  for (const Json& row : rows) sizes.insert(row["h"].get<double>());
+  EXPECT_EQ(rows.size(), 15U);
+  EXPECT_EQ(sizes.size(), 15U);
 }
 
 /// The contact radius follows from the pressure's second moments: second order (see expected_order.cpp).

@@ -29,8 +29,7 @@ class Pages(unittest.TestCase):
             for name, text in re.findall(r"<!-- not run: (examples/\S+) is run by ctest -->\n```\w+\n(.*?)```", page.read_text(), re.DOTALL):
                 self.assertEqual(text, (page.parent / name).read_text(), f"{page.name}: {name}")
                 shown.append(Path(name).name)
-        self.assertEqual(sorted(shown), ["friction.toml", "gates.toml", "method.hpp", "operator.hpp", "profile.hpp",
-                                         "stick_figure.py"])
+        self.assertEqual(sorted(shown), ["friction.toml", "gates.toml", "method.hpp", "profile.hpp", "stick_figure.py"])
 
     def test_name_files_and_words_that_exist(self):
         named = 0

@@ -274,7 +274,10 @@ class Profiles(unittest.TestCase):
                 m = exact.LIMIT * (least + (1 - least) * 10**(-k / 10) * 0.99)
                 self.assertGreater(rough.energy_lost(m), 0)
                 self.assertLessEqual(abs(rough.energy_lost(m) / exact.energy_lost(m) - 1), 0.0101, (profile, m))
-
+            words = ("exact", "--profile", profile, "--history", "0.95,-0.95,0.95", "--points", 1, "--json", "-")
+            first, _, last = json.loads(program(*words))["history"]
+            self.assertAlmostEqual(exact.energy_lost(0.95 * exact.LIMIT) / (last["dissipated"] - first["dissipated"]), 1, 8)
+            self.assertAlmostEqual(exact.rotation(0.95 * exact.LIMIT) / first["twist"], 1, 8)
 
     def test_gap_of_the_limit_surface_is_that_of_chords_and_tangents(self):
         """Along rays from the origin: where each leaves the polygon of the loads, and that of their tangents."""

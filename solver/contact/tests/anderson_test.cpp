@@ -10,6 +10,7 @@ namespace slipstick::solver {
 namespace {
 
 using Eigen::ArrayXd;
+using Eigen::Index;
 
 /// An affine map of so many dimensions that brings points nearer to (1, 1, ...), each its own way.
 ArrayXd residual_at(const ArrayXd& x) {

@@ -14,6 +14,8 @@ class CacheKey;
 
 /// Component ij: displacement along i by traction along j (1, 2 tangential, 3 normal; K21 = K12).
 enum class Component { k11, k12, k22, k13, k23, k33 };
+inline constexpr std::array kAllComponents{Component::k11, Component::k12, Component::k22,
+                                           Component::k13, Component::k23, Component::k33};
 
 /// How a component changes with the sign of each coordinate of the offset.
 inline Parity parity(Component component) {

@@ -20,6 +20,7 @@ struct LawParameter {
 /// A law that a scene may ask for in [layer]: what lies between its half-spaces.
 struct LawKind {
   std::string word;
+  std::string meaning;
   std::vector<LawParameter> parameters;
   /// From the half-spaces' law and the parameters, in the same units.
   SharedLaw (*make)(const SharedLaw& bodies, std::span<const double> values);

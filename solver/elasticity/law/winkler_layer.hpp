@@ -52,6 +52,7 @@ class WinklerLayer final : public ElasticLaw {
   static LawKind kind() {
     return {
         .word = "winkler",
+        .meaning = "a thin layer that gives way where it is loaded and nowhere else",
         .parameters = {{"normal_compliance", "m/Pa", 1, -1, "How far the layer gives way to a pressure."},
                        {"tangential_compliance", "m/Pa", 1, -1, "How far it gives way to a shear traction."}},
         .make = [](const SharedLaw& bodies, std::span<const double> compliances) -> SharedLaw {

@@ -60,14 +60,9 @@ std::vector<MirroredCase> mirrored_cases() {
   return cases;
 }
 
-/// q2(x1, x2) = -q1(x2, x1), as torsion of a body of revolution has it.
+/// As torsion of a body of revolution has it.
 ArrayXd random_diagonal_field(const Grid& grid, unsigned seed) {
-  ArrayXd field(2 * grid.cells());
-  field.head(grid.cells()) = random_field(grid.cells(), seed);
-  for (Index i = 0; i < grid.n1; ++i) {
-    for (Index j = 0; j < grid.n2; ++j) field[grid.cells() + i * grid.n2 + j] = -field[j * grid.n2 + i];
-  }
-  return field;
+  return mirrored_about_diagonal(random_field(2 * grid.cells(), seed), grid.n1);
 }
 
 Symmetry symmetry_of(const BlockKernel& kernel) {

@@ -61,9 +61,11 @@ struct OperatorCase {
 void PrintTo(const OperatorCase& tested, std::ostream* stream) { *stream << tested.name; }
 
 std::vector<OperatorCase> operator_cases() {
+  // One cell, one row, one column; lengths whose padded half is odd, even, and longer than the grid.
   const std::vector<Grid> grids{{1, 1, 1.0, 1.0},   {1, 7, 1.0, 1.0},   {7, 1, 0.5, 1.0},
                                 {16, 16, 1.0, 1.0}, {31, 33, 1.0, 0.3}, {64, 48, 1.0, 1.0},
-                                {13, 17, 1.0, 2.0}, {40, 9, 0.2, 1.0},  {2, 3, 1e-3, 1e-3}};
+                                {13, 17, 1.0, 2.0}, {40, 9, 0.2, 1.0},  {2, 3, 1e-3, 1e-3},
+                                {3, 5, 1.0, 1.0},   {11, 3, 1.0, 1.0},  {25, 20, 1.0, 1.0}};
   std::vector<OperatorCase> cases;
   for (const Grid& grid : grids) {
     const std::string shape = std::to_string(grid.n1) + "x" + std::to_string(grid.n2);
@@ -120,7 +122,6 @@ TEST_P(WholeOperator, IsTheSameByFftDirectSumAndMatrix) {
   const auto fft = make(OperatorKind::dcfft);
   const auto direct = make(OperatorKind::direct);
   const auto dense = make(OperatorKind::dense);
-  double worst = 0.0;
   for (const ArrayXd& traction : {random_traction(1), random_field_with_zero_rows(grid, kernel.inputs, 2),
                                   ArrayXd(ArrayXd::Ones(static_cast<Index>(kernel.inputs) * grid.cells()))}) {
     const ArrayXd expected = applied(*dense, traction);
@@ -131,12 +132,9 @@ TEST_P(WholeOperator, IsTheSameByFftDirectSumAndMatrix) {
       continue;
     }
     for (LinearOperator* const op : {fft.get(), direct.get()}) {
-      const double difference = relative_difference(applied(*op, traction), expected);
-      EXPECT_LE(difference, kOfThreeWays);
-      worst = std::max(worst, difference);
+      EXPECT_LE(relative_difference(applied(*op, traction), expected), kOfThreeWays);
     }
   }
-  RecordProperty("worst_difference", std::to_string(worst * 1e15) + "e-15");
 }
 
 /// Each entry by its definition: displacement of the point's cell by traction on the source's.
@@ -242,6 +240,15 @@ TEST(PartOf, RefusesFieldsThatHaveNotItsMirrors) {
   }
 }
 
+TEST(Convolution, RefusesAKernelOfAnotherShape) {
+  const BlockKernel mixed{2, 1, {Component::k13, Component::k33}};
+  const BlockKernel wide{1, 2, {Component::k11, Component::k12}};
+  for (const BlockKernel& kernel : {mixed, wide}) {
+    EXPECT_THROW(make_operator(OperatorKind::dcfft, {4, 4, 1.0, 1.0}, kernel, dissimilar_pair()),
+                 std::invalid_argument);
+  }
+}
+
 /// Means over cells of the traction under a bonded circular punch that is twisted by phi (Reissner and Sagoci
 /// 1944): q = (4 G phi/pi) (-x2, x1)/sqrt(a^2 - r^2) = (4 G phi/pi) (d/dx2, -d/dx1) sqrt(a^2 - r^2).
 ArrayXd bonded_punch_traction(const Grid& grid, double a) {
@@ -291,7 +298,6 @@ TEST(BondedPunch, TurnsAsReissnerAndSagociSay) {
     const double error = std::sqrt((inside * (u - t)).square().sum() / (inside * t).square().sum());
     EXPECT_LT(error, previous / 2.0);
     previous = error;
-    RecordProperty("error_" + std::to_string(n), std::to_string(error));
   }
   // Measured 9e-5 at 128 cells. A wrong sign or factor in any component leaves more than 1e-2.
   EXPECT_LT(previous, 3e-4);

@@ -65,14 +65,6 @@ TEST_P(Format, MayHoldNoCellButIsNotReadThen) {
   EXPECT_THAT(complaint([&] { read_columns(file, {"pressure"}); }), HasSubstr(file.string()));
 }
 
-TEST_P(Format, OverwritesWhatWasThere) {
-  const auto file = folder_ / ("fields" + GetParam());
-  write_fields(file, grid_, columns_, ArrayXd::Ones(6));
-  write_fields(file, grid_, {columns_[0]}, ArrayXd::Ones(6));
-  EXPECT_EQ(read_columns(file, {"x1"})[0].values.size(), 6);
-  EXPECT_THAT(complaint([&] { read_columns(file, {"pressure"}); }), HasSubstr("pressure"));
-}
-
 TEST_P(Format, IsRefusedWhereItCannotBeWrittenOrRead) {
   const auto file = folder_ / "no such folder" / ("fields" + GetParam());
   EXPECT_THAT(complaint([&] { write_fields(file, grid_, columns_, ArrayXd::Ones(6)); }),

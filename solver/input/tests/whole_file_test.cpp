@@ -78,13 +78,6 @@ class WholeFile : public testing::Test {
   fs::path file_ = folder_ / "result.json";
 };
 
-TEST_F(WholeFile, IsWrittenAndWrittenAnew) {
-  write_whole_file(file_, "old");
-  write_whole_file(file_, "new");
-  EXPECT_EQ(text(file_), "new");
-  EXPECT_EQ(files(), 1);
-}
-
 /// A reader that looks all the while sees the old text or the new one; a writer that is killed leaves either.
 TEST_F(WholeFile, IsOldOrNewWheneverTheWriterIsKilled) {
   const std::string old(1 << 16, 'o');

@@ -11,7 +11,9 @@ namespace slipstick::solver {
 namespace {
 
 TEST_F(SceneFile, IsReadKeyByKey) {
-  const Scene scene = read(kScene);
+  const Scene scene = read(std::string("name = \"paper\"\n") + kShortScene,
+                           {"grid.cells=[128, 96]", "grid.extent=[0.0011, 0.0012]", "solver.tolerance=1e-7",
+                            "solver.max_iterations=70", "solver.threads=2"});
   EXPECT_EQ(scene.source, folder_ / "scene.toml");
   EXPECT_EQ(scene.name, "paper");
   EXPECT_EQ(scene.surfaces.front().shape, Shape::sphere);
@@ -39,13 +41,6 @@ TEST_F(SceneFile, NeedsNoMoreThanTheProblem) {
   EXPECT_FALSE(scene.extent);
   EXPECT_EQ(scene.steps[0].normal, 1000.0);  // written as a whole number
   EXPECT_EQ(read(std::string(kShortScene) + "[solver]\n").tolerance, scene.tolerance);
-}
-
-/// The short scene with other keys for its sphere.
-std::string with_surface(const std::string& keys, const std::string& tables = "") {
-  std::string text = kShortScene;
-  const std::string sphere = "shape = \"sphere\"\nradius = 0.018\n";
-  return text.replace(text.find(sphere), sphere.size(), keys) + tables;
 }
 
 TEST_F(SceneFile, HasEachShapeWithItsKeys) {

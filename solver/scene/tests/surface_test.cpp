@@ -291,25 +291,6 @@ TEST(TurnedEllipsoid, HasTheContactItHasStraight) {
   EXPECT_NEAR((p * x1 * x2).sum() / product, 1.0, 4.0 * tolerance);
 }
 
-/// Shifted by whole cells, a body has the pressure of the centred one, shifted.
-TEST(OffCentreSphere, HasItsPressureWhereItStands) {
-  Scene scene = paper_scene(32, 0.5);
-  scene.extent = {1.6e-3, 1.6e-3};
-  const Contact centred = press(scene);
-  scene.surfaces.front().at = {3.0 * 0.05e-3, -2.0 * 0.05e-3};
-  const Contact shifted = press(scene);
-  EXPECT_FALSE(shifted.model.pressure_part.quadrant());
-  EXPECT_FALSE(shifted.model.hertz);
-  const ArrayXd& there = shifted.solution.pressure;
-  const ArrayXd& here = centred.solution.pressure;
-  for (Index i = 0; i < 29; ++i) {
-    for (Index j = 2; j < 32; ++j) {
-      EXPECT_NEAR(there[(i + 3) * 32 + j - 2], here[i * 32 + j], kSolved * here.maxCoeff());
-    }
-  }
-  EXPECT_NEAR(approach(shifted) / approach(centred), 1.0, kSolved);
-}
-
 /// Curvatures add up: two spheres on each other are one of half the radius.
 TEST(SumOfSpheres, IsASphereOfHalfTheRadius) {
   Scene scene = scene_of({sphere(0.018), sphere(0.018)}, 32);

@@ -151,26 +151,5 @@ TEST(OverUnit, KeepsTwelveDigits) {
   EXPECT_EQ(to_dimensionless(0x1.8p10, 0x1p3), 0x1.8p7);
 }
 
-/// Units that are powers of two of each other round nothing, so the digits must be the same to the last bit.
-TEST(BinaryUnits, GiveTheSameBits) {
-  for (const Units& units : {Units{"small", 0x1p10, 0x1p-7}, Units{"large", 0x1p-20, 0x1p30}}) {
-    for (const Scene& scene : {by_ratio(), by_moment(), over_an_extent()}) {
-      const ModelSolution si = solve_in_model_units(scene);
-      const ModelSolution other = solve_in_model_units(in_units(scene, units));
-      ASSERT_EQ(other.status, Status::converged) << other.message;
-      EXPECT_TRUE((other.normal.pressure == si.normal.pressure).all());
-      EXPECT_TRUE((other.tangential.traction == si.tangential.traction).all());
-      EXPECT_TRUE((other.tangential.slip == si.tangential.slip).all());
-      EXPECT_TRUE((other.tangential.stick == si.tangential.stick).all());
-      EXPECT_EQ(other.tangential.iterations, si.tangential.iterations);
-      EXPECT_EQ(other.twist_angle, si.twist_angle);
-      EXPECT_EQ(other.certificate.gap, si.certificate.gap);
-      EXPECT_EQ(other.moment / other.moment_limit, si.moment / si.moment_limit);
-      EXPECT_EQ(other.contact_radius, si.contact_radius * units.metre);
-      EXPECT_EQ(other.moment, si.moment * units.newton * units.metre);
-    }
-  }
-}
-
 }  // namespace
 }  // namespace slipstick::solver

@@ -5,6 +5,7 @@
 
 #include <functional>
 #include <limits>
+#include <vector>
 
 #include "solver/elasticity/law/law_kind.hpp"
 #include "solver/input/tests/complaint.hpp"
@@ -30,7 +31,33 @@ const Surface kShortPeriod{
     .roughness = {
         .seed = 1, .hurst = 0.8, .longest = 1e-4, .shortest = 2e-5, .rms_slope = 0.1, .period = 9e-5}};
 
-const Mistake kMistakes[] = {
+/// A layer of the first kind, whose parameters are two compliances.
+template <typename... Values>
+Layer layer_of(Values... values) {
+  return {&law_kinds()[0], {values...}};
+}
+
+void press_a_layer_by_hertz(Scene& s) {
+  s.layer = layer_of(1e-12, 1e-12);
+  s.pressure = PressureModel::hertz;
+}
+
+void couple_hertz_fully(Scene& s) {
+  s.coupling = Coupling::full;
+  s.pressure = PressureModel::hertz;
+}
+
+void push_and_displace(Scene& s) {
+  s.steps[0].force = {1.0, 0.0};
+  s.steps[0].displacement = {1e-6, 0.0};
+}
+
+void push_by_the_papers_method(Scene& s) {
+  s.method = Method::paper;
+  s.steps[0].force = {1.0, 0.0};
+}
+
+const std::vector<Mistake> kWrongBodies{
     {"upper.shape", [](Scene& s) { s.surfaces.clear(); }},
     {"upper.radius", [](Scene& s) { s.surfaces[0].radius = 0.0; }},
     {"upper.angle", [](Scene& s) { s.surfaces[0].angle = kNaN; }},
@@ -44,56 +71,16 @@ const Mistake kMistakes[] = {
     {"upper.young_modulus", [](Scene& s) { s.upper.young_modulus = -1.0; }},
     {"lower.poisson_ratio", [](Scene& s) { s.lower.poisson_ratio = 0.6; }},
     {"lower.rigid", [](Scene& s) { s.upper.young_modulus = s.lower.young_modulus = kInfinite; }},
-    {"layer.kind",
-     [](Scene& s) {
-       s.layer = {&law_kinds()[0], {1e-12}};
-     }},
-    {"layer.normal_compliance",
-     [](Scene& s) {
-       s.layer = {&law_kinds()[0], {-1e-12, 1e-12}};
-     }},
-    {"layer.tangential_compliance",
-     [](Scene& s) {
-       s.layer = {&law_kinds()[0], {1e-12, kNaN}};
-     }},
-    {"contact.pressure",
-     [](Scene& s) {
-       s.layer = {&law_kinds()[0], {1e-12, 1e-12}};
-       s.pressure = PressureModel::hertz;
-     }},
+    {"layer.kind", [](Scene& s) { s.layer = layer_of(1e-12); }},
+    {"layer.normal_compliance", [](Scene& s) { s.layer = layer_of(-1e-12, 1e-12); }},
+    {"layer.tangential_compliance", [](Scene& s) { s.layer = layer_of(1e-12, kNaN); }},
+    {"contact.pressure", press_a_layer_by_hertz},
     {"contact.friction", [](Scene& s) { s.friction = kNaN; }},
-    {"contact.coupling",
-     [](Scene& s) {
-       s.coupling = Coupling::full;
-       s.pressure = PressureModel::hertz;
-     }},
-    {"step", [](Scene& s) { s.steps.clear(); }},
-    {"load.normal", [](Scene& s) { s.steps[0].normal.reset(); }},
-    {"load.moment_ratio", [](Scene& s) { s.steps[0].torsion = MomentRatio{1.0}; }},
-    {"load.moment", [](Scene& s) { s.steps[0].torsion = Moment{kNaN}; }},
-    {"load.twist", [](Scene& s) { s.steps[0].torsion = Twist{kInfinite}; }},
-    {"load.force", [](Scene& s) { s.steps[0].force[0] = kNaN; }},
-    {"load.displacement",
-     [](Scene& s) {
-       s.steps[0].force = {1.0, 0.0};
-       s.steps[0].displacement = {1e-6, 0.0};
-     }},
-    {"cycles", [](Scene& s) { s.cycles = 0; }},
-    {"grid.cells", [](Scene& s) { s.cells = {}; }},
-    {"grid.extent", [](Scene& s) { s.extent.emplace(); }},
-    {"solver.tolerance", [](Scene& s) { s.tolerance = 0.0; }},
-    {"solver.max_iterations", [](Scene& s) { s.max_iterations = 0; }},
-    {"solver.threads", [](Scene& s) { s.threads = -1; }},
-    {"solver.rounding_seed", [](Scene& s) { s.rounding_seed = -1; }},
-    {"solver.method",
-     [](Scene& s) {
-       s.method = Method::paper;
-       s.steps[0].force = {1.0, 0.0};
-     }},
+    {"contact.coupling", couple_hertz_fully},
 };
 
-TEST(Validate, NamesTheKeyOfEachMistake) {
-  for (const auto& [key, make] : kMistakes) {
+void expect_named(const std::vector<Mistake>& mistakes) {
+  for (const auto& [key, make] : mistakes) {
     Scene scene = paper_scene(16, 0.5);
     scene.source.clear();
     EXPECT_EQ(complaint([&] { validate(scene); }), "") << key;
@@ -101,6 +88,28 @@ TEST(Validate, NamesTheKeyOfEachMistake) {
     EXPECT_THAT(complaint([&] { solve(scene); }), HasSubstr(std::string("scene: ") + key + " = "));
   }
 }
+
+TEST(Validate, NamesTheKeyOfAWrongBody) { expect_named(kWrongBodies); }
+
+const std::vector<Mistake> kWrongLoadsAndGrids{
+    {"step", [](Scene& s) { s.steps.clear(); }},
+    {"load.normal", [](Scene& s) { s.steps[0].normal.reset(); }},
+    {"load.moment_ratio", [](Scene& s) { s.steps[0].torsion = MomentRatio{1.0}; }},
+    {"load.moment", [](Scene& s) { s.steps[0].torsion = Moment{kNaN}; }},
+    {"load.twist", [](Scene& s) { s.steps[0].torsion = Twist{kInfinite}; }},
+    {"load.force", [](Scene& s) { s.steps[0].force[0] = kNaN; }},
+    {"load.displacement", push_and_displace},
+    {"cycles", [](Scene& s) { s.cycles = 0; }},
+    {"grid.cells", [](Scene& s) { s.cells = {}; }},
+    {"grid.extent", [](Scene& s) { s.extent.emplace(); }},
+    {"solver.tolerance", [](Scene& s) { s.tolerance = 0.0; }},
+    {"solver.max_iterations", [](Scene& s) { s.max_iterations = 0; }},
+    {"solver.threads", [](Scene& s) { s.threads = -1; }},
+    {"solver.rounding_seed", [](Scene& s) { s.rounding_seed = -1; }},
+    {"solver.method", push_by_the_papers_method},
+};
+
+TEST(Validate, NamesTheKeyOfWrongLoadsAndGrids) { expect_named(kWrongLoadsAndGrids); }
 
 TEST(Validate, ASceneAsItIsConstructedLacksItsShape) {
   EXPECT_THAT(complaint([] { validate(Scene()); }), HasSubstr("upper.radius = 0: allowed: positive"));

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+#include <iosfwd>
+#include <nlohmann/json_fwd.hpp>
+
+namespace CLI {
+class App;
+}
+
+namespace slipstick::bench {
+
+/// Runs a command that was given, see main.cpp: text for a person, the result, the exit code.
+using RunCommand = std::function<int(std::ostream&, nlohmann::ordered_json&)>;
+
+/// Adds `bench`: times everything beside the error that it buys and draws it; or two builds or two methods
+/// against each other. The result is timings in Google Benchmark's JSON.
+RunCommand add_bench_command(CLI::App& app);
+
+/// Adds `compare`. Exit code 0: nothing is slower, 1: something is, 2: it could not be judged.
+RunCommand add_compare_command(CLI::App& app);
+
+}  // namespace slipstick::bench
