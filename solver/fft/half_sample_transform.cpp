@@ -60,14 +60,14 @@ void HalfSampleTransform::load(Workspace& work, const Lines<const double>& lines
   }
 }
 
-void HalfSampleTransform::put(double* plain, Index t, Vector z) const {
+inline void HalfSampleTransform::put(double* plain, Index t, Vector z) const {
   const Vector real = P::load(&turn_real_[count(2 * t)]);
   const Vector imaginary = P::load(&turn_imaginary_[count(2 * t)]);
   P::store(plain + 2 * t, z);
   P::store(turned(plain) + 2 * t, real * z + imaginary * P::exchanged(z));
 }
 
-auto HalfSampleTransform::get(double* plain, Index t) const -> Vector {
+inline auto HalfSampleTransform::get(double* plain, Index t) const -> Vector {
   const Vector real = P::load(&turn_real_[count(2 * t)]);
   const Vector imaginary = P::load(&turn_imaginary_[count(2 * t)]);
   const Vector z = P::load(turned(plain) + 2 * t);

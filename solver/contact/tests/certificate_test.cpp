@@ -9,7 +9,6 @@
 #include <limits>
 #include <random>
 
-#include "solver/contact/paper_method.hpp"
 #include "solver/elasticity/direct.hpp"
 #include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/tests/dense_algebra.hpp"
@@ -249,25 +248,6 @@ TEST_F(SmallProblem, GapBoundsTheEnergyErrorOfAnyFeasibleTraction) {
       }
     }
   }
-}
-
-/// The paper's method judged by the same: its certificate tells how far it stays from the minimum.
-TEST_F(SmallProblem, GapBoundsTheEnergyErrorOfThePapersMethod) {
-  TangentialProblem problem;
-  problem.friction_bound = bound_;
-  problem.moment = moment_;
-  PaperOptions options;
-  options.tolerance = 1e-12;
-  const TangentialSolution solution = solve_by_paper_method(op_, problem, options);
-  ASSERT_EQ(solution.status, Status::converged) << solution.message;
-  const Certificate c =
-      certify({solution.traction, solution.elastic_displacement, solution.slip}, bound_, t_, moment_);
-  const double error = energy(solution.traction) - energy(q_star_);
-  EXPECT_LE(c.moment, 1e-12);
-  EXPECT_GE(error, -1e-12);
-  EXPECT_LE(error, c.gap * energy(solution.traction) + 1e-12);
-  EXPECT_LE(c.gap, 1e-2);  // on 6 x 6 cells the slip directions are coarse, no more
-  EXPECT_NEAR(solution.twist / kTwist, 1.0, 1e-2);
 }
 
 // --- slip direction ---

@@ -235,7 +235,9 @@ TEST(StickFront, IsNoFurtherFromTheCountedOneThanHalfACell) {
     law.stick = sample({}, n).stick;
     const StickFront front = law.front();
     EXPECT_EQ(front.radius == front.counted_radius, cells > 0.5);
-    if (cells < 0.5) EXPECT_NEAR(front.radius, 0.5 - inward, 0.02 * inward / cells);
+    if (cells < 0.5) {
+      EXPECT_NEAR(front.radius, 0.5 - inward, 0.02 * inward / cells);
+    }
   }
 }
 
