@@ -95,8 +95,7 @@ convergence::RunCommand add_law_command(CLI::App& app) {
   command->get_option("--set")->needs(scene);
   command
       ->add_option("--profile", request->profile,
-                   "without a scene, dimensionless: hertz | cone | flat_punch | power:N | rounded_punch:B | "
-                   "file:P.csv")
+                   "without a scene, dimensionless: " + analytic::profile_words())
       ->excludes(scene)
       ->capture_default_str();
   command
