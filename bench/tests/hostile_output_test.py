@@ -139,13 +139,11 @@ class HostileOutput(ProgramTest):
             self.assertNotRegex(Path(file).read_bytes().decode(), "[\n\r](#error|q)", file)
 
     def test_processes_that_run_out_are_said_with_what_to_do(self):
-        self.run_program("solve", "scene.toml", "--fields", "field.h5")
         os.chmod(".", 0o777)
         try:
-            _, _, said = self.ends("check", "scene.toml", "field.h5", "--set", "solver.threads=1", preexec_fn=no_processes)
+            _, _, said = self.ends("solve", "scene.toml", "--set", "solver.threads=2", preexec_fn=no_processes)
         except PermissionError:
             self.skipTest("the limit does not hold for root, and no other user may run the program where it is")
-        self.assertNotIn("damaged", said)
         self.assertIn("no more threads or processes can be started; allowed: ", said)
 
     def test_memory_that_runs_out_is_said_with_what_to_do(self):

@@ -72,7 +72,13 @@ def corner_sum(antiderivative, x, y, h):
     return result
 
 
-def kernels(n, h, compliance):
+def layer_of(scene):
+    """Normal and tangential compliance of a layer that gives way where it is loaded and nowhere else."""
+    layer = scene.get("layer", {})
+    return [layer.get(f"{side}_compliance", 0.0) for side in ("normal", "tangential")]
+
+
+def kernels(n, h, compliance, layer):
     """Displacements at all offsets by a unit traction on one cell, transformed for cyclic convolution."""
     length = [2 * m for m in n]
     offsets = [np.fft.fftfreq(m, 1.0 / m) * step for m, step in zip(length, h)]
@@ -92,14 +98,16 @@ def kernels(n, h, compliance):
         "13": -0.5 * mismatch * pull_x,
         "23": -0.5 * mismatch * pull_y,
     }
+    for name, given in (("33", layer[0]), ("11", layer[1]), ("22", layer[1])):
+        tables[name][0, 0] += given
     return {name: np.fft.rfft2(table) for name, table in tables.items()}
 
 
 class Elasticity:
-    def __init__(self, n, h, compliance):
+    def __init__(self, n, h, compliance, layer):
         self.n = n
         self.length = [2 * m for m in n]
-        self.kernels = kernels(n, h, compliance)
+        self.kernels = kernels(n, h, compliance, layer)
 
     def displacement(self, name, traction):
         spectrum = self.kernels[name] * np.fft.rfft2(traction, self.length)
@@ -183,7 +191,7 @@ def audit(row, folder):
     p, q1, q2 = fields["pressure"], fields["q1"], fields["q2"]
     contact = p > 0.0
     area = h[0] * h[1]
-    elastic = Elasticity(n, h, compliances(scene))
+    elastic = Elasticity(n, h, compliances(scene), layer_of(scene))
     friction = scene["contact"]["friction"]
     bound = friction * p
     load = row["normal_load"]

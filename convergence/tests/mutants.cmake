@@ -21,9 +21,11 @@ mutant(no_zero_padding
 
 # The cross kernel, odd in both coordinates, taken to be even.
 mutant(k12_even
-  FILE solver/elasticity/influence.cpp
-  FIND [[      return {-1, -1};]]
-  REPLACE [[      return {1, 1};]]
+  FILE solver/elasticity/convolution.cpp
+  FIND [[bool is_imaginary(Component component) {]]
+  REPLACE [[Parity with_even_cross(Component c) { return c == Component::k12 ? Parity{1, 1} : parity(c); }
+#define parity with_even_cross
+bool is_imaginary(Component component) {]]
   GATES full-64-twist full-64-traction-averaged-l2)
 
 # The cross kernel's sign, where symmetry leaves a quadrant and one traction field.
@@ -42,7 +44,7 @@ mutant(rotation_as_printed
 
 # Slip in the direction that the traction had when a cell began to slip, Eqs. (22), (23).
 mutant(frozen_slip_directions
-  FILE solver/solve.cpp
+  FILE solver/tractions.cpp
   FIND [[if (scene.method == Method::coulomb) {]]
   REPLACE [[if (scene.method == Method::coulomb) {
     return solve_by_paper_method(*elastic.make(part.grid(), tangential_kernel()), problem,

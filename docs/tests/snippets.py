@@ -78,7 +78,7 @@ class Checkout:
         benchmarks = self.program.parent / "bench/slipstick_benchmarks"
         (folder / "build/bench/slipstick_benchmarks").symlink_to(benchmarks)
         build = self.program.parent
-        (folder / "build/convergence").mkdir()
+        (folder / "build/interfaces").mkdir()
         for name in ["interfaces/c", "python"]:
             (folder / "build" / name).symlink_to(build / name)
         (folder / "programs").mkdir()

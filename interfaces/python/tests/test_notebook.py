@@ -5,7 +5,7 @@ import json
 import pathlib
 import unittest
 
-FOLDER = pathlib.Path(__file__).parents[2] / "docs/notebooks"
+FOLDER = pathlib.Path(__file__).parents[3] / "docs/notebooks"
 
 
 def show(value):

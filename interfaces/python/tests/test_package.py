@@ -9,7 +9,7 @@ import unittest
 import slipstick
 from slipstick import _library
 
-ROOT = pathlib.Path(__file__).parents[2]
+ROOT = pathlib.Path(__file__).parents[3]
 HEADER = re.sub(r"/\*.*?\*/", "", (ROOT / "interfaces/c/slipstick.h").read_text(), flags=re.S)
 
 
