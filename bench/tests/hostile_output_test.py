@@ -141,7 +141,8 @@ class HostileOutput(ProgramTest):
     def test_processes_that_run_out_are_said_with_what_to_do(self):
         os.chmod(".", 0o777)
         try:
-            _, _, said = self.ends("solve", "scene.toml", "--set", "solver.threads=2", preexec_fn=no_processes)
+            _, _, said = self.ends("solve", "scene.toml", "--set", "solver.threads=1", "--figure", "fields.png",
+                                    preexec_fn=no_processes)
         except PermissionError:
             self.skipTest("the limit does not hold for root, and no other user may run the program where it is")
         self.assertIn("no more threads or processes can be started; allowed: ", said)

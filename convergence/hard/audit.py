@@ -78,7 +78,7 @@ def layer_of(scene):
     return [layer.get(f"{side}_compliance", 0.0) for side in ("normal", "tangential")]
 
 
-def kernels(n, h, compliance, layer):
+def kernels(n, h, compliance, layer=(0.0, 0.0)):
     """Displacements at all offsets by a unit traction on one cell, transformed for cyclic convolution."""
     length = [2 * m for m in n]
     offsets = [np.fft.fftfreq(m, 1.0 / m) * step for m, step in zip(length, h)]

@@ -71,7 +71,7 @@ class Checkout:
     def make_scratch(self, folder):
         """A checkout as a reader has it, without what would let a block write into the sources' top folder."""
         folder.mkdir(parents=True)
-        for name in ["analytic", "bench", "convergence", "cmake", "docs", "reports", "solver", "Makefile"]:
+        for name in ["analytic", "bench", "convergence", "cmake", "docs", "interfaces", "reports", "solver", "Makefile"]:
             (folder / name).symlink_to(self.root / name)
         (folder / "build/bench").mkdir(parents=True)
         (folder / "build/slipstick").symlink_to(self.program)
