@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "solver/elasticity/law/law_kind.hpp"
+#include "solver/scene/shape_kind.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -74,11 +75,7 @@ void measure_in_millimetres(Scene& scene) {
         std::pow(kMillimetres, parameter.of_length) * std::pow(of_stress, parameter.of_stress);
   }
   for (Surface& s : scene.surfaces) {
-    for (double* length : {&s.radius, &s.inner_radius, &s.radius_1, &s.radius_2, &s.flat_radius,
-                           &s.corner_radius, &s.spacing[0], &s.spacing[1], &s.roughness.longest,
-                           &s.roughness.shortest, &s.roughness.period, &s.at[0], &s.at[1]}) {
-      *length *= kMillimetres;
-    }
+    for (double* const length : solver::lengths(s)) *length *= kMillimetres;
     s.coefficient *= std::pow(kMillimetres, 1.0 - s.exponent);
     s.heights *= kMillimetres;
   }

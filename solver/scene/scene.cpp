@@ -21,7 +21,7 @@ namespace {
 
 Surface read_surface(SceneReader& reader, const std::string& table) {
   Surface surface;
-  surface.shape = reader.choice(table + ".shape", kShapes);
+  surface.shape = reader.choice(table + ".shape", shape_words());
   Roughness& roughness = surface.roughness;
   if (surface.shape == Shape::roughness) {
     roughness.seed = static_cast<std::uint64_t>(reader.number(table + ".seed"));
@@ -191,7 +191,7 @@ Step step_of(const Scene& scene, std::size_t k) {
   return step;
 }
 
-std::string to_string(Shape shape) { return word_of(kShapes, shape); }
+std::string to_string(Shape shape) { return kind_of(shape).word; }
 std::string to_string(PressureModel model) { return word_of(kPressureModels, model); }
 std::string to_string(OperatorKind kind) { return word_of(kOperators, kind); }
 std::string to_string(Method method) { return word_of(kMethods, method); }

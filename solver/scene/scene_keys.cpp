@@ -18,8 +18,6 @@ namespace {
 
 constexpr KeyType kNumber = KeyType::number;
 constexpr KeyType kWord = KeyType::word;
-const std::vector<std::string> kWithAxis{"sphere", "ellipsoid",  "cone",
-                                         "power",  "flat_punch", "rounded_punch"};
 
 std::string shown(double number) { return fmt::format("{:g}", number); }
 std::string shown(const std::array<double, 2>& pair) { return fmt::format("[{:g}, {:g}]", pair[0], pair[1]); }
@@ -34,6 +32,7 @@ void add_shape(SettingKeys& keys, const std::string& table) {
   using Shapes = std::vector<std::string>;
   const Shapes rough{"roughness"};
   const Shapes map{"height_map"};
+  const Shapes with_axis = words_with_axis();
   const auto add = [&](const std::string& name, const std::string& unit, const std::string& otherwise,
                        const Range& allowed, const std::string& meaning, const Shapes& shapes,
                        KeyType type = kNumber) {
@@ -43,19 +42,19 @@ void add_shape(SettingKeys& keys, const std::string& table) {
     for (const ShapeNumber& number : shape_numbers()) {
       if (!picked(number)) continue;
       Shapes words;
-      for (const Shape shape : number.shapes) words.push_back(word_of(kShapes, shape));
+      for (const Shape shape : number.shapes) words.push_back(word_of(shape_words(), shape));
       add(number.name, number.unit, kRequired, number.allowed, number.meaning, words);
     }
   };
-  add("shape", "", kRequired, one_of(kShapes),
+  add("shape", "", kRequired, one_of(shape_words()),
       "The shape of the indenter's surface; in `[upper]` either this word or tables `[[upper.shape]]`.", {},
       kWord);
   add_numbers([](const ShapeNumber& number) { return number.own != nullptr; });
   add("inner_radius", "m", shown(surface.inner_radius), depending(inner_radius_below(1.0).words),
       "Radius of the hole that makes the punch an annulus.", {"flat_punch"});
-  add("at", "m", shown(surface.at), kFinite, "Where the shape's axis stands.", kWithAxis, KeyType::pair);
+  add("at", "m", shown(surface.at), kFinite, "Where the shape's axis stands.", with_axis, KeyType::pair);
   add("angle", "rad", shown(surface.angle), kFinite,
-      "From x1 to the shape's first axis, positive towards x2.", kWithAxis);
+      "From x1 to the shape's first axis, positive towards x2.", with_axis);
   add("file", "", kRequired, kAny,
       "Heights, one a cell, larger where further away: a CSV matrix with a line for each x1, or the HDF5 "
       "dataset `height`.",
@@ -206,43 +205,6 @@ const Words<const LawKind*>& layer_words() {
 const SettingKeys& scene_keys() {
   static const SettingKeys keys = make_scene_keys();
   return keys;
-}
-
-bool ShapeNumber::belongs_to(Shape shape) const { return std::ranges::find(shapes, shape) != shapes.end(); }
-
-const std::vector<ShapeNumber>& shape_numbers() {
-  using Name = const char*;
-  const auto own = [](Name name, Name unit, const Range& allowed, Name meaning, std::vector<Shape> shapes,
-                      double Surface::*at) {
-    return ShapeNumber{name, unit, allowed, meaning, std::move(shapes), at, nullptr};
-  };
-  const auto rough = [](Name name, Name unit, const Range& allowed, Name meaning, double Roughness::*at) {
-    return ShapeNumber{name, unit, allowed, meaning, {Shape::roughness}, nullptr, at};
-  };
-  static const std::vector<ShapeNumber> numbers{
-      own("radius", "m", kPositive, "Radius of the sphere, or of the punch's face.",
-          {Shape::sphere, Shape::flat_punch}, &Surface::radius),
-      own("radius_1", "m", kPositive, "Radius of curvature along the ellipsoid's first axis.",
-          {Shape::ellipsoid}, &Surface::radius_1),
-      own("radius_2", "m", kPositive, "Radius of curvature along its second axis.", {Shape::ellipsoid},
-          &Surface::radius_2),
-      own("slope", "", kPositive, "Gap over radius.", {Shape::cone}, &Surface::slope),
-      own("flat_radius", "m", kPositive, "Radius of the flat face.", {Shape::rounded_punch},
-          &Surface::flat_radius),
-      own("corner_radius", "m", kPositive,
-          "Radius of curvature beyond the face, where the gap is (r - flat_radius)^2/(2 corner_radius).",
-          {Shape::rounded_punch}, &Surface::corner_radius),
-      own("exponent", "", kExponent, "The gap is coefficient r^exponent.", {Shape::power},
-          &Surface::exponent),
-      own("coefficient", "m^(1 - exponent)", kPositive, "Factor of that power.", {Shape::power},
-          &Surface::coefficient),
-      rough("hurst", "", kHurst,
-            "Hurst's exponent: the power of a wave vector k goes like |k|^(-2 (1 + hurst)).",
-            &Roughness::hurst),
-      rough("rms_slope", "", kPositive, "Root mean square of the gradient's length, over a period.",
-            &Roughness::rms_slope),
-      rough("longest", "m", kPositive, "Longest wavelength.", &Roughness::longest)};
-  return numbers;
 }
 
 }  // namespace slipstick::solver

@@ -3,12 +3,14 @@
 #include <cmath>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 
 #include "analytic/cattaneo_mindlin.hpp"
 #include "analytic/named_profile.hpp"
 #include "analytic/self_similar_indenter.hpp"
 #include "convergence/laws/contact_law.hpp"
+#include "convergence/oracle/exact_shapes.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
@@ -64,23 +66,11 @@ double radius_exponent(const solver::Scene& scene, const LawUnits& units) {
 }
 
 double exponent_of_gap(const solver::Scene& scene) {
-  const solver::Surface& surface = scene.surfaces.front();
-  switch (surface.shape) {
-    case solver::Shape::sphere:
-    case solver::Shape::ellipsoid:  // of equal radii: others have no exact law
-      return 2.0;
-    case solver::Shape::cone:
-      return 1.0;
-    case solver::Shape::flat_punch:
-      return std::numeric_limits<double>::infinity();
-    case solver::Shape::power:
-      return surface.exponent;
-    default:
-      throw solver::InputError(
-          scene.source.string(),
-          "its contact does not stay similar to itself as the load changes: there is no law "
-          "of forces; allowed: sphere, cone, flat_punch, power");
-  }
+  const std::optional<ExactShape> shape = exact_shape(scene.surfaces.front());
+  if (shape && shape->gap_exponent) return *shape->gap_exponent;
+  throw solver::InputError(scene.source.string(),
+                           "its contact does not stay similar to itself as the load changes: there is no law "
+                           "of forces; allowed: sphere, cone, flat_punch, power");
 }
 
 }  // namespace
