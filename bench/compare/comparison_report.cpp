@@ -13,13 +13,14 @@
 
 #include "convergence/results/markup.hpp"
 #include "convergence/results/result_parts.hpp"
+#include "convergence/results/verdict_files.hpp"
 
 namespace slipstick::bench {
 namespace {
 
-using convergence::kMaxMarkdown;
+using convergence::CaseVerdict;
+using convergence::JunitCase;
 using convergence::markdown_cell;
-using convergence::xml_text;
 using Json = nlohmann::ordered_json;
 
 /// From the worst to the best.
@@ -39,15 +40,12 @@ auto count(const std::vector<ComparedBenchmark>& benchmarks, Finding finding) {
   return std::ranges::count(benchmarks, finding, &ComparedBenchmark::finding);
 }
 
-/// "30 benchmarks: 28 same, 1 slower, 1 undecided"
-std::string counts_text(const std::vector<ComparedBenchmark>& benchmarks) {
-  std::vector<std::string> parts;
+std::string counts_of(const std::vector<ComparedBenchmark>& benchmarks) {
+  std::vector<std::pair<std::string, long>> counts;
   for (auto finding = kSeverity.rbegin(); finding != kSeverity.rend(); ++finding) {
-    const auto number = count(benchmarks, *finding);
-    if (number > 0) parts.push_back(fmt::format("{} {}", number, to_string(*finding)));
+    counts.emplace_back(to_string(*finding), count(benchmarks, *finding));
   }
-  return fmt::format("{} benchmark{}: {}", benchmarks.size(), benchmarks.size() == 1 ? "" : "s",
-                     fmt::join(parts, ", "));
+  return convergence::counts_text("benchmark", counts);
 }
 
 std::string seconds_text(double seconds) {
@@ -163,19 +161,20 @@ std::vector<std::string> notes(const ComparisonReport& report) {
   return lines;
 }
 
-std::string junit_case(const ComparedBenchmark& benchmark) {
+JunitCase junit_case(const std::string& suite, const ComparedBenchmark& benchmark) {
   const Row row = row_of(benchmark);
-  const std::string shown = fmt::format("base {}, new {}, new/base {} ({})", row[1], row[2], row[3], row[4]);
-  const std::string out = fmt::format("<system-out>{}</system-out>", xml_text(shown));
-  std::string verdict = out;
+  JunitCase junit{.suite = suite,
+                  .classname = "compare",
+                  .name = benchmark.name,
+                  .seconds = std::isfinite(benchmark.new_seconds) ? benchmark.new_seconds : 0.0,
+                  .type = to_string(benchmark.finding),
+                  .shown = fmt::format("base {}, new {}, new/base {} ({})", row[1], row[2], row[3], row[4])};
   if (!is_fine(benchmark.finding)) {
-    const std::string remark = benchmark.remark.empty() ? "" : ": " + benchmark.remark;
-    verdict = fmt::format(
-        "<{0} message=\"{1}\" type=\"{2}\">{3}</{0}>{4}", is_failure(benchmark.finding) ? "failure" : "error",
-        xml_text(verdict_text(benchmark) + remark), to_string(benchmark.finding), xml_text(shown), out);
+    junit.verdict = is_failure(benchmark.finding) ? CaseVerdict::failure : CaseVerdict::error;
+    junit.message = verdict_text(benchmark) + (benchmark.remark.empty() ? "" : ": " + benchmark.remark);
+    junit.details = junit.shown;
   }
-  return fmt::format("    <testcase classname=\"compare\" name=\"{}\">{}</testcase>\n",
-                     xml_text(benchmark.name), verdict);
+  return junit;
 }
 
 Json benchmark_json(const ComparedBenchmark& benchmark) {
@@ -216,49 +215,38 @@ std::string comparison_text(const ComparisonReport& report) {
     text += "the suspicious ones, run again\n" + table(worst_first(report.second->benchmarks));
   }
   for (const std::string& note : notes(report)) text += note + "\n";
-  return text + fmt::format("{} ({})\n", counts_text(report.comparison.benchmarks), rules_text(report.rules));
+  return text + fmt::format("{} ({})\n", counts_of(report.comparison.benchmarks), rules_text(report.rules));
 }
 
 std::string comparison_markdown(const ComparisonReport& report) {
-  constexpr std::size_t room_for_note = 100;
-  std::string text = fmt::format("### {}\n\n{}; {}.\n\n", counts_text(report.comparison.benchmarks),
+  std::string text = fmt::format("### {}\n\n{}; {}.\n\n", counts_of(report.comparison.benchmarks),
                                  markdown_cell(heading(report)), rules_text(report.rules));
   for (const std::string& note : notes(report)) text += fmt::format("- {}\n", markdown_cell(note));
-  text += fmt::format("\n| {} | |\n|---|--:|--:|--:|--:|---|---|\n", fmt::join(kHeader, " | "));
-  const std::vector<ComparedBenchmark> sorted = worst_first(report.comparison.benchmarks);
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    Row row = row_of(sorted[i]);
+  std::vector<std::string> rows;
+  for (const ComparedBenchmark& benchmark : worst_first(report.comparison.benchmarks)) {
+    Row row = row_of(benchmark);
     row[0] = markdown_cell(row[0]);
-    const std::string line =
-        fmt::format("| {} | {} |\n", fmt::join(row, " | "), markdown_cell(sorted[i].remark));
-    if (text.size() + line.size() + room_for_note > kMaxMarkdown) {
-      return text + fmt::format("\n{} more, none worse than these, are left out here.\n", sorted.size() - i);
-    }
-    text += line;
+    rows.push_back(fmt::format("| {} | {} |", fmt::join(row, " | "), markdown_cell(benchmark.remark)));
   }
-  return text;
+  return convergence::markdown_with_table(text + "\n", fmt::format("| {} | |", fmt::join(kHeader, " | ")),
+                                          rows, "benchmarks");
 }
 
 std::string comparison_junit(const ComparisonReport& report) {
-  const std::vector<ComparedBenchmark>& benchmarks = report.comparison.benchmarks;
-  const std::vector<std::string>& obstacles = report.comparison.obstacles;
-  const auto cases = std::ssize(benchmarks) + std::ssize(obstacles);
-  const auto failures = std::ranges::count_if(benchmarks, is_failure, &ComparedBenchmark::finding);
-  const auto fine = std::ranges::count_if(benchmarks, is_fine, &ComparedBenchmark::finding);
-  const std::string counts =
-      fmt::format("tests=\"{}\" failures=\"{}\" errors=\"{}\"", cases, failures, cases - failures - fine);
-  std::string text = fmt::format(
-      "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites name=\"slipstick compare\" {0}>\n  <testsuite "
-      "name=\"{1}\" {0}>\n",
-      counts, xml_text(heading(report)));
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    text += fmt::format(
-        "    <testcase classname=\"compare\" name=\"obstacle {}\"><error message=\"{}\" "
-        "type=\"obstacle\"/></testcase>\n",
-        i + 1, xml_text(obstacles[i]));
+  const std::string suite = heading(report);
+  std::vector<JunitCase> cases;
+  for (const std::string& obstacle : report.comparison.obstacles) {
+    cases.push_back({.suite = suite,
+                     .classname = "compare",
+                     .name = fmt::format("obstacle {}", cases.size() + 1),
+                     .verdict = CaseVerdict::error,
+                     .type = "obstacle",
+                     .message = obstacle});
   }
-  for (const ComparedBenchmark& benchmark : benchmarks) text += junit_case(benchmark);
-  return text + "  </testsuite>\n</testsuites>\n";
+  for (const ComparedBenchmark& benchmark : report.comparison.benchmarks) {
+    cases.push_back(junit_case(suite, benchmark));
+  }
+  return convergence::junit_text("slipstick compare", cases);
 }
 
 Json comparison_json(const ComparisonReport& report) {

@@ -10,8 +10,10 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 #include <tuple>
+#include <utility>
 
 #include "convergence/results/markup.hpp"
+#include "convergence/results/verdict_files.hpp"
 #include "solver/input/input_file.hpp"
 
 namespace slipstick::convergence {
@@ -42,21 +44,16 @@ std::vector<const Judgement*> worst_first(const std::vector<Judgement>& judgemen
   return sorted;
 }
 
-std::size_t count(const std::vector<Judgement>& judgements, Outcome outcome) {
-  return static_cast<std::size_t>(
-      std::count_if(judgements.begin(), judgements.end(),
-                    [&](const auto& judgement) { return judgement.outcome == outcome; }));
+long count(const std::vector<Judgement>& judgements, Outcome outcome) {
+  return std::ranges::count(judgements, outcome, &Judgement::outcome);
 }
 
-/// "40 gates: 38 passed, 2 failed"
-std::string counts_text(const std::vector<Judgement>& judgements) {
-  std::vector<std::string> parts;
+std::string counts_of(const std::vector<Judgement>& judgements) {
+  std::vector<std::pair<std::string, long>> counts;
   for (auto outcome = kSeverity.rbegin(); outcome != kSeverity.rend(); ++outcome) {
-    const std::size_t number = count(judgements, *outcome);
-    if (number > 0) parts.push_back(fmt::format("{} {}", number, to_string(*outcome)));
+    counts.emplace_back(to_string(*outcome), count(judgements, *outcome));
   }
-  return fmt::format("{} gate{}: {}", judgements.size(), judgements.size() == 1 ? "" : "s",
-                     fmt::join(parts, ", "));
+  return counts_text("gate", counts);
 }
 
 std::string value_text(const Json& value) {
@@ -87,49 +84,32 @@ std::vector<std::string> explanation(const Judgement& judgement) {
   return lines;
 }
 
-/// The content of a case beside its name.
-std::string junit_verdict(const Judgement& judgement) {
-  const std::string shown = was_read(judgement)
-                                ? fmt::format("{} = {}, must be {}", judgement.gate.quantity,
-                                              value_text(judgement.value), bound_text(judgement.gate))
-                                : "";
-  const std::string out = fmt::format("<system-out>{}</system-out>", xml_text(shown));
-  if (judgement.outcome == Outcome::passed) return out;
+JunitCase junit_case(const Judgement& judgement) {
+  JunitCase junit{.suite = judgement.gate.file.string(),
+                  .classname = judgement.gate.file.stem().string(),
+                  .name = judgement.gate.id,
+                  .seconds = judgement.seconds,
+                  .type = to_string(judgement.outcome),
+                  .message = judgement.why};
+  if (was_read(judgement)) {
+    junit.shown = fmt::format("{} = {}, must be {}", judgement.gate.quantity, value_text(judgement.value),
+                              bound_text(judgement.gate));
+  }
   if (is_skipped(judgement.outcome)) {
-    return fmt::format("<skipped message=\"{}: {}\"/>{}", to_string(judgement.outcome),
-                       xml_text(judgement.why.empty() ? shown : judgement.why), out);
+    junit.verdict = CaseVerdict::skipped;
+    junit.message = fmt::format("{}: {}", to_string(judgement.outcome),
+                                judgement.why.empty() ? junit.shown : judgement.why);
+  } else if (is_wrong(judgement.outcome)) {
+    junit.verdict = judgement.outcome == Outcome::refused ? CaseVerdict::error : CaseVerdict::failure;
+    junit.details = fmt::format("{}", fmt::join(explanation(judgement), "\n"));
   }
-  const char* const tag = judgement.outcome == Outcome::refused ? "error" : "failure";
-  return fmt::format("<{0} message=\"{1}\" type=\"{2}\">{3}</{0}>{4}", tag, xml_text(judgement.why),
-                     to_string(judgement.outcome),
-                     xml_text(fmt::format("{}", fmt::join(explanation(judgement), "\n"))), out);
-}
-
-std::string junit_counts(const std::vector<Judgement>& judgements) {
-  double seconds = 0.0;
-  for (const Judgement& judgement : judgements) seconds += judgement.seconds;
-  return fmt::format(
-      "tests=\"{}\" failures=\"{}\" errors=\"{}\" skipped=\"{}\" time=\"{:.3f}\"", judgements.size(),
-      count(judgements, Outcome::failed) + count(judgements, Outcome::passed_unexpectedly),
-      count(judgements, Outcome::refused),
-      count(judgements, Outcome::reported) + count(judgements, Outcome::failed_as_expected), seconds);
-}
-
-std::string junit_suite(const std::string& file, const std::vector<Judgement>& judgements) {
-  std::string text = fmt::format("  <testsuite name=\"{}\" {}>\n", xml_text(file), junit_counts(judgements));
-  const std::string classname = std::filesystem::path(file).stem().string();
-  for (const Judgement& judgement : judgements) {
-    text += fmt::format("    <testcase classname=\"{}\" name=\"{}\" time=\"{:.3f}\">{}</testcase>\n",
-                        xml_text(classname), xml_text(judgement.gate.id), judgement.seconds,
-                        junit_verdict(judgement));
-  }
-  return text + "  </testsuite>\n";
+  return junit;
 }
 
 std::string markdown_row(const Judgement& judgement) {
   const std::string remarks =
       judgement.outcome == Outcome::passed ? "" : fmt::format("{}", fmt::join(explanation(judgement), "\n"));
-  return fmt::format("| {} | {} | {} | {} | {} | {} | {} |\n", to_string(judgement.outcome),
+  return fmt::format("| {} | {} | {} | {} | {} | {} | {} |", to_string(judgement.outcome),
                      markdown_cell(judgement.gate.id), markdown_cell(judgement.gate.quantity),
                      markdown_cell(value_text(judgement.value)),
                      was_read(judgement) ? markdown_cell(bound_text(judgement.gate)) : "-",
@@ -194,33 +174,21 @@ std::string gates_text(const std::vector<Judgement>& judgements) {
     for (const std::string& line : explanation(judgement)) details += fmt::format("  {}\n", line);
   }
   for (const auto& [file, date] : dates) text += fmt::format("  {} is of {}\n", file, date);
-  return text + details + counts_text(judgements) + "\n";
+  return text + details + counts_of(judgements) + "\n";
 }
 
 std::string gates_junit(const std::vector<Judgement>& judgements) {
-  std::map<std::string, std::vector<Judgement>> suites;
-  for (const Judgement& judgement : judgements) suites[judgement.gate.file.string()].push_back(judgement);
-  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n";
-  text += fmt::format("<testsuites name=\"slipstick gates\" {}>\n", junit_counts(judgements));
-  for (const auto& [file, cases] : suites) text += junit_suite(file, cases);
-  return text + "</testsuites>\n";
+  std::vector<JunitCase> cases;
+  for (const Judgement& judgement : judgements) cases.push_back(junit_case(judgement));
+  return junit_text("slipstick gates", cases);
 }
 
 std::string gates_markdown(const std::vector<Judgement>& judgements) {
-  constexpr std::size_t room_for_note = 100;
-  std::string text = fmt::format("### {}\n\n", counts_text(judgements));
-  text +=
-      "| outcome | gate | quantity | value | must be | times the bound | |\n|---|---|---|---|---|---|---|\n";
-  const std::vector<const Judgement*> sorted = worst_first(judgements);
-  for (std::size_t i = 0; i < sorted.size(); ++i) {
-    const std::string row = markdown_row(*sorted[i]);
-    if (text.size() + row.size() + room_for_note > kMaxMarkdown) {
-      return text +
-             fmt::format("\n{} more gates, none worse than these, are left out here.\n", sorted.size() - i);
-    }
-    text += row;
-  }
-  return text;
+  std::vector<std::string> rows;
+  for (const Judgement* const judgement : worst_first(judgements)) rows.push_back(markdown_row(*judgement));
+  return markdown_with_table(fmt::format("### {}\n\n", counts_of(judgements)),
+                             "| outcome | gate | quantity | value | must be | times the bound | |", rows,
+                             "gates");
 }
 
 std::string gates_annotations(const std::vector<Judgement>& judgements) {
