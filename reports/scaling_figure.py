@@ -20,8 +20,7 @@ APPLICATIONS = {"application/dense": ("dense matrix", dict(color=style.VERMILION
                 "application/dcfft_quarter_with_diagonal": ("and about the diagonal", dict(color=style.BLACK, marker="v"))}
 SETUPS = {"setup/dense": "application/dense", "setup/direct": "application/direct", "setup/dcfft": "application/dcfft"}
 BARE = ("four_bare_transforms", "four bare transforms (FFTW)", dict(color=style.GREY, linestyle=":"))
-LAWS = {"N^4": lambda n: n**4, "N^3": lambda n: n**3, "N^2": lambda n: n**2, "N^2 log N": lambda n: n**2 * np.log(2 * n)}
-IN_WORDS = {"N^4": "N⁴", "N^3": "N³", "N^2": "N²", "N^2 log N": "N² log N"}
+IN_WORDS = {"N^4": "N⁴", "N^2": "N²", "N^2 log N": "N² log N"}
 
 
 def family(scaling, name):
@@ -47,11 +46,10 @@ def draw_family(axis, scaling, name, words, look, fitted=True):
     found = family(scaling, name)
     cells, seconds = times(found)
     axis.plot(cells, seconds, **dict(linestyle="", markersize=4) | look)
-    theory = value(found, "growth.theory")
-    fit = next((model for model in value(found, "growth.models") if model["growth"] == theory), None)
-    if fitted and fit:
-        fine = np.geomspace(cells[0], cells[-1], 200)
-        axis.plot(fine, fit["overhead"] + fit["factor"] * LAWS[theory](fine), color=look["color"], linewidth=0.8, alpha=0.7)
+    law = value(found, "power_law")
+    if fitted and law["exponent"] is not None:
+        ends = np.array([law["cells"][0], law["cells"][-1]])
+        axis.plot(ends, law["constant"] * ends**law["exponent"], color=look["color"], linewidth=0.8, alpha=0.7)
     return Line2D([], [], label=words, **dict(linestyle="") | look)
 
 
@@ -130,8 +128,8 @@ def growth_details(scaling):
         law = value(found, "power_law")
         if law["exponent"] is not None:
             laws.append(f"{APPLICATIONS[name][0]} N<sup>{law['exponent']:.2f}</sup>{interval(law, write='{:.2f}'.format)}")
-    return (f"Points are medians, lines what theory says (N⁴, or N² log N) with a constant for each call. Powers fitted to "
-            f"the largest sizes: {'; '.join(laws)}. Bands are 95 % intervals of where two lines cross, from the "
+    return (f"Points are medians, lines powers fitted to the largest sizes: {'; '.join(laws)}. Theory says N⁴ for sums over "
+            f"all pairs of cells, N² log N for convolution. Bands are 95 % intervals of where two lines cross, from the "
             "repetitions’ scatter. Each form is checked against another before it is timed.")
 
 

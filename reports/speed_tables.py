@@ -4,7 +4,7 @@ from plane_figure import milliseconds, power_of_ten, short
 from results import Unavailable, groups, rows, value
 from tables import Table
 from scaling_figure import IN_WORDS
-from wording import percent, plain, sci
+from wording import plain
 
 QUANTITIES = {"twist": "twist", "traction_l2": "tractions, root mean square", "stick_radius": "stick radius"}
 
@@ -64,17 +64,15 @@ def laws(scaling):
     """What was fitted to each family, beside what theory says."""
     body = []
     for found in rows(scaling, "families"):
-        law, growth = found["power_law"], found["growth"]
-        if law["exponent"] is None or not growth["models"]:
+        law = found["power_law"]
+        if law["exponent"] is None:
             continue
-        fit = next((model for model in growth["models"] if model["growth"] == growth["theory"]), growth["models"][0])
-        body.append([found["name"].replace("_", " "), f"{law['exponent']:.2f}",
-                     _interval(law, "{:.2f}".format), IN_WORDS.get(growth["theory"], "–"), IN_WORDS[growth["best"]],
-                     sci(fit["factor"]), sci(fit["overhead"]), percent(fit["rms_residual"])])
+        expected = "–" if law["expected"] is None else f"{law['expected']:.2f}"
+        body.append([found["name"].replace("_", " "), f"{law['exponent']:.2f}", _interval(law, "{:.2f}".format),
+                     expected, IN_WORDS.get(law["theory"], "–")])
     if not body:
         raise Unavailable("nothing was measured at three sizes or more")
-    return Table(["what", "exponent", "95 % interval", "theory", "fits best", "s per unit of it", "s per call",
-                  "rms residual"], body)
+    return Table(["what", "exponent", "95 % interval", "by theory", ""], body)
 
 
 def _interval(found, write):

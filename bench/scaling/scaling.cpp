@@ -68,37 +68,6 @@ Times times_of(const Family& family) {
 
 PowerLaw no_law(std::string why_not) { return {kNaN, kNaN, kNaN, kNaN, {}, std::move(why_not)}; }
 
-/// Least squares of relative residuals: each size weighs as 1/t^2.
-GrowthFit fit_growth(Growth growth, const Times& known) {
-  std::vector<double> x;
-  std::vector<double> seconds;
-  std::vector<double> weights;
-  for (std::size_t i = 0; i < known.size(); ++i) {
-    x.push_back(grown(growth, known.cells[i]));
-    seconds.push_back(std::exp(known.times[i].value));
-    weights.push_back(1.0 / (seconds.back() * seconds.back()));
-  }
-  GrowthFit fit{growth, 0.0, 0.0, 0.0, 0.0, false};
-  double unused = 0.0;
-  gsl_fit_wlinear(x.data(), 1, weights.data(), 1, seconds.data(), 1, x.size(), &fit.overhead, &fit.factor,
-                  &unused, &unused, &unused, &unused);
-  if (!(fit.overhead >= 0.0)) {
-    fit.overhead = 0.0;
-    gsl_fit_wmul(x.data(), 1, weights.data(), 1, seconds.data(), 1, x.size(), &fit.factor, &unused, &unused);
-  }
-  if (!(fit.factor >= 0.0)) {
-    fit.factor = 0.0;
-    fit.overhead = gsl_stats_wmean(weights.data(), 1, seconds.data(), 1, x.size());
-  }
-  for (std::size_t i = 0; i < x.size(); ++i) {
-    const double left = (fit.overhead + fit.factor * x[i]) / seconds[i] - 1.0;
-    fit.rms += left * left / static_cast<double>(x.size());
-    fit.largest = std::max(fit.largest, std::abs(left));
-  }
-  fit.rms = std::sqrt(fit.rms);
-  return fit;
-}
-
 /// Two families at the sizes that both have.
 struct Race {
   std::vector<double> log_cells;
@@ -196,7 +165,7 @@ PowerLaw fit_power_law(const Family& family) {
 }
 
 std::string to_string(Growth growth) {
-  constexpr std::array kNames{"N^2", "N^2 log N", "N^3", "N^4"};
+  constexpr std::array kNames{"N^2", "N^2 log N", "N^4"};
   return kNames.at(static_cast<std::size_t>(growth));
 }
 
@@ -206,26 +175,10 @@ double grown(Growth growth, double cells) {
       return cells * cells;
     case Growth::n2_log_n:
       return cells * cells * std::log2(2.0 * cells);
-    case Growth::n3:
-      return std::pow(cells, 3);
     case Growth::n4:
       return std::pow(cells, 4);
   }
   return kNaN;
-}
-
-std::vector<GrowthFit> fit_growths(const Family& family) {
-  const Times known = times_of(family);
-  if (known.size() < kMinSizes) return {};
-  std::vector<GrowthFit> fits;
-  for (const Growth growth : {Growth::n2, Growth::n2_log_n, Growth::n3, Growth::n4}) {
-    fits.push_back(fit_growth(growth, known));
-  }
-  std::ranges::stable_sort(fits, {}, &GrowthFit::rms);
-  const auto left = static_cast<double>(known.size() - 2);
-  const double distinguishable = std::sqrt(gsl_cdf_fdist_Pinv(0.95, left, left));
-  for (GrowthFit& fit : fits) fit.as_good = fit.rms <= distinguishable * fits.front().rms;
-  return fits;
 }
 
 Crossover find_crossover(const Family& slow, const Family& quick) {

@@ -45,28 +45,10 @@ struct PowerLaw {
 /// doublings, at least three sizes. Below, what each call costs whatever its size takes a part of the time.
 PowerLaw fit_power_law(const Family& family);
 
-/// N: cells along a side. The logarithm is that of 2 N, the length that N is padded to.
-enum class Growth { n2, n2_log_n, n3, n4 };
+/// Growth by theory. N: cells along a side. The logarithm is that of 2 N, the length that N is padded to.
+enum class Growth { n2, n2_log_n, n4 };
 std::string to_string(Growth growth);
 double grown(Growth growth, double cells);
-
-/// t = overhead + factor * grown(cells), neither below zero, the squares of relative residuals the least,
-/// over all sizes.
-struct GrowthFit {
-  Growth growth;
-  double overhead;  ///< s, of one call
-  double factor;    ///< s
-  double rms;       ///< of the relative residuals
-  double largest;
-  bool as_good;  ///< as the best one: its squares are not significantly more (F test, 95 %)
-};
-
-/// One for each Growth, the one that fits best first; none for fewer than three sizes.
-///
-/// A convolution's time is a staircase, as padded lengths are rounded up to products of small primes; nothing
-/// here knows that. Sizes 2^k and 3 2^k are the steps' ends, where nothing is rounded, and lie on a smooth
-/// curve; of other sizes the steps show in the residuals.
-std::vector<GrowthFit> fit_growths(const Family& family);
 
 /// The cells from which on the quick family stays the quicker one, over the sizes that both have; between two
 /// of them the ratio of times is a power of the cells.

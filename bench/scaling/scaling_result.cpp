@@ -111,32 +111,13 @@ Json power_law_json(const PowerLaw& law, std::optional<Growth> theory) {
     const double ratio = grown(*theory, law.cells.back()) / grown(*theory, law.cells.front());
     expected = std::log(ratio) / std::log(law.cells.back() / law.cells.front());
   }
-  set_number(json, "expected", expected, theory ? law.why_not : kNoTheory);
-  json["cells"] = law.cells;
-  return json;
-}
-
-Json growth_json(const std::vector<GrowthFit>& fits, std::optional<Growth> theory) {
-  Json json;
   if (theory) {
     json["theory"] = to_string(*theory);
   } else {
     set_missing(json, "theory", kNoTheory);
   }
-  if (fits.empty()) {
-    set_missing(json, "best", fmt::format("fewer than {} sizes", kMinSizes));
-  } else {
-    json["best"] = to_string(fits.front().growth);
-  }
-  json["models"] = Json::array();
-  for (const GrowthFit& fit : fits) {
-    json["models"].push_back({{"growth", to_string(fit.growth)},
-                              {"overhead", fit.overhead},
-                              {"factor", fit.factor},
-                              {"rms_residual", fit.rms},
-                              {"largest_residual", fit.largest},
-                              {"as_good", fit.as_good}});
-  }
+  set_number(json, "expected", expected, theory ? law.why_not : kNoTheory);
+  json["cells"] = law.cells;
   return json;
 }
 
@@ -147,10 +128,7 @@ Json family_json(const std::string& name, const Members& members) {
   for (const SizedSeconds& sized : family) {
     rows.push_back(row_json(sized.cells, *members.at(sized.cells), sized));
   }
-  return {{"name", name},
-          {"rows", rows},
-          {"power_law", power_law_json(fit_power_law(family), theory)},
-          {"growth", growth_json(fit_growths(family), theory)}};
+  return {{"name", name}, {"rows", rows}, {"power_law", power_law_json(fit_power_law(family), theory)}};
 }
 
 Json crossover_json(const std::string& slow, const std::string& quick, const Crossover& crossover) {

@@ -21,14 +21,14 @@ std::string word(const Json& value) { return value.is_string() ? value.get<std::
 }  // namespace
 
 std::string scaling_text(const Json& scaling) {
-  std::string text = fmt::format("{:<36} {:>5} {:<14} {:<10} {}\n", "time grows as N to the", "", "[95 %]",
-                                 "theory", "fits best");
+  std::string text =
+      fmt::format("{:<36} {:>5} {:<14} {:<10} {}\n", "time grows as N to the", "", "[95 %]", "by theory", "");
   for (const Json& family : scaling["families"]) {
     const Json& law = family["power_law"];
     if (!law["exponent"].is_number()) continue;
     text += fmt::format("  {:<34} {:>5} {:<14} {:<10} {}\n", family["name"].get<std::string>(),
                         number(law["exponent"], "{:.2f}"), interval(law, "{:.2f}"),
-                        word(family["growth"]["theory"]), word(family["growth"]["best"]));
+                        number(law["expected"], "{:.2f}"), word(law["theory"]));
   }
   return text + crossovers_text(scaling);
 }

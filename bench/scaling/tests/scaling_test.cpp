@@ -105,77 +105,13 @@ TEST(PowerLaw, NeedsThreeSizes) {
   EXPECT_THAT(fit_power_law(exact(square, {64})).why_not, HasSubstr("1 sizes have a time"));
   EXPECT_TRUE(std::isnan(fit_power_law(exact(square, {64})).exponent));
   EXPECT_THAT(fit_power_law(exact(square, {1, 2, 64, 128})).why_not, HasSubstr("2 sizes from 16"));
-  EXPECT_TRUE(fit_growths(exact(square, {64, 128})).empty());
   EXPECT_TRUE(fit_power_law({}).cells.empty());
 }
-
-constexpr std::array kGrowths{Growth::n2, Growth::n2_log_n, Growth::n3, Growth::n4};
 
 TEST(Growth, IsWhatItsNameSays) {
   EXPECT_DOUBLE_EQ(grown(Growth::n2, 8), 64.0);
   EXPECT_DOUBLE_EQ(grown(Growth::n2_log_n, 8), 64.0 * 4.0);
-  EXPECT_DOUBLE_EQ(grown(Growth::n3, 8), 512.0);
   EXPECT_DOUBLE_EQ(grown(Growth::n4, 8), 4096.0);
-}
-
-TEST(GrowthFit, FindsOverheadAndFactorOfWhatWasMade) {
-  for (const Growth made : kGrowths) {
-    const auto fits = fit_growths(exact([&](double n) { return 3e-6 + 2e-9 * grown(made, n); }));
-    ASSERT_EQ(fits.size(), kGrowths.size());
-    EXPECT_EQ(fits[0].growth, made) << to_string(made);
-    EXPECT_NEAR(fits[0].overhead, 3e-6, 1e-15) << to_string(made);
-    EXPECT_NEAR(fits[0].factor, 2e-9, 1e-18) << to_string(made);
-    EXPECT_LT(fits[0].largest, 1e-9) << to_string(made);
-    EXPECT_GT(fits[1].rms, 0.01) << to_string(made);
-    EXPECT_TRUE(fits[0].as_good);
-    EXPECT_FALSE(fits[1].as_good) << to_string(made);
-    EXPECT_TRUE(std::ranges::is_sorted(fits, {}, &GrowthFit::rms));
-  }
-}
-
-TEST(GrowthFit, TellsALogarithmFromNoneThroughNoise) {
-  std::mt19937 random(3);
-  const std::vector<double> sizes{8, 16, 32, 64, 128, 256, 512, 1024};
-  for (const Growth made : {Growth::n2, Growth::n2_log_n}) {
-    const double right = part_of(200, [&] {
-      const auto law = [&](double n) { return 1e-6 + 1e-9 * grown(made, n); };
-      return fit_growths(drawn(law, 0.05, 5, random, sizes)).front().growth == made;
-    });
-    EXPECT_GT(right, 0.97) << to_string(made);
-  }
-}
-
-TEST(GrowthFit, SaysWhatNoiseHides) {
-  std::mt19937 random(8);
-  const auto fits = fit_growths(drawn(square, 0.2, 1, random, {256, 384, 512, 768, 1024}));
-  const auto as_good = [&](Growth growth) {
-    return std::ranges::find(fits, growth, &GrowthFit::growth)->as_good;
-  };
-  EXPECT_TRUE(as_good(Growth::n2));
-  EXPECT_TRUE(as_good(Growth::n2_log_n));
-  const auto clear = fit_growths(drawn(square, 0.02, 5, random));
-  EXPECT_EQ(clear[0].growth, Growth::n2);
-  EXPECT_FALSE(clear[1].as_good);
-}
-
-TEST(GrowthFit, ResidualsAreRelative) {
-  const Law law = [](double n) { return (n == 16 ? 1.1 : 1.0) * fourth(n); };
-  const auto fits = fit_growths(exact(law));
-  EXPECT_EQ(fits[0].growth, Growth::n4);
-  EXPECT_NEAR(fits[0].largest, 0.1, 0.02);
-  EXPECT_NEAR(fits[0].rms, 0.1 / std::sqrt(static_cast<double>(kSizes.size())), 0.01);
-}
-
-TEST(GrowthFit, HasNoNegativeOverheadNorFactor) {
-  for (const GrowthFit& fit : fit_growths(exact([](double n) { return 1.0 / n; })))
-    EXPECT_EQ(fit.factor, 0.0);
-  const auto fits = fit_growths(exact([](double n) { return std::pow(n, 5); }));
-  for (const GrowthFit& fit : fits) {
-    EXPECT_GE(fit.overhead, 0.0);
-    EXPECT_GE(fit.factor, 0.0);
-  }
-  EXPECT_EQ(fits[0].growth, Growth::n4);
-  EXPECT_EQ(fits[0].overhead, 0.0);
 }
 
 TEST(Crossover, OfPowersIsWhereTheyMeet) {
