@@ -13,15 +13,23 @@
 #include <utility>
 #include <vector>
 
-#include "bench/scaling/scaling.hpp"
+#include "convergence/orders/growth.hpp"
 #include "convergence/results/result_parts.hpp"
 
 namespace slipstick::bench {
 namespace {
 
+using convergence::Crossover;
+using convergence::Family;
+using convergence::grown;
+using convergence::Growth;
 using convergence::Json;
+using convergence::kNaN;
+using convergence::PowerLaw;
 using convergence::set_missing;
 using convergence::set_number;
+using convergence::SizedSeconds;
+using convergence::TypicalSeconds;
 
 /// "a/cells:8/b" is the family "a/b" at 8 cells.
 std::optional<std::pair<std::string, double>> family_and_cells(const std::string& name) {

@@ -1,4 +1,4 @@
-#include "bench/scaling/scaling.hpp"
+#include "convergence/orders/growth.hpp"
 
 #include <fmt/core.h>
 #include <gsl/gsl_cdf.h>
@@ -16,10 +16,8 @@
 #include <optional>
 #include <utility>
 
-#include "bench/timing/median.hpp"
-#include "bench/timing/timings.hpp"
 
-namespace slipstick::bench {
+namespace slipstick::convergence {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -36,7 +34,7 @@ struct LogTime {
 std::optional<LogTime> log_time(const std::vector<double>& seconds) {
   std::vector<double> logs;
   for (const double one : seconds) {
-    if (is_valid_time(one)) logs.push_back(std::log(one));
+    if (one > 0.0 && std::isfinite(one)) logs.push_back(std::log(one));
   }
   if (logs.empty()) return {};
   const auto count = static_cast<double>(logs.size());
@@ -44,7 +42,7 @@ std::optional<LogTime> log_time(const std::vector<double>& seconds) {
   const double of_median = std::sqrt(0.5 * std::numbers::pi);
   const double error =
       count > 1.0 ? of_median * gsl_stats_sd(logs.data(), 1, logs.size()) / std::sqrt(count) : kNaN;
-  return LogTime{median(logs), error, count - 1.0};
+  return LogTime{gsl_stats_median(logs.data(), 1, logs.size()), error, count - 1.0};
 }
 
 /// Sizes that have a time.
@@ -207,4 +205,4 @@ Crossover find_crossover(const Family& slow, const Family& quick) {
   return found;
 }
 
-}  // namespace slipstick::bench
+}  // namespace slipstick::convergence

@@ -5,7 +5,7 @@
 #include <vector>
 
 /// How times grow with the cells along a side, and where one way to compute overtakes another.
-namespace slipstick::bench {
+namespace slipstick::convergence {
 
 /// Stands for a number that does not exist.
 inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
@@ -63,4 +63,4 @@ struct Crossover {
 /// (see TypicalSeconds), from a fixed seed.
 Crossover find_crossover(const Family& slow, const Family& quick);
 
-}  // namespace slipstick::bench
+}  // namespace slipstick::convergence

@@ -1,4 +1,4 @@
-#include "bench/scaling/scaling.hpp"
+#include "convergence/orders/growth.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -10,7 +10,7 @@
 #include <limits>
 #include <random>
 
-namespace slipstick::bench {
+namespace slipstick::convergence {
 namespace {
 
 using testing::HasSubstr;
@@ -186,4 +186,4 @@ TEST(Crossover, NearTheSmallestSizeMayLieBelowIt) {
 }
 
 }  // namespace
-}  // namespace slipstick::bench
+}  // namespace slipstick::convergence
