@@ -29,6 +29,7 @@ using convergence::PowerLaw;
 using convergence::set_missing;
 using convergence::set_number;
 using convergence::SizedSeconds;
+using convergence::typical;
 using convergence::TypicalSeconds;
 
 /// "a/cells:8/b" is the family "a/b" at 8 cells.

@@ -1,14 +1,12 @@
 #pragma once
 
-#include <limits>
 #include <string>
 #include <vector>
 
+#include "convergence/orders/mesh_sequence.hpp"
+
 /// How times grow with the cells along a side, and where one way to compute overtakes another.
 namespace slipstick::convergence {
-
-/// Stands for a number that does not exist.
-inline constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 
 /// The repetitions of a benchmark at one size. Those that are no positive number take no part in anything.
 struct SizedSeconds {

@@ -16,22 +16,22 @@ namespace {
 using testing::HasSubstr;
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kRounding = 1e-12;  // relative, of logarithms and their fits
-const std::vector<double> kSizes{4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128};
+constexpr double kFitRounding = 1e-12;  // relative, of logarithms and their fits
+const std::vector<double> kTimedSizes{4, 6, 8, 12, 16, 24, 32, 48, 64, 96, 128};
 
-using Law = std::function<double(double cells)>;
+using TimeLaw = std::function<double(double cells)>;
 
-Family exact(const Law& law, const std::vector<double>& sizes = kSizes) {
+Family exact_family(const TimeLaw& law, const std::vector<double>& sizes = kTimedSizes) {
   Family family;
   for (const double cells : sizes) family.push_back({cells, {law(cells)}});
   return family;
 }
 
 /// Repetitions that miss the law by normal deviates of their logarithm.
-Family drawn(const Law& law, double scatter, int repetitions, std::mt19937& random,
-             const std::vector<double>& sizes = kSizes) {
+Family drawn_family(const TimeLaw& law, double scatter, int repetitions, std::mt19937& random,
+                    const std::vector<double>& sizes = kTimedSizes) {
   std::normal_distribution<double> normal(0.0, scatter);
-  Family family = exact(law, sizes);
+  Family family = exact_family(law, sizes);
   for (SizedSeconds& sized : family) {
     sized.seconds.clear();
     for (int i = 0; i < repetitions; ++i) {
@@ -55,7 +55,7 @@ TEST(TypicalSeconds, HoldsTheTruthInNinetyFiveOfAHundredDraws) {
   std::mt19937 random(1);
   for (const int repetitions : {3, 5, 20}) {
     const double held = part_of(2000, [&] {
-      const auto time = typical(drawn(square, 0.1, repetitions, random, {16}).front().seconds);
+      const auto time = typical(drawn_family(square, 0.1, repetitions, random, {16}).front().seconds);
       return time.low <= square(16) && square(16) <= time.high;
     });
     EXPECT_GT(held, 0.94) << repetitions;
@@ -65,7 +65,7 @@ TEST(TypicalSeconds, HoldsTheTruthInNinetyFiveOfAHundredDraws) {
 
 TEST(TypicalSeconds, IsTheMedianOfValidTimes) {
   EXPECT_DOUBLE_EQ(typical({3.0, 1.0, 2.0}).seconds, 2.0);
-  EXPECT_NEAR(typical({1.0, 4.0}).seconds, 2.0, kRounding);  // of the logarithms
+  EXPECT_NEAR(typical({1.0, 4.0}).seconds, 2.0, kFitRounding);  // of the logarithms
   EXPECT_DOUBLE_EQ(typical({2.0}).seconds, 2.0);
   EXPECT_TRUE(std::isnan(typical({2.0}).low));  // one repetition has no interval
   EXPECT_DOUBLE_EQ(typical({kNaN, 2.0, -1.0, 2.0, 0.0, kInfinity, 2.0}).seconds, 2.0);
@@ -75,9 +75,9 @@ TEST(TypicalSeconds, IsTheMedianOfValidTimes) {
 
 TEST(PowerLaw, OfExactPowersIsExact) {
   for (const double exponent : {2.0, 3.0, 4.0}) {
-    const PowerLaw law = fit_power_law(exact([&](double n) { return 1e-9 * std::pow(n, exponent); }));
-    EXPECT_NEAR(law.exponent, exponent, kRounding);
-    EXPECT_NEAR(law.constant, 1e-9, 1e-9 * kRounding * 100);
+    const PowerLaw law = fit_power_law(exact_family([&](double n) { return 1e-9 * std::pow(n, exponent); }));
+    EXPECT_NEAR(law.exponent, exponent, kFitRounding);
+    EXPECT_NEAR(law.constant, 1e-9, 1e-9 * kFitRounding * 100);
     EXPECT_LE(law.low, law.exponent);
     EXPECT_GE(law.high, law.exponent);
     EXPECT_LT(law.high - law.low, 1e-10);
@@ -86,15 +86,15 @@ TEST(PowerLaw, OfExactPowersIsExact) {
 
 TEST(PowerLaw, IsThatOfTheLastThreeDoublings) {
   const auto bent = [](double n) { return n < 16 ? 1.0 : fourth(n); };
-  const PowerLaw law = fit_power_law(exact(bent));
-  EXPECT_NEAR(law.exponent, 4.0, kRounding);
+  const PowerLaw law = fit_power_law(exact_family(bent));
+  EXPECT_NEAR(law.exponent, 4.0, kFitRounding);
   EXPECT_EQ(law.cells, (std::vector<double>{16, 24, 32, 48, 64, 96, 128}));
 }
 
 TEST(PowerLaw, HoldsTheTruthInNinetyFiveOfAHundredDraws) {
   std::mt19937 random(2);
   const double held = part_of(1000, [&] {
-    const PowerLaw law = fit_power_law(drawn(fourth, 0.05, 5, random));
+    const PowerLaw law = fit_power_law(drawn_family(fourth, 0.05, 5, random));
     return law.low <= 4.0 && 4.0 <= law.high;
   });
   EXPECT_GT(held, 0.93);
@@ -102,9 +102,9 @@ TEST(PowerLaw, HoldsTheTruthInNinetyFiveOfAHundredDraws) {
 }
 
 TEST(PowerLaw, NeedsThreeSizes) {
-  EXPECT_THAT(fit_power_law(exact(square, {64})).why_not, HasSubstr("1 sizes have a time"));
-  EXPECT_TRUE(std::isnan(fit_power_law(exact(square, {64})).exponent));
-  EXPECT_THAT(fit_power_law(exact(square, {1, 2, 64, 128})).why_not, HasSubstr("2 sizes from 16"));
+  EXPECT_THAT(fit_power_law(exact_family(square, {64})).why_not, HasSubstr("1 sizes have a time"));
+  EXPECT_TRUE(std::isnan(fit_power_law(exact_family(square, {64})).exponent));
+  EXPECT_THAT(fit_power_law(exact_family(square, {1, 2, 64, 128})).why_not, HasSubstr("2 sizes from 16"));
   EXPECT_TRUE(fit_power_law({}).cells.empty());
 }
 
@@ -115,31 +115,33 @@ TEST(Growth, IsWhatItsNameSays) {
 }
 
 TEST(Crossover, OfPowersIsWhereTheyMeet) {
-  const Crossover found = find_crossover(exact(fourth), exact(square));
+  const Crossover found = find_crossover(exact_family(fourth), exact_family(square));
   EXPECT_NEAR(found.cells, std::sqrt(3e-8 / 2e-10), 1e-9);
   EXPECT_TRUE(std::isnan(found.low));
   EXPECT_THAT(found.remark, HasSubstr("one repetition"));
 }
 
 TEST(Crossover, IsTheLastOfSeveral) {
-  const Law slow = [](double n) { return n == 8 ? 2.0 : n > 48 ? 2.0 : 0.5; };
-  const Crossover found = find_crossover(exact(slow), exact([](double) { return 1.0; }));
+  const TimeLaw slow = [](double n) { return n == 8 ? 2.0 : n > 48 ? 2.0 : 0.5; };
+  const Crossover found = find_crossover(exact_family(slow), exact_family([](double) { return 1.0; }));
   EXPECT_NEAR(found.cells, std::sqrt(48.0 * 64.0), 1e-9);
 }
 
 TEST(Crossover, UsesTheSizesThatBothHave) {
-  Family quick = exact(square, {2, 4, 8, 32, 256});
+  Family quick = exact_family(square, {2, 4, 8, 32, 256});
   quick[2].seconds = {kNaN};
-  const Crossover found = find_crossover(exact(fourth), quick);
+  const Crossover found = find_crossover(exact_family(fourth), quick);
   EXPECT_NEAR(found.cells, std::sqrt(3e-8 / 2e-10), 1e-9);  // between 4 and 32: powers are straight
-  EXPECT_THAT(find_crossover(exact(fourth, {4}), exact(square, {8})).remark, HasSubstr("no size"));
+  EXPECT_THAT(find_crossover(exact_family(fourth, {4}), exact_family(square, {8})).remark,
+              HasSubstr("no size"));
 }
 
 TEST(Crossover, OutsideTheMeasuredSizesIsAnAnswer) {
-  const Crossover already = find_crossover(exact(fourth, {16, 32, 64}), exact(square, {16, 32, 64}));
+  const Crossover already =
+      find_crossover(exact_family(fourth, {16, 32, 64}), exact_family(square, {16, 32, 64}));
   EXPECT_TRUE(std::isnan(already.cells));
   EXPECT_THAT(already.remark, HasSubstr("already at 16 cells"));
-  const Crossover not_yet = find_crossover(exact(fourth, {4, 8}), exact(square, {4, 8}));
+  const Crossover not_yet = find_crossover(exact_family(fourth, {4, 8}), exact_family(square, {4, 8}));
   EXPECT_TRUE(std::isnan(not_yet.cells));
   EXPECT_THAT(not_yet.remark, HasSubstr("not yet at 8 cells"));
 }
@@ -150,8 +152,8 @@ TEST(Crossover, HoldsTheTruthInNinetyFiveOfAHundredDraws) {
   const std::vector<double> sizes{8, 12, 16, 24};
   for (const int repetitions : {5, 15}) {
     const double held = part_of(200, [&] {
-      const Crossover found = find_crossover(drawn(fourth, 0.1, repetitions, random, sizes),
-                                             drawn(square, 0.1, repetitions, random, sizes));
+      const Crossover found = find_crossover(drawn_family(fourth, 0.1, repetitions, random, sizes),
+                                             drawn_family(square, 0.1, repetitions, random, sizes));
       return found.low <= truth && truth <= found.high;
     });
     EXPECT_GT(held, 0.93) << repetitions;
@@ -163,12 +165,12 @@ TEST(Crossover, IsTheMoreCertainTheLessTheScatter) {
   std::mt19937 random(5);
   const auto width = [&](double scatter) {
     const Crossover found =
-        find_crossover(drawn(fourth, scatter, 10, random), drawn(square, scatter, 10, random));
+        find_crossover(drawn_family(fourth, scatter, 10, random), drawn_family(square, scatter, 10, random));
     return std::log(found.high / found.low);
   };
   const double coarse = width(0.05);
-  const Family slow = drawn(fourth, 0.1, 5, random);
-  const Family quick = drawn(square, 0.1, 5, random);
+  const Family slow = drawn_family(fourth, 0.1, 5, random);
+  const Family quick = drawn_family(square, 0.1, 5, random);
   EXPECT_EQ(find_crossover(slow, quick).low, find_crossover(slow, quick).low);  // the same each time
   EXPECT_LT(width(0.005), 0.3 * coarse);
   // Both medians' errors, 1.25 * 0.05 / sqrt(10) each, over the difference of the exponents, 95 % of
@@ -178,8 +180,9 @@ TEST(Crossover, IsTheMoreCertainTheLessTheScatter) {
 
 TEST(Crossover, NearTheSmallestSizeMayLieBelowIt) {
   std::mt19937 random(6);
-  const Law nearly = [](double n) { return square(n) * std::pow(n / 4.1, 2); };
-  const Crossover found = find_crossover(drawn(nearly, 0.2, 5, random), drawn(square, 0.2, 5, random));
+  const TimeLaw nearly = [](double n) { return square(n) * std::pow(n / 4.1, 2); };
+  const Crossover found =
+      find_crossover(drawn_family(nearly, 0.2, 5, random), drawn_family(square, 0.2, 5, random));
   EXPECT_EQ(found.low, -kInfinity);
   EXPECT_GT(found.high, 4.0);
   EXPECT_LT(found.high, 12.0);
