@@ -29,7 +29,7 @@ def _verdict(found):
 def by_method(table):
     """The answers of each method to the same scenes, the first method's first."""
     answers = {FIRST: table}
-    for method in value(table[0], "methods"):
+    for method in table[0].get("methods") or {}:
         answers[method] = [value(row, "methods")[method] for row in table]
     return answers
 

@@ -119,17 +119,21 @@ def map_hard_cases(report):
         return {"unavailable": str(reason)}
 
 
+def environment():
+    """Templates of pages."""
+    found = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True, lstrip_blocks=True)
+    found.filters["typeset"] = typeset
+    return found
+
+
 def render(data_dir, output, benchmarks=None):
     """Writes output/index.html and output/figures/ from data_dir/report.json and the field files beside it, and from
     benchmarks/scaling.json and plane.json where they are there."""
     report = results.load(data_dir / "report.json")
     folder = output / "figures"
     folder.mkdir(parents=True, exist_ok=True)
-    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(HERE), autoescape=True, trim_blocks=True,
-                                     lstrip_blocks=True)
-    environment.filters["typeset"] = typeset
     lead, sections = show_sections(report, data_dir, folder)
-    page = environment.get_template("page.html.j2").render(
+    page = environment().get_template("page.html.j2").render(
         report=report,
         lead=lead,
         sections=sections,

@@ -181,16 +181,18 @@ def finish(axis, solved):
     axis.grid(False)
 
 
-def draw(solved):
+def draw(solved, titled=True):
+    """The panels; `titled`: below what they show, in words."""
     stacked = solved.stacked
     width = 7.2 if stacked else 11.0
-    lines = textwrap.wrap(details(solved), int(14.5 * width))
-    head = HEAD + DETAIL * len(lines) + 0.15
+    lines = textwrap.wrap(details(solved), int(14.5 * width)) if titled else []
+    head = HEAD + DETAIL * len(lines) + 0.15 if titled else 0.15
     height = head + (3 * (solved.panel_height + 0.35) + 0.3 if stacked else solved.panel_height + 1.35)
     figure = Figure(figsize=(width, height), layout="constrained")
     figure.get_layout_engine().set(rect=(0, 0, 1, 1 - head / height))
-    figure.text(0.1 / width, 1 - 0.08 / height, message(solved), weight="bold", size=12, va="top")
-    figure.text(0.1 / width, 1 - HEAD / height, "\n".join(lines), va="top", linespacing=1.4)
+    if titled:
+        figure.text(0.1 / width, 1 - 0.08 / height, message(solved), weight="bold", size=12, va="top")
+        figure.text(0.1 / width, 1 - HEAD / height, "\n".join(lines), va="top", linespacing=1.4)
     axes = figure.subplots(*((3, 1) if stacked else (1, 3)), sharex=True, sharey=True)
     for axis, panel_of in zip(axes, (draw_slip, draw_traction, draw_pressure)):
         bar = panel_of(axis, solved)

@@ -54,13 +54,6 @@ std::vector<std::string> grid_of(const Json& result, int finer = 1) {
           fmt::format("grid.cells=[{},{}]", finer * cells[0], finer * cells[1])};
 }
 
-bool has_given_grid(const solver::Scene& scene) {
-  return scene.pressure == solver::PressureModel::file ||
-         std::ranges::any_of(scene.surfaces, [](const solver::Surface& surface) {
-           return surface.shape == solver::Shape::height_map;
-         });
-}
-
 RunSpec seen(const Trial& trial, Variant variant) {
   RunSpec spec = trial.hard->run;
   spec.fields.clear();

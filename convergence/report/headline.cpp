@@ -213,7 +213,7 @@ std::string headline_text(const Json& headline) {
     text += fmt::format("  {:<15} {}\n", what, line);
   };
   for (const Json& line : headline["lines"]) add(line[0].get<std::string>(), line[1].get<std::string>());
-  if (const Json& numbers = headline["numbers"]; !numbers.empty())
+  if (const Json& numbers = headline["numbers"]; numbers.contains("twist_error"))
     add("Paper's sphere", numbers_line(numbers));
   if (headline["since"].is_null()) return text;
   const std::string since = headline["since"];

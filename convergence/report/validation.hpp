@@ -28,15 +28,14 @@ ValidationSize full_validation();   ///< finer meshes
 /// A study's meshes, rising, without those that are finer than `most`; this one in their place.
 std::vector<solver::Index> up_to(std::vector<solver::Index> cells, solver::Index most);
 
-/// The paper's validation (its Section 5, Figs. 1-5) for a scene, computed and compared with the exact
+/// The paper's validation (its Section 5, Figs. 1-5) of its scene, computed and compared with the exact
 /// solution, beside it an elliptic contact, where the paper's method fails, the gallery, the studies of the
 /// meshes and the tolerances, the hard cases by each method, other programs' fields and the accuracy gates,
 /// from the files in `inputs` (scenes/, studies/, hard/, check/fields/, gates/): fills `folder` with
-/// report.json and the fields that the page draws, and returns report.json's content. Throws InputError for a
-/// scene that has no exact solution to compare with; std::runtime_error where a run has no result, and as the
-/// pool does.
-Json validate(const std::filesystem::path& scene_file, const std::filesystem::path& inputs,
-              const ValidationSize& size, const std::filesystem::path& folder, const ProcessPool& pool);
+/// report.json and the fields that the page draws, and returns report.json's content. Throws
+/// std::runtime_error where a run has no result, and as the pool does.
+Json validate(const std::filesystem::path& inputs, const ValidationSize& size,
+              const std::filesystem::path& folder, const ProcessPool& pool);
 
 /// What is wrong in the paper's equations as printed, each with numbers as evidence, computed here or taken
 /// from the results of the paper's method on a circular and on elliptic contacts.

@@ -7,6 +7,7 @@
 #include "convergence/results/markup.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "solver/input/input_file.hpp"
+#include "solver/scene/surface_geometry.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -51,6 +52,10 @@ std::string cells_override(const solver::Scene& scene, solver::Index across) {
   const solver::Index longer = std::max(scene.cells[0], scene.cells[1]);
   return fmt::format("grid.cells=[{},{}]", across * scene.cells[0] / longer,
                      across * scene.cells[1] / longer);
+}
+
+bool has_given_grid(const solver::Scene& scene) {
+  return scene.pressure == solver::PressureModel::file || solver::find_height_map(scene.surfaces) != nullptr;
 }
 
 std::filesystem::path step_before_file(const std::filesystem::path& fields) {

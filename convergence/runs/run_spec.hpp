@@ -48,6 +48,9 @@ std::string read_text(const std::filesystem::path& file);
 /// The override that gives a grid `across` cells along its longer side, in the shape of the scene's own.
 std::string cells_override(const solver::Scene& scene, solver::Index across);
 
+/// Whether the files that a scene reads, height maps or a pressure, have its grid: no other can be chosen.
+bool has_given_grid(const solver::Scene& scene);
+
 /// The file that gets the fields of the step before the last: NAME-before.csv beside NAME.csv.
 std::filesystem::path step_before_file(const std::filesystem::path& fields);
 

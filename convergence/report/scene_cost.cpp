@@ -1,0 +1,129 @@
+#include "convergence/report/scene_cost.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include "convergence/orders/growth.hpp"
+#include "convergence/results/quantity.hpp"
+#include "convergence/runs/failed_runs.hpp"
+#include "convergence/runs/run_batch.hpp"
+#include "convergence/solve/accurate_solve.hpp"
+#include "solver/scene/scene_keys.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+namespace fs = std::filesystem;
+using solver::Index;
+
+const double kCostTolerances[] = {1e-3, 1e-6, 1e-9};
+const double kAsked[] = {1e-2, 1e-3, 1e-4};
+
+/// What `--accuracy` would take, a row for each error asked for.
+Json choices(const solver::Scene& scene) {
+  Json rows = Json::array();
+  for (const double wanted : kAsked) {
+    Json& row = rows.emplace_back(Json{{"wanted", wanted}});
+    try {
+      const Json plan = accuracy_plan(scene, {wanted, AccuracyOf::twist});
+      for (const char* key : {"cells", "tolerance", "grids", "seconds"}) {
+        if (plan.contains(key)) row[key] = plan[key];
+      }
+    } catch (const solver::InputError& error) {
+      set_missing(row, "cells", error.what());
+    }
+  }
+  return rows;
+}
+
+std::vector<std::string> on_mesh(const solver::Scene& scene, Index cells) {
+  return {cells_override(scene, cells)};
+}
+
+}  // namespace
+
+double size_at(const Json& result, const std::string& path) {
+  const FoundQuantity found = find_quantity(result, path);
+  if (found.value == nullptr) return kNaN;
+  const Json& value = *found.value;
+  if (value.is_array() && value.size() == 2)
+    return std::hypot(value[0].get<double>(), value[1].get<double>());
+  return value.is_number() ? std::abs(value.get<double>()) : kNaN;
+}
+
+Json error_against_time(const fs::path& scene_file, const solver::Scene& scene,
+                        const std::vector<Index>& meshes, const Reference& reference, const PageSize& size,
+                        const ProcessPool& pool) {
+  Json json{{"number", reference.number}, {"points", Json::array()}};
+  set_number(json, "reference_uncertainty", reference.uncertainty, "no reference is known");
+  RunBatch batch;
+  for (const auto& [method, kind] : solver::kMethods) {
+    for (const Index cells : meshes) {
+      if (kind != scene.method && cells > size.method_cells) continue;
+      for (const double tolerance : kCostTolerances) {
+        RunSpec run{.scene = scene_file, .overrides = on_mesh(scene, cells)};
+        run.overrides.push_back(fmt::format("solver.method=\"{}\"", method));
+        run.overrides.push_back(fmt::format("solver.tolerance={}", tolerance));
+        batch.add(run, [&json, &reference, method, cells, tolerance](const Json& result) {
+          Json& point = json["points"].emplace_back(Json{
+              {"method", method}, {"cells", cells}, {"tolerance", tolerance}, {"status", result["status"]}});
+          const bool history = result.contains("history");
+          const double seconds = number_at(result, history ? "history.seconds" : "seconds.total");
+          const std::string why = is_failed(result) ? result["message"].get<std::string>() : "not a number";
+          set_number(point, "seconds", seconds, why);
+          const double found = is_converged(result) ? size_at(result, reference.number) : kNaN;
+          set_number(point, "error", std::abs(found / reference.value - 1.0),
+                     is_converged(result) ? "no reference is known" : why);
+        });
+      }
+    }
+  }
+  batch.run(pool);
+  json["choices"] = choices(scene);
+  return json;
+}
+
+Json direct_against_dcfft(const fs::path& scene_file, const solver::Scene& scene, const PageSize& size,
+                          const ProcessPool& pool) {
+  std::map<std::string, std::map<double, std::vector<double>>> seconds;
+  RunBatch batch;
+  for (const char* kind : {"direct", "dcfft"}) {
+    for (const double cells : size.operator_cells) {
+      for (int repetition = 1; repetition <= size.repetitions; ++repetition) {
+        RunSpec run{.scene = scene_file, .overrides = on_mesh(scene, static_cast<Index>(cells))};
+        run.overrides.push_back(fmt::format("solver.operator=\"{}\"", kind));
+        run.overrides.push_back(fmt::format("name=\"repetition {}\"", repetition));  // it is solved again
+        batch.add(run, [&into = seconds[kind][cells]](const Json& result) {
+          const bool history = result.contains("history");
+          into.push_back(number_at(result, history ? "history.seconds" : "seconds.total"));
+        });
+      }
+    }
+  }
+  batch.run(pool);
+  std::map<std::string, Family> families;
+  Json json{{"rows", Json::array()}};
+  for (const auto& [kind, by_cells] : seconds) {
+    for (const auto& [cells, times] : by_cells) {
+      families[kind].push_back({cells, times});
+      const TypicalSeconds time = typical(times);
+      Json& row = json["rows"].emplace_back(Json{{"operator", kind}, {"cells", cells}});
+      set_number(row, "seconds", time.seconds, "it did not solve");
+      set_number(row, "low", time.low, "one repetition");
+      set_number(row, "high", time.high, "one repetition");
+    }
+  }
+  const Crossover crossover = find_crossover(families["direct"], families["dcfft"]);
+  const std::string outside = crossover.remark.empty() ? "outside the measured sizes" : crossover.remark;
+  set_number(json, "cells", crossover.cells, outside);
+  set_number(json, "low", crossover.low, outside);
+  set_number(json, "high", crossover.high, outside);
+  json["remark"] = crossover.remark;
+  return json;
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,34 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "convergence/report/scene_page.hpp"
+#include "solver/scene/scene.hpp"
+
+namespace slipstick::convergence {
+
+/// The number by which answers are compared, and what it is compared with.
+struct Reference {
+  std::string number;  ///< key in a result: twist_angle, displacement, moment, ...
+  double value;        ///< its size, SI units; NaN: nothing is known
+  double uncertainty;  ///< relative; 0: exact
+};
+
+/// The size of a number of a result, or the length of a pair; NaN where there is none.
+double size_at(const Json& result, const std::string& path);
+
+/// Time and error of each method on several meshes and to several tolerances, and the choices of --accuracy:
+/// {number, reference_uncertainty, points: [{method, cells, tolerance, seconds, error, status}], choices}.
+Json error_against_time(const std::filesystem::path& scene_file, const solver::Scene& scene,
+                        const std::vector<solver::Index>& meshes, const Reference& reference,
+                        const PageSize& size, const ProcessPool& pool);
+
+/// Whole solves by direct sums and by convolution on small meshes of the scene, and the cells along the
+/// longer side from which on convolution is quicker: {rows: [{operator, cells, seconds, low, high}], cells,
+/// low, high, remark}.
+Json direct_against_dcfft(const std::filesystem::path& scene_file, const solver::Scene& scene,
+                          const PageSize& size, const ProcessPool& pool);
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,113 @@
+#include "convergence/report/scene_description.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "convergence/runs/run_spec.hpp"
+#include "solver/elasticity/law/law_kind.hpp"
+#include "solver/model.hpp"
+#include "solver/scene/scene_keys.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using solver::Scene;
+
+std::string shape_text(const solver::Surface& surface) {
+  std::string text = solver::to_string(surface.shape);
+  for (const solver::ShapeNumber& number : solver::shape_numbers()) {
+    if (!number.belongs_to(surface.shape)) continue;
+    text += fmt::format(", {} {:g}{}{}", number.name, number.of(surface), number.unit.empty() ? "" : " ",
+                        number.unit);
+  }
+  if (surface.at[0] != 0.0 || surface.at[1] != 0.0) {
+    text += fmt::format(", at ({:g}, {:g}) m", surface.at[0], surface.at[1]);
+  }
+  if (surface.angle != 0.0) text += fmt::format(", turned by {:g} rad", surface.angle);
+  return text;
+}
+
+std::string material_text(const solver::Material& material) {
+  if (std::isinf(material.young_modulus)) return "rigid";
+  return fmt::format("E = {:g} GPa, ν = {:g}", 1e-9 * material.young_modulus, material.poisson_ratio);
+}
+
+std::string load_text(const solver::Step& step) {
+  std::string text = step.normal ? fmt::format("{:g} N", *step.normal) : "that of the pressure's file";
+  if (const auto ratio = solver::value_if<solver::MomentRatio>(step.torsion)) {
+    if (*ratio != 0.0) text += fmt::format(", moment {:.9g} of its limit", *ratio);
+  } else if (const auto moment = solver::value_if<solver::Moment>(step.torsion)) {
+    text += fmt::format(", moment {:g} N m", *moment);
+  } else {
+    text += fmt::format(", twisted by {:g} rad", solver::value_if<solver::Twist>(step.torsion).value());
+  }
+  if (step.displacement) {
+    text += fmt::format(", moved by ({:g}, {:g}) m", (*step.displacement)[0], (*step.displacement)[1]);
+  } else if (step.force[0] != 0.0 || step.force[1] != 0.0) {
+    text += fmt::format(", force ({:g}, {:g}) N", step.force[0], step.force[1]);
+  }
+  return text;
+}
+
+Json summary(const Scene& scene) {
+  Json rows = Json::array();
+  const auto add = [&](const std::string& words, const std::string& value) {
+    rows.push_back({words, value});
+  };
+  for (const solver::Surface& surface : scene.surfaces) add("Indenter", shape_text(surface));
+  add("Upper body", material_text(scene.upper));
+  add("Lower body", material_text(scene.lower));
+  if (scene.layer.kind != nullptr) add("Layer", scene.layer.kind->word);
+  add("Coefficient of friction", fmt::format("{:g}", scene.friction));
+  add("Pressure", solver::word_of(solver::kPressureModels, scene.pressure));
+  if (scene.steps.size() == 1) {
+    add("Loads", load_text(scene.steps.front()));
+  } else {
+    add("Steps", scene.cycles > 1 ? fmt::format("{}, {} times", scene.steps.size(), scene.cycles)
+                                  : fmt::format("{}", scene.steps.size()));
+    add("First step", load_text(scene.steps.front()));
+    add("Last step", load_text(scene.steps.back()));
+  }
+  add("Grid", fmt::format("{} x {} cells", scene.cells[0], scene.cells[1]));
+  add("Method", fmt::format("{}, to a tolerance of {:g}", solver::word_of(solver::kMethods, scene.method),
+                            scene.tolerance));
+  return rows;
+}
+
+/// Every so many cells of a row through the grid's centre, so that a figure stays small.
+constexpr solver::Index kShown = 400;
+
+Json gap_profile(const Scene& scene) {
+  const solver::Model model = solver::make_model(scene);
+  const solver::Grid grid = model.grid_in_m();
+  Json json;
+  const auto add = [](Json& list, double value) {
+    list.push_back(std::isfinite(value) ? Json(value) : Json(nullptr));
+  };
+  const double unit = model.length_unit;
+  for (solver::Index i = 0; i < grid.n1; i += 1 + grid.n1 / kShown) {
+    add(json["x1"], grid.x1(i));
+    add(json["along_1"], unit * model.gap[i * grid.n2 + grid.n2 / 2]);
+  }
+  for (solver::Index j = 0; j < grid.n2; j += 1 + grid.n2 / kShown) {
+    add(json["x2"], grid.x2(j));
+    add(json["along_2"], unit * model.gap[grid.n1 / 2 * grid.n2 + j]);
+  }
+  return json;
+}
+
+}  // namespace
+
+Json describe(const Scene& scene, const std::filesystem::path& file) {
+  return {{"name", scene.name},
+          {"text", read_text(file)},
+          {"summary", summary(scene)},
+          {"gap", gap_profile(scene)}};
+}
+
+}  // namespace slipstick::convergence

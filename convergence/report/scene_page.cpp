@@ -1,0 +1,404 @@
+#include "convergence/report/scene_page.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <utility>
+
+#include "convergence/hard/hard_run.hpp"
+#include "convergence/orders/expected_order.hpp"
+#include "convergence/orders/limit.hpp"
+#include "convergence/report/headline.hpp"
+#include "convergence/report/scene_cost.hpp"
+#include "convergence/report/scene_description.hpp"
+#include "convergence/results/json_text.hpp"
+#include "convergence/results/provenance.hpp"
+#include "convergence/results/quantity.hpp"
+#include "convergence/runs/failed_runs.hpp"
+#include "convergence/runs/result_cache.hpp"
+#include "convergence/runs/run_batch.hpp"
+#include "convergence/studies/study.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/input/whole_file.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+namespace fs = std::filesystem;
+using solver::Index;
+using solver::Scene;
+
+/// Parts of the finest mesh that a mesh study takes, and those from which the answer's mesh error follows.
+constexpr double kStudyParts[] = {0.125, 0.1875, 0.25, 0.375, 0.5, 0.75, 1.0};
+constexpr double kAnswerParts[] = {0.25, 0.5, 1.0};
+/// The coarsest mesh of a study, cells along the longer side.
+constexpr Index kFewestCells = 8;
+const std::vector<double> kStudyTolerances{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
+/// Parts of the limit load: next to nothing, and next to all of it.
+const char* const kRatios[] = {"1e-9", "1e-6", "1e-3", "0.99", "0.999", "0.9999", "0.999999"};
+const Index kCoarseCells[] = {8, 12, 16};
+/// An order's interval may end this far below the expected order.
+constexpr double kOrderMargin = 0.25;
+
+/// A number that the page shows, where a result has it.
+struct PageNumber {
+  const char* key;
+  const char* words;
+  const char* unit;
+};
+constexpr PageNumber kNumbers[] = {{"twist_angle", "twist", "rad"},
+                                   {"moment", "moment", "N m"},
+                                   {"displacement", "displacement", "m"},
+                                   {"force", "tangential force", "N"},
+                                   {"moment_limit", "limit moment", "N m"},
+                                   {"contact_radius", "contact radius", "m"},
+                                   {"stick_radius", "stick radius", "m"},
+                                   {"peak_pressure", "highest pressure", "Pa"},
+                                   {"approach", "approach", "m"},
+                                   {"elastic_energy", "elastic energy", "J"},
+                                   {"dissipated", "energy lost in the last step", "J"}};
+
+Index longer_side(const Scene& scene) { return std::max(scene.cells[0], scene.cells[1]); }
+
+/// Multiples of four that are these parts of the finest mesh, rising.
+std::vector<Index> meshes(Index finest, const auto& parts) {
+  std::vector<Index> cells;
+  for (const double part : parts) {
+    const auto rounded = 4 * static_cast<Index>(std::lround(part * static_cast<double>(finest) / 4.0));
+    if (rounded >= kFewestCells && (cells.empty() || rounded > cells.back())) cells.push_back(rounded);
+  }
+  return cells;
+}
+
+/// The meshes on which a scene is solved; none where it has its own.
+struct Meshes {
+  bool given;
+  std::vector<Index> study;
+  std::vector<Index> answer;
+};
+Meshes meshes_of(const Scene& scene, const PageSize& size) {
+  if (has_given_grid(scene)) return {true, {}, {}};
+  const Index finest = std::max(std::min(longer_side(scene), size.most_cells), 4 * kFewestCells);
+  return {false, meshes(finest, kStudyParts), meshes(finest, kAnswerParts)};
+}
+
+bool is_rough(const Scene& scene) {
+  return std::ranges::any_of(scene.surfaces, [](const solver::Surface& surface) {
+    return surface.shape == solver::Shape::roughness;
+  });
+}
+
+/// The results on the answer's meshes, coarsest first; the last one has its fields beside.
+std::vector<Json> solve_answer(const fs::path& scene_file, const Scene& scene, const Meshes& meshes,
+                               const fs::path& fields, const ProcessPool& pool) {
+  std::vector<RunSpec> runs;
+  for (const Index cells : meshes.answer) {
+    runs.push_back({.scene = scene_file, .overrides = {cells_override(scene, cells)}});
+  }
+  if (runs.empty()) runs.push_back({.scene = scene_file});
+  runs.back().fields = fields;
+  std::vector<Json> results = pool.run(runs);
+  if (is_failed(results.back())) throw std::runtime_error(results.back()["message"].get<std::string>());
+  std::erase_if(results, [](const Json& result) { return is_failed(result); });
+  return results;
+}
+
+/// How far a number on the finest mesh may be off, relative, and how that is known.
+struct MeshError {
+  double reference = kNaN;
+  double error = kNaN;
+  double uncertainty = kNaN;  ///< of the reference, relative
+  std::string basis;          ///< "exact" and others, or why nothing is known
+};
+
+MeshError mesh_error(const Scene& scene, const std::vector<Json>& results, const std::string& key) {
+  const Json& finest = results.back();
+  const double value = size_at(finest, key);
+  if (const double exact = size_at(finest, "exact." + key); exact > 0.0) {
+    return {exact, value / exact - 1.0, 0.0, "exact"};
+  }
+  if (!(value > 0.0)) return {.basis = "the value is zero, or there is none"};
+  if (results.size() < 2) {
+    if (finest["resolved"].value("number", "") != key)
+      return {.basis = "its files have its grid: there is no other mesh"};
+    const double stated = number_at(finest, "resolved.uncertainty");
+    return {value, stated, stated, "what the mesh leaves open, as the result states"};
+  }
+  std::vector<MeshSample> samples;
+  for (const Json& result : results)
+    samples.push_back({result["cell_size"][0].get<double>(), size_at(result, key)});
+  if (is_rough(scene)) {
+    const double change = value / samples[samples.size() - 2].value - 1.0;
+    return {value, change, std::abs(change),
+            "change from the mesh before: finer ones see more of the surface"};
+  }
+  const Limit limit = richardson_limit(samples, expected_order(key, scene).value);
+  const double uncertainty = limit.uncertainty / std::abs(limit.value);
+  const double error = std::abs(value / limit.value - 1.0) + uncertainty;
+  return {limit.value, error, uncertainty, limit.method};
+}
+
+/// A row for each number that the answer has.
+Json number_rows(const Scene& scene, const std::vector<Json>& results) {
+  Json rows = Json::array();
+  for (const auto& [key, words, unit] : kNumbers) {
+    const double value = size_at(results.back(), key);
+    if (!std::isfinite(value)) continue;
+    const MeshError found = mesh_error(scene, results, key);
+    Json& row = rows.emplace_back(
+        Json{{"key", key}, {"words", words}, {"unit", unit}, {"value", value}, {"basis", found.basis}});
+    set_number(row, "reference", found.reference, found.basis);
+    set_number(row, "error", found.error, found.basis);
+  }
+  return rows;
+}
+
+/// The studies of meshes and of tolerances.
+Json studies(const fs::path& scene_file, const Meshes& meshes, const PageSize& size,
+             const ProcessPool& pool) {
+  Json found = Json::array();
+  Study study{.source = scene_file,
+              .name = "meshes",
+              .scene = scene_file,
+              .overrides = {},
+              .cells = meshes.study,
+              .shifts = size.shifts,
+              .tolerances = {},
+              .variations = {},
+              .quantities = {}};
+  if (!meshes.given) found.push_back(run_study(study, pool));
+  study.name = "tolerances";
+  study.cells.clear();
+  if (!meshes.given) study.cells = {meshes.answer[meshes.answer.size() / 2]};
+  study.shifts = 1;
+  study.tolerances = kStudyTolerances;
+  found.push_back(run_study(study, pool));
+  return found;
+}
+
+/// The scene seen otherwise, on coarse meshes, and next to nothing and next to its limit.
+std::vector<HardCase> hard_cases(const fs::path& scene_file, const Scene& scene, const Meshes& meshes) {
+  std::vector<HardCase> cases;
+  const auto add = [&](const char* family, const char* why, const std::string& name,
+                       std::vector<std::string> overrides) {
+    cases.push_back({.family = family,
+                     .why = why,
+                     .name = name,
+                     .run = {.scene = scene_file, .overrides = std::move(overrides)}});
+  };
+  std::vector<std::string> mesh;
+  if (!meshes.given) mesh = {cells_override(scene, meshes.answer.front())};
+  add("as_it_is", "the scene itself, turned, mirrored, shifted, in other units", scene.name, mesh);
+  if (!meshes.given) {
+    for (const Index cells : kCoarseCells) {
+      add("coarse_meshes", "a few cells: what is uncertain must be said", std::to_string(cells),
+          {cells_override(scene, cells)});
+    }
+  }
+  const bool by_ratio =
+      scene.steps.size() == 1 && !solver::brings_translation(scene.steps.front()) &&
+      solver::value_if<solver::MomentRatio>(scene.steps.front().torsion).value_or(0.0) != 0.0;
+  if (!by_ratio) return cases;
+  for (const char* ratio : kRatios) {
+    std::vector<std::string> overrides = mesh;
+    overrides.push_back(fmt::format("load.moment_ratio={}", ratio));
+    add("load_ramp", "next to no moment, and next to all that friction carries", ratio, std::move(overrides));
+  }
+  return cases;
+}
+
+/// A sentence of the verdict, and whether it holds.
+struct Finding {
+  std::string what;
+  std::string line;
+  bool holds = true;
+};
+
+Finding judge_certificate(const Json& answer) {
+  const bool history = answer.contains("history");
+  const double gap = number_at(answer, history ? "history.worst_gap" : "certificate.gap");
+  const double allowed = std::max(number_at(answer, "tolerance"), number_at(answer, "certificate.rounding"));
+  const bool paper = answer["method"] == "paper";
+  const bool certified = is_converged(answer) && (paper ? std::isfinite(gap) : gap <= allowed);
+  return {"Certificate",
+          fmt::format("{}, {} x {} cells: gap/energy {:.1e}, {:.1e} allowed",
+                      is_converged(answer) ? "converged" : answer["status"].get<std::string>(),
+                      answer["cells"][0].get<int>(), answer["cells"][1].get<int>(), gap, allowed),
+          certified};
+}
+
+/// The order of the number by which answers are compared: no worse than expected.
+Finding judge_order(const Json& studies, const std::string& number) {
+  for (const Json& series : studies.front()["series"]) {
+    for (const std::string& quantity : {number + "_error", std::string("twist_error"), number}) {
+      if (!series["order"].contains(quantity) || (quantity == "twist_error" && number != "twist_angle"))
+        continue;
+      const Json& order = series["order"][quantity];
+      const std::string verdict = order["verdict"];
+      if (!order["value"].is_number()) return {"Orders", fmt::format("{}: {}", quantity, verdict)};
+      const bool worse = order["expected"].is_number() && verdict == "preasymptotic" &&
+                         order["high"].get<double>() < order["expected"].get<double>() - kOrderMargin;
+      return {"Orders",
+              fmt::format("{} falls with order {:.2f}{}: {}", quantity, order["value"].get<double>(),
+                          order["expected"].is_number()
+                              ? fmt::format(", {:g} expected", order["expected"].get<double>())
+                              : "",
+                          verdict),
+              !worse};
+    }
+  }
+  return {"Orders", "no study of meshes says one"};
+}
+
+Finding judge_hard(const Json& hard) {
+  const Json& counts = hard["counts"];
+  std::string line =
+      fmt::format("{} of {} certified, {} refused with a reason, {} not converged, {} wrong",
+                  counts["certified"].get<int>(), hard["rows"].size(), counts["refused"].get<int>(),
+                  counts["not_converged"].get<int>(), counts["wrong"].get<int>());
+  for (const Json& row : hard["rows"]) {
+    if (row["verdict"] == "wrong" || row["verdict"] == "not_converged") {
+      line += fmt::format("; {} {}: {}", row["family"].get<std::string>(), row["case"].get<std::string>(),
+                          row["reason"].get<std::string>());
+    }
+  }
+  return {"Hard variants", line, counts["wrong"] == 0 && counts["not_converged"] == 0};
+}
+
+Finding judge_wanted(const WantedError& wanted, const Json& numbers) {
+  for (const Json& row : numbers) {
+    if (row["key"] != wanted.quantity) continue;
+    const double error = row["error"].is_number() ? std::abs(row["error"].get<double>()) : kNaN;
+    return {
+        fmt::format("Error of the {}", row["words"].get<std::string>()),
+        std::isnan(error)
+            ? fmt::format("unknown ({}), {:g} wanted", row["basis"].get<std::string>(), wanted.error)
+            : fmt::format("{:.1e} ({}), {:g} wanted", error, row["basis"].get<std::string>(), wanted.error),
+        error <= wanted.error};
+  }
+  std::vector<std::string> keys;
+  for (const Json& row : numbers) keys.push_back(row["key"]);
+  throw solver::InputError("--want", wanted.quantity, "not a number of this result",
+                           fmt::format("{}", fmt::join(keys, ", ")));
+}
+
+Json headline_of(const std::vector<Finding>& findings, const Json& page) {
+  bool good = true;
+  Json lines = Json::array();
+  Json checks = Json::object();
+  for (const auto& [what, line, holds] : findings) {
+    good = good && holds;
+    lines.push_back({what, line});
+    checks[what] = holds ? "holds" : "fails";
+  }
+  Json numbers = Json::object();
+  for (const Json& row : page["numbers"]) numbers[row["key"].get<std::string>()] = row["value"];
+  return {{"verdict", good ? "good" : "bad"},
+          {"commit", page["provenance"]["commit"]},
+          {"lines", lines},
+          {"numbers", numbers},
+          {"counts", {{"checks", checks}, {"hard", page["hard"]["counts"]}}}};
+}
+
+Reference reference_of(const Scene& scene, const std::vector<Json>& results) {
+  const std::string number = results.back()["resolved"].value("number", "twist_angle");
+  const MeshError found = mesh_error(scene, results, number);
+  return {number, found.reference, found.uncertainty};
+}
+
+}  // namespace
+
+PageSize quick_page() {
+  return {.most_cells = 64,
+          .shifts = 1,
+          .method_cells = 32,
+          .operator_cells = {8, 12, 16, 24},
+          .repetitions = 2,
+          .finer_meshes = false};
+}
+
+PageSize usual_page() {
+  return {.most_cells = 256,
+          .shifts = 2,
+          .method_cells = 64,
+          .operator_cells = {8, 12, 16, 24, 32, 48},
+          .repetitions = 3,
+          .finer_meshes = true};
+}
+
+PageSize full_page() {
+  PageSize size = usual_page();
+  size.most_cells = 1024;
+  size.shifts = 4;
+  size.method_cells = 128;
+  return size;
+}
+
+WantedError read_wanted_error(const std::string& word) {
+  const std::size_t at = std::min(word.find('='), word.size());
+  const std::string number = word.substr(std::min(at + 1, word.size()));
+  double error = kNaN;
+  const auto [end, problem] = std::from_chars(number.data(), number.data() + number.size(), error);
+  if (problem != std::errc() || end != number.data() + number.size() || !(error > 0.0 && error < 1.0)) {
+    throw solver::InputError("--want", word, "no error",
+                             "QUANTITY=ERROR with a relative error between 0 and 1, as twist=1e-3");
+  }
+  const std::string quantity = word.substr(0, at);
+  return {quantity == "twist" ? "twist_angle" : quantity, error};
+}
+
+Json scene_page(const fs::path& scene_file, const PageSize& size, const std::vector<WantedError>& wanted,
+                const fs::path& folder, const ProcessPool& pool) {
+  const Scene scene = solver::read_scene(scene_file);
+  const Meshes meshes = meshes_of(scene, size);
+  solver::make_folder(folder);
+  const std::vector<Json> results = solve_answer(scene_file, scene, meshes, folder / "answer.h5", pool);
+  Json page;
+  page["provenance"] = provenance(std::max(1, scene.threads));
+  page["scene"] = describe(scene, scene_file);
+  page["answer"] = results.back();
+  page["numbers"] = number_rows(scene, results);
+  std::vector<Finding> findings{judge_certificate(results.back())};
+  for (const WantedError& each : wanted) findings.push_back(judge_wanted(each, page["numbers"]));
+  const Reference reference = reference_of(scene, results);
+  page["studies"] = studies(scene_file, meshes, size, pool);
+  findings.push_back(judge_order(page["studies"], reference.number));
+  if (!meshes.given) {
+    page["cost"] = error_against_time(scene_file, scene, meshes.answer, reference, size, pool);
+    page["operators"] = direct_against_dcfft(scene_file, scene, size, pool);
+  }
+  HardOptions options;
+  options.finer_meshes = size.finer_meshes;
+  page["hard"] = run_hard_cases(hard_cases(scene_file, scene, meshes), options, pool);
+  findings.push_back(judge_hard(page["hard"]));
+  const Json before = find_json(folder / "report.json");
+  page["headline"] =
+      with_changes(headline_of(findings, page),
+                   before.is_object() && before.contains("headline") ? before["headline"] : Json{});
+  write_json_file(folder / "report.json", page);
+  return page;
+}
+
+std::vector<JunitCase> page_cases(const Json& page) {
+  std::vector<JunitCase> cases;
+  const Json& checks = page["headline"]["counts"]["checks"];
+  for (const Json& line : page["headline"]["lines"]) {
+    const std::string what = line[0];
+    const bool holds = checks[what] == "holds";
+    cases.push_back({.suite = page["scene"]["name"],
+                     .classname = "report",
+                     .name = what,
+                     .verdict = holds ? CaseVerdict::passed : CaseVerdict::failure,
+                     .type = "page",
+                     .message = holds ? "" : line[1].get<std::string>(),
+                     .shown = line[1]});
+  }
+  return cases;
+}
+
+}  // namespace slipstick::convergence

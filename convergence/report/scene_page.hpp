@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "convergence/results/verdict_files.hpp"
+#include "convergence/runs/process_pool.hpp"
+#include "solver/grid/grid.hpp"
+
+/// The page of any scene: what it is, its answer, how fast errors fall, what an error costs, where it breaks.
+namespace slipstick::convergence {
+
+/// How much is solved for a page.
+struct PageSize {
+  solver::Index most_cells;    ///< along the longer side of the finest mesh; a scene with fewer keeps its own
+  int shifts;                  ///< grids of each mesh, see Study
+  solver::Index method_cells;  ///< the finest mesh on which methods are compared
+  std::vector<double> operator_cells;  ///< on which direct sums are timed beside convolution
+  int repetitions;                     ///< of those
+  bool finer_meshes;                   ///< hard variants of the scene are held to finer meshes
+};
+PageSize quick_page();
+PageSize usual_page();
+PageSize full_page();
+
+/// A relative error that a user wants a number of the result to have at most.
+struct WantedError {
+  std::string quantity;  ///< key of a number of the result, twist_angle; "twist" means that too
+  double error;
+};
+/// "twist=1e-3". Throws InputError for anything else, and for an error that is not between 0 and 1.
+WantedError read_wanted_error(const std::string& word);
+
+/// Solves what the page shows and judges it: fills `folder` with report.json and answer.h5, the fields on the
+/// finest mesh, and returns report.json's content, docs/schema/page.schema.json. Throws InputError for a
+/// scene that cannot be read and for a wanted quantity that its result does not have; std::runtime_error
+/// where the scene itself has no answer, and as the pool does.
+Json scene_page(const std::filesystem::path& scene_file, const PageSize& size,
+                const std::vector<WantedError>& wanted, const std::filesystem::path& folder,
+                const ProcessPool& pool);
+
+/// A case for each thing that the verdict rests on.
+std::vector<JunitCase> page_cases(const Json& page);
+
+}  // namespace slipstick::convergence

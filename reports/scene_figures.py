@@ -1,0 +1,160 @@
+"""Figures of a scene's page: the bodies, the answer, the loop of a history, what an error costs."""
+
+import numpy as np
+from markupsafe import escape
+
+import solve_figure
+import style
+from cells import Cells
+from figure_entry import FigureEntry
+from method_figures import METHODS, OTHER
+from results import Unavailable, column, groups, number, rows, text, value
+from studies import cell_ticks_at
+from wording import ENERGIES, LENGTHS, percent, plain, quantity, sci, seconds, unit_for
+
+# Numbers that a motion is measured by: words, and their axis.
+MOTIONS = {"twist_angle": ("twist", "rad"), "displacement": ("displacement", "m"), "moment": ("moment", "N m"),
+           "force": ("force", "N"), "approach": ("approach", "m")}
+
+
+def _numbers(values):
+    return np.array([np.nan if each is None else each for each in values], float)
+
+
+def bodies(page, folder):
+    """The gap before any load, along both axes of the grid through its centre."""
+    gap = value(page, "scene.gap")
+    lines = [("x1", "along_1", "along $x_1$", dict(color=style.BLUE)),
+             ("x2", "along_2", "along $x_2$", dict(color=style.VERMILION, linestyle="--"))]
+    found = [(_numbers(gap[x]), _numbers(gap[y]), words, look) for x, y, words, look in lines]
+    if not any(np.isfinite(y).any() for _, y, _, _ in found):
+        raise Unavailable("no point on the grid's axes can be touched")
+    length, length_unit = unit_for(max(np.max(np.abs(x)) for x, *_ in found), LENGTHS)
+    height, height_unit = unit_for(max(np.nanmax(np.abs(y), initial=0.0) for _, y, *_ in found), LENGTHS)
+    figure, axis = style.panels(1, 1, 2.8)
+    for x, y, words, look in found:
+        axis.plot(x / length_unit, y / height_unit, label=words, **look)
+    axis.axhline(0, color=style.GREY, linewidth=4, alpha=0.5)
+    axis.set(xlabel=f"position, {length}", ylabel=f"gap, {height}")
+    axis.legend()
+    scale = length_unit / height_unit
+    message = f"The gap between the bodies before any load; heights are enlarged {plain(float(f'{scale:.2g}'))} times."
+    if not scale > 1:
+        message = "The gap between the bodies before any load."
+    return FigureEntry(message, "Along the two axes of the grid, through its centre. The lower body is grey. There is no line "
+                       "where the bodies cannot touch.", "Two lines: the gap along both axes.", figure)
+
+
+def answer(page, folder):
+    """Slip and stick with directions, tractions, pressure on the finest mesh."""
+    result = value(page, "answer")
+    solved = solve_figure.Solved(result, Cells(folder / "answer.h5", value(result, "cell_size")))
+    return FigureEntry(f"{escape(solve_figure.message(solved))}.", escape(solve_figure.details(solved)).replace("\\$", "$"),
+                       "Three maps of the contact: slip and stick, tangential traction, pressure.",
+                       solve_figure.draw(solved, titled=False), sources=["answer.h5"])
+
+
+def _size(found):
+    return np.nan if found is None else float(np.hypot(*found)) if isinstance(found, list) else float(found)
+
+
+def _along(steps, key):
+    """A number step by step; of pairs the part along the longest of them."""
+    found = [step.get(key) for step in steps]
+    if not any(isinstance(each, list) for each in found):
+        return _numbers(found)
+    pairs = np.array([each or (np.nan, np.nan) for each in found], float)
+    longest = pairs[np.nanargmax(np.hypot(*pairs.T))]
+    return pairs @ (longest / (np.hypot(*longest) or 1.0))
+
+
+def _varies(values):
+    return np.isfinite(values).all() and np.ptp(values) > 1e-9 * np.max(np.abs(values), initial=0.0)
+
+
+def loop(page, folder):
+    """Loads against motions, step by step."""
+    steps = rows(page, "answer.steps")
+    pairs = [pair for pair in (("twist_angle", "moment"), ("displacement", "force"), ("approach", "normal_load"))
+             if all(_varies(_along(steps, key)) for key in pair)]
+    if not pairs:
+        raise Unavailable("no load and no motion changes from step to step")
+    figure, axes = style.panels(1, len(pairs), 3.2, squeeze=False)
+    words = {**MOTIONS, "normal_load": ("normal load", "N")}
+    for axis, (motion, load) in zip(axes[0], pairs):
+        axis.plot(_along(steps, motion), _along(steps, load), "-o", color=style.BLUE, markersize=3, label="computed")
+        exact = [step.get("exact") or {} for step in steps]
+        if all(each.get(motion) is not None and each.get(load) is not None for each in exact):
+            axis.plot(_along(exact, motion), _along(exact, load), "x", color=style.BLACK, markersize=5, label="exact")
+        axis.set(xlabel=", ".join(words[motion]), ylabel=", ".join(words[load]))
+        axis.ticklabel_format(scilimits=(-3, 3))
+        axis.legend()
+    lost = number(page, "answer.history.dissipated")
+    return FigureEntry(f"The history in {len(steps)} steps; friction takes {quantity(lost, ENERGIES)} in all.",
+                       "A point for each step. What lies within a closed loop is the energy that it loses.",
+                       "Loads against motions, step by step.", figure)
+
+
+def cost(page, folder):
+    """Error against time of each method, mesh and tolerance."""
+    points = [point for point in rows(page, "cost.points") if point["seconds"] is not None and point["error"]]
+    if not points:
+        raise Unavailable("no solve has an error that is known")
+    figure, axis = style.panels(1, 1, 3.6)
+    for (method,), found in groups(points, "method").items():
+        words, look = METHODS.get(method, (method, OTHER))
+        axis.plot(column(found, "seconds"), column(found, "error"), label=words, **look | dict(linestyle=""))
+    best, finest = [], np.inf
+    for point in sorted(points, key=lambda each: each["seconds"]):
+        if point["error"] < finest:
+            finest = point["error"]
+            best.append(point)
+    axis.step([point["seconds"] for point in best], [point["error"] for point in best], where="post", color=style.BLACK,
+              linewidth=1.0, alpha=0.8)
+    floor = page["cost"]["reference_uncertainty"]
+    if floor:
+        axis.axhspan(axis.get_ylim()[0] if axis.get_ylim()[0] > 0 else 1e-16, floor, color=style.GREY, alpha=0.2)
+    words = MOTIONS.get(text(page, "cost.number"), (text(page, "cost.number"), ""))[0]
+    axis.set(xscale="log", yscale="log", xlabel="time of a whole solve, s (one thread)", ylabel=f"relative error of the {words}")
+    style.whole_decades(axis)
+    style.legend_on_top(figure, axis.get_legend_handles_labels()[0], 2)
+    last = best[-1]
+    message = (f"An error of {sci(last['error'])} in the {words} takes {seconds(last['seconds'])} s: "
+               f"{METHODS.get(last['method'], (last['method'],))[0]}, {last['cells']} cells along the longer side, tolerance "
+               f"{sci(last['tolerance'])}.")
+    known = "against the exact answer" if not floor else (
+        f"against the value that the meshes tend to, known to {percent(floor)}: nothing is known below, where it is grey")
+    return FigureEntry(message, f"A point for each method, mesh and tolerance; the line joins those that no other beats. The error is "
+                       f"{known}. Solves that did not converge or were refused have no point.",
+                       "Log-log points of error against time.", figure)
+
+
+def operators(page, folder):
+    """Whole solves of the scene by direct sums and by convolution."""
+    table = [row for row in rows(page, "operators.rows") if row["seconds"] is not None]
+    if not table:
+        raise Unavailable("no solve on a small mesh was timed")
+    figure, axis = style.panels(1, 1, 3.2)
+    looks = {"direct": ("direct summation", dict(color=style.VERMILION, marker="o")),
+             "dcfft": ("convolution (DC-FFT)", dict(color=style.BLUE, marker="s"))}
+    for (kind,), found in groups(table, "operator").items():
+        words, look = looks[kind]
+        axis.plot(column(found, "cells"), column(found, "seconds"), "-", label=words, **look)
+    crossing = value(page, "operators")
+    if crossing["cells"] is not None:
+        if crossing["low"] is not None and crossing["high"] is not None:
+            axis.axvspan(crossing["low"], crossing["high"], color=style.GREY, alpha=0.25)
+        axis.axvline(crossing["cells"], color=style.BLACK, linewidth=0.8)
+    axis.set(xscale="log", yscale="log", xlabel="cells along the longer side", ylabel="time of a whole solve, s")
+    axis.set_xticks(sorted(set(column(table, "cells"))), [f"{n:g}" for n in sorted(set(column(table, "cells")))])
+    axis.minorticks_off()
+    axis.legend()
+    if crossing["cells"] is None:
+        message = f"Convolution against direct summation: {escape(crossing['remark'])}."
+    else:
+        interval = "" if crossing["low"] is None or crossing["high"] is None else (
+            f" ({crossing['low']:.3g} to {crossing['high']:.3g})")
+        message = f"Convolution overtakes direct summation from {crossing['cells']:.3g}{interval} cells a side on."
+    return FigureEntry(message, "Whole solves of this scene to the same numbers, medians of repetitions. The band is the 95 % interval "
+                       "of where the lines cross, from the repetitions’ scatter.",
+                       "Two log-log lines of time against cells.", figure)

@@ -1,0 +1,95 @@
+#!/usr/bin/env python3
+"""Draws the page of each scene that `slipstick report SCENE...` computed, and an index where there are several."""
+
+import argparse
+import sys
+from pathlib import Path
+
+import script
+
+script.require("numpy", "matplotlib", "jinja2", "h5py")
+
+import jinja2  # noqa: E402
+
+import render  # noqa: E402
+import results  # noqa: E402
+import scene_figures  # noqa: E402
+from tables import Table  # noqa: E402
+from whole_file import write_whole  # noqa: E402
+from wording import percent, plain, sci, seconds, typeset  # noqa: E402
+
+
+def numbers_table(page):
+    body = []
+    for row in results.rows(page, "numbers"):
+        known = "–" if row["error"] is None else sci(abs(row["error"])) if abs(row["error"]) < 1e-3 else percent(abs(row["error"]))
+        body.append([row["words"], f"{plain(row['value'])} {row['unit']}",
+                     "–" if row["reference"] is None else f"{plain(row['reference'])} {row['unit']}", known, row["basis"]])
+    return Table(["number", "value on the finest mesh", "reference", "what the mesh leaves open", "how that is known"], body)
+
+
+def choices_table(page):
+    body = []
+    for row in results.rows(page, "cost.choices"):
+        if row["cells"] is None:
+            body.append([sci(row["wanted"]), "–", "–", "–", row["cells_reason"]])
+            continue
+        grids = f", the mean of {row['grids']} grids" if row.get("grids") else ""
+        body.append([sci(row["wanted"]), "{} × {}".format(*row["cells"]) + grids, sci(row["tolerance"]),
+                     "–" if row.get("seconds") is None else seconds(row["seconds"]), ""])
+    return Table(["error wanted", "cells", "tolerance", "seconds, predicted", "remark"], body)
+
+
+def tabulate(make, page):
+    try:
+        return {"table": make(page)}
+    except results.Unavailable as reason:
+        return {"unavailable": str(reason)}
+
+
+def draw_all(page, data, folder):
+    """The page's figures by name; those that the scene has nothing for are missing."""
+    wanted = [("bodies", "The bodies", scene_figures.bodies), ("answer", "The answer", scene_figures.answer)]
+    if len(page["answer"].get("steps") or []) > 1:
+        wanted.append(("loop", "The history", scene_figures.loop))
+    if "cost" in page:
+        wanted += [("cost", "Error against time", scene_figures.cost),
+                   ("operators", "Direct summation against convolution", scene_figures.operators)]
+    return {name: render.draw_entry(name, title, lambda: make(page, data), folder) for name, title, make in wanted}
+
+
+def write_page(output, environment):
+    """Writes output/index.html from output/data/, and returns what an index says of it."""
+    data = output / "data"
+    page = results.load(data / "report.json")
+    folder = output / "figures"
+    folder.mkdir(parents=True, exist_ok=True)
+    html = environment.get_template("scene.html.j2").render(
+        page=page, headline=page["headline"], figures=draw_all(page, data, folder),
+        numbers_table=tabulate(numbers_table, page), choices=tabulate(choices_table, page) if "cost" in page else None,
+        studies=render.show_studies(page, folder), hard=render.map_hard_cases(page),
+        nulls=results.nulls({key: page[key] for key in ("answer",)}), data="data")
+    write_whole(output / "index.html", html.encode())
+    return page
+
+
+def render_all(output, folders):
+    environment = render.environment()
+    pages = [(folder, write_page(folder, environment)) for folder in folders]
+    if len(pages) > 1:
+        html = environment.get_template("scenes.html.j2").render(
+            pages=[(folder.relative_to(output), page) for folder, page in pages], plain=plain)
+        write_whole(output / "index.html", html.encode())
+
+
+def main(words=None):
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("folders", type=Path, nargs="+", help="folders with data/report.json and data/answer.h5")
+    parser.add_argument("--output", type=Path, required=True, help="folder of the index of several pages")
+    arguments = parser.parse_args(words)
+    return script.run(lambda: render_all(arguments.output.resolve(), [each.resolve() for each in arguments.folders]),
+                      (results.InputError, results.Unavailable), arguments.output)
+
+
+if __name__ == "__main__":
+    sys.exit(main())
