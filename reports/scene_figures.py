@@ -54,10 +54,6 @@ def answer(page, folder):
                        solve_figure.draw(solved, titled=False), sources=["answer.h5"])
 
 
-def _size(found):
-    return np.nan if found is None else float(np.hypot(*found)) if isinstance(found, list) else float(found)
-
-
 def _along(steps, key):
     """A number step by step; of pairs the part along the longest of them."""
     found = [step.get(key) for step in steps]
@@ -82,7 +78,7 @@ def loop(page, folder):
     figure, axes = style.panels(1, len(pairs), 3.2, squeeze=False)
     words = {**MOTIONS, "normal_load": ("normal load", "N")}
     for axis, (motion, load) in zip(axes[0], pairs):
-        axis.plot(_along(steps, motion), _along(steps, load), "-o", color=style.BLUE, markersize=3, label="computed")
+        axis.plot(*(np.insert(_along(steps, key), 0, 0.0) for key in (motion, load)), "-o", color=style.BLUE, markersize=3, label="computed")
         exact = [step.get("exact") or {} for step in steps]
         if all(each.get(motion) is not None and each.get(load) is not None for each in exact):
             axis.plot(_along(exact, motion), _along(exact, load), "x", color=style.BLACK, markersize=5, label="exact")
@@ -91,7 +87,7 @@ def loop(page, folder):
         axis.legend()
     lost = number(page, "answer.history.dissipated")
     return FigureEntry(f"The history in {len(steps)} steps; friction takes {quantity(lost, ENERGIES)} in all.",
-                       "A point for each step. What lies within a closed loop is the energy that it loses.",
+                       "A point for each step, from no load on. What lies within a closed loop is the energy that it loses.",
                        "Loads against motions, step by step.", figure)
 
 

@@ -16,15 +16,24 @@ import results  # noqa: E402
 import scene_figures  # noqa: E402
 from tables import Table  # noqa: E402
 from whole_file import write_whole  # noqa: E402
-from wording import percent, plain, sci, seconds, typeset  # noqa: E402
+from wording import (ANGLES, ENERGIES, LENGTHS, MOMENTS, STRESSES, percent, plain, quantity, sci, seconds,  # noqa: E402
+                     typeset)  # noqa: E402
+
+
+UNITS = {"m": LENGTHS, "Pa": STRESSES, "rad": ANGLES, "N m": MOMENTS, "J": ENERGIES}
+
+
+def with_unit(row, key):
+    if row[key] is None:
+        return "–"
+    return quantity(row[key], UNITS[row["unit"]], 6) if row["unit"] in UNITS else f"{plain(row[key])} {row['unit']}"
 
 
 def numbers_table(page):
     body = []
     for row in results.rows(page, "numbers"):
         known = "–" if row["error"] is None else sci(abs(row["error"])) if abs(row["error"]) < 1e-3 else percent(abs(row["error"]))
-        body.append([row["words"], f"{plain(row['value'])} {row['unit']}",
-                     "–" if row["reference"] is None else f"{plain(row['reference'])} {row['unit']}", known, row["basis"]])
+        body.append([row["words"], with_unit(row, "value"), with_unit(row, "reference"), known, typeset(row["basis"])])
     return Table(["number", "value on the finest mesh", "reference", "what the mesh leaves open", "how that is known"], body)
 
 

@@ -30,15 +30,6 @@ struct Trial {
   std::filesystem::path fields = {};
 };
 
-/// Adds a run of a trial; one that cannot be read is refused at once.
-void add_run(RunBatch& batch, const RunSpec& spec, const RunBatch::Take& take) {
-  try {
-    batch.add(spec, take);
-  } catch (const solver::InputError& error) {
-    take(Json{{"status", "refused"}, {"message", error.what()}});
-  }
-}
-
 Json verdict_json(const std::string& verdict, const std::string& reason, const Json& numbers) {
   Json json{{"verdict", verdict}};
   if (!reason.empty()) json["reason"] = reason;
@@ -92,8 +83,8 @@ void judge_variants(std::vector<Trial>& trials, const ProcessPool& pool) {
       if (const std::string reason = why_not(*trial.scene, variant); !reason.empty()) {
         set_missing(trial.variants, to_string(variant), reason);
       } else {
-        add_run(batch, seen(trial, variant),
-                [&trial, variant](const Json& result) { judge_variant(trial, variant, result); });
+        batch.add_or_refuse(seen(trial, variant),
+                            [&trial, variant](const Json& result) { judge_variant(trial, variant, result); });
       }
     }
   }
@@ -126,7 +117,7 @@ void judge_by_finer_meshes(std::vector<Trial>& trials, const ProcessPool& pool) 
       RunSpec spec = trial.hard->run;
       for (std::string& key : grid_of(trial.result, finer)) spec.overrides.push_back(std::move(key));
       spec.overrides.push_back(fmt::format("solver.substeps={}", finer * trial.scene->substeps));
-      add_run(batch, spec, [&trial, &refused, &found](const Json& result) {
+      batch.add_or_refuse(spec, [&trial, &refused, &found](const Json& result) {
         if (result["status"] == "refused" && is_at_limit(trial.result)) refused.insert(&trial);
         found[&trial].push_back(is_converged(result) ? main_value(result) : std::nan(""));
       });
@@ -156,7 +147,7 @@ void compare_methods(std::vector<Trial>& trials, const std::vector<std::string>&
     for (Trial& trial : trials) {
       RunSpec spec = trial.hard->run;
       spec.overrides.push_back(fmt::format("solver.method=\"{}\"", method));
-      add_run(batch, spec, [&trial, &method](const Json& result) {
+      batch.add_or_refuse(spec, [&trial, &method](const Json& result) {
         const ComparedAnswer compared = compare_answer(trial.result, result);
         trial.methods[method] = verdict_json(to_string(compared.verdict), compared.reason, compared.numbers);
       });
@@ -220,7 +211,7 @@ Json run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& optio
     if (!options.fields.empty()) trial.fields = options.fields / fmt::format("{:05}.csv", i);
     spec.fields = trial.fields;
     spec.step_before = !spec.fields.empty();
-    add_run(first, spec, [&trial](const Json& result) {
+    first.add_or_refuse(spec, [&trial](const Json& result) {
       trial.result = result;
       trial.judged = judge_alone(result);
       if (trial.judged.verdict != HardVerdict::certified) return;

@@ -68,7 +68,7 @@ Json error_against_time(const fs::path& scene_file, const solver::Scene& scene,
         RunSpec run{.scene = scene_file, .overrides = on_mesh(scene, cells)};
         run.overrides.push_back(fmt::format("solver.method=\"{}\"", method));
         run.overrides.push_back(fmt::format("solver.tolerance={}", tolerance));
-        batch.add(run, [&json, &reference, method, cells, tolerance](const Json& result) {
+        batch.add_or_refuse(run, [&json, &reference, method, cells, tolerance](const Json& result) {
           Json& point = json["points"].emplace_back(Json{
               {"method", method}, {"cells", cells}, {"tolerance", tolerance}, {"status", result["status"]}});
           const bool history = result.contains("history");
@@ -97,7 +97,7 @@ Json direct_against_dcfft(const fs::path& scene_file, const solver::Scene& scene
         RunSpec run{.scene = scene_file, .overrides = on_mesh(scene, static_cast<Index>(cells))};
         run.overrides.push_back(fmt::format("solver.operator=\"{}\"", kind));
         run.overrides.push_back(fmt::format("name=\"repetition {}\"", repetition));  // it is solved again
-        batch.add(run, [&into = seconds[kind][cells]](const Json& result) {
+        batch.add_or_refuse(run, [&into = seconds[kind][cells]](const Json& result) {
           const bool history = result.contains("history");
           into.push_back(number_at(result, history ? "history.seconds" : "seconds.total"));
         });

@@ -42,6 +42,8 @@ const std::vector<double> kStudyTolerances{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1
 /// Parts of the limit load: next to nothing, and next to all of it.
 const char* const kRatios[] = {"1e-9", "1e-6", "1e-3", "0.99", "0.999", "0.9999", "0.999999"};
 const Index kCoarseCells[] = {8, 12, 16};
+/// Forces below this part of all that friction carries are those of rounding.
+constexpr double kRoundedForce = 1e-9;
 /// An order's interval may end this far below the expected order.
 constexpr double kOrderMargin = 0.25;
 
@@ -147,8 +149,12 @@ MeshError mesh_error(const Scene& scene, const std::vector<Json>& results, const
 Json number_rows(const Scene& scene, const std::vector<Json>& results) {
   Json rows = Json::array();
   for (const auto& [key, words, unit] : kNumbers) {
-    const double value = size_at(results.back(), key);
-    if (!std::isfinite(value)) continue;
+    const Json& finest = results.back();
+    const double value = size_at(finest, key);
+    if (!(value > 0.0) || size_at(finest, std::string("exact.") + key) == 0.0)
+      continue;  // nothing but rounding
+    const double friction = number_at(finest, "friction") * number_at(finest, "normal_load");
+    if (std::string(key) == "force" && value < kRoundedForce * friction) continue;
     const MeshError found = mesh_error(scene, results, key);
     Json& row = rows.emplace_back(
         Json{{"key", key}, {"words", words}, {"unit", unit}, {"value", value}, {"basis", found.basis}});
@@ -240,7 +246,9 @@ Finding judge_order(const Json& studies, const std::string& number) {
         continue;
       const Json& order = series["order"][quantity];
       const std::string verdict = order["verdict"];
-      if (!order["value"].is_number()) return {"Orders", fmt::format("{}: {}", quantity, verdict)};
+      if (!order["value"].is_number()) {
+        return {"Orders", fmt::format("none of {}: {}", quantity, order["why"].get<std::string>())};
+      }
       const bool worse = order["expected"].is_number() && verdict == "preasymptotic" &&
                          order["high"].get<double>() < order["expected"].get<double>() - kOrderMargin;
       return {"Orders",
@@ -268,6 +276,16 @@ Finding judge_hard(const Json& hard) {
     }
   }
   return {"Hard variants", line, counts["wrong"] == 0 && counts["not_converged"] == 0};
+}
+
+/// Without a wanted error a statement alone.
+Finding state_mesh_error(const Json& numbers, const std::string& number) {
+  for (const Json& row : numbers) {
+    if (row["key"] != number || !row["error"].is_number()) continue;
+    return {"Mesh", fmt::format("it leaves {:.1e} of the {} open ({})", std::abs(row["error"].get<double>()),
+                                row["words"].get<std::string>(), row["basis"].get<std::string>())};
+  }
+  return {"Mesh", "what it leaves open is not known"};
 }
 
 Finding judge_wanted(const WantedError& wanted, const Json& numbers) {
@@ -305,10 +323,15 @@ Json headline_of(const std::vector<Finding>& findings, const Json& page) {
           {"counts", {{"checks", checks}, {"hard", page["hard"]["counts"]}}}};
 }
 
+/// The number that the result's uncertainty is of, or the first of these that it has.
 Reference reference_of(const Scene& scene, const std::vector<Json>& results) {
-  const std::string number = results.back()["resolved"].value("number", "twist_angle");
-  const MeshError found = mesh_error(scene, results, number);
-  return {number, found.reference, found.uncertainty};
+  std::vector<std::string> numbers{results.back()["resolved"].value("number", "")};
+  numbers.insert(numbers.end(), {"twist_angle", "displacement", "stick_radius", "approach"});
+  for (const std::string& number : numbers) {
+    const MeshError found = mesh_error(scene, results, number);
+    if (found.reference > 0.0) return {number, found.reference, found.uncertainty};
+  }
+  return {numbers.back(), kNaN, kNaN};
 }
 
 }  // namespace
@@ -363,9 +386,10 @@ Json scene_page(const fs::path& scene_file, const PageSize& size, const std::vec
   page["scene"] = describe(scene, scene_file);
   page["answer"] = results.back();
   page["numbers"] = number_rows(scene, results);
+  const Reference reference = reference_of(scene, results);
   std::vector<Finding> findings{judge_certificate(results.back())};
   for (const WantedError& each : wanted) findings.push_back(judge_wanted(each, page["numbers"]));
-  const Reference reference = reference_of(scene, results);
+  findings.push_back(state_mesh_error(page["numbers"], reference.number));
   page["studies"] = studies(scene_file, meshes, size, pool);
   findings.push_back(judge_order(page["studies"], reference.number));
   if (!meshes.given) {

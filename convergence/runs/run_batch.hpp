@@ -5,7 +5,9 @@
 #include <utility>
 #include <vector>
 
+#include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/process_pool.hpp"
+#include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
 
@@ -18,6 +20,15 @@ class RunBatch {
   void add(const RunSpec& spec, Take take) {
     runs_.push_back(prepare_run(spec));
     takes_.push_back(std::move(take));
+  }
+
+  /// The same, but a scene that cannot be read is a result at once: refused, with the message.
+  void add_or_refuse(const RunSpec& spec, const Take& take) {
+    try {
+      add(spec, take);
+    } catch (const solver::InputError& error) {
+      take(not_computed("refused", error.what(), spec));
+    }
   }
 
   const std::vector<PreparedRun>& runs() const { return runs_; }
