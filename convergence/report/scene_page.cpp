@@ -42,8 +42,8 @@ const std::vector<double> kStudyTolerances{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1
 /// Parts of the limit load: next to nothing, and next to all of it.
 const char* const kRatios[] = {"1e-9", "1e-6", "1e-3", "0.99", "0.999", "0.9999", "0.999999"};
 const Index kCoarseCells[] = {8, 12, 16};
-/// Forces below this part of all that friction carries are those of rounding.
-constexpr double kRoundedForce = 1e-9;
+/// Loads below this part of all that friction carries are those of rounding.
+constexpr double kRounded = 1e-9;
 /// An order's interval may end this far below the expected order.
 constexpr double kOrderMargin = 0.25;
 
@@ -86,7 +86,8 @@ struct Meshes {
 Meshes meshes_of(const Scene& scene, const PageSize& size) {
   if (has_given_grid(scene)) return {true, {}, {}};
   const Index finest = std::max(std::min(longer_side(scene), size.most_cells), 4 * kFewestCells);
-  return {false, meshes(finest, kStudyParts), meshes(finest, kAnswerParts)};
+  const Index of_study = std::max(finest, std::min(2 * finest, size.most_study_cells));
+  return {false, meshes(of_study, kStudyParts), meshes(finest, kAnswerParts)};
 }
 
 bool is_rough(const Scene& scene) {
@@ -145,27 +146,34 @@ MeshError mesh_error(const Scene& scene, const std::vector<Json>& results, const
   return {limit.value, error, uncertainty, limit.method};
 }
 
+/// Whether a load, or the motion that it causes, is zero but for rounding.
+bool is_rounding(const Json& result, const std::string& key) {
+  if (size_at(result, "exact." + key) == 0.0) return true;
+  const double friction = number_at(result, "friction") * number_at(result, "normal_load");
+  const bool no_force = size_at(result, "force") < kRounded * friction;
+  const bool no_moment = size_at(result, "moment") < kRounded * size_at(result, "moment_limit");
+  if (key == "twist_angle" || key == "moment") return no_moment;
+  return (key == "displacement" || key == "force") && no_force;
+}
+
 /// A row for each number that the answer has.
 Json number_rows(const Scene& scene, const std::vector<Json>& results) {
   Json rows = Json::array();
   for (const auto& [key, words, unit] : kNumbers) {
-    const Json& finest = results.back();
-    const double value = size_at(finest, key);
-    if (!(value > 0.0) || size_at(finest, std::string("exact.") + key) == 0.0)
-      continue;  // nothing but rounding
-    const double friction = number_at(finest, "friction") * number_at(finest, "normal_load");
-    if (std::string(key) == "force" && value < kRoundedForce * friction) continue;
+    const double value = size_at(results.back(), key);
+    if (!(value > 0.0) || is_rounding(results.back(), key)) continue;
     const MeshError found = mesh_error(scene, results, key);
     Json& row = rows.emplace_back(
         Json{{"key", key}, {"words", words}, {"unit", unit}, {"value", value}, {"basis", found.basis}});
     set_number(row, "reference", found.reference, found.basis);
     set_number(row, "error", found.error, found.basis);
+    set_number(row, "uncertainty", found.uncertainty, found.basis);
   }
   return rows;
 }
 
 /// The studies of meshes and of tolerances.
-Json studies(const fs::path& scene_file, const Meshes& meshes, const PageSize& size,
+Json studies(const fs::path& scene_file, const Scene& scene, const Meshes& meshes, const PageSize& size,
              const ProcessPool& pool) {
   Json found = Json::array();
   Study study{.source = scene_file,
@@ -173,7 +181,7 @@ Json studies(const fs::path& scene_file, const Meshes& meshes, const PageSize& s
               .scene = scene_file,
               .overrides = {},
               .cells = meshes.study,
-              .shifts = size.shifts,
+              .shifts = scene.steps.size() > 1 ? std::min(size.shifts, 2) : size.shifts,
               .tolerances = {},
               .variations = {},
               .quantities = {}};
@@ -323,21 +331,24 @@ Json headline_of(const std::vector<Finding>& findings, const Json& page) {
           {"counts", {{"checks", checks}, {"hard", page["hard"]["counts"]}}}};
 }
 
-/// The number that the result's uncertainty is of, or the first of these that it has.
-Reference reference_of(const Scene& scene, const std::vector<Json>& results) {
-  std::vector<std::string> numbers{results.back()["resolved"].value("number", "")};
-  numbers.insert(numbers.end(), {"twist_angle", "displacement", "stick_radius", "approach"});
-  for (const std::string& number : numbers) {
-    const MeshError found = mesh_error(scene, results, number);
-    if (found.reference > 0.0) return {number, found.reference, found.uncertainty};
+/// The number that the result's uncertainty is of, or the first of these that it has with a reference.
+Reference reference_of(const Json& answer, const Json& rows) {
+  std::vector<std::string> keys{answer["resolved"].value("number", "")};
+  keys.insert(keys.end(), {"twist_angle", "displacement", "stick_radius", "approach"});
+  for (const std::string& key : keys) {
+    for (const Json& row : rows) {
+      if (row["key"] != key || !row["reference"].is_number()) continue;
+      return {key, row["reference"], number_at(row, "uncertainty")};
+    }
   }
-  return {numbers.back(), kNaN, kNaN};
+  return {keys.back(), kNaN, kNaN};
 }
 
 }  // namespace
 
 PageSize quick_page() {
   return {.most_cells = 64,
+          .most_study_cells = 64,
           .shifts = 1,
           .method_cells = 32,
           .operator_cells = {8, 12, 16, 24},
@@ -347,7 +358,8 @@ PageSize quick_page() {
 
 PageSize usual_page() {
   return {.most_cells = 256,
-          .shifts = 2,
+          .most_study_cells = 256,
+          .shifts = 4,
           .method_cells = 64,
           .operator_cells = {8, 12, 16, 24, 32, 48},
           .repetitions = 3,
@@ -357,7 +369,7 @@ PageSize usual_page() {
 PageSize full_page() {
   PageSize size = usual_page();
   size.most_cells = 1024;
-  size.shifts = 4;
+  size.most_study_cells = 1024;
   size.method_cells = 128;
   return size;
 }
@@ -386,11 +398,11 @@ Json scene_page(const fs::path& scene_file, const PageSize& size, const std::vec
   page["scene"] = describe(scene, scene_file);
   page["answer"] = results.back();
   page["numbers"] = number_rows(scene, results);
-  const Reference reference = reference_of(scene, results);
+  const Reference reference = reference_of(results.back(), page["numbers"]);
   std::vector<Finding> findings{judge_certificate(results.back())};
   for (const WantedError& each : wanted) findings.push_back(judge_wanted(each, page["numbers"]));
   findings.push_back(state_mesh_error(page["numbers"], reference.number));
-  page["studies"] = studies(scene_file, meshes, size, pool);
+  page["studies"] = studies(scene_file, scene, meshes, size, pool);
   findings.push_back(judge_order(page["studies"], reference.number));
   if (!meshes.given) {
     page["cost"] = error_against_time(scene_file, scene, meshes.answer, reference, size, pool);

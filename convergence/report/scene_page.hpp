@@ -13,9 +13,11 @@ namespace slipstick::convergence {
 
 /// How much is solved for a page.
 struct PageSize {
-  solver::Index most_cells;    ///< along the longer side of the finest mesh; a scene with fewer keeps its own
-  int shifts;                  ///< grids of each mesh, see Study
-  solver::Index method_cells;  ///< the finest mesh on which methods are compared
+  solver::Index most_cells;  ///< along the longer side of the answer's mesh; a scene with fewer keeps its own
+  /// Of the study's finest mesh, which has twice the answer's cells up to here.
+  solver::Index most_study_cells;
+  int shifts;                          ///< grids of each mesh, see Study; two for a history
+  solver::Index method_cells;          ///< the finest mesh on which methods are compared
   std::vector<double> operator_cells;  ///< on which direct sums are timed beside convolution
   int repetitions;                     ///< of those
   bool finer_meshes;                   ///< hard variants of the scene are held to finer meshes
