@@ -182,7 +182,7 @@ def draw(study, head=0.0):
     to_tolerances = [one for one in series if one.tolerances]
     sections = []
     if study_result.has_meshes(series):
-        sections += [(_draw_error_section, 2.9 * -(-len(quantities) // 2)), (_draw_budget_section, 2.5)]
+        sections += [(_draw_error_section, 2.9 * -(-_error_panels(series, quantities) // 2)), (_draw_budget_section, 2.5)]
     if to_tolerances:
         sections.append((_draw_tolerance_section, 2.9 * -(-(1 + len(quantities)) // 2)))
     if not sections:
@@ -212,10 +212,30 @@ def _grid(part, count):
     return axes
 
 
+def has_times(series):
+    return all(np.isfinite(numbers(one.meshes, "seconds")).any() for one in series)
+
+
+def seconds_panel(axis, series):
+    """Seconds of one solve against cell size."""
+    for one in series:
+        axis.plot(numbers(one.meshes, "h"), numbers(one.meshes, "seconds"), **one.look)
+    axis.set(xscale="log", yscale="log", title="seconds of one solve")
+    axis.invert_xaxis()
+    size_ticks(axis, series)
+
+
+def _error_panels(series, quantities):
+    """Their number."""
+    return len(quantities) + has_times(series)
+
+
 def _draw_error_section(part, series, quantities):
-    axes = _grid(part, len(quantities))
+    axes = _grid(part, _error_panels(series, quantities))
     for axis, (_, path) in zip(axes, quantities):
         errors_panel(axis, series, path)
+    if has_times(series):
+        seconds_panel(axes[len(quantities)], series)
     part.supxlabel("cells across the grid", fontsize=9)
     part.supylabel("relative error", fontsize=9)
 

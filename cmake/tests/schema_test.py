@@ -239,6 +239,10 @@ class Results(unittest.TestCase):
         files = [self.file("refused.toml", refused), self.file("unreadable.toml", "[[gate]]\nid =")]
         self.run_and_check("gate", *files, "--output", self.folder / "gates", code=2)
 
+    def test_pages(self):
+        for name in ("mindlin", "honed_surface"):
+            self.run_and_check("report", SCENES / f"{name}.toml", "--quick", "--output", self.folder / name, schema="page")
+
     def made_benchmarks(self, milliseconds=1.0):
         program = self.file(f"benchmarks-{milliseconds}", BENCHMARKS.replace("MS", str(milliseconds)))
         program.chmod(0o700)

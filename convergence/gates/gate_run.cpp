@@ -27,11 +27,6 @@ namespace {
 using solver::InputError;
 namespace fs = std::filesystem;
 
-double seconds_of(const Json& result) {
-  const auto seconds = result.find("seconds");
-  return seconds != result.end() && seconds->is_object() ? seconds->value("total", 0.0) : 0.0;
-}
-
 /// The result that a gate judges, or why there is none.
 struct Source {
   Json result;
@@ -68,7 +63,9 @@ void solve_scenes(const std::vector<Gate>& gates, const ProcessPool& pool, Sourc
     const auto take = [&timed, &gate = gates[i], &source = sources[i]](const Json& result) {
       source.result = result;
       if (result.value("out_of_memory", false)) source.refused = result["message"];
-      if (timed.emplace(gate.source, gate.overrides).second) source.seconds = seconds_of(result);
+      const double seconds = seconds_of(result);
+      if (timed.emplace(gate.source, gate.overrides).second && std::isfinite(seconds))
+        source.seconds = seconds;
     };
     try {
       batch.add({.scene = gates[i].source, .overrides = gates[i].overrides}, take);

@@ -46,15 +46,6 @@ std::vector<std::string> on_mesh(const solver::Scene& scene, Index cells) {
 
 }  // namespace
 
-double size_at(const Json& result, const std::string& path) {
-  const FoundQuantity found = find_quantity(result, path);
-  if (found.value == nullptr) return kNaN;
-  const Json& value = *found.value;
-  if (value.is_array() && value.size() == 2)
-    return std::hypot(value[0].get<double>(), value[1].get<double>());
-  return value.is_number() ? std::abs(value.get<double>()) : kNaN;
-}
-
 Json error_against_time(const fs::path& scene_file, const solver::Scene& scene,
                         const std::vector<Index>& meshes, const Reference& reference, const PageSize& size,
                         const ProcessPool& pool) {
@@ -71,10 +62,8 @@ Json error_against_time(const fs::path& scene_file, const solver::Scene& scene,
         batch.add_or_refuse(run, [&json, &reference, method, cells, tolerance](const Json& result) {
           Json& point = json["points"].emplace_back(Json{
               {"method", method}, {"cells", cells}, {"tolerance", tolerance}, {"status", result["status"]}});
-          const bool history = result.contains("history");
-          const double seconds = number_at(result, history ? "history.seconds" : "seconds.total");
           const std::string why = is_failed(result) ? result["message"].get<std::string>() : "not a number";
-          set_number(point, "seconds", seconds, why);
+          set_number(point, "seconds", seconds_of(result), why);
           const double found = is_converged(result) ? size_at(result, reference.number) : kNaN;
           set_number(point, "error", std::abs(found / reference.value - 1.0),
                      is_converged(result) ? "no reference is known" : why);
@@ -97,10 +86,8 @@ Json direct_against_dcfft(const fs::path& scene_file, const solver::Scene& scene
         RunSpec run{.scene = scene_file, .overrides = on_mesh(scene, static_cast<Index>(cells))};
         run.overrides.push_back(fmt::format("solver.operator=\"{}\"", kind));
         run.overrides.push_back(fmt::format("name=\"repetition {}\"", repetition));  // it is solved again
-        batch.add_or_refuse(run, [&into = seconds[kind][cells]](const Json& result) {
-          const bool history = result.contains("history");
-          into.push_back(number_at(result, history ? "history.seconds" : "seconds.total"));
-        });
+        batch.add_or_refuse(
+            run, [&into = seconds[kind][cells]](const Json& result) { into.push_back(seconds_of(result)); });
       }
     }
   }

@@ -16,9 +16,6 @@ struct Reference {
   double uncertainty;  ///< relative; 0: exact
 };
 
-/// The size of a number of a result, or the length of a pair; NaN where there is none.
-double size_at(const Json& result, const std::string& path);
-
 /// Time and error of each method on several meshes and to several tolerances, and the choices of --accuracy:
 /// {number, reference_uncertainty, points: [{method, cells, tolerance, seconds, error, status}], choices}.
 Json error_against_time(const std::filesystem::path& scene_file, const solver::Scene& scene,

@@ -71,6 +71,19 @@ double number_at(const Json& result, const std::string& path) {
   return found.value != nullptr && found.value->is_number() ? found.value->get<double>() : NAN;
 }
 
+double size_at(const Json& result, const std::string& path) {
+  const FoundQuantity found = find_quantity(result, path);
+  if (found.value == nullptr) return std::nan("");
+  const Json& value = *found.value;
+  if (value.is_array() && value.size() == 2)
+    return std::hypot(value[0].get<double>(), value[1].get<double>());
+  return value.is_number() ? std::abs(value.get<double>()) : std::nan("");
+}
+
+double seconds_of(const Json& result) {
+  return number_at(result, result.contains("history") ? "history.seconds" : "seconds.total");
+}
+
 std::vector<std::string> quantity_paths(const Json& result) {
   std::vector<std::string> paths;
   collect(result, "", paths);

@@ -22,6 +22,12 @@ FoundQuantity find_quantity(const Json& result, const std::string& path);
 /// The number at a path; NaN where there is none.
 double number_at(const Json& result, const std::string& path);
 
+/// The size of a number of a result, or the length of a pair; NaN where there is none.
+double size_at(const Json& result, const std::string& path);
+
+/// Seconds of a whole solve, of a history all its steps; NaN where there are none.
+double seconds_of(const Json& result);
+
 /// Paths of all numbers, words and nulls of a result.
 std::vector<std::string> quantity_paths(const Json& result);
 

@@ -1,6 +1,7 @@
 #include "convergence/studies/study_judgement.hpp"
 
 #include <fmt/core.h>
+#include <gsl/gsl_statistics_double.h>
 
 #include <algorithm>
 #include <cmath>
@@ -270,8 +271,17 @@ Json row_json(const Json& result, const GridChoice& grid, double tolerance, std:
   for (const std::string& path : quantities) {
     set_number(row, path, number_at(result, path), why_missing(result, path));
   }
-  set_number(row, "seconds", number_at(result, "seconds.total"), why_missing(result, "seconds.total"));
+  set_number(row, "seconds", seconds_of(result), why_missing(result, "seconds.total"));
   return row;
+}
+
+/// Of one solve, over the grids of a mesh.
+double median_seconds(const std::vector<Json>& grids) {
+  std::vector<double> seconds;
+  for (const Json& result : grids) {
+    if (const double one = seconds_of(result); std::isfinite(one)) seconds.push_back(one);
+  }
+  return seconds.empty() ? kNaN : gsl_stats_median(seconds.data(), 1, seconds.size());
 }
 
 }  // namespace
@@ -300,8 +310,9 @@ Json judge_series(const Study& study, const Series& series, const std::vector<Me
     for (std::size_t k = 0; k < results[i].grids.size(); ++k) {
       json["rows"].push_back(row_json(results[i].grids[k], mesh.grids[k], series.tolerance, k, paths));
     }
-    json["meshes"].push_back(
-        {{"cells", mesh.grids.front().cells}, {"h", mean_size(mesh)}, {"grids", mesh.grids.size()}});
+    Json& row = json["meshes"].emplace_back(
+        Json{{"cells", mesh.grids.front().cells}, {"h", mean_size(mesh)}, {"grids", mesh.grids.size()}});
+    set_number(row, "seconds", median_seconds(results[i].grids), "no grid of it was solved");
   }
   json["order"] = Json::object();
   json["extrapolated"] = Json::object();

@@ -52,6 +52,8 @@ std::string orders_text(const Json& series) {
         order["expected"].is_number() ? fmt::format("{:.1f}", order["expected"].get<double>()) : "-",
         order["verdict"].get<std::string>());
   }
+  text += fmt::format("  {:<27} {:>9} {:>9}  of one solve\n", "seconds",
+                      short_text(meshes.front()["seconds"]), short_text(meshes.back()["seconds"]));
   for (const auto& [path, order] : series["order"].items()) {
     if (order["verdict"] == "asymptotic") continue;
     text += fmt::format("    {}: {}\n", label(path), order["why"].get<std::string>());
@@ -105,16 +107,17 @@ std::string tolerances_text(const Json& series) {
   if (series["order"].empty()) return "  no quantity of this scene can be followed\n";
   const std::string quantity = series["order"].items().begin().key();
   const bool is_error = series["order"][quantity]["basis"] == "exact";
-  std::string text =
-      fmt::format("  {:>13} {:>9} {:>12} {:>10} {:>12} {:>12}  {}\n", "cells", "requested", "gap/energy",
-                  "change", "applications", label(quantity) + (is_error ? " error" : ""),
-                  is_error ? "of it by stopping there" : "off the tightest run, relative");
+  std::string text = fmt::format("  {:>13} {:>9} {:>12} {:>10} {:>12} {:>9} {:>12}  {}\n", "cells",
+                                 "requested", "gap/energy", "change", "applications", "seconds",
+                                 label(quantity) + (is_error ? " error" : ""),
+                                 is_error ? "of it by stopping there" : "off the tightest run, relative");
   for (const Json& row : rows) {
-    text += fmt::format("  {:>13} {:>9.0e} {:>12} {:>10} {:>12} {:>12}  {}{}\n", cells_text(row["cells"]),
-                        row["requested"].get<double>(), size(row["certificate.gap"]), size(row["change"]),
-                        number_text(row["operator_applications"]),
-                        is_error ? error(row[quantity]) : short_text(row[quantity]),
-                        error(row["iteration"][quantity]), status_note(row["status"].get<std::string>()));
+    text +=
+        fmt::format("  {:>13} {:>9.0e} {:>12} {:>10} {:>12} {:>9} {:>12}  {}{}\n", cells_text(row["cells"]),
+                    row["requested"].get<double>(), size(row["certificate.gap"]), size(row["change"]),
+                    number_text(row["operator_applications"]), short_text(row["seconds"]),
+                    is_error ? error(row[quantity]) : short_text(row[quantity]),
+                    error(row["iteration"][quantity]), status_note(row["status"].get<std::string>()));
   }
   return text;
 }

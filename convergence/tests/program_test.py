@@ -128,9 +128,25 @@ class Program(ProgramTest):
         self.assertIsNone(result["exact"]["peak_pressure"])
         self.assertIn("no finite peak", result["peak_pressure_error_reason"])
 
-    def test_report_is_for_a_sphere(self):  # the page redoes figures of one
-        self.run_program("report", str(SCENES / "cone.toml"), "--output", "page", code=2,
-                         says=('upper.shape = "cone"', "sphere"))
+    def test_report_draws_a_page_for_each_scene(self):
+        scenes = [str(SCENES / "mindlin.toml"), str(SCENES / "honed_surface.toml")]
+        out = self.run_program("report", *scenes, "--quick", "--output", "pages", "--junit", "out.xml", "--summary", "out.md")
+        self.assertIn("mindlin: All is well", out)
+        index = Path("pages/index.html").read_text()
+        for name, has, lacks in (("mindlin", "costs", "history"), ("honed_surface", "result", "costs")):
+            self.assertIn(f'href="{name}/index.html"', index)
+            page = Path(f"pages/{name}/index.html").read_text()
+            self.assertIn(f"<h1>{name}</h1>", page)
+            self.assertIn(f'id="{has}"', page)
+            self.assertNotIn(f'id="{lacks}"', page)
+            self.assertNotIn("Not available", page)
+            self.assertNotIn("paper’s sphere", page)
+            self.assertTrue(Path(f"pages/{name}/figures/answer.svg").exists())
+        self.assertEqual(Path("out.xml").read_text().count("<testcase"), 8)
+        self.assertIn("| mindlin | good |", Path("out.md").read_text())
+        self.run_program("report", scenes[0], "--quick", "--output", "pages/mindlin", "--want", "displacement=1e-15", code=1)
+        self.run_program("report", scenes[0], scenes[0], "--output", "twice", code=2, says=("mindlin.toml", "one page"))
+        self.run_program("report", scenes[0], "--want", "displacement", code=2, says=("--want", "twist=1e-3"))
 
     def test_quiet_prints_nothing(self):
         self.assertEqual(self.run_program(*solve("paper", "--quiet")), "")

@@ -1,0 +1,116 @@
+// Pages of scenes: each shows what its scene has, and nothing else; the verdict follows from what is wanted.
+
+#include "convergence/report/scene_page.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "convergence/oracle/oracle.hpp"
+#include "convergence/runs/run_spec.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/input/tests/complaint.hpp"
+#include "solver/scene/scene.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+namespace fs = std::filesystem;
+using testing::AllOf;
+using testing::HasSubstr;
+
+TEST(WantedError, IsAQuantityAndANumberBelowOne) {
+  EXPECT_EQ(read_wanted_error("twist=1e-3").quantity, "twist_angle");
+  EXPECT_EQ(read_wanted_error("stick_radius=0.02").quantity, "stick_radius");
+  EXPECT_EQ(read_wanted_error("stick_radius=0.02").error, 0.02);
+  for (const char* word :
+       {"twist", "twist=", "twist=0", "twist=1", "twist=-1e-3", "twist=nan", "twist=1e-3x"}) {
+    EXPECT_THAT(solver::complaint([&] { read_wanted_error(word); }),
+                AllOf(HasSubstr("--want"), HasSubstr(word), HasSubstr("twist=1e-3")));
+  }
+}
+
+/// A few cells: everything is there, nothing is accurate.
+PageSize tiny() {
+  PageSize size = quick_page();
+  size.most_cells = size.most_study_cells = 32;
+  size.method_cells = 16;
+  size.operator_cells = {8, 12};
+  size.repetitions = 1;
+  return size;
+}
+
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names;
+  for (const auto& entry : fs::directory_iterator(SLIPSTICK_SCENES)) {
+    if (entry.path().extension() == ".toml") names.push_back(entry.path().stem().string());
+  }
+  std::ranges::sort(names);
+  return names;
+}
+
+class ScenePage : public testing::TestWithParam<std::string> {
+ protected:
+  ~ScenePage() override { fs::remove_all(folder_); }
+  Json page(const fs::path& scene, const std::vector<WantedError>& wanted = {}) const {
+    const ProcessPool pool({.folder = folder_ / "points", .program = SLIPSTICK_PROGRAM});
+    return scene_page(scene, tiny(), wanted, folder_, pool);
+  }
+  static fs::path file(const std::string& name) { return fs::path(SLIPSTICK_SCENES) / (name + ".toml"); }
+
+  fs::path folder_ = fs::path(testing::TempDir()) / ("slipstick-page-" + std::to_string(getpid()));
+};
+INSTANTIATE_TEST_SUITE_P(Scenes, ScenePage, testing::ValuesIn(scene_names()), [](const auto& info) {
+  std::string name = info.param;
+  std::erase_if(name, [](char c) { return c == '-' || c == '.'; });
+  return name;
+});
+
+TEST_P(ScenePage, ShowsWhatItsSceneHas) {
+  const solver::Scene scene = solver::read_scene(file(GetParam()));
+  const bool exact = find_oracle(scene).oracle.has_value();
+  const Json page = this->page(file(GetParam()));
+  EXPECT_EQ(page["scene"]["name"], scene.name);
+  EXPECT_TRUE(fs::exists(folder_ / "answer.h5"));
+  EXPECT_FALSE(page["numbers"].empty());
+  for (const Json& row : page["numbers"]) {
+    EXPECT_GT(row["value"], 0.0) << row;
+    if (!exact) {
+      EXPECT_NE(row["basis"], "exact") << row;
+    }
+  }
+  EXPECT_EQ(page.contains("cost"), !has_given_grid(scene)) << "one mesh has no error to buy";
+  EXPECT_EQ(page.contains("operators"), !has_given_grid(scene));
+  EXPECT_EQ(page["studies"].size(), has_given_grid(scene) ? 1U : 2U);
+  for (const Json& row : page["hard"]["rows"]) EXPECT_NE(row["verdict"], "not_converged") << row;
+  EXPECT_EQ(page["headline"]["counts"]["checks"]["Certificate"], "holds");
+}
+
+/// What the page calls the error is that of solve; and a bound on either side of it decides the verdict.
+TEST_F(ScenePage, JudgesByWhatIsWanted) {
+  const Json plain = page(file("paper"));
+  const double error = std::abs(plain["answer"]["twist_error"].get<double>());
+  const auto verdict = [&](double wanted) {
+    const Json judged = page(file("paper"), {{"twist_angle", wanted}});
+    const std::vector<JunitCase> cases = page_cases(judged);
+    const bool failed = std::ranges::any_of(
+        cases, [](const JunitCase& each) { return each.verdict == CaseVerdict::failure; });
+    EXPECT_EQ(judged["headline"]["verdict"], failed ? "bad" : "good");
+    return judged["headline"]["counts"]["checks"]["Error of the twist"].get<std::string>();
+  };
+  EXPECT_EQ(verdict(1.01 * error), "holds");
+  EXPECT_EQ(verdict(0.99 * error), "fails");
+  EXPECT_THAT(solver::complaint([&] {
+                page(file("paper"), {{"radius", 0.1}});
+              }),
+              AllOf(HasSubstr("--want"), HasSubstr("radius"), HasSubstr("twist_angle, moment")));
+}
+
+}  // namespace
+}  // namespace slipstick::convergence
