@@ -14,6 +14,7 @@ import hard_cases
 import maps
 import method_figures
 import peers_figure
+import scene_figures
 import studies
 import style
 from cells import Cells
@@ -264,6 +265,7 @@ SECTIONS = [
     ]),
     Section("cost", "What does an error cost?", [
         ("error-against-time", "Error against time", cost),
+        ("operators", "Direct summation against convolution", scene_figures.operators),
     ]),
     Section("bodies", "What if it is not a sphere?", [
         ("slip-maps", "Where it sticks and how it slips", gallery_figure.slip_maps),

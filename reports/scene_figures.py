@@ -9,7 +9,6 @@ from cells import Cells
 from figure_entry import FigureEntry
 from method_figures import METHODS, OTHER
 from results import Unavailable, column, groups, number, rows, text, value
-from studies import cell_ticks_at
 from wording import ENERGIES, LENGTHS, percent, plain, quantity, sci, seconds, unit_for
 
 # Numbers that a motion is measured by: words, and their axis.

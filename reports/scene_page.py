@@ -30,11 +30,27 @@ def with_unit(row, key):
 
 
 def numbers_table(page):
+    inputs = page.get("uncertainty", {}).get("outputs")
     body = []
     for row in results.rows(page, "numbers"):
         known = "–" if row["error"] is None else sci(abs(row["error"])) if abs(row["error"]) < 1e-3 else percent(abs(row["error"]))
         body.append([row["words"], with_unit(row, "value"), with_unit(row, "reference"), known, typeset(row["basis"])])
-    return Table(["number", "value on the finest mesh", "reference", "what the mesh leaves open", "how that is known"], body)
+        if inputs is not None:
+            relative = inputs.get(row["key"], {}).get("relative")
+            body[-1].insert(4, "–" if relative is None else percent(relative))
+    head = ["number", "value on the finest mesh", "reference", "what the mesh leaves open", "how that is known"]
+    if inputs is not None:
+        head.insert(4, "what the inputs make of it")
+    return Table(head, body)
+
+
+def digits_table(page):
+    body = [[row["words"], f"{found['digits']:.1f}", f"{found['low']:.1f} to {found['high']:.1f}"]
+            for row in results.rows(page, "numbers")
+            if (found := results.value(page, "digits.digits").get(row["key"])) and found["digits"] is not None]
+    if not body:
+        raise results.Unavailable("no number of the page was solved with another rounding")
+    return Table(["number", "digits that survive", "95 % interval"], body)
 
 
 def choices_table(page):
@@ -76,7 +92,7 @@ def write_page(output, environment):
     html = environment.get_template("scene.html.j2").render(
         page=page, headline=page["headline"], figures=draw_all(page, data, folder),
         numbers_table=tabulate(numbers_table, page), choices=tabulate(choices_table, page) if "cost" in page else None,
-        studies=render.show_studies(page, folder), hard=render.map_hard_cases(page),
+        studies=render.show_studies(page, folder), digits=tabulate(digits_table, page), hard=render.map_hard_cases(page),
         nulls=results.nulls({key: page[key] for key in ("answer",)}), data="data")
     write_whole(output / "index.html", html.encode())
     return page

@@ -118,9 +118,9 @@ def has_meshes(series):
 
 
 def main_quantities(series):
-    """Up to four (words, path) that the first series has, and of which some mesh shows an error."""
+    """Up to four (words, path) that the first series has; none that is right on each mesh, as an imposed twist is."""
     orders = [path for path in value(series[0].content, "order")
-              if not has_meshes(series) or any((one.mean(path) > 0).any() for one in series)]
+              if not has_meshes(series) or not all((one.mean(path) == 0).all() for one in series)]
     found = [(words, path) for words, paths in MAIN for path in [next((p for p in paths if p in orders), None)] if path]
     return found or [(quantity_words(path), path) for path in orders[:4]]
 

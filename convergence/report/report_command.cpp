@@ -37,6 +37,7 @@ struct ReportRequest {
   bool quick = false;
   bool full = false;
   std::vector<std::string> wanted;
+  std::vector<std::string> uncertain;
   std::string junit;
   std::string summary;
   std::optional<std::uint64_t> memory_limit;
@@ -125,7 +126,7 @@ int run_scenes(const ReportRequest& request, std::ostream& text, Json& result) {
     Json page;
     {
       const Interrupts interrupts;
-      page = scene_page(request.scenes[i], size, wanted, data, pool);
+      page = scene_page({request.scenes[i], size, wanted, request.uncertain}, data, pool);
     }
     const Json& headline = page["headline"];
     text << page["scene"]["name"].get<std::string>() << ": " << headline_text(headline)
@@ -176,6 +177,10 @@ RunCommand add_report_command(CLI::App& app) {
       ->capture_default_str();
   command->add_option("--want", request->wanted,
                       "QUANTITY=ERROR, as twist=1e-3: the verdict is bad where the mesh leaves more open");
+  command->add_option(
+      "--uncertain", request->uncertain,
+      "key=P%: standard uncertainties of the scene's numbers, e.g. friction=5%; the page says what they "
+      "make of each number");
   command->add_option("--junit", request->junit, "write the verdicts of scenes as JUnit's XML");
   command->add_option("--summary", request->summary, "write them as a table in Markdown");
   add_memory_option(*command, request->memory_limit);

@@ -6,22 +6,27 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <utility>
 
 #include "convergence/hard/hard_run.hpp"
+#include "convergence/hard/rounding_digits.hpp"
 #include "convergence/orders/expected_order.hpp"
 #include "convergence/orders/limit.hpp"
 #include "convergence/report/headline.hpp"
 #include "convergence/report/scene_cost.hpp"
 #include "convergence/report/scene_description.hpp"
+#include "convergence/report/scene_verdict.hpp"
 #include "convergence/results/json_text.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/results/quantity.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/run_batch.hpp"
+#include "convergence/runs/solve_scene.hpp"
+#include "convergence/solve/uncertainty.hpp"
 #include "convergence/studies/study.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/whole_file.hpp"
@@ -42,10 +47,10 @@ const std::vector<double> kStudyTolerances{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1
 /// Parts of the limit load: next to nothing, and next to all of it.
 const char* const kRatios[] = {"1e-9", "1e-6", "1e-3", "0.99", "0.999", "0.9999", "0.999999"};
 const Index kCoarseCells[] = {8, 12, 16};
+/// Solves that are rounded at random: enough to tell ten digits from twelve.
+constexpr int kRoundingSamples = 6;
 /// Loads below this part of all that friction carries are those of rounding.
 constexpr double kRounded = 1e-9;
-/// An order's interval may end this far below the expected order.
-constexpr double kOrderMargin = 0.25;
 
 /// A number that the page shows, where a result has it.
 struct PageNumber {
@@ -119,7 +124,22 @@ struct MeshError {
   std::string basis;          ///< "exact" and others, or why nothing is known
 };
 
-MeshError mesh_error(const Scene& scene, const std::vector<Json>& results, const std::string& key) {
+/// From where the values of a study of meshes tend to, if it has that.
+MeshError error_by_study(const Json& study, const std::string& key, double value) {
+  for (const Json& series : study["series"]) {
+    if (!series["extrapolated"].contains(key)) continue;
+    const Json& limit = series["extrapolated"][key];
+    const double reference = number_at(limit, "value");
+    const double uncertainty = number_at(limit, "uncertainty") / std::abs(reference);
+    return {reference, std::abs(value / reference - 1.0) + uncertainty, uncertainty,
+            fmt::format("study of meshes: {}", limit["method"].get<std::string>())};
+  }
+  return {};
+}
+
+/// study: of meshes.
+MeshError mesh_error(const Scene& scene, const std::vector<Json>& results, const Json& study,
+                     const std::string& key) {
   const Json& finest = results.back();
   const double value = size_at(finest, key);
   if (const double exact = size_at(finest, "exact." + key); exact > 0.0) {
@@ -143,7 +163,8 @@ MeshError mesh_error(const Scene& scene, const std::vector<Json>& results, const
   const Limit limit = richardson_limit(samples, expected_order(key, scene).value);
   const double uncertainty = limit.uncertainty / std::abs(limit.value);
   const double error = std::abs(value / limit.value - 1.0) + uncertainty;
-  return {limit.value, error, uncertainty, limit.method};
+  const MeshError by_study = error_by_study(study, key, value);
+  return by_study.error < error ? by_study : MeshError{limit.value, error, uncertainty, limit.method};
 }
 
 /// Whether a load, or the motion that it causes, is zero but for rounding.
@@ -157,12 +178,12 @@ bool is_rounding(const Json& result, const std::string& key) {
 }
 
 /// A row for each number that the answer has.
-Json number_rows(const Scene& scene, const std::vector<Json>& results) {
+Json number_rows(const Scene& scene, const std::vector<Json>& results, const Json& study) {
   Json rows = Json::array();
   for (const auto& [key, words, unit] : kNumbers) {
     const double value = size_at(results.back(), key);
     if (!(value > 0.0) || is_rounding(results.back(), key)) continue;
-    const MeshError found = mesh_error(scene, results, key);
+    const MeshError found = mesh_error(scene, results, study, key);
     Json& row = rows.emplace_back(
         Json{{"key", key}, {"words", words}, {"unit", unit}, {"value", value}, {"basis", found.basis}});
     set_number(row, "reference", found.reference, found.basis);
@@ -195,6 +216,24 @@ Json studies(const fs::path& scene_file, const Scene& scene, const Meshes& meshe
   return found;
 }
 
+/// The coarsest mesh of the answer; the scene's own where its files have it.
+std::vector<std::string> coarse_mesh(const Scene& scene, const Meshes& meshes) {
+  if (meshes.given) return {};
+  return {cells_override(scene, meshes.answer.front())};
+}
+
+/// What the uncertainty of the scene's numbers makes of the answer's.
+Json uncertainty(const fs::path& scene_file, const Scene& scene, const Meshes& meshes, const Json& answer,
+                 const std::vector<UncertainInput>& inputs) {
+  const auto cache = std::make_shared<solver::SolveCache>();
+  return uncertainty_json(answer, inputs, [&](const std::vector<std::string>& changed) {
+    std::vector<std::string> overrides;
+    if (!meshes.given) overrides.push_back(cells_override(scene, meshes.answer.back()));
+    overrides.insert(overrides.end(), changed.begin(), changed.end());
+    return solve_scene(solver::read_scene(scene_file, overrides), {.cache = cache}).result;
+  });
+}
+
 /// The scene seen otherwise, on coarse meshes, and next to nothing and next to its limit.
 std::vector<HardCase> hard_cases(const fs::path& scene_file, const Scene& scene, const Meshes& meshes) {
   std::vector<HardCase> cases;
@@ -205,8 +244,7 @@ std::vector<HardCase> hard_cases(const fs::path& scene_file, const Scene& scene,
                      .name = name,
                      .run = {.scene = scene_file, .overrides = std::move(overrides)}});
   };
-  std::vector<std::string> mesh;
-  if (!meshes.given) mesh = {cells_override(scene, meshes.answer.front())};
+  const std::vector<std::string> mesh = coarse_mesh(scene, meshes);
   add("as_it_is", "the scene itself, turned, mirrored, shifted, in other units", scene.name, mesh);
   if (!meshes.given) {
     for (const Index cells : kCoarseCells) {
@@ -224,111 +262,6 @@ std::vector<HardCase> hard_cases(const fs::path& scene_file, const Scene& scene,
     add("load_ramp", "next to no moment, and next to all that friction carries", ratio, std::move(overrides));
   }
   return cases;
-}
-
-/// A sentence of the verdict, and whether it holds.
-struct Finding {
-  std::string what;
-  std::string line;
-  bool holds = true;
-};
-
-Finding judge_certificate(const Json& answer) {
-  const bool history = answer.contains("history");
-  const double gap = number_at(answer, history ? "history.worst_gap" : "certificate.gap");
-  const double allowed = std::max(number_at(answer, "tolerance"), number_at(answer, "certificate.rounding"));
-  const bool paper = answer["method"] == "paper";
-  const bool certified = is_converged(answer) && (paper ? std::isfinite(gap) : gap <= allowed);
-  return {"Certificate",
-          fmt::format("{}, {} x {} cells: gap/energy {:.1e}, {:.1e} allowed",
-                      is_converged(answer) ? "converged" : answer["status"].get<std::string>(),
-                      answer["cells"][0].get<int>(), answer["cells"][1].get<int>(), gap, allowed),
-          certified};
-}
-
-/// The order of the number by which answers are compared: no worse than expected.
-Finding judge_order(const Json& studies, const std::string& number) {
-  for (const Json& series : studies.front()["series"]) {
-    for (const std::string& quantity : {number + "_error", std::string("twist_error"), number}) {
-      if (!series["order"].contains(quantity) || (quantity == "twist_error" && number != "twist_angle"))
-        continue;
-      const Json& order = series["order"][quantity];
-      const std::string verdict = order["verdict"];
-      if (!order["value"].is_number()) {
-        return {"Orders", fmt::format("none of {}: {}", quantity, order["why"].get<std::string>())};
-      }
-      const bool worse = order["expected"].is_number() && verdict == "preasymptotic" &&
-                         order["high"].get<double>() < order["expected"].get<double>() - kOrderMargin;
-      return {"Orders",
-              fmt::format("{} falls with order {:.2f}{}: {}", quantity, order["value"].get<double>(),
-                          order["expected"].is_number()
-                              ? fmt::format(", {:g} expected", order["expected"].get<double>())
-                              : "",
-                          verdict),
-              !worse};
-    }
-  }
-  return {"Orders", "no study of meshes says one"};
-}
-
-Finding judge_hard(const Json& hard) {
-  const Json& counts = hard["counts"];
-  std::string line =
-      fmt::format("{} of {} certified, {} refused with a reason, {} not converged, {} wrong",
-                  counts["certified"].get<int>(), hard["rows"].size(), counts["refused"].get<int>(),
-                  counts["not_converged"].get<int>(), counts["wrong"].get<int>());
-  for (const Json& row : hard["rows"]) {
-    if (row["verdict"] == "wrong" || row["verdict"] == "not_converged") {
-      line += fmt::format("; {} {}: {}", row["family"].get<std::string>(), row["case"].get<std::string>(),
-                          row["reason"].get<std::string>());
-    }
-  }
-  return {"Hard variants", line, counts["wrong"] == 0 && counts["not_converged"] == 0};
-}
-
-/// Without a wanted error a statement alone.
-Finding state_mesh_error(const Json& numbers, const std::string& number) {
-  for (const Json& row : numbers) {
-    if (row["key"] != number || !row["error"].is_number()) continue;
-    return {"Mesh", fmt::format("it leaves {:.1e} of the {} open ({})", std::abs(row["error"].get<double>()),
-                                row["words"].get<std::string>(), row["basis"].get<std::string>())};
-  }
-  return {"Mesh", "what it leaves open is not known"};
-}
-
-Finding judge_wanted(const WantedError& wanted, const Json& numbers) {
-  for (const Json& row : numbers) {
-    if (row["key"] != wanted.quantity) continue;
-    const double error = row["error"].is_number() ? std::abs(row["error"].get<double>()) : kNaN;
-    return {
-        fmt::format("Error of the {}", row["words"].get<std::string>()),
-        std::isnan(error)
-            ? fmt::format("unknown ({}), {:g} wanted", row["basis"].get<std::string>(), wanted.error)
-            : fmt::format("{:.1e} ({}), {:g} wanted", error, row["basis"].get<std::string>(), wanted.error),
-        error <= wanted.error};
-  }
-  std::vector<std::string> keys;
-  for (const Json& row : numbers) keys.push_back(row["key"]);
-  throw solver::InputError("--want", wanted.quantity, "not a number of this result",
-                           fmt::format("{}", fmt::join(keys, ", ")));
-}
-
-Json headline_of(const std::vector<Finding>& findings, const Json& page) {
-  bool good = true;
-  Json lines = Json::array();
-  Json checks = Json::object();
-  for (const auto& [what, line, holds] : findings) {
-    good = good && holds;
-    lines.push_back({what, line});
-    checks[what] = holds ? "holds" : "fails";
-  }
-  Json numbers = Json::object();
-  for (const Json& row : page["numbers"]) numbers[row["key"].get<std::string>()] = row["value"];
-  return {{"verdict", good ? "good" : "bad"},
-          {"commit", page["provenance"]["commit"]},
-          {"lines", lines},
-          {"numbers", numbers},
-          {"counts", {{"checks", checks}, {"hard", page["hard"]["counts"]}}}};
 }
 
 /// The number that the result's uncertainty is of, or the first of these that it has with a reference.
@@ -387,31 +320,36 @@ WantedError read_wanted_error(const std::string& word) {
   return {quantity == "twist" ? "twist_angle" : quantity, error};
 }
 
-Json scene_page(const fs::path& scene_file, const PageSize& size, const std::vector<WantedError>& wanted,
-                const fs::path& folder, const ProcessPool& pool) {
-  const Scene scene = solver::read_scene(scene_file);
+Json scene_page(const PageRequest& request, const fs::path& folder, const ProcessPool& pool) {
+  const Scene scene = solver::read_scene(request.scene);
+  const std::vector<UncertainInput> uncertain = uncertain_inputs(request.scene, {}, request.uncertain);
+  const PageSize& size = request.size;
   const Meshes meshes = meshes_of(scene, size);
   solver::make_folder(folder);
-  const std::vector<Json> results = solve_answer(scene_file, scene, meshes, folder / "answer.h5", pool);
+  const std::vector<Json> results = solve_answer(request.scene, scene, meshes, folder / "answer.h5", pool);
   Json page;
   page["provenance"] = provenance(std::max(1, scene.threads));
-  page["scene"] = describe(scene, scene_file);
+  page["scene"] = describe(scene, request.scene);
   page["answer"] = results.back();
-  page["numbers"] = number_rows(scene, results);
+  page["studies"] = studies(request.scene, scene, meshes, size, pool);
+  page["numbers"] = number_rows(scene, results, page["studies"].front());
   const Reference reference = reference_of(results.back(), page["numbers"]);
   std::vector<Finding> findings{judge_certificate(results.back())};
-  for (const WantedError& each : wanted) findings.push_back(judge_wanted(each, page["numbers"]));
+  for (const WantedError& each : request.wanted) findings.push_back(judge_wanted(each, page["numbers"]));
   findings.push_back(state_mesh_error(page["numbers"], reference.number));
-  page["studies"] = studies(scene_file, scene, meshes, size, pool);
+  if (!uncertain.empty())
+    page["uncertainty"] = uncertainty(request.scene, scene, meshes, results.back(), uncertain);
   findings.push_back(judge_order(page["studies"], reference.number));
   if (!meshes.given) {
-    page["cost"] = error_against_time(scene_file, scene, meshes.answer, reference, size, pool);
-    page["operators"] = direct_against_dcfft(scene_file, scene, size, pool);
+    page["cost"] = error_against_time(request.scene, scene, meshes.answer, reference, size, pool);
+    page["operators"] = direct_against_dcfft(request.scene, scene, size, pool);
   }
   HardOptions options;
   options.finer_meshes = size.finer_meshes;
-  page["hard"] = run_hard_cases(hard_cases(scene_file, scene, meshes), options, pool);
+  page["hard"] = run_hard_cases(hard_cases(request.scene, scene, meshes), options, pool);
   findings.push_back(judge_hard(page["hard"]));
+  page["digits"] = rounding_digits({.scene = request.scene, .overrides = coarse_mesh(scene, meshes)},
+                                   {.samples = kRoundingSamples}, pool);
   const Json before = find_json(folder / "report.json");
   page["headline"] =
       with_changes(headline_of(findings, page),

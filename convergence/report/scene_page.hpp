@@ -34,13 +34,19 @@ struct WantedError {
 /// "twist=1e-3". Throws InputError for anything else, and for an error that is not between 0 and 1.
 WantedError read_wanted_error(const std::string& word);
 
+/// What a page is asked for.
+struct PageRequest {
+  std::filesystem::path scene;
+  PageSize size;
+  std::vector<WantedError> wanted = {};
+  std::vector<std::string> uncertain = {};  ///< as uncertain_inputs() takes them
+};
+
 /// Solves what the page shows and judges it: fills `folder` with report.json and answer.h5, the fields on the
 /// finest mesh, and returns report.json's content, docs/schema/page.schema.json. Throws InputError for a
 /// scene that cannot be read and for a wanted quantity that its result does not have; std::runtime_error
 /// where the scene itself has no answer, and as the pool does.
-Json scene_page(const std::filesystem::path& scene_file, const PageSize& size,
-                const std::vector<WantedError>& wanted, const std::filesystem::path& folder,
-                const ProcessPool& pool);
+Json scene_page(const PageRequest& request, const std::filesystem::path& folder, const ProcessPool& pool);
 
 /// A case for each thing that the verdict rests on.
 std::vector<JunitCase> page_cases(const Json& page);

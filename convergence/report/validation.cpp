@@ -19,6 +19,7 @@
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/report/gallery.hpp"
 #include "convergence/report/headline.hpp"
+#include "convergence/report/scene_cost.hpp"
 #include "convergence/results/json_text.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/failed_runs.hpp"
@@ -336,6 +337,8 @@ Json validate(const fs::path& inputs, const ValidationSize& size, const fs::path
   report["studies"] = study_results(scene_file, inputs / "studies", size.study_cells, pool);
   report["hard"] = hard_results(inputs / "hard", size.hard_step, pool);
   report["cycle"] = cycle(results.at("cycle").front());
+  report["operators"] =
+      direct_against_dcfft(scene_file, scene, size.gates ? usual_page() : quick_page(), pool);
   report["peers"] = judge_peers(inputs);
   if (size.gates) report["gates"] = gates_json(run_gates(read_gates(inputs / "gates" / "quick.toml"), pool));
   report["headline"] = with_changes(headline(report), earlier_headline(folder / "report.json"));

@@ -275,7 +275,7 @@ Json row_json(const Json& result, const GridChoice& grid, double tolerance, std:
   return row;
 }
 
-/// Of one solve, over the grids of a mesh.
+/// The median over a mesh's grids, each solved once.
 double median_seconds(const std::vector<Json>& grids) {
   std::vector<double> seconds;
   for (const Json& result : grids) {

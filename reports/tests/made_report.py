@@ -135,6 +135,10 @@ def small_report():
         "hard": hard(),
         "cycle": {"cells": [4, 4], "rows": [{"moment_ratio": x, "twist": 1.01 * twist, "exact": twist, "dissipated": 0.1}
                                             for x, twist in ((0.8, 0.4), (0.0, 0.1), (-0.8, -0.4))]},
+        "operators": {"rows": [{"operator": kind, "cells": n, "seconds": 1e-6 * n**power, "low": None, "low_reason": "one repetition",
+                                "high": None, "high_reason": "one repetition"}
+                               for kind, power in (("direct", 4), ("dcfft", 3)) for n in (8, 16, 32)],
+                      "cells": 12.0, "low": 11.0, "high": 13.0, "remark": ""},
         "peers": [peer("ONE", "good", 0.1), peer("TWO", "bad", 30.0)],
         "gates": {"gates": [{"id": "a-gate", "outcome": "passed", "quantity": "twist_error", "value": 1e-5, "factor": 0.5,
                              "reason": "it <matters>"}]},

@@ -60,7 +60,7 @@ class ScenePage : public testing::TestWithParam<std::string> {
   ~ScenePage() override { fs::remove_all(folder_); }
   Json page(const fs::path& scene, const std::vector<WantedError>& wanted = {}) const {
     const ProcessPool pool({.folder = folder_ / "points", .program = SLIPSTICK_PROGRAM});
-    return scene_page(scene, tiny(), wanted, folder_, pool);
+    return scene_page({scene, tiny(), wanted, {"contact.friction=10%"}}, folder_, pool);
   }
   static fs::path file(const std::string& name) { return fs::path(SLIPSTICK_SCENES) / (name + ".toml"); }
 
@@ -85,11 +85,20 @@ TEST_P(ScenePage, ShowsWhatItsSceneHas) {
       EXPECT_NE(row["basis"], "exact") << row;
     }
   }
+  EXPECT_GT(page["digits"]["digits"]["contact_radius"]["digits"], 8.0) << "sums of a few hundred cells";
   EXPECT_EQ(page.contains("cost"), !has_given_grid(scene)) << "one mesh has no error to buy";
   EXPECT_EQ(page.contains("operators"), !has_given_grid(scene));
   EXPECT_EQ(page["studies"].size(), has_given_grid(scene) ? 1U : 2U);
   for (const Json& row : page["hard"]["rows"]) EXPECT_NE(row["verdict"], "not_converged") << row;
   EXPECT_EQ(page["headline"]["counts"]["checks"]["Certificate"], "holds");
+}
+
+/// All tractions and motions of a sphere in torsion are proportional to the friction; the limit is.
+TEST_F(ScenePage, SaysWhatInputsMakeOfNumbers) {
+  const Json outputs = page(file("paper"))["uncertainty"]["outputs"];
+  for (const char* key : {"twist_angle", "moment_limit"}) {
+    EXPECT_NEAR(outputs[key]["relative"].get<double>(), 0.1, 1e-6) << key;
+  }
 }
 
 /// What the page calls the error is that of solve; and a bound on either side of it decides the verdict.

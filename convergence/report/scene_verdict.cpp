@@ -1,0 +1,119 @@
+#include "convergence/report/scene_verdict.hpp"
+
+#include <fmt/core.h>
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "convergence/orders/mesh_sequence.hpp"
+#include "convergence/results/quantity.hpp"
+#include "convergence/runs/failed_runs.hpp"
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+/// An order's interval may end this far below the expected order.
+constexpr double kWorseOrder = 0.25;
+
+}  // namespace
+
+Finding judge_certificate(const Json& answer) {
+  const bool history = answer.contains("history");
+  const double gap = number_at(answer, history ? "history.worst_gap" : "certificate.gap");
+  const double allowed = std::max(number_at(answer, "tolerance"), number_at(answer, "certificate.rounding"));
+  const bool paper = answer["method"] == "paper";
+  const bool certified = is_converged(answer) && (paper ? std::isfinite(gap) : gap <= allowed);
+  return {"Certificate",
+          fmt::format("{}, {} x {} cells: gap/energy {:.1e}, {:.1e} allowed",
+                      is_converged(answer) ? "converged" : answer["status"].get<std::string>(),
+                      answer["cells"][0].get<int>(), answer["cells"][1].get<int>(), gap, allowed),
+          certified};
+}
+
+Finding judge_order(const Json& studies, const std::string& number) {
+  for (const Json& series : studies.front()["series"]) {
+    for (const std::string& quantity : {number + "_error", std::string("twist_error"), number}) {
+      if (!series["order"].contains(quantity) || (quantity == "twist_error" && number != "twist_angle"))
+        continue;
+      const Json& order = series["order"][quantity];
+      const std::string verdict = order["verdict"];
+      if (!order["value"].is_number()) {
+        return {"Orders", fmt::format("none of {}: {}", quantity, order["why"].get<std::string>())};
+      }
+      const bool worse = order["expected"].is_number() && verdict == "preasymptotic" &&
+                         order["high"].get<double>() < order["expected"].get<double>() - kWorseOrder;
+      return {"Orders",
+              fmt::format("{} falls with order {:.2f}{}: {}", quantity, order["value"].get<double>(),
+                          order["expected"].is_number()
+                              ? fmt::format(", {:g} expected", order["expected"].get<double>())
+                              : "",
+                          verdict),
+              !worse};
+    }
+  }
+  return {"Orders", "no study of meshes says one"};
+}
+
+Finding judge_hard(const Json& hard) {
+  const Json& counts = hard["counts"];
+  std::string line =
+      fmt::format("{} of {} certified, {} refused with a reason, {} not converged, {} wrong",
+                  counts["certified"].get<int>(), hard["rows"].size(), counts["refused"].get<int>(),
+                  counts["not_converged"].get<int>(), counts["wrong"].get<int>());
+  for (const Json& row : hard["rows"]) {
+    if (row["verdict"] == "wrong" || row["verdict"] == "not_converged") {
+      line += fmt::format("; {} {}: {}", row["family"].get<std::string>(), row["case"].get<std::string>(),
+                          row["reason"].get<std::string>());
+    }
+  }
+  return {"Hard variants", line, counts["wrong"] == 0 && counts["not_converged"] == 0};
+}
+
+Finding state_mesh_error(const Json& numbers, const std::string& number) {
+  for (const Json& row : numbers) {
+    if (row["key"] != number || !row["error"].is_number()) continue;
+    return {"Mesh", fmt::format("it leaves {:.1e} of the {} open ({})", std::abs(row["error"].get<double>()),
+                                row["words"].get<std::string>(), row["basis"].get<std::string>())};
+  }
+  return {"Mesh", "what it leaves open is not known"};
+}
+
+Finding judge_wanted(const WantedError& wanted, const Json& numbers) {
+  for (const Json& row : numbers) {
+    if (row["key"] != wanted.quantity) continue;
+    const double error = row["error"].is_number() ? std::abs(row["error"].get<double>()) : kNaN;
+    return {
+        fmt::format("Error of the {}", row["words"].get<std::string>()),
+        std::isnan(error)
+            ? fmt::format("unknown ({}), {:g} wanted", row["basis"].get<std::string>(), wanted.error)
+            : fmt::format("{:.1e} ({}), {:g} wanted", error, row["basis"].get<std::string>(), wanted.error),
+        error <= wanted.error};
+  }
+  std::vector<std::string> keys;
+  for (const Json& row : numbers) keys.push_back(row["key"]);
+  throw solver::InputError("--want", wanted.quantity, "not a number of this result",
+                           fmt::format("{}", fmt::join(keys, ", ")));
+}
+
+Json headline_of(const std::vector<Finding>& findings, const Json& page) {
+  bool good = true;
+  Json lines = Json::array();
+  Json checks = Json::object();
+  for (const auto& [what, line, holds] : findings) {
+    good = good && holds;
+    lines.push_back({what, line});
+    checks[what] = holds ? "holds" : "fails";
+  }
+  Json numbers = Json::object();
+  for (const Json& row : page["numbers"]) numbers[row["key"].get<std::string>()] = row["value"];
+  return {{"verdict", good ? "good" : "bad"},
+          {"commit", page["provenance"]["commit"]},
+          {"lines", lines},
+          {"numbers", numbers},
+          {"counts", {{"checks", checks}, {"hard", page["hard"]["counts"]}}}};
+}
+
+}  // namespace slipstick::convergence

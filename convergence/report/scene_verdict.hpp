@@ -1,0 +1,36 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "convergence/report/scene_page.hpp"
+
+/// The verdict of a scene's page.
+namespace slipstick::convergence {
+
+/// A sentence of the verdict, and whether it holds.
+struct Finding {
+  std::string what;
+  std::string line;
+  bool holds = true;
+};
+
+/// Converged, and its gap within the tolerance.
+Finding judge_certificate(const Json& answer);
+
+/// Without a wanted error a statement alone, of the number by which answers are compared.
+Finding state_mesh_error(const Json& numbers, const std::string& number);
+
+/// Throws InputError for a quantity that no row of the numbers has.
+Finding judge_wanted(const WantedError& wanted, const Json& numbers);
+
+/// The order of that number in the study of meshes is no worse than expected.
+Finding judge_order(const Json& studies, const std::string& number);
+
+/// No variant of the scene is wrong or does not converge.
+Finding judge_hard(const Json& hard);
+
+/// What a page says first: {verdict, commit, lines, numbers, counts}.
+Json headline_of(const std::vector<Finding>& findings, const Json& page);
+
+}  // namespace slipstick::convergence
