@@ -73,9 +73,10 @@ def show_studies(report, folder):
                            lambda: study_figure.draw(study), folder)
         if "unavailable" not in entry:
             entry.update(message=escape(entry["message"]), details=escape(entry["details"]))
-            series, budget = tables.study_budget(study)
-            entry.update(orders={"table": tables.study_orders(study)}, expectations=tables.study_expectations(study),
-                         budget={"table": budget}, budget_series=series)
+            entry.update(orders={"table": tables.study_orders(study)}, expectations=tables.study_expectations(study))
+            if tables.has_budget(study):
+                series, budget = tables.study_budget(study)
+                entry.update(budget={"table": budget}, budget_series=series)
         entries.append(entry)
     return entries
 

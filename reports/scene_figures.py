@@ -48,7 +48,8 @@ def answer(page, folder):
     """Slip and stick with directions, tractions, pressure on the finest mesh."""
     result = value(page, "answer")
     solved = solve_figure.Solved(result, Cells(folder / "answer.h5", value(result, "cell_size")))
-    return FigureEntry(f"{escape(solve_figure.message(solved))}.", escape(solve_figure.details(solved)).replace("\\$", "$"),
+    details = solve_figure.details(solved).replace("\\$", "$").replace("\N{NO-BREAK SPACE}", " ")
+    return FigureEntry(f"{escape(solve_figure.message(solved))}.", escape(details),
                        "Three maps of the contact: slip and stick, tangential traction, pressure.",
                        solve_figure.draw(solved, titled=False), sources=["answer.h5"])
 
@@ -107,11 +108,12 @@ def cost(page, folder):
     axis.step([point["seconds"] for point in best], [point["error"] for point in best], where="post", color=style.BLACK,
               linewidth=1.0, alpha=0.8)
     floor = page["cost"]["reference_uncertainty"]
-    if floor:
-        axis.axhspan(axis.get_ylim()[0] if axis.get_ylim()[0] > 0 else 1e-16, floor, color=style.GREY, alpha=0.2)
     words = MOTIONS.get(text(page, "cost.number"), (text(page, "cost.number"), ""))[0]
     axis.set(xscale="log", yscale="log", xlabel="time of a whole solve, s (one thread)", ylabel=f"relative error of the {words}")
     style.whole_decades(axis)
+    if floor:
+        axis.set_ylim(min(axis.get_ylim()[0], floor / 3))
+        axis.axhspan(axis.get_ylim()[0], floor, color=style.GREY, alpha=0.2)
     style.legend_on_top(figure, axis.get_legend_handles_labels()[0], 2)
     last = best[-1]
     message = (f"An error of {sci(last['error'])} in the {words} takes {seconds(last['seconds'])} s: "

@@ -180,10 +180,22 @@ BUDGET = [
 ]
 
 
+def _in_budget(series):
+    """The main quantities whose errors are known: on one mesh those alone that have an exact answer."""
+    found = study_result.main_quantities(series)
+    if study_result.has_meshes(series):
+        return found
+    return [(words, path) for words, path in found if all(one.order(path).get("basis") == "exact" for one in series)]
+
+
+def has_budget(study):
+    return bool(_in_budget(study_result.read(study)))
+
+
 def study_budget(study):
     """One series: its first main quantity on every mesh, the others on the finest; and the series’ name."""
     series = study_result.read(study)
-    quantities = study_result.main_quantities(series)
+    quantities = _in_budget(series)
     one = study_result.budget_series(series, quantities[0][1])
     body = []
     for words, path in quantities:
