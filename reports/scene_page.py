@@ -14,6 +14,7 @@ import jinja2  # noqa: E402
 import render  # noqa: E402
 import results  # noqa: E402
 import scene_figures  # noqa: E402
+from method_figures import METHODS  # noqa: E402
 from tables import Table  # noqa: E402
 from whole_file import write_whole  # noqa: E402
 from wording import (ANGLES, ENERGIES, LENGTHS, MOMENTS, STRESSES, percent, plain, quantity, sci, seconds,  # noqa: E402
@@ -89,10 +90,14 @@ def write_page(output, environment):
     page = results.load(data / "report.json")
     folder = output / "figures"
     folder.mkdir(parents=True, exist_ok=True)
+    hard = render.map_hard_cases(page)
+    if "methods" in hard:  # its one column is the scene's own
+        method = page["answer"]["method"]
+        hard["methods"] = [(hard["methods"][0][0], METHODS.get(method, (method,))[0])]
     html = environment.get_template("scene.html.j2").render(
         page=page, headline=page["headline"], figures=draw_all(page, data, folder),
         numbers_table=tabulate(numbers_table, page), choices=tabulate(choices_table, page) if "cost" in page else None,
-        studies=render.show_studies(page, folder), digits=tabulate(digits_table, page), hard=render.map_hard_cases(page),
+        studies=render.show_studies(page, folder), digits=tabulate(digits_table, page), hard=hard,
         nulls=results.nulls({key: page[key] for key in ("answer",)}), data="data")
     write_whole(output / "index.html", html.encode())
     return page

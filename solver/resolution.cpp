@@ -127,9 +127,11 @@ Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, co
   const bool is_ratio = std::holds_alternative<MomentRatio>(step.torsion) && !brings_translation(step);
   const double limit_error = is_ratio ? 0.0 : (0.6 * errors.smooth * cell + 0.15 * edge) * cell;
   const RigidMotion& sliding = loads.limit.sliding;
-  double open = open_twist(grid, loads, limit_error);
+  const bool mesh_decides =
+      sticking.cells == 0.0 && std::isfinite(loads.limit.factor) && sliding.twist != 0.0;
+  const double open =
+      mesh_decides ? std::numeric_limits<double>::infinity() : open_twist(grid, loads, limit_error);
   if (!(open > 0.0)) return result;
-  if (sticking.cells == 0.0) open = std::numeric_limits<double>::infinity();
   result.open.twist = open;
   result.open.displacement = open * std::hypot(sliding.delta1, sliding.delta2) / std::abs(sliding.twist);
   return result;

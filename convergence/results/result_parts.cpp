@@ -66,7 +66,8 @@ std::string poorly_resolved(const solver::Resolution& resolution) {
   const std::string uncertain = std::isfinite(resolution.uncertainty)
                                     ? "uncertain by " + percent_text(resolution.uncertainty)
                                     : "not determined";
-  if (!(resolution.step <= solver::kPoorlyResolved) || resolution.open.*resolution.number > 0.5 * mesh) {
+  const double open = resolution.open.*resolution.number;
+  if (!(resolution.step <= solver::kPoorlyResolved) || (open > 0.0 && open >= 0.5 * mesh)) {
     return fmt::format(
         "the mesh is too coarse: the stick area is {:.2g} cells wide, so the contact's motion is {}; take "
         "more cells, or a load further from gross slip",

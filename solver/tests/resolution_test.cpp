@@ -14,10 +14,11 @@ namespace {
 
 using Eigen::ArrayXd;
 
-/// A step of a disc of radius a (in cells) whose pressure is constant, under a moment.
-LoadStep disc_under_moment(const Grid& grid, double a, double moment_ratio) {
+/// A step of a disc of radius a (in cells), or of a ring, whose pressure is constant, under a moment.
+LoadStep disc_under_moment(const Grid& grid, double a, double moment_ratio, double inner = 0.0) {
   LoadStep loads{};
-  loads.problem.friction_bound = (cell_x1(grid).square() + cell_x2(grid).square() < a * a).cast<double>();
+  const ArrayXd r = (cell_x1(grid).square() + cell_x2(grid).square()).sqrt();
+  loads.problem.friction_bound = (r < a && r >= inner).cast<double>();
   loads.problem.moment = moment_ratio * moment_limit(grid, loads.problem.friction_bound);
   loads.limit = limit_of(loads.problem, grid);
   return loads;
@@ -49,8 +50,10 @@ TEST(Resolution, OfAStripHasBothAxesInTheMean) {
 
 TEST(Resolution, IsUnknownWhereNoCellSticksThoughOneShould) {
   const Grid grid{20, 20, 1.0, 1.0};
-  const LoadStep loads = disc_under_moment(grid, 9.0, 1.0 - 1e-9);
-  EXPECT_TRUE(std::isinf(resolution({}, {}, grid, loads, ArrayXd::Zero(400)).open.twist));
+  for (const double inner : {0.0, 5.0}) {  // the body turns about a point of the contact, or about none
+    const LoadStep loads = disc_under_moment(grid, 9.0, 1.0 - 1e-9, inner);
+    EXPECT_TRUE(std::isinf(resolution({}, {}, grid, loads, ArrayXd::Zero(400)).open.twist)) << inner;
+  }
 }
 
 TEST(Resolution, NearGrossSlipTurnsFromGoodToPoor) {
