@@ -32,8 +32,8 @@ _slipstick() {
       "digits --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "digits --samples" | "digits --seed" | "digits --output" | "digits --jobs" | "digits --memory-limit" | "digits --json") return ;;
       "digits "*) [[ $current != -* ]] || words="--help --set --samples --seed --output --jobs --memory-limit --json --quiet" ;;
-      "report --output" | "report --benchmarks" | "report --want" | "report --junit" | "report --summary" | "report --memory-limit" | "report --json") return ;;
-      "report "*) [[ $current != -* ]] || words="--help --output --quick --full --benchmarks --want --junit --summary --memory-limit --json --quiet" ;;
+      "report --output" | "report --benchmarks" | "report --want" | "report --uncertain" | "report --junit" | "report --summary" | "report --memory-limit" | "report --json") return ;;
+      "report "*) [[ $current != -* ]] || words="--help --output --quick --full --benchmarks --want --uncertain --junit --summary --memory-limit --json --quiet" ;;
       "bench --program" | "bench --output" | "bench --filter" | "bench --accuracy-data" | "bench --against" | "bench --pair" | "bench --rounds" | "bench --effect" | "bench --json") return ;;
       "bench "*) [[ $current != -* ]] || words="--help --program --output --filter --quick --accuracy-data --against --pair --rounds --effect --json --quiet" ;;
       "compare --effect" | "compare --level" | "compare --rerun" | "compare --summary" | "compare --junit" | "compare --json") return ;;
