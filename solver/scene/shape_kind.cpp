@@ -18,13 +18,16 @@ using Axes = std::array<double, 2>;
 
 Axes circle(double radius) { return {radius, radius}; }
 
-ArrayXd distance(const ArrayXd& along, const ArrayXd& across) {
-  return (along.square() + across.square()).sqrt();
+using Gap = Eigen::Ref<ArrayXd>;
+
+/// Writes the points' distances from the axis where their gap will stand.
+void write_distance(const ArrayXd& along, const ArrayXd& across, Gap r) {
+  r = (along.square() + across.square()).sqrt();
 }
 
-ArrayXd paraboloid_gap(const Surface& s, const ArrayXd& along, const ArrayXd& across) {
+void paraboloid_gap(const Surface& s, const ArrayXd& along, const ArrayXd& across, Gap gap) {
   const auto [radius_1, radius_2] = paraboloid_radii(s);
-  return along.square() / (2.0 * radius_1) + across.square() / (2.0 * radius_2);
+  gap = along.square() / (2.0 * radius_1) + across.square() / (2.0 * radius_2);
 }
 Axes paraboloid_contact(const Surface& s, double load, double effective_modulus) {
   const auto [radius_1, radius_2] = paraboloid_radii(s);
@@ -36,8 +39,9 @@ Axes paraboloid_below(const Surface& s, double depth) {
   return {std::sqrt(2.0 * radius_1 * depth), std::sqrt(2.0 * radius_2 * depth)};
 }
 
-ArrayXd cone_gap(const Surface& s, const ArrayXd& along, const ArrayXd& across) {
-  return s.slope * distance(along, across);
+void cone_gap(const Surface& s, const ArrayXd& along, const ArrayXd& across, Gap gap) {
+  write_distance(along, across, gap);
+  gap *= s.slope;
 }
 /// Sneddon 1965: W = (pi/2) E* a^2 slope.
 Axes cone_contact(const Surface& s, double load, double effective_modulus) {
@@ -45,18 +49,20 @@ Axes cone_contact(const Surface& s, double load, double effective_modulus) {
 }
 Axes cone_below(const Surface& s, double depth) { return circle(depth / s.slope); }
 
-ArrayXd flat_punch_gap(const Surface& s, const ArrayXd& along, const ArrayXd& across) {
-  const ArrayXd r = distance(along, across);
-  return (r >= s.inner_radius && r <= s.radius)
-      .select(ArrayXd::Zero(r.size()), ArrayXd::Constant(r.size(), std::numeric_limits<double>::infinity()));
+void flat_punch_gap(const Surface& s, const ArrayXd& along, const ArrayXd& across, Gap gap) {
+  write_distance(along, across, gap);
+  gap = (gap >= s.inner_radius && gap <= s.radius)
+            .select(ArrayXd::Zero(gap.size()),
+                    ArrayXd::Constant(gap.size(), std::numeric_limits<double>::infinity()));
 }
 Axes flat_punch_contact(const Surface& s, double /*load*/, double /*effective_modulus*/) {
   return circle(s.radius);
 }
 Axes flat_punch_below(const Surface& s, double /*depth*/) { return circle(s.radius); }
 
-ArrayXd rounded_punch_gap(const Surface& s, const ArrayXd& along, const ArrayXd& across) {
-  return (distance(along, across) - s.flat_radius).max(0.0).square() / (2.0 * s.corner_radius);
+void rounded_punch_gap(const Surface& s, const ArrayXd& along, const ArrayXd& across, Gap gap) {
+  write_distance(along, across, gap);
+  gap = (gap - s.flat_radius).max(0.0).square() / (2.0 * s.corner_radius);
 }
 /// Sneddon 1965: W = 2 E* integral_0^a r^2 f'(r)/sqrt(a^2 - r^2) dr for a gap f, here (r - b)^2/(2 R) beyond
 /// the flat radius b. The contact reaches further than the flat face, but not by more than the radius of a
@@ -76,8 +82,9 @@ Axes rounded_punch_below(const Surface& s, double depth) {
   return circle(s.flat_radius + std::sqrt(2.0 * s.corner_radius * depth));
 }
 
-ArrayXd power_gap(const Surface& s, const ArrayXd& along, const ArrayXd& across) {
-  return s.coefficient * distance(along, across).pow(s.exponent);
+void power_gap(const Surface& s, const ArrayXd& along, const ArrayXd& across, Gap gap) {
+  write_distance(along, across, gap);
+  gap = s.coefficient * gap.pow(s.exponent);
 }
 /// Sneddon's integral of the gap coefficient r^exponent.
 Axes power_contact(const Surface& s, double load, double effective_modulus) {

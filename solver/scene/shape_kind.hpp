@@ -16,8 +16,10 @@ namespace slipstick::solver {
 struct ShapeKind {
   std::string word;
   Shape shape;
-  /// The gap at points along and across the shape's first axis; infinite where the bodies cannot touch.
-  Eigen::ArrayXd (*gap)(const Surface& surface, const Eigen::ArrayXd& along, const Eigen::ArrayXd& across);
+  /// Writes the gap at points along and across the shape's first axis; infinite where the bodies cannot
+  /// touch.
+  void (*gap)(const Surface& surface, const Eigen::ArrayXd& along, const Eigen::ArrayXd& across,
+              Eigen::Ref<Eigen::ArrayXd> gap);
   /// Semi-axes of the contact's ellipse under a normal load, on a pair of effective modulus E*.
   std::array<double, 2> (*contact)(const Surface& surface, double load, double effective_modulus);
   /// Semi-axes of the ellipse within which the gap is below a depth.

@@ -55,9 +55,13 @@ ArrayXd gap_field(const Surface& surface, const Grid& grid) {
   const double s = std::sin(surface.angle);
   const ArrayXd from_2 = ArrayXd::NullaryExpr(grid.n2, [&](Index j) { return grid.x2(j); }) - surface.at[1];
   ArrayXd gap(grid.cells());
+  ArrayXd along(grid.n2);
+  ArrayXd across(grid.n2);
   for (Index i = 0; i < grid.n1; ++i) {
     const double from_1 = grid.x1(i) - surface.at[0];
-    gap.segment(i * grid.n2, grid.n2) = kind.gap(surface, c * from_1 + s * from_2, c * from_2 - s * from_1);
+    along = c * from_1 + s * from_2;
+    across = c * from_2 - s * from_1;
+    kind.gap(surface, along, across, gap.segment(i * grid.n2, grid.n2));
   }
   return gap;
 }
