@@ -16,7 +16,6 @@
 #include <optional>
 #include <utility>
 
-
 namespace slipstick::convergence {
 namespace {
 
