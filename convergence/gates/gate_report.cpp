@@ -179,6 +179,7 @@ std::string gates_text(const std::vector<Judgement>& judgements) {
 
 std::string gates_junit(const std::vector<Judgement>& judgements) {
   std::vector<JunitCase> cases;
+  cases.reserve(judgements.size());
   for (const Judgement& judgement : judgements) cases.push_back(junit_case(judgement));
   return junit_text("slipstick gates", cases);
 }

@@ -52,14 +52,15 @@ Json error_against_time(const fs::path& scene_file, const solver::Scene& scene,
   Json json{{"number", reference.number}, {"points", Json::array()}};
   set_number(json, "reference_uncertainty", reference.uncertainty, "no reference is known");
   RunBatch batch;
-  for (const auto& [method, kind] : solver::kMethods) {
+  for (const auto& each : solver::kMethods) {
+    const std::string& method = each.first;
     for (const Index cells : meshes) {
-      if (kind != scene.method && cells > size.method_cells) continue;
+      if (each.second != scene.method && cells > size.method_cells) continue;
       for (const double tolerance : kCostTolerances) {
         RunSpec run{.scene = scene_file, .overrides = on_mesh(scene, cells)};
         run.overrides.push_back(fmt::format("solver.method=\"{}\"", method));
         run.overrides.push_back(fmt::format("solver.tolerance={}", tolerance));
-        batch.add_or_refuse(run, [&json, &reference, method, cells, tolerance](const Json& result) {
+        batch.add_or_refuse(run, [&json, &reference, &method, cells, tolerance](const Json& result) {
           Json& point = json["points"].emplace_back(Json{
               {"method", method}, {"cells", cells}, {"tolerance", tolerance}, {"status", result["status"]}});
           const std::string why = is_failed(result) ? result["message"].get<std::string>() : "not a number";

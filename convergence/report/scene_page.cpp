@@ -153,6 +153,7 @@ MeshError mesh_error(const Scene& scene, const std::vector<Json>& results, const
     return {value, stated, stated, "what the mesh leaves open, as the result states"};
   }
   std::vector<MeshSample> samples;
+  samples.reserve(results.size());
   for (const Json& result : results)
     samples.push_back({result["cell_size"][0].get<double>(), size_at(result, key)});
   if (is_rough(scene)) {

@@ -8,6 +8,7 @@
 
 #include "solver/scene/bracketed_root.hpp"
 #include "solver/scene/hertz_pressure.hpp"
+#include "solver/scene/validate.hpp"
 
 namespace slipstick::solver {
 namespace {
