@@ -66,6 +66,23 @@ def choices_table(page):
     return Table(["error wanted", "cells", "tolerance", "seconds, predicted", "remark"], body)
 
 
+def program_table(page):
+    """What the page's program says of its answer, beside what follows from its field."""
+    answer = page["answer"]
+    program, own = answer["program"], answer["program"]["own"]
+    body = [["version", program["version"] or "–", ""],
+            ["iterations", plain(own["iterations"]) if "iterations" in own else "–", ""],
+            ["seconds", seconds(own["seconds"]) if "seconds" in own else "–", f"{seconds(program['wall_seconds'])} with its start"],
+            ["twist", quantity(own["twist"], ANGLES, 6) if "twist" in own else "–", quantity(answer["twist_angle"], ANGLES, 6)],
+            ["gap over energy", "–", "–" if answer["certificate"]["gap"] is None else sci(answer["certificate"]["gap"])]]
+    if own.get("message"):
+        body.append(["message", own["message"], ""])
+    body += [[judged["quantity"], "", ("✓ " if judged["holds"] else "✗ ") + ("–" if judged["value"] is None else sci(judged["value"]))
+              + ("" if judged["allowed"] is None else f" of {sci(judged['allowed'])} allowed")]
+             for judged in (page.get("check") or {}).get("judged", [])]
+    return Table(["", f"what {program['name']} says", "what follows from its field"], body)
+
+
 def tabulate(make, page):
     try:
         return {"table": make(page)}
@@ -79,8 +96,9 @@ def draw_all(page, data, folder):
     if len(page["answer"].get("steps") or []) > 1:
         wanted.append(("loop", "The history", scene_figures.loop))
     if "cost" in page:
-        wanted += [("cost", "Error against time", scene_figures.cost),
-                   ("operators", "Direct summation against convolution", scene_figures.operators)]
+        wanted.append(("cost", "Error against time", scene_figures.cost))
+    if "operators" in page:
+        wanted.append(("operators", "Direct summation against convolution", scene_figures.operators))
     return {name: render.draw_entry(name, title, lambda: make(page, data), folder) for name, title, make in wanted}
 
 
@@ -90,14 +108,15 @@ def write_page(output, environment):
     page = results.load(data / "report.json")
     folder = output / "figures"
     folder.mkdir(parents=True, exist_ok=True)
-    hard = render.map_hard_cases(page)
-    if "methods" in hard:  # its one column is the scene's own
+    hard = render.map_hard_cases(page) if "hard" in page else None
+    if "methods" in (hard or {}) and "program" not in page["answer"]:  # its one column is the scene's own
         method = page["answer"]["method"]
         hard["methods"] = [(hard["methods"][0][0], METHODS.get(method, (method,))[0])]
     html = environment.get_template("scene.html.j2").render(
         page=page, headline=page["headline"], figures=draw_all(page, data, folder),
         numbers_table=tabulate(numbers_table, page), choices=tabulate(choices_table, page) if "cost" in page else None,
-        studies=render.show_studies(page, folder), digits=tabulate(digits_table, page), hard=hard,
+        studies=render.show_studies(page, folder), digits=tabulate(digits_table, page) if "digits" in page else None, hard=hard,
+        program=tabulate(program_table, page) if "program" in page["answer"] else None,
         nulls=results.nulls({key: page[key] for key in ("answer",)}), data="data")
     write_whole(output / "index.html", html.encode())
     return page

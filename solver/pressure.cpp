@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <utility>
+#include <vector>
 
 #include "solver/input/field_file.hpp"
 #include "solver/input/input_error.hpp"
@@ -12,8 +13,6 @@
 namespace slipstick::solver {
 namespace {
 
-/// A cell's centre in a file may be off by this part of the cell's size.
-constexpr double kPositionTolerance = 1e-3;
 /// A pressure file's load may differ by this part from load.normal; more is taken for a mistake in units.
 constexpr double kLoadTolerance = 1e-2;
 /// Complementarity gap of the pressure, unless the scene asks for a better certificate of the tractions: then
@@ -24,34 +23,15 @@ Eigen::ArrayXd pressure_from_file(const Scene& scene, const Model& model) {
   const std::string file = scene.pressure_file.string();
   const auto columns = read_columns(scene.pressure_file, {"x1", "x2", "pressure"});
   const Grid& grid = model.grid;
-  constexpr double kNotGiven = -1.0;
-  Eigen::ArrayXd pressure = Eigen::ArrayXd::Constant(grid.cells(), kNotGiven);
-  for (Index row = 0; row < columns[0].values.size(); ++row) {
-    const double i =
-        columns[0].values[row] / model.length_unit / grid.h1 + 0.5 * static_cast<double>(grid.n1 - 1);
-    const double j =
-        columns[1].values[row] / model.length_unit / grid.h2 + 0.5 * static_cast<double>(grid.n2 - 1);
-    const bool inside = std::round(i) >= 0.0 && std::round(i) < static_cast<double>(grid.n1) &&
-                        std::round(j) >= 0.0 && std::round(j) < static_cast<double>(grid.n2);
-    if (!inside || std::abs(i - std::round(i)) > kPositionTolerance ||
-        std::abs(j - std::round(j)) > kPositionTolerance) {
-      throw InputError(
-          file, fmt::format("row {}: ({}, {}) is not a cell's centre; allowed: those of grid.cells over "
-                            "grid.extent, centred at the origin",
-                            row + 1, columns[0].values[row], columns[1].values[row]));
-    }
-    const double value = columns[2].values[row];
+  const std::vector<Index> cells = cells_of_rows(scene.pressure_file, model.grid_in_m(), columns);
+  Eigen::ArrayXd pressure = Eigen::ArrayXd::Zero(grid.cells());
+  for (std::size_t row = 0; row < cells.size(); ++row) {
+    const double value = columns[2].values[static_cast<Index>(row)];
     if (!(value >= 0.0)) {
       throw InputError(file, fmt::format("row {}: pressure = {}: allowed: zero or positive", row + 1, value));
     }
-    double& cell = pressure[std::lround(i) * grid.n2 + std::lround(j)];
-    if (cell != kNotGiven) {
-      throw InputError(file, fmt::format("row {}: ({}, {}) is given a second time; allowed: one row a cell",
-                                         row + 1, columns[0].values[row], columns[1].values[row]));
-    }
-    cell = to_dimensionless(value, model.stress_unit);
+    pressure[cells[row]] = to_dimensionless(value, model.stress_unit);
   }
-  pressure = pressure.max(0.0);
   if (!(pressure.sum() > 0.0)) throw InputError(file, "pressure is zero everywhere");
   const double load = pressure.sum() * grid.cell_area();
   if (model.normal_load && std::abs(load / *model.normal_load - 1.0) > kLoadTolerance) {

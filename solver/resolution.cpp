@@ -137,4 +137,29 @@ Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, co
   return result;
 }
 
+void state_uncertainty(Solution& solution, const Scene& scene, std::size_t step) {
+  Resolution& resolution = solution.resolution;
+  const auto is_zero = [](const TorsionLoad& torsion) {
+    return std::visit([](const auto& load) { return load.value == 0.0; }, torsion);
+  };
+  const auto last = scene.steps.begin() + static_cast<std::ptrdiff_t>(std::min(step + 1, scene.steps.size()));
+  const bool turned =
+      !std::all_of(scene.steps.begin(), last, [&](const Step& at) { return is_zero(at.torsion); });
+  const bool moved = std::any_of(scene.steps.begin(), last, brings_translation);
+  const auto size = [](const std::array<double, 2>& pair) { return std::hypot(pair[0], pair[1]); };
+  double value = 0.0;
+  if (turned || !moved) {
+    const bool imposed = std::holds_alternative<Twist>(solution.loads.torsion);
+    resolution.number = imposed ? &Quantities::moment : &Quantities::twist;
+    value = std::abs(imposed ? solution.moment : solution.twist_angle);
+  } else {
+    const bool imposed = solution.loads.displacement.has_value();
+    resolution.number = imposed ? &Quantities::force : &Quantities::displacement;
+    value = size(imposed ? solution.force : solution.displacement);
+  }
+  if (!turned && !moved) resolution.mesh = resolution.path = {};  // what moves is rounding
+  resolution.absolute = resolution.mesh.*resolution.number + resolution.path.*resolution.number;
+  resolution.uncertainty = resolution.absolute > 0.0 ? resolution.absolute / value : resolution.step;
+}
+
 }  // namespace slipstick::solver

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 
 #include "solver/scene/scene.hpp"
 #include "solver/solution.hpp"
@@ -29,5 +30,8 @@ namespace slipstick::solver {
 /// stick: one value a cell of the whole grid. In the model's units (stresses over G, lengths over a cell).
 Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, const LoadStep& loads,
                       const Eigen::ArrayXd& stick);
+
+/// Fills in which number the scene's steps up to the `step`-th leave open, and how far it may be off.
+void state_uncertainty(Solution& solution, const Scene& scene, std::size_t step);
 
 }  // namespace slipstick::solver

@@ -16,6 +16,7 @@
 #include "solver/load_path.hpp"
 #include "solver/model_solution.hpp"
 #include "solver/pressure.hpp"
+#include "solver/resolution.hpp"
 #include "solver/tractions.hpp"
 #include "solver/within_double.hpp"
 
@@ -179,32 +180,6 @@ void take_up(ModelSolution& solution, ContactState& state, const HistoryState& r
   solution.normal.pressure = at.pressure;
 }
 
-/// Fills in which number the steps up to this one leave open, and how far it may be off.
-void state_uncertainty(Solution& solution, const Scene& scene, std::size_t step) {
-  Resolution& resolution = solution.resolution;
-  const auto is_zero = [](const TorsionLoad& torsion) {
-    return std::visit([](const auto& load) { return load.value == 0.0; }, torsion);
-  };
-  const auto last = scene.steps.begin() + static_cast<std::ptrdiff_t>(std::min(step + 1, scene.steps.size()));
-  const bool turned =
-      !std::all_of(scene.steps.begin(), last, [&](const Step& at) { return is_zero(at.torsion); });
-  const bool moved = std::any_of(scene.steps.begin(), last, brings_translation);
-  const auto size = [](const std::array<double, 2>& pair) { return std::hypot(pair[0], pair[1]); };
-  double value = 0.0;
-  if (turned || !moved) {
-    const bool imposed = std::holds_alternative<Twist>(solution.loads.torsion);
-    resolution.number = imposed ? &Quantities::moment : &Quantities::twist;
-    value = std::abs(imposed ? solution.moment : solution.twist_angle);
-  } else {
-    const bool imposed = solution.loads.displacement.has_value();
-    resolution.number = imposed ? &Quantities::force : &Quantities::displacement;
-    value = size(imposed ? solution.force : solution.displacement);
-  }
-  if (!turned && !moved) resolution.mesh = resolution.path = {};  // what moves is rounding
-  resolution.absolute = resolution.mesh.*resolution.number + resolution.path.*resolution.number;
-  resolution.uncertainty = resolution.absolute > 0.0 ? resolution.absolute / value : resolution.step;
-}
-
 /// Hands on where the history stands.
 void hand_on(const SolveOptions& options, std::size_t finished, ContactState& state,
              const NormalSolution& normal) {
@@ -307,6 +282,10 @@ void require_can_solve(const Scene& scene) {
   validate(scene);
   if (scene.model == ModelChoice::exact) {
     throw InputError(scene.source.string(), "solver.model", "\"exact\"", "auto, full for a solve on a grid");
+  }
+  if (!scene.program.empty()) {
+    throw InputError(scene.source.string(), "solver.program", scene.program.string(),
+                     "left out: another program answers where the slipstick program runs it");
   }
 }
 

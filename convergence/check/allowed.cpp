@@ -1,4 +1,5 @@
 #include "convergence/check/allowed.hpp"
+#include "solver/given_fields.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -143,9 +144,9 @@ Allowed find_allowed(const Examination& e, std::optional<double> tolerance) {
 }
 
 bool keeps_friction_bound(const GivenContact& c) {
-  const ArrayXd beyond = solver::norms(c.traction) - (1.0 + kOnCircle) * c.friction_bound -
+  const ArrayXd beyond = solver::norms(c.traction) - (1.0 + solver::kOnCircle) * c.friction_bound -
                          c.traction_rounding - c.bound_rounding;
-  return beyond.maxCoeff() <= kNextToNothing * kOnCircle * c.friction_bound.maxCoeff();
+  return beyond.maxCoeff() <= kNextToNothing * solver::kOnCircle * c.friction_bound.maxCoeff();
 }
 
 double friction_excess(const Examination& e) {

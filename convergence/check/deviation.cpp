@@ -4,9 +4,9 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "convergence/check/fitted_motion.hpp"
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/coulomb_method.hpp"
+#include "solver/contact/fitted_motion.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -71,7 +71,8 @@ State find_state(const GivenContact& c, const solver::Step& load, std::optional<
   const ArrayXd bound =
       c.friction_bound.max(solver::norms(c.traction) * (c.friction_bound > 0.0).cast<double>());
   const RigidMotions motions = rigid_motions(c, load, twist);
-  FittedMotion fitted = fit_motion(c.displacement - motions.imposed, c.traction, bound, motions.free);
+  solver::FittedMotion fitted =
+      solver::fit_motion(c.displacement - motions.imposed, c.traction, bound, motions.free);
   const auto& found = fitted.coefficients;
   State state{.twist = twist ? *twist : found[found.size() - 1],
               .displacement = {},

@@ -7,9 +7,10 @@
 #include <utility>
 
 #include "convergence/check/deviation.hpp"
-#include "convergence/check/fitted_motion.hpp"
 #include "solver/contact/certificate.hpp"
+#include "solver/contact/fitted_motion.hpp"
 #include "solver/elasticity/law/half_spaces.hpp"
+#include "solver/given_fields.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -124,8 +125,9 @@ class Trial {
         elastic_ + pair_.poisson_compliance *
                        ((assumption.poisson - 1.0) * u_.poisson + (assumption.cross - 1.0) * u_.cross +
                         assumption.mirrored * u_.mirrored + assumption.exchanged * u_.exchanged);
-    const FittedMotion fitted = fit_motion(elastic + assumption.by_pressure * by_pressure_ - imposed_,
-                                           traction_, at_least(assumption.friction * bound_), motions_);
+    const solver::FittedMotion fitted =
+        solver::fit_motion(elastic + assumption.by_pressure * by_pressure_ - imposed_, traction_,
+                           at_least(assumption.friction * bound_), motions_);
     const double energy = 0.5 * (traction_ * elastic).sum();
     return {assumption.name, fitted.gap.sum() / energy, (fitted.gap * stick_).sum() / energy,
             fitted.coefficients[fitted.coefficients.size() - 1]};
@@ -138,7 +140,7 @@ class Trial {
     motions.push_back(-(u_.poisson + u_.cross));
     const ArrayXd without =
         elastic_ - pair_.poisson_compliance * (u_.poisson + u_.cross) + by_pressure_ - imposed_;
-    const FittedMotion fitted = fit_motion(without, traction_, at_least(bound_), motions);
+    const solver::FittedMotion fitted = solver::fit_motion(without, traction_, at_least(bound_), motions);
     const double compliance = fitted.coefficients[fitted.coefficients.size() - 1];
     const double ratio = compliance / pair_.shear_compliance;
     if (!(ratio > 0.0 && ratio <= 0.5 && pair_.poisson_compliance > 0.0)) return std::nullopt;
@@ -192,7 +194,7 @@ std::vector<Hypothesis> try_kernels(const Trial& trial) {
 ArrayXd stick_cells(const GivenContact& contact) {
   const ArrayXd size = solver::norms(contact.traction);
   const ArrayXd margin =
-      kOnCircle * contact.friction_bound + contact.traction_rounding + contact.bound_rounding;
+      solver::kOnCircle * contact.friction_bound + contact.traction_rounding + contact.bound_rounding;
   return ((contact.friction_bound > 0.0) && (size + margin < contact.friction_bound)).cast<double>();
 }
 

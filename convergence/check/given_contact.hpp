@@ -15,9 +15,6 @@ namespace slipstick::convergence {
 /// from empty ones.
 inline constexpr double kNextToNothing = 1e-3;
 
-/// Part of mu p by which |q| of a slipping cell may differ from mu p where a solver stops at a tolerance.
-inline constexpr double kOnCircle = 1e-4;
-
 /// A contact with given pressure and tractions on a grid of its own, and the displacements that this
 /// project's operator computes from them.
 struct GivenContact : solver::Dimensionless {

@@ -57,7 +57,11 @@ int run_gates(const CLI::App& command, const GateRequest& request, std::ostream&
   std::vector<Judgement> judgements = files.unreadable;
   const Interrupts interrupts;
   const ProcessPool pool = request.runs.pool();
-  const std::vector<Gate> gates = select_gates(files.gates, request.only);
+  std::vector<Gate> gates = select_gates(files.gates, request.only);
+  for (Gate& gate : gates) {
+    const std::vector<std::string>& set = request.runs.overrides;
+    if (gate.kind != GateSource::result) gate.overrides.insert(gate.overrides.end(), set.begin(), set.end());
+  }
   if (shard) {
     result = run_shard(gate_runs(gates, pool), *shard, pool);
     text << shard_text(result);
@@ -92,6 +96,7 @@ RunCommand add_gate_command(CLI::App& app) {
   command->add_option("--results", request->results,
                       "folder of the result files that gates name, in place of the gate file's own");
   request->runs.add_to(*command);
+  request->runs.add_programs_to(*command);
   request->runs.add_shards_to(*command, {"--junit", "--summary", "--github"});
   command->footer(
       "Example:\n  slipstick gate convergence/gates/quick.toml --junit gates.xml --summary summary.md\n"

@@ -18,7 +18,6 @@ namespace {
 
 struct HardRequest {
   std::vector<std::string> files;
-  std::vector<std::string> overrides;
   std::string fields;
   std::vector<std::string> methods;
   bool once = false;
@@ -45,19 +44,26 @@ int run_hard(const CLI::App& command, const HardRequest& request, std::ostream& 
   std::vector<HardCase> cases;
   for (const std::string& file : request.files) {
     for (HardCase& made : read_hard_cases(file)) {
-      made.run.overrides.insert(made.run.overrides.end(), request.overrides.begin(), request.overrides.end());
+      made.run.overrides.insert(made.run.overrides.end(), request.runs.overrides.begin(),
+                                request.runs.overrides.end());
       cases.push_back(std::move(made));
     }
   }
   require_inputs_elsewhere(command, cases, request.fields);
   if (!request.fields.empty()) solver::make_folder(request.fields);
-  const ProcessPool pool = request.runs.pool();
+  std::vector<BesideMethod> methods;
+  RunOptions runs = request.runs;
+  for (const std::string& word : request.methods) {
+    methods.push_back(read_beside_method(word));
+    runs.overrides.push_back(methods.back().override);  // named on the command line, it may run
+  }
+  const ProcessPool pool = runs.pool();
   {
     const Interrupts interrupts;
     result = run_hard_cases(cases,
                             {.variants = !request.once,
                              .finer_meshes = !request.once,
-                             .methods = request.methods,
+                             .methods = methods,
                              .fields = request.fields},
                             pool);
   }
@@ -72,14 +78,16 @@ RunCommand add_hard_command(CLI::App& app) {
   CLI::App* const command = app.add_subcommand(
       "hard", "Solve hard scenes by the hundred, each in several views; judge each answer");
   command->add_option("files", request->files, "files of families of scenes (TOML)")->required();
-  add_set_option(*command, request->overrides, "override a key of all scenes");
+  add_set_option(*command, request->runs.overrides, "override a key of all scenes");
   command->add_option("--fields", request->fields, "folder that gets the fields of each case (CSV)");
   command->add_flag("--once", request->once,
                     "solve each scene as it stands alone, not mirrored, turned, on finer meshes, ...");
-  command->add_option("--beside", request->methods, "methods that solve each scene too, to be compared")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"coulomb", "projected_gradient", "paper"}));
+  command
+      ->add_option("--beside", request->methods,
+                   "methods, or files of programs (TOML), that solve each scene too, to be compared")
+      ->delimiter(',');
   request->runs.add_to(*command);
+  request->runs.add_programs_to(*command);
   command->footer(
       "Example:\n  slipstick hard convergence/hard/*.toml --json hard.json\nFinished solves are kept: "
       "repeating an interrupted command goes on from there.\nExit code 0: every answer is certified or "

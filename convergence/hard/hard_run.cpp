@@ -1,6 +1,7 @@
 #include "convergence/hard/hard_run.hpp"
 
 #include <fmt/core.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
@@ -11,10 +12,12 @@
 #include <utility>
 
 #include "convergence/hard/hard_judgement.hpp"
+#include "convergence/programs/solver_program.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/run_batch.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/scene/scene_keys.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -140,14 +143,14 @@ void judge_by_finer_meshes(std::vector<Trial>& trials, const ProcessPool& pool) 
   }
 }
 
-void compare_methods(std::vector<Trial>& trials, const std::vector<std::string>& methods,
+void compare_methods(std::vector<Trial>& trials, const std::vector<BesideMethod>& methods,
                      const ProcessPool& pool) {
-  for (const std::string& method : methods) {
+  for (const auto& [method, override] : methods) {
     RunBatch batch;
     for (Trial& trial : trials) {
       RunSpec spec = trial.hard->run;
-      spec.overrides.push_back(fmt::format("solver.method=\"{}\"", method));
-      batch.add_or_refuse(spec, [&trial, &method](const Json& result) {
+      spec.overrides.push_back(override);
+      batch.add_or_refuse(spec, [&trial, method = method](const Json& result) {
         const ComparedAnswer compared = compare_answer(trial.result, result);
         trial.methods[method] = verdict_json(to_string(compared.verdict), compared.reason, compared.numbers);
       });
@@ -201,6 +204,18 @@ Json method_counts(const std::vector<Trial>& trials, const std::string& method) 
 
 }  // namespace
 
+BesideMethod read_beside_method(const std::string& word) {
+  if (word.ends_with(".toml")) return {read_solver_program(word).name, program_override(word)};
+  std::vector<std::string> allowed;
+  for (const auto& [name, method] : solver::kMethods) {
+    if (name == word) return {name, fmt::format("solver.method=\"{}\"", name)};
+    allowed.push_back(name);
+  }
+  throw solver::InputError("--beside " + word, fmt::format("is no method; allowed: {}, or a program's file "
+                                                           "(.toml)",
+                                                           fmt::join(allowed, ", ")));
+}
+
 Json run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& options, const ProcessPool& pool) {
   std::vector<Trial> trials(cases.size());
   RunBatch first;
@@ -224,7 +239,9 @@ Json run_hard_cases(const std::vector<HardCase>& cases, const HardOptions& optio
   compare_methods(trials, options.methods, pool);
 
   Json json{{"counts", counts(trials, "")}, {"families", Json::object()}, {"rows", Json::array()}};
-  for (const std::string& method : options.methods) json["methods"][method] = method_counts(trials, method);
+  for (const BesideMethod& method : options.methods) {
+    json["methods"][method.name] = method_counts(trials, method.name);
+  }
   for (const Trial& trial : trials) {
     const std::string& family = trial.hard->family;
     if (!json["families"].contains(family)) {

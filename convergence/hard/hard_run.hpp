@@ -9,11 +9,18 @@
 
 namespace slipstick::convergence {
 
+/// What solves each scene too: a name, and the override of the scene's keys that asks for it.
+struct BesideMethod {
+  std::string name;
+  std::string override;
+};
+/// A word of solver.method, or the file of a program (TOML). Throws InputError for what is neither.
+BesideMethod read_beside_method(const std::string& word);
+
 struct HardOptions {
-  bool variants = true;      ///< each scene is seen otherwise too
-  bool finer_meshes = true;  ///< those without an exact answer are solved on finer meshes too
-  /// Words of solver.method that solve each scene too, to be compared with the first answer.
-  std::vector<std::string> methods = {};
+  bool variants = true;                    ///< each scene is seen otherwise too
+  bool finer_meshes = true;                ///< those without an exact answer are solved on finer meshes too
+  std::vector<BesideMethod> methods = {};  ///< to be compared with the first answer
   /// Gets a file of fields for each case that is solved; empty: none.
   std::filesystem::path fields = {};
 };

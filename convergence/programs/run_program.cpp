@@ -2,19 +2,24 @@
 
 #include <fcntl.h>
 #include <fmt/core.h>
+#include <poll.h>
 #include <spawn.h>
+#include <sys/resource.h>
 #include <sys/socket.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <stdexcept>
 #include <string_view>
 #include <system_error>
+#include <thread>
 
 #include "convergence/results/output.hpp"
 
@@ -33,6 +38,8 @@ constexpr int kNotStarted = 127;
 constexpr std::string_view kTied = "--tied-to";
 /// Before the words of another program.
 constexpr std::string_view kStart = "start";
+/// Between two looks whether a program has ended that says nothing.
+constexpr std::chrono::milliseconds kLook{5};
 
 std::vector<std::string> tied(const std::vector<std::string>& words, const std::string& program) {
   if (program.empty()) return words;
@@ -86,7 +93,13 @@ Program::Program(const std::vector<std::string>& words, const ProgramOptions& op
       posix_spawn_file_actions_adddup2(&actions, ends[1], STDERR_FILENO);
     }
   }
-  const int error = posix_spawnp(&process_, arguments[0], &actions, nullptr, arguments.data(), environ);
+  if (!options.folder.empty()) posix_spawn_file_actions_addchdir_np(&actions, options.folder.c_str());
+  posix_spawnattr_t attributes;
+  posix_spawnattr_init(&attributes);
+  own_group_ = options.own_group;
+  if (own_group_) posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP);
+  const int error = posix_spawnp(&process_, arguments[0], &actions, &attributes, arguments.data(), environ);
+  posix_spawnattr_destroy(&attributes);
   posix_spawn_file_actions_destroy(&actions);
   close_descriptor(ends[1]);
   close_descriptor(feed[1]);
@@ -96,7 +109,7 @@ Program::Program(const std::vector<std::string>& words, const ProgramOptions& op
 }
 
 Program::~Program() {
-  if (process_ > 0) kill(process_, SIGKILL);
+  if (process_ > 0) kill(own_group_ ? -process_ : process_, SIGKILL);
   close_descriptor(output_);
   wait();
 }
@@ -125,16 +138,19 @@ bool Program::read_on() {
   return size <= 0;
 }
 
-ProgramEnd Program::wait() {
-  end_feed();
-  while (!read_on()) {
-  }
-  if (process_ <= 0) return end_;
+bool Program::reap(bool wait) {
+  if (process_ <= 0) return true;
   int status = 0;
+  rusage used{};
   pid_t found = 0;
-  do found = waitpid(process_, &status, 0);
+  do found = wait4(process_, &status, wait ? 0 : WNOHANG, &used);
   while (found < 0 && errno == EINTR);
+  if (found == 0) return false;
   process_ = -1;
+  const auto seconds = [](const timeval& time) {
+    return static_cast<double>(time.tv_sec) + 1e-6 * static_cast<double>(time.tv_usec);
+  };
+  end_.cpu_seconds = seconds(used.ru_utime) + seconds(used.ru_stime);
   if (found < 0) {
     end_.trouble = "ended, and nobody says how";
   } else if (WIFEXITED(status) && WEXITSTATUS(status) == kNotStarted) {
@@ -143,6 +159,45 @@ ProgramEnd Program::wait() {
     end_.code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
     end_.trouble = trouble_of(status);
   }
+  return true;
+}
+
+ProgramEnd Program::wait() {
+  end_feed();
+  while (!read_on()) {
+  }
+  reap(true);
+  return end_;
+}
+
+ProgramEnd Program::wait_at_most(double seconds, std::size_t kept) {
+  using Clock = std::chrono::steady_clock;
+  end_feed();
+  const auto start = Clock::now();
+  const pid_t group = process_;
+  const auto read_what_is_there = [&](int wait) {
+    pollfd ready{output_, POLLIN, 0};
+    if (output_ < 0 || poll(&ready, 1, wait) <= 0) return false;
+    read_on();
+    if (end_.output.size() > kept) end_.output.erase(0, end_.output.size() - kept);
+    return true;
+  };
+  while (!reap(false)) {
+    if (std::chrono::duration<double>(Clock::now() - start).count() > seconds) {
+      kill(own_group_ ? -process_ : process_, SIGKILL);
+      reap(true);
+      end_.code = -1;
+      end_.trouble = fmt::format("took longer than {:g} s and was stopped", seconds);
+      break;
+    }
+    if (output_ < 0) std::this_thread::sleep_for(kLook);
+    read_what_is_there(static_cast<int>(kLook.count()));
+  }
+  while (read_what_is_there(0)) {
+  }
+  // What it left behind could hold its output for ever.
+  if (own_group_ && group > 0) kill(-group, SIGKILL);
+  close_descriptor(output_);
   return end_;
 }
 

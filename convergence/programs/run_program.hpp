@@ -2,6 +2,7 @@
 
 #include <sys/types.h>
 
+#include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
@@ -24,14 +25,18 @@ struct ProgramOptions {
   /// ends: on Linux the kernel kills it then. Elsewhere, or where this is empty, it is only of this process's
   /// group, so that what reaches the group ends it too.
   std::filesystem::path tied_by = {};
+  std::filesystem::path folder = {};  ///< that it runs in; empty: this program's own
+  /// It leads a process group of its own, which wait_at_most() kills as a whole.
+  bool own_group = false;
 };
 
 /// How a program ended.
 struct ProgramEnd {
   int code = -1;  ///< -1: it was not started, was killed, or nobody is told, as under an ignored SIGCHLD
   bool started = true;
-  std::string output;   ///< what was captured
-  std::string trouble;  ///< what speaks against its success, after its name; empty: it ended with 0
+  std::string output;        ///< what was captured
+  double cpu_seconds = 0.0;  ///< user and system, of it and of what it waited for
+  std::string trouble;       ///< what speaks against its success, after its name; empty: it ended with 0
 };
 
 /// A program that runs. Who leaves it before it has ended kills it.
@@ -61,12 +66,19 @@ class Program {
   /// Waits for its end.
   ProgramEnd wait();
 
+  /// Waits for its end, so many seconds at most: then it is killed, with its group. Of what it says the last
+  /// `kept` bytes are kept.
+  ProgramEnd wait_at_most(double seconds, std::size_t kept);
+
  private:
   static void close_descriptor(int& descriptor);
+  /// Whether it has ended, without waiting where `wait` is false; then end_ says how.
+  bool reap(bool wait);
 
   pid_t process_ = -1;
   int input_ = -1;
   int output_ = -1;
+  bool own_group_ = false;
   ProgramEnd end_;
 };
 

@@ -40,7 +40,7 @@ struct ReportRequest {
   std::vector<std::string> uncertain;
   std::string junit;
   std::string summary;
-  std::optional<std::uint64_t> memory_limit;
+  RunOptions runs;
 };
 
 /// Whether the page is newer than all that it is made from.
@@ -69,11 +69,17 @@ void draw(const fs::path& data, const fs::path& benchmarks, const fs::path& outp
                     "the results are in " + data.string());
 }
 
+ProcessPool pool_in(const fs::path& data, const ReportRequest& request) {
+  RunOptions runs = request.runs;
+  runs.output = data / "points";
+  return runs.pool();
+}
+
 /// The paper's own case.
 int run_validation(const ReportRequest& request, std::ostream& text, Json& result) {
   const fs::path output = request.output;
   const fs::path data = output / "data";
-  const ProcessPool pool = RunOptions{.output = data / "points", .memory_limit = request.memory_limit}.pool();
+  const ProcessPool pool = pool_in(data, request);
   {
     const Interrupts interrupts;
     result = validate(project_file("convergence"), size_of(request), data, pool);
@@ -114,19 +120,22 @@ int run_scenes(const ReportRequest& request, std::ostream& text, Json& result) {
   const std::vector<fs::path> folders = page_folders(request);
   std::vector<WantedError> wanted;
   for (const std::string& word : request.wanted) wanted.push_back(read_wanted_error(word));
-  for (const std::string& scene : request.scenes) solver::read_scene(scene);
+  for (const std::string& scene : request.scenes) solver::read_scene(scene, request.runs.overrides);
   std::vector<JunitCase> cases;
   std::vector<std::string> rows;
   std::vector<std::string> drawn;
   bool good = true;
   for (std::size_t i = 0; i < folders.size(); ++i) {
     const fs::path data = folders[i] / "data";
-    const ProcessPool pool =
-        RunOptions{.output = data / "points", .memory_limit = request.memory_limit}.pool();
+    const ProcessPool pool = pool_in(data, request);
     Json page;
     {
       const Interrupts interrupts;
-      page = scene_page({request.scenes[i], size, wanted, request.uncertain}, data, pool);
+      page = scene_page({{.scene = request.scenes[i], .overrides = request.runs.overrides},
+                         size,
+                         wanted,
+                         request.uncertain},
+                        data, pool);
     }
     const Json& headline = page["headline"];
     text << page["scene"]["name"].get<std::string>() << ": " << headline_text(headline)
@@ -155,6 +164,11 @@ int run_scenes(const ReportRequest& request, std::ostream& text, Json& result) {
 int run_report(const ReportRequest& request, std::ostream& text, Json& result) {
   require_output("--junit", request.junit);
   require_output("--summary", request.summary);
+  if (request.scenes.empty() && !request.runs.overrides.empty()) {
+    throw solver::InputError("--program",
+                             "the paper's validation is this program's own; allowed: scenes, as "
+                             "`slipstick report convergence/scenes/paper.toml --program FILE`");
+  }
   return request.scenes.empty() ? run_validation(request, text, result) : run_scenes(request, text, result);
 }
 
@@ -183,7 +197,8 @@ RunCommand add_report_command(CLI::App& app) {
       "make of each number");
   command->add_option("--junit", request->junit, "write the verdicts of scenes as JUnit's XML");
   command->add_option("--summary", request->summary, "write them as a table in Markdown");
-  add_memory_option(*command, request->memory_limit);
+  add_memory_option(*command, request->runs.memory_limit);
+  request->runs.add_programs_to(*command);
   command->footer(
       "Example:\n  slipstick report --output build/report\n  slipstick report "
       "convergence/scenes/rough_sphere.toml "

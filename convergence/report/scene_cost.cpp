@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "convergence/orders/growth.hpp"
+#include "convergence/programs/solver_program.hpp"
 #include "convergence/results/quantity.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/run_batch.hpp"
@@ -17,7 +18,6 @@
 namespace slipstick::convergence {
 namespace {
 
-namespace fs = std::filesystem;
 using solver::Index;
 
 const double kCostTolerances[] = {1e-3, 1e-6, 1e-9};
@@ -40,27 +40,40 @@ Json choices(const solver::Scene& scene) {
   return rows;
 }
 
-std::vector<std::string> on_mesh(const solver::Scene& scene, Index cells) {
-  return {cells_override(scene, cells)};
+/// What solves the scene: its name, the overrides that ask for it, and its finest mesh.
+struct Contender {
+  std::string name;
+  std::vector<std::string> overrides;
+  Index most_cells;
+};
+
+std::vector<Contender> contenders(const solver::Scene& scene, Index finest, const PageSize& size) {
+  std::vector<Contender> all;
+  for (const auto& [name, method] : solver::kMethods) {
+    all.push_back({name,
+                   {fmt::format("solver.method=\"{}\"", name), kNoProgram},
+                   method == scene.method ? finest : size.method_cells});
+  }
+  if (!scene.program.empty()) all.push_back({read_solver_program(scene.program).name, {}, finest});
+  return all;
 }
 
 }  // namespace
 
-Json error_against_time(const fs::path& scene_file, const solver::Scene& scene,
-                        const std::vector<Index>& meshes, const Reference& reference, const PageSize& size,
-                        const ProcessPool& pool) {
+Json error_against_time(const RunSpec& base, const solver::Scene& scene, const std::vector<Index>& meshes,
+                        const Reference& reference, const PageSize& size, const ProcessPool& pool) {
   Json json{{"number", reference.number}, {"points", Json::array()}};
   set_number(json, "reference_uncertainty", reference.uncertainty, "no reference is known");
   RunBatch batch;
-  for (const auto& each : solver::kMethods) {
-    const std::string& method = each.first;
+  for (const Contender& each : contenders(scene, meshes.back(), size)) {
     for (const Index cells : meshes) {
-      if (each.second != scene.method && cells > size.method_cells) continue;
+      if (cells > each.most_cells) continue;
       for (const double tolerance : kCostTolerances) {
-        RunSpec run{.scene = scene_file, .overrides = on_mesh(scene, cells)};
-        run.overrides.push_back(fmt::format("solver.method=\"{}\"", method));
+        RunSpec run = changed(base, each.overrides);
+        run.overrides.push_back(cells_override(scene, cells));
         run.overrides.push_back(fmt::format("solver.tolerance={}", tolerance));
-        batch.add_or_refuse(run, [&json, &reference, &method, cells, tolerance](const Json& result) {
+        batch.add_or_refuse(run, [&json, &reference, method = each.name, cells,
+                                  tolerance](const Json& result) {
           Json& point = json["points"].emplace_back(Json{
               {"method", method}, {"cells", cells}, {"tolerance", tolerance}, {"status", result["status"]}});
           const std::string why = is_failed(result) ? result["message"].get<std::string>() : "not a number";
@@ -77,14 +90,14 @@ Json error_against_time(const fs::path& scene_file, const solver::Scene& scene,
   return json;
 }
 
-Json direct_against_dcfft(const fs::path& scene_file, const solver::Scene& scene, const PageSize& size,
+Json direct_against_dcfft(const RunSpec& base, const solver::Scene& scene, const PageSize& size,
                           const ProcessPool& pool) {
   std::map<std::string, std::map<double, std::vector<double>>> seconds;
   RunBatch batch;
   for (const char* kind : {"direct", "dcfft"}) {
     for (const double cells : size.operator_cells) {
       for (int repetition = 1; repetition <= size.repetitions; ++repetition) {
-        RunSpec run{.scene = scene_file, .overrides = on_mesh(scene, static_cast<Index>(cells))};
+        RunSpec run = changed(base, {cells_override(scene, static_cast<Index>(cells))});
         run.overrides.push_back(fmt::format("solver.operator=\"{}\"", kind));
         run.overrides.push_back(fmt::format("name=\"repetition {}\"", repetition));  // it is solved again
         batch.add_or_refuse(

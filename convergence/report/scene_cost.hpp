@@ -18,14 +18,15 @@ struct Reference {
 
 /// Time and error of each method on several meshes and to several tolerances, and the choices of --accuracy:
 /// {number, reference_uncertainty, points: [{method, cells, tolerance, seconds, error, status}], choices}.
-Json error_against_time(const std::filesystem::path& scene_file, const solver::Scene& scene,
+/// A scene's program counts as a method, beside this program's own.
+Json error_against_time(const RunSpec& base, const solver::Scene& scene,
                         const std::vector<solver::Index>& meshes, const Reference& reference,
                         const PageSize& size, const ProcessPool& pool);
 
 /// Whole solves by direct sums and by convolution on small meshes of the scene, and the cells along the
 /// longer side from which on convolution is quicker: {rows: [{operator, cells, seconds, low, high}], cells,
 /// low, high, remark}.
-Json direct_against_dcfft(const std::filesystem::path& scene_file, const solver::Scene& scene,
-                          const PageSize& size, const ProcessPool& pool);
+Json direct_against_dcfft(const RunSpec& base, const solver::Scene& scene, const PageSize& size,
+                          const ProcessPool& pool);
 
 }  // namespace slipstick::convergence

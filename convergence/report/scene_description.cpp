@@ -74,8 +74,10 @@ Json summary(const Scene& scene) {
     add("Last step", load_text(scene.steps.back()));
   }
   add("Grid", fmt::format("{} x {} cells", scene.cells[0], scene.cells[1]));
-  add("Method", fmt::format("{}, to a tolerance of {:g}", solver::word_of(solver::kMethods, scene.method),
-                            scene.tolerance));
+  const std::string solved_by =
+      scene.program.empty() ? solver::word_of(solver::kMethods, scene.method) : scene.program.string();
+  add(scene.program.empty() ? "Method" : "Program",
+      fmt::format("{}, to a tolerance of {:g}", solved_by, scene.tolerance));
   return rows;
 }
 

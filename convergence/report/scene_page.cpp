@@ -11,6 +11,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "convergence/check/check.hpp"
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/hard/rounding_digits.hpp"
 #include "convergence/orders/expected_order.hpp"
@@ -102,13 +103,11 @@ bool is_rough(const Scene& scene) {
 }
 
 /// The results on the answer's meshes, coarsest first; the last one has its fields beside.
-std::vector<Json> solve_answer(const fs::path& scene_file, const Scene& scene, const Meshes& meshes,
+std::vector<Json> solve_answer(const RunSpec& base, const Scene& scene, const Meshes& meshes,
                                const fs::path& fields, const ProcessPool& pool) {
   std::vector<RunSpec> runs;
-  for (const Index cells : meshes.answer) {
-    runs.push_back({.scene = scene_file, .overrides = {cells_override(scene, cells)}});
-  }
-  if (runs.empty()) runs.push_back({.scene = scene_file});
+  for (const Index cells : meshes.answer) runs.push_back(changed(base, {cells_override(scene, cells)}));
+  if (runs.empty()) runs.push_back(base);
   runs.back().fields = fields;
   std::vector<Json> results = pool.run(runs);
   if (is_failed(results.back())) throw std::runtime_error(results.back()["message"].get<std::string>());
@@ -195,13 +194,13 @@ Json number_rows(const Scene& scene, const std::vector<Json>& results, const Jso
 }
 
 /// The studies of meshes and of tolerances.
-Json studies(const fs::path& scene_file, const Scene& scene, const Meshes& meshes, const PageSize& size,
+Json studies(const RunSpec& base, const Scene& scene, const Meshes& meshes, const PageSize& size,
              const ProcessPool& pool) {
   Json found = Json::array();
-  Study study{.source = scene_file,
+  Study study{.source = base.scene,
               .name = "meshes",
-              .scene = scene_file,
-              .overrides = {},
+              .scene = base.scene,
+              .overrides = base.overrides,
               .cells = meshes.study,
               .shifts = scene.steps.size() > 1 ? std::min(size.shifts, 2) : size.shifts,
               .tolerances = {},
@@ -224,26 +223,23 @@ std::vector<std::string> coarse_mesh(const Scene& scene, const Meshes& meshes) {
 }
 
 /// What the uncertainty of the scene's numbers makes of the answer's.
-Json uncertainty(const fs::path& scene_file, const Scene& scene, const Meshes& meshes, const Json& answer,
+Json uncertainty(const RunSpec& base, const Scene& scene, const Meshes& meshes, const Json& answer,
                  const std::vector<UncertainInput>& inputs) {
   const auto cache = std::make_shared<solver::SolveCache>();
   return uncertainty_json(answer, inputs, [&](const std::vector<std::string>& changed) {
-    std::vector<std::string> overrides;
+    std::vector<std::string> overrides = base.overrides;
     if (!meshes.given) overrides.push_back(cells_override(scene, meshes.answer.back()));
     overrides.insert(overrides.end(), changed.begin(), changed.end());
-    return solve_scene(solver::read_scene(scene_file, overrides), {.cache = cache}).result;
+    return solve_scene(solver::read_scene(base.scene, overrides), {.cache = cache}).result;
   });
 }
 
 /// The scene seen otherwise, on coarse meshes, and next to nothing and next to its limit.
-std::vector<HardCase> hard_cases(const fs::path& scene_file, const Scene& scene, const Meshes& meshes) {
+std::vector<HardCase> hard_cases(const RunSpec& base, const Scene& scene, const Meshes& meshes) {
   std::vector<HardCase> cases;
   const auto add = [&](const char* family, const char* why, const std::string& name,
-                       std::vector<std::string> overrides) {
-    cases.push_back({.family = family,
-                     .why = why,
-                     .name = name,
-                     .run = {.scene = scene_file, .overrides = std::move(overrides)}});
+                       const std::vector<std::string>& overrides) {
+    cases.push_back({.family = family, .why = why, .name = name, .run = changed(base, overrides)});
   };
   const std::vector<std::string> mesh = coarse_mesh(scene, meshes);
   add("as_it_is", "the scene itself, turned, mirrored, shifted, in other units", scene.name, mesh);
@@ -260,7 +256,7 @@ std::vector<HardCase> hard_cases(const fs::path& scene_file, const Scene& scene,
   for (const char* ratio : kRatios) {
     std::vector<std::string> overrides = mesh;
     overrides.push_back(fmt::format("load.moment_ratio={}", ratio));
-    add("load_ramp", "next to no moment, and next to all that friction carries", ratio, std::move(overrides));
+    add("load_ramp", "next to no moment, and next to all that friction carries", ratio, overrides);
   }
   return cases;
 }
@@ -278,7 +274,30 @@ Reference reference_of(const Json& answer, const Json& rows) {
   return {keys.back(), kNaN, kNaN};
 }
 
+/// Whether the answer is more than the pressure that a program found.
+bool has_tractions(const Json& answer) {
+  return !answer.contains("program") || answer["program"]["fields"] != "pressure";
+}
+
+/// What `check` says of the field that a program wrote.
+Json check_program(const RunSpec& base, const Scene& scene, const Meshes& meshes, const Json& answer,
+                   const fs::path& fields) {
+  std::vector<std::string> overrides = base.overrides;
+  if (!meshes.given) overrides.push_back(cells_override(scene, meshes.answer.back()));
+  CheckOptions options;
+  if (const Json& own = answer["program"]["own"]; own.contains("twist")) options.twist = own["twist"];
+  return check_field(solver::read_scene(base.scene, overrides), fields, options);
+}
+
 }  // namespace
+
+PageSize for_program(PageSize size) {
+  constexpr Index kSlower = 4;
+  size.most_cells = std::max(size.most_cells / kSlower, 4 * kFewestCells);
+  size.most_study_cells = size.most_cells;
+  size.shifts = 1;
+  return size;
+}
 
 PageSize quick_page() {
   return {.most_cells = 64,
@@ -322,35 +341,52 @@ WantedError read_wanted_error(const std::string& word) {
 }
 
 Json scene_page(const PageRequest& request, const fs::path& folder, const ProcessPool& pool) {
-  const Scene scene = solver::read_scene(request.scene);
-  const std::vector<UncertainInput> uncertain = uncertain_inputs(request.scene, {}, request.uncertain);
-  const PageSize& size = request.size;
+  const RunSpec& base = request.base;
+  const Scene scene = solver::read_scene(base.scene, base.overrides);
+  const bool own = scene.program.empty();
+  if (!own && !request.uncertain.empty())
+    throw solver::InputError("--uncertain", "not beside solver.program; allowed: without it");
+  const std::vector<UncertainInput> uncertain =
+      uncertain_inputs(base.scene, base.overrides, request.uncertain);
+  const PageSize size = own ? request.size : for_program(request.size);
   const Meshes meshes = meshes_of(scene, size);
   solver::make_folder(folder);
-  const std::vector<Json> results = solve_answer(request.scene, scene, meshes, folder / "answer.h5", pool);
+  const fs::path fields = folder / "answer.h5";
+  const std::vector<Json> results = solve_answer(base, scene, meshes, fields, pool);
+  const Json& answer = results.back();
   Json page;
   page["provenance"] = provenance(std::max(1, scene.threads));
-  page["scene"] = describe(scene, request.scene);
-  page["answer"] = results.back();
-  page["studies"] = studies(request.scene, scene, meshes, size, pool);
+  page["scene"] = describe(scene, base.scene);
+  page["answer"] = answer;
+  std::vector<Finding> findings;
+  if (own) {
+    findings.push_back(judge_certificate(answer));
+  } else if (has_tractions(answer)) {
+    page["check"] = check_program(base, scene, meshes, answer, fields);
+    findings.push_back(judge_check(page["check"]));
+  } else {
+    findings.push_back(judge_pressure(answer));
+  }
+  page["studies"] = studies(base, scene, meshes, size, pool);
   page["numbers"] = number_rows(scene, results, page["studies"].front());
-  const Reference reference = reference_of(results.back(), page["numbers"]);
-  std::vector<Finding> findings{judge_certificate(results.back())};
+  const Reference reference = reference_of(answer, page["numbers"]);
   for (const WantedError& each : request.wanted) findings.push_back(judge_wanted(each, page["numbers"]));
   findings.push_back(state_mesh_error(page["numbers"], reference.number));
-  if (!uncertain.empty())
-    page["uncertainty"] = uncertainty(request.scene, scene, meshes, results.back(), uncertain);
+  if (!uncertain.empty()) page["uncertainty"] = uncertainty(base, scene, meshes, answer, uncertain);
   findings.push_back(judge_order(page["studies"], reference.number));
-  if (!meshes.given) {
-    page["cost"] = error_against_time(request.scene, scene, meshes.answer, reference, size, pool);
-    page["operators"] = direct_against_dcfft(request.scene, scene, size, pool);
+  if (!meshes.given) page["cost"] = error_against_time(base, scene, meshes.answer, reference, size, pool);
+  if (!meshes.given && own) page["operators"] = direct_against_dcfft(base, scene, size, pool);
+  if (own || has_tractions(answer)) {
+    HardOptions options{.variants = own, .finer_meshes = own && size.finer_meshes};
+    if (!own) options.methods = {{answer["program"]["name"], program_override(scene.program)}};
+    const RunSpec by_us = own ? base : changed(base, {kNoProgram});
+    page["hard"] = run_hard_cases(hard_cases(by_us, scene, meshes), options, pool);
+    findings.push_back(own ? judge_hard(page["hard"]) : judge_hard_beside(page["hard"]));
   }
-  HardOptions options;
-  options.finer_meshes = size.finer_meshes;
-  page["hard"] = run_hard_cases(hard_cases(request.scene, scene, meshes), options, pool);
-  findings.push_back(judge_hard(page["hard"]));
-  page["digits"] = rounding_digits({.scene = request.scene, .overrides = coarse_mesh(scene, meshes)},
-                                   {.samples = kRoundingSamples}, pool);
+  if (own) {
+    page["digits"] =
+        rounding_digits(changed(base, coarse_mesh(scene, meshes)), {.samples = kRoundingSamples}, pool);
+  }
   const Json before = find_json(folder / "report.json");
   page["headline"] =
       with_changes(headline_of(findings, page),

@@ -25,6 +25,8 @@ struct PageSize {
 PageSize quick_page();
 PageSize usual_page();
 PageSize full_page();
+/// The same for another program, which may take a hundred times as long.
+PageSize for_program(PageSize size);
 
 /// A relative error that a user wants a number of the result to have at most.
 struct WantedError {
@@ -36,7 +38,7 @@ WantedError read_wanted_error(const std::string& word);
 
 /// What a page is asked for.
 struct PageRequest {
-  std::filesystem::path scene;
+  RunSpec base;  ///< the scene; overrides may name a program, which then answers in place of a method
   PageSize size;
   std::vector<WantedError> wanted = {};
   std::vector<std::string> uncertain = {};  ///< as uncertain_inputs() takes them

@@ -17,6 +17,9 @@ namespace {
 
 /// An order's interval may end this far below the expected order.
 constexpr double kWorseOrder = 0.25;
+/// Complementarity gap of another program's pressure over its energy: other discretisations of the same
+/// contact leave a thousandth.
+constexpr double kOpenUnderPressure = 1e-2;
 
 }  // namespace
 
@@ -72,6 +75,37 @@ Finding judge_hard(const Json& hard) {
   return {"Hard variants", line, counts["wrong"] == 0 && counts["not_converged"] == 0};
 }
 
+Finding judge_check(const Json& check) {
+  return {"Field",
+          fmt::format("{}: {}", check["verdict"].get<std::string>(), check["why"].get<std::string>()),
+          check["verdict"] == "good"};
+}
+
+Finding judge_pressure(const Json& answer) {
+  const double open = number_at(answer, "pressure_complementarity");
+  return {"Pressure",
+          fmt::format("its gap is open under {:.1e} of it, {:g} allowed; there are no tractions to judge",
+                      open, kOpenUnderPressure),
+          std::abs(open) <= kOpenUnderPressure};
+}
+
+Finding judge_hard_beside(const Json& hard) {
+  const std::string name = hard["methods"].begin().key();
+  const Json& counts = hard["methods"][name];
+  const int other = counts["other_direction"].get<int>() + counts["other_answer"].get<int>();
+  std::string line = fmt::format(
+      "{} of {} agree with this program's, {} refused, {} not converged or failed, {} are other answers",
+      counts["agrees"].get<int>(), hard["rows"].size(), counts["refused"].get<int>(),
+      counts["not_converged"].get<int>(), other);
+  for (const Json& row : hard["rows"]) {
+    const Json& beside = row["methods"][name];
+    if (beside["verdict"] != "other_direction" && beside["verdict"] != "other_answer") continue;
+    line += fmt::format("; {} {}: {}", row["family"].get<std::string>(), row["case"].get<std::string>(),
+                        beside["reason"].get<std::string>());
+  }
+  return {"Hard variants", line, other == 0};
+}
+
 Finding state_mesh_error(const Json& numbers, const std::string& number) {
   for (const Json& row : numbers) {
     if (row["key"] != number || !row["error"].is_number()) continue;
@@ -107,13 +141,15 @@ Json headline_of(const std::vector<Finding>& findings, const Json& page) {
     lines.push_back({what, line});
     checks[what] = holds ? "holds" : "fails";
   }
+  Json counts{{"checks", checks}};
+  if (page.contains("hard")) counts["hard"] = page["hard"]["counts"];
   Json numbers = Json::object();
   for (const Json& row : page["numbers"]) numbers[row["key"].get<std::string>()] = row["value"];
   return {{"verdict", good ? "good" : "bad"},
           {"commit", page["provenance"]["commit"]},
           {"lines", lines},
           {"numbers", numbers},
-          {"counts", {{"checks", checks}, {"hard", page["hard"]["counts"]}}}};
+          {"counts", counts}};
 }
 
 }  // namespace slipstick::convergence

@@ -18,6 +18,12 @@ struct Finding {
 /// Converged, and its gap within the tolerance.
 Finding judge_certificate(const Json& answer);
 
+/// Of another program: what `check` says of its field; its pressure, where it found that alone; and its
+/// answers to hard variants beside this program's.
+Finding judge_check(const Json& check);
+Finding judge_pressure(const Json& answer);
+Finding judge_hard_beside(const Json& hard);
+
 /// Without a wanted error a statement alone, of the number by which answers are compared.
 Finding state_mesh_error(const Json& numbers, const std::string& number);
 

@@ -231,8 +231,11 @@ Json hard_results(const fs::path& folder, std::size_t step, const ProcessPool& p
   for (const fs::path& file : files) std::ranges::move(read_hard_cases(file), std::back_inserter(all));
   std::vector<HardCase> shown;
   for (std::size_t i = 0; i < all.size(); i += step) shown.push_back(std::move(all[i]));
-  return run_hard_cases(
-      shown, {.variants = false, .finer_meshes = false, .methods = {"projected_gradient", "paper"}}, pool);
+  return run_hard_cases(shown,
+                        {.variants = false,
+                         .finer_meshes = false,
+                         .methods = {read_beside_method("projected_gradient"), read_beside_method("paper")}},
+                        pool);
 }
 
 /// A field of check/fields/, at 0.9 of the limit moment.
@@ -338,7 +341,7 @@ Json validate(const fs::path& inputs, const ValidationSize& size, const fs::path
   report["hard"] = hard_results(inputs / "hard", size.hard_step, pool);
   report["cycle"] = cycle(results.at("cycle").front());
   report["operators"] =
-      direct_against_dcfft(scene_file, scene, size.gates ? usual_page() : quick_page(), pool);
+      direct_against_dcfft({.scene = scene_file}, scene, size.gates ? usual_page() : quick_page(), pool);
   report["peers"] = judge_peers(inputs);
   if (size.gates) report["gates"] = gates_json(run_gates(read_gates(inputs / "gates" / "quick.toml"), pool));
   report["headline"] = with_changes(headline(report), earlier_headline(folder / "report.json"));

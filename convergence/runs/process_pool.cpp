@@ -16,6 +16,7 @@
 #include <thread>
 #include <utility>
 
+#include "convergence/programs/solver_program.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/progress.hpp"
@@ -242,7 +243,22 @@ class TaskQueue {
 
 ProcessPool::ProcessPool(ProcessPoolOptions options) : options_(std::move(options)) {}
 
-std::vector<Json> ProcessPool::run_prepared(const std::vector<PreparedRun>& runs) const {
+std::vector<PreparedRun> ProcessPool::with_versions(const std::vector<PreparedRun>& runs) const {
+  std::vector<PreparedRun> all = runs;
+  std::map<fs::path, std::string> versions;
+  for (PreparedRun& run : all) {
+    const fs::path& file = run.scene.program;
+    if (file.empty()) continue;
+    require_allowed(run.scene, run.spec.overrides, options_.programs);
+    if (!versions.contains(file)) versions[file] = version_of(read_solver_program(file), options_.program);
+    run.spec.program_version = versions[file];
+    run = prepare_run(run.spec);
+  }
+  return all;
+}
+
+std::vector<Json> ProcessPool::run_prepared(const std::vector<PreparedRun>& as_they_came) const {
+  const std::vector<PreparedRun> runs = with_versions(as_they_came);
   const JoinedCaches caches(options_);
   std::vector<Task> tasks;
   std::map<std::string, Json> known;
@@ -276,7 +292,8 @@ std::vector<Json> ProcessPool::run(const std::vector<RunSpec>& specs) const {
   return run_prepared(runs);
 }
 
-std::vector<PreparedRun> ProcessPool::missing(const std::vector<PreparedRun>& runs) const {
+std::vector<PreparedRun> ProcessPool::missing(const std::vector<PreparedRun>& as_they_came) const {
+  const std::vector<PreparedRun> runs = with_versions(as_they_came);
   const JoinedCaches caches(options_);
   std::vector<PreparedRun> missing;
   for (const PreparedRun& run : runs) {

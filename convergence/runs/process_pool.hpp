@@ -8,6 +8,7 @@
 
 #include "convergence/programs/run_program.hpp"
 #include "convergence/results/result_parts.hpp"
+#include "convergence/runs/program_solve.hpp"
 #include "convergence/runs/run_spec.hpp"
 
 namespace slipstick::convergence {
@@ -22,6 +23,7 @@ struct ProcessPoolOptions {
   std::vector<std::filesystem::path> joined = {};
   /// Asked every second at least, and when a signal ends waiting: whether to stop.
   std::function<bool()> interrupted = {};
+  AllowedPrograms programs = {};  ///< that scenes may name
 };
 
 /// The one way in which many scenes are solved: side by side, each by a slipstick program of its own, as many
@@ -37,7 +39,8 @@ class ProcessPool {
   /// have, gross slip or memory for one, is a result with status = "refused"; one whose process was killed or
   /// failed has status = "failed"; both have a message and `run`, which says which it was. One that would
   /// take more memory than it may has out_of_memory = true beside it, and is not kept. Throws InputError,
-  /// before anything is computed, for a scene that cannot be read and a folder that cannot be made;
+  /// before anything is computed, for a scene that cannot be read, one that names a program which is not
+  /// allowed to run, and a folder that cannot be made;
   /// std::runtime_error where it was interrupted, or a result or its fields could not be written: then the
   /// rest would be in vain.
   std::vector<Json> run(const std::vector<RunSpec>& specs) const;
@@ -53,6 +56,9 @@ class ProcessPool {
   const std::filesystem::path& folder() const { return options_.folder; }
 
  private:
+  /// The runs with the versions of their programs.
+  std::vector<PreparedRun> with_versions(const std::vector<PreparedRun>& runs) const;
+
   ProcessPoolOptions options_;
 };
 

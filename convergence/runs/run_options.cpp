@@ -17,6 +17,17 @@ void add_set_option(CLI::App& command, std::vector<std::string>& overrides, cons
   command.add_option("--set", overrides, "key=value: " + help)->take_all()->allow_extra_args(false);
 }
 
+void add_program_options(CLI::App& command, std::vector<std::string>& overrides, bool& allow) {
+  const auto name = [&overrides](const std::string& file) { overrides.push_back(program_override(file)); };
+  command
+      .add_option_function<std::string>("--program", name,
+                                        "let another program find pressure and tractions: the TOML file that "
+                                        "says how it is started")
+      ->type_name("FILE");
+  command.add_flag("--allow-programs", allow,
+                   "let programs run that scenes, studies and gates name: they may do whatever you may do");
+}
+
 void add_memory_option(CLI::App& command, std::optional<std::uint64_t>& bytes) {
   constexpr bool kThousands = true;  // 1 kB is 1000 bytes, 1 KiB is 1024
   command
@@ -37,6 +48,10 @@ void RunOptions::add_to(CLI::App& command) {
       ->capture_default_str()
       ->check(CLI::NonNegativeNumber);
   add_memory_option(command, memory_limit);
+}
+
+void RunOptions::add_programs_to(CLI::App& command) {
+  add_program_options(command, overrides, allow_programs);
 }
 
 void RunOptions::add_shards_to(CLI::App& command, const std::vector<std::string>& of_judgement) {
@@ -70,7 +85,8 @@ ProcessPool RunOptions::pool() const {
                       .memory_limit = memory_limit,
                       .program = kOwnProgram,
                       .joined = {merged.begin(), merged.end()},
-                      .interrupted = Interrupts::seen});
+                      .interrupted = Interrupts::seen,
+                      .programs = {allow_programs, overrides, kOwnProgram}});
 }
 
 Interrupts::Interrupts() {

@@ -20,6 +20,9 @@ namespace slipstick::convergence {
 /// --set, whose words are "key=value".
 void add_set_option(CLI::App& command, std::vector<std::string>& overrides, const std::string& help);
 
+/// --program, a file that is relative to here, as an override that names it; and --allow-programs.
+void add_program_options(CLI::App& command, std::vector<std::string>& overrides, bool& allow);
+
 /// --memory-limit, in bytes; none where it is not given.
 void add_memory_option(CLI::App& command, std::optional<std::uint64_t>& bytes);
 
@@ -30,9 +33,14 @@ struct RunOptions {
   std::optional<std::uint64_t> memory_limit = {};  ///< bytes
   std::string shard = {};                          ///< as read_shard() takes it; empty: all runs
   std::vector<std::string> merged = {};            ///< folders of other shards
+  bool allow_programs = false;                     ///< --allow-programs
+  std::vector<std::string> overrides =
+      {};  ///< of scenes' keys, by the command line, which may name a program
 
   /// --output, --jobs, --memory-limit.
   void add_to(CLI::App& command);
+  /// --program, --allow-programs.
+  void add_programs_to(CLI::App& command);
   /// --shard and --merge. Beside --shard the named options, which take what was judged, are refused.
   void add_shards_to(CLI::App& command, const std::vector<std::string>& of_judgement);
 

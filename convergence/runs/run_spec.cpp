@@ -3,7 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <utility>
 
+#include "convergence/programs/solver_program.hpp"
 #include "convergence/results/markup.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "solver/input/input_file.hpp"
@@ -12,17 +14,30 @@
 namespace slipstick::convergence {
 namespace {
 
+/// Bytes of a file that stands in a key as it is; of a larger one, a height map or a program, its checksum
+/// does.
+constexpr std::size_t kWholeFile = 65536;
+
 std::string cache_key(const RunSpec& spec, const solver::Scene& scene) {
   std::string text = read_text(spec.scene) + run_text(spec);
   const std::vector<std::filesystem::path> files = input_files(scene);
-  for (std::size_t i = 1; i < files.size(); ++i) text += read_text(files[i]);
+  for (std::size_t i = 1; i < files.size(); ++i) {
+    const std::string content = read_text(files[i]);
+    text += content.size() <= kWholeFile ? content : fmt::format("\n{:016x}", checksum(content));
+  }
   if (!spec.fields.empty()) text += "\nfields " + spec.fields.string();
   if (spec.profile) text += "\nprofile";
   if (spec.step_before) text += "\nstep before";
+  if (!spec.program_version.empty()) text += "\nversion " + spec.program_version;
   return text;
 }
 
 }  // namespace
+
+RunSpec changed(RunSpec run, const std::vector<std::string>& overrides) {
+  run.overrides.insert(run.overrides.end(), overrides.begin(), overrides.end());
+  return run;
+}
 
 PreparedRun prepare_run(const RunSpec& spec) {
   PreparedRun run{.spec = spec,
@@ -41,6 +56,10 @@ std::vector<std::filesystem::path> input_files(const solver::Scene& scene) {
     if (!surface.file.empty()) files.push_back(surface.file);
   }
   if (!scene.pressure_file.empty()) files.push_back(scene.pressure_file);
+  if (scene.program.empty()) return files;
+  for (std::filesystem::path& file : program_files(read_solver_program(scene.program))) {
+    files.push_back(std::move(file));
+  }
   return files;
 }
 

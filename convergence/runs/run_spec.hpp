@@ -24,7 +24,12 @@ struct RunSpec {
   /// Of a history, a file beside gets those of the step before, from which the last one's slip is measured.
   bool step_before = false;
   bool profile = false;  ///< the result has the tractions along two radii
+  /// What the scene's program says its version is: the pool asks it, once it knows that it may run.
+  std::string program_version = {};
 };
+
+/// The same run with further overrides, which are the last to hold.
+RunSpec changed(RunSpec run, const std::vector<std::string>& overrides);
 
 /// A run whose scene has been read.
 struct PreparedRun {
@@ -39,7 +44,8 @@ struct PreparedRun {
 /// Throws InputError for a scene that cannot be read.
 PreparedRun prepare_run(const RunSpec& spec);
 
-/// The files that a scene is read from: its own, those of heights and pressures.
+/// The files that a scene's answer depends on: its own, those of heights and pressures, of its program.
+/// Throws InputError for a program's file that cannot be read.
 std::vector<std::filesystem::path> input_files(const solver::Scene& scene);
 
 /// A whole file.

@@ -9,7 +9,22 @@
 #include "solver/within_double.hpp"
 
 namespace slipstick::convergence {
+namespace {
+
+SolvedScene solve_elsewhere(const solver::Scene& scene, const AllowedPrograms& programs) {
+  ProgramAnswer answer = solve_by_program(scene, programs);
+  SolvedScene solved{.solution = std::move(answer.solution), .exact = std::move(answer.exact), .result = {}};
+  solved.result =
+      solver::within_double(scene, [&] { return solve_result(answer.scene, solved.solution, solved.exact); });
+  solved.result["method"] = "program";
+  solved.result["program"] = std::move(answer.program);
+  return solved;
+}
+
+}  // namespace
+
 SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& options) {
+  if (!scene.program.empty() && options.programs.all) return solve_elsewhere(scene, options.programs);
   const auto history = solver::within_double(scene, [&] { return exact_history(scene); });
   SolvedScene solved;
   Json steps = Json::array();

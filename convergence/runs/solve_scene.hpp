@@ -6,13 +6,14 @@
 
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/results/result_parts.hpp"
+#include "convergence/runs/program_solve.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "solver/solve.hpp"
 
 namespace slipstick::convergence {
 
-/// The last step of a scene that was solved on its grid, the exact answer to it, and the result that compares
-/// the two, of a history with all steps in it.
+/// The last step of a scene that was solved on its grid, by this program or another, the exact answer to it,
+/// and the result that compares the two, of a history with all steps in it.
 struct SolvedScene {
   solver::Solution solution;
   OracleAnswer exact;
@@ -44,10 +45,12 @@ struct SolveSceneOptions {
   solver::Detail detail = solver::Detail::all;
   /// See solver::SolveOptions.
   solver::Ranks ranks = {};
+  /// Of a scene that names a program: solver::solve() refuses it, unless all are allowed here.
+  AllowedPrograms programs = {};
 };
 
 /// The one way in which a scene is solved on its grid and compared with its exact answer, by whichever
-/// command. Throws InputError as solver::solve() does.
+/// command. Throws InputError as solver::solve() does; ProgramFailure where the scene's program fails.
 SolvedScene solve_scene(const solver::Scene& scene, const SolveSceneOptions& options = {});
 
 }  // namespace slipstick::convergence

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "convergence/programs/solver_program.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/results/result.hpp"
@@ -52,7 +53,7 @@ std::string text_of(const RunSpec& run) {
   std::string text = counted(run.scene) + counted(std::to_string(static_cast<int>(run.rounding))) +
                      counted(to_string(run.variant)) + counted(run.fields) +
                      counted(run.step_before ? "yes" : "") + counted(run.profile ? "yes" : "") +
-                     counted(std::to_string(run.overrides.size()));
+                     counted(run.program_version) + counted(std::to_string(run.overrides.size()));
   for (const std::string& assignment : run.overrides) text += counted(assignment);
   return text;
 }
@@ -68,6 +69,7 @@ std::optional<RunSpec> next_run(std::istream& input) {
   run.fields = next();
   run.step_before = !next().empty();
   run.profile = !next().empty();
+  run.program_version = next();
   for (int left = number(); left > 0; --left) run.overrides.push_back(next());
   return word ? std::optional(run) : std::nullopt;
 }
@@ -86,11 +88,17 @@ Json solve(const PreparedRun& run, const std::shared_ptr<solver::SolveCache>& ca
     const bool exact = run.scene.model == solver::ModelChoice::exact;
     if (exact && spec.fields.empty() && !spec.profile)
       return exact_result(run.scene, require_oracle(run.scene), 0.0);
-    solved = solve_scene(run.scene, {.on_step = on_step, .rounding = spec.rounding, .cache = cache});
+    solved = solve_scene(
+        run.scene, {.on_step = on_step,
+                    .rounding = spec.rounding,
+                    .cache = cache,
+                    .programs = {.all = true, .tied_by = kOwnProgram, .version = spec.program_version}});
   } catch (const solver::OutOfMemory&) {
     throw;
   } catch (const solver::InputError& error) {
     return not_computed("refused", error.what(), spec);
+  } catch (const ProgramFailure& error) {
+    return not_computed("failed", error.what(), spec);
   } catch (const std::bad_alloc&) {
     throw std::runtime_error("memory ran out");
   }

@@ -74,6 +74,7 @@ RunCommand add_solve_command(CLI::App& app, const solver::Ranks& ranks) {
   CLI::App* const command = app.add_subcommand("solve", "Solve a scene, on a grid or exactly");
   command->add_option("scene", request->scene, "scene file (TOML)")->required();
   add_set_option(*command, request->overrides, "override a key of the scene, e.g. load.moment_ratio=0.5");
+  add_program_options(*command, request->overrides, request->allow_programs);
   add_accuracy_options(*command, *request);
   add_file_options(*command, *request);
   add_memory_option(*command, request->memory_limit);

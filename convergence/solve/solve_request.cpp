@@ -18,6 +18,7 @@
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/python_script.hpp"
+#include "convergence/programs/run_program.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/results/result.hpp"
@@ -124,6 +125,9 @@ SolvedScene solve_on(const solver::Scene& scene, const SolveRequest& request, So
   return solve_scene(scene, options);
 }
 
+/// Those that the scene may name: it has been asked whether its own may run.
+AllowedPrograms allowed_programs() { return {.all = true, .tied_by = kOwnProgram}; }
+
 /// Solves, and writes the fields of each step where they go to a file of its own.
 /// cache: null, or what several grids share.
 SolvedScene find_on_grid(const solver::Scene& scene, const SolveRequest& request, Json& result,
@@ -141,7 +145,8 @@ SolvedScene find_on_grid(const solver::Scene& scene, const SolveRequest& request
                    .incomplete = &result,
                    .cache = cache,
                    .detail = detail,
-                   .ranks = request.processes},
+                   .ranks = request.processes,
+                   .programs = allowed_programs()},
                   step);
 }
 
@@ -224,7 +229,8 @@ void add_uncertainty(const std::vector<UncertainInput>& uncertain, const SolveRe
     solver::Scene scene = solver::read_scene(request.scene, overrides);
     scene.memory_limit = request.memory_limit;
     if (scene.model == solver::ModelChoice::exact) return exact_result(scene, require_oracle(scene), 0);
-    return solve_scene(scene, {.cache = cache, .ranks = request.processes}).result;
+    return solve_scene(scene, {.cache = cache, .ranks = request.processes, .programs = allowed_programs()})
+        .result;
   });
   text << uncertainty_text(result);
 }
@@ -253,6 +259,19 @@ void require_shared_by_ranks(const SolveRequest& request, const solver::Scene& s
   }
 }
 
+/// Throws InputError where the scene's program may not run, and for what no other program can be asked.
+void require_for_programs(const SolveRequest& request, const solver::Scene& scene) {
+  require_allowed(scene, request.overrides, {request.allow_programs, request.overrides});
+  const char* const what = request.accuracy                            ? "--accuracy"
+                           : request.plan                              ? "--plan"
+                           : !request.checkpoint.empty()               ? "--checkpoint"
+                           : request.processes.several()               ? "several ranks"
+                           : scene.model != solver::ModelChoice::exact ? nullptr
+                                                                       : "solver.model = \"exact\"";
+  if (what == nullptr) return;
+  throw solver::InputError(what, "not beside solver.program; allowed: without it");
+}
+
 }  // namespace
 
 int run_solve(const CLI::App& command, const SolveRequest& request, std::ostream& text, Json& result) {
@@ -260,6 +279,7 @@ int run_solve(const CLI::App& command, const SolveRequest& request, std::ostream
   if (!request.fields.empty()) solver::require_field_format(request.fields);
   if (!request.figure.empty()) require_figure_format(request.figure);
   const solver::Scene scene = read_scene(request);
+  if (!scene.program.empty()) require_for_programs(request, scene);
   if (request.processes.several()) require_shared_by_ranks(request, scene);
   require_scene_kept(command, request, scene);
   require_output("--fields", request.fields);

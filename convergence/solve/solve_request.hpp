@@ -19,7 +19,8 @@ namespace slipstick::convergence {
 struct SolveRequest {
   std::string scene;                   ///< file
   std::vector<std::string> overrides;  ///< "key=value"
-  std::string fields;                  ///< file; empty: none, as of the other files
+  bool allow_programs = false;
+  std::string fields;  ///< file; empty: none, as of the other files
   std::string figure;
   std::string model;               ///< word of solver.model; empty: the scene's
   std::optional<double> accuracy;  ///< relative error to reach

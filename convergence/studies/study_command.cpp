@@ -18,7 +18,6 @@ namespace {
 
 struct StudyRequest {
   std::string study;
-  std::vector<std::string> overrides;
   std::string figure;
   RunOptions runs{.output = "build/studies"};
 };
@@ -45,7 +44,7 @@ int run_study_request(const CLI::App& command, const StudyRequest& request, std:
                       Json& result) {
   const std::optional<Shard> shard = request.runs.wanted_shard();
   if (!request.figure.empty()) require_figure_format(request.figure);
-  const Study study = read_study(request.study, request.overrides);
+  const Study study = read_study(request.study, request.runs.overrides);
   require_inputs_kept(command, input_files(solver::read_scene(study.scene, study.overrides)));
   const ProcessPool pool = request.runs.pool();
   if (shard) return run_study_shard(study, *shard, pool, text, result);
@@ -66,9 +65,10 @@ RunCommand add_study_command(CLI::App& app) {
   CLI::App* const command = app.add_subcommand(
       "study", "Solve a scene on many meshes or to many tolerances; judge orders and errors");
   command->add_option("study", request->study, "study file (TOML)")->required();
-  add_set_option(*command, request->overrides, "override a key of the scene, for all series");
+  add_set_option(*command, request->runs.overrides, "override a key of the scene, for all series");
   command->add_option("--figure", request->figure, "draw errors, orders and budget: .svg, .pdf or .png");
   request->runs.add_to(*command);
+  request->runs.add_programs_to(*command);
   request->runs.add_shards_to(*command, {"--figure"});
   command->footer(
       "Example:\n  slipstick study convergence/studies/paper_mesh.toml --figure study.svg --json study.json\n"

@@ -192,6 +192,36 @@ std::vector<Column> read_columns(const path& file, const std::vector<std::string
   return columns;
 }
 
+std::vector<Index> cells_of_rows(const path& file, const Grid& grid, const std::vector<Column>& columns) {
+  constexpr double kPositionTolerance = 1e-3;  // of the cell's size
+  const ArrayXd& x1 = columns[0].values;
+  const ArrayXd& x2 = columns[1].values;
+  const auto place = [](double x, double h, Index n) { return x / h + 0.5 * static_cast<double>(n - 1); };
+  const auto is_one = [](double at, Index n) {
+    return std::round(at) >= 0.0 && std::round(at) < static_cast<double>(n) &&
+           std::abs(at - std::round(at)) <= kPositionTolerance;
+  };
+  std::vector<Index> cells;
+  std::vector<bool> given(static_cast<std::size_t>(grid.cells()), false);
+  for (Index row = 0; row < x1.size(); ++row) {
+    const double i = place(x1[row], grid.h1, grid.n1);
+    const double j = place(x2[row], grid.h2, grid.n2);
+    const auto fail = [&](const std::string& complaint) {
+      throw InputError(file.string(),
+                       fmt::format("row {}: ({}, {}) {}", row + 1, x1[row], x2[row], complaint));
+    };
+    if (!is_one(i, grid.n1) || !is_one(j, grid.n2)) {
+      fail("is not a cell's centre; allowed: those of grid.cells over grid.extent, centred at the origin");
+    }
+    cells.push_back(std::lround(i) * grid.n2 + std::lround(j));
+    if (given[static_cast<std::size_t>(cells.back())]) {
+      fail("is given a second time; allowed: one row a cell");
+    }
+    given[static_cast<std::size_t>(cells.back())] = true;
+  }
+  return cells;
+}
+
 Eigen::ArrayXXd read_height_map(const path& file) {
   if (is_hdf5(file)) return read_datasets(file, {"height"}, 2, kMaxHeights).front();
   return read_text_matrix(file, kMaxHeights);

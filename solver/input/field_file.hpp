@@ -42,6 +42,12 @@ struct TableOptions {
 std::vector<Column> read_columns(const std::filesystem::path& file, const std::vector<std::string>& names,
                                  const TableOptions& options = {});
 
+/// The cell of each row of a table whose first two columns are x1 and x2, positions of cells' centres in the
+/// grid's unit. Throws InputError for a row that is not at the centre of a cell, to a thousandth of its size,
+/// and for a cell that is given twice.
+std::vector<Index> cells_of_rows(const std::filesystem::path& file, const Grid& grid,
+                                 const std::vector<Column>& columns);
+
 /// A matrix of heights: text as above without header, one line for each x1; or the 2-D HDF5 dataset "height".
 /// A point that is missing, an empty or "nan" cell of a CSV file, is NaN.
 Eigen::ArrayXXd read_height_map(const std::filesystem::path& file);

@@ -291,6 +291,20 @@ std::vector<std::string> SceneReader::list(const std::string& key) {
   return elements;
 }
 
+std::vector<std::string> SceneReader::texts(const std::string& key) {
+  const auto found = toml_->node(key);
+  if (!found) return {};
+  const toml::array* const array = found.as_array();
+  const char* allowed = "a list of strings, [\"a\", \"b\", ...], of at least one";
+  if (array == nullptr || array->empty()) fail(key, print(*found.node()), allowed);
+  std::vector<std::string> elements;
+  for (const toml::node& element : *array) {
+    if (!element.is_string()) fail(key, print(element), allowed);
+    elements.push_back(*element.value<std::string>());
+  }
+  return elements;
+}
+
 bool SceneReader::flag_or(const std::string& key, bool otherwise) {
   const auto found = toml_->node(key);
   if (!found) return otherwise;

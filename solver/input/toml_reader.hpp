@@ -62,6 +62,8 @@ class SceneReader {
   std::vector<double> numbers(const std::string& key) { return numbers(key, range_of(key)); }
   /// The elements of a list, at least one, as TOML writes them; none where the key is missing.
   std::vector<std::string> list(const std::string& key);
+  /// The strings of a list, at least one; none where the key is missing.
+  std::vector<std::string> texts(const std::string& key);
   bool flag_or(const std::string& key, bool otherwise);
   /// The content of a table as overrides: "key=value" with dotted keys, whatever they are; none where the
   /// table is missing.

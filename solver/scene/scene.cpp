@@ -225,6 +225,7 @@ Scene read_scene(SceneReader& reader, const std::filesystem::path& file) {
   scene.extent = reader.find_pair("grid.extent");
 
   scene.method = reader.choice_or("solver.method", scene.method, kMethods);
+  if (!reader.text_or("solver.program", "").empty()) scene.program = reader.path("solver.program");
   scene.model = reader.choice_or("solver.model", scene.model, kModels);
   scene.cell_traction = reader.choice_or("solver.cell_traction", scene.cell_traction, kCellTractions);
   scene.op = reader.choice_or("solver.operator", scene.op, kOperators);

@@ -109,6 +109,8 @@ struct Scene {
   int substeps = 1;                                ///< parts that each step's loads are brought in
   std::array<Index, 2> cells{};
   std::optional<std::array<double, 2>> extent;  ///< m
+  /// File of another program that finds pressure and tractions in place of `method`; empty: none does.
+  std::filesystem::path program;
   Method method = Method::coulomb;
   ModelChoice model = ModelChoice::automatic;
   OperatorKind op = OperatorKind::dcfft;

@@ -61,7 +61,7 @@ class ScenePage : public testing::TestWithParam<std::string> {
   Json page(const fs::path& scene, const std::vector<WantedError>& wanted = {},
             const std::vector<std::string>& uncertain = {}) const {
     const ProcessPool pool({.folder = folder_ / "points", .program = SLIPSTICK_PROGRAM});
-    return scene_page({scene, tiny(), wanted, uncertain}, folder_, pool);
+    return scene_page({{.scene = scene}, tiny(), wanted, uncertain}, folder_, pool);
   }
   static fs::path file(const std::string& name) { return fs::path(SLIPSTICK_SCENES) / (name + ".toml"); }
 

@@ -1,13 +1,13 @@
 // The rigid motion that Coulomb's law fits best.
 
-#include "convergence/check/fitted_motion.hpp"
+#include "solver/contact/fitted_motion.hpp"
 
 #include <gtest/gtest.h>
 
 #include "solver/contact/certificate.hpp"
 #include "solver/grid/grid.hpp"
 
-namespace slipstick::convergence {
+namespace slipstick::solver {
 namespace {
 
 using Eigen::ArrayXd;
@@ -21,18 +21,18 @@ struct MadeState {
   VectorXd motion{{0.3, -0.2, 1.7}};
 
   MadeState() {
-    const solver::Grid grid{16, 12, 1.0, 1.2};
+    const Grid grid{16, 12, 1.0, 1.2};
     const Eigen::Index cells = grid.cells();
-    const ArrayXd radius = solver::norms(solver::rotation_field(grid)) / 8.0;
+    const ArrayXd radius = norms(rotation_field(grid)) / 8.0;
     bound = (1.0 - radius.square()).max(0.0);
     for (const int component : {0, 1}) {
       motions.push_back(ArrayXd::Zero(2 * cells));
       motions.back().segment(component * cells, cells).setOnes();
     }
-    motions.push_back(solver::rotation_field(grid));
+    motions.push_back(rotation_field(grid));
     const ArrayXd slips = (radius > 0.5).cast<double>();
     const ArrayXd slip = slips.replicate(2, 1) * ArrayXd::Random(2 * cells);
-    const ArrayXd size = solver::norms(slip).max(1e-300);
+    const ArrayXd size = norms(slip).max(1e-300);
     traction = 0.5 * (1.0 - slips).replicate(2, 1) * bound.replicate(2, 1) * ArrayXd::Random(2 * cells) -
                (slips * bound / size).replicate(2, 1) * slip;
     displacement = slip;
@@ -55,7 +55,7 @@ TEST(FittedMotion, HasTheLeastGapOfAnyTractions) {
   const auto gap = [&](const VectorXd& z) {
     ArrayXd s = made.displacement;
     for (Eigen::Index k = 0; k < 3; ++k) s -= z[k] * made.motions[static_cast<std::size_t>(k)];
-    return (solver::dot_products(made.traction, s) + made.bound * solver::norms(s)).sum();
+    return (dot_products(made.traction, s) + made.bound * norms(s)).sum();
   };
   EXPECT_NEAR(gap(fitted.coefficients), fitted.gap.sum(), 1e-12 * fitted.gap.sum());
   for (Eigen::Index k = 0; k < 3; ++k) {
@@ -73,4 +73,4 @@ TEST(FittedMotion, OfNoFreeMotionLeavesTheDisplacement) {
 }
 
 }  // namespace
-}  // namespace slipstick::convergence
+}  // namespace slipstick::solver

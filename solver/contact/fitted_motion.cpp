@@ -1,20 +1,18 @@
-#include "convergence/check/fitted_motion.hpp"
+#include "solver/contact/fitted_motion.hpp"
 
 #include <cmath>
 
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/smoothed_friction.hpp"
 
-namespace slipstick::convergence {
+namespace slipstick::solver {
 namespace {
 
 using Eigen::ArrayXd;
 using Eigen::Index;
-using solver::CoefficientMatrix;
-using solver::Coefficients;
 
 /// From the root mean square of s down to a slip that no file's digits distinguish from none.
-constexpr solver::Smoothing kSlipSmoothing{.first = 1.0, .least = 1e-9};
+constexpr Smoothing kSlipSmoothing{.first = 1.0, .least = 1e-9};
 
 /// A contact whose fields are zero in cells without a bound.
 struct Program {
@@ -42,19 +40,18 @@ struct SmoothedGap {
 SmoothedGap evaluate(const Program& program, const Coefficients& z, double smoothing) {
   const Index n = program.count();
   const ArrayXd s = program.slip(z);
-  const ArrayXd size = (solver::dot_products(s, s) + smoothing * smoothing).sqrt();
+  const ArrayXd size = (dot_products(s, s) + smoothing * smoothing).sqrt();
   const ArrayXd weight = program.bound / size;
   const ArrayXd pull = program.traction + weight.replicate(2, 1) * s;
   SmoothedGap gap{z, (program.traction * s).sum() + (program.bound * size).sum(), Coefficients(n),
                   CoefficientMatrix(n, n)};
   for (Index k = 0; k < n; ++k) {
-    const ArrayXd along = solver::dot_products(s, program.motion(k)) / size;
+    const ArrayXd along = dot_products(s, program.motion(k)) / size;
     gap.gradient[k] = -(pull * program.motion(k)).sum();
     for (Index l = 0; l <= k; ++l) {
-      gap.hessian(k, l) = gap.hessian(l, k) =
-          (weight * (solver::dot_products(program.motion(k), program.motion(l)) -
-                     along * solver::dot_products(s, program.motion(l)) / size))
-              .sum();
+      gap.hessian(k, l) = gap.hessian(l, k) = (weight * (dot_products(program.motion(k), program.motion(l)) -
+                                                         along * dot_products(s, program.motion(l)) / size))
+                                                  .sum();
     }
   }
   return gap;
@@ -70,7 +67,7 @@ Coefficients least_slip(const Program& program) {
     right[k] = (weighted * program.displacement).sum();
     for (Index l = 0; l < n; ++l) matrix(k, l) = (weighted * program.motion(l)).sum();
   }
-  return solver::SmallCholesky(matrix).solve(right);
+  return SmallCholesky(matrix).solve(right);
 }
 
 /// Newton's method on bounds over their sum, and displacements over the root mean square of s at the start.
@@ -80,7 +77,7 @@ Coefficients least_gap(Program program) {
   program.traction /= total;
   const Coefficients start = least_slip(program);
   const ArrayXd s = program.slip(start);
-  const double scale = std::sqrt((program.bound * solver::dot_products(s, s)).sum());
+  const double scale = std::sqrt((program.bound * dot_products(s, s)).sum());
   if (!(scale > 0.0)) return start;
   program.displacement /= scale;
   const auto move = [&](const SmoothedGap& from, const Coefficients& step, double smoothing) {
@@ -88,9 +85,8 @@ Coefficients least_gap(Program program) {
   };
   const auto is_least = [](const SmoothedGap&, double) { return false; };
   const Coefficients scaled = start / scale;
-  return scale * solver::minimise_smoothed(SmoothedGap{.z = scaled, .gradient = scaled}, kSlipSmoothing, move,
-                                           is_least)
-                     .z;
+  return scale *
+         minimise_smoothed(SmoothedGap{.z = scaled, .gradient = scaled}, kSlipSmoothing, move, is_least).z;
 }
 
 }  // namespace
@@ -104,9 +100,8 @@ FittedMotion fit_motion(const ArrayXd& displacement, const ArrayXd& traction, co
   FittedMotion fitted;
   if (!motions.empty()) fitted.coefficients = least_gap(program);
   fitted.slip = program.slip(fitted.coefficients);
-  fitted.gap =
-      solver::dot_products(program.traction, fitted.slip) + friction_bound * solver::norms(fitted.slip);
+  fitted.gap = dot_products(program.traction, fitted.slip) + friction_bound * norms(fitted.slip);
   return fitted;
 }
 
-}  // namespace slipstick::convergence
+}  // namespace slipstick::solver

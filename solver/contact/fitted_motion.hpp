@@ -5,14 +5,14 @@
 
 #include "solver/newton/coefficients.hpp"
 
-namespace slipstick::convergence {
+namespace slipstick::solver {
 
 /// The rigid motion under which tractions come closest to Coulomb's law: the one with the least gap, the sum
 /// of s.q + mu p |s| with s = displacement - sum z_k motions_k, which is convex in z.
 struct FittedMotion {
-  solver::Coefficients coefficients;  ///< z
-  Eigen::ArrayXd slip;                ///< s, 2*cells
-  Eigen::ArrayXd gap;                 ///< cells: s.q + mu p |s|, each zero under Coulomb's law
+  Coefficients coefficients;  ///< z
+  Eigen::ArrayXd slip;        ///< s, 2*cells
+  Eigen::ArrayXd gap;         ///< cells: s.q + mu p |s|, each zero under Coulomb's law
 };
 
 /// displacement, traction: 2*cells; friction_bound: cells; motions: at most kMaxConditions fields of 2*cells,
@@ -20,4 +20,4 @@ struct FittedMotion {
 FittedMotion fit_motion(const Eigen::ArrayXd& displacement, const Eigen::ArrayXd& traction,
                         const Eigen::ArrayXd& friction_bound, const std::vector<Eigen::ArrayXd>& motions);
 
-}  // namespace slipstick::convergence
+}  // namespace slipstick::solver

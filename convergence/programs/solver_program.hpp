@@ -1,0 +1,54 @@
+#pragma once
+
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "convergence/programs/run_program.hpp"
+#include "solver/input/setting_key.hpp"
+
+/// Other programs that solve scenes, by files that say how each is started.
+namespace slipstick::convergence {
+
+/// A program, as its file (TOML) says.
+struct SolverProgram {
+  std::filesystem::path file;
+  std::string name;
+  /// The words that start it, in the folder of its file; {scene}, {field} and {numbers} stand for files.
+  std::vector<std::string> command;
+  std::vector<std::string> version;           ///< words that print its version; empty: none
+  std::vector<std::filesystem::path> inputs;  ///< files that its answers depend on
+  double time_limit = 600.0;                  ///< s, for one scene
+  bool numpy = false;                         ///< it takes the gap as .npy, not as .csv
+};
+
+/// Every key of such a file.
+const solver::SettingKeys& program_keys();
+
+/// Throws InputError naming file, key, value and what is allowed.
+SolverProgram read_solver_program(const std::filesystem::path& file);
+
+/// A program that was killed, took too long, failed, or wrote no answer that can be read.
+class ProgramFailure : public std::runtime_error {
+ public:
+  using std::runtime_error::runtime_error;
+};
+
+/// What its version command says, its first line. Throws ProgramFailure.
+std::string version_of(const SolverProgram& program, const std::filesystem::path& tied_by);
+
+/// The files on which its answers depend: its own, what its words and `inputs` name.
+std::vector<std::filesystem::path> program_files(const SolverProgram& program);
+
+/// The files of one exchange.
+struct ExchangeFiles {
+  std::filesystem::path scene, field, numbers;
+};
+
+/// What it says, its last lines, and the CPU seconds that it took. Throws ProgramFailure; InputError where it
+/// ends with code 3, which means that it does not solve such scenes.
+ProgramEnd run_solver_program(const SolverProgram& program, const ExchangeFiles& files,
+                              const std::filesystem::path& tied_by);
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,201 @@
+#include "convergence/runs/exchange.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "convergence/results/json_text.hpp"
+#include "convergence/results/output.hpp"
+#include "solver/elasticity/law/law_kind.hpp"
+#include "solver/input/field_file.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/input/table_text.hpp"
+#include "solver/input/whole_file.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+namespace fs = std::filesystem;
+using Eigen::ArrayXd;
+using solver::Grid;
+using solver::Index;
+
+/// Of the exchange files; a program may look at it.
+constexpr int kFormat = 1;
+/// A field whose normal load is off by this part is half a file, or not in Pa: coarse meshes and crude
+/// quadratures are off by less.
+constexpr double kLoadOff = 0.25;
+
+/// NumPy's format, version 1.0: doubles of this machine, row by row.
+void write_npy(const fs::path& file, const Grid& grid, const ArrayXd& values) {
+  std::string header =
+      fmt::format("{{'descr': '<f8', 'fortran_order': False, 'shape': ({}, {}), }}", grid.n1, grid.n2);
+  constexpr std::size_t kBefore = 10;  // magic, version, the header's length
+  constexpr std::size_t kAligned = 64;
+  header.resize((kBefore + header.size() + kAligned) / kAligned * kAligned - kBefore - 1, ' ');
+  header += '\n';
+  std::string text = std::string("\x93NUMPY\x01\x00", 8);
+  text += static_cast<char>(header.size() % 256);
+  text += static_cast<char>(header.size() / 256);
+  text += header;
+  solver::write_whole_file(file, [&](std::FILE* out) {
+    std::fwrite(text.data(), 1, text.size(), out);
+    std::fwrite(values.data(), sizeof(double), static_cast<std::size_t>(values.size()), out);
+  });
+}
+
+/// A line for each x1.
+void write_csv(const fs::path& file, const Grid& grid, const ArrayXd& values) {
+  solver::write_whole_file(file, [&](std::FILE* out) {
+    for (Index i = 0; i < grid.n1; ++i) {
+      std::string line;
+      for (Index j = 0; j < grid.n2; ++j) {
+        line += fmt::format("{}{:.17g}", j == 0 ? "" : ",", values[i * grid.n2 + j]);
+      }
+      fmt::print(out, "{}\n", line);
+    }
+  });
+}
+
+/// Writes an array beside the scene and returns its name.
+std::string write_array(const SolverProgram& program, const ExchangeFiles& files, const std::string& name,
+                        const Grid& grid, const ArrayXd& values) {
+  const std::string file = name + (program.numpy ? ".npy" : ".csv");
+  (program.numpy ? write_npy : write_csv)(files.scene.parent_path() / file, grid, values);
+  return file;
+}
+
+Json body_json(const solver::Material& body) {
+  const bool rigid = std::isinf(body.young_modulus);
+  Json json{{"rigid", rigid}, {"young_modulus", nullptr}, {"poisson_ratio", nullptr}};
+  if (!rigid) json["young_modulus"] = body.young_modulus;
+  if (!rigid) json["poisson_ratio"] = body.poisson_ratio;
+  return json;
+}
+
+Json load_json(const solver::Step& step) {
+  Json load{{"normal", nullptr}};
+  if (step.normal) load["normal"] = *step.normal;
+  if (const auto twist = solver::value_if<solver::Twist>(step.torsion)) {
+    load["twist"] = *twist;
+  } else {
+    load["moment"] = solver::value_if<solver::Moment>(step.torsion).value_or(0.0);
+  }
+  if (step.displacement) {
+    load["displacement"] = *step.displacement;
+  } else {
+    load["force"] = step.force;
+  }
+  return load;
+}
+
+/// How normal and tangential tractions are to be coupled.
+const char* coupling_word(const solver::Scene& scene, const solver::PosedScene& posed) {
+  if (posed.mismatch == 0.0) return "none";
+  return scene.coupling == solver::Coupling::full ? "full" : "pressure";
+}
+
+}  // namespace
+
+void write_exchange(const SolverProgram& program, const ExchangeFiles& files, const solver::Scene& scene,
+                    const solver::PosedScene& posed) {
+  const Grid& grid = posed.grid;
+  std::vector<double> x1;
+  std::vector<double> x2;
+  for (Index i = 0; i < grid.n1; ++i) x1.push_back(grid.x1(i));
+  for (Index j = 0; j < grid.n2; ++j) x2.push_back(grid.x2(j));
+  Json json{{"format", kFormat},
+            {"name", scene.name},
+            {"cells", {grid.n1, grid.n2}},
+            {"cell_size", {grid.h1, grid.h2}},
+            {"x1", x1},
+            {"x2", x2},
+            {"combined",
+             {{"shear_modulus", posed.shear_modulus},
+              {"poisson_ratio", posed.poisson_ratio},
+              {"contact_modulus", posed.contact_modulus},
+              {"mismatch", posed.mismatch}}},
+            {"upper", body_json(scene.upper)},
+            {"lower", body_json(scene.lower)},
+            {"layer", nullptr},
+            {"friction", scene.friction},
+            {"coupling", coupling_word(scene, posed)},
+            {"load", load_json(scene.steps.front())},
+            {"tolerance", scene.tolerance},
+            {"threads", std::max(1, scene.threads)},
+            {"gap", write_array(program, files, "gap", grid, posed.gap)},
+            {"pressure", nullptr}};
+  if (scene.layer.kind != nullptr) json["layer"] = scene.layer.kind->word;
+  if (posed.pressure.size() > 0) {
+    json["pressure"] = write_array(program, files, "pressure", grid, posed.pressure);
+  }
+  solver::write_whole_file(files.scene, json_text(json, 1) + "\n");
+}
+
+ReadFields read_exchange(const SolverProgram& program, const ExchangeFiles& files, const solver::Scene& scene,
+                         const solver::PosedScene& posed) {
+  if (!fs::is_regular_file(files.field)) {
+    throw ProgramFailure(fmt::format("{} ended well but wrote no field", program.name));
+  }
+  try {
+    const std::vector<std::string> there = solver::text_table_names(files.field);
+    const bool tractions = std::ranges::find(there, "q1") != there.end();
+    std::vector<std::string> names{"x1", "x2", "pressure"};
+    if (tractions) names.insert(names.end(), {"q1", "q2"});
+    const std::vector<solver::Column> columns = solver::read_columns(files.field, names);
+    const std::vector<Index> cells = solver::cells_of_rows(files.field, posed.grid, columns);
+    const Index all = posed.grid.cells();
+    ReadFields read{{ArrayXd::Zero(all), ArrayXd::Zero(2 * all)}, tractions};
+    for (std::size_t row = 0; row < cells.size(); ++row) {
+      const auto at = static_cast<Index>(row);
+      const double pressure = columns[2].values[at];
+      if (!(pressure >= 0.0)) {
+        throw solver::InputError(
+            files.field.string(),
+            fmt::format("row {}: pressure = {}; allowed: zero or positive", row + 1, pressure));
+      }
+      read.fields.pressure[cells[row]] = pressure;
+      if (!tractions) continue;
+      read.fields.traction[cells[row]] = columns[3].values[at];
+      read.fields.traction[all + cells[row]] = columns[4].values[at];
+    }
+    const double carried = read.fields.pressure.sum() * posed.grid.cell_area();
+    const double load = scene.steps.front().normal.value_or(carried);
+    if (!(carried > 0.0 && std::abs(carried / load - 1.0) <= kLoadOff)) {
+      throw solver::InputError(files.field.string(),
+                               fmt::format("its pressure carries {:.6g} N of {:.6g} N: it is not whole, or "
+                                           "its pressure is not in Pa",
+                                           carried, load));
+    }
+    return read;
+  } catch (const solver::InputError& error) {
+    throw ProgramFailure(fmt::format("{} wrote a field that cannot be used: {}", program.name, error.what()));
+  }
+}
+
+Json read_own_numbers(const SolverProgram& program, const ExchangeFiles& files) {
+  Json own = Json::object();
+  if (!fs::is_regular_file(files.numbers)) return own;
+  try {
+    const Json read = read_json(files.numbers, "JSON with twist, iterations, seconds, converged, message");
+    for (const char* key : {"twist", "iterations", "seconds"}) {
+      if (read.is_object() && read.contains(key) && read[key].is_number()) own[key] = read[key];
+    }
+    if (read.is_object() && read.contains("converged") && read["converged"].is_boolean()) {
+      own["converged"] = read["converged"];
+    }
+    if (read.is_object() && read.contains("message") && read["message"].is_string()) {
+      own["message"] = plain_text(read["message"].get<std::string>());
+    }
+  } catch (const solver::InputError& error) {
+    throw ProgramFailure(fmt::format("{} wrote numbers that cannot be read: {}", program.name, error.what()));
+  }
+  return own;
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,110 @@
+#include "convergence/runs/program_solve.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <chrono>
+#include <limits>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "convergence/oracle/oracle.hpp"
+#include "convergence/programs/solver_program.hpp"
+#include "convergence/programs/temporary_folder.hpp"
+#include "convergence/results/json_text.hpp"
+#include "convergence/runs/exchange.hpp"
+#include "solver/given_fields.hpp"
+#include "solver/input/input_error.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using solver::Scene;
+
+/// A field whose loads are off by more, or whose tractions are above mu p by more, answers another scene.
+/// Coarse meshes are off by a hundredth. The gap may be anything: other discretisations have other ones.
+constexpr solver::CertificateBounds kSameLoads{
+    .gap = std::numeric_limits<double>::infinity(), .moment = 0.05, .force = 0.05, .friction_bound = 0.05};
+
+constexpr const char* kKey = "solver.program=";
+
+/// The scene under loads in N and N m.
+Scene under_given_loads(Scene scene, double limit) {
+  solver::Step& step = scene.steps.front();
+  if (const auto ratio = solver::value_if<solver::MomentRatio>(step.torsion)) {
+    step.torsion = solver::Moment{*ratio * limit};
+  }
+  return scene;
+}
+
+/// The scene as far as a pressure alone answers it.
+Scene pressed_alone(Scene scene) {
+  solver::Step& step = scene.steps.front();
+  step.torsion = solver::Moment{0.0};
+  step.force = {};
+  step.displacement.reset();
+  scene.coupling = solver::Coupling::none;
+  return scene;
+}
+
+}  // namespace
+
+std::string program_override(const std::filesystem::path& file) {
+  return kKey + json_text(std::filesystem::absolute(file).string());
+}
+
+void require_allowed(const Scene& scene, const std::vector<std::string>& overrides,
+                     const AllowedPrograms& allowed) {
+  if (scene.program.empty() || allowed.all) return;
+  const auto last = std::find_if(overrides.rbegin(), overrides.rend(),
+                                 [](const std::string& assignment) { return assignment.starts_with(kKey); });
+  if (last != overrides.rend() && std::ranges::find(allowed.overrides, *last) != allowed.overrides.end())
+    return;
+  throw solver::InputError(
+      scene.source.string(), "solver.program", scene.program.string(),
+      "a program that a file names runs only with --allow-programs; it may do whatever you may do");
+}
+
+ProgramAnswer solve_by_program(const Scene& scene, const AllowedPrograms& allowed) {
+  const SolverProgram program = read_solver_program(scene.program);
+  const auto ratio = solver::value_if<solver::MomentRatio>(scene.steps.front().torsion);
+  const bool by_ratio = ratio.value_or(0.0) != 0.0;
+  const solver::PosedScene posed = solver::pose(scene, by_ratio);
+  ProgramAnswer answer{
+      .scene = under_given_loads(scene, posed.moment_limit), .exact = {}, .solution = {}, .program = {}};
+
+  const TemporaryFolder folder;
+  const ExchangeFiles files{folder / "scene.json", folder / "field.csv", folder / "numbers.json"};
+  write_exchange(program, files, answer.scene, posed);
+  const auto start = std::chrono::steady_clock::now();
+  const ProgramEnd end = run_solver_program(program, files, allowed.tied_by);
+  const double wall = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  const ReadFields read = read_exchange(program, files, answer.scene, posed);
+  const Json own = read_own_numbers(program, files);
+
+  if (!read.tractions) answer.scene = pressed_alone(std::move(answer.scene));
+  answer.exact = find_oracle(read.tractions ? scene : answer.scene);
+  answer.solution = solver::describe_given(answer.scene, read.fields);
+  const std::string off = solver::beyond(answer.solution.certificate, kSameLoads);
+  if (read.tractions && !off.empty()) {
+    answer.solution.status = solver::Status::not_converged;
+    answer.solution.message = off + ": no answer to these loads, whatever " + program.name + " says";
+  }
+  if (!own.value("converged", true)) {
+    answer.solution.status = solver::Status::not_converged;
+    answer.solution.message = own.value("message", program.name + " says that it did not converge");
+  }
+  const double seconds = own.contains("seconds") ? own["seconds"].get<double>() : wall;
+  answer.solution.seconds = {.traction = seconds, .total = seconds};
+  answer.solution.iterations = own.contains("iterations") ? own["iterations"].get<int>() : 0;
+  answer.program = {{"name", program.name},
+                    {"file", program.file.string()},
+                    {"version", allowed.version ? *allowed.version : version_of(program, allowed.tied_by)},
+                    {"fields", read.tractions ? "pressure and tractions" : "pressure"},
+                    {"wall_seconds", wall},
+                    {"cpu_seconds", end.cpu_seconds},
+                    {"own", own}};
+  return answer;
+}
+
+}  // namespace slipstick::convergence

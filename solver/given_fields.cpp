@@ -1,0 +1,155 @@
+#include "solver/given_fields.hpp"
+
+#include <array>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "solver/contact/fitted_motion.hpp"
+#include "solver/history_state.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/model_solution.hpp"
+#include "solver/pressure.hpp"
+#include "solver/resolution.hpp"
+#include "solver/tractions.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+
+ArrayXd applied(const Scene& scene, const Model& model, const BlockKernel& kernel, const ArrayXd& to) {
+  ArrayXd u(kernel.outputs * model.grid.cells());
+  elasticity(scene, model, Reduction(model.grid)).make(model.grid, kernel)->apply(to, u);
+  return u;
+}
+
+/// A pressure as the answer to the normal contact: the surfaces' approach is the mean gap under it, and the
+/// gap that is open above the least is what its complementarity leaves.
+NormalSolution describe_pressure(const Scene& scene, const Model& model, const ArrayXd& pressure) {
+  NormalSolution normal;
+  normal.status = Status::converged;
+  normal.pressure = pressure;
+  if (scene.pressure != PressureModel::solved) return normal;
+  const ArrayXd displacement = applied(scene, model, normal_kernel(), pressure);
+  const ArrayXd gap = (pressure > 0.0).select(displacement + model.gap, 0.0);
+  const double total = pressure.sum();
+  normal.approach = (pressure * gap).sum() / total;
+  const double least = (displacement + model.gap).minCoeff();
+  normal.complementarity = 2.0 * ((pressure * gap).sum() - least * total) / (pressure * displacement).sum();
+  return normal;
+}
+
+/// Motions by which slip is not fixed yet, the rotation last, and the sum of those that the scene imposes.
+struct Motions {
+  std::vector<ArrayXd> free;
+  ArrayXd imposed;
+};
+
+Motions motions_of(const TangentialProblem& problem, const Grid& grid) {
+  const Index cells = grid.cells();
+  Motions motions{{}, ArrayXd::Zero(2 * cells)};
+  if (problem.force || problem.displacement) {
+    for (const Index k : {0, 1}) {
+      ArrayXd translation = ArrayXd::Zero(2 * cells);
+      translation.segment(k * cells, cells).setOnes();
+      if (problem.force) motions.free.push_back(translation);
+      if (problem.displacement) {
+        motions.imposed += (*problem.displacement)[static_cast<std::size_t>(k)] * translation;
+      }
+    }
+  }
+  const ArrayXd rotation = rotation_field(grid);
+  if (problem.twist) motions.imposed += *problem.twist * rotation;
+  if (!problem.twist) motions.free.push_back(rotation);
+  return motions;
+}
+
+TangentialSolution describe_tractions(const Scene& scene, const Model& model,
+                                      const TangentialProblem& problem, const ArrayXd& traction) {
+  TangentialSolution found;
+  found.status = Status::converged;
+  found.traction = traction;
+  found.elastic_displacement = applied(scene, model, tangential_kernel(), traction);
+  const ArrayXd& bound = problem.friction_bound;
+  const Motions motions = motions_of(problem, model.grid);
+  ArrayXd displacement = found.elastic_displacement - motions.imposed;
+  if (problem.initial_displacement.size() > 0) displacement += problem.initial_displacement;
+  const FittedMotion fitted = fit_motion(displacement, traction, bound, motions.free);
+  found.slip = fitted.slip;
+  found.stick = ((bound > 0.0) && norms(traction) < (1.0 - kOnCircle) * bound).cast<double>();
+  const Coefficients& z = fitted.coefficients;
+  found.twist = problem.twist.value_or(z.size() > 0 ? z[z.size() - 1] : 0.0);
+  if (problem.force) found.displacement = {z[0], z[1]};
+  if (problem.displacement) found.displacement = *problem.displacement;
+  return found;
+}
+
+void require_one_load(const Scene& scene) {
+  const std::size_t steps = scene.steps.size() * static_cast<std::size_t>(scene.cycles);
+  if (steps == 1 && scene.substeps == 1) return;
+  throw InputError(scene.source.string(), scene.substeps == 1 ? "step" : "solver.substeps",
+                   std::to_string(steps * static_cast<std::size_t>(scene.substeps)),
+                   "one load beside solver.program: a field does not say what happened before");
+}
+
+}  // namespace
+
+Solution describe_given(Scene scene, const GivenFields& fields) {
+  scene.method = Method::coulomb;  // others know less than a field may be
+  validate(scene);
+  require_one_load(scene);
+  ModelSolution solution;
+  solution.model = make_model(scene);
+  const Model& model = solution.model;
+  const Index cells = model.grid.cells();
+  if (fields.pressure.size() != cells || fields.traction.size() != 2 * cells) {
+    throw std::invalid_argument("fields of another grid");
+  }
+  const Step& step = scene.steps.front();
+  solution.normal = describe_pressure(scene, model, fields.pressure / model.stress_unit);
+  const LoadStep loads = load_step(scene, model, step, solution.normal.pressure, {});
+  solution.tangential = describe_tractions(scene, model, loads.problem, fields.traction / model.stress_unit);
+  solution.status = Status::converged;
+  solution.loads = step;
+  solution.twist_angle = solution.tangential.twist;
+  for (std::size_t k = 0; k < 2; ++k) {
+    solution.displacement[k] = solution.tangential.displacement[k] * model.length_unit;
+  }
+  describe(solution, scene, loads, solution.tangential.slip);
+  OpenHistory open;
+  open.add({}, end_of(solution), solution.resolution);
+  solution.resolution.mesh = open.mesh();
+  state_uncertainty(solution, scene, 0);
+  return in_si(std::move(solution));
+}
+
+PosedScene pose(Scene scene, bool with_limit) {
+  scene.method = Method::coulomb;
+  validate(scene);
+  require_one_load(scene);
+  const Model model = make_model(scene);
+  const ElasticPair& pair = model.pair;
+  PosedScene posed{.grid = model.grid_in_m(),
+                   .gap = model.gap * model.length_unit,
+                   .pressure = {},
+                   .contact_modulus = pair.effective_modulus() * model.stress_unit,
+                   .shear_modulus = pair.shear_modulus() * model.stress_unit,
+                   .poisson_ratio = pair.poisson_compliance / pair.shear_compliance,
+                   .mismatch = model.pressure_coupling ? pair.mismatch / model.stress_unit : 0.0,
+                   .moment_limit = 0.0};
+  const bool given = scene.pressure != PressureModel::solved;
+  if (!given && !with_limit) return posed;
+  const ArrayXd pressure = find_pressure(scene, model, scene.steps.front()).pressure;
+  if (given) posed.pressure = pressure * model.stress_unit;
+  if (with_limit) {
+    Step unloaded;
+    unloaded.normal = scene.steps.front().normal;
+    posed.moment_limit = load_step(scene, model, unloaded, pressure, {}).moment_limit *
+                         model.grid.cell_area() * model.moment_unit();
+  }
+  return posed;
+}
+
+}  // namespace slipstick::solver
