@@ -239,6 +239,17 @@ class Results(unittest.TestCase):
         files = [self.file("refused.toml", refused), self.file("unreadable.toml", "[[gate]]\nid =")]
         self.run_and_check("gate", *files, "--output", self.folder / "gates", code=2)
 
+    def test_programs(self):
+        kept = self.folder / "exchange.json"
+        (self.folder / "copies.py").write_text(f"import shutil, sys\nshutil.copy(sys.argv[1], {str(kept)!r})\nsys.exit(3)\n")
+        program = self.file("copies.toml", f'command = ["{sys.executable}", "copies.py", "{{scene}}", "{{field}}"]\n')
+        for scene in ("paper", "dissimilar", "imposed_displacement", "honed_surface"):
+            subprocess.run([PROGRAM, "solve", SCENES / f"{scene}.toml", "--program", program], capture_output=True)
+            error = jsonschema.exceptions.best_match(validator("exchange").iter_errors(parse(kept.read_text())))
+            self.assertIsNone(error, error and error.message)
+        self.run_and_check("solve", SCENES / "paper.toml", "--set", "grid.cells=[12,12]", "--program",
+                           SCENES.parents[1] / "interfaces/programs/numpy/program.toml")
+
     def test_pages(self):
         for name in ("mindlin", "honed_surface"):
             self.run_and_check("report", SCENES / f"{name}.toml", "--quick", "--output", self.folder / name, schema="page")

@@ -1,5 +1,5 @@
 #include "convergence/check/allowed.hpp"
-#include "solver/given_fields.hpp"
+#include "solver/contact/fitted_motion.hpp"
 
 #include <algorithm>
 #include <cmath>

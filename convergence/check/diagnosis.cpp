@@ -10,7 +10,6 @@
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/fitted_motion.hpp"
 #include "solver/elasticity/law/half_spaces.hpp"
-#include "solver/given_fields.hpp"
 
 namespace slipstick::convergence {
 namespace {

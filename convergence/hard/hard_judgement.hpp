@@ -58,7 +58,8 @@ struct ComparedAnswer {
   Json numbers;        ///< what the verdict rests on, with the work; empty where nothing was solved
 };
 
-/// `certified` and `other` are results of `solve`. An answer agrees within 1 % of twist, moment and energy.
+/// `certified` and `other` are results of `solve`. An answer agrees within 1 % of twist, moment and energy,
+/// that of another program within what the mesh leaves open, too.
 /// Without a certified answer any other is another one.
 ComparedAnswer compare_answer(const Json& certified, const Json& other);
 

@@ -11,8 +11,8 @@
 #include <set>
 #include <utility>
 
+#include "convergence/exchange/solver_program.hpp"
 #include "convergence/hard/hard_judgement.hpp"
-#include "convergence/programs/solver_program.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/run_batch.hpp"
@@ -145,13 +145,16 @@ void judge_by_finer_meshes(std::vector<Trial>& trials, const ProcessPool& pool) 
 
 void compare_methods(std::vector<Trial>& trials, const std::vector<BesideMethod>& methods,
                      const ProcessPool& pool) {
-  for (const auto& [method, override] : methods) {
+  for (const auto& [method, override, is_program] : methods) {
     RunBatch batch;
     for (Trial& trial : trials) {
       RunSpec spec = trial.hard->run;
       spec.overrides.push_back(override);
-      batch.add_or_refuse(spec, [&trial, method = method](const Json& result) {
-        const ComparedAnswer compared = compare_answer(trial.result, result);
+      batch.add_or_refuse(spec, [&trial, method = method, is_program = is_program](const Json& result) {
+        const bool failed = is_program && result["status"] == "failed";  // and says so
+        const ComparedAnswer compared =
+            failed ? ComparedAnswer{MethodVerdict::not_converged, result["message"], Json::object()}
+                   : compare_answer(trial.result, result);
         trial.methods[method] = verdict_json(to_string(compared.verdict), compared.reason, compared.numbers);
       });
     }
@@ -205,10 +208,10 @@ Json method_counts(const std::vector<Trial>& trials, const std::string& method) 
 }  // namespace
 
 BesideMethod read_beside_method(const std::string& word) {
-  if (word.ends_with(".toml")) return {read_solver_program(word).name, program_override(word)};
+  if (word.ends_with(".toml")) return {read_solver_program(word).name, program_override(word), true};
   std::vector<std::string> allowed;
   for (const auto& [name, method] : solver::kMethods) {
-    if (name == word) return {name, fmt::format("solver.method=\"{}\"", name)};
+    if (name == word) return {name, fmt::format("solver.method=\"{}\"", name), false};
     allowed.push_back(name);
   }
   throw solver::InputError("--beside " + word, fmt::format("is no method; allowed: {}, or a program's file "

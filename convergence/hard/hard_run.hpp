@@ -13,6 +13,7 @@ namespace slipstick::convergence {
 struct BesideMethod {
   std::string name;
   std::string override;
+  bool is_program = false;
 };
 /// A word of solver.method, or the file of a program (TOML). Throws InputError for what is neither.
 BesideMethod read_beside_method(const std::string& word);

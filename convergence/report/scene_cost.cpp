@@ -7,8 +7,8 @@
 #include <map>
 #include <nlohmann/json.hpp>
 
+#include "convergence/exchange/solver_program.hpp"
 #include "convergence/orders/growth.hpp"
-#include "convergence/programs/solver_program.hpp"
 #include "convergence/results/quantity.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/run_batch.hpp"

@@ -363,7 +363,7 @@ Json scene_page(const PageRequest& request, const fs::path& folder, const Proces
     findings.push_back(judge_certificate(answer));
   } else if (has_tractions(answer)) {
     page["check"] = check_program(base, scene, meshes, answer, fields);
-    findings.push_back(judge_check(page["check"]));
+    findings.push_back(judge_check(answer, page["check"]));
   } else {
     findings.push_back(judge_pressure(answer));
   }
@@ -378,7 +378,7 @@ Json scene_page(const PageRequest& request, const fs::path& folder, const Proces
   if (!meshes.given && own) page["operators"] = direct_against_dcfft(base, scene, size, pool);
   if (own || has_tractions(answer)) {
     HardOptions options{.variants = own, .finer_meshes = own && size.finer_meshes};
-    if (!own) options.methods = {{answer["program"]["name"], program_override(scene.program)}};
+    if (!own) options.methods = {{answer["program"]["name"], program_override(scene.program), true}};
     const RunSpec by_us = own ? base : changed(base, {kNoProgram});
     page["hard"] = run_hard_cases(hard_cases(by_us, scene, meshes), options, pool);
     findings.push_back(own ? judge_hard(page["hard"]) : judge_hard_beside(page["hard"]));

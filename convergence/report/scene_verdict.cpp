@@ -75,10 +75,13 @@ Finding judge_hard(const Json& hard) {
   return {"Hard variants", line, counts["wrong"] == 0 && counts["not_converged"] == 0};
 }
 
-Finding judge_check(const Json& check) {
-  return {"Field",
-          fmt::format("{}: {}", check["verdict"].get<std::string>(), check["why"].get<std::string>()),
-          check["verdict"] == "good"};
+Finding judge_check(const Json& answer, const Json& check) {
+  const bool good = check["verdict"] == "good";
+  const std::string why =
+      fmt::format("{}: {}", check["verdict"].get<std::string>(), check["why"].get<std::string>());
+  if (is_converged(answer)) return {"Field", why, good};
+  return {"Field", fmt::format("not converged: {}; it is {}", answer["message"].get<std::string>(), why),
+          false};
 }
 
 Finding judge_pressure(const Json& answer) {

@@ -18,9 +18,9 @@ struct Finding {
 /// Converged, and its gap within the tolerance.
 Finding judge_certificate(const Json& answer);
 
-/// Of another program: what `check` says of its field; its pressure, where it found that alone; and its
+/// Another program: what `check` says of its field; its pressure, where it found that alone; and its
 /// answers to hard variants beside this program's.
-Finding judge_check(const Json& check);
+Finding judge_check(const Json& answer, const Json& check);
 Finding judge_pressure(const Json& answer);
 Finding judge_hard_beside(const Json& hard);
 

@@ -16,7 +16,7 @@
 #include <thread>
 #include <utility>
 
-#include "convergence/programs/solver_program.hpp"
+#include "convergence/exchange/solver_program.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/progress.hpp"

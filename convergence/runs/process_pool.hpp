@@ -8,7 +8,7 @@
 
 #include "convergence/programs/run_program.hpp"
 #include "convergence/results/result_parts.hpp"
-#include "convergence/runs/program_solve.hpp"
+#include "convergence/exchange/program_solve.hpp"
 #include "convergence/runs/run_spec.hpp"
 
 namespace slipstick::convergence {

@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "convergence/programs/solver_program.hpp"
+#include "convergence/exchange/solver_program.hpp"
 #include "convergence/results/markup.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "solver/input/input_file.hpp"

@@ -6,7 +6,7 @@
 
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/results/result_parts.hpp"
-#include "convergence/runs/program_solve.hpp"
+#include "convergence/exchange/program_solve.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "solver/solve.hpp"
 
@@ -45,7 +45,7 @@ struct SolveSceneOptions {
   solver::Detail detail = solver::Detail::all;
   /// See solver::SolveOptions.
   solver::Ranks ranks = {};
-  /// Of a scene that names a program: solver::solve() refuses it, unless all are allowed here.
+  /// A scene that names a program is refused by solver::solve(), unless all are allowed here.
   AllowedPrograms programs = {};
 };
 

@@ -10,7 +10,7 @@
 #include <utility>
 #include <vector>
 
-#include "convergence/programs/solver_program.hpp"
+#include "convergence/exchange/solver_program.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/results/result.hpp"

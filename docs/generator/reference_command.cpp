@@ -11,6 +11,7 @@
 
 #include "convergence/gates/gate.hpp"
 #include "convergence/hard/hard_case.hpp"
+#include "convergence/exchange/solver_program.hpp"
 #include "convergence/studies/study.hpp"
 #include "docs/generator/command_line.hpp"
 #include "docs/generator/key_page.hpp"
@@ -46,6 +47,8 @@ std::map<std::string, std::string> pages(const CLI::App& app) {
                                 convergence::gate_keys())},
       {"hard.md", keys_markdown({"Keys of hard cases", "What `slipstick hard CASES.toml` reads."},
                                 convergence::hard_keys())},
+      {"program.md", keys_markdown({"Keys of a program", "What `solver.program` and `--program FILE` name."},
+                                   convergence::program_keys())},
       {"commands.md", commands_markdown(commands)},
       {"slipstick.1", commands_manual(commands, SLIPSTICK_VERSION)},
       {"slipstick.bash", commands_completion(commands, keys_of_one_table())}};

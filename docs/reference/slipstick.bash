@@ -12,8 +12,8 @@ _slipstick() {
       "exact "*) [[ $current != -* ]] || words="--moment-ratio --moment-deficit --stick-ratio --stick-complement --twist --history --help --points --unload-to --certified --radius --profile --normal-load --effective-modulus --shape --friction --shear-modulus --json --quiet" ;;
       "solve --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "solve --accuracy-of") words="twist traction stick_radius" ;;
-      "solve --model" | "solve --accuracy" | "solve --uncertain" | "solve --ranks" | "solve --fields" | "solve --checkpoint" | "solve --figure" | "solve --memory-limit" | "solve --json") return ;;
-      "solve "*) [[ $current != -* ]] || words="--help --set --model --accuracy --accuracy-of --uncertain --plan --ranks --fields --checkpoint --resume --figure --memory-limit --json --quiet" ;;
+      "solve --program" | "solve --model" | "solve --accuracy" | "solve --uncertain" | "solve --ranks" | "solve --fields" | "solve --checkpoint" | "solve --figure" | "solve --memory-limit" | "solve --json") return ;;
+      "solve "*) [[ $current != -* ]] || words="--help --set --program --allow-programs --model --accuracy --accuracy-of --uncertain --plan --ranks --fields --checkpoint --resume --figure --memory-limit --json --quiet" ;;
       "check --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "check --columns" | "check --twist" | "check --tolerance" | "check --json") return ;;
       "check "*) [[ $current != -* ]] || words="--help --set --columns --twist --discrete --tolerance --pressure-given --strict --json --quiet" ;;
@@ -21,19 +21,18 @@ _slipstick() {
       "law --profile" | "law --write" | "law --prefix" | "law --error" | "law --table-error" | "law --element-error" | "law --elements" | "law --limit-loads" | "law --json") return ;;
       "law "*) [[ $current != -* ]] || words="--help --set --profile --write --prefix --error --table-error --element-error --elements --limit-loads --json --quiet" ;;
       "study --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
-      "study --figure" | "study --output" | "study --jobs" | "study --memory-limit" | "study --shard" | "study --merge" | "study --json") return ;;
-      "study "*) [[ $current != -* ]] || words="--help --set --figure --output --jobs --memory-limit --shard --merge --json --quiet" ;;
-      "gate --only" | "gate --junit" | "gate --summary" | "gate --results" | "gate --output" | "gate --jobs" | "gate --memory-limit" | "gate --shard" | "gate --merge" | "gate --json") return ;;
-      "gate "*) [[ $current != -* ]] || words="--help --only --junit --summary --github --results --output --jobs --memory-limit --shard --merge --json --quiet" ;;
+      "study --figure" | "study --output" | "study --jobs" | "study --memory-limit" | "study --program" | "study --shard" | "study --merge" | "study --json") return ;;
+      "study "*) [[ $current != -* ]] || words="--help --set --figure --output --jobs --memory-limit --program --allow-programs --shard --merge --json --quiet" ;;
+      "gate --only" | "gate --junit" | "gate --summary" | "gate --results" | "gate --output" | "gate --jobs" | "gate --memory-limit" | "gate --program" | "gate --shard" | "gate --merge" | "gate --json") return ;;
+      "gate "*) [[ $current != -* ]] || words="--help --only --junit --summary --github --results --output --jobs --memory-limit --program --allow-programs --shard --merge --json --quiet" ;;
       "hard --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
-      "hard --beside") words="coulomb projected_gradient paper" ;;
-      "hard --fields" | "hard --output" | "hard --jobs" | "hard --memory-limit" | "hard --json") return ;;
-      "hard "*) [[ $current != -* ]] || words="--help --set --fields --once --beside --output --jobs --memory-limit --json --quiet" ;;
+      "hard --fields" | "hard --beside" | "hard --output" | "hard --jobs" | "hard --memory-limit" | "hard --program" | "hard --json") return ;;
+      "hard "*) [[ $current != -* ]] || words="--help --set --fields --once --beside --output --jobs --memory-limit --program --allow-programs --json --quiet" ;;
       "digits --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "digits --samples" | "digits --seed" | "digits --output" | "digits --jobs" | "digits --memory-limit" | "digits --json") return ;;
       "digits "*) [[ $current != -* ]] || words="--help --set --samples --seed --output --jobs --memory-limit --json --quiet" ;;
-      "report --output" | "report --benchmarks" | "report --want" | "report --uncertain" | "report --junit" | "report --summary" | "report --memory-limit" | "report --json") return ;;
-      "report "*) [[ $current != -* ]] || words="--help --output --quick --full --benchmarks --want --uncertain --junit --summary --memory-limit --json --quiet" ;;
+      "report --output" | "report --benchmarks" | "report --want" | "report --uncertain" | "report --junit" | "report --summary" | "report --memory-limit" | "report --program" | "report --json") return ;;
+      "report "*) [[ $current != -* ]] || words="--help --output --quick --full --benchmarks --want --uncertain --junit --summary --memory-limit --program --allow-programs --json --quiet" ;;
       "bench --program" | "bench --output" | "bench --filter" | "bench --accuracy-data" | "bench --against" | "bench --pair" | "bench --rounds" | "bench --effect" | "bench --json") return ;;
       "bench "*) [[ $current != -* ]] || words="--help --program --output --filter --quick --accuracy-data --against --pair --rounds --effect --json --quiet" ;;
       "compare --effect" | "compare --level" | "compare --rerun" | "compare --summary" | "compare --junit" | "compare --json") return ;;
@@ -42,6 +41,6 @@ _slipstick() {
   fi
   [ -z "$words" ] || COMPREPLY=($(compgen -W "$words" -- "$current"))
 }
-_slipstick_keys="name= cycles= upper.shape= upper.radius= upper.radius_1= upper.radius_2= upper.slope= upper.flat_radius= upper.corner_radius= upper.exponent= upper.coefficient= upper.inner_radius= upper.at= upper.angle= upper.file= upper.spacing= upper.unit= upper.seed= upper.hurst= upper.rms_slope= upper.longest= upper.shortest= upper.period= upper.combine= upper.ends_at_grid_edge= upper.rigid= upper.young_modulus= upper.poisson_ratio= lower.rigid= lower.young_modulus= lower.poisson_ratio= layer.kind= layer.normal_compliance= layer.tangential_compliance= contact.friction= contact.pressure= contact.pressure_file= contact.coupling= load.normal= load.moment_ratio= load.moment= load.twist= load.force= load.displacement= grid.cells= grid.extent= solver.method= solver.operator= solver.tolerance= solver.max_iterations= solver.model= solver.cell_traction= solver.substeps= solver.threads= solver.rounding_seed="
+_slipstick_keys="name= cycles= upper.shape= upper.radius= upper.radius_1= upper.radius_2= upper.slope= upper.flat_radius= upper.corner_radius= upper.exponent= upper.coefficient= upper.inner_radius= upper.at= upper.angle= upper.file= upper.spacing= upper.unit= upper.seed= upper.hurst= upper.rms_slope= upper.longest= upper.shortest= upper.period= upper.combine= upper.ends_at_grid_edge= upper.rigid= upper.young_modulus= upper.poisson_ratio= lower.rigid= lower.young_modulus= lower.poisson_ratio= layer.kind= layer.normal_compliance= layer.tangential_compliance= contact.friction= contact.pressure= contact.pressure_file= contact.coupling= load.normal= load.moment_ratio= load.moment= load.twist= load.force= load.displacement= grid.cells= grid.extent= solver.method= solver.program= solver.operator= solver.tolerance= solver.max_iterations= solver.model= solver.cell_traction= solver.substeps= solver.threads= solver.rounding_seed="
 # Where it finds no word, a file.
 complete -o default -F _slipstick slipstick

@@ -7,6 +7,9 @@
 
 namespace slipstick::solver {
 
+/// Part of mu p by which |q| of a slipping cell may differ from mu p where a solver stops at a tolerance.
+inline constexpr double kOnCircle = 1e-4;
+
 /// The rigid motion under which tractions come closest to Coulomb's law: the one with the least gap, the sum
 /// of s.q + mu p |s| with s = displacement - sum z_k motions_k, which is convex in z.
 struct FittedMotion {

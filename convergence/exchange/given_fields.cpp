@@ -1,4 +1,4 @@
-#include "solver/given_fields.hpp"
+#include "convergence/exchange/given_fields.hpp"
 
 #include <array>
 #include <stdexcept>
@@ -14,14 +14,26 @@
 #include "solver/resolution.hpp"
 #include "solver/tractions.hpp"
 
-namespace slipstick::solver {
+namespace slipstick::convergence {
 namespace {
 
 using Eigen::ArrayXd;
+using solver::Coefficients;
+using solver::FittedMotion;
+using solver::Grid;
+using solver::Index;
+using solver::InputError;
+using solver::Model;
+using solver::NormalSolution;
+using solver::Scene;
+using solver::Step;
+using solver::TangentialProblem;
+using solver::TangentialSolution;
 
-ArrayXd applied(const Scene& scene, const Model& model, const BlockKernel& kernel, const ArrayXd& to) {
+ArrayXd applied(const Scene& scene, const Model& model, const solver::BlockKernel& kernel,
+                const ArrayXd& to) {
   ArrayXd u(kernel.outputs * model.grid.cells());
-  elasticity(scene, model, Reduction(model.grid)).make(model.grid, kernel)->apply(to, u);
+  solver::elasticity(scene, model, solver::Reduction(model.grid)).make(model.grid, kernel)->apply(to, u);
   return u;
 }
 
@@ -29,10 +41,10 @@ ArrayXd applied(const Scene& scene, const Model& model, const BlockKernel& kerne
 /// gap that is open above the least is what its complementarity leaves.
 NormalSolution describe_pressure(const Scene& scene, const Model& model, const ArrayXd& pressure) {
   NormalSolution normal;
-  normal.status = Status::converged;
+  normal.status = solver::Status::converged;
   normal.pressure = pressure;
-  if (scene.pressure != PressureModel::solved) return normal;
-  const ArrayXd displacement = applied(scene, model, normal_kernel(), pressure);
+  if (scene.pressure != solver::PressureModel::solved) return normal;
+  const ArrayXd displacement = applied(scene, model, solver::normal_kernel(), pressure);
   const ArrayXd gap = (pressure > 0.0).select(displacement + model.gap, 0.0);
   const double total = pressure.sum();
   normal.approach = (pressure * gap).sum() / total;
@@ -60,7 +72,7 @@ Motions motions_of(const TangentialProblem& problem, const Grid& grid) {
       }
     }
   }
-  const ArrayXd rotation = rotation_field(grid);
+  const ArrayXd rotation = solver::rotation_field(grid);
   if (problem.twist) motions.imposed += *problem.twist * rotation;
   if (!problem.twist) motions.free.push_back(rotation);
   return motions;
@@ -69,16 +81,16 @@ Motions motions_of(const TangentialProblem& problem, const Grid& grid) {
 TangentialSolution describe_tractions(const Scene& scene, const Model& model,
                                       const TangentialProblem& problem, const ArrayXd& traction) {
   TangentialSolution found;
-  found.status = Status::converged;
+  found.status = solver::Status::converged;
   found.traction = traction;
-  found.elastic_displacement = applied(scene, model, tangential_kernel(), traction);
+  found.elastic_displacement = applied(scene, model, solver::tangential_kernel(), traction);
   const ArrayXd& bound = problem.friction_bound;
   const Motions motions = motions_of(problem, model.grid);
   ArrayXd displacement = found.elastic_displacement - motions.imposed;
   if (problem.initial_displacement.size() > 0) displacement += problem.initial_displacement;
-  const FittedMotion fitted = fit_motion(displacement, traction, bound, motions.free);
+  const FittedMotion fitted = solver::fit_motion(displacement, traction, bound, motions.free);
   found.slip = fitted.slip;
-  found.stick = ((bound > 0.0) && norms(traction) < (1.0 - kOnCircle) * bound).cast<double>();
+  found.stick = ((bound > 0.0) && solver::norms(traction) < (1.0 - solver::kOnCircle) * bound).cast<double>();
   const Coefficients& z = fitted.coefficients;
   found.twist = problem.twist.value_or(z.size() > 0 ? z[z.size() - 1] : 0.0);
   if (problem.force) found.displacement = {z[0], z[1]};
@@ -96,12 +108,12 @@ void require_one_load(const Scene& scene) {
 
 }  // namespace
 
-Solution describe_given(Scene scene, const GivenFields& fields) {
-  scene.method = Method::coulomb;  // others know less than a field may be
-  validate(scene);
+solver::Solution describe_given(Scene scene, const GivenFields& fields) {
+  scene.method = solver::Method::coulomb;  // others know less than a field may be
+  solver::validate(scene);
   require_one_load(scene);
-  ModelSolution solution;
-  solution.model = make_model(scene);
+  solver::ModelSolution solution;
+  solution.model = solver::make_model(scene);
   const Model& model = solution.model;
   const Index cells = model.grid.cells();
   if (fields.pressure.size() != cells || fields.traction.size() != 2 * cells) {
@@ -109,28 +121,28 @@ Solution describe_given(Scene scene, const GivenFields& fields) {
   }
   const Step& step = scene.steps.front();
   solution.normal = describe_pressure(scene, model, fields.pressure / model.stress_unit);
-  const LoadStep loads = load_step(scene, model, step, solution.normal.pressure, {});
+  const solver::LoadStep loads = solver::load_step(scene, model, step, solution.normal.pressure, {});
   solution.tangential = describe_tractions(scene, model, loads.problem, fields.traction / model.stress_unit);
-  solution.status = Status::converged;
+  solution.status = solver::Status::converged;
   solution.loads = step;
   solution.twist_angle = solution.tangential.twist;
   for (std::size_t k = 0; k < 2; ++k) {
     solution.displacement[k] = solution.tangential.displacement[k] * model.length_unit;
   }
-  describe(solution, scene, loads, solution.tangential.slip);
-  OpenHistory open;
-  open.add({}, end_of(solution), solution.resolution);
+  solver::describe(solution, scene, loads, solution.tangential.slip);
+  solver::OpenHistory open;
+  open.add({}, solver::end_of(solution), solution.resolution);
   solution.resolution.mesh = open.mesh();
-  state_uncertainty(solution, scene, 0);
-  return in_si(std::move(solution));
+  solver::state_uncertainty(solution, scene, 0);
+  return solver::in_si(std::move(solution));
 }
 
 PosedScene pose(Scene scene, bool with_limit) {
-  scene.method = Method::coulomb;
-  validate(scene);
+  scene.method = solver::Method::coulomb;
+  solver::validate(scene);
   require_one_load(scene);
-  const Model model = make_model(scene);
-  const ElasticPair& pair = model.pair;
+  const Model model = solver::make_model(scene);
+  const solver::ElasticPair& pair = model.pair;
   PosedScene posed{.grid = model.grid_in_m(),
                    .gap = model.gap * model.length_unit,
                    .pressure = {},
@@ -139,17 +151,17 @@ PosedScene pose(Scene scene, bool with_limit) {
                    .poisson_ratio = pair.poisson_compliance / pair.shear_compliance,
                    .mismatch = model.pressure_coupling ? pair.mismatch / model.stress_unit : 0.0,
                    .moment_limit = 0.0};
-  const bool given = scene.pressure != PressureModel::solved;
+  const bool given = scene.pressure != solver::PressureModel::solved;
   if (!given && !with_limit) return posed;
-  const ArrayXd pressure = find_pressure(scene, model, scene.steps.front()).pressure;
+  const ArrayXd pressure = solver::find_pressure(scene, model, scene.steps.front()).pressure;
   if (given) posed.pressure = pressure * model.stress_unit;
   if (with_limit) {
     Step unloaded;
     unloaded.normal = scene.steps.front().normal;
-    posed.moment_limit = load_step(scene, model, unloaded, pressure, {}).moment_limit *
+    posed.moment_limit = solver::load_step(scene, model, unloaded, pressure, {}).moment_limit *
                          model.grid.cell_area() * model.moment_unit();
   }
   return posed;
 }
 
-}  // namespace slipstick::solver
+}  // namespace slipstick::convergence

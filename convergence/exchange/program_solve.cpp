@@ -1,4 +1,4 @@
-#include "convergence/runs/program_solve.hpp"
+#include "convergence/exchange/program_solve.hpp"
 
 #include <fmt/core.h>
 
@@ -8,12 +8,12 @@
 #include <nlohmann/json.hpp>
 #include <utility>
 
+#include "convergence/exchange/exchange_files.hpp"
+#include "convergence/exchange/given_fields.hpp"
+#include "convergence/exchange/solver_program.hpp"
 #include "convergence/oracle/oracle.hpp"
-#include "convergence/programs/solver_program.hpp"
 #include "convergence/programs/temporary_folder.hpp"
 #include "convergence/results/json_text.hpp"
-#include "convergence/runs/exchange.hpp"
-#include "solver/given_fields.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
@@ -69,7 +69,7 @@ ProgramAnswer solve_by_program(const Scene& scene, const AllowedPrograms& allowe
   const SolverProgram program = read_solver_program(scene.program);
   const auto ratio = solver::value_if<solver::MomentRatio>(scene.steps.front().torsion);
   const bool by_ratio = ratio.value_or(0.0) != 0.0;
-  const solver::PosedScene posed = solver::pose(scene, by_ratio);
+  const PosedScene posed = pose(scene, by_ratio);
   ProgramAnswer answer{
       .scene = under_given_loads(scene, posed.moment_limit), .exact = {}, .solution = {}, .program = {}};
 
@@ -84,7 +84,7 @@ ProgramAnswer solve_by_program(const Scene& scene, const AllowedPrograms& allowe
 
   if (!read.tractions) answer.scene = pressed_alone(std::move(answer.scene));
   answer.exact = find_oracle(read.tractions ? scene : answer.scene);
-  answer.solution = solver::describe_given(answer.scene, read.fields);
+  answer.solution = describe_given(answer.scene, read.fields);
   const std::string off = solver::beyond(answer.solution.certificate, kSameLoads);
   if (read.tractions && !off.empty()) {
     answer.solution.status = solver::Status::not_converged;

@@ -1,4 +1,4 @@
-#include "convergence/runs/exchange.hpp"
+#include "convergence/exchange/exchange_files.hpp"
 
 #include <fmt/core.h>
 
@@ -25,7 +25,7 @@ using Eigen::ArrayXd;
 using solver::Grid;
 using solver::Index;
 
-/// Of the exchange files; a program may look at it.
+/// The exchange files' own version, at which a program may look.
 constexpr int kFormat = 1;
 /// A field whose normal load is off by this part is half a file, or not in Pa: coarse meshes and crude
 /// quadratures are off by less.
@@ -95,7 +95,7 @@ Json load_json(const solver::Step& step) {
 }
 
 /// How normal and tangential tractions are to be coupled.
-const char* coupling_word(const solver::Scene& scene, const solver::PosedScene& posed) {
+const char* coupling_word(const solver::Scene& scene, const PosedScene& posed) {
   if (posed.mismatch == 0.0) return "none";
   return scene.coupling == solver::Coupling::full ? "full" : "pressure";
 }
@@ -103,7 +103,7 @@ const char* coupling_word(const solver::Scene& scene, const solver::PosedScene& 
 }  // namespace
 
 void write_exchange(const SolverProgram& program, const ExchangeFiles& files, const solver::Scene& scene,
-                    const solver::PosedScene& posed) {
+                    const PosedScene& posed) {
   const Grid& grid = posed.grid;
   std::vector<double> x1;
   std::vector<double> x2;
@@ -138,7 +138,7 @@ void write_exchange(const SolverProgram& program, const ExchangeFiles& files, co
 }
 
 ReadFields read_exchange(const SolverProgram& program, const ExchangeFiles& files, const solver::Scene& scene,
-                         const solver::PosedScene& posed) {
+                         const PosedScene& posed) {
   if (!fs::is_regular_file(files.field)) {
     throw ProgramFailure(fmt::format("{} ended well but wrote no field", program.name));
   }

@@ -1,4 +1,4 @@
-#include "convergence/programs/solver_program.hpp"
+#include "convergence/exchange/solver_program.hpp"
 
 #include <fmt/core.h>
 

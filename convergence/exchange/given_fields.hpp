@@ -5,10 +5,7 @@
 #include "solver/scene/scene.hpp"
 #include "solver/solution.hpp"
 
-namespace slipstick::solver {
-
-/// Part of mu p by which |q| of a slipping cell may differ from mu p where a solver stops at a tolerance.
-inline constexpr double kOnCircle = 1e-4;
+namespace slipstick::convergence {
 
 /// What another program found for a scene of one load, on the scene's grid; SI units.
 struct GivenFields {
@@ -21,12 +18,12 @@ struct GivenFields {
 /// it, and all that follows from these, the certificate included. Its status is converged: what the fields
 /// are worth, the certificate and the errors say. Throws InputError for a history and where make_model()
 /// does; std::invalid_argument for fields that are not the grid's.
-Solution describe_given(Scene scene, const GivenFields& fields);
+solver::Solution describe_given(solver::Scene scene, const GivenFields& fields);
 
 /// The scene's gap and, where the scene does not leave it to be solved, its pressure: what another program
 /// needs beside the loads.
 struct PosedScene {
-  Grid grid;                ///< m
+  solver::Grid grid;        ///< m
   Eigen::ArrayXd gap;       ///< cells, m; infinite where the bodies cannot touch
   Eigen::ArrayXd pressure;  ///< cells, Pa; empty: to be solved
   double contact_modulus;   ///< Pa: E*, 1/E* = (1 - nu_1^2)/E_1 + (1 - nu_2^2)/E_2
@@ -39,6 +36,6 @@ struct PosedScene {
 
 /// with_limit: the limit moment is worked out, for which the pressure is solved where the scene does not give
 /// it. Throws InputError as make_model() and solve() do.
-PosedScene pose(Scene scene, bool with_limit);
+PosedScene pose(solver::Scene scene, bool with_limit);
 
-}  // namespace slipstick::solver
+}  // namespace slipstick::convergence
