@@ -126,6 +126,33 @@ def cost(page, folder):
                        "Log-log points of error against time.", figure)
 
 
+def programs(page, folder):
+    """Error against time of this program and of others."""
+    known = [row for row in rows(page, "programs") if row["seconds"] is not None and row["error"] is not None]
+    if not known:
+        raise Unavailable("no program has an answer whose error is known")
+    figure, axis = style.panels(1, 1, 3.4)
+    looks = [dict(color=color, marker=marker) for color, marker in
+             zip((style.GREEN, style.BLUE, style.VERMILION, style.PURPLE, style.BLACK), "so^vD")]
+    for ((name, number), found), look in zip(groups(known, "name", "number").items(), looks * 4):
+        axis.plot(column(found, "seconds"), column(found, "error"), "-", label=f"{name}, {_number_words(number)}", **look)
+    axis.set(xscale="log", yscale="log", xlabel="time of the solve, s", ylabel="relative error")
+    style.whole_decades(axis)
+    style.legend_on_top(figure, axis.get_legend_handles_labels()[0], 2)
+    finest = {name: found[-1] for (name,), found in groups(known, "name").items()}
+    own = finest.pop("slipstick", None)
+    others = ", ".join(f"{name} {seconds(row['seconds'])} s ({sci(row['error'])})" for name, row in finest.items())
+    message = f"On the finest mesh, seconds and error: {others}" + (
+        f"; slipstick {seconds(own['seconds'])} s ({sci(own['error'])}, of {_number_words(own['number'])})." if own else ".")
+    return FigureEntry(message, "A point for each mesh. Programs that find the pressure alone do less than those that find tractions "
+                       "too. The time is that of the solve as the program says it, without its start, where it says so.",
+                       "Log-log lines of error against time, one a program.", figure)
+
+
+def _number_words(number):
+    return MOTIONS.get(number, (number.replace("_", " "),))[0]
+
+
 def operators(page, folder):
     """Whole solves of the scene by direct sums and by convolution."""
     table = [row for row in rows(page, "operators.rows") if row["seconds"] is not None]

@@ -15,6 +15,7 @@ import render  # noqa: E402
 import results  # noqa: E402
 import scene_figures  # noqa: E402
 from method_figures import METHODS  # noqa: E402
+from scene_figures import MOTIONS  # noqa: E402
 from tables import Table  # noqa: E402
 from whole_file import write_whole  # noqa: E402
 from wording import (ANGLES, ENERGIES, LENGTHS, MOMENTS, STRESSES, percent, plain, quantity, sci, seconds,  # noqa: E402
@@ -83,6 +84,16 @@ def program_table(page):
     return Table(["", f"what {program['name']} says", "what follows from its field"], body)
 
 
+def programs_table(page):
+    body = []
+    for row in results.rows(page, "programs"):
+        body.append([row["name"], row["version"] or "–", f"{row['cells']}", row["status"].replace("_", " "),
+                     "–" if row["error"] is None else sci(row["error"]), MOTIONS.get(row["number"], (row["number"].replace("_", " "),))[0],
+                     "–" if row["seconds"] is None else seconds(row["seconds"]),
+                     "–" if row["cpu_seconds"] is None else seconds(row["cpu_seconds"])])
+    return Table(["program", "version", "cells", "status", "error", "of the", "s, as it says", "CPU s with its start"], body)
+
+
 def tabulate(make, page):
     try:
         return {"table": make(page)}
@@ -97,6 +108,8 @@ def draw_all(page, data, folder):
         wanted.append(("loop", "The history", scene_figures.loop))
     if "cost" in page:
         wanted.append(("cost", "Error against time", scene_figures.cost))
+    if "programs" in page:
+        wanted.append(("programs", "Other programs", scene_figures.programs))
     if "operators" in page:
         wanted.append(("operators", "Direct summation against convolution", scene_figures.operators))
     return {name: render.draw_entry(name, title, lambda: make(page, data), folder) for name, title, make in wanted}
@@ -116,6 +129,7 @@ def write_page(output, environment):
         page=page, headline=page["headline"], figures=draw_all(page, data, folder),
         numbers_table=tabulate(numbers_table, page), choices=tabulate(choices_table, page) if "cost" in page else None,
         studies=render.show_studies(page, folder), digits=tabulate(digits_table, page) if "digits" in page else None, hard=hard,
+        programs=tabulate(programs_table, page) if "programs" in page else None,
         program=tabulate(program_table, page) if "program" in page["answer"] else None,
         nulls=results.nulls({key: page[key] for key in ("answer",)}), data="data")
     write_whole(output / "index.html", html.encode())

@@ -29,8 +29,12 @@ void replace(std::string& word, const std::string& placeholder, const fs::path& 
     word.replace(at, placeholder.size(), file.string());
 }
 
-ProgramEnd run(const SolverProgram& program, const std::vector<std::string>& words, double seconds,
+/// The Python that draws reports, which has NumPy.
+const std::string kPython = *SLIPSTICK_PYTHON != '\0' ? SLIPSTICK_PYTHON : "python3";
+
+ProgramEnd run(const SolverProgram& program, std::vector<std::string> words, double seconds,
                const fs::path& tied_by) {
+  for (std::string& word : words) replace(word, "{python}", kPython);
   const fs::path folder = program.file.parent_path();
   return Program(words, {.captured = Captured::everything,
                          .tied_by = tied_by,
@@ -61,7 +65,8 @@ const solver::SettingKeys& program_keys() {
       {"command", KeyType::texts, "", kRequired, kAny,
        "Words that start it, without a shell, in the folder of this file. In them {scene} stands for the "
        "file "
-       "that it reads, {field} for the one that it writes, {numbers} for one that it may write."},
+       "that it reads, {field} for the one that it writes, {numbers} for one that it may write; {python} for "
+       "the Python with NumPy that draws reports."},
       {"version", KeyType::texts, "", "none", kAny,
        "Words that print its version: part of what decides whether a kept result is still good."},
       {"inputs", KeyType::texts, "", "those that the command names", kAny,

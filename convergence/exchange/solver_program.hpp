@@ -15,7 +15,8 @@ namespace slipstick::convergence {
 struct SolverProgram {
   std::filesystem::path file;
   std::string name;
-  /// The words that start it, in the folder of its file; {scene}, {field} and {numbers} stand for files.
+  /// The words that start it, in the folder of its file; {scene}, {field} and {numbers} stand for files,
+  /// {python} for the Python that draws reports.
   std::vector<std::string> command;
   std::vector<std::string> version;           ///< words that print its version; empty: none
   std::vector<std::filesystem::path> inputs;  ///< files that its answers depend on

@@ -40,6 +40,7 @@ struct ReportRequest {
   std::vector<std::string> uncertain;
   std::string junit;
   std::string summary;
+  std::vector<std::string> beside;
   RunOptions runs;
 };
 
@@ -71,6 +72,7 @@ void draw(const fs::path& data, const fs::path& benchmarks, const fs::path& outp
 
 ProcessPool pool_in(const fs::path& data, const ReportRequest& request) {
   RunOptions runs = request.runs;
+  for (const std::string& file : request.beside) runs.overrides.push_back(program_override(file));
   runs.output = data / "points";
   return runs.pool();
 }
@@ -120,6 +122,8 @@ int run_scenes(const ReportRequest& request, std::ostream& text, Json& result) {
   const std::vector<fs::path> folders = page_folders(request);
   std::vector<WantedError> wanted;
   for (const std::string& word : request.wanted) wanted.push_back(read_wanted_error(word));
+  std::vector<BesideMethod> beside;
+  for (const std::string& file : request.beside) beside.push_back(read_beside_method(file));
   for (const std::string& scene : request.scenes) solver::read_scene(scene, request.runs.overrides);
   std::vector<JunitCase> cases;
   std::vector<std::string> rows;
@@ -134,7 +138,8 @@ int run_scenes(const ReportRequest& request, std::ostream& text, Json& result) {
       page = scene_page({{.scene = request.scenes[i], .overrides = request.runs.overrides},
                          size,
                          wanted,
-                         request.uncertain},
+                         request.uncertain,
+                         beside},
                         data, pool);
     }
     const Json& headline = page["headline"];
@@ -199,6 +204,11 @@ RunCommand add_report_command(CLI::App& app) {
   command->add_option("--summary", request->summary, "write them as a table in Markdown");
   add_memory_option(*command, request->runs.memory_limit);
   request->runs.add_programs_to(*command);
+  command
+      ->add_option(
+          "--beside", request->beside,
+          "files of other programs (TOML), whose answers, times and hard cases the page shows beside")
+      ->delimiter(',');
   command->footer(
       "Example:\n  slipstick report --output build/report\n  slipstick report "
       "convergence/scenes/rough_sphere.toml "

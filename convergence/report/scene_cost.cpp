@@ -40,6 +40,14 @@ Json choices(const solver::Scene& scene) {
   return rows;
 }
 
+/// A page's row for a number; null: it has none.
+const Json* find_row(const Json& numbers, const std::string& key) {
+  for (const Json& row : numbers) {
+    if (row["key"] == key) return &row;
+  }
+  return nullptr;
+}
+
 /// What solves the scene: its name, the overrides that ask for it, and its finest mesh.
 struct Contender {
   std::string name;
@@ -88,6 +96,43 @@ Json error_against_time(const RunSpec& base, const solver::Scene& scene, const s
   batch.run(pool);
   json["choices"] = choices(scene);
   return json;
+}
+
+Json answers_beside(const RunSpec& base, const solver::Scene& scene, const std::vector<Index>& meshes,
+                    const Beside& beside, const ProcessPool& pool) {
+  Json rows = Json::array();
+  std::vector<BesideMethod> all{{"slipstick", kNoProgram}};
+  all.insert(all.end(), beside.programs.begin(), beside.programs.end());
+  RunBatch batch;
+  for (const auto& each : all) {
+    for (const Index cells : meshes) {
+      const RunSpec run = changed(base, {each.override, cells_override(scene, cells)});
+      batch.add_or_refuse(run, [&rows, &beside, name = each.name, cells](const Json& result) {
+        Json& row = rows.emplace_back(Json{{"name", name}, {"cells", cells}, {"status", result["status"]}});
+        row["version"] = "";
+        row["message"] = result.value("message", "");
+        const bool foreign = result.contains("program");
+        if (foreign) row["version"] = result["program"]["version"];
+        set_number(row, "seconds", seconds_of(result), "there is no answer");
+        set_number(row, "cpu_seconds", foreign ? number_at(result, "program.cpu_seconds") : kNaN,
+                   "it was not counted");
+        const bool pressure = foreign && result["program"]["fields"] == "pressure";
+        for (const std::string& number :
+             pressure ? std::vector<std::string>{"approach", "peak_pressure"} : std::vector{beside.number}) {
+          const Json* const known = find_row(beside.numbers, number);
+          row["number"] = number;
+          set_number(row, "error",
+                     known == nullptr
+                         ? kNaN
+                         : std::abs(size_at(result, number) / number_at(*known, "reference") - 1.0),
+                     is_failed(result) ? "there is no answer" : "no reference is known");
+          if (row["error"].is_number()) break;
+        }
+      });
+    }
+  }
+  batch.run(pool);
+  return rows;
 }
 
 Json direct_against_dcfft(const RunSpec& base, const solver::Scene& scene, const PageSize& size,

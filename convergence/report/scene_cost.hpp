@@ -23,6 +23,19 @@ Json error_against_time(const RunSpec& base, const solver::Scene& scene,
                         const std::vector<solver::Index>& meshes, const Reference& reference,
                         const PageSize& size, const ProcessPool& pool);
 
+/// Other programs, and by which numbers their answers are compared: the rows of a page's numbers, of which
+/// the one named first, or of a program that finds the pressure alone the approach or the highest pressure.
+struct Beside {
+  const std::vector<BesideMethod>& programs;
+  const Json& numbers;
+  std::string number;
+};
+
+/// The answers of this program and of others on some meshes, a row each: {name, version, cells, status,
+/// message, seconds, cpu_seconds, number, error}.
+Json answers_beside(const RunSpec& base, const solver::Scene& scene, const std::vector<solver::Index>& meshes,
+                    const Beside& beside, const ProcessPool& pool);
+
 /// Whole solves by direct sums and by convolution on small meshes of the scene, and the cells along the
 /// longer side from which on convolution is quicker: {rows: [{operator, cells, seconds, low, high}], cells,
 /// low, high, remark}.

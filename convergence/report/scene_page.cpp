@@ -375,9 +375,15 @@ Json scene_page(const PageRequest& request, const fs::path& folder, const Proces
   if (!uncertain.empty()) page["uncertainty"] = uncertainty(base, scene, meshes, answer, uncertain);
   findings.push_back(judge_order(page["studies"], reference.number));
   if (!meshes.given) page["cost"] = error_against_time(base, scene, meshes.answer, reference, size, pool);
+  if (!meshes.given && !request.beside.empty()) {
+    const Meshes coarse = meshes_of(scene, for_program(size));
+    page["programs"] =
+        answers_beside(base, scene, coarse.answer, {request.beside, page["numbers"], reference.number}, pool);
+  }
   if (!meshes.given && own) page["operators"] = direct_against_dcfft(base, scene, size, pool);
   if (own || has_tractions(answer)) {
     HardOptions options{.variants = own, .finer_meshes = own && size.finer_meshes};
+    options.methods = request.beside;
     if (!own) options.methods = {{answer["program"]["name"], program_override(scene.program), true}};
     const RunSpec by_us = own ? base : changed(base, {kNoProgram});
     page["hard"] = run_hard_cases(hard_cases(by_us, scene, meshes), options, pool);

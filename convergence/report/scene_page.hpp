@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "convergence/hard/hard_run.hpp"
 #include "convergence/results/verdict_files.hpp"
 #include "convergence/runs/process_pool.hpp"
 #include "solver/grid/grid.hpp"
@@ -42,6 +43,7 @@ struct PageRequest {
   PageSize size;
   std::vector<WantedError> wanted = {};
   std::vector<std::string> uncertain = {};  ///< as uncertain_inputs() takes them
+  std::vector<BesideMethod> beside = {};    ///< programs whose answers stand beside
 };
 
 /// Solves what the page shows and judges it: fills `folder` with report.json and answer.h5, the fields on the
