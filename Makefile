@@ -104,6 +104,10 @@ bench: configure ## time everything, each time with its error, and draw it
 	$(call build,slipstick slipstick_benchmarks)
 	@$(BUILD)/slipstick bench $(BENCH_OPTIONS)
 
+peers: configure ## what do other programs say? Installs Tamaas, ContactMechanics, ASPHER (PyPI) under build/peers, draws their pages
+	$(call build,slipstick)
+	@interfaces/programs/peers $(BUILD)/slipstick $(BUILD)
+
 bench-against: configure ## is this tree slower than REV (origin/main)? (bench/against itself exits with 0, 1 or 2)
 	@BUILD="$(BUILD)" bench/against "$(REV)" $(BENCH_OPTIONS)
 

@@ -16,12 +16,16 @@
 #include "bench/plane/accuracy_from_plane.hpp"
 #include "bench/plane/speed_error.hpp"
 #include "bench/scaling/scaling_result.hpp"
+#include "convergence/hard/hard_run.hpp"
 #include "convergence/programs/python_script.hpp"
 #include "convergence/programs/run_program.hpp"
+#include "convergence/report/scene_cost.hpp"
+#include "convergence/report/scene_page.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/progress.hpp"
 #include "convergence/runs/result_cache.hpp"
+#include "convergence/runs/run_options.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/whole_file.hpp"
@@ -40,6 +44,9 @@ constexpr const char* kCompared =
 const RunLength kSurveyLength{.seconds = 0.02, .repetitions = 7, .tied_by = convergence::kOwnProgram};
 
 struct BenchRequest {
+  std::string scene;
+  std::vector<std::string> overrides;
+  std::vector<std::string> beside;
   std::string program = SLIPSTICK_BENCHMARK_PROGRAM;
   std::string output = "build/benchmarks";
   std::string filter;
@@ -108,13 +115,37 @@ int compare_ab(const BenchRequest& request, std::ostream& text, Json& result) {
   return exit_code(found.report.comparison);
 }
 
+/// One scene: methods, meshes, direct sums against convolution, other programs.
+int time_scene(const BenchRequest& request, std::ostream& text, Json& result) {
+  const fs::path folder = request.output;
+  convergence::RunOptions runs{.output = folder / "points", .overrides = request.overrides};
+  std::vector<convergence::BesideMethod> beside;
+  for (const std::string& file : request.beside) {
+    beside.push_back(convergence::read_beside_method(file));
+    runs.overrides.push_back(beside.back().override);
+  }
+  const convergence::ProcessPool pool = runs.pool();
+  {
+    const convergence::Interrupts interrupts;
+    result = convergence::scene_costs(
+        {.base = {.scene = request.scene, .overrides = request.overrides},
+         .size = request.quick ? convergence::quick_page() : convergence::usual_page(),
+         .beside = beside},
+        folder / "data", pool);
+  }
+  text << convergence::costs_text(result);
+  return 0;
+}
+
 int run_bench(const BenchRequest& request, std::ostream& text, Json& result) {
+  if (!request.scene.empty()) return time_scene(request, text, result);
   const bool is_ab = !request.against.empty() || !request.pair.empty();
   return is_ab ? compare_ab(request, text, result) : survey(request, text, result);
 }
 
 constexpr const char* kBenchFooter = R"(Example:
   slipstick bench                                    everything, and the page build/benchmarks/index.html
+  slipstick bench convergence/scenes/ellipse.toml    one scene: methods, meshes, direct sums against DC-FFT
   slipstick bench --against ../before/build/bench/slipstick_benchmarks
                                                      is this build slower than that one?
   slipstick bench --pair application/direct/cells:64 application/dcfft/cells:64
@@ -128,6 +159,13 @@ Exit code 0: done, nothing is slower; 1: something is; 2: it could not be judged
 RunCommand add_bench_command(CLI::App& app) {
   const auto request = std::make_shared<BenchRequest>();
   CLI::App* const command = app.add_subcommand("bench", "Time everything beside the error that it buys");
+  CLI::Option* const scene = command->add_option(
+      "scene", request->scene,
+      "scene file (TOML), timed alone: methods, meshes, tolerances, direct sums against convolution");
+  convergence::add_set_option(*command, request->overrides, "override a key of the scene");
+  command->add_option("--beside", request->beside, "files of other programs (TOML), timed on the scene too")
+      ->delimiter(',')
+      ->needs(scene);
   command->add_option("--program", request->program, "program of Google Benchmark")->capture_default_str();
   command->add_option("--output", request->output, "folder for timings and the page")->capture_default_str();
   command->add_option("--filter", request->filter, "benchmarks whose names fit this regular expression");
@@ -145,6 +183,7 @@ RunCommand add_bench_command(CLI::App& app) {
       ->check(CLI::Range(0.001, 1.0))
       ->capture_default_str();
   against->excludes(pair);
+  for (CLI::Option* const other : {against, pair}) other->excludes(scene);
   command->footer(kBenchFooter);
   return [request](std::ostream& text, nlohmann::ordered_json& result) {
     return run_bench(*request, text, result);

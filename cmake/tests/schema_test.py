@@ -254,6 +254,9 @@ class Results(unittest.TestCase):
         for name in ("mindlin", "honed_surface"):
             self.run_and_check("report", SCENES / f"{name}.toml", "--quick", "--output", self.folder / name, schema="page")
 
+    def test_costs(self):
+        self.run_and_check("bench", SCENES / "ellipse.toml", "--quick", "--output", self.folder / "costs", schema="costs")
+
     def made_benchmarks(self, milliseconds=1.0):
         program = self.file(f"benchmarks-{milliseconds}", BENCHMARKS.replace("MS", str(milliseconds)))
         program.chmod(0o700)

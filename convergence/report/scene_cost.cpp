@@ -9,10 +9,13 @@
 
 #include "convergence/exchange/solver_program.hpp"
 #include "convergence/orders/growth.hpp"
+#include "convergence/results/provenance.hpp"
 #include "convergence/results/quantity.hpp"
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/run_batch.hpp"
 #include "convergence/solve/accurate_solve.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/input/whole_file.hpp"
 #include "solver/scene/scene_keys.hpp"
 
 namespace slipstick::convergence {
@@ -170,6 +173,59 @@ Json direct_against_dcfft(const RunSpec& base, const solver::Scene& scene, const
   set_number(json, "high", crossover.high, outside);
   json["remark"] = crossover.remark;
   return json;
+}
+
+Json scene_costs(const PageRequest& request, const std::filesystem::path& folder, const ProcessPool& pool) {
+  const RunSpec& base = request.base;
+  const solver::Scene scene = solver::read_scene(base.scene, base.overrides);
+  const Meshes meshes = meshes_of(scene, request.size);
+  if (meshes.given) {
+    throw solver::InputError(scene.source.string(),
+                             "its files have its grid; allowed: a scene that can be solved on other meshes");
+  }
+  solver::make_folder(folder);
+  const std::vector<Json> results = solve_answer(base, scene, meshes, folder / "answer.h5", pool);
+  Json costs{{"provenance", provenance(std::max(1, scene.threads))}, {"scene", scene.name}};
+  costs["numbers"] =
+      number_rows(scene, results, scene_studies(base, scene, meshes, request.size, pool).front());
+  const Reference reference = reference_of(results.back(), costs["numbers"]);
+  costs["cost"] = error_against_time(base, scene, meshes.answer, reference, request.size, pool);
+  if (!request.beside.empty()) {
+    const Meshes coarse = meshes_of(scene, for_program(request.size));
+    costs["programs"] = answers_beside(base, scene, coarse.answer,
+                                       {request.beside, costs["numbers"], reference.number}, pool);
+  }
+  costs["operators"] = direct_against_dcfft(base, scene, request.size, pool);
+  return costs;
+}
+
+std::string costs_text(const Json& costs) {
+  const auto shown = [](const Json& value, const char* unit) {
+    return value.is_number() ? fmt::format("{:.2e}{}", value.get<double>(), unit) : std::string("-");
+  };
+  std::string text = fmt::format(
+      "{}: error of {}, from a value that is known to {}\n  {:20} {:>6} {:>10} {:>10} {:>12}\n",
+      costs["scene"].get<std::string>(), costs["cost"]["number"].get<std::string>(),
+      shown(costs["cost"]["reference_uncertainty"], ""), "method", "cells", "tolerance", "error", "time");
+  for (const Json& point : costs["cost"]["points"]) {
+    text += fmt::format("  {:20} {:>6} {:>10.0e} {:>10} {:>12}{}\n", point["method"].get<std::string>(),
+                        point["cells"].get<Index>(), point["tolerance"].get<double>(),
+                        shown(point["error"], ""), shown(point["seconds"], " s"),
+                        point["status"] == "converged" ? "" : "  " + point["status"].get<std::string>());
+  }
+  for (const Json& row : costs.value("programs", Json::array())) {
+    text += fmt::format("  {:20} {:>6} {:>10} {:>10} {:>12}  {} {}\n", row["name"].get<std::string>(),
+                        row["cells"].get<Index>(), "", shown(row["error"], ""), shown(row["seconds"], " s"),
+                        row["number"].get<std::string>(),
+                        row["status"] == "converged" ? "" : row["status"].get<std::string>());
+  }
+  const Json& crossing = costs["operators"];
+  text += crossing["cells"].is_number()
+              ? fmt::format("  convolution overtakes direct summation from {:.3g} cells a side on\n",
+                            crossing["cells"].get<double>())
+              : fmt::format("  convolution against direct summation: {}\n",
+                            crossing["remark"].get<std::string>());
+  return text;
 }
 
 }  // namespace slipstick::convergence

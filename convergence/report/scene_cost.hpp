@@ -4,17 +4,11 @@
 #include <string>
 #include <vector>
 
+#include "convergence/report/scene_numbers.hpp"
 #include "convergence/report/scene_page.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace slipstick::convergence {
-
-/// The number by which answers are compared, and what it is compared with.
-struct Reference {
-  std::string number;  ///< key in a result: twist_angle, displacement, moment, ...
-  double value;        ///< its size, SI units; NaN: nothing is known
-  double uncertainty;  ///< relative; 0: exact
-};
 
 /// Time and error of each method on several meshes and to several tolerances, and the choices of --accuracy:
 /// {number, reference_uncertainty, points: [{method, cells, tolerance, seconds, error, status}], choices}.
@@ -41,5 +35,11 @@ Json answers_beside(const RunSpec& base, const solver::Scene& scene, const std::
 /// low, high, remark}.
 Json direct_against_dcfft(const RunSpec& base, const solver::Scene& scene, const PageSize& size,
                           const ProcessPool& pool);
+
+/// The times alone: {provenance, scene, numbers, cost, operators, programs}; docs/schema/costs.schema.json.
+/// Throws as scene_page(), and InputError for a scene whose files have its grid.
+Json scene_costs(const PageRequest& request, const std::filesystem::path& folder, const ProcessPool& pool);
+/// The same for a person: a line for each method, mesh and tolerance.
+std::string costs_text(const Json& costs);
 
 }  // namespace slipstick::convergence

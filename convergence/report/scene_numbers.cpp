@@ -1,0 +1,198 @@
+#include "convergence/report/scene_numbers.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "convergence/orders/expected_order.hpp"
+#include "convergence/orders/limit.hpp"
+#include "convergence/results/quantity.hpp"
+#include "convergence/runs/failed_runs.hpp"
+#include "convergence/studies/study.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+namespace fs = std::filesystem;
+using solver::Index;
+using solver::Scene;
+
+/// Parts of the finest mesh that a mesh study takes, and those from which the answer's mesh error follows.
+constexpr double kStudyParts[] = {0.125, 0.1875, 0.25, 0.375, 0.5, 0.75, 1.0};
+constexpr double kAnswerParts[] = {0.25, 0.5, 1.0};
+const std::vector<double> kStudyTolerances{1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-8};
+/// Loads below this part of all that friction carries are those of rounding.
+constexpr double kRounded = 1e-9;
+
+/// A number that the page shows, where a result has it.
+struct PageNumber {
+  const char* key;
+  const char* words;
+  const char* unit;
+};
+constexpr PageNumber kNumbers[] = {{"twist_angle", "twist", "rad"},
+                                   {"moment", "moment", "N m"},
+                                   {"displacement", "displacement", "m"},
+                                   {"force", "tangential force", "N"},
+                                   {"moment_limit", "limit moment", "N m"},
+                                   {"contact_radius", "contact radius", "m"},
+                                   {"stick_radius", "stick radius", "m"},
+                                   {"peak_pressure", "highest pressure", "Pa"},
+                                   {"approach", "approach", "m"},
+                                   {"elastic_energy", "elastic energy", "J"},
+                                   {"dissipated", "energy lost in the last step", "J"}};
+
+Index longer_side(const Scene& scene) { return std::max(scene.cells[0], scene.cells[1]); }
+
+/// Multiples of four that are these parts of the finest mesh, rising.
+std::vector<Index> meshes(Index finest, const auto& parts) {
+  std::vector<Index> cells;
+  for (const double part : parts) {
+    const auto rounded = 4 * static_cast<Index>(std::lround(part * static_cast<double>(finest) / 4.0));
+    if (rounded >= kFewestCells && (cells.empty() || rounded > cells.back())) cells.push_back(rounded);
+  }
+  return cells;
+}
+
+bool is_rough(const Scene& scene) {
+  return std::ranges::any_of(scene.surfaces, [](const solver::Surface& surface) {
+    return surface.shape == solver::Shape::roughness;
+  });
+}
+
+/// How far a number on the finest mesh may be off, relative, and how that is known.
+struct MeshError {
+  double reference = kNaN;
+  double error = kNaN;
+  double uncertainty = kNaN;  ///< of the reference, relative
+  std::string basis;          ///< "exact" and others, or why nothing is known
+};
+
+/// From where the values of a study of meshes tend to, if it has that.
+MeshError error_by_study(const Json& study, const std::string& key, double value) {
+  for (const Json& series : study["series"]) {
+    if (!series["extrapolated"].contains(key)) continue;
+    const Json& limit = series["extrapolated"][key];
+    const double reference = number_at(limit, "value");
+    const double uncertainty = number_at(limit, "uncertainty") / std::abs(reference);
+    return {reference, std::abs(value / reference - 1.0) + uncertainty, uncertainty,
+            fmt::format("study of meshes: {}", limit["method"].get<std::string>())};
+  }
+  return {};
+}
+
+/// study: of meshes.
+MeshError mesh_error(const Scene& scene, const std::vector<Json>& results, const Json& study,
+                     const std::string& key) {
+  const Json& finest = results.back();
+  const double value = size_at(finest, key);
+  if (const double exact = size_at(finest, "exact." + key); exact > 0.0) {
+    return {exact, value / exact - 1.0, 0.0, "exact"};
+  }
+  if (!(value > 0.0)) return {.basis = "the value is zero, or there is none"};
+  if (results.size() < 2) {
+    if (finest["resolved"].value("number", "") != key)
+      return {.basis = "its files have its grid: there is no other mesh"};
+    const double stated = number_at(finest, "resolved.uncertainty");
+    return {value, stated, stated, "what the mesh leaves open, as the result states"};
+  }
+  std::vector<MeshSample> samples;
+  samples.reserve(results.size());
+  for (const Json& result : results)
+    samples.push_back({result["cell_size"][0].get<double>(), size_at(result, key)});
+  if (is_rough(scene)) {
+    const double change = value / samples[samples.size() - 2].value - 1.0;
+    return {value, change, std::abs(change),
+            "change from the mesh before: finer ones see more of the surface"};
+  }
+  const Limit limit = richardson_limit(samples, expected_order(key, scene).value);
+  const double uncertainty = limit.uncertainty / std::abs(limit.value);
+  const double error = std::abs(value / limit.value - 1.0) + uncertainty;
+  const MeshError by_study = error_by_study(study, key, value);
+  return by_study.error < error ? by_study : MeshError{limit.value, error, uncertainty, limit.method};
+}
+
+/// Whether a load, or the motion that it causes, is zero but for rounding.
+bool is_rounding(const Json& result, const std::string& key) {
+  if (size_at(result, "exact." + key) == 0.0) return true;
+  const double friction = number_at(result, "friction") * number_at(result, "normal_load");
+  const bool no_force = size_at(result, "force") < kRounded * friction;
+  const bool no_moment = size_at(result, "moment") < kRounded * size_at(result, "moment_limit");
+  if (key == "twist_angle" || key == "moment") return no_moment;
+  return (key == "displacement" || key == "force") && no_force;
+}
+
+}  // namespace
+
+Meshes meshes_of(const Scene& scene, const PageSize& size) {
+  if (has_given_grid(scene)) return {true, {}, {}};
+  const Index finest = std::max(std::min(longer_side(scene), size.most_cells), 4 * kFewestCells);
+  const Index of_study = std::max(finest, std::min(2 * finest, size.most_study_cells));
+  return {false, meshes(of_study, kStudyParts), meshes(finest, kAnswerParts)};
+}
+
+std::vector<Json> solve_answer(const RunSpec& base, const Scene& scene, const Meshes& meshes,
+                               const fs::path& fields, const ProcessPool& pool) {
+  std::vector<RunSpec> runs;
+  for (const Index cells : meshes.answer) runs.push_back(changed(base, {cells_override(scene, cells)}));
+  if (runs.empty()) runs.push_back(base);
+  runs.back().fields = fields;
+  std::vector<Json> results = pool.run(runs);
+  if (is_failed(results.back())) throw std::runtime_error(results.back()["message"].get<std::string>());
+  std::erase_if(results, [](const Json& result) { return is_failed(result); });
+  return results;
+}
+
+Json scene_studies(const RunSpec& base, const Scene& scene, const Meshes& meshes, const PageSize& size,
+                   const ProcessPool& pool) {
+  Json found = Json::array();
+  Study study{.source = base.scene,
+              .name = "meshes",
+              .scene = base.scene,
+              .overrides = base.overrides,
+              .cells = meshes.study,
+              .shifts = scene.steps.size() > 1 ? std::min(size.shifts, 2) : size.shifts,
+              .tolerances = {},
+              .variations = {},
+              .quantities = {}};
+  if (!meshes.given) found.push_back(run_study(study, pool));
+  study.name = "tolerances";
+  study.cells.clear();
+  if (!meshes.given) study.cells = {meshes.answer[meshes.answer.size() / 2]};
+  study.shifts = 1;
+  study.tolerances = kStudyTolerances;
+  found.push_back(run_study(study, pool));
+  return found;
+}
+
+Json number_rows(const Scene& scene, const std::vector<Json>& results, const Json& study) {
+  Json rows = Json::array();
+  for (const auto& [key, words, unit] : kNumbers) {
+    const double value = size_at(results.back(), key);
+    if (!(value > 0.0) || is_rounding(results.back(), key)) continue;
+    const MeshError found = mesh_error(scene, results, study, key);
+    Json& row = rows.emplace_back(
+        Json{{"key", key}, {"words", words}, {"unit", unit}, {"value", value}, {"basis", found.basis}});
+    set_number(row, "reference", found.reference, found.basis);
+    set_number(row, "error", found.error, found.basis);
+    set_number(row, "uncertainty", found.uncertainty, found.basis);
+  }
+  return rows;
+}
+
+Reference reference_of(const Json& answer, const Json& rows) {
+  std::vector<std::string> keys{answer["resolved"].value("number", "")};
+  keys.insert(keys.end(), {"twist_angle", "displacement", "stick_radius", "approach"});
+  for (const std::string& key : keys) {
+    for (const Json& row : rows) {
+      if (row["key"] != key || !row["reference"].is_number()) continue;
+      return {key, row["reference"], number_at(row, "uncertainty")};
+    }
+  }
+  return {keys.back(), kNaN, kNaN};
+}
+
+}  // namespace slipstick::convergence

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "convergence/report/scene_page.hpp"
+#include "solver/scene/scene.hpp"
+
+/// The numbers of a scene's page, and how far each may be off.
+namespace slipstick::convergence {
+
+/// The coarsest mesh of a study, cells along the longer side.
+inline constexpr solver::Index kFewestCells = 8;
+
+/// The meshes on which a scene is solved, cells along the longer side, rising; none where it has its own.
+struct Meshes {
+  bool given;
+  std::vector<solver::Index> study;
+  std::vector<solver::Index> answer;
+};
+Meshes meshes_of(const solver::Scene& scene, const PageSize& size);
+
+/// The results on the answer's meshes, coarsest first; the last one has its fields in a file. Throws
+/// std::runtime_error where that has no answer.
+std::vector<Json> solve_answer(const RunSpec& base, const solver::Scene& scene, const Meshes& meshes,
+                               const std::filesystem::path& fields, const ProcessPool& pool);
+
+/// The studies of meshes, unless the scene has its own, and of tolerances.
+Json scene_studies(const RunSpec& base, const solver::Scene& scene, const Meshes& meshes,
+                   const PageSize& size, const ProcessPool& pool);
+
+/// A row for each number that the answer has. study: of meshes.
+Json number_rows(const solver::Scene& scene, const std::vector<Json>& results, const Json& study);
+
+/// The number by which answers are compared, and what it is compared with.
+struct Reference {
+  std::string number;  ///< key in a result: twist_angle, displacement, moment, ...
+  double value;        ///< its size, SI units; NaN: nothing is known
+  double uncertainty;  ///< relative; 0: exact
+};
+
+/// That of the number which the result's uncertainty is of, or of the first of some that has one.
+Reference reference_of(const Json& answer, const Json& rows);
+
+}  // namespace slipstick::convergence
