@@ -65,7 +65,7 @@ void write_csv(const fs::path& file, const Grid& grid, const ArrayXd& values) {
 /// Writes an array beside the scene and returns its name.
 std::string write_array(const SolverProgram& program, const ExchangeFiles& files, const std::string& name,
                         const Grid& grid, const ArrayXd& values) {
-  const std::string file = name + (program.numpy ? ".npy" : ".csv");
+  std::string file = name + (program.numpy ? ".npy" : ".csv");
   (program.numpy ? write_npy : write_csv)(files.scene.parent_path() / file, grid, values);
   return file;
 }

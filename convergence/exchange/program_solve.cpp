@@ -26,8 +26,6 @@ using solver::Scene;
 constexpr solver::CertificateBounds kSameLoads{
     .gap = std::numeric_limits<double>::infinity(), .moment = 0.05, .force = 0.05, .friction_bound = 0.05};
 
-constexpr const char* kKey = "solver.program=";
-
 /// The scene under loads in N and N m.
 Scene under_given_loads(Scene scene, double limit) {
   solver::Step& step = scene.steps.front();
@@ -48,22 +46,6 @@ Scene pressed_alone(Scene scene) {
 }
 
 }  // namespace
-
-std::string program_override(const std::filesystem::path& file) {
-  return kKey + json_text(std::filesystem::absolute(file).string());
-}
-
-void require_allowed(const Scene& scene, const std::vector<std::string>& overrides,
-                     const AllowedPrograms& allowed) {
-  if (scene.program.empty() || allowed.all) return;
-  const auto last = std::find_if(overrides.rbegin(), overrides.rend(),
-                                 [](const std::string& assignment) { return assignment.starts_with(kKey); });
-  if (last != overrides.rend() && std::ranges::find(allowed.overrides, *last) != allowed.overrides.end())
-    return;
-  throw solver::InputError(
-      scene.source.string(), "solver.program", scene.program.string(),
-      "a program that a file names runs only with --allow-programs; it may do whatever you may do");
-}
 
 ProgramAnswer solve_by_program(const Scene& scene, const AllowedPrograms& allowed) {
   const SolverProgram program = read_solver_program(scene.program);

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
+#include "convergence/exchange/allowed_programs.hpp"
 #include "convergence/programs/run_program.hpp"
 #include "convergence/results/result_parts.hpp"
-#include "convergence/exchange/program_solve.hpp"
 #include "convergence/runs/run_spec.hpp"
 
 namespace slipstick::convergence {

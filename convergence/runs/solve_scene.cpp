@@ -2,6 +2,7 @@
 
 #include <utility>
 
+#include "convergence/exchange/program_solve.hpp"
 #include "convergence/results/result.hpp"
 #include "solver/elasticity/random_rounding.hpp"
 #include "solver/history_state.hpp"

@@ -4,9 +4,9 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
+#include "convergence/exchange/allowed_programs.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/results/result_parts.hpp"
-#include "convergence/exchange/program_solve.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "solver/solve.hpp"
 

@@ -18,6 +18,7 @@
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/solve_scene.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/memory.hpp"
 
 namespace slipstick::convergence {
 namespace {

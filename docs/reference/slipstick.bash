@@ -31,10 +31,11 @@ _slipstick() {
       "digits --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "digits --samples" | "digits --seed" | "digits --output" | "digits --jobs" | "digits --memory-limit" | "digits --json") return ;;
       "digits "*) [[ $current != -* ]] || words="--help --set --samples --seed --output --jobs --memory-limit --json --quiet" ;;
-      "report --output" | "report --benchmarks" | "report --want" | "report --uncertain" | "report --junit" | "report --summary" | "report --memory-limit" | "report --program" | "report --json") return ;;
-      "report "*) [[ $current != -* ]] || words="--help --output --quick --full --benchmarks --want --uncertain --junit --summary --memory-limit --program --allow-programs --json --quiet" ;;
-      "bench --program" | "bench --output" | "bench --filter" | "bench --accuracy-data" | "bench --against" | "bench --pair" | "bench --rounds" | "bench --effect" | "bench --json") return ;;
-      "bench "*) [[ $current != -* ]] || words="--help --program --output --filter --quick --accuracy-data --against --pair --rounds --effect --json --quiet" ;;
+      "report --output" | "report --benchmarks" | "report --want" | "report --uncertain" | "report --junit" | "report --summary" | "report --memory-limit" | "report --program" | "report --beside" | "report --json") return ;;
+      "report "*) [[ $current != -* ]] || words="--help --output --quick --full --benchmarks --want --uncertain --junit --summary --memory-limit --program --allow-programs --beside --json --quiet" ;;
+      "bench --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
+      "bench --beside" | "bench --program" | "bench --output" | "bench --filter" | "bench --accuracy-data" | "bench --against" | "bench --pair" | "bench --rounds" | "bench --effect" | "bench --json") return ;;
+      "bench "*) [[ $current != -* ]] || words="--help --set --beside --program --output --filter --quick --accuracy-data --against --pair --rounds --effect --json --quiet" ;;
       "compare --effect" | "compare --level" | "compare --rerun" | "compare --summary" | "compare --junit" | "compare --json") return ;;
       "compare "*) [[ $current != -* ]] || words="--help --effect --level --same-machine --debug-library --rerun --summary --junit --json --quiet" ;;
     esac

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "solver/scene/scene.hpp"
+
+namespace slipstick::convergence {
+
+/// Which programs may be started. A scene, study or gate file that a stranger wrote must not run a stranger's
+/// command: what a file names runs only where the user allows all.
+struct AllowedPrograms {
+  bool all = false;                         ///< --allow-programs
+  std::vector<std::string> overrides = {};  ///< of the command line, which may name one: "solver.program=..."
+  std::filesystem::path tied_by = {};       ///< see ProgramOptions
+  std::optional<std::string> version = {};  ///< of the program, where it is known; else it is asked
+};
+
+/// The override by which a scene is solved by this program, whatever its file names.
+inline constexpr const char* kNoProgram = "solver.program=\"\"";
+
+/// The override by which a command line names a program: its file, relative to here.
+std::string program_override(const std::filesystem::path& file);
+
+/// Throws InputError where the scene names a program that is not allowed. overrides: those that the scene was
+/// read with, last ones first in force.
+void require_allowed(const solver::Scene& scene, const std::vector<std::string>& overrides,
+                     const AllowedPrograms& allowed);
+
+}  // namespace slipstick::convergence
