@@ -203,8 +203,8 @@ ComparedAnswer compare_answer(const Json& certified, const Json& other) {
     return {MethodVerdict::other_answer, "there is no certified answer", alone.numbers};
   }
   const bool pressure = foreign && other["program"]["fields"] == "pressure";
-  const double difference = pressure ? pressure_difference(certified, other)
-                                     : variant_difference(certified, other, Variant::none);
+  const double difference =
+      pressure ? pressure_difference(certified, other) : variant_difference(certified, other, Variant::none);
   set_number(alone.numbers, "difference", difference, "a number is missing");
   // Another discretisation has another error, and promises no gap on this one.
   const double by_mesh = foreign ? std::fmax(number_at(certified, "resolved.uncertainty"), 0.0) : 0.0;

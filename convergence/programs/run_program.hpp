@@ -66,8 +66,8 @@ class Program {
   /// Waits for its end.
   ProgramEnd wait();
 
-  /// Waits for its end, so many seconds at most: then it is killed, with its group. The last `kept` bytes of what it
-  /// says are kept.
+  /// Waits for its end, so many seconds at most: then it is killed, with its group. The last `kept` bytes of
+  /// what it says are kept.
   ProgramEnd wait_at_most(double seconds, std::size_t kept);
 
  private:

@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "convergence/exchange/solver_program.hpp"
 #include "convergence/gates/gate.hpp"
 #include "convergence/hard/hard_case.hpp"
-#include "convergence/exchange/solver_program.hpp"
 #include "convergence/studies/study.hpp"
 #include "docs/generator/command_line.hpp"
 #include "docs/generator/key_page.hpp"

@@ -141,7 +141,8 @@ void add_grid_and_solver(SettingKeys& keys, const Scene& scene) {
        "published."},
       {"solver.program", KeyType::file, "", "\"\"", kAny,
        "Another program that finds pressure and tractions in place of the method: the TOML file that says "
-       "how it is started. It runs only with --allow-programs, or where the command line names it. Empty: none."},
+       "how it is started. It runs only with --allow-programs, or where the command line names it. Empty: "
+       "none."},
       {"solver.operator", kWord, "", word_of(kOperators, scene.op), one_of(kOperators),
        "Convolution by FFT, direct summation, a dense matrix: the same numbers."},
       {"solver.tolerance", kNumber, "", shown(scene.tolerance), kTolerance,
