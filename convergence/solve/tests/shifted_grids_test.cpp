@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -156,7 +157,9 @@ TEST(ShiftedGrids, CoverTheErrorOfSlenderContacts) {
   };
   constexpr double kWanted = 5e-3;
   int beyond = 0;
-  for (const double radius : {0.002, 0.003, 0.005, 0.01}) {
+  // All twelve each night, half of them here; one of them is beyond.
+  const bool all = std::getenv("SLIPSTICK_TEST_ALL") != nullptr;
+  for (const double radius : all ? std::vector{0.002, 0.003, 0.005, 0.01} : std::vector{0.003, 0.01}) {
     for (const double ratio : {0.85, 0.93, 0.97}) {
       solver::Scene scene = shifted_scene("ellipse", {fmt::format("load.moment_ratio={}", ratio)});
       scene.surfaces[0].radius_1 = 0.3;
