@@ -1,15 +1,23 @@
 #include "convergence/exchange/allowed_programs.hpp"
 
-#include <algorithm>
 #include <nlohmann/json.hpp>
 
 #include "convergence/results/json_text.hpp"
+#include "convergence/results/result_parts.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
-constexpr const char* kKey = "solver.program=";
+const std::string kKey = "solver.program=";
+
+/// The text that a value of TOML or a bare word stands for.
+std::string unquoted(const std::string& value) {
+  const Json read = Json::parse(value, nullptr, false);
+  if (read.is_string()) return read;
+  const bool quoted = value.size() > 1 && value.front() == '\'' && value.back() == '\'';
+  return quoted ? value.substr(1, value.size() - 2) : value;
+}
 
 }  // namespace
 
@@ -17,13 +25,13 @@ std::string program_override(const std::filesystem::path& file) {
   return kKey + json_text(std::filesystem::absolute(file).string());
 }
 
-void require_allowed(const solver::Scene& scene, const std::vector<std::string>& overrides,
-                     const AllowedPrograms& allowed) {
+void require_allowed(const solver::Scene& scene, const AllowedPrograms& allowed) {
   if (scene.program.empty() || allowed.all) return;
-  const auto last = std::find_if(overrides.rbegin(), overrides.rend(),
-                                 [](const std::string& assignment) { return assignment.starts_with(kKey); });
-  if (last != overrides.rend() && std::ranges::find(allowed.overrides, *last) != allowed.overrides.end())
-    return;
+  for (const std::string& assignment : allowed.overrides) {
+    if (assignment.starts_with(kKey) &&
+        scene.program == scene.source.parent_path() / unquoted(assignment.substr(kKey.size())))
+      return;
+  }
   throw solver::InputError(
       scene.source.string(), "solver.program", scene.program.string(),
       "a program that a file names runs only with --allow-programs; it may do whatever you may do");

@@ -24,9 +24,8 @@ inline constexpr const char* kNoProgram = "solver.program=\"\"";
 /// The override by which a command line names a program: its file, relative to here.
 std::string program_override(const std::filesystem::path& file);
 
-/// Throws InputError where the scene names a program that is not allowed. overrides: those that the scene was
-/// read with, last ones first in force.
-void require_allowed(const solver::Scene& scene, const std::vector<std::string>& overrides,
-                     const AllowedPrograms& allowed);
+/// Throws InputError where the scene names a program that is neither allowed nor the one that the command
+/// line names, whichever way a file may name it.
+void require_allowed(const solver::Scene& scene, const AllowedPrograms& allowed);
 
 }  // namespace slipstick::convergence

@@ -26,6 +26,9 @@ using solver::Scene;
 constexpr solver::CertificateBounds kSameLoads{
     .gap = std::numeric_limits<double>::infinity(), .moment = 0.05, .force = 0.05, .friction_bound = 0.05};
 
+/// More iterations than this are no count.
+constexpr double kMaxIterations = 1e9;
+
 /// The scene under loads in N and N m.
 Scene under_given_loads(Scene scene, double limit) {
   solver::Step& step = scene.steps.front();
@@ -76,9 +79,13 @@ ProgramAnswer solve_by_program(const Scene& scene, const AllowedPrograms& allowe
     answer.solution.status = solver::Status::not_converged;
     answer.solution.message = own.value("message", program.name + " says that it did not converge");
   }
-  const double seconds = own.contains("seconds") ? own["seconds"].get<double>() : wall;
+  const double said = own.contains("seconds") ? own["seconds"].get<double>() : wall;
+  const double seconds = said >= 0.0 && said <= wall ? said : wall;
   answer.solution.seconds = {.traction = seconds, .total = seconds};
-  answer.solution.iterations = own.contains("iterations") ? own["iterations"].get<int>() : 0;
+  answer.solution.iterations =
+      own.contains("iterations")
+          ? static_cast<int>(std::clamp(own["iterations"].get<double>(), 0.0, kMaxIterations))
+          : 0;
   answer.program = {{"name", program.name},
                     {"file", program.file.string()},
                     {"version", allowed.version ? *allowed.version : version_of(program, allowed.tied_by)},

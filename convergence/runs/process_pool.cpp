@@ -249,7 +249,7 @@ std::vector<PreparedRun> ProcessPool::with_versions(const std::vector<PreparedRu
   for (PreparedRun& run : all) {
     const fs::path& file = run.scene.program;
     if (file.empty()) continue;
-    require_allowed(run.scene, run.spec.overrides, options_.programs);
+    require_allowed(run.scene, options_.programs);
     if (!versions.contains(file)) versions[file] = version_of(read_solver_program(file), options_.program);
     run.spec.program_version = versions[file];
     run = prepare_run(run.spec);

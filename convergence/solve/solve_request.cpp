@@ -261,7 +261,7 @@ void require_shared_by_ranks(const SolveRequest& request, const solver::Scene& s
 
 /// Throws InputError where the scene's program may not run, and for what no other program can be asked.
 void require_for_programs(const SolveRequest& request, const solver::Scene& scene) {
-  require_allowed(scene, request.overrides, {request.allow_programs, request.overrides});
+  require_allowed(scene, {request.allow_programs, request.overrides});
   const char* const what = request.accuracy                            ? "--accuracy"
                            : request.plan                              ? "--plan"
                            : !request.checkpoint.empty()               ? "--checkpoint"

@@ -236,6 +236,16 @@ class ThatBreak(WithFolder):
             self.assertEqual(done.returncode, 2, words)
             self.assertFalse(trace.exists(), words)
         self.assertIn("--allow-programs", run("solve", scene).stderr)
+        # A program that the command line names lets no other one run, however a file names that.
+        study = self.folder / "study.toml"
+        study.write_text(f'name = "a"\nscene = "{SCENES / "paper.toml"}"\ncells = [8, 12]\n[[vary]]\nkey = "solver"\n'
+                         f"values = ['{{program = \"{program}\"}}']\n")
+        named = ("--program", NUMPY / "program.toml", "--output", self.folder / "points")
+        for text in (study.read_text(), study.read_text().replace('"solver"', '"solver.program"').replace(
+                f"'{{program = \"{program}\"}}'", f'"{program}"'), study.read_text().replace("'{", "{").replace("}'", "}")):
+            study.write_text(text)
+            self.assertEqual(run("study", study, *named).returncode, 2, text)
+            self.assertFalse(trace.exists(), text)
 
     def test_may_find_the_pressure_alone(self):
         script = (NUMPY / "solver.py").read_text().replace("(x1, x2, pressure, q[0], q[1])", "(x1, x2, pressure)").replace(
