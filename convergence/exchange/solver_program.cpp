@@ -24,9 +24,10 @@ constexpr double kVersionSeconds = 60.0;
 
 const solver::Range kSeconds{"positive, at most 86400", [](double x) { return x > 0.0 && x <= 86400.0; }};
 
-void replace(std::string& word, const std::string& placeholder, const fs::path& file) {
-  for (std::size_t at = 0; (at = word.find(placeholder, at)) != std::string::npos; at += file.string().size())
-    word.replace(at, placeholder.size(), file.string());
+/// Puts a file's name wherever {name} stands in a word.
+void replace(std::string& word, const std::string& name, const fs::path& file) {
+  for (std::size_t at = 0; (at = word.find(name, at)) != std::string::npos; at += file.string().size())
+    word.replace(at, name.size(), file.string());
 }
 
 /// The Python that draws reports, which has NumPy.

@@ -6,31 +6,15 @@
 
 #include "solver/input/input_error.hpp"
 #include "solver/solve.hpp"
+#include "solver/tests/scene_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
-const std::string kSphere = R"(
-[upper]
-shape = "sphere"
-radius = 0.018
-young_modulus = 210e9
-poisson_ratio = 0.3
-[lower]
-young_modulus = 210e9
-poisson_ratio = 0.3
-[contact]
-friction = 0.1
-[load]
-normal = 1000.0
-moment_ratio = 0.7
-[grid]
-cells = [24, 20]
-extent = [0.0014, 0.0015]
-)";
-
-solver::Scene scene_with(const std::vector<std::string>& overrides) {
-  return solver::read_scene_text(kSphere, "sphere.toml", overrides);
+/// The paper's sphere on cells that are no squares, with room for softer bodies.
+solver::Scene scene_with(std::vector<std::string> overrides) {
+  overrides.insert(overrides.begin(), {"grid.cells=[24,20]", "grid.extent=[0.0014,0.0015]"});
+  return solver::read_scene_text(solver::kShortScene, "sphere.toml", overrides);
 }
 
 GivenFields fields_of(const solver::Solution& solution) { return {solution.pressure, solution.traction}; }
@@ -62,7 +46,8 @@ TEST_P(GivenFieldsOf, ASolveAreThatSolve) {
 
 INSTANTIATE_TEST_SUITE_P(
     Solved, GivenFieldsOf,
-    testing::Values(std::vector<std::string>{}, std::vector<std::string>{"load.force=[40.0,20.0]"},
+    testing::Values(std::vector<std::string>{},
+                    std::vector<std::string>{"load.moment_ratio=0.7", "load.force=[40.0,20.0]"},
                     std::vector<std::string>{"load.twist=1e-3", "load.displacement=[1e-7,2e-7]"},
                     std::vector<std::string>{"lower.young_modulus=70e9", "upper.poisson_ratio=0.2"}));
 
@@ -73,7 +58,7 @@ TEST(GivenFields, ThatAreTooSmallMissTheirLoad) {
   GivenFields fields = fields_of(solver::solve(scene));
   fields.traction *= 0.9;
   const solver::Solution described = describe_given(scene, fields);
-  EXPECT_NEAR(described.certificate.moment, 0.07, 1e-6);
+  EXPECT_NEAR(described.certificate.moment, 0.09, 1e-6);
   EXPECT_GE(described.certificate.gap, 1e-2);
 }
 
