@@ -20,7 +20,7 @@ PYTHON = "$$(sed -n 's/^SLIPSTICK_PYTHON:[A-Z]*=//p' $(BUILD)/CMakeCache.txt)"
 INSTRUCTION_GATES = $(wildcard bench/gates/instructions-gcc-$(firstword $(subst ., ,$(shell c++ -dumpversion))).toml)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup configure build report report-pdf test gate hard mutants sanitize coverage lint bench bench-against \
+.PHONY: help setup configure build report gallery report-pdf test gate hard mutants sanitize coverage lint bench bench-against \
   bench-trust references reference hardest docs install python clean
 
 help: ## show this list
@@ -47,6 +47,10 @@ report: configure ## compute all that the page shows and write it (FULL=1: finer
 	$(call build,slipstick)
 	@$(BUILD)/slipstick report --output $(BUILD)/report --benchmarks $(BUILD)/benchmarks $(if $(FULL),--full) $(REPORT_OPTIONS)
 	@echo "The page: $(CURDIR)/$(BUILD)/report/index.html"
+
+gallery: configure ## a page of every scene of the project, and an index of them: build/gallery/index.html (3 minutes; REPORT_OPTIONS="--quick")
+	$(call build,slipstick)
+	@$(BUILD)/slipstick report convergence/scenes/*.toml --output $(BUILD)/gallery $(REPORT_OPTIONS)
 
 report-pdf: configure ## print the page that `make report` wrote into build/report/report.pdf (needs chromium-driver and python3-selenium)
 	@$(PYTHON) -B reports/pdf.py $(BUILD)/report/index.html \

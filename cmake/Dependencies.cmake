@@ -47,9 +47,12 @@ if(NOT FFTW_FOUND)
 endif()
 
 # Optional: one contact on several ranks.
-find_package(MPI QUIET COMPONENTS C)
 find_library(SLIPSTICK_FFTW_MPI fftw3_mpi)
 mark_as_advanced(SLIPSTICK_FFTW_MPI)
+# Without FFTW's library it is of no use; and where MPI's programs are installed without its headers, looking for it ends in an error.
+if(SLIPSTICK_FFTW_MPI)
+  find_package(MPI QUIET COMPONENTS C)
+endif()
 if(MPI_C_FOUND AND SLIPSTICK_FFTW_MPI)
   set(found_mpi ON)
 else()

@@ -55,14 +55,14 @@ class Cells:
     def longer_side(self):
         return max(self.extent[1] - self.extent[0], self.extent[3] - self.extent[2])
 
-    def spacing(self, arrows=ARROWS_ALONG):
-        """The distance of arrows, `arrows` of them along the longer side, in metres: whole cells."""
+    def spacing(self):
+        """The distance of arrows in metres: whole cells."""
         cell = self.size.max()
-        return cell * np.ceil(self.longer_side() / cell / arrows)
+        return cell * np.ceil(self.longer_side() / cell / ARROWS_ALONG)
 
-    def thinned(self, where, arrows=ARROWS_ALONG):
+    def thinned(self, where):
         """Indices of those cells among `where` that stand nearest to the middle of a square of arrows."""
-        squares = (self.positions[:, where] - self.extent[[0, 2], None]) / self.spacing(arrows)
+        squares = (self.positions[:, where] - self.extent[[0, 2], None]) / self.spacing()
         square = np.floor(squares)
         distance = np.hypot(*(squares - square - 0.5))
         order = np.lexsort((distance, square[1], square[0]))

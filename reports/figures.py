@@ -1,15 +1,16 @@
-"""One function a figure: takes the report and the folder of its data, returns a FigureEntry.
+"""The questions of a page and the figures that answer them, and the figures of the paper's validation: each a function that
+takes its results and the folder of their data and returns a FigureEntry.
 
 Errors against the exact solution come with the data; here they are only drawn.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from matplotlib.colors import Normalize
 
 import exact_figures
-import gallery_figure
 import hard_cases
 import maps
 import method_figures
@@ -20,7 +21,7 @@ import style
 from cells import Cells
 from figure_entry import LIMIT, LIMIT_WORDS, LOAD_LABEL, TWIST_LABEL, FigureEntry
 from results import column, nearest, number, rows, text, value
-from wording import percent, plain, sci, seconds
+from wording import percent, plain, sci
 
 
 def shear_components(report, data_dir):
@@ -199,30 +200,6 @@ def convergence(report, data_dir):
         [(f"error left with the {study.name}: {words}", found) for words, found in numbers])
 
 
-def cost(report, data_dir):
-    quantities = [("twist_error", "twist"), ("traction_error.l1", "traction, L1")]
-    runs = studies.read(report)
-    figure, axes = style.panels(1, 2, 3.9, sharex=True)
-    for axis, (path, title) in zip(axes, quantities):
-        axis.set(xscale="log", yscale="log", title=title, xlabel="time of the whole solve, s")
-        for study in runs:
-            axis.plot(column(study.table, "seconds.total"), np.abs(column(study.table, path)), **study.look)
-        studies.label_cells(axis, runs[0], path)
-        axis.margins(0.12)
-    axes[0].set_ylabel("relative error")
-    style.legend_on_top(figure, studies.handles(runs), 2)
-    shown = [(study.name, seconds(number(study.table[-1], "seconds.total")), _sci_at(study.table[-1], "twist_error"))
-             for study in runs if study.load == runs[-1].load]
-    return FigureEntry(
-        f"A twist that is right to {shown[0][2]} takes {shown[0][1]} s.",
-        "Down and left is better. The numbers beside one line are its cells a side; the other lines have the same "
-        "meshes in the same order. Times are of one run on the machine named at the foot of the page.",
-        "Two log-log panels of relative error against time, for twist and traction, one line for each pressure and "
-        "load, points from coarse to fine meshes.", figure,
-        [(f"{name}: {runs[0].cells[-1]:.0f} cells a side, {LIMIT}{runs[-1].load}", f"{time} s for {error}")
-         for name, time, error in shown])
-
-
 def equation_5_digits(report, data_dir):
     table = rows(report, "equation_5_digits")
     complement, error = column(table, "stick_complement"), np.abs(column(table, "relative_error"))
@@ -243,46 +220,74 @@ def equation_5_digits(report, data_dir):
 
 
 @dataclass
+class Figure:
+    """A figure of a page; one that has no `part`, "" all of it, has no such figure. draw(page, folder of its data)."""
+    name: str
+    title: str
+    draw: Callable
+    part: str = ""
+
+
+@dataclass
 class Section:
-    """A question, what one has to know to read the answer (HTML), and the figures that answer it: (name, title, draw)."""
+    """A question, and the figures that answer it; a page has it where it has one of them, or the part."""
     name: str
     question: str
     figures: list
+    part: str = ""
 
 
-LEAD = ("twist", "Twist and load (the paper’s Fig. 5)", twist)
+def _paper(name, title, draw):
+    """A figure of the paper's validation."""
+    return Figure(name, title, lambda page, folder: draw(page["paper"], folder), "paper")
+
+
+LEAD = _paper("twist", "Twist and load (the paper’s Fig. 5)", twist)
 SECTIONS = [
     Section("right", "Is the paper right?", [
-        ("shear-components", "The two shear components (the paper’s Fig. 1)", shear_components),
-        ("traction-norm", "The norm of the shear tractions (the paper’s Fig. 2)", traction_norm),
-        ("radial-profiles", "Radial profiles (the paper’s Fig. 3)", radial_profiles),
-        ("stick-radius", "Stick radius and load (the paper’s Fig. 4)", stick_radius),
-        ("equation-5", "Where Eq. (5) loses its digits", equation_5_digits),
-        ("methods", "The paper’s method and others", method_figures.methods),
+        _paper("shear-components", "The two shear components (the paper’s Fig. 1)", shear_components),
+        _paper("traction-norm", "The norm of the shear tractions (the paper’s Fig. 2)", traction_norm),
+        _paper("radial-profiles", "Radial profiles (the paper’s Fig. 3)", radial_profiles),
+        _paper("stick-radius", "Stick radius and load (the paper’s Fig. 4)", stick_radius),
+        _paper("equation-5", "Where Eq. (5) loses its digits", equation_5_digits),
+        _paper("methods", "The paper’s method and others", method_figures.methods),
+        _paper("gap", "What the stopping test leaves", method_figures.certificate),
+    ]),
+    Section("what", "What is it?", [
+        Figure("bodies", "The bodies", scene_figures.bodies),
+    ]),
+    Section("result", "What is the answer?", [
+        Figure("answer", "The answer", scene_figures.answer),
+        Figure("loop", "The history", scene_figures.loop, "answer.steps"),
     ]),
     Section("errors", "How fast do errors fall?", [
-        ("convergence", "Convergence with the mesh", convergence),
-    ]),
-    Section("cost", "What does an error cost?", [
-        ("error-against-time", "Error against time", cost),
-        ("operators", "Direct summation against convolution", scene_figures.operators),
-    ]),
-    Section("bodies", "What if it is not a sphere?", [
-        ("slip-maps", "Where it sticks and how it slips", gallery_figure.slip_maps),
-        ("gallery-maps", "The gallery", gallery_figure.gallery),
-        ("bodies-and-cycles", "Other bodies, and cycles", exact_figures.bodies_and_cycles),
-        ("cycle", "A cycle, computed step by step", exact_figures.computed_cycle),
-        ("approximations", "Which approximation may be used", exact_figures.approximations),
+        _paper("convergence", "Convergence with the mesh, by the pressure", convergence),
+    ], "answer"),
+    Section("costs", "What does an error cost?", [
+        Figure("cost", "Error against time", scene_figures.cost, "cost"),
+        Figure("operators", "Direct summation against convolution", scene_figures.operators, "operators"),
     ]),
     Section("hard", "Where does it break?", [
-        ("hard-cases", "Hard scenes by each method", hard_cases.methods),
-        ("gap", "What the stopping test leaves", method_figures.certificate),
+        _paper("hard-cases", "Hard scenes by each method", hard_cases.methods),
+    ], "hard"),
+    Section("others", "What do other programs say?", [
+        Figure("programs", "Other programs", scene_figures.programs, "programs"),
+        _paper("known-fields", "Fields of other programs, judged", peers_figure.peers),
     ]),
-    Section("peers", "How do other programs do?", [
-        ("known-fields", "Fields of other programs, judged", peers_figure.peers),
+    Section("beyond", "What lies beyond the paper?", [
+        _paper("bodies-and-cycles", "Other bodies, and cycles", exact_figures.bodies_and_cycles),
+        _paper("cycle", "A cycle, computed step by step", exact_figures.computed_cycle),
+        _paper("approximations", "Which approximation may be used", exact_figures.approximations),
     ]),
 ]
 FIGURES = [LEAD, *(figure for section in SECTIONS for figure in section.figures)]
+
+
+def has(page, part):
+    """Whether a page has what stands at a dotted path; a list of one thing says no more than the thing itself."""
+    for key in filter(None, part.split(".")):
+        page = page.get(key) if isinstance(page, dict) else None
+    return len(page) > 1 if isinstance(page, list) else page is not None
 
 
 def _load(profile):

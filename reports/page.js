@@ -1,7 +1,7 @@
 // Sorts a table by the column whose heading is pressed: numbers by their value, texts by the alphabet, dashes last.
 const superscript = "⁰¹²³⁴⁵⁶⁷⁸⁹";
 const scale = { M: 1e6, k: 1e3, m: 1e-3, µ: 1e-6, n: 1e-9, p: 1e-12 };
-const written = /^[±+]?(-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)(?:×10(⁻?)([⁰¹²³⁴⁵⁶⁷⁸⁹]+))?(?:\s([Mkmµnp])?(?:rad|N m|m|Pa|J|s)\b)?/;
+const written = /^\+?(-?\d+(?:\.\d+)?(?:e[-+]?\d+)?)(?:×10(⁻?)([⁰¹²³⁴⁵⁶⁷⁸⁹]+))?(?:\s([Mkmµnp])?(?:rad|N m|m|Pa|J|s)\b)?/;
 function valueOf(cell) {
   const text = cell.textContent.trim();
   if (text === "" || text === "–") return null;

@@ -1,9 +1,8 @@
 #!/usr/bin/env python3
-"""Draws the figures and writes the page from what `slipstick report` computed."""
+"""Draws the page of each scene that `slipstick report` computed, and an index where there are several."""
 
 import argparse
 import itertools
-import os
 import re
 import sys
 from pathlib import Path
@@ -17,12 +16,14 @@ from markupsafe import Markup, escape  # noqa: E402
 
 import figures  # noqa: E402
 import hard_cases  # noqa: E402
+import page_tables  # noqa: E402
 import plane_figure  # noqa: E402
 import results  # noqa: E402
 import scaling_figure  # noqa: E402
 import study_figure  # noqa: E402
 import style  # noqa: E402
 import tables  # noqa: E402
+from method_figures import METHODS  # noqa: E402
 from whole_file import write_whole  # noqa: E402
 from wording import plain, typeset  # noqa: E402
 
@@ -51,23 +52,26 @@ def draw_entry(name, title, draw, folder):
     return entry
 
 
-def show_sections(report, data_dir, folder):
-    """The lead figure, and the sections with theirs, numbered as they stand on the page."""
+def show_sections(page, data, folder):
+    """The lead figure, None where there is none, and the sections that the page has, figures numbered as they stand."""
     numbered = itertools.count(1)
 
-    def draw(figures_of):
-        return [draw_entry(name, title, lambda: make(report, data_dir), folder) | {"number": next(numbered)}
-                for name, title, make in figures_of]
+    def draw(figure):
+        return draw_entry(figure.name, figure.title, lambda: figure.draw(page, data), folder) | {"number": next(numbered)}
 
-    lead, = draw([figures.LEAD])
-    return lead, {section.name: {"question": section.question, "figures": draw(section.figures)}
-                  for section in figures.SECTIONS}
+    lead = draw(figures.LEAD) if figures.has(page, figures.LEAD.part) else None
+    sections = {}
+    for section in figures.SECTIONS:
+        shown = [figure for figure in section.figures if figures.has(page, figure.part)]
+        if shown or (section.part and figures.has(page, section.part)):
+            sections[section.name] = {"question": section.question, "figures": [draw(figure) for figure in shown]}
+    return lead, sections
 
 
-def show_studies(report, folder):
+def show_studies(page, folder):
     """Each study with its figure and tables."""
     entries = []
-    for study in report.get("studies", []):
+    for study in page.get("studies", []):
         name = results.text(study, "name")
         entry = draw_entry("study-" + re.sub(r"\W+", "_", name), name.replace("_", " "),
                            lambda: study_figure.draw(study), folder)
@@ -93,31 +97,36 @@ def show_speed(benchmarks, folder):
               for k, scene in enumerate(results.rows(plane, "scenes"), 1))]
 
 
-def tabulate(report, name, columns):
+def tabulate(make, *arguments):
     try:
-        return {"table": tables.table(report, name, columns)}
+        return {"table": make(*arguments)}
     except results.Unavailable as reason:
         return {"unavailable": str(reason)}
 
 
-def tabulate_gallery(report, data_dir, output):
-    """The gallery's table, its scenes linked to their files where those lie on the page's side of the disc."""
+def tabulate_all(page):
+    """The page's tables by name; those that it has no part for are missing."""
+    makers = [(page_tables.numbers, "numbers"), (page_tables.program, "answer.program"), (page_tables.choices, "cost"),
+              (page_tables.digits, "digits"), (page_tables.programs, "programs")]
+    found = {make.__name__: tabulate(make, page) for make, part in makers if figures.has(page, part)}
+    if "paper" in page:
+        for name, part, columns in (("known_fields", "peers", tables.PEERS), ("loads", "loading", tables.LOADING),
+                                    ("meshes", "mesh", tables.MESH), ("laws", "approximation_table", tables.APPROXIMATIONS),
+                                    ("gates", "gates.gates", tables.GATES)):
+            found[name] = tabulate(tables.table, page["paper"], part, columns)
+    return found
 
-    def link(stem):
-        file = data_dir / "scenes" / f"{stem}.toml"
-        return os.path.relpath(file, output) if file.is_relative_to(output) and file.exists() else None
 
+def map_hard_cases(page):
+    """The map of hard cases; where the answer has no other beside it, its one column is named after its own method."""
     try:
-        return {"table": tables.gallery(report, link)}
+        found = hard_cases.square_map(page)
     except results.Unavailable as reason:
         return {"unavailable": str(reason)}
-
-
-def map_hard_cases(report):
-    try:
-        return hard_cases.square_map(report)
-    except results.Unavailable as reason:
-        return {"unavailable": str(reason)}
+    if len(found["methods"]) == 1:
+        method = page["answer"]["method"]
+        found["methods"] = [(found["methods"][0][0], METHODS.get(method, (method,))[0])]
+    return found
 
 
 def environment():
@@ -127,41 +136,43 @@ def environment():
     return found
 
 
-def render(data_dir, output, benchmarks=None):
-    """Writes output/index.html and output/figures/ from data_dir/report.json and the field files beside it, and from
-    benchmarks/scaling.json and plane.json where they are there."""
-    report = results.load(data_dir / "report.json")
+def write_page(output, templates, benchmarks=None):
+    """Writes output/index.html and output/figures/ from output/data/report.json and the field files beside it, of the paper's page
+    also from benchmarks/scaling.json and plane.json where they are there; returns the page's content."""
+    data = output / "data"
+    page = results.load(data / "report.json")
     folder = output / "figures"
     folder.mkdir(parents=True, exist_ok=True)
-    lead, sections = show_sections(report, data_dir, folder)
-    page = environment().get_template("page.html.j2").render(
-        report=report,
-        lead=lead,
-        sections=sections,
-        headline=report.get("headline"),
-        remembered=tables.remembered(report),
-        studies=show_studies(report, folder),
-        speed=show_speed(benchmarks, folder),
-        gates=tabulate(report, "gates.gates", tables.GATES),
-        peers=tabulate(report, "peers", tables.PEERS),
-        gallery=tabulate_gallery(report, data_dir, output),
-        loading=tabulate(report, "loading", tables.LOADING),
-        mesh=tabulate(report, "mesh", tables.MESH),
-        approximations=tabulate(report, "approximation_table", tables.APPROXIMATIONS),
-        hard=map_hard_cases(report),
-        nulls=results.nulls({key: part for key, part in report.items() if key not in ("studies", "hard", "headline", "gates", "peers")}),
-        data=os.path.relpath(data_dir, output) if data_dir.is_relative_to(output) else None)
-    write_whole(output / "index.html", page.encode())
+    lead, sections = show_sections(page, data, folder)
+    paper = page.get("paper")
+    html = templates.get_template("page.html.j2").render(
+        page=page, paper=paper, lead=lead, sections=sections, headline=page["headline"], tables=tabulate_all(page),
+        remembered=page_tables.remembered(page), studies=show_studies(page, folder),
+        speed=show_speed(benchmarks, folder) if paper else [],
+        hard=map_hard_cases(page) if "hard" in page else None, hard_scenes=map_hard_cases(paper) if paper else None,
+        nulls=results.nulls({"answer": page["answer"], "paper": {key: part for key, part in (paper or {}).items()
+                                                                 if key not in ("hard", "gates", "peers")}}),
+        data="data")
+    write_whole(output / "index.html", html.encode())
+    return page
+
+
+def render(output, folders, benchmarks=None):
+    templates = environment()
+    pages = [(folder, write_page(folder, templates, benchmarks)) for folder in folders]
+    if len(pages) > 1:
+        table = page_tables.index([(folder.relative_to(output), page) for folder, page in pages])
+        write_whole(output / "index.html", templates.get_template("index.html.j2").render(table=table).encode())
 
 
 def main(words=None):
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("data_dir", type=Path, help="folder with report.json and its field files")
-    parser.add_argument("--output", type=Path, required=True, help="folder for index.html and figures/")
+    parser.add_argument("folders", type=Path, nargs="+", help="folders with data/report.json and its field files")
+    parser.add_argument("--output", type=Path, required=True, help="folder of the index of several pages")
     parser.add_argument("--benchmarks", type=Path, help="folder with scaling.json and plane.json, of `slipstick bench`")
     arguments = parser.parse_args(words)
-    return script.run(lambda: render(arguments.data_dir.resolve(), arguments.output.resolve(), arguments.benchmarks),
-                      results.InputError, arguments.output)
+    return script.run(lambda: render(arguments.output.resolve(), [each.resolve() for each in arguments.folders],
+                                     arguments.benchmarks), results.InputError, arguments.output)
 
 
 if __name__ == "__main__":

@@ -99,7 +99,7 @@ def cost(page, folder):
     figure, axis = style.panels(1, 1, 3.6)
     for (method,), found in groups(points, "method").items():
         words, look = METHODS.get(method, (method, OTHER))
-        axis.plot(column(found, "seconds"), column(found, "error"), label=words, **look | dict(linestyle=""))
+        axis.plot(column(found, "seconds"), column(found, "error"), label=style.verbatim(words), **look | dict(linestyle=""))
     best, finest = [], np.inf
     for point in sorted(points, key=lambda each: each["seconds"]):
         if point["error"] < finest:
@@ -117,7 +117,7 @@ def cost(page, folder):
     style.legend_on_top(figure, axis.get_legend_handles_labels()[0], 2)
     last = best[-1]
     message = (f"An error of {sci(last['error'])} in the {words} takes {seconds(last['seconds'])} s: "
-               f"{METHODS.get(last['method'], (last['method'],))[0]}, {last['cells']} cells along the longer side, tolerance "
+               f"{escape(METHODS.get(last['method'], (last['method'],))[0])}, {last['cells']} cells along the longer side, tolerance "
                f"{sci(last['tolerance'])}.")
     known = "against the exact answer" if not floor else (
         f"against the value that the meshes tend to, known to {percent(floor)}: nothing is known below, where it is grey")
@@ -135,13 +135,13 @@ def programs(page, folder):
     looks = [dict(color=color, marker=marker) for color, marker in
              zip((style.GREEN, style.BLUE, style.VERMILION, style.PURPLE, style.BLACK), "so^vD")]
     for ((name, number), found), look in zip(groups(known, "name", "number").items(), looks * 4):
-        axis.plot(column(found, "seconds"), column(found, "error"), "-", label=f"{name}, {_number_words(number)}", **look)
+        axis.plot(column(found, "seconds"), column(found, "error"), "-", label=f"{style.verbatim(name)}, {_number_words(number)}", **look)
     axis.set(xscale="log", yscale="log", xlabel="time of the solve, s", ylabel="relative error")
     style.whole_decades(axis)
     style.legend_on_top(figure, axis.get_legend_handles_labels()[0], 2)
     finest = {name: found[-1] for (name,), found in groups(known, "name").items()}
     own = finest.pop("slipstick", None)
-    others = ", ".join(f"{name} {seconds(row['seconds'])} s ({sci(row['error'])})" for name, row in finest.items())
+    others = ", ".join(f"{escape(name)} {seconds(row['seconds'])} s ({sci(row['error'])})" for name, row in finest.items())
     message = f"On the finest mesh, seconds and error: {others}" + (
         f"; slipstick {seconds(own['seconds'])} s ({sci(own['error'])}, of {_number_words(own['number'])})." if own else ".")
     return FigureEntry(message, "A point for each mesh. Programs that find the pressure alone do less than those that find tractions "

@@ -81,10 +81,3 @@ def cell_ticks_at(axis, cells):
     axis.xaxis.set_major_formatter(ScalarFormatter())
     axis.xaxis.set_minor_formatter(NullFormatter())
 
-
-def label_cells(axis, study, path):
-    for cells, time, error in zip(study.cells, column(study.table, "seconds.total"),
-                                  np.abs(column(study.table, path))):
-        if np.isfinite(time) and np.isfinite(error):
-            axis.annotate(f"{cells:.0f}", (time, error), xytext=(-3, -5), textcoords="offset points", ha="right",
-                          va="top", fontsize=7.5, color=study.look["color"], path_effects=style.HALO)

@@ -2,11 +2,9 @@
 
 from dataclasses import dataclass
 
-from markupsafe import Markup
-
 import study_result
 from results import Unavailable, rows, value
-from wording import ANGLES, ENERGIES, LENGTHS, MOMENTS, plain, quantity, sci, seconds, signed_percent, typeset
+from wording import plain, sci, seconds, signed_percent, typeset
 
 
 @dataclass
@@ -85,45 +83,6 @@ PEERS = [
     ("gap / energy", "certificate.gap", sci),
     ("why", "why", typeset),
 ]
-
-
-def remembered(report):
-    """The four numbers that stand first: (number, what it is, of what)."""
-    try:
-        numbers = value(report, "headline.numbers")
-        across = _cells(value(numbers, "cells"))
-        of = Markup("{} cells, M/M<sub>lim</sub>&nbsp;=&nbsp;{}").format(across, plain(value(numbers, "moment_ratio")))
-        return [(_or_dash(value(numbers, key), write), words, of) for key, words, write in (
-            ("twist_error", "error of the twist", sci), ("stick_radius_error", "error of the stick radius", sci),
-            ("gap", "gap in Coulomb’s law, over the energy", sci),
-            ("seconds", "time of the solve", lambda time: f"{seconds(time)}\N{NO-BREAK SPACE}s"))]
-    except Unavailable:
-        return []
-
-
-UNITS = {"rad": ANGLES, "m": LENGTHS, "N m": MOMENTS, "J": ENERGIES}
-
-GALLERY_HEAD = ["scene", "what it shows", "judged by", "computed", "reference", "error", "gap / energy",
-                "applica&shy;tions", "steps", "cells along", "time, s"]
-
-
-def gallery(report, link):
-    """A row for each scene; link(stem) is the address of its file, or None."""
-    return Table(GALLERY_HEAD, [_gallery_row(row, link(value(row, "scene"))) for row in rows(report, "gallery")])
-
-
-def _gallery_row(row, address):
-    def in_units(number):
-        written = quantity(number, UNITS[row["unit"]], 6) if row["unit"] else plain(number)
-        return written.replace(" ", "\N{NO-BREAK SPACE}")
-
-    title = Markup('<a href="{}">{}</a>').format(address, row["title"]) if address else row["title"]
-    reference = "–" if value(row, "reference") is None else f"{in_units(row['reference'])} {row['basis']}"
-    error = _cell(row, "error", sci) if value(row, "error") is not None else _cell(
-        row, "uncertainty", lambda number: "±" + sci(number))
-    return [title, row["shows"], row["quantity"], _cell(row, "value", in_units), reference, error,
-            _cell(row, "gap", sci), _cell(row, "operator_applications", "{:.0f}".format), _text(row["steps"]),
-            _cell(row, "cells", max), _cell(row, "seconds", seconds)]
 
 
 def _short(key):

@@ -251,8 +251,8 @@ class Results(unittest.TestCase):
                            SCENES.parents[1] / "interfaces/programs/numpy/program.toml")
 
     def test_pages(self):
-        for name in ("mindlin", "honed_surface"):
-            self.run_and_check("report", SCENES / f"{name}.toml", "--quick", "--output", self.folder / name, schema="page")
+        for scene in ([], [SCENES / "honed_surface.toml"]):  # every part that a page can have, and as few as one can have
+            self.run_and_check("report", *scene, "--quick", "--output", self.folder / "page")
 
     def test_costs(self):
         self.run_and_check("bench", SCENES / "ellipse.toml", "--quick", "--output", self.folder / "costs", schema="costs")

@@ -55,19 +55,18 @@ bool is_current(const fs::path& page, const std::vector<fs::path>& sources) {
   return true;
 }
 
-/// What the user asked for: seconds, a page, or the long form.
-ValidationSize size_of(const ReportRequest& request) {
-  if (request.quick) return quick_validation();
-  return request.full ? full_validation() : page_validation();
-}
-
-void draw(const fs::path& data, const fs::path& benchmarks, const fs::path& output) {
-  std::vector<fs::path> sources{data, project_file("reports")};
-  if (fs::is_directory(benchmarks)) sources.push_back(benchmarks);
-  if (is_current(output / "index.html", sources)) return;
-  run_report_script("render.py",
-                    {"--output=" + output.string(), "--benchmarks=" + benchmarks.string(), "--", data},
-                    "the results are in " + data.string());
+/// Draws the pages whose results lie in folders' data/, and an index where there are several.
+void draw(const std::vector<fs::path>& folders, const ReportRequest& request) {
+  const fs::path benchmarks = fs::path(request.benchmarks) / "data";
+  std::vector<std::string> words{"--output=" + request.output, "--benchmarks=" + benchmarks.string(), "--"};
+  bool current = fs::exists(fs::path(request.output) / "index.html");
+  for (const fs::path& folder : folders) {
+    std::vector<fs::path> sources{folder / "data", project_file("reports")};
+    if (fs::is_directory(benchmarks)) sources.push_back(benchmarks);
+    current = current && is_current(folder / "index.html", sources);
+    words.push_back(folder.string());
+  }
+  if (!current) run_report_script("render.py", words, "the results are in " + request.output);
 }
 
 ProcessPool pool_in(const fs::path& data, const ReportRequest& request) {
@@ -75,27 +74,6 @@ ProcessPool pool_in(const fs::path& data, const ReportRequest& request) {
   for (const std::string& file : request.beside) runs.overrides.push_back(program_override(file));
   runs.output = data / "points";
   return runs.pool();
-}
-
-/// The paper's own case.
-int run_validation(const ReportRequest& request, std::ostream& text, Json& result) {
-  const fs::path output = request.output;
-  const fs::path data = output / "data";
-  const ProcessPool pool = pool_in(data, request);
-  {
-    const Interrupts interrupts;
-    result = validate(project_file("convergence"), size_of(request), data, pool);
-  }
-  draw(data, fs::path(request.benchmarks) / "data", output);
-  text << headline_text(result["headline"]) << "page: " << (output / "index.html").string() << '\n';
-  int exit_code = 0;
-  for (const auto& study : result["studies"]) {
-    const std::string failures = failed_runs_text(study);
-    if (failures.empty()) continue;
-    text << fmt::format("study {}: {}\n", study["name"].get<std::string>(), failures);
-    exit_code = 1;
-  }
-  return exit_code;
 }
 
 /// Where the page of each scene goes: the folder itself, or of several scenes one below it for each, named
@@ -116,49 +94,59 @@ std::vector<fs::path> page_folders(const ReportRequest& request) {
   return folders;
 }
 
+/// The page that the command line asks for. Throws InputError for words that are none.
+PageRequest page_request(const ReportRequest& request) {
+  PageRequest page{.base = {.scene = {}, .overrides = request.runs.overrides}, .size = usual_page()};
+  ValidationSize validation = page_validation();
+  if (request.quick) {
+    page.size = quick_page();
+    validation = quick_validation();
+  } else if (request.full) {
+    page.size = full_page();
+    validation = full_validation();
+  }
+  for (const std::string& word : request.wanted) page.wanted.push_back(read_wanted_error(word));
+  for (const std::string& file : request.beside) page.beside.push_back(read_beside_method(file));
+  page.uncertain = request.uncertain;
+  if (request.scenes.empty()) page.validation = {project_file("convergence"), validation};
+  return page;
+}
+
+std::string summary_row(const Json& page) {
+  std::string lines;
+  for (const Json& line : page["headline"]["lines"]) {
+    lines += fmt::format("{}{}: {}", lines.empty() ? "" : "\n", line[0].get<std::string>(),
+                         line[1].get<std::string>());
+  }
+  return fmt::format("| {} | {} | {} |", markdown_cell(page["scene"]["name"].get<std::string>()),
+                     page["headline"]["verdict"].get<std::string>(), markdown_cell(lines));
+}
+
 /// A page for each scene. Exit code 1 where a page says bad.
-int run_scenes(const ReportRequest& request, std::ostream& text, Json& result) {
-  const PageSize size = request.quick ? quick_page() : request.full ? full_page() : usual_page();
+int make_pages(PageRequest asked, const ReportRequest& request, std::ostream& text, Json& result) {
   const std::vector<fs::path> folders = page_folders(request);
-  std::vector<WantedError> wanted;
-  for (const std::string& word : request.wanted) wanted.push_back(read_wanted_error(word));
-  std::vector<BesideMethod> beside;
-  for (const std::string& file : request.beside) beside.push_back(read_beside_method(file));
   for (const std::string& scene : request.scenes) solver::read_scene(scene, request.runs.overrides);
   std::vector<JunitCase> cases;
   std::vector<std::string> rows;
-  std::vector<std::string> drawn;
   bool good = true;
   for (std::size_t i = 0; i < folders.size(); ++i) {
     const fs::path data = folders[i] / "data";
     const ProcessPool pool = pool_in(data, request);
+    asked.base.scene = request.scenes[i];
     Json page;
     {
       const Interrupts interrupts;
-      page = scene_page({{.scene = request.scenes[i], .overrides = request.runs.overrides},
-                         size,
-                         wanted,
-                         request.uncertain,
-                         beside},
-                        data, pool);
+      page = scene_page(asked, data, pool);
     }
     const Json& headline = page["headline"];
     text << page["scene"]["name"].get<std::string>() << ": " << headline_text(headline)
          << "page: " << (folders[i] / "index.html").string() << '\n';
     good = good && headline["verdict"] == "good";
     for (JunitCase& each : page_cases(page)) cases.push_back(std::move(each));
-    std::string lines;
-    for (const Json& line : headline["lines"]) {
-      lines += fmt::format("{}{}: {}", lines.empty() ? "" : "\n", line[0].get<std::string>(),
-                           line[1].get<std::string>());
-    }
-    rows.push_back(fmt::format("| {} | {} | {} |", markdown_cell(page["scene"]["name"].get<std::string>()),
-                               headline["verdict"].get<std::string>(), markdown_cell(lines)));
+    rows.push_back(summary_row(page));
     result["pages"].push_back(std::move(page));
-    drawn.push_back(folders[i].string());
   }
-  drawn.insert(drawn.begin(), "--output=" + request.output);
-  run_report_script("scene_page.py", drawn, "the results are in " + request.output);
+  draw(folders, request);
   write_option_file("--junit", request.junit, junit_text("slipstick report", cases));
   write_option_file(
       "--summary", request.summary,
@@ -166,15 +154,19 @@ int run_scenes(const ReportRequest& request, std::ostream& text, Json& result) {
   return good ? 0 : 1;
 }
 
-int run_report(const ReportRequest& request, std::ostream& text, Json& result) {
+int run_report(ReportRequest request, std::ostream& text, Json& result) {
   require_output("--junit", request.junit);
   require_output("--summary", request.summary);
-  if (request.scenes.empty() && !request.runs.overrides.empty()) {
-    throw solver::InputError("--program",
-                             "the paper's validation is this program's own; allowed: scenes, as "
-                             "`slipstick report convergence/scenes/paper.toml --program FILE`");
+  PageRequest asked = page_request(request);
+  if (asked.validation) {
+    if (!request.runs.overrides.empty()) {
+      throw solver::InputError("--program",
+                               "the paper's validation is this program's own; allowed: scenes, as "
+                               "`slipstick report convergence/scenes/paper.toml --program FILE`");
+    }
+    request.scenes.push_back(project_file("convergence/scenes/paper.toml"));
   }
-  return request.scenes.empty() ? run_validation(request, text, result) : run_scenes(request, text, result);
+  return make_pages(std::move(asked), request, text, result);
 }
 
 }  // namespace
@@ -183,9 +175,9 @@ RunCommand add_report_command(CLI::App& app) {
   const auto request = std::make_shared<ReportRequest>();
   CLI::App* const command =
       app.add_subcommand("report", "Draw the page of any scene: errors, orders, times, verdict");
-  command->add_option(
-      "scene", request->scenes,
-      "scene files, a page for each; left out: the paper's validation, computed against exact");
+  command->add_option("scene", request->scenes,
+                      "scene files, a page for each; left out: that of the paper's scene, with the paper's "
+                      "validation before");
   command->add_option("--output", request->output, "folder for the page")->capture_default_str();
   CLI::Option* const quick =
       command->add_flag("--quick", request->quick, "small grids, no gates: seconds instead of minutes");
@@ -212,10 +204,10 @@ RunCommand add_report_command(CLI::App& app) {
   command->footer(
       "Example:\n  slipstick report --output build/report\n  slipstick report "
       "convergence/scenes/rough_sphere.toml "
-      "--want twist=1e-2 --output build/rough\nFinished solves are kept: repeating an "
-      "interrupted command goes on from there.\nExit code 0: done; 1: the page of a scene says bad, or a run "
-      "of "
-      "a study failed; 2: it could not be made.");
+      "--want twist=1e-2 --output build/rough\n  slipstick report convergence/scenes/*.toml --quick --output "
+      "build/gallery\nFinished solves are kept: repeating an "
+      "interrupted command goes on from there.\nExit code 0: done; 1: a page says bad; 2: it could not be "
+      "made.");
   return [request](std::ostream& text, Json& result) { return run_report(*request, text, result); };
 }
 

@@ -201,11 +201,15 @@ Json scene_page(const PageRequest& request, const fs::path& folder, const Proces
     if (!own) options.methods = {{answer["program"]["name"], program_override(scene.program), true}};
     const RunSpec by_us = own ? base : changed(base, {kNoProgram});
     page["hard"] = run_hard_cases(hard_cases(by_us, scene, meshes), options, pool);
-    findings.push_back(own ? judge_hard(page["hard"]) : judge_hard_beside(page["hard"]));
+    findings.push_back(own ? judge_hard(page["hard"], "Hard variants") : judge_hard_beside(page["hard"]));
   }
   if (own) {
     page["digits"] =
         rounding_digits(changed(base, coarse_mesh(scene, meshes)), {.samples = kRoundingSamples}, pool);
+  }
+  if (request.validation) {
+    page["paper"] = validate(*request.validation, folder, pool);
+    for (Finding& each : judge_validation(page["paper"])) findings.push_back(std::move(each));
   }
   const Json before = find_json(folder / "report.json");
   page["headline"] =

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "convergence/hard/hard_run.hpp"
+#include "convergence/report/validation.hpp"
 #include "convergence/results/verdict_files.hpp"
 #include "convergence/runs/process_pool.hpp"
 #include "solver/grid/grid.hpp"
@@ -42,14 +44,15 @@ struct PageRequest {
   RunSpec base;  ///< the scene; overrides may name a program, which then answers in place of a method
   PageSize size;
   std::vector<WantedError> wanted = {};
-  std::vector<std::string> uncertain = {};  ///< as uncertain_inputs() takes them
-  std::vector<BesideMethod> beside = {};    ///< programs whose answers stand beside
+  std::vector<std::string> uncertain = {};    ///< as uncertain_inputs() takes them
+  std::vector<BesideMethod> beside = {};      ///< programs whose answers stand beside
+  std::optional<Validation> validation = {};  ///< of the paper; its scene is then the page's
 };
 
 /// Solves what the page shows and judges it: fills `folder` with report.json and answer.h5, the fields on the
-/// finest mesh, and returns report.json's content, docs/schema/page.schema.json. Throws InputError for a
-/// scene that cannot be read and for a wanted quantity that its result does not have; std::runtime_error
-/// where the scene itself has no answer, and as the pool does.
+/// finest mesh, and returns report.json's content, a page of docs/schema/report.schema.json. Throws
+/// InputError for a scene that cannot be read and for a wanted quantity that its result does not have;
+/// std::runtime_error where the scene itself has no answer, and as the pool does.
 Json scene_page(const PageRequest& request, const std::filesystem::path& folder, const ProcessPool& pool);
 
 /// A case for each thing that the verdict rests on.

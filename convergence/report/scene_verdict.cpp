@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include "convergence/orders/mesh_sequence.hpp"
 #include "convergence/results/quantity.hpp"
@@ -20,6 +21,47 @@ constexpr double kWorseOrder = 0.25;
 /// Complementarity gap of another program's pressure over its energy: other discretisations of the same
 /// contact leave a thousandth.
 constexpr double kOpenUnderPressure = 1e-2;
+
+/// The passing gate that is nearest to its bound; null where none has a bound in numbers.
+const Json* nearest_to_bound(const Json& gates) {
+  const Json* found = nullptr;
+  for (const Json& gate : gates) {
+    const bool counts = gate["outcome"] == "passed" && gate.contains("factor") && gate["factor"].is_number();
+    if (counts && (found == nullptr || gate["factor"] > (*found)["factor"])) found = &gate;
+  }
+  return found;
+}
+
+Finding judge_gates(const Json& all) {
+  const Json& gates = all["gates"];
+  std::string line = fmt::format("{} of {} pass", all["counts"]["passed"].get<int>(), gates.size());
+  if (const int expected = all["counts"]["failed as expected"]; expected > 0) {
+    line += fmt::format(", {} fails as it should", expected);
+  }
+  for (const Json& gate : gates) {
+    const Json& outcome = gate["outcome"];
+    if (outcome == "failed" || outcome == "passed unexpectedly" || outcome == "refused") {
+      line += fmt::format("; {} {}", gate["id"].get<std::string>(), outcome.get<std::string>());
+    }
+  }
+  if (const Json* const nearest = nearest_to_bound(gates); nearest != nullptr) {
+    line += fmt::format("; nearest to its bound is {}, at {:.0f} % of it",
+                        (*nearest)["id"].get<std::string>(), 100.0 * (*nearest)["factor"].get<double>());
+  }
+  return {"Gates", line, all["exit_code"] == 0};
+}
+
+Finding judge_known_fields(const Json& peers) {
+  Finding found{"Fields of others", ""};
+  for (const Json& peer : peers) {
+    found.line += fmt::format("{}{} is {}", found.line.empty() ? "" : ", ",
+                              peer["program"].get<std::string>(), peer["verdict"].get<std::string>());
+    if (peer["verdict"] == peer["expected"]) continue;
+    found.line += fmt::format(" (known to be {})", peer["expected"].get<std::string>());
+    found.holds = false;
+  }
+  return found;
+}
 
 }  // namespace
 
@@ -60,7 +102,7 @@ Finding judge_order(const Json& studies, const std::string& number) {
   return {"Orders", "no study of meshes says one"};
 }
 
-Finding judge_hard(const Json& hard) {
+Finding judge_hard(const Json& hard, const std::string& what) {
   const Json& counts = hard["counts"];
   std::string line =
       fmt::format("{} of {} certified, {} refused with a reason, {} not converged, {} wrong",
@@ -72,7 +114,7 @@ Finding judge_hard(const Json& hard) {
                           row["reason"].get<std::string>());
     }
   }
-  return {"Hard variants", line, counts["wrong"] == 0 && counts["not_converged"] == 0};
+  return {what, line, counts["wrong"] == 0 && counts["not_converged"] == 0};
 }
 
 Finding judge_check(const Json& answer, const Json& check) {
@@ -135,6 +177,12 @@ Finding judge_wanted(const WantedError& wanted, const Json& numbers) {
                            fmt::format("{}", fmt::join(keys, ", ")));
 }
 
+std::vector<Finding> judge_validation(const Json& paper) {
+  Finding gates{"Gates", "left out of a quick page; make gate runs them"};
+  if (paper.contains("gates")) gates = judge_gates(paper["gates"]);
+  return {std::move(gates), judge_hard(paper["hard"], "Hard scenes"), judge_known_fields(paper["peers"])};
+}
+
 Json headline_of(const std::vector<Finding>& findings, const Json& page) {
   bool good = true;
   Json lines = Json::array();
@@ -146,6 +194,16 @@ Json headline_of(const std::vector<Finding>& findings, const Json& page) {
   }
   Json counts{{"checks", checks}};
   if (page.contains("hard")) counts["hard"] = page["hard"]["counts"];
+  if (page.contains("paper")) {
+    const Json& paper = page["paper"];
+    counts["hard_scenes"] = paper["hard"]["counts"];
+    counts["gates"] = nullptr;
+    counts["gates_reason"] = "left out of a quick page";
+    if (paper.contains("gates")) {
+      counts["gates"] = paper["gates"]["counts"];
+      counts.erase("gates_reason");
+    }
+  }
   Json numbers = Json::object();
   for (const Json& row : page["numbers"]) numbers[row["key"].get<std::string>()] = row["value"];
   return {{"verdict", good ? "good" : "bad"},

@@ -33,8 +33,12 @@ Finding judge_wanted(const WantedError& wanted, const Json& numbers);
 /// The order of that number in the study of meshes is no worse than expected.
 Finding judge_order(const Json& studies, const std::string& number);
 
-/// No variant of the scene is wrong or does not converge.
-Finding judge_hard(const Json& hard);
+/// No hard case is wrong or does not converge. what: the cases, as "Hard variants".
+Finding judge_hard(const Json& hard, const std::string& what);
+
+/// What validate() found, where it was asked: gates hold, unless they were left out; no hard case ends wrong;
+/// fields of other programs are judged as they deserve.
+std::vector<Finding> judge_validation(const Json& paper);
 
 /// What a page says first: {verdict, commit, lines, numbers, counts}.
 Json headline_of(const std::vector<Finding>& findings, const Json& page);

@@ -17,17 +17,8 @@
 #include "convergence/gates/gate.hpp"
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/oracle/oracle.hpp"
-#include "convergence/report/gallery.hpp"
-#include "convergence/report/headline.hpp"
-#include "convergence/report/scene_cost.hpp"
-#include "convergence/results/json_text.hpp"
-#include "convergence/results/provenance.hpp"
 #include "convergence/runs/failed_runs.hpp"
-#include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/run_batch.hpp"
-#include "convergence/studies/study.hpp"
-#include "solver/input/input_error.hpp"
-#include "solver/input/whole_file.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -109,9 +100,6 @@ Sections page_runs(const fs::path& scene, const fs::path& scenes, const Validati
   add("errata", {size.loading_cells, "solved", kMethodsRatio, "paper"});
   runs["cycle"].push_back({.scene = scenes / "torsion_loop.toml",
                            .overrides = {fmt::format("grid.cells=[{0},{0}]", size.loading_cells)}});
-  for (const GalleryScene& shown : gallery_scenes()) {
-    runs["gallery-" + shown.stem] = gallery_runs(shown, scenes, size.gallery_cells, folder);
-  }
   return runs;
 }
 
@@ -168,12 +156,6 @@ Json cycle(const Json& result) {
   return {{"cells", result["cells"]}, {"rows", std::move(rows)}};
 }
 
-/// What the page in a folder said first, before it is written anew; null where there is none to read.
-Json earlier_headline(const fs::path& file) {
-  const Json report = find_json(file);
-  return report.is_object() && report.contains("headline") ? report["headline"] : Json{};
-}
-
 /// The rows of one method.
 Json by_method(const Json& rows, const std::string& method) {
   Json found = Json::array();
@@ -181,43 +163,6 @@ Json by_method(const Json& rows, const std::string& method) {
     if (row["method"] == method) found.push_back(row);
   }
   return found;
-}
-
-Json summary(const solver::Scene& scene, const Oracle& oracle) {
-  const auto row = [](const char* label, const std::string& value) { return Json::array({label, value}); };
-  return Json::array({
-      row("Sphere radius", fmt::format("{:g} mm", 1e3 * scene.surfaces.front().radius)),
-      row("Young's moduli", fmt::format("{:g} GPa (upper), {:g} GPa (lower)",
-                                        1e-9 * scene.upper.young_modulus, 1e-9 * scene.lower.young_modulus)),
-      row("Poisson's ratios",
-          fmt::format("{:g}, {:g}", scene.upper.poisson_ratio, scene.lower.poisson_ratio)),
-      row("Normal load", fmt::format("{:g} N", *scene.steps[0].normal)),
-      row("Friction coefficient", fmt::format("{:g}", scene.friction)),
-      row("Contact radius (Hertz)", fmt::format("{:.6g} mm", 1e3 * oracle.contact_radius)),
-      row("Peak pressure (Hertz)", fmt::format("{:.6g} MPa", 1e-6 * oracle.peak_pressure)),
-      row("Limit moment, Eq. (6)", fmt::format("{:.6g} N mm", 1e3 * oracle.moment_limit)),
-  });
-}
-
-/// Files that have the same content already keep their time.
-void copy_scenes(const fs::path& from, const fs::path& to) {
-  for (const auto& entry : fs::directory_iterator(from)) {
-    const fs::path copy = to / entry.path().filename();
-    const std::string text = read_text(entry.path());
-    if (!fs::is_regular_file(copy) || read_text(copy) != text) solver::write_whole_file(copy, text);
-  }
-}
-
-/// The studies of meshes and tolerances, of the scene at hand, up to so many cells.
-Json study_results(const fs::path& scene_file, const fs::path& studies, Index most, const ProcessPool& pool) {
-  Json results = Json::array();
-  for (const char* file : {"paper_mesh.toml", "paper_tolerance.toml"}) {
-    Study study = read_study(studies / file);
-    study.scene = scene_file;
-    study.cells = up_to(study.cells, most);
-    results.push_back(run_study(study, pool));
-  }
-  return results;
 }
 
 /// The hard cases, or an even part of them, by each method.
@@ -269,19 +214,11 @@ Json judge_peers(const std::filesystem::path& inputs) {
 
 }  // namespace
 
-std::vector<Index> up_to(std::vector<Index> cells, Index most) {
-  for (Index& each : cells) each = std::min(each, most);
-  cells.erase(std::unique(cells.begin(), cells.end()), cells.end());
-  return cells;
-}
-
 ValidationSize page_validation() {
   return {.loading_cells = 128,
           .mesh_cells = {32, 64, 128, 256},
           .ellipse_cells = {64, 128, 256},
-          .gallery_cells = {64, 128, 256},
           .moment_ratios = {0.01, 0.05, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95, 0.99},
-          .study_cells = 256,
           .hard_step = 1,
           .gates = true};
 }
@@ -290,8 +227,6 @@ ValidationSize full_validation() {
   ValidationSize size = page_validation();
   size.mesh_cells.push_back(512);
   size.ellipse_cells.push_back(512);
-  size.gallery_cells = {128, 256, 512};
-  size.study_cells = 512;
   return size;
 }
 
@@ -299,54 +234,34 @@ ValidationSize quick_validation() {
   return {.loading_cells = 48,
           .mesh_cells = {16, 32, 64},
           .ellipse_cells = {32, 64},
-          .gallery_cells = {16, 32, 64},
           .moment_ratios = {0.05, 0.2, 0.4, 0.6, 0.8, 0.95},
-          .study_cells = 64,
           .hard_step = 10,
           .gates = false};
 }
 
-Json validate(const fs::path& inputs, const ValidationSize& size, const fs::path& folder,
-              const ProcessPool& pool) {
+Json validate(const Validation& asked, const fs::path& folder, const ProcessPool& pool) {
+  const auto& [inputs, size] = asked;
   const fs::path scenes = inputs / "scenes";
   const fs::path scene_file = scenes / "paper.toml";
-  const solver::Scene scene = solver::read_scene(scene_file);
-  const OracleAnswer exact = find_oracle(scene);
-  solver::make_folder(folder / "scenes");
+  const Oracle exact = *find_oracle(solver::read_scene(scene_file)).oracle;
   const auto results = solve_all(page_runs(scene_file, scenes, size, folder), pool);
 
-  Json report;
-  report["provenance"] = provenance(std::max(1, scene.threads));
-  report["scene"] = {
-      {"name", scene.name}, {"text", read_text(scene_file)}, {"summary", summary(scene, *exact.oracle)}};
-  report["contact"] = {{"radius", exact.oracle->contact_radius},
-                       {"peak_pressure", exact.oracle->peak_pressure},
-                       {"approach", exact.oracle->approach},
-                       {"moment_limit", exact.oracle->moment_limit}};
-  report["loading_cells"] = size.loading_cells;
-  report.update(exact_curves());
-  report["profiles"] = Json::array();
+  Json paper;
+  paper["contact"] = {{"radius", exact.contact_radius}, {"peak_pressure", exact.peak_pressure}};
+  paper["loading_cells"] = size.loading_cells;
+  paper.update(exact_curves());
+  paper["profiles"] = Json::array();
   for (std::size_t i = 0; i < std::size(kProfileRatios); ++i) {
-    report["profiles"].push_back(profile(kProfileRatios[i], results.at("profiles")[i]));
+    paper["profiles"].push_back(profile(kProfileRatios[i], results.at("profiles")[i]));
   }
-  for (const char* section : {"loading", "mesh", "methods"}) report[section] = results.at(section);
-  report["ellipse"] = without_errors(results.at("ellipse"));
-  report["errata"] = errata(results.at("errata").front(), by_method(report["ellipse"], "paper"));
-  copy_scenes(scenes, folder / "scenes");
-  report["gallery"] = Json::array();
-  for (const GalleryScene& shown : gallery_scenes()) {
-    report["gallery"].push_back(gallery_row(shown, results.at("gallery-" + shown.stem)));
-  }
-  report["studies"] = study_results(scene_file, inputs / "studies", size.study_cells, pool);
-  report["hard"] = hard_results(inputs / "hard", size.hard_step, pool);
-  report["cycle"] = cycle(results.at("cycle").front());
-  report["operators"] =
-      direct_against_dcfft({.scene = scene_file}, scene, size.gates ? usual_page() : quick_page(), pool);
-  report["peers"] = judge_peers(inputs);
-  if (size.gates) report["gates"] = gates_json(run_gates(read_gates(inputs / "gates" / "quick.toml"), pool));
-  report["headline"] = with_changes(headline(report), earlier_headline(folder / "report.json"));
-  write_json_file(folder / "report.json", report);
-  return report;
+  for (const char* section : {"loading", "mesh", "methods"}) paper[section] = results.at(section);
+  paper["ellipse"] = without_errors(results.at("ellipse"));
+  paper["errata"] = errata(results.at("errata").front(), by_method(paper["ellipse"], "paper"));
+  paper["hard"] = hard_results(inputs / "hard", size.hard_step, pool);
+  paper["cycle"] = cycle(results.at("cycle").front());
+  paper["peers"] = judge_peers(inputs);
+  if (size.gates) paper["gates"] = gates_json(run_gates(read_gates(inputs / "gates" / "quick.toml"), pool));
+  return paper;
 }
 
 }  // namespace slipstick::convergence

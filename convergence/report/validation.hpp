@@ -1,11 +1,10 @@
 #pragma once
 
-#include <array>
 #include <filesystem>
 #include <vector>
 
 #include "convergence/runs/process_pool.hpp"
-#include "solver/scene/scene.hpp"
+#include "solver/grid/grid.hpp"
 
 namespace slipstick::convergence {
 
@@ -14,28 +13,26 @@ struct ValidationSize {
   solver::Index loading_cells;            ///< cells along each side for the loading curve and the maps
   std::vector<solver::Index> mesh_cells;  ///< of the mesh study
   std::vector<solver::Index>
-      ellipse_cells;  ///< along the ellipse's long axis; half as many along the short one
-  std::array<solver::Index, 3> gallery_cells;  ///< along the longer side
-  std::vector<double> moment_ratios;           ///< of the loading curve
-  solver::Index study_cells;                   ///< the finest mesh of the studies
-  std::size_t hard_step;                       ///< 1: all hard cases; 10: every tenth
-  bool gates;                                  ///< convergence/gates/quick.toml is run too
+      ellipse_cells;                  ///< along the ellipse's long axis; half as many along the short one
+  std::vector<double> moment_ratios;  ///< of the loading curve
+  std::size_t hard_step;              ///< 1: all hard cases; 10: every tenth
+  bool gates;                         ///< convergence/gates/quick.toml is run too
 };
 ValidationSize quick_validation();  ///< seconds: is everything there?
 ValidationSize page_validation();   ///< a minute or two
 ValidationSize full_validation();   ///< finer meshes
 
-/// A study's meshes, rising, without those that are finer than `most`; this one in their place.
-std::vector<solver::Index> up_to(std::vector<solver::Index> cells, solver::Index most);
+/// The files that the validation reads (scenes/, hard/, check/fields/, gates/ in a folder), and its size.
+struct Validation {
+  std::filesystem::path inputs;
+  ValidationSize size;
+};
 
-/// The paper's validation (its Section 5, Figs. 1-5) of its scene, computed and compared with the exact
-/// solution, beside it an elliptic contact, where the paper's method fails, the gallery, the studies of the
-/// meshes and the tolerances, the hard cases by each method, other programs' fields and the accuracy gates,
-/// from the files in `inputs` (scenes/, studies/, hard/, check/fields/, gates/): fills `folder` with
-/// report.json and the fields that the page draws, and returns report.json's content. Throws
-/// std::runtime_error where a run has no result, and as the pool does.
-Json validate(const std::filesystem::path& inputs, const ValidationSize& size,
-              const std::filesystem::path& folder, const ProcessPool& pool);
+/// Is the paper right? Its Section 5 (Figs. 1-5) for its scene, computed and compared with the exact
+/// solution; beside it an elliptic contact, where the paper's method fails, the hard cases by each method,
+/// fields of other programs and the accuracy gates. Writes the fields that the page draws into `folder`.
+/// Throws std::runtime_error where a run has no result, and as the pool does.
+Json validate(const Validation& asked, const std::filesystem::path& folder, const ProcessPool& pool);
 
 /// What is wrong in the paper's equations as printed, each with numbers as evidence, computed here or taken
 /// from the results of the paper's method on a circular and on elliptic contacts.

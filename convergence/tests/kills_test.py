@@ -112,7 +112,7 @@ def study(program, folder):
 
 def report(program, folder):
     return Command([program, "report", "--quick", "--output", folder], folder,
-                   ["data/report.json", "data/*.h5", "data/scenes/*.toml"])
+                   ["data/report.json", "data/*.h5"])
 
 
 def kill_children(command, parent, choose):

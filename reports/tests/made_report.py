@@ -58,23 +58,6 @@ def body(profile, limit, full_stick):
             "rows": [{"moment_ratio": x, "moment": limit * x, "stick_ratio": 1 - x, "twist": x} for x in loads]}
 
 
-def gallery_row(scene, basis, reference, error, status="converged"):
-    row = {"scene": scene, "title": f"<{scene}>", "shows": "so & so", "quantity": "twist", "unit": "rad",
-           "value": 1.25e-3, "reference": reference, "basis": basis, "error": error, "status": status,
-           "gap": 2e-9, "operator_applications": 20.4, "seconds": 0.25, "steps": 2, "cells": [256, 128],
-           "cell_size": [RADIUS / 2, RADIUS / 2], "fields": f"gallery-{scene}.h5"}
-    for key in ("reference", "error"):
-        if row[key] is None:
-            row[f"{key}_reason"] = "not known"
-    return row
-
-
-def gallery():
-    return [gallery_row("paper", "exact", 1.2e-3, -0.04), gallery_row("tube", "extrapolated", 1.26e-3, 2e-3),
-            gallery_row("odd", "finest mesh", 1.25e-3, None) | {"uncertainty": 3e-4},
-            gallery_row("rough", "none", None, None)]
-
-
 def hard():
     def beside(**found):
         return {"methods": {"paper": found}}
@@ -105,12 +88,11 @@ def peer(program, verdict, over):
             "certificate": {"gap": 1e-5}, "slip_direction": {"mean": 1.5}, "judged": judged}
 
 
-def small_report():
+def small_paper():
+    """What is shown of the paper's validation."""
     loads = (0.2, 0.5, 0.9)
     return {
-        "provenance": {"version": "0.0.0", "commit": "none", "cpu": "made <up>", "threads": 1},
-        "scene": {"name": "made up", "text": "name = \"made up\"", "summary": [["Sphere radius", "18 mm"]]},
-        "contact": {"radius": RADIUS, "peak_pressure": PEAK, "approach": 1.0, "moment_limit": 1.0},
+        "contact": {"radius": RADIUS, "peak_pressure": PEAK},
         "loading_cells": 4,
         "curve": [{"moment_ratio": x, "stick_ratio": 1 - x, "stick_complement": x, "twist": x, "equation_7": 0.9 * x,
                    "equation_7_error": -0.1} for x in loads],
@@ -131,22 +113,60 @@ def small_report():
                           ((0.0, 0.0), (0.8, 0.4), (0.0, 0.1), (-0.8, -0.4), (0.0, -0.1), (0.8, 0.4))]},
         "cycle_energy": [{"moment_ratio": x, "energy": x**3 / (1 - x), "small_amplitude": x**3}
                          for x in (0.05, 0.1, 0.2, 0.5)],
-        "gallery": gallery(),
         "hard": hard(),
         "cycle": {"cells": [4, 4], "rows": [{"moment_ratio": x, "twist": 1.01 * twist, "exact": twist, "dissipated": 0.1}
                                             for x, twist in ((0.8, 0.4), (0.0, 0.1), (-0.8, -0.4))]},
+        "peers": [peer("ONE", "good", 0.1), peer("TWO", "bad", 30.0)],
+        "gates": {"gates": [{"id": "a-gate", "outcome": "passed", "quantity": "twist_error", "value": 1e-5, "factor": 0.5,
+                             "reason": "it <matters>"}]},
+        "errata": [{"equation": "(0)", "printed": "a < b", "holds": "a > b", "shown": "by example"}],
+    }
+
+
+def number(key, words, unit, found, error, basis="exact"):
+    return {"key": key, "words": words, "unit": unit, "value": found, "reference": found, "error": error, "uncertainty": 0.0,
+            "basis": basis}
+
+
+def small_page():
+    """A page with every part that one can have."""
+    answer = solve_result(0.9, 16, method="coulomb") | {
+        "name": "made up", "status": "converged", "cell_size": [1.0, 1.0], "normal_load": 3.0, "moment": 2e-6, "twist_angle": 1.25e-3,
+        "force": None, "force_reason": "not asked for",
+        "steps": [{"name": "step", "twist_angle": x, "moment": x / (1 + x), "exact": {"twist_angle": x, "moment": x}} for x in (0.1, 0.2, 0.1)],
+        "history": {"worst_gap": 2e-9, "operator_applications": 20.4, "seconds": 0.125, "dissipated": 1e-6},
+        "program": {"name": "mine", "version": "1.0", "own": {"twist": 1.2e-3, "message": "so & so"}, "wall_seconds": 0.5}}
+    points = [{"method": method, "cells": n, "tolerance": 1e-6, "status": "converged", "seconds": 1e-4 * n**2, "error": 1 / n**2}
+              for method in ("coulomb", "paper") for n in (8, 16)]
+    asked = [{"wanted": 1e-2, "cells": [16, 8], "tolerance": 1e-3, "grids": 4, "seconds": 0.01},
+             {"wanted": 1e-3, "cells": None, "cells_reason": "too <fine>", "tolerance": 1e-3}]
+    others = [{"name": name, "version": "1", "cells": n, "status": "converged", "message": "", "seconds": 1e-3 * n, "cpu_seconds": 1.0,
+               "number": "twist_angle", "error": 1 / n} for name in ("slipstick", "mine") for n in (8, 16)]
+    alone = hard()
+    for row in alone["rows"]:
+        del row["methods"]
+    return {
+        "provenance": {"version": "0.0.0", "commit": "none", "cpu": "made <up>", "threads": 1},
+        "scene": {"name": "made up", "text": "# So & so.\nname = \"made up\"", "summary": [["Indenter", "sphere, radius 18 mm"]],
+                  "gap": {"x1": [-1.0, 0.0, 1.0], "along_1": [1e-3, 0.0, None], "x2": [-1.0, 1.0], "along_2": [1e-3, 1e-3]}},
+        "answer": answer,
+        "numbers": [number("twist_angle", "twist", "rad", 1.25e-3, 3e-3), number("moment", "moment", "N m", 2e-6, None, "no mesh"),
+                    number("stick_radius", "stick radius", "m", 4e-4, -2e-2, "order 2"), number("stick_ratio", "stick ratio", "", 0.5, 0.01),
+                    number("contact_radius", "contact radius", "m", 1.5e-3, 2e-4)],
+        "uncertainty": {"sentence": "the inputs leave 5 % open", "outputs": {"twist_angle": {"relative": 0.05}}},
+        "studies": [],
+        "cost": {"number": "twist_angle", "reference_uncertainty": 1e-5, "points": points, "choices": asked},
         "operators": {"rows": [{"operator": kind, "cells": n, "seconds": 1e-6 * n**power, "low": None, "low_reason": "one repetition",
                                 "high": None, "high_reason": "one repetition"}
                                for kind, power in (("direct", 4), ("dcfft", 3)) for n in (8, 16, 32)],
                       "cells": 12.0, "low": 11.0, "high": 13.0, "remark": ""},
-        "peers": [peer("ONE", "good", 0.1), peer("TWO", "bad", 30.0)],
-        "gates": {"gates": [{"id": "a-gate", "outcome": "passed", "quantity": "twist_error", "value": 1e-5, "factor": 0.5,
-                             "reason": "it <matters>"}]},
-        "headline": {"verdict": "good", "commit": "none", "lines": [["Gates", "1 of 1 pass"], ["Hard", "a < b"]],
-                     "numbers": {"moment_ratio": 0.9, "cells": [16, 16], "twist_error": 3e-3, "stick_radius_error": -2e-3,
-                                 "gap": 1e-9, "seconds": 0.125},
+        "programs": others,
+        "hard": alone,
+        "digits": {"samples": 6, "digits": {"twist_angle": {"digits": 12.3, "low": 11.9, "high": 12.7}}},
+        "headline": {"verdict": "good", "commit": "none", "lines": [["Gates", "1 of 1 pass"], ["Hard", "a < b"]], "numbers": {},
+                     "counts": {"checks": {"Gates": "holds", "Hard": "holds"}},
                      "since": "0123456789abcdef", "changes": ["hard certified: 2 before, 1 now"]},
-        "errata": [{"equation": "(0)", "printed": "a < b", "holds": "a > b", "shown": "by example"}],
+        "paper": small_paper(),
     }
 
 
@@ -162,33 +182,32 @@ def write_fields(path, q1_shift=0.02):
             file[name] = values
 
 
-def write_contact(path):
+def write_answer(path):
     """Two cells that stick beside one that slips."""
     with h5py.File(path, "w") as file:
-        for name, values in {"x1": [0.0, 1.0, 2.0], "x2": [0.0, 0.0, 0.0], "stick": [1.0, 1.0, 0.0],
-                             "slip1": [1e-9, 0.0, 3.0], "slip2": [0.0, 0.0, 4.0]}.items():
+        for name, values in {"x1": [0.0, 1.0, 2.0], "x2": [0.0, 0.0, 0.0], "stick": [1.0, 1.0, 0.0], "pressure": [2.0, 3.0, 1.0],
+                             "q1": [1.0, 1.0, 0.5], "q2": [0.0, 0.5, 0.5], "slip1": [1e-9, 0.0, 3.0], "slip2": [0.0, 0.0, 4.0]}.items():
             file[name] = values
 
 
-def write_data(folder, report):
+def write_data(page_folder, page):
+    """Puts a page's results where they are drawn from."""
+    folder = page_folder / "data"
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / "report.json").write_text(json.dumps(report))
-    for entry in report["profiles"]:
+    (folder / "report.json").write_text(json.dumps(page))
+    for entry in page.get("paper", {}).get("profiles", []):
         write_fields(folder / entry["fields"])
-    for scene in report["gallery"]:
-        write_contact(folder / scene["fields"])
-    (folder / "scenes").mkdir(exist_ok=True)
-    (folder / "scenes" / "paper.toml").write_text("name = 'sphere'")
+    write_answer(folder / "answer.h5")
 
 
-def run_render(data_dir, output, save=style.save):
-    """Exit code, and what it says; `save` writes the figures. A warning is an error, but for what matplotlib will do
-    otherwise one day."""
+def run_render(*folders, output=None, save=style.save):
+    """Draws the page of each folder, and an index of several in `output`: exit code, and what it says; `save` writes the figures.
+    A warning is an error, but for what matplotlib will do otherwise one day."""
     with redirect_stderr(io.StringIO()) as errors, patch.object(style, "save", save), warnings.catch_warnings():
         for kind in (UserWarning, RuntimeWarning, DeprecationWarning):
             warnings.simplefilter("error", kind)
         warnings.filterwarnings("ignore", category=DeprecationWarning, module="matplotlib")
-        exit_code = render.main([str(data_dir), "--output", str(output)])
+        exit_code = render.main([*map(str, folders), "--output", str(output or folders[0])])
     return exit_code, errors.getvalue()
 
 

@@ -8,7 +8,7 @@ import tempfile
 import unittest
 from pathlib import Path
 
-from made_report import run_render, save_quickly, small_report, write_data
+from made_report import run_render, save_quickly, small_page, write_data
 
 import browser
 import pdf
@@ -18,11 +18,11 @@ CHECKS = (Path(__file__).parent / "page_checks.js").read_text(encoding="utf-8")
 WIDTHS = (360, 800, 1600)
 NOTHING = {"", "-", "–", "—"}
 SUPERSCRIPTS = str.maketrans("⁻⁰¹²³⁴⁵⁶⁷⁸⁹−", "-0123456789-")
-NUMBER = re.compile(r"(?P<tolerance>±)?(?P<mantissa>[+−-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?)"
+NUMBER = re.compile(r"(?P<mantissa>[+−-]?\d+(?:\.\d+)?(?:e[+-]?\d+)?)"
                     r"(?:×10(?P<exponent>[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+)|(?P<power>[⁻⁰¹²³⁴⁵⁶⁷⁸⁹]+))?(?P<percent>\s?%)?"
                     r"(?:\s(?P<prefix>[Mkmµnp])?(?P<unit>rad|N m|m|Pa|J|s)\b.*)?")  # words may follow a unit
 PREFIXES = {"M": 1e6, "k": 1e3, None: 1.0, "m": 1e-3, "µ": 1e-6, "n": 1e-9, "p": 1e-12}
-KINDS = {"tolerance", "exponent", "power", "percent", "unit", "plain", "text", "nothing"}  # what columns hold
+KINDS = {"exponent", "power", "percent", "unit", "plain", "text", "nothing"}  # what columns hold
 DRAWN = 2  # figures; the others are empty here, since they cost more than all that is asked of the page
 EMPTY = '<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 600 300"></svg>'
 
@@ -36,23 +36,22 @@ def number(cell):
         value *= 10.0 ** int(found["exponent"].translate(SUPERSCRIPTS))
     if found["power"]:
         value **= int(found["power"].translate(SUPERSCRIPTS))
-    kind = next((kind for kind in ("tolerance", "unit", "exponent", "power", "percent") if found[kind]), "plain")
+    kind = next((kind for kind in ("unit", "exponent", "power", "percent") if found[kind]), "plain")
     return kind, found["unit"], value * PREFIXES[found["prefix"]]
 
 
 def make_page(folder):
-    """The page of a small made-up report with two studies."""
-    report = small_report()
-    report["gallery"][1]["value"] = 4e-4  # 400 µrad beside 1.25 mrad
-    report["studies"] = [study(), dict(tolerance_study(), name="made up: tolerance")]
+    """A small made-up page with two studies."""
+    page = small_page()
+    page["studies"] = [study(), dict(tolerance_study(), name="made up: tolerance")]
     drawn = []
 
     def save_few(figure, stem):
         drawn.append(stem)
         return save_quickly(figure, stem) if len(drawn) <= DRAWN else EMPTY
 
-    write_data(folder / "data", report)
-    exit_code, words = run_render(folder / "data", folder, save_few)
+    write_data(folder, page)
+    exit_code, words = run_render(folder, save=save_few)
     assert exit_code == 0, words
     return folder / "index.html"
 
@@ -137,7 +136,7 @@ class Page(unittest.TestCase):
                 order = [sign * value for _, unit, value in numbers if unit == each]
                 self.assertEqual(order, sorted(order), values)
             kinds |= {kind for kind, _, _ in numbers}
-        elif not any(re.match(r"[+−±-]?\d", cell) for cell in values):
+        elif not any(re.match(r"[+−-]?\d", cell) for cell in values):
             self.assertTrue(self.browser.evaluate(f"checks.alphabetical({json.dumps(values)}, {sign})"), values)
             kinds.add("text")
         return kinds if len(set(values)) > 1 else set()

@@ -3,11 +3,10 @@
 import unittest
 
 import numpy as np
-from made_report import FRICTION, PEAK, Folder, small_report, write_data, write_fields
+from made_report import FRICTION, PEAK, Folder, small_page, small_paper, write_data, write_fields
 
 import exact_figures
 import figures
-import gallery_figure
 import hard_cases
 import method_figures
 import peers_figure
@@ -17,8 +16,9 @@ import results
 class OneFigure(Folder):
     def setUp(self):
         super().setUp()
-        self.report = small_report()
-        write_data(self.folder, self.report)
+        self.report = small_paper()
+        write_data(self.folder, {"paper": self.report})
+        self.folder /= "data"
 
     def assert_unavailable(self, draw, words):
         with self.assertRaisesRegex(results.Unavailable, words):
@@ -87,19 +87,9 @@ class OneFigure(Folder):
         self.report["mesh"] = [row for row in self.report["mesh"] if row["pressure"] == "hertz"]
         self.assertIn("Hertz pressure at cell centres", figures.convergence(self.report, self.folder).numbers[0][0])
 
-    def test_cost_has_the_meshes_beside_the_points_of_one_line(self):
-        axes = figures.cost(self.report, self.folder).figure.axes
-        self.assertEqual([axis.get_ylabel() for axis in axes], ["relative error", ""])
-        for axis in axes:
-            numbers = {note.get_text(): note.xy for note in axis.texts}
-            self.assertEqual(list(numbers), ["4", "8", "16"])
-            for cells, (time, error) in numbers.items():
-                self.assertAlmostEqual(time, 1e-4 * int(cells)**2)
-                self.assertAlmostEqual(error, 1 / int(cells)**2)
-
     def test_missing_cycles(self):
         for key in ("loop", "cycle_energy"):
-            self.report = small_report()
+            self.report = small_paper()
             del self.report[key]
             self.assert_unavailable(exact_figures.bodies_and_cycles, f"{key}.*missing")
 
@@ -109,7 +99,7 @@ class OneFigure(Folder):
         self.assertEqual(numbers[-1], "100&nbsp;%")
 
     def test_hard_scenes_in_numbers(self):
-        entry = hard_cases.methods(small_report(), self.folder)
+        entry = hard_cases.methods(small_paper(), self.folder)
         self.assertEqual(entry.message, "Newton’s method for Coulomb’s law certifies 4 of 5 hard scenes and refuses 1 with a "
                          "reason; 0 do not converge or are wrong.")
         self.assertEqual([number for words, number in entry.numbers if "paper" in words], ["1"] * 5)
@@ -162,51 +152,6 @@ class OneFigure(Folder):
         one, two = entry.figure.axes[0].lines[:2]
         self.assertTrue(np.allclose(one.get_xdata(), 0.1) and np.allclose(two.get_xdata(), 30.0))
         self.assertLess(two.get_xdata().max(), entry.figure.axes[0].get_xlim()[1])
-
-    def test_arrows_of_slip(self):
-        entry = gallery_figure.slip_maps(self.report, self.folder)
-        arrows = entry.figure.axes[0].collections[-1]
-        self.assertTrue(np.allclose(np.hypot(arrows.U, arrows.V), np.hypot(arrows.U, arrows.V)[0]))
-        self.assertAlmostEqual(float(arrows.V[0] / arrows.U[0]), 4.0 / 3.0)
-
-    def test_what_the_gallery_says(self):
-        entry = gallery_figure.gallery(self.report, self.folder)
-        self.assertIn("Coulomb’s law holds in all 4 scenes to gap / energy = 2.0×10⁻⁹.", entry.message)
-        self.assertIn("Half of the 1 with an exact answer are within 4.0×10⁻² of it", entry.message)
-        panel = entry.figure.axes[0]
-        self.assertEqual([text.get_text() for text in panel.texts], ["67\u00a0% sticks"])
-        slip, sticks = (image.get_array() for image in panel.images)
-        self.assertEqual(slip.filled(-1).tolist(), [[-1, -1, 1]])  # of its largest value
-        self.assertEqual(sticks.filled(0).tolist(), [[1, 1, 0]])
-
-    def test_gallery_has_the_whole_contact_in_the_middle_of_a_square(self):
-        panel = gallery_figure.gallery(self.report, self.folder).figure.axes[0]
-        (left, right), (low, high) = panel.get_xlim(), panel.get_ylim()
-        self.assertEqual(list(panel.images[0].get_extent()), [-0.5, 2.5, -0.5, 0.5])
-        np.testing.assert_allclose([left + right, low + high], [2, 0], atol=1e-12)
-        self.assertAlmostEqual(right - left, high - low)
-        self.assertTrue(3 < right - left < 1.25 * 3)
-
-    def test_gallery_of_more_than_a_row(self):
-        one = gallery_figure.gallery(self.report, self.folder).figure
-        self.report["gallery"] *= 2
-        two = gallery_figure.gallery(self.report, self.folder).figure
-        self.assertEqual(sum(bool(axis.images) for axis in two.axes), 8)
-        self.assertGreater(one.get_figheight(), gallery_figure.PANEL_HEIGHT)  # the scale of colours takes the rest
-        self.assertAlmostEqual(two.get_figheight() - one.get_figheight(), gallery_figure.PANEL_HEIGHT)
-
-    def test_gallery_draws_slip_over_its_largest_value(self):
-        entry = gallery_figure.gallery(self.report, self.folder)
-        self.assertEqual(np.nanmax(entry.figure.axes[0].images[0].get_array()), 1.0)
-
-    def test_gallery_owns_up_to_what_did_not_converge(self):
-        self.report["gallery"][1]["status"] = "not_converged"
-        self.assertIn("in all 3 scenes", gallery_figure.gallery(self.report, self.folder).message)
-        self.assertIn("1 more did not converge", gallery_figure.gallery(self.report, self.folder).message)
-
-    def test_gallery_without_its_fields(self):
-        (self.folder / "gallery-tube.h5").unlink()
-        self.assert_unavailable(gallery_figure.gallery, "gallery-tube.h5 cannot be read")
 
     def test_error_map_is_the_difference_from_exact(self):
         entry = figures.shear_components(self.report, self.folder)

@@ -12,7 +12,7 @@ from collections import Counter
 from pathlib import Path
 from unittest.mock import patch
 
-from made_report import REPORTS, Folder, run_render, save_nothing, save_quickly, small_report, write_data
+from made_report import REPORTS, Folder, run_render, save_nothing, save_quickly, small_page, write_data
 
 import figures
 import method_figures
@@ -22,7 +22,7 @@ from test_study_figure import study, tolerance_study
 
 def only(*names):
     """The lead figure and those named, of all that the page has."""
-    sections = [dataclasses.replace(each, figures=[figure for figure in each.figures if figure[0] in names])
+    sections = [dataclasses.replace(each, figures=[figure for figure in each.figures if figure.name in names])
                 for each in figures.SECTIONS]
     return patch.object(figures, "SECTIONS", sections)
 
@@ -33,9 +33,8 @@ class WholePage(unittest.TestCase):
         temporary = tempfile.TemporaryDirectory()
         cls.addClassCleanup(temporary.cleanup)
         cls.output = Path(temporary.name)
-        cls.data = cls.output / "data"
-        write_data(cls.data, small_report())
-        cls.run_result = run_render(cls.data, cls.output, save_quickly)
+        write_data(cls.output, small_page())
+        cls.run_result = run_render(cls.output, save=save_quickly)
         cls.page = (cls.output / "index.html").read_text(encoding="utf-8")
 
     def test_render_succeeds_in_silence(self):
@@ -49,9 +48,9 @@ class WholePage(unittest.TestCase):
                 self.assertIn(target[1:], anchors)
             elif not target.endswith((".pdf", ".csv")) and not target.startswith("data:"):  # see AsAProgram
                 self.assertGreater((self.output / target).stat().st_size, 0, target)
-        for name, _, _ in figures.FIGURES:
-            self.assertIn(f"figures/{name}.svg", targets)
-            self.assertIn(f"figures/{name}.pdf", targets)
+        for figure in figures.FIGURES:
+            self.assertIn(f"figures/{figure.name}.svg", targets)
+            self.assertIn(f"figures/{figure.name}.pdf", targets)
         self.assertIn("data/report.json", targets)
         self.assertNotIn("Not available", self.page)
 
@@ -61,19 +60,22 @@ class WholePage(unittest.TestCase):
     def test_the_verdict_stands_first(self):
         first = self.page[self.page.index("<main"):self.page.index("<section")]
         for words in ("✓ All is well", "<strong>Gates:</strong> 1 of 1 pass", "a &lt; b", "page of commit 0123456789abcdef:",
-                      "hard certified: 2 before, 1 now", "3.0×10⁻³", "−2.0×10⁻³", "1.0×10⁻⁹", "0.125\u00a0s", 'id="twist"'):
+                      "hard certified: 2 before, 1 now", "<dd>0.3\u00a0%</dd><dt>error of the twist",
+                      "<dd>2\u00a0%</dd><dt>what the mesh leaves open of the stick radius", "<dd>2.0×10⁻⁹</dd>", "<dd>0.125\u00a0s</dd>",
+                      "16×16 cells, M/M<sub>lim</sub>&nbsp;=&nbsp;0.9", 'id="twist"'):
             self.assertIn(words, first)
 
     def test_a_bad_verdict_says_so(self):
-        report = small_report()
-        report["headline"].update(verdict="bad", since=None, changes=[])
-        write_data(self.output / "bad" / "data", report)
+        page = small_page()
+        page["headline"].update(verdict="bad", since=None, changes=[], counts={"checks": {"Gates": "holds", "Hard": "fails"}})
+        write_data(self.output / "bad", page)
         with only():
-            run_render(self.output / "bad" / "data", self.output / "bad", save_nothing)
+            run_render(self.output / "bad", save=save_nothing)
         page = (self.output / "bad" / "index.html").read_text(encoding="utf-8")
         self.assertIn("✗ Not all is well", page)
         self.assertNotIn("All is well</p>", page.replace("Not all is well", ""))
         self.assertIn("the first page in its folder", page)
+        self.assertIn("✗ Hard:", page)
 
     def test_each_figure_stands_in_the_page_and_is_named(self):
         drawn = re.findall(r'<svg role="img" aria-label="([^"]+)" viewBox', self.page)
@@ -86,7 +88,7 @@ class WholePage(unittest.TestCase):
     def test_tables_of_gates_and_programs(self):
         self.assertEqual(self.rows("gates")[1:], [["a-gate", "passed", "twist_error", "1.0×10⁻⁵", "50\u00a0%",
                                                    "it &lt;matters&gt;"]])
-        programs = self.page[self.page.index('<figure id="known-fields"'):self.page.index('<section id="run"')]
+        programs = self.page[self.page.index('<h3 id="fields"'):self.page.index('<section id="beyond"')]
         cells = [re.findall("<td>(.*?)</td>", row) for row in re.findall("<tr>(.*?)</tr>", programs)][1:]
         self.assertEqual(cells, [
             [name, verdict, "8²", "1.0×10⁻³", twist, "5.0×10⁻¹", "1.5×10⁰", "1.0×10⁻⁵", f"it &lt;is&gt; {verdict}"]
@@ -117,7 +119,7 @@ class WholePage(unittest.TestCase):
         return re.split("<h[23]", self.page[self.page.index(f'<h3 id="{place}"') + 3:])[0]
 
     def test_each_table_stands_under_its_heading(self):
-        loads, meshes = self.rows("loads")[1:], self.rows("mesh")[1:]
+        loads, meshes = self.rows("loads")[1:], self.rows("meshes")[1:]
         self.assertEqual([row[:2] for row in loads], [["0.2", "paper"], ["0.5", "paper"], ["0.9", "paper"]])
         self.assertEqual([row[:3] for row in meshes],
                          [[pressure, load, f"{cells}²"] for pressure in ("solved", "hertz") for load in ("0.5", "0.9")
@@ -129,27 +131,44 @@ class WholePage(unittest.TestCase):
                          ["Equation", "As printed", "What holds", "How it shows"])
 
     def test_what_the_data_call_things_is_no_markup(self):
-        report = small_report()
+        page = small_page()
         evil = "<script>alert(1)</script>$\\frac{$\n"
-        for row in report["gallery"]:
-            row.update(title=evil, shows=evil)
-        report["bodies"][0]["profile"] = evil
-        report["scene"] = {"name": evil, "text": evil, "summary": [[evil, evil]]}
-        report["provenance"] = {"version": evil, evil: evil}
+        page["answer"].update(name=evil)
+        page["answer"]["program"].update(name=evil, version=evil)
+        page["paper"]["bodies"][0]["profile"] = evil
+        page["scene"].update(name=evil, text=f"# {evil}", summary=[[evil, evil]])
+        page["provenance"] = {"version": evil, evil: evil}
+        for row in page["numbers"]:
+            row.update(words=evil, basis=evil)
+        for row in page["programs"]:
+            row.update(name=evil, version=evil)
+        for point in page["cost"]["points"]:
+            point["method"] = evil
         varied = study()
         varied["name"] = evil
-        report["studies"] = [varied]
-        output = self.output / "evil"
-        write_data(output / "data", report)
-        with only("bodies-and-cycles", "gallery-maps"):
-            result = run_render(output / "data", output, save_quickly)
+        page["studies"] = [varied]
+        folders = [self.output / "evil" / name for name in ("a", "b")]
+        for folder in folders:
+            write_data(folder, page)
+        with only("bodies-and-cycles", "answer", "cost", "programs"):
+            result = run_render(*folders, output=self.output / "evil", save=save_quickly)
         self.assertEqual(result, (0, ""))
-        page = (output / "index.html").read_text(encoding="utf-8")
-        self.assertEqual(page.count("<script"), 1)  # the page's own
-        self.assertGreater(page.count("&lt;script&gt;"), 8)
-        for figure in (output / "figures").glob("*.svg"):
+        for file, least in ((folders[0] / "index.html", 12), (self.output / "evil" / "index.html", 2)):
+            text = file.read_text(encoding="utf-8")
+            self.assertEqual(text.count("<script"), 1)  # the page's own
+            self.assertGreater(text.count("&lt;script&gt;"), least)
+        for figure in (folders[0] / "figures").glob("*.svg"):
             xml.etree.ElementTree.parse(figure)
             self.assertNotIn("<script", figure.read_text(encoding="utf-8"))
+
+    def test_tables_of_the_answer(self):
+        self.assertEqual(self.rows("numbers")[1], ["twist", "1.25 mrad", "1.25 mrad", "0.3\u00a0%", "5\u00a0%", "exact"])
+        self.assertEqual(self.rows("numbers")[2], ["moment", "2 µN m", "2 µN m", "–", "–", "no mesh"])
+        self.assertEqual(self.rows("choices")[1:], [["1.0×10⁻²", "16 × 8, the mean of 4 grids", "1.0×10⁻³", "0.01", ""],
+                                                    ["1.0×10⁻³", "–", "–", "–", "too &lt;fine&gt;"]])
+        self.assertEqual(self.rows("digits")[1:], [["twist", "12.3", "11.9 to 12.7"]])
+        self.assertEqual(self.rows("answers")[1][:5], ["slipstick", "1", "8", "converged", "1.2×10⁻¹"])
+        self.assertEqual(self.rows("program")[1], ["version", "1.0", ""])
 
     def test_table_of_approximations(self):
         cells = self.rows("approximation-table")
@@ -158,32 +177,64 @@ class WholePage(unittest.TestCase):
             ["0.5", "0.5", "−10\u00a0%", "−12\u00a0%", "−25\u00a0%", "−25\u00a0%", "+100\u00a0%"],
             ["0.9", "0.9", "−18\u00a0%", "−22\u00a0%", "−45\u00a0%", "−45\u00a0%", "+33\u00a0%"]])
 
-    def test_table_of_the_gallery(self):
-        cells = self.rows("gallery")
-        self.assertEqual(cells[1], ["<a href=\"data/scenes/paper.toml\">&lt;paper&gt;</a>", "so &amp; so", "twist",
-                                    "1.25\u00a0mrad", "1.2\u00a0mrad exact", "−4.0×10⁻²", "2.0×10⁻⁹", "20", "2",
-                                    "256", "0.25"])
-        self.assertEqual([row[0] for row in cells[2:]], ["&lt;tube&gt;", "&lt;odd&gt;", "&lt;rough&gt;"])
-        self.assertEqual([row[4:6] for row in cells[2:]], [
-            ["1.26\u00a0mrad extrapolated", "2.0×10⁻³"], ["1.25\u00a0mrad finest mesh", "±3.0×10⁻⁴"], ["–", "–"]])
 
+class OtherPages(Folder):
+    def test_a_page_has_no_section_and_no_table_without_its_part(self):
+        page = small_page()
+        for part in ("paper", "cost", "operators", "programs", "hard", "digits", "uncertainty"):
+            del page[part]
+        del page["answer"]["program"]
+        page["answer"]["steps"] = page["answer"]["steps"][:1]
+        write_data(self.folder, page)
+        self.assertEqual(run_render(self.folder, save=save_nothing), (0, ""))
+        text = (self.folder / "index.html").read_text(encoding="utf-8")
+        self.assertEqual(re.findall('<section id="([^"]+)"', text), ["what", "result", "errors", "run"])
+        self.assertEqual(re.findall('<h3 id="([^"]+)"', text), ["numbers", "gaps", "provenance"])
+        self.assertEqual([name for name in re.findall('<figure id="([^"]+)"', text)], ["bodies", "answer"])
+        for words in ("paper", "Lubkin", "Not available"):
+            self.assertNotIn(words, text)
+
+    def test_an_index_has_a_row_for_each_page(self):
+        exact, rough = small_page(), small_page()
+        del exact["answer"]["history"]
+        rough["scene"].update(name="rough", text="name = 1")
+        rough["headline"].update(verdict="bad", lines=[["Mesh", "it is 2e-1 off"], ["Hard", "fine"]],
+                                 counts={"checks": {"Mesh": "fails", "Hard": "holds"}})
+        for row in rough["numbers"]:
+            row.update(error=None)
+        folders = [self.folder / name for name in ("made up", "rough")]
+        for folder, page in zip(folders, (exact, rough)):
+            write_data(folder, page)
+        with only("answer"):
+            self.assertEqual(run_render(*folders, output=self.folder, save=save_quickly), (0, ""))
+        text = (self.folder / "index.html").read_text(encoding="utf-8")
+        rows = [re.findall("<td>(.*?)</td>", row, re.DOTALL) for row in re.findall("<tr>(.*?)</tr>", text, re.DOTALL)][1:]
+        self.assertEqual(rows[0][0], '<a href="made up/index.html">made up</a>')
+        self.assertTrue((self.folder / re.search('src="([^"]+)"', rows[0][1])[1]).is_file())
+        self.assertEqual(rows[0][2:], ["So &amp; so.", "✓ good", "twist", "1.25 mrad", "0.3\u00a0%", "1.9×10⁻⁵", "14", "3", "16×16", "0.0256"])
+        self.assertEqual(rows[1][2:], ["", "✗ bad: Mesh: it is 2.0×10⁻¹ off", "–", "–", "–", "2.0×10⁻⁹", "20", "3", "16×16", "0.125"])
 
 
 class AsAProgram(Folder):
-    """Two figures: a line on log axes; maps with outlines that are pixels in the file."""
+    """Two figures: a line on log axes; maps that are pixels in the file."""
 
     def test_writes_every_format_and_equal_files_for_equal_data(self):
-        report = {key: part for key, part in small_report().items()
-                  if key in ("equation_5_digits", "gallery", "provenance", "scene")}
-        names = {f"{figure}.{kind}" for figure in ("equation-5", "gallery-maps", "slip-maps") for kind in ("svg", "pdf")}
-        names.add("equation-5.csv")
-        data, one, two = (self.folder / name for name in ("data", "one", "two"))
-        write_data(data, report | {"profiles": []})
-        run = subprocess.run([sys.executable, "-B", str(REPORTS / "render.py"), str(data), "--output", str(one)],
+        page = small_page()
+        page["paper"] = {key: page["paper"][key] for key in ("equation_5_digits", "contact")} | {"profiles": []}
+        for part in ("cost", "operators", "programs", "hard"):
+            del page[part]
+        page["answer"]["steps"] = []
+        names = {f"{figure}.{kind}" for figure in ("equation-5", "answer", "bodies") for kind in ("svg", "pdf")}
+        names |= {"equation-5.csv", "bodies.csv"}
+        one, two = (self.folder / name for name in ("one", "two"))
+        for folder in (one, two):
+            write_data(folder, page)
+        run = subprocess.run([sys.executable, "-B", str(REPORTS / "render.py"), str(one), "--output", str(one)],
                              capture_output=True, text=True)
         self.assertEqual(run.returncode, 0)
-        self.assertEqual(run_render(data, two), (0, run.stderr))
-        self.assertEqual(len(run.stderr.splitlines()), len(figures.FIGURES) - 3)
+        self.assertEqual(run_render(two), (0, run.stderr))
+        missing = [figure for figure in figures.FIGURES if figure.part == "paper" and figure.name != "equation-5"]
+        self.assertEqual(len(run.stderr.splitlines()), len(missing))
         for folder in (one, two):
             self.assertEqual({path.name for path in (folder / "figures").iterdir()}, names)
         for name in names:
@@ -194,69 +245,66 @@ class AsAProgram(Folder):
 
 
 class PageWithGaps(Folder):
-    def test_gaps_are_named_with_their_reasons(self):
-        report = small_report()
-        report["loading"][1].update(stick_radius_error=None, stick_radius_error_reason="the front did not move")
-        del report["mesh"]
-        write_data(self.folder, report)
-        with only("stick-radius", "convergence"):
-            exit_code, errors = run_render(self.folder, self.folder / "page", save_nothing)
-        page = (self.folder / "page" / "index.html").read_text(encoding="utf-8")
+    def draw(self, page, *names, save=save_nothing):
+        """What the page says, drawn with the lead figure and those named alone, and what the program says."""
+        write_data(self.folder, page)
+        with only(*names):
+            exit_code, errors = run_render(self.folder, save=save)
         self.assertEqual(exit_code, 0)
+        return (self.folder / "index.html").read_text(encoding="utf-8"), errors
+
+    def test_gaps_are_named_with_their_reasons(self):
+        page = small_page()
+        page["paper"]["loading"][1].update(stick_radius_error=None, stick_radius_error_reason="the front did not move")
+        del page["paper"]["mesh"]
+        text, errors = self.draw(page, "stick-radius", "convergence")
         self.assertIn("convergence is not available: “mesh” is missing from the data", errors)
-        self.assertIn("Not available: “mesh” is missing from the data.", page)
-        self.assertNotIn("figures/convergence.svg", page)
-        self.assertIn("<code>loading[].stick_radius_error</code> – the front did not move", page)
-        self.assertIn("figures/stick-radius.svg", page)
+        self.assertIn("Not available: “mesh” is missing from the data.", text)
+        self.assertNotIn("figures/convergence.svg", text)
+        self.assertIn("<code>paper.loading[].stick_radius_error</code> – the front did not move", text)
+        self.assertIn("figures/stick-radius.svg", text)
 
     def test_without_the_exact_curves_only_their_figures_are_missing(self):
-        report = small_report()
+        page = small_page()
         for key in ("approximations", "approximation_table", "bodies"):
-            del report[key]
-        write_data(self.folder, report)
-        exit_code, _ = run_render(self.folder, self.folder / "page", save_nothing)
-        page = (self.folder / "page" / "index.html").read_text(encoding="utf-8")
-        self.assertEqual(exit_code, 0)
-        missing = [name for name, _, _ in figures.FIGURES if f"figures/{name}.svg" not in page]
+            del page["paper"][key]
+        text, _ = self.draw(page, *(figure.name for figure in figures.FIGURES))
+        missing = [figure.name for figure in figures.FIGURES if f"figures/{figure.name}.svg" not in text]
         self.assertEqual(missing, ["bodies-and-cycles", "approximations"])
         for key in ("approximations", "approximation_table", "bodies"):
-            self.assertIn(f"Not available: “{key}” is missing from the data.", page)
+            self.assertIn(f"Not available: “{key}” is missing from the data.", text)
 
     def test_studies_are_shown_where_there_are_some(self):
-        report = small_report()
-        report["studies"] = [study(), dict(tolerance_study(), name="made up: tolerance"), {"name": "broken"}]
-        write_data(self.folder, report)
+        page = small_page()
+        page["studies"] = [study(), dict(tolerance_study(), name="made up: tolerance"), {"name": "broken"}]
         written = []
-        with only():
-            exit_code, _ = run_render(self.folder, self.folder / "page", lambda figure, stem: written.append(stem.name))
-        page = (self.folder / "page" / "index.html").read_text(encoding="utf-8")
-        self.assertEqual(exit_code, 0)
+        text, _ = self.draw(page, save=lambda figure, stem: written.append(stem.name))
         for words in ("figures/study-made_up.svg", "figures/study-made_up_tolerance.svg",
                       "<td>1.90 to 2.12</td>", "cells err by h².", "−9.0×10⁻⁴",
                       "Study: broken</h3>", "Not available: “series” is missing from the data"):
-            self.assertIn(words, page)
-        self.assertEqual(page.count("<h4>Orders</h4>"), 1)
+            self.assertIn(words, text)
+        self.assertEqual(text.count("<h4>Orders</h4>"), 1)
         self.assertEqual(written, ["twist", "study-made_up", "study-made_up_tolerance"])
-        self.assertNotIn("<code>studies", page)
+        self.assertNotIn("<code>studies", text)
 
     def test_the_methods_are_told_apart(self):
-        entry = method_figures.methods(small_report(), self.folder)
+        entry = method_figures.methods(small_page()["paper"], self.folder)
         self.assertIn("the paper’s method leaves slip misaligned with traction by up to 2.4°", entry.message)
         self.assertIn(("ellipse, slip direction, Newton’s method for Coulomb’s law", "1.0×10⁻⁷ of a degree"), entry.numbers)
-        report = small_report()
+        report = small_page()["paper"]
         del report["methods"][0]["operator_applications"]
         with self.assertRaises(results.Unavailable):
             method_figures.methods(report, self.folder)
 
     def test_data_that_cannot_be_read_are_refused(self):
-        output = self.folder / "page"
+        (self.folder / "data").mkdir()
         for content, words in ((json.dumps({"loading_cells": float("nan")}), "NaN"), ("{", "report.json"),
                                ("[]", "no JSON object")):
-            (self.folder / "report.json").write_text(content)
-            exit_code, errors = run_render(self.folder, output)
+            (self.folder / "data" / "report.json").write_text(content)
+            exit_code, errors = run_render(self.folder)
             self.assertEqual(exit_code, 2)
             self.assertIn(words, errors)
-        exit_code, errors = run_render(self.folder / "nowhere", output)
+        exit_code, errors = run_render(self.folder / "nowhere")
         self.assertEqual(exit_code, 2)
         self.assertIn("No such file", errors)
 

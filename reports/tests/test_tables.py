@@ -50,16 +50,6 @@ class OfSolves(unittest.TestCase):
             ("twist, small moments", "−12\u00a0%"), ("twist, no slip", "−13\u00a0%"), ("twist, DEM", "−14\u00a0%"),
             ("DEM moment at the exact twist", "+15\u00a0%")])
 
-    def test_gallery(self):
-        row = {"scene": "tube", "title": "a tube", "shows": "what it shows", "quantity": "lost", "unit": "J",
-               "value": 1.1e-6, "reference": 1.2e-6, "basis": "extrapolated", "error": -1.3e-3, "uncertainty": 1.4e-3,
-               "gap": 1.5e-9, "operator_applications": 16.6, "steps": 7, "cells": [48, 32], "seconds": 0.19}
-        self.assertEqual(beside_heads(tables.gallery({"gallery": [row]}, lambda scene: None)), [
-            ("scene", "a tube"), ("what it shows", "what it shows"), ("judged by", "lost"),
-            ("computed", "1.1\u00a0µJ"), ("reference", "1.2\u00a0µJ extrapolated"), ("error", "−1.3×10⁻³"),
-            ("gap / energy", "1.5×10⁻⁹"), ("applica&shy;tions", "17"), ("steps", "7"), ("cells along", "48"),
-            ("time, s", "0.19")])
-
 
 ORDER = {"value": 1.11, "low": 0.98, "high": 1.24, "constant": 9.0, "verdict": "too_few", "why": "for the reason",
          "expected": 1.5, "expected_why": "by theory"}

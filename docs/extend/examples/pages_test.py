@@ -66,7 +66,7 @@ class Examples(unittest.TestCase):
     def test_figure(self):
         import made_report
         import stick_figure
-        entry = stick_figure.stick_ratio(made_report.small_report(), self.folder)
+        entry = stick_figure.stick_ratio(made_report.small_page(), self.folder)
         self.assertEqual(len(entry.figure.axes[0].lines[0].get_xdata()), 3)
         self.assertTrue(all((entry.message, entry.details, entry.alt)))
 

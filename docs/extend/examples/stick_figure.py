@@ -5,8 +5,8 @@ from figure_entry import LOAD_LABEL, FigureEntry
 from results import column, rows
 
 
-def stick_ratio(report, data_dir):
-    loading = rows(report, "loading")
+def stick_ratio(page, folder):
+    loading = rows(page, "paper.loading")
     loads, ratios = column(loading, "moment_ratio"), column(loading, "stick_ratio")
     figure, axes = style.panels(1, 1, 3.0)
     axes.plot(loads, ratios, "o-", color=style.BLUE)
