@@ -242,7 +242,8 @@ def _paper(name, title, draw):
     return Figure(name, title, lambda page, folder: draw(page["paper"], folder), "paper")
 
 
-LEAD = _paper("twist", "Twist and load (the paper’s Fig. 5)", twist)
+ANSWER = Figure("answer", "The answer", scene_figures.answer)
+LEADS = [_paper("twist", "Twist and load (the paper’s Fig. 5)", twist), ANSWER]  # the first that a page has stands beside its verdict
 SECTIONS = [
     Section("right", "Is the paper right?", [
         _paper("shear-components", "The two shear components (the paper’s Fig. 1)", shear_components),
@@ -257,9 +258,9 @@ SECTIONS = [
         Figure("bodies", "The bodies", scene_figures.bodies),
     ]),
     Section("result", "What is the answer?", [
-        Figure("answer", "The answer", scene_figures.answer),
+        ANSWER,
         Figure("loop", "The history", scene_figures.loop, "answer.steps"),
-    ]),
+    ], "answer"),
     Section("errors", "How fast do errors fall?", [
         _paper("convergence", "Convergence with the mesh, by the pressure", convergence),
     ], "answer"),
@@ -280,7 +281,7 @@ SECTIONS = [
         _paper("approximations", "Which approximation may be used", exact_figures.approximations),
     ]),
 ]
-FIGURES = [LEAD, *(figure for section in SECTIONS for figure in section.figures)]
+FIGURES = [LEADS[0], *(figure for section in SECTIONS for figure in section.figures)]
 
 
 def has(page, part):

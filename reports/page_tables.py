@@ -47,18 +47,24 @@ def remembered(page):
     return tiles, Markup("{} cells{}").format("×".join(map(str, answer["cells"])), load)
 
 
+def _first_sentence(text):
+    """What a scene file says of itself in its first lines, up to the first full stop."""
+    lines = itertools.takewhile(lambda line: line.startswith("#"), text.splitlines())
+    return " ".join(line[1:].strip() for line in lines).split(". ")[0].rstrip(".")
+
+
 def index(pages):
     """A row for each page, (folder, page): what it shows, its judged number, its work."""
     body = []
     for folder, page in pages:
         answer, judged = page["answer"], _judged(page)
         gap, time, applications = _sums(answer)
-        about = [line[1:].strip() for line in itertools.takewhile(lambda line: line.startswith("#"), page["scene"]["text"].splitlines())]
         picture = Markup('<a href="{0}/index.html"><img src="{0}/figures/answer.svg" width="260" loading="lazy" alt="slip and stick, '
                          'tractions, pressure of {1}"></a>').format(folder, page["scene"]["name"])
         checks = page["headline"]["counts"]["checks"]
         broken = "; ".join(f"{what}: {typeset(line)}" for what, line in page["headline"]["lines"] if checks[what] != "holds")
-        body.append([Markup('<a href="{}/index.html">{}</a>').format(folder, page["scene"]["name"]), picture, " ".join(about),
+        body.append([Markup('<a href="{}/index.html">{}</a>').format(folder, page["scene"]["name"]), picture,
+                     _first_sentence(page["scene"]["text"]),
                      "✓ good" if page["headline"]["verdict"] == "good" else f"✗ bad: {broken}",
                      *(("–", "–", "–") if judged is None else (judged["words"], with_unit(judged, "value"), _error(judged))),
                      "–" if gap is None else sci(gap), f"{applications:.0f}", str(len(answer.get("steps") or [0])),

@@ -53,19 +53,19 @@ def draw_entry(name, title, draw, folder):
 
 
 def show_sections(page, data, folder):
-    """The lead figure, None where there is none, and the sections that the page has, figures numbered as they stand."""
+    """The lead figure, and the sections that the page has, figures numbered as they stand."""
     numbered = itertools.count(1)
 
     def draw(figure):
         return draw_entry(figure.name, figure.title, lambda: figure.draw(page, data), folder) | {"number": next(numbered)}
 
-    lead = draw(figures.LEAD) if figures.has(page, figures.LEAD.part) else None
-    sections = {}
+    lead = next(figure for figure in figures.LEADS if figures.has(page, figure.part))
+    first, sections = draw(lead), {}
     for section in figures.SECTIONS:
-        shown = [figure for figure in section.figures if figures.has(page, figure.part)]
+        shown = [figure for figure in section.figures if figures.has(page, figure.part) and figure is not lead]
         if shown or (section.part and figures.has(page, section.part)):
             sections[section.name] = {"question": section.question, "figures": [draw(figure) for figure in shown]}
-    return lead, sections
+    return first, sections
 
 
 def show_studies(page, folder):
