@@ -21,27 +21,36 @@ def _numbers(values):
 
 
 def bodies(page, folder):
-    """The gap before any load, along both axes of the grid through its centre."""
+    """The gap before any load, along both axes of the grid through its centre and over the grid."""
     gap = value(page, "scene.gap")
     lines = [("x1", "along_1", "along $x_1$", dict(color=style.BLUE)),
              ("x2", "along_2", "along $x_2$", dict(color=style.VERMILION, linestyle="--"))]
     found = [(_numbers(gap[x]), _numbers(gap[y]), words, look) for x, y, words, look in lines]
-    if not any(np.isfinite(y).any() for _, y, _, _ in found):
-        raise Unavailable("no point on the grid's axes can be touched")
+    over = np.stack([_numbers(row) for row in gap["map"]])
+    if not np.isfinite(over).any():
+        raise Unavailable("no point of the grid can be touched")
     length, length_unit = unit_for(max(np.max(np.abs(x)) for x, *_ in found), LENGTHS)
-    height, height_unit = unit_for(max(np.nanmax(np.abs(y), initial=0.0) for _, y, *_ in found), LENGTHS)
-    figure, axis = style.panels(1, 1, 2.8)
+    highest = np.nanmax(np.abs(over))
+    height, height_unit = unit_for(highest, LENGTHS) if highest > 0 else (length, length_unit)
+    figure, (axis, plane) = style.panels(1, 2, 3.0)
     for x, y, words, look in found:
         axis.plot(x / length_unit, y / height_unit, label=words, **look)
     axis.axhline(0, color=style.GREY, linewidth=4, alpha=0.5)
     axis.set(xlabel=f"position, {length}", ylabel=f"gap, {height}")
     axis.legend()
-    scale = length_unit / height_unit
-    message = f"The gap between the bodies before any load; heights are enlarged {plain(float(f'{scale:.2g}'))} times."
-    if not scale > 1:
-        message = "The gap between the bodies before any load."
-    return FigureEntry(message, "Along the two axes of the grid, through its centre. The lower body is grey. There is no line "
-                       "where the bodies cannot touch.", "Two lines: the gap along both axes.", figure)
+    image = plane.imshow(over.T / height_unit, origin="lower", cmap=style.SEQUENTIAL,
+                         extent=[end / length_unit for x, *_ in found for end in (x[0], x[-1])])
+    plane.set(xlabel=f"$x_1$, {length}", ylabel=f"$x_2$, {length}")
+    plane.grid(False)
+    figure.colorbar(image, ax=plane, label=f"gap, {height}")
+    message = "The gap between the bodies before any load"
+    if not highest > 0:
+        message += " is zero wherever they can touch"
+    elif height_unit < length_unit:
+        message += f"; its unit is {plain(float(f'{length_unit / height_unit:.2g}'))} times smaller than that along the plane"
+    return FigureEntry(f"{message}.", "Left, along the two axes of the grid, through its centre; the lower body is grey. Right, over the grid. "
+                       "Nothing is drawn where the bodies cannot touch.", "Two lines, the gap along both axes, and a map of the gap.",
+                       figure)
 
 
 def answer(page, folder):

@@ -25,6 +25,7 @@ std::string shape_text(const solver::Surface& surface) {
     text += fmt::format(", {} {:g}{}{}", number.name, number.of(surface), number.unit.empty() ? "" : " ",
                         number.unit);
   }
+  if (surface.shape == solver::Shape::height_map) text += " " + surface.file.filename().string();
   if (surface.at[0] != 0.0 || surface.at[1] != 0.0) {
     text += fmt::format(", at ({:g}, {:g}) m", surface.at[0], surface.at[1]);
   }
@@ -54,7 +55,7 @@ std::string load_text(const solver::Step& step) {
   return text;
 }
 
-Json summary(const Scene& scene) {
+Json summary(const Scene& scene, const solver::Grid& grid) {
   Json rows = Json::array();
   const auto add = [&](const std::string& words, const std::string& value) {
     rows.push_back({words, value});
@@ -73,7 +74,7 @@ Json summary(const Scene& scene) {
     add("First step", load_text(scene.steps.front()));
     add("Last step", load_text(scene.steps.back()));
   }
-  add("Grid", fmt::format("{} x {} cells", scene.cells[0], scene.cells[1]));
+  add("Grid", fmt::format("{} x {} cells", grid.n1, grid.n2));
   const std::string solved_by =
       scene.program.empty() ? solver::word_of(solver::kMethods, scene.method) : scene.program.string();
   add(scene.program.empty() ? "Method" : "Program",
@@ -81,12 +82,14 @@ Json summary(const Scene& scene) {
   return rows;
 }
 
-/// Every so many cells of a row through the grid's centre, so that a figure stays small.
+/// Points of a row through the grid's centre, and along each side of a map, so that a figure stays small.
 constexpr solver::Index kShown = 400;
+constexpr solver::Index kShownOnMap = 96;
 
-Json gap_profile(const Scene& scene) {
-  const solver::Model model = solver::make_model(scene);
-  const solver::Grid grid = model.grid_in_m();
+/// To as many digits as a colour shows.
+double coarse(double value) { return std::isfinite(value) ? std::stod(fmt::format("{:.4g}", value)) : value; }
+
+Json gap_of_bodies(const solver::Model& model, const solver::Grid& grid) {
   Json json;
   const auto add = [](Json& list, double value) {
     list.push_back(std::isfinite(value) ? Json(value) : Json(nullptr));
@@ -100,16 +103,24 @@ Json gap_profile(const Scene& scene) {
     add(json["x2"], grid.x2(j));
     add(json["along_2"], unit * model.gap[grid.n1 / 2 * grid.n2 + j]);
   }
+  for (solver::Index i = 0; i < grid.n1; i += 1 + grid.n1 / kShownOnMap) {
+    Json& row = json["map"].emplace_back(Json::array());
+    for (solver::Index j = 0; j < grid.n2; j += 1 + grid.n2 / kShownOnMap) {
+      add(row, coarse(unit * model.gap[i * grid.n2 + j]));
+    }
+  }
   return json;
 }
 
 }  // namespace
 
 Json describe(const Scene& scene, const std::filesystem::path& file) {
+  const solver::Model model = solver::make_model(scene);
+  const solver::Grid grid = model.grid_in_m();
   return {{"name", scene.name},
           {"text", read_text(file)},
-          {"summary", summary(scene)},
-          {"gap", gap_profile(scene)}};
+          {"summary", summary(scene, grid)},
+          {"gap", gap_of_bodies(model, grid)}};
 }
 
 }  // namespace slipstick::convergence
