@@ -103,6 +103,20 @@ Json check_program(const RunSpec& base, const Scene& scene, const Meshes& meshes
   return check_field(solver::read_scene(base.scene, overrides), fields, options);
 }
 
+/// By its certificate, or by what `check` says of the field of another program; by its pressure where there
+/// is no more.
+Finding judge_answer(const Json& page) {
+  const Json& answer = page["answer"];
+  if (!answer.contains("program")) return judge_certificate(answer);
+  return has_tractions(answer) ? judge_check(answer, page["check"]) : judge_pressure(answer);
+}
+
+/// What the page in a folder said first, before it is written anew; null where there is none to read.
+Json earlier_headline(const fs::path& file) {
+  const Json report = find_json(file);
+  return report.is_object() && report.contains("headline") ? report["headline"] : Json{};
+}
+
 }  // namespace
 
 PageSize for_program(PageSize size) {
@@ -172,15 +186,8 @@ Json scene_page(const PageRequest& request, const fs::path& folder, const Proces
   page["provenance"] = provenance(std::max(1, scene.threads));
   page["scene"] = describe(scene, base.scene);
   page["answer"] = answer;
-  std::vector<Finding> findings;
-  if (own) {
-    findings.push_back(judge_certificate(answer));
-  } else if (has_tractions(answer)) {
-    page["check"] = check_program(base, scene, meshes, answer, fields);
-    findings.push_back(judge_check(answer, page["check"]));
-  } else {
-    findings.push_back(judge_pressure(answer));
-  }
+  if (!own && has_tractions(answer)) page["check"] = check_program(base, scene, meshes, answer, fields);
+  std::vector<Finding> findings{judge_answer(page)};
   page["studies"] = scene_studies(base, scene, meshes, size, pool);
   page["numbers"] = number_rows(scene, results, page["studies"].front());
   const Reference reference = reference_of(answer, page["numbers"]);
@@ -199,8 +206,8 @@ Json scene_page(const PageRequest& request, const fs::path& folder, const Proces
     HardOptions options{.variants = own, .finer_meshes = own && size.finer_meshes};
     options.methods = request.beside;
     if (!own) options.methods = {{answer["program"]["name"], program_override(scene.program), true}};
-    const RunSpec by_us = own ? base : changed(base, {kNoProgram});
-    page["hard"] = run_hard_cases(hard_cases(by_us, scene, meshes), options, pool);
+    page["hard"] =
+        run_hard_cases(hard_cases(own ? base : changed(base, {kNoProgram}), scene, meshes), options, pool);
     findings.push_back(own ? judge_hard(page["hard"], "Hard variants") : judge_hard_beside(page["hard"]));
   }
   if (own) {
@@ -211,10 +218,7 @@ Json scene_page(const PageRequest& request, const fs::path& folder, const Proces
     page["paper"] = validate(*request.validation, folder, pool);
     for (Finding& each : judge_validation(page["paper"])) findings.push_back(std::move(each));
   }
-  const Json before = find_json(folder / "report.json");
-  page["headline"] =
-      with_changes(headline_of(findings, page),
-                   before.is_object() && before.contains("headline") ? before["headline"] : Json{});
+  page["headline"] = with_changes(headline_of(findings, page), earlier_headline(folder / "report.json"));
   write_json_file(folder / "report.json", page);
   return page;
 }
