@@ -1,7 +1,7 @@
 # The programs that measure.
 
 add_executable(slipstick_benchmarks
-  suite/checked_solve.cpp suite/exact_benchmark.cpp suite/influence_benchmark.cpp suite/memory_benchmark.cpp
+  suite/checked_solve.cpp suite/exact_benchmark.cpp suite/influence_benchmark.cpp
   suite/normal_benchmark.cpp suite/operator_benchmark.cpp suite/slipstick_benchmarks.cpp suite/solve_benchmark.cpp
   suite/suite.cpp)
 slipstick_configure(slipstick_benchmarks)

@@ -2,13 +2,14 @@
 
 #include <fmt/core.h>
 
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 #include <vector>
 
 #include "bench/timing/invalid_reason.hpp"
-#include "bench/timing/repetitions.hpp"
+#include "convergence/orders/growth.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/result_cache.hpp"
@@ -60,8 +61,22 @@ MeasuredGrid solve_grid(const std::filesystem::path& scene, const std::vector<st
   return grid;
 }
 
-Json seconds_json(const Repetitions& times) {
-  return {{"median", times.median}, {"low", times.low}, {"high", times.high}, {"repetitions", times.number}};
+/// Work that returns its own seconds is repeated at least kMinRepetitions times, then until kMaxRepetitions
+/// or until kEnoughSeconds have passed.
+constexpr std::size_t kMinRepetitions = 3;
+constexpr std::size_t kMaxRepetitions = 9;
+constexpr double kEnoughSeconds = 1.0;
+
+/// The median of repeated times with its 95 % interval.
+Json repeated_seconds(const std::function<double()>& work) {
+  std::vector<double> seconds;
+  double total = 0.0;
+  while (seconds.size() < kMinRepetitions || (seconds.size() < kMaxRepetitions && total < kEnoughSeconds)) {
+    seconds.push_back(work());
+    total += seconds.back();
+  }
+  const convergence::TypicalSeconds time = convergence::typical(seconds);
+  return {{"median", time.seconds}, {"low", time.low}, {"high", time.high}, {"repetitions", seconds.size()}};
 }
 
 Json choice_json(const PlaneChoice& choice) {
@@ -120,14 +135,14 @@ Json measure_exact(const std::filesystem::path& file, double moment_ratio) {
   const Eigen::ArrayXd radius = (solver::cell_x1(grid).square() + solver::cell_x2(grid).square()).sqrt();
   Eigen::ArrayXd traction(radius.size());
   double error = 0.0;
-  const Repetitions times = repeat([&] {
-    return seconds([&] {
-      const convergence::Oracle oracle = convergence::require_oracle(scene);
-      error = oracle.relative_uncertainty;
-      for (Index i = 0; i < radius.size(); ++i) traction[i] = oracle.traction(radius[i]);
-    });
+  const Json seconds = repeated_seconds([&] {
+    const auto start = std::chrono::steady_clock::now();
+    const convergence::Oracle oracle = convergence::require_oracle(scene);
+    error = oracle.relative_uncertainty;
+    for (Index i = 0; i < radius.size(); ++i) traction[i] = oracle.traction(radius[i]);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   });
-  return {{"seconds", seconds_json(times)}, {"error", error}, {"cells", kExactCells}};
+  return {{"seconds", seconds}, {"error", error}, {"cells", kExactCells}};
 }
 
 std::string label(double moment_ratio, const PlaneChoice& choice) {
@@ -154,7 +169,7 @@ Json measure_point(const std::filesystem::path& scene, double moment_ratio, cons
   json["contact_cells"] = across;
   if (!invalid_reason.empty()) json["not_timed"] = invalid_reason;
   if (invalid_reason.empty()) {
-    json["seconds"] = seconds_json(repeat([&] { return solver::solve(first.scene).seconds.total; }));
+    json["seconds"] = repeated_seconds([&] { return solver::solve(first.scene).seconds.total; });
   } else {
     set_missing(json, "seconds", invalid_reason);
   }

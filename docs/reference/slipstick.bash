@@ -36,8 +36,8 @@ _slipstick() {
       "bench --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "bench --beside" | "bench --program" | "bench --output" | "bench --filter" | "bench --accuracy-data" | "bench --against" | "bench --pair" | "bench --rounds" | "bench --effect" | "bench --json") return ;;
       "bench "*) [[ $current != -* ]] || words="--help --set --beside --program --output --filter --quick --accuracy-data --against --pair --rounds --effect --json --quiet" ;;
-      "compare --effect" | "compare --level" | "compare --rerun" | "compare --summary" | "compare --junit" | "compare --json") return ;;
-      "compare "*) [[ $current != -* ]] || words="--help --effect --level --same-machine --debug-library --rerun --summary --junit --json --quiet" ;;
+      "compare --effect" | "compare --level" | "compare --summary" | "compare --junit" | "compare --json") return ;;
+      "compare "*) [[ $current != -* ]] || words="--help --effect --level --same-machine --debug-library --summary --junit --json --quiet" ;;
     esac
   fi
   [ -z "$words" ] || COMPREPLY=($(compgen -W "$words" -- "$current"))

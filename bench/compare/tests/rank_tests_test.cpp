@@ -7,12 +7,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <random>
-#include <stdexcept>
 #include <tuple>
 
 namespace slipstick::bench {
@@ -226,48 +225,20 @@ TEST(RankTests, SeparatedSamplesHaveTheLeastChance) {
 }
 
 // By hand: means of two of -1, 2, 3 are -1, 0.5, 1, 2, 2.5, 3; differences of {1, 2} from {4, 8} 3, 7, 2, 6.
-// The interval is infinite where no one reaches 95 %.
+// There is no interval where none reaches 95 %.
 TEST(HodgesLehmann, IsTheMedianOfMeansOrDifferencesWithItsInterval) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  struct Case {
-    Shift shift;
-    double estimate, low, high;
-  };
   using Values = std::vector<double>;
-  for (const auto& [shift, estimate, low, high] :
-       {Case{signed_rank_shift(Values{-1.0, 2.0, 3.0}), 1.5, -kInfinity, kInfinity},
-        Case{signed_rank_shift(Values{1.0, 2.0, 3.0, 4.0, 5.0}), 3.0, -kInfinity, kInfinity},
-        Case{signed_rank_shift(differences_with(21, 6)), 3.5, 1.0, 6.0},
-        Case{rank_sum_shift(Values{1.0, 2.0}, Values{4.0, 8.0}), 4.5, -kInfinity, kInfinity},
-        Case{rank_sum_shift(Values{1.0, 2.0, 3.0}, Values{4.0, 5.0, 6.0}), 3.0, -kInfinity, kInfinity},
-        Case{rank_sum_shift(Values{1.0, 2.0, 3.0, 4.0}, Values{11.0, 12.0, 13.0, 14.0}), 10.0, 7.0, 13.0}}) {
-    EXPECT_DOUBLE_EQ(shift.estimate, estimate);
-    EXPECT_DOUBLE_EQ(shift.low, low);
-    EXPECT_DOUBLE_EQ(shift.high, high);
+  for (const auto& [small, estimate] : {std::pair(signed_rank_shift(Values{-1.0, 2.0, 3.0}), 1.5),
+                                        std::pair(signed_rank_shift(Values{1.0, 2.0, 3.0, 4.0, 5.0}), 3.0),
+                                        std::pair(rank_sum_shift(Values{1.0, 2.0}, Values{4.0, 8.0}), 4.5)}) {
+    EXPECT_DOUBLE_EQ(small.estimate, estimate);
+    EXPECT_TRUE(std::isnan(small.low) && std::isnan(small.high));
   }
-}
-
-// As many means of two are beyond either end as sums of ranks stay in the tail: so the normal distribution
-// has it too, where it is taken.
-TEST(HodgesLehmann, IntervalBeyondCountingIsTheOneThatCountingGives) {
-  const std::size_t n = kMaxCounted + 1;
-  std::mt19937_64 generator(10);
-  std::normal_distribution<double> normal;
-  std::vector<double> differences(n);
-  for (double& x : differences) x = normal(generator);
-  const Shift shift = signed_rank_shift(differences);
-  std::ptrdiff_t below = 0;
-  std::ptrdiff_t above = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = i; j < n; ++j) {
-      const double mean = 0.5 * (differences[i] + differences[j]);
-      below += mean <= shift.low ? 1 : 0;
-      above += mean >= shift.high ? 1 : 0;
-    }
-  }
-  const std::vector<double> counted = counted_signed_ranks(n);
-  EXPECT_EQ(below, std::ranges::upper_bound(counted, 0.025) - counted.begin());
-  EXPECT_EQ(above, below);
+  const Shift paired = signed_rank_shift(differences_with(21, 6));
+  EXPECT_THAT((std::array{paired.estimate, paired.low, paired.high}), ElementsAre(3.5, 1.0, 6.0));
+  const Shift independent = rank_sum_shift(Values{1.0, 2.0, 3.0, 4.0}, Values{11.0, 12.0, 13.0, 14.0});
+  EXPECT_THAT((std::array{independent.estimate, independent.low, independent.high}),
+              ElementsAre(10.0, 7.0, 13.0));
 }
 
 /// The share of hits, within three standard deviations.
@@ -299,17 +270,6 @@ TEST(HodgesLehmann, IntervalsHoldAsOftenAsTheySay) {
   }
   expect_share(independent, kDraws, 1.0 - 2.0 * chance_of_at_most(23, 10, 10));
   expect_share(paired, kDraws, 1.0 - 2.0 * 87.0 / 4096.0);  // 87 of 4096 sign patterns sum to 13 or less
-}
-
-TEST(RankTests, TakeOnlyNumbers) {
-  const std::vector<double> good{1.0, 2.0};
-  for (const double bad : {std::nan(""), HUGE_VAL}) {
-    EXPECT_THROW(signed_rank_shift(std::vector{1.0, bad}), std::invalid_argument);
-    EXPECT_THROW(rank_sum_shift(good, std::vector{1.0, bad}), std::invalid_argument);
-    EXPECT_THROW(rank_sum_shift(std::vector{1.0, bad}, good), std::invalid_argument);
-  }
-  EXPECT_THROW(signed_rank_shift({}), std::invalid_argument);
-  EXPECT_THROW(rank_sum_shift(good, {}), std::invalid_argument);
 }
 
 // Four chances, by hand: 0.005 x 4, 0.01 x 3, 0.03 x 2, then 0.04 x 1, which may not be below the one before.
