@@ -123,10 +123,6 @@ void take_others(const std::vector<Gate>& gates, const ProcessPool& pool, Source
 Judgement judge(const Gate& gate, const Source& source, const Source* other) {
   std::string refused = source.refused;
   if (refused.empty() && other != nullptr) refused = other->refused;
-  if (refused.empty() && source.file_date < gate.newer_than) {
-    refused = fmt::format("{} is of {}; allowed: {} or later", gate.source.string(), source.file_date,
-                          gate.newer_than);
-  }
   if (!refused.empty()) return refuse(gate, refused);
   try {
     return judge(other == nullptr ? gate : bounded_by(gate, other->result), source.result);
