@@ -5,10 +5,11 @@
 #include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 #include <vector>
 
-#include "bench/timing/invalid_reason.hpp"
+#include "bench/timing/checked_solve.hpp"
 #include "convergence/orders/growth.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/provenance.hpp"
@@ -41,24 +42,6 @@ constexpr Index kExactCells = 128;
 
 std::vector<double> values(const Errors& errors) {
   return {errors.twist, errors.traction.at_centres.l1, errors.traction.at_centres.l2, errors.stick_radius};
-}
-
-struct MeasuredGrid {
-  solver::Scene scene;
-  solver::Solution solution;
-  std::vector<double> errors;  ///< as kQuantities
-  std::string invalid_reason;
-};
-
-MeasuredGrid solve_grid(const std::filesystem::path& scene, const std::vector<std::string>& overrides) {
-  MeasuredGrid grid{
-      .scene = solver::read_scene(scene, overrides), .solution = {}, .errors = {}, .invalid_reason = {}};
-  const convergence::Oracle exact = convergence::require_oracle(grid.scene);
-  grid.solution = solver::solve(grid.scene);
-  const Errors errors = convergence::compare(grid.solution, exact);
-  grid.errors = values(errors);
-  grid.invalid_reason = invalid_reason(grid.scene, grid.solution, errors);
-  return grid;
 }
 
 /// Work that returns its own seconds is repeated at least kMinRepetitions times, then until kMaxRepetitions
@@ -157,27 +140,29 @@ Json measure_point(const std::filesystem::path& scene, double moment_ratio, cons
   std::vector<std::vector<double>> errors(kQuantities.size());
   double across = 0.0;
   std::string invalid_reason;
-  MeasuredGrid first;
+  std::optional<CheckedSolution> first;
   const auto all = grids(scene, moment_ratio, choice);
   for (const convergence::GridChoice& grid : all) {
-    MeasuredGrid measured = solve_grid(scene, grid.overrides);
-    for (std::size_t i = 0; i < errors.size(); ++i) errors[i].push_back(measured.errors[i]);
+    CheckedSolution measured = solve_and_check(solver::read_scene(scene, grid.overrides));
+    const std::vector<double> of_grid = values(measured.errors);
+    for (std::size_t i = 0; i < errors.size(); ++i) errors[i].push_back(of_grid[i]);
     across += 2.0 * measured.solution.contact_radius / grid.size / static_cast<double>(all.size());
     if (invalid_reason.empty()) invalid_reason = measured.invalid_reason;
-    if (first.errors.empty()) first = std::move(measured);
+    if (!first) first = std::move(measured);
   }
   json["contact_cells"] = across;
   if (!invalid_reason.empty()) json["not_timed"] = invalid_reason;
   if (invalid_reason.empty()) {
-    json["seconds"] = repeated_seconds([&] { return solver::solve(first.scene).seconds.total; });
+    const solver::Scene timed = solver::read_scene(scene, all.front().overrides);
+    json["seconds"] = repeated_seconds([&] { return solver::solve(timed).seconds.total; });
   } else {
     set_missing(json, "seconds", invalid_reason);
   }
   add_errors(json, errors);
-  set_number(json, "gap", first.solution.certificate.gap, "the solve broke down");
-  json["applications"] = first.solution.operator_applications;
-  json["pressure_applications"] = first.solution.pressure_applications;
-  json["bytes"] = first.solution.bytes;
+  set_number(json, "gap", first->solution.certificate.gap, "the solve broke down");
+  json["applications"] = first->solution.operator_applications;
+  json["pressure_applications"] = first->solution.pressure_applications;
+  json["bytes"] = first->solution.bytes;
   return json;
 }
 

@@ -147,10 +147,6 @@ std::string gates_junit(const std::vector<Judgement>& judgements);
 /// A Markdown table, the worst first, shorter than kMaxMarkdown bytes: what does not fit is counted.
 std::string gates_markdown(const std::vector<Judgement>& judgements);
 
-/// Workflow commands of GitHub Actions, which put a message at the gate's line in its file: an error for each
-/// gate that fails or is refused.
-std::string gates_annotations(const std::vector<Judgement>& judgements);
-
 /// Every gate with value, bound, factor, outcome, and the counts.
 Json gates_json(const std::vector<Judgement>& judgements);
 

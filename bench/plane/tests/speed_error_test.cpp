@@ -12,7 +12,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "bench/timing/invalid_reason.hpp"
+#include "bench/timing/checked_solve.hpp"
 #include "convergence/programs/temporary_folder.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/solve_scene.hpp"

@@ -16,7 +16,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-// Every kind of gate, with all that Markdown and annotations take for markup.
+// Every kind of gate, with all that Markdown takes for markup.
 std::vector<Judgement> one_of_each() {
   const auto named = [](Gate gate, const std::string& id) {
     gate.id = id;
@@ -101,15 +101,6 @@ TEST(GateReport, MarkdownHoldsEveryGateInItsOrderOfBadness) {
     }
   }
   EXPECT_THAT(text, Not(HasSubstr("more gates")));
-}
-
-TEST(GateReport, AnnotationsStandAtTheGateAndAreEscaped) {
-  const std::string text = gates_annotations(one_of_each());
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
-  EXPECT_THAT(
-      text,
-      HasSubstr("::error file=gates/some.toml,line=12,title=Gate bad <a> & \"b\" | c%2C d%3A 100 %25::x is "
-                "4, must be below 1 in size: 4 times the bound%0Alikely to blame: discretisation%0A"));
 }
 
 TEST(GateReport, JsonHasEveryNumberOrAReason) {
