@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "convergence/results/json_text.hpp"
+#include "convergence/results/quantity.hpp"
 #include "convergence/runs/run_batch.hpp"
 #include "convergence/studies/budget.hpp"
 #include "convergence/studies/study.hpp"
