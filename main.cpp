@@ -69,10 +69,7 @@ int run_command(const Command& command, const CLI::App& parsed, const std::strin
   Json result;
   const auto write_text = [&] {
     if (quiet || !ranks.first() || json_path == "-") return;
-    // With --github the text holds commands of the server; names beside them were made plain before.
-    const CLI::Option* const github = parsed.get_option_no_throw("--github");
-    const bool commands_server = github != nullptr && github->count() > 0;
-    slipstick::convergence::write_standard_output(commands_server ? text.str() : plain_text(text.str()));
+    slipstick::convergence::write_standard_output(plain_text(text.str()));
   };
   // The file first: a reader of the text may leave, and so end this process.
   const auto write_out = [&] {

@@ -12,7 +12,7 @@
 
 #include "bench/commands.hpp"
 #include "bench/compare/ab_run.hpp"
-#include "bench/compare/survey.hpp"
+#include "bench/compare/benchmark_program.hpp"
 #include "bench/plane/accuracy_from_plane.hpp"
 #include "bench/plane/speed_error.hpp"
 #include "bench/scaling/scaling_result.hpp"
@@ -88,8 +88,6 @@ int survey(const BenchRequest& request, std::ostream& text, Json& result) {
   if (!request.accuracy_data.empty()) keep_accuracy_data(request.accuracy_data, plane);
   convergence::run_report_script("speed_page.py", {"--output=" + folder.string(), "--", data},
                                  "the timings are in " + data.string());
-  convergence::write_option_file("--output", data / "scaling.txt", scaling_text(laws));
-  convergence::write_option_file("--output", data / "plane.txt", plane_text(plane));
   text << crossovers_text(laws) << times_text(plane) << "page: " << (folder / "index.html").string() << '\n';
   return 0;
 }

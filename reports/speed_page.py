@@ -48,7 +48,6 @@ def render(data, output):
     page = environment.get_template("speed.html.j2").render(
         figures=draw_all(scaling, plane, folder),
         times=tabulate(speed_tables.times_to_errors, plane),
-        dominated=tabulate(speed_tables.dominated, plane),
         laws=tabulate(speed_tables.laws, scaling),
         crossovers=tabulate(speed_tables.crossovers, scaling),
         not_timed=plane.get("not_timed", []),

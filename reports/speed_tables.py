@@ -34,32 +34,6 @@ def _time(row, scene):
     return f"{milliseconds(row['seconds'])}: {short(point, method=False)}".replace(" ms", "\N{NO-BREAK SPACE}ms")
 
 
-def dominated(plane):
-    """Choices that are never worth their time, in sentences."""
-    found = [row for row in rows(plane, "dominated") if row["quantity"] in QUANTITIES]
-    if not found:
-        raise Unavailable("no choice is dominated")
-    body = []
-    for row in found:
-        low, high = row["times_slower"]["low"], row["times_slower"]["high"]
-        body.append([plain(_load(plane, row["scene"])), QUANTITIES[row["quantity"]],
-                     f"{row['key']} = {_word(row['value'])}", _word(row["by"]),
-                     "all" if row["everywhere"] else f"from {row['from_cells']:.0f}² cells",
-                     f"{row['times_slower']['median']:.2g} ({low:.2g} to {high:.2g})"])
-    return Table(["M/M<sub>lim</sub>", "error of", "choice", "beaten by", "meshes", "times slower at the same error"], body)
-
-
-def _load(plane, name):
-    return next(scene["moment_ratio"] for scene in plane["scenes"] if scene["name"] == name)
-
-
-def _word(chosen):
-    try:
-        return power_of_ten(float(chosen))
-    except ValueError:
-        return chosen.replace("_", " ")
-
-
 def laws(scaling):
     """What was fitted to each family, beside what theory says."""
     body = []

@@ -8,7 +8,6 @@
 #include <chrono>
 #include <utility>
 
-#include "bench/compare/second_run.hpp"
 #include "convergence/runs/progress.hpp"
 
 namespace slipstick::bench {
@@ -85,16 +84,18 @@ SessionFiles run_session(const std::vector<InterleavedPair>& pairs, int rounds, 
   return files;
 }
 
-ABRunResult run_ab(const std::vector<InterleavedPair>& pairs, int rounds, ComparisonRules rules,
+ABRunResult run_ab(const std::vector<InterleavedPair>& pairs, int rounds, const ComparisonRules& rules,
                    const RunLength& length) {
-  rules.second_run = 2;
   SessionFiles files = run_session(pairs, rounds, length);
-  const auto again = [&](const std::vector<std::string>& names) {
-    std::vector<InterleavedPair> suspicious = pairs;
-    std::erase_if(suspicious, [&](const InterleavedPair& pair) { return !contains(names, pair.name); });
-    return timings_of(run_session(suspicious, static_cast<int>(rules.second_run) * rounds, length));
-  };
-  return {compare_twice(timings_of(files), rules, again), std::move(files)};
+  ComparisonReport report{"base", "new", rules, compare(timings_of(files), rules), {}};
+  std::vector<InterleavedPair> again = pairs;
+  const std::vector<std::string> names = suspicious(report.comparison);
+  std::erase_if(again, [&](const InterleavedPair& pair) { return !contains(names, pair.name); });
+  if (!again.empty()) {
+    report.second = compare(timings_of(run_session(again, 2 * rounds, length)), rules);
+    report.comparison = confirm(report.comparison, *report.second);
+  }
+  return {std::move(report), std::move(files)};
 }
 
 }  // namespace slipstick::bench

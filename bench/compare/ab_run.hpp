@@ -48,7 +48,7 @@ struct ABRunResult {
 
 /// Runs a session, and a second one with twice the rounds of what is suspicious then: only what both say
 /// counts.
-ABRunResult run_ab(const std::vector<InterleavedPair>& pairs, int rounds, ComparisonRules rules = {},
+ABRunResult run_ab(const std::vector<InterleavedPair>& pairs, int rounds, const ComparisonRules& rules = {},
                    const RunLength& length = {});
 
 }  // namespace slipstick::bench

@@ -4,6 +4,9 @@
 #include <fmt/ranges.h>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
+#include <cctype>
+#include <functional>
 #include <sstream>
 #include <stdexcept>
 #include <string_view>
@@ -11,6 +14,8 @@
 #include "bench/timing/timings.hpp"
 #include "convergence/programs/run_program.hpp"
 #include "convergence/programs/temporary_folder.hpp"
+#include "convergence/runs/progress.hpp"
+#include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/run_spec.hpp"
 #include "solver/input/input_error.hpp"
 
@@ -18,6 +23,7 @@ namespace slipstick::bench {
 namespace {
 
 namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
 using convergence::Captured;
 using convergence::ProgramEnd;
 using convergence::run_program;
@@ -25,6 +31,21 @@ using convergence::TemporaryFolder;
 
 /// A path that is not looked up on PATH.
 std::string program_word(const fs::path& program) { return fs::absolute(program).string(); }
+
+/// The name as that of a file: readable, and its own.
+std::string file_name(const std::string& benchmark) {
+  std::string name = benchmark;
+  std::replace_if(
+      name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '-');
+  return fmt::format("{}-{:016x}", name.substr(0, 80), std::hash<std::string>{}(benchmark));
+}
+
+/// Everything that the timings depend on.
+std::string cache_key(const fs::path& program, const std::string& name, const RunLength& length) {
+  return fmt::format("{} of {} bytes, written at {}: {} for {} s, {} times", fs::absolute(program).string(),
+                     fs::file_size(program), fs::last_write_time(program).time_since_epoch().count(), name,
+                     length.seconds, length.repetitions);
+}
 
 }  // namespace
 
@@ -56,8 +77,7 @@ std::vector<std::string> list_benchmarks(const fs::path& program, const std::str
   return names;
 }
 
-nlohmann::ordered_json run_benchmark(const fs::path& program, const std::string& name,
-                                     const RunLength& length) {
+Json run_benchmark(const fs::path& program, const std::string& name, const RunLength& length) {
   const TemporaryFolder folder;
   const fs::path out = folder / "timings.json";
   const ProgramEnd end =
@@ -71,6 +91,21 @@ nlohmann::ordered_json run_benchmark(const fs::path& program, const std::string&
   }
   return parse_benchmark_json(convergence::read_text(out),
                               fmt::format("{}: benchmark {}", program.string(), name));
+}
+
+Json run_survey(const fs::path& program, const std::vector<std::string>& names, const RunLength& length,
+                const fs::path& folder) {
+  const convergence::ResultCache cache(folder);
+  convergence::Progress progress(names.size(), static_cast<double>(names.size()));
+  Json file;
+  for (const std::string& name : names) {
+    const Json run = cache.find_or_compute(file_name(name), cache_key(program, name, length),
+                                           [&] { return run_benchmark(program, name, length); });
+    if (file.is_null()) file = {{"context", run.at("context")}, {"benchmarks", Json::array()}};
+    for (const Json& row : run.at("benchmarks")) file["benchmarks"].push_back(row);
+    progress.finished(name, 1.0);
+  }
+  return file;
 }
 
 }  // namespace slipstick::bench

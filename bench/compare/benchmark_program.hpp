@@ -29,4 +29,10 @@ std::vector<std::string> list_benchmarks(const std::filesystem::path& program, c
 nlohmann::ordered_json run_benchmark(const std::filesystem::path& program, const std::string& name,
                                      const RunLength& length);
 
+/// Runs benchmarks of a program one after the other, each in a process of its own; one file of all, in Google
+/// Benchmark's JSON. Finished ones are kept in the folder and not run again for the same program and length;
+/// an interrupt loses the one being run. Says on standard error how far it is.
+nlohmann::ordered_json run_survey(const std::filesystem::path& program, const std::vector<std::string>& names,
+                                  const RunLength& length, const std::filesystem::path& folder);
+
 }  // namespace slipstick::bench

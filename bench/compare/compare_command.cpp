@@ -1,18 +1,15 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
-#include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <stdexcept>
 #include <string>
-#include <vector>
 
 #include "bench/commands.hpp"
 #include "bench/compare/comparison.hpp"
 #include "bench/compare/comparison_report.hpp"
-#include "bench/compare/second_run.hpp"
 #include "convergence/results/output.hpp"
 #include "solver/input/input_error.hpp"
 
@@ -28,7 +25,6 @@ struct CompareRequest {
   double level = ComparisonRules{}.level;
   bool same_machine = false;
   bool debug_library = false;
-  std::string rerun;
   std::string summary;
   std::string junit;
 };
@@ -60,7 +56,6 @@ ComparisonRules rules_of(const CompareRequest& request) {
   rules.level = request.level;
   rules.same_machine = request.same_machine;
   rules.debug_library = request.debug_library;
-  rules.second_run = request.rerun.empty() ? 0 : 1;  // as long as the first: who knows
   return rules;
 }
 
@@ -68,13 +63,8 @@ int run_compare(const CompareRequest& request, std::ostream& text, nlohmann::ord
   const ComparisonRules rules = rules_of(request);
   convergence::require_output("--summary", request.summary);
   convergence::require_output("--junit", request.junit);
-  const TwoTimings first{read_timings(request.base), read_timings(request.now)};
-  const Again again = [&](const std::vector<std::string>& names) {
-    std::cerr << convergence::plain_text(fmt::format("slipstick: {} benchmark{} again: {}\n", names.size(),
-                                                     names.size() == 1 ? "" : "s", request.rerun));
-    return TwoTimings{first.base, run_again(request.rerun, names)};
-  };
-  const ComparisonReport report = compare_twice(first, rules, request.rerun.empty() ? Again() : again);
+  const TwoTimings files{read_timings(request.base), read_timings(request.now)};
+  const ComparisonReport report{request.base, request.now, rules, compare(files, rules), {}};
   result = comparison_json(report);
   text << comparison_text(report);
   convergence::write_option_file("--summary", request.summary, comparison_markdown(report));
@@ -83,8 +73,7 @@ int run_compare(const CompareRequest& request, std::ostream& text, nlohmann::ord
 }
 
 constexpr const char* kCompareFooter = R"(Example:
-  slipstick compare base.json new.json --rerun 'bench/program --benchmark_filter={filter}
-    --benchmark_repetitions=12 --benchmark_format=json'
+  slipstick compare base.json new.json --junit times.xml
   new.json against base.json, as independent runs
     benchmark     base       new  new/base   95 % interval  verdict
     solve/256  61.2 ms   73.4 ms     1.199  1.187 to 1.212  slower (p 3e-06)
@@ -111,9 +100,6 @@ RunCommand add_compare_command(CLI::App& app) {
   command->add_flag("--same-machine", request->same_machine, "whatever the files say, it is one machine");
   command->add_flag("--debug-library", request->debug_library,
                     "only Google Benchmark's library is a debug build, the programs are not");
-  command->add_option("--rerun", request->rerun,
-                      "command that runs suspicious benchmarks ({filter}) again and writes JSON on standard "
-                      "output: only what it confirms counts");
   command->add_option("--summary", request->summary, "write a Markdown table, the worst first, below 64 kB");
   command->add_option("--junit", request->junit, "write JUnit XML, as CI servers read it, to this file");
   command->footer(kCompareFooter);

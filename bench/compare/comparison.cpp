@@ -1,27 +1,22 @@
 #include "bench/compare/comparison.hpp"
 
 #include <fmt/core.h>
+#include <gsl/gsl_statistics_double.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
-#include <map>
 #include <stdexcept>
 #include <utility>
 
 #include "bench/compare/obstacles.hpp"
-#include "bench/compare/power.hpp"
 #include "bench/compare/rank_tests.hpp"
-#include "bench/timing/median.hpp"
-#include "solver/input/misspelling.hpp"
 
 namespace slipstick::bench {
 namespace {
 
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
-/// Edits over letters up to which two names look like one benchmark renamed: fft to dcfft is 0.15.
-constexpr double kRenaming = 0.4;
 
 using Benchmarks = std::vector<ComparedBenchmark>;
 
@@ -35,7 +30,7 @@ double median_seconds(const TimedBenchmark* benchmark) {
   if (benchmark == nullptr || !has_times(*benchmark)) return kNaN;
   std::vector<double> seconds;
   for (const Timing& timing : benchmark->timings) seconds.push_back(timing.real);
-  return median(seconds);
+  return gsl_stats_median(seconds.data(), 1, seconds.size());
 }
 
 /// The shift of the logarithms of times, which is the logarithm of their ratio.
@@ -62,41 +57,32 @@ std::size_t enough_repetitions(std::size_t comparisons, double level, bool paire
   return repetitions;
 }
 
-/// Why two benchmarks of one name have no times to compare, with the finding that follows; not judged: they
-/// have.
-struct Doubt {
-  Finding finding = Finding::not_judged;
-  std::string why;
-};
-
-Doubt doubt(const TimedBenchmark& base, const TimedBenchmark& now) {
-  if (!base.error.empty() && !now.error.empty()) return {Finding::not_timed, "failed in both: " + now.error};
-  if (!base.error.empty()) return {Finding::not_timed, "failed in the base: " + base.error};
-  if (!now.error.empty()) return {Finding::failed, now.error};
-  if (!base.skipped.empty()) return {Finding::not_timed, "skipped in the base: " + base.skipped};
-  if (!now.skipped.empty()) return {Finding::not_timed, "skipped in the new file: " + now.skipped};
-  if (base.timings.empty()) return {Finding::too_few, "the base holds aggregates only, no repetitions"};
-  if (now.timings.empty()) return {Finding::too_few, "the new file holds aggregates only, no repetitions"};
-  if (!has_times(base)) return {Finding::not_timed, "a time of the base is no number above zero"};
-  if (!has_times(now)) return {Finding::failed, "a time is no number above zero"};
-  return {};
+/// Why a benchmark has no times to compare; empty: it has.
+std::string trouble(const TimedBenchmark& benchmark) {
+  if (!benchmark.error.empty()) return benchmark.error;
+  if (!benchmark.skipped.empty()) return "skipped: " + benchmark.skipped;
+  if (benchmark.timings.empty()) return "aggregates only, no repetitions";
+  return has_times(benchmark) ? "" : "a time is no number above zero";
 }
 
-/// A benchmark of both files, before times are compared; null: the file does not hold it.
-ComparedBenchmark match(const std::string& name, const TimedBenchmark* base, const TimedBenchmark* now) {
+/// A benchmark before times are compared, not judged where there are some; null: the file does not hold it.
+ComparedBenchmark match(const TimedBenchmark* base, const TimedBenchmark* now) {
   ComparedBenchmark matched;
-  matched.name = name;
+  matched.name = base == nullptr ? now->name : base->name;
   matched.base_seconds = median_seconds(base);
   matched.new_seconds = median_seconds(now);
   matched.base_repetitions = base == nullptr ? 0 : base->timings.size();
   matched.new_repetitions = now == nullptr ? 0 : now->timings.size();
-  matched.ratio = matched.low = matched.high = matched.p_value = matched.smallest_found = kNaN;
+  matched.ratio = matched.low = matched.high = matched.p_value = kNaN;
   if (base == nullptr || now == nullptr) {
     matched.finding = now == nullptr ? Finding::only_in_base : Finding::only_in_new;
-  } else {
-    const Doubt found = doubt(*base, *now);
-    matched.finding = found.finding;
-    matched.remark = found.why;
+  } else if (const std::string before = trouble(*base); !before.empty()) {
+    matched.finding = Finding::not_timed;
+    matched.remark = "in the base: " + before;
+  } else if (const std::string after = trouble(*now); !after.empty()) {
+    const bool failed = !now->error.empty() || !now->timings.empty();
+    matched.finding = failed ? Finding::failed : Finding::not_timed;
+    matched.remark = after;
   }
   return matched;
 }
@@ -116,14 +102,9 @@ Finding judge(const ComparedBenchmark& benchmark, bool could_show, const Compari
 }
 
 /// A remark where the numbers alone could be misread.
-std::string remark_on(const ComparedBenchmark& benchmark, std::size_t enough, bool paired,
-                      const ComparisonRules& rules) {
+std::string remark_on(const ComparedBenchmark& benchmark, std::size_t enough, const ComparisonRules& rules) {
   if (benchmark.finding == Finding::too_few) {
     return fmt::format("no change can be significant; {} repetitions in each file would do", enough);
-  }
-  if (paired && benchmark.base_repetitions != benchmark.new_repetitions) {
-    return fmt::format("only the first {} repetitions are pairs",
-                       std::min(benchmark.base_repetitions, benchmark.new_repetitions));
   }
   if (benchmark.finding == Finding::same && benchmark.low > 1.0) return "slower, below what counts";
   if (benchmark.finding == Finding::same && !(benchmark.high < 1.0 + rules.effect)) {
@@ -153,27 +134,7 @@ void judge_all(Benchmarks& benchmarks, const std::vector<Pair>& pairs, bool pair
     const double least = least_chance(benchmark.base_repetitions, benchmark.new_repetitions, paired);
     const bool could_show = least * static_cast<double>(pairs.size()) <= rules.level;
     benchmark.finding = judge(benchmark, could_show, rules);
-    benchmark.remark = remark_on(benchmark, enough, paired, rules);
-  }
-}
-
-/// Names that are in one file only, and look alike to each other more than to any other such name.
-void suggest_renaming(Benchmarks& benchmarks) {
-  std::map<Finding, std::vector<std::string>> alone;
-  for (const ComparedBenchmark& benchmark : benchmarks) alone[benchmark.finding].push_back(benchmark.name);
-  const std::vector<std::string>& before = alone[Finding::only_in_base];
-  const std::vector<std::string>& after = alone[Finding::only_in_new];
-  for (ComparedBenchmark& benchmark : benchmarks) {
-    const bool old = benchmark.finding == Finding::only_in_base;
-    if (!old && benchmark.finding != Finding::only_in_new) continue;
-    const std::string other = solver::nearest_word(benchmark.name, old ? after : before);
-    const auto letters = static_cast<double>(std::max(benchmark.name.size(), other.size()));
-    const auto edits = static_cast<double>(solver::edit_distance(benchmark.name, other));
-    if (other.empty() || edits > kRenaming * letters ||
-        solver::nearest_word(other, old ? before : after) != benchmark.name) {
-      continue;
-    }
-    benchmark.remark = fmt::format("renamed {} {}?", old ? "to" : "from", other);
+    benchmark.remark = remark_on(benchmark, enough, rules);
   }
 }
 
@@ -222,36 +183,17 @@ Comparison compare(const TwoTimings& files, const ComparisonRules& rules) {
   std::vector<Pair> pairs;
   for (const TimedBenchmark& before : base.benchmarks) {
     const TimedBenchmark* const after = find(now, before.name);
-    comparison.benchmarks.push_back(match(before.name, &before, after));
+    comparison.benchmarks.push_back(match(&before, after));
     if (comparison.benchmarks.back().finding != Finding::not_judged) continue;
     pairs.push_back({comparison.benchmarks.size() - 1, log_ratio(before, *after, comparison.paired)});
   }
   for (const TimedBenchmark& after : now.benchmarks) {
-    if (find(base, after.name) == nullptr)
-      comparison.benchmarks.push_back(match(after.name, nullptr, &after));
+    if (find(base, after.name) == nullptr) comparison.benchmarks.push_back(match(nullptr, &after));
   }
   judge_all(comparison.benchmarks, pairs, comparison.paired, rules);
-  suggest_renaming(comparison.benchmarks);
-  comparison.waiting = waiting_benchmarks(now);
-  Obstacles found = find_obstacles(base, now, rules);
-  comparison.obstacles = std::move(found.obstacles);
-  comparison.remarks = std::move(found.remarks);
+  comparison.obstacles = find_obstacles(base, now, rules);
   if (!comparison.obstacles.empty()) clear_verdicts(comparison.benchmarks);
   return comparison;
-}
-
-void state_power(Comparison& comparison, const TwoTimings& files, const ComparisonRules& rules) {
-  const auto is_timed = [](const ComparedBenchmark& benchmark) { return std::isfinite(benchmark.ratio); };
-  const auto timed = static_cast<double>(std::ranges::count_if(comparison.benchmarks, is_timed));
-  const Search search{.effect = rules.effect,
-                      .level = rules.second_run > 0 ? rules.level : rules.level / timed,
-                      .second_run = rules.second_run};
-  for (ComparedBenchmark& benchmark : comparison.benchmarks) {
-    if (!is_timed(benchmark)) continue;
-    benchmark.smallest_found =
-        smallest_found(log_times(*find(files.base, benchmark.name)),
-                       log_times(*find(files.now, benchmark.name)), comparison.paired, search);
-  }
 }
 
 std::vector<std::string> suspicious(const Comparison& comparison) {
@@ -260,16 +202,6 @@ std::vector<std::string> suspicious(const Comparison& comparison) {
     if (needs_second_run(benchmark.finding)) names.push_back(benchmark.name);
   }
   return names;
-}
-
-TwoTimings select(const TwoTimings& files, const std::vector<std::string>& names) {
-  TwoTimings selected = files;
-  for (Timings* const file : {&selected.base, &selected.now}) {
-    std::erase_if(file->benchmarks, [&](const TimedBenchmark& benchmark) {
-      return std::ranges::find(names, benchmark.name) == names.end();
-    });
-  }
-  return selected;
 }
 
 Comparison confirm(const Comparison& first, const Comparison& second) {

@@ -15,16 +15,12 @@ struct ComparisonRules {
   bool same_machine = false;  ///< the caller vouches for that
   bool debug_library =
       false;  ///< Google Benchmark may say that it was built without NDEBUG, as Debian's does
-  /// Benchmarks that are known to wait in the new build, so that it is no sign of load. For a second run:
-  /// those that wait in the first.
-  std::vector<std::string> waiting = {};
-  /// Repetitions of a second run of the suspicious benchmarks, over those of this run; 0: there is none.
-  std::size_t second_run = 0;
 };
 
 /// The verdict on one benchmark, first those that times give. Undecided: as much slower as counts, but not
 /// significantly so. Too few: its repetitions could show no change, however large. Failed: in the new file
-/// only. Not timed: it failed in the base, or skipped itself. Not judged: an obstacle forbids it.
+/// only. Not timed: it failed in the base, skipped itself, or has no repetitions. Not judged: an obstacle
+/// forbids it.
 enum class Finding {
   same,
   slower,
@@ -41,7 +37,7 @@ std::string to_string(Finding finding);
 bool is_failure(Finding finding);  ///< slower or failed
 bool is_fine(Finding finding);     ///< same or quicker
 
-/// One benchmark of either file. What does not exist is NaN; an interval of too small a sample is infinite.
+/// One benchmark of either file. What does not exist is NaN, as is an interval of too small a sample.
 struct ComparedBenchmark {
   std::string name;
   Finding finding = Finding::not_judged;
@@ -52,7 +48,6 @@ struct ComparedBenchmark {
   double high = 0.0;
   double p_value =
       0.0;  ///< of a ratio of one or below (above, where it is below one), with Holm's correction
-  double smallest_found = 0.0;  ///< the ratio that is found slower nine times in ten; see state_power()
   std::size_t base_repetitions = 0;
   std::size_t new_repetitions = 0;
   std::string remark;  ///< what a reader must know beside the numbers; empty: nothing
@@ -61,8 +56,6 @@ struct ComparedBenchmark {
 struct Comparison {
   std::vector<ComparedBenchmark> benchmarks;  ///< in the base's order, then those only in the new file
   std::vector<std::string> obstacles;  ///< why times could not be judged: the machines, the build, the load
-  std::vector<std::string> remarks;    ///< what a reader must know of the files
-  std::vector<std::string> waiting;    ///< benchmarks of the new file that wait, as for a processor
   bool paired = false;                 ///< repetition by repetition
 };
 
@@ -77,15 +70,8 @@ struct TwoTimings {
 /// Throws std::invalid_argument for an effect that is not above zero and a level that is not between 0 and 1.
 Comparison compare(const TwoTimings& files, const ComparisonRules& rules = {});
 
-/// Sets `smallest_found` of each benchmark: how much slower it must be to be found so, if it alone of so many
-/// benchmarks changes and its repetitions scatter as they do here.
-void state_power(Comparison& comparison, const TwoTimings& files, const ComparisonRules& rules);
-
 /// Benchmarks that are to run a second time before anything is said: slower, undecided or failed.
 std::vector<std::string> suspicious(const Comparison& comparison);
-
-/// The benchmarks of these names only.
-TwoTimings select(const TwoTimings& files, const std::vector<std::string>& names);
 
 /// A comparison after its suspicious benchmarks ran again. A benchmark is slower if both runs find it as much
 /// slower as counts and the second one significantly so, failed if it failed in both, undecided if the second

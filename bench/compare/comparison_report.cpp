@@ -58,16 +58,6 @@ std::string seconds_text(double seconds) {
   return fmt::format("{:.3g} ns", seconds / units.back().first);
 }
 
-std::string ratio_text(double ratio) { return std::isfinite(ratio) ? fmt::format("{:.3f}", ratio) : "-"; }
-
-bool has_interval(const ComparedBenchmark& benchmark) {
-  return benchmark.low > 0.0 && std::isfinite(benchmark.high);
-}
-
-std::string interval_text(const ComparedBenchmark& benchmark) {
-  return has_interval(benchmark) ? fmt::format("{:.3f} to {:.3f}", benchmark.low, benchmark.high) : "-";
-}
-
 /// With the chance that it is none, where that says something.
 std::string verdict_text(const ComparedBenchmark& benchmark) {
   if (benchmark.finding == Finding::same && benchmark.low > 1.0) return benchmark.remark;
@@ -78,40 +68,34 @@ std::string verdict_text(const ComparedBenchmark& benchmark) {
              : to_string(benchmark.finding);
 }
 
+const std::string kObstacle = "could not judge: ";
+
 using Row = std::array<std::string, 6>;
 
 Row row_of(const ComparedBenchmark& benchmark) {
   return {benchmark.name,
           seconds_text(benchmark.base_seconds),
           seconds_text(benchmark.new_seconds),
-          ratio_text(benchmark.ratio),
-          interval_text(benchmark),
+          std::isfinite(benchmark.ratio) ? fmt::format("{:.3f}", benchmark.ratio) : "-",
+          std::isfinite(benchmark.low) ? fmt::format("{:.3f} to {:.3f}", benchmark.low, benchmark.high) : "-",
           verdict_text(benchmark)};
 }
 
 const Row kHeader{"benchmark", "base", "new", "new/base", "95 % interval", "verdict"};
 
-/// The number of letters in UTF-8.
-std::size_t letters(const std::string& text) {
-  return static_cast<std::size_t>(
-      std::count_if(text.begin(), text.end(), [](unsigned char c) { return (c & 0xC0U) != 0x80U; }));
-}
-
 std::string table(const std::vector<ComparedBenchmark>& benchmarks) {
-  std::vector<Row> rows{kHeader};
-  for (const ComparedBenchmark& benchmark : benchmarks) rows.push_back(row_of(benchmark));
-  std::array<std::size_t, 6> widths{};
-  for (const Row& row : rows) {
-    for (std::size_t i = 0; i < row.size(); ++i) widths[i] = std::max(widths[i], letters(row[i]));
-  }
-  std::string text;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const Row& row = rows[r];
-    text += fmt::format("  {:<{}}", row[0], widths[0]);  // fmt pads by letters too
-    for (std::size_t i = 1; i + 1 < row.size(); ++i) text += fmt::format("  {:>{}}", row[i], widths[i]);
-    text += "  " + row.back() + "\n";
-    if (r > 0 && !benchmarks[r - 1].remark.empty() && benchmarks[r - 1].remark != row.back())
-      text += "      " + benchmarks[r - 1].remark + "\n";
+  std::size_t width = kHeader[0].size();
+  for (const ComparedBenchmark& benchmark : benchmarks) width = std::max(width, benchmark.name.size());
+  const auto line = [&](const Row& row) {
+    return fmt::format("  {:<{}}  {:>8}  {:>8}  {:>8}  {:>14}  {}\n", row[0], width, row[1], row[2], row[3],
+                       row[4], row[5]);
+  };
+  std::string text = line(kHeader);
+  for (const ComparedBenchmark& benchmark : benchmarks) {
+    const Row row = row_of(benchmark);
+    text += line(row);
+    if (!benchmark.remark.empty() && benchmark.remark != row.back())
+      text += "      " + benchmark.remark + "\n";
   }
   return text;
 }
@@ -125,40 +109,6 @@ std::string heading(const ComparisonReport& report) {
 std::string rules_text(const ComparisonRules& rules) {
   return fmt::format("what counts: {:.3g} % or more, by chance in {:.3g} of 100 such comparisons at most",
                      100.0 * rules.effect, 100.0 * rules.level);
-}
-
-/// The slowdown that is found nine times in ten: in the benchmark in the middle, and in the one that scatters
-/// most.
-std::string power_text(const std::vector<ComparedBenchmark>& benchmarks) {
-  std::vector<std::pair<double, std::string>> found;
-  for (const ComparedBenchmark& benchmark : benchmarks) {
-    if (benchmark.smallest_found > 1.0) found.emplace_back(benchmark.smallest_found, benchmark.name);
-  }
-  if (found.empty()) return "";
-  std::ranges::sort(found);
-  const auto percent = [](double ratio) {
-    return std::isfinite(ratio) ? fmt::format("from {:.3g} % on", 100.0 * (ratio - 1.0)) : "never";
-  };
-  return fmt::format("so many repetitions find a slowdown nine times in ten {} (median), in {} {}",
-                     percent(found[found.size() / 2].first), found.back().second,
-                     percent(found.back().first));
-}
-
-/// Notes that a reader needs beside the table, a paragraph each.
-std::vector<std::string> notes(const ComparisonReport& report) {
-  std::vector<std::string> lines;
-  for (const std::string& obstacle : report.comparison.obstacles) {
-    lines.push_back("could not judge: " + obstacle);
-  }
-  for (const std::string& remark : report.comparison.remarks) lines.push_back(remark);
-  if (const std::string power = power_text(report.comparison.benchmarks); !power.empty())
-    lines.push_back(power);
-  if (!report.second && !suspicious(report.comparison).empty()) {
-    lines.push_back(
-        "this is one run only: let --rerun 'PROGRAM --benchmark_filter={filter} --benchmark_format=json "
-        "--benchmark_repetitions=N' run the suspicious ones again before they count");
-  }
-  return lines;
 }
 
 JunitCase junit_case(const std::string& suite, const ComparedBenchmark& benchmark) {
@@ -185,16 +135,9 @@ Json benchmark_json(const ComparedBenchmark& benchmark) {
   convergence::set_number(json, "base_seconds", benchmark.base_seconds, "no time");
   convergence::set_number(json, "new_seconds", benchmark.new_seconds, "no time");
   convergence::set_number(json, "ratio", benchmark.ratio, no_times);
-  if (has_interval(benchmark)) {
-    json["low"] = benchmark.low;
-    json["high"] = benchmark.high;
-  } else {
-    convergence::set_missing(json, "low", no_interval);
-    convergence::set_missing(json, "high", no_interval);
-  }
+  convergence::set_number(json, "low", benchmark.low, no_interval);
+  convergence::set_number(json, "high", benchmark.high, no_interval);
   convergence::set_number(json, "p_value", benchmark.p_value, no_times);
-  convergence::set_number(json, "smallest_found", benchmark.smallest_found,
-                          std::isfinite(benchmark.ratio) ? "too few repetitions to find any" : no_times);
   json["base_repetitions"] = benchmark.base_repetitions;
   json["new_repetitions"] = benchmark.new_repetitions;
   json["remark"] = benchmark.remark;
@@ -211,17 +154,16 @@ Json benchmarks_json(const Comparison& comparison) {
 
 std::string comparison_text(const ComparisonReport& report) {
   std::string text = heading(report) + "\n" + table(worst_first(report.comparison.benchmarks));
-  if (report.second && !report.second->benchmarks.empty()) {
-    text += "the suspicious ones, run again\n" + table(worst_first(report.second->benchmarks));
-  }
-  for (const std::string& note : notes(report)) text += note + "\n";
+  for (const std::string& obstacle : report.comparison.obstacles) text += kObstacle + obstacle + "\n";
   return text + fmt::format("{} ({})\n", counts_of(report.comparison.benchmarks), rules_text(report.rules));
 }
 
 std::string comparison_markdown(const ComparisonReport& report) {
   std::string text = fmt::format("### {}\n\n{}; {}.\n\n", counts_of(report.comparison.benchmarks),
                                  markdown_cell(heading(report)), rules_text(report.rules));
-  for (const std::string& note : notes(report)) text += fmt::format("- {}\n", markdown_cell(note));
+  for (const std::string& obstacle : report.comparison.obstacles) {
+    text += fmt::format("- {}{}\n", kObstacle, markdown_cell(obstacle));
+  }
   std::vector<std::string> rows;
   for (const ComparedBenchmark& benchmark : worst_first(report.comparison.benchmarks)) {
     Row row = row_of(benchmark);
@@ -259,7 +201,6 @@ Json comparison_json(const ComparisonReport& report) {
     json["counts"][to_string(finding)] = count(comparison.benchmarks, finding);
   }
   json["obstacles"] = comparison.obstacles;
-  json["remarks"] = comparison.remarks;
   json["benchmarks"] = benchmarks_json(comparison);
   if (report.second) json["second_run"] = benchmarks_json(*report.second);
   return json;

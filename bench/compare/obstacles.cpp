@@ -2,12 +2,11 @@
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
+#include <gsl/gsl_statistics_double.h>
 
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-
-#include "bench/timing/median.hpp"
 
 namespace slipstick::bench {
 namespace {
@@ -39,10 +38,7 @@ std::vector<std::string> machine_differences(const TimingContext& base, const Ti
   if (!(std::abs(now.mhz - base.mhz) <= kClockTolerance * base.mhz)) {
     differ("mhz_per_cpu", base.mhz, now.mhz);
   }
-  if (base.caches != now.caches) {
-    differences.push_back(
-        fmt::format("caches ({}) and ({})", fmt::join(base.caches, ", "), fmt::join(now.caches, ", ")));
-  }
+  differ("caches", base.caches, now.caches);
   return differences;
 }
 
@@ -60,42 +56,41 @@ std::string debug_build(const Timings& timings, const ComparisonRules& rules) {
 
 std::string load(const Timings& timings) {
   const TimingContext& context = timings.context;
-  if (context.load_average.empty() || context.cpus == 0) return "";
+  if (context.cpus == 0) return "";
   int own = 1;  // what the run itself uses, and one just before it
   for (const TimedBenchmark& benchmark : timings.benchmarks) own = std::max(own, benchmark.threads);
-  const double foreign = context.load_average.front() - own;
+  const double foreign = context.load_average - own;
   if (foreign <= kForeignLoad * context.cpus) return "";
   return fmt::format(
       "{}: the machine was loaded when it began (load average {:.2f} on {} processors, of which it explains "
       "{}); run it again when the others are done",
-      name(timings), context.load_average.front(), context.cpus, own);
+      name(timings), context.load_average, context.cpus, own);
 }
 
-/// Whether the processor's time is that of the work which the clock times.
-bool has_both_times(const TimedBenchmark& benchmark) {
-  return has_times(benchmark) && benchmark.threads == 1 &&
-         benchmark.name.find("/manual_time") == std::string::npos &&
-         benchmark.name.find("/process_time") == std::string::npos &&
-         std::ranges::all_of(benchmark.timings, [](const Timing& timing) { return timing.cpu > 0.0; });
-}
-
-bool waits(const TimedBenchmark& benchmark) {
+/// The median of clock over processor time; 1 where the processor's time is not that of the timed work.
+double waiting_factor(const TimedBenchmark& benchmark) {
+  const bool brings_own_time = benchmark.name.find("/manual_time") != std::string::npos ||
+                               benchmark.name.find("/process_time") != std::string::npos;
+  if (!has_times(benchmark) || benchmark.threads != 1 || brings_own_time) return 1.0;
   std::vector<double> ratios;
-  for (const Timing& timing : benchmark.timings) ratios.push_back(timing.real / timing.cpu);
-  const double ratio = median(ratios);
-  return ratio >= kWaiting && ratio < kWaitingByNature;
+  for (const Timing& timing : benchmark.timings) {
+    ratios.push_back(timing.cpu > 0.0 ? timing.real / timing.cpu : 1.0);
+  }
+  return gsl_stats_median(ratios.data(), 1, ratios.size());
 }
 
-/// Whether most benchmarks wait, but for those that are known to.
-std::string waiting(const Timings& timings, const std::vector<std::string>& known) {
-  const auto waiting = std::ranges::count_if(waiting_benchmarks(timings), [&](const std::string& benchmark) {
-    return std::ranges::find(known, benchmark) == known.end();
+/// Whether most benchmarks wait.
+std::string waiting(const Timings& timings) {
+  const auto all = std::ssize(timings.benchmarks);
+  const auto waiting = std::ranges::count_if(timings.benchmarks, [](const TimedBenchmark& benchmark) {
+    const double factor = waiting_factor(benchmark);
+    return factor >= kWaiting && factor < kWaitingByNature;
   });
-  const auto all = std::ranges::count_if(timings.benchmarks, has_both_times);
   if (all < kMinConclusive || 2 * waiting <= all) return "";
   return fmt::format(
-      "{}: the machine was loaded: {} of {} benchmarks in one thread took {} times as long as the processor "
-      "worked for them, or longer (if that is their nature: MeasureProcessCPUTime or UseManualTime)",
+      "{}: the machine was loaded: {} of {} benchmarks took {} times as long as the processor worked for "
+      "them, "
+      "or longer (if that is their nature: MeasureProcessCPUTime or UseManualTime)",
       name(timings), waiting, all, kWaiting);
 }
 
@@ -109,37 +104,24 @@ std::vector<double> all_times(const Timings& timings) {
 
 }  // namespace
 
-std::vector<std::string> waiting_benchmarks(const Timings& timings) {
-  std::vector<std::string> names;
-  for (const TimedBenchmark& benchmark : timings.benchmarks) {
-    if (has_both_times(benchmark) && waits(benchmark)) names.push_back(benchmark.name);
-  }
-  return names;
-}
-
-Obstacles find_obstacles(const Timings& base, const Timings& now, const ComparisonRules& rules) {
-  Obstacles found;
-  const auto add = [&](const std::string& obstacle) {
-    if (!obstacle.empty()) found.obstacles.push_back(obstacle);
-  };
+std::vector<std::string> find_obstacles(const Timings& base, const Timings& now,
+                                        const ComparisonRules& rules) {
+  std::vector<std::string> found;
+  const bool paired = are_paired(base, now);
   const std::vector<std::string> differences = machine_differences(base.context, now.context);
-  if (!differences.empty() && !rules.same_machine && !are_paired(base, now)) {
-    add(fmt::format("the machines differ: {} (if it is one machine: --same-machine)",
-                    fmt::join(differences, "; ")));
+  if (!differences.empty() && !rules.same_machine && !paired) {
+    found.push_back(fmt::format("the machines differ: {} (if it is one machine: --same-machine)",
+                                fmt::join(differences, "; ")));
   }
   for (const Timings* const timings : {&base, &now}) {
-    add(debug_build(*timings, rules));
-    add(load(*timings));
-    if (timings->context.scaling.value_or(false)) {
-      found.remarks.push_back(fmt::format(
-          "{}: the processor's frequency was free to change, times scatter more", name(*timings)));
-    }
+    found.push_back(debug_build(*timings, rules));
+    found.push_back(load(*timings));
+    if (!paired) found.push_back(waiting(*timings));
   }
-  add(waiting(base, {}));
-  add(waiting(now, rules.waiting));
   const std::vector<double> times = all_times(base);
   if (!times.empty() && times == all_times(now))
-    add("both files hold the very same times: one run is compared with itself");
+    found.push_back("both files hold the very same times: one run is compared with itself");
+  std::erase(found, "");
   return found;
 }
 

@@ -2,20 +2,20 @@
 
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_sf_gamma.h>
+#include <gsl/gsl_statistics_double.h>
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <numeric>
-#include <stdexcept>
+#include <optional>
 #include <utility>
-
-#include "bench/timing/median.hpp"
 
 namespace slipstick::bench {
 namespace {
 
-constexpr double kInfinity = std::numeric_limits<double>::infinity();
+constexpr double kNoNumber = std::numeric_limits<double>::quiet_NaN();
 /// Chance beyond either end of a 95 % interval.
 constexpr double kTail = 0.025;
 
@@ -44,41 +44,21 @@ std::size_t sum(std::span<const std::size_t> ranks) {
   return std::accumulate(ranks.begin(), ranks.end(), std::size_t{0});
 }
 
-/// The distribution of the sum of some ranks that chance picks.
+/// The distribution of the sum of ranks that chance picks, all choices equally likely.
 class RankSum {
  public:
-  /// Each rank is picked or not, both equally likely.
-  static RankSum of_any(std::span<const std::size_t> ranks) {
-    const std::size_t largest = sum(ranks);
-    RankSum distribution;
-    distribution.mean_ = 0.5 * static_cast<double>(largest);
-    for (const std::size_t rank : ranks) distribution.variance_ += 0.25 * static_cast<double>(rank * rank);
-    if (ranks.size() > kMaxCounted) return distribution;
-    std::vector<double>& chances = distribution.chances_;
-    chances.assign(largest + 1, 0.0);
-    chances[0] = 1.0;
-    std::size_t reached = 0;
-    for (const std::size_t rank : ranks) {
-      reached += rank;
-      for (std::size_t s = reached + 1; s-- > 0;) {
-        chances[s] = 0.5 * (chances[s] + (s >= rank ? chances[s - rank] : 0.0));
-      }
-    }
-    return distribution;
-  }
-
-  /// `picked` of the ranks are picked, all choices equally likely.
-  static RankSum of_choice(std::span<const std::size_t> ranks, std::size_t picked) {
+  /// picked: choices of so many; none: of any number.
+  RankSum(std::span<const std::size_t> ranks, std::optional<std::size_t> picked) {
     const auto count = static_cast<double>(ranks.size());
-    const double mean = static_cast<double>(sum(ranks)) / count;
-    double squares = 0.0;
-    for (const std::size_t rank : ranks) squares += std::pow(static_cast<double>(rank) - mean, 2);
-    RankSum distribution;
-    distribution.mean_ = static_cast<double>(picked) * mean;
-    distribution.variance_ =
-        static_cast<double>(picked * (ranks.size() - picked)) / (count * (count - 1.0)) * squares;
-    if (ranks.size() <= kMaxCounted) distribution.chances_ = count_choices(ranks, picked);
-    return distribution;
+    const double total = static_cast<double>(sum(ranks));
+    const double part = picked ? static_cast<double>(*picked) / count : 0.5;
+    mean_ = part * total;
+    double squares = 0.0;  // about the mean where their number is given, else about zero
+    for (const std::size_t rank : ranks) {
+      squares += std::pow(static_cast<double>(rank) - (picked ? total / count : 0.0), 2);
+    }
+    variance_ = part * (1.0 - part) * squares * (picked ? count / (count - 1.0) : 1.0);
+    if (ranks.size() <= kMaxCounted) chances_ = counted(ranks, picked);
   }
 
   double at_most(std::size_t value) const {
@@ -92,23 +72,24 @@ class RankSum {
   }
 
  private:
-  static std::vector<double> count_choices(std::span<const std::size_t> ranks, std::size_t picked) {
-    std::vector<std::size_t> sorted(ranks.begin(), ranks.end());
-    std::ranges::sort(sorted);
-    const std::size_t largest = sum(std::span(sorted).last(picked));
-    const bool even = std::ranges::all_of(sorted, [](std::size_t rank) { return rank % 2 == 0; });
-    const std::size_t step = even ? 2 : 1;
+  static std::vector<double> counted(std::span<const std::size_t> ranks, std::optional<std::size_t> picked) {
+    const std::size_t total = sum(ranks);
+    const std::size_t most = picked.value_or(ranks.size());
     // ways[j][s]: choices of j ranks that sum to s.
-    std::vector<std::vector<double>> ways(picked + 1, std::vector<double>(largest + 1, 0.0));
+    std::vector<std::vector<double>> ways(most + 1, std::vector<double>(total + 1, 0.0));
     ways[0][0] = 1.0;
-    for (std::size_t i = 0; i < sorted.size(); ++i) {
-      for (std::size_t j = std::min(i + 1, picked); j > 0; --j) {
-        for (std::size_t s = sorted[i]; s <= largest; s += step) ways[j][s] += ways[j - 1][s - sorted[i]];
+    for (std::size_t i = 0; i < ranks.size(); ++i) {
+      for (std::size_t j = std::min(i + 1, most); j > 0; --j) {
+        for (std::size_t s = ranks[i]; s <= total; ++s) ways[j][s] += ways[j - 1][s - ranks[i]];
       }
     }
-    const double all = std::accumulate(ways[picked].begin(), ways[picked].end(), 0.0);
-    for (double& way : ways[picked]) way /= all;
-    return ways[picked];
+    std::vector<double> chances = ways[most];
+    for (std::size_t j = 0; !picked && j < most; ++j) {
+      std::ranges::transform(chances, ways[j], chances.begin(), std::plus<>());
+    }
+    const double all = std::accumulate(chances.begin(), chances.end(), 0.0);
+    for (double& chance : chances) chance /= all;
+    return chances;
   }
 
   /// Chance of a deviation at most this far above the mean. Doubled ranks are two apart; half of that is the
@@ -127,89 +108,51 @@ class RankSum {
   double variance_ = 0.0;
 };
 
-/// How many of all differences (or means of two) are beyond an end of the interval: as many as the statistic,
-/// from its least value on, stays in the tail; `least` is that value, doubled.
-std::size_t count_beyond(const RankSum& without_ties, std::size_t least, std::size_t count, double tail) {
+/// The chances of the sum of ranks, observed, and the estimate of which the sorted means or differences are
+/// the median. As many of those lie beyond either end of the interval as the sum, from its least value on,
+/// stays in the tail if there are no ties.
+Shift shift_of(std::vector<double> values, const RankSum& chance, std::size_t observed,
+               const RankSum& without_ties, std::size_t least) {
+  std::ranges::sort(values);
   std::size_t beyond = 0;
-  while (2 * beyond < count && without_ties.at_most(least + 2 * beyond) <= tail) ++beyond;
-  return beyond;
-}
-
-/// Sets estimate and interval.
-void set_estimate(Shift& shift, const std::vector<double>& sorted, std::size_t place) {
-  shift.estimate = median_of_sorted(sorted);
-  shift.low = place == 0 ? -kInfinity : sorted[place - 1];
-  shift.high = place == 0 ? kInfinity : sorted[sorted.size() - place];
-}
-
-void require_numbers(std::span<const double> sample) {
-  const bool finite = std::all_of(sample.begin(), sample.end(), [](double x) { return std::isfinite(x); });
-  if (sample.empty() || !finite) throw std::invalid_argument("ranks are of finite numbers, one at least");
+  while (2 * beyond < values.size() && without_ties.at_most(least + 2 * beyond) <= kTail) ++beyond;
+  return {.estimate = gsl_stats_median_from_sorted_data(values.data(), 1, values.size()),
+          .low = beyond == 0 ? kNoNumber : values[beyond - 1],
+          .high = beyond == 0 ? kNoNumber : values[values.size() - beyond],
+          .p_positive = chance.at_least(observed),
+          .p_negative = chance.at_most(observed)};
 }
 
 }  // namespace
 
-std::vector<double> sorted_means(std::span<const double> differences) {
-  std::vector<double> means;
-  for (std::size_t i = 0; i < differences.size(); ++i) {
-    for (std::size_t j = i; j < differences.size(); ++j)
-      means.push_back(0.5 * (differences[i] + differences[j]));
-  }
-  std::ranges::sort(means);
-  return means;
-}
-
-std::vector<double> sorted_differences(std::span<const double> base, std::span<const double> now) {
-  std::vector<double> differences;
-  for (const double later : now) {
-    for (const double earlier : base) differences.push_back(later - earlier);
-  }
-  std::ranges::sort(differences);
-  return differences;
-}
-
-std::size_t signed_rank_place(std::size_t n, double level) {
-  return count_beyond(RankSum::of_any(doubled_ranks_without_ties(n)), 0, n * (n + 1) / 2, level);
-}
-
-std::size_t rank_sum_place(std::size_t base, std::size_t now, double level) {
-  const RankSum choice = RankSum::of_choice(doubled_ranks_without_ties(base + now), now);
-  return count_beyond(choice, now * (now + 1), base * now, level);
-}
-
 Shift signed_rank_shift(std::span<const double> differences) {
-  require_numbers(differences);
   std::vector<double> sizes;
   std::vector<bool> positive;
-  for (const double difference : differences) {
-    if (difference == 0.0) continue;
-    sizes.push_back(std::abs(difference));
-    positive.push_back(difference > 0.0);
+  std::vector<double> means;  // of each two, also of one with itself
+  for (std::size_t i = 0; i < differences.size(); ++i) {
+    for (const double other : differences.subspan(i)) means.push_back(0.5 * (differences[i] + other));
+    if (differences[i] == 0.0) continue;
+    sizes.push_back(std::abs(differences[i]));
+    positive.push_back(differences[i] > 0.0);
   }
   const std::vector<std::size_t> ranks = doubled_ranks(sizes);
   std::size_t observed = 0;
   for (std::size_t i = 0; i < ranks.size(); ++i) observed += positive[i] ? ranks[i] : 0;
-  const RankSum chance = RankSum::of_any(ranks);
-  Shift shift;
-  shift.p_positive = chance.at_least(observed);
-  shift.p_negative = chance.at_most(observed);
-  set_estimate(shift, sorted_means(differences), signed_rank_place(differences.size(), kTail));
-  return shift;
+  return shift_of(std::move(means), RankSum(ranks, {}), observed,
+                  RankSum(doubled_ranks_without_ties(differences.size()), {}), 0);
 }
 
 Shift rank_sum_shift(std::span<const double> base, std::span<const double> now) {
-  require_numbers(base);
-  require_numbers(now);
   std::vector<double> pooled(now.begin(), now.end());
   pooled.insert(pooled.end(), base.begin(), base.end());
+  std::vector<double> differences;
+  for (const double later : now) {
+    for (const double earlier : base) differences.push_back(later - earlier);
+  }
   const std::vector<std::size_t> ranks = doubled_ranks(pooled);
-  const std::size_t observed = sum(std::span(ranks).first(now.size()));
-  const RankSum chance = RankSum::of_choice(ranks, now.size());
-  Shift shift;
-  shift.p_positive = chance.at_least(observed);
-  shift.p_negative = chance.at_most(observed);
-  set_estimate(shift, sorted_differences(base, now), rank_sum_place(base.size(), now.size(), kTail));
-  return shift;
+  return shift_of(std::move(differences), RankSum(ranks, now.size()), sum(std::span(ranks).first(now.size())),
+                  RankSum(doubled_ranks_without_ties(ranks.size()), now.size()),
+                  now.size() * (now.size() + 1));
 }
 
 double least_signed_rank_chance(std::size_t n) { return std::pow(0.5, static_cast<double>(n)); }

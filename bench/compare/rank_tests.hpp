@@ -10,22 +10,14 @@ namespace slipstick::bench {
 /// How far one sample lies above another.
 struct Shift {
   double estimate = 0.0;  ///< Hodges and Lehmann's (1963)
-  double low = 0.0;       ///< its 95 % interval; infinite where the samples are too small for one
+  double low = 0.0;       ///< its 95 % interval; NaN where the samples are too small for one
   double high = 0.0;
   double p_positive = 1.0;  ///< chance of ranks as high as these or higher if there is no shift
   double p_negative = 1.0;  ///< of ranks as low or lower
 };
 
-/// The means of each two of these differences, also of one with itself; the differences of two samples;
-/// sorted. Their median is Hodges and Lehmann's estimate; the shift is significant, on one side, where the
-/// one at signed_rank_place() or rank_sum_place(), counted from 1, is above zero; 0: it cannot be.
-std::vector<double> sorted_means(std::span<const double> differences);
-std::vector<double> sorted_differences(std::span<const double> base, std::span<const double> now);
-std::size_t signed_rank_place(std::size_t n, double level);
-std::size_t rank_sum_place(std::size_t base, std::size_t now, double level);
-
-/// The shift of differences of pairs by Wilcoxon's signed ranks (1945), zeros left out. Throws
-/// std::invalid_argument for an empty sample and for numbers that are not finite; so does rank_sum_shift.
+/// The shift of differences of pairs by Wilcoxon's signed ranks (1945), zeros left out. Samples are finite
+/// numbers, one at least.
 Shift signed_rank_shift(std::span<const double> differences);
 
 /// The shift of `now` over `base`, independent samples, by Mann and Whitney's test (1947). Both tests count

@@ -97,7 +97,7 @@ void add_costs(MeasuredMesh& mesh, const Loads& loads, double application_second
     for (const ByTolerance& points : loads) {
       const Json& point = *points.at(tolerance);
       applications = std::max(applications, point["applications"].get<double>());
-      seconds = std::max(seconds, point["seconds"]["low"].get<double>());
+      seconds = std::max(seconds, point["seconds"]["median"].get<double>());
     }
     mesh.tolerances.push_back(tolerance);
     mesh.applications.push_back(applications);

@@ -16,100 +16,64 @@ namespace {
 /// Errors that the table of times asks for.
 const std::vector<double> kWanted{1e-2, 1e-3, 1e-4, 1e-5};
 
-double number_or_nan(const Json& value) {
-  return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
-}
+const std::string kAnyMethod = "any";
 
-/// The points as ways to one quantity, place by place; not a number where not timed.
-std::vector<Way> ways_to(const Json& points, const std::string& quantity) {
+/// The points as ways to one quantity, place by place; not a number where not timed, or of another method.
+std::vector<Way> ways_to(const Json& points, const std::string& quantity, const std::string& method) {
+  const auto number = [](const Json& value) {
+    return value.is_number() ? value.get<double>() : std::numeric_limits<double>::quiet_NaN();
+  };
   std::vector<Way> ways;
   for (const Json& point : points) {
-    Way way;
-    for (const ChoiceKey& key : kChoiceKeys) way.choice[key.name] = point[key.name];
-    way.choice[kTolerance] = fmt::format("{:g}", point[kTolerance].get<double>());
-    way.cells = point["cells"].get<double>();
-    way.error = number_or_nan(point["error"][quantity]);
-    const bool timed = point["seconds"].is_object();
-    way.seconds = timed ? point["seconds"]["median"].get<double>() : std::numeric_limits<double>::quiet_NaN();
-    way.low = timed ? point["seconds"]["low"].get<double>() : way.seconds;
-    way.high = timed ? point["seconds"]["high"].get<double>() : way.seconds;
-    ways.push_back(way);
+    const bool counts = point["seconds"].is_object() && (method == kAnyMethod || point["method"] == method);
+    ways.push_back(
+        {counts ? number(point["seconds"]["median"]) : number({}), number(point["error"][quantity])});
   }
   return ways;
 }
 
-std::string dominated_text(const DominatedChoice& choice) {
-  const std::string where =
-      choice.everywhere ? "" : fmt::format(" from {} x {} cells on", choice.from_cells, choice.from_cells);
-  return fmt::format("{} {}{}: {:.2g} times slower at the same error than {} ({:.2g} to {:.2g})", choice.key,
-                     choice.word, where, choice.times_slower, choice.by, choice.least, choice.most);
-}
-
-Json dominated_json(const Json& scene, const std::string& quantity, const DominatedChoice& choice) {
-  return {{"scene", scene["name"]},
-          {"quantity", quantity},
-          {"key", choice.key},
-          {"value", choice.word},
-          {"by", choice.by},
-          {"everywhere", choice.everywhere},
-          {"from_cells", choice.from_cells},
-          {"times_slower", {{"median", choice.times_slower}, {"low", choice.least}, {"high", choice.most}}},
-          {"points", choice.ways},
-          {"text", dominated_text(choice)}};
-}
-
-/// Best error among ways, for the reason why a smaller one was not reached.
-std::string best_text(const std::vector<Way>& ways) {
-  const Way* best = nullptr;
-  for (const Way& way : ways) {
-    if (std::isfinite(way.error) && std::isfinite(way.seconds) &&
-        (best == nullptr || way.error < best->error)) {
-      best = &way;
-    }
+/// The best error among ways, as the reason why a smaller one was not reached.
+std::string best_text(const Json& points, const std::vector<Way>& ways) {
+  std::optional<std::size_t> best;
+  for (const std::size_t way : pareto_front(ways)) {
+    if (!best || ways[way].error < ways[*best].error) best = way;
   }
-  if (best == nullptr) return "no timed point";
-  return fmt::format("the best is {:.2g}, on {} x {} cells", best->error, best->cells, best->cells);
+  if (!best) return "no timed point";
+  return fmt::format("the best is {0:.2g}, on {1} x {1} cells", ways[*best].error,
+                     points[*best]["cells"].get<double>());
 }
 
-/// method: "any", or one; ways of others do not count.
-Json time_to(std::vector<Way> ways, const std::string& method, double error) {
-  for (Way& way : ways) {
-    if (method != "any" && way.choice["method"] != method)
-      way.error = std::numeric_limits<double>::quiet_NaN();
-  }
-  Json row{{"error", error}, {"method", method}};
+Json time_to(const Json& points, const std::string& quantity, const std::string& method, double error) {
+  const std::vector<Way> ways = ways_to(points, quantity, method);
+  Json row{{"quantity", quantity}, {"error", error}, {"method", method}};
   const std::optional<std::size_t> place = quickest_to(ways, error);
   if (place) {
     row["point"] = *place;
     row["seconds"] = ways[*place].seconds;
   } else {
-    convergence::set_missing(row, "seconds", best_text(ways));
+    convergence::set_missing(row, "seconds", best_text(points, ways));
     row["point"] = nullptr;
     row["reason"] = row["seconds_reason"];
   }
   return row;
 }
 
-Json exact_time_to(const Json& exact, double error) {
-  return {{"error", error},
-          {"method", "exact"},
-          {"point", nullptr},
-          {"reason", "no grid"},
-          {"seconds", exact["seconds"]["median"]}};
-}
-
-void add_times(Json& scene, const std::string& quantity, const std::vector<Way>& ways) {
+void add_times(Json& scene, const std::string& quantity) {
   std::set<std::string> methods;
-  for (const Way& way : ways) methods.insert(way.choice.at("method"));
+  for (const Json& point : scene["points"]) methods.insert(point["method"]);
+  Json& rows = scene["time_to"];
   for (const double error : kWanted) {
-    std::vector<Json> rows{time_to(ways, "any", error)};
-    for (const std::string& method : methods) rows.push_back(time_to(ways, method, error));
-    if (scene.contains("exact")) rows.push_back(exact_time_to(scene["exact"], error));
-    for (Json& row : rows) {
-      Json named{{"quantity", quantity}};
-      named.update(row);
-      scene["time_to"].push_back(std::move(named));
+    rows.push_back(time_to(scene["points"], quantity, kAnyMethod, error));
+    for (const std::string& method : methods) {
+      rows.push_back(time_to(scene["points"], quantity, method, error));
     }
+    if (!scene.contains("exact")) continue;
+    rows.push_back({{"quantity", quantity},
+                    {"error", error},
+                    {"method", "exact"},
+                    {"point", nullptr},
+                    {"reason", "no grid"},
+                    {"seconds", scene["exact"]["seconds"]["median"]}});
   }
 }
 
@@ -118,32 +82,50 @@ void list_not_timed(Json& plane, const Json& scene) {
     if (!point.contains("not_timed")) continue;
     Json choice;
     for (const ChoiceKey& key : kChoiceKeys) choice[key.name] = point[key.name];
-    choice[kTolerance] = point[kTolerance];
-    choice["cells"] = point["cells"];
+    for (const char* const key : {"tolerance", "cells"}) choice[key] = point[key];
     plane["not_timed"].push_back(
         {{"scene", scene["name"]}, {"choice", choice}, {"reason", point["not_timed"]}});
   }
 }
 
+std::string seconds_text(const Json& seconds) {
+  return seconds.is_number() ? fmt::format("{:.3g} s", seconds.get<double>()) : "-";
+}
+
 }  // namespace
 
 void judge_plane(Json& plane) {
-  plane["dominated"] = Json::array();
   plane["not_timed"] = Json::array();
   for (Json& scene : plane["scenes"]) {
     scene["envelope"] = Json::object();
     scene["time_to"] = Json::array();
     for (const Json& quantity : plane["quantities"]) {
       const std::string name = quantity["name"];
-      const std::vector<Way> ways = ways_to(scene["points"], name);
-      scene["envelope"][name] = pareto_front(ways);
-      add_times(scene, name, ways);
-      for (const DominatedChoice& choice : dominated_choices(ways)) {
-        plane["dominated"].push_back(dominated_json(scene, name, choice));
-      }
+      scene["envelope"][name] = pareto_front(ways_to(scene["points"], name, kAnyMethod));
+      add_times(scene, name);
     }
     list_not_timed(plane, scene);
   }
+}
+
+std::string times_text(const Json& plane) {
+  std::string text = "the least time to an error\n";
+  for (const Json& scene : plane["scenes"]) {
+    for (const Json& quantity : plane["quantities"]) {
+      text += fmt::format("  {:<12} {:<32}", scene["name"].get<std::string>(),
+                          quantity["label"].get<std::string>());
+      for (const Json& row : scene["time_to"]) {
+        if (row["quantity"] != quantity["name"] || row["method"] != "any") continue;
+        text += fmt::format("  {:.0e} {:>8}", row["error"].get<double>(), seconds_text(row["seconds"]));
+      }
+      text += '\n';
+    }
+    if (scene["exact"].is_object()) {
+      text += fmt::format("  {:<12} {:<32}  all   {:>8}\n", scene["name"].get<std::string>(),
+                          "exact, no grid", seconds_text(scene["exact"]["seconds"]["median"]));
+    }
+  }
+  return text;
 }
 
 }  // namespace slipstick::bench

@@ -2,13 +2,15 @@
 
 #include <fmt/core.h>
 
+#include <chrono>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 #include <vector>
 
-#include "bench/timing/invalid_reason.hpp"
-#include "bench/timing/repetitions.hpp"
+#include "bench/timing/checked_solve.hpp"
+#include "convergence/orders/growth.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/result_cache.hpp"
@@ -42,26 +44,22 @@ std::vector<double> values(const Errors& errors) {
   return {errors.twist, errors.traction.at_centres.l1, errors.traction.at_centres.l2, errors.stick_radius};
 }
 
-struct MeasuredGrid {
-  solver::Scene scene;
-  solver::Solution solution;
-  std::vector<double> errors;  ///< as kQuantities
-  std::string invalid_reason;
-};
+/// Work that returns its own seconds is repeated at least kMinRepetitions times, then until kMaxRepetitions
+/// or until kEnoughSeconds have passed.
+constexpr std::size_t kMinRepetitions = 3;
+constexpr std::size_t kMaxRepetitions = 9;
+constexpr double kEnoughSeconds = 1.0;
 
-MeasuredGrid solve_grid(const std::filesystem::path& scene, const std::vector<std::string>& overrides) {
-  MeasuredGrid grid{
-      .scene = solver::read_scene(scene, overrides), .solution = {}, .errors = {}, .invalid_reason = {}};
-  const convergence::Oracle exact = convergence::require_oracle(grid.scene);
-  grid.solution = solver::solve(grid.scene);
-  const Errors errors = convergence::compare(grid.solution, exact);
-  grid.errors = values(errors);
-  grid.invalid_reason = invalid_reason(grid.scene, grid.solution, errors);
-  return grid;
-}
-
-Json seconds_json(const Repetitions& times) {
-  return {{"median", times.median}, {"low", times.low}, {"high", times.high}, {"repetitions", times.number}};
+/// The median of repeated times with its 95 % interval.
+Json repeated_seconds(const std::function<double()>& work) {
+  std::vector<double> seconds;
+  double total = 0.0;
+  while (seconds.size() < kMinRepetitions || (seconds.size() < kMaxRepetitions && total < kEnoughSeconds)) {
+    seconds.push_back(work());
+    total += seconds.back();
+  }
+  const convergence::TypicalSeconds time = convergence::typical(seconds);
+  return {{"median", time.seconds}, {"low", time.low}, {"high", time.high}, {"repetitions", seconds.size()}};
 }
 
 Json choice_json(const PlaneChoice& choice) {
@@ -120,14 +118,14 @@ Json measure_exact(const std::filesystem::path& file, double moment_ratio) {
   const Eigen::ArrayXd radius = (solver::cell_x1(grid).square() + solver::cell_x2(grid).square()).sqrt();
   Eigen::ArrayXd traction(radius.size());
   double error = 0.0;
-  const Repetitions times = repeat([&] {
-    return seconds([&] {
-      const convergence::Oracle oracle = convergence::require_oracle(scene);
-      error = oracle.relative_uncertainty;
-      for (Index i = 0; i < radius.size(); ++i) traction[i] = oracle.traction(radius[i]);
-    });
+  const Json seconds = repeated_seconds([&] {
+    const auto start = std::chrono::steady_clock::now();
+    const convergence::Oracle oracle = convergence::require_oracle(scene);
+    error = oracle.relative_uncertainty;
+    for (Index i = 0; i < radius.size(); ++i) traction[i] = oracle.traction(radius[i]);
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   });
-  return {{"seconds", seconds_json(times)}, {"error", error}, {"cells", kExactCells}};
+  return {{"seconds", seconds}, {"error", error}, {"cells", kExactCells}};
 }
 
 std::string label(double moment_ratio, const PlaneChoice& choice) {
@@ -142,27 +140,29 @@ Json measure_point(const std::filesystem::path& scene, double moment_ratio, cons
   std::vector<std::vector<double>> errors(kQuantities.size());
   double across = 0.0;
   std::string invalid_reason;
-  MeasuredGrid first;
+  std::optional<CheckedSolution> first;
   const auto all = grids(scene, moment_ratio, choice);
   for (const convergence::GridChoice& grid : all) {
-    MeasuredGrid measured = solve_grid(scene, grid.overrides);
-    for (std::size_t i = 0; i < errors.size(); ++i) errors[i].push_back(measured.errors[i]);
+    CheckedSolution measured = solve_and_check(solver::read_scene(scene, grid.overrides));
+    const std::vector<double> of_grid = values(measured.errors);
+    for (std::size_t i = 0; i < errors.size(); ++i) errors[i].push_back(of_grid[i]);
     across += 2.0 * measured.solution.contact_radius / grid.size / static_cast<double>(all.size());
     if (invalid_reason.empty()) invalid_reason = measured.invalid_reason;
-    if (first.errors.empty()) first = std::move(measured);
+    if (!first) first = std::move(measured);
   }
   json["contact_cells"] = across;
   if (!invalid_reason.empty()) json["not_timed"] = invalid_reason;
   if (invalid_reason.empty()) {
-    json["seconds"] = seconds_json(repeat([&] { return solver::solve(first.scene).seconds.total; }));
+    const solver::Scene timed = solver::read_scene(scene, all.front().overrides);
+    json["seconds"] = repeated_seconds([&] { return solver::solve(timed).seconds.total; });
   } else {
     set_missing(json, "seconds", invalid_reason);
   }
   add_errors(json, errors);
-  set_number(json, "gap", first.solution.certificate.gap, "the solve broke down");
-  json["applications"] = first.solution.operator_applications;
-  json["pressure_applications"] = first.solution.pressure_applications;
-  json["bytes"] = first.solution.bytes;
+  set_number(json, "gap", first->solution.certificate.gap, "the solve broke down");
+  json["applications"] = first->solution.operator_applications;
+  json["pressure_applications"] = first->solution.pressure_applications;
+  json["bytes"] = first->solution.bytes;
   return json;
 }
 

@@ -37,12 +37,10 @@ Json measure_scene(const PlaneOptions& options, double moment_ratio, const std::
 /// One point: errors on several grids, seconds on the first, unless the result is wrong.
 Json measure_point(const std::filesystem::path& scene, double moment_ratio, const PlaneChoice& choice);
 
-/// Envelopes, dominated choices and times to errors of the measured points, put into the result.
+/// Envelopes and times to errors of the measured points, put into the result.
 void judge_plane(Json& plane);
 
-/// The same for a person.
-std::string plane_text(const Json& plane);
-/// The least times to errors alone.
+/// The least times to errors, for a person.
 std::string times_text(const Json& plane);
 
 }  // namespace slipstick::bench

@@ -173,4 +173,18 @@ Json scaling_json(const Timings& timings) {
   return json;
 }
 
+std::string crossovers_text(const Json& scaling) {
+  const auto number = [](const Json& value) {
+    return value.is_number() ? fmt::format("{:.3g}", value.get<double>()) : "-";
+  };
+  std::string text;
+  for (const Json& crossing : scaling["crossovers"]) {
+    text += fmt::format("{} is quicker than {} from {} cells a side on [{}, {}]{}\n",
+                        crossing["quick"].get<std::string>(), crossing["slow"].get<std::string>(),
+                        number(crossing["cells"]), number(crossing["low"]), number(crossing["high"]),
+                        crossing["cells"].is_number() ? "" : ": " + crossing["remark"].get<std::string>());
+  }
+  return text;
+}
+
 }  // namespace slipstick::bench

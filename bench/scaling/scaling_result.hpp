@@ -11,9 +11,7 @@ namespace slipstick::bench {
 /// power laws, growths beside what theory says, and where dcfft overtakes the other operators.
 nlohmann::ordered_json scaling_json(const Timings& timings);
 
-/// The same for a person.
-std::string scaling_text(const nlohmann::ordered_json& scaling);
-/// The crossovers alone.
+/// The crossovers for a person.
 std::string crossovers_text(const nlohmann::ordered_json& scaling);
 
 }  // namespace slipstick::bench

@@ -1,10 +1,8 @@
 // The exact side: stick ratio from a moment, twist and one traction, over inputs that span the range. Each
 // time stands beside the worst error over all proven references (error_eps, in units of 2.2e-16, and what is
-// allowed there: 8, or 4 times what an ulp of the input costs). exact/carlson_rd, one call of GSL's Carlson
-// R_D, is the unit for other machines.
+// allowed there: 8, or 4 times what an ulp of the input costs).
 
 #include <fmt/core.h>
-#include <gsl/gsl_sf_ellint.h>
 
 #include <array>
 #include <cmath>
@@ -84,15 +82,6 @@ Prepared one_traction(const std::string& name) {
   });
 }
 
-Prepared carlson_rd() {
-  return {.timing = repeated([inputs = spread(), i = std::size_t{0}]() mutable {
-            gsl_sf_result result;
-            gsl_sf_ellint_RD_e(0, inputs[i % kInputs] * inputs[i % kInputs], 1, GSL_PREC_DOUBLE, &result);
-            benchmark::DoNotOptimize(result.val);
-            ++i;
-          })};
-}
-
 }  // namespace
 
 void add_exact_benchmarks(Suite& suite) {
@@ -106,7 +95,6 @@ void add_exact_benchmarks(Suite& suite) {
   add("twist_from_stick_ratio", twist_from_stick_ratio);
   add("state_from_stick_ratio", state_from_stick_ratio);
   add("traction", one_traction);
-  suite.add("exact/carlson_rd", carlson_rd)->Unit(benchmark::kNanosecond);
 }
 
 }  // namespace slipstick::bench

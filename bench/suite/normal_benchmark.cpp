@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "bench/suite/checked_solve.hpp"
+#include "bench/suite/paper_scene.hpp"
 #include "bench/suite/suite.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "solver/model_solution.hpp"

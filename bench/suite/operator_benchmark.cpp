@@ -156,7 +156,7 @@ Prepared application(const Form& form, Index cells) {
   if (!(error <= kAllowedError)) prepared.invalid_reason = "disagrees with its reference";
   prepared.timing = repeated(work);
   if (!form.quarter) prepared.counters["GFLOP/s"] = rate(1e-9 * operations(form.kind, cells));
-  if (form.kind == OperatorKind::dense) {  // reading the matrix bounds the time, see memory/triad
+  if (form.kind == OperatorKind::dense) {  // reading the matrix bounds the time
     prepared.counters["bytes_per_second"] = rate(8.0 * std::pow(static_cast<double>(2 * cells * cells), 2));
   }
   return prepared;

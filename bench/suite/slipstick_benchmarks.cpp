@@ -41,7 +41,6 @@ std::vector<std::string> words_of(int argc, char** argv) {
 void add_all_benchmarks(slipstick::bench::Suite& suite) {
   slipstick::bench::add_influence_benchmarks(suite);
   slipstick::bench::add_operator_benchmarks(suite);
-  slipstick::bench::add_memory_benchmarks(suite);
   slipstick::bench::add_normal_benchmarks(suite);
   slipstick::bench::add_solve_benchmarks(suite);
   slipstick::bench::add_exact_benchmarks(suite);

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <string>
 
-#include "bench/suite/checked_solve.hpp"
+#include "bench/suite/paper_scene.hpp"
 #include "bench/suite/suite.hpp"
 
 namespace slipstick::bench {

@@ -81,9 +81,9 @@ class HostileOutput(ProgramTest):
             os.remove("junit.xml")
         self.assertGreater(refused, 100)
 
-    def assert_plain(self, said, annotations=0):
+    def assert_plain(self, said):
         commands = [line for line in said.split("\n") if line.lstrip().startswith("::") or "##[" in line or "##vso[" in line]
-        self.assertEqual([line[:13] for line in commands], annotations * ["::error file="])
+        self.assertEqual(commands, [])
         self.assertEqual([c for c in said if unicodedata.category(c) == "Cc" and c not in "\n\t"], [])
 
     def test_names_and_reasons_command_neither_terminal_nor_ci(self):
@@ -108,8 +108,6 @@ class HostileOutput(ProgramTest):
                 _, *said = self.ends(*words)
                 for text in said:
                     self.assert_plain(text)
-        _, text, _ = self.ends("gate", "gates.toml", "gates2.toml", "broken.toml", "--github")
-        self.assert_plain(text, annotations=2)
 
     def test_two_outputs_are_two_files(self):
         self.write("gates.toml", '[[gate]]\nid = "a"\nresult = "r.json"\nquantity = "x"\nbelow = 1\nbasis = "b"\n')

@@ -85,38 +85,20 @@ class Reader {
   std::string place_;
 };
 
-std::string cache_text(const Json& cache) {
-  const auto part = [&](const char* key) {
-    const Json value = cache.value(key, Json());
-    return value.is_string() ? value.get<std::string>() : value.dump();
-  };
-  return fmt::format("L{} {} {} shared by {}", part("level"), part("type"), part("size"),
-                     part("num_sharing"));
-}
-
 TimingContext read_context(const Reader& context) {
   TimingContext read;
   read.host_name = context.text("host_name");
   read.cpus = context.whole("num_cpus", 0);
   read.mhz = context.has("mhz_per_cpu") ? context.number("mhz_per_cpu") : 0.0;
-  if (context.has("cpu_scaling_enabled")) read.scaling = context.flag("cpu_scaling_enabled");
+  read.caches = context.json().value("caches", Json::array()).dump();
   read.library_build_type = context.text("library_build_type");
   read.build_type = context.text("build_type");
   read.session = context.text("session");
-  const auto list = [&](const char* key, const char* allowed) {
-    Json values = context.json().value(key, Json::array());
-    if (!values.is_array()) context.refuse(key, allowed);
-    return values;
-  };
-  const char* const caches = "a list of objects with level, type, size, num_sharing";
-  for (const Json& cache : list("caches", caches)) {
-    if (!cache.is_object()) context.refuse("caches", caches);
-    read.caches.push_back(cache_text(cache));
+  const Json load = context.json().value("load_avg", Json::array());
+  if (!load.is_array() || (!load.empty() && !load.front().is_number())) {
+    context.refuse("load_avg", "a list of numbers");
   }
-  for (const Json& load : list("load_avg", "a list of numbers")) {
-    if (!load.is_number()) context.refuse("load_avg", "a list of numbers");
-    read.load_average.push_back(load.get<double>());
-  }
+  if (!load.empty()) read.load_average = load.front().get<double>();
   return read;
 }
 
@@ -128,45 +110,6 @@ double seconds_per(const Reader& row) {
     if (unit == name) return seconds;
   }
   row.refuse("time_unit", "ns, us, ms, s");
-}
-
-/// Rows of a file, so that those which do not say what they are can be distinguished.
-using Names = std::set<std::string>;
-
-/// Whether a row without run_type is an aggregate: it is named after another row, or there are a mean and a
-/// deviation of one name.
-bool is_old_aggregate(const Reader& row, const Names& names) {
-  const std::string name = row.text("name");
-  for (const char* ending : {"_mean", "_median", "_stddev", "_cv", "_BigO", "_RMS"}) {
-    if (!name.ends_with(ending)) continue;
-    const std::string stem = name.substr(0, name.rfind('_'));
-    return names.contains(stem) || (names.contains(stem + "_mean") && names.contains(stem + "_stddev"));
-  }
-  return false;
-}
-
-struct Row {
-  std::string name;
-  int family = 0;  ///< two benchmarks of one name are of two families
-  int instance = 0;
-  bool aggregate = false;
-};
-
-Row identify(const Reader& row, const Names& names) {
-  Row read;
-  if (row.text("name").empty()) row.refuse("name", "the name of a benchmark");
-  const std::string type = row.text("run_type");
-  if (!type.empty() && type != "iteration" && type != "aggregate")
-    row.refuse("run_type", "iteration, aggregate");
-  read.aggregate = type.empty() ? is_old_aggregate(row, names) : type == "aggregate";
-  read.name = row.text("run_name");
-  if (read.name.empty()) {
-    read.name = row.text("name");
-    if (read.aggregate) read.name = read.name.substr(0, read.name.rfind('_'));
-  }
-  read.family = row.whole("family_index", 0);
-  read.instance = row.whole("per_family_instance_index", 0);
-  return read;
 }
 
 std::map<std::string, double> read_counters(const Reader& row) {
@@ -205,48 +148,32 @@ void add_repetition(TimedBenchmark& benchmark, const Reader& row) {
   }
 }
 
-/// Puts rows together to benchmarks, in their order.
-class Gathering {
- public:
-  TimedBenchmark& benchmark(const Row& row) {
-    const auto found = places_.find({row.name, row.family, row.instance});
-    if (found != places_.end()) return benchmarks_[found->second];
-    places_[{row.name, row.family, row.instance}] = benchmarks_.size();
-    const int same = ++number_[row.name];
-    TimedBenchmark benchmark;
-    benchmark.name = same == 1 ? row.name : fmt::format("{} #{}", row.name, same);
-    benchmarks_.push_back(std::move(benchmark));
-    return benchmarks_.back();
-  }
-  std::vector<TimedBenchmark> take() && { return std::move(benchmarks_); }
-
- private:
-  std::vector<TimedBenchmark> benchmarks_;
-  std::map<std::tuple<std::string, int, int>, std::size_t> places_;
-  std::map<std::string, int> number_;
-};
-
 /// Rows of complexity fits are of a family, not of a benchmark.
 bool is_fit(const Reader& row) {
   const std::string aggregate = row.text("aggregate_name");
-  return aggregate == "BigO" || aggregate == "RMS" || row.has("rms") || row.has("real_coefficient");
+  return aggregate == "BigO" || aggregate == "RMS";
 }
 
+/// Puts rows together to benchmarks, in their order.
 std::vector<TimedBenchmark> read_benchmarks(const Json& rows, const std::string& source) {
-  Names names;
-  for (const Json& row : rows) {
-    if (row.is_object() && row.contains("name") && row["name"].is_string()) names.insert(row["name"]);
-  }
-  Gathering gathering;
+  std::vector<TimedBenchmark> benchmarks;
+  std::map<std::tuple<std::string, int, int>, std::size_t> places;  // two of one name are of two families
+  std::map<std::string, int> number;
   for (std::size_t i = 0; i < rows.size(); ++i) {
     const Reader row(rows[i], source, fmt::format("benchmarks[{}]", i));
     if (!rows[i].is_object()) throw InputError(source, fmt::format("benchmarks[{}] is no object", i));
     if (is_fit(row)) continue;
-    const Row identity = identify(row, names);
-    TimedBenchmark& benchmark = gathering.benchmark(identity);
-    if (!identity.aggregate) add_repetition(benchmark, row);
+    const std::string name = row.text(row.has("run_name") ? "run_name" : "name");
+    if (name.empty()) row.refuse("name", "the name of a benchmark");
+    const auto [place, is_new] = places.try_emplace(
+        {name, row.whole("family_index", 0), row.whole("per_family_instance_index", 0)}, benchmarks.size());
+    if (is_new) {
+      const int same = ++number[name];
+      benchmarks.emplace_back().name = same == 1 ? name : fmt::format("{} #{}", name, same);
+    }
+    if (row.text("run_type") != "aggregate") add_repetition(benchmarks[place->second], row);
   }
-  return std::move(gathering).take();
+  return benchmarks;
 }
 
 }  // namespace

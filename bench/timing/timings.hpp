@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <map>
 #include <nlohmann/json_fwd.hpp>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,13 +33,12 @@ struct TimingContext {
   std::string host_name;
   int cpus = 0;
   double mhz = 0.0;
-  std::vector<std::string> caches;   ///< "L2 Unified 2097152 shared by 1"
-  std::optional<bool> scaling;       ///< of the processor's frequency
-  std::vector<double> load_average;  ///< over 1, 5 and 15 minutes, when the program began; may be empty
-  std::string library_build_type;    ///< of Google Benchmark itself; Debian's says debug always
-  std::string build_type;            ///< of the benchmarks: custom context "build_type"; empty: not said
-  std::string session;               ///< custom context "session": files that have the same one were run in
-                                     ///< interleaved pairs on one machine; empty: not said
+  std::string caches;              ///< as JSON
+  double load_average = 0.0;       ///< over the minute before the program began; 0: not said
+  std::string library_build_type;  ///< of Google Benchmark itself; Debian's says debug always
+  std::string build_type;          ///< of the benchmarks: custom context "build_type"; empty: not said
+  std::string session;             ///< custom context "session": files that have the same one were run in
+                                   ///< interleaved pairs on one machine; empty: not said
 };
 
 struct Timings {
@@ -58,7 +56,7 @@ const TimedBenchmark* find(const Timings& timings, const std::string& name);
 /// Whether a benchmark has times that can be judged: repetitions, each of a valid time.
 bool has_times(const TimedBenchmark& benchmark);
 
-/// Reads what versions 1.5 to 1.9 write, and older ones, whose rows do not say what they are. Throws
+/// Reads what versions 1.5 to 1.9 write; a row that does not say what it is counts as a repetition. Throws
 /// InputError naming the file, and the key where there is one, for what is no such file or holds no
 /// benchmark.
 Timings read_timings(const std::filesystem::path& file);

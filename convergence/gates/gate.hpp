@@ -34,9 +34,8 @@ struct Gate {
   std::optional<double> below;           ///< alone: a bound on the size; with `above`: on the signed value
   std::optional<double> above;           ///< a bound on the signed value
   Json equals;                           ///< a word or a number; null: not asked
-  std::filesystem::path of;  ///< result, scene or study whose number this one is to be; empty: none
-  double within = 0.0;       ///< of the size of that number: how far from it this one may be
-  std::string newer_than;  ///< of a result file: the day that it must not be older than, as 2026-11-24 (UTC)
+  std::filesystem::path of;      ///< result, scene or study whose number this one is to be; empty: none
+  double within = 0.0;           ///< of the size of that number: how far from it this one may be
   double platform_spread = 0.0;  ///< by how much machines and compilers differ, in the quantity's unit
   std::string basis;             ///< where the bound comes from
   std::string reason;            ///< why the number matters
@@ -147,10 +146,6 @@ std::string gates_junit(const std::vector<Judgement>& judgements);
 
 /// A Markdown table, the worst first, shorter than kMaxMarkdown bytes: what does not fit is counted.
 std::string gates_markdown(const std::vector<Judgement>& judgements);
-
-/// Workflow commands of GitHub Actions, which put a message at the gate's line in its file: an error for each
-/// gate that fails or is refused.
-std::string gates_annotations(const std::vector<Judgement>& judgements);
 
 /// Every gate with value, bound, factor, outcome, and the counts.
 Json gates_json(const std::vector<Judgement>& judgements);

@@ -26,7 +26,6 @@ struct GateRequest {
   std::string summary;
   std::string results;
   RunOptions runs{.output = "build/gates"};
-  bool github = false;
 };
 
 /// A gate whose source cannot be read says so when it is judged.
@@ -72,8 +71,7 @@ int run_gates(const CLI::App& command, const GateRequest& request, std::ostream&
   judgements.insert(judgements.end(), judged.begin(), judged.end());
 
   result = gates_json(judgements);
-  text << plain_text(gates_text(judgements));
-  if (request.github) text << gates_annotations(judgements);
+  text << gates_text(judgements);
   write_option_file("--junit", request.junit, gates_junit(judgements));
   write_option_file("--summary", request.summary, gates_markdown(judgements));
   if (judgements.empty()) {
@@ -92,12 +90,11 @@ RunCommand add_gate_command(CLI::App& app) {
   command->add_option("--only", request->only, "run the gates with these ids alone; stands after the files");
   command->add_option("--junit", request->junit, "write JUnit XML, as CI servers read it, to this file");
   command->add_option("--summary", request->summary, "write a Markdown table, the worst first, below 64 kB");
-  command->add_flag("--github", request->github, "print GitHub's annotations, at each failing gate's line");
   command->add_option("--results", request->results,
                       "folder of the result files that gates name, in place of the gate file's own");
   request->runs.add_to(*command);
   request->runs.add_programs_to(*command);
-  request->runs.add_shards_to(*command, {"--junit", "--summary", "--github"});
+  request->runs.add_shards_to(*command, {"--junit", "--summary"});
   command->footer(
       "Example:\n  slipstick gate convergence/gates/quick.toml --junit gates.xml --summary summary.md\n"
       "Exit code 0: all gates pass; 1: an active gate fails, or an expected failure passes; 2: something "

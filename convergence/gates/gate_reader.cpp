@@ -4,8 +4,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <chrono>
-#include <cstdio>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -74,23 +72,11 @@ void read_source(SceneReader& reader, const GateTable& at, Gate& gate) {
   gate.overrides = at.assignments("set");
 }
 
-/// A day of the calendar, as 2026-11-24.
-bool is_day(const std::string& text) {
-  int year = 0, month = 0, day = 0, end = 0;
-  std::sscanf(text.c_str(), "%4d-%2d-%2d%n", &year, &month, &day, &end);
-  return text.size() == 10 && end == 10 && (std::chrono::year(year) / month / day).ok();
-}
-
 /// Any program may have written the file: only the gate file can say which.
 void read_result_source(SceneReader& reader, const GateTable& at, const std::filesystem::path& folder,
                         Gate& gate) {
   if (!gate.overrides.empty()) {
     reader.fail(at.own("set"), "(given)", "left out beside result: a file is taken as it is");
-  }
-  const std::string newer_than = at.shared("newer_than");
-  gate.newer_than = reader.text_or(newer_than, "");
-  if (reader.has(newer_than) && !is_day(gate.newer_than)) {
-    reader.fail(newer_than, gate.newer_than, "a day as 2026-11-24, in quotes");
   }
   gate.results_folder = folder;
   if (!folder.empty()) gate.source = folder / reader.text(at.shared("result"));
@@ -182,8 +168,6 @@ solver::SettingKeys shared_keys() {
       {"study", KeyType::file, "", kOne, solver::kAny, "Study file (TOML) that is run."},
       {"result", KeyType::file, "", kOne, solver::kAny, "Result file (JSON) of any program, taken as it is."},
       {"set", KeyType::table, "", "none", solver::kAny, "Keys of the scene that differ from its file."},
-      {"newer_than", KeyType::text, "", "none", solver::kAny,
-       "Day, as 2026-11-24 (UTC), that the last change of a result file must not be before."},
       {"platform_spread", KeyType::number, "the quantity's", fmt::format("{:g}", Gate{}.platform_spread),
        solver::kNotNegative, "By how much machines and compilers differ."},
       {"basis", KeyType::text, "", "required of an active gate", solver::kAny, "Where the bound comes from."},

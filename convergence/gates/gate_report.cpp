@@ -116,16 +116,6 @@ std::string markdown_row(const Judgement& judgement) {
                      factor_text(judgement), markdown_cell(remarks));
 }
 
-/// Text in a workflow command; in a property commas and colons are escaped too.
-std::string annotation(std::string_view text, bool is_property) {
-  std::string escaped;
-  for (const char c : solver::printable(text)) {
-    const bool special = c == '%' || c == '\n' || (is_property && (c == ':' || c == ','));
-    escaped += special ? fmt::format("%{:02X}", static_cast<int>(c)) : std::string(1, c);
-  }
-  return escaped;
-}
-
 Json judgement_json(const Judgement& judgement) {
   const Gate& gate = judgement.gate;
   Json json{{"id", gate.id},
@@ -190,18 +180,6 @@ std::string gates_markdown(const std::vector<Judgement>& judgements) {
   return markdown_with_table(fmt::format("### {}\n\n", counts_of(judgements)),
                              "| outcome | gate | quantity | value | must be | times the bound | |", rows,
                              "gates");
-}
-
-std::string gates_annotations(const std::vector<Judgement>& judgements) {
-  std::string text;
-  for (const Judgement* const judgement : worst_first(judgements)) {
-    if (!is_wrong(judgement->outcome)) continue;
-    const Gate& gate = judgement->gate;
-    text += fmt::format("::error file={},line={},title={}::{}\n", annotation(gate.file.string(), true),
-                        std::max<std::size_t>(gate.line, 1), annotation("Gate " + gate.id, true),
-                        annotation(fmt::format("{}", fmt::join(explanation(*judgement), "\n")), false));
-  }
-  return text;
 }
 
 Json gates_json(const std::vector<Judgement>& judgements) {

@@ -16,6 +16,7 @@
 #include <utility>
 
 #include "convergence/results/json_text.hpp"
+#include "convergence/results/quantity.hpp"
 #include "convergence/runs/run_batch.hpp"
 #include "convergence/studies/budget.hpp"
 #include "convergence/studies/study.hpp"
@@ -123,10 +124,6 @@ void take_others(const std::vector<Gate>& gates, const ProcessPool& pool, Source
 Judgement judge(const Gate& gate, const Source& source, const Source* other) {
   std::string refused = source.refused;
   if (refused.empty() && other != nullptr) refused = other->refused;
-  if (refused.empty() && source.file_date < gate.newer_than) {
-    refused = fmt::format("{} is of {}; allowed: {} or later", gate.source.string(), source.file_date,
-                          gate.newer_than);
-  }
   if (!refused.empty()) return refuse(gate, refused);
   try {
     return judge(other == nullptr ? gate : bounded_by(gate, other->result), source.result);

@@ -33,29 +33,11 @@ std::optional<std::string> bytes_of(const fs::path& file) {
   }
 }
 
-/// A file that belongs to a result, by its content.
-std::string file_text(const fs::path& file) {
-  std::error_code error;
-  std::ifstream stream;
-  if (fs::is_regular_file(file, error)) stream.open(file, std::ios::binary);
-  if (!stream.is_open()) return "missing";
-  std::vector<char> block(std::size_t{1} << 20);
-  std::uintmax_t size = 0;
-  std::uint64_t sum = checksum({});
-  do {
-    stream.read(block.data(), static_cast<std::streamsize>(block.size()));
-    const auto read = static_cast<std::size_t>(stream.gcount());
-    sum = checksum({block.data(), read}, sum);
-    size += read;
-  } while (stream);
-  return fmt::format("{} bytes, {:016x}", size, sum);
-}
-
 /// What is kept of a result; `checksum` is that of all the rest.
 Json entry(const std::string& program, const std::string& cache_key, const Json& result,
            const fs::path& beside) {
   Json kept{{"program", program}, {"cache_key", cache_key}, {"result", result}};
-  if (!beside.empty()) kept["beside"] = file_text(beside);
+  if (!beside.empty()) kept["beside"] = file_identity(beside);
   kept["checksum"] = fmt::format("{:016x}", checksum(json_text(kept)));
   return kept;
 }
@@ -71,9 +53,11 @@ std::uint64_t checksum_of_word(std::uint64_t word, std::uint64_t of_before) {
   return (std::rotl(of_before, 31) ^ word) * kPrime;
 }
 
-std::string program_identity(const fs::path& program) {
-  std::ifstream stream(program, std::ios::binary);
-  if (!stream.is_open()) return "unknown program";
+std::string file_identity(const fs::path& file) {
+  std::error_code error;
+  std::ifstream stream;
+  if (fs::is_regular_file(file, error)) stream.open(file, std::ios::binary);
+  if (!stream.is_open()) return "missing";
   std::vector<std::uint64_t> words(std::size_t{1} << 17);
   std::uintmax_t size = 0;
   std::uint64_t sum = checksum({});
@@ -97,7 +81,7 @@ void write_json_file(const fs::path& file, const Json& json) {
 }
 
 ResultCache::ResultCache(fs::path folder, const fs::path& program)
-    : folder_(std::move(folder)), program_(program_identity(program)) {
+    : folder_(std::move(folder)), program_(file_identity(program)) {
   solver::make_folder(folder_);
 }
 

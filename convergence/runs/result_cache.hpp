@@ -52,8 +52,8 @@ std::uint64_t checksum(std::string_view bytes, std::uint64_t of_before = 1469598
 /// The same, of eight bytes at once: another sum than that of the bytes.
 std::uint64_t checksum_of_word(std::uint64_t word, std::uint64_t of_before);
 
-/// An executable by its content, the same for every copy of it.
-std::string program_identity(const std::filesystem::path& program);
+/// A file by its content, the same for every copy of it.
+std::string file_identity(const std::filesystem::path& file);
 
 /// Writes JSON as write_whole_file() does; a file that has this content already keeps its time.
 void write_json_file(const std::filesystem::path& file, const Json& json);

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 #include <nlohmann/json.hpp>
 
-#include <cstdlib>
 #include <iostream>
 #include <new>
 #include <string>
@@ -36,43 +35,30 @@ std::vector<std::string> worker_words(const fs::path& program, const fs::path& f
   return words;
 }
 
-/// Any bytes, after how many they are.
-std::string counted(const std::string& word) { return fmt::format("{}:{}", word.size(), word); }
-
-/// Empty: the input has ended.
-std::optional<std::string> next_word(std::istream& input) {
-  std::size_t size = 0;
-  std::string word;
-  if (!(input >> size) || input.get() != ':') return std::nullopt;
-  word.resize(size);
-  if (!input.read(word.data(), static_cast<std::streamsize>(size))) return std::nullopt;
-  return word;
-}
-
-/// As next_run() reads it.
+/// A run as CBOR, whose texts may be any bytes; run_of() reads it.
 std::string text_of(const RunSpec& run) {
-  std::string text = counted(run.scene) + counted(std::to_string(static_cast<int>(run.rounding))) +
-                     counted(to_string(run.variant)) + counted(run.fields) +
-                     counted(run.step_before ? "yes" : "") + counted(run.profile ? "yes" : "") +
-                     counted(run.program_version) + counted(std::to_string(run.overrides.size()));
-  for (const std::string& assignment : run.overrides) text += counted(assignment);
-  return text;
+  std::string bytes;
+  Json::to_cbor({run.scene.string(), run.overrides, run.rounding, to_string(run.variant), run.fields.string(),
+                 run.step_before, run.profile, run.program_version},
+                bytes);
+  return bytes;
 }
 
+RunSpec run_of(const Json& run) {
+  return {.scene = run.at(0).get<std::string>(),
+          .overrides = run.at(1),
+          .rounding = run.at(2),
+          .variant = variant_of(run.at(3)),
+          .fields = run.at(4).get<std::string>(),
+          .step_before = run.at(5),
+          .profile = run.at(6),
+          .program_version = run.at(7)};
+}
+
+/// Missing where the input has ended, or is no run.
 std::optional<RunSpec> next_run(std::istream& input) {
-  std::optional<std::string> word;
-  const auto next = [&] { return (word = next_word(input)).value_or(""); };
-  const auto number = [&] { return std::atoi(next().c_str()); };
-  RunSpec run{.scene = next()};
-  if (!word) return std::nullopt;
-  run.rounding = static_cast<Rounding>(number());
-  run.variant = variant_of(next());
-  run.fields = next();
-  run.step_before = !next().empty();
-  run.profile = !next().empty();
-  run.program_version = next();
-  for (int left = number(); left > 0; --left) run.overrides.push_back(next());
-  return word ? std::optional(run) : std::nullopt;
+  const Json run = Json::from_cbor(input, false, false);
+  return run.is_array() ? std::optional(run_of(run)) : std::nullopt;
 }
 
 /// Solves the scene and writes its fields; or why it cannot be solved.

@@ -114,7 +114,7 @@ Eigen::ArrayXd numbers_in(const std::filesystem::path& file, const std::string& 
 }  // namespace
 
 Checkpoint::Checkpoint(std::filesystem::path file, const PreparedRun& run)
-    : file_(std::move(file)), scene_(run.name), program_(program_identity(kOwnProgram)) {}
+    : file_(std::move(file)), scene_(run.name), program_(file_identity(kOwnProgram)) {}
 
 std::shared_ptr<const FinishedSteps> Checkpoint::read() const {
   if (!std::filesystem::exists(file_)) return nullptr;

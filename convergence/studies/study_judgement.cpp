@@ -21,8 +21,6 @@ namespace {
 
 /// No order is fitted while the iteration error is a larger part of the discretisation error.
 constexpr double kIterationPart = 0.1;
-/// A part of the budget that is this many spreads off is not explained by how the grid lies.
-constexpr double kSpreads = 2.0;
 
 /// A quantity through the meshes of a series.
 struct Curve {
@@ -166,68 +164,50 @@ Json order_json(const Order& order, const ExpectedOrder& expected) {
   return json;
 }
 
-/// Why parts of a mesh's budget are missing; empty: they are not.
-struct Missing {
-  std::string observed;
-  std::string discretisation;
-  std::string iteration;
-  std::string rounding;
-  std::string noise;
-};
-
 const std::string& first_of(const std::string& one, const std::string& other) {
   return one.empty() ? other : one;
 }
 
-Missing missing_parts(const Series& series, const std::vector<MeshResults>& results, std::size_t mesh,
-                      const std::string& quantity) {
-  Missing missing;
-  missing.observed = why_missing(results[mesh].grids.front(), quantity);
-  missing.discretisation = why_missing(results[mesh].tightened, quantity);
-  missing.iteration = first_of(missing.observed, missing.discretisation);
+/// Why a part of a mesh's budget is missing: what the first of the runs that it rests on says; empty: none
+/// is.
+std::string missing_part(const Series& series, const std::vector<MeshResults>& results, std::size_t mesh,
+                         const std::string& quantity) {
+  std::string missing = first_of(why_missing(results[mesh].grids.front(), quantity),
+                                 why_missing(results[mesh].tightened, quantity));
   for (std::size_t i = 0; i < results.size(); ++i) {
     if (!series.meshes[i].rounded) continue;
-    missing.rounding = why_missing(results[i].tightened, quantity);
-    for (const Json& rounded : results[i].rounded) {
-      missing.rounding = first_of(missing.rounding, why_missing(rounded, quantity));
-    }
+    missing = first_of(missing, why_missing(results[i].tightened, quantity));
+    for (const Json& rounded : results[i].rounded)
+      missing = first_of(missing, why_missing(rounded, quantity));
   }
-  missing.noise = first_of(missing.iteration, missing.rounding);
   return missing;
 }
 
 /// One line of the budget. The trend is what the fitted order says for the mesh, the staircase what is left
 /// of the discretisation: how this grid happens to lie.
 Json budget_json(const Curve& curve, const Order& order, std::size_t mesh, const Mesh& grids,
-                 const Missing& missing) {
+                 const std::string& missing) {
   const Budget& budget = curve.budgets[mesh];
   Json json;
   json["quantity"] = curve.quantity;
   json["cells"] = grids.grids.front().cells;
   json["h"] = grids.grids.front().size;
-  set_number(json, "observed", budget.observed, first_of(missing.observed, order.why));
-  set_number(json, "discretisation", budget.discretisation, first_of(missing.discretisation, order.why));
-  set_number(json, "iteration", budget.iteration, first_of(missing.iteration, order.why));
-  set_number(json, "rounding", budget.rounding, first_of(missing.rounding, order.why));
+  const std::string& none = first_of(missing, order.why);
+  set_number(json, "observed", budget.observed, none);
+  set_number(json, "discretisation", budget.discretisation, none);
+  set_number(json, "iteration", budget.iteration, none);
+  set_number(json, "rounding", budget.rounding, none);
   set_number(json, "reference", budget.reference, "the reference does not say");
   const double trend = order.constant * std::pow(grids.grids.front().size, order.value);
-  const double staircase = budget.discretisation - trend;
   const std::string unfitted = "no order was fitted";
   set_number(json, "trend", trend, unfitted);
-  set_number(json, "staircase", staircase, first_of(missing.discretisation, unfitted));
-  const MeshSample& sample = curve.samples[mesh];
-  const double explained = kSpreads * sample.spread + budget.rounding + budget.reference;
-  if (sample.grids > 1 && std::isfinite(staircase) && std::isfinite(explained)) {
-    json["adds_up"] = std::abs(staircase) <= explained;
-  } else {
-    set_missing(json, "adds_up", "one grid has no spread, or a part is not known");
-  }
+  set_number(json, "staircase", budget.discretisation - trend, first_of(missing, unfitted));
   return json;
 }
 
 /// A quantity on a mesh: what is there of its grids.
 Json mesh_json(const Curve& curve, const Order& order, std::size_t mesh, const Mesh& grids,
-               const Missing& missing) {
+               const std::string& missing) {
   const MeshSample& sample = curve.samples[mesh];
   const std::string none = sample.grids == 0 ? "no grid of this mesh converged" : order.why;
   Json json;
@@ -238,7 +218,7 @@ Json mesh_json(const Curve& curve, const Order& order, std::size_t mesh, const M
   } else {
     set_number(json, "spread", sample.spread, none);
   }
-  set_number(json, "noise", sample.noise, first_of(missing.noise, none));
+  set_number(json, "noise", sample.noise, first_of(missing, none));
   return json;
 }
 
@@ -336,7 +316,7 @@ Json judge_series(const Study& study, const Series& series, const std::vector<Me
     json["order"][path] = order_json(order, expected);
     json["order"][path]["basis"] = exact ? "exact" : "extrapolated";
     for (std::size_t i = 0; i < results.size(); ++i) {
-      const Missing missing = missing_parts(series, results, i, path);
+      const std::string missing = missing_part(series, results, i, path);
       json["meshes"][i][path] = mesh_json(curve, order, i, series.meshes[i], missing);
       json["budget"].push_back(budget_json(curve, order, i, series.meshes[i], missing));
     }

@@ -53,7 +53,6 @@ basis = "theory"
 id = "c"
 result = "result.json"
 quantity = "number"
-newer_than = "2026-11-24"
 of = "other.json"
 within = 1e-3
 basis = "theory"

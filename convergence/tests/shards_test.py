@@ -148,7 +148,7 @@ class ShardsTest(unittest.TestCase):
         self.assertIn("is no folder", self.run_program("study", "study.toml", "--merge", "nowhere", code=2))
         for words in (("--merge", "."), ("--figure", "a.svg")):
             self.assertIn("excludes", self.run_program("study", "study.toml", "--shard", "1/2", *words, code=2))
-        for words in (("--junit", "a.xml"), ("--summary", "a.md"), ("--github",)):
+        for words in (("--junit", "a.xml"), ("--summary", "a.md")):
             self.assertIn("excludes", self.run_program("gate", "gates.toml", "--shard", "1/2", *words, code=2))
 
 

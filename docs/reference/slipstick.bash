@@ -24,7 +24,7 @@ _slipstick() {
       "study --figure" | "study --output" | "study --jobs" | "study --memory-limit" | "study --program" | "study --shard" | "study --merge" | "study --json") return ;;
       "study "*) [[ $current != -* ]] || words="--help --set --figure --output --jobs --memory-limit --program --allow-programs --shard --merge --json --quiet" ;;
       "gate --only" | "gate --junit" | "gate --summary" | "gate --results" | "gate --output" | "gate --jobs" | "gate --memory-limit" | "gate --program" | "gate --shard" | "gate --merge" | "gate --json") return ;;
-      "gate "*) [[ $current != -* ]] || words="--help --only --junit --summary --github --results --output --jobs --memory-limit --program --allow-programs --shard --merge --json --quiet" ;;
+      "gate "*) [[ $current != -* ]] || words="--help --only --junit --summary --results --output --jobs --memory-limit --program --allow-programs --shard --merge --json --quiet" ;;
       "hard --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "hard --fields" | "hard --beside" | "hard --output" | "hard --jobs" | "hard --memory-limit" | "hard --program" | "hard --json") return ;;
       "hard "*) [[ $current != -* ]] || words="--help --set --fields --once --beside --output --jobs --memory-limit --program --allow-programs --json --quiet" ;;
@@ -36,8 +36,8 @@ _slipstick() {
       "bench --set") words="$_slipstick_keys"; compopt -o nospace 2>/dev/null ;;
       "bench --beside" | "bench --program" | "bench --output" | "bench --filter" | "bench --accuracy-data" | "bench --against" | "bench --pair" | "bench --rounds" | "bench --effect" | "bench --json") return ;;
       "bench "*) [[ $current != -* ]] || words="--help --set --beside --program --output --filter --quick --accuracy-data --against --pair --rounds --effect --json --quiet" ;;
-      "compare --effect" | "compare --level" | "compare --rerun" | "compare --summary" | "compare --junit" | "compare --json") return ;;
-      "compare "*) [[ $current != -* ]] || words="--help --effect --level --same-machine --debug-library --rerun --summary --junit --json --quiet" ;;
+      "compare --effect" | "compare --level" | "compare --summary" | "compare --junit" | "compare --json") return ;;
+      "compare "*) [[ $current != -* ]] || words="--help --effect --level --same-machine --debug-library --summary --junit --json --quiet" ;;
     esac
   fi
   [ -z "$words" ] || COMPREPLY=($(compgen -W "$words" -- "$current"))

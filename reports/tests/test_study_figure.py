@@ -39,7 +39,7 @@ def mesh(cells):
 def budget(quantity, cells):
     return {"quantity": quantity, "cells": [cells, cells // 2], "h": 1 / cells, "observed": -1e-3 + 1e-8,
             "discretisation": -1e-3, "iteration": 1e-8, "reference": 1e-12, "rounding": 1e-12, "trend": -9e-4,
-            "staircase": -1e-4, "adds_up": True}
+            "staircase": -1e-4}
 
 
 def series(method, pressure, **changes):

@@ -79,6 +79,15 @@ TEST(Comparison, OnlyAChangeThatCountsIsSlower) {
   expect_found(changed(1.15), Finding::same, 0, "", {.effect = 0.2});
 }
 
+TEST(Comparison, SaysWhereAnIntervalLeavesMoreOpenThanAPass) {
+  expect_found(changed(1.06), Finding::same, 0, "slower, below what counts");
+  std::vector<double> scattered;
+  for (int i = 0; i < 10; ++i) scattered.push_back(1e-3 * (1.0 + 0.05 * i));
+  const std::vector<double> reversed(scattered.rbegin(), scattered.rend());
+  expect_found(run_of({timed("it", scattered)}, {timed("it", reversed)}), Finding::same, 0,
+               "scatters too much to rule 10 % out");
+}
+
 // 56 of the hundred differences are positive, most by a third: the median is, and the ranks prove nothing.
 TEST(Comparison, SlowerByChanceIsUndecided) {
   std::vector<double> base;
@@ -121,8 +130,6 @@ TEST(Comparison, TooFewRepetitionsAreNoPass) {
   expect_found(changed(2.0, 3), Finding::too_few, 2, "6 repetitions");
   expect_found(changed(1.0, 1), Finding::too_few, 2);
   expect_found(changed(2.0, 6), Finding::slower, 1);
-  expect_found(run_of({timed("it", {})}, {steady("it", 1.0, 10, 1)}), Finding::too_few, 2,
-               "the base holds aggregates only");
 }
 
 TEST(Comparison, PairsNeedMoreRepetitions) {
@@ -143,12 +150,6 @@ TEST(Comparison, BenchmarksInOneFileAreReported) {
   expect_found(run_of({it("it")}, {}), Finding::only_in_base, 2);
   expect_found(run_of({}, {it("it")}), Finding::only_in_new, 2);
   EXPECT_EQ(exit_code(compare(run_of({it("a")}, {it("b")}, 0))), 2);
-  const Comparison renamed = compare(run_of({it("apply_fft/128")}, {it("apply_dcfft/128")}));
-  EXPECT_THAT(found(renamed, "apply_fft/128").remark, HasSubstr("renamed to apply_dcfft/128?"));
-  EXPECT_THAT(found(renamed, "apply_dcfft/128").remark, HasSubstr("renamed from apply_fft/128?"));
-  const Comparison other = compare(run_of({it("apply_fft/128")}, {it("whole_solve/7")}));
-  EXPECT_EQ(found(other, "apply_fft/128").remark, "");
-
   const Comparison ordered = compare(run_of({it("b"), it("a")}, {it("new"), it("a"), it("b")}, 0));
   std::vector<std::string> names;
   for (const ComparedBenchmark& benchmark : ordered.benchmarks) names.push_back(benchmark.name);
@@ -163,8 +164,9 @@ TEST(Comparison, FailuresCountWhereTheyAreNew) {
   const TimedBenchmark good = steady("it", 1e-3, kRepetitions, 1);
   expect_found(run_of({good}, {failed}), Finding::failed, 1, "disagrees with its reference");
   expect_found(run_of({failed}, {good}), Finding::not_timed, 2, "in the base");
-  expect_found(run_of({failed}, {failed}), Finding::not_timed, 2, "in both");
-  expect_found(run_of({good}, {skipped}), Finding::not_timed, 2, "skipped in the new file: no GPU");
+  expect_found(run_of({failed}, {failed}), Finding::not_timed, 2, "in the base");
+  expect_found(run_of({good}, {skipped}), Finding::not_timed, 2, "skipped: no GPU");
+  expect_found(run_of({good}, {timed("it", {})}), Finding::not_timed, 2, "aggregates only");
   for (const double time : {std::nan(""), HUGE_VAL, 0.0, -1.0}) {
     TimedBenchmark bad = good;
     bad.timings[4].real = time;
@@ -206,7 +208,7 @@ TEST(Obstacles, DifferentMachines) {
       {"host_name", [](TwoTimings& run) { run.now.context.host_name = "elsewhere"; }},
       {"mhz_per_cpu", [](TwoTimings& run) { run.now.context.mhz *= 1.06; }},
       {"mhz_per_cpu", [](TwoTimings& run) { run.now.context.mhz = std::nan(""); }},
-      {"caches", [](TwoTimings& run) { run.now.context.caches = {"L2 Unified 1048576 shared by 1"}; }}};
+      {"caches", [](TwoTimings& run) { run.now.context.caches = R"([{"level":2}])"; }}};
   for (const auto& [what, change] : changes) {
     EXPECT_THAT(obstacle(change), AllOf(HasSubstr("machines differ"), HasSubstr(what)));
     EXPECT_EQ(obstacle(change, {.same_machine = true}), "") << what;
@@ -238,7 +240,7 @@ TEST(Obstacles, LoadThatTheRunDoesNotExplain) {
     const auto load = [&](double average, int threads) {
       return [=](TwoTimings& run) {
         Timings& timings = in_base ? run.base : run.now;
-        timings.context.load_average[0] = average;
+        timings.context.load_average = average;
         timings.benchmarks.back().threads = threads;
       };
     };
@@ -247,7 +249,6 @@ TEST(Obstacles, LoadThatTheRunDoesNotExplain) {
     EXPECT_EQ(obstacle(load(4.9, 1)), "");
     EXPECT_EQ(obstacle(load(5.1, 2)), "");
   }
-  EXPECT_EQ(obstacle([](TwoTimings& run) { run.now.context.load_average.clear(); }), "");
 }
 
 /// The first benchmarks of a file take longer by the clock than by the processor's time.
@@ -264,6 +265,11 @@ TEST(Obstacles, MostBenchmarksWait) {
   EXPECT_EQ(obstacle([](TwoTimings& run) { wait(run.now, 1.2); }), "");
   EXPECT_EQ(obstacle([](TwoTimings& run) { wait(run.now, 20.0); }), "");    // by their nature
   EXPECT_EQ(obstacle([](TwoTimings& run) { wait(run.now, 1.6, 2); }), "");  // a sleep in two of four
+  EXPECT_EQ(obstacle([](TwoTimings& run) {                                  // both sides of a pair wait alike
+              wait(run.now, 1.6);
+              run.base.context.session = run.now.context.session = "one";
+            }),
+            "");
   EXPECT_EQ(obstacle([](TwoTimings& run) {  // three programs bring their own clock
               wait(run.now, 1.6);
               for (Timings* const timings : {&run.base, &run.now})
@@ -272,28 +278,11 @@ TEST(Obstacles, MostBenchmarksWait) {
             "");
 }
 
-// A second run holds nothing but what was slower: that all of it waits is no sign of load then.
-TEST(Obstacles, WhatWaitedInTheFirstRunMayWaitInTheSecond) {
-  TwoTimings first = steady_run();
-  wait(first.now, 1.6);
-  const std::vector<std::string> waiting = compare(first).waiting;
-  EXPECT_THAT(waiting, ElementsAre("steady/0", "steady/1", "steady/2"));
-  EXPECT_EQ(exit_code(compare(first)), 2);
-  EXPECT_EQ(exit_code(compare(first, {.waiting = waiting})), 0);
-}
-
 TEST(Obstacles, OneRunAgainstItself) {
   TwoTimings run = steady_run();
   run.now.benchmarks = run.base.benchmarks;
   EXPECT_THAT(compare(run).obstacles, ElementsAre(HasSubstr("compared with itself")));
   EXPECT_EQ(exit_code(compare(run)), 2);
-}
-
-TEST(Obstacles, FrequencyScalingIsARemark) {
-  TwoTimings run = steady_run();
-  run.now.context.scaling = true;
-  EXPECT_THAT(compare(run).remarks, ElementsAre(AllOf(HasSubstr("new.json"), HasSubstr("frequency"))));
-  EXPECT_EQ(exit_code(compare(run)), 0);
 }
 
 Comparison of_finding(Finding finding) {

@@ -19,9 +19,8 @@ inline TimingContext quiet_machine() {
   context.host_name = "somewhere";
   context.cpus = 8;
   context.mhz = 3000.0;
-  context.caches = {"L2 Unified 2097152 shared by 1"};
-  context.scaling = false;
-  context.load_average = {0.3, 0.2, 0.1};
+  context.caches = "[]";
+  context.load_average = 0.3;
   context.library_build_type = "release";
   return context;
 }

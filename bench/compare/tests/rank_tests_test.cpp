@@ -7,12 +7,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
-#include <limits>
 #include <map>
 #include <numeric>
 #include <random>
-#include <stdexcept>
 #include <tuple>
 
 namespace slipstick::bench {
@@ -91,41 +90,12 @@ TEST(RankSum, CountsAsTheRecurrenceDoes) {
   }
 }
 
-/// Halves for ties.
-double pairs_won(const std::vector<double>& base, const std::vector<double>& now) {
-  double won = 0.0;
-  for (const double x : now) {
-    for (const double y : base) won += x > y ? 1.0 : x == y ? 0.5 : 0.0;
-  }
-  return won;
-}
-
-TEST(RankSum, CountsAllChoicesWhereThereAreTies) {
-  std::mt19937_64 generator(7);
-  std::uniform_int_distribution<int> value(1, 4);
-  for (int round = 0; round < 20; ++round) {
-    std::vector<double> pooled(9);
-    for (double& x : pooled) x = value(generator);
-    const std::vector<double> now(pooled.begin(), pooled.begin() + 4);
-    const std::vector<double> base(pooled.begin() + 4, pooled.end());
-    const double observed = pairs_won(base, now);
-    double all = 0.0;
-    double above = 0.0;
-    double below = 0.0;
-    for (unsigned choice = 0; choice < 512; ++choice) {
-      std::vector<double> chosen;
-      std::vector<double> others;
-      for (std::size_t i = 0; i < 9; ++i) ((choice >> i & 1U) != 0 ? chosen : others).push_back(pooled[i]);
-      if (chosen.size() != 4) continue;
-      const double won = pairs_won(others, chosen);
-      all += 1.0;
-      above += won >= observed ? 1.0 : 0.0;
-      below += won <= observed ? 1.0 : 0.0;
-    }
-    const Shift shift = rank_sum_shift(base, now);
-    EXPECT_NEAR(shift.p_positive, above / all, 1e-14);
-    EXPECT_NEAR(shift.p_negative, below / all, 1e-14);
-  }
+// By hand: mid-ranks 1, 2.5, 2.5, 4, of which two may sum to 3.5 (twice), 5 (twice) and 6.5 (twice).
+TEST(RankSum, CountsTiesAsTheyAre) {
+  const Shift shift = rank_sum_shift(std::vector{1.0, 2.0}, std::vector{2.0, 3.0});
+  EXPECT_DOUBLE_EQ(shift.p_positive, 2.0 / 6.0);
+  EXPECT_DOUBLE_EQ(shift.p_negative, 1.0);
+  EXPECT_DOUBLE_EQ(rank_sum_shift(std::vector{1.0, 3.0}, std::vector{2.0, 2.0}).p_positive, 4.0 / 6.0);
 }
 
 // Critical values of the smaller sum, one-sided 2.5 % (Wilcoxon and Wilcox 1964).
@@ -141,37 +111,12 @@ TEST(SignedRank, HasThePublishedCriticalValues) {
   }
 }
 
-// Ties and zeros too: every way to set the signs of those that are not zero.
-TEST(SignedRank, CountsAllSigns) {
-  std::mt19937_64 generator(8);
-  std::uniform_int_distribution<int> value(-3, 3);
-  for (int round = 0; round < 20; ++round) {
-    std::vector<double> differences(8);
-    for (double& x : differences) x = value(generator);
-    std::vector<double> sizes;
-    double observed = 0.0;
-    const auto rank = [&](double size) {
-      double below = 0.0;
-      double equal = 0.0;
-      for (const double other : sizes) {
-        below += other < size ? 1.0 : 0.0;
-        equal += other == size ? 1.0 : 0.0;
-      }
-      return below + 0.5 * (equal + 1.0);
-    };
-    for (const double x : differences) {
-      if (x != 0.0) sizes.push_back(std::abs(x));
-    }
-    for (const double x : differences) observed += x > 0.0 ? rank(x) : 0.0;
-    double above = 0.0;
-    const unsigned all = 1U << sizes.size();
-    for (unsigned signs = 0; signs < all; ++signs) {
-      double sum = 0.0;
-      for (std::size_t i = 0; i < sizes.size(); ++i) sum += (signs >> i & 1U) != 0 ? rank(sizes[i]) : 0.0;
-      above += sum >= observed ? 1.0 : 0.0;
-    }
-    EXPECT_NEAR(signed_rank_shift(differences).p_positive, above / all, 1e-14);
-  }
+// By hand: the zero is left out, and 1, 1, -1, 2 have the ranks 2, 2, 2, 4. The positive ones sum to 8, and
+// to as much or more in four of the sixteen ways to sign them.
+TEST(SignedRank, CountsTiesAsTheyAreAndNoZeros) {
+  const Shift shift = signed_rank_shift(std::vector{0.0, 1.0, 1.0, -1.0, 2.0});
+  EXPECT_DOUBLE_EQ(shift.p_positive, 4.0 / 16.0);
+  EXPECT_DOUBLE_EQ(shift.p_negative, 15.0 / 16.0);
 }
 
 /// Chances that signed ranks 1 to n sum to t or less, by t, by counting.
@@ -226,48 +171,20 @@ TEST(RankTests, SeparatedSamplesHaveTheLeastChance) {
 }
 
 // By hand: means of two of -1, 2, 3 are -1, 0.5, 1, 2, 2.5, 3; differences of {1, 2} from {4, 8} 3, 7, 2, 6.
-// The interval is infinite where no one reaches 95 %.
+// There is no interval where none reaches 95 %.
 TEST(HodgesLehmann, IsTheMedianOfMeansOrDifferencesWithItsInterval) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();
-  struct Case {
-    Shift shift;
-    double estimate, low, high;
-  };
   using Values = std::vector<double>;
-  for (const auto& [shift, estimate, low, high] :
-       {Case{signed_rank_shift(Values{-1.0, 2.0, 3.0}), 1.5, -kInfinity, kInfinity},
-        Case{signed_rank_shift(Values{1.0, 2.0, 3.0, 4.0, 5.0}), 3.0, -kInfinity, kInfinity},
-        Case{signed_rank_shift(differences_with(21, 6)), 3.5, 1.0, 6.0},
-        Case{rank_sum_shift(Values{1.0, 2.0}, Values{4.0, 8.0}), 4.5, -kInfinity, kInfinity},
-        Case{rank_sum_shift(Values{1.0, 2.0, 3.0}, Values{4.0, 5.0, 6.0}), 3.0, -kInfinity, kInfinity},
-        Case{rank_sum_shift(Values{1.0, 2.0, 3.0, 4.0}, Values{11.0, 12.0, 13.0, 14.0}), 10.0, 7.0, 13.0}}) {
-    EXPECT_DOUBLE_EQ(shift.estimate, estimate);
-    EXPECT_DOUBLE_EQ(shift.low, low);
-    EXPECT_DOUBLE_EQ(shift.high, high);
+  for (const auto& [small, estimate] : {std::pair(signed_rank_shift(Values{-1.0, 2.0, 3.0}), 1.5),
+                                        std::pair(signed_rank_shift(Values{1.0, 2.0, 3.0, 4.0, 5.0}), 3.0),
+                                        std::pair(rank_sum_shift(Values{1.0, 2.0}, Values{4.0, 8.0}), 4.5)}) {
+    EXPECT_DOUBLE_EQ(small.estimate, estimate);
+    EXPECT_TRUE(std::isnan(small.low) && std::isnan(small.high));
   }
-}
-
-// As many means of two are beyond either end as sums of ranks stay in the tail: so the normal distribution
-// has it too, where it is taken.
-TEST(HodgesLehmann, IntervalBeyondCountingIsTheOneThatCountingGives) {
-  const std::size_t n = kMaxCounted + 1;
-  std::mt19937_64 generator(10);
-  std::normal_distribution<double> normal;
-  std::vector<double> differences(n);
-  for (double& x : differences) x = normal(generator);
-  const Shift shift = signed_rank_shift(differences);
-  std::ptrdiff_t below = 0;
-  std::ptrdiff_t above = 0;
-  for (std::size_t i = 0; i < n; ++i) {
-    for (std::size_t j = i; j < n; ++j) {
-      const double mean = 0.5 * (differences[i] + differences[j]);
-      below += mean <= shift.low ? 1 : 0;
-      above += mean >= shift.high ? 1 : 0;
-    }
-  }
-  const std::vector<double> counted = counted_signed_ranks(n);
-  EXPECT_EQ(below, std::ranges::upper_bound(counted, 0.025) - counted.begin());
-  EXPECT_EQ(above, below);
+  const Shift paired = signed_rank_shift(differences_with(21, 6));
+  EXPECT_THAT((std::array{paired.estimate, paired.low, paired.high}), ElementsAre(3.5, 1.0, 6.0));
+  const Shift independent = rank_sum_shift(Values{1.0, 2.0, 3.0, 4.0}, Values{11.0, 12.0, 13.0, 14.0});
+  EXPECT_THAT((std::array{independent.estimate, independent.low, independent.high}),
+              ElementsAre(10.0, 7.0, 13.0));
 }
 
 /// The share of hits, within three standard deviations.
@@ -299,17 +216,6 @@ TEST(HodgesLehmann, IntervalsHoldAsOftenAsTheySay) {
   }
   expect_share(independent, kDraws, 1.0 - 2.0 * chance_of_at_most(23, 10, 10));
   expect_share(paired, kDraws, 1.0 - 2.0 * 87.0 / 4096.0);  // 87 of 4096 sign patterns sum to 13 or less
-}
-
-TEST(RankTests, TakeOnlyNumbers) {
-  const std::vector<double> good{1.0, 2.0};
-  for (const double bad : {std::nan(""), HUGE_VAL}) {
-    EXPECT_THROW(signed_rank_shift(std::vector{1.0, bad}), std::invalid_argument);
-    EXPECT_THROW(rank_sum_shift(good, std::vector{1.0, bad}), std::invalid_argument);
-    EXPECT_THROW(rank_sum_shift(std::vector{1.0, bad}, good), std::invalid_argument);
-  }
-  EXPECT_THROW(signed_rank_shift({}), std::invalid_argument);
-  EXPECT_THROW(rank_sum_shift(good, {}), std::invalid_argument);
 }
 
 // Four chances, by hand: 0.005 x 4, 0.01 x 3, 0.03 x 2, then 0.04 x 1, which may not be below the one before.

@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "convergence/gates/tests/gate_folder.hpp"
+#include "convergence/tests/scratch_folder.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/tests/complaint.hpp"
 
@@ -33,6 +33,15 @@ set = { "load.moment_ratio" = 0.9, "grid.cells" = [256, 256], "contact.pressure"
 quantity = "twist_error"
 below = 2e-5
 basis = "measured"
+)";
+
+constexpr const char* kResultGate = R"([[gate]]
+id = "counted"
+result = "work.json"
+quantity = "counts.some-case.applications"
+above = 17
+below = 21
+basis = "counted 19"
 )";
 
 TEST_F(GateFile, IsReadInFull) {

@@ -7,7 +7,6 @@
 
 #include <nlohmann/json.hpp>
 
-#include "convergence/gates/tests/gate_folder.hpp"
 #include "convergence/gates/tests/made_gates.hpp"
 
 namespace slipstick::convergence {
@@ -17,7 +16,7 @@ using testing::AllOf;
 using testing::HasSubstr;
 using testing::Not;
 
-// Every kind of gate, with all that XML, Markdown and annotations take for markup.
+// Every kind of gate, with all that Markdown takes for markup.
 std::vector<Judgement> one_of_each() {
   const auto named = [](Gate gate, const std::string& id) {
     gate.id = id;
@@ -50,28 +49,6 @@ TEST(GateReport, TextExplainsWhatDoesNotPass) {
       HasSubstr("6 gates: 1 passed, 1 failed as expected, 1 reported, 1 refused, 1 passed unexpectedly, "
                 "1 failed\n"));
   EXPECT_THAT(text, Not(HasSubstr("--only good")));
-}
-
-class GateJunit : public ScratchFolder {};
-
-TEST_F(GateJunit, IsReadBackByAParser) {
-  const std::string seen = parse_xml(write("junit.xml", gates_junit(one_of_each())));
-  EXPECT_THAT(
-      seen, HasSubstr("testsuites {'name': 'slipstick gates', 'tests': '6', 'failures': '2', 'errors': '1', "
-                      "'skipped': '2', 'time': '1.500'}"));
-  EXPECT_THAT(
-      seen, HasSubstr("testsuite {'name': 'gates/other.toml', 'tests': '1', 'failures': '0', 'errors': '0', "
-                      "'skipped': '1', 'time': '0.000'}"));
-  EXPECT_THAT(
-      seen,
-      HasSubstr("testcase {'classname': 'some', 'name': 'bad <a> & \"b\" | c, d: 100 %', 'time': '1.500'}"));
-  EXPECT_THAT(seen,
-              HasSubstr("failure {'message': 'x is 4, must be below 1 in size: 4 times the bound', 'type': "
-                        "'failed'}"));
-  EXPECT_THAT(seen, HasSubstr("error {'message': 'no\\nsuch \\\\x01 scene <here>', 'type': 'refused'}"));
-  EXPECT_THAT(
-      seen, HasSubstr("skipped {'message': 'reported: x is 3, must be below 1 in size: 3 times the bound'}"));
-  EXPECT_THAT(seen, HasSubstr("likely to blame: discretisation"));
 }
 
 /// Failing gates, gate i by the factor 2 + i, in an order that hides the worst.
@@ -124,15 +101,6 @@ TEST(GateReport, MarkdownHoldsEveryGateInItsOrderOfBadness) {
     }
   }
   EXPECT_THAT(text, Not(HasSubstr("more gates")));
-}
-
-TEST(GateReport, AnnotationsStandAtTheGateAndAreEscaped) {
-  const std::string text = gates_annotations(one_of_each());
-  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3);
-  EXPECT_THAT(
-      text,
-      HasSubstr("::error file=gates/some.toml,line=12,title=Gate bad <a> & \"b\" | c%2C d%3A 100 %25::x is "
-                "4, must be below 1 in size: 4 times the bound%0Alikely to blame: discretisation%0A"));
 }
 
 TEST(GateReport, JsonHasEveryNumberOrAReason) {

@@ -154,7 +154,6 @@ TEST_F(Judged, WithoutARoundedSolveNoMeshHasANoise) {
     for (std::size_t i = 0; i < 4; ++i) {
       EXPECT_TRUE(json["meshes"][i][kTwist]["noise"].is_null()) << i;
       EXPECT_TRUE(json["budget"][i]["rounding"].is_null()) << i;
-      EXPECT_TRUE(json["budget"][i]["adds_up"].is_null()) << i;
       EXPECT_TRUE(json["budget"][i]["iteration"].is_number()) << i;
     }
     EXPECT_EQ(json["order"][kTwist]["verdict"], "too_few");

@@ -148,30 +148,6 @@ TEST(StudyNumbers, OfValuesAreRelativeToTheirLimit) {
   }
 }
 
-/// Whether a mesh's budget adds up, whose error is off the trend by so many standard deviations of its grids
-/// and so many times what rounding and reference leave open. The trend goes through the grids' means.
-bool adds_up(double deviations, double known) {
-  const double rounding = 3e-7;
-  const double reference = 1e-7;
-  MadeStudy made("paper", kMadeError, 2);
-  for (std::size_t i = 0; i < made.meshes(); ++i) {
-    const double trend = kMadeConstant * made.of_first(i);
-    const double mean = kMadeConstant * made.of_mean(i);
-    const double deviation = std::sqrt(2.0) * (mean - trend);
-    const double off =
-        i == 1 ? deviations * deviation + known * std::copysign(rounding + reference, deviations) : 0.0;
-    made.set(i, {trend, 2.0 * mean - trend}, trend + off, rounding, reference);
-  }
-  return made.judged()["budget"][1]["adds_up"].get<bool>();
-}
-
-TEST(StudyNumbers, AddUpToTwoStandardDeviationsAndWhatIsKnown) {
-  EXPECT_TRUE(adds_up(2.0, 0.9));
-  EXPECT_FALSE(adds_up(2.0, 1.1));
-  EXPECT_TRUE(adds_up(-2.0, 0.9));
-  EXPECT_FALSE(adds_up(-2.0, 1.1));
-}
-
 /// Whether a study goes on to a tighter tolerance, where stopping adds a part of one mesh's error, and
 /// rounding and reference leave a part of it open.
 bool tightens(double stopping, double rounding, double reference) {

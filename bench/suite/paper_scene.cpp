@@ -1,9 +1,7 @@
-#include "bench/suite/checked_solve.hpp"
+#include "bench/suite/paper_scene.hpp"
 
+#include <cmath>
 #include <filesystem>
-
-#include "bench/timing/invalid_reason.hpp"
-#include "convergence/results/exact_result.hpp"
 
 namespace slipstick::bench {
 
@@ -19,14 +17,6 @@ Scene paper_scene(solver::Index cells, double moment_ratio) {
   scene.tolerance = 1e-8;
   scene.threads = 1;
   return scene;
-}
-
-CheckedSolution solve_and_check(const Scene& scene) {
-  const convergence::Oracle exact = convergence::require_oracle(scene);
-  CheckedSolution checked{.solution = solver::solve(scene), .errors = {}, .invalid_reason = {}};
-  checked.errors = convergence::compare(checked.solution, exact);
-  checked.invalid_reason = invalid_reason(scene, checked.solution, checked.errors);
-  return checked;
 }
 
 std::map<std::string, benchmark::Counter> counters(const CheckedSolution& checked) {

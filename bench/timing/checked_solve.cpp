@@ -1,9 +1,11 @@
-#include "bench/timing/invalid_reason.hpp"
+#include "bench/timing/checked_solve.hpp"
 
 #include <fmt/core.h>
 
 #include <algorithm>
 #include <cmath>
+
+#include "convergence/results/exact_result.hpp"
 
 namespace slipstick::bench {
 namespace {
@@ -47,6 +49,14 @@ std::string error_above_bound(const Scene& scene, double moment_ratio, const con
 }
 
 }  // namespace
+
+CheckedSolution solve_and_check(const Scene& scene) {
+  const convergence::Oracle exact = convergence::require_oracle(scene);
+  CheckedSolution checked{.solution = solver::solve(scene), .errors = {}, .invalid_reason = {}};
+  checked.errors = convergence::compare(checked.solution, exact);
+  checked.invalid_reason = invalid_reason(scene, checked.solution, checked.errors);
+  return checked;
+}
 
 std::string invalid_reason(const Scene& scene, const solver::Solution& solution,
                            const convergence::Errors& errors) {
