@@ -178,15 +178,5 @@ TEST(Crossover, IsTheMoreCertainTheLessTheScatter) {
   EXPECT_NEAR(coarse, 2 * 2.26 * std::sqrt(2.0) * 1.25 * 0.05 / std::sqrt(10.0) / 2.0, 0.5 * coarse);
 }
 
-TEST(Crossover, NearTheSmallestSizeMayLieBelowIt) {
-  std::mt19937 random(6);
-  const TimeLaw nearly = [](double n) { return square(n) * std::pow(n / 4.1, 2); };
-  const Crossover found =
-      find_crossover(drawn_family(nearly, 0.2, 5, random), drawn_family(square, 0.2, 5, random));
-  EXPECT_EQ(found.low, -kInfinity);
-  EXPECT_GT(found.high, 4.0);
-  EXPECT_LT(found.high, 12.0);
-}
-
 }  // namespace
 }  // namespace slipstick::convergence
