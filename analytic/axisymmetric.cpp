@@ -182,7 +182,7 @@ class Cone final : public Profile {
           [&](double u) {
             const double growth = std::exp(u);
             const double s = std::min(1.0, (rising * growth + falling / growth) / 2);
-            return complete_elliptic_k(s) / s;
+            return complete_elliptic(s).k / s;
           },
           from, to);
       from = to;

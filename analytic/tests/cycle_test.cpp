@@ -51,48 +51,6 @@ class RandomMoments {
   std::mt19937 twister_{20240607};
 };
 
-/// A contact as many elements in series, a spring with a slider of some threshold each (Prandtl-Ishlinskii):
-/// each yields as far as the moment drives it beyond its threshold, either way. It obeys Masing's rule
-/// without knowing it, and has no memory but its elements' twists. The virgin curve is the chords' of phi(M).
-class SpringsAndSliders {
- public:
-  SpringsAndSliders(const Profile& profile, int count, double most_ratio) {
-    const double step = most_ratio / count;
-    double twist = 0;
-    double slope = 0;
-    for (int i = 0; i < count; ++i) {
-      const TorsionState next = from_moment_ratio(step * (i + 1), profile);
-      const double chord = (next.twist - twist) / (step * profile.moment_limit());
-      elements_.push_back({.threshold = step * i * profile.moment_limit(), .compliance = chord - slope});
-      twist = next.twist;
-      slope = chord;
-    }
-  }
-
-  void load_to(double moment) {
-    for (auto& element : elements_) {
-      const double before = element.yielded;
-      element.yielded = std::clamp(before, moment - element.threshold, moment + element.threshold);
-      dissipated_ += element.compliance * element.threshold * std::abs(element.yielded - before);
-    }
-  }
-  double twist() const {
-    double sum = 0;
-    for (const auto& element : elements_) sum += element.compliance * element.yielded;
-    return sum;
-  }
-  double dissipated() const { return dissipated_; }
-
- private:
-  struct Element {
-    double threshold;
-    double compliance;
-    double yielded = 0;
-  };
-  std::vector<Element> elements_;
-  double dissipated_ = 0;
-};
-
 TEST(LoadingHistory, BeginsOnTheCurveOfFirstLoading) {
   for (const Profile* profile : kProfiles)
     for (const double m : {1e-100, 1e-9, 1e-3, 0.1, 0.5, 0.88, 0.99, 1 - 1e-12})
@@ -207,29 +165,6 @@ TEST(LoadingHistory, StaysWithinCoulombsBoundAndReachesItInItsSlipRing) {
         }
       }
     }
-  }
-}
-
-TEST(LoadingHistory, AgreesWithSpringsAndSlidersAlongRandomHistories) {
-  constexpr double kMax = 0.97;
-  for (const Profile* profile : kProfiles) {
-    SpringsAndSliders model(*profile, 2000, kMax);
-    LoadingHistory history(*profile);
-    RandomMoments next(kMax);
-    std::size_t deepest = 0;
-    for (int i = 0; i < 300; ++i) {
-      // Excursions of all sizes, about where it stands: they nest.
-      const double wanted = next();
-      const double ratio =
-          i % 10 == 0 ? wanted : history.moment_ratio() + (wanted - history.moment_ratio()) / 3;
-      history.load_to(ratio);
-      model.load_to(ratio * profile->moment_limit());
-      deepest = std::max(deepest, history.turning_points().size());
-      ASSERT_NEAR(history.state().twist, model.twist(), 1e-5) << profile->name() << ' ' << i;
-      ASSERT_NEAR(history.state().dissipated, model.dissipated(), 1e-4 * model.dissipated() + 1e-9)
-          << profile->name() << ' ' << i;
-    }
-    EXPECT_GE(deepest, 4u);
   }
 }
 

@@ -45,10 +45,6 @@ TEST(Equation1, MendedIntegratesToEquation5) {
     EXPECT_NEAR(moment_of(eq1, c) / eq5_moment(c), 1, 1e-13) << c;
 }
 
-TEST(Equation1, AsPrintedDoesNotIntegrateToEquation5) {
-  for (const double c : {0.3, 0.5, 0.8, 0.9}) EXPECT_GT(moment_of(eq1_printed, c) / eq5_moment(c), 1.01) << c;
-}
-
 TEST(Equation1, MendedAgreesWithTheStableForm) {
   for (const double c : {0.1, 0.5, 0.8, 0.95})
     for (const double f : {0.0, 0.1, 0.5, 0.9, 0.999, 1.0, 1.01}) {
@@ -77,19 +73,6 @@ TEST(Equation5, LosesAllDigitsAsSlipVanishes) {
 TEST(Equation6, IsTheMomentOfSlipEverywhere) {
   EXPECT_DOUBLE_EQ(eq6_moment_limit(), 3 * pi / 16);
   EXPECT_NEAR(eq5_moment(1e-3), eq6_moment_limit(), 1e-9);
-}
-
-TEST(Equation7, IsOffAwayFromSmallMoments) {
-  struct Point {
-    double moment_ratio, error;
-  };
-  for (const auto& [moment_ratio, error] :
-       {Point{0.159, -0.0025}, {0.527, -0.039}, {0.897, -0.23}, {0.994, -0.54}}) {
-    const auto state = from_moment_ratio(moment_ratio);
-    // Both errors as known, to the digits they are known to.
-    EXPECT_NEAR(eq7_twist(state.moment) / state.twist - 1, error, std::abs(error) < 0.1 ? 5e-4 : 5e-3)
-        << moment_ratio;
-  }
 }
 
 TEST(Equation7, IsFiniteAtTheLimitWhereTheTwistIsNot) {

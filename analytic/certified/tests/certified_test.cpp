@@ -44,19 +44,6 @@ TEST(Certified, HasTheTangentStiffnessOfItsStickArea) {
     EXPECT_TRUE(agree(at_stick_ratio(profile, "0.3").tangent_stiffness, 16 * exact("0.027") / 3));
 }
 
-TEST(Certified, KnowsASphereAndAConeAsPowerLaws) {
-  const Precision precision(kBits);
-  const std::vector<std::string> radii{"0.1", "0.4", "0.95"};
-  for (const auto& [law, same] : {std::pair(power("2"), kHertz), std::pair(power("1.0"), kCone)}) {
-    const State a = state(law, Quantity::moment_ratio, "0.7", radii, 50);
-    const State b = state(same, Quantity::moment_ratio, "0.7", radii, 50);
-    for (const auto& [name, member] : kMember)
-      EXPECT_TRUE(overlap(enclosure(a.*member), enclosure(b.*member))) << name;
-    for (std::size_t i = 0; i < radii.size(); ++i)
-      EXPECT_TRUE(overlap(enclosure(a.traction[i]), enclosure(b.traction[i]))) << radii[i];
-  }
-}
-
 TEST(Certified, FollowsTheAsymptotesAtBothEnds) {
   const Precision precision(500);
   for (const std::string w : {"1e-10", "1e-30", "1e-90"}) {
@@ -90,17 +77,6 @@ TEST(Certified, GoesRoundBetweenAllQuantities) {
             << name << ", c = " << c;
       }
     }
-}
-
-TEST(Certified, EnclosesTheRootBetweenItsEnds) {
-  const Precision precision(kBits);
-  const Ball m = exact("0.3");
-  const Ball c = enclosure(state(kHertz, Quantity::moment_ratio, "0.3", {}, 30).stick_ratio);
-  const auto moment_at = [](const Ball& end) {
-    return enclosure(at_stick_ratio(kHertz, print_proven(end, 80)->value, {}, 80).moment_ratio);
-  };
-  EXPECT_TRUE(moment_at(upper_bound(c)) < m);
-  EXPECT_TRUE(moment_at(lower_bound(c)) > m);
 }
 
 TEST(Certified, SticksEverywhereAtNoLoad) {

@@ -71,8 +71,8 @@ TEST(AccuracyData, TellTheWorkBetweenMeshesAndTolerances) {
   EXPECT_NEAR(work_of(data, 20.0, 0.5), 400.0, 1e-9);
 }
 
-/// Those that come with the program, so that a mesh can be picked by them; and the file that holds them, which
-/// is what would be written of them.
+/// Those that come with the program, so that a mesh can be picked by them; and the file that holds them,
+/// which is what would be written of them.
 TEST(AccuracyData, OfTheProgramFallFromMeshToMesh) {
   const AccuracyData data = convergence::accuracy_data();
   ASSERT_GE(data.meshes.size(), 3U);
@@ -87,7 +87,8 @@ TEST(AccuracyData, OfTheProgramFallFromMeshToMesh) {
     EXPECT_EQ(work.size(), tolerances.size());
     EXPECT_GT(std::ranges::min(work), 0.0);
   }
-  for (const auto& [word, of] : convergence::accuracy_words()) EXPECT_GT(falling_order(data, of), 0.0) << word;
+  for (const auto& [word, of] : convergence::accuracy_words())
+    EXPECT_GT(falling_order(data, of), 0.0) << word;
   const std::string file = solver::read_input_file(
       fs::path(SLIPSTICK_SCENES).parent_path() / "solve/accuracy.toml", 1 << 20, "accuracy data");
   const std::size_t origin = file.find("# ", 1);
@@ -152,16 +153,6 @@ TEST(AccuracyChoice, IsRefusedWhereTheContactGoesOnBeyondTheExtent) {
   const solver::Scene cut = scene("patches", {"grid.extent=[1.4e-3,0.7e-3]"});
   EXPECT_THROW(convergence::contact_on_grid(cut), solver::InputError);
   EXPECT_NO_THROW(convergence::contact_on_grid(scene("patches")));
-}
-
-TEST(Accuracy, SaysWhichGridWouldDoInstead) {
-  const solver::Scene oblong = scene("paper", {"grid.extent=[2e-3,1e-3]", "grid.cells=[128,64]"});
-  const Json accuracy = convergence::exact_accuracy(oblong, {1e-2});
-  const Json& cells = accuracy["grid_instead"]["cells"];
-  EXPECT_EQ(cells[0].get<int>(), 2 * cells[1].get<int>());
-  EXPECT_THAT(
-      convergence::accuracy_text({{"accuracy", accuracy}}),
-      HasSubstr(fmt::format("it would take {} x {} cells", cells[0].get<int>(), cells[1].get<int>())));
 }
 
 /// The sphere as if it had no exact answer: the estimate is above the error, and not by orders.
