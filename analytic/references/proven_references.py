@@ -84,7 +84,7 @@ class References:
         ends, states = self.beside(profile, given, value)
         if None in (proven, *states):
             return []
-        costs = {q: slope(*(Decimal(state[q]["value"]) for state in states), *ends) for q in QUANTITIES}
+        costs = {q: float(slope(*(Decimal(state[q]["value"]) for state in states), *ends)) for q in QUANTITIES}
         return [[profile, given, shortest(value), q, "", *proven[q].values(), f"{costs[q]:.3g}"] for q in QUANTITIES if q != given]
 
     def traction_rows(self, profile, given, value, radii):
