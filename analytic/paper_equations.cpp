@@ -43,7 +43,10 @@ double amplitude(double stick_ratio, double radius) {
 }
 
 /// Eq. (3).
-double d(double k) { return (complete_k(k) - complete_e(k)) / (k * k); }
+double d(double k) {
+  require(k > 0 && k < 1, "k", k, "0 < k < 1");
+  return (complete_k(k) - complete_e(k)) / (k * k);
+}
 
 /// Eq. (1) with a factor on its stick branch.
 double eq1_with(double factor, double stick_ratio, double radius) {

@@ -2,11 +2,9 @@
 
 #include <fmt/core.h>
 
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <ostream>
 #include <stdexcept>
 
 #include "analytic/approximations.hpp"

@@ -4,7 +4,6 @@
 
 #include <string>
 #include <utility>
-#include <vector>
 
 #include "analytic/certified/tests/known.hpp"
 #include "analytic/references/references.hpp"

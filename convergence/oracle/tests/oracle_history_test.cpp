@@ -15,7 +15,6 @@ namespace {
 
 using solver::Scene;
 using solver::Step;
-using testing::AllOf;
 using testing::HasSubstr;
 
 // Some roundings on the way from a scene's moduli to a number, and as many branches of a history.

@@ -2,7 +2,6 @@
 
 #include "convergence/solve/accuracy.hpp"
 
-#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
