@@ -118,13 +118,13 @@ bench-against: configure ## is this tree slower than REV (origin/main)? (bench/a
 bench-trust: configure ## is a build never slower than itself, and 15 % always found? (a quarter of an hour)
 	@cmake --build $(BUILD) --target bench-trust
 
-references: configure ## write the table of proven values again (2 minutes; needs FLINT with Arb)
-	$(call build,slipstick_references)
-	@$(BUILD)/analytic/certified/slipstick_references table --output analytic/references/certified_references.csv
+references: configure ## write the table of proven values again (minutes; needs FLINT with Arb)
+	$(call build,slipstick)
+	@$(PYTHON) -B analytic/references/proven_references.py $(BUILD)/slipstick table
 
 hardest: configure ## look for harder inputs of the exact functions (SEARCH_OPTIONS="--seed 2 --samples 1000")
-	$(call build,slipstick_references)
-	@$(BUILD)/analytic/certified/slipstick_references search --folder analytic/references/hardest $(SEARCH_OPTIONS)
+	$(call build,slipstick)
+	@$(PYTHON) -B analytic/references/proven_references.py $(BUILD)/slipstick search $(SEARCH_OPTIONS)
 
 docs: ## make the documentation's site, build/site/index.html (needs MkDocs)
 	@command -v mkdocs > /dev/null || \

@@ -29,15 +29,16 @@ constexpr Table upper_series(const series::Exact& taylor) {
   return series::rounded(integrated);
 }
 
-/// integral_0^c s^2 f ds over c^3: log ln(1/c) + constant, term by term.
+/// integral_0^c s^m f ds over c^(m + 1), of the terms with a power of c: log ln(1/c) + constant, term by
+/// term.
 struct LowerSeries {
   Table log;
   Table constant;
 };
-constexpr LowerSeries lower_series(const series::Logarithmic& f) {
+constexpr LowerSeries lower_series(const series::Logarithmic& f, int m = 2) {
   series::Logarithmic integrated{};
-  for (std::size_t n = 0; n < series::kTerms; ++n) {
-    const auto power = static_cast<long double>(2 * n + 3);
+  for (std::size_t n = m < 0 ? 1 : 0; n < series::kTerms; ++n) {
+    const auto power = static_cast<long double>(2 * n) + (m + 1);
     integrated.log[n] = f.log[n] / power;
     integrated.constant[n] = (f.constant[n] + integrated.log[n]) / power;
   }
@@ -130,17 +131,7 @@ class Cone final : public Profile {
       for (std::size_t n = 0; n < series::kTerms; ++n) integrated[n] /= static_cast<long double>(n + 1);
       return series::rounded(integrated);
     }();
-    static constexpr LowerSeries kLower = [] {
-      const series::Logarithmic k = series::logarithmic_k();
-      series::Logarithmic integrated{};
-      for (std::size_t n = 1; n < series::kTerms; ++n) {
-        const auto power = static_cast<long double>(2 * n);
-        integrated.log[n] = k.log[n] / power;
-        integrated.constant[n] = (k.constant[n] + integrated.log[n]) / power;
-      }
-      return LowerSeries{.log = series::rounded(integrated.log),
-                         .constant = series::rounded(integrated.constant)};
-    }();
+    static constexpr LowerSeries kLower = lower_series(series::logarithmic_k(), -1);
     const double y = squared_modulus(c);
     if (y <= 0.5) return pi / 4 * y * series::sum(kUpper, y);
     const double x = c.ratio * c.ratio;
@@ -182,7 +173,7 @@ class Cone final : public Profile {
           [&](double u) {
             const double growth = std::exp(u);
             const double s = std::min(1.0, (rising * growth + falling / growth) / 2);
-            return complete_elliptic_k(s) / s;
+            return complete_elliptic(s).k / s;
           },
           from, to);
       from = to;

@@ -18,36 +18,22 @@ namespace {
 constexpr double kLogarithmic = 0.25;
 constexpr std::size_t kLogarithmicTerms = 16;
 
-double k_by_series(double kp) {
-  static constexpr auto kLog = series::rounded(series::logarithmic_k().log);
-  static constexpr auto kConstant = series::rounded(series::logarithmic_k().constant);
-  const double x = kp * kp;
-  return -std::log(kp) * series::sum(kLog, x, kLogarithmicTerms) +
-         series::sum(kConstant, x, kLogarithmicTerms);
-}
-
 CompleteElliptic by_series(double kp) {
-  static constexpr auto kLog = series::rounded(series::logarithmic_e().log);
-  static constexpr auto kConstant = series::rounded(series::logarithmic_e().constant);
+  static constexpr auto kLogK = series::rounded(series::logarithmic_k().log);
+  static constexpr auto kConstantK = series::rounded(series::logarithmic_k().constant);
+  static constexpr auto kLogE = series::rounded(series::logarithmic_e().log);
+  static constexpr auto kConstantE = series::rounded(series::logarithmic_e().constant);
   const double x = kp * kp;
-  const double k = k_by_series(kp);
-  const double e =
-      -std::log(kp) * series::sum(kLog, x, kLogarithmicTerms) + series::sum(kConstant, x, kLogarithmicTerms);
+  const auto sum = [&](const series::Table& log, const series::Table& constant) {
+    return -std::log(kp) * series::sum(log, x, kLogarithmicTerms) +
+           series::sum(constant, x, kLogarithmicTerms);
+  };
+  const double k = sum(kLogK, kConstantK);
+  const double e = sum(kLogE, kConstantE);
   return {.k = k, .e = e, .d = (k - e) / ((1 - kp) * (1 + kp))};
 }
 
 constexpr double kConverged = 1e-8;  // of two means; the next step squares it
-
-double k_by_mean(double kp) {
-  double a = (1 + kp) / 2;
-  double g = std::sqrt(kp);
-  while (a - g > kConverged * a) {
-    const double mean = (a + g) / 2;
-    g = std::sqrt(a * g);
-    a = mean;
-  }
-  return std::numbers::pi / (a + g);
-}
 
 /// K = pi/(2 agm(1, k')), and K - E is K/2 times the sum of 2^n c_n^2, where c_0 = k and
 /// c_(n+1) = c_n^2/(4 a_(n+1)): nothing cancels in D, and little in E for k' > 1/4.
@@ -72,23 +58,13 @@ CompleteElliptic by_mean(double kp) {
   return {.k = k, .e = k - k2 * d, .d = d};
 }
 
-void require_modulus(double kp) {
-  if (!(kp > 0 && kp <= 1))
-    throw std::domain_error(fmt::format("complementary modulus k' = {}; allowed: 0 < k' <= 1", kp));
-}
-
 }  // namespace
 
 CompleteElliptic complete_elliptic(double complementary_modulus) {
-  require_modulus(complementary_modulus);
-  return complementary_modulus <= kLogarithmic ? by_series(complementary_modulus)
-                                               : by_mean(complementary_modulus);
-}
-
-double complete_elliptic_k(double complementary_modulus) {
-  require_modulus(complementary_modulus);
-  return complementary_modulus <= kLogarithmic ? k_by_series(complementary_modulus)
-                                               : k_by_mean(complementary_modulus);
+  const double kp = complementary_modulus;
+  if (!(kp > 0 && kp <= 1))
+    throw std::domain_error(fmt::format("complementary modulus k' = {}; allowed: 0 < k' <= 1", kp));
+  return kp <= kLogarithmic ? by_series(kp) : by_mean(kp);
 }
 
 double carlson_rf(double x, double y, double z) { return gsl::evaluate(gsl_sf_ellint_RF_e, x, y, z); }

@@ -14,8 +14,6 @@ struct CompleteElliptic {
 /// most 5 eps, where forms in k lose everything at either end.
 /// Throws std::domain_error for k' outside (0, 1] or NaN.
 CompleteElliptic complete_elliptic(double complementary_modulus);
-/// K alone, in half the time.
-double complete_elliptic_k(double complementary_modulus);
 
 /// Carlson's symmetric integrals R_F(x, y, z), R_D(x, y, z), R_J(x, y, z, p) (DLMF 19.16).
 /// Throw std::domain_error where GSL refuses: arguments below about 1e-205 (R_D) or 1e-103 (R_J) included.

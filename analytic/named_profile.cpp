@@ -55,7 +55,7 @@ PressedContact press_closed_form(const TypedName&, const NormalLoad& load) {
 
 NamedProfile power(const TypedName& name) { return {.profile = power_profile(number(name))}; }
 PressedContact press_power(const TypedName& name, const NormalLoad& load) {
-  return analytic::press_power(number(name), load);
+  return {power(name), indent_power(load.load, number(name), load.shape[0], load.effective_modulus)};
 }
 
 NamedProfile rounded_punch(const TypedName& name) { return {.profile = rounded_punch_profile(number(name))}; }
@@ -146,11 +146,6 @@ PressedContact press(const std::string& profile_name, const NormalLoad& load) {
     throw std::invalid_argument(fmt::format("profile \"{}\": shape {}; needed: {}", profile_name,
                                             fmt::join(load.shape, ","), row->shape));
   return row->press(typed, load);
-}
-
-PressedContact press_power(double exponent, const NormalLoad& load) {
-  return {{.profile = power_profile(exponent)},
-          indent_power(load.load, exponent, load.shape.at(0), load.effective_modulus)};
 }
 
 std::string profile_words() {

@@ -36,9 +36,6 @@ struct PressedContact {
 };
 PressedContact press(const std::string& profile_name, const NormalLoad& load);
 
-/// The contact of a gap like r^exponent; load.shape holds the gap's coefficient.
-PressedContact press_power(double exponent, const NormalLoad& load);
-
 /// For help: the words that find_profile() takes, "hertz | cone | power:N (gap ~ r^N) | ...".
 std::string profile_words();
 /// For help: the numbers that press() takes by profile, "hertz: sphere radius, m; cone: slope; ...".

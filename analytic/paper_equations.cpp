@@ -34,6 +34,20 @@ void require_partial_slip(double stick_ratio) {
 /// k of Eq. (2).
 double modulus(double stick_ratio) { return std::sqrt(1 - stick_ratio * stick_ratio); }
 
+/// Eq. (2)'s phi.
+double amplitude(double stick_ratio, double radius) {
+  const double c2 = stick_ratio * stick_ratio;
+  const double r2 = radius * radius;
+  // At r = 0 the sine is 1, up to rounding.
+  return std::asin(std::min(1.0, std::sqrt((c2 - r2) / (1 - r2)) / stick_ratio));
+}
+
+/// Eq. (3).
+double d(double k) {
+  require(k > 0 && k < 1, "k", k, "0 < k < 1");
+  return (complete_k(k) - complete_e(k)) / (k * k);
+}
+
 /// Eq. (1) with a factor on its stick branch.
 double eq1_with(double factor, double stick_ratio, double radius) {
   require_partial_slip(stick_ratio);
@@ -41,9 +55,9 @@ double eq1_with(double factor, double stick_ratio, double radius) {
   const double sliding = std::sqrt(1 - radius * radius);
   if (radius > stick_ratio) return sliding;
   const double k = modulus(stick_ratio);
-  const double phi = eq2_amplitude(stick_ratio, radius);
+  const double phi = amplitude(stick_ratio, radius);
   return factor * sliding *
-         (pi / 2 + k * k * eq3_d(k) * incomplete_f(stick_ratio, phi) -
+         (pi / 2 + k * k * d(k) * incomplete_f(stick_ratio, phi) -
           complete_k(k) * incomplete_e(stick_ratio, phi));
 }
 
@@ -53,24 +67,10 @@ double eq1_printed(double stick_ratio, double radius) { return eq1_with(1, stick
 
 double eq1(double stick_ratio, double radius) { return eq1_with(2 / pi, stick_ratio, radius); }
 
-double eq2_amplitude(double stick_ratio, double radius) {
-  require_partial_slip(stick_ratio);
-  require(radius >= 0 && radius <= stick_ratio, "r/a", radius, "0 <= r/a <= a_s/a");
-  const double c2 = stick_ratio * stick_ratio;
-  const double r2 = radius * radius;
-  // At r = 0 the sine is 1, up to rounding.
-  return std::asin(std::min(1.0, std::sqrt((c2 - r2) / (1 - r2)) / stick_ratio));
-}
-
-double eq3_d(double modulus) {
-  require(modulus > 0 && modulus < 1, "k", modulus, "0 < k < 1");
-  return (complete_k(modulus) - complete_e(modulus)) / (modulus * modulus);
-}
-
 double eq4_twist(double stick_ratio) {
   require_partial_slip(stick_ratio);
   const double k = modulus(stick_ratio);
-  return 3 / (4 * pi) * k * k * eq3_d(k);
+  return 3 / (4 * pi) * k * k * d(k);
 }
 
 double eq5_moment(double stick_ratio) {
@@ -78,7 +78,7 @@ double eq5_moment(double stick_ratio) {
   const double c = stick_ratio;
   const double k = modulus(c);
   const double k2 = k * k;
-  const double d = eq3_d(k);
+  const double d_k = d(k);
   const double big_k = complete_k(k);
   const auto integral = [c](double power) {
     return gsl::integral(
@@ -88,8 +88,8 @@ double eq5_moment(double stick_ratio) {
         },
         0, pi / 2);
   };
-  return (3 * pi * pi / 4 + c * k2 * (6 * big_k + (4 * c * c - 3) * d) - 3 * k * big_k * std::asin(c) -
-          3 * k2 * (big_k * integral(1.5) - d * integral(0.5))) /
+  return (3 * pi * pi / 4 + c * k2 * (6 * big_k + (4 * c * c - 3) * d_k) - 3 * k * big_k * std::asin(c) -
+          3 * k2 * (big_k * integral(1.5) - d_k * integral(0.5))) /
          (4 * pi);
 }
 
@@ -99,16 +99,6 @@ double eq7_twist(double moment) {
   require(moment >= 0 && moment <= 2.0 / 3, "M/(mu W a)", moment, "0 <= M/(mu W a) <= 2/3");
   const double root = std::sqrt(1 - 3 * moment / 2);
   return (1 - root) * (3 - root) / 8;
-}
-
-double stick_ratio_from_eq5(double moment) {
-  // Outside, what is left of Eq. (5) in double precision after cancellation says nothing about c.
-  constexpr double kMin = 1e-4;
-  constexpr double kMax = 1 - 1e-6;
-  const auto excess = [moment](double c) { return eq5_moment(c) - moment; };
-  require(moment > 0 && excess(kMin) > 0 && excess(kMax) < 0, "M/(mu W a)", moment,
-          "0 < M/(mu W a) < 3 pi/16, as far as Eq. (5) keeps digits");
-  return gsl::root(excess, kMin, kMax);
 }
 
 }  // namespace slipstick::analytic::paper

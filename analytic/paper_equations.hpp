@@ -1,19 +1,16 @@
 #pragma once
 
-/// The paper's Eqs. (1)-(7) one by one, as printed and, where the print is wrong, as they should be.
-/// (Gradinaru and Spinu, Numerical simulation of elastic torsional contact with slip and stick.)
-/// These are for comparison: torsion.hpp is what to compute with. All dimensionless as there, each evaluated
-/// as it stands, cancellation included. Each throws std::domain_error outside the range given.
+/// The paper's Eqs. (1) and (4)-(7) one by one, with (2) and (3) inside them, as printed and, where the print
+/// is wrong, as they should be. (Gradinaru and Spinu, Numerical simulation of elastic torsional contact with
+/// slip and stick.) These are for comparison: torsion.hpp is what to compute with. All dimensionless as
+/// there, each evaluated as it stands, cancellation included. Each throws std::domain_error outside the range
+/// given.
 namespace slipstick::analytic::paper {
 
 /// Eq. (1) as printed, q/(mu p0): its stick branch is pi/2 too large. r in [0, 1], c in (0, 1).
 double eq1_printed(double stick_ratio, double radius);
 /// Eq. (1) with the missing factor 2/pi, evaluated literally (with its cancellation near r = 0).
 double eq1(double stick_ratio, double radius);
-/// Eq. (2): amplitude phi, r in [0, c], c in (0, 1).
-double eq2_amplitude(double stick_ratio, double radius);
-/// Eq. (3): D(k) = (K - E)/k^2 of the modulus k in (0, 1).
-double eq3_d(double modulus);
 /// Eq. (4): twist G a^2 phi/(mu W), c in (0, 1); good to 1e-14 between 0.01 and 0.99.
 double eq4_twist(double stick_ratio);
 /// Eq. (5): M/(mu W a), c in (0, 1), its two integrals by adaptive quadrature. Right as printed, but its
@@ -24,9 +21,5 @@ double eq6_moment_limit();
 /// Eq. (7): twist from the moment M/(mu W a), printed as an equality, in truth for small moments only.
 /// moment in [0, 2/3].
 double eq7_twist(double moment);
-
-/// The stick ratio as the paper finds it: Eq. (5) solved for k* (bracketed, Brent).
-/// moment in (0, 3 pi/16), as far as Eq. (5) keeps digits: c between 1e-4 and 1 - 1e-6.
-double stick_ratio_from_eq5(double moment);
 
 }  // namespace slipstick::analytic::paper

@@ -40,7 +40,7 @@ double goodman_artanh(double friction_over_beta) {
   const auto excess = [&](double log_x) {
     const double x = std::exp(log_x);
     const double c = std::tanh(x);
-    return x / c - friction_over_beta * complete_elliptic_k(c);
+    return x / c - friction_over_beta * complete_elliptic(c).k;
   };
   return std::exp(gsl::root(excess, kMinLog, std::log(high)));
 }

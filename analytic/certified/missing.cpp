@@ -4,8 +4,6 @@
 
 namespace slipstick::analytic::certified {
 
-bool available() { return false; }
-
 State state(const Profile&, Quantity, const std::string&, const std::vector<std::string>&, int) {
   throw std::runtime_error(
       "certified digits need FLINT with Arb: on Debian or Ubuntu apt-get install libflint-dev "

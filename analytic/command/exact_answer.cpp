@@ -2,11 +2,9 @@
 
 #include <fmt/core.h>
 
-#include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
-#include <ostream>
 #include <stdexcept>
 
 #include "analytic/approximations.hpp"
@@ -89,10 +87,10 @@ Json approximations_json(const TorsionState& state) {
 /// The error that a table's interpolation leaves in each number of the state, by the number's key; null with
 /// a reason where another reading of the points has no such state. Energies and the state after unloading
 /// have none.
-void put_error_estimate(Json& answer, const TabulatedProfile& table, const StateQuestion& question) {
-  const std::vector<double>& radii = question.radii;
+void put_error_estimate(Json& answer, const TabulatedProfile& table, const StateOf& state_of,
+                        const std::vector<double>& radii) {
   const auto numbers = [&](const Profile& profile, double mean_pressure) {
-    const TorsionState state = question.state(profile);
+    const TorsionState state = state_of(profile);
     std::vector<double> list;
     for (const ExactQuantity& quantity : kExactQuantities) list.push_back(state.*quantity.member);
     for (const double r : radii) list.push_back(traction(state, r, profile));
@@ -148,45 +146,47 @@ Json certified_json(const certified::Number& number) {
 
 }  // namespace
 
-Json answer_state(const ExactContact& contact, const StateQuestion& question) {
+Json answer_state(const ExactContact& contact, const StateOf& state_of, const std::vector<double>& radii,
+                  const std::optional<double>& unload_to) {
   const Profile& profile = *contact.profile.profile;
-  const TorsionState state = question.state(profile);
+  const TorsionState state = state_of(profile);
   Json answer = state_json(state);
-  answer["traction"] = at_radii(question.radii, [&](double r) { return traction(state, r, profile); });
-  answer["pressure"] = at_radii(question.radii, [&](double r) { return profile.pressure(r); });
+  answer["traction"] = at_radii(radii, [&](double r) { return traction(state, r, profile); });
+  answer["pressure"] = at_radii(radii, [&](double r) { return profile.pressure(r); });
   put(answer, "energy_lost_per_cycle", [&] { return energy_lost_per_cycle(state, profile); });
   answer["profile"] = profile_json(profile);
   if (contact.profile.table) answer["table"] = table_json(*contact.profile.table);
-  if (question.unload_to) {
+  if (unload_to) {
     LoadingHistory history(profile);
     history.load_to(state.moment_ratio);
-    history.load_to(*question.unload_to);
+    history.load_to(*unload_to);
     answer["unloaded"] = cycle_json(history.state());
-    answer["unloaded"]["traction"] = at_radii(question.radii, [&](double r) { return history.traction(r); });
+    answer["unloaded"]["traction"] = at_radii(radii, [&](double r) { return history.traction(r); });
   }
-  if (contact.profile.table) put_error_estimate(answer, *contact.profile.table, question);
+  if (contact.profile.table) put_error_estimate(answer, *contact.profile.table, state_of, radii);
   if (is_sphere(contact)) {
-    answer["printed"] = printed_json(state, question.radii);
+    answer["printed"] = printed_json(state, radii);
     answer["approximations"] = approximations_json(state);
   }
   if (contact.units) answer["units"] = units_json(contact, state.stick_ratio, state.moment, state.twist);
   return answer;
 }
 
-Json answer_history(const ExactContact& contact, const HistoryQuestion& question) {
+Json answer_history(const ExactContact& contact, const std::vector<double>& turning_points,
+                    int points_per_branch, const std::vector<double>& radii) {
   const Profile& profile = *contact.profile.profile;
   Json answer;
   answer["profile"] = profile_json(profile);
   if (contact.profile.table) answer["table"] = table_json(*contact.profile.table);
   answer["history"] = Json::array();
   LoadingHistory history(profile);
-  for (const double moment_ratio : question.turning_points) {
+  for (const double moment_ratio : turning_points) {
     history.load_to(moment_ratio);
     Json& entry = answer["history"].emplace_back(cycle_json(history.state()));
-    entry["traction"] = at_radii(question.radii, [&](double r) { return history.traction(r); });
+    entry["traction"] = at_radii(radii, [&](double r) { return history.traction(r); });
   }
   answer["curve"] = Json::array();
-  for (const CycleState& state : loading_curve(question.turning_points, question.points_per_branch, profile))
+  for (const CycleState& state : loading_curve(turning_points, points_per_branch, profile))
     answer["curve"].push_back(cycle_json(state));
   if (contact.units) {
     const CycleState last = history.state();
@@ -195,16 +195,16 @@ Json answer_history(const ExactContact& contact, const HistoryQuestion& question
   return answer;
 }
 
-Json answer_certified(const ExactContact& contact, const CertifiedQuestion& question) {
-  const certified::State state = certified::state(certified::profile_named(contact.name), question.given,
-                                                  question.value, question.radii, question.digits);
+Json answer_certified(const ExactContact& contact, certified::Quantity given, const std::string& value,
+                      const std::vector<std::string>& radii, int digits) {
+  const certified::State state =
+      certified::state(certified::profile_named(contact.name), given, value, radii, digits);
   Json answer;
   for (const ExactQuantity& quantity : kExactQuantities)
     answer[quantity.key] = certified_json(state.*quantity.certified);
   answer["traction"] = Json::array();
-  for (std::size_t i = 0; i < question.radii.size(); ++i)
-    answer["traction"].push_back(
-        {{"radius", question.radii[i]}, {"value", certified_json(state.traction[i])}});
+  for (std::size_t i = 0; i < radii.size(); ++i)
+    answer["traction"].push_back({{"radius", radii[i]}, {"value", certified_json(state.traction[i])}});
   answer["profile"] = profile_json(*contact.profile.profile);
   return answer;
 }

@@ -55,29 +55,18 @@ struct ExactContact {
   std::optional<Units> units;
 };
 
-/// One state of first loading, tractions at some radii, and the way back from there to another moment.
-struct StateQuestion {
-  std::function<TorsionState(const Profile&)> state;
-  std::vector<double> radii;
-  std::optional<double> unload_to;  ///< M/M_lim
-};
-Json answer_state(const ExactContact& contact, const StateQuestion& question);
+using StateOf = std::function<TorsionState(const Profile&)>;
+
+/// One state of first loading, tractions at some radii, and the way back from there to another M/M_lim.
+Json answer_state(const ExactContact& contact, const StateOf& state_of, const std::vector<double>& radii,
+                  const std::optional<double>& unload_to);
 
 /// A history of loads at constant normal load: turning points M/M_lim in turn.
-struct HistoryQuestion {
-  std::vector<double> turning_points;
-  int points_per_branch;
-  std::vector<double> radii;
-};
-Json answer_history(const ExactContact& contact, const HistoryQuestion& question);
+Json answer_history(const ExactContact& contact, const std::vector<double>& turning_points,
+                    int points_per_branch, const std::vector<double>& radii);
 
 /// One state of first loading with proven digits.
-struct CertifiedQuestion {
-  certified::Quantity given;
-  std::string value;
-  std::vector<std::string> radii;
-  int digits;
-};
-Json answer_certified(const ExactContact& contact, const CertifiedQuestion& question);
+Json answer_certified(const ExactContact& contact, certified::Quantity given, const std::string& value,
+                      const std::vector<std::string>& radii, int digits);
 
 }  // namespace slipstick::analytic

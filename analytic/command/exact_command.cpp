@@ -111,11 +111,8 @@ std::size_t given(const Options& options) {
 int run(const Options& options, std::ostream& out, Json& result) {
   const ExactContact exact = contact(options);
   if (!options.history.empty()) {
-    result = naming("--history", [&] {
-      return answer_history(
-          exact,
-          {.turning_points = options.history, .points_per_branch = options.points, .radii = radii(options)});
-    });
+    result = naming("--history",
+                    [&] { return answer_history(exact, options.history, options.points, radii(options)); });
     write_history(out, exact, result);
     return 0;
   }
@@ -123,9 +120,7 @@ int run(const Options& options, std::ostream& out, Json& result) {
   const std::string& text = options.value[given(options)];
   if (options.certified) {
     result = naming("--certified", [&] {
-      return answer_certified(
-          exact,
-          {.given = from.quantity, .value = text, .radii = options.radii, .digits = *options.certified});
+      return answer_certified(exact, from.quantity, text, options.radii, *options.certified);
     });
     write_certified(out, exact, result);
     return 0;
@@ -133,7 +128,7 @@ int run(const Options& options, std::ostream& out, Json& result) {
   const auto state = [&](const Profile& profile) {
     return naming(from.option, [&] { return from.state(number(text), profile); });
   };
-  result = answer_state(exact, {.state = state, .radii = radii(options), .unload_to = options.unload_to});
+  result = answer_state(exact, state, radii(options), options.unload_to);
   write_state(out, exact, result);
   return 0;
 }

@@ -1,14 +1,13 @@
 #!/usr/bin/env python3
-"""Writes the reference tables beside it: 50 digits, by direct quadrature (mpmath). States of the sphere stand in
-certified_references.csv.
+"""Writes elliptic_references.csv beside it: 50 digits (mpmath). States and tractions stand in certified_references.csv.
 
 Nothing here shares a series or a Carlson form with the C++ code. Every number is that of the exact value of the
-double given, to 25 digits. Run it without arguments; it takes a minute or two.
+double given, to 25 digits. Run it without arguments.
 """
 
 import pathlib
 
-from mpmath import acos, agm, ellipe, inf, mp, mpf, nstr, pi, quad
+from mpmath import agm, ellipe, inf, mp, mpf, nstr, pi
 
 HERE = pathlib.Path(__file__).parent
 GUARD = 60  # digits worked with; more for arguments that need them
@@ -45,37 +44,12 @@ def elliptic_rows():
             yield [repr(value), k, e, (k - e) / (1 - s * s)]
 
 
-def traction(c, r):
-    """(2/pi) r integral_c^1 E/(s sqrt(s^2 - r^2)) ds, with s = r/cos(angle)."""
-    return 2 / pi * quad(lambda angle: E(r / mp.cos(angle)), mp.linspace(acos(r / c), acos(r), 4))
-
-
-def traction_rows():
-    ratios = [1e-12, 0.999e-9, 1.001e-9, 1e-8, 5e-7, 1e-3, 0.05, 0.23696619252966424, 0.4958950522157781, 0.8135681261276496, 0.95, 0.999, 1 - 1e-6]
-    for c in ratios:
-        fractions = [1e-12, 1e-6, 1e-3, 0.05, 0.3, 0.6, 0.9, 0.99, 0.9999, 1 - 1e-6, 1 - 1e-9, 1 - 1e-13]
-        for r in sorted({c * f for f in fractions}):
-            with mp.workdps(GUARD):
-                yield ["stick_ratio", repr(c), repr(r), traction(mpf(c), mpf(r))]
-    for w in [1e-12, 1e-9, 1e-4, 0.01, 0.3]:
-        for r in [1e-9, 0.1, 0.5, 0.9 * (1 - w), 1 - 2 * w, 1 - 1.001 * w]:
-            if 0 < r < mpf(1) - mpf(w):
-                with mp.workdps(GUARD):
-                    yield ["stick_complement", repr(w), repr(r), traction(1 - mpf(w), mpf(r))]
-
-
 def main():
     write(
         "elliptic_references.csv",
         "Complete elliptic integrals of the complementary modulus.",
         ["complementary_modulus", "k", "e", "d"],
         elliptic_rows(),
-    )
-    write(
-        "traction_references.csv",
-        "Traction in the stick zone, q/(mu p0).",
-        ["given", "value", "radius", "traction"],
-        traction_rows(),
     )
 
 

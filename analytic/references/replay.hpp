@@ -50,7 +50,7 @@ inline double error_in_eps(double value, const Row& row) {
   return relative_error(value, reference) / kEps;
 }
 
-/// A row as `slipstick_certify` writes them: profile, given, value, quantity, at, reference, bound, cost.
+/// A row as proven_references.py writes them: profile, given, value, quantity, at, reference, bound, cost.
 inline Replay replay(const Row& row) {
   static std::map<std::string, NamedProfile> profiles;
   const std::string& name = row.text("profile");

@@ -1,13 +1,10 @@
 #include "analytic/approximations.hpp"
 
-#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <map>
 #include <numbers>
 #include <stdexcept>
-#include <string>
 
 #include "analytic/paper_equations.hpp"
 #include "analytic/tests/values.hpp"
@@ -17,8 +14,6 @@ namespace slipstick::analytic {
 namespace {
 
 using std::numbers::pi;
-using ::testing::Pair;
-using ::testing::UnorderedElementsAre;
 
 const double kLimit = hertz_profile().moment_limit();
 
@@ -39,12 +34,6 @@ TEST(NoSlip, IsTheTangentAtNoLoad) {
 }
 
 TEST(SmallMoments, HoldToSecondOrder) { EXPECT_NEAR(error_ratio(small_moment_twist), 4, 0.02); }
-
-TEST(SmallMoments, AreWhatEquation7KeepsOfTheExactLaw) {
-  EXPECT_NEAR(error_ratio(paper::eq7_twist), 4, 0.02);
-  for (const double moment : {1e-3, 1e-4})
-    EXPECT_NEAR(small_moment_twist(moment), paper::eq7_twist(moment), moment * moment * moment);
-}
 
 TEST(DiscreteElements, CarryMoreThanTheContactCan) {
   EXPECT_NEAR(dem_moment_limit() / kLimit, 32 / (9 * pi), 1e-15);
@@ -76,13 +65,6 @@ TEST(Approximations, AreOffAsTabulated) {
     EXPECT_NEAR(100 * (dem_moment(state.twist) / state.moment - 1), point.dem_moment, 0.05) << m;
   }
   EXPECT_NEAR(100 * (dem_moment(1.0 / 8) / from_twist(1.0 / 8).moment - 1), 62, 0.5);
-}
-
-TEST(Approximations, AreListedByName) {
-  std::map<std::string, double (*)(double)> laws;
-  for (const auto& law : approximations()) laws[law.name] = law.twist;
-  EXPECT_THAT(laws, UnorderedElementsAre(Pair("Eq. (7)", paper::eq7_twist), Pair("no slip", no_slip_twist),
-                                         Pair("small moments", small_moment_twist), Pair("DEM", dem_twist)));
 }
 
 /// Slip only softens: whoever leaves some of it out is too stiff.

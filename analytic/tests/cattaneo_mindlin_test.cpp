@@ -84,7 +84,7 @@ TEST(CattaneoMindlin, HasTheForceOfItsTractionsAndCoulombsRing) {
 double potential(const TangentialState& state, const SelfSimilarIndenter& indenter, double r) {
   const auto ring = [&](double s) {
     if (s == 0 || s == r) return 0.0;
-    return 4 * s / (r + s) * complete_elliptic_k(std::abs(r - s) / (r + s)) * traction(state, s, indenter);
+    return 4 * s / (r + s) * complete_elliptic(std::abs(r - s) / (r + s)).k * traction(state, s, indenter);
   };
   std::vector<double> ends{0, r, state.stick_ratio, 1};
   std::sort(ends.begin(), ends.end());

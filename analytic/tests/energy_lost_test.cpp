@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <vector>
 
 #include "analytic/cycle.hpp"
@@ -13,33 +12,7 @@
 namespace slipstick::analytic {
 namespace {
 
-using std::numbers::pi;
-using testing::integral_between_roots;
-
 const std::vector<const Profile*> kClosedForms{&hertz_profile(), &cone_profile(), &flat_punch_profile()};
-
-/// Energy lost on first loading, as the friction's work on the slip. The stick area's turn by dphi drags
-/// the surface at r >= s by (2/pi) (asin(s/r) - (s/r) sqrt(1 - (s/r)^2)) r dphi: the rest is slip.
-double work_of_friction(const TorsionState& state, const Profile& profile) {
-  static const gsl::GaussRule rule(64);
-  const double c = state.stick_ratio;
-  const auto slip = [&](double r) {
-    return rule(
-        [&](double u) {
-          const double t = r - (r - c) * u * u;
-          const double x = t / r;
-          const double turn = profile.twist_slope({.ratio = t, .complement = 1 - t}) / (2 * t);
-          const double rest = 2 / pi * (std::acos(x) + x * std::sqrt((1 - x) * (1 + x)));
-          return turn * rest * r * 2 * (r - c) * u;
-        },
-        0, 1);
-  };
-  // Short of the edge, where a flat punch's pressure is infinite: sqrt(eps) of its work is left out.
-  const double edge = 1 - kEps;
-  return 2 * pi / std::pow(profile.load(), 2) *
-         integral_between_roots([&](double r) { return profile.pressure(std::min(r, edge)) * slip(r) * r; },
-                                c, 1);
-}
 
 /// The loop by Masing's rule alone: 8 integral M dphi - 4 M phi over the first loading.
 TEST(EnergyLost, IsTheAreaOfTheLoop) {
@@ -52,16 +25,6 @@ TEST(EnergyLost, IsTheAreaOfTheLoop) {
       const double product = from_moment_ratio(m, *profile).moment * twist(m);
       EXPECT_NEAR(energy_lost_per_cycle(m, *profile), 4 * product - 8 * below, 32 * kEps * product)
           << profile->name() << ' ' << m;
-    }
-}
-
-TEST(EnergyLost, IsTheWorkOfFrictionOnTheSlip) {
-  for (const Profile* profile : kClosedForms)
-    for (const double c : {0.1, 0.5, 0.9}) {
-      const auto state = from_stick_ratio(c, *profile);
-      const double accuracy = profile->edge() > 0 ? 1e-7 : 1e-9;
-      EXPECT_NEAR(4 * work_of_friction(state, *profile) / energy_lost_per_cycle(state, *profile), 1, accuracy)
-          << profile->name() << ' ' << c;
     }
 }
 

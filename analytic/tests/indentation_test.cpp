@@ -110,17 +110,6 @@ TEST(Indentation, OfEvenPowersIsSneddons) {
   }
 }
 
-TEST(Indentation, OfARoundedPunchTendsToTheFlatPunch) {
-  for (const double b : {0.1, 1.0, 100.0}) {
-    const auto rounded = indent_rounded_punch(kLoad, b, 1e-6, kModulus);
-    const auto flat = indent_flat_punch(kLoad, b, kModulus);
-    EXPECT_LT(rounded.flat_ratio, 1);
-    EXPECT_NEAR(rounded.contact.contact_radius / b, 1, 1e-6);
-    EXPECT_NEAR(rounded.contact.approach / flat.approach, 1, 1e-4);
-    EXPECT_NEAR(rounded.contact.reference_pressure / flat.reference_pressure, 2, 1e-6);
-  }
-}
-
 /// The corner's reach s for s << b: W = 2 E* s^3/(3 R), s^2 = a^2 - b^2.
 TEST(Indentation, OfARoundedPunchKnowsAShallowCorner) {
   const double b = 1;

@@ -45,10 +45,6 @@ TEST(Equation1, MendedIntegratesToEquation5) {
     EXPECT_NEAR(moment_of(eq1, c) / eq5_moment(c), 1, 1e-13) << c;
 }
 
-TEST(Equation1, AsPrintedDoesNotIntegrateToEquation5) {
-  for (const double c : {0.3, 0.5, 0.8, 0.9}) EXPECT_GT(moment_of(eq1_printed, c) / eq5_moment(c), 1.01) << c;
-}
-
 TEST(Equation1, MendedAgreesWithTheStableForm) {
   for (const double c : {0.1, 0.5, 0.8, 0.95})
     for (const double f : {0.0, 0.1, 0.5, 0.9, 0.999, 1.0, 1.01}) {
@@ -57,15 +53,6 @@ TEST(Equation1, MendedAgreesWithTheStableForm) {
       EXPECT_NEAR(eq1(c, r), traction(from_stick_ratio(c), r), 1e-14) << c << ", " << r;
     }
 }
-
-TEST(Equation2, RunsFromHalfPiAtTheCentreToZeroAtTheStickRadius) {
-  for (const double c : {0.1, 1.0 / 3, 0.8}) {
-    EXPECT_NEAR(eq2_amplitude(c, 0), pi / 2, 1e-7) << c;  // the arcsine's end: half the digits
-    EXPECT_EQ(eq2_amplitude(c, c), 0) << c;
-  }
-}
-
-TEST(Equation3, IsQuarterPiAtModulusZero) { EXPECT_NEAR(eq3_d(0.01), pi / 4 * (1 + 3.0 / 8 * 1e-4), 1e-8); }
 
 TEST(Equation4, AgreesWithTheStableForm) {
   for (const double c : {0.05, 0.3, 0.6, 0.9})
@@ -88,45 +75,21 @@ TEST(Equation6, IsTheMomentOfSlipEverywhere) {
   EXPECT_NEAR(eq5_moment(1e-3), eq6_moment_limit(), 1e-9);
 }
 
-TEST(Equation7, IsOffAwayFromSmallMoments) {
-  struct Point {
-    double moment_ratio, error;
-  };
-  for (const auto& [moment_ratio, error] :
-       {Point{0.159, -0.0025}, {0.527, -0.039}, {0.897, -0.23}, {0.994, -0.54}}) {
-    const auto state = from_moment_ratio(moment_ratio);
-    // Both errors as known, to the digits they are known to.
-    EXPECT_NEAR(eq7_twist(state.moment) / state.twist - 1, error, std::abs(error) < 0.1 ? 5e-4 : 5e-3)
-        << moment_ratio;
-  }
-}
-
 TEST(Equation7, IsFiniteAtTheLimitWhereTheTwistIsNot) {
   EXPECT_LT(eq7_twist(eq6_moment_limit()), 0.3);
   EXPECT_GT(from_moment_deficit(1e-12).twist, 2.0);
   EXPECT_GT(from_moment_deficit(1e-24).twist, 4.0);
 }
 
-TEST(StickRatioFromEquation5, AgreesWithTheStableRoot) {
-  for (const double moment_ratio : {0.1, 0.5, 0.9, 0.99}) {
-    const auto state = from_moment_ratio(moment_ratio);
-    EXPECT_NEAR(stick_ratio_from_eq5(state.moment) / state.stick_ratio, 1, 1e-12) << moment_ratio;
-  }
-}
-
 TEST(PaperEquations, RefuseWhatLiesOutside) {
   for (const double bad : {0.0, 1.0, -0.5, 1.5, std::nan("")}) {
     EXPECT_THROW(eq1(bad, 0.1), std::domain_error) << bad;
     EXPECT_THROW(eq1_printed(bad, 0.1), std::domain_error) << bad;
-    EXPECT_THROW(eq2_amplitude(bad, 0), std::domain_error) << bad;
-    EXPECT_THROW(eq3_d(bad), std::domain_error) << bad;
     EXPECT_THROW(eq4_twist(bad), std::domain_error) << bad;
     EXPECT_THROW(eq5_moment(bad), std::domain_error) << bad;
-    EXPECT_THROW(stick_ratio_from_eq5(bad), std::domain_error) << bad;
   }
   for (const double bad : {-0.1, 1.1, std::nan("")}) {
     EXPECT_THROW(eq1(0.5, bad), std::domain_error) << bad;
-    EXPECT_THROW(eq2_amplitude(0.5, bad), std::domain_error) << bad;
     EXPECT_THROW(eq7_twist(bad), std::domain_error) << bad;
   }
 }

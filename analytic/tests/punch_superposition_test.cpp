@@ -90,16 +90,12 @@ TEST(Superposition, AgreesWithReferences) {
   }
 }
 
-TEST(PowerProfile, TellsItsPeakAndItsMean) {
+TEST(PowerProfile, TellsItsPeak) {
   for (const double n : {0.01, 0.7, 1.0})
     EXPECT_EQ(power_profile(n)->pressure(0), std::numeric_limits<double>::infinity()) << n;
   for (const double n : {1.01, 2.0, 4.0, 1000.0}) {
     EXPECT_NEAR(power_profile(n)->pressure(0) * (n - 1), 1, kFewRoundings) << n;
     EXPECT_NEAR(power_profile(n)->pressure(1e-300) * (n - 1), 1, n < 2 ? 2e-3 : kFewRoundings) << n;
-  }
-  for (const double n : {0.5, 2.0, 7.0}) {
-    EXPECT_NEAR(power_profile(n)->load() / pi, 2 / (n + 1), kFewRoundings) << n;
-    EXPECT_NEAR(power_profile(n)->moment_limit(), pi * (n + 1) / (4 * (n + 2)), kFewRoundings) << n;
   }
 }
 

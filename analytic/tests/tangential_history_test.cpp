@@ -82,34 +82,18 @@ TEST(TangentialHistory, ObeysMasingsRuleUnderAConstantLoad) {
       const double most = 0.8;
       const auto up = from_force_ratio(most, indenter);
       const auto down = from_force_ratio((most - back) / 2, indenter);
-      const auto history = loaded({{1, 0}, {1, most}, {1, back}}, indenter);
+      auto history = loaded({{1, 0}, {1, most}, {1, back}}, indenter);
       EXPECT_NEAR(history.state().displacement, up.displacement - 2 * down.displacement, kRounding);
       EXPECT_NEAR(history.state().stick_radius, down.stick_ratio, kRounding);
       for (const double r : {0.1, 0.5, 0.9})
         EXPECT_NEAR(history.traction(r), traction(up, r, indenter) - 2 * traction(down, r, indenter),
                     kRounding);
+      for (const double force : {back + 0.2, back + 0.1, most}) history.load_to(1, force);
+      EXPECT_NEAR(history.state().displacement, up.displacement, kRounding);  // both loops are closed
+      const double lost = energy_lost_per_cycle(up, indenter) / 4 + energy_lost_per_cycle(down, indenter) +
+                          energy_lost_per_cycle(from_force_ratio(0.05, indenter), indenter);
+      EXPECT_NEAR(history.state().dissipated, lost, kRounding);
     }
-}
-
-TEST(TangentialHistory, ReturnsToTheSameLoopAThousandTimes) {
-  for (const auto& indenter : kIndenters) {
-    auto history = loaded({{1, 0}, {1, 0.7}}, indenter);
-    const auto first = history.state();
-    constexpr int kCycles = 500;
-    for (int i = 0; i < kCycles; ++i) {
-      history.load_to(1, -0.7);
-      EXPECT_NEAR(history.state().displacement, -first.displacement, kRounding);
-      history.load_to(1, 0.2);
-      history.load_to(1, -0.3);
-      history.load_to(1, 0.7);
-    }
-    const double whole = energy_lost_per_cycle(from_force_ratio(0.7, indenter), indenter);
-    const double inner = energy_lost_per_cycle(from_force_ratio(0.25, indenter), indenter);
-    EXPECT_NEAR(history.state().displacement, first.displacement, kRounding);
-    EXPECT_NEAR(history.state().stick_radius, first.stick_radius, kRounding);
-    EXPECT_NEAR(history.state().dissipated, first.dissipated + kCycles * (whole + inner),
-                kCycles * kRounding);
-  }
 }
 
 TEST(TangentialHistory, DoesNotSlipWhileForcesRiseAndFallTogether) {

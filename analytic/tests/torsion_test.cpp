@@ -71,21 +71,6 @@ TEST(Torsion, CarriesTheArgumentItself) {
   EXPECT_EQ(from_twist(0.3).twist, 0.3);
 }
 
-TEST(Torsion, HasTheLimitOfSlipEverywhere) {
-  // 3 integral_0^1 sqrt(1 - r^2) r^2 dr
-  const double slip =
-      3 * gsl::integral([](double t) { return std::pow(std::sin(t) * std::cos(t), 2); }, 0, pi / 2);
-  EXPECT_NEAR(hertz_profile().moment_limit() / slip, 1, 1e-14);
-}
-
-TEST(Traction, AgreesWithReferences) {
-  for (const auto& row : testing::read_references("traction_references.csv")) {
-    const TorsionState state = kFrom.at(row.text("given"))(row.argument("value"), hertz_profile());
-    EXPECT_LE(relative_error(traction(state, row.argument("radius")), row.number("traction")), 1e-14)
-        << row.line();
-  }
-}
-
 TEST(Traction, IsContinuousAtTheFrontAndCoulombsBeyond) {
   for (const double c : {1e-12, 1e-9, 1e-3, 0.5, 0.9, 0.999999}) {
     const auto state = from_stick_ratio(c);

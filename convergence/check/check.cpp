@@ -65,7 +65,6 @@ void add_field(Json& json, const Examination& e) {
   json["contact_cells"] = (e.contact.pressure > 0.0).count();
   json["stick_cells"] = (e.stick > 0.0).count();
   json["conventions"] = e.read.conventions;
-  for (const std::string& remark : e.read.remarks) json["conventions"].push_back(remark);
   json["mistakes"] = e.read.mistakes;
 }
 

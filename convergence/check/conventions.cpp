@@ -293,21 +293,6 @@ void correct_orientation(Interpretation& read, const solver::Scene& scene, const
   (best->is_mistake() ? read.mistakes : read.conventions).push_back(best->text());
 }
 
-/// Remarks on cells without pressure between cells with pressure: the file may lack their rows.
-void note_holes(Interpretation& read) {
-  const ForeignField& field = read.field;
-  const Index n2 = field.grid.n2;
-  const ArrayXd& p = field.pressure;
-  Index holes = 0;
-  for (Index i = 1; i + 1 < field.grid.n1; ++i) {
-    for (Index k = i * n2 + 1; k + 1 < (i + 1) * n2; ++k) {
-      if (p[k] == 0.0 && p[k - 1] > 0.0 && p[k + 1] > 0.0 && p[k - n2] > 0.0 && p[k + n2] > 0.0) ++holes;
-    }
-  }
-  if (holes > 0)
-    read.remarks.push_back(fmt::format("{} cells in the midst of the contact carry nothing", holes));
-}
-
 }  // namespace
 
 std::optional<double> known_moment(const solver::Scene& scene, const OracleAnswer& exact, double limit,
@@ -321,13 +306,12 @@ std::optional<double> known_moment(const solver::Scene& scene, const OracleAnswe
 
 Interpretation in_own_conventions(ForeignField field, const solver::Scene& scene, const solver::Model& model,
                                   const OracleAnswer& exact) {
-  Interpretation read{std::move(field), {}, {}, {}};
+  Interpretation read{std::move(field), {}, {}};
   correct_length(read, scene, expected_width(model, exact));
   correct_stress(read, scene.steps.front());
   correct_axes(read, scene);
   correct_origin(read, scene);
   correct_orientation(read, scene, exact);
-  note_holes(read);
   return read;
 }
 

@@ -16,7 +16,6 @@ struct Interpretation {
   ForeignField field;
   std::vector<std::string> conventions;  ///< conventions that were undone, one sentence each
   std::vector<std::string> mistakes;     ///< mistakes that were undone, so that the rest can be judged
-  std::vector<std::string> remarks;      ///< other oddities
 };
 
 /// Finds the conventions in which a field fits the scene best. The contact's size shows the unit of length,

@@ -57,8 +57,7 @@ struct Crossover {
   std::string remark;  ///< why something of this is missing; empty: nothing is
 };
 
-/// The interval follows from draws of each size's time about its median, as the repetitions' scatter allows
-/// (see TypicalSeconds), from a fixed seed.
+/// The interval is that between the crossings of the ratios' 95 % limits at each size (see TypicalSeconds).
 Crossover find_crossover(const Family& slow, const Family& quick);
 
 }  // namespace slipstick::convergence

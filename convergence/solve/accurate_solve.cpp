@@ -50,14 +50,6 @@ Scene chosen_scene(const Scene& scene, const Approach& approach, const AccuracyC
   return chosen;
 }
 
-/// A second solve on half as many cells along each side, where the error is estimated from it.
-constexpr double kWithCoarserSolve = 1.25;
-
-double solves_of(const Scene& scene, const Approach& approach, AccuracyOf of) {
-  if (approach.shifted) return kShiftedGrids;
-  return is_estimated(scene, of) ? kWithCoarserSolve : 1.0;
-}
-
 /// The part of a target that the length of steps may take; the largest number of their parts; and how often
 /// that number is raised on few cells.
 constexpr double kPathPart = 0.4;
@@ -197,7 +189,6 @@ AccurateAnswer solve_to_accuracy(const Scene& given, const AccuracyTarget& targe
   const double order = approach.shifted ? kShiftedOrder : falling_order(accuracy_data(), target.of);
   std::optional<AccuracyChoice> choice = first_choice(scene, approach, target);
   AccurateAnswer found{.answer = {}, .accuracy = account(scene, target)};
-  const double predicted = predicted_seconds(chosen_scene(scene, approach, *choice), approach.contact);
   Json attempts = Json::array();
   Attempt made{};
   std::string stopped = fmt::format("{} refinements did not get there", kMaxRefinements);
@@ -231,8 +222,6 @@ AccurateAnswer solve_to_accuracy(const Scene& given, const AccuracyTarget& targe
   found.accuracy.update(
       {{"how", made.reached.how}, {"why", made.reached.why}, {"attempts", std::move(attempts)}});
   if (approach.shifted) set_number(found.accuracy, "uncertainty", made.uncertainty, made.reached.why);
-  set_number(found.accuracy, "predicted_seconds", predicted * solves_of(scene, approach, target.of),
-             "measured for method = \"coulomb\" with operator = \"dcfft\" alone");
   found.accuracy["replaced"] = {{"cells", scene.cells}, {"tolerance", scene.tolerance}};
   if (const std::string note = note_on(scene); !note.empty()) found.accuracy["note"] = note;
   found.answer = std::move(made.answer);
@@ -253,13 +242,6 @@ Json exact_accuracy(const Scene& scene, const AccuracyTarget& target) {
                {"how", "exact"},
                {"why", "the exact solution needs no grid; this is its own uncertainty"},
                {"attempts", Json::array()}});
-  Scene on_grid = scene;
-  on_grid.model = solver::ModelChoice::automatic;
-  try {
-    json["grid_instead"] = accuracy_plan(on_grid, target);
-  } catch (const InputError& error) {
-    set_missing(json, "grid_instead", error.what());
-  }
   return json;
 }
 
@@ -292,14 +274,6 @@ std::string accuracy_text(const Json& result) {
         text_line("replaced", fmt::format("grid.cells = [{}, {}] and solver.tolerance = {} of the scene",
                                           replaced["cells"][0].get<int>(), replaced["cells"][1].get<int>(),
                                           short_text(replaced["tolerance"])));
-  }
-  if (accuracy.contains("grid_instead")) {
-    const Json& grid = accuracy["grid_instead"];
-    text += text_line("on a grid", grid.is_null()
-                                       ? accuracy["grid_instead_reason"].get<std::string>()
-                                       : fmt::format("it would take {} x {} cells and about {} s",
-                                                     grid["cells"][0].get<int>(), grid["cells"][1].get<int>(),
-                                                     short_text(grid["seconds"])));
   }
   if (accuracy.contains("note")) text += text_line("note", accuracy["note"].get<std::string>());
   return text;

@@ -13,8 +13,7 @@ namespace slipstick::convergence {
 /// The last attempt, and the account of all.
 struct AccurateAnswer {
   SolvedScene answer;
-  Json accuracy;  ///< {wanted, quantity, reached, how, why, uncertainty, attempts, predicted_seconds,
-                  ///< replaced, note}
+  Json accuracy;  ///< {wanted, quantity, reached, how, why, uncertainty, attempts, replaced, note}
   bool reached = false;
 };
 
@@ -31,8 +30,7 @@ AccurateAnswer solve_to_accuracy(const solver::Scene& scene, const AccuracyTarge
 /// and the time of all.
 Json accuracy_plan(const solver::Scene& scene, const AccuracyTarget& target);
 
-/// The account of an exact answer: its own uncertainty, and what a grid would have cost. Throws InputError
-/// where that uncertainty is above the target.
+/// The account of an exact answer: its own uncertainty. Throws InputError where that is above the target.
 Json exact_accuracy(const solver::Scene& scene, const AccuracyTarget& target);
 
 /// A few lines for a person, from a result's `accuracy`.

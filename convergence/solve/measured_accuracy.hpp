@@ -38,11 +38,8 @@ struct AccuracyData {
   std::vector<MeasuredMesh> meshes;  ///< finer and finer, at least two
 };
 
-/// Those that come with the program.
+/// Those that come with the program: errors and tolerances fall from mesh to mesh.
 AccuracyData accuracy_data();
-
-/// Throws std::runtime_error, naming what is wrong, for a text that is no such data.
-AccuracyData parse_accuracy_data(const std::string& toml);
 
 /// The same as text; `origin` says in a comment where it was measured.
 std::string accuracy_toml(const AccuracyData& data, const std::string& origin);

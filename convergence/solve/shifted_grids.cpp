@@ -3,11 +3,9 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
-#include <utility>
 #include <vector>
 
 #include "convergence/orders/expected_order.hpp"
@@ -92,25 +90,15 @@ double expected_uncertainty(const Scene& scene, double across, const ContactForm
 
 /// Longer over shorter axis of a contact, from its pressure's second moments.
 double slenderness(const solver::Solution& solution) {
-  const solver::Grid& grid = solution.grid;
-  double load = 0.0, first1 = 0.0, first2 = 0.0, second11 = 0.0, second12 = 0.0, second22 = 0.0;
-  for (solver::Index i = 0; i < grid.n1; ++i) {
-    for (solver::Index j = 0; j < grid.n2; ++j) {
-      const double pressure = solution.pressure[i * grid.n2 + j];
-      const double x1 = grid.x1(i);
-      const double x2 = grid.x2(j);
-      load += pressure;
-      first1 += pressure * x1;
-      first2 += pressure * x2;
-      second11 += pressure * x1 * x1;
-      second12 += pressure * x1 * x2;
-      second22 += pressure * x2 * x2;
-    }
-  }
-  const double about11 = second11 - first1 * first1 / load;
-  const double about22 = second22 - first2 * first2 / load;
+  const Eigen::ArrayXd part = solution.pressure / solution.pressure.sum();
+  const Eigen::ArrayXd x1 = solver::cell_x1(solution.grid);
+  const Eigen::ArrayXd x2 = solver::cell_x2(solution.grid);
+  const Eigen::ArrayXd from1 = x1 - (part * x1).sum();
+  const Eigen::ArrayXd from2 = x2 - (part * x2).sum();
+  const double about11 = (part * from1.square()).sum();
+  const double about22 = (part * from2.square()).sum();
   const double mean = 0.5 * (about11 + about22);
-  const double apart = std::hypot(0.5 * (about11 - about22), second12 - first1 * first2 / load);
+  const double apart = std::hypot(0.5 * (about11 - about22), (part * from1 * from2).sum());
   return std::sqrt((mean + apart) / (mean - apart));
 }
 

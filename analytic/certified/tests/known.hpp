@@ -4,19 +4,15 @@
 
 #include <map>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "analytic/certified/ball_text.hpp"
 #include "analytic/certified/certified.hpp"
-#include "analytic/certified/reference_rows.hpp"
 
 #if __has_include(<flint/acb_elliptic.h>)
 #include <flint/acb_elliptic.h>
-#include <flint/arb_hypgeom.h>
 #else
 #include <acb_elliptic.h>
-#include <arb_hypgeom.h>
 #endif
 
 /// Known values of the contact in balls, by other ways than the code's.
@@ -29,12 +25,19 @@ inline const Profile kCone{Kind::cone};
 inline const Profile kFlatPunch{Kind::flat_punch};
 inline Profile power(const std::string& exponent) { return {Kind::power, exponent}; }
 
-/// All members of a state.
-inline const std::map<std::string, Number State::*> kMember = [] {
-  auto members = kMembers;
-  members.insert({{"moment", &State::moment}, {"tangent_stiffness", &State::tangent_stiffness}});
-  return members;
-}();
+/// The quantities that name a state, and all members of one.
+inline const std::map<std::string, Quantity> kQuantities{{"moment_ratio", Quantity::moment_ratio},
+                                                         {"moment_deficit", Quantity::moment_deficit},
+                                                         {"stick_ratio", Quantity::stick_ratio},
+                                                         {"stick_complement", Quantity::stick_complement},
+                                                         {"twist", Quantity::twist}};
+inline const std::map<std::string, Number State::*> kMember{{"moment_ratio", &State::moment_ratio},
+                                                            {"moment_deficit", &State::moment_deficit},
+                                                            {"stick_ratio", &State::stick_ratio},
+                                                            {"stick_complement", &State::stick_complement},
+                                                            {"twist", &State::twist},
+                                                            {"moment", &State::moment},
+                                                            {"tangent_stiffness", &State::tangent_stiffness}};
 
 inline Ball exact(const std::string& text) { return read_exactly("text", text).ball(); }
 

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "analytic/approximations.hpp"
-
 namespace slipstick::convergence {
 namespace {
 
@@ -72,17 +70,10 @@ std::string beside(double limit, double stiffness, const LoopContact& contact) {
          (is_near(stiffness, 1.0, kSameFactor) ? "" : "; " + stiffness_text(stiffness, contact));
 }
 
-/// Moment of the paper's Eq. (7) at t, by bisection; beyond its largest t the limit.
+/// Moment of the paper's Eq. (7) at t; beyond its largest t the limit.
 double equation_7_moment(double twist, double moment_limit) {
-  const auto* const law = analytic::approximations().data();  // the first is Eq. (7)
-  double low = 0.0;
-  double high = moment_limit;
-  if (std::abs(twist) >= law->twist(high)) return std::copysign(1.0, twist);
-  for (int i = 0; i < 40; ++i) {
-    const double middle = 0.5 * (low + high);
-    (law->twist(middle) < std::abs(twist) ? low : high) = middle;
-  }
-  return std::copysign(0.5 * (low + high) / moment_limit, twist);
+  const double root = std::max(0.0, 2.0 - std::sqrt(1.0 + 8.0 * std::abs(twist)));  // sqrt(1 - 3 M/2)
+  return std::copysign(std::min(1.0, 2.0 / 3.0 * (1.0 - root * root) / moment_limit), twist);
 }
 
 /// The factors of limit and stiffness that a family varies.

@@ -6,8 +6,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
 
@@ -21,7 +19,6 @@ using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
-using testing::Not;
 
 class CheckConventions : public testing::Test {
  protected:
@@ -147,26 +144,6 @@ TEST_F(CheckConventions, OriginAndPartsOfACell) {
       fmt::format("stands ({:.4g}, {:.4g}) m from the scene's: moved there", 40.0 * cell, -20.0 * cell);
   expect_same(moved(40.0 * cell), {note});
   expect_same(changed(moved(40.0 * cell), [](FieldRow& r) { r[0] *= 1e3, r[1] *= 1e3; }), {"mm", note});
-}
-
-// A cell without pressure whose four neighbours have some: of two side by side neither is.
-TEST_F(CheckConventions, HolesAreSingleCellsWithinTheContact) {
-  const FieldRow middle =
-      *std::ranges::min_element(rows_, {}, [](const FieldRow& row) { return std::hypot(row[0], row[1]); });
-  const auto notes_without = [&](double along1, double along2) {
-    FieldRows rows = rows_;
-    std::erase_if(rows, [&](const FieldRow& row) {
-      const double from1 = std::round((row[0] - middle[0]) / base_["cell_size"][0].get<double>());
-      const double from2 = std::round((row[1] - middle[1]) / base_["cell_size"][1].get<double>());
-      return (from1 == 0.0 && from2 == 0.0) || (from1 == along1 && from2 == along2);
-    });
-    return check_rows(rows, scene_)["conventions"].dump();
-  };
-  EXPECT_THAT(notes_without(0.0, 0.0), HasSubstr("1 cells in the midst of the contact carry nothing"));
-  EXPECT_THAT(notes_without(1.0, 1.0), HasSubstr("2 cells in the midst"));
-  for (const auto& [along1, along2] : {std::pair{1.0, 0.0}, {0.0, 1.0}}) {
-    EXPECT_THAT(notes_without(along1, along2), Not(HasSubstr("in the midst")));
-  }
 }
 
 TEST_F(CheckConventions, FewDigits) {

@@ -13,15 +13,12 @@
 #include "convergence/results/exact_result.hpp"
 #include "convergence/tests/scratch_folder.hpp"
 #include "solver/input/field_file.hpp"
-#include "solver/input/input_error.hpp"
-#include "solver/solve.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
 using testing::AllOf;
 using testing::HasSubstr;
-using testing::ThrowsMessage;
 namespace fs = std::filesystem;
 
 // A few roundings on the way from a scene's moduli to the number.
@@ -115,12 +112,6 @@ TEST(ExactModel, SaysThatTheScenesCouplingIsLeftOut) {
   EXPECT_EQ(result["model"]["left_out"][1]["what"], "K13, K23");
 }
 
-// The solver has no exact answers.
-TEST(ExactModel, IsNotForTheSolver) {
-  EXPECT_THAT([] { solver::solve(exact_scene("paper")); },
-              ThrowsMessage<solver::InputError>(AllOf(HasSubstr("solver.model"), HasSubstr("auto, full"))));
-}
-
 class ExactFieldFile : public ScratchFolder {
  protected:
   std::vector<solver::Column> sampled(const solver::Scene& scene) const {
@@ -148,13 +139,6 @@ TEST_F(ExactFieldFile, HoldsPressureAndTractionsAtTheCellCentres) {
       EXPECT_EQ(columns[5].values[i], r < oracle.stick_radius ? 1.0 : 0.0);
     }
   }
-}
-
-// Dense summation would need 128 GiB for this grid, samples need none of it.
-TEST_F(ExactFieldFile, NeedsNoOperator) {
-  EXPECT_GT(
-      sampled(exact_scene("paper", {"grid.cells=[256,256]", "solver.operator=dense"})).front().values.size(),
-      40000);
 }
 
 }  // namespace

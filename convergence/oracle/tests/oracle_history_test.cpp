@@ -15,7 +15,6 @@ namespace {
 
 using solver::Scene;
 using solver::Step;
-using testing::AllOf;
 using testing::HasSubstr;
 
 // Some roundings on the way from a scene's moduli to a number, and as many branches of a history.
@@ -42,18 +41,19 @@ std::vector<Oracle> oracles(const Scene& scene) {
 constexpr double kQuadratureOverFronts = 1e-5;
 
 TEST(OracleHistory, TractionsOfTorsionCarryTheMoments) {
-  for (const char* body : {"paper", "cone", "flat_punch"}) {
+  for (const char* body : {"paper", "cone", "flat_punch", "rounded_punch"}) {
     const Scene scene = twisted(example(body), {0.9, 0.2, -0.7, 0.3, 0.0});
     const std::vector<Oracle> exact = oracles(scene);
     for (std::size_t i = 0; i < exact.size(); ++i) {
       const CarriedLoads carried = loads_carried_by(exact[i]);
       const double limit = exact[i].moment_limit;
+      const double quadrature_error = i == 0 ? 1e-6 : kQuadratureOverFronts;
       EXPECT_NEAR(exact[i].moment / limit, *solver::value_if<solver::MomentRatio>(scene.steps[i].torsion),
                   kHistoryTolerance)
           << body << i;
-      EXPECT_NEAR(carried.load / *scene.steps[i].normal, 1.0, kQuadratureOverFronts) << body << i;
+      EXPECT_NEAR(carried.load / *scene.steps[i].normal, 1.0, quadrature_error) << body << i;
       EXPECT_NEAR(carried.moment / limit, *solver::value_if<solver::MomentRatio>(scene.steps[i].torsion),
-                  kQuadratureOverFronts)
+                  quadrature_error)
           << body << i;
     }
   }
@@ -144,20 +144,6 @@ TEST(OracleHistory, AForceAfterAGrowingLoadIsFirstLoading) {
   const Scene plain = without_contraction(example("paper"));
   expect_the_same_state(oracles(pushed(plain, {{1000.0, 0.0}, {2000.0, 100.0}})).back(),
                         oracles(pushed(plain, {{2000.0, 100.0}})).front(), 1.0);
-}
-
-TEST(OracleHistory, OppositeLoadsAreTheMirrorImage) {
-  const Scene torsion = twisted(example("paper"), {0.7, -0.2, 0.5});
-  const Scene opposite_torsion = twisted(example("paper"), {-0.7, 0.2, -0.5});
-  const Scene plain = without_contraction(example("paper"));
-  const Scene force = pushed(plain, {{1000.0, 70.0}, {1200.0, -20.0}, {800.0, 50.0}});
-  const Scene opposite_force = pushed(plain, {{1000.0, -70.0}, {1200.0, 20.0}, {800.0, -50.0}});
-  for (const auto& [scene, opposite] :
-       {std::pair(torsion, opposite_torsion), std::pair(force, opposite_force)}) {
-    const std::vector<Oracle> a = oracles(opposite);
-    const std::vector<Oracle> b = oracles(scene);
-    for (std::size_t i = 0; i < a.size(); ++i) expect_the_same_state(a[i], b[i], -1.0);
-  }
 }
 
 TEST(OracleHistory, StandsWhereTheBodyStands) {

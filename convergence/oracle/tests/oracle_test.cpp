@@ -82,20 +82,6 @@ TEST(Oracle, LastDigitsCostNoAnswer) {
   }
 }
 
-TEST(Oracle, FieldsIntegrateToTheLoads) {
-  constexpr double quadrature_error = 1e-6;
-  for (const char* file : {"/paper.toml", "/cone.toml", "/flat_punch.toml", "/rounded_punch.toml"}) {
-    SCOPED_TRACE(file);
-    for (const char* load : {"load.moment_ratio=0.5", "load.moment_ratio=0.9"}) {
-      const solver::Scene loaded = body(file, {load});
-      const Oracle oracle = *find_oracle(loaded).oracle;
-      const CarriedLoads carried = loads_carried_by(oracle);
-      EXPECT_NEAR(carried.load / *loaded.steps[0].normal, 1.0, quadrature_error);
-      EXPECT_NEAR(carried.moment / oracle.moment, 1.0, quadrature_error);
-    }
-  }
-}
-
 // Love's and Boussinesq's contacts, and what they carry in torsion, by their formulas.
 TEST(Oracle, ConeAndFlatPunch) {
   const double effective_modulus = 210e9 / (1.0 - 0.3 * 0.3) / 2.0;
@@ -198,38 +184,6 @@ TEST(Oracle, EllipseIsHertzs) {
     EXPECT_EQ(oracle.moment,
               *solver::value_if<solver::MomentRatio>(scene.steps[0].torsion) * oracle.moment_limit);
   }
-}
-
-TEST(Oracle, EllipseOfNearlyEqualRadiiIsNearlyTheSphere) {
-  const Oracle sphere = *find_oracle(paper({"load.moment_ratio=0.7"})).oracle;
-  for (const char* radius_2 : {"upper.radius_2=0.01800000000001", "upper.radius_2=0.01799999999999"}) {
-    const Oracle ellipse =
-        *find_oracle(body("/ellipse.toml", {"upper.radius_1=0.018", radius_2, "load.moment_ratio=0.7",
-                                            "solver.model=full"}))  // keeps the last digits
-             .oracle;
-    constexpr double tolerance = 2e-12;  // the radii differ by 6e-13
-    EXPECT_NE(ellipse.axis_ratio, 1.0);
-    EXPECT_NEAR(ellipse.axis_ratio, 1.0, tolerance);
-    for (const auto number : {&Oracle::contact_radius, &Oracle::peak_pressure, &Oracle::reference_pressure,
-                              &Oracle::approach, &Oracle::moment_limit, &Oracle::moment}) {
-      EXPECT_NEAR(ellipse.*number / (sphere.*number), 1.0, tolerance);
-    }
-    const double r = 0.6 * sphere.contact_radius;
-    EXPECT_NEAR(ellipse.pressure(ellipse.radius(0.6 * r, 0.8 * r)) / sphere.pressure(r), 1.0, tolerance);
-  }
-}
-
-TEST(Oracle, EllipseSaysNothingOfFriction) {
-  const Oracle ratio = *find_oracle(body("/ellipse.toml", {"load.moment_ratio=0.5"})).oracle;
-  EXPECT_NE(ratio.only_normal.find("two different radii"), std::string::npos);
-  EXPECT_EQ(ratio.shear, nullptr);
-  for (const double unknown :
-       {ratio.twist_angle, ratio.stick_radius, ratio.dissipated, ratio.displacement[0], ratio.displacement[1],
-        ratio.state.stick_ratio, ratio.state.twist, ratio.traction(0.0)}) {
-    EXPECT_TRUE(std::isnan(unknown));
-  }
-  EXPECT_EQ(ratio.moment, 0.5 * ratio.moment_limit);
-  EXPECT_EQ(find_oracle(paper({})).oracle->only_normal, "");
 }
 
 /// What the scene imposes is known.

@@ -152,14 +152,6 @@ TEST(Limit, FewMeshes) {
   EXPECT_TRUE(std::isnan(least_squares_limit({}, 1.0).value));
 }
 
-TEST(Limit, NaNDoesNotCountAndIsNamed) {
-  Meshes meshes = values(1.5);
-  meshes.push_back({0.03, std::nan("")});
-  const Limit found = least_squares_limit(meshes, 1.5);
-  EXPECT_NEAR(found.value, kLimit, kRounding);
-  EXPECT_NE(found.order.why.find("0.03"), std::string::npos) << found.order.why;
-}
-
 TEST(Limit, KnowsNoUnitsAndNoOrderOfMeshes) {
   Meshes meshes = made({1.0, 0.52, 0.23, 0.131, 0.06});
   Meshes other = meshes;

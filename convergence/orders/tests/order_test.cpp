@@ -81,19 +81,6 @@ TEST(Order, AMeshWithoutANoiseTakesNoPart) {
   EXPECT_NE(found.why.find("no noise is known"), std::string::npos) << found.why;
 }
 
-/// A mesh with a wide spread counts less: the order is that of the others.
-TEST(Order, WideSpreadWeighsLess) {
-  Meshes errors = power(1.0);
-  errors[0].value *= 1.3;
-  for (MeshSample& error : errors) {
-    error.grids = 4;
-    error.spread = 0.01 * error.value;
-  }
-  const double alike = fit_order(errors, 1.0).value;
-  errors[0].spread = 0.3 * errors[0].value;
-  EXPECT_LT(std::abs(fit_order(errors, 1.0).value - 1.0), 0.5 * std::abs(alike - 1.0));
-}
-
 /// A residual that the spread does not explain widens the interval.
 TEST(Order, SpreadTooSmallForTheResidualsIsNotBelieved) {
   Meshes errors = made({1.0, 0.5, 0.5, 0.25});

@@ -2,20 +2,20 @@
 
 #include "convergence/solve/accuracy.hpp"
 
-#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <string>
 
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/solve/accurate_solve.hpp"
 #include "convergence/solve/reached.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/input/input_file.hpp"
 #include "solver/model.hpp"
 
 namespace {
@@ -70,34 +70,29 @@ TEST(AccuracyData, TellTheWorkBetweenMeshesAndTolerances) {
   EXPECT_NEAR(work_of(data, 20.0, 0.5), 400.0, 1e-9);
 }
 
-TEST(AccuracyData, ComeBackFromTheirText) {
-  const AccuracyData data = made_data(2.0);
-  const AccuracyData back = convergence::parse_accuracy_data(accuracy_toml(data, "made"));
-  ASSERT_EQ(back.meshes.size(), data.meshes.size());
-  for (std::size_t i = 0; i < data.meshes.size(); ++i) {
-    EXPECT_NEAR(back.meshes[i].cells_across, data.meshes[i].cells_across, 1e-9);
-    EXPECT_EQ(back.meshes[i].tolerances, data.meshes[i].tolerances);
+/// Those that come with the program, so that a mesh can be picked by them; and the file that holds them,
+/// which is what would be written of them.
+TEST(AccuracyData, OfTheProgramFallFromMeshToMesh) {
+  const AccuracyData data = convergence::accuracy_data();
+  ASSERT_GE(data.meshes.size(), 3U);
+  for (std::size_t i = 1; i < data.meshes.size(); ++i) {
+    const auto& [across, errors, tolerances, applications, work] = data.meshes[i];
+    EXPECT_GT(across, data.meshes[i - 1].cells_across);
     for (std::size_t q = 0; q < convergence::kAccuracies; ++q) {
-      EXPECT_NEAR(back.meshes[i].errors[q].error / data.meshes[i].errors[q].error, 1.0, 1e-2);
+      EXPECT_LE(errors[q].error, data.meshes[i - 1].errors[q].error);
+      EXPECT_LE(errors[q].tolerance, data.meshes[i - 1].errors[q].tolerance);
     }
+    EXPECT_TRUE(std::ranges::is_sorted(tolerances, std::ranges::greater{}));
+    EXPECT_EQ(work.size(), tolerances.size());
+    EXPECT_GT(std::ranges::min(work), 0.0);
   }
-}
-
-TEST(AccuracyData, AreRefusedWhereTheyCannotBePickedBy) {
-  const auto refused = [](const std::string& text) {
-    EXPECT_THROW(convergence::parse_accuracy_data(text), std::runtime_error) << text;
-  };
-  refused("");
-  refused("version = 7");
-  refused("version = 1");
-  refused("version = ");
-  AccuracyData rising = made_data(2.0);
-  rising.meshes[2].errors[1].error = 1.0;
-  refused(accuracy_toml(rising, ""));
-  refused(accuracy_toml(made_data(0.0), ""));  // never better
-  AccuracyData negative = made_data(2.0);
-  negative.meshes[0].work[1] = -1.0;
-  refused(accuracy_toml(negative, ""));
+  for (const auto& [word, of] : convergence::accuracy_words())
+    EXPECT_GT(falling_order(data, of), 0.0) << word;
+  const std::string file = solver::read_input_file(
+      fs::path(SLIPSTICK_SCENES).parent_path() / "solve/accuracy.toml", 1 << 20, "accuracy data");
+  const std::size_t origin = file.find("# ", 1);
+  const std::string written = file.substr(origin + 2, file.find('\n', origin) - origin - 2);
+  EXPECT_EQ(accuracy_toml(data, written), file);
 }
 
 /// Those that come with the program, in every scene that may ask for them.
@@ -157,16 +152,6 @@ TEST(AccuracyChoice, IsRefusedWhereTheContactGoesOnBeyondTheExtent) {
   const solver::Scene cut = scene("patches", {"grid.extent=[1.4e-3,0.7e-3]"});
   EXPECT_THROW(convergence::contact_on_grid(cut), solver::InputError);
   EXPECT_NO_THROW(convergence::contact_on_grid(scene("patches")));
-}
-
-TEST(Accuracy, SaysWhichGridWouldDoInstead) {
-  const solver::Scene oblong = scene("paper", {"grid.extent=[2e-3,1e-3]", "grid.cells=[128,64]"});
-  const Json accuracy = convergence::exact_accuracy(oblong, {1e-2});
-  const Json& cells = accuracy["grid_instead"]["cells"];
-  EXPECT_EQ(cells[0].get<int>(), 2 * cells[1].get<int>());
-  EXPECT_THAT(
-      convergence::accuracy_text({{"accuracy", accuracy}}),
-      HasSubstr(fmt::format("it would take {} x {} cells", cells[0].get<int>(), cells[1].get<int>())));
 }
 
 /// The sphere as if it had no exact answer: the estimate is above the error, and not by orders.

@@ -33,7 +33,6 @@ class Accuracy(Solve):
                              (abs(result["twist_error"]), "exact", wanted))
             self.assertLessEqual(len(accuracy["attempts"]), 2)  # such loads are those that meshes are chosen by
             self.assertEqual(accuracy["attempts"][-1]["cells"], result["cells"])
-            self.assertGreater(accuracy["predicted_seconds"], 0)
 
     def test_shifted_grids_reach_five_digits_of_the_papers_twist_on_small_grids(self):
         for ratio in (0.5, 0.9):
@@ -66,9 +65,6 @@ class Accuracy(Solve):
         result = self.solved("paper", "--accuracy 1e-9")
         self.assertEqual(result["method"], "exact")
         self.assertLessEqual(result["accuracy"]["reached"], 1e-9)
-        self.assertIsNone(result["accuracy"]["grid_instead"])  # no grid gets there, and the reason is said
-        self.assertGreater(self.solved("paper", "--accuracy 1e-3")["accuracy"]["grid_instead"]["seconds"], 0)
-        self.text("paper", "--accuracy 1e-3", says="on a grid")
         # Unless the user says that it be on a grid.
         self.assertEqual(self.solved("paper", "--accuracy 1e-2 --set solver.model=full")["method"], "coulomb")
 

@@ -1,6 +1,8 @@
-// Any text is judged as a loop or is refused.
+// Any text is judged as a field of tractions or as a loop, or is refused.
 
+#include "convergence/check/check.hpp"
 #include "convergence/check/loops/check_loop.hpp"
+#include "convergence/check/loops/loop_record.hpp"
 #include "solver/input/tests/fuzz_file.hpp"
 
 namespace {
@@ -11,6 +13,7 @@ slipstick::solver::Scene sphere() {
   scene.upper = scene.lower = {210e9, 0.3};
   scene.friction = 0.1;
   scene.steps.front().normal = 1000.0;
+  scene.steps.front().torsion = slipstick::solver::MomentRatio{0.9};
   scene.cells = {8, 8};
   return scene;
 }
@@ -19,11 +22,17 @@ slipstick::solver::Scene sphere() {
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
   using namespace slipstick;
-  static const solver::FuzzFile table("loop.csv");
+  static const solver::FuzzFile table("field.csv");
   static const solver::FuzzFile lists("loop.json");
   static const solver::Scene scene = sphere();
   const bool is_json = size > 0 && bytes[0] == '{';
   const auto& path = (is_json ? lists : table).write(solver::text_of(bytes, size));
-  solver::read_or_refuse([&] { convergence::loop_text(convergence::check_loop(scene, path, {0.01})); });
+  solver::read_or_refuse([&] {
+    if (convergence::is_loop_file(path)) {
+      convergence::loop_text(convergence::check_loop(scene, path, {0.01}));
+    } else {
+      convergence::check_text(convergence::check_field(scene, path));
+    }
+  });
   return 0;
 }
