@@ -72,12 +72,12 @@ class Exchange:
         return motion(root(missing, (wanted / (stiffness * unit))[free], tol=1e-6).x) if free else motion([])
 
     def answer(self, solve):
-        """Writes what solve() returns: the pressure, or a list of it and both tractions, and numbers of the program's own."""
+        """Writes what solve() returns: a list of the pressure, or of it and both tractions, and numbers of the program's own."""
         start = time.perf_counter()
         fields, numbers = solve()
         seconds = time.perf_counter() - start
-        touching = np.reshape(fields, (-1, *self.cells))[0] > 0
-        columns = [each[touching] for each in (self.x1, self.x2, *np.reshape(fields, (-1, *self.cells)))]
-        np.savetxt(self.field, np.column_stack(columns), "%.17g", ",", comments="",
-                   header=",".join(["x1", "x2", "pressure", "q1", "q2"][:len(columns)]))
+        fields = [np.reshape(each, self.cells) for each in fields]
+        columns = [each[fields[0] > 0] for each in (self.x1, self.x2, *fields)]
+        names = ["x1", "x2", "pressure", "q1", "q2"][:len(columns)]
+        np.savetxt(self.field, np.column_stack(columns), "%.17g", ",", header=",".join(names), comments="")
         self.numbers.write_text(json.dumps({"seconds": seconds, **numbers}))

@@ -19,7 +19,7 @@ def main():
     def normal():
         solver = ContactSolver(n, side, exchange.modulus, backend="fft")
         found = solver.solve(exchange.gap, mean, tol=1e-10, precond="fourier")
-        return found.pressure, {"iterations": found.iterations, "converged": found.converged}
+        return [found.pressure], {"iterations": found.iterations, "converged": found.converged}
 
     def partial_slip():
         solver = FrictionSolver(n, side, exchange.modulus, exchange.poisson_ratio, CoulombFriction(exchange.friction))
