@@ -77,7 +77,8 @@ def main():
             print(f"{name} {version}, {friction}\n  largest moment {row['largest_moment_over_limit']:.5g} of the exact limit, largest "
                   f"rotation {row['largest_rotation']:.4g} rad (exact at 0.9: {sphere.rotation:.4g})\n  {row['verdict']}: {row['why']}")
     if arguments.json:
-        Path(arguments.json).write_text(json.dumps({"scene": arguments.scene, "limit": sphere.limit, "loops": found}, indent=1))
+        text = {"scene": arguments.scene, "limit": sphere.limit, "law": sphere.law["programs"], "loops": found}
+        Path(arguments.json).write_text(json.dumps(text, indent=1))
 
 
 if __name__ == "__main__":
