@@ -9,7 +9,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parents[1]))
 from exchange import Exchange  # noqa: E402
 
-MOST_CELLS = 4096  # of the grid; the matrix of the contact has up to 9 times their square, 1.2 GB
+MOST_CELLS = 2304  # of the grid; pivots and sweeps on dense matrices take minutes beyond
 
 
 def influence(exchange, cells):
