@@ -12,8 +12,9 @@ PROGRAMS = Path(__file__).resolve().parents[1]
 CELLS = ("--set", "grid.cells=[24,24]")
 FORCE = ("mindlin", ("load.twist=0",), "displacement")  # without rotation, Poisson's ratios zero
 # Scenes, what is set in them, and the numbers that are compared.
-COMPARED = {"siconos": [("paper", (), "twist_angle"), ("mindlin", (), "displacement"), ("ellipse", (), "peak_pressure")],
-            "contact": [("paper", (), "twist_angle"), ("mindlin", (), "displacement"), ("ellipse", (), "peak_pressure")],
+WHOLE = [("paper", (), "twist_angle"), ("mindlin", (), "displacement"), ("ellipse", (), "peak_pressure"),
+         ("imposed_displacement", (), "moment"), ("off_centre", (), "twist_angle")]
+COMPARED = {"siconos": WHOLE, "contact": WHOLE,
             "aspher": [("paper", (), "approach"), FORCE],
             "tamaas": [("paper", (), "approach"), ("ellipse", (), "peak_pressure")],
             "contactmechanics": [("paper", (), "approach"), ("ellipse", (), "peak_pressure")]}
