@@ -108,7 +108,7 @@ bench: configure ## time everything, each time with its error, and draw it
 	$(call build,slipstick slipstick_benchmarks)
 	@$(BUILD)/slipstick bench $(BENCH_OPTIONS)
 
-peers: configure ## what do other programs say? Installs Tamaas, ContactMechanics, ASPHER (PyPI) under build/peers, draws their pages
+peers: configure ## what do other programs say? Installs those of PyPI (build/peers) and Debian, draws their pages, runs simulators
 	$(call build,slipstick)
 	@interfaces/programs/peers $(BUILD)/slipstick $(BUILD)
 

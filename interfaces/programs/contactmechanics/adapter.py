@@ -24,7 +24,7 @@ def main():
         found = system.minimize_proxy(external_force=exchange.load, pentol=depth, forcetol=1e-9, maxiter=5000)
         n1, n2 = exchange.cells
         pressure = np.maximum(np.asarray(found.jac)[:n1, :n2], 0.0) / np.prod(exchange.cell_size)
-        return pressure, found.nit, found.success
+        return [pressure], {"iterations": int(found.nit), "converged": bool(found.success)}
 
     exchange.answer(solve)
 

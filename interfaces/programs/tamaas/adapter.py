@@ -24,7 +24,7 @@ def main():
         solver.setIntegralOperator("free")
         solver.max_iter = 5000
         error = solver.solve(exchange.load / np.prod(sides))
-        return np.array(model.traction), 0, error <= tolerance
+        return [np.array(model.traction)], {"converged": bool(error <= tolerance)}
 
     exchange.answer(solve)
 

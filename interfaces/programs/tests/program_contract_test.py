@@ -34,8 +34,7 @@ MISTAKES = {
     "no padding": ([("(2 * n1, 2 * n2)", "(n1, n2)"), ("fftfreq(2 * n1, 1 / (2 * n1))", "fftfreq(n1, 1 / n1)"),
                     ("fftfreq(2 * n2, 1 / (2 * n2))", "fftfreq(n2, 1 / n2)")], ""),
     "half a cell off": ([("formula(x + a * h1 / 2,", "formula(x + (a + 0.98) * h1 / 2,")], ""),
-    "stopped early": ([('q.shape)), scene["tolerance"])', ""), ('np.zeros((2, *x1.shape)), scene["tolerance"])',
-                       'np.zeros((2, *x1.shape)), scene["tolerance"], 12)'), ("iteration < most", "True")], "")}
+    "stopped early": ([('0.1 * scene["tolerance"])', '0.1 * scene["tolerance"], 12)'), ("iteration < most", "True")], "")}
 
 
 def run(*words):

@@ -1,0 +1,33 @@
+"""Yade, `yade`: two equal spheres of twice the radius are one of this radius on a half-space. The rotation is imposed. Its law
+with a twisting moment is that of CohFrictMat, a spring and a cap; Hertz-Mindlin's has none."""
+
+import json
+import shutil
+import subprocess
+from pathlib import Path
+
+
+def runs(sphere):
+    if not shutil.which("yade"):
+        raise LookupError("there is no yade")
+    version = subprocess.run(["yade", "--version"], capture_output=True, text=True).stdout.split(":")[-1].split(",")[0].strip()
+    law, radius = sphere.law["programs"]["lammps"], 2 * sphere.radius
+    shear = sphere.poisson * sphere.young * radius  # N/m, the stiffness that Yade makes of `poisson`, its ratio of stiffnesses
+    own = {"alphaKtw": 2.0, "etaTwist": -1.0}  # Yade's defaults: no cap
+    ours = {"alphaKtw": law["k_twist"] / (shear * radius**2), "etaTwist": law["mu_twist"] / radius}
+    words = "slipstick law, its spring and cap: " + ", ".join(f"{key} = {ours[key]:.5g}" for key in ours)
+    return version, [("its own: alphaKtw = 2, etaTwist = -1", loop(sphere, own)), (words, loop(sphere, ours)),
+                     (words + ", useIncrementalForm", loop(sphere, ours, True))]
+
+
+def loop(sphere, twisting, incremental=False):
+    def run(folder):
+        radius = 2 * sphere.radius
+        scene = {"twisting": twisting, "young": sphere.young, "poisson": sphere.poisson, "friction": sphere.friction, "radius": radius,
+                 "distance": 2 * radius - sphere.load / (sphere.young * radius), "rotation": sphere.rotation, "quarter": sphere.quarter,
+                 "incremental": incremental}
+        (folder / "scene.json").write_text(json.dumps(scene))
+        script = Path(__file__).with_name("twist_in_yade.py").resolve()
+        subprocess.run(["yade", "-n", "-x", script], cwd=folder, check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        return [(moment, sphere.rotation * sphere.path(step)) for step, moment in json.loads((folder / "out.json").read_text())]
+    return run
