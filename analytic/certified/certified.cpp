@@ -192,8 +192,6 @@ std::optional<State> print(const Question& question, const Balls& balls, int dig
 
 }  // namespace
 
-bool available() { return true; }
-
 State state(const Profile& profile, Quantity given, const std::string& value,
             const std::vector<std::string>& radii, int digits) {
   if (digits < kMinDigits || digits > kMaxDigits)
