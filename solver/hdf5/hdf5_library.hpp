@@ -26,7 +26,8 @@ struct Hdf5Library {
   decltype(read_datasets)* read;
   /// Makes a file whose values are still to be written; where those of each dataset lie. Throws
   /// std::runtime_error.
-  std::vector<off_t> (*lay_out)(const std::filesystem::path& file, const std::vector<DatasetLayout>& datasets);
+  std::vector<off_t> (*lay_out)(const std::filesystem::path& file,
+                                const std::vector<DatasetLayout>& datasets);
 };
 
 /// Opened by the first call. Throws InputError, which names `file`, where it cannot be.

@@ -156,8 +156,7 @@ class CrashMessage {
   std::array<struct sigaction, kCrashes.size()> before_{};
 };
 
-std::vector<Dataset> read(const path& file, const std::vector<std::string>& names, int rank,
-                                   Index most) {
+std::vector<Dataset> read(const path& file, const std::vector<std::string>& names, int rank, Index most) {
   const CrashMessage crash(file);
   std::vector<Dataset> datasets;
   std::string at;
@@ -186,8 +185,9 @@ off_t add_dataset(hid_t file, const DatasetLayout& layout) {
   H5Pset_obj_track_times(creation.get(), false);  // the same numbers, the same bytes
   H5Pset_alloc_time(creation.get(), H5D_ALLOC_TIME_EARLY);
   H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER);
-  const Id dataset(H5Dcreate2(file, layout.name.c_str(), type, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
-                   H5Dclose, kNotLaidOut);
+  const Id dataset(
+      H5Dcreate2(file, layout.name.c_str(), type, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+      H5Dclose, kNotLaidOut);
   return layout.size > 0 ? static_cast<off_t>(H5Dget_offset(dataset.get())) : 0;
 }
 

@@ -51,7 +51,8 @@ std::string name_of(std::FILE* file) {
   return fs::read_symlink(fmt::format("/proc/self/fd/{}", fileno(file)));
 }
 
-/// Room for names is had before: HDF5 keeps what it could not write and crashes over it when the process ends.
+/// Room for names is had before: HDF5 keeps what it could not write and crashes over it when the process
+/// ends.
 Offsets lay_out(std::FILE* file, const std::vector<Content>& contents) {
   const std::string path = name_of(file);
   const std::string room(kNames, '\0');
@@ -159,7 +160,8 @@ void write_datasets(const fs::path& file, const std::vector<LongDataset>& datase
   for (const LongDataset& dataset : datasets) {
     contents.push_back(
         {{dataset.name, false, static_cast<std::size_t>(dataset.size)},
-         static_cast<std::size_t>(dataset.first), [&dataset](const PutBytes& put) {
+         static_cast<std::size_t>(dataset.first),
+         [&dataset](const PutBytes& put) {
            dataset.write([&](std::span<const double> values) { put(values.data(), values.size_bytes()); });
          }});
   }
