@@ -92,23 +92,40 @@ int run_command(const Command& command, const CLI::App& parsed, const std::strin
   return exit_code;
 }
 
+/// Adds the command that the line begins with, or all where it begins with none: for --help, for what is
+/// misspelled, and for the reference. Half a start went into options of commands that nobody had asked for.
+std::vector<Command> add_commands(CLI::App& app, std::string_view first_word, const Ranks& ranks) {
+  using namespace slipstick;
+  const auto add_solve = [&ranks](CLI::App& to) { return convergence::add_solve_command(to, ranks); };
+  const std::vector<std::pair<std::string_view, std::function<Command(CLI::App&)>>> all{
+      {"exact", analytic::add_exact_command},
+      {"solve", add_solve},
+      {"check", convergence::add_check_command},
+#ifdef SLIPSTICK_INTERFACES
+      {"law", laws::add_law_command},
+#endif
+      {"study", convergence::add_study_command},
+      {"gate", convergence::add_gate_command},
+      {"hard", convergence::add_hard_command},
+      {"digits", convergence::add_digits_command},
+      {"report", convergence::add_report_command},
+      {"bench", bench::add_bench_command},
+      {"compare", bench::add_compare_command},
+      {"reference", docs::add_reference_command}};
+  if (first_word == "--version") return {};
+  const auto asked = std::ranges::find(all, first_word, [](const auto& entry) { return entry.first; });
+  if (asked != all.end() && first_word != "reference") return {asked->second(app)};
+  std::vector<Command> commands;
+  for (const auto& [name, add] : all) commands.push_back(add(app));
+  return commands;
+}
+
 int run(int argc, char** argv, const Ranks& ranks) {
   CLI::App app{"slipstick: the elastic torsional contact with slip and stick, exact and numerical, compared"};
   app.set_version_flag("--version", std::string(SLIPSTICK_VERSION));
   app.require_subcommand(1);
 
-  using namespace slipstick;
-  std::vector<Command> commands{analytic::add_exact_command(app), convergence::add_solve_command(app, ranks),
-                                convergence::add_check_command(app)};
-#ifdef SLIPSTICK_INTERFACES
-  commands.push_back(laws::add_law_command(app));
-#endif
-  for (const auto add :
-       {convergence::add_study_command, convergence::add_gate_command, convergence::add_hard_command,
-        convergence::add_digits_command, convergence::add_report_command, bench::add_bench_command,
-        bench::add_compare_command, docs::add_reference_command}) {
-    commands.push_back(add(app));
-  }
+  const std::vector<Command> commands = add_commands(app, argc > 1 ? argv[1] : "", ranks);
   const auto subcommands = app.get_subcommands([](const CLI::App*) { return true; });
   std::string json_path;
   bool quiet = false;

@@ -2,9 +2,7 @@ include(CMakePackageConfigHelpers)
 include(PublicHeaders)
 
 install(TARGETS slipstick)
-if(SLIPSTICK_MPI)
-  install(TARGETS slipstick_ranks LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}/slipstick)
-endif()
+install(FILES docs/reference/slipstick.1 DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
 install(FILES docs/reference/slipstick.bash DESTINATION ${CMAKE_INSTALL_DATADIR}/bash-completion/completions
   RENAME slipstick)
 install(TARGETS slipstick_analytic slipstick_solver slipstick_convergence EXPORT slipstick-targets)

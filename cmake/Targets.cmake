@@ -60,6 +60,31 @@ function(slipstick_library folder)
   slipstick_compile_by_folder(${target} "${ARG_SOURCES}")
 endfunction()
 
+# slipstick_module(<name> SOURCES ... LIBRARIES ...): libslipstick_<name>, which is opened when it is asked for and not at
+# every start (loading/loaded_library.hpp), the target slipstick_<name>_module. Programs find it by their run paths: in the
+# build in lib/slipstick, installed in SLIPSTICK_MODULES, in a wheel beside them.
+set(SLIPSTICK_MODULES ${CMAKE_INSTALL_LIBDIR}/slipstick)
+set(CMAKE_BUILD_RPATH ${PROJECT_BINARY_DIR}/lib/slipstick)
+# slipstick_run_path(<target> <folders...>): of what is installed, from the start. To one that it shall replace CMake adds a
+# colon, and what stands behind that means the folder where the user stands.
+function(slipstick_run_path target)
+  set_target_properties(${target} PROPERTIES INSTALL_RPATH "${ARGN}" INSTALL_RPATH_USE_LINK_PATH ON
+    BUILD_WITH_INSTALL_RPATH ON)
+endfunction()
+function(slipstick_module name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBRARIES" ${ARGN})
+  set(target slipstick_${name}_module)
+  add_library(${target} MODULE ${ARG_SOURCES})
+  slipstick_configure(${target})
+  set_target_properties(${target} PROPERTIES OUTPUT_NAME slipstick_${name} CXX_VISIBILITY_PRESET hidden
+    LIBRARY_OUTPUT_DIRECTORY ${PROJECT_BINARY_DIR}/lib/slipstick)
+  slipstick_run_path(${target})
+  target_compile_features(${target} PRIVATE cxx_std_20)
+  target_include_directories(${target} PRIVATE ${PROJECT_SOURCE_DIR})
+  target_link_libraries(${target} PRIVATE ${ARG_LIBRARIES})
+  install(TARGETS ${target} LIBRARY DESTINATION ${SLIPSTICK_MODULES})
+endfunction()
+
 # Seconds after which a test hangs: a machine may have other work, so at least twenty times what the slowest, that of the
 # mutants, takes alone.
 set(SLIPSTICK_TEST_HANGS 3600)

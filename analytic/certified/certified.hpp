@@ -45,7 +45,8 @@ struct State {
 /// to 15..100 significant digits. Numbers are taken as written, "0.1" is one tenth; C's hexadecimal floats
 /// are understood ("0x1.8p-3"), so that a double can be handed over exactly. Throws std::domain_error with
 /// the value and the range for what lies outside (as torsion.hpp; nothing but 0 may be below 1e-1000) or is
-/// not a number; in a build without Arb std::runtime_error, which says what to install.
+/// not a number, and std::runtime_error, which says what to install, where this build or this machine has no
+/// FLINT.
 State state(const Profile& profile, Quantity given, const std::string& value,
             const std::vector<std::string>& radii, int digits);
 

@@ -5,7 +5,7 @@ import pathlib
 import re
 import sys
 
-TOPS = ("analytic", "bench", "convergence", "docs/generator", "interfaces", "solver")
+TOPS = ("analytic", "bench", "convergence", "docs/generator", "interfaces", "loading", "solver")
 MAX_UNITS = 12
 LARGER = {"analytic": 20}  # flat: each unit is one theory
 OTHER_SIDE = {"analytic": ("solver", "convergence", "bench"), "solver": ("analytic", "convergence", "bench")}

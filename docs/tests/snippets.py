@@ -78,8 +78,7 @@ class Checkout:
         benchmarks = self.program.parent / "bench/slipstick_benchmarks"
         (folder / "build/bench/slipstick_benchmarks").symlink_to(benchmarks)
         build = self.program.parent
-        (folder / "build/interfaces").mkdir()
-        for name in ["interfaces/c", "python"]:
+        for name in ["lib", "python"]:
             (folder / "build" / name).symlink_to(build / name)
         (folder / "programs").mkdir()
         python = folder / "programs/python3"

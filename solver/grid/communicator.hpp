@@ -70,8 +70,4 @@ class Communicator {
   Communicator() = default;
 };
 
-/// Its name in the library, and its type: null where this process is on its own.
-inline constexpr const char* kJoinRanks = "slipstick_join_ranks";
-using JoinRanks = Communicator* (*)();
-
 }  // namespace slipstick::solver

@@ -1,6 +1,5 @@
 #include "solver/grid/ranks.hpp"
 
-#include <dlfcn.h>
 #include <malloc.h>
 
 #include <array>
@@ -11,6 +10,7 @@
 #include <stdexcept>
 #include <thread>
 
+#include "loading/loaded_library.hpp"
 #include "solver/grid/communicator.hpp"
 
 namespace slipstick::solver {
@@ -18,8 +18,6 @@ namespace {
 
 /// mpirun and srun tell their processes in these variables how many they are.
 constexpr std::array kNumberVariables{"OMPI_COMM_WORLD_SIZE", "PMI_SIZE", "SLURM_STEP_NUM_TASKS"};
-/// The library stands beside the program, or where it is installed: see the program's run path.
-constexpr const char* kLibrary = "libslipstick_ranks.so";
 /// Fields of more bytes are given memory of their own: untouched at first, and given back when they end.
 constexpr int kOwnMemory = 1 << 20;
 /// Ranks that failed alike end within a moment of each other.
@@ -100,16 +98,14 @@ PlannedRanks::~PlannedRanks() = default;
 
 JoinedRanks::JoinedRanks() {
   if (started() <= 1) return;
-  void* const library = dlopen(kLibrary, RTLD_NOW | RTLD_GLOBAL);
-  void* const join = library != nullptr ? dlsym(library, kJoinRanks) : nullptr;
-  if (join == nullptr) {
-    const char* const why = dlerror();
+  try {
+    communicator_.reset(loaded_library<Communicator>("slipstick_ranks", RTLD_GLOBAL));
+  } catch (const std::runtime_error& error) {
     throw std::runtime_error(
         "started on several ranks, for which this build has no library; build it with "
         "SLIPSTICK_MPI=ON, or start one process: " +
-        std::string(why != nullptr ? why : kLibrary));
+        std::string(error.what()));
   }
-  communicator_.reset(reinterpret_cast<JoinRanks>(join)());
   if (communicator_->number() == 1) {
     communicator_.reset();
     throw std::runtime_error(

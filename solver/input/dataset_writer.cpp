@@ -2,7 +2,6 @@
 
 #include <fmt/core.h>
 #include <fmt/ranges.h>
-#include <hdf5.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -14,6 +13,7 @@
 #include <system_error>
 
 #include "solver/grid/ranks.hpp"
+#include "solver/hdf5/hdf5_library.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/whole_file.hpp"
 
@@ -22,29 +22,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A handle of the library.
-class Handle {
- public:
-  Handle(hid_t id, herr_t (*close)(hid_t)) : id_(id), close_(close) {
-    if (id_ < 0) throw std::runtime_error("HDF5 refuses to lay a file out");
-  }
-  ~Handle() { close_(id_); }
-  Handle(const Handle&) = delete;
-  Handle& operator=(const Handle&) = delete;
-  operator hid_t() const { return id_; }
-
- private:
-  hid_t id_;
-  herr_t (*close_)(hid_t);
-};
-
 using PutBytes = std::function<void(const void* bytes, std::size_t count)>;
 
 /// The content of a dataset; first: where this rank's part begins.
 struct Content {
-  std::string name;
-  hid_t type;
-  std::size_t size, first;
+  DatasetLayout layout;
+  std::size_t first;
   std::function<void(const PutBytes& put)> write;
 };
 
@@ -68,40 +51,22 @@ std::string name_of(std::FILE* file) {
   return fs::read_symlink(fmt::format("/proc/self/fd/{}", fileno(file)));
 }
 
-off_t add_dataset(hid_t file, const Content& content) {
-  const auto length = static_cast<hsize_t>(content.size);
-  const Handle space(H5Screate_simple(1, &length, nullptr), H5Sclose);
-  const Handle creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose);
-  H5Pset_obj_track_times(creation, false);  // the same numbers, the same bytes
-  H5Pset_alloc_time(creation, H5D_ALLOC_TIME_EARLY);
-  H5Pset_fill_time(creation, H5D_FILL_TIME_NEVER);
-  const Handle dataset(
-      H5Dcreate2(file, content.name.c_str(), content.type, space, H5P_DEFAULT, creation, H5P_DEFAULT),
-      H5Dclose);
-  return content.size > 0 ? static_cast<off_t>(H5Dget_offset(dataset)) : 0;
-}
-
-/// HDF5 lays the file out, and writes names alone: values are holes. Room for them is had before, since the
-/// library keeps what it could not write and crashes over it when the process ends.
+/// Room for names is had before: HDF5 keeps what it could not write and crashes over it when the process
+/// ends.
 Offsets lay_out(std::FILE* file, const std::vector<Content>& contents) {
   const std::string path = name_of(file);
   const std::string room(kNames, '\0');
   std::fwrite(room.data(), 1, room.size(), file);
   if (const int error = error_of(file)) fail(error);
-  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the library's own messages stay off the terminal
-  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose);
-  H5Pset_file_locking(access, false, true);  // it is locked already
-  const Handle laid_out(H5Fcreate(path.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access), H5Fclose);
-  Offsets offsets;
-  for (const Content& content : contents) offsets.push_back(add_dataset(laid_out, content));
-  if (H5Fflush(laid_out, H5F_SCOPE_LOCAL) < 0) fail(EIO);
-  return offsets;
+  std::vector<DatasetLayout> layouts;
+  for (const Content& content : contents) layouts.push_back(content.layout);
+  return hdf5_library(path).lay_out(path, layouts);
 }
 
 /// This rank's part of all datasets.
 void write_values(std::FILE* file, const Offsets& offsets, const std::vector<Content>& contents) {
   for (std::size_t k = 0; k < contents.size(); ++k) {
-    const auto before = static_cast<off_t>(contents[k].first * H5Tget_size(contents[k].type));
+    const auto before = static_cast<off_t>(contents[k].first * contents[k].layout.bytes_of_value());
     if (fseeko(file, offsets[k] + before, SEEK_SET) != 0) fail(errno);
     contents[k].write([&](const void* bytes, std::size_t count) { std::fwrite(bytes, 1, count, file); });
   }
@@ -159,7 +124,7 @@ void write_shared(const fs::path& path, const std::vector<Content>& contents, co
 /// Here too: the library crashes over a file that it may not make so large.
 void require_room(const fs::path& path, const std::vector<Content>& contents) {
   std::size_t bytes = kNames;
-  for (const Content& content : contents) bytes += content.size * H5Tget_size(content.type);
+  for (const Content& content : contents) bytes += content.layout.bytes();
   rlimit most{};
   if (getrlimit(RLIMIT_FSIZE, &most) == 0 && most.rlim_cur != RLIM_INFINITY && bytes > most.rlim_cur) {
     throw InputError(path.string(), why_not_written(EFBIG));
@@ -168,6 +133,7 @@ void require_room(const fs::path& path, const std::vector<Content>& contents) {
 
 /// ranks: those that have parts of the contents.
 void write_hdf5(const fs::path& path, const std::vector<Content>& contents, const Ranks& ranks) {
+  hdf5_library(path);
   require_room(path, contents);
   if (ranks.several()) return write_shared(path, contents, ranks);
   write_whole_file(path, [&](std::FILE* file) { write_values(file, lay_out(file, contents), contents); });
@@ -178,14 +144,13 @@ void write_hdf5(const fs::path& path, const std::vector<Content>& contents, cons
 void write_datasets(const fs::path& file, const std::vector<Column>& columns,
                     const std::vector<NamedText>& texts) {
   std::vector<Content> contents;
-  const auto add = [&](const std::string& name, hid_t type, std::size_t size, const void* values) {
-    contents.push_back(
-        {name, type, size, 0, [=](const PutBytes& put) { put(values, size * H5Tget_size(type)); }});
+  const auto add = [&](const DatasetLayout& layout, const void* values) {
+    contents.push_back({layout, 0, [=](const PutBytes& put) { put(values, layout.bytes()); }});
   };
   for (const Column& column : columns) {
-    add(column.name, H5T_NATIVE_DOUBLE, static_cast<std::size_t>(column.values.size()), column.values.data());
+    add({column.name, false, static_cast<std::size_t>(column.values.size())}, column.values.data());
   }
-  for (const NamedText& text : texts) add(text.name, H5T_NATIVE_UCHAR, text.text.size(), text.text.data());
+  for (const NamedText& text : texts) add({text.name, true, text.text.size()}, text.text.data());
   write_hdf5(file, contents, {});
 }
 
@@ -194,8 +159,9 @@ void write_datasets(const fs::path& file, const std::vector<LongDataset>& datase
   contents.reserve(datasets.size());
   for (const LongDataset& dataset : datasets) {
     contents.push_back(
-        {dataset.name, H5T_NATIVE_DOUBLE, static_cast<std::size_t>(dataset.size),
-         static_cast<std::size_t>(dataset.first), [&dataset](const PutBytes& put) {
+        {{dataset.name, false, static_cast<std::size_t>(dataset.size)},
+         static_cast<std::size_t>(dataset.first),
+         [&dataset](const PutBytes& put) {
            dataset.write([&](std::span<const double> values) { put(values.data(), values.size_bytes()); });
          }});
   }

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "solver/grid/own_rows.hpp"
+#include "solver/hdf5/hdf5_library.hpp"
 #include "solver/input/dataset_reader.hpp"
 #include "solver/input/dataset_writer.hpp"
 #include "solver/input/input_error.hpp"
@@ -228,7 +229,9 @@ Eigen::ArrayXXd read_height_map(const path& file) {
 }
 
 void require_field_format(const path& file) {
-  if (!is_hdf5(file) && file.extension() != ".csv" && file.extension() != ".vti") {
+  if (is_hdf5(file)) {
+    hdf5_library(file);
+  } else if (file.extension() != ".csv" && file.extension() != ".vti") {
     throw InputError("--fields", file.string(), file.extension().string(), ".h5, .hdf5, .csv, .vti");
   }
 }

@@ -191,6 +191,6 @@ std::unique_ptr<Transposition> MpiCommunicator::transposition(const SharedMatrix
 
 }  // namespace
 
-extern "C" [[gnu::visibility("default")]] Communicator* slipstick_join_ranks() { return new MpiCommunicator; }
+extern "C" [[gnu::visibility("default")]] Communicator* slipstick_ranks() { return new MpiCommunicator; }
 
 }  // namespace slipstick::solver

@@ -255,6 +255,8 @@ class SolveTest(unittest.TestCase):
             solution.write(Path(folder) / "fields.csv")
             header = (Path(folder) / "fields.csv").read_text().splitlines()[0].split(",")
             self.assertEqual(header, list(solution.fields))
+            solution.write(Path(folder) / "fields.h5")
+            self.assertTrue((Path(folder) / "fields.h5").read_bytes().startswith(b"\x89HDF"))
             with self.assertRaisesRegex(slipstick.InputError, "allowed: .h5"):
                 solution.write(Path(folder) / "fields.doc")
 

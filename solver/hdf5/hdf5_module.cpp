@@ -1,5 +1,3 @@
-#include "solver/input/dataset_reader.hpp"
-
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 #include <hdf5.h>
@@ -7,13 +5,17 @@
 
 #include <algorithm>
 #include <array>
+#include <cerrno>
 #include <csignal>
 #include <set>
 #include <stdexcept>
+#include <system_error>
 
+#include "solver/hdf5/hdf5_library.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
 
+/// libslipstick_hdf5: all that calls HDF5.
 namespace slipstick::solver {
 namespace {
 
@@ -154,11 +156,7 @@ class CrashMessage {
   std::array<struct sigaction, kCrashes.size()> before_{};
 };
 
-}  // namespace
-
-std::vector<Dataset> read_datasets(const path& file, const std::vector<std::string>& names, int rank,
-                                   Index most) {
-  require_input_file(file, kLargestHdf5, "an HDF5 file");
+std::vector<Dataset> read(const path& file, const std::vector<std::string>& names, int rank, Index most) {
   const CrashMessage crash(file);
   std::vector<Dataset> datasets;
   std::string at;
@@ -176,5 +174,39 @@ std::vector<Dataset> read_datasets(const path& file, const std::vector<std::stri
   }
   return datasets;
 }
+
+constexpr const char* kNotLaidOut = "HDF5 refuses to lay a file out";
+
+off_t add_dataset(hid_t file, const DatasetLayout& layout) {
+  const auto length = static_cast<hsize_t>(layout.size);
+  const hid_t type = layout.is_text ? H5T_NATIVE_UCHAR : H5T_NATIVE_DOUBLE;
+  const Id space(H5Screate_simple(1, &length, nullptr), H5Sclose, kNotLaidOut);
+  const Id creation(H5Pcreate(H5P_DATASET_CREATE), H5Pclose, kNotLaidOut);
+  H5Pset_obj_track_times(creation.get(), false);  // the same numbers, the same bytes
+  H5Pset_alloc_time(creation.get(), H5D_ALLOC_TIME_EARLY);
+  H5Pset_fill_time(creation.get(), H5D_FILL_TIME_NEVER);
+  const Id dataset(
+      H5Dcreate2(file, layout.name.c_str(), type, space.get(), H5P_DEFAULT, creation.get(), H5P_DEFAULT),
+      H5Dclose, kNotLaidOut);
+  return layout.size > 0 ? static_cast<off_t>(H5Dget_offset(dataset.get())) : 0;
+}
+
+/// HDF5 lays the file out, and writes names alone: values are holes.
+std::vector<off_t> lay_out(const path& file, const std::vector<DatasetLayout>& datasets) {
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);  // the library's own messages stay off the terminal
+  const Id access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, kNotLaidOut);
+  H5Pset_file_locking(access.get(), false, true);  // it is locked already
+  const Id laid_out(H5Fcreate(file.c_str(), H5F_ACC_TRUNC, H5P_DEFAULT, access.get()), H5Fclose, kNotLaidOut);
+  std::vector<off_t> offsets;
+  for (const DatasetLayout& dataset : datasets) offsets.push_back(add_dataset(laid_out.get(), dataset));
+  if (H5Fflush(laid_out.get(), H5F_SCOPE_LOCAL) < 0) throw std::system_error(EIO, std::generic_category());
+  return offsets;
+}
+
+constexpr Hdf5Library kLibrary{.read = read, .lay_out = lay_out};
+
+}  // namespace
+
+extern "C" [[gnu::visibility("default")]] const Hdf5Library* slipstick_hdf5() { return &kLibrary; }
 
 }  // namespace slipstick::solver
