@@ -104,6 +104,24 @@ std::string in_code(const std::string& text) {
   return text.empty() ? "" : fmt::format("`{}`", replaced(text, "|", "\\|"));
 }
 
+/// Text for a manual page, where no line may begin with a dot or a quote.
+std::string in_troff(const std::string& text) {
+  std::string safe = replaced(replaced(text, "\\", "\\e"), "-", "\\-");
+  safe = replaced(replaced(safe, "\n.", "\n\\&."), "\n'", "\n\\&'");
+  return safe.starts_with(".") || safe.starts_with("'") ? "\\&" + safe : safe;
+}
+
+std::string in_manual(const OptionText& option) {
+  const std::string otherwise =
+      option.otherwise.empty()
+          ? ""
+          : fmt::format(" ({})",
+                        option.otherwise == "required" ? option.otherwise : "default: " + option.otherwise);
+  return fmt::format(".TP\n\\fB{}\\fR{}\n{}{}\n", in_troff(option.name),
+                     option.value.empty() ? "" : " " + in_troff(option.value), in_troff(option.meaning),
+                     in_troff(otherwise));
+}
+
 std::string names_of(const std::vector<OptionText>& options) {
   std::vector<std::string> names;
   for (const OptionText& option : options) {
@@ -172,6 +190,28 @@ std::string commands_markdown(const std::vector<CommandText>& commands) {
     page += fmt::format("\n```text\n{}\n```\n", command.footer);
   }
   return page;
+}
+
+std::string commands_manual(const std::vector<CommandText>& commands, const std::string& version) {
+  std::string page = fmt::format(
+      ".\\\" Written by make reference from the program's own options.\n"
+      ".TH SLIPSTICK 1 \"\" \"slipstick {}\" \"User Commands\"\n.SH NAME\n"
+      "slipstick \\- the elastic torsional contact with slip and stick, exact and numerical, compared\n"
+      ".SH SYNOPSIS\n.B slipstick\n.I COMMAND\n[OPTIONS]\n.br\n.B slipstick\n\\-\\-help | \\-\\-version\n"
+      ".SH DESCRIPTION\nEvery command explains itself with \\-\\-help. Scenes, studies, gates and hard cases "
+      "are TOML files; their keys stand in docs/reference.\n.SH COMMANDS\n",
+      in_troff(version));
+  for (const CommandText& command : commands) {
+    page += fmt::format(".SS \"{}\"\n{}.\n.PP\n.nf\n{}\n.fi\n", in_troff(command.name),
+                        in_troff(command.meaning), in_troff(usage(command)));
+    for (const OptionText& file : command.files) page += in_manual(file);
+    for (const OptionText& option : command.options) page += in_manual(option);
+    page += fmt::format(".PP\n.nf\n{}\n.fi\n", in_troff(command.footer));
+  }
+  return page +
+         ".SH EXIT STATUS\n.TP\n0\nDone; what was judged is good.\n.TP\n1\nJudged and failed: a gate, a "
+         "regression, a solve that did not reach its tolerance.\n.TP\n2\nNothing was judged: bad input, a "
+         "missing file, loads that the contact cannot carry, no memory.\n";
 }
 
 std::string commands_completion(const std::vector<CommandText>& commands,

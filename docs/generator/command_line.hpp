@@ -33,6 +33,9 @@ std::vector<CommandText> command_texts(const CLI::App& app);
 /// A page of all commands (Markdown).
 std::string commands_markdown(const std::vector<CommandText>& commands);
 
+/// A manual page of all commands (troff, section 1).
+std::string commands_manual(const std::vector<CommandText>& commands, const std::string& version);
+
 /// A script for bash that completes commands, options, their words and files, and a scene's keys after --set.
 std::string commands_completion(const std::vector<CommandText>& commands,
                                 const std::vector<std::string>& scene_keys);

@@ -50,6 +50,7 @@ std::map<std::string, std::string> pages(const CLI::App& app) {
       {"program.md", keys_markdown({"Keys of a program", "What `solver.program` and `--program FILE` name."},
                                    convergence::program_keys())},
       {"commands.md", commands_markdown(commands)},
+      {"slipstick.1", commands_manual(commands, SLIPSTICK_VERSION)},
       {"slipstick.bash", commands_completion(commands, keys_of_one_table())}};
 }
 
