@@ -65,6 +65,10 @@ endfunction()
 # build in lib/slipstick, installed in SLIPSTICK_MODULES, in a wheel beside them.
 set(SLIPSTICK_MODULES ${CMAKE_INSTALL_LIBDIR}/slipstick)
 set(CMAKE_BUILD_RPATH ${PROJECT_BINARY_DIR}/lib/slipstick)
+# A sanitizer's dlopen() asks in the program's place, and to it run paths of the old kind alone are known.
+if(CMAKE_CXX_FLAGS MATCHES "-fsanitize")
+  add_link_options(-Wl,--disable-new-dtags)
+endif()
 # slipstick_run_path(<target> <folders...>): of what is installed, from the start. To one that it shall replace CMake adds a
 # colon, and what stands behind that means the folder where the user stands.
 function(slipstick_run_path target)
