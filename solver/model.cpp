@@ -41,7 +41,7 @@ constexpr double kFieldsBefore = 37.0;
 /// and guesses. They stand in for much of the step before.
 constexpr double kFieldsOfTurns = 58.0;
 constexpr double kFieldsBeforeTurns = 21.0;
-/// The program and its libraries; where several processes share a grid MPI's too.
+/// The program and its libraries, that for HDF5 included; where several processes share a grid MPI's too.
 double program_bytes(const Grid& grid) { return (grid.ranks.several() ? 35.0 : 25.0) * 0x1p20; }
 double field_bytes(double fields, Index cells) {
   return fields * sizeof(double) * static_cast<double>(cells);
