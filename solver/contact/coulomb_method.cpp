@@ -149,12 +149,24 @@ ArrayXd stick_area(const ArrayXd& traction, const ArrayXd& bound) {
   return (norms(traction) < (1.0 - kOnCircle) * bound).cast<double>();
 }
 
-TangentialSolution unloaded(const Grid& grid) {
+/// Nothing bears on the surfaces along them, and nothing has: without tractions and motions Coulomb's law
+/// holds.
+bool is_at_rest(const TangentialProblem& problem) {
+  const auto nothing = [](const std::optional<std::array<double, 2>>& pair) {
+    return !pair || *pair == std::array<double, 2>{};
+  };
+  return problem.moment.value_or(0.0) == 0.0 && problem.twist.value_or(0.0) == 0.0 &&
+         nothing(problem.force) && nothing(problem.displacement) &&
+         (problem.initial_displacement == 0.0).all() && (problem.start == 0.0).all();
+}
+
+/// All of the contact sticks, where there is one.
+TangentialSolution at_rest(const Grid& grid, const ArrayXd& bound) {
   TangentialSolution solution;
   solution.status = Status::converged;
   solution.traction.setZero(2 * grid.cells());
   solution.elastic_displacement = solution.slip = solution.traction;
-  solution.stick.setZero(grid.cells());
+  solution.stick = (bound > 0.0).cast<double>();
   return solution;
 }
 
@@ -163,7 +175,8 @@ TangentialSolution unloaded(const Grid& grid) {
 TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const Grid& grid,
                                            TangentialProblem problem, const CoulombOptions& options) {
   require_valid(problem, grid);
-  if ((problem.friction_bound == 0.0).all()) return unloaded(grid);
+  if ((problem.friction_bound == 0.0).all() || is_at_rest(problem))
+    return at_rest(grid, problem.friction_bound);
   NewtonOptions newton{.tolerance = options.tolerance,
                        .max_applications = options.max_applications,
                        .refine_multipliers = options.refine_motion};

@@ -56,10 +56,12 @@ inline void share_rows(const Grid& grid, Eigen::ArrayXd& field) {
   share_rows(grid, std::span(field.data(), static_cast<std::size_t>(field.size())));
 }
 
-/// Brings the rows next to this process's own, so many on each side, into a field of one component.
+/// Brings the rows next to this process's own, so many on each side, into a field of any number of components.
 inline void share_rows_beside(const Grid& grid, Eigen::ArrayXd& field, Index depth) {
-  grid.ranks.gather_beside(std::span(field.data(), static_cast<std::size_t>(field.size())), grid.n1,
-                           RowBands(grid.n1, grid.ranks).rows_of_rank(), depth);
+  for (Index start = 0; start < field.size(); start += grid.cells()) {
+    grid.ranks.gather_beside(std::span(field.data() + start, static_cast<std::size_t>(grid.cells())), grid.n1,
+                             RowBands(grid.n1, grid.ranks).rows_of_rank(), depth);
+  }
 }
 
 /// work(first, count) for the cells of this process's own rows, in each component of a field.

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstddef>
 #include <vector>
 
@@ -56,6 +57,14 @@ class Sweep {
   /// Cells of the grid, and those that are visited, by all processes together.
   Index size() const { return size_; }
   Index count() const { return count_; }
+
+  /// Whether they lie in many small spots or have a ragged edge: intervals are many more than in a disc of as
+  /// many cells, which has 1.13 times the root of their number, or in a few such discs and rings.
+  bool is_ragged() const {
+    constexpr double kIntervalsOfSmooth = 4.0;
+    const double intervals = sum<double>([](Index, Index, double& sum) { sum += 1.0; });
+    return intervals > kIntervalsOfSmooth * std::sqrt(static_cast<double>(count_));
+  }
 
   /// work(first, last) for each interval [first, last) of cells; several threads at the same time. It must
   /// not throw.

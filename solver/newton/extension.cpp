@@ -61,9 +61,10 @@ void Extension::find_mixed(const Field& free) {
   mixed_.assign(grid_.cells(), [&](Index cell) { return weight_[cell] != 0.0; });
 }
 
-/// take(first, sums) for cells of mixed_: the sums over neighbours of a field, which is zero beyond the grid.
+/// take(first, sums) for cells of mixed_: the sums over neighbours of a field's component, which begins at
+/// `component` and is zero beyond the grid.
 template <typename Take>
-void Extension::spread(const Field& in, const Take& take) const {
+void Extension::spread(const Field& in, Index component, const Take& take) const {
   using Line = Eigen::Array<double, kChunk + 2 * kMaxReach, 1>;
   const auto add_beside = [&](const auto& at, auto&& sum) {
     double weight = kNearest;
@@ -74,7 +75,7 @@ void Extension::spread(const Field& in, const Take& take) const {
     const Index count = std::min(last + reach_, grid_.n2) - left;
     const auto line = [&](Index k) {
       const bool inside = 0 <= row + k && row + k < grid_.n1;
-      return inside ? in.segment((row + k) * grid_.n2 + left, count) : zeros_.segment(0, count);
+      return inside ? in.segment(component + (row + k) * grid_.n2 + left, count) : zeros_.segment(0, count);
     };
     Line column_sums;
     column_sums.head(last - first + 2 * reach_).setZero();
@@ -99,7 +100,7 @@ void Extension::prepare(Field& free) {
   share_rows_beside(grid_, free, reach_);
   find_mixed(free);
   clear(mixed_, work_);
-  spread(free, [&](Index first, const auto& sums) {
+  spread(free, 0, [&](Index first, const auto& sums) {
     const auto is_free = free.segment(first, sums.size());
     weight_.segment(first, sums.size()) = (1.0 - is_free) / (sums + kFade);
   });
@@ -107,20 +108,26 @@ void Extension::prepare(Field& free) {
 
 void Extension::extend(Field& y) {
   share_rows_beside(grid_, y, reach_);
-  spread(y, [&](Index first, const auto& sums) {
-    work_.segment(first, sums.size()) = weight_.segment(first, sums.size()) * sums;
-  });
-  mixed_.each(
-      [&](Index first, Index last) { y.segment(first, last - first) += work_.segment(first, last - first); });
+  for (Index component = 0; component < y.size(); component += grid_.cells()) {
+    spread(y, component, [&](Index first, const auto& sums) {
+      work_.segment(first, sums.size()) = weight_.segment(first, sums.size()) * sums;
+    });
+    mixed_.each([&](Index first, Index last) {
+      y.segment(component + first, last - first) += work_.segment(first, last - first);
+    });
+  }
 }
 
 void Extension::collect(Field& y) {
-  mixed_.each([&](Index first, Index last) {
-    work_.segment(first, last - first) =
-        weight_.segment(first, last - first) * y.segment(first, last - first);
-  });
-  share_rows_beside(grid_, work_, reach_);
-  spread(work_, [&](Index first, const auto& sums) { y.segment(first, sums.size()) += sums; });
+  for (Index component = 0; component < y.size(); component += grid_.cells()) {
+    mixed_.each([&](Index first, Index last) {
+      work_.segment(first, last - first) =
+          weight_.segment(first, last - first) * y.segment(component + first, last - first);
+    });
+    share_rows_beside(grid_, work_, reach_);
+    spread(work_, 0,
+           [&](Index first, const auto& sums) { y.segment(component + first, sums.size()) += sums; });
+  }
 }
 
 void Extension::hand_on(const Sweep& cells, const Field& free, Eigen::ArrayXd& p, Field& stays,

@@ -17,7 +17,7 @@ class Extension {
  public:
   using Field = Eigen::ArrayXd;
 
-  /// For scalar fields on a grid.
+  /// For fields of any number of components on a grid; each is continued by itself.
   explicit Extension(const Grid& grid);
 
   /// free: 1 in the cells that are, 0 elsewhere. A field that is given here need be known in the grid's own
@@ -38,7 +38,7 @@ class Extension {
  private:
   void find_mixed(const Field& free);
   template <typename Take>
-  void spread(const Field& in, const Take& take) const;
+  void spread(const Field& in, Index component, const Take& take) const;
 
   Grid grid_;
   Index reach_;   ///< cells, along each axis

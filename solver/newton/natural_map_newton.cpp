@@ -9,8 +9,10 @@ namespace slipstick::solver {
 namespace {
 
 /// rho over the mean of the inverse symbol. Smaller is more careful about changing cells' states; between
-/// 0.1 and 0.3 makes no difference to tractions, 1 overshoots; many small contact spots want it small.
+/// 0.1 and 0.3 makes no difference to tractions, 1 overshoots; many small contact spots want it small: from
+/// 0.2 to 0.05 a rough sphere on 512 x 512 cells at half its limit takes 7 steps in place of 10.
 constexpr double kRho = 0.2;
+constexpr double kRhoOfSpots = 0.05;
 constexpr double kRhoOfPressure = 0.1;
 /// Iterations of the linear problem that refines the multipliers at the end; each brings them nearer by a
 /// factor of about 5.
@@ -24,6 +26,12 @@ constexpr int kMaxGradientHalvings = 30;
 
 double mean_of(const std::array<double, 2>& pair) { return 0.5 * (pair[0] + pair[1]); }
 
+template <AdmissibleSet Set>
+double rho_for(const Set& set) {
+  if (Set::kComponents == 1) return kRhoOfPressure;
+  return set.sweep().is_ragged() ? kRhoOfSpots : kRho;
+}
+
 NewtonSummary fail(NewtonSummary& summary, const std::string& why) {
   summary.message = why;
   return summary;
@@ -34,7 +42,7 @@ NewtonSummary fail(NewtonSummary& summary, const std::string& why) {
 template <AdmissibleSet Set>
 NaturalMapNewton<Set>::NaturalMapNewton(const Set& set, const ConvexProgram& program, LinearOperator& op,
                                         InverseSymbol& symbol)
-    : state_(set, program, op, (kIsScalar ? kRhoOfPressure : kRho) * mean_of(symbol.diagonal())),
+    : state_(set, program, op, rho_for(set) * mean_of(symbol.diagonal())),
       linear_(state_, symbol),
       trial_{ArrayXd(state_.size()), ArrayXd(state_.size())} {
   clear(set.sweep(), trial_.q);

@@ -16,9 +16,11 @@ constexpr double kNearMultipliers = 0.1;
 constexpr double kLooseReduction = 0.1;
 constexpr double kTightReduction = 1e-4;
 constexpr double kPartOfWanted = 0.3;
-/// Pressures' states change all over a rough surface: more is lost on a state that will not last.
+/// States change all over a rough surface, pressures' and tractions': more is lost on a state that will not
+/// last.
 constexpr double kLooseReductionOfPressure = 0.2;
-/// A pressure's state can be trusted up to this factor times the root of the part of the free cells that have
+constexpr double kLooseReductionOfSpots = 0.3;
+/// Such a state can be trusted up to this factor times the root of the part of the free cells that have
 /// changed: the forcing term of the inexact Newton method.
 constexpr double kDistrust = 3.0;
 /// Iterations of one linear problem, at most.
@@ -35,8 +37,15 @@ TangentProblem<Set>::TangentProblem(const NewtonState<Set>& state, InverseSymbol
       x_(state.size()),
       d_(state.size()),
       space_(Set::kComponents, state.set().sweep()),
-      extension_(kIsScalar ? state.op().grid() : Grid{}) {
+      extends_(kIsScalar || state.set().sweep().is_ragged()),
+      extension_(extends_ ? state.op().grid() : Grid{}) {
   for (CgTangent& tangent : tangents_) tangent.resize(state.size());
+  if (kIsScalar || !extends_) return;  // a pressure's free cells change with their states
+  ArrayXd in_contact(state.set().cells());
+  clear(state.set().sweep(), in_contact);
+  state.set().sweep().each(
+      [&](Index first, Index last) { in_contact.segment(first, last - first).setOnes(); });
+  extension_.prepare(in_contact);
 }
 
 template <AdmissibleSet Set>
@@ -67,14 +76,15 @@ bool TangentProblem<Set>::tangents_are_near(const NewtonState<Set>& state) const
 template <AdmissibleSet Set>
 LinearTarget TangentProblem<Set>::target(double wanted, long applications_left) const {
   const int iterations = static_cast<int>(std::min<long>(applications_left, kInnerIterations));
-  if (!kIsScalar) {
+  if (!extends_) {
     const double reduction = changed_ > 0 ? kLooseReduction : kPartOfWanted * wanted;
     return {std::clamp(reduction, kTightReduction, kLooseReduction), iterations};
   }
   const double changed =
       static_cast<double>(changed_) / static_cast<double>(std::max<Index>(space_.free.count(), 1));
   const double reduction = std::max(kPartOfWanted * wanted, kDistrust * std::sqrt(changed));
-  return {std::clamp(reduction, kTightReduction, kLooseReductionOfPressure), iterations};
+  const double loose = kIsScalar ? kLooseReductionOfPressure : kLooseReductionOfSpots;
+  return {std::clamp(reduction, kTightReduction, loose), iterations};
 }
 
 /// The right-hand side -(s + stiffness q): the tangent space sees the turning part of q.

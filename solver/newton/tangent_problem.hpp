@@ -52,7 +52,7 @@ class TangentProblem {
  private:
   static constexpr bool kIsScalar = NewtonState<Set>::kIsScalar;
 
-  TangentPreconditioner preconditioner() { return {symbol_, space_, kIsScalar ? &extension_ : nullptr}; }
+  TangentPreconditioner preconditioner() { return {symbol_, space_, extends_ ? &extension_ : nullptr}; }
   CgWorkspace work(Trial& scratch) { return {d_, scratch.u, scratch.q}; }
   bool tangents_are_near(const NewtonState<Set>& state) const;
   void write_residual(const NewtonState<Set>& state, const ArrayXd& q, ArrayXd& slip);
@@ -63,7 +63,8 @@ class TangentProblem {
   CgConstraints<MotionField> constraints_;
   ArrayXd r_, x_, d_;  ///< residual, solution, direction
   TangentSpace space_;
-  Extension extension_;       ///< of scalars
+  bool extends_;  ///< pressures beyond their free cells, tractions beyond a ragged contact
+  Extension extension_;
   Coefficients prepared_at_;  ///< the multipliers that the tangents were made at
   Index changed_ = 0;         ///< cells whose state the last linearisation changed
   bool has_tangents_ = false;

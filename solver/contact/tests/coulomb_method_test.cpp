@@ -57,6 +57,18 @@ Certificate independent_certificate(const CoulombBench& bench, const TangentialS
   return certify({solution.traction, u, slip}, bench.bound, rotation_field(bench.grid), moment);
 }
 
+/// No load, no motion: nothing is solved, and all of the contact sticks.
+TEST(CoulombMethod, DoesNothingWhereNothingIsAsked) {
+  const CoulombBench bench(16, 12);
+  for (const TangentialSolution& solution : {bench.solve(0.0), bench.solve_twist(0.0)}) {
+    EXPECT_EQ(solution.status, Status::converged);
+    EXPECT_TRUE(solution.grids.empty());
+    EXPECT_TRUE((solution.traction == 0.0).all());
+    EXPECT_EQ(solution.twist, 0.0);
+    EXPECT_TRUE((solution.stick == (bench.bound > 0.0).cast<double>()).all());
+  }
+}
+
 // --- the certificate ---
 
 struct GridShape {

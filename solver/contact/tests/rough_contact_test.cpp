@@ -2,7 +2,9 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 
+#include "solver/contact/coulomb_method.hpp"
 #include "solver/contact/normal_contact.hpp"
 #include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/scene/roughness.hpp"
@@ -45,6 +47,7 @@ struct RoughFace {
 /// Applications on any mesh: at most, and where spots have many cells.
 constexpr double kMostApplications = 60.0;
 constexpr double kWantedApplications = 40.0;
+constexpr double kTractionApplications = 45.0;
 constexpr double kTolerance = 1e-10;
 constexpr double kRounding = 1e-12;
 
@@ -80,6 +83,42 @@ TEST(RoughContact, TakesFewApplicationsOnAFineMesh) {
   const NormalSolution found = face.pressed(0.25);
   EXPECT_EQ(found.status, Status::converged) << found.message;
   EXPECT_LE(finest_grid_applications(found.grids), kWantedApplications);
+}
+
+/// Tractions on a body of many spots, at parts of the force that they carry: to next to none, where nothing
+/// slips and the problem is linear, and to nearly all. Where residuals end at the edges of spots the first
+/// takes 50.
+TEST(RoughContact, TakesFewApplicationsUnderATangentialForce) {
+  const RoughFace face(128);
+  const ArrayXd bound = 0.3 * face.pressed(0.1).pressure;
+  const auto op = face.elasticity.make(face.grid, tangential_kernel());
+  ArrayXd u(2 * face.grid.cells());
+  for (const double part : {1e-6, 0.1, 0.5, 0.9}) {
+    SCOPED_TRACE(part);
+    TangentialProblem problem{.friction_bound = bound,
+                              .initial_displacement = {},
+                              .moment = 0.0,
+                              .twist = {},
+                              .force = {{part * bound.sum(), 0.0}}};
+    const TangentialSolution found = solve_by_coulomb_method(face.elasticity, face.grid, problem, {});
+    EXPECT_EQ(found.status, Status::converged) << found.message;
+    EXPECT_LE(finest_grid_applications(found.grids), kTractionApplications);
+    EXPECT_NEAR(found.traction.head(bound.size()).sum() / (part * bound.sum()), 1.0, 1e-9);
+    op->apply(found.traction, u);
+    // Coulomb's law in each cell: what slips has its traction on the bound, against the slip.
+    double gap = 0.0;
+    for (Index cell = 0; cell < bound.size(); ++cell) {
+      if (bound[cell] == 0.0) continue;
+      const Index other = cell + bound.size();
+      const double x1 = face.grid.x1(cell / face.grid.n2);
+      const double x2 = face.grid.x2(cell % face.grid.n2);
+      const double s1 = u[cell] - found.displacement[0] + found.twist * x2;
+      const double s2 = u[other] - found.displacement[1] - found.twist * x1;
+      gap += s1 * found.traction[cell] + s2 * found.traction[other] + bound[cell] * std::hypot(s1, s2);
+    }
+    EXPECT_LE(gap, 1e-8 * 0.5 * (found.traction * u).sum());
+    EXPECT_GE(gap, -kRounding);
+  }
 }
 
 /// Then there is no inequality left: K p + h is the approach everywhere.

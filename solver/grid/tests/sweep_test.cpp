@@ -4,6 +4,7 @@
 
 #include <Eigen/Core>
 #include <atomic>
+#include <cmath>
 #include <vector>
 
 #include "solver/allocations/allocations.hpp"
@@ -54,6 +55,28 @@ double sum_of(const Sweep& sweep, const ArrayXd& field) {
 }
 
 /// To the last bit, however the parts are shared out.
+/// A disc, a ring and two discs side by side are smooth; spots on every other cell, and scattered ones, are
+/// not.
+TEST(Sweep, IsRaggedWhereItsCellsLieInSpots) {
+  const Grid grid{64, 48, 1.0, 1.0};
+  const auto ragged = [&](const auto& contains) {
+    ArrayXd field(grid.cells());
+    for (Index cell = 0; cell < grid.cells(); ++cell) {
+      const double x1 = grid.x1(cell / grid.n2);
+      const double x2 = grid.x2(cell % grid.n2);
+      field[cell] = contains(cell, x1, x2) ? 1.0 : 0.0;
+    }
+    return Sweep(grid, field).is_ragged();
+  };
+  EXPECT_FALSE(ragged([](Index, double x1, double x2) { return std::hypot(x1, x2) < 20.0; }));
+  EXPECT_FALSE(ragged([](Index, double x1, double x2) { return std::abs(std::hypot(x1, x2) - 18.0) < 4.0; }));
+  EXPECT_FALSE(
+      ragged([](Index, double x1, double x2) { return std::hypot(std::abs(x1) - 15.0, x2) < 12.0; }));
+  EXPECT_TRUE(ragged([](Index cell, double, double) { return cell % 2 == 0; }));
+  const ArrayXd spots = scattered(grid.cells(), 5, 0.0);
+  EXPECT_TRUE(ragged([&](Index cell, double, double) { return spots[cell] != 0.0; }));
+}
+
 TEST(Sweep, SumsTheSameOnAnyNumberOfThreads) {
   constexpr Index kCells = 300007;
   const Sweep sweep(scattered(kCells, 5, 0.3));

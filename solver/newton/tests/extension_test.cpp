@@ -26,6 +26,25 @@ TEST(Extension, CollectsAsTheAdjointOfWhatItExtends) {
   EXPECT_NEAR((extended * y).sum(), (x * collected).sum(), 1e-12);
 }
 
+/// Components do not see each other: together they are what each is alone.
+TEST(Extension, ContinuesEachComponentByItself) {
+  const Grid grid{9, 14, 1.0, 1.0};
+  ArrayXd free = (ArrayXd::Random(grid.cells()) > 0.2).cast<double>();
+  Extension extension(grid);
+  extension.prepare(free);
+  const ArrayXd fields[] = {free * ArrayXd::Random(grid.cells()), free * ArrayXd::Random(grid.cells())};
+  for (const auto step : {&Extension::extend, &Extension::collect}) {
+    ArrayXd together(2 * grid.cells());
+    together << fields[0], fields[1];
+    (extension.*step)(together);
+    for (const Index k : {0, 1}) {
+      ArrayXd alone = fields[k];
+      (extension.*step)(alone);
+      EXPECT_TRUE((together.segment(k * grid.cells(), grid.cells()) == alone).all()) << k;
+    }
+  }
+}
+
 /// A spot's continuation moves with it, bit by bit, also to where the grid ends, which is like cells that are
 /// not free.
 TEST(Extension, MovesWithTheContact) {
