@@ -14,8 +14,8 @@
 #include <vector>
 
 #include "convergence/programs/python_script.hpp"
-#include "convergence/report/headline.hpp"
 #include "convergence/report/scene_page.hpp"
+#include "convergence/report/scene_verdict.hpp"
 #include "convergence/report/validation.hpp"
 #include "convergence/results/markup.hpp"
 #include "convergence/results/output.hpp"

@@ -15,7 +15,6 @@
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/hard/rounding_digits.hpp"
 #include "convergence/orders/mesh_sequence.hpp"
-#include "convergence/report/headline.hpp"
 #include "convergence/report/scene_cost.hpp"
 #include "convergence/report/scene_description.hpp"
 #include "convergence/report/scene_numbers.hpp"

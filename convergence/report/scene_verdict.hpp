@@ -5,7 +5,7 @@
 
 #include "convergence/report/scene_page.hpp"
 
-/// The verdict of a scene's page.
+/// The verdict of a page, and what differs from the page before.
 namespace slipstick::convergence {
 
 /// A sentence of the verdict, and whether it holds.
@@ -42,5 +42,15 @@ std::vector<Finding> judge_validation(const Json& paper);
 
 /// What a page says first: {verdict, commit, lines, numbers, counts}.
 Json headline_of(const std::vector<Finding>& findings, const Json& page);
+
+/// Sentences on what differs from an earlier headline: none where only times do.
+Json changes(const Json& now, const Json& before);
+
+/// The headline beside an earlier one, which may be null: `since` says which page that was and `changes` what
+/// is different now. What an earlier page said of its own predecessor stays where nothing is different.
+Json with_changes(Json now, const Json& before);
+
+/// For a person, ten lines at most.
+std::string headline_text(const Json& headline);
 
 }  // namespace slipstick::convergence

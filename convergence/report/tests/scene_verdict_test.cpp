@@ -1,13 +1,11 @@
-#include "convergence/report/headline.hpp"
+#include "convergence/report/scene_verdict.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
-#include "convergence/report/scene_verdict.hpp"
 #include "convergence/results/result_parts.hpp"
 
 namespace slipstick::convergence {
