@@ -48,7 +48,7 @@ report: configure ## compute all that the page shows and write it (FULL=1: finer
 	@$(BUILD)/slipstick report --output $(BUILD)/report --benchmarks $(BUILD)/benchmarks $(if $(FULL),--full) $(REPORT_OPTIONS)
 	@echo "The page: $(CURDIR)/$(BUILD)/report/index.html"
 
-gallery: configure ## a page of every scene of the project, and an index of them: build/gallery/index.html (3 minutes; REPORT_OPTIONS="--quick")
+gallery: configure ## a page of every scene of the project, and an index of them: build/gallery/index.html (5 minutes; REPORT_OPTIONS="--quick": 3)
 	$(call build,slipstick)
 	@$(BUILD)/slipstick report convergence/scenes/*.toml --output $(BUILD)/gallery $(REPORT_OPTIONS)
 
@@ -71,7 +71,7 @@ gate: configure ## check the numbers that README.md promises, and counts of work
 	@$(BUILD)/slipstick gate $(patsubst %,convergence/gates/%.toml,quick digits exact) bench/gates/work.toml $(INSTRUCTION_GATES) \
 	  --results $(BUILD)/gates --output $(BUILD)/gates $(GATE_OPTIONS)
 
-hard: configure ## solve 700 hard scenes, each in several views; audit every one of them with NumPy (2 minutes)
+hard: configure ## solve 707 hard scenes, each in several views; audit every one of them with NumPy (2 minutes)
 	$(call build,slipstick)
 	@status=0; mkdir -p $(BUILD)/hard; \
 	  $(BUILD)/slipstick hard convergence/hard/*.toml --output $(BUILD)/hard --fields $(BUILD)/hard/fields \
