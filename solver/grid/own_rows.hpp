@@ -56,7 +56,8 @@ inline void share_rows(const Grid& grid, Eigen::ArrayXd& field) {
   share_rows(grid, std::span(field.data(), static_cast<std::size_t>(field.size())));
 }
 
-/// Brings the rows next to this process's own, so many on each side, into a field of any number of components.
+/// Brings the rows next to this process's own, so many on each side, into a field of any number of
+/// components.
 inline void share_rows_beside(const Grid& grid, Eigen::ArrayXd& field, Index depth) {
   for (Index start = 0; start < field.size(); start += grid.cells()) {
     grid.ranks.gather_beside(std::span(field.data() + start, static_cast<std::size_t>(grid.cells())), grid.n1,
