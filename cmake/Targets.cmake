@@ -61,7 +61,7 @@ function(slipstick_library folder)
 endfunction()
 
 # slipstick_module(<name> SOURCES ... LIBRARIES ...): libslipstick_<name>, which is opened when it is asked for and not at
-# every start (loading/loaded_library.hpp), the target slipstick_<name>_module. Programs find it by their run paths: in the
+# every start (cmake/loaded_library.hpp), the target slipstick_<name>_module. Programs find it by their run paths: in the
 # build in lib/slipstick, installed in SLIPSTICK_MODULES, in a wheel beside them.
 set(SLIPSTICK_MODULES ${CMAKE_INSTALL_LIBDIR}/slipstick)
 set(CMAKE_BUILD_RPATH ${PROJECT_BINARY_DIR}/lib/slipstick)

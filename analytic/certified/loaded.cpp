@@ -3,7 +3,7 @@
 #include <stdexcept>
 
 #include "analytic/certified/certified.hpp"
-#include "loading/loaded_library.hpp"
+#include "cmake/loaded_library.hpp"
 
 namespace slipstick::analytic::certified {
 

@@ -10,7 +10,7 @@
 #include <stdexcept>
 #include <thread>
 
-#include "loading/loaded_library.hpp"
+#include "cmake/loaded_library.hpp"
 #include "solver/grid/communicator.hpp"
 
 namespace slipstick::solver {

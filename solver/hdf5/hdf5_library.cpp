@@ -2,7 +2,7 @@
 
 #include <fmt/core.h>
 
-#include "loading/loaded_library.hpp"
+#include "cmake/loaded_library.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
 
