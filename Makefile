@@ -21,7 +21,7 @@ INSTRUCTION_GATES = $(wildcard bench/gates/instructions-gcc-$(firstword $(subst 
 
 .DEFAULT_GOAL := help
 .PHONY: help setup configure build report gallery report-pdf test gate hard mutants sanitize coverage lint bench bench-against \
-  bench-trust references reference hardest docs install python clean
+  bench-trust references reference hardest docs install python wheel deb clean
 
 help: ## show this list
 	@echo "slipstick: make TARGET"
@@ -138,6 +138,13 @@ reference: configure ## write the pages of docs/reference that are made from the
 python: configure ## the Python package, in build/python (pip install . makes a wheel instead)
 	$(call build,slipstick_python)
 	@echo "To use it: PYTHONPATH=$(CURDIR)/$(BUILD)/python python3 -c 'import slipstick'"
+
+wheel: ## a wheel for any Linux as new, with the libraries it needs, in build/wheel (tools from PyPI)
+	@cmake/wheel $(BUILD)/wheel
+
+deb: configure ## a Debian package in build/deb
+	$(call build,slipstick slipstick_c)
+	@cd $(BUILD) && { cpack -B deb > deb.log || { cat deb.log >&2; exit 1; }; } && ls "$$PWD"/deb/*.deb
 
 install: configure ## install under PREFIX (default /usr/local)
 	$(call build,slipstick slipstick_c)

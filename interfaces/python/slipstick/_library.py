@@ -14,6 +14,12 @@ _NATIVE = pathlib.Path(__file__).parent / "_native"
 _LIBRARY = ctypes.CDLL(os.fspath(_NATIVE / "libslipstick.so"))
 PROGRAM = _NATIVE / "slipstick"
 
+
+def has_hdf5() -> bool:
+    """Whether HDF5's library came with the package."""
+    return (_NATIVE / "libslipstick_hdf5.so").exists()
+
+
 OK, NOT_CONVERGED, BAD_INPUT, STOPPED, NO_MEMORY, FAILED = range(6)
 PROGRESS = ctypes.CFUNCTYPE(c_int, c_int, c_double, c_void_p)
 

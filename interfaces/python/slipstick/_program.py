@@ -1,4 +1,6 @@
 """The program that comes with the package: what judges (check, gate, study) is done by it, and its JSON is the result."""
+from __future__ import annotations
+
 import json
 import os
 import subprocess

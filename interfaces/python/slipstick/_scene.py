@@ -1,15 +1,17 @@
 """Scenes as Python has them: the name of a file, text (TOML), or a dict."""
+from __future__ import annotations
+
 import os
 import re
 from collections.abc import Mapping, Sequence
-from typing import Any
+from typing import Any, Union
 
 import numpy as np
 
 from .errors import InputError
 
 #: A str with a line break in it is text, any other one the name of a file.
-Scene = str | os.PathLike[str] | Mapping[str, Any]
+Scene = Union[str, "os.PathLike[str]", Mapping[str, Any]]
 
 
 def toml_value(value: Any) -> str:
@@ -18,7 +20,7 @@ def toml_value(value: Any) -> str:
     >>> print(toml_value([True, 2, 1e-3, float("inf"), "a", {"b": np.arange(2)}]))
     [true, 2, 0.001, inf, "a", {b = [0, 1]}]
     """
-    if isinstance(value, np.ndarray | np.generic):
+    if isinstance(value, (np.ndarray, np.generic)):
         value = value.tolist()
     if isinstance(value, bool):
         return "true" if value else "false"
@@ -26,7 +28,7 @@ def toml_value(value: Any) -> str:
         return str(value)
     if isinstance(value, float):
         return repr(value)
-    if isinstance(value, str | os.PathLike):
+    if isinstance(value, (str, os.PathLike)):
         return _quoted(os.fspath(value))
     if isinstance(value, Mapping):
         return "{" + ", ".join(f"{_key(name)} = {toml_value(part)}" for name, part in value.items()) + "}"
@@ -48,7 +50,7 @@ def toml_text(scene: Mapping[str, Any]) -> str:
     lines = []
     tables = []
     for name, value in scene.items():
-        rows = value if isinstance(value, list | tuple) and value and isinstance(value[0], Mapping) else None
+        rows = value if isinstance(value, (list, tuple)) and value and isinstance(value[0], Mapping) else None
         if isinstance(value, Mapping):
             tables.append((f"[{_key(name)}]", value))
         elif rows is not None:

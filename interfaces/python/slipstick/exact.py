@@ -15,9 +15,11 @@ A state is named by exactly one of
     twist             G a^2 phi/(mu W), from 0
 which may be numbers or arrays; a result has the argument's shape. Out of range, or NaN, is an InputError.
 """
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, Optional
 
 import numpy as np
 import numpy.typing as npt
@@ -25,7 +27,7 @@ import numpy.typing as npt
 from . import _library
 from .errors import InputError
 
-Values = npt.ArrayLike | None
+Values = Optional[npt.ArrayLike]
 _GIVEN = ("moment_ratio", "moment_deficit", "stick_ratio", "stick_complement", "twist")
 _WANTED = (*_GIVEN, "moment", "tangent_stiffness", "energy_lost")
 

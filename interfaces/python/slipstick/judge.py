@@ -1,23 +1,26 @@
 """What the program does: it judges fields of other programs, gates and studies, and more."""
+from __future__ import annotations
+
 import json
 import os
 import tempfile
 from collections.abc import Callable, Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, Optional, Union
 
 import numpy as np
 import numpy.typing as npt
 
+from . import _hdf5
 from ._program import run
 from ._scene import Scene, assignments, text_of
 from .errors import InputError
 from .result import Result
 
 _COLUMNS = ("x1", "x2", "pressure", "q1", "q2")
-Path_ = str | os.PathLike[str]
-Progress = Callable[[str], object] | None
+Path_ = Union[str, "os.PathLike[str]"]
+Progress = Optional[Callable[[str], object]]
 
 
 class Check(Result):
@@ -59,6 +62,8 @@ def _files(scene: Scene, field: Path_ | Mapping[str, npt.ArrayLike] | None = Non
             name = os.path.join(folder, "scene.toml")
             Path(name).write_text(text)
         names = [name]
+        if field is not None and not isinstance(field, Mapping) and _hdf5.is_h5py_needed(field):
+            field = _hdf5.read(field)
         if isinstance(field, Mapping):
             names.append(_written(field, os.path.join(folder, "field")))
         elif field is not None:
@@ -115,7 +120,7 @@ def gate(files: Path_ | Iterable[Path_], *, only: Iterable[str] = (), output: Pa
     files: gate files. only: the ids of those to run. output: a folder that keeps finished solves (left out: none does).
     results: the folder of the result files that gates name. jobs: solves at a time, 0: one a processor.
     """
-    names = [files] if isinstance(files, str | os.PathLike) else list(files)
+    names = [files] if isinstance(files, (str, os.PathLike)) else list(files)
     options = ["--only", *only] if (only := list(only)) else []
     if results is not None:
         options += ["--results", os.fspath(results)]

@@ -1,4 +1,6 @@
 """Results as the program writes them (docs/reference/results.md), with attributes."""
+from __future__ import annotations
+
 import copy
 import html
 from collections.abc import Iterator, Mapping
@@ -57,7 +59,7 @@ class Result(Mapping[str, Any]):
         """What fits on a line: no lists of tables, no tables."""
         return [(key, value) for key, value in self._data.items()
                 if not isinstance(value, dict) and not key.endswith("_reason")
-                and not (isinstance(value, list) and value and isinstance(value[0], dict | list))]
+                and not (isinstance(value, list) and value and isinstance(value[0], (dict, list)))]
 
     def reason(self, key: str) -> str | None:
         """Why there is no such number; None where there is one."""

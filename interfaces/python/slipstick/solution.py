@@ -1,4 +1,6 @@
 """Scenes, solved on a grid or exactly."""
+from __future__ import annotations
+
 import ctypes
 import json
 import os
@@ -12,7 +14,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from . import _library
+from . import _hdf5, _library
 from ._scene import Scene, assignments, text_of
 from .errors import InputError, NotConvergedWarning
 from .result import Result
@@ -90,6 +92,9 @@ class Solution(Result):
         if self._handle is None:
             raise InputError("write: a solution that was pickled or copied has arrays, but no files of them; allowed: the one "
                              "that solve() returned, in its process")
+        if _hdf5.is_h5py_needed(file):
+            _hdf5.write(file, self.fields)
+            return
         _library.checked(_library.function("solution_write")(self._handle.pointer, _library.encoded(os.fspath(file))))
 
     def fields_frame(self) -> Any:
