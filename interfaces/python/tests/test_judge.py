@@ -9,6 +9,7 @@ import threading
 import time
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 import scenes
@@ -66,6 +67,20 @@ class CheckTest(unittest.TestCase):
         field["q1"] = field["q1"] + 1e8 * (field["pressure"] == 0)
         self.assertFalse(slipstick.check(SPHERE, field).good)
 
+    def test_hdf5_files_of_h5py_and_of_the_library_are_the_same(self):
+        solution = slipstick.solve(SPHERE)
+        with tempfile.TemporaryDirectory() as folder:
+            ours, theirs = Path(folder) / "library.h5", Path(folder) / "h5py.h5"
+            solution.write(ours)
+            with mock.patch.object(slipstick._library, "has_hdf5", lambda: False):
+                solution.write(theirs)
+                by_h5py = slipstick.check(SPHERE, ours, twist=1.0)
+            self.assertEqual(os.listdir(folder).count("h5py.h5"), len(os.listdir(folder)) - 1)  # no draft is left
+            for name, values in slipstick._hdf5.read(theirs).items():
+                np.testing.assert_array_equal(values, solution.fields[name][solution.fields["pressure"] != 0])
+            self.assertEqual(by_h5py.why, slipstick.check(SPHERE, theirs, twist=1.0).why)
+            self.assertFalse(by_h5py.good)
+
     def test_loops(self):
         """The exact loop in the scene's units is good; that of another stiffness is not."""
         exact = slipstick.solve(SPHERE, solver__model="exact", load__moment_ratio=0.5)
@@ -76,6 +91,11 @@ class CheckTest(unittest.TestCase):
         self.assertFalse(slipstick.check(SPHERE, loop | {"rotation": 1.3 * loop["rotation"]}).good)
         with self.assertRaisesRegex(slipstick.InputError, "has no rotation"):
             slipstick.check(SPHERE, {"moment": loop["moment"]})
+
+    def test_without_h5py_an_hdf5_file_is_refused_with_what_to_do(self):
+        with mock.patch.object(slipstick._library, "has_hdf5", lambda: False), mock.patch.dict(sys.modules, {"h5py": None}):
+            with self.assertRaisesRegex(slipstick.InputError, "field.h5: .*pip install h5py"):
+                slipstick.check(SPHERE, "field.h5")
 
     def test_refusals(self):
         field = exact_field()

@@ -51,14 +51,14 @@ assert libm.fegetexcept() & 0x3f == traps, "the caller's traps are as they were"
 
 # What FFTW remembers: plans chosen under other rounding would give later solves other digits.
 SEEDED = """
-import ctypes, slipstick
+import ctypes, re, slipstick
 from scenes import SPHERE
 
 def stop(iteration, change):
     raise ZeroDivisionError
 
 def remembered():
-    library = ctypes.CDLL("libfftw3.so.3")
+    library = ctypes.CDLL(re.search(r"/\\S*/libfftw3[.-]\\S*", open("/proc/self/maps").read())[0])
     library.fftw_export_wisdom_to_string.restype = ctypes.c_char_p
     return library.fftw_export_wisdom_to_string()
 
@@ -81,7 +81,7 @@ traction = solution.fields["q1"]
 
 
 def run_script(text, *words):
-    environment = os.environ | {"PYTHONPATH": os.pathsep.join([os.environ["PYTHONPATH"], str(Path(__file__).parent)])}
+    environment = {**os.environ, "PYTHONPATH": os.pathsep.join([os.environ.get("PYTHONPATH", ""), str(Path(__file__).parent)])}
     return subprocess.run([sys.executable, "-B", "-c", text, *words], capture_output=True, text=True, env=environment)
 
 
