@@ -10,6 +10,6 @@ install(DIRECTORY ${SLIPSTICK_PUBLIC_INCLUDE}/slipstick DESTINATION ${CMAKE_INST
 install(EXPORT slipstick-targets NAMESPACE slipstick:: DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/slipstick)
 configure_package_config_file(cmake/slipstickConfig.cmake.in ${PROJECT_BINARY_DIR}/slipstickConfig.cmake
   INSTALL_DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/slipstick)
-write_basic_package_version_file(${PROJECT_BINARY_DIR}/slipstickConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+write_basic_package_version_file(${PROJECT_BINARY_DIR}/slipstickConfigVersion.cmake COMPATIBILITY SameMajorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/slipstickConfig.cmake ${PROJECT_BINARY_DIR}/slipstickConfigVersion.cmake
   DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/slipstick)

@@ -14,6 +14,7 @@ script.require("numpy", "matplotlib", "jinja2", "h5py")
 import jinja2  # noqa: E402
 from markupsafe import Markup, escape  # noqa: E402
 
+import crate  # noqa: E402
 import figures  # noqa: E402
 import hard_cases  # noqa: E402
 import page_tables  # noqa: E402
@@ -154,6 +155,7 @@ def write_page(output, templates, benchmarks=None):
                                                                  if key not in ("hard", "gates", "peers")}}),
         data="data")
     write_whole(output / "index.html", html.encode())
+    crate.write(output, page)
     return page
 
 

@@ -27,7 +27,7 @@ enum slipstick_status {
   SLIPSTICK_FAILED = 5 /* threads that cannot start; anything else: a mistake of the library */
 };
 
-/* "0.1.0" */
+/* "1.0.0", as SemVer has it */
 const char* slipstick_version(void);
 
 /* What the calling thread's last call that did not return SLIPSTICK_OK had to say; at most 4,095 bytes. */

@@ -54,6 +54,24 @@ class WholePage(unittest.TestCase):
         self.assertIn("data/report.json", targets)
         self.assertNotIn("Not available", self.page)
 
+    def test_provenance_names_every_file_scene_build_and_machine(self):
+        entries = json.loads((self.output / "ro-crate-metadata.json").read_text())["@graph"]
+        found = {entry["@id"]: entry for entry in entries}
+        self.assertEqual(len(found), len(entries))
+        page = json.loads((self.output / "data" / "report.json").read_text())
+        files = {f"{folder}/{file.name}" for folder in ("data", "figures") for file in (self.output / folder).iterdir()}
+        self.assertEqual({part["@id"] for part in found["./"]["hasPart"]}, files | {"index.html"})
+        self.assertEqual(found["#scene"]["text"], page["scene"]["text"])
+        self.assertEqual(found["#slipstick"]["version"], page["provenance"]["version"])
+        self.assertEqual(found["#cpu"]["value"], page["provenance"]["cpu"])
+
+        def referred(value):
+            if isinstance(value, list):
+                return [name for each in value for name in referred(each)]
+            return [value["@id"]] if isinstance(value, dict) else []
+        for entry in entries[1:]:
+            self.assertLessEqual({name for value in entry.values() for name in referred(value)}, set(found))
+
     def test_without_studies_nothing_speaks_of_them(self):
         self.assertNotIn("Study:", self.page)
 

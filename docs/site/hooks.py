@@ -1,0 +1,20 @@
+"""Hooks of MkDocs: what is no page stays out of the site; its search works on pages that are opened from a file, too."""
+from pathlib import Path
+
+from mkdocs.structure.files import Files
+
+NO_PAGES = (".py", ".yml", ".1", ".bash", ".in", "CMakeLists.txt", "site/search.js")
+
+
+def on_files(files, config):
+    return Files([file for file in files
+                  if not file.src_uri.startswith(("tests/", "extend/examples/")) and not file.src_uri.endswith(NO_PAGES)])
+
+
+def on_post_build(config):
+    """The search box's own script asks a web worker and a request, which browsers refuse to a page from a file."""
+    search = Path(config["site_dir"]) / "search"
+    index = (search / "search_index.json").read_text(encoding="utf-8")
+    (search / "search_index.js").write_text(f"var searchIndex = {index};\n", encoding="utf-8")
+    (search / "main.js").write_text(Path(__file__).with_name("search.js").read_text())
+    (search / "worker.js").unlink()
