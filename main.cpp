@@ -16,8 +16,8 @@
 #include "bench/commands.hpp"
 #include "convergence/commands.hpp"
 #include "convergence/programs/output_options.hpp"
-#include "convergence/programs/run_program.hpp"
 #include "convergence/results/output.hpp"
+#include "convergence/system/run_program.hpp"
 #include "docs/generator/reference_command.hpp"
 #ifdef SLIPSTICK_INTERFACES
 #include "interfaces/laws/law_command.hpp"

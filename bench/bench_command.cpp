@@ -18,7 +18,6 @@
 #include "bench/scaling/scaling_result.hpp"
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/programs/python_script.hpp"
-#include "convergence/programs/run_program.hpp"
 #include "convergence/report/scene_cost.hpp"
 #include "convergence/report/scene_page.hpp"
 #include "convergence/results/output.hpp"
@@ -27,6 +26,7 @@
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/run_options.hpp"
 #include "convergence/runs/run_spec.hpp"
+#include "convergence/system/machine.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/whole_file.hpp"
 
@@ -41,7 +41,7 @@ constexpr const char* kCompared =
     "^(application/(direct|dcfft[a-z_]*)|influence/tangential|setup/dcfft[a-z_]*|normal/solve|solve/[a-z_]+)"
     "/cells:(64|256)(/permille:900)?$|^exact/.*/hertz$";
 /// A survey's: repetitions for intervals.
-const RunLength kSurveyLength{.seconds = 0.02, .repetitions = 7, .tied_by = convergence::kOwnProgram};
+const RunLength kSurveyLength{.seconds = 0.02, .repetitions = 7, .tied_by = convergence::own_program()};
 
 struct BenchRequest {
   std::string scene;
@@ -102,7 +102,7 @@ int compare_ab(const BenchRequest& request, std::ostream& text, Json& result) {
                                          request.filter.empty() ? kCompared : request.filter)
                             : two_methods(request.program, request.pair[0], request.pair[1]);
   ABRunResult found =
-      run_ab(pairs, request.rounds, {.effect = request.effect}, {.tied_by = convergence::kOwnProgram});
+      run_ab(pairs, request.rounds, {.effect = request.effect}, {.tied_by = convergence::own_program()});
   found.report.base = builds ? request.against : request.pair[0];
   found.report.now = builds ? request.program : request.pair[1];
   convergence::write_json_file(folder / "base.json", found.files[0]);

@@ -12,11 +12,11 @@
 #include <string_view>
 
 #include "bench/timing/timings.hpp"
-#include "convergence/programs/run_program.hpp"
 #include "convergence/programs/temporary_folder.hpp"
 #include "convergence/runs/progress.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/run_spec.hpp"
+#include "convergence/system/run_program.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::bench {

@@ -10,8 +10,8 @@
 #include <stdexcept>
 #include <thread>
 
-#include "convergence/programs/run_program.hpp"
 #include "convergence/programs/temporary_folder.hpp"
+#include "convergence/system/run_program.hpp"
 
 namespace slipstick::bench {
 namespace {

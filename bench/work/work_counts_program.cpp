@@ -17,6 +17,7 @@
 #include "convergence/results/output.hpp"
 #include "convergence/results/provenance.hpp"
 #include "convergence/results/result_parts.hpp"
+#include "convergence/system/machine.hpp"
 #include "solver/input/whole_file.hpp"
 
 namespace {
@@ -76,7 +77,7 @@ Json instructions_json(const Instructions& instructions, const std::string& prog
 }
 
 void add_instructions(Json& counts, const std::vector<WorkCase>& cases, bool wanted) {
-  const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe");
+  const std::filesystem::path program = slipstick::convergence::own_program_file();
   const auto found = wanted ? run_callgrind(program, cases) : std::nullopt;
   for (const WorkCase& work_case : cases) {
     Json& json = counts[work_case.name];

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "convergence/programs/run_program.hpp"
+#include "convergence/system/run_program.hpp"
 #include "solver/input/setting_key.hpp"
 
 /// Other programs that solve scenes, by files that say how each is started.

@@ -7,9 +7,10 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
-#include "convergence/programs/run_program.hpp"
 #include "convergence/programs/temporary_folder.hpp"
 #include "convergence/results/json_text.hpp"
+#include "convergence/system/machine.hpp"
+#include "convergence/system/run_program.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/whole_file.hpp"
 
@@ -18,10 +19,9 @@ namespace slipstick::convergence {
 namespace fs = std::filesystem;
 
 fs::path project_file(const fs::path& relative) {
-  std::error_code error;
-  const fs::path program = fs::read_symlink("/proc/self/exe", error);
+  const fs::path program = own_program_file();
   const fs::path installed = program.parent_path().parent_path() / "share" / "slipstick" / relative;
-  return !error && fs::exists(installed) ? installed : fs::path(SLIPSTICK_SOURCE_DIR) / relative;
+  return !program.empty() && fs::exists(installed) ? installed : fs::path(SLIPSTICK_SOURCE_DIR) / relative;
 }
 
 void run_report_script(const std::string& script, const std::vector<std::string>& arguments,
@@ -36,7 +36,7 @@ void run_report_script(const std::string& script, const std::vector<std::string>
   }
   std::vector<std::string> words{python, project_file("reports") / script};
   words.insert(words.end(), arguments.begin(), arguments.end());
-  const ProgramEnd end = run_program(words, {.tied_by = kOwnProgram});
+  const ProgramEnd end = run_program(words, {.tied_by = own_program()});
   if (end.code != 0) {
     throw std::runtime_error(
         fmt::format("{}, but drawing failed ({} {} {})", done, python, script, end.trouble));

@@ -7,7 +7,7 @@
 #include <string>
 #include <system_error>
 
-#include "convergence/programs/run_program.hpp"
+#include "convergence/system/run_program.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/whole_file.hpp"
 

@@ -22,6 +22,7 @@
 #include "convergence/runs/progress.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/worker.hpp"
+#include "convergence/system/machine.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/whole_file.hpp"
 #include "solver/memory.hpp"
@@ -137,6 +138,27 @@ class TaskQueue {
       if (options_.interrupted && options_.interrupted()) stop(progress, "interrupted");
     }
     end_waiting();
+    return results;
+  }
+
+  /// The same in this process, where no other can be started: one after another.
+  std::map<std::string, Json> work_here() {
+    Progress progress(tasks_.size(), static_cast<double>(tasks_.size()));
+    const auto shared = std::make_shared<solver::SolveCache>();
+    std::map<std::string, Json> results;
+    for (const Task& task : tasks_) {
+      std::string failure;
+      try {
+        keep_result_of(*task.run, options_.memory_limit, shared, cache_);
+      } catch (const solver::InputError& error) {
+        stop(progress, error.what());
+      } catch (const std::exception& error) {
+        failure = error.what();
+      }
+      progress.finished(task.label, 1.0);
+      results[task.run->name] = result_of(*task.run, failure);
+      if (options_.interrupted && options_.interrupted()) stop(progress, "interrupted");
+    }
     return results;
   }
 
@@ -279,7 +301,8 @@ std::vector<Json> ProcessPool::run_prepared(const std::vector<PreparedRun>& as_t
     }
   }
   if (!tasks.empty()) solver::require_writable(options_.folder);
-  for (auto& [name, result] : TaskQueue(std::move(tasks), caches.own(), options_).work())
+  TaskQueue queue(std::move(tasks), caches.own(), options_);
+  for (auto& [name, result] : starts_programs() ? queue.work() : queue.work_here())
     known[name] = std::move(result);
   std::vector<Json> results;
   for (const PreparedRun& run : runs) results.push_back(known[run.name]);

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "convergence/exchange/allowed_programs.hpp"
-#include "convergence/programs/run_program.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "convergence/runs/run_spec.hpp"
+#include "convergence/system/run_program.hpp"
 
 namespace slipstick::convergence {
 

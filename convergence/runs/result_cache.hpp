@@ -7,8 +7,8 @@
 #include <string>
 #include <string_view>
 
-#include "convergence/programs/run_program.hpp"
 #include "convergence/results/result_parts.hpp"
+#include "convergence/system/machine.hpp"
 
 namespace slipstick::convergence {
 
@@ -20,7 +20,7 @@ class ResultCache {
  public:
   /// program: the executable that computes, by its content: a copy on another machine is the same one. Throws
   /// InputError for a folder that cannot be made.
-  explicit ResultCache(std::filesystem::path folder, const std::filesystem::path& program = kOwnProgram);
+  explicit ResultCache(std::filesystem::path folder, const std::filesystem::path& program = own_program());
 
   /// That of the same program in another folder. Throws as above.
   ResultCache in(std::filesystem::path folder) const;

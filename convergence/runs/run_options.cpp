@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
-#include "convergence/programs/run_program.hpp"
+#include "convergence/system/machine.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
@@ -83,10 +83,10 @@ ProcessPool RunOptions::pool() const {
   return ProcessPool({.folder = output,
                       .jobs = jobs,
                       .memory_limit = memory_limit,
-                      .program = kOwnProgram,
+                      .program = own_program(),
                       .joined = {merged.begin(), merged.end()},
                       .interrupted = Interrupts::seen,
-                      .programs = {allow_programs, overrides, kOwnProgram}});
+                      .programs = {allow_programs, overrides, own_program()}});
 }
 
 Interrupts::Interrupts() {

@@ -16,6 +16,7 @@
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/solve_scene.hpp"
+#include "convergence/system/machine.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/memory.hpp"
 
@@ -79,7 +80,7 @@ Json solve(const PreparedRun& run, const std::shared_ptr<solver::SolveCache>& ca
         run.scene, {.on_step = on_step,
                     .rounding = spec.rounding,
                     .cache = cache,
-                    .programs = {.all = true, .tied_by = kOwnProgram, .version = spec.program_version}});
+                    .programs = {.all = true, .tied_by = own_program(), .version = spec.program_version}});
   } catch (const solver::OutOfMemory&) {
     throw;
   } catch (const solver::InputError& error) {
@@ -115,16 +116,20 @@ ProgramEnd Worker::wait() {
   return program_.wait();
 }
 
+void keep_result_of(PreparedRun run, std::optional<double> memory_limit,
+                    const std::shared_ptr<solver::SolveCache>& shared, const ResultCache& cache) {
+  run.scene.memory_limit = memory_limit;
+  if (run.scene.threads == 0) run.scene.threads = 1;  // its processor is one of those that solve
+  cache.keep(run.name, run.cache_key, solve(run, shared), run.spec.fields);
+}
+
 int serve_runs(const fs::path& folder, std::optional<double> memory_limit) {
   const auto shared = std::make_shared<solver::SolveCache>();
   std::optional<ResultCache> cache;
   while (const std::optional<RunSpec> spec = next_run(std::cin)) {
-    PreparedRun run = prepare_run(*spec);
-    run.scene.memory_limit = memory_limit;
-    if (run.scene.threads == 0) run.scene.threads = 1;  // its processor is one of those that solve
     try {
       if (!cache) cache.emplace(folder);
-      cache->keep(run.name, run.cache_key, solve(run, shared), spec->fields);
+      keep_result_of(prepare_run(*spec), memory_limit, shared, *cache);
     } catch (const solver::OutOfMemory&) {
       throw;
     } catch (const solver::InputError& error) {  // of the scene it is part of the result

@@ -1,10 +1,13 @@
 #pragma once
 
 #include <filesystem>
+#include <memory>
 #include <optional>
 
-#include "convergence/programs/run_program.hpp"
+#include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/run_spec.hpp"
+#include "convergence/system/run_program.hpp"
+#include "solver/cache/solve_cache.hpp"
 
 namespace slipstick::convergence {
 
@@ -39,6 +42,11 @@ class Worker {
  private:
   Program program_;
 };
+
+/// Solves a run, on one thread unless its scene says otherwise, and keeps its result. Throws InputError where
+/// a file cannot be written, and as below.
+void keep_result_of(PreparedRun run, std::optional<double> memory_limit,
+                    const std::shared_ptr<solver::SolveCache>& shared, const ResultCache& cache);
 
 /// What a worker does: solves the runs that come on standard input, and says on standard output when each is
 /// finished. Returns its exit code: not 0 where a file cannot be written, and standard error says so. Throws

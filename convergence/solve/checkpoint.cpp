@@ -11,9 +11,9 @@
 #include <utility>
 #include <vector>
 
-#include "convergence/programs/run_program.hpp"
 #include "convergence/results/json_text.hpp"
 #include "convergence/runs/result_cache.hpp"
+#include "convergence/system/machine.hpp"
 #include "solver/history_state.hpp"
 #include "solver/input/dataset_reader.hpp"
 #include "solver/input/dataset_writer.hpp"
@@ -114,7 +114,7 @@ Eigen::ArrayXd numbers_in(const std::filesystem::path& file, const std::string& 
 }  // namespace
 
 Checkpoint::Checkpoint(std::filesystem::path file, const PreparedRun& run)
-    : file_(std::move(file)), scene_(run.name), program_(file_identity(kOwnProgram)) {}
+    : file_(std::move(file)), scene_(run.name), program_(file_identity(own_program())) {}
 
 std::shared_ptr<const FinishedSteps> Checkpoint::read() const {
   if (!std::filesystem::exists(file_)) return nullptr;

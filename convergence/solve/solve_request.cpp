@@ -18,7 +18,6 @@
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/python_script.hpp"
-#include "convergence/programs/run_program.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/output.hpp"
 #include "convergence/results/result.hpp"
@@ -28,6 +27,7 @@
 #include "convergence/solve/accurate_solve.hpp"
 #include "convergence/solve/checkpoint.hpp"
 #include "convergence/solve/uncertainty.hpp"
+#include "convergence/system/machine.hpp"
 #include "solver/cache/solve_cache.hpp"
 #include "solver/history_state.hpp"
 #include "solver/input/field_file.hpp"
@@ -126,7 +126,7 @@ SolvedScene solve_on(const solver::Scene& scene, const SolveRequest& request, So
 }
 
 /// Those that the scene may name: it has been asked whether its own may run.
-AllowedPrograms allowed_programs() { return {.all = true, .tied_by = kOwnProgram}; }
+AllowedPrograms allowed_programs() { return {.all = true, .tied_by = own_program()}; }
 
 /// Solves, and writes the fields of each step where they go to a file of its own.
 /// cache: null, or what several grids share.

@@ -44,23 +44,24 @@ int error_of(std::FILE* file) {
   return done ? 0 : (errno != 0 ? errno : EIO);
 }
 
-std::string name_of(std::FILE* file) {
-  struct stat status {};
-  if (fstat(fileno(file), &status) != 0 || !S_ISREG(status.st_mode)) fail(ESPIPE);
-  if (status.st_nlink == 0) fail(ENOENT);
-  return fs::read_symlink(fmt::format("/proc/self/fd/{}", fileno(file)));
+/// The library writes by name: it has to be a file's, and still that of this one.
+void require_name(std::FILE* file, const fs::path& name) {
+  struct stat open_one {
+  }, named{};
+  if (fstat(fileno(file), &open_one) != 0 || !S_ISREG(open_one.st_mode)) fail(ESPIPE);
+  if (stat(name.c_str(), &named) != 0 || named.st_ino != open_one.st_ino) fail(ENOENT);
 }
 
 /// Room for names is had before: HDF5 keeps what it could not write and crashes over it when the process
 /// ends.
-Offsets lay_out(std::FILE* file, const std::vector<Content>& contents) {
-  const std::string path = name_of(file);
+Offsets lay_out(std::FILE* file, const fs::path& name, const std::vector<Content>& contents) {
+  require_name(file, name);
   const std::string room(kNames, '\0');
   std::fwrite(room.data(), 1, room.size(), file);
   if (const int error = error_of(file)) fail(error);
   std::vector<DatasetLayout> layouts;
   for (const Content& content : contents) layouts.push_back(content.layout);
-  return hdf5_library(path).lay_out(path, layouts);
+  return hdf5_library(name).lay_out(name, layouts);
 }
 
 /// This rank's part of all datasets.
@@ -106,10 +107,10 @@ void write_shared(const fs::path& path, const std::vector<Content>& contents, co
   }
   bool begun = false;
   try {
-    write_whole_file(path, [&](std::FILE* file) {
-      const Offsets offsets = lay_out(file, contents);
+    write_whole_named_file(path, [&](std::FILE* file, const fs::path& draft) {
+      const Offsets offsets = lay_out(file, draft, contents);
       begun = true;
-      const std::string what = ranks.of_first(fmt::format("{} {}", fmt::join(offsets, " "), name_of(file)));
+      const std::string what = ranks.of_first(fmt::format("{} {}", fmt::join(offsets, " "), draft.string()));
       if (const int error = first_error(write_into(what, contents), ranks)) fail(error);
     });
   } catch (...) {
@@ -136,7 +137,9 @@ void write_hdf5(const fs::path& path, const std::vector<Content>& contents, cons
   hdf5_library(path);
   require_room(path, contents);
   if (ranks.several()) return write_shared(path, contents, ranks);
-  write_whole_file(path, [&](std::FILE* file) { write_values(file, lay_out(file, contents), contents); });
+  write_whole_named_file(path, [&](std::FILE* file, const fs::path& draft) {
+    write_values(file, lay_out(file, draft, contents), contents);
+  });
 }
 
 }  // namespace

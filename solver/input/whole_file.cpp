@@ -35,12 +35,12 @@ void require(bool done) {
 fs::path folder_of(const fs::path& file) { return file.has_parent_path() ? file.parent_path() : "."; }
 
 /// Writes to an open file and closes it; then the system has all, or the disk.
-void fill(int descriptor, const std::function<void(std::FILE*)>& write, bool to_disk) {
+void fill(int descriptor, const fs::path& name, const WriteNamed& write, bool to_disk) {
   require(descriptor >= 0);
   std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(fdopen(descriptor, "wb"), std::fclose);
   if (!stream) close(descriptor);
   require(stream != nullptr);
-  write(stream.get());
+  write(stream.get(), name);
   require(std::ferror(stream.get()) == 0 && std::fflush(stream.get()) == 0);
   if (to_disk) require(fsync(fileno(stream.get())) == 0);
   require(std::fclose(stream.release()) == 0);
@@ -66,6 +66,7 @@ class Draft {
   Draft& operator=(const Draft&) = delete;
 
   int descriptor() const { return descriptor_; }
+  const fs::path& path() const { return path_; }
 
   void replace(const fs::path& file) {
     require(std::rename(path_.c_str(), file.c_str()) == 0);
@@ -135,21 +136,25 @@ std::string why_not_written(int error) {
   return fmt::format("cannot be written: {}; {}", std::generic_category().message(error), advice);
 }
 
-void write_whole_file(const fs::path& file, const std::function<void(std::FILE*)>& write) {
+void write_whole_named_file(const fs::path& file, const WriteNamed& write) {
   try {
     const fs::path target = behind_links(file);
     struct stat before {};
     const bool exists = stat(target.c_str(), &before) == 0;
     if (exists && !S_ISREG(before.st_mode))
-      return fill(open(target.c_str(), O_WRONLY | O_CLOEXEC), write, false);
+      return fill(open(target.c_str(), O_WRONLY | O_CLOEXEC), target, write, false);
     Draft draft(target);
     // Where the old file is somebody else's, its permissions are what can be kept.
     if (exists) fchmod(draft.descriptor(), before.st_mode & 07777);
-    fill(fcntl(draft.descriptor(), F_DUPFD_CLOEXEC, 0), write, true);
+    fill(fcntl(draft.descriptor(), F_DUPFD_CLOEXEC, 0), draft.path(), write, true);
     draft.replace(target);
   } catch (const std::system_error& error) {
     refuse(file, error.code().value());
   }
+}
+
+void write_whole_file(const fs::path& file, const std::function<void(std::FILE*)>& write) {
+  write_whole_named_file(file, [&](std::FILE* stream, const fs::path&) { write(stream); });
 }
 
 void write_whole_file(const fs::path& file, std::string_view content) {

@@ -15,6 +15,9 @@ namespace slipstick::solver {
 /// no plain file, /dev/stdout for one, is written to as it is. Throws InputError where the file cannot be
 /// written, with the system's reason and what to do; the file is then the old one.
 void write_whole_file(const std::filesystem::path& file, const std::function<void(std::FILE*)>& write);
+/// The same; `write` is told the draft's name too.
+using WriteNamed = std::function<void(std::FILE*, const std::filesystem::path& draft)>;
+void write_whole_named_file(const std::filesystem::path& file, const WriteNamed& write);
 void write_whole_file(const std::filesystem::path& file, std::string_view content);
 
 /// Where the links of a name lead. Links of the system, such as /dev/stdout, stay: they lead to no name.

@@ -10,8 +10,8 @@
 
 #include "convergence/hard/hard_case.hpp"
 #include "convergence/hard/hard_judgement.hpp"
-#include "convergence/programs/run_program.hpp"
 #include "convergence/runs/variant.hpp"
+#include "convergence/system/run_program.hpp"
 #include "convergence/tests/scratch_folder.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/model.hpp"

@@ -1,4 +1,4 @@
-#include "convergence/programs/run_program.hpp"
+#include "convergence/system/run_program.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

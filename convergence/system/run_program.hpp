@@ -1,18 +1,15 @@
 #pragma once
 
-#include <sys/types.h>
-
 #include <cstddef>
 #include <filesystem>
 #include <string>
 #include <string_view>
 #include <vector>
 
-/// The one way in which other programs are started: by posix_spawn(), without a shell.
+/// The one way in which other programs are started: by posix_spawn(), without a shell. Builds with
+/// SLIPSTICK_PORTABLE start none: Program throws std::runtime_error, run_program() says that none was
+/// started.
 namespace slipstick::convergence {
-
-/// The program that this process runs, whatever becomes of its file meanwhile.
-inline constexpr const char* kOwnProgram = "/proc/self/exe";
 
 /// What a program writes on standard output, or there and on standard error, comes back to who started it.
 /// The rest goes where this program's own goes.
@@ -75,7 +72,7 @@ class Program {
   /// Whether it has ended, without waiting where `wait` is false; then end_ says how.
   bool reap(bool wait);
 
-  pid_t process_ = -1;
+  int process_ = -1;
   int input_ = -1;
   int output_ = -1;
   bool own_group_ = false;
