@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "solver/contact/stick_front.hpp"
+#include "solver/grid/counted_area.hpp"
 #include "solver/grid/motion_field.hpp"
 #include "solver/grid/sweep.hpp"
 #include "solver/resolution.hpp"
@@ -26,14 +27,17 @@ double equal_area_radius(const Grid& grid, Index cells) {
 }
 
 /// The pressure and the contact under it.
-void describe_contact(ModelSolution& solution) {
+void describe_contact(ModelSolution& solution, const Scene& scene) {
   const Model& model = solution.model;
   const Grid& grid = model.grid;
   const ArrayXd& pressure = solution.normal.pressure;
   solution.normal_load = pressure.sum() * grid.cell_area() * model.force_unit();
   solution.peak_pressure = pressure.maxCoeff() * model.stress_unit;
   solution.approach = solution.normal.approach * model.length_unit;
+  const bool is_face = std::ranges::any_of(
+      scene.surfaces, [](const Surface& surface) { return surface.shape == Shape::flat_punch; });
   solution.contact_cells = (pressure > 0.0).count();
+  solution.contact_area = counted_area(model.grid_in_m(), pressure, is_face);
   solution.contact_radius = measure_contact_radius(model, pressure) * model.length_unit;
   solution.contact_radius_counted = equal_area_radius(grid, solution.contact_cells) * model.length_unit;
 }
@@ -56,6 +60,7 @@ void describe_tractions(ModelSolution& solution, const LoadStep& loads, const Ar
   const TangentialProblem& problem = loads.problem;
   const TangentialSolution& tangential = solution.tangential;
   solution.stick_cells = (tangential.stick > 0.0).count();
+  solution.stick_area = counted_area(model.grid_in_m(), tangential.stick);
   solution.stick_radius_counted = equal_area_radius(grid, solution.stick_cells) * model.length_unit;
   if (solution.stick_cells == solution.contact_cells) {
     solution.stick_radius = solution.contact_radius;
@@ -127,7 +132,7 @@ void describe_energy(ModelSolution& solution, const LoadStep& loads) {
 }  // namespace
 
 void describe(ModelSolution& solution, const Scene& scene, const LoadStep& loads, const ArrayXd& slip) {
-  describe_contact(solution);
+  describe_contact(solution, scene);
   describe_tractions(solution, loads, slip);
   const Model& model = solution.model;
   solution.resolution = resolution(scene, solution.loads, model.grid, loads, solution.tangential.stick);

@@ -119,11 +119,17 @@ Json limit_json(const solver::LimitLoad& limit) {
   return json;
 }
 
+Json area_json(const solver::CountedArea& area) {
+  return {{"counted", area.counted}, {"corrected", area.corrected}, {"uncertainty", area.uncertainty}};
+}
+
 /// The contact's state: what every step of a history has.
 void add_state(Json& json, const solver::Scene& scene, const Solution& solution) {
   const double a = solution.contact_radius;
   json["contact_cells"] = solution.contact_cells;
   json["stick_cells"] = solution.stick_cells;
+  json["contact_area"] = area_json(solution.contact_area);
+  json["stick_area"] = area_json(solution.stick_area);
   json["contact_radius"] = a;
   json["contact_radius_counted"] = solution.contact_radius_counted;
   set_number(json, "stick_radius", solution.stick_radius, "the solve broke down");

@@ -42,6 +42,15 @@ std::string translation_text(const Json& r) {
 std::string stick_text(const Json& r) {
   const std::string error = error_text(r, "stick_radius_error");
   std::string text = text_line("stick radius", number_text(r["stick_radius"]) + " m" + error);
+  if (r["contact_area"].is_object() &&
+      r["contact_radius"] == r["contact_radius_counted"]) {  // of an area that is no circle
+    const auto area = [](const Json& json) {
+      return fmt::format("{} +/- {:.2g} m^2 ({} counted)", number_text(json["corrected"]),
+                         json["uncertainty"].get<double>(), number_text(json["counted"]));
+    };
+    text += text_line("contact area", area(r["contact_area"]));
+    text += text_line("stick area", area(r["stick_area"]));
+  }
   if (error.empty()) {
     text += text_line("stick ratio", number_text(r["stick_ratio"]) + error_text(r, "stick_ratio_error"));
   }
