@@ -8,11 +8,11 @@ namespace {
 /// What counting adds at a side of the edge, in cells. Measured on 48 smooth contacts and stick areas against
 /// exact radii (0.06 to 0.095 in the mean of each kind) and on rough ones against meshes up to 16 times finer
 /// (0.08 to 0.11); from geometry alone the source has (pi - 1 + ln 2)/24 = 0.118.
-constexpr double kOfSide = 0.095;
+constexpr double kOfSide = 0.09;
 /// How far that differs from contact to contact, twice; and what the place of the grid leaves to chance, in
 /// cells over the root of the number of sides, where a symmetric contact counts each cell eight times.
-constexpr double kUncertainOfSide = 0.03;
-constexpr double kChance = 0.8;
+constexpr double kUncertainOfSide = 0.035;
+constexpr double kChance = 1.1;
 
 /// Sides of cells between inside and outside.
 Index sides_of_edge(const Grid& grid, const Eigen::ArrayXd& inside) {
