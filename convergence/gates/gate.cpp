@@ -60,7 +60,7 @@ bool holds(const Gate& gate, const Json& value) {
 
 /// Why a gate is tighter than what it is judged by allows; empty where it is not.
 std::string too_tight(const Gate& gate, const Json& result) {
-  if (!gate.below) return "";
+  if (!gate.below || gate.published) return "";
   double reference = reference_error(result, gate.quantity);
   if (std::isnan(reference) && gate.kind == GateSource::result) reference = 0.0;
   if (std::isnan(reference)) {
@@ -91,6 +91,7 @@ std::string maker(GateSource kind) {
     case GateSource::study:
       return "study";
     case GateSource::result:
+    case GateSource::none:
       return "run";
   }
   throw std::logic_error("unknown source of a gate");
@@ -194,9 +195,11 @@ Judgement judge(const Gate& gate, const Json& result) {
   const bool held = judgement.why.empty();
   judgement.outcome = outcome_of(gate.status, held);
   if (judgement.outcome == Outcome::passed_unexpectedly) {
-    judgement.why = "expected to fail, and holds: remove the entry, or make it active";
+    judgement.why = gate.published ? "agrees with the published number: remove differs"
+                                   : "expected to fail, and holds: remove the entry, or make it active";
   }
-  if (judgement.outcome == Outcome::failed_as_expected && is_unknown(found)) {
+  const bool no_number = gate.published && (!is_value(found) || !unfinished(gate, result).empty());
+  if (judgement.outcome == Outcome::failed_as_expected && (is_unknown(found) || no_number)) {
     judgement.outcome = Outcome::failed;  // a misspelt quantity is not the failure that was expected
   }
   return judgement;
@@ -234,6 +237,7 @@ int exit_code(const std::vector<Judgement>& judgements) {
 }
 
 std::string bound_text(const Gate& gate) {
+  if (gate.published) return fmt::format("published: {} ({})", gate.published->text, gate.published->source);
   if (!gate.of.empty()) {
     const std::string other =
         gate.below ? fmt::format("{:.7g}, that", 0.5 * (*gate.below + *gate.above)) : "that";

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "convergence/gates/published.hpp"
 #include "convergence/results/result_parts.hpp"
 #include "convergence/runs/process_pool.hpp"
 #include "solver/input/setting_key.hpp"
@@ -17,8 +18,9 @@ namespace slipstick::convergence {
 /// goes when the defect goes), and a reported one decides nothing.
 enum class GateStatus { active, expected_failure, report_only };
 
-/// Where the number comes from: a solve, a study, or a result file of any program.
-enum class GateSource { scene, study, result };
+/// Where the number comes from: a solve, a study, or a result file of any program; or nowhere, where a
+/// published number cannot be compared.
+enum class GateSource { scene, study, result, none };
 
 /// A number of a result with the bounds that it must keep, as a gate file says it.
 struct Gate {
@@ -34,11 +36,12 @@ struct Gate {
   std::optional<double> below;           ///< alone: a bound on the size; with `above`: on the signed value
   std::optional<double> above;           ///< a bound on the signed value
   Json equals;                           ///< a word or a number; null: not asked
-  std::filesystem::path of;      ///< result, scene or study whose number this one is to be; empty: none
-  double within = 0.0;           ///< of the size of that number: how far from it this one may be
-  double platform_spread = 0.0;  ///< by how much machines and compilers differ, in the quantity's unit
-  std::string basis;             ///< where the bound comes from
-  std::string reason;            ///< why the number matters
+  std::filesystem::path of;            ///< result, scene or study whose number this one is to be; empty: none
+  double within = 0.0;                 ///< of the size of that number: how far from it this one may be
+  std::optional<Published> published;  ///< number of the literature that this one is to be; empty: none
+  double platform_spread = 0.0;        ///< by how much machines and compilers differ, in the quantity's unit
+  std::string basis;                   ///< where the bound comes from
+  std::string reason;                  ///< why the number matters
   GateStatus status = GateStatus::active;
 };
 

@@ -32,6 +32,7 @@ struct GateRequest {
 std::vector<std::filesystem::path> files_behind(const std::vector<Gate>& gates) {
   std::vector<std::filesystem::path> files;
   for (const Gate& gate : with_others(gates)) {
+    if (gate.kind == GateSource::none) continue;
     files.push_back(gate.source);
     if (gate.kind == GateSource::result) continue;
     try {

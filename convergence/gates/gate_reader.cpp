@@ -92,7 +92,45 @@ void read_relative(SceneReader& reader, const GateTable& at, Gate& gate) {
   }
 }
 
+void refuse_beside_published(SceneReader& reader, const std::string& key) {
+  if (reader.has(key)) reader.fail(key, "beside published", "one or the other");
+}
+
+/// A number of the literature, whose digits are the bound.
+Published read_published(SceneReader& reader, const GateTable& at) {
+  const std::string key = at.own("published");
+  const std::string text = reader.text(key);
+  const std::optional<Published> number = read_printed(text);
+  if (!number)
+    reader.fail(key, "\"" + text + "\"",
+                "a number with the digits that are printed, as \"1.0760\" or \"8.155e-3\"");
+  Published published = *number;
+  published.source = reader.text_or(at.shared("published_in"), "");
+  if (published.source.empty()) {
+    reader.fail(at.own("published_in"), "(missing)", "author, year, title, table or equation, page");
+  }
+  published.seen = reader.text_or(at.shared("seen_in"), "the publication itself");
+  published.argument_error = reader.number_or(at.own("argument_error"), 0.0);
+  published.relative_error = reader.find_number(at.shared("own_error"));
+  if (published.relative_error && reader.text_or(at.shared("basis"), "").empty()) {
+    reader.fail(at.own("basis"), "(missing)", "where own_error comes from");
+  }
+  published.times = reader.number_or(at.shared("times"), 1.0);
+  published.inverse = reader.flag_or(at.shared("inverse"), false);
+  published.differs = reader.text_or(at.shared("differs"), "");
+  published.not_compared = reader.text_or(at.shared("not_compared"), "");
+  if (!published.differs.empty() && !published.not_compared.empty()) {
+    reader.fail(at.own("not_compared"), "beside differs", "one or the other");
+  }
+  for (const char* const other : {"of", "within", "below", "above", "equals"}) {
+    refuse_beside_published(reader, at.own(other));
+  }
+  refuse_beside_published(reader, at.shared("status"));
+  return published;
+}
+
 void read_bounds(SceneReader& reader, const GateTable& at, Gate& gate) {
+  if (gate.published) return;
   if (reader.has(at.own("of")) || reader.has(at.own("within"))) return read_relative(reader, at, gate);
   const std::string below = at.own("below");
   const std::string above = at.own("above");
@@ -103,7 +141,7 @@ void read_bounds(SceneReader& reader, const GateTable& at, Gate& gate) {
     if (gate.below || gate.above) reader.fail(equals, "beside below or above", "one or the other");
     gate.equals = reader.is_text(equals) ? Json(reader.text(equals)) : Json(reader.number(equals));
   } else if (!gate.below && !gate.above) {
-    reader.fail(below, "(missing)", "below, above, both, equals, or of and within");
+    reader.fail(below, "(missing)", "below, above, both, equals, of and within, or published");
   }
   const auto shown = [](double number) { return fmt::format("{:g}", number); };
   if (gate.below && gate.above && !(*gate.above < *gate.below)) {
@@ -126,15 +164,21 @@ Gate read_gate(SceneReader& reader, const GateTable& at, const std::filesystem::
   gate.file = file;
   gate.line = reader.line(at.table());
   gate.id = required_text(reader, at.own("id"));
+  if (reader.has(at.own("published"))) gate.published = read_published(reader, at);
   gate.status = reader.choice_or(at.shared("status"), gate.status, kStatuses);
-  read_source(reader, at, gate);
+  if (gate.published && !gate.published->differs.empty()) gate.status = GateStatus::expected_failure;
+  if (gate.published && !gate.published->not_compared.empty()) {
+    gate.kind = GateSource::none;
+  } else {
+    read_source(reader, at, gate);
+  }
   if (gate.kind == GateSource::result) read_result_source(reader, at, results_folder, gate);
   gate.quantity = required_text(reader, at.own("quantity"));
   read_bounds(reader, at, gate);
   gate.platform_spread = reader.number_or(at.shared("platform_spread"), gate.platform_spread);
   gate.reason = reader.text_or(at.shared("reason"), "");
   gate.basis = reader.text_or(at.shared("basis"), "");
-  if (gate.status == GateStatus::active && gate.basis.empty()) {
+  if (gate.status == GateStatus::active && gate.basis.empty() && !gate.published) {
     reader.fail(at.own("basis"), "(missing)", "where the bound of an active gate comes from");
   }
   return gate;
@@ -168,6 +212,20 @@ solver::SettingKeys shared_keys() {
       {"study", KeyType::file, "", kOne, solver::kAny, "Study file (TOML) that is run."},
       {"result", KeyType::file, "", kOne, solver::kAny, "Result file (JSON) of any program, taken as it is."},
       {"set", KeyType::table, "", "none", solver::kAny, "Keys of the scene that differ from its file."},
+      {"published_in", KeyType::text, "", "required beside published", solver::kAny,
+       "Who published the number: author, year, title, table or equation, page."},
+      {"seen_in", KeyType::text, "", "the publication itself", solver::kAny,
+       "The text in which it was looked up, where that is another one."},
+      {"own_error", KeyType::number, "", "what the result states", solver::kNotNegative,
+       "How far our number may be off, relative, where the result states no error of it; `basis` says why."},
+      {"times", KeyType::number, "", fmt::format("{:g}", Published{}.times), solver::kPositive,
+       "The published number is this many times the quantity."},
+      {"inverse", KeyType::flag, "", "false", solver::kAny,
+       "The published number is `times` over the quantity."},
+      {"differs", KeyType::text, "", "none", solver::kAny,
+       "Why the published number is another: then the gate must not hold."},
+      {"not_compared", KeyType::text, "", "none", solver::kAny,
+       "Why it cannot be compared: then nothing is solved."},
       {"platform_spread", KeyType::number, "the quantity's", fmt::format("{:g}", Gate{}.platform_spread),
        solver::kNotNegative, "By how much machines and compilers differ."},
       {"basis", KeyType::text, "", "required of an active gate", solver::kAny, "Where the bound comes from."},
@@ -177,7 +235,7 @@ solver::SettingKeys shared_keys() {
 /// What each gate says for itself.
 solver::SettingKeys own_keys() {
   using solver::KeyType;
-  constexpr const char* kBound = "one of below, above, equals, of is required";
+  constexpr const char* kBound = "one of below, above, equals, of, published is required";
   return {{"id", KeyType::text, "", solver::kRequired, solver::kAny,
            "Names the gate; no other gate of the run has it."},
           {"quantity", KeyType::text, "", solver::kRequired, solver::kAny,
@@ -187,6 +245,12 @@ solver::SettingKeys own_keys() {
           {"above", KeyType::number, "the quantity's", kBound, solver::kFinite, "Bound that it stays above."},
           {"equals", KeyType::number, "the quantity's", kBound, solver::kFinite,
            "The number, or in quotes the word, that it is to be; in place of the bounds."},
+          {"published", KeyType::text, "", kBound, solver::kAny,
+           "Number of the literature as printed, in quotes: the quantity agrees within half a unit of the "
+           "last digit "
+           "and what the result states as its own error."},
+          {"argument_error", KeyType::number, "the published", "0", solver::kNotNegative,
+           "What the printed digits of its argument leave open."},
           {"of", KeyType::file, "", kBound, solver::kAny,
            "Result file (JSON), or scene or study (TOML, with the same `set`), whose number this one is to "
            "be."},

@@ -48,6 +48,12 @@ long count(const std::vector<Judgement>& judgements, Outcome outcome) {
   return std::ranges::count(judgements, outcome, &Judgement::outcome);
 }
 
+/// In the words for published numbers, where it is one.
+std::string outcome_text(const Judgement& judgement) {
+  const std::string published = published_outcome(judgement);
+  return published.empty() ? to_string(judgement.outcome) : published;
+}
+
 std::string counts_of(const std::vector<Judgement>& judgements) {
   std::vector<std::pair<std::string, long>> counts;
   for (auto outcome = kSeverity.rbegin(); outcome != kSeverity.rend(); ++outcome) {
@@ -59,6 +65,13 @@ std::string counts_of(const std::vector<Judgement>& judgements) {
 std::string value_text(const Json& value) {
   if (value.is_number_float()) return fmt::format("{:.6g}", value.get<double>());
   return value.is_null() ? "-" : value.dump();
+}
+
+/// In the unit of the publication, where it is compared with one.
+std::string value_text(const Judgement& judgement) {
+  if (!judgement.gate.published) return value_text(judgement.value);
+  const Json published = published_json(judgement);
+  return published.contains("ours") ? fmt::format("{:.8g}", published["ours"].get<double>()) : "-";
 }
 
 /// Whether the gate was read; a file that could not be has no quantity.
@@ -92,7 +105,7 @@ JunitCase junit_case(const Judgement& judgement) {
                   .type = to_string(judgement.outcome),
                   .message = judgement.why};
   if (was_read(judgement)) {
-    junit.shown = fmt::format("{} = {}, must be {}", judgement.gate.quantity, value_text(judgement.value),
+    junit.shown = fmt::format("{} = {}, must be {}", judgement.gate.quantity, value_text(judgement),
                               bound_text(judgement.gate));
   }
   if (is_skipped(judgement.outcome)) {
@@ -109,9 +122,9 @@ JunitCase junit_case(const Judgement& judgement) {
 std::string markdown_row(const Judgement& judgement) {
   const std::string remarks =
       judgement.outcome == Outcome::passed ? "" : fmt::format("{}", fmt::join(explanation(judgement), "\n"));
-  return fmt::format("| {} | {} | {} | {} | {} | {} | {} |", to_string(judgement.outcome),
+  return fmt::format("| {} | {} | {} | {} | {} | {} | {} |", outcome_text(judgement),
                      markdown_cell(judgement.gate.id), markdown_cell(judgement.gate.quantity),
-                     markdown_cell(value_text(judgement.value)),
+                     markdown_cell(value_text(judgement)),
                      was_read(judgement) ? markdown_cell(bound_text(judgement.gate)) : "-",
                      factor_text(judgement), markdown_cell(remarks));
 }
@@ -135,6 +148,7 @@ Json judgement_json(const Judgement& judgement) {
     if (gate.above) json["above"] = *gate.above;
     if (!gate.equals.is_null()) json["equals"] = gate.equals;
     set_number(json, "factor", judgement.factor, "no number says how far it is from the bound");
+    if (gate.published) json["published"] = published_json(judgement);
     json["basis"] = gate.basis;
     json["reason"] = gate.reason;
     json["rerun"] = rerun_command(gate);
@@ -156,8 +170,8 @@ std::string gates_text(const std::vector<Judgement>& judgements) {
     const Gate& gate = judgement.gate;
     if (!judgement.file_date.empty()) dates[gate.source.string()] = judgement.file_date;
     if (was_read(judgement)) {
-      text += fmt::format("  {:<19} {:<{}}  {} = {}, {}\n", to_string(judgement.outcome), gate.id, width,
-                          gate.quantity, value_text(judgement.value), bound_text(gate));
+      text += fmt::format("  {:<19} {:<{}}  {} = {}, {}\n", outcome_text(judgement), gate.id, width,
+                          gate.quantity, value_text(judgement), bound_text(gate));
     }
     if (!is_wrong(judgement.outcome)) continue;
     details += fmt::format("\n{}: {}\n", to_string(judgement.outcome), gate.id);

@@ -109,7 +109,7 @@ void take_others(const std::vector<Gate>& gates, const ProcessPool& pool, Source
   std::map<std::pair<fs::path, std::vector<std::string>>, Source> known;
   for (std::size_t i = 0; i < gates.size(); ++i) {
     const Gate& gate = gates[i];
-    if (gate.kind == GateSource::scene) continue;
+    if (gate.kind == GateSource::scene || gate.kind == GateSource::none) continue;
     const auto [found, is_new] = known.try_emplace({gate.source, gate.overrides});
     try {
       if (is_new && gate.kind == GateSource::study) found->second.result = study_result(gate, pool);
@@ -121,11 +121,22 @@ void take_others(const std::vector<Gate>& gates, const ProcessPool& pool, Source
   }
 }
 
+/// A published number that cannot be compared, and why.
+Judgement not_compared(const Gate& gate) {
+  Judgement judgement;
+  judgement.gate = gate;
+  judgement.outcome = Outcome::reported;
+  judgement.why = gate.published->not_compared;
+  return judgement;
+}
+
 Judgement judge(const Gate& gate, const Source& source, const Source* other) {
   std::string refused = source.refused;
   if (refused.empty() && other != nullptr) refused = other->refused;
   if (!refused.empty()) return refuse(gate, refused);
+  if (gate.kind == GateSource::none) return not_compared(gate);
   try {
+    if (gate.published) return judge(bounded_by_publication(gate, source.result), source.result);
     return judge(other == nullptr ? gate : bounded_by(gate, other->result), source.result);
   } catch (const InputError& error) {
     return refuse(gate, error.what());
@@ -154,7 +165,7 @@ std::vector<Gate> with_others(const std::vector<Gate>& gates) {
 std::vector<PreparedRun> gate_runs(const std::vector<Gate>& gates, const ProcessPool& pool) {
   std::vector<PreparedRun> runs;
   for (const Gate& gate : with_others(gates)) {
-    if (gate.kind == GateSource::result) continue;
+    if (gate.kind == GateSource::result || gate.kind == GateSource::none) continue;
     try {
       if (gate.kind == GateSource::scene) {
         runs.push_back(prepare_run({.scene = gate.source, .overrides = gate.overrides}));

@@ -69,6 +69,7 @@ Json exact_json(const Oracle& oracle) {
   set_number(json, "stick_radius", oracle.stick_radius, unknown);
   set_number(json, "stick_ratio", oracle.state.stick_ratio, unknown);
   set_number(json, "contact_radius", oracle.contact_radius, unknown);
+  set_pair(json, "semi_axes", {oracle.longer_semi_axis(), oracle.shorter_semi_axis()}, unknown);
   set_number(json, "peak_pressure", oracle.peak_pressure, kNoPeak);
   set_number(json, "approach", oracle.approach, unknown);
   set_number(json, "dissipated", oracle.dissipated, unknown);
