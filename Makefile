@@ -20,7 +20,7 @@ PYTHON = "$$(sed -n 's/^SLIPSTICK_PYTHON:[A-Z]*=//p' $(BUILD)/CMakeCache.txt)"
 INSTRUCTION_GATES = $(wildcard bench/gates/instructions-gcc-$(firstword $(subst ., ,$(shell c++ -dumpversion))).toml)
 
 .DEFAULT_GOAL := help
-.PHONY: help setup configure build report gallery report-pdf test gate hard mutants sanitize coverage lint bench bench-against \
+.PHONY: help setup configure build report gallery report-pdf test gate literature hard mutants sanitize coverage lint bench bench-against \
   bench-trust references reference hardest docs install python wheel deb clean
 
 help: ## show this list
@@ -70,6 +70,10 @@ gate: configure ## check the numbers that README.md promises, and counts of work
 	  $(BUILD)/slipstick $(BUILD)/gates/exact.json
 	@$(BUILD)/slipstick gate $(patsubst %,convergence/gates/%.toml,quick digits exact) bench/gates/work.toml $(INSTRUCTION_GATES) \
 	  --results $(BUILD)/gates --output $(BUILD)/gates $(GATE_OPTIONS)
+
+literature: configure ## compare published numbers with ours (GATE_OPTIONS as for gate)
+	$(call build,slipstick)
+	@$(BUILD)/slipstick gate convergence/literature/*.toml --output $(BUILD)/literature $(GATE_OPTIONS)
 
 hard: configure ## solve 707 hard scenes, each in several views; audit every one of them with NumPy (2 minutes)
 	$(call build,slipstick)

@@ -12,6 +12,7 @@ from matplotlib.colors import Normalize
 
 import exact_figures
 import hard_cases
+import literature_figure
 import maps
 import method_figures
 import peers_figure
@@ -274,6 +275,10 @@ SECTIONS = [
     Section("others", "What do other programs say?", [
         Figure("programs", "Other programs", scene_figures.programs, "programs"),
         _paper("known-fields", "Fields of other programs, judged", peers_figure.peers),
+    ]),
+    Section("literature", "What does the literature say?", [
+        Figure("published", "Published numbers", lambda page, folder: literature_figure.literature(page["paper"], folder),
+               "paper.literature"),
     ]),
     Section("beyond", "What lies beyond the paper?", [
         _paper("bodies-and-cycles", "Other bodies, and cycles", exact_figures.bodies_and_cycles),

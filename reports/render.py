@@ -17,6 +17,7 @@ from markupsafe import Markup, escape  # noqa: E402
 import crate  # noqa: E402
 import figures  # noqa: E402
 import hard_cases  # noqa: E402
+import literature_figure  # noqa: E402
 import page_tables  # noqa: E402
 import plane_figure  # noqa: E402
 import results  # noqa: E402
@@ -115,6 +116,8 @@ def tabulate_all(page):
                                     ("meshes", "mesh", tables.MESH), ("laws", "approximation_table", tables.APPROXIMATIONS),
                                     ("gates", "gates.gates", tables.GATES)):
             found[name] = tabulate(tables.table, page["paper"], part, columns)
+    if figures.has(page, "paper.literature"):
+        found["literature"] = tabulate(literature_figure.table, page["paper"])
     return found
 
 
@@ -152,7 +155,7 @@ def write_page(output, templates, benchmarks=None):
         speed=show_speed(benchmarks, folder) if paper else [],
         hard=map_hard_cases(page) if "hard" in page else None, hard_scenes=map_hard_cases(paper) if paper else None,
         nulls=results.nulls({"answer": page["answer"], "paper": {key: part for key, part in (paper or {}).items()
-                                                                 if key not in ("hard", "gates", "peers")}}),
+                                                                 if key not in ("hard", "gates", "literature", "peers")}}),
         data="data")
     write_whole(output / "index.html", html.encode())
     crate.write(output, page)

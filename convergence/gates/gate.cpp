@@ -198,7 +198,8 @@ Judgement judge(const Gate& gate, const Json& result) {
     judgement.why = gate.published ? "agrees with the published number: remove differs"
                                    : "expected to fail, and holds: remove the entry, or make it active";
   }
-  const bool no_number = gate.published && (!is_value(found) || !unfinished(gate, result).empty());
+  const bool no_number =
+      gate.published && (!std::isfinite(judgement.factor) || !unfinished(gate, result).empty());
   if (judgement.outcome == Outcome::failed_as_expected && (is_unknown(found) || no_number)) {
     judgement.outcome = Outcome::failed;  // a misspelt quantity is not the failure that was expected
   }
@@ -237,7 +238,8 @@ int exit_code(const std::vector<Judgement>& judgements) {
 }
 
 std::string bound_text(const Gate& gate) {
-  if (gate.published) return fmt::format("published: {} ({})", gate.published->text, gate.published->source);
+  if (gate.published)
+    return fmt::format("the published {} ({})", gate.published->text, gate.published->source);
   if (!gate.of.empty()) {
     const std::string other =
         gate.below ? fmt::format("{:.7g}, that", 0.5 * (*gate.below + *gate.above)) : "that";

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <string_view>
 #include <tuple>
 #include <utility>
@@ -60,6 +61,21 @@ std::string counts_of(const std::vector<Judgement>& judgements) {
     counts.emplace_back(to_string(*outcome), count(judgements, *outcome));
   }
   return counts_text("gate", counts);
+}
+
+/// A line where numbers of the literature are among them.
+std::string published_counts(const std::vector<Judgement>& judgements) {
+  std::map<std::string, int> counts;
+  std::set<std::string> sources;
+  for (const Judgement& judgement : judgements) {
+    ++counts[published_outcome(judgement)];
+    if (judgement.gate.published) sources.insert(judgement.gate.published->source);
+  }
+  if (sources.empty()) return "";
+  return fmt::format(
+      "published numbers of {} tables or equations: {} agree, {} differ for a known reason, {} not "
+      "compared\n",
+      sources.size(), counts["agrees"], counts["differs"], counts["not compared"]);
 }
 
 std::string value_text(const Json& value) {
@@ -178,7 +194,7 @@ std::string gates_text(const std::vector<Judgement>& judgements) {
     for (const std::string& line : explanation(judgement)) details += fmt::format("  {}\n", line);
   }
   for (const auto& [file, date] : dates) text += fmt::format("  {} is of {}\n", file, date);
-  return text + details + counts_of(judgements) + "\n";
+  return text + details + published_counts(judgements) + counts_of(judgements) + "\n";
 }
 
 std::string gates_junit(const std::vector<Judgement>& judgements) {

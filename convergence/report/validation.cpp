@@ -165,15 +165,32 @@ Json by_method(const Json& rows, const std::string& method) {
   return found;
 }
 
-/// The hard cases, or an even part of them, by each method.
-Json hard_results(const fs::path& folder, std::size_t step, const ProcessPool& pool) {
+/// In the order of their names.
+std::vector<fs::path> settings_files(const fs::path& folder) {
   std::vector<fs::path> files;
   for (const auto& entry : fs::directory_iterator(folder)) {
     if (entry.path().extension() == ".toml") files.push_back(entry.path());
   }
   std::ranges::sort(files);
+  return files;
+}
+
+/// The published numbers beside ours; those of single solves, or also those that studies extrapolate.
+Json literature(const fs::path& folder, bool studies, const ProcessPool& pool) {
+  std::vector<Gate> gates;
+  for (const fs::path& file : settings_files(folder)) {
+    std::ranges::copy_if(read_gates(file), std::back_inserter(gates),
+                         [&](const Gate& gate) { return studies || gate.kind != GateSource::study; });
+  }
+  return gates_json(run_gates(gates, pool));
+}
+
+/// The hard cases, or an even part of them, by each method.
+Json hard_results(const fs::path& folder, std::size_t step, const ProcessPool& pool) {
   std::vector<HardCase> all;
-  for (const fs::path& file : files) std::ranges::move(read_hard_cases(file), std::back_inserter(all));
+  for (const fs::path& file : settings_files(folder)) {
+    std::ranges::move(read_hard_cases(file), std::back_inserter(all));
+  }
   std::vector<HardCase> shown;
   for (std::size_t i = 0; i < all.size(); i += step) shown.push_back(std::move(all[i]));
   return run_hard_cases(shown,
@@ -260,6 +277,7 @@ Json validate(const Validation& asked, const fs::path& folder, const ProcessPool
   paper["hard"] = hard_results(inputs / "hard", size.hard_step, pool);
   paper["cycle"] = cycle(results.at("cycle").front());
   paper["peers"] = judge_peers(inputs);
+  paper["literature"] = literature(inputs / "literature", size.gates, pool);
   if (size.gates) paper["gates"] = gates_json(run_gates(read_gates(inputs / "gates" / "quick.toml"), pool));
   return paper;
 }

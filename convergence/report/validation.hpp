@@ -16,13 +16,14 @@ struct ValidationSize {
       ellipse_cells;                  ///< along the ellipse's long axis; half as many along the short one
   std::vector<double> moment_ratios;  ///< of the loading curve
   std::size_t hard_step;              ///< 1: all hard cases; 10: every tenth
-  bool gates;                         ///< convergence/gates/quick.toml is run too
+  bool gates;  ///< convergence/gates/quick.toml is run too, and studies of the literature
 };
 ValidationSize quick_validation();  ///< seconds: is everything there?
 ValidationSize page_validation();   ///< a minute or two
 ValidationSize full_validation();   ///< finer meshes
 
-/// The files that the validation reads (scenes/, hard/, check/fields/, gates/ in a folder), and its size.
+/// The files that the validation reads (scenes/, hard/, check/fields/, gates/, literature/ in a folder), and
+/// its size.
 struct Validation {
   std::filesystem::path inputs;
   ValidationSize size;

@@ -56,6 +56,25 @@ quantity = "number"
 of = "other.json"
 within = 1e-3
 basis = "theory"
+[[gate]]
+id = "d"
+scene = "scene.toml"
+quantity = "number"
+published = "1.10"
+published_in = "Somebody"
+seen_in = "somewhere"
+argument_error = 1e-3
+own_error = 1e-3
+times = 2
+inverse = true
+differs = "a misprint"
+basis = "theory"
+[[gate]]
+id = "e"
+quantity = "number"
+published = "1"
+published_in = "Somebody"
+not_compared = "no such scene"
 )";
 constexpr const char* kWholeCases = R"([[family]]
 name = "all"

@@ -106,11 +106,22 @@ class WholePage(unittest.TestCase):
     def test_tables_of_gates_and_programs(self):
         self.assertEqual(self.rows("gates")[1:], [["a-gate", "passed", "twist_error", "1.0×10⁻⁵", "50\u00a0%",
                                                    "it &lt;matters&gt;"]])
-        programs = self.page[self.page.index('<h3 id="fields"'):self.page.index('<section id="beyond"')]
+        programs = self.page[self.page.index('<h3 id="fields"'):self.page.index('<section id="literature"')]
         cells = [re.findall("<td>(.*?)</td>", row) for row in re.findall("<tr>(.*?)</tr>", programs)][1:]
         self.assertEqual(cells, [
             [name, verdict, "8²", "1.0×10⁻³", twist, "5.0×10⁻¹", "1.5×10⁰", "1.0×10⁻⁵", f"it &lt;is&gt; {verdict}"]
             for name, verdict, twist in (("ONE", "good", "−1.0×10⁻³"), ("TWO", "bad", "−3.0×10⁻¹"))])
+
+    def test_table_of_published_numbers(self):
+        part = self.page[self.page.index('<section id="literature"'):self.page.index('<section id="beyond"')]
+        cells = [re.findall("<td>(.*?)</td>", row) for row in re.findall("<tr>(.*?)</tr>", part)][1:]
+        self.assertEqual(cells, [
+            ["Someagreed (1900), Title: Table 1. Seen in: a later text.", "agreed", "1.10", "1.1002", "1.0×10⁻⁹", "agrees", ""],
+            ["Someother (1900), Title: Table 1. Seen in: a later text.", "other", "2.0", "2.2", "1.0×10⁻⁹", "differs",
+             "it &lt;differs&gt;"],
+            ["Someleft (1900), Title: Table 1. Seen in: a later text.", "left", "3", "–", "–", "not compared", "not here"]])
+        self.assertIn("1 of 3 published numbers agree within their printed digits, 1 differ for a known reason, 1 cannot be "
+                      "compared.", self.page)
 
     def test_map_of_hard_scenes(self):
         part = self.part("map")
