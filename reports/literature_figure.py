@@ -22,8 +22,7 @@ def outcome(row):
 
 def author(row):
     """Who and when: "Hertz (1882)" of "Hertz (1882), J. reine angew. Math. 92", else what stands before the comma."""
-    source = row["published"]["source"]
-    return re.match(r"[^,(]*\(\d{4}\)|[^,:]*", source)[0].strip()
+    return re.match(r"[^(:]*\(\d{4}\)|[^,:]*", row["published"]["source"])[0].strip()
 
 
 def literature(report, data_dir):

@@ -32,18 +32,35 @@ const Json* nearest_to_bound(const Json& gates) {
   return found;
 }
 
-Finding judge_gates(const Json& all) {
-  const Json& gates = all["gates"];
-  std::string line = fmt::format("{} of {} pass", all["counts"]["passed"].get<int>(), gates.size());
-  if (const int expected = all["counts"]["failed as expected"]; expected > 0) {
-    line += fmt::format(", {} fails as it should", expected);
-  }
+/// Names those that are not as they should be.
+std::string wrong_gates(const Json& gates) {
+  std::string line;
   for (const Json& gate : gates) {
     const Json& outcome = gate["outcome"];
     if (outcome == "failed" || outcome == "passed unexpectedly" || outcome == "refused") {
       line += fmt::format("; {} {}", gate["id"].get<std::string>(), outcome.get<std::string>());
     }
   }
+  return line;
+}
+
+Finding judge_literature(const Json& all) {
+  const Json& counts = all["counts"];
+  return {
+      "Literature",
+      fmt::format("{} of {} published numbers agree, {} differ for a known reason",
+                  counts["passed"].get<int>(), all["gates"].size(), counts["failed as expected"].get<int>()) +
+          wrong_gates(all["gates"]),
+      all["exit_code"] == 0};
+}
+
+Finding judge_gates(const Json& all) {
+  const Json& gates = all["gates"];
+  std::string line = fmt::format("{} of {} pass", all["counts"]["passed"].get<int>(), gates.size());
+  if (const int expected = all["counts"]["failed as expected"]; expected > 0) {
+    line += fmt::format(", {} fails as it should", expected);
+  }
+  line += wrong_gates(gates);
   if (const Json* const nearest = nearest_to_bound(gates); nearest != nullptr) {
     line += fmt::format("; nearest to its bound is {}, at {:.0f} % of it",
                         (*nearest)["id"].get<std::string>(), 100.0 * (*nearest)["factor"].get<double>());
@@ -212,7 +229,8 @@ Finding judge_wanted(const WantedError& wanted, const Json& numbers) {
 std::vector<Finding> judge_validation(const Json& paper) {
   Finding gates{"Gates", "left out of a quick page; make gate runs them"};
   if (paper.contains("gates")) gates = judge_gates(paper["gates"]);
-  return {std::move(gates), judge_hard(paper["hard"], "Hard scenes"), judge_known_fields(paper["peers"])};
+  return {std::move(gates), judge_hard(paper["hard"], "Hard scenes"), judge_known_fields(paper["peers"]),
+          judge_literature(paper["literature"])};
 }
 
 Json headline_of(const std::vector<Finding>& findings, const Json& page) {

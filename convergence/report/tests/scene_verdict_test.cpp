@@ -26,6 +26,7 @@ Json paper() {
   found["gates"]["counts"] = {{"passed", 2}, {"failed as expected", 1}};
   found["gates"]["gates"] = {gate("wide", "passed", 0.1), gate("known", "failed as expected", 30.0),
                              gate("narrow", "passed", 0.8)};
+  found["literature"] = found["gates"];
   return found;
 }
 
@@ -50,6 +51,7 @@ TEST(Headline, IsGoodWhereAllIsAsItShould) {
       says(found, "2 of 3 pass, 1 fails as it should; nearest to its bound is narrow, at 80 % of it"));
   EXPECT_TRUE(says(found, "2 of 3 certified, 1 refused with a reason, 0 not converged, 0 wrong"));
   EXPECT_TRUE(says(found, "P is good, Q is bad"));
+  EXPECT_TRUE(says(found, "2 of 3 published numbers agree, 1 differ for a known reason"));
 }
 
 TEST(Headline, IsBadWhereAnythingIsNot) {
@@ -65,6 +67,11 @@ TEST(Headline, IsBadWhereAnythingIsNot) {
   gates["gates"]["gates"][0]["outcome"] = "failed";
   EXPECT_EQ(headline(gates)["verdict"], "bad");
   EXPECT_TRUE(says(headline(gates), "; wide failed"));
+  Json literature = paper();
+  literature["literature"]["exit_code"] = 1;
+  literature["literature"]["gates"][1]["outcome"] = "passed unexpectedly";
+  EXPECT_EQ(headline(literature)["verdict"], "bad");
+  EXPECT_TRUE(says(headline(literature), "; known passed unexpectedly"));
   Json peer = paper();
   peer["peers"][1]["verdict"] = "good";
   EXPECT_EQ(headline(peer)["verdict"], "bad");
