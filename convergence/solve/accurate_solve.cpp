@@ -35,7 +35,7 @@ struct Approach {
 Approach approach_to(const Scene& scene, const AccuracyTarget& target) {
   const bool shifted = takes_shifted_grids(scene, target.of);
   return {contact_on_grid(scene), gains_by_smooth_cells(scene, target.of), shifted,
-          shifted ? coarse_form(scene) : ContactForm{}};
+          shifted ? coarse_form(scene, target) : ContactForm{}};
 }
 
 AccuracyChoice first_choice(const Scene& scene, const Approach& approach, const AccuracyTarget& target) {
@@ -83,10 +83,12 @@ int more_parts(int parts, double path, const AccuracyTarget& target) {
   return needed < kMaxSubsteps ? static_cast<int>(needed) : kMaxSubsteps;
 }
 
-/// The scene with as many parts of its steps as the target takes, found on few cells.
-Scene with_parts(Scene scene, const AccuracyTarget& target) {
+/// The scene with as many parts of its steps as the target takes, and in the target what they leave, found on
+/// few cells.
+Scene with_parts(Scene scene, AccuracyTarget& target) {
   if (target.of != AccuracyOf::twist || !is_estimated(scene, target.of)) return scene;
   Scene coarse = with_cells(scene, kReferenceCells);
+  const double allowed = kPathPart * target.error;
   for (int trial = 0; trial < kPathTrials && scene.substeps < kMaxSubsteps; ++trial) {
     coarse.substeps = scene.substeps;
     double path = 0.0;
@@ -95,7 +97,8 @@ Scene with_parts(Scene scene, const AccuracyTarget& target) {
     } catch (const InputError&) {
       return scene;  // the mesh that counts may do better, or says it again
     }
-    if (!(path > kPathPart * target.error)) return scene;
+    target.path = std::min(path, allowed);
+    if (!(path > allowed)) return scene;
     scene.substeps = more_parts(scene.substeps, path, target);
   }
   return scene;
@@ -172,7 +175,7 @@ Json attempt_json(const Attempt& made, const Scene& scene, double seconds) {
 
 }  // namespace
 
-Json accuracy_plan(const Scene& given, const AccuracyTarget& target) {
+Json accuracy_plan(const Scene& given, AccuracyTarget target) {
   if (given.model == solver::ModelChoice::exact) return plan_json(given);
   const Scene scene = with_parts(given, target);
   const Approach approach = approach_to(scene, target);
@@ -183,7 +186,7 @@ Json accuracy_plan(const Scene& given, const AccuracyTarget& target) {
   return plan;
 }
 
-AccurateAnswer solve_to_accuracy(const Scene& given, const AccuracyTarget& target, const GridSolve& solve) {
+AccurateAnswer solve_to_accuracy(const Scene& given, AccuracyTarget target, const GridSolve& solve) {
   Scene scene = with_parts(given, target);
   const Approach approach = approach_to(scene, target);
   const double order = approach.shifted ? kShiftedOrder : falling_order(accuracy_data(), target.of);
