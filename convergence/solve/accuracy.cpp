@@ -183,7 +183,7 @@ AccuracyChoice choose_grid(const Scene& scene, const ContactOnGrid& contact, con
 std::optional<AccuracyChoice> refined(const Scene& scene, const ContactOnGrid& contact,
                                       const AccuracyTarget& target, const AccuracyChoice& before,
                                       double reached, double order) {
-  const double suggested = kRefinementMargin * std::pow(reached / target.error, 1.0 / order);
+  const double suggested = kRefinementMargin * std::pow(reached / target.of_mesh(), 1.0 / order);
   const double across = cells_across(contact, before.cells);
   if (!(suggested * across <= kMaxCellsAcross)) return std::nullopt;
   const double factor = std::clamp(suggested, kRefinementMargin, kMaxRefinement);

@@ -50,9 +50,10 @@ Scene chosen_scene(const Scene& scene, const Approach& approach, const AccuracyC
   return chosen;
 }
 
-/// The part of a target that the length of steps may take; the largest number of their parts; and how often
-/// that number is raised on few cells.
+/// The part of a target that the length of steps may take, and the most that a mesh leaves them; the largest
+/// number of their parts; and how often that number is raised on few cells.
 constexpr double kPathPart = 0.4;
+constexpr double kMaxPathPart = 0.8;
 constexpr int kMaxSubsteps = 256;
 constexpr int kPathTrials = 4;
 
@@ -77,10 +78,13 @@ void put_uncertainty(Json& result, double mesh, double path) {
   resolved.erase("warning");
 }
 
-/// Parts that leave as little as the target allows them, if what is left falls like one over their number.
-int more_parts(int parts, double path, const AccuracyTarget& target) {
-  const double needed = std::ceil(parts * path / (0.8 * kPathPart * target.error));
-  return needed < kMaxSubsteps ? static_cast<int>(needed) : kMaxSubsteps;
+/// As many parts as leave as little as the target allows them, or the most, and what they leave, if that
+/// falls like one over their number.
+void make_more_parts(Scene& scene, AccuracyTarget& target) {
+  const double left = scene.substeps * target.path;
+  const double needed = std::ceil(left / (0.8 * kPathPart * target.error));
+  scene.substeps = needed < kMaxSubsteps ? static_cast<int>(needed) : kMaxSubsteps;
+  target.path = std::min(left / scene.substeps, kMaxPathPart * target.error);
 }
 
 /// The scene with as many parts of its steps as the target takes, and in the target what they leave, found on
@@ -88,7 +92,6 @@ int more_parts(int parts, double path, const AccuracyTarget& target) {
 Scene with_parts(Scene scene, AccuracyTarget& target) {
   if (target.of != AccuracyOf::twist || !is_estimated(scene, target.of)) return scene;
   Scene coarse = with_cells(scene, kReferenceCells);
-  const double allowed = kPathPart * target.error;
   for (int trial = 0; trial < kPathTrials && scene.substeps < kMaxSubsteps; ++trial) {
     coarse.substeps = scene.substeps;
     double path = 0.0;
@@ -97,9 +100,9 @@ Scene with_parts(Scene scene, AccuracyTarget& target) {
     } catch (const InputError&) {
       return scene;  // the mesh that counts may do better, or says it again
     }
-    target.path = std::min(path, allowed);
-    if (!(path > allowed)) return scene;
-    scene.substeps = more_parts(scene.substeps, path, target);
+    target.path = path;
+    if (!(path > kPathPart * target.error)) return scene;
+    make_more_parts(scene, target);
   }
   return scene;
 }
@@ -203,14 +206,15 @@ AccurateAnswer solve_to_accuracy(const Scene& given, AccuracyTarget target, cons
     attempts.push_back(attempt_json(made, chosen, seconds));
     found.reached = made.within(target.error);
     if (found.reached) break;
+    target.path = made.path;
     if (made.path > kPathPart * target.error) {
       if (!(made.path < target.error) && (scene.substeps >= kMaxSubsteps || std::isinf(made.path))) {
         stopped = fmt::format("steps in {} parts leave {:.2g} open; write out more steps", scene.substeps,
                               made.path);
         break;
       }
-      scene.substeps = more_parts(scene.substeps, made.path, target);
-      if (made.to_lower() <= (1.0 - kPathPart) * target.error) continue;
+      make_more_parts(scene, target);
+      if (made.to_lower() <= target.of_mesh()) continue;
     }
     choice = refined(scene, approach.contact, target, *choice, made.to_lower(), order);
     if (!choice) {

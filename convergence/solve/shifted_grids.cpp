@@ -30,16 +30,18 @@ using solver::Scene;
 /// over its shorter axis is a factor to the first part. Set by 364 random spheres, cones, punches with round
 /// corners and powers at 0.05 to 0.99 of the limit, on five to eight meshes each with R from 4 to 400, so
 /// that it covers 95 of 100 errors.
-constexpr double kFront = 0.14;
+constexpr double kFront = 0.15;
 constexpr double kCurvedFront = 0.85;
-constexpr double kNarrowSlip = 0.045;
+constexpr double kNarrowSlip = 0.05;
 constexpr double kRingInCell = 0.015;
 constexpr double kNoRing = 0.62;
 constexpr double kTip = 0.88;
 constexpr double kMinStickRatio = 0.02;
-/// It is never less than so much of the scatter (standard deviation) of the grids: more than 95 of 100 of
-/// those means are not affected.
-constexpr double kOfScatter = 0.25;
+/// It is never less than so much of the scatter (standard deviation) of the grids, which changes 1 of 100 of
+/// them.
+constexpr double kOfScatter = 0.2;
+/// Where they are no data the scatter is added, which is usually twice the uncertainty.
+constexpr double kBeyondData = 3.0;
 /// Cells across the contact of the first mesh that is tried, and the factor to the next.
 constexpr double kMinAcrossShifted = 12.0;
 constexpr double kFiner = 1.02;
@@ -75,10 +77,16 @@ double expected_uncertainty(const Scene& scene, double across, const ContactForm
   return std::hypot(front, slip, tip) * std::pow(radius, -kShiftedOrder);
 }
 
-/// Whether the data for expected_uncertainty() say little: a history's numbers are differences, whose errors
-/// add up, and shapes side by side have more than one stick area.
+/// Whether those data say little: a history's numbers are differences, whose errors add up, and shapes side
+/// by side have more than one stick area.
 bool is_beyond_data(const Scene& scene) {
   return has_history(scene) || (scene.surfaces.size() > 1 && scene.combine == solver::Combine::nearest);
+}
+
+/// The error for which a mesh is chosen.
+double expected_error(const Scene& scene, double across, const ContactForm& form) {
+  const double uncertainty = expected_uncertainty(scene, across, form);
+  return is_beyond_data(scene) ? kBeyondData * uncertainty : uncertainty;
 }
 
 /// Longer over shorter axis of a contact, from its pressure's second moments.
@@ -113,7 +121,7 @@ ContactForm form_on(const Scene& scene, solver::Index cells) {
 /// Cells across the contact that are expected to reach the target, or the most.
 double across_for(const Scene& scene, const AccuracyTarget& target, const ContactForm& form) {
   double across = kMinAcrossShifted;
-  while (across < kMaxCellsAcross && expected_uncertainty(scene, across, form) > target.of_mesh()) {
+  while (across < kMaxCellsAcross && expected_error(scene, across, form) > target.of_mesh()) {
     across *= kFiner;
   }
   return std::min(across, kMaxCellsAcross);
@@ -179,7 +187,7 @@ ContactForm coarse_form(const Scene& scene, const AccuracyTarget& target) {
 
 AccuracyChoice choose_shifted(const Scene& scene, const ContactOnGrid& contact, const AccuracyTarget& target,
                               const ContactForm& form) {
-  const double least = target.path + expected_uncertainty(scene, kMaxCellsAcross, form);
+  const double least = target.path + expected_error(scene, kMaxCellsAcross, form);
   if (!(target.error >= least)) throw out_of_reach(scene, target, least);
   AccuracyChoice choice{
       .cells = cells_for(contact, across_for(scene, target, form), 2),

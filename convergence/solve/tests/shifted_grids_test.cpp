@@ -71,7 +71,7 @@ TEST(ShiftedGrids, LeaveNothingOfAStaircaseOfOnePeriodInTheirMean) {
       mean_over_shifted_grids(scene, kTwist, ContactForm{}, contact,
                               Staircase{.front = 0.5 * 0.48909732465087485e-3, .height = 1e-3});
   EXPECT_LE(std::abs(mean.error), 1e-4);
-  EXPECT_NEAR(mean.uncertainty, 0.25 * 1e-3 * std::sqrt(0.75), 5e-5);  // of a sine, on three points
+  EXPECT_NEAR(mean.uncertainty, 0.2 * 1e-3 * std::sqrt(0.75), 5e-5);  // of a sine, on three points
   EXPECT_DOUBLE_EQ(mean.answer.result["twist_angle"].get<double>(), 2.0 * (1.0 + mean.error));
   EXPECT_DOUBLE_EQ(mean.answer.result["twist"].get<double>(), 1.0 + mean.error);
   EXPECT_DOUBLE_EQ(mean.answer.result["twist_error"].get<double>(), mean.error);
@@ -90,7 +90,7 @@ TEST(ShiftedGrids, ScatterByTheDeviationOfASample) {
                                               answer.result["twist_angle"] = 2.0 * (1.0 + (d = -d));
                                               return answer;
                                             });
-  EXPECT_NEAR(mean.uncertainty, 0.25e-3 * std::sqrt(4.0 / 3.0) / (1.0 - 1e-3 / 3.0), 1e-12);
+  EXPECT_NEAR(mean.uncertainty, 0.2e-3 * std::sqrt(4.0 / 3.0) / (1.0 - 1e-3 / 3.0), 1e-12);
 }
 
 // A history's errors add up, and its twists may nearly cancel: its scatter counts in full.
