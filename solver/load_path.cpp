@@ -80,11 +80,14 @@ bool changes_both(const Step& from, const Step& to) {
           from.displacement != to.displacement);
 }
 
+/// Whether all shapes are of revolution, about one axis.
 bool has_axis(const Scene& scene) {
-  if (scene.surfaces.size() != 1 || scene.pressure == PressureModel::file) return false;
-  const Surface& surface = scene.surfaces.front();
-  if (surface.shape == Shape::ellipsoid) return surface.radius_1 == surface.radius_2;
-  return surface.shape != Shape::height_map && surface.shape != Shape::roughness;
+  return scene.pressure != PressureModel::file &&
+         std::ranges::all_of(scene.surfaces, [&](const Surface& surface) {
+           if (surface.at != scene.surfaces.front().at) return false;
+           if (surface.shape == Shape::ellipsoid) return surface.radius_1 == surface.radius_2;
+           return surface.shape != Shape::height_map && surface.shape != Shape::roughness;
+         });
 }
 
 /// Means over squares of side x side samples; samples at the far ends that fill no square are cut off.

@@ -63,8 +63,6 @@ Index longer_side(const Scene& scene) { return std::max(scene.cells[0], scene.ce
 
 std::string shortest(double value) { return fmt::format("{:g}", value); }
 
-Index multiple_of_four(double cells) { return 4 * static_cast<Index>(std::ceil(cells / 4.0 - 1e-9)); }
-
 bool fits_in_memory(const Scene& scene) {
   try {
     solver::make_model(scene);
@@ -76,7 +74,7 @@ bool fits_in_memory(const Scene& scene) {
 
 /// Safety of the error that the mesh was chosen for.
 double mesh_error(const AccuracyTarget& target, bool estimated) {
-  return estimated ? target.error / estimation_safety(target.of) : target.error;
+  return estimated ? target.of_mesh() / estimation_safety(target.of) : target.of_mesh();
 }
 
 }  // namespace
@@ -151,9 +149,10 @@ ContactOnGrid contact_on_grid(const Scene& scene) {
           .cells_across = across};
 }
 
-Index cells_for(const ContactOnGrid& contact, double across) {
-  const double inside = (contact.longer - contact.margin) * across / contact.cells_across;
-  return std::max(kMinGridCells, multiple_of_four(inside + contact.margin));
+Index cells_for(const ContactOnGrid& contact, double across, Index multiple) {
+  const double cells = (contact.longer - contact.margin) * across / contact.cells_across + contact.margin;
+  const double multiples = std::ceil(cells / static_cast<double>(multiple) - 1e-9);
+  return std::max(kMinGridCells, multiple * static_cast<Index>(multiples));
 }
 
 double cells_across(const ContactOnGrid& contact, Index cells) {
@@ -172,7 +171,7 @@ AccuracyChoice choose_grid(const Scene& scene, const ContactOnGrid& contact, con
                            bool estimated) {
   const AccuracyData data = accuracy_data();
   const double error = mesh_error(target, estimated);
-  const double least = error_with(data, target.of, kMaxCellsAcross) * target.error / error;
+  const double least = target.path + error_with(data, target.of, kMaxCellsAcross) * target.of_mesh() / error;
   if (!(target.error >= least)) throw out_of_reach(scene, target, least);
   const Needed needed = needed_for(data, target.of, error);
   AccuracyChoice choice{.cells = cells_for(contact, needed.cells_across),
@@ -184,7 +183,7 @@ AccuracyChoice choose_grid(const Scene& scene, const ContactOnGrid& contact, con
 std::optional<AccuracyChoice> refined(const Scene& scene, const ContactOnGrid& contact,
                                       const AccuracyTarget& target, const AccuracyChoice& before,
                                       double reached, double order) {
-  const double suggested = kRefinementMargin * std::pow(reached / target.error, 1.0 / order);
+  const double suggested = kRefinementMargin * std::pow(reached / target.of_mesh(), 1.0 / order);
   const double across = cells_across(contact, before.cells);
   if (!(suggested * across <= kMaxCellsAcross)) return std::nullopt;
   const double factor = std::clamp(suggested, kRefinementMargin, kMaxRefinement);

@@ -19,6 +19,9 @@ inline constexpr double kMaxCellsAcross = 2048.0;
 struct AccuracyTarget {
   double error;
   AccuracyOf of = AccuracyOf::twist;
+  double path = 0.0;  ///< of the error, what the length of steps leaves: the mesh has the rest
+
+  double of_mesh() const { return error - path; }
 };
 
 /// The quantity whose error is asked for: its name, and paths into a result. The moment, where the twist is
@@ -41,8 +44,9 @@ struct ContactOnGrid {
 /// if all of it were pressed. Throws InputError as make_model().
 ContactOnGrid contact_on_grid(const solver::Scene& scene);
 
-/// Cells along the longer side, a multiple of four, that put at least `cells_across` across the contact.
-solver::Index cells_for(const ContactOnGrid& contact, double cells_across);
+/// Cells along the longer side, a multiple of four or another, that put at least `cells_across` across the
+/// contact.
+solver::Index cells_for(const ContactOnGrid& contact, double cells_across, solver::Index multiple = 4);
 double cells_across(const ContactOnGrid& contact, solver::Index cells);
 
 /// The scene on another mesh, in the shape of its own.

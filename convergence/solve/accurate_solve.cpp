@@ -35,7 +35,7 @@ struct Approach {
 Approach approach_to(const Scene& scene, const AccuracyTarget& target) {
   const bool shifted = takes_shifted_grids(scene, target.of);
   return {contact_on_grid(scene), gains_by_smooth_cells(scene, target.of), shifted,
-          shifted ? coarse_form(scene) : ContactForm{}};
+          shifted ? coarse_form(scene, target) : ContactForm{}};
 }
 
 AccuracyChoice first_choice(const Scene& scene, const Approach& approach, const AccuracyTarget& target) {
@@ -50,9 +50,10 @@ Scene chosen_scene(const Scene& scene, const Approach& approach, const AccuracyC
   return chosen;
 }
 
-/// The part of a target that the length of steps may take; the largest number of their parts; and how often
-/// that number is raised on few cells.
+/// The part of a target that the length of steps may take, and the most that a mesh leaves them; the largest
+/// number of their parts; and how often that number is raised on few cells.
 constexpr double kPathPart = 0.4;
+constexpr double kMaxPathPart = 0.8;
 constexpr int kMaxSubsteps = 256;
 constexpr int kPathTrials = 4;
 
@@ -77,14 +78,18 @@ void put_uncertainty(Json& result, double mesh, double path) {
   resolved.erase("warning");
 }
 
-/// Parts that leave as little as the target allows them, if what is left falls like one over their number.
-int more_parts(int parts, double path, const AccuracyTarget& target) {
-  const double needed = std::ceil(parts * path / (0.8 * kPathPart * target.error));
-  return needed < kMaxSubsteps ? static_cast<int>(needed) : kMaxSubsteps;
+/// As many parts as leave as little as the target allows them, or the most, and what they leave, if that
+/// falls like one over their number.
+void make_more_parts(Scene& scene, AccuracyTarget& target) {
+  const double left = scene.substeps * target.path;
+  const double needed = std::ceil(left / (0.8 * kPathPart * target.error));
+  scene.substeps = needed < kMaxSubsteps ? static_cast<int>(needed) : kMaxSubsteps;
+  target.path = std::min(left / scene.substeps, kMaxPathPart * target.error);
 }
 
-/// The scene with as many parts of its steps as the target takes, found on few cells.
-Scene with_parts(Scene scene, const AccuracyTarget& target) {
+/// The scene with as many parts of its steps as the target takes, and in the target what they leave, found on
+/// few cells.
+Scene with_parts(Scene scene, AccuracyTarget& target) {
   if (target.of != AccuracyOf::twist || !is_estimated(scene, target.of)) return scene;
   Scene coarse = with_cells(scene, kReferenceCells);
   for (int trial = 0; trial < kPathTrials && scene.substeps < kMaxSubsteps; ++trial) {
@@ -95,8 +100,9 @@ Scene with_parts(Scene scene, const AccuracyTarget& target) {
     } catch (const InputError&) {
       return scene;  // the mesh that counts may do better, or says it again
     }
+    target.path = path;
     if (!(path > kPathPart * target.error)) return scene;
-    scene.substeps = more_parts(scene.substeps, path, target);
+    make_more_parts(scene, target);
   }
   return scene;
 }
@@ -172,7 +178,7 @@ Json attempt_json(const Attempt& made, const Scene& scene, double seconds) {
 
 }  // namespace
 
-Json accuracy_plan(const Scene& given, const AccuracyTarget& target) {
+Json accuracy_plan(const Scene& given, AccuracyTarget target) {
   if (given.model == solver::ModelChoice::exact) return plan_json(given);
   const Scene scene = with_parts(given, target);
   const Approach approach = approach_to(scene, target);
@@ -183,7 +189,7 @@ Json accuracy_plan(const Scene& given, const AccuracyTarget& target) {
   return plan;
 }
 
-AccurateAnswer solve_to_accuracy(const Scene& given, const AccuracyTarget& target, const GridSolve& solve) {
+AccurateAnswer solve_to_accuracy(const Scene& given, AccuracyTarget target, const GridSolve& solve) {
   Scene scene = with_parts(given, target);
   const Approach approach = approach_to(scene, target);
   const double order = approach.shifted ? kShiftedOrder : falling_order(accuracy_data(), target.of);
@@ -200,14 +206,15 @@ AccurateAnswer solve_to_accuracy(const Scene& given, const AccuracyTarget& targe
     attempts.push_back(attempt_json(made, chosen, seconds));
     found.reached = made.within(target.error);
     if (found.reached) break;
+    target.path = made.path;
     if (made.path > kPathPart * target.error) {
       if (!(made.path < target.error) && (scene.substeps >= kMaxSubsteps || std::isinf(made.path))) {
         stopped = fmt::format("steps in {} parts leave {:.2g} open; write out more steps", scene.substeps,
                               made.path);
         break;
       }
-      scene.substeps = more_parts(scene.substeps, made.path, target);
-      if (made.to_lower() <= (1.0 - kPathPart) * target.error) continue;
+      make_more_parts(scene, target);
+      if (made.to_lower() <= target.of_mesh()) continue;
     }
     choice = refined(scene, approach.contact, target, *choice, made.to_lower(), order);
     if (!choice) {

@@ -23,12 +23,11 @@ inline constexpr int kMaxRefinements = 3;
 /// Chooses, solves, determines the error, refines. For the twist of a smooth contact each attempt is the mean
 /// over shifted grids: it is reached once its uncertainty and, where it is known, its error are small
 /// enough. The scene's cells and tolerance are replaced. Throws InputError as choose_grid() and solve().
-AccurateAnswer solve_to_accuracy(const solver::Scene& scene, const AccuracyTarget& target,
-                                 const GridSolve& solve);
+AccurateAnswer solve_to_accuracy(const solver::Scene& scene, AccuracyTarget target, const GridSolve& solve);
 
 /// The plan of the first attempt, as plan_json(). For a mean over shifted grids it has their number, `grids`,
 /// and the time of all.
-Json accuracy_plan(const solver::Scene& scene, const AccuracyTarget& target);
+Json accuracy_plan(const solver::Scene& scene, AccuracyTarget target);
 
 /// The account of an exact answer: its own uncertainty. Throws InputError where that is above the target.
 Json exact_accuracy(const solver::Scene& scene, const AccuracyTarget& target);

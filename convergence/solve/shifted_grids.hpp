@@ -17,7 +17,7 @@ using GridSolve = std::function<SolvedScene(const solver::Scene&, solver::Detail
 
 /// Grids of a mean. The stick radius in cells, of them all, is spread evenly over one cell, the period of its
 /// staircase.
-inline constexpr int kShiftedGrids = 4;
+inline constexpr int kShiftedGrids = 3;
 /// The order in which the mean's uncertainty falls with the cell size, measured on the paper's sphere.
 inline constexpr double kShiftedOrder = 2.5;
 
@@ -34,8 +34,8 @@ struct ContactForm {
   double stick_ratio = 0.5;  ///< stick radius over contact radius
   double slender = 1.0;      ///< longer over shorter axis of the contact
 };
-/// From a coarse grid, as far as that can say.
-ContactForm coarse_form(const solver::Scene& scene);
+/// From a coarse grid, as far as that can say: a finer one where the target takes many more cells.
+ContactForm coarse_form(const solver::Scene& scene, const AccuracyTarget& target);
 
 /// The mesh on which the mean is expected to have the wanted uncertainty. Throws InputError, with what is
 /// reachable, where none does, and where it does not fit in memory.

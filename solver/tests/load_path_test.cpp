@@ -103,5 +103,16 @@ TEST_F(LoadPath, ATwistOfASurfaceOfRevolutionHasNoPath) {
             0.0);
 }
 
+// Their gaps add up to that of one cone.
+TEST_F(LoadPath, ATwistOfConesOnOneAxisHasNoPath) {
+  const auto path = [&](const std::string& at) {
+    const std::string cone = "[[upper.shape]]\nshape = \"cone\"\nslope = 0.005\n";
+    const std::string text = with_surface("", cone + cone + "at = " + at + "\n");
+    return solve(read(text, {"grid.cells=[24,24]", "grid.extent=[2e-3,2e-3]"})).resolution.path.twist;
+  };
+  EXPECT_EQ(path("[0.0, 0.0]"), 0.0);
+  EXPECT_GT(path("[2e-4, 0.0]"), 0.0);
+}
+
 }  // namespace
 }  // namespace slipstick::solver

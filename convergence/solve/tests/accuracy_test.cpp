@@ -138,6 +138,18 @@ TEST(AccuracyChoice, ScalesTheContactWithTheCellsOfAGivenExtent) {
   EXPECT_GT(cells_across(free, 256) / cells_across(free, 64), 4.0 * (1.0 + 2.0 / 64.0));
 }
 
+// What the length of steps leaves is no part of what the mesh may leave.
+TEST(AccuracyChoice, LeavesTheLengthOfStepsItsPart) {
+  const solver::Scene at = scene("paper");
+  const ContactOnGrid contact = convergence::contact_on_grid(at);
+  for (const double path : {1e-3, 4e-3}) {
+    const AccuracyTarget both{.error = 1e-2, .path = path};
+    const AccuracyTarget mesh{.error = 1e-2 - path};
+    EXPECT_EQ(choose_grid(at, contact, both, true).cells, choose_grid(at, contact, mesh, true).cells);
+    EXPECT_EQ(choose_shifted(at, contact, both, {}).cells, choose_shifted(at, contact, mesh, {}).cells);
+  }
+}
+
 // The grid stands in a file.
 TEST(AccuracyChoice, KnowsTheCellsAcrossAGridThatIsGiven) {
   solver::Scene at = scene("paper", {"grid.cells=[24,12]", "grid.extent=[2e-3,1e-3]"});

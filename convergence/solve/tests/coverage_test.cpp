@@ -12,13 +12,15 @@
 
 #include "convergence/solve/accurate_solve.hpp"
 #include "solver/input/input_error.hpp"
+#include "solver/model.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace {
 
 using namespace slipstick;
 
-/// Spheres, cones, punches with round corners and powers of the radius.
+/// Spheres, cones, punches with round corners and powers of the radius; half of them on extents that are
+/// given, so that edges lie anywhere in their cells.
 class RandomScenes {
  public:
   solver::Scene next() {
@@ -38,6 +40,11 @@ class RandomScenes {
       surface.shape = solver::Shape::power;
       surface.exponent = uniform(1.3, 4.0);
       surface.coefficient = height * std::pow(radius, -surface.exponent);
+    }
+    if (uniform(0.0, 1.0) < 0.5) {
+      const solver::Grid grid = solver::make_model(scene).grid_in_m();
+      const double side = uniform(1.0, 1.3) * grid.h1 * static_cast<double>(grid.n1);
+      scene.extent = {side, side};
     }
     return scene;
   }
