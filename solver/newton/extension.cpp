@@ -21,6 +21,8 @@ constexpr double kFade = 1.0;
 /// Ranks' rows end with those of blocks of blocks.
 constexpr Index kCoarsest = kSide * kSide;
 static_assert(RowBands::kRows % kCoarsest == 0);
+/// On shorter grids hardly a cell is out of reach: all are mixed, which costs less than to find which are.
+constexpr Index kAllMixed = 4 * kCoarsest;
 
 using Row = Eigen::Map<const Eigen::ArrayXd>;
 
@@ -149,6 +151,7 @@ void Extension::spread(const Field& in, const Take& take) {
 /// wholly, free.
 template <typename IsFree>
 void Extension::find_mixed(const IsFree& is_free, bool free_is_whole) {
+  if (std::max(grid_.n1, grid_.n2) <= kAllMixed) return;
   mixed_ = Sweep::whole(grid_);
   const auto reached = [&](double free, double other) -> Eigen::ArrayXXd {
     in_own_rows(grid_, grid_.cells(), [&](Index first, Index count) {
