@@ -1,134 +1,303 @@
 #include "solver/newton/extension.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
+
+#include "solver/grid/threads.hpp"
+#include "solver/newton/conjugate_gradients.hpp"
+#include "solver/newton/tangent_space.hpp"
 
 namespace slipstick::solver {
 namespace {
 
-/// A cell's neighbours along each axis, up to this far off, count each for this part of the one nearer to it.
-/// Spots of a finer mesh have more cells: at 1,024, half of them in contact, a reach of two takes two fifths
-/// more applications. On coarse meshes more costs more than it spares.
-constexpr Index kMinReach = 2;
-constexpr Index kMaxReach = 8;
-constexpr Index kSidesOfReach = 64;
-constexpr double kNearest = 0.5;
-constexpr double kDecay = 0.7;
+/// Weights of a cell's neighbours along each axis, the nearer one first; the cell itself has one.
+constexpr std::array<double, 2> kNear{0.5, 0.35};
+/// Cells of a block along each axis, and the part that cells in it count for: the square of the distance.
+constexpr Index kSide = 4;
+constexpr double kFar = 1.0 / 16.0;
 /// Beside the neighbours' weights: what lets the continuation fade where few of them are free.
-/// With 0.5, contacts of few cells take an eighth more applications.
 constexpr double kFade = 1.0;
+/// Ranks' rows end with those of blocks of blocks.
+constexpr Index kCoarsest = kSide * kSide;
+static_assert(RowBands::kRows % kCoarsest == 0);
+/// On shorter grids hardly a cell is out of reach: all are mixed, which costs less than to find which are.
+constexpr Index kAllMixed = 4 * kCoarsest;
 
-/// Cells of a row that are mixed together: the neighbours of one are in the blocks beside it at most.
-constexpr Index kBlock = 16;
-static_assert(kBlock >= kMaxReach);
-/// Cells of a row that are summed at once.
-constexpr Index kChunk = 256;
+using Row = Eigen::Map<const Eigen::ArrayXd>;
+
+Index blocks_of(Index n) { return (n + kSide - 1) / kSide; }
+
+/// Adds the sums of so many cells over blocks, which begin with one.
+void add_to_blocks(const Row& cells, double* sums) {
+  const Index whole = cells.size() / kSide * kSide;
+  for (Index j = 0; j < whole; j += kSide) sums[j / kSide] += cells.segment<kSide>(j).sum();
+  if (whole < cells.size()) sums[whole / kSide] += cells.tail(cells.size() - whole).sum();
+}
 
 }  // namespace
 
-Extension::Extension(const Grid& grid)
+Extension::Extension(const Grid& grid, Index components)
     : grid_(grid),
-      reach_(std::clamp(std::min(grid.n1, grid.n2) / kSidesOfReach, kMinReach, kMaxReach)),
-      weight_(grid.cells()),
-      work_(grid.cells()),
-      mixed_(grid),
-      zeros_(Field::Zero(grid.n2)) {}
-
-/// Counts free cells near each block; what is beyond the grid is not free.
-void Extension::find_mixed(const Field& free) {
-  const Share own = own_rows(grid_);
-  const Index blocks = (grid_.n2 + kBlock - 1) / kBlock;
-  const Index rows_near = 2 * reach_ + 1;
-  const auto cells_of = [&](auto& field, Index row, Index block) {
-    const Index first = block * kBlock;
-    return field.segment(row * grid_.n2 + first, std::min(kBlock, grid_.n2 - first));
-  };
-  Eigen::ArrayXXi counts = Eigen::ArrayXXi::Zero(blocks + 2, own.count() + 2 * reach_);
-  const Index row_0 = own.first - reach_;
-  for (Index row = std::max<Index>(row_0, 0); row < std::min(own.last + reach_, grid_.n1); ++row) {
-    for (Index block = 0; block < blocks; ++block) {
-      counts(block + 1, row - row_0) = static_cast<int>(cells_of(free, row, block).sum());
-    }
+      weights_((components == 1 ? 1 : 3) * grid.cells()),
+      work_(components * grid.cells()),
+      mixed_(Sweep::whole(grid)) {
+  Index n1 = grid.n1;
+  Index n2 = grid.n2;
+  for (Level& level : blocks_) {
+    level.n1 = n1 = blocks_of(n1);
+    level.n2 = n2 = blocks_of(n2);
+    level.sums.resize(components * n1 * n2);
+    level.means.resize(components * n1 * n2);
   }
-  Eigen::ArrayXi near(blocks + 2);
-  for (Index row = own.first; row < own.last; ++row) {
-    near = counts.middleCols(row - own.first, rows_near).rowwise().sum();
-    for (Index block = 0; block < blocks; ++block) {
-      const int count = near.template segment<3>(block).sum();
-      cells_of(weight_, row, block).setConstant(count > 0 && count < 3 * kBlock * rows_near ? 1.0 : 0.0);
-    }
-  }
-  mixed_.assign(grid_.cells(), [&](Index cell) { return weight_[cell] != 0.0; });
 }
 
-/// take(first, sums) for cells of mixed_: the sums over neighbours of a field's component, which begins at
-/// `component` and is zero beyond the grid.
-template <typename Take>
-void Extension::spread(const Field& in, Index component, const Take& take) const {
-  using Line = Eigen::Array<double, kChunk + 2 * kMaxReach, 1>;
-  const auto add_beside = [&](const auto& at, auto&& sum) {
-    double weight = kNearest;
-    for (Index k = 1; k <= reach_; ++k, weight *= kDecay) sum += weight * (at(-k) + at(k));
+/// The sums over the neighbours of [first, last) in a row of a field, which is zero beyond its n1 rows of n2.
+auto Extension::near_sums(const double* in, Index n1, Index n2, Index row, Index first, Index last) -> Line {
+  static const Line kZeros = Line::Zero();
+  const Index left = std::max<Index>(first - kReach, 0);
+  const Index count = std::min(last + kReach, n2) - left;
+  const auto line = [&](Index k) {
+    const bool inside = 0 <= row + k && row + k < n1;
+    return Row(inside ? in + (row + k) * n2 + left : kZeros.data(), count);
   };
-  const auto spread_in = [&](Index row, Index first, Index last) {
-    const Index left = std::max<Index>(first - reach_, 0);
-    const Index count = std::min(last + reach_, grid_.n2) - left;
-    const auto line = [&](Index k) {
-      const bool inside = 0 <= row + k && row + k < grid_.n1;
-      return inside ? in.segment(component + (row + k) * grid_.n2 + left, count) : zeros_.segment(0, count);
-    };
-    Line column_sums;
-    column_sums.head(last - first + 2 * reach_).setZero();
-    auto within = column_sums.segment(left - (first - reach_), count);
-    within = line(0);
-    add_beside(line, within);
-    const auto shifted = [&](Index k) { return column_sums.segment(reach_ + k, last - first); };
-    Line sums;
-    sums.head(last - first) = shifted(0);
-    add_beside(shifted, sums.head(last - first));
-    take(row * grid_.n2 + first, sums.head(last - first));
+  const auto with_neighbours = [](const auto& at) {
+    return at(0) + kNear[0] * (at(-1) + at(1)) + kNear[1] * (at(-2) + at(2));
   };
+  Line columns;
+  columns.head(last - first + 2 * kReach).setZero();
+  columns.segment(left - (first - kReach), count) = with_neighbours(line);
+  Line sums;
+  sums.head(last - first) =
+      with_neighbours([&](Index k) { return columns.segment(kReach + k, last - first); });
+  return sums;
+}
+
+/// The sums of a component over all blocks, of its values in mixed_.
+void Extension::fill_blocks(const double* in, Index component) {
+  Level& fine = blocks_[0];
+  Level& coarse = blocks_[1];
+  double* const sums = fine.sums.data() + component * fine.n1 * fine.n2;
+  const Index of_rank = RowBands(grid_.n1, grid_.ranks).rows_of_rank() / kSide;
+  std::fill_n(sums, fine.n1 * fine.n2, 0.0);
   mixed_.each([&](Index first, Index last) {
     const Index row = first / grid_.n2;
+    const Index column = first - row * grid_.n2;
+    add_to_blocks(Row(in + first, last - first), sums + row / kSide * fine.n2 + column / kSide);
+  });
+  if (grid_.ranks.several())
+    grid_.ranks.gather(std::span(sums, static_cast<std::size_t>(fine.n1 * fine.n2)), fine.n1, of_rank);
+  double* const above = coarse.sums.data() + component * coarse.n1 * coarse.n2;
+  std::fill_n(above, coarse.n1 * coarse.n2, 0.0);
+  for (Index row = 0; row < fine.n1; ++row)
+    add_to_blocks(Row(sums + row * fine.n2, fine.n2), above + row / kSide * coarse.n2);
+}
+
+/// To sums of so many cells of a row, from one that begins a block, what reaches their blocks.
+void Extension::add_means(const Level& blocks, Index component, Index row, Index column, Index count,
+                          Line& sums) {
+  const double* const means =
+      blocks.means.data() + (component * blocks.n1 + row / kSide) * blocks.n2 + column / kSide;
+  const Index whole = count / kSide * kSide;
+  for (Index j = 0; j < whole; j += kSide) sums.segment<kSide>(j) += means[j / kSide];
+  if (whole < count) sums.segment(whole, count - whole) += means[whole / kSide];
+}
+
+/// What blocks give to those near by.
+void Extension::spread_blocks(Index component) {
+  const auto spread_row = [&](Level& level, const Level* above, Index row) {
+    const Index from = component * level.n1 * level.n2;
+    for (Index start = 0; start < level.n2; start += kChunk) {
+      const Index count = std::min(kChunk, level.n2 - start);
+      Line sums = near_sums(level.sums.data() + from, level.n1, level.n2, row, start, start + count);
+      if (above != nullptr) add_means(*above, component, row, start, count, sums);
+      level.means.segment(from + row * level.n2 + start, count) = kFar * sums.head(count);
+    }
+  };
+  for (Index row = 0; row < blocks_[1].n1; ++row) spread_row(blocks_[1], nullptr, row);
+  const Share own = own_rows(grid_);
+  const Index first_block = own.first / kSide;
+  in_parts(ThreadPool::available(), blocks_of(own.last) - first_block, [&](int, Index first, Index last) {
+    for (Index row = first; row < last; ++row) spread_row(blocks_[0], &blocks_[1], first_block + row);
+  });
+}
+
+/// take(first, count, sums) for cells of mixed_: the sums over what is near, of each component of a field,
+/// which is zero beyond the grid. Values beyond mixed_ are not read, or zero.
+template <std::size_t components, typename Take>
+void Extension::spread(const Field& in, const Take& take) {
+  for (std::size_t c = 0; c < components; ++c) {
+    fill_blocks(in.data() + static_cast<Index>(c) * grid_.cells(), static_cast<Index>(c));
+    spread_blocks(static_cast<Index>(c));
+  }
+  mixed_.each([&](Index first, Index last) {
+    const Index row = first / grid_.n2;
+    std::array<Line, components> sums;
     for (Index start = first; start < last; start += kChunk) {
-      spread_in(row, start - row * grid_.n2, std::min(start + kChunk, last) - row * grid_.n2);
+      const Index count = std::min(kChunk, last - start);
+      const Index column = start - row * grid_.n2;
+      for (std::size_t c = 0; c < components; ++c) {
+        const auto component = static_cast<Index>(c);
+        sums[c] =
+            near_sums(in.data() + component * grid_.cells(), grid_.n1, grid_.n2, row, column, column + count);
+        add_means(blocks_[0], component, row, column, count, sums[c]);
+      }
+      take(start, count, sums);
     }
   });
 }
 
-void Extension::prepare(Field& free) {
-  share_rows_beside(grid_, free, reach_);
-  find_mixed(free);
+/// Finds the coarsest blocks that something free reaches, and that something reaches which is not, or not
+/// wholly, free.
+template <typename IsFree>
+void Extension::find_mixed(const IsFree& is_free, bool free_is_whole) {
+  if (std::max(grid_.n1, grid_.n2) <= kAllMixed) return;
+  mixed_ = Sweep::whole(grid_);
+  const auto reached = [&](double free, double other) -> Eigen::ArrayXXd {
+    in_own_rows(grid_, grid_.cells(), [&](Index first, Index count) {
+      for (Index i = first; i < first + count; ++i) work_[i] = is_free(i) ? free : other;
+    });
+    fill_blocks(work_.data(), 0);
+    spread_blocks(0);
+    return Eigen::Map<const Eigen::ArrayXXd>(blocks_[1].means.data(), blocks_[1].n2, blocks_[1].n1);
+  };
+  const Eigen::ArrayXXd from = reached(1.0, 0.0);
+  const Eigen::ArrayXXd to = reached(free_is_whole ? 0.0 : 1.0, 1.0);
+  mixed_.assign(grid_.cells(), [&](Index cell) {
+    const Index row = cell / grid_.n2 / kCoarsest;
+    const Index column = cell % grid_.n2 / kCoarsest;
+    return from(column, row) > 0.0 && to(column, row) > 0.0;
+  });
+}
+
+/// free_part(cell): how much of a cell's vector is free. weights(cell, near): of the sums, near: that of free
+/// parts.
+template <typename FreePart, typename Weights>
+void Extension::prepare_with(const FreePart& free_part, const Weights& weights) {
+  const Index n = grid_.cells();
+  const auto entries = static_cast<std::size_t>(weights_.size() / n);
+  for (std::size_t entry = 0; entry < entries; ++entry) {
+    in_own_rows(grid_, n, [&](Index first, Index count) {
+      for (Index i = first; i < first + count; ++i) work_[i] = free_part(i)[entry];
+    });
+    share_rows_beside(grid_, work_, kReach);
+    spread<1>(work_, [&](Index first, Index count, const auto& sums) {
+      weights_.segment(static_cast<Index>(entry) * n + first, count) =
+          sums[0].head(count).unaryExpr(&to_tangent);
+    });
+  }
   clear(mixed_, work_);
-  spread(free, 0, [&](Index first, const auto& sums) {
-    const auto is_free = free.segment(first, sums.size());
-    weight_.segment(first, sums.size()) = (1.0 - is_free) / (sums + kFade);
+  mixed_.each([&](Index first, Index last) {
+    for (Index i = first; i < last; ++i) {
+      Matrix near{};
+      for (std::size_t entry = 0; entry < entries; ++entry)
+        near[entry] = weights_[static_cast<Index>(entry) * n + i];
+      near = weights(i, near);
+      for (std::size_t entry = 0; entry < entries; ++entry)
+        weights_[static_cast<Index>(entry) * n + i] = to_tangent(near[entry]);
+    }
+  });
+}
+
+void Extension::prepare(const Field& free) {
+  find_mixed([&](Index i) { return free[i] != 0.0; }, true);
+  prepare_with(
+      [&](Index i) {
+        return Matrix{free[i], 0.0, free[i]};
+      },
+      [&](Index i, const Matrix& near) {
+        const auto weight = [&](double sum) { return (1.0 - free[i]) / (sum + kFade); };
+        return Matrix{weight(near[0]), 0.0, weight(near[2])};
+      });
+}
+
+void Extension::prepare(const TangentSpace& space) {
+  if (space.components() == 1) return prepare(space.f1);
+  const auto is_free = [&](Index i) { return space.scale[i] > 0.0F; };  // in contact
+  if (!knows_contact_) find_mixed(is_free, false);
+  knows_contact_ = true;
+  prepare_with(
+      [&](Index i) {
+        if (!is_free(i)) return Matrix{};
+        if (!space.on_line(i)) return Matrix{1.0, 0.0, 1.0};
+        const double part = std::sqrt(static_cast<double>(space.scale[i]));
+        return Matrix{part * space.f1[i] * space.f1[i], part * space.f1[i] * space.f2[i],
+                      part * space.f2[i] * space.f2[i]};
+      },
+      [&](Index i, const Matrix& near) {
+        if (!is_free(i)) {
+          const double determinant = (near[0] + kFade) * (near[2] + kFade) - near[1] * near[1];
+          return Matrix{(near[2] + kFade) / determinant, -near[1] / determinant,
+                        (near[0] + kFade) / determinant};
+        }
+        if (!space.on_line(i)) return Matrix{};
+        const double f1 = space.f1[i];
+        const double f2 = space.f2[i];
+        const double cross = 2.0 * f1 * f2 * near[1];
+        const double across = 1.0 / (f2 * f2 * near[0] - cross + f1 * f1 * near[2] + kFade);
+        const double along = (1.0 - static_cast<double>(space.scale[i])) /
+                             (f1 * f1 * near[0] + cross + f2 * f2 * near[2] + kFade);
+        return Matrix{across * f2 * f2 + along * f1 * f1, (along - across) * f1 * f2,
+                      across * f1 * f1 + along * f2 * f2};
+      });
+}
+
+/// Multiplies the values of so many cells by their weights.
+template <std::size_t components>
+void Extension::multiply(Index first, Index count, std::array<Line, components>& values) const {
+  const auto weight = [&](Index entry) {
+    return weights_.segment(entry * grid_.cells() + first, count).cast<double>();
+  };
+  auto first_one = values[0].head(count);
+  if constexpr (components == 1) {
+    first_one *= weight(0);
+  } else {
+    auto second = values[1].head(count);
+    Line product;
+    product.head(count) = weight(0) * first_one + weight(1) * second;
+    second = weight(1) * first_one + weight(2) * second;
+    first_one = product.head(count);
+  }
+}
+
+template <std::size_t components>
+void Extension::extend_all(Field& y) {
+  spread<components>(y, [&](Index first, Index count, auto& sums) {
+    multiply(first, count, sums);
+    for (std::size_t c = 0; c < components; ++c)
+      work_.segment(static_cast<Index>(c) * grid_.cells() + first, count) = sums[c].head(count);
+  });
+  mixed_.each([&](Index first, Index last) {
+    for (Index start = first; start < y.size(); start += grid_.cells())
+      y.segment(start, last - first) += work_.segment(start, last - first);
+  });
+}
+
+template <std::size_t components>
+void Extension::collect_all(Field& y) {
+  mixed_.each([&](Index first, Index last) {
+    std::array<Line, components> values;
+    for (Index start = first; start < last; start += kChunk) {
+      const Index count = std::min(kChunk, last - start);
+      const auto at = [&](std::size_t c) { return static_cast<Index>(c) * grid_.cells() + start; };
+      for (std::size_t c = 0; c < components; ++c) values[c].head(count) = y.segment(at(c), count);
+      multiply(start, count, values);
+      for (std::size_t c = 0; c < components; ++c) work_.segment(at(c), count) = values[c].head(count);
+    }
+  });
+  share_rows_beside(grid_, work_, kReach);
+  spread<components>(work_, [&](Index first, Index count, const auto& sums) {
+    for (std::size_t c = 0; c < components; ++c)
+      y.segment(static_cast<Index>(c) * grid_.cells() + first, count) += sums[c].head(count);
   });
 }
 
 void Extension::extend(Field& y) {
-  share_rows_beside(grid_, y, reach_);
-  for (Index component = 0; component < y.size(); component += grid_.cells()) {
-    spread(y, component, [&](Index first, const auto& sums) {
-      work_.segment(first, sums.size()) = weight_.segment(first, sums.size()) * sums;
-    });
-    mixed_.each([&](Index first, Index last) {
-      y.segment(component + first, last - first) += work_.segment(first, last - first);
-    });
-  }
+  share_rows_beside(grid_, y, kReach);
+  y.size() == grid_.cells() ? extend_all<1>(y) : extend_all<2>(y);
 }
 
-void Extension::collect(Field& y) {
-  for (Index component = 0; component < y.size(); component += grid_.cells()) {
-    mixed_.each([&](Index first, Index last) {
-      work_.segment(first, last - first) =
-          weight_.segment(first, last - first) * y.segment(component + first, last - first);
-    });
-    share_rows_beside(grid_, work_, reach_);
-    spread(work_, 0,
-           [&](Index first, const auto& sums) { y.segment(component + first, sums.size()) += sums; });
-  }
-}
+void Extension::collect(Field& y) { y.size() == grid_.cells() ? collect_all<1>(y) : collect_all<2>(y); }
 
 void Extension::hand_on(const Sweep& cells, const Field& free, Eigen::ArrayXd& p, Field& stays,
                         Field& leaves) {

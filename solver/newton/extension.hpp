@@ -1,28 +1,37 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <array>
 
 #include "solver/grid/own_rows.hpp"
 #include "solver/grid/sweep.hpp"
 
 namespace slipstick::solver {
 
+struct TangentSpace;
+
 /// Continues a field smoothly from the cells that are free into those beside them, and its adjoint.
 ///
 /// With S the operator's inverse on the whole plane, the inverse on the free cells alone is the least of E^T
 /// S E over all E that leave a field as it is there. E = 0 elsewhere, as a projector has it, cuts residuals
-/// off at the edges of the free cells and answers them several times too strongly; a decaying mean of what is
-/// near by comes close.
+/// off at the edges of the free cells and answers them several times too strongly. On a half-plane the best
+/// E is a mean with weights that fall as the square of the distance. Here the mean is over a few neighbours,
+/// and over a few of blocks of cells, and of blocks of these.
+///
+/// A vector that slips is free along a line. Across it is continued into as beyond the contact, and along it
+/// by as much as its stiffness holds it fast.
 class Extension {
  public:
   using Field = Eigen::ArrayXd;
 
-  /// For fields of any number of components on a grid; each is continued by itself.
-  explicit Extension(const Grid& grid);
+  /// For fields of one or two components on a grid.
+  Extension(const Grid& grid, Index components);
 
-  /// free: 1 in the cells that are, 0 elsewhere. A field that is given here need be known in the grid's own
-  /// rows alone; the rows beside them are filled in.
-  void prepare(Field& free);
+  /// What is free, once its preconditioner is known. Fields that are given here need be known in the grid's
+  /// own rows alone; the rows beside them are filled in.
+  void prepare(const TangentSpace& space);
+  /// free: 1 in the cells that are, 0 elsewhere. Components are continued alike.
+  void prepare(const Field& free);
   /// y, zero where no cell is free: its continuation is added there. Allocates nothing.
   void extend(Field& y);
   /// The adjoint: to y in the free cells it adds what it has where extend() writes. Allocates nothing.
@@ -36,16 +45,42 @@ class Extension {
   void hand_on(const Sweep& cells, const Field& free, Eigen::ArrayXd& p, Field& stays, Field& leaves);
 
  private:
-  void find_mixed(const Field& free);
-  template <typename Take>
-  void spread(const Field& in, Index component, const Take& take) const;
+  static constexpr Index kReach = 2;
+  /// Cells of a row that are summed at once.
+  static constexpr Index kChunk = 256;
+  using Line = Eigen::Array<double, kChunk + 2 * kReach, 1>;
+  /// The blocks of a field's cells, each with the field's sum there, and what reaches it from blocks near by.
+  struct Level {
+    Index n1, n2;
+    Field sums, means;
+  };
+  /// A symmetric matrix of vectors; of scalars its first entry.
+  using Matrix = std::array<double, 3>;
+
+  template <typename IsFree>
+  void find_mixed(const IsFree& is_free, bool free_is_whole);
+  template <typename FreePart, typename Weights>
+  void prepare_with(const FreePart& free_part, const Weights& weights);
+  static Line near_sums(const double* in, Index n1, Index n2, Index row, Index first, Index last);
+  static void add_means(const Level& blocks, Index component, Index row, Index column, Index count,
+                        Line& sums);
+  void fill_blocks(const double* in, Index component);
+  void spread_blocks(Index component);
+  template <std::size_t components, typename Take>
+  void spread(const Field& in, const Take& take);
+  template <std::size_t components>
+  void multiply(Index first, Index count, std::array<Line, components>& values) const;
+  template <std::size_t components>
+  void extend_all(Field& y);
+  template <std::size_t components>
+  void collect_all(Field& y);
 
   Grid grid_;
-  Index reach_;   ///< cells, along each axis
-  Field weight_;  ///< of the sum near by; 0 in the free cells
-  Field work_;    ///< 0 but in mixed_
-  Sweep mixed_;   ///< over blocks of cells that have both kinds near them: elsewhere nothing is continued
-  Field zeros_;   ///< a row beyond the grid
+  std::array<Level, 2> blocks_;
+  Eigen::ArrayXf weights_;      ///< a matrix each cell, of the sums near by: entry by entry
+  Field work_;                  ///< 0 but in mixed_
+  Sweep mixed_;                 ///< over the blocks of cells that reach each other, and are not all free
+  bool knows_contact_ = false;  ///< of vectors, which stays
 };
 
 }  // namespace slipstick::solver

@@ -56,6 +56,7 @@ NewtonSummary NaturalMapNewton<Set>::run(ArrayXd& q, const Coefficients& multipl
   linear_.forget_tangents();
   state_.enter(q, multipliers);
   double best_gap = std::numeric_limits<double>::infinity();
+  double wanted = options.tolerance;
   int idle_steps = 0;
   bool settled = false;  // the last step has not lowered the energy by more than its rounding
   for (;; ++summary.iterations) {
@@ -66,7 +67,9 @@ NewtonSummary NaturalMapNewton<Set>::run(ArrayXd& q, const Coefficients& multipl
     summary.safeguards = safeguards_;
     if (options.progress) options.progress(applications(), summary.gap);
     if (std::isnan(summary.gap)) return fail(summary, "an elastic energy that is not a positive number");
-    if (summary.gap <= options.tolerance && summary.iterations >= options.least_iterations &&
+    if (summary.iterations == 0 && std::isfinite(summary.gap))
+      wanted = std::max(wanted, options.part_of_first_gap * summary.gap);
+    if (summary.gap <= wanted && summary.iterations >= options.least_iterations &&
         (!options.refine_multipliers || refine(q, options.tolerance, summary))) {
       summary.converged = true;
       return summary;

@@ -12,6 +12,7 @@ namespace slipstick::solver {
 
 struct NewtonOptions {
   double tolerance = 1e-8;       ///< on gap / (q.Kq/2); see is_certified()
+  double part_of_first_gap = 0;  ///< of the field that it begins with: as good as the tolerance
   long max_applications = 1000;  ///< of the operator
   /// Whether the multipliers are wanted to second order, at some applications more.
   bool refine_multipliers = true;

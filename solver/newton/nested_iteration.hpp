@@ -28,6 +28,11 @@ inline double coarse_tolerance(const Grid& grid) {
   return 1.0 / (mirrored * static_cast<double>(grid.cells()));
 }
 
+/// Nor need tractions be better than what is lost on the way to the next mesh, which is about the gap that a
+/// mesh begins with: solved further, a coarse answer spares that mesh no step. Pressures decide which cells
+/// are in contact at all.
+constexpr double kPartOfFirstGap = 0.01;
+
 /// What solve_nested() asks of a problem on one grid.
 template <class Problem>
 concept NestedProblem = requires(Problem problem, const Grid& grid, LinearOperator& op) {
@@ -56,6 +61,7 @@ NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Pro
     const Grid coarse = coarser(grid);
     NewtonOptions coarse_options = options;
     coarse_options.tolerance = std::max(options.tolerance, coarse_tolerance(coarse));
+    if (problem.parities().size() > 1) coarse_options.part_of_first_gap = kPartOfFirstGap;
     coarse_options.refine_multipliers = false;
     coarse_options.progress = nullptr;
     Problem on_coarse = problem.coarsened(coarse);

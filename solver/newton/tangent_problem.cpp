@@ -8,8 +8,8 @@ namespace slipstick::solver {
 namespace {
 
 /// Tangents are made anew where more than this part of the cells has changed its state, or multipliers have
-/// changed by more than this part of them.
-constexpr double kFewChanges = 1e-3;
+/// changed by more than this part of them. Older ones cost as many iterations; new ones as much as three.
+constexpr double kFewChanges = 0.1;
 constexpr double kNearMultipliers = 0.1;
 /// The residual falls by the first factor while states change, and by no more than the second once they
 /// stand: then by what the tolerance needs, as this part of what is wanted.
@@ -18,8 +18,7 @@ constexpr double kTightReduction = 1e-4;
 constexpr double kPartOfWanted = 0.3;
 /// States change all over a rough surface, pressures' and tractions': more is lost on a state that will not
 /// last.
-constexpr double kLooseReductionOfPressure = 0.2;
-constexpr double kLooseReductionOfSpots = 0.3;
+constexpr double kLooseReductionOfRagged = 0.2;
 /// Such a state can be trusted up to this factor times the root of the part of the free cells that have
 /// changed: the forcing term of the inexact Newton method.
 constexpr double kDistrust = 3.0;
@@ -38,20 +37,14 @@ TangentProblem<Set>::TangentProblem(const NewtonState<Set>& state, InverseSymbol
       d_(state.size()),
       space_(Set::kComponents, state.set().sweep()),
       extends_(kIsScalar || state.set().sweep().is_ragged()),
-      extension_(extends_ ? state.op().grid() : Grid{}) {
+      extension_(extends_ ? state.op().grid() : Grid{}, Set::kComponents) {
   for (CgTangent& tangent : tangents_) tangent.resize(state.size());
-  if (kIsScalar || !extends_) return;  // a pressure's free cells change with their states
-  ArrayXd in_contact(state.set().cells());
-  clear(state.set().sweep(), in_contact);
-  state.set().sweep().each(
-      [&](Index first, Index last) { in_contact.segment(first, last - first).setOnes(); });
-  extension_.prepare(in_contact);
 }
 
 template <AdmissibleSet Set>
 void TangentProblem<Set>::linearise(const NewtonState<Set>& state, Trial& scratch) {
   changed_ = state.set().linearise(state.y(), state.rho(), symbol_.diagonal(), space_);
-  if (kIsScalar) extension_.prepare(space_.f1);
+  if (extends_) extension_.prepare(space_);
   TangentPreconditioner map = preconditioner();
   const CgWorkspace fields = work(scratch);
   if (has_tangents_ && tangents_are_near(state)) {
@@ -83,8 +76,7 @@ LinearTarget TangentProblem<Set>::target(double wanted, long applications_left) 
   const double changed =
       static_cast<double>(changed_) / static_cast<double>(std::max<Index>(space_.free.count(), 1));
   const double reduction = std::max(kPartOfWanted * wanted, kDistrust * std::sqrt(changed));
-  const double loose = kIsScalar ? kLooseReductionOfPressure : kLooseReductionOfSpots;
-  return {std::clamp(reduction, kTightReduction, loose), iterations};
+  return {std::clamp(reduction, kTightReduction, kLooseReductionOfRagged), iterations};
 }
 
 /// The right-hand side -(s + stiffness q): the tangent space sees the turning part of q.

@@ -12,7 +12,7 @@
 #include "solver/grid/communicator.hpp"
 #include "solver/grid/own_rows.hpp"
 #include "solver/grid/sweep.hpp"
-#include "solver/newton/extension.hpp"
+#include "solver/newton/tangent_space.hpp"
 #include "solver/tests/fields.hpp"
 
 /// Started by mpirun on any number of ranks, which find the bits that each finds on its own; on one it is a
@@ -125,10 +125,17 @@ TEST(RanksExtension, HasTheBitsOfOneRank) {
   for (const Grid& cells : grids()) {
     expect_same_bits(
         [&](const Grid& grid) {
-          ArrayXd free = (random_field(grid.cells(), 3) > 0.0).cast<double>();
-          ArrayXd field = free * random_field(grid.cells(), 4);
-          Extension extension(grid);
-          extension.prepare(free);
+          ArrayXd contact = (random_field(grid.cells(), 3) > 0.0).cast<double>();
+          TangentSpace space(2, Sweep(grid, contact));
+          ArrayXd field = contact.replicate(2, 1) * random_field(2 * grid.cells(), 4);
+          for (Index i = 0; i < grid.cells(); ++i) {
+            if (contact[i] == 0.0) continue;
+            space.set(i, true);
+            if (field[i] > 0.0) space.set_line(i, 0.6, 0.8, field[i], 1.0);
+          }
+          space.project(0, grid.cells(), field);
+          Extension extension(grid, 2);
+          extension.prepare(space);
           extension.extend(field);
           extension.collect(field);
           share_rows(grid, field);

@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <utility>
+
+#include "solver/newton/tangent_space.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -12,7 +15,7 @@ using Eigen::ArrayXd;
 TEST(Extension, CollectsAsTheAdjointOfWhatItExtends) {
   const Grid grid{9, 14, 1.0, 1.0};
   ArrayXd free = (ArrayXd::Random(grid.cells()) > 0.2).cast<double>();
-  Extension extension(grid);
+  Extension extension(grid, 1);
   extension.prepare(free);
   const ArrayXd x = free * ArrayXd::Random(grid.cells());
   const ArrayXd y = ArrayXd::Random(grid.cells());
@@ -26,17 +29,19 @@ TEST(Extension, CollectsAsTheAdjointOfWhatItExtends) {
   EXPECT_NEAR((extended * y).sum(), (x * collected).sum(), 1e-12);
 }
 
-/// Components do not see each other: together they are what each is alone.
+/// Components do not see each other where nothing slips: together they are what each is alone.
 TEST(Extension, ContinuesEachComponentByItself) {
   const Grid grid{9, 14, 1.0, 1.0};
   ArrayXd free = (ArrayXd::Random(grid.cells()) > 0.2).cast<double>();
-  Extension extension(grid);
+  Extension extension(grid, 1);
   extension.prepare(free);
+  Extension of_vectors(grid, 2);
+  of_vectors.prepare(free);
   const ArrayXd fields[] = {free * ArrayXd::Random(grid.cells()), free * ArrayXd::Random(grid.cells())};
   for (const auto step : {&Extension::extend, &Extension::collect}) {
     ArrayXd together(2 * grid.cells());
     together << fields[0], fields[1];
-    (extension.*step)(together);
+    (of_vectors.*step)(together);
     for (const Index k : {0, 1}) {
       ArrayXd alone = fields[k];
       (extension.*step)(alone);
@@ -45,8 +50,55 @@ TEST(Extension, ContinuesEachComponentByItself) {
   }
 }
 
-/// A spot's continuation moves with it, bit by bit, also to where the grid ends, which is like cells that are
-/// not free.
+/// Vectors that slip: the same for what is free of them. Across their line they are continued as where
+/// nothing is free, along it as far as they are stiff.
+TEST(Extension, ContinuesWhatSlipHoldsFast) {
+  const Grid grid{9, 150, 1.0, 1.0};
+  const Index n = grid.cells();
+  ArrayXd contact = (ArrayXd::Random(n) > -0.5).cast<double>();
+  for (Index i = 0; i < n; ++i) {
+    if (i % grid.n2 > 40) contact[i] = 1.0;  // much of it far from the contact's edge
+  }
+  TangentSpace space(2, Sweep(grid, contact));
+  const ArrayXd slips = ArrayXd::Random(n);
+  for (Index i = 0; i < n; ++i) {
+    if (contact[i] == 0.0) continue;
+    space.set(i, true);
+    if (slips[i] > 0.0)
+      space.set_line(i, std::cos(slips[i]), std::sin(slips[i]), slips[i] < 0.5 ? 0.0 : 1.0, 1.0);
+  }
+  const auto free_part = [&](const ArrayXd& field) {
+    ArrayXd part = contact.replicate(2, 1) * field;
+    space.project(0, n, part);
+    return part;
+  };
+  Extension extension(grid, 2);
+  extension.prepare(space);
+  const ArrayXd x = free_part(ArrayXd::Random(2 * n));
+  const ArrayXd y = ArrayXd::Random(2 * n);
+  ArrayXd extended = x;
+  extension.extend(extended);
+  ArrayXd collected = y;
+  extension.collect(collected);
+  EXPECT_NEAR((extended * y).sum(), (x * free_part(collected)).sum(), 1e-12);
+  const ArrayXd added = extended - x;
+  for (Index i = 0; i < n; ++i) {
+    const double size = std::abs(added[i]) + std::abs(added[i + n]);
+    const double along = std::abs(added[i] * space.f1[i] + added[i + n] * space.f2[i]);
+    EXPECT_EQ(size == 0.0, contact[i] != 0.0 && !space.on_line(i)) << i;
+    if (!space.on_line(i)) continue;
+    constexpr double kRoundedToFloat = 2e-6;  // matrices, of sums of size ten
+    if (space.scale[i] == 1.0F) {
+      EXPECT_LE(along, kRoundedToFloat) << i;
+    }
+    if (space.scale[i] < 1.0F) {
+      EXPECT_GT(along, 0.0) << i;
+    }
+  }
+}
+
+/// A spot's continuation moves with it by whole blocks, bit by bit, also to where the grid ends, which is
+/// like cells that are not free.
 TEST(Extension, MovesWithTheContact) {
   const Grid grid{512, 520, 1.0, 1.0};
   constexpr Index kRows = 90;
@@ -62,7 +114,7 @@ TEST(Extension, MovesWithTheContact) {
     Eigen::ArrayXXd extended, collected;
   };
   const auto continued = [&](Index row, Index column) {
-    Extension extension(grid);
+    Extension extension(grid, 1);
     ArrayXd free = placed(spot, row, column);
     extension.prepare(free);
     ArrayXd extended = placed(spot * values, row, column);
@@ -76,9 +128,9 @@ TEST(Extension, MovesWithTheContact) {
     };
     return Continued{window(extended), window(collected)};
   };
-  const Continued here = continued(200, 200);
+  const Continued here = continued(192, 208);
   EXPECT_TRUE(((here.extended != 0.0) || (spot != 0.0)).all());  // holes are narrower than the reach
-  for (const auto& [row, column] : {std::pair<Index, Index>{203, 205}, {187, 211}, {0, 0}, {422, 460}}) {
+  for (const auto& [row, column] : {std::pair<Index, Index>{208, 192}, {176, 256}, {0, 0}, {416, 448}}) {
     const Continued there = continued(row, column);
     EXPECT_TRUE((there.extended == here.extended).all()) << row << ", " << column;
     EXPECT_TRUE((there.collected == here.collected).all()) << row << ", " << column;
@@ -93,7 +145,7 @@ TEST(Extension, HandsNegativePressuresOnToTheCellsThatStay) {
   const ArrayXd before = ArrayXd::Random(grid.cells()) + 0.5;
   const ArrayXd stays = free * (before > 0.0).cast<double>();
   ArrayXd x = stays * ArrayXd::Random(grid.cells());
-  Extension extension(grid);
+  Extension extension(grid, 1);
   ArrayXd mask(grid.cells());
   ArrayXd leaves(grid.cells());
   ArrayXd after = before;
@@ -113,7 +165,7 @@ TEST(Extension, LeavesPositivePressuresOfFreeCellsAlone) {
   ArrayXd after = before;
   ArrayXd mask(grid.cells());
   ArrayXd leaves(grid.cells());
-  Extension extension(grid);
+  Extension extension(grid, 1);
   extension.hand_on(Sweep(free), free, after, mask, leaves);
   EXPECT_TRUE((after == before).all());
 }
