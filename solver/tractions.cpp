@@ -89,6 +89,15 @@ void require_centred(const Scene& scene, const ArrayXd& pressure) {
           odd, allowed));
 }
 
+/// The limit under a moment alone from that under a unit of it.
+LimitLoad under_moment(LimitLoad unit, double moment) {
+  const auto [delta1, delta2, twist] = unit.sliding;
+  return {unit.factor / std::abs(moment),
+          unit.carried / std::abs(moment),
+          {delta1 / moment, delta2 / moment, twist / moment},
+          unit.centre};
+}
+
 void impose_turning(TangentialProblem& problem, const Model& model, const Step& step, double moment_limit,
                     const RigidMotion& before) {
   if (const auto twist = value_if<Twist>(step.torsion)) {
@@ -135,7 +144,8 @@ TangentialProblem reduced(TangentialProblem& problem, const Reduction& part) {
                             .force = problem.force,
                             .displacement = problem.displacement,
                             .start = part.restricted(std::move(problem.start)),
-                            .energy_before = problem.energy_before / images};
+                            .energy_before = problem.energy_before / images,
+                            .limit_factor = problem.limit_factor};
   if (on_part.moment) *on_part.moment /= images;
   return on_part;
 }
@@ -190,11 +200,15 @@ LoadStep load_step(const Scene& scene, const Model& model, const Step& step, con
   problem.start = before.traction;
   problem.energy_before = energy_before(pressure, before);
   const bool translations = has_translations(scene, model, pressure);
-  loads.moment_limit = translations ? free_moment_limit(model.grid, problem.friction_bound)
-                                    : moment_limit(model.grid, problem.friction_bound);
+  const LimitLoad unit =
+      translations ? find_limit(model.grid, problem.friction_bound, {0.0, 0.0, 1.0}) : LimitLoad{};
+  loads.moment_limit = translations ? unit.factor : moment_limit(model.grid, problem.friction_bound);
   impose_turning(problem, model, step, loads.moment_limit, before.motion);
   if (translations) impose_translation(problem, model, step, before.motion);
-  loads.limit = limit_of(problem, model.grid);
+  const double moment = problem.moment.value_or(0.0);
+  const bool turned = translations && moment != 0.0 && problem.force == std::array<double, 2>{};
+  loads.limit = turned ? under_moment(unit, moment) : limit_of(problem, model.grid);
+  problem.limit_factor = loads.limit.factor;
   return loads;
 }
 

@@ -110,8 +110,9 @@ class TangentialOnGrid {
         .force = problem_.force,
         .displacement = problem_.displacement,
         .start = restrict_to(coarse, grid_, problem_.start),
-        .energy_before = problem_.energy_before * grid_.cell_area() / coarse.cell_area()};
-    const double scaled = limit_of(problem, coarse).factor / limit_of(problem_, grid_).factor;
+        .energy_before = problem_.energy_before * grid_.cell_area() / coarse.cell_area(),
+        .limit_factor = problem_.limit_factor ? *problem_.limit_factor : limit_of(problem_, grid_).factor};
+    const double scaled = limit_of(problem, coarse).factor / *problem.limit_factor;
     const double scale = std::isfinite(scaled) ? scaled : 1.0;  // no load: nothing to scale
     if (problem.moment) *problem.moment *= scale;
     if (problem.force) *problem.force = {scale * (*problem.force)[0], scale * (*problem.force)[1]};

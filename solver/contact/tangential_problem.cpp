@@ -54,12 +54,12 @@ void require_valid(const TangentialProblem& problem, const Grid& grid) {
   if (problem.moment && !std::isfinite(*problem.moment)) {
     throw std::invalid_argument("moment: gross slip; allowed: finite");
   }
-  const LimitLoad limit = limit_of(problem, grid);
-  if (!(limit.factor > 1.0)) {
+  const double factor = problem.limit_factor ? *problem.limit_factor : limit_of(problem, grid).factor;
+  if (!(factor > 1.0)) {
     throw std::invalid_argument(fmt::format(
         "gross slip: the contact carries {} times these loads (over the cell area); allowed: less than it "
         "carries",
-        limit.factor));
+        factor));
   }
 }
 

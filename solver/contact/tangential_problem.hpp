@@ -27,6 +27,7 @@ struct TangentialProblem {
   Eigen::ArrayXd start = {};   ///< tractions of the state before, 2*cells; empty: none
   double energy_before = 0.0;  ///< see ConvexProgram; of the whole grid, over the cell area
   Eigen::ArrayXd guess = {};   ///< tractions near the answer, 2*cells; empty: found from coarser grids
+  std::optional<double> limit_factor = {};  ///< of the loads, see LimitLoad, where it is known
 };
 
 struct TangentialSolution {

@@ -18,9 +18,34 @@ struct Packet {
     std::memcpy(&packet, from, sizeof(packet));
     return packet;
   }
+  /// In double precision.
+  static Vector load(const float* from) {
+    using Floats [[gnu::vector_size(8)]] = float;
+    Floats packet;
+    std::memcpy(&packet, from, sizeof(packet));
+    return __builtin_convertvector(packet, Vector);
+  }
   /// Values that are a stride apart.
   static Vector gather(const double* from, Index stride) { return Vector{from[0], from[stride]}; }
   static void store(double* to, Vector packet) { std::memcpy(to, &packet, sizeof(packet)); }
+
+  /// work(i, Vector()) for each two of [first, last), and work(i, double()) for the last one of an odd count:
+  /// the second argument's type is that of the values from i on, which get() and put() take.
+  template <typename Work>
+  static void each(Index first, Index last, const Work& work) {
+    Index i = first;
+    for (; i + 1 < last; i += kSize) work(i, Vector{});
+    if (i < last) work(i, double{});
+  }
+  template <typename Value, typename Number>
+  static Value get(const Number* from) {
+    if constexpr (sizeof(Value) == sizeof(double))
+      return *from;
+    else
+      return load(from);
+  }
+  static void put(double* to, double value) { *to = value; }
+  static void put(double* to, Vector packet) { store(to, packet); }
 
   /// (a, b)
   static Vector alternating(double a, double b) { return Vector{a, b}; }

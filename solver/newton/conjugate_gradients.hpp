@@ -8,8 +8,10 @@
 #include <concepts>
 #include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 
+#include "solver/grid/packet.hpp"
 #include "solver/grid/sweep.hpp"
 #include "solver/newton/coefficients.hpp"
 
@@ -80,6 +82,20 @@ inline double dot(Index cells, Index first, Index last, const Eigen::ArrayXd& a,
   return sum;
 }
 
+/// The sum of n products of values in single and in double precision.
+inline double dot(const float* w, const double* r, Index n) {
+  Packet::Vector sum{};
+  double last = 0.0;
+  Packet::each(0, n, [&]<typename Value>(Index i, Value) {
+    const Value product = Packet::get<Value>(w + i) * Packet::get<Value>(r + i);
+    if constexpr (std::is_same_v<Value, double>)
+      last = product;
+    else
+      sum += product;
+  });
+  return sum[0] + sum[1] + last;
+}
+
 /// Fields that an iteration overwrites; not owned.
 struct CgWorkspace {
   Eigen::ArrayXd& d;
@@ -145,7 +161,8 @@ class CgConstraints {
         preconditioner.store(first, last, y, z, z);
         add_products(cells, first, last, z, sum);
         for_components(cells, z, first, last, [&](Index start, Index n) {
-          tangents_[k].segment(start, n) = z.segment(start, n).unaryExpr(&to_tangent);
+          tangents_[k].segment(start, n) =
+              z.segment(start, n).unaryExpr([](double value) { return to_tangent(value); });
         });
       });
       products.col(static_cast<Index>(k)) = first(with_z.conditions);
@@ -170,7 +187,7 @@ class CgConstraints {
         });
         preconditioner.project(first, last, z);
         for_components(all, z, first, last, [&](Index start, Index n) {
-          w.segment(start, n) = z.segment(start, n).unaryExpr(&to_tangent);
+          w.segment(start, n) = z.segment(start, n).unaryExpr([](double value) { return to_tangent(value); });
         });
       });
     }
@@ -191,7 +208,7 @@ class CgConstraints {
                                 CgProducts& sum) const {
     for (std::size_t k = 0; k < count_; ++k) {
       for_components(cells, r, first, last, [&](Index start, Index n) {
-        sum.tangents[k] += (tangents_[k].segment(start, n).cast<double>() * r.segment(start, n)).sum();
+        sum.tangents[k] += dot(tangents_[k].data() + start, r.data() + start, n);
       });
     }
   }
@@ -224,7 +241,10 @@ class CgConstraints {
     for (Index k = 0; k < count(); ++k) {
       const auto part = parts[k];
       for_components(cells, y, first, last, [&](Index start, Index n) {
-        y.segment(start, n) -= part * tangents_[at(k)].segment(start, n).cast<double>();
+        Packet::each(start, start + n, [&]<typename Value>(Index i, Value) {
+          const Value taken = part * Packet::get<Value>(tangents_[at(k)].data() + i);
+          Packet::put(y.data() + i, Packet::get<Value>(y.data() + i) - taken);
+        });
       });
     }
   }

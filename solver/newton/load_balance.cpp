@@ -104,12 +104,16 @@ bool LoadBalance<Set>::solve_one(const Eigen::ArrayXd& y, const Direction& w, do
   double low = -std::numeric_limits<double>::infinity();
   double high = std::numeric_limits<double>::infinity();
   double stride = 0.0;
+  double last = std::numeric_limits<double>::infinity();
   const Direction* const direction = &w;
   for (int i = 0; i < kBracketIterations; ++i) {
     const LoadsAlong<1> at =
         evaluate<1>(y, std::span<const Direction* const>(&direction, 1), Eigen::Vector<double, 1>(x));
     const double excess = at.load[0] - load_[0];
     if (std::abs(excess) <= kLoadRounding * known_to(at, 0)) return true;
+    // Where rounding allows no better: a bracket would be halved as often as its numbers have bits.
+    if (std::abs(excess) <= kPoorRounding * known_to(at, 0) && !(std::abs(excess) < 0.5 * last)) return true;
+    last = std::abs(excess);
     if (!std::isfinite(excess)) return false;
     (excess < 0.0 ? low : high) = x;
     const double slope = at.slope(0, 0);

@@ -9,6 +9,7 @@
 
 #include "solver/elasticity/inverse_symbol.hpp"
 #include "solver/elasticity/linear_operator.hpp"
+#include "solver/grid/packet.hpp"
 #include "solver/grid/sweep.hpp"
 #include "solver/newton/extension.hpp"
 
@@ -89,16 +90,29 @@ struct TangentSpace {
       v.segment(first, last - first) *= f1.segment(first, last - first);
       return;
     }
-    for (Index i = first; i < last; ++i) {
-      const auto [v1, v2] = projected(i, v[i], v[i + n]);
-      v[i] = v1;
-      v[i + n] = v2;
-    }
+    Packet::each(first, last, [&]<typename Value>(Index i, Value) {
+      put(v, i, projected(i, get<Value>(v, i), get<Value>(v, i + n)));
+    });
   }
-  /// (v1, v2) likewise, in one cell of vectors.
-  std::array<double, 2> projected(Index i, double v1, double v2) const {
-    const double along = f1[i] * v1 + f2[i] * v2;
-    return {on_line(i) ? along * f1[i] : v1, on_line(i) ? along * f2[i] : v2};
+  /// (v1, v2) likewise, in one cell of vectors or in two.
+  template <typename Value>
+  std::array<Value, 2> projected(Index i, Value v1, Value v2) const {
+    const auto along1 = get<Value>(f1, i);
+    const auto along2 = get<Value>(f2, i);
+    const Value along = along1 * v1 + along2 * v2;
+    const auto on_line = get<Value>(stiffness, i) > 0.0;
+    return {on_line ? along * along1 : v1, on_line ? along * along2 : v2};
+  }
+  /// Values of a field from i on, as many as the type has.
+  template <typename Value, typename Values>
+  static Value get(const Values& field, Index i) {
+    return Packet::get<Value>(field.data() + i);
+  }
+  /// A vector's components in v, from cell i on.
+  template <typename Value>
+  void put(Field& v, Index i, const std::array<Value, 2>& components) const {
+    Packet::put(v.data() + i, components[0]);
+    Packet::put(v.data() + i + f1.size(), components[1]);
   }
 
   /// z = scale * r, in some cells, of an r that may move
@@ -108,10 +122,10 @@ struct TangentSpace {
       z.segment(first, n) = r.segment(first, n);
       return;
     }
-    const auto scaling = scale.segment(first, n).cast<double>();
-    for (const Index start : {first, first + f1.size()}) {
-      z.segment(start, n) = scaling * r.segment(start, n);
-    }
+    Packet::each(first, last, [&]<typename Value>(Index i, Value) {
+      const auto scaling = get<Value>(scale, i);
+      put<Value>(z, i, {scaling * get<Value>(r, i), scaling * get<Value>(r, i + f1.size())});
+    });
   }
 
   /// y = projector * scale * z + shift * r, in some cells, of an r that may move; y may be z.
@@ -121,13 +135,12 @@ struct TangentSpace {
       for (Index i = first; i < last; ++i) y[i] = z[i];
       return;
     }
-    for (Index i = first; i < last; ++i) {
-      const double scaling = scale[i];
-      const double shifting = shift[i];
-      const auto [y1, y2] = projected(i, scaling * z[i], scaling * z[i + n]);
-      y[i] = y1 + shifting * r[i];
-      y[i + n] = y2 + shifting * r[i + n];
-    }
+    Packet::each(first, last, [&]<typename Value>(Index i, Value) {
+      const auto scaling = get<Value>(scale, i);
+      const auto shifting = get<Value>(shift, i);
+      const auto [y1, y2] = projected<Value>(i, scaling * get<Value>(z, i), scaling * get<Value>(z, i + n));
+      put<Value>(y, i, {y1 + shifting * get<Value>(r, i), y2 + shifting * get<Value>(r, i + n)});
+    });
   }
 
   Field f1, f2;  ///< unit vector of a cell on a line, zero else; of scalars f1 alone: 1 where they are free
@@ -153,12 +166,13 @@ struct TangentOperator {
   void store(Index first, Index last, const Field& x, Field& y) const {
     if (space.components() == 1) return;
     const Index n = space.f1.size();
-    for (Index i = first; i < last; ++i) {
-      const double stiffness = space.stiffness[i];
-      const auto [y1, y2] = space.projected(i, y[i] + stiffness * x[i], y[i + n] + stiffness * x[i + n]);
-      y[i] = y1;
-      y[i + n] = y2;
-    }
+    Packet::each(first, last, [&]<typename Value>(Index i, Value) {
+      const auto get = [](const auto& field, Index at) { return TangentSpace::get<Value>(field, at); };
+      const Value stiffness = get(space.stiffness, i);
+      space.put(y, i,
+                space.projected<Value>(i, get(y, i) + stiffness * get(x, i),
+                                       get(y, i + n) + stiffness * get(x, i + n)));
+    });
   }
 };
 
