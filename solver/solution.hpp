@@ -108,8 +108,8 @@ struct Solution {
   int turns = 1;  ///< between pressure and tractions, under full coupling
   Index contact_cells = 0;
   Index stick_cells = 0;
-  CountedArea contact_area;  ///< m^2
-  CountedArea stick_area;    ///< m^2
+  CountedArea contact_area;            ///< m^2
+  CountedArea stick_area;              ///< m^2
   double operator_applications = 0.0;  ///< tangential, of all grids in those of the finest one
   double pressure_applications = 0.0;  ///< likewise of the normal operator
   double bytes = 0.0;                  ///< predicted, of operators and workspaces: Memory::solver

@@ -77,8 +77,9 @@ Json exact_result(const solver::Scene& scene, const Oracle& oracle, double secon
   json["method"] = "exact";
   json["profile"] = oracle.profile->name();
   json["model"] = model_json(omissions(scene));
-  set_all_missing(json, {"operator", "cells", "cell_size", "contact_cells", "stick_cells", "contact_area", "stick_area"},
-                  "the exact solution needs no grid");
+  set_all_missing(
+      json, {"operator", "cells", "cell_size", "contact_cells", "stick_cells", "contact_area", "stick_area"},
+      "the exact solution needs no grid");
   const std::string unknown = "the exact solution does not say";
   set_number(json, "contact_radius", oracle.contact_radius, unknown);
   set_number(json, "stick_radius", oracle.stick_radius, unknown);
