@@ -148,7 +148,7 @@ wheel: ## a wheel for any Linux as new, with the libraries it needs, in build/wh
 
 deb: configure ## a Debian package in build/deb
 	$(call build,slipstick slipstick_c)
-	@cd $(BUILD) && { cpack -B deb > deb.log || { cat deb.log >&2; exit 1; }; } && ls "$$PWD"/deb/*.deb
+	@cd $(BUILD) && rm -f deb/*.deb && { cpack -B deb > deb.log || { cat deb.log >&2; exit 1; }; } && ls "$$PWD"/deb/*.deb
 
 install: configure ## install under PREFIX (default /usr/local)
 	$(call build,slipstick slipstick_c)
