@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "analytic/punch_superposition.hpp"
+#include "analytic/shear_bounds.hpp"
 
 namespace slipstick::analytic {
 
@@ -64,6 +65,11 @@ PressedContact press_rounded_punch(const TypedName&, const NormalLoad& load) {
   return {{.profile = rounded_punch_profile(pressed.flat_ratio)}, pressed.contact};
 }
 
+NamedProfile capped(const TypedName& name) { return {.profile = capped_hertz_profile(number(name))}; }
+NamedProfile power_of_pressure(const TypedName& name) {
+  return {.profile = power_of_hertz_profile(number(name))};
+}
+
 NamedProfile tabulated(const TypedName& name) {
   const auto table = std::make_shared<const TabulatedProfile>(read_tabulated_profile(name.argument));
   return {.profile = {table, table->profile.get()}, .table = table};
@@ -92,6 +98,9 @@ constexpr std::array kProfiles{
                "coefficient of r^N", "m^(1-N)", press_power},
     ProfileRow{"rounded_punch", "B", "flat out to B = b/a", rounded_punch,  //
                "flat radius, corner radius", "m", press_rounded_punch, true},
+    ProfileRow{"constant", "", "", closed_form<constant_bound_profile>, "", "", nullptr},
+    ProfileRow{"capped", "C", "mu p under a sphere, at most C times its peak", capped, "", "", nullptr},
+    ProfileRow{"pressure_power", "N", "k p^N under a sphere", power_of_pressure, "", "", nullptr},
     ProfileRow{"file", "P.csv", "columns radius, pressure; 16 points or more", tabulated, "", "", nullptr},
 };
 

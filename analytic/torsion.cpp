@@ -73,7 +73,7 @@ double solve(double value, double start, double high, Function f) {
   constexpr int kStraight = 20;  // later every other step halves: a bumpy table may send Newton to and fro
   if (value == 0) return 0;
   double low = 0;
-  double x = start < high ? start : high / 2;
+  double x = start > 0 && start < high ? start : high / 2;
   for (int i = 0; i < kMaxSteps; ++i) {
     const Sample sample = f(x);
     const double step = std::log(value / sample.value) / sample.power;
@@ -129,6 +129,13 @@ double twist_beyond_stick(double x, const Profile& profile) {
   return gsl::gauss_legendre([&](double y) { return profile.twist_slope(stick_beyond(y)); }, 0, x);
 }
 
+/// Whether the slip ring is too narrow for double precision. Where the bound is not zero at the edge, its
+/// width over a goes like the square of the load.
+bool is_too_narrow(double load, const Profile& profile) {
+  constexpr double kNarrowest = 1e-150;
+  return load > 0 && load < kNarrowest && std::isinf(profile.twist_slope({.ratio = 1, .complement = 0}));
+}
+
 /// Where there is slip, or no load.
 TorsionState state_under(MomentShare share, const Profile& profile) {
   constexpr double kNearLimit = 0.3;  // of what slip adds; 1 - c is there no small difference
@@ -148,7 +155,8 @@ TorsionState from_moment_ratio(double moment_ratio, const Profile& profile) {
     out_of_range("M/M_lim", moment_ratio, "0, or 2.3e-308 <= M/M_lim < 1");
   // Beyond full stick 1 - M/M_lim is exact, and the share of slip has more digits than full stick's rest.
   const double excess = profile.full_stick() > 0 ? profile.slip_share() - (1 - moment_ratio) : moment_ratio;
-  if (excess < 0) return fully_stuck(moment_ratio, 1 - moment_ratio, profile);
+  if (excess < 0 || is_too_narrow(excess, profile))
+    return fully_stuck(moment_ratio, 1 - moment_ratio, profile);
   TorsionState state = state_under({.excess = excess, .deficit = 1 - moment_ratio}, profile);
   state.moment_ratio = moment_ratio;
   return state;
@@ -182,7 +190,7 @@ TorsionState from_twist(double twist, const Profile& profile) {
     out_of_range("G a^2 phi/(mu W)", twist,
                  fmt::format("0 <= G a^2 phi/(mu W) <= {:.6g}, beyond which a_s/a underflows", largest));
   const double stuck = twist_at(profile.edge(), profile);
-  if (stuck > 0 && twist <= stuck) {
+  if ((stuck > 0 && twist <= stuck) || is_too_narrow(twist, profile)) {
     const double ratio = kBondedStiffness * twist / profile.moment_limit();
     TorsionState state = fully_stuck(ratio, 1 - ratio, profile);
     state.twist = twist;

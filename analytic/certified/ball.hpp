@@ -61,6 +61,7 @@ class Ball {
   friend Ball exp(const Ball& a) { return apply(arb_exp, a); }
   friend Ball cos(const Ball& a) { return apply(arb_cos, a); }
   friend Ball log(const Ball& a) { return apply(arb_log, a); }
+  friend Ball atan(const Ball& a) { return apply(arb_atan, a); }
   friend Ball log1p(const Ball& a) { return apply(arb_log1p, a); }
   friend Ball abs(const Ball& a) {
     Ball result;

@@ -12,7 +12,9 @@ Ball half() { return Ball(1).shifted(-1); }
 Ball elliptic_k(const Ball& s) { return pi() / (2 * agm(1, s)); }
 
 /// e: -s K'(s), from the derivative of the mean, or K - (n - 1) H.
-Ball fall_of_twist_integral(const Law& law, const Ball& s, const Ball& twist_integral) {
+Ball fall_of_twist_integral(const Law& law, const Stick& stick, const Ball& twist_integral) {
+  if (law.constant()) return 1 / stick.root();
+  const Ball& s = stick.ratio;
   if (!law.punch()) return elliptic_k(s) - law.share * twist_integral;
   const auto [mean, slope] = agm1_and_slope(s);
   return pi() * s * slope / (2 * mean * mean);
@@ -67,6 +69,8 @@ ComplexBall pressure_by_v(const Law& law, const ComplexBall& v, const ComplexBal
       if (analytic && inverse.touches_cut()) return ComplexBall::indeterminate();
       return v * log(inverse);
     }
+    case Kind::constant:
+      return v;
     case Kind::power:
       break;
   }
@@ -79,6 +83,7 @@ ComplexBall pressure_by_v(const Law& law, const ComplexBall& v, const ComplexBal
 Ball stick_traction(const Law& law, const Stick& stick, const Ball& r, const Ball& beyond) {
   const Ball& c = stick.ratio;
   const Ball inside = beyond * (c + r);
+  if (law.constant()) return 2 / pi() * atan(r * stick.root() / sqrt(inside));
   const Ball modulus2 = stick.complement * (1 + c);
   const Ball modulus = sqrt(modulus2);
   const auto integrand = [&](const ComplexBall& theta, bool analytic) {
@@ -94,6 +99,7 @@ Ball stick_traction(const Law& law, const Stick& stick, const Ball& r, const Bal
 }
 
 Ball slip_traction(const Law& law, const Rational& radius) {
+  if (law.constant()) return 1;
   if (radius == Rational(1) && !law.punch()) return 0;
   const Ball r = radius.ball();
   const Ball v = sqrt((Rational(1) - radius).ball() * (1 + r));
@@ -115,7 +121,7 @@ Residual residual(const Equation& equation, const Ball& logit) {
   const Stick stick(logit);
   const Ball& c = stick.ratio;
   const Ball h = twist_integral(law, stick);
-  const Ball e = fall_of_twist_integral(law, c, h);
+  const Ball e = fall_of_twist_integral(law, stick, h);
   const Ball given = equation.value.ball();
   if (equation.quantity == Quantity::twist) {
     const Ball onset = law.punch() ? pi() / 2 : Ball(0);
@@ -172,8 +178,12 @@ Law::Law(Kind pressure, const Rational& exponent)
     : kind(pressure),
       n(exponent.ball()),
       share(punch() ? 1 : n - 1),
-      weight(punch() ? 1 : n + 2),
-      load(punch() ? 2 * pi() : 2 * pi() / (n + 1)) {}
+      weight(punch()      ? 1
+             : constant() ? 3 * pi() / 4
+                          : n + 2),
+      load(punch()      ? 2 * pi()
+           : constant() ? pi()
+                        : 2 * pi() / (n + 1)) {}
 
 Ball Law::moment_limit() const { return pi() * pi() / (2 * weight * load); }
 
@@ -192,11 +202,17 @@ Ball Stick::beyond(const Rational& radius) const {
 
 Ball twist_integral(const Law& law, const Stick& stick) {
   if (law.punch()) return elliptic_k(stick.ratio);
+  if (law.constant()) return log((1 + stick.root()) / stick.ratio);
   return integral_of_k(1 - law.n, stick.ratio, 1, stick.depth());  // x = e^-u
 }
 
 Moment moment_at(const Law& law, const Stick& stick, const Ball& twist_integral) {
   const Ball& c = stick.ratio;
+  if (law.constant()) {
+    const Ball slip = atan(stick.root() / c) + c * stick.root();
+    const Ball stuck = atan(c / stick.root()) - c * stick.root();
+    return {.ratio = 2 * slip / pi(), .deficit = 2 * stuck / pi()};
+  }
   const Ball whole = pi() * pi() / 16;
   const Ball bonded = law.share * c * c * c * twist_integral / 3;
   if (c < half()) {  // of J's two parts the smaller is the one to integrate

@@ -18,10 +18,13 @@ namespace slipstick::analytic::certified {
 ///   K(c))
 /// they are  M/M_lim = (J + share c^3 H/3)/J(0),  twist = H/(2 W),
 /// and with  e = -c H' = K - (n - 1) H  (flat punch: -c K')  the slope is  -(M/M_lim)' = weight/3 c^2 e/J(0).
+/// A constant bound has elementary functions: with v = sqrt(1 - c^2), H = ln((1 + v)/c), e = 1/v and
+/// M/M_lim = (2/pi)(arccos c + c v).
 struct Law {
   Law(Kind kind, const Rational& exponent);
 
   bool punch() const { return kind == Kind::flat_punch; }
+  bool constant() const { return kind == Kind::constant; }
   /// M_lim/(mu W a)
   Ball moment_limit() const;
   /// M/M_lim at which slip begins: 0 but for a flat punch, which sticks everywhere up to here.
@@ -39,6 +42,9 @@ struct Stick {
   explicit Stick(const Rational& c);
   /// From y = ln((1 - c)/c).
   explicit Stick(const Ball& logit);
+
+  /// sqrt(1 - c^2)
+  Ball root() const { return sqrt(complement * (1 + ratio)); }
 
   /// -ln c
   Ball depth() const;

@@ -13,15 +13,16 @@ struct Number {
   std::string radius;
 };
 
-/// The pressure: of a sphere, a cone, a flat punch, or of a gap that grows like r^n.
-enum class Kind { hertz, cone, flat_punch, power };
+/// The friction: mu times the pressure of a sphere, a cone, a flat punch, or a gap that grows like r^n; or
+/// the same everywhere.
+enum class Kind { hertz, cone, flat_punch, power, constant };
 
 struct Profile {
   Kind kind;
   std::string exponent = {};  ///< n > 0 of a power law
 };
 
-/// hertz | cone | flat_punch | power:N. Throws std::domain_error for other names.
+/// hertz | cone | flat_punch | power:N | constant. Throws std::domain_error for other names.
 Profile profile_named(const std::string& name);
 
 /// The quantity that names a state.

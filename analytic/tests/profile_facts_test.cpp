@@ -13,6 +13,7 @@
 
 #include "analytic/gsl.hpp"
 #include "analytic/punch_superposition.hpp"
+#include "analytic/shear_bounds.hpp"
 #include "analytic/tabulated_pressure.hpp"
 #include "analytic/tests/values.hpp"
 
@@ -44,6 +45,10 @@ const std::vector<AnyProfile>& every_profile() {
     for (const double n : {0.01, 0.5, 1.5, 4.0, 30.0, 1000.0}) list.push_back({.profile = power_profile(n)});
     for (const double b : {0.0, 0.001, 0.5, 0.95, 1 - 1e-9})
       list.push_back({.profile = rounded_punch_profile(b)});
+    list.push_back({.profile = {&constant_bound_profile(), [](const Profile*) {}}});
+    for (const double cap : {0.05, 0.3, 0.9, 1.0}) list.push_back({.profile = capped_hertz_profile(cap)});
+    for (const double n : {0.1, 2.0 / 3, 1.0, 1.5, 3.0})
+      list.push_back({.profile = power_of_hertz_profile(n)});
     list.push_back(tabulated(
         "linear", [](double r) { return 1 - r; }, 20, false));
     list.push_back(tabulated(

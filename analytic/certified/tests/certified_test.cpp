@@ -16,7 +16,7 @@ using namespace known;
 TEST(Certified, HasTheTwistAndMomentOfItsPressure) {
   const Precision precision(200);
   for (const Profile& profile :
-       {kHertz, kCone, kFlatPunch, power("4"), power("1.5"), power("0.5"), power("8")})
+       {kHertz, kCone, kFlatPunch, kConstant, power("4"), power("1.5"), power("0.5"), power("8")})
     for (const std::string c : {"1e-3", "0.3", "0.49", "0.51", "0.9"}) {
       const Integrals known = from_pressure(profile, exact(c));
       const State found = at_stick_ratio(profile, c);
@@ -34,6 +34,7 @@ TEST(Certified, HasTheLimitMoments) {
   EXPECT_TRUE(overlap(limit(kHertz), 3 * pi() / 16));
   EXPECT_TRUE(overlap(limit(kCone), pi() / 6));
   EXPECT_TRUE(overlap(limit(kFlatPunch), pi() / 4));
+  EXPECT_TRUE(overlap(limit(kConstant), Ball(2) / 3));
   EXPECT_TRUE(overlap(limit(power("1.5")), pi() * 25 / 140));  // pi (n + 1)/(4 (n + 2))
 }
 
@@ -65,7 +66,7 @@ TEST(Certified, FollowsTheAsymptotesAtBothEnds) {
 /// what it was given.
 TEST(Certified, GoesRoundBetweenAllQuantities) {
   const Precision precision(kBits);
-  for (const Profile& profile : {kHertz, kCone, kFlatPunch, power("1.5")})
+  for (const Profile& profile : {kHertz, kCone, kFlatPunch, kConstant, power("1.5")})
     for (const std::string c : {"1e-12", "0.3", "0.8", "0.99999999"}) {
       const State start = at_stick_ratio(profile, c, {}, 60);
       for (const auto& [name, quantity] : kQuantities) {
@@ -150,6 +151,7 @@ TEST(CertifiedTraction, IsCoulombsBeyondTheFront) {
     EXPECT_TRUE(agree(q(kHertz), v)) << c;
     EXPECT_TRUE(agree(q(kCone), log(Ball(3)))) << c;  // arcosh(1/0.6)
     EXPECT_TRUE(agree(q(kFlatPunch), 1 / v)) << c;
+    EXPECT_TRUE(agree(q(kConstant), 1)) << c;
     EXPECT_TRUE(agree(q(power("4")), v * (v * v / 3 + r * r))) << c;
   }
   for (const Profile& profile : {kHertz, kCone, power("0.5")})
@@ -158,7 +160,7 @@ TEST(CertifiedTraction, IsCoulombsBeyondTheFront) {
 
 TEST(CertifiedTraction, IsContinuousAtTheFront) {
   const Precision precision(kBits);
-  for (const Profile& profile : {kHertz, kCone, kFlatPunch, power("1.5")}) {
+  for (const Profile& profile : {kHertz, kCone, kFlatPunch, kConstant, power("1.5")}) {
     const State found = at_stick_ratio(profile, "0.5", {"0.4999999999999999999999999999999999999999", "0.5"});
     // It falls off inside like the root of the distance, 1e-40.
     const Ball drop = enclosure(found.traction[1]) - enclosure(found.traction[0]);

@@ -23,6 +23,7 @@ constexpr slong kBits = 300;
 inline const Profile kHertz{Kind::hertz};
 inline const Profile kCone{Kind::cone};
 inline const Profile kFlatPunch{Kind::flat_punch};
+inline const Profile kConstant{Kind::constant};
 inline Profile power(const std::string& exponent) { return {Kind::power, exponent}; }
 
 /// The quantities that name a state, and all members of one.
@@ -89,7 +90,7 @@ inline ComplexBall fall(Kind kind, const ComplexBall& s, bool analytic) {
 
 inline Ball load(const Profile& profile) {
   if (profile.kind == Kind::hertz) return 2 * pi() / 3;
-  if (profile.kind == Kind::cone) return pi();
+  if (profile.kind == Kind::cone || profile.kind == Kind::constant) return pi();
   if (profile.kind == Kind::flat_punch) return 2 * pi();
   return 2 * pi() / (exact(profile.exponent) + 1);
 }
@@ -98,6 +99,7 @@ inline Ball load(const Profile& profile) {
 inline ComplexBall pressure_by_cosine(const Profile& profile, const ComplexBall& v, const ComplexBall& k,
                                       const ComplexBall& cosine) {
   if (profile.kind == Kind::flat_punch) return 1 / k;
+  if (profile.kind == Kind::constant) return cosine;
   if (profile.kind == Kind::hertz) return v * cosine;
   if (profile.kind == Kind::cone) return cosine * (log(1 + v) - log(1 - v)) / 2;
   return v * cosine * hypergeometric(1 - exact(profile.exponent) / 2, 1, Ball(3) / 2, v * v);

@@ -1,0 +1,173 @@
+// Frictions that do not follow the pressure, by their definition, closed cases, limits, and both ends of the
+// range of loads.
+
+#include <fmt/core.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <numbers>
+#include <stdexcept>
+#include <vector>
+
+#include "analytic/cycle.hpp"
+#include "analytic/gsl.hpp"
+#include "analytic/shear_bounds.hpp"
+#include "analytic/tests/values.hpp"
+#include "analytic/torsion.hpp"
+
+namespace slipstick::analytic {
+namespace {
+
+using std::numbers::pi;
+
+const std::vector<double> kStickRatios{1e-9, 1e-3, 0.1, 0.4, 0.6, 0.9, 0.999};
+
+double relative(double found, double expected) { return std::abs(found / expected - 1); }
+
+void expect_same(const Profile& found, const Profile& expected, double tolerance) {
+  EXPECT_LE(relative(found.load(), expected.load()), tolerance);
+  EXPECT_LE(relative(found.moment_limit(), expected.moment_limit()), tolerance);
+  for (const double c : kStickRatios) {
+    SCOPED_TRACE(fmt::format("{} for {}, c = {}", found.name(), expected.name(), c));
+    EXPECT_LE(relative(found.twist_integral(at(c)), expected.twist_integral(at(c))), tolerance);
+    EXPECT_LE(relative(found.twist_slope(at(c)), expected.twist_slope(at(c))), tolerance);
+    EXPECT_LE(relative(found.moment_share(at(c)).excess, expected.moment_share(at(c)).excess), tolerance);
+    EXPECT_LE(relative(found.moment_share(at(c)).deficit, expected.moment_share(at(c)).deficit), tolerance);
+    for (const double part : {1e-6, 0.5, 0.999}) {
+      const double r = c * part;
+      const double q = found.stick_traction(at(c), r, c - r);
+      EXPECT_LE(relative(q, expected.stick_traction(at(c), r, c - r)), tolerance) << part;
+    }
+  }
+}
+
+/// H(c) = integral_c^1 f(r)/sqrt(r^2 - c^2) dr, with r = sqrt(c^2 + x^2).
+double twist_by_definition(const Profile& profile, double c) {
+  const double end = std::sqrt((1 - c) * (1 + c));
+  return gsl::integral(
+      [&](double t) {
+        const double x = end * std::sin(t);
+        const double r = std::min(1.0, std::hypot(c, x));
+        return profile.pressure(r) * end * std::cos(t) / r;
+      },
+      0, pi / 2);
+}
+
+TEST(ShearBounds, HaveTheTwistOfTheirDefinition) {
+  for (const double c : {0.05, 0.5, 0.95}) {
+    for (const double cap : {0.4, 0.8}) {
+      const auto profile = capped_hertz_profile(cap);
+      EXPECT_LE(relative(profile->twist_integral(at(c)), twist_by_definition(*profile, c)), 1e-9) << cap;
+    }
+    for (const double n : {0.5, 2.0 / 3, 2.0}) {
+      const auto profile = power_of_hertz_profile(n);
+      EXPECT_LE(relative(profile->twist_integral(at(c)), twist_by_definition(*profile, c)), 1e-12) << n;
+    }
+    const Profile& constant = constant_bound_profile();
+    EXPECT_LE(relative(constant.twist_integral(at(c)), twist_by_definition(constant, c)), 1e-13);
+  }
+}
+
+TEST(ShearBounds, AreHertzsWithoutACapAndWithTheFirstPower) {
+  expect_same(*capped_hertz_profile(1), hertz_profile(), 20 * kEps);
+  expect_same(*power_of_hertz_profile(1), hertz_profile(), 20 * kEps);
+}
+
+/// A low cap leaves the contact's last part, sqrt(1 - r^2) < cap, alone: the tractions differ by O(cap^2).
+TEST(ShearBounds, AreConstantInTheLimits) {
+  for (const double c : {0.1, 0.5, 0.9}) {
+    const Profile& constant = constant_bound_profile();
+    for (const double cap : {1e-2, 1e-3}) {
+      const auto capped = capped_hertz_profile(cap);
+      EXPECT_LE(relative(capped->twist_integral(at(c)) / cap, constant.twist_integral(at(c))), 3 * cap * cap);
+      EXPECT_LE(relative(capped->load(), cap * pi * (1 - cap * cap / 3)), 20 * kEps);
+    }
+    for (const double n : {1e-3, 1e-5}) {
+      const auto power = power_of_hertz_profile(n);
+      EXPECT_LE(relative(power->moment_share(at(c)).excess, constant.moment_share(at(c)).excess), 2 * n);
+      EXPECT_LE(relative(power->load(), 2 * pi / (n + 2)), 20 * kEps);
+    }
+  }
+}
+
+/// f = 1 - r^2 is elementary: H = (1 - c^2/2) arcosh(1/c) - sqrt(1 - c^2)/2 and -c H' = sqrt(1 - c^2) + c^2
+/// arcosh(1/c).
+TEST(ShearBounds, HaveTheClosedFormsOfTheSquare) {
+  const auto square = power_of_hertz_profile(2);
+  EXPECT_LE(relative(square->load(), pi / 2), 20 * kEps);
+  EXPECT_LE(relative(square->moment_limit(), 8.0 / 15), 20 * kEps);
+  for (const double c : {1e-9, 1e-3, 0.1, 0.4, 0.6}) {
+    const double arcosh = std::acosh(1 / c);
+    const double root = std::sqrt((1 - c) * (1 + c));
+    EXPECT_LE(relative(square->twist_integral(at(c)), (1 - c * c / 2) * arcosh - root / 2), 40 * kEps) << c;
+    EXPECT_LE(relative(square->twist_slope(at(c)), root + c * c * arcosh), 20 * kEps) << c;
+  }
+}
+
+TEST(ConstantBound, HasTheElementaryValuesOfHalfTheRadius) {
+  const TorsionState half = from_stick_ratio(0.5, constant_bound_profile());
+  EXPECT_LE(relative(half.moment_ratio, 2.0 / 3 + std::sqrt(3.0) / (2 * pi)), 4 * kEps);
+  EXPECT_LE(relative(half.twist, std::log(2 + std::sqrt(3.0)) / (2 * pi)), 4 * kEps);
+  EXPECT_LE(relative(traction(half, 0.25, constant_bound_profile()), 2 / pi * std::atan(0.25 / 0.5)),
+            8 * kEps);
+  EXPECT_EQ(traction(half, 0.75, constant_bound_profile()), 1);
+}
+
+/// Both ends: 1 - c ~ (pi m)^2/32 as m = M/M_lim falls, 1 - m ~ 4 c^3/(3 pi) as it rises; and full stick in
+/// between these and nothing, phi = M/(16/3 G a^3).
+TEST(ConstantBound, FollowsItsAsymptotes) {
+  const Profile& constant = constant_bound_profile();
+  for (const double m : {1e-4, 1e-8, 1e-60, 1e-140}) {
+    const TorsionState state = from_moment_ratio(m, constant);
+    EXPECT_LE(relative(state.stick_complement, pi * pi * m * m / 32), 2 * m + 8 * kEps) << m;
+    EXPECT_LE(relative(state.twist, 2.0 / 3 * m * 3 / 16), m * m + 8 * kEps) << m;
+    EXPECT_LE(relative(from_twist(state.twist, constant).moment_ratio, m), 16 * kEps) << m;
+  }
+  const TorsionState tiny = from_moment_ratio(1e-300, constant);
+  EXPECT_EQ(tiny.stick_ratio, 1);
+  EXPECT_LE(relative(tiny.twist, 1e-300 / 8), 8 * kEps);
+  EXPECT_LE(relative(from_twist(tiny.twist, constant).moment_ratio, 1e-300), 8 * kEps);
+  for (const double d : {1e-6, 1e-20, 1e-100}) {
+    const TorsionState state = from_moment_deficit(d, constant);
+    EXPECT_LE(relative(state.stick_ratio, std::cbrt(3 * pi * d / 4)), std::cbrt(d * d) + 8 * kEps) << d;
+  }
+}
+
+TEST(ShearBounds, GoForthAndBackByLoadDeficitAndTwist) {
+  std::vector<std::unique_ptr<const Profile>> profiles;
+  for (const double cap : {0.01, 0.5}) profiles.push_back(capped_hertz_profile(cap));
+  for (const double n : {0.2, 2.0 / 3, 2.5}) profiles.push_back(power_of_hertz_profile(n));
+  for (const auto& profile : profiles)
+    for (const double m : {1e-6, 0.1, 0.5, 0.9, 0.999}) {
+      const TorsionState state = from_moment_ratio(m, *profile);
+      SCOPED_TRACE(fmt::format("{}, m = {}", profile->name(), m));
+      EXPECT_LE(relative(from_twist(state.twist, *profile).moment_ratio, m), 1e-13);
+      EXPECT_LE(relative(from_moment_deficit(state.moment_deficit, *profile).twist, state.twist),
+                1e-13 + 4 * kEps / std::min(m, 1 - m));
+      EXPECT_LE(relative(from_stick_complement(state.stick_complement, *profile).moment_ratio, m), 1e-13);
+    }
+}
+
+/// Masing's rule: a full cycle loses 8 times the area below the first-loading curve less 4 M phi, here by
+/// quadrature of that curve.
+TEST(ConstantBound, LosesTheEnergyOfMasingsRule) {
+  const Profile& constant = constant_bound_profile();
+  LoadingHistory history(constant);
+  history.load_to(0.8);
+  const CycleState top = history.state();
+  history.load_to(-0.8);
+  history.load_to(0.8);
+  const CycleState again = history.state();
+  EXPECT_LE(relative(again.twist, top.twist), 1e-13);
+  const double area =
+      gsl::integral([&](double twist) { return from_twist(twist, constant).moment; }, 0, top.twist, 1e-12);
+  EXPECT_LE(relative(again.dissipated - top.dissipated, 8 * area - 4 * top.moment * top.twist), 1e-10);
+}
+
+TEST(ShearBounds, RefuseWhatIsOutOfRange) {
+  for (const double cap : {0.0, -1.0, 1.5, kNan}) EXPECT_THROW(capped_hertz_profile(cap), std::domain_error);
+  for (const double n : {0.0, -1.0, 3.5, kNan}) EXPECT_THROW(power_of_hertz_profile(n), std::domain_error);
+}
+
+}  // namespace
+}  // namespace slipstick::analytic
