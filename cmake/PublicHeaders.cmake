@@ -3,6 +3,7 @@
 set(SLIPSTICK_PUBLIC_HEADERS
   solver/scene/scene.hpp          # what to solve: validate(), read_scene()
   solver/scene/surface.hpp        # shapes of the indenter
+  solver/scene/friction_law.hpp   # what shear a pressure carries
   solver/solve.hpp                # Scene in, Solution out
   solver/cache/solve_cache.hpp    # what solves of one size share
   solver/solution.hpp             # fields and numbers, SI

@@ -164,7 +164,7 @@ void require_memory(const Scene& scene, const Grid& grid, double bytes) {
 
 /// A table's text is held as a whole while it is read.
 void require_memory_for_files(const Scene& scene) {
-  std::vector<std::filesystem::path> files{scene.pressure_file};
+  std::vector<std::filesystem::path> files{scene.pressure_file, scene.friction.map};
   for (const Surface& surface : scene.surfaces) files.push_back(surface.file);
   for (const std::filesystem::path& file : files) {
     std::error_code error;
@@ -184,9 +184,19 @@ bool reducible(const Scene& scene) {
 
 }  // namespace
 
-bool has_translations(const Scene& scene, const Model& model, const Eigen::ArrayXd& pressure) {
+namespace {
+
+/// A field with the symmetries of the friction bound: the pressure, unless a map has others.
+ArrayXd carrying(const Model& model, const ArrayXd& pressure) {
+  return model.friction.factors ? model.friction.bound(pressure) : pressure;
+}
+
+}  // namespace
+
+bool has_translations(const Scene& scene, const Model& model, const ArrayXd& pressure) {
   if (scene.method != Method::coulomb) return false;
-  return scene.model == ModelChoice::full || model.forces || !is_half_turn_symmetric(model.grid, pressure);
+  return scene.model == ModelChoice::full || model.forces ||
+         !is_half_turn_symmetric(model.grid, carrying(model, pressure));
 }
 
 Reduction traction_part(const Scene& scene, const Model& model, const Eigen::ArrayXd& pressure,
@@ -194,7 +204,8 @@ Reduction traction_part(const Scene& scene, const Model& model, const Eigen::Arr
   if (!reducible(scene)) return Reduction(model.grid);
   const ArrayXd occupied = before.size() > 0 ? ArrayXd(pressure.max(before)) : pressure;
   const bool mirrored = !model.pressure_coupling && !model.forces;
-  return mirrored ? Reduction(model.grid, pressure, occupied) : Reduction(model.grid, occupied);
+  return mirrored ? Reduction(model.grid, carrying(model, pressure), occupied)
+                  : Reduction(model.grid, occupied);
 }
 
 void note_omissions(Model& model, const Scene& scene, const Reduction& part, bool translations) {
@@ -316,7 +327,7 @@ Model build_model(const Scene& scene, const Ranks& ranks) {
                 .normal_compliance = to_dimensionless(pair.normal_compliance, compliance_unit),
                 .mismatch = to_dimensionless(pair.mismatch, compliance_unit)};
   model.law = make_law(scene, model);
-  model.friction = scene.friction;
+  model.friction = with_factors(scene.friction, grid).to_dimensionless(model.stress_unit);
   if (const auto load = largest_normal(scene)) {
     model.normal_load = to_dimensionless(*load, model.force_unit());
     if (!std::isnormal(*model.normal_load)) {

@@ -25,7 +25,7 @@ struct Dimensionless {
   Grid grid;
   ElasticPair pair;  ///< the bodies
   SharedLaw law;     ///< theirs, and that of what lies between them
-  double friction;
+  FrictionLaw friction;
   bool hertzian;           ///< the pressure is Hertz's, wherever the body stands, up to the mesh
   bool pressure_coupling;  ///< K13, K23 enter
 

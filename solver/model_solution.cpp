@@ -83,6 +83,7 @@ void describe_tractions(ModelSolution& solution, const LoadStep& loads, const Ar
   solution.moment = moment * moment_unit;
   solution.force = {force[0] * force_unit, force[1] * force_unit};
   solution.moment_limit = loads.moment_limit * moment_unit;
+  solution.friction_force = problem.friction_bound.sum() * force_unit;
   solution.limit = loads.limit;
   if (solution.limit.centre) {
     for (double& x : *solution.limit.centre) x *= model.length_unit;
@@ -143,7 +144,7 @@ void describe(ModelSolution& solution, const Scene& scene, const LoadStep& loads
 Solution in_si(ModelSolution solution) {
   const Model& model = solution.model;
   solution.grid = model.grid_in_m();
-  solution.friction = model.friction;
+  solution.friction = model.friction.to_dimensionless(1.0 / model.stress_unit);
   solution.threads = model.threads;
   solution.shear_modulus = model.stress_unit;
   const auto in_unit = [](ArrayXd& field, double unit) {

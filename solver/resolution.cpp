@@ -95,6 +95,11 @@ MeshErrors mesh_errors(PressureModel pressure) {
 }
 /// Where the pressure does not fall to zero at the edge, over the first power.
 constexpr double kSharpEdge = 0.22;
+/// Under another law than Coulomb's, whose sum over the cells no normal load fixes: where it does not fall to
+/// zero at the edge, as above, and where it has a kink, over the power 1.5. Set by limit moments of spheres
+/// under Tresca's, capped and power laws on 32 to 200 cells.
+constexpr double kSharpLaw = 0.45;
+constexpr double kKink = 0.35;
 /// Width of the slip area, in cells, from which on it adds no error of its own.
 constexpr double kWideSlip = 4.0;
 /// Width of the stick area, in cells, likewise.
@@ -124,8 +129,11 @@ Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, co
   const double small = std::clamp(1.0 - result.stick_width / kWideStick, 0.0, 1.0);
   result.step = (errors.smooth + small) * cell * cell + kSharpEdge * edge * cell +
                 narrow * (errors.staircase * cell * std::sqrt(cell) + errors.wider * cell);
+  const double of_law =
+      scene.friction.is_coulomb() ? 0.0 : (kSharpLaw * edge + kKink * std::sqrt(cell)) * cell;
+  result.step += of_law;
   const bool is_ratio = std::holds_alternative<MomentRatio>(step.torsion) && !brings_translation(step);
-  const double limit_error = is_ratio ? 0.0 : (0.6 * errors.smooth * cell + 0.15 * edge) * cell;
+  const double limit_error = is_ratio ? 0.0 : (0.6 * errors.smooth * cell + 0.15 * edge) * cell + of_law;
   const RigidMotion& sliding = loads.limit.sliding;
   const bool mesh_decides =
       sticking.cells == 0.0 && std::isfinite(loads.limit.factor) && sliding.twist != 0.0;

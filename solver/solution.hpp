@@ -73,7 +73,7 @@ struct Solution {
   Eigen::ArrayXd elastic_displacement;
   Eigen::ArrayXd slip;         ///< m, (s1, s2) in this step
   Eigen::ArrayXd stick;        ///< 1 where the bodies stick, else 0
-  double friction = 0.0;       ///< mu
+  FrictionLaw friction;        ///< in Pa
   double shear_modulus = 0.0;  ///< Pa, of the pair: 1/G = 1/G_1 + 1/G_2
   std::vector<Omission> left_out;
 
@@ -83,6 +83,7 @@ struct Solution {
   Resolution resolution;
 
   double normal_load = 0.0;    ///< W, N: what the pressure carries
+  double friction_force = 0.0;  ///< N, that slides the contact along a line: mu W under Coulomb's law
   double peak_pressure = 0.0;  ///< Pa
   /// m; of a Hertzian contact by the pressure's second moments, else of a circle with the contact cells'
   /// area.

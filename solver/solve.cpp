@@ -68,8 +68,8 @@ LoadStep solve_coupled(ModelSolution& solution, const Scene& scene, const Step& 
   const CoupledProblem problem{
       .gap = model.gap,
       .traction = state.traction.size() > 0 ? state.traction : ArrayXd::Zero(2 * model.grid.cells()),
-      .friction = model.friction,
       .tolerance = scene.tolerance,
+      .friction_bound = [&](const ArrayXd& pressure) { return model.friction.bound(pressure); },
       .solve_pressure =
           [&](const ArrayXd& opening, const TurnGoal& goal) {
             NormalSolution normal = find_pressure(scene, model, step, opening, goal, progress);

@@ -77,8 +77,8 @@ std::string sliding_text(const LimitLoad& limit, double length_unit) {
 /// leaves a force that nothing balances. Where all slips, the part of the pressure that is odd under half a
 /// turn bounds that force over mu times the load; it may be as large as what the tolerance leaves of the
 /// tractions anyway.
-void require_centred(const Scene& scene, const ArrayXd& pressure) {
-  const double odd = 0.5 * (pressure - pressure.reverse()).abs().sum() / pressure.sum();
+void require_centred(const Scene& scene, const ArrayXd& bound) {
+  const double odd = 0.5 * (bound - bound.reverse()).abs().sum() / bound.sum();
   const double allowed = std::max(scene.tolerance, kMirrorRounding);
   if (odd <= allowed) return;
   throw InputError(
@@ -87,6 +87,11 @@ void require_centred(const Scene& scene, const ArrayXd& pressure) {
           "coulomb, or a contact that half a turn about the origin brings onto itself: this method knows "
           "torsion about the origin alone, and {:.3g} of this pressure is odd (allowed: {:.3g})",
           odd, allowed));
+}
+
+[[noreturn]] void refuse_infinite(const Scene& scene) {
+  throw InputError(scene.source.string(), "contact.friction", fmt::format("{}", scene.friction.coefficient),
+                   "a law that is finite under the pressure of every cell");
 }
 
 /// The limit under a moment alone from that under a unit of it.
@@ -125,9 +130,9 @@ void impose_translation(TangentialProblem& problem, const Model& model, const St
 
 /// An energy goes with the square of the loads over the contact's size: what the bounds cannot hold any more
 /// says nothing of what they do hold.
-double energy_before(const ArrayXd& pressure, const ContactState& before) {
+double energy_before(const FrictionLaw& friction, const ArrayXd& pressure, const ContactState& before) {
   if (before.energy == 0.0) return 0.0;
-  const double load = pressure.sum() / before.pressure.sum();
+  const double load = friction.bound(pressure).sum() / friction.bound(before.pressure).sum();
   const double cells = static_cast<double>((pressure > 0.0).count());
   const double size = std::sqrt(cells / static_cast<double>((before.pressure > 0.0).count()));
   return before.energy * std::min(1.0, load * load / size);
@@ -195,10 +200,11 @@ LoadStep load_step(const Scene& scene, const Model& model, const Step& step, con
   if (scene.method != Method::coulomb) require_centred(scene, pressure);
   LoadStep loads{};
   TangentialProblem& problem = loads.problem;
-  problem.friction_bound = model.friction * pressure;
+  problem.friction_bound = model.friction.bound(pressure);
+  if (!problem.friction_bound.isFinite().all()) refuse_infinite(scene);
   problem.initial_displacement = pressure_displacement(scene, model, pressure, before);
   problem.start = before.traction;
-  problem.energy_before = energy_before(pressure, before);
+  problem.energy_before = energy_before(model.friction, pressure, before);
   const bool translations = has_translations(scene, model, pressure);
   const LimitLoad unit =
       translations ? find_limit(model.grid, problem.friction_bound, {0.0, 0.0, 1.0}) : LimitLoad{};
@@ -225,7 +231,7 @@ TangentialSolution find_tractions(Model& model, const Scene& scene, LoadStep& lo
   problem.guess = part.restricted(goal.guess);
   TangentialSolution solution = solve_on(scene, model, part, std::move(problem), progress, goal.gap);
   expand(solution, part);
-  loads.problem.friction_bound = model.friction * pressure;
+  loads.problem.friction_bound = model.friction.bound(pressure);
   return solution;
 }
 

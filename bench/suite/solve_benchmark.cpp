@@ -59,7 +59,7 @@ Prepared with_force(const Load& load) {
   constexpr double kAllowedLoadError = 1e-9;  // relative: rounding of sums over the contact
   Scene scene = load.scene();
   auto& step = scene.steps.front();
-  step.force = {0.3 * scene.friction * *step.normal, 0.0};
+  step.force = {0.3 * scene.friction.coefficient * *step.normal, 0.0};
   const solver::Solution solution = solver::solve(scene);
   const double load_error = std::max(solution.certificate.moment, solution.certificate.force);
   const bool holds = solution.certificate.gap <= scene.tolerance && load_error <= kAllowedLoadError;

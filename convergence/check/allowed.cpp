@@ -91,7 +91,7 @@ Allowed allowed_anyway(const Examination& e) {
   if (y.pressure) {
     allowed.pressure_cells =
         allowed_in_cells(c.grid, y.pressure->values.maxCoeff(), y.pressure->deviation, y.mesh.pressures,
-                         (kLargestDraw * y.noise_size + kOtherDraws * c.bound_rounding) / c.friction);
+                         (kLargestDraw * y.noise_size + kOtherDraws * c.bound_rounding) / c.mean_friction());
   }
   return allowed;
 }

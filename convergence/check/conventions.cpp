@@ -226,8 +226,8 @@ class LoadMismatch {
  public:
   LoadMismatch(const ForeignField& field, const solver::Scene& scene, const OracleAnswer& exact)
       : load_(scene.steps.front()),
-        friction_(scene.friction * field.pressure.sum()),
-        limit_(solver::free_moment_limit(field.grid, scene.friction * field.pressure)),
+        friction_(scene.friction.bound(field.pressure).sum()),
+        limit_(solver::free_moment_limit(field.grid, scene.friction.bound(field.pressure))),
         moment_(known_moment(scene, exact, limit_, field.grid.cell_area())),
         rotation_(rotation_about_origin(field.grid, field.centre)) {
     const double area = field.grid.cell_area();

@@ -1,5 +1,7 @@
 #include "convergence/check/deviation.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -98,33 +100,73 @@ std::vector<Index> slip_ring(const GivenContact& contact, const RightAnswer& rig
 
 namespace {
 
-/// |q|/(mu p) - 1 in the slip ring, in order; empty where hardly any cell slips.
-std::vector<double> ring_excess(const GivenContact& contact, const RightAnswer& right) {
+/// |q| over a bound, less 1, in the slip ring, in order; empty where hardly any cell slips.
+std::vector<double> ring_excess(const GivenContact& contact, const ArrayXd& bound, const RightAnswer& right) {
   const std::vector<Index> ring = slip_ring(contact, right);
   if (ring.size() < kMinSlipping) return {};
   const ArrayXd size = solver::norms(contact.traction);
   std::vector<double> excess;
-  for (const Index cell : ring) excess.push_back(size[cell] / contact.friction_bound[cell] - 1.0);
+  for (const Index cell : ring) excess.push_back(size[cell] / bound[cell] - 1.0);
   std::ranges::sort(excess);
   return excess;
 }
 
+/// The median of an ordered excess, and the spread between its quartiles.
+struct Plateau {
+  explicit Plateau(const std::vector<double>& excess)
+      : middle(excess[excess.size() / 2]),
+        spread(excess[excess.size() * 3 / 4] - excess[excess.size() / 4]) {}
+
+  double middle;
+  double spread;
+};
+
+/// Another law, whose bound under its unit coefficient or strength is given, where the ring follows it.
+std::optional<OtherFriction> other_law(const GivenContact& contact, const RightAnswer& right,
+                                       solver::FrictionKind kind) {
+  constexpr double kFollows = 0.02;  // spread between the quartiles, over |q| itself
+  solver::FrictionLaw law = 1.0;
+  law.kind = kind;
+  law.shear_strength = 1.0;
+  const ArrayXd unit = law.bound(contact.pressure);
+  const Plateau shown(ring_excess(contact, unit, right));
+  const double factor = 1.0 + shown.middle;
+  if (kind == contact.friction.kind || !(shown.spread <= kFollows * factor)) return std::nullopt;
+  const std::string name =
+      kind == solver::FrictionKind::tresca
+          ? fmt::format("Tresca's law, with a shear strength of {:.4g} Pa,", factor * contact.stress_unit)
+          : fmt::format("Coulomb's law, with a coefficient of {:.4g},", factor);
+  return OtherFriction{fmt::format("{} in place of friction_law = \"{}\"", name,
+                                   solver::to_string(contact.friction.kind)),
+                       factor * unit};
+}
+
 }  // namespace
 
-std::optional<double> plateau_of_friction(const GivenContact& contact, const RightAnswer& right) {
+std::optional<OtherFriction> friction_shown(const GivenContact& contact, const RightAnswer& right) {
   constexpr double kConstant = 0.2;  // spread between the quartiles, over the median excess
-  const std::vector<double> excess = ring_excess(contact, right);
+  const std::vector<double> excess = ring_excess(contact, contact.friction_bound, right);
   if (excess.empty()) return std::nullopt;
-  const double middle = excess[excess.size() / 2];
-  const double spread = excess[excess.size() * 3 / 4] - excess[excess.size() / 4];
-  if (!(spread <= kConstant * std::abs(middle))) return std::nullopt;
-  return (1.0 + middle) * contact.friction;
+  const Plateau shown(excess);
+  const solver::FrictionLaw& law = contact.friction;
+  if (shown.spread <= kConstant * std::abs(shown.middle)) {
+    const double factor = 1.0 + shown.middle;
+    return OtherFriction{law.is_coulomb()
+                             ? fmt::format("a friction coefficient of {:.4g} in place of {:.4g}",
+                                           factor * law.coefficient, law.coefficient)
+                             : fmt::format("a friction {:.4g} times that of the scene's law", factor),
+                         factor * contact.friction_bound};
+  }
+  for (const auto kind : {solver::FrictionKind::coulomb, solver::FrictionKind::tresca}) {
+    if (auto other = other_law(contact, right, kind)) return other;
+  }
+  return std::nullopt;
 }
 
 Deviation find_deviation(const GivenContact& contact, const RightAnswer& right, const State& reported,
                          const State& fitted) {
   const double moment = (right.traction * contact.rotation).sum();
-  const std::vector<double> excess = ring_excess(contact, right);
+  const std::vector<double> excess = ring_excess(contact, contact.friction_bound, right);
   return {.tractions =
               solver::norms(contact.traction - right.traction).sum() / solver::norms(right.traction).sum(),
           .motion = motion_error(contact, right, reported),

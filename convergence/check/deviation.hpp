@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "convergence/check/given_contact.hpp"
@@ -66,9 +67,16 @@ solver::SlipDirection noticeable_direction(const GivenContact& contact, const St
 /// The larger one of each pair of numbers, without sign.
 Deviation larger(const Deviation& a, const Deviation& b);
 
-/// The friction coefficient that the slip ring shows; none unless |q|/p is constant in half of the ring, up
-/// to a part of its distance from the scene's.
-std::optional<double> plateau_of_friction(const GivenContact& contact, const RightAnswer& right);
+/// Another friction than the scene's.
+struct OtherFriction {
+  std::string name;
+  Eigen::ArrayXd bound;  ///< cells
+};
+
+/// The friction that the slip ring shows: the scene's law times a factor, unless |q| over its bound varies in
+/// half of the ring by more than a part of its distance from 1; or else another law, Coulomb's or Tresca's,
+/// which half of the ring follows closely. None where it shows none.
+std::optional<OtherFriction> friction_shown(const GivenContact& contact, const RightAnswer& right);
 
 /// The cells that slip in the right answer and carry more than next to nothing.
 std::vector<solver::Index> slip_ring(const GivenContact& contact, const RightAnswer& right);

@@ -94,7 +94,6 @@ struct Assumption {
   double mirrored = 0.0;
   double exchanged = 0.0;
   double by_pressure = 1.0;  ///< of the displacement by pressure, K13 and K23
-  double friction = 1.0;     ///< of the friction coefficient
 };
 
 /// Evaluates assumptions on the chosen cells.
@@ -119,14 +118,21 @@ class Trial {
 
   bool coupled() const { return coupled_; }
 
-  Hypothesis of(const Assumption& assumption) const {
+  Hypothesis of(const Assumption& assumption) const { return of(assumption, bound_); }
+
+  /// The right kernel with another friction.
+  Hypothesis of(const OtherFriction& friction) const {
+    return of(Assumption{.name = friction.name}, at(cells_.points, friction.bound, friction.bound.size()));
+  }
+
+  Hypothesis of(const Assumption& assumption, const ArrayXd& bound) const {
     const ArrayXd elastic =
         elastic_ + pair_.poisson_compliance *
                        ((assumption.poisson - 1.0) * u_.poisson + (assumption.cross - 1.0) * u_.cross +
                         assumption.mirrored * u_.mirrored + assumption.exchanged * u_.exchanged);
     const solver::FittedMotion fitted =
         solver::fit_motion(elastic + assumption.by_pressure * by_pressure_ - imposed_, traction_,
-                           at_least(assumption.friction * bound_), motions_);
+                           at_least(bound), motions_);
     const double energy = 0.5 * (traction_ * elastic).sum();
     return {assumption.name, fitted.gap.sum() / energy, (fitted.gap * stick_).sum() / energy,
             fitted.coefficients[fitted.coefficients.size() - 1]};
@@ -198,18 +204,16 @@ ArrayXd stick_cells(const GivenContact& contact) {
 }
 
 Diagnosis diagnose(const GivenContact& contact, const solver::Step& load, double allowed,
-                   std::optional<double> friction) {
+                   const std::optional<OtherFriction>& friction) {
   const Trial trial(contact, load);
-  const Hypothesis right = trial.of({.name = "as it should be"});
+  const Hypothesis right = trial.of(Assumption{.name = "as it should be"});
   std::vector<Hypothesis> tried = try_kernels(trial);
   const Hypothesis& best = *std::ranges::min_element(tried, {}, &Hypothesis::stick_gap);
   std::optional<Hypothesis> kernel;
   if (right.stick_gap > kNoStickGap && best.stick_gap <= kExplains * right.stick_gap) kernel = best;
   std::optional<Hypothesis> with_friction;
   if (friction) {
-    const std::string name =
-        fmt::format("a friction coefficient of {:.4g} in place of {:.4g}", *friction, contact.friction);
-    with_friction = trial.of({.name = name, .friction = *friction / contact.friction});
+    with_friction = trial.of(*friction);
     tried.push_back(*with_friction);
   }
   const Hypothesis& explained = kernel ? *kernel : right;
@@ -229,10 +233,9 @@ bool directions_explain(const GivenContact& c, const RightAnswer& answer, double
   return solver::norms(tractions - right).sum() <= allowed * size.sum();
 }
 
-bool keeps_shown_friction(const GivenContact& c, const RightAnswer& right, double allowed) {
+bool keeps_friction(const GivenContact& c, const OtherFriction& friction, double allowed) {
   const ArrayXd size = solver::norms(c.traction);
-  const double friction = plateau_of_friction(c, right).value_or(0.0);
-  return (size - friction * c.pressure).max(0.0).sum() <= allowed * size.sum();
+  return (size - friction.bound).max(0.0).sum() <= allowed * size.sum();
 }
 
 }  // namespace slipstick::convergence

@@ -22,17 +22,17 @@ struct Diagnosis {
   Hypothesis reference_kernel;         ///< with the right kernel and friction
   std::vector<Hypothesis> tried;       ///< mistakes that solvers make
   std::optional<Hypothesis> kernel;    ///< the one of them that explains the stick area
-  std::optional<Hypothesis> friction;  ///< the friction coefficient that was used
+  std::optional<Hypothesis> friction;  ///< the friction that was used
   /// With that kernel, or else the right one, only slipping cells break the law.
   bool stick_area_explained;
 };
 
 /// Tries wrong kernels on a contact that breaks Coulomb's law (K12 mirrored as an even function, missing, of
 /// the wrong sign; K11 and K22 exchanged; another Poisson's ratio, or zero; K13 and K23 missing or of the
-/// wrong sign), and the friction coefficient that its slip ring shows, if it is given. allowed: the gap over
+/// wrong sign), and the friction that its slip ring shows, if it is given. allowed: the gap over
 /// energy that its mesh explains. Displacements are summed directly, in large contacts at some of the cells.
 Diagnosis diagnose(const GivenContact& contact, const solver::Step& load, double allowed,
-                   std::optional<double> friction = {});
+                   const std::optional<OtherFriction>& friction = {});
 
 /// 1 in cells that stick, where |q| is below mu p by more than the file's rounding and a solver's tolerance.
 Eigen::ArrayXd stick_cells(const GivenContact& contact);
@@ -41,7 +41,7 @@ Eigen::ArrayXd stick_cells(const GivenContact& contact);
 /// directions.
 bool directions_explain(const GivenContact& contact, const RightAnswer& answer, double allowed);
 
-/// Whether at most a part of the tractions exceeds the friction that the slip ring shows.
-bool keeps_shown_friction(const GivenContact& contact, const RightAnswer& right, double allowed);
+/// Whether at most a part of the tractions exceeds a friction.
+bool keeps_friction(const GivenContact& contact, const OtherFriction& friction, double allowed);
 
 }  // namespace slipstick::convergence

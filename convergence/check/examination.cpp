@@ -26,8 +26,8 @@ void require_judgeable(const solver::Scene& scene) {
                      fmt::format("{} steps", scene.steps.size() * static_cast<std::size_t>(scene.cycles)),
                      "a scene of one load: a field does not say what happened in the steps before");
   }
-  if (!(scene.friction > 0.0)) {
-    throw InputError(file, "contact.friction", fmt::format("{}", scene.friction),
+  if (scene.friction.is_frictionless()) {
+    throw InputError(file, "contact.friction", fmt::format("{}", scene.friction.coefficient),
                      "larger than zero: without friction there is no traction to judge");
   }
 }
@@ -48,6 +48,7 @@ OracleAnswer exact_normal_contact(solver::Scene scene) {
   load.force = {};
   load.displacement.reset();
   scene.coupling = solver::Coupling::none;
+  scene.friction = 1.0;
   return find_oracle(scene);
 }
 

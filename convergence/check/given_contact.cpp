@@ -20,8 +20,15 @@ using solver::Grid;
 using solver::Index;
 
 solver::Dimensionless on_grid(solver::Dimensionless bodies, const Grid& grid) {
+  bodies.friction = resampled(bodies.friction, bodies.grid, grid);
   bodies.grid = grid;
   return bodies;
+}
+
+/// How far the bound may be off by the rounding of pressures.
+ArrayXd bound_rounding(const solver::FrictionLaw& law, const ArrayXd& pressure, const ArrayXd& rounding) {
+  if (law.is_coulomb()) return law.coefficient * rounding;
+  return (pressure > 0.0).select(law.bound(ArrayXd(pressure + rounding)) - law.bound(pressure), 0.0);
 }
 
 }  // namespace
@@ -40,7 +47,7 @@ GivenContact::GivenContact(const solver::Dimensionless& bodies, int threads,
       elasticity{.law = law, .threads = threads},
       centre(middle),
       pressure(std::move(p)),
-      friction_bound(friction * pressure),
+      friction_bound(friction.bound(pressure)),
       traction(std::move(q)),
       bound_rounding(std::move(rounding_of_bound)),
       traction_rounding(std::move(rounding_of_q)),
@@ -77,15 +84,16 @@ GivenContact with_fields(const GivenContact& contact, const Grid& grid, ArrayXd 
 GivenContact make_given_contact(const ForeignField& field, const solver::Dimensionless& bodies, int threads) {
   const double length = field.grid.h1;
   const double stress = bodies.stress_unit;
-  solver::Dimensionless here =
-      on_grid(bodies, {field.grid.n1, field.grid.n2, 1.0, solver::to_dimensionless(field.grid.h2, length)});
+  solver::Dimensionless here = bodies;
+  here.friction = resampled(bodies.friction, bodies.grid_in_m(), field.grid, field.centre);
+  here.grid = {field.grid.n1, field.grid.n2, 1.0, solver::to_dimensionless(field.grid.h2, length)};
   here.length_unit = length;
   return {here,
           threads,
           {field.centre[0] / length, field.centre[1] / length},
           field.pressure / stress,
           field.traction / stress,
-          bodies.friction * field.pressure_rounding / stress,
+          bound_rounding(here.friction, field.pressure / stress, field.pressure_rounding / stress),
           field.traction_rounding / stress};
 }
 

@@ -26,7 +26,7 @@ struct GivenContact : solver::Dimensionless {
   solver::Elasticity elasticity;        ///< how its displacements are computed
   std::array<double, 2> centre;         ///< of the grid in the scene's coordinates
   Eigen::ArrayXd pressure;              ///< cells
-  Eigen::ArrayXd friction_bound;        ///< cells: mu p
+  Eigen::ArrayXd friction_bound;        ///< cells: mu p, or what another law makes of p
   Eigen::ArrayXd traction;              ///< 2*cells
   Eigen::ArrayXd bound_rounding;        ///< cells: error of mu p that the file's digits allow
   Eigen::ArrayXd traction_rounding;     ///< cells: likewise of |q|
@@ -37,6 +37,10 @@ struct GivenContact : solver::Dimensionless {
   /// Moment about the scene's origin and force, over the cell area.
   double moment() const { return (traction * rotation).sum(); }
   std::array<double, 2> force() const;
+  /// Friction over pressure in the mean: mu under Coulomb's law.
+  double mean_friction() const {
+    return friction.is_coulomb() ? friction.coefficient : friction_bound.sum() / pressure.sum();
+  }
   double energy() const { return 0.5 * (traction * elastic_displacement).sum(); }
 
   /// N and N m of a load over the cell area.

@@ -83,7 +83,7 @@ solver::TangentialSolution solve_finer(const GivenContact& contact, const solver
                                        const Grid& fine, const ArrayXd& pressure) {
   solver::TangentialProblem problem = own_problem(contact, load);
   const double own = solver::limit_of(problem, contact.grid).factor;
-  problem.friction_bound = contact.friction * pressure;
+  problem.friction_bound = resampled(contact.friction, contact.grid, fine).bound(pressure);
   problem.initial_displacement = pressure_displacement(contact, fine, pressure);
   scale_loads(problem, kChildrenOfCell);
   const double limit = solver::limit_of(problem, fine).factor;
@@ -168,7 +168,7 @@ class MeshMeasurement {
   void add_field(ArrayXd p, ArrayXd q, const Sums& meant, double twist) {
     const GivenContact field = with_fields(contact_, grid_, std::move(p), std::move(q));
     const LoadErrors loads =
-        load_errors(sums_of(grid_, field.pressure, field.traction), meant, contact_.friction);
+        load_errors(sums_of(grid_, field.pressure, field.traction), meant, contact_.mean_friction());
     errors_.loads = {.normal = std::max(errors_.loads.normal, loads.normal),
                      .moment = std::max(errors_.loads.moment, loads.moment),
                      .force = std::max(errors_.loads.force, loads.force)};
@@ -200,7 +200,7 @@ class MeshMeasurement {
   /// A pressure that no finer mesh knows has the errors of its tractions, which end where it does.
   void take_pressure_from_tractions() {
     errors_.deviation.pressure = errors_.deviation.tractions;
-    errors_.pressures = errors_.tractions / contact_.friction;
+    errors_.pressures = errors_.tractions / contact_.mean_friction();
   }
 
   const MeshErrors& errors() const { return errors_; }

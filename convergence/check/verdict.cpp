@@ -220,7 +220,8 @@ std::string twist_mistake(const Examination& e, double allowed) {
 
 /// Names only mistakes whose correction would leave a good field.
 std::vector<std::string> causes(const Examination& e, const std::vector<Judged>& judged,
-                                const std::optional<Diagnosis>& diagnosis, const Allowed& allowed) {
+                                const std::optional<Diagnosis>& diagnosis,
+                                const std::optional<OtherFriction>& shown, const Allowed& allowed) {
   std::vector<std::string> causes;
   constexpr double kSampled = 1e-3;   // relative error in L1 of exact values at cell centres, rounded
   constexpr double kCollapsed = 0.1;  // gap that a kernel leaves, over the gap that it explains
@@ -241,8 +242,7 @@ std::vector<std::string> causes(const Examination& e, const std::vector<Judged>&
   const double left = e.constant_cells ? allowed.discrete_gap : allowed.gap;
   const double gap = std::min(left, kCollapsed * diagnosis->reference_kernel.gap);
   if (const auto& friction = diagnosis->friction;
-      friction && friction->gap <= left &&
-      keeps_shown_friction(e.contact, e.reference.right, allowed.tractions)) {
+      friction && friction->gap <= left && keeps_friction(e.contact, *shown, allowed.tractions)) {
     causes.push_back(friction->name);
     return causes;
   }
@@ -313,15 +313,16 @@ Verdict reach_verdict(const Examination& e, std::optional<double> tolerance) {
   judged.insert(judged.end(), law.begin(), follows);
   judge_motion(judged, e, allowed, lawful);
   judged.insert(judged.end(), follows, law.end());
+  std::optional<OtherFriction> friction;
   std::optional<Diagnosis> diagnosis;
   if (!lawful || !holds(judged, "tractions") || !holds(judged, "twist") || !holds(judged, "motion")) {
-    std::optional<double> friction;
-    if (!holds(judged, "friction")) friction = plateau_of_friction(e.contact, e.reference.right);
+    if (!holds(judged, "friction") || !holds(judged, "friction_bound"))
+      friction = friction_shown(e.contact, e.reference.right);
     diagnosis = diagnose(e.contact, e.scene.steps.front(), allowed.gap, friction);
   }
   const Judged discrete = judge_discrete(e, allowed);
   return {judged, discrete, diagnosis, headline_of(e, judged, allowed),
-          details_of(judged, discrete, causes(e, judged, diagnosis, allowed))};
+          details_of(judged, discrete, causes(e, judged, diagnosis, friction, allowed))};
 }
 
 }  // namespace slipstick::convergence

@@ -104,6 +104,11 @@ const char* coupling_word(const solver::Scene& scene, const PosedScene& posed) {
 
 void write_exchange(const SolverProgram& program, const ExchangeFiles& files, const solver::Scene& scene,
                     const PosedScene& posed) {
+  if (!scene.friction.is_coulomb()) {
+    throw solver::InputError(scene.source.string(), "contact.friction_law",
+                             fmt::format("\"{}\"", to_string(scene.friction.kind)),
+                             "\"coulomb\" without a map, where another program solves: it is told a coefficient");
+  }
   const Grid& grid = posed.grid;
   std::vector<double> x1;
   std::vector<double> x2;
@@ -123,7 +128,7 @@ void write_exchange(const SolverProgram& program, const ExchangeFiles& files, co
             {"upper", body_json(scene.upper)},
             {"lower", body_json(scene.lower)},
             {"layer", nullptr},
-            {"friction", scene.friction},
+            {"friction", scene.friction.coefficient},
             {"coupling", coupling_word(scene, posed)},
             {"load", load_json(scene.steps.front())},
             {"tolerance", scene.tolerance},

@@ -19,6 +19,7 @@
 #include "analytic/spence.hpp"
 #include "analytic/tangential_history.hpp"
 #include "convergence/oracle/exact_shapes.hpp"
+#include "convergence/oracle/friction_bound.hpp"
 #include "solver/input/input_error.hpp"
 
 namespace slipstick::convergence {
@@ -58,7 +59,7 @@ constexpr double kUncertainty = 2e-14;
 /// Relative, of Spence's stick ratio: ten digits stand still as his integral equations are refined.
 constexpr double kSpenceUncertainty = 1e-10;
 
-/// The units of moments and twists, N m and rad.
+/// The units of moments and twists, N m and rad; mu W is the friction force.
 struct TorsionUnits {
   double moment;  ///< mu W a
   double twist;   ///< mu W/(G a^2)
@@ -74,7 +75,8 @@ class Indentation {
         friction_(scene.friction) {}
 
   const Moduli& pair() const { return pair_; }
-  double friction() const { return friction_; }
+  /// mu; theories that ask for it hold under Coulomb's law alone.
+  double friction() const { return friction_.coefficient; }
 
   /// The contact, without shear.
   Oracle pressed(double load) const {
@@ -86,8 +88,14 @@ class Indentation {
     oracle.reference_pressure = contact.reference_pressure;
     oracle.peak_pressure = contact.reference_pressure * peak_of(*named.profile);
     oracle.approach = contact.approach;
-    oracle.friction = friction_;
-    oracle.moment_limit = named.profile->moment_limit() * friction_ * load * contact.contact_radius;
+    // exact_history() has found that there is one.
+    const FrictionBound bound = find_friction_bound(friction_, named.profile, contact.reference_pressure).value();
+    const double a = contact.contact_radius;
+    oracle.bound = bound.profile;
+    oracle.reference_bound = bound.reference;
+    oracle.friction_force = friction_.is_coulomb() ? friction_.coefficient * load
+                                                   : bound.profile->load() * bound.reference * a * a;
+    oracle.moment_limit = bound.profile->moment_limit() * oracle.friction_force * a;
     oracle.stick_radius = contact.contact_radius;
     oracle.state.stick_ratio = 1.0;
     oracle.relative_uncertainty = kUncertainty;
@@ -108,7 +116,7 @@ class Indentation {
   std::string source_;
   solver::Surface surface_;
   Moduli pair_;
-  double friction_;
+  solver::FrictionLaw friction_;
 };
 
 /// Torsion under a constant normal load: first loading, then Masing's rule.
@@ -116,10 +124,10 @@ class TorsionHistory final : public ExactHistory {
  public:
   TorsionHistory(const Indentation& indentation, double normal_load)
       : contact_(indentation.pressed(normal_load)),
-        units_{.moment = contact_.friction * normal_load * contact_.contact_radius,
-               .twist = contact_.friction * normal_load /
+        units_{.moment = contact_.friction_force * contact_.contact_radius,
+               .twist = contact_.friction_force /
                         (indentation.pair().shear * contact_.contact_radius * contact_.contact_radius)},
-        history_(*contact_.profile) {}
+        history_(*contact_.bound) {}
 
  private:
   OracleAnswer follow(const solver::Step& step) override {
@@ -156,14 +164,14 @@ class TorsionHistory final : public ExactHistory {
     const auto twist = solver::value_if<solver::Twist>(load);
     const double sign = std::copysign(1.0, twist ? *twist : ratio_of(load));
     Oracle oracle = contact_;
-    oracle.state = twist ? analytic::from_twist(std::abs(*twist) / units_.twist, *contact_.profile)
-                         : analytic::from_moment_ratio(std::abs(ratio_of(load)), *contact_.profile);
+    oracle.state = twist ? analytic::from_twist(std::abs(*twist) / units_.twist, *contact_.bound)
+                         : analytic::from_moment_ratio(std::abs(ratio_of(load)), *contact_.bound);
     history_.load_to(sign * oracle.state.moment_ratio);
     dissipated_ = history_.state().dissipated;
     oracle.dissipated = dissipated_ * energy_unit();
-    oracle.shear = [scale = sign * oracle.friction * oracle.reference_pressure, state = oracle.state,
-                    profile = oracle.profile, a = oracle.contact_radius](double radius) {
-      return scale * analytic::traction(state, radius / a, *profile);
+    oracle.shear = [scale = sign * oracle.reference_bound, state = oracle.state, bound = oracle.bound,
+                    a = oracle.contact_radius](double radius) {
+      return scale * analytic::traction(state, radius / a, *bound);
     };
     for (double* const value : {&oracle.state.moment, &oracle.state.twist, &oracle.state.moment_ratio}) {
       *value *= sign;
@@ -185,8 +193,7 @@ class TorsionHistory final : public ExactHistory {
                     .tangent_stiffness = state.tangent_stiffness};
     oracle.dissipated = (state.dissipated - dissipated_) * energy_unit();
     dissipated_ = state.dissipated;
-    oracle.shear = [scale = oracle.friction * oracle.reference_pressure, history = history_,
-                    a = oracle.contact_radius](double radius) {
+    oracle.shear = [scale = oracle.reference_bound, history = history_, a = oracle.contact_radius](double radius) {
       return scale * history.traction(radius / a);
     };
     return in_units(oracle);
@@ -277,8 +284,8 @@ class FrictionalIndentation final : public ExactHistory {
   explicit FrictionalIndentation(const solver::Scene& scene)
       : indentation_(scene), full_(scene.coupling == solver::Coupling::full) {
     const double beta = 0.5 * indentation_.pair().effective * (mismatch(scene.lower) - mismatch(scene.upper));
-    stick_ratio_ = full_ ? analytic::spence_contact(scene.friction, beta).stick_ratio
-                         : analytic::goodman_stick_radius(scene.friction, beta).ratio;
+    stick_ratio_ = full_ ? analytic::spence_contact(scene.friction.coefficient, beta).stick_ratio
+                         : analytic::goodman_stick_radius(scene.friction.coefficient, beta).ratio;
   }
 
  private:
@@ -305,7 +312,7 @@ class FrictionalIndentation final : public ExactHistory {
 class PressedEllipse final : public ExactHistory {
  public:
   explicit PressedEllipse(const solver::Scene& scene)
-      : surface_(scene.surfaces.front()), pair_(moduli(scene)), friction_(scene.friction) {}
+      : surface_(scene.surfaces.front()), pair_(moduli(scene)), friction_(scene.friction.coefficient) {}
 
  private:
   OracleAnswer follow(const solver::Step& step) override {
@@ -343,8 +350,10 @@ class PressedEllipse final : public ExactHistory {
     oracle.reference_pressure = contact.peak_pressure;
     oracle.peak_pressure = contact.peak_pressure;
     oracle.approach = contact.approach;
-    oracle.moment_limit = friction_ * load * contact.friction_arm;
-    oracle.friction = friction_;
+    oracle.bound = oracle.profile;
+    oracle.reference_bound = friction_ * contact.peak_pressure;
+    oracle.friction_force = friction_ * load;
+    oracle.moment_limit = oracle.friction_force * contact.friction_arm;
     oracle.relative_uncertainty = kUncertainty;
     return oracle;
   }

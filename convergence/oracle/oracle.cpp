@@ -30,6 +30,15 @@ bool is_coupled(const solver::Scene& scene) {
   return scene.coupling != solver::Coupling::none && !are_alike(scene.upper, scene.lower);
 }
 
+/// Why no theory holds under a law of friction; empty if one may.
+std::string obstacle(const solver::FrictionLaw& law, const solver::Surface& surface) {
+  const bool any_shape = law.kind == solver::FrictionKind::coulomb || law.kind == solver::FrictionKind::tresca;
+  if ((any_shape && exact_shape(surface)) || law.is_coulomb() || surface.shape == solver::Shape::sphere)
+    return "";
+  return fmt::format("no exact solution is known here for shape = \"{}\" under friction_law = \"{}\"",
+                     to_string(surface.shape), to_string(law.kind));
+}
+
 /// Why no theory holds for a scene; empty if one may.
 std::string obstacle(const solver::Scene& scene) {
   std::string of_surface = obstacle(scene.surfaces);
@@ -39,8 +48,9 @@ std::string obstacle(const solver::Scene& scene) {
   }
   if (scene.pressure == solver::PressureModel::file) return "the pressure comes from a file";
   if (scene.ends_at_grid_edge) return "the body may end at the grid's edge (upper.ends_at_grid_edge)";
-  if (!(scene.friction > 0.0)) return "without friction there is no traction";
-  return "";
+  if (scene.friction.is_frictionless()) return "without friction there is no traction";
+  if (!scene.friction.map.empty()) return "the friction comes from a map (contact.friction_map)";
+  return obstacle(scene.friction, scene.surfaces.front());
 }
 
 bool without_torsion(const solver::Step& step) {
@@ -73,6 +83,8 @@ bool has_no_cross_contraction(const solver::Material& material) {
 }
 
 std::unique_ptr<ExactHistory> history_under_force(const solver::Scene& scene) {
+  if (!scene.friction.is_coulomb())
+    return no_theory("Cattaneo's and Mindlin's solution belongs to Coulomb's law");
   const std::optional<ExactShape> shape = exact_shape(scene.surfaces.front());
   const auto line = line_of_forces(scene.steps);
   if (std::any_of(scene.steps.begin(), scene.steps.end(), [](const auto& s) { return s.displacement; })) {
@@ -96,7 +108,7 @@ std::unique_ptr<ExactHistory> history_of_dissimilar(const solver::Scene& scene) 
       scene.cycles == 1 && std::is_sorted(steps.begin(), steps.end(),
                                           [](const auto& a, const auto& b) { return *a.normal < *b.normal; });
   const std::optional<ExactShape> shape = exact_shape(scene.surfaces.front());
-  if (!pressed_only || !growing || !shape || !shape->gap_exponent) {
+  if (!pressed_only || !growing || !shape || !shape->gap_exponent || !scene.friction.is_coulomb()) {
     return no_theory(
         "the pressure's tangential displacement of dissimilar materials enters (contact.coupling)");
   }

@@ -20,6 +20,10 @@ namespace slipstick::convergence {
 /// say is NaN.
 struct Oracle {
   std::shared_ptr<const analytic::Profile> profile;
+  /// What friction carries, over reference_bound; the pressure's own profile under Coulomb's law.
+  std::shared_ptr<const analytic::Profile> bound;
+  double reference_bound = 0.0;  ///< Pa: mu p0 under Coulomb's law
+  double friction_force = 0.0;   ///< N, that slides the contact along a line: mu W under Coulomb's law
   std::array<double, 2> centre;          ///< m, of the axis
   double axis_ratio = 1.0;               ///< of an elliptic contact: its semi-axis at `angle` over the other
   double angle = 0.0;                    ///< rad, from x1
@@ -34,7 +38,6 @@ struct Oracle {
   std::array<double, 2> displacement{};  ///< m
   double stick_radius;                   ///< m; the contact radius where everything sticks
   double dissipated;                     ///< J, in this step
-  double friction;
   analytic::TorsionState state;
   double relative_uncertainty;  ///< of these numbers: how far they may be from those that the theory gives
 

@@ -55,6 +55,20 @@ std::string load_text(const solver::Step& step) {
   return text;
 }
 
+/// The friction's law in words.
+void add_friction_rows(const solver::FrictionLaw& law, const auto& add) {
+  using solver::FrictionKind;
+  if (law.kind != FrictionKind::coulomb) add("Friction law", to_string(law.kind));
+  if (law.kind == FrictionKind::power) {
+    add("Friction", fmt::format("{:g} Pa^{:g} p^{:g}", law.coefficient, 1.0 - law.exponent, law.exponent));
+  } else if (law.kind != FrictionKind::tresca) {
+    add("Coefficient of friction", fmt::format("{:g}", law.coefficient));
+  }
+  if (law.kind == FrictionKind::tresca || law.kind == FrictionKind::capped)
+    add("Shear strength", fmt::format("{:g} Pa", law.shear_strength));
+  if (!law.map.empty()) add("Factors of the friction", law.map.filename().string());
+}
+
 Json summary(const Scene& scene, const solver::Grid& grid) {
   Json rows = Json::array();
   const auto add = [&](const std::string& words, const std::string& value) {
@@ -64,7 +78,7 @@ Json summary(const Scene& scene, const solver::Grid& grid) {
   add("Upper body", material_text(scene.upper));
   add("Lower body", material_text(scene.lower));
   if (scene.layer.kind != nullptr) add("Layer", scene.layer.kind->word);
-  add("Coefficient of friction", fmt::format("{:g}", scene.friction));
+  add_friction_rows(scene.friction, add);
   add("Pressure", solver::word_of(solver::kPressureModels, scene.pressure));
   if (scene.steps.size() == 1) {
     add("Loads", load_text(scene.steps.front()));

@@ -118,7 +118,7 @@ MeshError mesh_error(const Scene& scene, const std::vector<Json>& results, const
 /// Whether a load, or the motion that it causes, is zero but for rounding.
 bool is_rounding(const Json& result, const std::string& key) {
   if (size_at(result, "exact." + key) == 0.0) return true;
-  const double friction = number_at(result, "friction") * number_at(result, "normal_load");
+  const double friction = number_at(result, "friction_force");
   const bool no_force = size_at(result, "force") < kRounded * friction;
   const bool no_moment = size_at(result, "moment") < kRounded * size_at(result, "moment_limit");
   if (key == "twist_angle" || key == "moment") return no_moment;

@@ -85,7 +85,7 @@ Json exact_result(const solver::Scene& scene, const Oracle& oracle, double secon
   set_number(json, "stick_radius", oracle.stick_radius, unknown);
   set_all_missing(json, {"contact_radius_counted", "stick_radius_counted"}, "there are no cells to count");
   json["stick_ratio"] = oracle.state.stick_ratio;
-  json["friction"] = oracle.friction;
+  add_friction(json, scene.friction, oracle.friction_force);
   json["normal_load"] = *scene.steps.back().normal;
   set_number(json, "peak_pressure", oracle.peak_pressure,
              std::isinf(oracle.peak_pressure) ? "infinite" : unknown);

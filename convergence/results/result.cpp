@@ -137,7 +137,7 @@ void add_state(Json& json, const solver::Scene& scene, const Solution& solution)
   if (!solution.stick_radius_note.empty()) json["stick_radius_note"] = solution.stick_radius_note;
   json["stick_radius_counted"] = solution.stick_radius_counted;
   set_number(json, "stick_ratio", solution.stick_radius / a, "no contact");
-  json["friction"] = scene.friction;
+  add_friction(json, scene.friction, solution.friction_force);
   json["normal_load"] = solution.normal_load;
   json["peak_pressure"] = solution.peak_pressure;
   if (scene.pressure == solver::PressureModel::solved) {
@@ -150,7 +150,7 @@ void add_state(Json& json, const solver::Scene& scene, const Solution& solution)
   json["moment_limit"] = solution.moment_limit;
   set_number(json, "moment_ratio", solution.moment / solution.moment_limit, "the limit moment is zero");
   set_number(json, "twist",
-             solution.shear_modulus * a * a * solution.twist_angle / (scene.friction * solution.normal_load),
+             solution.shear_modulus * a * a * solution.twist_angle / solution.friction_force,
              "without friction the normalised twist has no scale");
   json["force"] = solution.force;
   json["displacement"] = solution.displacement;

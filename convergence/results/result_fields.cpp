@@ -37,7 +37,7 @@ std::vector<solver::FieldColumn> solution_columns(const solver::Solution& soluti
   add("dissipated", [&solution, cells](Index cell) {
     const double s1 = solution.slip[cell];
     const double s2 = solution.slip[cell + cells];
-    return solution.friction * solution.pressure[cell] * std::sqrt(s1 * s1 + s2 * s2);
+    return solution.friction.bound(solution.pressure, cell) * std::sqrt(s1 * s1 + s2 * s2);
   });
   if (exact.oracle && exact.oracle->shear) {
     const auto fields = std::make_shared<const ExactFields>(exact_fields(*exact.oracle, grid));
@@ -56,7 +56,7 @@ Json profile_json(const solver::Solution& solution, const OracleAnswer& answer) 
   if (!answer.oracle || !answer.oracle->shear) return Json::array();
   const Oracle& oracle = *answer.oracle;
   const ExactFields exact = exact_fields(oracle, solution.grid);
-  const double unit = 1.0 / (oracle.friction * oracle.reference_pressure);
+  const double unit = 1.0 / oracle.reference_bound;
   const Eigen::ArrayXd value = unit * solver::norms(solution.traction);
   const Eigen::ArrayXd exact_value = unit * solver::norms(exact.traction);
   const solver::Grid& grid = solution.grid;

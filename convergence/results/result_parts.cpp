@@ -40,6 +40,21 @@ Json traction_error_json(const TractionError& error, const std::string& reason) 
   return json;
 }
 
+void add_friction(Json& json, const solver::FrictionLaw& law, double force) {
+  using solver::FrictionKind;
+  if (law.kind == FrictionKind::tresca) {
+    set_missing(json, "friction", "Tresca's law has a shear strength in place of a coefficient");
+  } else {
+    json["friction"] = law.coefficient;
+  }
+  if (!law.is_coulomb()) json["friction_law"] = to_string(law.kind);
+  if (law.kind == FrictionKind::tresca || law.kind == FrictionKind::capped)
+    json["shear_strength"] = law.shear_strength;
+  if (law.kind == FrictionKind::power) json["friction_exponent"] = law.exponent;
+  if (!law.map.empty()) json["friction_map"] = law.map.string();
+  set_number(json, "friction_force", force, "the solve broke down");
+}
+
 Json certificate_json(const solver::Certificate& certificate, const std::string& reason) {
   Json json;
   set_number(json, "gap", certificate.gap, reason);

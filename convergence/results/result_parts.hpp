@@ -24,6 +24,9 @@ void set_number(Json& object, const std::string& key, double value, const std::s
 Json field_error_json(const FieldError& error, const std::string& reason);
 Json traction_error_json(const TractionError& error, const std::string& reason);
 
+/// A friction law's words and numbers, and the force that slides the contact, in N.
+void add_friction(Json& json, const solver::FrictionLaw& law, double force);
+
 Json certificate_json(const solver::Certificate& certificate, const std::string& reason);
 
 /// How well the mesh resolves the contact, with a warning where that is little.

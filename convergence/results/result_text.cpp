@@ -29,7 +29,7 @@ std::string translation_text(const Json& r) {
     return std::hypot(value[0].get<double>(), value[1].get<double>());
   };
   constexpr double rounding = 1e-12;  // of a sum over the cells, relative
-  const double friction = r["friction"].get<double>() * r["normal_load"].get<double>();
+  const double friction = r["friction_force"].get<double>();
   std::string text;
   if (size(r["force"]) > rounding * friction) text += text_line("force", pair(r["force"]) + " N");
   if (size(r["displacement"]) > 0.0) {

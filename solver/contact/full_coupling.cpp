@@ -93,7 +93,7 @@ class Turns {
     if (traction_.size() == 0) return {};
     const ArrayXd size = norms(traction_);
     const ArrayXd onto =
-        (slips_ && size > 0.0).select(problem_.friction * solution_.normal.pressure / size, 1.0);
+        (slips_ && size > 0.0).select(problem_.friction_bound(solution_.normal.pressure) / size, 1.0);
     return onto.replicate(2, 1) * traction_;
   }
 

@@ -31,8 +31,8 @@ struct TurnGoal {
 struct CoupledProblem {
   Eigen::ArrayXd gap;       ///< undeformed; infinite where the bodies cannot touch
   Eigen::ArrayXd traction;  ///< guess, 2*cells
-  double friction;          ///< mu
   double tolerance;         ///< on the complementarity gap
+  std::function<Eigen::ArrayXd(const Eigen::ArrayXd& pressure)> friction_bound;
   std::function<NormalSolution(const Eigen::ArrayXd& opening, const TurnGoal&)> solve_pressure;
   std::function<TangentialSolution(const Eigen::ArrayXd& pressure, const TurnGoal&)> solve_tractions;
 };

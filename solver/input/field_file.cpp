@@ -223,8 +223,8 @@ std::vector<Index> cells_of_rows(const path& file, const Grid& grid, const std::
   return cells;
 }
 
-Eigen::ArrayXXd read_height_map(const path& file) {
-  if (is_hdf5(file)) return read_datasets(file, {"height"}, 2, kMaxHeights).front();
+Eigen::ArrayXXd read_matrix(const path& file, const std::string& dataset) {
+  if (is_hdf5(file)) return read_datasets(file, {dataset}, 2, kMaxHeights).front();
   return read_text_matrix(file, kMaxHeights);
 }
 

@@ -48,9 +48,9 @@ std::vector<Column> read_columns(const std::filesystem::path& file, const std::v
 std::vector<Index> cells_of_rows(const std::filesystem::path& file, const Grid& grid,
                                  const std::vector<Column>& columns);
 
-/// A matrix of heights: text as above without header, one line for each x1; or the 2-D HDF5 dataset "height".
-/// A point that is missing, an empty or "nan" cell of a CSV file, is NaN.
-Eigen::ArrayXXd read_height_map(const std::filesystem::path& file);
+/// A matrix with a number for each cell: text as above without header, one line for each x1; or a 2-D HDF5
+/// dataset. A number that is missing, an empty or "nan" cell of a CSV file, is NaN.
+Eigen::ArrayXXd read_matrix(const std::filesystem::path& file, const std::string& dataset);
 
 /// Throws InputError unless the ending is one that write_fields knows.
 void require_field_format(const std::filesystem::path& file);

@@ -15,7 +15,7 @@ std::vector<std::string> text_table_names(const std::filesystem::path& file);
 std::vector<Column> read_text_columns(const std::filesystem::path& file,
                                       const std::vector<std::string>& names, const TableOptions& options);
 
-/// A table without a header, as read_height_map().
+/// A table without a header, as read_matrix().
 Eigen::ArrayXXd read_text_matrix(const std::filesystem::path& file, Index max_values);
 
 }  // namespace slipstick::solver

@@ -31,16 +31,18 @@ std::optional<std::array<double, 2>> sides_of(const Scene& scene) {
   }
 }
 
-/// The largest forces, over those that bring the largest moment about a lever as long as the grid.
+/// The largest forces, over those that bring the largest moment about a lever as long as the grid. Only
+/// under Coulomb's law a ratio says a moment before the solve.
 double forces_over_torsion(const Scene& scene, double reach) {
   double force = 0.0;
   double torsion = 0.0;
   for (const Step& step : scene.steps) {
     force = std::max(force, std::hypot(step.force[0], step.force[1]));
     const auto ratio = value_if<MomentRatio>(step.torsion);
+    const double limit = scene.friction.is_coulomb() ? scene.friction.coefficient * step.normal.value_or(0.0) : 0.0;
     const double moment = value_if<Moment>(step.torsion).value_or(0.0) / reach;
     torsion =
-        std::max(torsion, std::abs(ratio ? *ratio * scene.friction * step.normal.value_or(0.0) : moment));
+        std::max(torsion, std::abs(ratio ? *ratio * limit : moment));
   }
   return force / torsion;
 }

@@ -83,6 +83,18 @@ Layer read_layer(SceneReader& reader) {
   return layer;
 }
 
+FrictionLaw read_friction(SceneReader& reader) {
+  FrictionLaw law;
+  law.kind = reader.choice_or("contact.friction_law", law.kind, kFrictionLaws);
+  if (law.kind == FrictionKind::tresca) reader.prefer_overridden({"contact.shear_strength", "contact.friction"});
+  if (law.kind != FrictionKind::tresca) law.coefficient = reader.number("contact.friction");
+  if (law.kind == FrictionKind::tresca || law.kind == FrictionKind::capped)
+    law.shear_strength = reader.number("contact.shear_strength");
+  if (law.kind == FrictionKind::power) law.exponent = reader.number("contact.friction_exponent");
+  if (!reader.text_or("contact.friction_map", "").empty()) law.map = reader.path("contact.friction_map");
+  return law;
+}
+
 /// Reads the torsion from a table; where the table has none, the torsion is as before.
 void read_torsion(SceneReader& reader, const std::string& table, Step& step,
                   std::optional<TorsionLoad>& torsion) {
@@ -194,6 +206,7 @@ Step step_of(const Scene& scene, std::size_t k) {
 std::string to_string(Shape shape) { return kind_of(shape).word; }
 std::string to_string(PressureModel model) { return word_of(kPressureModels, model); }
 std::string to_string(OperatorKind kind) { return word_of(kOperators, kind); }
+std::string to_string(FrictionKind kind) { return word_of(kFrictionLaws, kind); }
 std::string to_string(Method method) { return word_of(kMethods, method); }
 std::string to_string(CellTraction traction) { return word_of(kCellTractions, traction); }
 
@@ -211,7 +224,7 @@ Scene read_scene(SceneReader& reader, const std::filesystem::path& file) {
   scene.lower = read_material(reader, "lower");
   scene.layer = read_layer(reader);
 
-  scene.friction = reader.number("contact.friction");
+  scene.friction = read_friction(reader);
   scene.pressure = reader.choice_or("contact.pressure", scene.pressure, kPressureModels);
   if (scene.pressure == PressureModel::file) scene.pressure_file = reader.path("contact.pressure_file");
   scene.coupling = reader.choice_or("contact.coupling", scene.coupling, kCouplings);

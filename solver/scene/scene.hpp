@@ -10,6 +10,7 @@
 
 #include "solver/elasticity/operator_kind.hpp"
 #include "solver/grid/grid.hpp"
+#include "solver/scene/friction_law.hpp"
 #include "solver/scene/surface.hpp"
 
 namespace slipstick::solver {
@@ -100,7 +101,7 @@ struct Scene {
   Material upper;
   Material lower;
   Layer layer;
-  double friction = 0.0;
+  FrictionLaw friction;
   PressureModel pressure = PressureModel::solved;
   std::filesystem::path pressure_file;
   Coupling coupling = Coupling::automatic;
@@ -146,6 +147,7 @@ void validate(const Scene& scene);
 /// Words of the enumerations, as scene files and results have them.
 std::string to_string(PressureModel model);
 std::string to_string(OperatorKind kind);
+std::string to_string(FrictionKind kind);
 std::string to_string(Method method);
 std::string to_string(CellTraction traction);
 

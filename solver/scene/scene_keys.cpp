@@ -117,7 +117,18 @@ void add_loads(SettingKeys& keys, const std::string& table, bool is_step) {
 
 void add_contact(SettingKeys& keys, const Scene& scene) {
   const SettingKeys contact{
-      {"contact.friction", kNumber, "", kRequired, kNotNegative, "Coefficient of friction."},
+      {"contact.friction", kNumber, "", "required but with friction_law = \"tresca\"", kNotNegative,
+       "Coefficient of friction mu; with friction_law = \"power\" k, Pa^(1 - n)."},
+      {"contact.friction_law", kWord, "", word_of(kFrictionLaws, scene.friction.kind), one_of(kFrictionLaws),
+       "The shear that friction carries under a pressure p: mu p (coulomb); the shear strength (tresca); the "
+       "lesser of the two (capped); k p^n (power)."},
+      {"contact.shear_strength", kNumber, "Pa", "required with friction_law = \"tresca\" or \"capped\"",
+       kPositive, "Shear that the interface carries at most. Known with these two laws alone."},
+      {"contact.friction_exponent", kNumber, "", "required with friction_law = \"power\"", kFrictionExponent,
+       "Exponent n of the pressure. Known with this law alone."},
+      {"contact.friction_map", KeyType::file, "", "\"\"", kAny,
+       "Factors of the friction, one a cell: a CSV matrix with a line for each x1, or the HDF5 dataset "
+       "`friction`. Empty: 1 everywhere."},
       {"contact.pressure", kWord, "", word_of(kPressureModels, scene.pressure), one_of(kPressureModels),
        "Where the pressure comes from: solved on the same grid, Hertz's at cell centres, Hertz's averaged "
        "over each cell, a file."},

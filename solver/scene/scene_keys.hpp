@@ -22,6 +22,10 @@ inline const Words<PressureModel> kPressureModels{{"solved", PressureModel::solv
                                                   {"hertz", PressureModel::hertz},
                                                   {"hertz_averaged", PressureModel::hertz_averaged},
                                                   {"file", PressureModel::file}};
+inline const Words<FrictionKind> kFrictionLaws{{"coulomb", FrictionKind::coulomb},
+                                               {"tresca", FrictionKind::tresca},
+                                               {"capped", FrictionKind::capped},
+                                               {"power", FrictionKind::power}};
 inline const Words<Coupling> kCouplings{{"auto", Coupling::automatic},
                                         {"none", Coupling::none},
                                         {"pressure", Coupling::pressure},

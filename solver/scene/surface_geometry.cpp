@@ -24,7 +24,7 @@ ArrayXd as_field(const Eigen::ArrayXXd& heights) {
 }
 
 Eigen::ArrayXXd read_heights(const Surface& surface) {
-  const Eigen::ArrayXXd heights = read_height_map(surface.file);
+  const Eigen::ArrayXXd heights = read_matrix(surface.file, "height");
   const Grid grid{heights.rows(), heights.cols(), surface.spacing[0], surface.spacing[1]};
   for (Index i = 0; i < grid.n1; ++i) {
     for (Index j = 0; j < grid.n2; ++j) {

@@ -25,7 +25,7 @@ class Validation {
     check_material("upper", scene_.upper);
     check_material("lower", scene_.lower);
     check_layer();
-    require("contact.friction", scene_.friction, kNotNegative);
+    check_friction();
     check_steps();
     check_grid();
     require("solver.tolerance", scene_.tolerance, kTolerance);
@@ -77,6 +77,14 @@ class Validation {
       refuse_(body + ".young_modulus", fmt::format("{}", material.young_modulus), "positive");
     }
     require(body + ".poisson_ratio", material.poisson_ratio, kPoisson);
+  }
+
+  void check_friction() const {
+    const FrictionLaw& law = scene_.friction;
+    require("contact.friction", law.coefficient, kNotNegative);
+    if (law.kind == FrictionKind::tresca || law.kind == FrictionKind::capped)
+      require("contact.shear_strength", law.shear_strength, kPositive);
+    require("contact.friction_exponent", law.exponent, kFrictionExponent);
   }
 
   void check_layer() const {

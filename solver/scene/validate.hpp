@@ -23,6 +23,8 @@ inline const Range kSubsteps = whole(1, 4096);
 inline const Range kThreads = whole(0, 1024);
 /// Powers of a cell's size stay within double precision.
 inline const Range kExponent{"from 1 to 20", [](double x) { return x >= 1.0 && x <= 20.0; }};
+/// Friction of an interface is between a strength (0) and a coefficient (1), or near them.
+inline const Range kFrictionExponent{"above 0, at most 10", [](double x) { return x > 0.0 && x <= 10.0; }};
 inline const Range kHurst{"above 0, at most 1", [](double x) { return x > 0.0 && x <= 1.0; }};
 /// Whole numbers that TOML readers and double precision have alike; one more and its neighbour would be one.
 inline const Range kSeeds = whole(0, 0x1p53 - 1.0);

@@ -135,7 +135,7 @@ TEST(SmallFriction, BetweenDissimilarBodiesEndsWell) {
   scene.lower = {70e9, 0.33};
   for (const double friction : {1e-12, 1e-9, 1e-6}) {
     SCOPED_TRACE(friction);
-    scene.friction = friction;
+    scene.friction.coefficient = friction;
     const ModelSolution solution = solve_in_model_units(scene);
     EXPECT_EQ(solution.status, Status::converged) << solution.message;
     EXPECT_LE(solution.certificate.moment, kRounding);

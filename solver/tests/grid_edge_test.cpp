@@ -242,7 +242,7 @@ TEST(GridEdge, IsLookedAtUnderFullCoupling) {
     scene.lower = {3e9, 0.0};
     scene.upper.young_modulus = HUGE_VAL;
     scene.coupling = Coupling::full;
-    scene.friction = 0.3;
+    scene.friction.coefficient = 0.3;
     scene.steps[0].normal = 20.0;
     return scene;
   };

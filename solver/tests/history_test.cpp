@@ -55,7 +55,7 @@ class Pushed : public testing::Test {
   void take_steps(const std::vector<Part>& parts) {
     scene_.steps.clear();
     for (const Part& part : parts) {
-      const double size = part.force * scene_.friction * paper::kLoad;
+      const double size = part.force * scene_.friction.coefficient * paper::kLoad;
       Step& step = scene_.steps.emplace_back();
       step.name = step.key = "step " + std::to_string(scene_.steps.size());
       step.normal = part.normal * paper::kLoad;
@@ -71,7 +71,7 @@ class Pushed : public testing::Test {
     Scene scene = scene_;
     scene.steps = {Step{}};
     scene.steps[0].normal = normal * paper::kLoad;
-    const ArrayXd bound = scene.friction * press(scene).solution.pressure;
+    const ArrayXd bound = scene.friction.coefficient * press(scene).solution.pressure;
     ArrayXd q(2 * cells);
     q << 0.6 * bound, 0.8 * bound;
     return q;

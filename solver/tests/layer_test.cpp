@@ -129,7 +129,7 @@ TEST(Layer, ThatIsVeryCompliantIsWinklersFoundation) {
   // W = pi R delta^2/c where a^2 = 2 R delta.
   const double approach = reach * reach / (2.0 * paper::kRadius);
   scene.steps[0].normal = M_PI * paper::kRadius * approach * approach / compliance;
-  scene.steps[0].torsion = Twist{0.5 * scene.friction * approach / reach};
+  scene.steps[0].torsion = Twist{0.5 * scene.friction.coefficient * approach / reach};
   const Solution solution = solved_scene(scene);
   const Grid& grid = solution.grid;
   const ArrayXd square = cell_x1(grid).square() + cell_x2(grid).square();
@@ -138,7 +138,7 @@ TEST(Layer, ThatIsVeryCompliantIsWinklersFoundation) {
   EXPECT_NEAR(solution.approach / approach, 1.0, 0.01);  // cells of the edge
   EXPECT_LE(relative_difference(solution.pressure, pressure), kBodiesPart);
   const ArrayXd sticking = solution.twist_angle * square.sqrt() / compliance;
-  const ArrayXd expected = sticking.min(scene.friction * pressure);
+  const ArrayXd expected = sticking.min(scene.friction.coefficient * pressure);
   EXPECT_LE(relative_difference(norms(solution.traction), expected), kBodiesPart);
   EXPECT_GT(solution.stick_cells, 0);
   EXPECT_LT(solution.stick_cells, solution.contact_cells);

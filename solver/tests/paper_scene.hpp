@@ -42,7 +42,7 @@ inline Scene paper_scene(Index cells, double moment_ratio) {
   scene.source = "paper.toml";
   scene.surfaces.front().radius = paper::kRadius;
   scene.upper = scene.lower = steel;
-  scene.friction = paper::kFriction;
+  scene.friction.coefficient = paper::kFriction;
   scene.steps[0].normal = paper::kLoad;
   scene.steps[0].torsion = MomentRatio{moment_ratio};
   scene.cells = {cells, cells};

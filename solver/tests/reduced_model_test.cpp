@@ -86,7 +86,7 @@ Certificate recomputed(const Scene& scene, const ModelSolution& solution, Operat
     slip += by_pressure;
   }
   slip *= (pressure > 0.0).cast<double>().replicate(2, 1);
-  const ArrayXd bound = model.friction * pressure;
+  const ArrayXd bound = model.friction.bound(pressure);
   const double moment = value_if<MomentRatio>(scene.steps[0].torsion)
                             ? *value_if<MomentRatio>(scene.steps[0].torsion) * moment_limit(model.grid, bound)
                             : (q * rotation).sum();

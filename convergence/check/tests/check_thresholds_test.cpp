@@ -84,7 +84,7 @@ TEST(CheckThreshold, OfTheContactRadiusIsOneCell) {
 FieldRows with_part(const RightField& field, double least, double most,
                     const std::function<void(FieldRow&)>& change) {
   return changed(field.rows, [&](FieldRow& row) {
-    const double part = std::hypot(row[3], row[4]) / (field.scene.friction * row[2]);
+    const double part = std::hypot(row[3], row[4]) / (field.scene.friction.coefficient * row[2]);
     if (part >= least && part <= most) change(row);
   });
 }
@@ -101,7 +101,7 @@ TEST(CheckThreshold, OfTheFrictionBoundIsAThousandth) {
   const auto place = static_cast<std::size_t>(largest - field.rows.begin());
   for (const double times : {kBelow, kAbove}) {
     FieldRows rows = field.rows;
-    const double bound = field.scene.friction * rows[place][2];
+    const double bound = field.scene.friction.coefficient * rows[place][2];
     scale_tractions(rows[place], (1.0 + times * 1e-3) * bound / std::hypot(rows[place][3], rows[place][4]));
     const Json item = judgement(check_rows(rows, field.scene), "friction_bound");
     EXPECT_NEAR(item["value"].get<double>(), times * 1e-3, 1e-6);
@@ -267,7 +267,7 @@ TEST(CheckThreshold, OfLoadsIsWhatExactFieldsMiss) {
   const solver::Step& load = scene.steps.front();
   const double missed_normal = std::abs(area * normal / *load.normal - 1.0);
   const double missed_force =
-      std::abs(area * force - e.exact.oracle->force[0]) / (scene.friction * *load.normal);
+      std::abs(area * force - e.exact.oracle->force[0]) / (scene.friction.coefficient * *load.normal);
   EXPECT_NEAR(e.reference.mesh.loads.normal / missed_normal, 1.0, 0.5);
   EXPECT_NEAR(e.reference.mesh.loads.force / missed_force, 1.0, 0.5);
 }

@@ -325,7 +325,7 @@ TEST(HistoryComparison, ASphereOffTheOriginTurnsAboutItsAxis) {
 Scene against_rigid(solver::Coupling coupling) {
   Scene scene = without_contraction(example("paper"));
   scene.upper = {.young_modulus = INFINITY, .poisson_ratio = 0.0};
-  scene.friction = 0.2986;
+  scene.friction.coefficient = 0.2986;
   scene.coupling = coupling;
   return twisted(scene, {0.0});
 }

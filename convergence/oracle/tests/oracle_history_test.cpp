@@ -82,7 +82,7 @@ TEST(OracleHistory, ASmallForceHasAllItsDigits) {
   for (const char* body : {"paper", "cone"}) {
     Scene scene = without_contraction(example(body));
     const double normal = *scene.steps.front().normal;
-    const double limit = scene.friction * normal;
+    const double limit = scene.friction.coefficient * normal;
     const auto under = [&](double force) {
       return oracles(pushed(scene, {{normal, force * limit}})).front();
     };
@@ -101,7 +101,7 @@ TEST(OracleHistory, TractionsOfAForceCarryIt) {
   for (const char* body : {"paper", "cone", "flat_punch"}) {
     Scene scene = without_contraction(example(body));
     const double normal = *scene.steps.front().normal;
-    const double friction = scene.friction * normal;
+    const double friction = scene.friction.coefficient * normal;
     scene = pushed(scene, {{normal, 0.8 * friction},
                            {1.5 * normal, 0.9 * friction},
                            {1.5 * normal, -1.2 * friction},
@@ -273,7 +273,7 @@ TEST(OracleHistory, SaysWhyNoTheoryHolds) {
 TEST(OracleHistory, PressingDissimilarBodiesSticksWithinTheSameRatio) {
   Scene scene = without_contraction(example("flat_punch"));
   scene.upper = {.young_modulus = INFINITY, .poisson_ratio = 0.0};
-  scene.friction = 0.2986;
+  scene.friction.coefficient = 0.2986;
   scene.coupling = solver::Coupling::full;
   scene = pushed(scene, {{1.0, 0.0}, {10.0, 0.0}, {1000.0, 0.0}});
   for (const Oracle& spence : oracles(scene)) {

@@ -125,7 +125,7 @@ Scene dissimilar(Coupling coupling, double moment_ratio, Index cells = 24) {
   scene.lower.poisson_ratio = 0.1;
   scene.upper.young_modulus = kInfinity;
   scene.extent = {1.2e-3, 1.2e-3};
-  scene.friction = 0.3;
+  scene.friction.coefficient = 0.3;
   scene.tolerance = kGap;
   scene.coupling = coupling;
   return scene;
@@ -206,7 +206,7 @@ TEST(FullCoupling, HoldsBothLawsAtOnce) {
     slip *= (p > 0.0).cast<double>().replicate(2, 1);
     const double area = model.grid.cell_area();
     const Certificate fresh =
-        certify({q, applied(tangential_kernel(), model, q), slip}, model.friction * p,
+        certify({q, applied(tangential_kernel(), model, q), slip}, model.friction.bound(p),
                 rotation_field(model.grid), 0.4 * solution.moment_limit / (area * model.moment_unit()),
                 {30.0 / (area * model.force_unit()), 10.0 / (area * model.force_unit())});
     EXPECT_LE(fresh.gap, tolerance + 1e-13);
@@ -224,7 +224,7 @@ TEST(FullCoupling, EndsWhateverTheFriction) {
     for (const double push : {0.0, 0.9, 0.99}) {
       Scene scene = dissimilar(Coupling::full, 0.0, 16);
       scene.lower.poisson_ratio = 0.0;
-      scene.friction = friction;
+      scene.friction.coefficient = friction;
       scene.ends_at_grid_edge = true;  // much friction drags the contact there
       scene.tolerance = 1e-8;
       scene.steps[0].torsion = Twist{0.0};
@@ -249,7 +249,7 @@ Scene spence(Shape shape, Coupling coupling, Index cells) {
   scene.surfaces[0].radius = shape == Shape::sphere ? 100.0 : 1.0;
   scene.lower = kSpences;
   scene.upper = kRigid;
-  scene.friction = 0.2986;
+  scene.friction.coefficient = 0.2986;
   scene.coupling = coupling;
   scene.cells = {cells, cells};
   scene.steps[0].normal = 0.02;
@@ -340,7 +340,7 @@ TEST(BondedPunch, IsStifferByTheLogarithmOfThree) {
   std::vector<double> errors;
   for (const Index cells : {20, 36}) {  // 8 and 16 cells in a radius
     Scene scene = spence(Shape::flat_punch, Coupling::full, cells);
-    scene.friction = 3.0;
+    scene.friction.coefficient = 3.0;
     const ModelSolution bonded = solved(scene);
     EXPECT_EQ(bonded.stick_cells, bonded.contact_cells);
     scene.coupling = Coupling::none;

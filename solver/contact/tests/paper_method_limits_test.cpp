@@ -41,7 +41,7 @@ TEST(Unloaded, HasNoTraction) {
     }
   }
   Scene frictionless = paper_scene(16, 0.5);
-  frictionless.friction = 0.0;
+  frictionless.friction.coefficient = 0.0;
   EXPECT_EQ(by_paper_method(frictionless).status, Status::converged);
   EXPECT_EQ(by_paper_method(frictionless).moment, 0.0);
 }

@@ -44,7 +44,7 @@ TEST_P(Sphere, CarriesTheMomentWithinTheFrictionBounds) {
   EXPECT_NEAR(solution.moment_limit / paper::kMomentLimit, 1.0, 1e-4);
 
   const ArrayXd& q = solution.tangential.traction;
-  const ArrayXd bound = solution.model.friction * solution.normal.pressure;
+  const ArrayXd bound = solution.model.friction.bound(solution.normal.pressure);
   const ArrayXd size = norms(q);
   const ArrayXd slip = norms(solution.tangential.slip);
   const ArrayXd work = dot_products(q, solution.tangential.slip);
@@ -202,7 +202,7 @@ TEST(FrozenSlipDirection, ShowsOnAnEllipseInTheCertificateAlone) {
 
 TEST(DissimilarMaterials, CarryTheMomentWithinTheFrictionBounds) {
   Scene scene = paper_scene(32, 0.5);
-  scene.friction = 0.3;
+  scene.friction.coefficient = 0.3;
   scene.lower.young_modulus = 150e9;
   const ModelSolution solution = by_paper_method(scene);
   ASSERT_EQ(solution.status, Status::converged) << solution.message;

@@ -17,7 +17,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     }
   });
   read_or_refuse([&] {
-    if (read_height_map(path).size() == 0) std::abort();
+    if (read_matrix(path, "height").size() == 0) std::abort();
   });
   return 0;
 }

@@ -148,18 +148,18 @@ TEST_F(FieldFile, WhatIsNoHdf5IsRefused) {
 }
 
 TEST_F(FieldFile, HeightMapHasALineForEachX1) {
-  const Eigen::ArrayXXd heights = read_height_map(write("heights.csv", "1,2,3\n4,5,6\n"));
+  const Eigen::ArrayXXd heights = read_matrix(write("heights.csv", "1,2,3\n4,5,6\n"), "height");
   ASSERT_EQ(heights.rows(), 2);
   ASSERT_EQ(heights.cols(), 3);
   EXPECT_EQ(heights(0, 2), 3.0);
   EXPECT_EQ(heights(1, 0), 4.0);
-  const Eigen::ArrayXXd holes = read_height_map(write("holes.csv", "1,,3\nnan,5,6\n"));
+  const Eigen::ArrayXXd holes = read_matrix(write("holes.csv", "1,,3\nnan,5,6\n"), "height");
   EXPECT_TRUE(std::isnan(holes(0, 1)));
   EXPECT_TRUE(std::isnan(holes(1, 0)));
   EXPECT_EQ(holes.isNaN().count(), 2);
   EXPECT_EQ(holes(1, 2), 6.0);
   write_fields(folder_ / "flat.h5", grid_, {{"height", ArrayXd::Ones(6)}}, ArrayXd::Ones(6));
-  EXPECT_THAT(complaint([&] { read_height_map(folder_ / "flat.h5"); }),
+  EXPECT_THAT(complaint([&] { read_matrix(folder_ / "flat.h5", "height"); }),
               HasSubstr("has 1 dimensions; allowed: 2"));
 }
 

@@ -15,7 +15,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
     }
   });
   read_or_refuse([&] {
-    const Eigen::ArrayXXd heights = read_height_map(path);
+    const Eigen::ArrayXXd heights = read_matrix(path, "height");
     if (heights.size() == 0 || heights.isInf().any()) std::abort();
   });
   return 0;

@@ -43,6 +43,13 @@ std::string scene_with(const std::string& shape, bool several) {
          (shape == "height_map" ? "" : "extent = [1, 1]\n");
 }
 
+/// The law that knows a key of the friction.
+std::vector<std::string> friction_of(const std::string& key) {
+  if (key == "contact.shear_strength") return {"contact.friction_law=capped"};
+  if (key == "contact.friction_exponent") return {"contact.friction_law=power"};
+  return {};
+}
+
 const std::string kLayer = "[layer]\nkind = \"winkler\"\nnormal_compliance = 1\ntangential_compliance = 1\n";
 
 /// A value that the type has not, and the end of the message about it.
@@ -93,7 +100,9 @@ class SceneKeys : public SceneFile {
     if (several && key.name != "upper.combine") name.replace(0, 12, "upper.shape[1].");
     if (name.starts_with("step.")) name.replace(0, 5, "step[0].");
     const std::string text = scene_with(shape, several) + (key.name.starts_with("layer.") ? kLayer : "");
-    return complaint([&] { read_scene(write("scene.toml", text), {name + "=" + wrong_for(key).value}); });
+    std::vector<std::string> overrides = friction_of(key.name);
+    overrides.push_back(name + "=" + wrong_for(key).value);
+    return complaint([&] { read_scene(write("scene.toml", text), overrides); });
   }
 };
 

@@ -21,7 +21,7 @@ TEST_F(SceneFile, IsReadKeyByKey) {
   EXPECT_EQ(scene.upper.young_modulus, 210e9);
   EXPECT_EQ(scene.upper.poisson_ratio, 0.3);
   EXPECT_EQ(scene.lower.young_modulus, 210e9);
-  EXPECT_EQ(scene.friction, 0.1);
+  EXPECT_EQ(scene.friction.coefficient, 0.1);
   EXPECT_EQ(scene.pressure, PressureModel::solved);
   EXPECT_EQ(scene.coupling, Coupling::automatic);
   EXPECT_EQ(scene.steps[0].normal, 1000.0);
@@ -113,7 +113,7 @@ TEST_F(SceneFile, OverridesAreAppliedFirst) {
   // A wrong value in the file does not matter where it is overridden.
   std::string text = kShortScene;
   text.replace(text.find("friction = 0.1"), 14, "friction = \"x\"");
-  EXPECT_EQ(read(text, {"contact.friction=0.2"}).friction, 0.2);
+  EXPECT_EQ(read(text, {"contact.friction=0.2"}).friction.coefficient, 0.2);
 }
 
 TEST_F(SceneFile, OneTorsionLoadOverridesAnother) {

@@ -75,7 +75,9 @@ const std::vector<Mistake> kWrongBodies{
     {"layer.normal_compliance", [](Scene& s) { s.layer = layer_of(-1e-12, 1e-12); }},
     {"layer.tangential_compliance", [](Scene& s) { s.layer = layer_of(1e-12, kNaN); }},
     {"contact.pressure", press_a_layer_by_hertz},
-    {"contact.friction", [](Scene& s) { s.friction = kNaN; }},
+    {"contact.friction", [](Scene& s) { s.friction.coefficient = kNaN; }},
+    {"contact.shear_strength", [](Scene& s) { s.friction.kind = FrictionKind::tresca; }},
+    {"contact.friction_exponent", [](Scene& s) { s.friction.exponent = 0.0; }},
     {"contact.coupling", couple_hertz_fully},
 };
 

@@ -1,0 +1,195 @@
+// Friction that is not mu p: each law by its limits and by Coulomb's, maps, and what is refused.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <Eigen/Core>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include "solver/input/tests/complaint.hpp"
+#include "solver/solve.hpp"
+#include "solver/tests/fields.hpp"
+#include "solver/tests/paper_scene.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Eigen::ArrayXd;
+using testing::AllOf;
+using testing::HasSubstr;
+
+constexpr double kStrength = 0.4 * paper::kFriction * paper::kPeakPressure;
+
+Scene scene_under(FrictionKind kind, double moment_ratio = 0.7) {
+  Scene scene = paper_scene(32, moment_ratio);
+  scene.tolerance = 1e-12;
+  scene.friction.kind = kind;
+  scene.friction.shear_strength = kStrength;
+  return scene;
+}
+
+Solution solved_under(const Scene& scene) {
+  const Solution solution = solve(scene);
+  EXPECT_EQ(solution.status, Status::converged) << solution.message;
+  EXPECT_LE(solution.certificate.gap, scene.tolerance);
+  return solution;
+}
+
+void expect_same_tractions(const Solution& a, const Solution& b, double factor = 1.0) {
+  EXPECT_LE(relative_difference(a.traction, factor * b.traction), kSame);
+  EXPECT_NEAR(a.twist_angle / (factor * b.twist_angle), 1.0, kSame);
+}
+
+TEST(FrictionLaw, TrescasSlippingCellsCarryItsStrength) {
+  const Solution solution = solved_under(scene_under(FrictionKind::tresca));
+  const ArrayXd size = norms(solution.traction);
+  EXPECT_GT(solution.stick_cells, 0);
+  for (Index cell = 0; cell < size.size(); ++cell) {
+    if (solution.pressure[cell] == 0.0) EXPECT_EQ(size[cell], 0.0);
+    if (solution.pressure[cell] > 0.0 && solution.stick[cell] == 0.0)
+      EXPECT_NEAR(size[cell] / kStrength, 1.0, 1e-9);
+  }
+  // The limit moment is the strength times the sum of r over the contact.
+  const ArrayXd x1 = cell_x1(solution.grid);
+  const ArrayXd x2 = cell_x2(solution.grid);
+  const ArrayXd contact = (solution.pressure > 0.0).cast<double>();
+  const double arms = (contact * (x1.square() + x2.square()).sqrt()).sum() * solution.grid.cell_area();
+  EXPECT_NEAR(solution.moment_limit / (kStrength * arms), 1.0, 1e-12);
+}
+
+TEST(FrictionLaw, IsCoulombsWithTheFirstPowerAndWithAHighCap) {
+  const Solution coulomb = solved_under(scene_under(FrictionKind::coulomb));
+  Scene power = scene_under(FrictionKind::power);
+  power.friction.exponent = 1.0;
+  expect_same_tractions(solved_under(power), coulomb);
+  Scene capped = scene_under(FrictionKind::capped);
+  capped.friction.shear_strength = 1.1 * paper::kFriction * paper::kPeakPressure;
+  expect_same_tractions(solved_under(capped), coulomb);
+}
+
+TEST(FrictionLaw, IsTrescasWithALowCapOrPower) {
+  const Solution tresca = solved_under(scene_under(FrictionKind::tresca));
+  Scene capped = scene_under(FrictionKind::capped);
+  capped.friction.coefficient = 1e6;
+  expect_same_tractions(solved_under(capped), tresca);
+  Scene power = scene_under(FrictionKind::power);
+  power.friction.exponent = 1e-6;
+  power.friction.coefficient = kStrength;
+  const Solution nearly = solved_under(power);
+  EXPECT_LE(relative_difference(nearly.traction, tresca.traction), 1e-4);  // p^1e-6 of 1 Pa to 2e9 Pa
+}
+
+/// Lengths over the contact and stresses over the modulus are all that counts.
+TEST(FrictionLaw, IsTheSameInOtherUnits) {
+  for (const FrictionKind kind : {FrictionKind::tresca, FrictionKind::capped, FrictionKind::power}) {
+    Scene scene = scene_under(kind);
+    scene.friction.exponent = 0.6;
+    if (kind == FrictionKind::power) scene.friction.coefficient = 500.0;
+    const Solution in_pa = solved_under(scene);
+    Scene in_mpa = scene;
+    for (Material* body : {&in_mpa.upper, &in_mpa.lower}) body->young_modulus *= 1e-6;
+    *in_mpa.steps[0].normal *= 1e-6;
+    in_mpa.friction.shear_strength *= 1e-6;
+    if (kind == FrictionKind::power) in_mpa.friction.coefficient *= std::pow(1e-6, 0.4);
+    const Solution other = solved_under(in_mpa);
+    EXPECT_LE(relative_difference(1e6 * other.traction, in_pa.traction), kSame);
+    EXPECT_NEAR(other.twist_angle / in_pa.twist_angle, 1.0, kSame);
+  }
+}
+
+TEST(FrictionLaw, IsTheSameByEveryMethodAndModel) {
+  for (const FrictionKind kind : {FrictionKind::tresca, FrictionKind::power}) {
+    Scene scene = scene_under(kind, 0.5);
+    scene.friction.exponent = 0.6;
+    scene.tolerance = 1e-10;
+    const Solution reference = solved_under(scene);
+    Scene full = scene;
+    full.model = ModelChoice::full;
+    const Solution whole = solved_under(full);
+    EXPECT_LE(relative_difference(whole.traction, reference.traction), 1e-6);
+    scene.method = Method::projected_gradient;
+    EXPECT_LE(relative_difference(solved_under(scene).traction, reference.traction), 1e-4);
+  }
+}
+
+/// A history at constant pressure follows Masing's rule: back to the load's negative the tractions turn over.
+TEST(FrictionLaw, FollowsMasingsRule) {
+  Scene scene = scene_under(FrictionKind::tresca);
+  scene.steps.assign(2, scene.steps.front());
+  scene.steps[1].torsion = MomentRatio{-0.7};
+  std::vector<Solution> steps;
+  SolveOptions options;
+  options.on_step = [&](const Solution& step) { steps.push_back(step); };
+  solve(scene, options);
+  ASSERT_EQ(steps.size(), 2u);
+  expect_same_tractions(steps[1], steps[0], -1.0);
+}
+
+class FrictionMap : public testing::Test {
+ protected:
+  /// A map of the paper's 24 cells by a function of row and column.
+  template <typename Factor>
+  Scene with_map(const Factor& factor, Index rows = 24) {
+    std::ofstream stream(file_);
+    for (Index i = 0; i < rows; ++i) {
+      for (Index j = 0; j < 24; ++j) stream << (j > 0 ? "," : "") << factor(i, j);
+      stream << '\n';
+    }
+    stream.close();
+    Scene scene = paper_scene(24, 0.6);
+    scene.tolerance = 1e-12;
+    scene.friction.map = file_;
+    return scene;
+  }
+
+  std::filesystem::path file_ = std::filesystem::path(testing::TempDir()) / "friction_map.csv";
+};
+
+TEST_F(FrictionMap, OfOneNumberIsACoefficient) {
+  const Solution mapped = solved_under(with_map([](Index, Index) { return 2.0; }));
+  Scene scene = with_map([](Index, Index) { return 2.0; });
+  scene.friction = 2.0 * paper::kFriction;
+  expect_same_tractions(mapped, solved_under(scene));
+}
+
+TEST_F(FrictionMap, LeavesCellsWithoutFrictionWithoutTraction) {
+  // Half the contact, no mirror of the other half: the limit's centre of sliding leaves the axis.
+  Scene scene = with_map([](Index i, Index) { return i < 12 ? 0.0 : 1.0; });
+  const Solution solution = solved_under(scene);
+  const ArrayXd size = norms(solution.traction);
+  EXPECT_EQ(size.head(12 * 24).maxCoeff(), 0.0);
+  EXPECT_GT(size.maxCoeff(), 0.0);
+  EXPECT_LE(std::hypot(solution.force[0], solution.force[1]), 1e-9 * solution.friction_force);
+  ASSERT_TRUE(solution.limit.centre.has_value());
+  EXPECT_GT((*solution.limit.centre)[0], 0.1 * solution.contact_radius);
+}
+
+TEST_F(FrictionMap, TurnsWithTheScene) {
+  const auto factor = [](Index i, Index j) { return 1.0 + 0.02 * static_cast<double>(i) + 0.01 * static_cast<double>(j); };
+  const Solution solution = solved_under(with_map(factor));
+  const Solution turned = solved_under(with_map([&](Index i, Index j) { return factor(23 - j, i); }));
+  EXPECT_NEAR(turned.twist_angle / solution.twist_angle, 1.0, kSame);
+  EXPECT_NEAR(turned.moment_limit / solution.moment_limit, 1.0, 1e-12);
+}
+
+TEST_F(FrictionMap, IsRefusedWithTheWrongSizeOrNumber) {
+  const auto one = [](Index, Index) { return 1.0; };
+  EXPECT_THAT(complaint([&] { solve(with_map(one, 23)); }),
+              AllOf(HasSubstr("friction_map.csv"), HasSubstr("23 x 24"), HasSubstr("allowed: 24 x 24")));
+  const auto negative = [](Index i, Index j) { return i == 3 && j == 5 ? -1.0 : 1.0; };
+  EXPECT_THAT(complaint([&] { solve(with_map(negative)); }), HasSubstr("row 4, column 6: -1; allowed: zero"));
+}
+
+TEST(FrictionLaw, IsRefusedWhereItIsInfinite) {
+  Scene scene = scene_under(FrictionKind::power);
+  scene.friction.exponent = 3.0;
+  scene.friction.coefficient = 1e300;
+  EXPECT_THAT(complaint([&] { solve(scene); }), HasSubstr("contact.friction"));
+}
+
+}  // namespace
+}  // namespace slipstick::solver
