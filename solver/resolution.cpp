@@ -131,8 +131,8 @@ Resolution resolution(const Scene& scene, const Step& step, const Grid& grid, co
                 narrow * (errors.staircase * cell * std::sqrt(cell) + errors.wider * cell);
   const double of_law =
       scene.friction.is_coulomb() ? 0.0 : (kSharpLaw * edge + kKink * std::sqrt(cell)) * cell;
-  result.step += of_law;
   const bool is_ratio = std::holds_alternative<MomentRatio>(step.torsion) && !brings_translation(step);
+  if (!is_ratio) result.step += of_law;
   const double limit_error = is_ratio ? 0.0 : (0.6 * errors.smooth * cell + 0.15 * edge) * cell + of_law;
   const RigidMotion& sliding = loads.limit.sliding;
   const bool mesh_decides =

@@ -31,6 +31,8 @@ def moment_limit(profile):
     """Over mu W a; N = 2 and 1 of the gap r^N are sphere and cone."""
     if profile == "flat_punch":
         return PI / 4
+    if profile == "constant":
+        return Decimal(2) / 3
     n = Decimal({"hertz": "2", "cone": "1"}.get(profile) or profile.partition(":")[2])
     return PI / 4 * (n + 1) / (n + 2)
 

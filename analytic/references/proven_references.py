@@ -112,7 +112,7 @@ class References:
                 radii = [part * c for part in INSIDE] + [r for r in ((1 + c) / 2, 1 - 1e-6) if r > c]
                 yield lambda g=given, v=value, r=radii: self.traction_rows(profile, g, v, r)
         jobs = []
-        for profile in ("hertz", "cone", "flat_punch"):
+        for profile in ("hertz", "cone", "flat_punch", "constant"):
             jobs += states(profile, VALUES) + (states(profile, PUNCH_VALUES) if profile == "flat_punch" else [])
             jobs += tractions(profile, FRONTS)
         for profile in ("power:4", "power:1.5", "power:0.5", "power:8"):

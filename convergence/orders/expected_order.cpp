@@ -9,12 +9,12 @@ using solver::PressureModel;
 using solver::Shape;
 
 /// How the tractions end at the contact's edge.
-enum class Edge { root, singular, rough };
+enum class Edge { root, jump, singular, rough };
 
 Edge edge_of(const solver::Scene& scene) {
-  Edge edge = Edge::root;
+  Edge edge = scene.friction.kind == solver::FrictionKind::tresca ? Edge::jump : Edge::root;
   for (const solver::Surface& surface : scene.surfaces) {
-    if (surface.shape == Shape::flat_punch) edge = Edge::singular;
+    if (surface.shape == Shape::flat_punch && edge == Edge::root) edge = Edge::singular;
     if (surface.shape == Shape::height_map || surface.shape == Shape::roughness) return Edge::rough;
   }
   return edge;
@@ -34,6 +34,12 @@ ExpectedOrder of_field(const std::string& quantity, Edge edge) {
     }
     return {NAN, "a traction like d^(-1/2) at the edge has no finite norm of this kind"};
   }
+  if (edge == Edge::jump) {
+    if (is_norm(quantity, "l1"))
+      return {1.0, "the traction ends at its full strength in cells that the edge cuts"};
+    if (is_norm(quantity, "l2")) return {0.5, "off by the strength itself in the cells that the edge cuts"};
+    return {NAN, "the cell that the edge cuts is off by the strength itself on every mesh"};
+  }
   if (is_norm(quantity, "l1")) {
     return {1.5,
             "tractions have square-root edges: off by h^(1/2) in a band of width h, and by h^2 elsewhere"};
@@ -52,6 +58,10 @@ ExpectedOrder of_number(const std::string& quantity, const solver::Scene& scene)
     return {1.0,
             "determined from the slip in the 24 cells beside the edge, at most: once the ring is wider, what "
             "the mesh does there is a part of a cell; on coarser meshes the error falls faster"};
+  }
+  if (edge_of(scene) == Edge::jump) {
+    return {1.0,
+            "the strength acts as far as the outermost cells reach, a part of a cell from the true edge"};
   }
   if (edge_of(scene) == Edge::singular) {
     return {1.0,

@@ -55,7 +55,9 @@ std::vector<std::filesystem::path> input_files(const solver::Scene& scene) {
   for (const solver::Surface& surface : scene.surfaces) {
     if (!surface.file.empty()) files.push_back(surface.file);
   }
-  if (!scene.pressure_file.empty()) files.push_back(scene.pressure_file);
+  for (const std::filesystem::path& file : {scene.pressure_file, scene.friction.map}) {
+    if (!file.empty()) files.push_back(file);
+  }
   if (scene.program.empty()) return files;
   for (std::filesystem::path& file : program_files(read_solver_program(scene.program))) {
     files.push_back(std::move(file));
@@ -74,7 +76,8 @@ std::string cells_override(const solver::Scene& scene, solver::Index across) {
 }
 
 bool has_given_grid(const solver::Scene& scene) {
-  return scene.pressure == solver::PressureModel::file || solver::find_height_map(scene.surfaces) != nullptr;
+  return scene.pressure == solver::PressureModel::file || !scene.friction.map.empty() ||
+         solver::find_height_map(scene.surfaces) != nullptr;
 }
 
 std::filesystem::path step_before_file(const std::filesystem::path& fields) {

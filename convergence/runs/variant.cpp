@@ -69,6 +69,9 @@ void measure_in_millimetres(Scene& scene) {
   constexpr double of_stress = 1.0 / (kMillimetres * kMillimetres);
   scene.upper.young_modulus *= of_stress;
   scene.lower.young_modulus *= of_stress;
+  scene.friction.shear_strength *= of_stress;
+  if (scene.friction.kind == solver::FrictionKind::power)
+    scene.friction.coefficient *= std::pow(of_stress, 1.0 - scene.friction.exponent);
   for (std::size_t i = 0; i < scene.layer.values.size(); ++i) {
     const solver::LawParameter& parameter = scene.layer.kind->parameters[i];
     scene.layer.values[i] *=
@@ -143,6 +146,8 @@ std::string why_not(const Scene& scene, Variant variant) {
   if (variant == Variant::none || variant == Variant::two_threads) return "";
   if (scene.pressure == solver::PressureModel::file) return "the pressure comes from a file";
   if (variant == Variant::exchanged) return "";
+  if (!scene.friction.map.empty() && variant != Variant::in_other_units)
+    return "the friction is read on the grid's own axes";
   if (variant == Variant::shifted && acts_along_the_surface(scene)) return "moments are about the origin";
   if (variant == Variant::shifted && scene.pressure != solver::PressureModel::solved) {
     return "the given pressure stands at the origin";

@@ -39,6 +39,7 @@ constexpr double kWellAcross = 0.5 * static_cast<double>(kReferenceCells);
 /// The key whose file says the grid; null where it is free.
 const char* grid_owner(const Scene& scene) {
   if (solver::find_height_map(scene.surfaces) != nullptr) return "upper.file";
+  if (!scene.friction.map.empty()) return "contact.friction_map";
   return scene.pressure == solver::PressureModel::file ? "contact.pressure_file" : nullptr;
 }
 

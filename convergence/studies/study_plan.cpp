@@ -28,9 +28,9 @@ Mesh make_mesh(const Study& study, const solver::Scene& of_series, const std::ve
   solver::Scene scene = of_series;
   std::vector<std::string> own = overrides;
   if (across) {
-    if (solver::find_height_map(scene.surfaces) != nullptr) {
+    if (solver::find_height_map(scene.surfaces) != nullptr || !scene.friction.map.empty()) {
       throw solver::InputError(study.source.string(), "cells", std::to_string(*across),
-                               "left out: the grid is that of the scene's height map");
+                               "left out: the grid is that of the scene's height map or friction map");
     }
     own.push_back(cells_override(scene, *across));
     scene = solver::read_scene(study.scene, own);

@@ -135,7 +135,7 @@ void expect_the_same_state(const Oracle& a, const Oracle& b, double sign) {
     const double r = part * a.contact_radius;
     const double along = a.direction[0] * b.direction[0] + a.direction[1] * b.direction[1];  // 0: torsion
     EXPECT_NEAR(a.traction(r), sign * (along == 0.0 ? 1.0 : along) * b.traction(r),
-                kHistoryTolerance * b.friction * b.reference_pressure);
+                kHistoryTolerance * b.reference_bound);
   }
 }
 

@@ -152,7 +152,7 @@ CarriedByEllipse carried_by(const Oracle& oracle) {
           2.0 * std::numbers::pi / directions * (std::numbers::pi / 2 / points) * edge * std::cos(t) * r;
       const double pressure = oracle.pressure(oracle.radius(r * c, r * s));
       carried.load += area * pressure;
-      carried.limit += area * pressure * r * oracle.friction;
+      carried.limit += area * pressure * r * oracle.reference_bound / oracle.reference_pressure;
     }
   }
   return carried;

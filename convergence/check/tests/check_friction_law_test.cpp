@@ -1,0 +1,65 @@
+// Fields under laws of friction that do not follow the pressure, and fields under the wrong one of them.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "convergence/check/tests/checked_field.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using testing::HasSubstr;
+
+using Settings = std::vector<std::string>;
+
+const Settings kTresca{"contact.friction_law=tresca", "contact.shear_strength=1e8"};
+const Settings kCapped{"contact.friction_law=capped", "contact.shear_strength=1e8"};
+const Settings kPower{"contact.friction_law=power", "contact.friction=2000", "contact.friction_exponent=0.5"};
+
+solver::Scene under(Settings settings, int cells = 64, double ratio = 0.8) {
+  settings.push_back(fmt::format("load.moment_ratio={}", ratio));
+  return scene_of("paper", cells, settings);
+}
+
+TEST(CheckFrictionLaw, FindsRightFieldsGood) {
+  for (const Settings& settings : {kTresca, kCapped, kPower}) {
+    for (const double ratio : {0.3, 0.9}) {
+      const solver::Scene scene = under(settings, 64, ratio);
+      const Json result = find_good(solved(scene), scene);
+      EXPECT_TRUE(result["discrete"]["holds"].get<bool>());
+    }
+  }
+}
+
+TEST(CheckFrictionLaw, NamesTheLawThatWasUsed) {
+  find_bad(solved(under({})), under(kTresca), HasSubstr("Coulomb's law, with a coefficient of 0.1"));
+  find_bad(solved(under({})), under(kPower), HasSubstr("Coulomb's law, with a coefficient of 0.1"));
+  find_bad(solved(under(kTresca)), under({}), HasSubstr("Tresca's law, with a shear strength of 1e+08 Pa"));
+}
+
+TEST(CheckFrictionLaw, NamesAWrongStrength) {
+  Settings stronger = kTresca;
+  stronger.back() = "contact.shear_strength=1.1e8";
+  find_bad(solved(under(stronger)), under(kTresca),
+           HasSubstr("a friction 1.1 times that of the scene's law"));
+}
+
+TEST(CheckFrictionLaw, TakesAMap) {
+  const std::filesystem::path map = temporary_file("check_map.csv");
+  std::ofstream stream(map);
+  for (int i = 0; i < 32; ++i) {
+    for (int j = 0; j < 32; ++j) stream << (j > 0 ? "," : "") << (i < 16 ? 0.5 : 1.0);
+    stream << '\n';
+  }
+  stream.close();
+  const solver::Scene scene = under({fmt::format("contact.friction_map=\"{}\"", map.string())}, 32);
+  find_good(solved(scene), scene);
+  find_bad(solved(under({}, 32)), scene, HasSubstr("|q|"));
+}
+
+}  // namespace
+}  // namespace slipstick::convergence

@@ -1,0 +1,134 @@
+// Exact answers under laws of friction that do not follow the pressure: statics, Masing's rule, the solver's
+// convergence to them, and for which scenes there are none.
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "convergence/oracle/errors.hpp"
+#include "convergence/oracle/oracle.hpp"
+#include "convergence/oracle/tests/histories.hpp"
+#include "solver/solve.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using solver::FrictionKind;
+using solver::FrictionLaw;
+using solver::Scene;
+using solver::Step;
+using testing::HasSubstr;
+
+constexpr double kPeak = 2e9;  // Pa, about that of the paper's sphere
+
+FrictionLaw law_of(FrictionKind kind, double exponent = 1.0) {
+  FrictionLaw law = 0.1 * std::pow(kPeak, 1.0 - exponent);
+  law.kind = kind;
+  law.exponent = exponent;
+  law.shear_strength = 0.05 * kPeak;
+  return law;
+}
+
+const std::vector<FrictionLaw>& laws() {
+  static const std::vector<FrictionLaw> all{law_of(FrictionKind::tresca), law_of(FrictionKind::capped),
+                                            law_of(FrictionKind::power, 0.5),
+                                            law_of(FrictionKind::power, 2.0 / 3.0)};
+  return all;
+}
+
+Scene under(const FrictionLaw& law, double moment_ratio, const std::string& body = "paper") {
+  Scene scene = example(body);
+  scene.friction = law;
+  scene.steps.front().torsion = solver::MomentRatio{moment_ratio};
+  return scene;
+}
+
+TEST(FrictionLawOracle, TractionsCarryTheMomentWithinTheBound) {
+  for (const FrictionLaw& law : laws()) {
+    for (const double ratio : {0.2, 0.7, 0.97}) {
+      const OracleAnswer answer = find_oracle(under(law, ratio));
+      ASSERT_TRUE(answer.oracle) << answer.reason;
+      const Oracle& oracle = *answer.oracle;
+      EXPECT_NEAR(loads_carried_by(oracle).moment / oracle.moment_limit, ratio, 2e-6);
+      for (const double part : {0.01, 0.3, 0.6, 0.9, 0.99}) {
+        const double radius = part * oracle.contact_radius;
+        const double bound = law.bound(oracle.pressure(radius));
+        if (radius < oracle.stick_radius) {
+          EXPECT_LT(oracle.traction(radius), bound);
+        } else {
+          EXPECT_NEAR(oracle.traction(radius) / bound, 1.0, 1e-12);
+        }
+      }
+    }
+  }
+}
+
+/// A constant strength asks for no pressure: every axisymmetric contact of one radius turns alike.
+TEST(FrictionLawOracle, TrescasTwistIsThatOfTheRadiusAlone) {
+  const FrictionLaw law = law_of(FrictionKind::tresca);
+  const auto scaled = [&](const char* body) {
+    const Oracle oracle = find_oracle(under(law, 0.6, body)).oracle.value();
+    const double a = oracle.contact_radius;
+    EXPECT_NEAR(oracle.moment_limit / (2.0 * std::numbers::pi / 3.0 * law.shear_strength * a * a * a), 1.0,
+                1e-13);
+    return std::pair(oracle.twist_angle, oracle.stick_radius / a);
+  };
+  const auto [twist, stick] = scaled("paper");
+  for (const char* body : {"cone", "flat_punch", "rounded_punch"}) {
+    EXPECT_NEAR(scaled(body).first / twist, 1.0, 1e-12) << body;
+    EXPECT_NEAR(scaled(body).second / stick, 1.0, 1e-12) << body;
+  }
+}
+
+/// After m1 and back to m2 the twist is phi(m1) - 2 phi((m1 - m2)/2).
+TEST(FrictionLawOracle, FollowsMasingsRule) {
+  for (const FrictionLaw& law : laws()) {
+    const Scene scene = twisted(under(law, 0.8), {0.8, -0.4});
+    const auto history = exact_history(scene);
+    history->advance(scene.steps[0]);
+    const Oracle back = history->advance(scene.steps[1]).oracle.value();
+    const auto first_loading = [&](double ratio) {
+      return find_oracle(under(law, ratio)).oracle->twist_angle;
+    };
+    const double expected = first_loading(0.8) - 2.0 * first_loading(0.6);
+    EXPECT_NEAR(back.twist_angle / expected, 1.0, 1e-12);
+  }
+}
+
+/// The solver's twist at a part of its own limit, and its stick radius; order one at least.
+TEST(FrictionLawOracle, IsTheLimitOfTheSolver) {
+  for (const FrictionLaw& law : laws()) {
+    const auto error = [&](solver::Index cells) {
+      Scene scene = under(law, 0.7);
+      scene.cells = {cells, cells};
+      return compare(solver::solve(scene), *find_oracle(scene).oracle);
+    };
+    const Errors coarse = error(32);
+    const Errors fine = error(128);
+    EXPECT_LE(std::abs(fine.twist), 5e-4);
+    EXPECT_LE(std::abs(fine.twist), std::abs(coarse.twist) / 2.0);
+    EXPECT_LE(std::abs(fine.stick_radius), 5e-3);
+    EXPECT_LE(std::abs(fine.moment_limit), 1e-2);
+    EXPECT_LE(fine.traction.at_centres.l1, coarse.traction.at_centres.l1 / 2.0);
+  }
+}
+
+TEST(FrictionLawOracle, SaysWhereThereIsNone) {
+  const auto reason = [](const Scene& scene) { return find_oracle(scene).reason; };
+  EXPECT_THAT(reason(under(law_of(FrictionKind::capped), 0.5, "cone")),
+              HasSubstr("friction_law = \"capped\""));
+  EXPECT_THAT(reason(under(law_of(FrictionKind::tresca), 0.5, "ellipse")),
+              HasSubstr("friction_law = \"tresca\""));
+  Scene mapped = under(0.1, 0.5);
+  mapped.friction.map = "map.csv";
+  EXPECT_THAT(reason(mapped), HasSubstr("contact.friction_map"));
+  Scene force = without_contraction(under(law_of(FrictionKind::tresca), 0.0));
+  force.steps.front().force = {10.0, 0.0};
+  EXPECT_THAT(reason(force), HasSubstr("Coulomb's law"));
+}
+
+}  // namespace
+}  // namespace slipstick::convergence
