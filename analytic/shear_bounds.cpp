@@ -113,14 +113,15 @@ class BoundUnderHertz final : public Profile {
     double exponent;
 
     /// The sum over all discs larger than the stick area, of f(disc, cosine) p_c^power, where p = p_c sin(t)
-    /// and cosine = cos(t): the square root at their least, p = p_c, is gone. Panels halve towards t = 0,
+    /// and cosine = cos(t): the square root at their least, p = p_c, is gone. Panels shrink towards t = 0,
     /// where the measure goes like t^(n - 1) and all else like a constant and t^2; near t = pi/2 they grow
     /// with the distance from there and from where f is singular, at p_c cos(t) = +-i pole.
     template <class Function>
     double sum(StickRadius c, double pole, double power, const Function& f) const {
       constexpr double kMiddle = 1;
       constexpr double kFirst = 0x1p-30;  // its square is no part of the sum
-      constexpr double kReach = 0.7;
+      constexpr double kGrowth = 5;       // 20 points follow t^(n - 1) so far to all digits
+      constexpr double kReach = 2;
       const double at_front = std::sqrt(c.complement * (1 + c.ratio));  // p_c
       const double highest = std::min(at_front, cap);
       const double beyond = std::sqrt((at_front - highest) * (at_front + highest));
@@ -133,7 +134,7 @@ class BoundUnderHertz final : public Profile {
       const double first = kFirst * end;
       double total = at(first, 1) * first / exponent;
       for (double low = first, high = 0; low < end; low = high) {
-        high = std::min(end, 2 * low);
+        high = std::min(end, kGrowth * low);
         total += gsl::gauss_legendre([&](double t) { return at(std::sin(t), std::cos(t)); }, low, high);
       }
       for (double low = std::atan2(beyond, highest), high = 0; low < pi / 2 - kMiddle; low = high) {
