@@ -13,6 +13,8 @@ LAWS = {"equation_7": ("Eq. (7)", dict(color=style.VERMILION, linestyle="--")),
         "small_moments": ("small moments", dict(color=style.PURPLE, linestyle="-.")),
         "no_slip": ("no slip", dict(color=style.BLUE, linestyle="--")),
         "dem": ("discrete elements (DEM)", dict(color=style.SKY, linewidth=4, zorder=1.5))}
+FRICTIONS = {"coulomb": ("Coulomb", style.BLACK), "tresca": ("strength", style.VERMILION), "capped": ("capped", style.BLUE),
+             "power": ("square root", style.GREEN)}
 BODIES = {"hertz": ("sphere", style.BLACK), "cone": ("cone", style.VERMILION),
           "flat_punch": ("flat punch", style.BLUE)}
 
@@ -106,6 +108,42 @@ def computed_cycle(report, data_dir):
         "their distance from it, step by step, on a log scale.", figure,
         [("largest distance, over the largest twist", sci(error.max())), ("steps", str(len(error))),
          ("energy lost in the last step, J", sci(number(table[-1], "dissipated")))])
+
+
+def friction_laws(report, data_dir):
+    """Tractions along the radius under each law, computed beside exact, and the errors of twists by mesh."""
+    figure, (left, right) = style.panels(1, 2, 4.0)
+    numbers = []
+    for entry in rows(report, "beyond"):
+        name, table = text(entry, "name"), rows(entry, "rows")
+        label, colour = FRICTIONS.get(name, (name, style.PURPLE))
+        points = sorted(rows(entry, "profile"), key=lambda point: number(point, "radius"))
+        radius = column(points, "radius")
+        left.plot(radius, column(points, "exact"), color=colour, label=style.verbatim(label))
+        every = max(1, len(radius) // 30)
+        left.plot(radius[::every], column(points, "value")[::every], "o", color=colour, markersize=4)
+        cells = np.array([row["cells"][0] for row in table])
+        right.loglog(cells, np.abs(column(table, "twist_error")), "o-", color=colour)
+        right.loglog(cells, np.abs(column(table, "moment_limit_error")), "s:", color=colour, markersize=4)
+        numbers.append((f"{escape(label)}: twist, limit moment off at {cells[-1]} cells",
+                        "{}, {}".format(*(sci(abs(number(table[-1], key))) for key in ("twist_error", "moment_limit_error")))))
+    left.plot([], [], "o", color=style.GREY, label="computed")
+    right.plot([], [], "o-", color=style.GREY, label="twist")
+    right.plot([], [], "s:", color=style.GREY, label="limit moment")
+    left.set(xlabel="radius $r/a$", ylabel="traction over the bound’s reference", xlim=(0, 1), ylim=(0, None))
+    right.set(xlabel="cells a side", ylabel="relative error")
+    right.set_xticks(cells, [f"{count}" for count in cells])
+    right.minorticks_off()
+    style.legend_on_top(figure, [handle for axis in (left, right) for handle in axis.get_legend_handles_labels()[0]], 4)
+    return FigureEntry(
+        "Friction need not be μp: the exact solution and the solver take any bound of the traction.",
+        "The paper’s sphere at 0.7 of each limit moment. <em>Coulomb</em>: μp. <em>Strength</em>: the same shear strength "
+        "wherever the bodies touch (Tresca). <em>Capped</em>: μp, and no more than a strength. <em>Square root</em>: in "
+        "proportion to √p. Tractions are over μp₀, the strength, μp₀, and the bound at the centre. A strength acts in all of each "
+        "cell that the contact’s edge cuts, so its limit moment is of first order; the twist at a part of that limit is not.",
+        "Left, tractions against radius under four laws, computed points on exact curves, which rise from zero on the axis to "
+        "the stick radius and follow each law beyond. Right, errors of twist and limit moment against cells on log-log axes.",
+        figure, numbers)
 
 
 def _draw_bodies(axis, bodies):

@@ -66,6 +66,22 @@ struct MeshPoint {
 
 std::string fields_file(double moment_ratio) { return fmt::format("fields-{}.h5", moment_ratio); }
 
+/// What the paper's sphere may have besides, as users set it.
+struct Beyond {
+  const char* name;
+  std::vector<std::string> overrides;
+};
+
+const std::vector<Beyond>& beyond_the_paper() {
+  static const std::vector<Beyond> all{
+      {"coulomb", {}},
+      {"tresca", {"contact.friction_law=tresca", "contact.shear_strength=1.2e8"}},
+      {"capped", {"contact.friction_law=capped", "contact.shear_strength=8e7"}},
+      {"power", {"contact.friction_law=power", "contact.friction=2000", "contact.friction_exponent=0.5"}}};
+  return all;
+}
+constexpr double kBeyondRatio = 0.7;
+
 /// The runs of the page by its sections.
 using Sections = std::map<std::string, std::vector<RunSpec>>;
 
@@ -95,6 +111,14 @@ Sections page_runs(const fs::path& scene, const fs::path& scenes, const Validati
       runs["ellipse"].push_back({.scene = scenes / "ellipse.toml",
                                  .overrides = {fmt::format("grid.cells=[{},{}]", cells, cells / 2),
                                                MeshPoint::method_override(method)}});
+    }
+  }
+  for (const Beyond& beyond : beyond_the_paper()) {
+    for (const Index cells : size.mesh_cells) {
+      add(beyond.name, {cells, "solved", kBeyondRatio});
+      RunSpec& run = runs[beyond.name].back();
+      run.overrides.insert(run.overrides.end(), beyond.overrides.begin(), beyond.overrides.end());
+      run.profile = cells == size.mesh_cells.back();
     }
   }
   add("errata", {size.loading_cells, "solved", kMethodsRatio, "paper"});
@@ -154,6 +178,19 @@ Json cycle(const Json& result) {
                     {"dissipated", step["dissipated"]}});
   }
   return {{"cells", result["cells"]}, {"rows", std::move(rows)}};
+}
+
+/// One of beyond_the_paper(): errors by mesh, and the finest mesh's tractions along the radius.
+Json beyond(const char* name, const std::vector<Json>& results) {
+  Json rows = Json::array();
+  for (const Json& result : results) {
+    Json& row = rows.emplace_back();
+    for (const char* key : {"cells", "twist_error", "moment_limit_error", "stick_radius_error",
+                            "traction_error", "operator_applications", "certificate"}) {
+      row[key] = result[key];
+    }
+  }
+  return {{"name", name}, {"rows", std::move(rows)}, {"profile", results.back()["profile"]}};
 }
 
 /// The rows of one method.
@@ -276,6 +313,9 @@ Json validate(const Validation& asked, const fs::path& folder, const ProcessPool
   paper["errata"] = errata(results.at("errata").front(), by_method(paper["ellipse"], "paper"));
   paper["hard"] = hard_results(inputs / "hard", size.hard_step, pool);
   paper["cycle"] = cycle(results.at("cycle").front());
+  for (const auto& [name, overrides] : beyond_the_paper()) {
+    paper["beyond"].push_back(beyond(name, results.at(name)));
+  }
   paper["peers"] = judge_peers(inputs);
   paper["literature"] = literature(inputs / "literature", size.gates, pool);
   if (size.gates) paper["gates"] = gates_json(run_gates(read_gates(inputs / "gates" / "quick.toml"), pool));

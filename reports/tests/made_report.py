@@ -124,6 +124,9 @@ def small_paper():
         "hard": hard(),
         "cycle": {"cells": [4, 4], "rows": [{"moment_ratio": x, "twist": 1.01 * twist, "exact": twist, "dissipated": 0.1}
                                             for x, twist in ((0.8, 0.4), (0.0, 0.1), (-0.8, -0.4))]},
+        "beyond": [{"name": name, "profile": [{"radius": x, "value": 0.9 * x, "exact": x} for x in (0.8, 0.1, 0.5)],
+                    "rows": [{"cells": [cells, cells], "twist_error": -0.1 / cells**2, "moment_limit_error": 0.5 / cells}
+                             for cells in (4, 8)]} for name in ("coulomb", "tresca")],
         "peers": [peer("ONE", "good", 0.1), peer("TWO", "bad", 30.0)],
         "gates": {"gates": [{"id": "a-gate", "outcome": "passed", "quantity": "twist_error", "value": 1e-5, "factor": 0.5,
                              "reason": "it <matters>"}]},

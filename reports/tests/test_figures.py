@@ -11,6 +11,7 @@ import hard_cases
 import method_figures
 import peers_figure
 import results
+from wording import sci
 
 
 class OneFigure(Folder):
@@ -130,6 +131,12 @@ class OneFigure(Folder):
         errors = [line.get_ydata() for line in right.lines if len(line.get_xdata()) == len(loads)]
         np.testing.assert_allclose(errors[0], [np.nan, *(0.2 * load for load in loads[1:])])  # no zero on a log scale
         self.assertEqual(right.get_yscale(), "log")
+
+    def test_friction_laws_in_numbers(self):
+        entry = exact_figures.friction_laws(self.report, self.folder)
+        self.assertEqual([label for label, _ in entry.numbers],
+                         ["Coulomb: twist, limit moment off at 8 cells", "strength: twist, limit moment off at 8 cells"])
+        self.assertEqual(entry.numbers[0][1], f"{sci(0.1 / 64)}, {sci(0.5 / 8)}")
 
     def test_bodies_and_cycles_in_numbers(self):
         entry = exact_figures.bodies_and_cycles(self.report, self.folder)
