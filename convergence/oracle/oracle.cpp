@@ -37,6 +37,10 @@ std::string obstacle(const solver::Scene& scene) {
   if (scene.layer.kind != nullptr) {
     return fmt::format("no exact solution is known here for layer.kind = \"{}\"", scene.layer.kind->word);
   }
+  if (is_coated(scene)) {
+    return fmt::format("no exact solution is known here for a layer on a body ([{}.layer])",
+                       scene.lower.coating ? "lower" : "upper");
+  }
   if (scene.pressure == solver::PressureModel::file) return "the pressure comes from a file";
   if (scene.ends_at_grid_edge) return "the body may end at the grid's edge (upper.ends_at_grid_edge)";
   if (!(scene.friction > 0.0)) return "without friction there is no traction";

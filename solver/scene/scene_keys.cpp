@@ -77,7 +77,11 @@ void add_body(SettingKeys& keys, const std::string& table) {
       {at + "rigid", KeyType::flag, "", "false", kAny,
        "Whether the body is rigid: then it has neither of the next two keys. One body may be."},
       {at + "young_modulus", kNumber, "Pa", kRequired, kPositive, "Young's modulus."},
-      {at + "poisson_ratio", kNumber, "", kRequired, kPoisson, "Poisson's ratio."}};
+      {at + "poisson_ratio", kNumber, "", kRequired, kPoisson, "Poisson's ratio."},
+      {at + "layer.thickness", kNumber, "m", kRequired, kPositive,
+       "Thickness of the layer that is bonded to the body."},
+      {at + "layer.young_modulus", kNumber, "Pa", kRequired, kPositive, "Young's modulus of that layer."},
+      {at + "layer.poisson_ratio", kNumber, "", kRequired, kPoisson, "Poisson's ratio of that layer."}};
   keys.insert(keys.end(), body.begin(), body.end());
 }
 

@@ -43,6 +43,7 @@ std::string scene_with(const std::string& shape, bool several) {
          (shape == "height_map" ? "" : "extent = [1, 1]\n");
 }
 
+const std::string kCoating = "thickness = 1\nyoung_modulus = 1\npoisson_ratio = 0.3\n";
 const std::string kLayer = "[layer]\nkind = \"winkler\"\nnormal_compliance = 1\ntangential_compliance = 1\n";
 
 /// A value that the type has not, and the end of the message about it.
@@ -92,7 +93,10 @@ class SceneKeys : public SceneFile {
     std::string name = key.name;
     if (several && key.name != "upper.combine") name.replace(0, 12, "upper.shape[1].");
     if (name.starts_with("step.")) name.replace(0, 5, "step[0].");
-    const std::string text = scene_with(shape, several) + (key.name.starts_with("layer.") ? kLayer : "");
+    std::string text = scene_with(shape, several) + (key.name.starts_with("layer.") ? kLayer : "");
+    for (const std::string table : {"upper.layer", "lower.layer"}) {
+      if (key.name.starts_with(table + ".")) text += "[" + table + "]\n" + kCoating;
+    }
     return complaint([&] { read_scene(write("scene.toml", text), {name + "=" + wrong_for(key).value}); });
   }
 };
