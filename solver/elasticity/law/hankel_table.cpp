@@ -9,6 +9,7 @@
 #include <complex>
 #include <cstdint>
 #include <numbers>
+#include <numeric>
 
 namespace slipstick::solver {
 namespace {
@@ -81,32 +82,39 @@ Series series_of(const std::array<int, HankelTable::kTerms>& orders,
   return series;
 }
 
-/// Values at Chebyshev's nodes in [-1, 1], in turn, to the coefficients of powers.
+/// Values at Chebyshev's nodes in [-1, 1] to Chebyshev's coefficients, which fall fast, and these to those of
+/// powers: at once, the first would lose what the second gains.
 template <std::size_t n>
 struct Interpolation {
-  std::array<double, n> node{};
-  std::array<std::array<double, n>, n> power_by_value{};
+  using Row = std::array<double, n>;
+  Row node{};
+  std::array<Row, n> weight{};      ///< of each value in each of Chebyshev's coefficients
+  std::array<Row, n> polynomial{};  ///< Chebyshev's, lowest power first
 
   Interpolation() {
-    for (std::size_t j = 0; j < n; ++j) {
-      node[j] = std::cos(kPi * (static_cast<double>(j) + 0.5) / static_cast<double>(n));
-    }
-    std::array<double, n> before{};
-    std::array<double, n> polynomial{1.0};  // Chebyshev's, of degree k
     for (std::size_t k = 0; k < n; ++k) {
+      const double factor = k == 0 ? 1.0 : 2.0;
       for (std::size_t j = 0; j < n; ++j) {
-        const double angle = kPi * static_cast<double>(k) * (static_cast<double>(j) + 0.5);
-        const double weight =
-            (k == 0 ? 1.0 : 2.0) / static_cast<double>(n) * std::cos(angle / static_cast<double>(n));
-        for (std::size_t i = 0; i < n; ++i) power_by_value[i][j] += weight * polynomial[i];
+        const double angle = kPi * (static_cast<double>(j) + 0.5) / static_cast<double>(n);
+        node[j] = std::cos(angle);
+        weight[k][j] = factor / static_cast<double>(n) * std::cos(static_cast<double>(k) * angle);
       }
-      std::array<double, n> next{};
-      for (std::size_t i = 0; i < n; ++i) {
-        next[i] = (i == 0 ? 0.0 : (k == 0 ? 1.0 : 2.0) * polynomial[i - 1]) - before[i];
-      }
-      before = polynomial;
-      polynomial = next;
     }
+    polynomial[0][0] = polynomial[1][1] = 1.0;
+    for (std::size_t k = 2; k < n; ++k) {
+      for (std::size_t i = 0; i < n; ++i) {
+        polynomial[k][i] = (i == 0 ? 0.0 : 2.0 * polynomial[k - 1][i - 1]) - polynomial[k - 2][i];
+      }
+    }
+  }
+
+  Row powers(const Row& values) const {
+    Row sum{};
+    for (std::size_t k = 0; k < n; ++k) {
+      const double c = std::inner_product(values.begin(), values.end(), weight[k].begin(), 0.0);
+      for (std::size_t i = 0; i < n; ++i) sum[i] += c * polynomial[k][i];
+    }
+    return sum;
   }
 };
 
@@ -121,16 +129,14 @@ HankelTable::HankelTable(const std::array<int, kTerms>& orders,
     const double begin = interval == 0 ? 0.0 : end / std::numbers::sqrt2;
     middle_.push_back(0.5 * (begin + end));
     over_half_width_.push_back(2.0 / (end - begin));
-    std::array<Values, kCoefficients> at_node;
-    for (std::size_t j = 0; j < at_node.size(); ++j) {
-      at_node[j] = series.at(middle_.back() + interpolation.node[j] / over_half_width_.back());
+    std::array<std::array<double, kCoefficients>, kTerms> values;
+    for (std::size_t j = 0; j < kCoefficients; ++j) {
+      const Values at_node = series.at(middle_.back() + interpolation.node[j] / over_half_width_.back());
+      for (std::size_t term = 0; term < kTerms; ++term) values[term][j] = at_node[term];
     }
-    for (std::size_t term = 0; term < kTerms; ++term) {
-      for (const auto& by_value : interpolation.power_by_value) {
-        double sum = 0.0;
-        for (std::size_t j = 0; j < at_node.size(); ++j) sum += by_value[j] * at_node[j][term];
-        coefficients_.push_back(sum);
-      }
+    for (const auto& of_term : values) {
+      const auto powers = interpolation.powers(of_term);
+      coefficients_.insert(coefficients_.end(), powers.begin(), powers.end());
     }
   }
 }
