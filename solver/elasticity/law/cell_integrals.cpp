@@ -1,11 +1,10 @@
 #include "solver/elasticity/law/cell_integrals.hpp"
 
-#include <gsl/gsl_integration.h>
-
 #include <algorithm>
 #include <cmath>
-#include <memory>
 #include <vector>
+
+#include "solver/elasticity/law/gauss_rule.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -13,26 +12,6 @@ namespace {
 /// Up to this many cells off, the closed form is used: it has lost at most a few eps there.
 constexpr double kClosedFormOffset = 2.5;
 constexpr int kMaxPoints = 10;
-
-struct GaussRule {
-  std::vector<double> node;  // in (-1/2, 1/2)
-  std::vector<double> weight;
-};
-
-GaussRule make_gauss_rule(int points) {
-  const std::unique_ptr<gsl_integration_glfixed_table, decltype(&gsl_integration_glfixed_table_free)> table(
-      gsl_integration_glfixed_table_alloc(static_cast<std::size_t>(points)),
-      gsl_integration_glfixed_table_free);
-  GaussRule rule;
-  for (int i = 0; i < points; ++i) {
-    double node = 0.0;
-    double weight = 0.0;
-    gsl_integration_glfixed_point(-0.5, 0.5, static_cast<std::size_t>(i), &node, &weight, table.get());
-    rule.node.push_back(node);
-    rule.weight.push_back(weight);
-  }
-  return rule;
-}
 
 /// On a cell `offset` cells away the integrand is analytic inside a Bernstein ellipse whose half-axes sum to
 /// about 4 offset - 2, so n points leave (4 offset - 2)^(-2n). (Trefethen, SIAM Review 50, 2008,
