@@ -55,4 +55,17 @@ const ChebyshevSeries& ChebyshevPanels::at(double x) const {
   return *above;
 }
 
+ChebyshevPanels ChebyshevPanels::derivative() const {
+  ChebyshevPanels result = *this;
+  for (ChebyshevSeries& panel : result.panels_) panel = panel.derivative();
+  return result;
+}
+
+std::vector<double> squared_ends(double radius, double detail) {
+  const double panels = std::ceil(radius / (2 * detail));
+  std::vector<double> ends{0};
+  for (double i = 1; i <= panels; ++i) ends.push_back(radius * radius * (i / panels) * (i / panels));
+  return ends;
+}
+
 }  // namespace slipstick::analytic::layered

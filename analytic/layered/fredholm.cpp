@@ -60,15 +60,6 @@ double kernel(const CosineTransform& transform, Parity parity, double t, double 
   return transform(t - s) + (parity == Parity::even ? mirrored : -mirrored);
 }
 
-/// The function is analytic up to 2 h off the real axis: n terms leave exp(-4 n h/radius), or less on a short
-/// radius, where the first ones are enough.
-std::size_t terms_for(const CosineTransform& transform, double radius) {
-  constexpr double kFirst = 20;
-  constexpr double kPerThickness = 9;
-  return static_cast<std::size_t>(
-      std::ceil(transform.resolution() * (kFirst + kPerThickness * radius / transform.thickness())));
-}
-
 double Solution::operator()(double t) const {
   double value = right_side(t);
   for (const Node& node : nodes) value -= node.weight * kernel(*transform, parity, t, node.t) * node.value;

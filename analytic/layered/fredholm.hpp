@@ -55,9 +55,6 @@ class Solution {
 
 double kernel(const CosineTransform& transform, Parity parity, double t, double s);
 
-/// Terms of a polynomial in t^2 that resolve an even function of the layer's scale on [0, radius].
-std::size_t terms_for(const CosineTransform& transform, double radius);
-
 /// By Nystroem's method with Gauss's points, one solution for each right side.
 std::vector<Solution> solve_fredholm(const std::shared_ptr<const CosineTransform>& transform, Parity parity,
                                      double radius,

@@ -21,7 +21,7 @@ using std::numbers::pi;
 /// Contact radius over the thickness, beyond which matrices and tables become large.
 constexpr double kThinnest = 150;
 /// A second answer has this factor of the points.
-constexpr double kCoarse = 0.8;
+constexpr double kCoarse = 0.9;
 
 void require_positive(const char* name, double value) {
   if (!(value > 0 && std::isfinite(value)))
@@ -72,13 +72,13 @@ struct PressedRadius {
 LayeredContact contact_of(double load, double contact_radius, double approach, const PressedRadius& pressed,
                           const Pair& pair, bool sphere, double resolution) {
   const double a = contact_radius;
-  const CosineTransform& transform = *pressed.solutions[0].transform;
   // The mean pressure is 1: psi over a has the integral 1/2.
   const double scale = a / (2 * pressed.integral());
-  const ChebyshevSeries psi([&](double y) { return scale * pressed.psi(a * std::sqrt(y)); }, 0, 1,
-                            terms_for(transform, a));
-  const ChebyshevSeries slope = psi.derivative();
-  const ChebyshevSeries weight([&](double y) { return -2 * slope(y); }, 0, 1, psi.terms());
+  const std::vector<double> ends = squared_ends(1, pair.thickness() / a);
+  const auto terms = static_cast<std::size_t>(kTerms * resolution);
+  const ChebyshevPanels psi([&](double y) { return scale * pressed.psi(a * std::sqrt(y)); }, ends, terms);
+  const ChebyshevPanels slope = psi.derivative();
+  const ChebyshevPanels weight([&](double y) { return -2 * slope(y); }, ends, terms);
   const PressureIntegrals pressure(weight, sphere ? 0 : scale * pressed.psi(a), pair.thickness() / a,
                                    resolution);
   return {
@@ -138,7 +138,7 @@ LayeredContact flat_contact(double load, double radius, const Pair& pair, double
 /// added, which are positive.
 void require_one_ring(const Profile& profile) {
   constexpr int kRadii = 64;
-  constexpr int kSticks = 8;
+  constexpr int kSticks = 6;
   for (int i = 0; i < kRadii; ++i) {
     const double r = static_cast<double>(i) / kRadii;
     const double pressure = profile.pressure(r);
@@ -189,7 +189,7 @@ LayeredContact press_flat_punch(double load, double radius, const Pair& pair) {
 std::unique_ptr<const Profile> under_hertz_pressure(double contact_radius, const Pair& pair) {
   require_positive("contact radius", contact_radius);
   require_resolved(contact_radius, pair);
-  const PressureIntegrals hertz(ChebyshevSeries(one, 0, 1, 1), 0, pair.thickness() / contact_radius, 1);
+  const PressureIntegrals hertz(ChebyshevPanels(one, {0, 1}, 1), 0, pair.thickness() / contact_radius, 1);
   return layered_profile("coated_hertz", "peak pressure", hertz,
                          torsional_transform(pair, contact_radius, 1));
 }

@@ -6,6 +6,8 @@
 #include <mutex>
 #include <numbers>
 #include <optional>
+#include <utility>
+#include <vector>
 
 #include "analytic/layered/panel_rule.hpp"
 
@@ -20,97 +22,104 @@ class Stick {
  public:
   Stick(const PressureIntegrals& pressure, const std::shared_ptr<const CosineTransform>& torsion,
         StickRadius c)
-      : c_(c),
+      : torsion_(torsion),
+        c_(c),
         h_(pressure.integral(c)),
         ring_(pressure.beyond(c)),
-        rule_(torsion->thickness() / c.ratio, torsion->resolution()) {
-    const auto unit_twist = [](double t) { return 4 / pi * t; };
-    const auto source = [&](double t) {
-      double sum = 0;
-      for (const auto& node : ring_)
-        sum += node.weight * kernel(*torsion, Parity::odd, t, node.s.ratio) * node.s.ratio * node.integral;
-      return 2 / pi * (sum + h_ * core(*torsion, t));
-    };
-    const auto solutions = solve_fredholm(torsion, Parity::odd, c.ratio, {unit_twist, source});
-    const Solution& bonded = solutions[0];
-    const Solution& forced = solutions[1];
+        rule_(torsion->thickness() / c.ratio, torsion->resolution()),
+        solutions_(
+            solve_fredholm(torsion, Parity::odd, c.ratio,
+                           {[](double t) { return 4 / pi * t; }, [this](double t) { return moved(t); }})),
+        turn_(solutions_[1](c.ratio) / solutions_[0](c.ratio)) {
     const auto arm = [](double t) { return t; };
-    const double at_front = bonded(c.ratio);
-    const double turn = forced(c.ratio) / at_front;  // beyond the half-space's twist
-    twist_ = h_ / 2 + turn;
-    stiffness_ = 4 * pi * bonded.integral(arm);
-    extra_moment_ = 4 * pi * (turn * bonded.integral(arm) - forced.integral(arm));
-    z_.emplace(
-        [&](double y) {
-          const double t = std::sqrt(y);
-          return (turn * bonded(t) - forced(t)) / t;
-        },
-        0, c.ratio * c.ratio, terms_for(*torsion, c.ratio));
-    z_slope_.emplace(z_->derivative());
-    const double y_slope = 2 * c.ratio * c.ratio * (*z_slope_)(c.ratio * c.ratio);
-    twist_slope_ = (2 / pi * c.ratio * pressure.slope(c) + y_slope) / at_front;
-    for (const auto& node : pressure.within(c))
-      deficit_ += 8 * node.weight * node.s.ratio * node.s.ratio * (node.integral - h_);
+    stiffness_ = 4 * pi * solutions_[0].integral(arm);
+    const double extra = turn_ * stiffness_ - 4 * pi * solutions_[1].integral(arm);
+    twist_slope_ = (2 / pi * c.ratio * pressure.slope(c) + slope_at_front()) / solutions_[0](c.ratio);
+    moment_ = 8.0 / 3 * c.ratio * c.ratio * c.ratio * h_ + extra;
+    for (const auto& node : ring_) moment_ += 8 * node.weight * node.s.ratio * node.s.ratio * node.integral;
     // Within the least of the radii H is a logarithm and a constant.
     const double least = std::min(c.ratio, PressureIntegrals::kSmallest);
     const double log = pressure.integral({least, 1 - least}) - h_;
-    deficit_ += 8.0 / 3 * least * least * least * (log + pressure.pressure(0) / 3) - extra_moment_;
-    moment_ = 8.0 / 3 * c.ratio * c.ratio * c.ratio * h_ + extra_moment_;
-    for (const auto& node : ring_) moment_ += 8 * node.weight * node.s.ratio * node.s.ratio * node.integral;
-    front_.emplace(
-        [&](double y) {
-          const double inside = (c.ratio * c.ratio - y);
-          return -2 * rule_([&](double t) { return (*z_slope_)(y + inside * t * t); });
-        },
-        0, c.ratio * c.ratio, z_->terms());
+    deficit_ = 8.0 / 3 * least * least * least * (log + pressure.pressure(0) / 3) - extra;
+    for (const auto& node : pressure.within(c))
+      deficit_ += 8 * node.weight * node.s.ratio * node.s.ratio * (node.integral - h_);
   }
 
-  double twist() const { return twist_; }              ///< G phi/mu
+  double twist() const { return h_ / 2 + turn_; }      ///< G phi/mu
   double twist_slope() const { return twist_slope_; }  ///< -d twist/dc
   double moment() const { return moment_; }
-  double deficit() const { return deficit_; }
+  double deficit() const { return deficit_; }  ///< of the limit moment
   double stiffness() const { return stiffness_; }
 
-  /// The correction's part of q at r < c.
+  /// The correction's part of q at r < c, -r integral_r^c 2 t z'(t^2)/sqrt(t^2 - r^2) dt.
   double traction(double radius, double inward) const {
+    std::call_once(once_, [&] { front_.emplace(front()); });
     return radius * std::sqrt(inward * (c_.ratio + radius)) * (*front_)(radius * radius);
   }
 
-  /// Energy lost in a first loading, pi^2 integral_c^1 chi v dt: v = (4/pi) twist t - chi - K chi is what the
-  /// slip's transform is.
-  double energy_lost(const CosineTransform& torsion) const {
+  /// Energy lost in a first loading, pi^2 integral_c^1 chi v dt with v = (4/pi) twist t - chi - K chi.
+  double energy_lost() const {
     double sum = 0;
     for (const auto& at : ring_) {
       const double t = at.s.ratio;
-      double moved = h_ * core(torsion, t);
-      for (const auto& node : ring_)
-        moved += node.weight * kernel(torsion, Parity::odd, t, node.s.ratio) * node.s.ratio * node.integral;
-      moved *= 2 / pi;
-      moved +=
-          rule_([&](double s) { return kernel(torsion, Parity::odd, t, s) * s * (*z_)(s * s); }, c_.ratio);
+      double lag = 4 / pi * twist() * t - moved(t);
+      for (std::size_t i = 0; i < solutions_[0].nodes.size(); ++i) {
+        const auto& [s, weight, bonded] = solutions_[0].nodes[i];
+        const double y = turn_ * bonded - solutions_[1].nodes[i].value;
+        lag -= weight * kernel(*torsion_, Parity::odd, t, s) * y;
+      }
       const double chi = 2 / pi * t * at.integral;
-      sum += at.weight * chi * (4 / pi * twist_ * t - chi - moved);
+      sum += at.weight * chi * (lag - chi);
     }
     return pi * pi * sum;
   }
 
  private:
-  /// integral_0^c K(t, s) s ds.
-  double core(const CosineTransform& torsion, double t) const {
-    return rule_([&](double s) { return kernel(torsion, Parity::odd, t, s) * s; }, c_.ratio);
+  /// integral_0^1 K(t, s) chi(s) ds of the half-space's chi.
+  double moved(double t) const {
+    double sum = h_ * rule_([&](double s) { return kernel(*torsion_, Parity::odd, t, s) * s; }, c_.ratio);
+    for (const auto& node : ring_)
+      sum += node.weight * kernel(*torsion_, Parity::odd, t, node.s.ratio) * node.s.ratio * node.integral;
+    return 2 / pi * sum;
   }
 
+  ChebyshevPanels z(const std::vector<double>& ends) const {
+    return {[&](double square) {
+              const double t = std::sqrt(square);
+              return (turn_ * solutions_[0](t) - solutions_[1](t)) / t;
+            },
+            ends, static_cast<std::size_t>(kTerms * torsion_->resolution())};
+  }
+
+  /// y'(c) = 2 c^2 z'(c^2), since z(c^2) = 0.
+  double slope_at_front() const {
+    const std::vector<double> ends = squared_ends(c_.ratio, torsion_->thickness());
+    return 2 * ends.back() * z({*(ends.end() - 2), ends.back()}).derivative()(ends.back());
+  }
+
+  ChebyshevPanels front() const {
+    const std::vector<double> ends = squared_ends(c_.ratio, torsion_->thickness());
+    const ChebyshevPanels slope = z(ends).derivative();
+    return {[&](double y) {
+              const double inside = ends.back() - y;
+              return -2 * rule_([&](double t) { return slope(y + inside * t * t); });
+            },
+            ends, static_cast<std::size_t>(kTerms * torsion_->resolution())};
+  }
+
+  std::shared_ptr<const CosineTransform> torsion_;
   StickRadius c_;
   double h_;
   std::vector<PressureIntegrals::Node> ring_;
   PanelRule rule_;
-  double twist_ = 0;
+  std::vector<Solution> solutions_;  // of a unit twist, and of what the half-space's chi moves
+  double turn_;                      // twist beyond the half-space's
   double twist_slope_ = 0;
   double stiffness_ = 0;
-  double extra_moment_ = 0;
   double moment_ = 0;
   double deficit_ = 0;
-  std::optional<ChebyshevSeries> z_, z_slope_, front_;
+  mutable std::once_flag once_;
+  mutable std::optional<ChebyshevPanels> front_;
 };
 
 class LayeredProfile final : public Profile {
@@ -143,7 +152,7 @@ class LayeredProfile final : public Profile {
   std::optional<SlipPart> slip_part(StickRadius c) const override {
     const auto state = stick(c);
     return SlipPart{.twist = (state->twist() - state->moment() / bonded_stiffness({1, 0})) / load(),
-                    .energy_lost = 4 * state->energy_lost(*torsion_) / (load() * load())};
+                    .energy_lost = 4 * state->energy_lost() / (load() * load())};
   }
 
  private:

@@ -8,14 +8,14 @@
 namespace slipstick::analytic::layered {
 
 /// Gauss's rule of 20 points on equal panels of [0, 1], for functions analytic up to 2 detail off the real
-/// axis. Panels are at most five times the detail, which leaves 2.08^-40 = 2e-13; resolution below 1 takes 16
-/// points, which leave 7e-11.
+/// axis. Panels are at most four times the detail, which leaves 2.41^-40 = 5e-16; resolution below 1 takes 18
+/// points, which leave 2e-14.
 class PanelRule {
  public:
   PanelRule(double detail, double resolution) {
     static const gsl::GaussRule fine(20);
-    static const gsl::GaussRule coarse(16);
-    const double panels = std::ceil(0.2 / detail);
+    static const gsl::GaussRule coarse(18);
+    const double panels = std::ceil(0.25 / detail);
     for (double panel = 0; panel < panels; ++panel)
       for (const auto& [fraction, weight] : (resolution < 1 ? coarse : fine).nodes())
         nodes_.push_back({(panel + fraction) / panels, weight / panels});

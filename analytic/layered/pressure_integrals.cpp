@@ -20,7 +20,7 @@ constexpr double kPanel = 3;
 
 const gsl::GaussRule& gauss_rule(std::size_t points) {
   static const gsl::GaussRule full(16);
-  static const gsl::GaussRule coarse(12);
+  static const gsl::GaussRule coarse(14);
   return points == 16 ? full : coarse;
 }
 
@@ -36,18 +36,18 @@ std::vector<double> panel_ends(double longest) {
 
 }  // namespace
 
-PressureIntegrals::PressureIntegrals(ChebyshevSeries weight, double edge, double detail, double resolution)
+PressureIntegrals::PressureIntegrals(ChebyshevPanels weight, double edge, double detail, double resolution)
     : weight_(std::move(weight)),
       edge_(edge),
       at_edge_(pi / 2 * edge),
       detail_(detail),
-      points_(resolution < 1 ? 12 : 16),
+      points_(resolution < 1 ? 14 : 16),
       ellipse_(
           [&](double y) {
             // With x^2 = y + (1 - y) t^2 the integral is sqrt(1 - y) times that of w over t.
             return PanelRule(detail, resolution)([&](double t) { return weight_(y + (1 - y) * t * t); });
           },
-          0, 1, weight_.terms()),
+          squared_ends(1, detail), static_cast<std::size_t>(kTerms * resolution)),
       growth_(
           [&](double complement) {
             return smooth_integral({1 - complement, complement}) / complement;

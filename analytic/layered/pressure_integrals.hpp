@@ -14,7 +14,7 @@ class PressureIntegrals {
  public:
   /// detail: the length over the contact radius on which w changes, that of w's own singular points from the
   /// real axis being twice that. resolution: a factor of the numbers of points, 1 for all digits.
-  PressureIntegrals(ChebyshevSeries weight, double edge, double detail, double resolution);
+  PressureIntegrals(ChebyshevPanels weight, double edge, double detail, double resolution);
 
   /// Radius below which H(s) is a logarithm and a constant: what is left out goes like s^2 ln s, 1e-12 here.
   static constexpr double kSmallest = 0x1p-22;
@@ -48,12 +48,12 @@ class PressureIntegrals {
   double smooth_integral(StickRadius s) const;
   std::vector<Node> nodes(double from, double to) const;
 
-  ChebyshevSeries weight_;
+  ChebyshevPanels weight_;
   double edge_;
   double at_edge_;
   double detail_;
   std::size_t points_;
-  ChebyshevSeries ellipse_;  // of r^2: (p - edge term)/sqrt(1 - r^2)
+  ChebyshevPanels ellipse_;  // of r^2: (p - edge term)/sqrt(1 - r^2)
   ChebyshevPanels growth_;   // of 1 - s: (H(s) - H(1))/(1 - s)
   double load_ = 0;
   double moment_limit_ = 0;
