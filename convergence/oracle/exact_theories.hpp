@@ -12,7 +12,8 @@ namespace slipstick::convergence {
 /// The factor of a body's tangential displacement by pressure, (1 - 2 nu)/(2 G), in 1/Pa.
 double mismatch(const solver::Material& material);
 
-/// Torsion under a constant normal load: first loading, then Masing's rule.
+/// Torsion under a constant normal load: first loading, then Masing's rule. Throws std::domain_error where a
+/// coated scene has no such contact.
 std::unique_ptr<ExactHistory> torsion_history(const solver::Scene& scene);
 
 /// A tangential force along one line (a unit vector), under any normal loads, on a gap like r^n.
