@@ -1,0 +1,96 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "convergence/laws/contact_law.hpp"
+#include "convergence/oracle/errors.hpp"
+#include "convergence/oracle/oracle.hpp"
+#include "convergence/oracle/tests/histories.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/solve.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using ::testing::HasSubstr;
+
+solver::Scene coated(const std::vector<std::string>& overrides = {}) {
+  return solver::read_scene(SLIPSTICK_SCENES "/coated.toml", overrides);
+}
+
+/// The scene's layer, of its base's material or gone.
+solver::Scene without_contrast(const std::string& shape, bool layer) {
+  solver::Scene scene = coated({"upper.shape=\"" + shape + "\"", "load.moment_ratio=0.9"});
+  solver::Material& lower = scene.lower;
+  lower.coating->young_modulus = lower.young_modulus;
+  lower.coating->poisson_ratio = lower.poisson_ratio;
+  if (!layer) lower.coating.reset();
+  return scene;
+}
+
+TEST(CoatedOracle, IsThatOfHalfSpacesWhereTheLayerIsLikeItsBase) {
+  for (const char* shape : {"sphere", "flat_punch"}) {
+    const Oracle layered = *find_oracle(without_contrast(shape, true)).oracle;
+    const Oracle plain = *find_oracle(without_contrast(shape, false)).oracle;
+    EXPECT_LE(layered.relative_uncertainty, 1e-11) << shape;
+    for (double Oracle::* const number :
+         {&Oracle::contact_radius, &Oracle::approach, &Oracle::moment_limit, &Oracle::moment,
+          &Oracle::twist_angle, &Oracle::stick_radius, &Oracle::dissipated}) {
+      EXPECT_NEAR(layered.*number / plain.*number, 1.0, 1e-11) << shape;
+    }
+    for (const double part : {0.2, 0.5, 0.9}) {
+      const double radius = part * plain.contact_radius;
+      EXPECT_NEAR(layered.pressure(radius) / plain.pressure(radius), 1.0, 1e-11) << shape;
+      EXPECT_NEAR(layered.traction(radius) / plain.traction(radius), 1.0, 1e-11) << shape;
+    }
+  }
+}
+
+TEST(CoatedOracle, CarriesItsLoads) {
+  for (const double ratio : {0.3, 0.95}) {
+    solver::Scene scene = coated();
+    scene.steps.front().torsion = solver::MomentRatio{ratio};
+    const Oracle oracle = *find_oracle(scene).oracle;
+    const CarriedLoads carried = loads_carried_by(oracle);
+    EXPECT_NEAR(carried.load / 1000.0, 1.0, 1e-6) << ratio;
+    EXPECT_NEAR(carried.moment / (ratio * oracle.moment_limit), 1.0, 1e-6) << ratio;
+  }
+}
+
+/// The solver knows nothing of these integral equations; either side is wrong where they part.
+TEST(CoatedOracle, IsWhatTheSolverTendsTo) {
+  for (const double modulus : {30e9, 500e9}) {
+    double before = 0.1;
+    for (const int cells : {48, 192}) {
+      solver::Scene scene = twisted(coated(), {0.9, -0.4, 0.6});
+      scene.lower.coating->young_modulus = modulus;
+      scene.cells = {cells, cells};
+      const auto history = exact_history(scene);
+      const solver::History solved = solver::solve_history(scene);
+      double largest = 0.0;
+      for (std::size_t i = 0; i < scene.steps.size(); ++i) {
+        const Oracle oracle = *history->advance(solver::step_of(scene, i)).oracle;
+        const Errors errors = compare(solved.at(i), oracle);
+        largest = std::max({largest, std::abs(errors.twist), std::abs(errors.moment_limit)});
+      }
+      EXPECT_LE(largest, before / 4) << modulus << ' ' << cells;
+      before = largest;
+    }
+    EXPECT_LE(before, 1e-3) << modulus;
+  }
+}
+
+TEST(CoatedOracle, SaysWhyItHasNoAnswer) {
+  const auto reason = [](const std::vector<std::string>& overrides) {
+    return find_oracle(coated(overrides)).reason;
+  };
+  EXPECT_THAT(reason({"contact.coupling=\"auto\""}), HasSubstr("contact.coupling"));
+  EXPECT_THAT(reason({"load.force=[1.0, 0.0]"}), HasSubstr("force"));
+  EXPECT_THAT(reason({"upper.shape=\"cone\"", "upper.slope=0.1"}), HasSubstr("cone"));
+  EXPECT_THAT(reason({"lower.layer.thickness=1e-6"}), HasSubstr("thickness"));
+  EXPECT_THROW(law_contact(coated()), solver::InputError);
+}
+
+}  // namespace
+}  // namespace slipstick::convergence
