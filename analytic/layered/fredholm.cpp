@@ -4,99 +4,142 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include "analytic/gsl.hpp"
-#include "analytic/layered/panel_rule.hpp"
 
 namespace slipstick::analytic::layered {
 namespace {
 
 using std::numbers::pi;
 
-/// k h beyond which exp(-2 k h) times the powers of k h before it is below a rounding.
-constexpr double kCut = 22;
-/// Halvings from there on down; a base of a thousandth of the layer's modulus shows below k h = 1e-3.
-constexpr int kHalvings = 26;
-
 double transformed(const std::function<double(double)>& excess, double thickness, double x) {
+  constexpr double kCut = 22;    // k h beyond which exp(-2 k h), times powers, is below a rounding
+  constexpr int kHalvings = 26;  // from there down to k h = 3e-7
   constexpr double kPhase = 16;  // radians that one rule of 20 points follows
-  double sum = 0;
+  double total = 0;
   double high = kCut / thickness;
   for (int i = 0; i <= kHalvings; ++i) {
     const double low = i == kHalvings ? 0 : high / 2;
     const double pieces = std::ceil(std::max(1.0, (high - low) * x / kPhase));
     const double step = (high - low) / pieces;
     for (double piece = 0; piece < pieces; ++piece) {
-      sum += gsl::gauss_legendre([&](double k) { return excess(k) * std::cos(k * x); }, low + piece * step,
-                                 low + (piece + 1) * step);
+      total += gsl::gauss_legendre([&](double k) { return excess(k) * std::cos(k * x); }, low + piece * step,
+                                   low + (piece + 1) * step);
     }
     high = low;
   }
-  return sum / pi;
+  return total / pi;
+}
+
+/// Singular are x = +-2 i h, +-4 i h, ...: at least twice a panel's half away from its middle.
+std::vector<double> doubling_ends(double thickness, double reach) {
+  std::vector<double> ends{0};
+  while (ends.back() < reach) ends.push_back(std::min(reach, std::max(2 * thickness, 2 * ends.back())));
+  return ends;
 }
 
 }  // namespace
 
-CosineTransform::CosineTransform(const std::function<double(double)>& excess, double thickness, double reach,
-                                 double resolution)
-    : thickness_(thickness), resolution_(resolution) {
-  constexpr double kTerms =
-      24;  // singular are x = +-2 i h, +-4 i h, ...: twice a panel's half or farther off
+std::vector<double> panel_ends(double length, double longest) {
+  const double panels = std::ceil(length / longest);
   std::vector<double> ends{0};
-  while (!(ends.back() >= reach)) ends.push_back(std::min(reach, std::max(2 * thickness, 2 * ends.back())));
-  table_ =
-      std::make_shared<const ChebyshevPanels>([&](double x) { return transformed(excess, thickness, x); },
-                                              ends, static_cast<std::size_t>(kTerms * resolution));
+  for (double i = 1; i <= panels; ++i) ends.push_back(length * (i / panels));
+  return ends;
 }
 
-CosineTransform CosineTransform::over(double unit) const {
-  CosineTransform result = *this;
-  result.unit_ *= unit;
+std::vector<Node> gauss_nodes(const std::vector<double>& ends, Points points) {
+  static const gsl::GaussRule fine(20);
+  static const gsl::GaussRule coarse(18);
+  std::vector<Node> nodes;
+  for (std::size_t i = 1; i < ends.size(); ++i)
+    for (const auto& [fraction, weight] : (points == Points::fewer ? coarse : fine).nodes())
+      nodes.push_back({std::lerp(ends[i - 1], ends[i], fraction), (ends[i] - ends[i - 1]) * weight});
+  return nodes;
+}
+
+PiecewisePolynomial::PiecewisePolynomial(const std::function<double(double)>& f, std::vector<double> ends,
+                                         Points points)
+    : ends_(std::move(ends)) {
+  const std::size_t n = points == Points::fewer ? 22 : 24;
+  std::vector<double> values(n);
+  for (std::size_t i = 1; i < ends_.size(); ++i) {
+    const auto angle = [&](std::size_t j) {
+      return pi * (static_cast<double>(j) + 0.5) / static_cast<double>(n);
+    };
+    // cos^2 of half the angle keeps the digits of small distances from the lower end.
+    for (std::size_t j = 0; j < n; ++j)
+      values[j] = f(ends_[i - 1] + (ends_[i] - ends_[i - 1]) * std::pow(std::cos(angle(j) / 2), 2));
+    std::vector<double>& terms = coefficients_.emplace_back(n, 0.0);
+    for (std::size_t k = 0; k < n; ++k) {
+      for (std::size_t j = 0; j < n; ++j) terms[k] += values[j] * std::cos(static_cast<double>(k) * angle(j));
+      terms[k] *= (k == 0 ? 1.0 : 2.0) / static_cast<double>(n);
+    }
+  }
+}
+
+/// Clenshaw's recurrence.
+double PiecewisePolynomial::operator()(double x) const {
+  const auto above = std::upper_bound(ends_.begin() + 1, ends_.end() - 1, x);
+  const auto& terms = coefficients_[static_cast<std::size_t>(above - ends_.begin()) - 1];
+  const double low = *(above - 1);
+  const double high = *above;
+  const double y = 2 * ((x - low) - (high - x)) / (high - low);
+  double next = 0;
+  double total = 0;
+  for (std::size_t k = terms.size(); k-- > 1;) next = std::exchange(total, terms[k] + y * total - next);
+  return terms[0] + y / 2 * total - next;
+}
+
+PiecewisePolynomial PiecewisePolynomial::derivative() const {
+  PiecewisePolynomial result = *this;
+  for (std::size_t i = 0; i < coefficients_.size(); ++i) {
+    const auto& terms = coefficients_[i];
+    auto& slopes = result.coefficients_[i];
+    slopes.assign(terms.size() + 1, 0.0);
+    for (std::size_t k = terms.size() - 1; k > 0; --k)
+      slopes[k - 1] = slopes[k + 1] + 4 * static_cast<double>(k) * terms[k] / (ends_[i + 1] - ends_[i]);
+    slopes[0] /= 2;
+  }
   return result;
 }
 
-double kernel(const CosineTransform& transform, Parity parity, double t, double s) {
-  const double mirrored = transform(t + s);
-  return transform(t - s) + (parity == Parity::even ? mirrored : -mirrored);
-}
+CosineTransform::CosineTransform(const std::function<double(double)>& excess, double thickness, double reach,
+                                 double unit, Points points)
+    : thickness_(thickness / unit),
+      points_(points),
+      unit_(unit),
+      table_([&](double x) { return transformed(excess, thickness, x); }, doubling_ends(thickness, reach),
+             points) {}
 
 double Solution::operator()(double t) const {
   double value = right_side(t);
-  for (const Node& node : nodes) value -= node.weight * kernel(*transform, parity, t, node.t) * node.value;
+  for (const Node& node : nodes) value -= node.weight * kernel(t, node.x) * node.value;
   return value;
 }
 
-double Solution::integral(const std::function<double(double)>& weight) const {
-  double sum = 0;
-  for (const Node& node : nodes) sum += node.weight * weight(node.t) * node.value;
-  return sum;
+double Solution::moment(int power) const {
+  double total = 0;
+  for (const Node& node : nodes) total += node.weight * std::pow(node.x, power) * node.value;
+  return total;
 }
 
-std::vector<Solution> solve_fredholm(const std::shared_ptr<const CosineTransform>& transform, Parity parity,
-                                     double radius,
+std::vector<Solution> solve_fredholm(const Kernel& kernel, double radius, double thickness, Points points,
                                      const std::vector<std::function<double(double)>>& right_sides) {
-  const PanelRule rule(transform->thickness() / radius, transform->resolution());
-  const auto& nodes = rule.nodes();
+  const std::vector<Node> nodes = gauss_nodes(panel_ends(radius, 4 * thickness), points);
   const auto size = static_cast<Eigen::Index>(nodes.size());
+  const auto node = [&](Eigen::Index i) { return nodes[static_cast<std::size_t>(i)]; };
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Identity(size, size);
-  Eigen::MatrixXd right(size, static_cast<Eigen::Index>(right_sides.size()));
-  for (Eigen::Index i = 0; i < size; ++i) {
-    const double t = radius * nodes[static_cast<std::size_t>(i)].fraction;
-    for (Eigen::Index j = 0; j < size; ++j) {
-      const auto& [fraction, weight] = nodes[static_cast<std::size_t>(j)];
-      matrix(i, j) += radius * weight * kernel(*transform, parity, t, radius * fraction);
-    }
-    for (Eigen::Index k = 0; k < right.cols(); ++k) right(i, k) = right_sides[static_cast<std::size_t>(k)](t);
-  }
-  const Eigen::MatrixXd values = matrix.partialPivLu().solve(right);
+  for (Eigen::Index i = 0; i < size; ++i)
+    for (Eigen::Index j = 0; j < size; ++j) matrix(i, j) += node(j).weight * kernel(node(i).x, node(j).x);
+  const Eigen::PartialPivLU<Eigen::MatrixXd> factors(matrix);
   std::vector<Solution> solutions;
-  for (Eigen::Index k = 0; k < right.cols(); ++k) {
-    Solution solution{right_sides[static_cast<std::size_t>(k)], transform, parity, {}};
-    for (Eigen::Index i = 0; i < size; ++i) {
-      const auto& [fraction, weight] = nodes[static_cast<std::size_t>(i)];
-      solution.nodes.push_back({radius * fraction, radius * weight, values(i, k)});
-    }
-    solutions.push_back(std::move(solution));
+  for (const auto& right_side : right_sides) {
+    Solution& solution = solutions.emplace_back(Solution{right_side, kernel, nodes});
+    Eigen::VectorXd values(size);
+    for (Eigen::Index i = 0; i < size; ++i) values[i] = right_side(node(i).x);
+    values = factors.solve(values).eval();
+    for (Eigen::Index i = 0; i < size; ++i) solution.nodes[static_cast<std::size_t>(i)].value = values[i];
   }
   return solutions;
 }

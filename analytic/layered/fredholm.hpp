@@ -1,63 +1,86 @@
 #pragma once
 
-#include <cstddef>
 #include <functional>
 #include <memory>
 #include <vector>
 
-#include "analytic/layered/chebyshev_series.hpp"
-
+/// Fredholm's equations of the second kind whose kernel is analytic up to twice a layer's thickness off the
+/// real axis.
 namespace slipstick::analytic::layered {
 
-/// k(x) = (1/pi) integral_0^inf excess(k) cos(k x) dk, from which the kernels of the integral equations are
-/// made: even K(t, s) = k(t - s) + k(t + s) for pressure, odd k(t - s) - k(t + s) for torsion.
-class CosineTransform {
+/// All digits, or fewer points on each panel, by whose answer the error is estimated.
+enum class Points { all, fewer };
+
+/// Ends of equal panels from 0 to length, at most `longest` each.
+std::vector<double> panel_ends(double length, double longest);
+
+struct Node {
+  double x;
+  double weight;
+  double value = 0;
+};
+/// Gauss's rule of 20 points (18) on each panel. On panels of 4 h, with h the thickness, it leaves 5e-16
+/// (2e-14) of a function like the kernel.
+std::vector<Node> gauss_nodes(const std::vector<double>& ends, Points points);
+
+template <class Function>
+double sum(const std::vector<Node>& nodes, const Function& f) {
+  double total = 0;
+  for (const Node& node : nodes) total += node.weight * f(node.x);
+  return total;
+}
+
+/// A function by 24 (22) Chebyshev terms on each panel. A panel of 2 h leaves 1e-15 of a function like the
+/// kernel, and so does one from (2 n h)^2 to (2 n h + 2 h)^2 of an even function's square argument.
+class PiecewisePolynomial {
  public:
-  /// For |x| <= reach; the excess falls like exp(-2 k thickness), and is smooth in ln k. resolution: a factor
-  /// of the numbers of points, 1 for all digits.
-  CosineTransform(const std::function<double(double)>& excess, double thickness, double reach,
-                  double resolution);
+  PiecewisePolynomial(const std::function<double(double)>& f, std::vector<double> ends, Points points);
 
-  /// The same with lengths over a unit.
-  CosineTransform over(double unit) const;
-
-  double operator()(double x) const { return unit_ * (*table_)(unit_ * std::abs(x)); }
-  double thickness() const { return thickness_ / unit_; }
-  double resolution() const { return resolution_; }
+  double operator()(double x) const;
+  PiecewisePolynomial derivative() const;
+  const std::vector<double>& ends() const { return ends_; }
 
  private:
-  std::shared_ptr<const ChebyshevPanels> table_;
-  double thickness_;
-  double resolution_;
-  double unit_ = 1;
+  std::vector<double> ends_;
+  std::vector<std::vector<double>> coefficients_;  // of each panel
 };
 
-enum class Parity { even, odd };
-
-/// A smooth function on [0, radius] that solves f(t) + integral_0^radius K(t, s) f(s) ds = right_side(t),
-/// known at Gauss's points and from the equation itself anywhere else.
-class Solution {
+/// k(x) = (1/pi) integral_0^inf excess(k) cos(k x) dk, which kernels are made of: even K(t, s) = k(t - s) +
+/// k(t + s) for pressure, odd k(t - s) - k(t + s) for torsion.
+class CosineTransform {
  public:
-  double operator()(double t) const;
-  /// integral of weight f.
-  double integral(const std::function<double(double)>& weight) const;
+  /// For |x| <= reach, of an excess that falls like exp(-2 k h) and is smooth in ln k; lengths over `unit`.
+  CosineTransform(const std::function<double(double)>& excess, double thickness, double reach, double unit,
+                  Points points);
 
-  struct Node {
-    double t;
-    double weight;
-    double value;
-  };
+  double operator()(double x) const { return unit_ * table_(unit_ * (x < 0 ? -x : x)); }
+  double even(double t, double s) const { return (*this)(t - s) + (*this)(t + s); }
+  double odd(double t, double s) const { return (*this)(t - s) - (*this)(t + s); }
+  double thickness() const { return thickness_; }
+  Points points() const { return points_; }
+
+ private:
+  double thickness_;
+  Points points_;
+  double unit_;
+  PiecewisePolynomial table_;
+};
+using Kernel = std::function<double(double t, double s)>;
+
+/// Solves f(t) + integral_0^radius K(t, s) f(s) ds = right_side(t). It is known at Gauss's points, and by the
+/// equation itself (Nystroem) anywhere else.
+struct Solution {
   std::function<double(double)> right_side;
-  std::shared_ptr<const CosineTransform> transform;
-  Parity parity;
+  Kernel kernel;
   std::vector<Node> nodes;
+
+  double operator()(double t) const;
+  /// integral of t^power f.
+  double moment(int power) const;
 };
 
-double kernel(const CosineTransform& transform, Parity parity, double t, double s);
-
-/// By Nystroem's method with Gauss's points, one solution for each right side.
-std::vector<Solution> solve_fredholm(const std::shared_ptr<const CosineTransform>& transform, Parity parity,
-                                     double radius,
+/// One solution for each right side; thickness as above.
+std::vector<Solution> solve_fredholm(const Kernel& kernel, double radius, double thickness, Points points,
                                      const std::vector<std::function<double(double)>>& right_sides);
 
 }  // namespace slipstick::analytic::layered

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
@@ -20,8 +21,6 @@ using std::numbers::pi;
 
 /// Contact radius over the thickness, beyond which matrices and tables become large.
 constexpr double kThinnest = 150;
-/// A second answer has this factor of the points.
-constexpr double kCoarse = 0.9;
 
 void require_positive(const char* name, double value) {
   if (!(value > 0 && std::isfinite(value)))
@@ -35,102 +34,77 @@ void require_resolved(double contact_radius, const Pair& pair) {
                     contact_radius / pair.thickness(), kThinnest));
 }
 
-std::shared_ptr<const CosineTransform> normal_transform(const Pair& pair, double reach, double resolution) {
-  return std::make_shared<const CosineTransform>([&](double k) { return pair.normal_excess(k); },
-                                                 pair.thickness(), reach, resolution);
+CosineTransform normal_transform(const Pair& pair, double largest_radius, Points points) {
+  return {[&](double k) { return pair.normal_excess(k); }, pair.thickness(), 2 * largest_radius, 1, points};
 }
 
-CosineTransform torsional_transform(const Pair& pair, double contact_radius, double resolution) {
-  return CosineTransform([&](double k) { return pair.torsional_excess(k); }, pair.thickness(),
-                         2 * contact_radius, resolution)
-      .over(contact_radius);
+CosineTransform torsional_transform(const Pair& pair, double radius, Points points) {
+  return {[&](double k) { return pair.torsional_excess(k); }, pair.thickness(), 2 * radius, radius, points};
 }
 
-double one(double) { return 1; }
-double square(double t) { return t * t; }
-
-/// psi on a given contact radius under a constant and under t^2 on the right; under a sphere the first times
-/// `approach`, so that psi ends at zero, less the second is psi R pi/E*.
+/// psi R pi/E* on a given contact radius, under a sphere; under a flat punch psi pi/(E* approach).
 struct PressedRadius {
-  PressedRadius(const std::shared_ptr<const CosineTransform>& transform, double contact_radius, bool sphere)
-      : solutions(solve_fredholm(transform, Parity::even, contact_radius, {one, square})) {
-    if (!sphere) return;
-    approach = solutions[1](contact_radius) / solutions[0](contact_radius);
-    curved = 1;
-  }
+  PressedRadius(const CosineTransform& transform, double contact_radius, bool sphere)
+      : solutions(solve_fredholm([&](double t, double s) { return transform.even(t, s); }, contact_radius,
+                                 transform.thickness(), transform.points(),
+                                 {[](double) { return 1; }, [](double t) { return t * t; }})),
+        approach(sphere ? solutions[1](contact_radius) / solutions[0](contact_radius) : 1),
+        curved(sphere ? 1 : 0) {}
 
   double psi(double t) const { return approach * solutions[0](t) - curved * solutions[1](t); }
-  double integral() const {
-    return approach * solutions[0].integral(one) - curved * solutions[1].integral(one);
-  }
+  double integral() const { return approach * solutions[0].moment(0) - curved * solutions[1].moment(0); }
 
   std::vector<Solution> solutions;
-  double approach = 1;  ///< times the radius of curvature, m^2
-  double curved = 0;
+  double approach;  ///< times R, under a sphere, where psi ends at zero
+  double curved;
 };
 
-LayeredContact contact_of(double load, double contact_radius, double approach, const PressedRadius& pressed,
-                          const Pair& pair, bool sphere, double resolution) {
-  const double a = contact_radius;
-  // The mean pressure is 1: psi over a has the integral 1/2.
-  const double scale = a / (2 * pressed.integral());
-  const std::vector<double> ends = squared_ends(1, pair.thickness() / a);
-  const auto terms = static_cast<std::size_t>(kTerms * resolution);
-  const ChebyshevPanels psi([&](double y) { return scale * pressed.psi(a * std::sqrt(y)); }, ends, terms);
-  const ChebyshevPanels slope = psi.derivative();
-  const ChebyshevPanels weight([&](double y) { return -2 * slope(y); }, ends, terms);
-  const PressureIntegrals pressure(weight, sphere ? 0 : scale * pressed.psi(a), pair.thickness() / a,
-                                   resolution);
-  return {
-      .indentation = {.contact_radius = a, .approach = approach, .reference_pressure = load / (pi * a * a)},
-      .profile = layered_profile(sphere ? "coated_sphere" : "coated_flat_punch", "mean pressure", pressure,
-                                 torsional_transform(pair, a, resolution)),
-      .uncertainty = 0};
+/// scale: of `approach`, to m.
+LayeredContact contact_of(double load, double a, double scale, const PressedRadius& pressed, const Pair& pair,
+                          Points points) {
+  const bool sphere = pressed.curved != 0;
+  const double unit =
+      a / (2 * pressed.integral());  // the mean pressure is 1: psi over a has the integral 1/2
+  std::vector<double> ends = panel_ends(1, 2 * pair.thickness() / a);
+  for (double& end : ends) end *= end;
+  const PiecewisePolynomial slope =
+      PiecewisePolynomial([&](double y) { return unit * pressed.psi(a * std::sqrt(y)); }, ends, points)
+          .derivative();
+  const Pressure pressure{sphere ? "coated_sphere" : "coated_flat_punch", "mean pressure",
+                          PiecewisePolynomial([&](double y) { return -2 * slope(y); }, ends, points),
+                          sphere ? 0 : unit * pressed.psi(a)};
+  return {.indentation = {.contact_radius = a,
+                          .approach = scale * pressed.approach,
+                          .reference_pressure = load / (pi * a * a)},
+          .profile = layered_profile(pressure, torsional_transform(pair, a, points)),
+          .uncertainty = 0};
 }
 
-/// The contact radius lies between those of half-spaces of the pair's least and largest compliance, with a
-/// margin for those between a layer and its base that compliance overshoots.
-double radius_under(double load, double radius, const Pair& pair,
-                    const std::shared_ptr<const CosineTransform>& transform, double low, double high) {
-  const double wanted = std::log(load * radius / (2 * pair.effective_modulus()));
-  return std::exp(gsl::root(
-      [&](double log_radius) {
-        return std::log(PressedRadius(transform, std::exp(log_radius), true).integral()) - wanted;
-      },
-      std::log(low), std::log(high)));
-}
-
-LayeredContact sphere_contact(double load, double radius, const Pair& pair, double resolution) {
+/// The contact radius is at most that on a half-space of the pair's largest compliance, but for the margin,
+/// since those between a layer and its base may overshoot both; on a rigid base and the thinnest layer it is
+/// some fortieth of that.
+LayeredContact sphere_contact(double load, double radius, const Pair& pair, Points points) {
   constexpr double kMargin = 1.5;
-  constexpr double kStep = 1.6;  // from a radius towards the one sought
-  const double modulus = pair.effective_modulus();
-  const double half_spaces = std::cbrt(3 * load * radius / (4 * modulus));
-  // 2 (E*/R) integral psi is the load.
-  const double wanted = load * radius / (2 * modulus);
-  double low = std::min(half_spaces, kThinnest * pair.thickness());
-  double high = low;
-  const auto transform_to = [&](double a) { return normal_transform(pair, 2 * a, resolution); };
-  const auto reached = [&](double a) { return PressedRadius(transform_to(a), a, true).integral(); };
-  if (reached(low) > wanted) {
-    for (low /= kStep; reached(low) > wanted; low /= kStep) high = low;
-  } else {
-    for (high = std::min(kStep * high, kMargin * kThinnest * pair.thickness()); reached(high) < wanted;
-         high *= kStep) {
-      low = high;
-      require_resolved(low, pair);
-    }
-  }
-  const double a = radius_under(load, radius, pair, transform_to(high), low, high);
-  require_resolved(a, pair);
-  const PressedRadius pressed(transform_to(a), a, true);
-  return contact_of(load, a, pressed.approach / radius, pressed, pair, true, resolution);
+  constexpr double kLowest = 1e-3;
+  const double softest = pair.effective_modulus() / std::max(1.0, 1 + pair.normal_excess(0));
+  const double high =
+      std::min(kMargin * std::cbrt(3 * load * radius / (4 * softest)), kThinnest * pair.thickness());
+  const CosineTransform transform = normal_transform(pair, high, points);
+  const double wanted = load * radius / (2 * pair.effective_modulus());  // W = 2 (E*/R) integral psi
+  const auto excess = [&](double log_radius) {
+    return std::log(PressedRadius(transform, std::exp(log_radius), true).integral() / wanted);
+  };
+  if (!(excess(std::log(high)) > 0)) require_resolved(std::nextafter(high, 2 * high), pair);
+  const double a = std::exp(gsl::root(excess, std::log(kLowest * high), std::log(high)));
+  return contact_of(load, a, 1 / radius, PressedRadius(transform, a, true), pair, points);
 }
 
-LayeredContact flat_contact(double load, double radius, const Pair& pair, double resolution) {
+LayeredContact flat_contact(double load, double radius, const Pair& pair, Points points) {
   require_resolved(radius, pair);
-  const PressedRadius pressed(normal_transform(pair, 2 * radius, resolution), radius, false);
-  const double approach = load / (2 * pair.effective_modulus() * pressed.integral());
-  return contact_of(load, radius, approach, pressed, pair, false, resolution);
+  const CosineTransform transform = normal_transform(pair, radius, points);
+  const PressedRadius pressed(transform, radius, false);
+  return contact_of(load, radius, load / (2 * pair.effective_modulus() * pressed.integral()), pressed, pair,
+                    points);
 }
 
 /// The surfaces must touch everywhere within the contact radius, and slip must spread from the edge inwards:
@@ -139,36 +113,37 @@ LayeredContact flat_contact(double load, double radius, const Pair& pair, double
 void require_one_ring(const Profile& profile) {
   constexpr int kRadii = 64;
   constexpr int kSticks = 6;
+  const auto require = [](const char* name, double value, double radius, const char* otherwise) {
+    if (!(value > 0))
+      throw std::domain_error(
+          fmt::format("{} = {:.6g} at r/a = {}; allowed: above 0, or {}", name, value, radius, otherwise));
+  };
   for (int i = 0; i < kRadii; ++i) {
     const double r = static_cast<double>(i) / kRadii;
-    const double pressure = profile.pressure(r);
-    if (!(pressure > 0))
-      throw std::domain_error(fmt::format(
-          "pressure over its mean = {:.6g} at r/a = {}; allowed: above 0, or the surfaces part there",
-          pressure, r));
+    require("pressure over its mean", profile.pressure(r), r, "the surfaces part there");
   }
-  for (int i = 0; i < kSticks; ++i) {
-    const double c = 1 - static_cast<double>(i) / kSticks;
-    const double slope = profile.twist_slope({.ratio = c, .complement = 1 - c});
-    if (!(slope > 0))
-      throw std::domain_error(fmt::format(
-          "growth of the twist = {:.6g} at a_s/a = {}; allowed: above 0, or slip begins inside the contact",
-          slope, c));
+  for (int i = kSticks; i > 0; --i) {
+    const double c = static_cast<double>(i) / kSticks;
+    require("growth of the twist", profile.twist_slope({.ratio = c, .complement = 1 - c}), c,
+            "slip begins inside the contact");
   }
 }
 
-LayeredContact with_uncertainty(LayeredContact fine, const LayeredContact& coarse) {
+/// press: a contact by the number of points.
+template <class Press>
+LayeredContact with_uncertainty(const Press& press) {
   constexpr double kRounding = 1e-13;  // of sums of some hundred terms
-  constexpr double kHalf = 0.5;        // of the limit moment, where twists are compared
+  const LayeredContact coarse = press(Points::fewer);
   require_one_ring(*coarse.profile);
-  const auto differ = [](double value, double other) { return std::abs(other / value - 1); };
-  fine.uncertainty =
-      kRounding + std::max({differ(fine.indentation.contact_radius, coarse.indentation.contact_radius),
-                            differ(fine.indentation.approach, coarse.indentation.approach),
-                            differ(fine.profile->pressure(0), coarse.profile->pressure(0)),
-                            differ(fine.profile->moment_limit(), coarse.profile->moment_limit()),
-                            differ(from_moment_ratio(kHalf, *fine.profile).twist,
-                                   from_moment_ratio(kHalf, *coarse.profile).twist)});
+  LayeredContact fine = press(Points::all);
+  const auto numbers = [](const LayeredContact& contact) {
+    const Profile& profile = *contact.profile;
+    return std::array{contact.indentation.contact_radius, contact.indentation.approach, profile.pressure(0),
+                      profile.moment_limit(), from_moment_ratio(0.5, profile).twist};
+  };
+  for (std::size_t i = 0; i < numbers(fine).size(); ++i)
+    fine.uncertainty = std::max(fine.uncertainty, std::abs(numbers(coarse)[i] / numbers(fine)[i] - 1));
+  fine.uncertainty += kRounding;
   return fine;
 }
 
@@ -177,21 +152,21 @@ LayeredContact with_uncertainty(LayeredContact fine, const LayeredContact& coars
 LayeredContact press_sphere(double load, double radius, const Pair& pair) {
   require_positive("load", load);
   require_positive("radius", radius);
-  return with_uncertainty(sphere_contact(load, radius, pair, 1), sphere_contact(load, radius, pair, kCoarse));
+  return with_uncertainty([&](Points points) { return sphere_contact(load, radius, pair, points); });
 }
 
 LayeredContact press_flat_punch(double load, double radius, const Pair& pair) {
   require_positive("load", load);
   require_positive("radius", radius);
-  return with_uncertainty(flat_contact(load, radius, pair, 1), flat_contact(load, radius, pair, kCoarse));
+  return with_uncertainty([&](Points points) { return flat_contact(load, radius, pair, points); });
 }
 
 std::unique_ptr<const Profile> under_hertz_pressure(double contact_radius, const Pair& pair) {
   require_positive("contact radius", contact_radius);
   require_resolved(contact_radius, pair);
-  const PressureIntegrals hertz(ChebyshevPanels(one, {0, 1}, 1), 0, pair.thickness() / contact_radius, 1);
-  return layered_profile("coated_hertz", "peak pressure", hertz,
-                         torsional_transform(pair, contact_radius, 1));
+  const PiecewisePolynomial one([](double) { return 1; }, {0, 1}, Points::all);
+  return layered_profile({"coated_hertz", "peak pressure", one, 0},
+                         torsional_transform(pair, contact_radius, Points::all));
 }
 
 }  // namespace slipstick::analytic::layered

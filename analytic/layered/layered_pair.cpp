@@ -15,39 +15,27 @@ void require(bool allowed, const char* name, double value, const char* range) {
 }
 
 void require_elastic(const Elastic& material) {
-  require(material.shear_modulus > 0, "shear modulus", material.shear_modulus, "above 0");
-  require(material.poisson_ratio > -1 && material.poisson_ratio <= 0.5, "Poisson's ratio",
-          material.poisson_ratio, "above -1, at most 1/2");
+  const auto& [modulus, nu] = material;
+  require(modulus > 0, "shear modulus", modulus, "above 0");
+  require(nu > -1 && nu <= 0.5, "Poisson's ratio", nu, "above -1, at most 1/2");
 }
 
-void require_body(const Body& body) {
-  require_elastic(body.surface);
-  if (!body.coat) return;
-  require_elastic(body.coat->base);
-  require(std::isfinite(body.surface.shear_modulus), "shear modulus of a layer", body.surface.shear_modulus,
-          "finite");
-  require(body.coat->thickness > 0 && std::isfinite(body.coat->thickness), "thickness of a layer",
-          body.coat->thickness, "above 0, finite");
-}
-
-/// sinh(x)^2 - x^2 over exp(2 x)/4, x >= 0.
-double scaled_sinh_excess(double x) {
-  constexpr double kSmall = 1;  // below, the series of sinh(x) - x is exact to rounding in its eight terms
+/// 4 exp(-2 x) (sinh(x)^2 - x^2), x >= 0.
+double sinh_excess(double x) {
   const double decay = std::exp(-2 * x);
-  if (x >= kSmall) return (1 - decay) * (1 - decay) - 4 * x * x * decay;
-  double series = 1;
+  if (x >= 1) return (1 - decay) * (1 - decay) - 4 * x * x * decay;
+  double series = 1;  // of sinh(x) - x over x^3/6, to rounding
   for (int n = 17; n >= 5; n -= 2) series = 1 + x * x / (n * (n - 1)) * series;
   const double excess = x * x * x / 6 * series;
   return 4 * decay * excess * (2 * x + excess);
 }
 
+/// 1 - L exp(-x) is written as two positive terms for L next to 1.
 double torsional(const Elastic& surface, const Coat& coat, double wave_number) {
   const double x = 2 * wave_number * coat.thickness;
   const double ratio = surface.shear_modulus / coat.base.shear_modulus;
   const double reflection = (ratio - 1) / (ratio + 1);
-  // 1 - L exp(-x), of two positive terms where L is next to 1
-  const double denominator = 2 / (ratio + 1) - reflection * std::expm1(-x);
-  return 2 * reflection * std::exp(-x) / denominator;
+  return 2 * reflection * std::exp(-x) / (2 / (ratio + 1) - reflection * std::expm1(-x));
 }
 
 /// With x = k h, e = exp(-2 x), m = G/G_base, A = (m - 1)/(m + 3 - 4 nu), B = 1 - 4 (1 - nu)/(1 + m (3 - 4
@@ -66,40 +54,53 @@ double normal(const Elastic& surface, const Coat& coat, double wave_number) {
   const double a = (m - 1) / (m + 3 - 4 * nu);
   const double b = 1 - below_b;
   const double denominator =
-      below_a * below_b + a * below_b * rise * e + below_a * b * rise + a * scaled_sinh_excess(x);
+      below_a * below_b + a * below_b * rise * e + below_a * b * rise + a * sinh_excess(x);
   return e * (a + b + 4 * a * x * (1 + x) - 2 * a * b * e) / denominator;
+}
+
+template <class Excess>
+double weighted(const std::array<Body, 2>& bodies, const std::array<double, 2>& weights,
+                const Excess& excess) {
+  double total = 0;
+  for (std::size_t i = 0; i < 2; ++i)
+    if (bodies[i].coat) total += weights[i] * excess(bodies[i].surface, *bodies[i].coat);
+  return total / (weights[0] + weights[1]);
 }
 
 }  // namespace
 
-Pair::Pair(const Body& first, const Body& second) : bodies_{first, second}, normal_{}, tangential_{} {
-  for (int i = 0; i < 2; ++i) {
-    require_body(bodies_[i]);
-    tangential_[i] = 1 / bodies_[i].surface.shear_modulus;
-    normal_[i] = (1 - bodies_[i].surface.poisson_ratio) / 2 * tangential_[i];
-  }
+Pair::Pair(const Body& first, const Body& second) : bodies_{first, second} {
   require(first.coat || second.coat, "coated bodies", 0, "1 or 2");
+  for (std::size_t i = 0; i < 2; ++i) {
+    const auto& [surface, coat] = bodies_[i];
+    require_elastic(surface);
+    tangential_[i] = 1 / surface.shear_modulus;
+    normal_[i] = (1 - surface.poisson_ratio) / 2 * tangential_[i];
+    if (!coat) continue;
+    require_elastic(coat->base);
+    require(tangential_[i] > 0, "shear modulus of a layer", surface.shear_modulus, "finite");
+    require(coat->thickness > 0 && std::isfinite(coat->thickness), "thickness", coat->thickness,
+            "above 0, finite");
+  }
 }
 
 double Pair::thickness() const {
-  double least = std::numeric_limits<double>::infinity();
-  for (const Body& body : bodies_)
-    if (body.coat) least = std::min(least, body.coat->thickness);
-  return least;
+  const auto of = [](const Body& body) {
+    return body.coat ? body.coat->thickness : std::numeric_limits<double>::infinity();
+  };
+  return std::min(of(bodies_[0]), of(bodies_[1]));
 }
 
 double Pair::normal_excess(double wave_number) const {
-  double sum = 0;
-  for (int i = 0; i < 2; ++i)
-    if (bodies_[i].coat) sum += normal_[i] * normal(bodies_[i].surface, *bodies_[i].coat, wave_number);
-  return sum * effective_modulus();
+  return weighted(bodies_, normal_, [&](const Elastic& surface, const Coat& coat) {
+    return normal(surface, coat, wave_number);
+  });
 }
 
 double Pair::torsional_excess(double wave_number) const {
-  double sum = 0;
-  for (int i = 0; i < 2; ++i)
-    if (bodies_[i].coat) sum += tangential_[i] * torsional(bodies_[i].surface, *bodies_[i].coat, wave_number);
-  return sum * shear_modulus();
+  return weighted(bodies_, tangential_, [&](const Elastic& surface, const Coat& coat) {
+    return torsional(surface, coat, wave_number);
+  });
 }
 
 }  // namespace slipstick::analytic::layered

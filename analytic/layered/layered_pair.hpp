@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <optional>
 
 namespace slipstick::analytic::layered {
@@ -22,12 +23,12 @@ struct Body {
   std::optional<Coat> coat = {};
 };
 
-/// Two bodies that touch. Their surfaces move together under a traction of wave number k as those of
-/// half-spaces of the surface materials, times 1 + excess(k); the excess falls like exp(-2 k h).
+/// Two bodies that touch. Under a traction of wave number k their surfaces move as those of half-spaces of
+/// the surface materials, times 1 + excess(k); the excess falls like exp(-2 k h).
 class Pair {
  public:
   /// Throws std::domain_error unless moduli and thicknesses are positive, those of layers finite, Poisson's
-  /// ratios in (-1, 1/2], at least one body coated, and not both rigid.
+  /// ratios in (-1, 1/2], and at least one body coated.
   Pair(const Body& first, const Body& second);
 
   /// 1/E* = sum of (1 - nu)/(2 G) and 1/G = sum of 1/G, of the surface materials, Pa.
@@ -39,13 +40,13 @@ class Pair {
   /// By a pressure, without shear (Burmister 1945); wave number in 1/m.
   double normal_excess(double wave_number) const;
   /// By a shear traction across the wave vector, all that torsion about an axis sees: with reflection
-  /// L = (G - G_base)/(G + G_base), 2 L exp(-2 k h)/(1 - L exp(-2 k h)) of a body.
+  /// L = (G - G_base)/(G + G_base), a body's is 2 L exp(-2 k h)/(1 - L exp(-2 k h)).
   double torsional_excess(double wave_number) const;
 
  private:
-  Body bodies_[2];
-  double normal_[2];      // (1 - nu)/(2 G), 1/Pa
-  double tangential_[2];  // 1/G, 1/Pa
+  std::array<Body, 2> bodies_;
+  std::array<double, 2> normal_{};      // (1 - nu)/(2 G), 1/Pa
+  std::array<double, 2> tangential_{};  // 1/G, 1/Pa
 };
 
 }  // namespace slipstick::analytic::layered

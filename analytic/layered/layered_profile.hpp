@@ -5,9 +5,17 @@
 
 #include "analytic/axisymmetric.hpp"
 #include "analytic/layered/fredholm.hpp"
-#include "analytic/layered/pressure_integrals.hpp"
 
 namespace slipstick::analytic::layered {
+
+/// p(r) = edge/sqrt(1 - r^2) + integral_r^1 x w(x^2)/sqrt(x^2 - r^2) dx, r over the contact radius: Hertz's
+/// pressure over its peak has w = 1, a flat punch's over that at its centre edge = 1.
+struct Pressure {
+  std::string name;  ///< of the profile
+  std::string unit;  ///< p0 in words
+  PiecewisePolynomial weight;
+  double edge;
+};
 
 /// Torsion of coated bodies under an axisymmetric pressure, as a Profile: torsion.hpp and cycle.hpp hold for
 /// it unchanged, with G that of the surface materials. Its H(c) is 2 G phi/mu, its stiffness that of a bonded
@@ -16,11 +24,8 @@ namespace slipstick::analytic::layered {
 ///   chi(t) + integral_0^1 K(t, s) chi(s) ds = (4 G phi/pi) t,  chi continuous at c,
 /// a Fredholm equation of the second kind. M = 4 pi integral t chi dt.
 ///
-/// name and reference_pressure: as Profile has them. torsion: the transform of the torsional excess, lengths
-/// over the contact radius, reach 2. The profile remembers the sticks that it was last asked for; several
-/// threads may use it.
-std::unique_ptr<const Profile> layered_profile(const std::string& name, const std::string& reference_pressure,
-                                               const PressureIntegrals& pressure,
-                                               const CosineTransform& torsion);
+/// torsion: the transform of the torsional excess, lengths over the contact radius, reach 2. The profile
+/// remembers the sticks that it was last asked for; several threads may use it.
+std::unique_ptr<const Profile> layered_profile(const Pressure& pressure, const CosineTransform& torsion);
 
 }  // namespace slipstick::analytic::layered

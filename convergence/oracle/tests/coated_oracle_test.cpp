@@ -1,7 +1,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <string>
+#include <vector>
 
 #include "convergence/laws/contact_law.hpp"
 #include "convergence/oracle/errors.hpp"
@@ -19,26 +22,20 @@ solver::Scene coated(const std::vector<std::string>& overrides = {}) {
   return solver::read_scene(SLIPSTICK_SCENES "/coated.toml", overrides);
 }
 
-/// The scene's layer, of its base's material or gone.
-solver::Scene without_contrast(const std::string& shape, bool layer) {
-  solver::Scene scene = coated({"upper.shape=\"" + shape + "\"", "load.moment_ratio=0.9"});
-  solver::Material& lower = scene.lower;
-  lower.coating->young_modulus = lower.young_modulus;
-  lower.coating->poisson_ratio = lower.poisson_ratio;
-  if (!layer) lower.coating.reset();
-  return scene;
-}
-
 TEST(CoatedOracle, IsThatOfHalfSpacesWhereTheLayerIsLikeItsBase) {
   for (const char* shape : {"sphere", "flat_punch"}) {
-    const Oracle layered = *find_oracle(without_contrast(shape, true)).oracle;
-    const Oracle plain = *find_oracle(without_contrast(shape, false)).oracle;
+    solver::Scene scene = coated({std::string("upper.shape=") + shape, "load.moment_ratio=0.9"});
+    scene.surfaces.front().radius = 0.001;
+    scene.lower.young_modulus = scene.lower.coating->young_modulus;
+    scene.lower.poisson_ratio = scene.lower.coating->poisson_ratio;
+    const Oracle layered = *find_oracle(scene).oracle;
+    scene.lower.coating.reset();
+    const Oracle plain = *find_oracle(scene).oracle;
     EXPECT_LE(layered.relative_uncertainty, 1e-11) << shape;
-    for (double Oracle::* const number :
+    for (double Oracle::*const number :
          {&Oracle::contact_radius, &Oracle::approach, &Oracle::moment_limit, &Oracle::moment,
-          &Oracle::twist_angle, &Oracle::stick_radius, &Oracle::dissipated}) {
+          &Oracle::twist_angle, &Oracle::stick_radius, &Oracle::dissipated})
       EXPECT_NEAR(layered.*number / plain.*number, 1.0, 1e-11) << shape;
-    }
     for (const double part : {0.2, 0.5, 0.9}) {
       const double radius = part * plain.contact_radius;
       EXPECT_NEAR(layered.pressure(radius) / plain.pressure(radius), 1.0, 1e-11) << shape;
@@ -48,36 +45,31 @@ TEST(CoatedOracle, IsThatOfHalfSpacesWhereTheLayerIsLikeItsBase) {
 }
 
 TEST(CoatedOracle, CarriesItsLoads) {
-  for (const double ratio : {0.3, 0.95}) {
-    solver::Scene scene = coated();
-    scene.steps.front().torsion = solver::MomentRatio{ratio};
-    const Oracle oracle = *find_oracle(scene).oracle;
-    const CarriedLoads carried = loads_carried_by(oracle);
-    EXPECT_NEAR(carried.load / 1000.0, 1.0, 1e-6) << ratio;
-    EXPECT_NEAR(carried.moment / (ratio * oracle.moment_limit), 1.0, 1e-6) << ratio;
-  }
+  const Oracle oracle = *find_oracle(coated()).oracle;
+  const CarriedLoads carried = loads_carried_by(oracle);
+  EXPECT_NEAR(carried.load / 1000.0, 1.0, 1e-6);
+  EXPECT_NEAR(carried.moment / (0.5 * oracle.moment_limit), 1.0, 1e-6);
 }
 
 /// The solver knows nothing of these integral equations; either side is wrong where they part.
 TEST(CoatedOracle, IsWhatTheSolverTendsTo) {
   for (const double modulus : {30e9, 500e9}) {
-    double before = 0.1;
+    double before = 0.03;
     for (const int cells : {48, 192}) {
       solver::Scene scene = twisted(coated(), {0.9, -0.4, 0.6});
       scene.lower.coating->young_modulus = modulus;
       scene.cells = {cells, cells};
       const auto history = exact_history(scene);
-      const solver::History solved = solver::solve_history(scene);
       double largest = 0.0;
-      for (std::size_t i = 0; i < scene.steps.size(); ++i) {
-        const Oracle oracle = *history->advance(solver::step_of(scene, i)).oracle;
-        const Errors errors = compare(solved.at(i), oracle);
+      const auto compare_step = [&](const solver::Solution& solution) {
+        const Errors errors = compare(solution, *history->advance(solution.loads).oracle);
         largest = std::max({largest, std::abs(errors.twist), std::abs(errors.moment_limit)});
-      }
+      };
+      solver::solve(scene, {.progress = {}, .on_step = compare_step});
+      EXPECT_GT(largest, 0.0);
       EXPECT_LE(largest, before / 4) << modulus << ' ' << cells;
       before = largest;
     }
-    EXPECT_LE(before, 1e-3) << modulus;
   }
 }
 
