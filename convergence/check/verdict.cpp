@@ -213,6 +213,7 @@ std::string twist_mistake(const Examination& e, double allowed) {
                                      {180.0 / std::numbers::pi, "a twist in degrees"},
                                      {-1.0, "a twist of the other sense"}}};
   for (const Ratio& ratio : ratios) {
+    if (is_coated(e.scene) && &ratio < &ratios[2]) continue;  // no single compliance
     if (std::abs(e.state.twist / e.fitted.twist / ratio.value - 1.0) <= allowed) return ratio.words;
   }
   return fmt::format("a twist that is not that of these tractions, {:.6g} rad", e.fitted.twist);
