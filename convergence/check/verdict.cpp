@@ -318,7 +318,7 @@ Verdict reach_verdict(const Examination& e, std::optional<double> tolerance) {
   if (!lawful || !holds(judged, "tractions") || !holds(judged, "twist") || !holds(judged, "motion")) {
     std::optional<double> friction;
     if (!holds(judged, "friction")) friction = plateau_of_friction(e.contact, e.reference.right);
-    diagnosis = diagnose(e.contact, e.scene.steps.front(), allowed.gap, friction);
+    diagnosis = diagnose(e.contact, e.scene.steps.front(), allowed.gap, friction, !is_coated(e.scene));
   }
   const Judged discrete = judge_discrete(e, allowed);
   return {judged, discrete, diagnosis, headline_of(e, judged, allowed),
