@@ -61,8 +61,15 @@ Json summary(const Scene& scene, const solver::Grid& grid) {
     rows.push_back({words, value});
   };
   for (const solver::Surface& surface : scene.surfaces) add("Indenter", shape_text(surface));
-  add("Upper body", material_text(scene.upper));
-  add("Lower body", material_text(scene.lower));
+  const auto add_body = [&](const std::string& name, const solver::Material& body) {
+    add(name + " body", material_text({body.young_modulus, body.poisson_ratio}));
+    if (!body.coating) return;
+    const auto& [thickness, young_modulus, poisson_ratio] = *body.coating;
+    add(name + " body's layer",
+        fmt::format("{:g} mm, {}", 1e3 * thickness, material_text({young_modulus, poisson_ratio})));
+  };
+  add_body("Upper", scene.upper);
+  add_body("Lower", scene.lower);
   if (scene.layer.kind != nullptr) add("Layer", scene.layer.kind->word);
   add("Coefficient of friction", fmt::format("{:g}", scene.friction));
   add("Pressure", solver::word_of(solver::kPressureModels, scene.pressure));

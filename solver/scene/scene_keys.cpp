@@ -139,7 +139,8 @@ void add_grid_and_solver(SettingKeys& keys, const Scene& scene) {
       {"grid.cells", KeyType::pair, "", "required; of a height map as many as its samples", kCells,
        "Cells along x1 and x2."},
       {"grid.extent", KeyType::pair, "m", "the expected contact and two cells around it", kPositive,
-       "Lengths of the grid's sides; left out beside a height map, required with a pressure from a file."},
+       "Lengths of the grid's sides; left out beside a height map, required with a pressure from a file. The "
+       "expected contact on a bonded layer is that of the softer of layer and base alone."},
       {"solver.method", kWord, "", word_of(kMethods, scene.method), one_of(kMethods),
        "Newton's method on the convex program; accelerated projected gradients; the paper's algorithm as "
        "published."},

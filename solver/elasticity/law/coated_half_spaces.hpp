@@ -30,9 +30,11 @@ class CoatedHalfSpaces final : public ElasticLaw {
   void inverse_symbols(bool tangential, double h1, double h2, std::span<const PlaneWave> waves,
                        std::span<Symbol> inverses) const override;
 
-  /// 0.9 times the least compliance of a wave that the cells can carry. A half-space has at least 0.91 times
-  /// that (HalfSpaces), a thin layer on a rigid base, where each cell stands alone, 1. A compliance that
-  /// falls faster with the wave number has less of the waves that cells alias, which lower the eigenvalue.
+  /// 0.9 times the least compliance of a wave that the cells can carry. What cells alias raises the
+  /// eigenvalue of tractions that change sign from cell to cell; where each cell stands alone, on a thin
+  /// layer, it changes nothing. Computed for ratios of moduli from 1e-4 to infinity, Poisson's ratios from
+  /// -0.9 to 0.5, layers from 1e-3 to 1e3 cells and sides up to 1 : 20: the least eigenvalue is 1.11 to 2.8
+  /// times this number.
   double least_eigenvalue(double h1, double h2) const override;
 
   bool couples() const override { return couples_; }

@@ -212,6 +212,22 @@ TEST(CoatedHalfSpaces, OnARigidBaseAddUpToTheUniformLayersCompliance) {
   }
 }
 
+/// Where a thin layer lies on a rigid base, each cell stands alone.
+TEST(CoatedHalfSpaces, OnARigidBaseAreWinklersFoundationWhereTheyAreThin) {
+  constexpr double kThickness = 1e-3;
+  const Grid cell{30, 30, 1.0, 1.0};
+  const CoatedHalfSpaces law(coated(kSoft, kThickness, {kRigidBase, 0.0}), kRigidBody);
+  Tables tables = tables_of(law, cell);
+  const double confined = (1.0 - 2.0 * 0.3) / (2.0 * (1.0 - 0.3));
+  EXPECT_NEAR(tables[0][0] / kThickness, 1.0, 1e-11);
+  EXPECT_NEAR(tables[2][0] / kThickness, 1.0, 1e-11);
+  EXPECT_NEAR(tables[5][0] / kThickness, confined, 1e-11);
+  for (std::vector<double>& table : tables) {
+    table[0] = 0.0;
+    EXPECT_LE(largest(table), 1e-11 * kThickness);
+  }
+}
+
 // --- what holds for any law ---
 
 TEST(CoatedHalfSpaces, ChangeNoBitWithThreadsAndMirrorAlongTheDiagonal) {
