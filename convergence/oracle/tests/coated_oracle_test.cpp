@@ -19,7 +19,7 @@ namespace {
 using ::testing::HasSubstr;
 
 solver::Scene coated(const std::vector<std::string>& overrides = {}) {
-  return solver::read_scene(SLIPSTICK_SCENES "/coated.toml", overrides);
+  return solver::read_scene(SLIPSTICK_SCENES "/coated_sphere.toml", overrides);
 }
 
 TEST(CoatedOracle, IsThatOfHalfSpacesWhereTheLayerIsLikeItsBase) {
