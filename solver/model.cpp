@@ -300,12 +300,10 @@ SharedLaw law_of_bodies(const Scene& scene, const Model& model) {
   if (!is_coated(scene)) return std::make_shared<HalfSpaces>(model.pair, scene.cell_traction);
   const auto dimensionless = [&](const Material& material) {
     CoatedBody body = coated_body(material);
-    const auto over_unit = [&](HalfSpace& half) {
-      half.shear_modulus = to_dimensionless(half.shear_modulus, model.stress_unit);
-    };
-    over_unit(body.base);
+    body.base.shear_modulus = to_dimensionless(body.base.shear_modulus, model.stress_unit);
     if (!body.layer) return body;
-    over_unit(body.layer->elastic);
+    double& modulus = body.layer->elastic.shear_modulus;
+    modulus = to_dimensionless(modulus, model.stress_unit);
     body.layer->thickness = to_dimensionless(body.layer->thickness, model.length_unit);
     return body;
   };

@@ -34,8 +34,13 @@ std::string shape_text(const solver::Surface& surface) {
 }
 
 std::string material_text(const solver::Material& material) {
-  if (std::isinf(material.young_modulus)) return "rigid";
-  return fmt::format("E = {:g} GPa, ν = {:g}", 1e-9 * material.young_modulus, material.poisson_ratio);
+  std::string layer;
+  if (const auto& c = material.coating) {
+    layer = fmt::format(", {:g} mm of {} on it", 1e3 * c->thickness,
+                        material_text({c->young_modulus, c->poisson_ratio}));
+  }
+  if (std::isinf(material.young_modulus)) return "rigid" + layer;
+  return fmt::format("E = {:g} GPa, ν = {:g}", 1e-9 * material.young_modulus, material.poisson_ratio) + layer;
 }
 
 std::string load_text(const solver::Step& step) {
@@ -61,15 +66,8 @@ Json summary(const Scene& scene, const solver::Grid& grid) {
     rows.push_back({words, value});
   };
   for (const solver::Surface& surface : scene.surfaces) add("Indenter", shape_text(surface));
-  const auto add_body = [&](const std::string& name, const solver::Material& body) {
-    add(name + " body", material_text({body.young_modulus, body.poisson_ratio}));
-    if (!body.coating) return;
-    const auto& [thickness, young_modulus, poisson_ratio] = *body.coating;
-    add(name + " body's layer",
-        fmt::format("{:g} mm, {}", 1e3 * thickness, material_text({young_modulus, poisson_ratio})));
-  };
-  add_body("Upper", scene.upper);
-  add_body("Lower", scene.lower);
+  add("Upper body", material_text(scene.upper));
+  add("Lower body", material_text(scene.lower));
   if (scene.layer.kind != nullptr) add("Layer", scene.layer.kind->word);
   add("Coefficient of friction", fmt::format("{:g}", scene.friction));
   add("Pressure", solver::word_of(solver::kPressureModels, scene.pressure));

@@ -1,10 +1,11 @@
 #include "solver/elasticity/law/cell_integrals.hpp"
 
+#include <gsl/gsl_integration.h>
+
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <vector>
-
-#include "solver/elasticity/law/gauss_rule.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -107,6 +108,21 @@ void add_cells(CellRow& row, Index first_block, double x, double y, double step,
 }
 
 }  // namespace
+
+GaussRule make_gauss_rule(int points) {
+  const std::unique_ptr<gsl_integration_glfixed_table, decltype(&gsl_integration_glfixed_table_free)> table(
+      gsl_integration_glfixed_table_alloc(static_cast<std::size_t>(points)),
+      gsl_integration_glfixed_table_free);
+  GaussRule rule;
+  for (int i = 0; i < points; ++i) {
+    double node = 0.0;
+    double weight = 0.0;
+    gsl_integration_glfixed_point(-0.5, 0.5, static_cast<std::size_t>(i), &node, &weight, table.get());
+    rule.node.push_back(node);
+    rule.weight.push_back(weight);
+  }
+  return rule;
+}
 
 void integrate_row(CellRow& row, Index first_block, double x, double y, double h1, double h2) {
   // An elongated cell is cut into nearly square parts, so that "near" means the same along both sides.

@@ -6,44 +6,39 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 #include "solver/cache/solve_cache.hpp"
-#include "solver/elasticity/law/gauss_rule.hpp"
-#include "solver/elasticity/law/smooth_traction.hpp"
+#include "solver/elasticity/law/cell_integrals.hpp"
 #include "solver/grid/threads.hpp"
 
 namespace slipstick::solver {
 namespace {
 
-constexpr double kOverTwoPi = 0.5 / std::numbers::pi;
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// The radial functions, in the table's order, with the order of their Bessel function.
-enum Radial : Index { kNormal, kMean, kDifference, kCoupling };
+/// The radial functions, in the table's order, with the order of their Bessel function: of K33; the mean of
+/// K11 and K22; half their difference along x1, which turns with twice the angle; K13 and K23 along the
+/// offset.
+enum Radial : std::size_t { kNormal, kMean, kDifference, kCoupling };
 constexpr std::array kBesselOrders{0, 0, 2, 1};
 
-/// Components in the order of their numbers in `Component`.
-using Components = std::array<double, kAllComponents.size()>;
-double& at(Components& values, Component component) { return values[static_cast<std::size_t>(component)]; }
-
-/// Parts of the radial functions that some components need.
-struct Needed {
-  bool normal = false, tangential = false, coupling = false;
-
-  explicit Needed(std::span<const Component> components) {
-    for (const Component component : components) {
-      const bool of_pressure = component == Component::k13 || component == Component::k23;
-      coupling = coupling || of_pressure;
-      normal = normal || component == Component::k33;
-      tangential = tangential || (!of_pressure && component != Component::k33);
-    }
+std::vector<Radial> radials_of(std::span<const Component> components) {
+  std::vector<Radial> radials;
+  for (const Component component : components) {
+    const bool couples = component == Component::k13 || component == Component::k23;
+    radials.push_back(component == Component::k33 ? kNormal : couples ? kCoupling : kMean);
+    if (radials.back() == kMean) radials.push_back(kDifference);
   }
-};
+  std::ranges::sort(radials);
+  radials.erase(std::ranges::unique(radials).begin(), radials.end());
+  return radials;
+}
 
 /// Cells are cut until they lie so many of their sides from the singularities, which are two thicknesses away
 /// from the plane of the surface. That many Gauss points then leave kRuleError.
 constexpr double kMinOffset = 1.75;
-constexpr int kMaxPoints = 10;
+constexpr std::size_t kMaxPoints = 10;
 constexpr double kRuleError = 1e-14;
 
 /// n points leave (4 offset - 2)^(-2n) of a coefficient that itself falls like 1/offset (Trefethen, SIAM
@@ -51,117 +46,83 @@ constexpr double kRuleError = 1e-14;
 const GaussRule& rule_for(double offset) {
   static const std::vector<GaussRule> rules = [] {
     std::vector<GaussRule> made;
-    for (int n = 1; n <= kMaxPoints; ++n) made.push_back(make_gauss_rule(n));
+    for (std::size_t n = 1; n <= kMaxPoints; ++n) made.push_back(make_gauss_rule(static_cast<int>(n)));
     return made;
   }();
   const double gained = (4.0 * offset - 2.0) * (4.0 * offset - 2.0);
   std::size_t points = 1;
-  for (double left = 1.0 / (offset * gained); left > kRuleError && points < kMaxPoints; left /= gained) {
+  for (double left = 1.0 / (offset * gained); left > kRuleError && points < kMaxPoints; left /= gained)
     ++points;
-  }
   return rules[points - 1];
 }
 
-/// What the bases add to the coefficients of cells, lengths in units of the thinner layer.
-class CellIntegral {
- public:
-  CellIntegral(const HankelTable& radial, const Needed& needed) : radial_(radial), needed_(needed) {}
+/// What the bases add to the coefficients of a cell, in the order of `Component`.
+struct CellSums {
+  double k11 = 0.0, k12 = 0.0, k22 = 0.0, k13 = 0.0, k23 = 0.0, k33 = 0.0;
 
-  /// The cell h1 x h2 centred at offset (x, y).
-  Components over(double x, double y, double h1, double h2) const {
-    Components sums{};
-    add(sums, x, y, h1, h2);
-    // Odd: exactly zero on the axes.
-    if (x == 0.0) at(sums, Component::k12) = at(sums, Component::k13) = 0.0;
-    if (y == 0.0) at(sums, Component::k12) = at(sums, Component::k23) = 0.0;
-    return sums;
+  double operator[](Component component) const {
+    return std::array{k11, k12, k22, k13, k23, k33}[static_cast<std::size_t>(component)];
   }
-
- private:
-  void add(Components& sums, double x, double y, double h1, double h2) const {
-    const double reach = std::sqrt(x * x + y * y + 4.0);
-    if (std::max(h1, h2) * kMinOffset > reach) {
-      const bool first = h1 >= h2;
-      const double d1 = first ? 0.25 * h1 : 0.0;
-      const double d2 = first ? 0.0 : 0.25 * h2;
-      add(sums, x - d1, y - d2, h1 - 2.0 * d1, h2 - 2.0 * d2);
-      add(sums, x + d1, y + d2, h1 - 2.0 * d1, h2 - 2.0 * d2);
-      return;
-    }
-    const GaussRule& rule1 = rule_for(reach / h1);
-    const GaussRule& rule2 = rule_for(reach / h2);
-    for (std::size_t i = 0; i < rule1.node.size(); ++i) {
-      for (std::size_t j = 0; j < rule2.node.size(); ++j) {
-        add_point(sums, x + h1 * rule1.node[i], y + h2 * rule2.node[j],
-                  h1 * h2 * rule1.weight[i] * rule2.weight[j]);
-      }
-    }
-  }
-
-  void add_point(Components& sums, double x, double y, double weight) const {
-    const double r = std::sqrt(x * x + y * y);
-    const HankelTable::Place place = radial_.place(r);
-    if (needed_.normal) at(sums, Component::k33) += weight * HankelTable::value(place, kNormal);
-    if (r == 0.0) {  // the others have no direction there, and are zero
-      if (!needed_.tangential) return;
-      const double mean = weight * HankelTable::value(place, kMean);
-      at(sums, Component::k11) += mean;
-      at(sums, Component::k22) += mean;
-      return;
-    }
-    const double n1 = x / r;
-    const double n2 = y / r;
-    if (needed_.tangential) {
-      const double mean = weight * HankelTable::value(place, kMean);
-      const double difference = weight * HankelTable::value(place, kDifference);
-      at(sums, Component::k11) += mean + difference * (n1 * n1 - n2 * n2);
-      at(sums, Component::k22) += mean - difference * (n1 * n1 - n2 * n2);
-      at(sums, Component::k12) += 2.0 * difference * n1 * n2;
-    }
-    if (needed_.coupling) {
-      const double along = weight * HankelTable::value(place, kCoupling);
-      at(sums, Component::k13) += along * n1;
-      at(sums, Component::k23) += along * n2;
-    }
-  }
-
-  const HankelTable& radial_;
-  Needed needed_;
+  /// The same with the axes exchanged.
+  CellSums exchanged() const { return {k22, k12, k11, k23, k13, k33}; }
 };
 
-/// The component with the axes exchanged.
-Component exchanged(Component component) {
-  switch (component) {
-    case Component::k11:
-      return Component::k22;
-    case Component::k22:
-      return Component::k11;
-    case Component::k13:
-      return Component::k23;
-    case Component::k23:
-      return Component::k13;
-    default:
-      return component;
+/// Adds integrals over the cell h1 x h2 centred at offset (x, y), lengths in units of the thinner layer.
+void add_cell(CellSums& sums, const HankelTable& table, std::span<const Radial> radials, double x, double y,
+              double h1, double h2) {
+  const double reach = std::sqrt(x * x + y * y + 4.0);
+  if (std::max(h1, h2) * kMinOffset > reach) {
+    const double d1 = h1 >= h2 ? 0.25 * h1 : 0.0;
+    const double d2 = h1 >= h2 ? 0.0 : 0.25 * h2;
+    for (const double side : {-1.0, 1.0})
+      add_cell(sums, table, radials, x + side * d1, y + side * d2, h1 - 2.0 * d1, h2 - 2.0 * d2);
+    return;
+  }
+  const GaussRule& rule1 = rule_for(reach / h1);
+  const GaussRule& rule2 = rule_for(reach / h2);
+  for (std::size_t i = 0; i < rule1.node.size(); ++i) {
+    for (std::size_t j = 0; j < rule2.node.size(); ++j) {
+      const double u = x + h1 * rule1.node[i];
+      const double v = y + h2 * rule2.node[j];
+      const double r = std::sqrt(u * u + v * v);
+      // At r = 0 what has a direction is zero.
+      const double n1 = r > 0.0 ? u / r : 0.0;
+      const double n2 = r > 0.0 ? v / r : 0.0;
+      const HankelTable::Place place = table.place(r);
+      HankelTable::Values f{};
+      for (const Radial radial : radials)
+        f[radial] = h1 * h2 * rule1.weight[i] * rule2.weight[j] * HankelTable::value(place, radial);
+      sums.k11 += f[kMean] + f[kDifference] * (n1 * n1 - n2 * n2);
+      sums.k22 += f[kMean] - f[kDifference] * (n1 * n1 - n2 * n2);
+      sums.k12 += 2.0 * f[kDifference] * n1 * n2;
+      sums.k13 += f[kCoupling] * n1;
+      sums.k23 += f[kCoupling] * n2;
+      sums.k33 += f[kNormal];
+    }
   }
 }
 
-/// Adds to tables on cells of a grid whose lengths are in units of the thickness. On square cells what lies
-/// below the diagonal mirrors what lies above, and a row writes its mirrored column too.
-void add_to_tables(std::vector<std::vector<double>>& tables, std::span<const Component> components,
-                   const Grid& offsets, double scale, const HankelTable& radial, int threads) {
-  const CellIntegral integral(radial, Needed(components));
-  const bool square = offsets.h1 == offsets.h2;
+/// Adds what the bases add to tables. A cell of a square grid whose mirror about the diagonal is in the grid
+/// writes that too.
+void add_bases(std::vector<std::vector<double>>& tables, std::span<const Component> components,
+               const Grid& offsets, double thickness, const HankelTable& table, int threads) {
+  const std::vector<Radial> radials = radials_of(components);
+  const double h1 = offsets.h1 / thickness;
+  const double h2 = offsets.h2 / thickness;
+  const auto write = [&](Index k1, Index k2, const CellSums& sums) {
+    for (std::size_t c = 0; c < components.size(); ++c)
+      tables[c][static_cast<std::size_t>(k1 * offsets.n2 + k2)] += thickness * sums[components[c]];
+  };
   const auto add_row = [&](Index k1) {
-    for (Index k2 = square && k1 < offsets.n2 ? k1 : 0; k2 < offsets.n2; ++k2) {
-      Components sums = integral.over(static_cast<double>(k1) * offsets.h1,
-                                      static_cast<double>(k2) * offsets.h2, offsets.h1, offsets.h2);
-      const bool mirrored = square && k1 < k2 && k2 < offsets.n1;
-      for (std::size_t c = 0; c < components.size(); ++c) {
-        tables[c][static_cast<std::size_t>(k1 * offsets.n2 + k2)] += scale * at(sums, components[c]);
-        if (!mirrored) continue;
-        tables[c][static_cast<std::size_t>(k2 * offsets.n2 + k1)] +=
-            scale * at(sums, exchanged(components[c]));
-      }
+    const bool mirrored = h1 == h2 && k1 < offsets.n2;
+    for (Index k2 = mirrored ? k1 : 0; k2 < offsets.n2; ++k2) {
+      CellSums sums;
+      add_cell(sums, table, radials, static_cast<double>(k1) * h1, static_cast<double>(k2) * h2, h1, h2);
+      // Odd: exactly zero on the axes.
+      if (k1 == 0) sums.k12 = sums.k13 = 0.0;
+      if (k2 == 0) sums.k12 = sums.k23 = 0.0;
+      write(k1, k2, sums);
+      if (mirrored && k1 < k2 && k2 < offsets.n1) write(k2, k1, sums.exchanged());
     }
   };
   // From both ends, so that threads share the triangle evenly.
@@ -173,64 +134,63 @@ void add_to_tables(std::vector<std::vector<double>>& tables, std::span<const Com
   });
 }
 
-double thickness_of(const CoatedBody& body) { return body.layer ? body.layer->thickness : kInfinite; }
-
-/// The bodies, if there is a law for them.
-const CoatedBody& require_valid(const CoatedBody& body, const CoatedBody& other) {
-  const bool thick = !body.layer || (body.layer->thickness > 0.0 && std::isfinite(body.layer->thickness));
-  const bool soft = !body.layer || std::isfinite(body.layer->elastic.shear_modulus);
-  const bool stiff = body.surface().shear_modulus > 0.0 && body.base.shear_modulus > 0.0;
-  if (!thick || !soft || !stiff) throw std::invalid_argument("a layer that is neither elastic nor thick");
-  if (std::isinf(body.surface().shear_modulus) && std::isinf(other.surface().shear_modulus)) {
-    throw std::invalid_argument("two rigid bodies");
-  }
-  return body;
+WaveCompliance of_pair(const WaveCompliance& lower, const WaveCompliance& upper) {
+  return {lower.across + upper.across, lower.along + upper.along, lower.normal + upper.normal,
+          lower.coupling - upper.coupling};
 }
 
-/// Wave numbers times thickness at which the bodies are compared: below and above all their scales.
-constexpr double kLeastWave = 1e-12;
-constexpr double kLargestWave = 1e2;
+double thickness_of(const CoatedBody& body) { return body.layer ? body.layer->thickness : kInfinite; }
+bool is_valid(const CoatedBody& body) {
+  const bool is_thick = !body.layer || (body.layer->thickness > 0.0 && std::isfinite(body.layer->thickness));
+  const bool is_soft = !body.layer || std::isfinite(body.surface().shear_modulus);
+  return is_thick && is_soft && body.surface().shear_modulus > 0.0 && body.base.shear_modulus > 0.0;
+}
+
+/// Wave numbers between neighbours of which nothing happens: their ratio, and how many of them span all
+/// scales from far above the thinner layer's, 100 over its thickness, to far below.
 constexpr double kWaveRatio = 1.25;
+constexpr int kWaves = 150;
+constexpr double kLargestWave = 100.0;
 /// Bodies differ by more than this part of their compliance: data have twelve digits.
 constexpr double kAlike = 1e-12;
-/// Ratios kWaveRatio down from the shortest wave of a grid among which the least compliance is looked for:
-/// over six decades.
-constexpr int kWavesBelow = 62;
-/// Least eigenvalue over the least compliance of a wave.
-constexpr double kEigenvalueOfWave = 0.9;
 
 }  // namespace
 
 CoatedHalfSpaces::CoatedHalfSpaces(const CoatedBody& lower, const CoatedBody& upper,
                                    CellTraction cell_traction)
-    : lower_(require_valid(lower, upper)),
-      upper_(require_valid(upper, lower)),
-      lower_symbol_(lower),
-      upper_symbol_(upper),
+    : lower_(lower),
+      upper_(upper),
       layers_(elastic_pair(lower.surface(), upper.surface())),
       cell_traction_(cell_traction),
       thickness_(std::min(thickness_of(lower), thickness_of(upper))),
       couples_(layers_.couples()) {
+  const bool rigid = std::isinf(lower.surface().shear_modulus) && std::isinf(upper.surface().shear_modulus);
+  if (rigid || !is_valid(lower) || !is_valid(upper)) {
+    throw std::invalid_argument("bodies that are all rigid, or a layer that is rigid or has no thickness");
+  }
   if (std::isinf(thickness_)) return;
-  for (double x = kLeastWave; x < kLargestWave; x *= kWaveRatio) {
-    const WaveCompliance pair = compliance(x / thickness_);
+  double wave = kLargestWave / thickness_;
+  for (int i = 0; i < kWaves; ++i, wave /= kWaveRatio) {
+    const WaveCompliance pair = compliance(wave);
     couples_ = couples_ || std::abs(pair.coupling) > kAlike * pair.across;
   }
   radial_.emplace(kBesselOrders, [this](double x) { return beyond_layers(x); });
 }
 
 WaveCompliance CoatedHalfSpaces::compliance(double wave_number) const {
-  return of_pair(lower_symbol_.whole(wave_number), upper_symbol_.whole(wave_number));
+  return of_pair(wave_compliance(lower_, wave_number), wave_compliance(upper_, wave_number));
 }
 
 /// A tangential symbol T (I - n n^T) + L n n^T is the mean of T and L and, towards twice the angle of n, half
-/// of their difference; the transform of that turns its sign.
+/// of L - T; the transforms turn the sign of that, and of the coupling.
 HankelTable::Values CoatedHalfSpaces::beyond_layers(double x) const {
-  const double wave_number = x / thickness_;
-  const WaveCompliance pair =
-      of_pair(lower_symbol_.beyond_layer(wave_number), upper_symbol_.beyond_layer(wave_number));
-  return {kOverTwoPi * pair.normal, kOverTwoPi * 0.5 * (pair.across + pair.along),
-          kOverTwoPi * 0.5 * (pair.across - pair.along), -kOverTwoPi * pair.coupling};
+  const WaveCompliance whole = compliance(x / thickness_);
+  const WaveCompliance layers = of_pair(wave_compliance(lower_.surface()), wave_compliance(upper_.surface()));
+  const double across = whole.across - layers.across;
+  const double along = whole.along - layers.along;
+  constexpr double kOverTwoPi = 0.5 / std::numbers::pi;
+  return {kOverTwoPi * (whole.normal - layers.normal), 0.5 * kOverTwoPi * (across + along),
+          0.5 * kOverTwoPi * (across - along), kOverTwoPi * (layers.coupling - whole.coupling)};
 }
 
 std::vector<std::vector<double>> CoatedHalfSpaces::influence_tables(std::span<const Component> components,
@@ -239,14 +199,9 @@ std::vector<std::vector<double>> CoatedHalfSpaces::influence_tables(std::span<co
   const Index more = smooth ? 1 : 0;
   const Grid constant{offsets.n1 + more, offsets.n2 + more, offsets.h1, offsets.h2};
   auto tables = layers_.influence_tables(components, constant, threads);
-  if (radial_) {
-    const Grid scaled{constant.n1, constant.n2, offsets.h1 / thickness_, offsets.h2 / thickness_};
-    add_to_tables(tables, components, scaled, thickness_, *radial_, threads);
-  }
-  if (!smooth) return tables;
-  for (std::size_t c = 0; c < components.size(); ++c) {
+  if (radial_) add_bases(tables, components, constant, thickness_, *radial_, threads);
+  for (std::size_t c = 0; smooth && c < components.size(); ++c)
     tables[c] = smooth_table(tables[c], parity(components[c]), offsets.n1, offsets.n2);
-  }
   return tables;
 }
 
@@ -269,21 +224,22 @@ void CoatedHalfSpaces::inverse_symbols(bool tangential, double h1, double h2,
 }
 
 double CoatedHalfSpaces::least_eigenvalue(double h1, double h2) const {
-  double wave_number = std::numbers::pi * std::hypot(1.0 / h1, 1.0 / h2);
+  constexpr double kEigenvalueOfWave = 0.9;
   double least = kInfinite;
-  for (int i = 0; i < kWavesBelow; ++i, wave_number /= kWaveRatio) {
-    const WaveCompliance pair = compliance(wave_number);
-    least = std::min(least, std::min(pair.across, pair.along) / wave_number);
+  double wave = std::numbers::pi * std::hypot(1.0 / h1, 1.0 / h2);
+  for (int i = 0; i < kWaves; ++i, wave /= kWaveRatio) {
+    const WaveCompliance pair = compliance(wave);
+    least = std::min(least, std::min(pair.across, pair.along) / wave);
   }
   return kEigenvalueOfWave * least;
 }
 
 void CoatedHalfSpaces::add_to(CacheKey& key) const {
   for (const CoatedBody* const body : {&lower_, &upper_}) {
-    key.add(body->base.shear_modulus).add(body->base.poisson_ratio).add(body->layer.has_value());
-    if (!body->layer) continue;
-    key.add(body->layer->elastic.shear_modulus).add(body->layer->elastic.poisson_ratio);
-    key.add(body->layer->thickness);
+    const BondedLayer layer = body->layer.value_or(BondedLayer{{}, 0.0});
+    for (const double number : {body->base.shear_modulus, body->base.poisson_ratio, layer.thickness,
+                                layer.elastic.shear_modulus, layer.elastic.poisson_ratio})
+      key.add(number);
   }
   key.add(cell_traction_);
 }

@@ -18,7 +18,7 @@ namespace slipstick::solver {
 /// larger.
 class CoatedHalfSpaces final : public ElasticLaw {
  public:
-  /// Throws std::invalid_argument for a pair of rigid bodies, or a layer whose thickness or modulus is not
+  /// Throws std::invalid_argument for two rigid surfaces, or a layer that is rigid or whose thickness is not
   /// positive and finite.
   CoatedHalfSpaces(const CoatedBody& lower, const CoatedBody& upper,
                    CellTraction cell_traction = CellTraction::constant);
@@ -26,7 +26,7 @@ class CoatedHalfSpaces final : public ElasticLaw {
   std::vector<std::vector<double>> influence_tables(std::span<const Component> components,
                                                     const Grid& offsets, int threads = 1) const override;
 
-  /// The exact inverse: a wave of tractions moves the surface along and across its vector by LayerSymbol.
+  /// The exact inverse of what wave_compliance() says along and across a wave's vector.
   void inverse_symbols(bool tangential, double h1, double h2, std::span<const PlaneWave> waves,
                        std::span<Symbol> inverses) const override;
 
@@ -45,7 +45,6 @@ class CoatedHalfSpaces final : public ElasticLaw {
   HankelTable::Values beyond_layers(double x) const;
 
   CoatedBody lower_, upper_;
-  LayerSymbol lower_symbol_, upper_symbol_;
   HalfSpaces layers_;  ///< of cells of constant traction
   CellTraction cell_traction_;
   double thickness_;  ///< of the thinner layer; infinite without one

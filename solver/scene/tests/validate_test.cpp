@@ -42,11 +42,6 @@ void press_a_layer_by_hertz(Scene& s) {
   s.pressure = PressureModel::hertz;
 }
 
-void press_a_coat_by_hertz(Scene& s) {
-  s.lower.coating = {1e-4, 1e9, 0.3};
-  s.pressure = PressureModel::hertz;
-}
-
 void couple_hertz_fully(Scene& s) {
   s.coupling = Coupling::full;
   s.pressure = PressureModel::hertz;
@@ -81,10 +76,6 @@ const std::vector<Mistake> kWrongBodies{
     {"layer.tangential_compliance", [](Scene& s) { s.layer = layer_of(1e-12, kNaN); }},
     {"lower.layer.thickness",
      [](Scene& s) {
-       s.lower.coating = {0.0, 1e9, 0.3};
-     }},
-    {"lower.layer.thickness",
-     [](Scene& s) {
        s.lower.coating = {kInfinite, 1e9, 0.3};
      }},
     {"upper.layer.young_modulus",
@@ -96,7 +87,6 @@ const std::vector<Mistake> kWrongBodies{
        s.upper.coating = {1e-4, 1e9, kNaN};
      }},
     {"contact.pressure", press_a_layer_by_hertz},
-    {"contact.pressure", press_a_coat_by_hertz},
     {"contact.friction", [](Scene& s) { s.friction = kNaN; }},
     {"contact.coupling", couple_hertz_fully},
 };
