@@ -20,15 +20,15 @@ using std::numbers::pi;
 constexpr StickRadius kFull{.ratio = 1, .complement = 0};
 
 /// Radius below which H(s) is a logarithm and a constant: what is left out goes like s^2 ln s, 1e-12 here.
-constexpr double kSmallest = 0x1p-22;
+constexpr double kLogarithmic = 0x1p-22;
 
 double cube(double x) { return x * x * x; }
 
-/// 1 - s at the ends of panels from the edge to kSmallest, which at most halve s.
+/// 1 - s at the ends of panels from the edge to kLogarithmic, which at most halve s.
 std::vector<double> complement_ends(double thickness) {
   std::vector<double> ends{0};
-  for (double s = 1; s > kSmallest; ends.push_back(1 - s))
-    s = std::max({s / 2, s - 3 * thickness, kSmallest});
+  for (double s = 1; s > kLogarithmic; ends.push_back(1 - s))
+    s = std::max({s / 2, s - 3 * thickness, kLogarithmic});
   return ends;
 }
 
@@ -66,7 +66,7 @@ class PressureIntegrals {
     // The load of the punch of radius x is 2 pi x^2 w.
     const auto nodes = gauss_nodes(panel_ends(1, 4 * thickness), points);
     load_ = 2 * pi * (edge_ + sum(nodes, [&](double x) { return x * x * weight_(x * x); }));
-    for (const Node& node : rings(0, 1 - kSmallest))
+    for (const Node& node : rings(0, 1 - kLogarithmic))
       limit_ += 8 * node.weight * std::pow(1 - node.x, 2) * node.value;
   }
 
@@ -80,12 +80,12 @@ class PressureIntegrals {
 
   /// H(s) and -H'(s).
   double integral(StickRadius s) const {
-    if (s.ratio < kSmallest)
-      return integral({kSmallest, 1 - kSmallest}) + pressure(0) * std::log(kSmallest / s.ratio);
+    if (s.ratio < kLogarithmic)
+      return integral({kLogarithmic, 1 - kLogarithmic}) + pressure(0) * std::log(kLogarithmic / s.ratio);
     return edge() + s.complement * growth_(s.complement);
   }
   double slope(StickRadius s) const {
-    if (s.ratio < kSmallest) return pressure(0) / s.ratio;
+    if (s.ratio < kLogarithmic) return pressure(0) / s.ratio;
     return growth_(s.complement) + s.complement * growth_slope_(s.complement);
   }
 
@@ -168,10 +168,10 @@ class Stick {
     twist_slope_ = (2 / pi * c.ratio * pressure.slope(c) + y_slope) / solutions_[0](c.ratio);
     moment_ = 8.0 / 3 * cube(c.ratio) * h_ + extra;
     for (const Node& node : rings_) moment_ += 8 * node.weight * std::pow(1 - node.x, 2) * node.value;
-    const double least = std::min(c.ratio, kSmallest);
+    const double least = std::min(c.ratio, kLogarithmic);
     const double rise = pressure.integral({least, 1 - least}) - h_;
     deficit_ = 8.0 / 3 * cube(least) * (rise + pressure.pressure(0) / 3) - extra;
-    for (const Node& node : pressure.rings(c.complement, 1 - kSmallest))
+    for (const Node& node : pressure.rings(c.complement, 1 - kLogarithmic))
       deficit_ += 8 * node.weight * std::pow(1 - node.x, 2) * (node.value - h_);
   }
 

@@ -67,11 +67,11 @@ LawContact law_contact(const solver::Scene& scene) {
   std::string reason = answer.oracle ? answer.oracle->only_normal : answer.reason;
   if (is_coated(scene)) reason = "the forms of the law are made for half-spaces without a layer";
   if (!reason.empty()) {
-    throw solver::InputError(
-        scene.source.string(),
-        fmt::format("its torsion has no exact law: {}; allowed: scenes that slipstick solve answers with "
-                    "--set solver.model=\"exact\"",
-                    reason));
+    throw solver::InputError(scene.source.string(),
+                             fmt::format("its torsion has no exact law: {}; allowed: scenes without a layer "
+                                         "that slipstick solve answers with "
+                                         "--set solver.model=\"exact\"",
+                                         reason));
   }
   const bool is_sphere = scene.surfaces.front().shape == solver::Shape::sphere;
   return {.name = scene.name,

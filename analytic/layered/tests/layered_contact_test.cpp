@@ -32,7 +32,7 @@ Pair on_base(double thickness, double base_modulus, double nu = 0.3) {
   return {Body{{1, nu}, Coat{thickness, {base_modulus, nu}}}, Body{{kInfinity, 0}}};
 }
 
-/// Of full stick, over that of the layer's half-space.
+/// The stiffness of full stick, over that on the layer's half-space.
 double relative_stiffness(double thickness, double base_modulus) {
   return under_hertz_pressure(1, on_base(thickness, base_modulus))->bonded_stiffness(at(1)) * 3 / 16;
 }
