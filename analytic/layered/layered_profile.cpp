@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "analytic/elliptic.hpp"
-#include "analytic/gsl.hpp"
 
 namespace slipstick::analytic::layered {
 namespace {
@@ -20,15 +19,14 @@ using std::numbers::pi;
 constexpr StickRadius kFull{.ratio = 1, .complement = 0};
 
 /// Radius below which H(s) is a logarithm and a constant: what is left out goes like s^2 ln s, 1e-12 here.
-constexpr double kLogarithmic = 0x1p-22;
+constexpr double kCentre = 0x1p-22;
 
 double cube(double x) { return x * x * x; }
 
-/// 1 - s at the ends of panels from the edge to kLogarithmic, which at most halve s.
+/// 1 - s at the ends of panels from the edge to kCentre, which at most halve s.
 std::vector<double> complement_ends(double thickness) {
   std::vector<double> ends{0};
-  for (double s = 1; s > kLogarithmic; ends.push_back(1 - s))
-    s = std::max({s / 2, s - 3 * thickness, kLogarithmic});
+  for (double s = 1; s > kCentre; ends.push_back(1 - s)) s = std::max({s / 2, s - 3 * thickness, kCentre});
   return ends;
 }
 
@@ -66,7 +64,7 @@ class PressureIntegrals {
     // The load of the punch of radius x is 2 pi x^2 w.
     const auto nodes = gauss_nodes(panel_ends(1, 4 * thickness), points);
     load_ = 2 * pi * (edge_ + sum(nodes, [&](double x) { return x * x * weight_(x * x); }));
-    for (const Node& node : rings(0, 1 - kLogarithmic))
+    for (const Node& node : rings(0, 1 - kCentre))
       limit_ += 8 * node.weight * std::pow(1 - node.x, 2) * node.value;
   }
 
@@ -80,12 +78,12 @@ class PressureIntegrals {
 
   /// H(s) and -H'(s).
   double integral(StickRadius s) const {
-    if (s.ratio < kLogarithmic)
-      return integral({kLogarithmic, 1 - kLogarithmic}) + pressure(0) * std::log(kLogarithmic / s.ratio);
+    if (s.ratio < kCentre)
+      return integral({kCentre, 1 - kCentre}) + pressure(0) * std::log(kCentre / s.ratio);
     return edge() + s.complement * growth_(s.complement);
   }
   double slope(StickRadius s) const {
-    if (s.ratio < kLogarithmic) return pressure(0) / s.ratio;
+    if (s.ratio < kCentre) return pressure(0) / s.ratio;
     return growth_(s.complement) + s.complement * growth_slope_(s.complement);
   }
 
@@ -118,19 +116,15 @@ class PressureIntegrals {
     std::vector<double> ends{0};  // x - s
     while (ends.back() < s.complement)
       ends.push_back(std::min({s.complement, 2 * ends.back() + s.ratio, ends.back() + 3 * thickness_}));
-    double total = sum(gauss_nodes(ends, points_), [&](double beyond) {
+    const double total = sum(gauss_nodes(ends, points_), [&](double beyond) {
       const double x = s.ratio + beyond;
       return weight_(x * x) * complete_elliptic(std::min(1.0, s.ratio / x)).k;
     });
     if (edge_ == 0) return total;
-    const double near = std::min(s.complement, 0.5);
-    total += edge_ * gsl::gauss_legendre(
-                         [&](double x) {
-                           return flat_punch_profile().twist_slope({std::exp(-x), -std::expm1(-x)});
-                         },
-                         0, -std::log1p(-near));
-    return near == s.complement ? total
-                                : total + edge_ * (complete_elliptic(s.ratio).k - complete_elliptic(0.5).k);
+    const auto depths = gauss_nodes(panel_ends(-std::log1p(-s.complement), 1), points_);
+    return total + edge_ * sum(depths, [](double x) {
+                     return flat_punch_profile().twist_slope({std::exp(-x), -std::expm1(-x)});
+                   });
   }
 
   PiecewisePolynomial weight_;
@@ -168,10 +162,10 @@ class Stick {
     twist_slope_ = (2 / pi * c.ratio * pressure.slope(c) + y_slope) / solutions_[0](c.ratio);
     moment_ = 8.0 / 3 * cube(c.ratio) * h_ + extra;
     for (const Node& node : rings_) moment_ += 8 * node.weight * std::pow(1 - node.x, 2) * node.value;
-    const double least = std::min(c.ratio, kLogarithmic);
+    const double least = std::min(c.ratio, kCentre);
     const double rise = pressure.integral({least, 1 - least}) - h_;
     deficit_ = 8.0 / 3 * cube(least) * (rise + pressure.pressure(0) / 3) - extra;
-    for (const Node& node : pressure.rings(c.complement, 1 - kLogarithmic))
+    for (const Node& node : pressure.rings(c.complement, 1 - kCentre))
       deficit_ += 8 * node.weight * std::pow(1 - node.x, 2) * (node.value - h_);
   }
 
