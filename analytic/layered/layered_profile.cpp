@@ -146,22 +146,24 @@ class Stick {
       : torsion_(std::move(torsion)),
         c_(c),
         h_(pressure.integral(c)),
-        rings_(pressure.rings(0, c.complement)),
-        core_(gauss_nodes(panel_ends(c.ratio, 4 * torsion_->thickness()), torsion_->points())),
-        ends_(squared(panel_ends(c.ratio, 2 * torsion_->thickness()))),
-        solutions_(
-            solve_fredholm([this](double t, double s) { return torsion_->odd(t, s); }, c.ratio,
-                           torsion_->thickness(), torsion_->points(),
-                           {[](double t) { return 4 / pi * t; }, [this](double t) { return moved(t); }})),
-        turn_(solutions_[1](c.ratio) / solutions_[0](c.ratio)) {
+        chi_(gauss_nodes(panel_ends(c.ratio, 4 * torsion_->thickness()), torsion_->points())),
+        core_size_(chi_.size()),
+        ends_(squared(panel_ends(c.ratio, 2 * torsion_->thickness()))) {
+    for (Node& node : chi_) node.value = 2 / pi * node.x * h_;
+    for (const Node& ring : pressure.rings(0, c.complement))
+      chi_.push_back({1 - ring.x, ring.weight, 2 / pi * (1 - ring.x) * ring.value});
+    solutions_ = solve_fredholm([this](double t, double s) { return torsion_->odd(t, s); }, c.ratio,
+                                torsion_->thickness(), torsion_->points(),
+                                {[](double t) { return 4 / pi * t; }, [this](double t) { return moved(t); }});
+    turn_ = solutions_[1](c.ratio) / solutions_[0](c.ratio);
     stiffness_ = 4 * pi * solutions_[0].moment(1);
     const double extra = turn_ * stiffness_ - 4 * pi * solutions_[1].moment(1);
     // y'(c) = 2 c^2 z'(c^2), since z(c^2) = 0.
     const double y_slope =
         2 * ends_.back() * z({*(ends_.end() - 2), ends_.back()}).derivative()(ends_.back());
     twist_slope_ = (2 / pi * c.ratio * pressure.slope(c) + y_slope) / solutions_[0](c.ratio);
-    moment_ = 8.0 / 3 * cube(c.ratio) * h_ + extra;
-    for (const Node& node : rings_) moment_ += 8 * node.weight * std::pow(1 - node.x, 2) * node.value;
+    moment_ = extra;
+    for (const Node& node : chi_) moment_ += 4 * pi * node.weight * node.x * node.value;
     const double least = std::min(c.ratio, kCentre);
     const double rise = pressure.integral({least, 1 - least}) - h_;
     deficit_ = 8.0 / 3 * cube(least) * (rise + pressure.pressure(0) / 3) - extra;
@@ -190,14 +192,13 @@ class Stick {
   /// Energy lost in a first loading, pi^2 integral_c^1 chi v dt with v = (4/pi) twist t - chi - K chi.
   double energy_lost() const {
     double total = 0;
-    for (const Node& ring : rings_) {
-      const double t = 1 - ring.x;
-      const double chi = 2 / pi * t * ring.value;
+    for (std::size_t ring = core_size_; ring < chi_.size(); ++ring) {
+      const auto& [t, weight, chi] = chi_[ring];
       double lag = 4 / pi * twist() * t - chi - moved(t);
-      for (std::size_t i = 0; i < core_.size(); ++i)
-        lag -= core_[i].weight * torsion_->odd(t, core_[i].x) *
+      for (std::size_t i = 0; i < core_size_; ++i)
+        lag -= chi_[i].weight * torsion_->odd(t, chi_[i].x) *
                (turn_ * solutions_[0].nodes[i].value - solutions_[1].nodes[i].value);
-      total += ring.weight * chi * lag;
+      total += weight * chi * lag;
     }
     return pi * pi * total;
   }
@@ -205,10 +206,9 @@ class Stick {
  private:
   /// integral_0^1 K(t, s) chi(s) ds of the half-space's chi.
   double moved(double t) const {
-    double total = h_ * sum(core_, [&](double s) { return torsion_->odd(t, s) * s; });
-    for (const Node& node : rings_)
-      total += node.weight * torsion_->odd(t, 1 - node.x) * (1 - node.x) * node.value;
-    return 2 / pi * total;
+    double total = 0;
+    for (const Node& node : chi_) total += node.weight * torsion_->odd(t, node.x) * node.value;
+    return total;
   }
 
   PiecewisePolynomial z(const std::vector<double>& ends) const {
@@ -222,11 +222,11 @@ class Stick {
   std::shared_ptr<const CosineTransform> torsion_;
   StickRadius c_;
   double h_;
-  std::vector<Node> rings_;
-  std::vector<Node> core_;
+  std::vector<Node> chi_;            // the half-space's: within c, and beyond
+  std::size_t core_size_;            // of the nodes within c, those of the solutions
   std::vector<double> ends_;         // of panels of t^2
   std::vector<Solution> solutions_;  // of a unit twist, and of what the half-space's chi moves
-  double turn_;                      // twist beyond the half-space's
+  double turn_ = 0;                  // twist beyond the half-space's
   double twist_slope_ = 0;
   double stiffness_ = 0;
   double moment_ = 0;
