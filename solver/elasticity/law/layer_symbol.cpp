@@ -23,15 +23,10 @@ double tail(double term, double y, int n) {
 
 }  // namespace
 
-WaveCompliance wave_compliance(const HalfSpace& body) {
-  const double compliance = 1.0 / body.shear_modulus;
-  const double plane = (1.0 - body.poisson_ratio) * compliance;
-  return {compliance, plane, plane, 0.5 * (1.0 - 2.0 * body.poisson_ratio) * compliance};
-}
-
 WaveCompliance wave_compliance(const CoatedBody& body, double wave_number) {
-  const WaveCompliance surface = wave_compliance(body.surface());
-  if (!body.layer) return surface;
+  const double compliance = 1.0 / body.surface().shear_modulus;
+  const double plane = (1.0 - body.surface().poisson_ratio) * compliance;
+  if (!body.layer) return {compliance, plane, plane, (0.5 - body.surface().poisson_ratio) * compliance};
   const double mu = body.surface().shear_modulus / body.base.shear_modulus;
   const double k1 = 3.0 - 4.0 * body.surface().poisson_ratio;
   const double k2 = 3.0 - 4.0 * body.base.poisson_ratio;
@@ -60,11 +55,10 @@ WaveCompliance wave_compliance(const CoatedBody& body, double wave_number) {
       (k1 - 1.0) * fall * (open + (1.0 - open) * fall) + e * (mu * (k2 - 1.0) * bonded + 8.0 * b * x * x);
   // Shear waves: L = (G1 - G2)/(G1 + G2), and 1 + L e over 1 - L e.
   const double shear = (mu - 1.0) / (mu + 1.0);
-  return {
-      .across = surface.across * (2.0 * mu / (1.0 + mu) - shear * fall) / (2.0 / (1.0 + mu) + shear * fall),
-      .along = surface.along * (common + y * e * below) / denominator,
-      .normal = surface.normal * (common + y * e * above) / denominator,
-      .coupling = 0.25 * surface.across * squeezed / denominator};
+  return {.across = compliance * (2.0 * mu / (1.0 + mu) - shear * fall) / (2.0 / (1.0 + mu) + shear * fall),
+          .along = plane * (common + y * e * below) / denominator,
+          .normal = plane * (common + y * e * above) / denominator,
+          .coupling = 0.25 * compliance * squeezed / denominator};
 }
 
 }  // namespace slipstick::solver

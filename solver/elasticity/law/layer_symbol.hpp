@@ -30,12 +30,10 @@ struct WaveCompliance {
   double coupling;  ///< over i: along the wave vector, by a pressure
 };
 
-/// At a wave number that is positive, by the bonding constants of Burmister (1945), as in O'Sullivan and King
-/// (Journal of Tribology 110, 1988). No exponential grows, denominators are sums of positive terms, and what
-/// would cancel on a thin layer is written as a series or as the difference of the exponential from 1.
+/// At a wave number above 0; an infinite one feels the surface alone. By the bonding constants of Burmister
+/// (1945), as in O'Sullivan and King (Journal of Tribology 110, 1988). No exponential grows, denominators are
+/// sums of positive terms, and what would cancel on a thin layer is written as a series or as the difference
+/// of the exponential from 1.
 WaveCompliance wave_compliance(const CoatedBody& body, double wave_number);
-
-/// The same on a half-space of the surface's constants, whatever the wave number.
-WaveCompliance wave_compliance(const HalfSpace& body);
 
 }  // namespace slipstick::solver
