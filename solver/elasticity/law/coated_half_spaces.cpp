@@ -115,16 +115,11 @@ void add_bases(std::vector<std::vector<double>>& tables, std::span<const Compone
       if (mirrored && k1 < k2 && k2 < offsets.n1) write(k2, k1, {s[2], s[1], s[0], s[4], s[3], s[5]});
     }
   };
-  // From both ends, so that threads share the triangle evenly.
-  in_parts(threads, (offsets.n1 + 1) / 2, [&](int, Index begin, Index end) {
-    for (Index k1 = begin; k1 < end; ++k1) {
-      add_row(k1);
-      if (k1 != offsets.n1 - 1 - k1) add_row(offsets.n1 - 1 - k1);
-    }
+  // From both ends in turn, so that threads share the triangle evenly.
+  in_parts(threads, offsets.n1, [&](int, Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) add_row(i % 2 == 0 ? i / 2 : offsets.n1 - 1 - i / 2);
   });
 }
-
-double thickness_of(const CoatedBody& body) { return body.layer ? body.layer->thickness : kInfinite; }
 
 /// Wave numbers between neighbours of which nothing happens: their ratio, and how many of them span all
 /// scales from far above the thinner layer's, 100 over its thickness, to far below.
@@ -140,9 +135,9 @@ CoatedHalfSpaces::CoatedHalfSpaces(const CoatedBody& lower, const CoatedBody& up
                                    CellTraction cell_traction)
     : lower_(lower),
       upper_(upper),
-      layers_(elastic_pair(lower.surface(), upper.surface())),
+      layers_(elastic_pair(lower.surface, upper.surface)),
       cell_traction_(cell_traction),
-      thickness_(std::min(thickness_of(lower), thickness_of(upper))),
+      thickness_(std::min(lower.thickness, upper.thickness)),
       couples_(layers_.couples()) {
   if (std::isinf(thickness_)) return;
   double wave = kLargestWave / thickness_;
@@ -215,10 +210,8 @@ double CoatedHalfSpaces::least_eigenvalue(double h1, double h2) const {
 
 void CoatedHalfSpaces::add_to(CacheKey& key) const {
   for (const CoatedBody* const body : {&lower_, &upper_}) {
-    const BondedLayer layer = body->layer.value_or(BondedLayer{{}, 0.0});
-    for (const double number : {body->base.shear_modulus, body->base.poisson_ratio, layer.thickness,
-                                layer.elastic.shear_modulus, layer.elastic.poisson_ratio})
-      key.add(number);
+    key.add(body->surface.shear_modulus).add(body->surface.poisson_ratio).add(body->thickness);
+    key.add(body->base.shear_modulus).add(body->base.poisson_ratio);
   }
   key.add(cell_traction_);
 }

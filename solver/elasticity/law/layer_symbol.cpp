@@ -24,11 +24,12 @@ double tail(double term, double y, int n) {
 }  // namespace
 
 WaveCompliance wave_compliance(const CoatedBody& body, double wave_number) {
-  const double compliance = 1.0 / body.surface().shear_modulus;
-  const double plane = (1.0 - body.surface().poisson_ratio) * compliance;
-  if (!body.layer) return {compliance, plane, plane, (0.5 - body.surface().poisson_ratio) * compliance};
-  const double mu = body.surface().shear_modulus / body.base.shear_modulus;
-  const double k1 = 3.0 - 4.0 * body.surface().poisson_ratio;
+  const double compliance = 1.0 / body.surface.shear_modulus;
+  const double plane = (1.0 - body.surface.poisson_ratio) * compliance;
+  if (std::isinf(body.thickness))
+    return {compliance, plane, plane, (0.5 - body.surface.poisson_ratio) * compliance};
+  const double mu = body.surface.shear_modulus / body.base.shear_modulus;
+  const double k1 = 3.0 - 4.0 * body.surface.poisson_ratio;
   const double k2 = 3.0 - 4.0 * body.base.poisson_ratio;
   // With Burmister's constants a and b: (1 - a)(1 - b), 1 - a b, 1 + a b + 2 b, 1 + a b - 2 b.
   const double both = (1.0 + mu * k2) * (mu + k1);
@@ -38,7 +39,7 @@ WaveCompliance wave_compliance(const CoatedBody& body, double wave_number) {
   const double above = (4.0 * mu * mu * k2 + mu * (3.0 - k1) * (1.0 - k2) + 2.0 * (k1 - 1.0)) / both;
   const double below = (1.0 + k1) * (2.0 + mu * (k2 - 1.0)) / both;
 
-  const double x = std::min(wave_number * body.layer->thickness, kNothingLeft);
+  const double x = std::min(wave_number * body.thickness, kNothingLeft);
   const double e = std::exp(-2.0 * x);
   const double fall = -std::expm1(-2.0 * x);
   const double fall_twice = -std::expm1(-4.0 * x);
