@@ -57,18 +57,17 @@ HalfSpace half_space(double young_modulus, double poisson_ratio) {
 }
 
 CoatedBody coated_body(const Material& material) {
-  CoatedBody body{half_space(material.young_modulus, material.poisson_ratio)};
-  if (const auto& coating = material.coating) {
-    body.layer = {half_space(coating->young_modulus, coating->poisson_ratio), coating->thickness};
-  }
-  return body;
+  const HalfSpace body = half_space(material.young_modulus, material.poisson_ratio);
+  const auto& coat = material.coating;
+  if (!coat) return {body};
+  return {half_space(coat->young_modulus, coat->poisson_ratio), coat->thickness, body};
 }
 
 /// A pair that gives way at least as far as the scene's bodies: each all of its layer or all of its base.
 ElasticPair softest_pair(const CoatedBody& lower, const CoatedBody& upper) {
   const auto softer = [](const CoatedBody& body) {
     const auto normal = [](const HalfSpace& half) { return (1.0 - half.poisson_ratio) / half.shear_modulus; };
-    return normal(body.base) > normal(body.surface()) ? body.base : body.surface();
+    return normal(body.base) > normal(body.surface) ? body.base : body.surface;
   };
   return elastic_pair(softer(lower), softer(upper));
 }
@@ -300,11 +299,9 @@ SharedLaw law_of_bodies(const Scene& scene, const Model& model) {
   if (!is_coated(scene)) return std::make_shared<HalfSpaces>(model.pair, scene.cell_traction);
   const auto dimensionless = [&](const Material& material) {
     CoatedBody body = coated_body(material);
-    body.base.shear_modulus = to_dimensionless(body.base.shear_modulus, model.stress_unit);
-    if (!body.layer) return body;
-    double& modulus = body.layer->elastic.shear_modulus;
-    modulus = to_dimensionless(modulus, model.stress_unit);
-    body.layer->thickness = to_dimensionless(body.layer->thickness, model.length_unit);
+    for (HalfSpace* const half : {&body.surface, &body.base})
+      half->shear_modulus = to_dimensionless(half->shear_modulus, model.stress_unit);
+    body.thickness = to_dimensionless(body.thickness, model.length_unit);
     return body;
   };
   return std::make_shared<CoatedHalfSpaces>(dimensionless(scene.lower), dimensionless(scene.upper),
@@ -328,7 +325,7 @@ SharedLaw make_law(const Scene& scene, const Model& model) {
 Model build_model(const Scene& scene, const Ranks& ranks) {
   const CoatedBody lower = coated_body(scene.lower);
   const CoatedBody upper = coated_body(scene.upper);
-  ElasticPair pair = elastic_pair(lower.surface(), upper.surface());
+  ElasticPair pair = elastic_pair(lower.surface, upper.surface);
   if (!is_coated(scene) && are_alike(scene.upper, scene.lower)) pair.mismatch = 0.0;
   require_memory_for_files(scene);
   const std::vector<Surface> surfaces = with_heights(scene.surfaces);

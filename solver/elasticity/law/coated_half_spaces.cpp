@@ -5,8 +5,6 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <stdexcept>
-#include <utility>
 
 #include "solver/cache/solve_cache.hpp"
 #include "solver/elasticity/law/cell_integrals.hpp"
@@ -56,16 +54,8 @@ const GaussRule& rule_for(double offset) {
   return rules[points - 1];
 }
 
-/// What the bases add to the coefficients of a cell, in the order of `Component`.
-struct CellSums {
-  double k11 = 0.0, k12 = 0.0, k22 = 0.0, k13 = 0.0, k23 = 0.0, k33 = 0.0;
-
-  double operator[](Component component) const {
-    return std::array{k11, k12, k22, k13, k23, k33}[static_cast<std::size_t>(component)];
-  }
-  /// The same with the axes exchanged.
-  CellSums exchanged() const { return {k22, k12, k11, k23, k13, k33}; }
-};
+/// What the bases add to a cell's K11, K12, K22, K13, K23, K33: the order of `Component`.
+using CellSums = std::array<double, 6>;
 
 /// Adds integrals over the cell h1 x h2 centred at offset (x, y), lengths in units of the thinner layer.
 void add_cell(CellSums& sums, const HankelTable& table, std::span<const Radial> radials, double x, double y,
@@ -92,12 +82,11 @@ void add_cell(CellSums& sums, const HankelTable& table, std::span<const Radial> 
       HankelTable::Values f{};
       for (const Radial radial : radials)
         f[radial] = h1 * h2 * rule1.weight[i] * rule2.weight[j] * HankelTable::value(place, radial);
-      sums.k11 += f[kMean] + f[kDifference] * (n1 * n1 - n2 * n2);
-      sums.k22 += f[kMean] - f[kDifference] * (n1 * n1 - n2 * n2);
-      sums.k12 += 2.0 * f[kDifference] * n1 * n2;
-      sums.k13 += f[kCoupling] * n1;
-      sums.k23 += f[kCoupling] * n2;
-      sums.k33 += f[kNormal];
+      const double turned = f[kDifference] * (n1 * n1 - n2 * n2);
+      const CellSums point{f[kMean] + turned, 2.0 * f[kDifference] * n1 * n2,
+                           f[kMean] - turned, f[kCoupling] * n1,
+                           f[kCoupling] * n2, f[kNormal]};
+      for (std::size_t c = 0; c < sums.size(); ++c) sums[c] += point[c];
     }
   }
 }
@@ -111,39 +100,25 @@ void add_bases(std::vector<std::vector<double>>& tables, std::span<const Compone
   const double h2 = offsets.h2 / thickness;
   const auto write = [&](Index k1, Index k2, const CellSums& sums) {
     for (std::size_t c = 0; c < components.size(); ++c)
-      tables[c][static_cast<std::size_t>(k1 * offsets.n2 + k2)] += thickness * sums[components[c]];
+      tables[c][static_cast<std::size_t>(k1 * offsets.n2 + k2)] +=
+          thickness * sums[static_cast<std::size_t>(components[c])];
   };
   const auto add_row = [&](Index k1) {
     const bool mirrored = h1 == h2 && k1 < offsets.n2;
     for (Index k2 = mirrored ? k1 : 0; k2 < offsets.n2; ++k2) {
-      CellSums sums;
-      add_cell(sums, table, radials, static_cast<double>(k1) * h1, static_cast<double>(k2) * h2, h1, h2);
+      CellSums s{};
+      add_cell(s, table, radials, static_cast<double>(k1) * h1, static_cast<double>(k2) * h2, h1, h2);
       // Odd: exactly zero on the axes.
-      if (k1 == 0) sums.k12 = sums.k13 = 0.0;
-      if (k2 == 0) sums.k12 = sums.k23 = 0.0;
-      write(k1, k2, sums);
-      if (mirrored && k1 < k2 && k2 < offsets.n1) write(k2, k1, sums.exchanged());
+      if (k1 == 0) s[1] = s[3] = 0.0;
+      if (k2 == 0) s[1] = s[4] = 0.0;
+      write(k1, k2, s);
+      if (mirrored && k1 < k2 && k2 < offsets.n1) write(k2, k1, {s[2], s[1], s[0], s[4], s[3], s[5]});
     }
   };
-  // From both ends, so that threads share the triangle evenly.
-  in_parts(threads, (offsets.n1 + 1) / 2, [&](int, Index begin, Index end) {
-    for (Index k1 = begin; k1 < end; ++k1) {
-      add_row(k1);
-      if (k1 != offsets.n1 - 1 - k1) add_row(offsets.n1 - 1 - k1);
-    }
+  // From both ends in turn, so that threads share the triangle evenly.
+  in_parts(threads, offsets.n1, [&](int, Index begin, Index end) {
+    for (Index i = begin; i < end; ++i) add_row(i % 2 == 0 ? i / 2 : offsets.n1 - 1 - i / 2);
   });
-}
-
-WaveCompliance of_pair(const WaveCompliance& lower, const WaveCompliance& upper) {
-  return {lower.across + upper.across, lower.along + upper.along, lower.normal + upper.normal,
-          lower.coupling - upper.coupling};
-}
-
-double thickness_of(const CoatedBody& body) { return body.layer ? body.layer->thickness : kInfinite; }
-bool is_valid(const CoatedBody& body) {
-  const bool is_thick = !body.layer || (body.layer->thickness > 0.0 && std::isfinite(body.layer->thickness));
-  const bool is_soft = !body.layer || std::isfinite(body.surface().shear_modulus);
-  return is_thick && is_soft && body.surface().shear_modulus > 0.0 && body.base.shear_modulus > 0.0;
 }
 
 /// Wave numbers between neighbours of which nothing happens: their ratio, and how many of them span all
@@ -160,14 +135,10 @@ CoatedHalfSpaces::CoatedHalfSpaces(const CoatedBody& lower, const CoatedBody& up
                                    CellTraction cell_traction)
     : lower_(lower),
       upper_(upper),
-      layers_(elastic_pair(lower.surface(), upper.surface())),
+      layers_(elastic_pair(lower.surface, upper.surface)),
       cell_traction_(cell_traction),
-      thickness_(std::min(thickness_of(lower), thickness_of(upper))),
+      thickness_(std::min(lower.thickness, upper.thickness)),
       couples_(layers_.couples()) {
-  const bool rigid = std::isinf(lower.surface().shear_modulus) && std::isinf(upper.surface().shear_modulus);
-  if (rigid || !is_valid(lower) || !is_valid(upper)) {
-    throw std::invalid_argument("bodies that are all rigid, or a layer that is rigid or has no thickness");
-  }
   if (std::isinf(thickness_)) return;
   double wave = kLargestWave / thickness_;
   for (int i = 0; i < kWaves; ++i, wave /= kWaveRatio) {
@@ -178,14 +149,17 @@ CoatedHalfSpaces::CoatedHalfSpaces(const CoatedBody& lower, const CoatedBody& up
 }
 
 WaveCompliance CoatedHalfSpaces::compliance(double wave_number) const {
-  return of_pair(wave_compliance(lower_, wave_number), wave_compliance(upper_, wave_number));
+  const WaveCompliance lower = wave_compliance(lower_, wave_number);
+  const WaveCompliance upper = wave_compliance(upper_, wave_number);
+  return {lower.across + upper.across, lower.along + upper.along, lower.normal + upper.normal,
+          lower.coupling - upper.coupling};
 }
 
 /// A tangential symbol T (I - n n^T) + L n n^T is the mean of T and L and, towards twice the angle of n, half
 /// of L - T; the transforms turn the sign of that, and of the coupling.
 HankelTable::Values CoatedHalfSpaces::beyond_layers(double x) const {
   const WaveCompliance whole = compliance(x / thickness_);
-  const WaveCompliance layers = of_pair(wave_compliance(lower_.surface()), wave_compliance(upper_.surface()));
+  const WaveCompliance layers = compliance(kInfinite);
   const double across = whole.across - layers.across;
   const double along = whole.along - layers.along;
   constexpr double kOverTwoPi = 0.5 / std::numbers::pi;
@@ -236,10 +210,8 @@ double CoatedHalfSpaces::least_eigenvalue(double h1, double h2) const {
 
 void CoatedHalfSpaces::add_to(CacheKey& key) const {
   for (const CoatedBody* const body : {&lower_, &upper_}) {
-    const BondedLayer layer = body->layer.value_or(BondedLayer{{}, 0.0});
-    for (const double number : {body->base.shear_modulus, body->base.poisson_ratio, layer.thickness,
-                                layer.elastic.shear_modulus, layer.elastic.poisson_ratio})
-      key.add(number);
+    key.add(body->surface.shear_modulus).add(body->surface.poisson_ratio).add(body->thickness);
+    key.add(body->base.shear_modulus).add(body->base.poisson_ratio);
   }
   key.add(cell_traction_);
 }

@@ -18,8 +18,7 @@ namespace slipstick::solver {
 /// larger.
 class CoatedHalfSpaces final : public ElasticLaw {
  public:
-  /// Throws std::invalid_argument for two rigid surfaces, or a layer that is rigid or whose thickness is not
-  /// positive and finite.
+  /// One of the surfaces is elastic; each layer has a positive, finite thickness.
   CoatedHalfSpaces(const CoatedBody& lower, const CoatedBody& upper,
                    CellTraction cell_traction = CellTraction::constant);
 

@@ -23,17 +23,13 @@ double tail(double term, double y, int n) {
 
 }  // namespace
 
-WaveCompliance wave_compliance(const HalfSpace& body) {
-  const double compliance = 1.0 / body.shear_modulus;
-  const double plane = (1.0 - body.poisson_ratio) * compliance;
-  return {compliance, plane, plane, 0.5 * (1.0 - 2.0 * body.poisson_ratio) * compliance};
-}
-
 WaveCompliance wave_compliance(const CoatedBody& body, double wave_number) {
-  const WaveCompliance surface = wave_compliance(body.surface());
-  if (!body.layer) return surface;
-  const double mu = body.surface().shear_modulus / body.base.shear_modulus;
-  const double k1 = 3.0 - 4.0 * body.surface().poisson_ratio;
+  const double compliance = 1.0 / body.surface.shear_modulus;
+  const double plane = (1.0 - body.surface.poisson_ratio) * compliance;
+  if (std::isinf(body.thickness))
+    return {compliance, plane, plane, (0.5 - body.surface.poisson_ratio) * compliance};
+  const double mu = body.surface.shear_modulus / body.base.shear_modulus;
+  const double k1 = 3.0 - 4.0 * body.surface.poisson_ratio;
   const double k2 = 3.0 - 4.0 * body.base.poisson_ratio;
   // With Burmister's constants a and b: (1 - a)(1 - b), 1 - a b, 1 + a b + 2 b, 1 + a b - 2 b.
   const double both = (1.0 + mu * k2) * (mu + k1);
@@ -43,7 +39,7 @@ WaveCompliance wave_compliance(const CoatedBody& body, double wave_number) {
   const double above = (4.0 * mu * mu * k2 + mu * (3.0 - k1) * (1.0 - k2) + 2.0 * (k1 - 1.0)) / both;
   const double below = (1.0 + k1) * (2.0 + mu * (k2 - 1.0)) / both;
 
-  const double x = std::min(wave_number * body.layer->thickness, kNothingLeft);
+  const double x = std::min(wave_number * body.thickness, kNothingLeft);
   const double e = std::exp(-2.0 * x);
   const double fall = -std::expm1(-2.0 * x);
   const double fall_twice = -std::expm1(-4.0 * x);
@@ -60,11 +56,10 @@ WaveCompliance wave_compliance(const CoatedBody& body, double wave_number) {
       (k1 - 1.0) * fall * (open + (1.0 - open) * fall) + e * (mu * (k2 - 1.0) * bonded + 8.0 * b * x * x);
   // Shear waves: L = (G1 - G2)/(G1 + G2), and 1 + L e over 1 - L e.
   const double shear = (mu - 1.0) / (mu + 1.0);
-  return {
-      .across = surface.across * (2.0 * mu / (1.0 + mu) - shear * fall) / (2.0 / (1.0 + mu) + shear * fall),
-      .along = surface.along * (common + y * e * below) / denominator,
-      .normal = surface.normal * (common + y * e * above) / denominator,
-      .coupling = 0.25 * surface.across * squeezed / denominator};
+  return {.across = compliance * (2.0 * mu / (1.0 + mu) - shear * fall) / (2.0 / (1.0 + mu) + shear * fall),
+          .along = plane * (common + y * e * below) / denominator,
+          .normal = plane * (common + y * e * above) / denominator,
+          .coupling = 0.25 * compliance * squeezed / denominator};
 }
 
 }  // namespace slipstick::solver

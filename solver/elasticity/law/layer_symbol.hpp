@@ -1,24 +1,16 @@
 #pragma once
 
-#include <optional>
+#include <limits>
 
 #include "solver/elasticity/law/half_spaces.hpp"
 
 namespace slipstick::solver {
 
-/// A layer that is bonded to a half-space. Its shear modulus is finite.
-struct BondedLayer {
-  HalfSpace elastic;
-  double thickness;
-};
-
-/// A half-space, and the layer on it if there is one. A rigid base is one of infinite shear modulus.
+/// A layer that is bonded to a half-space. Without one the surface is the half-space itself.
 struct CoatedBody {
-  HalfSpace base;
-  std::optional<BondedLayer> layer = {};
-
-  /// The constants of what is touched.
-  const HalfSpace& surface() const { return layer ? layer->elastic : base; }
+  HalfSpace surface;                                           ///< the layer; a rigid one cannot be bonded
+  double thickness = std::numeric_limits<double>::infinity();  ///< of the layer; infinite: there is none
+  HalfSpace base = surface;                                    ///< below the layer; may be rigid
 };
 
 /// How a surface moves under a wave of tractions: wave number times displacement over traction. In a pair all
@@ -30,12 +22,10 @@ struct WaveCompliance {
   double coupling;  ///< over i: along the wave vector, by a pressure
 };
 
-/// At a wave number that is positive, by the bonding constants of Burmister (1945), as in O'Sullivan and King
-/// (Journal of Tribology 110, 1988). No exponential grows, denominators are sums of positive terms, and what
-/// would cancel on a thin layer is written as a series or as the difference of the exponential from 1.
+/// At a wave number above 0; an infinite one feels the surface alone. By the bonding constants of Burmister
+/// (1945), as in O'Sullivan and King (Journal of Tribology 110, 1988). No exponential grows, denominators are
+/// sums of positive terms, and what would cancel on a thin layer is written as a series or as the difference
+/// of the exponential from 1.
 WaveCompliance wave_compliance(const CoatedBody& body, double wave_number);
-
-/// The same on a half-space of the surface's constants, whatever the wave number.
-WaveCompliance wave_compliance(const HalfSpace& body);
 
 }  // namespace slipstick::solver
