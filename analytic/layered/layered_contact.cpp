@@ -129,13 +129,16 @@ void require_one_ring(const Profile& profile) {
   }
 }
 
-/// press: a contact by the number of points.
-template <class Press>
-LayeredContact with_uncertainty(const Press& press) {
+}  // namespace
+
+LayeredContact press(Indenter indenter, double load, double radius, const Pair& pair) {
   constexpr double kRounding = 1e-13;  // of sums of some hundred terms
-  const LayeredContact coarse = press(Points::fewer);
+  require_positive("load", load);
+  require_positive("radius", radius);
+  const auto& pressed = indenter == Indenter::sphere ? sphere_contact : flat_contact;
+  const LayeredContact coarse = pressed(load, radius, pair, Points::fewer);
   require_one_ring(*coarse.profile);
-  LayeredContact fine = press(Points::all);
+  LayeredContact fine = pressed(load, radius, pair, Points::all);
   const auto numbers = [](const LayeredContact& contact) {
     const Profile& profile = *contact.profile;
     return std::array{contact.indentation.contact_radius, contact.indentation.approach, profile.pressure(0),
@@ -145,20 +148,6 @@ LayeredContact with_uncertainty(const Press& press) {
     fine.uncertainty = std::max(fine.uncertainty, std::abs(numbers(coarse)[i] / numbers(fine)[i] - 1));
   fine.uncertainty += kRounding;
   return fine;
-}
-
-}  // namespace
-
-LayeredContact press_sphere(double load, double radius, const Pair& pair) {
-  require_positive("load", load);
-  require_positive("radius", radius);
-  return with_uncertainty([&](Points points) { return sphere_contact(load, radius, pair, points); });
-}
-
-LayeredContact press_flat_punch(double load, double radius, const Pair& pair) {
-  require_positive("load", load);
-  require_positive("radius", radius);
-  return with_uncertainty([&](Points points) { return flat_contact(load, radius, pair, points); });
 }
 
 std::unique_ptr<const Profile> under_hertz_pressure(double contact_radius, const Pair& pair) {

@@ -22,13 +22,13 @@ struct LayeredContact {
   double uncertainty;
 };
 
-// Each throws std::domain_error, with name and value, unless load and radius are positive and finite, and
-// where a layer is thinner than the contact radius over 150.
+enum class Indenter { sphere, flat_punch };
 
-/// Sphere or paraboloid of a relative radius of curvature, m.
-LayeredContact press_sphere(double load, double radius, const Pair& pair);
-/// Flat punch.
-LayeredContact press_flat_punch(double load, double radius, const Pair& pair);
+/// radius: relative radius of curvature of the sphere or paraboloid, or that of the punch, m. Throws
+/// std::domain_error, with name and value, unless load and radius are positive and finite, and where the
+/// contact radius is more than 150 thicknesses, the surfaces would part within it, or slip would begin
+/// inside.
+LayeredContact press(Indenter indenter, double load, double radius, const Pair& pair);
 
 /// Torsion of coated bodies under Hertz's pressure on a radius a, whatever presses them; p0 is the peak.
 std::unique_ptr<const Profile> under_hertz_pressure(double contact_radius, const Pair& pair);

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "convergence/oracle/exact_shapes.hpp"
 
@@ -21,17 +22,18 @@ analytic::layered::Body body(const solver::Material& material) {
           analytic::layered::Coat{material.coating->thickness, elastic(material)}};
 }
 
-bool is_same(const solver::Material& one, const solver::Material& other) {
-  const auto numbers = [](const solver::Material& material) {
-    const solver::Coating coating = material.coating.value_or(solver::Coating{});
-    return std::array{material.young_modulus, material.poisson_ratio, coating.thickness,
-                      coating.young_modulus, coating.poisson_ratio};
-  };
-  return numbers(one) == numbers(other);
+std::optional<analytic::layered::Indenter> indenter(const solver::Surface& surface) {
+  const auto shape = exact_shape(surface);
+  if (shape && shape->profile == "hertz") return analytic::layered::Indenter::sphere;
+  if (shape && shape->profile == "flat_punch") return analytic::layered::Indenter::flat_punch;
+  return std::nullopt;
 }
 
-bool is_flat_punch(const solver::Surface& surface) {
-  return surface.shape == solver::Shape::flat_punch && !(surface.inner_radius > 0.0);
+/// Numbers of a body that must be equal for its pressure to move it as another.
+auto numbers(const solver::Material& material) {
+  const solver::Coating coating = material.coating.value_or(solver::Coating{});
+  return std::array{material.young_modulus, material.poisson_ratio, coating.thickness, coating.young_modulus,
+                    coating.poisson_ratio};
 }
 
 }  // namespace
@@ -43,23 +45,19 @@ solver::Material surface_material(const solver::Material& body) {
 
 std::string coated_obstacle(const solver::Scene& scene) {
   const solver::Surface& surface = scene.surfaces.front();
-  const auto shape = exact_shape(surface);
-  if (!is_flat_punch(surface) && !(shape && shape->profile == "hertz")) {
+  if (!indenter(surface))
     return fmt::format("no exact solution is known here for shape = \"{}\" on a layer",
                        to_string(surface.shape));
-  }
-  if (scene.coupling != solver::Coupling::none && !is_same(scene.upper, scene.lower)) {
+  if (scene.coupling != solver::Coupling::none && numbers(scene.upper) != numbers(scene.lower))
     return "the pressure's tangential displacement of coated bodies enters (contact.coupling)";
-  }
   const bool forces = std::any_of(scene.steps.begin(), scene.steps.end(), solver::brings_translation);
   return forces ? "no exact solution is known here for a force on a layer" : "";
 }
 
 analytic::layered::LayeredContact press_coated(const solver::Scene& scene, double load) {
   const analytic::layered::Pair pair(body(scene.lower), body(scene.upper));
-  const double radius = exact_shape(scene.surfaces.front()).value().numbers.front();
-  return is_flat_punch(scene.surfaces.front()) ? analytic::layered::press_flat_punch(load, radius, pair)
-                                               : analytic::layered::press_sphere(load, radius, pair);
+  const solver::Surface& surface = scene.surfaces.front();
+  return press(indenter(surface).value(), load, exact_shape(surface).value().numbers.front(), pair);
 }
 
 }  // namespace slipstick::convergence

@@ -15,7 +15,7 @@ solver::Material surface_material(const solver::Material& body);
 std::string coated_obstacle(const solver::Scene& scene);
 
 /// The contact of a sphere or flat punch where a body is coated, under a load in N. Throws what
-/// analytic::layered::press_sphere() throws.
+/// analytic::layered::press() throws.
 analytic::layered::LayeredContact press_coated(const solver::Scene& scene, double load);
 
 }  // namespace slipstick::convergence

@@ -66,13 +66,13 @@ TEST(LayeredContact, OfALayerLikeItsBaseIsHertzAndLubkin) {
   expect_same_torsion(*under_hertz_pressure(2, on_base(0.4, 1)), hertz_profile());
   const Pair pair = on_base(0.4, 1);
   const Indentation hertz = indent_sphere(1.7, 3, pair.effective_modulus());
-  const LayeredContact sphere = press_sphere(1.7, 3, pair);
+  const LayeredContact sphere = press(Indenter::sphere, 1.7, 3, pair);
   EXPECT_NEAR(sphere.indentation.contact_radius / hertz.contact_radius, 1, 1e-12);
   EXPECT_NEAR(sphere.indentation.approach / hertz.approach, 1, 1e-12);
   EXPECT_NEAR(sphere.profile->pressure(0.3), 1.5 * hertz_profile().pressure(0.3), 1e-12);
   expect_same_torsion(*sphere.profile, hertz_profile());
   const Indentation boussinesq = indent_flat_punch(1.7, 3, pair.effective_modulus());
-  const LayeredContact punch = press_flat_punch(1.7, 3, pair);
+  const LayeredContact punch = press(Indenter::flat_punch, 1.7, 3, pair);
   EXPECT_NEAR(punch.indentation.approach / boussinesq.approach, 1, 1e-12);
   EXPECT_NEAR(punch.profile->pressure(0.8), 0.5 * flat_punch_profile().pressure(0.8), 1e-12);
   expect_same_torsion(*punch.profile, flat_punch_profile());
@@ -105,9 +105,9 @@ TEST(LayeredContact, IsLocalOnAThinLayerOrThatOfTheBase) {
   std::vector<std::array<double, 6>> off;
   for (const double h : {0.04, 0.02}) {
     const auto [contact, profile, uncertainty] =
-        press_sphere(pi / 4 * (2 * 0.7 / 0.4) / h, 1, on_base(h, kInfinity));
+        press(Indenter::sphere, pi / 4 * (2 * 0.7 / 0.4) / h, 1, on_base(h, kInfinity));
     const Pair soft = on_base(h, 0.5, 0.5);
-    const LayeredContact base = press_sphere(2.0 / 3 * soft.effective_modulus(), 1, soft);
+    const LayeredContact base = press(Indenter::sphere, 2.0 / 3 * soft.effective_modulus(), 1, soft);
     EXPECT_LE(std::max(uncertainty, base.uncertainty), 3e-10) << h;
     off.push_back({relative_stiffness(h, kInfinity) * 32 * h / (3 * pi) - 1,
                    relative_stiffness(h, 0.5) / 0.5 - 1, contact.contact_radius - 1,
@@ -120,7 +120,7 @@ TEST(LayeredContact, IsLocalOnAThinLayerOrThatOfTheBase) {
 /// With each bit of twist the stick area takes the moment of a punch bonded on it; and the loop has the area
 /// that it loses, 8 integral M dphi - 4 M phi over the first loading.
 TEST(LayeredTorsion, GoesOnAsABondedPunchAndLosesTheAreaOfItsLoop) {
-  const auto profile = press_sphere(0.5, 1, on_base(0.3, 8)).profile;
+  const auto profile = press(Indenter::sphere, 0.5, 1, on_base(0.3, 8)).profile;
   for (const double ratio : {0.2, 0.7, 0.95}) {
     const auto slope = [&](double step) {
       const auto low = from_moment_ratio(ratio - step, *profile);
@@ -174,7 +174,7 @@ double moved(const std::function<double(double)>& field, int order, double r, do
 /// beyond it lags behind, and under the sphere it takes its shape.
 TEST(LayeredContact, LaysTheSurfacesOnEachOther) {
   const Pair pair = on_base(0.4, 6);
-  const auto [contact, profile, uncertainty] = press_sphere(0.3, 1, pair);
+  const auto [contact, profile, uncertainty] = press(Indenter::sphere, 0.3, 1, pair);
   const double a = contact.contact_radius;
   const auto pressure = [&, &p = *profile](double s) { return p.pressure(s); };
   for (const double r : {0.1, 0.5, 0.9}) {
@@ -197,19 +197,19 @@ TEST(LayeredContact, LaysTheSurfacesOnEachOther) {
 TEST(LayeredContact, RefusesWhatIsNoSuchContact) {
   const Pair pair = on_base(0.5, 2);
   for (const double bad : {0.0, -1.0, kNan, kInfinity}) {
-    EXPECT_THROW(press_sphere(bad, 1, pair), std::domain_error);
-    EXPECT_THROW(press_sphere(1, bad, pair), std::domain_error);
-    EXPECT_THROW(press_flat_punch(bad, 1, pair), std::domain_error);
+    EXPECT_THROW(press(Indenter::sphere, bad, 1, pair), std::domain_error);
+    EXPECT_THROW(press(Indenter::sphere, 1, bad, pair), std::domain_error);
+    EXPECT_THROW(press(Indenter::flat_punch, bad, 1, pair), std::domain_error);
     EXPECT_THROW(under_hertz_pressure(bad, pair), std::domain_error);
   }
   const auto pressed_flat = [](double h, double base) {
-    return [=] { press_flat_punch(1, 1, on_base(h, base)); };
+    return [=] { press(Indenter::flat_punch, 1, 1, on_base(h, base)); };
   };
   // A plate on a soft base bends away from a flat punch.
   EXPECT_THAT(pressed_flat(1, 1e-3), ThrowsMessage<std::domain_error>(HasSubstr("surfaces part")));
   EXPECT_THAT(pressed_flat(0.1, 0.1), ThrowsMessage<std::domain_error>(HasSubstr("slip begins inside")));
   EXPECT_THAT(pressed_flat(1e-3, 2), ThrowsMessage<std::domain_error>(HasSubstr("thickness")));
-  EXPECT_THROW(press_sphere(1e9, 1, pair), std::domain_error);
+  EXPECT_THROW(press(Indenter::sphere, 1e9, 1, pair), std::domain_error);
 }
 
 }  // namespace
