@@ -224,6 +224,10 @@ class FlatPunch final : public Profile {
 
 }  // namespace
 
+double Profile::bonded_traction(double radius) const {
+  return edge() == 0 ? 0 : 2 / pi * edge() * radius / std::sqrt((1 - radius) * (1 + radius));
+}
+
 const Profile& hertz_profile() {
   static const Hertz profile;
   return profile;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -19,12 +20,20 @@ struct MomentShare {
   double deficit;  ///< 1 - M/M_lim
 };
 
+/// What slip adds on first loading, dimensionless as in torsion.hpp and cycle.hpp: twist beyond that of full
+/// stick at the same moment, and the energy lost in a cycle of this amplitude.
+struct SlipPart {
+  double twist;
+  double energy_lost;
+};
+
 /// An axisymmetric contact, by its pressure p(r) and by what torsion needs of it. Lengths over the contact
 /// radius a, pressure over a reference p0 (each profile says which), combined modulus G, friction mu. With
 ///   H(s) = integral_s^1 p(r)/sqrt(r^2 - s^2) dr
 /// superposed twists of flat punches of radii c..1 (Jaeger 1995) are the slip-stick solution: twist
 /// phi = mu H(c)/(2 G), moment M = (8/3) mu (integral_c^1 s^3 (-H'(s)) ds + H(1)), stick-zone traction
-/// q = (2/pi) mu r (integral_c^1 -H'(s)/sqrt(s^2 - r^2) ds + H(1)/sqrt(1 - r^2)).
+/// q = (2/pi) mu r (integral_c^1 -H'(s)/sqrt(s^2 - r^2) ds + H(1)/sqrt(1 - r^2)). Bodies other than
+/// half-spaces have the same functions with their own twist: their H(c) is 2 G phi/mu.
 class Profile {
  public:
   virtual ~Profile() = default;
@@ -55,6 +64,14 @@ class Profile {
   virtual MomentShare moment_share(StickRadius stick) const = 0;
   /// q/(mu p0) at r < c, c < 1 or without an edge term. `inward` is c - r, given apart since it may be tiny.
   virtual double stick_traction(StickRadius stick, double radius, double inward) const = 0;
+
+  /// q/(mu p0) where the edge begins to slip, r < 1; zero without an edge term.
+  virtual double bonded_traction(double radius) const;
+  /// dM/dphi over G a_s^3, that of a bonded flat punch of the stick radius (half-spaces: Reissner and Sagoci
+  /// 1944).
+  virtual double bonded_stiffness(StickRadius) const { return 16.0 / 3; }
+  /// None: that of half-spaces, which cycle.hpp has by integrals of H.
+  virtual std::optional<SlipPart> slip_part(StickRadius) const { return std::nullopt; }
 
  protected:
   /// The values of the functions of the same names.

@@ -12,9 +12,6 @@ namespace slipstick::analytic {
 
 namespace {
 
-/// dphi/dM of a bonded flat punch, times G a^3 (Reissner and Sagoci 1944).
-constexpr double kNoSlipCompliance = 3.0 / 16;
-
 void require_partial_slip(double moment_ratio) {
   if (!(std::abs(moment_ratio) < 1))
     throw std::domain_error(fmt::format("M/M_lim = {}{}; allowed: -1 < M/M_lim < 1", moment_ratio,
@@ -55,6 +52,7 @@ StickRadius stick_radius(const TorsionState& state) {
 /// The twist that slip adds on first loading. Without slip the twist would be (3/16) M; by parts,
 /// M = (8/3) mu (c^3 H(c) + 3 integral_c^1 s^2 H(s) ds), and the difference of the two is one integral.
 double slip_twist(const TorsionState& state, const Profile& profile) {
+  if (const auto part = profile.slip_part(stick_radius(state))) return part->twist;
   return 3 / (2 * profile.load()) *
          slip_integral(profile, stick_radius(state), 1e-14, [](StickRadius) { return 1.0; });
 }
@@ -101,7 +99,7 @@ CycleState LoadingHistory::state() const {
   const double moment = moment_ratio_ * profile_->moment_limit();
   CycleState state{.moment_ratio = moment_ratio_,
                    .moment = moment,
-                   .twist = kNoSlipCompliance * moment,
+                   .twist = moment / profile_->bonded_stiffness({.ratio = 1, .complement = 0}),
                    .stick_ratio = 1,
                    .tangent_stiffness = 0,
                    .dissipated = lost_in_closed_loops_};
@@ -149,6 +147,7 @@ double energy_lost_per_cycle(double moment_ratio, const Profile& profile) {
 /// The loop's area is 8 integral M dphi - 4 M phi over the first loading, which cancels; with M as in
 /// slip_twist, and by parts, (16/load^2) integral_c^1 s^2 H(s) (H(c) - H(s)) ds, which does not.
 double energy_lost_per_cycle(const TorsionState& state, const Profile& profile, double relative) {
+  if (const auto part = profile.slip_part(stick_radius(state))) return part->energy_lost;
   return 16 / (profile.load() * profile.load()) *
          slip_integral(profile, stick_radius(state), relative,
                        [&](StickRadius s) { return profile.twist_integral(s); });

@@ -18,7 +18,7 @@ struct CycleState {
   double moment;        ///< M/(mu W a)
   double twist;         ///< G a^2 phi/(mu W)
   double stick_ratio;   ///< front of the newest branch's slip, over a; what older ones left may lie within
-  double tangent_stiffness;  ///< (dM/dphi)/(G a^3) on going on; on turning back it is 16/3, for all sticks
+  double tangent_stiffness;  ///< (dM/dphi)/(G a^3) on going on; that of full stick on turning back
   double dissipated;         ///< energy lost since the first loading began
 };
 

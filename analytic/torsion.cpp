@@ -19,8 +19,7 @@ using std::numbers::pi;
 /// Numbers below lose digits.
 constexpr double kMin = std::numeric_limits<double>::min();
 
-/// dM/dphi of a bonded flat punch, over G a^3 (Reissner and Sagoci 1944).
-constexpr double kBondedStiffness = 16.0 / 3;
+constexpr StickRadius kFull{.ratio = 1, .complement = 0};
 
 [[noreturn]] void out_of_range(std::string_view name, double value, std::string_view range) {
   throw std::domain_error(fmt::format("{} = {}; allowed: {}", name, value, range));
@@ -39,7 +38,7 @@ TorsionState state_at(StickRadius c, MomentShare share, const Profile& profile) 
           .stick_complement = c.complement,
           .twist = twist_at(profile.twist_integral(c), profile),
           .moment = profile.moment_limit() * ratio,
-          .tangent_stiffness = kBondedStiffness * c.ratio * c.ratio * c.ratio};
+          .tangent_stiffness = profile.bonded_stiffness(c) * c.ratio * c.ratio * c.ratio};
 }
 
 TorsionState state_at(StickRadius c, const Profile& profile) {
@@ -49,13 +48,14 @@ TorsionState state_at(StickRadius c, const Profile& profile) {
 /// Full stick under a singular edge: the bonded punch.
 TorsionState fully_stuck(double moment_ratio, double moment_deficit, const Profile& profile) {
   const double moment = profile.moment_limit() * moment_ratio;
+  const double stiffness = profile.bonded_stiffness(kFull);
   return {.moment_ratio = moment_ratio,
           .moment_deficit = moment_deficit,
           .stick_ratio = 1,
           .stick_complement = 0,
-          .twist = moment / kBondedStiffness,
+          .twist = moment / stiffness,
           .moment = moment,
-          .tangent_stiffness = kBondedStiffness};
+          .tangent_stiffness = stiffness};
 }
 
 /// A function's value, and d ln f/d ln x there.
@@ -87,9 +87,10 @@ double solve(double value, double start, double high, Function f) {
   throw std::runtime_error(fmt::format("no root found for {}: last at {}", value, x));
 }
 
-/// dM/d(c^3) is -(8/9) f with f = -c H': M over M_lim as a power series begins with this slope at c = 1.
+/// dM/d(c^3) is -S f/6 with f = -c H' and S the bonded stiffness: M over M_lim as a power series begins with
+/// this slope at c = 1.
 double slope_in_cube(StickRadius c, const Profile& profile) {
-  return 8.0 / 9 * profile.twist_slope(c) / (profile.load() * profile.moment_limit());
+  return profile.bonded_stiffness(c) / 6 * profile.twist_slope(c) / (profile.load() * profile.moment_limit());
 }
 
 /// From the moment beyond full stick, solved in u = 1 - c^3.
@@ -98,7 +99,7 @@ StickRadius stick_from_excess(double excess, const Profile& profile) {
     const double complement = -std::expm1(std::log1p(-u) / 3);
     return StickRadius{.ratio = 1 - complement, .complement = complement};
   };
-  const double start = excess / slope_in_cube({.ratio = 1, .complement = 0}, profile);
+  const double start = excess / slope_in_cube(kFull, profile);
   return stick(solve(excess, start, 1, [&](double u) {
     const StickRadius c = stick(u);
     const double value = profile.moment_share(c).excess;
@@ -191,15 +192,14 @@ TorsionState from_twist(double twist, const Profile& profile) {
                  fmt::format("0 <= G a^2 phi/(mu W) <= {:.6g}, beyond which a_s/a underflows", largest));
   const double stuck = twist_at(profile.edge(), profile);
   if ((stuck > 0 && twist <= stuck) || is_too_narrow(twist, profile)) {
-    const double ratio = kBondedStiffness * twist / profile.moment_limit();
+    const double ratio = profile.bonded_stiffness(kFull) * twist / profile.moment_limit();
     TorsionState state = fully_stuck(ratio, 1 - ratio, profile);
     state.twist = twist;
     return state;
   }
   const double value = 2 * profile.load() * (twist - stuck);
-  const StickRadius full{.ratio = 1, .complement = 0};
   const StickRadius c =
-      stick_beyond(solve(value, value / profile.twist_slope(full), -std::log(kMin), [&](double x) {
+      stick_beyond(solve(value, value / profile.twist_slope(kFull), -std::log(kMin), [&](double x) {
         const double h = twist_beyond_stick(x, profile);
         return Sample{.value = h, .power = x * profile.twist_slope(stick_beyond(x)) / h};
       }));
@@ -215,8 +215,7 @@ double traction(const TorsionState& state, double radius, const Profile& profile
   if (c.complement == 0) {  // full stick: the bonded punch, if anything
     if (profile.edge() == 0 || state.moment_ratio == 0) return 0;
     if (r == 1) out_of_range("r/a", r, "below 1: the traction is infinite at the edge");
-    return state.moment_ratio / profile.full_stick() * 2 / pi * profile.edge() * r /
-           std::sqrt((1 - r) * (1 + r));
+    return state.moment_ratio / profile.full_stick() * profile.bonded_traction(r);
   }
   // The front's distance, from whichever of c and 1 - c holds the digits.
   const double inward = c.ratio < 0.5 ? c.ratio - r : (1 - r) - c.complement;

@@ -15,7 +15,7 @@ struct TorsionState {
   double stick_complement;   ///< 1 - c
   double twist;              ///< G a^2 phi/(mu W), Eq. (4)
   double moment;             ///< M/(mu W a), Eq. (5)
-  double tangent_stiffness;  ///< (dM/dphi)/(G a^3) = 16/3 c^3
+  double tangent_stiffness;  ///< (dM/dphi)/(G a^3); of half-spaces 16/3 c^3
 };
 
 /// The state at a given load, stick radius or twist. Relative error of every member at most 8 eps for sphere,

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "solver/contact/coulomb_method.hpp"
+#include "solver/elasticity/law/coated_half_spaces.hpp"
 #include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/elasticity/law/law_kind.hpp"
 #include "solver/grid/own_rows.hpp"
@@ -51,8 +52,24 @@ constexpr double kExtentMarginCells = 2.0;
 /// Largest ratio of a cell's sides. Beyond it every method crawls.
 constexpr double kMaxSlender = 1000.0;
 
-HalfSpace half_space(const Material& material) {
-  return {0.5 * material.young_modulus / (1.0 + material.poisson_ratio), material.poisson_ratio};
+HalfSpace half_space(double young_modulus, double poisson_ratio) {
+  return {0.5 * young_modulus / (1.0 + poisson_ratio), poisson_ratio};
+}
+
+CoatedBody coated_body(const Material& material) {
+  const HalfSpace body = half_space(material.young_modulus, material.poisson_ratio);
+  const auto& coat = material.coating;
+  if (!coat) return {body};
+  return {half_space(coat->young_modulus, coat->poisson_ratio), coat->thickness, body};
+}
+
+/// A pair that gives way at least as far as the scene's bodies: each all of its layer or all of its base.
+ElasticPair softest_pair(const CoatedBody& lower, const CoatedBody& upper) {
+  const auto softer = [](const CoatedBody& body) {
+    const auto normal = [](const HalfSpace& half) { return (1.0 - half.poisson_ratio) / half.shear_modulus; };
+    return normal(body.base) > normal(body.surface) ? body.base : body.surface;
+  };
+  return elastic_pair(softer(lower), softer(upper));
 }
 
 std::optional<double> largest_normal(const Scene& scene) {
@@ -108,7 +125,8 @@ Grid make_grid(const Scene& scene, const std::vector<Surface>& surfaces, double 
     return require_not_slender(scene, *grid);
   }
   const auto load = largest_normal(scene);
-  const bool known = load && scene.layer.kind == nullptr;
+  // Where a layer is bonded to a body, the contact is not known, but a rectangle around it.
+  const bool known = load && scene.layer.kind == nullptr && !(scene.extent && is_coated(scene));
   const auto expected =
       known ? expected_half_sides(surfaces, scene.combine, *load, effective_modulus) : std::nullopt;
   if (!scene.extent && !expected) {
@@ -287,9 +305,23 @@ int threads_for(const Scene& scene, const Grid& part) {
   return static_cast<int>(std::clamp<Index>(part.cells() / kCellsOfThread, 1, processors));
 }
 
-/// The bodies' law, and on top of it that of the layer.
+/// The law of the bodies, and of layers that are bonded to them.
+SharedLaw law_of_bodies(const Scene& scene, const Model& model) {
+  if (!is_coated(scene)) return std::make_shared<HalfSpaces>(model.pair, scene.cell_traction);
+  const auto dimensionless = [&](const Material& material) {
+    CoatedBody body = coated_body(material);
+    for (HalfSpace* const half : {&body.surface, &body.base})
+      half->shear_modulus = to_dimensionless(half->shear_modulus, model.stress_unit);
+    body.thickness = to_dimensionless(body.thickness, model.length_unit);
+    return body;
+  };
+  return std::make_shared<CoatedHalfSpaces>(dimensionless(scene.lower), dimensionless(scene.upper),
+                                            scene.cell_traction);
+}
+
+/// The bodies' law, and on top of it that of the layer between them.
 SharedLaw make_law(const Scene& scene, const Model& model) {
-  const SharedLaw bodies = std::make_shared<HalfSpaces>(model.pair, scene.cell_traction);
+  const SharedLaw bodies = law_of_bodies(scene, model);
   const auto& [kind, values] = scene.layer;
   if (kind == nullptr) return bodies;
   std::vector<double> dimensionless;
@@ -302,20 +334,17 @@ SharedLaw make_law(const Scene& scene, const Model& model) {
 }
 
 Model build_model(const Scene& scene, const Ranks& ranks) {
-  ElasticPair pair = elastic_pair(half_space(scene.lower), half_space(scene.upper));
-  if (are_alike(scene.upper, scene.lower)) pair.mismatch = 0.0;
+  const CoatedBody lower = coated_body(scene.lower);
+  const CoatedBody upper = coated_body(scene.upper);
+  ElasticPair pair = elastic_pair(lower.surface, upper.surface);
+  if (!is_coated(scene) && are_alike(scene.upper, scene.lower)) pair.mismatch = 0.0;
   require_memory_for_files(scene);
   const std::vector<Surface> surfaces = with_heights(scene.surfaces);
-  const Grid grid = make_grid(scene, surfaces, pair.effective_modulus());
+  const Grid grid = make_grid(scene, surfaces, softest_pair(lower, upper).effective_modulus());
 
   Model model{};
   const bool full = scene.model == ModelChoice::full;
   model.shear_coupling = scene.coupling == Coupling::full;
-  model.pressure_coupling = scene.coupling == Coupling::pressure || model.shear_coupling ||
-                            (scene.coupling == Coupling::automatic && (full || pair.mismatch != 0.0));
-  const bool shear_presses = model.shear_coupling && pair.mismatch != 0.0;
-  model.hertzian = is_hertzian(surfaces) && scene.pressure != PressureModel::file && !shear_presses &&
-                   scene.layer.kind == nullptr && !scene.ends_at_grid_edge;
   model.forces = std::any_of(scene.steps.begin(), scene.steps.end(), brings_translation);
   require_memory(scene, grid, field_bytes(kFieldsAround, grid.cells()));
   model.length_unit = grid.h1;
@@ -327,6 +356,11 @@ Model build_model(const Scene& scene, const Ranks& ranks) {
                 .normal_compliance = to_dimensionless(pair.normal_compliance, compliance_unit),
                 .mismatch = to_dimensionless(pair.mismatch, compliance_unit)};
   model.law = make_law(scene, model);
+  const bool couples = model.law->couples();
+  model.pressure_coupling = scene.coupling == Coupling::pressure || model.shear_coupling ||
+                            (scene.coupling == Coupling::automatic && (full || couples));
+  model.hertzian = is_hertzian(surfaces) && scene.pressure != PressureModel::file &&
+                   !(model.shear_coupling && couples) && is_bare(scene) && !scene.ends_at_grid_edge;
   model.friction = with_factors(scene.friction, grid).to_dimensionless(model.stress_unit);
   if (const auto load = largest_normal(scene)) {
     model.normal_load = to_dimensionless(*load, model.force_unit());
@@ -342,7 +376,7 @@ Model build_model(const Scene& scene, const Ranks& ranks) {
   model.threads = threads_for(scene, model.pressure_part.grid());
 
   const auto radii = hertzian_radii(surfaces);
-  if (radii && model.normal_load && scene.layer.kind == nullptr) {
+  if (radii && model.normal_load && is_bare(scene)) {
     model.hertz =
         hertz_contact(*model.normal_load, to_dimensionless((*radii)[0], model.length_unit),
                       to_dimensionless((*radii)[1], model.length_unit), model.pair.effective_modulus());

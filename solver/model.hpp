@@ -23,8 +23,8 @@ struct Dimensionless {
   double length_unit;  ///< m
   double stress_unit;  ///< Pa
   Grid grid;
-  ElasticPair pair;  ///< the bodies
-  SharedLaw law;     ///< theirs, and that of what lies between them
+  ElasticPair pair;  ///< the bodies, or the layers that are bonded to them
+  SharedLaw law;     ///< of the bodies, and of what lies on and between them
   FrictionLaw friction;
   bool hertzian;           ///< the pressure is Hertz's, wherever the body stands, up to the mesh
   bool pressure_coupling;  ///< K13, K23 enter

@@ -139,7 +139,7 @@ void correct_axes(Interpretation& read, const solver::Scene& scene) {
   std::vector<solver::Surface> surfaces = scene.surfaces;
   surfaces.front().at = {};
   const auto radii = solver::hertzian_radii(surfaces);
-  if (!radii || scene.layer.kind != nullptr) return;
+  if (!radii || !is_bare(scene)) return;
   const solver::HertzContact shape = solver::hertz_contact(1.0, (*radii)[0], (*radii)[1], 1.0);
   const double ratio = shape.semi_axis_1 / shape.semi_axis_2;
   const double expected = 2.0 * std::log(ratio);

@@ -204,13 +204,16 @@ ArrayXd stick_cells(const GivenContact& contact) {
 }
 
 Diagnosis diagnose(const GivenContact& contact, const solver::Step& load, double allowed,
-                   const std::optional<OtherFriction>& friction) {
+                   const std::optional<OtherFriction>& friction, bool half_spaces) {
   const Trial trial(contact, load);
   const Hypothesis right = trial.of(Assumption{.name = "as it should be"});
-  std::vector<Hypothesis> tried = try_kernels(trial);
-  const Hypothesis& best = *std::ranges::min_element(tried, {}, &Hypothesis::stick_gap);
+  std::vector<Hypothesis> tried = half_spaces ? try_kernels(trial) : std::vector<Hypothesis>{};
+  const auto best = std::ranges::min_element(tried, {}, &Hypothesis::stick_gap);
   std::optional<Hypothesis> kernel;
-  if (right.stick_gap > kNoStickGap && best.stick_gap <= kExplains * right.stick_gap) kernel = best;
+  if (best != tried.end() && right.stick_gap > kNoStickGap &&
+      best->stick_gap <= kExplains * right.stick_gap) {
+    kernel = *best;
+  }
   std::optional<Hypothesis> with_friction;
   if (friction) {
     with_friction = trial.of(*friction);

@@ -30,9 +30,10 @@ struct Diagnosis {
 /// Tries wrong kernels on a contact that breaks Coulomb's law (K12 mirrored as an even function, missing, of
 /// the wrong sign; K11 and K22 exchanged; another Poisson's ratio, or zero; K13 and K23 missing or of the
 /// wrong sign), and the friction that its slip ring shows, if it is given. allowed: the gap over
-/// energy that its mesh explains. Displacements are summed directly, in large contacts at some of the cells.
+/// energy that its mesh explains. half_spaces: whether the kernels are those of half-spaces; of other bodies
+/// no wrong kernel is tried. Displacements are summed directly, in large contacts at some of the cells.
 Diagnosis diagnose(const GivenContact& contact, const solver::Step& load, double allowed,
-                   const std::optional<OtherFriction>& friction = {});
+                   const std::optional<OtherFriction>& friction = {}, bool half_spaces = true);
 
 /// 1 in cells that stick, where |q| is below mu p by more than the file's rounding and a solver's tolerance.
 Eigen::ArrayXd stick_cells(const GivenContact& contact);

@@ -213,6 +213,7 @@ std::string twist_mistake(const Examination& e, double allowed) {
                                      {180.0 / std::numbers::pi, "a twist in degrees"},
                                      {-1.0, "a twist of the other sense"}}};
   for (const Ratio& ratio : ratios) {
+    if (is_coated(e.scene) && &ratio < &ratios[2]) continue;  // no single compliance
     if (std::abs(e.state.twist / e.fitted.twist / ratio.value - 1.0) <= allowed) return ratio.words;
   }
   return fmt::format("a twist that is not that of these tractions, {:.6g} rad", e.fitted.twist);
@@ -318,7 +319,7 @@ Verdict reach_verdict(const Examination& e, std::optional<double> tolerance) {
   if (!lawful || !holds(judged, "tractions") || !holds(judged, "twist") || !holds(judged, "motion")) {
     if (!holds(judged, "friction") || !holds(judged, "friction_bound"))
       friction = friction_shown(e.contact, e.reference.right);
-    diagnosis = diagnose(e.contact, e.scene.steps.front(), allowed.gap, friction);
+    diagnosis = diagnose(e.contact, e.scene.steps.front(), allowed.gap, friction, !is_coated(e.scene));
   }
   const Judged discrete = judge_discrete(e, allowed);
   return {judged, discrete, diagnosis, headline_of(e, judged, allowed),

@@ -136,6 +136,7 @@ void write_exchange(const SolverProgram& program, const ExchangeFiles& files, co
             {"gap", write_array(program, files, "gap", grid, posed.gap)},
             {"pressure", nullptr}};
   if (scene.layer.kind != nullptr) json["layer"] = scene.layer.kind->word;
+  if (is_coated(scene)) json["layer"] = "bonded";  // the constants of the bodies are not all
   if (posed.pressure.size() > 0) {
     json["pressure"] = write_array(program, files, "pressure", grid, posed.pressure);
   }

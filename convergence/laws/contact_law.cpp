@@ -64,13 +64,14 @@ LawContact law_contact(const solver::Scene& scene) {
   unloaded.steps.front().displacement.reset();
   unloaded.cycles = 1;
   const OracleAnswer answer = find_oracle(unloaded);
-  const std::string reason = answer.oracle ? answer.oracle->only_normal : answer.reason;
+  std::string reason = answer.oracle ? answer.oracle->only_normal : answer.reason;
+  if (is_coated(scene)) reason = "the forms of the law are made for half-spaces without a layer";
   if (!reason.empty()) {
-    throw solver::InputError(
-        scene.source.string(),
-        fmt::format("its torsion has no exact law: {}; allowed: scenes that slipstick solve answers with "
-                    "--set solver.model=\"exact\"",
-                    reason));
+    throw solver::InputError(scene.source.string(),
+                             fmt::format("its torsion has no exact law: {}; allowed: scenes without a layer "
+                                         "that slipstick solve answers with "
+                                         "--set solver.model=\"exact\"",
+                                         reason));
   }
   const bool is_sphere = scene.surfaces.front().shape == solver::Shape::sphere;
   return {.name = scene.name,

@@ -18,6 +18,7 @@
 #include "analytic/named_profile.hpp"
 #include "analytic/spence.hpp"
 #include "analytic/tangential_history.hpp"
+#include "convergence/oracle/coated_contact.hpp"
 #include "convergence/oracle/exact_shapes.hpp"
 #include "convergence/oracle/friction_bound.hpp"
 #include "solver/input/input_error.hpp"
@@ -25,15 +26,17 @@
 namespace slipstick::convergence {
 namespace {
 
-/// Moduli of the pair: 1/E* = sum of (1 - nu^2)/E, and 1/G = sum of 2 (1 + nu)/E.
+/// Moduli of the pair's surface materials: 1/E* = sum of (1 - nu^2)/E, and 1/G = sum of 2 (1 + nu)/E.
 struct Moduli {
   double effective;
   double shear;
 };
 Moduli moduli(const solver::Scene& scene) {
+  const solver::Material upper = surface_material(scene.upper);
+  const solver::Material lower = surface_material(scene.lower);
   const auto sum_of = [&](auto numerator) {
-    return numerator(scene.upper.poisson_ratio) / scene.upper.young_modulus +
-           numerator(scene.lower.poisson_ratio) / scene.lower.young_modulus;
+    return numerator(upper.poisson_ratio) / upper.young_modulus +
+           numerator(lower.poisson_ratio) / lower.young_modulus;
   };
   return {.effective = 1.0 / sum_of([](double nu) { return 1.0 - nu * nu; }),
           .shear = 1.0 / sum_of([](double nu) { return 2.0 * (1.0 + nu); })};
@@ -72,7 +75,9 @@ class Indentation {
       : source_(scene.source.string()),
         surface_(scene.surfaces.front()),
         pair_(moduli(scene)),
-        friction_(scene.friction) {}
+        friction_(scene.friction) {
+    if (is_coated(scene)) coated_ = scene;
+  }
 
   const Moduli& pair() const { return pair_; }
   /// mu; theories that ask for it hold under Coulomb's law alone.
@@ -80,16 +85,16 @@ class Indentation {
 
   /// The contact, without shear.
   Oracle pressed(double load) const {
-    const auto [named, contact] = pressed_shape(load);
+    const auto [contact, profile, uncertainty] = pressed_shape(load);
     Oracle oracle{};
-    oracle.profile = named.profile;
+    oracle.profile = profile;
     oracle.centre = surface_.at;
     oracle.contact_radius = contact.contact_radius;
     oracle.reference_pressure = contact.reference_pressure;
-    oracle.peak_pressure = contact.reference_pressure * peak_of(*named.profile);
+    oracle.peak_pressure = contact.reference_pressure * peak_of(*profile);
     oracle.approach = contact.approach;
     // exact_history() has found that there is one.
-    const FrictionBound bound = find_friction_bound(friction_, named.profile, contact.reference_pressure).value();
+    const FrictionBound bound = find_friction_bound(friction_, profile, contact.reference_pressure).value();
     const double a = contact.contact_radius;
     oracle.bound = bound.profile;
     oracle.reference_bound = bound.reference;
@@ -98,16 +103,19 @@ class Indentation {
     oracle.moment_limit = bound.profile->moment_limit() * oracle.friction_force * a;
     oracle.stick_radius = contact.contact_radius;
     oracle.state.stick_ratio = 1.0;
-    oracle.relative_uncertainty = kUncertainty;
+    oracle.relative_uncertainty = uncertainty;
     return oracle;
   }
 
  private:
-  /// Throws InputError for a shape that is none in double precision.
-  analytic::PressedContact pressed_shape(double load) const {
+  /// Throws InputError for a shape that is none in double precision, std::domain_error where a layer has no
+  /// exact contact.
+  analytic::layered::LayeredContact pressed_shape(double load) const {
+    if (coated_) return press_coated(*coated_, load);
     try {
       const ExactShape shape = exact_shape(surface_).value();  // exact_history() has found that there is one
-      return analytic::press(shape.profile, {load, pair_.effective, shape.numbers});
+      const auto [named, contact] = analytic::press(shape.profile, {load, pair_.effective, shape.numbers});
+      return {contact, named.profile, kUncertainty};
     } catch (const std::domain_error& error) {
       throw solver::InputError(source_, fmt::format("[upper] has no exact contact: {}", error.what()));
     }
@@ -117,6 +125,7 @@ class Indentation {
   solver::Surface surface_;
   Moduli pair_;
   solver::FrictionLaw friction_;
+  std::optional<solver::Scene> coated_;
 };
 
 /// Torsion under a constant normal load: first loading, then Masing's rule.

@@ -13,7 +13,7 @@ namespace slipstick::convergence {
 double mismatch(const solver::Material& material);
 
 /// Torsion under a constant normal load: first loading, then Masing's rule. Under any law of friction that
-/// find_friction_bound() knows.
+/// find_friction_bound() knows. Throws std::domain_error where a coated scene has no such contact.
 std::unique_ptr<ExactHistory> torsion_history(const solver::Scene& scene);
 
 /// A tangential force along one line (a unit vector), under any normal loads, on a gap like r^n.

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <stdexcept>
 #include <vector>
 
+#include "convergence/oracle/coated_contact.hpp"
 #include "convergence/oracle/exact_shapes.hpp"
 #include "convergence/oracle/exact_theories.hpp"
 #include "solver/elasticity/law/law_kind.hpp"
@@ -157,7 +159,9 @@ OracleAnswer ExactHistory::advance(const solver::Step& step) {
 std::unique_ptr<ExactHistory> exact_history(const solver::Scene& scene) {
   const std::string reason = obstacle(scene);
   if (!reason.empty()) return no_theory(reason);
-  if (is_coupled(scene)) return history_of_dissimilar(scene);
+  const std::string under_layer = is_coated(scene) ? coated_obstacle(scene) : "";
+  if (!under_layer.empty()) return no_theory(under_layer);
+  if (!is_coated(scene) && is_coupled(scene)) return history_of_dissimilar(scene);
   if (is_elliptic(scene.surfaces.front())) return pressed_ellipse(scene);
   const auto& steps = scene.steps;
   if (!std::all_of(steps.begin(), steps.end(), without_force)) {
@@ -169,7 +173,11 @@ std::unique_ptr<ExactHistory> exact_history(const solver::Scene& scene) {
   });
   if (!constant_load)
     return no_theory("no exact solution is known here for torsion while the normal load changes");
-  return torsion_history(scene);
+  try {
+    return torsion_history(scene);
+  } catch (const std::domain_error& error) {
+    return no_theory(fmt::format("the contact on the layer is not one that is known here: {}", error.what()));
+  }
 }
 
 OracleAnswer find_oracle(const solver::Scene& scene) {

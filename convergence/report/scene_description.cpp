@@ -34,8 +34,13 @@ std::string shape_text(const solver::Surface& surface) {
 }
 
 std::string material_text(const solver::Material& material) {
-  if (std::isinf(material.young_modulus)) return "rigid";
-  return fmt::format("E = {:g} GPa, ν = {:g}", 1e-9 * material.young_modulus, material.poisson_ratio);
+  std::string layer;
+  if (const auto& c = material.coating) {
+    layer = fmt::format(", {:g} mm of {} on it", 1e3 * c->thickness,
+                        material_text({c->young_modulus, c->poisson_ratio}));
+  }
+  if (std::isinf(material.young_modulus)) return "rigid" + layer;
+  return fmt::format("E = {:g} GPa, ν = {:g}", 1e-9 * material.young_modulus, material.poisson_ratio) + layer;
 }
 
 std::string load_text(const solver::Step& step) {

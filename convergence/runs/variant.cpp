@@ -67,8 +67,12 @@ void shift(Scene& scene) {
 /// Forces stay in N: stresses are in N/mm^2, moments in N mm.
 void measure_in_millimetres(Scene& scene) {
   constexpr double of_stress = 1.0 / (kMillimetres * kMillimetres);
-  scene.upper.young_modulus *= of_stress;
-  scene.lower.young_modulus *= of_stress;
+  for (solver::Material* const body : {&scene.upper, &scene.lower}) {
+    body->young_modulus *= of_stress;
+    if (!body->coating) continue;
+    body->coating->young_modulus *= of_stress;
+    body->coating->thickness *= kMillimetres;
+  }
   scene.friction.shear_strength *= of_stress;
   if (scene.friction.kind == solver::FrictionKind::power)
     scene.friction.coefficient *= std::pow(of_stress, 1.0 - scene.friction.exponent);

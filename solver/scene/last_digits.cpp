@@ -19,7 +19,7 @@ double compliance(const Material& body) { return (1.0 + body.poisson_ratio) / bo
 /// precision holds them.
 std::optional<std::array<double, 2>> sides_of(const Scene& scene) {
   const auto& load = scene.steps.front().normal;
-  if (scene.extent || !load || scene.layer.kind != nullptr) return scene.extent;
+  if (scene.extent || !load || !is_bare(scene)) return scene.extent;
   const auto plane = [](const Material& body) { return (1.0 - body.poisson_ratio) * compliance(body); };
   try {
     return expected_half_sides(scene.surfaces, scene.combine, *load,

@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <limits>
@@ -63,15 +64,23 @@ std::vector<Surface> read_surfaces(SceneReader& reader) {
   return surfaces;
 }
 
+std::optional<Coating> read_coating(SceneReader& reader, const std::string& table) {
+  const std::array keys{table + ".thickness", table + ".young_modulus", table + ".poisson_ratio"};
+  const bool has_key = std::ranges::any_of(keys, [&](const std::string& key) { return reader.has(key); });
+  if (!has_key && reader.line(table) == 0) return std::nullopt;
+  return Coating{reader.number(keys[0]), reader.number(keys[1]), reader.number(keys[2])};
+}
+
 Material read_material(SceneReader& reader, const std::string& body) {
+  const std::optional<Coating> coating = read_coating(reader, body + ".layer");
   if (reader.flag_or(body + ".rigid", false)) {
     for (const char* key : {".young_modulus", ".poisson_ratio"}) {
       if (reader.has(body + key))
         reader.fail(body + ".rigid", "true", fmt::format("{}{} left out beside it", body, key));
     }
-    return {std::numeric_limits<double>::infinity(), 0.0};
+    return {std::numeric_limits<double>::infinity(), 0.0, coating};
   }
-  return {reader.number(body + ".young_modulus"), reader.number(body + ".poisson_ratio")};
+  return {reader.number(body + ".young_modulus"), reader.number(body + ".poisson_ratio"), coating};
 }
 
 Layer read_layer(SceneReader& reader) {
@@ -185,6 +194,10 @@ std::array<Index, 2> read_cells(SceneReader& reader, const std::vector<Surface>&
 }
 
 }  // namespace
+
+bool is_coated(const Scene& scene) { return scene.upper.coating || scene.lower.coating; }
+
+bool is_bare(const Scene& scene) { return scene.layer.kind == nullptr && !is_coated(scene); }
 
 bool brings_translation(const Step& step) {
   return step.displacement || step.force != std::array<double, 2>{};

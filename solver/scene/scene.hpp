@@ -15,10 +15,18 @@
 
 namespace slipstick::solver {
 
-/// An elastic body, or a rigid one.
+/// An elastic layer, bonded to the surface of a body.
+struct Coating {
+  double thickness = 0.0;      ///< m
+  double young_modulus = 0.0;  ///< Pa; finite
+  double poisson_ratio = 0.0;
+};
+
+/// An elastic body, or a rigid one, and the layer on it.
 struct Material {
   double young_modulus = 0.0;  ///< Pa; infinite: rigid
   double poisson_ratio = 0.0;
+  std::optional<Coating> coating = {};  ///< none: the body itself is touched
 };
 
 struct LawKind;
@@ -126,6 +134,12 @@ struct Scene {
   std::optional<double> memory_limit;
   std::vector<Omission> left_out = {};  ///< by without_last_digits()
 };
+
+/// Whether a layer is bonded to a body.
+bool is_coated(const Scene& scene);
+
+/// Whether the bodies are half-spaces that touch each other: without a layer between them or on them.
+bool is_bare(const Scene& scene);
 
 /// The k-th of the whole history, cycles gone through.
 Step step_of(const Scene& scene, std::size_t k);

@@ -77,7 +77,11 @@ void add_body(SettingKeys& keys, const std::string& table) {
       {at + "rigid", KeyType::flag, "", "false", kAny,
        "Whether the body is rigid: then it has neither of the next two keys. One body may be."},
       {at + "young_modulus", kNumber, "Pa", kRequired, kPositive, "Young's modulus."},
-      {at + "poisson_ratio", kNumber, "", kRequired, kPoisson, "Poisson's ratio."}};
+      {at + "poisson_ratio", kNumber, "", kRequired, kPoisson, "Poisson's ratio."},
+      {at + "layer.thickness", kNumber, "m", kRequired, kPositive,
+       "Thickness of the layer that is bonded to the body."},
+      {at + "layer.young_modulus", kNumber, "Pa", kRequired, kPositive, "Young's modulus of that layer."},
+      {at + "layer.poisson_ratio", kNumber, "", kRequired, kPoisson, "Poisson's ratio of that layer."}};
   keys.insert(keys.end(), body.begin(), body.end());
 }
 
@@ -146,7 +150,8 @@ void add_grid_and_solver(SettingKeys& keys, const Scene& scene) {
       {"grid.cells", KeyType::pair, "", "required; of a height map as many as its samples", kCells,
        "Cells along x1 and x2."},
       {"grid.extent", KeyType::pair, "m", "the expected contact and two cells around it", kPositive,
-       "Lengths of the grid's sides; left out beside a height map, required with a pressure from a file."},
+       "Lengths of the grid's sides; left out beside a height map, required with a pressure from a file. The "
+       "expected contact on a bonded layer is that of the softer of layer and base alone."},
       {"solver.method", kWord, "", word_of(kMethods, scene.method), one_of(kMethods),
        "Newton's method on the convex program; accelerated projected gradients; the paper's algorithm as "
        "published."},

@@ -77,6 +77,10 @@ class Validation {
       refuse_(body + ".young_modulus", fmt::format("{}", material.young_modulus), "positive");
     }
     require(body + ".poisson_ratio", material.poisson_ratio, kPoisson);
+    if (!material.coating) return;
+    require(body + ".layer.thickness", material.coating->thickness, kPositive);
+    require(body + ".layer.young_modulus", material.coating->young_modulus, kPositive);
+    require(body + ".layer.poisson_ratio", material.coating->poisson_ratio, kPoisson);
   }
 
   void check_friction() const {
@@ -153,12 +157,15 @@ class Validation {
               "auto, none, pressure (shear changes a pressure only where that is solved: "
               "contact.pressure = \"solved\")");
     }
-    if (std::isinf(scene_.upper.young_modulus) && std::isinf(scene_.lower.young_modulus)) {
+    const auto is_rigid = [](const Material& body) {
+      return std::isinf(body.young_modulus) && !body.coating;
+    };
+    if (is_rigid(scene_.upper) && is_rigid(scene_.lower)) {
       refuse_("lower.rigid", "true", "false, since the upper body is rigid");
     }
     const bool asks_hertz =
         scene_.pressure == PressureModel::hertz || scene_.pressure == PressureModel::hertz_averaged;
-    if (asks_hertz && scene_.layer.kind != nullptr) {
+    if (asks_hertz && !is_bare(scene_)) {
       refuse_("contact.pressure", fmt::format("\"{}\"", to_string(scene_.pressure)),
               "solved, file (Hertz's pressure belongs to half-spaces without a layer)");
     }

@@ -1,12 +1,16 @@
-// Half-spaces under a layer that gives way as Winkler's: every method, every part of the grid, and both
-// limits.
+// Half-spaces under a layer that gives way as Winkler's, or with layers bonded to them: every method, every
+// part of the grid, and limits.
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "solver/contact/certificate.hpp"
@@ -145,6 +149,95 @@ TEST(Layer, ThatIsVeryCompliantIsWinklersFoundation) {
   const ArrayXd across = solution.traction.head(grid.cells()) * cell_x1(grid) +
                          solution.traction.tail(grid.cells()) * cell_x2(grid);
   EXPECT_LE(across.abs().maxCoeff(), kBodiesPart * norms(solution.traction).maxCoeff() * reach);
+}
+
+/// The paper's sphere on steel with a bonded layer, its thickness over the contact radius, its modulus over
+/// steel's.
+Scene coated_scene(double thickness, double modulus, double poisson_ratio = 0.3) {
+  Scene scene = layered_scene(32, 0.0, 0.0);
+  scene.layer = {};
+  scene.coupling = Coupling::none;
+  scene.tolerance = 1e-11;
+  scene.lower.coating = {thickness * paper::kContactRadius, modulus * paper::kYoungModulus, poisson_ratio};
+  return scene;
+}
+/// The same all of its base or all of its layer.
+Scene all_base(Scene scene) {
+  scene.lower.coating.reset();
+  return scene;
+}
+Scene all_layer(Scene scene) {
+  scene.lower = {scene.lower.coating->young_modulus, scene.lower.coating->poisson_ratio};
+  return scene;
+}
+
+/// What is left goes like the thickness of a thin layer, and like the third power of one over that of a thick
+/// one: the base answers a resultant by a translation, which changes no twist, and a moment like a dipole.
+TEST(BondedLayer, GoesFromTheBaseToTheLayer) {
+  for (const double modulus : {0.4, 3.0}) {
+    const double base = solved_scene(all_base(coated_scene(1.0, modulus))).twist_angle;
+    const double layer = solved_scene(all_layer(coated_scene(1.0, modulus))).twist_angle;
+    const auto beyond = [&](double limit, double thickness) {
+      return solved_scene(coated_scene(thickness, modulus)).twist_angle / limit - 1.0;
+    };
+    EXPECT_NEAR(beyond(base, 2e-3) / beyond(base, 1e-3), 2.0, 0.02);
+    EXPECT_NEAR(beyond(layer, 100.0) / beyond(layer, 200.0), 8.0, 0.08);
+    EXPECT_NEAR(beyond(base, 1e-3), 0.0, 0.005);
+  }
+  Scene alike = coated_scene(0.3, 1.0);
+  alike.coupling = Coupling::automatic;
+  expect_same(solved_scene(alike), solved_scene(all_base(alike)), kSame);
+}
+
+TEST(BondedLayer, IsTheSameByEveryMethodOperatorAndPartOfTheGrid) {
+  for (const Coupling coupling : {Coupling::none, Coupling::pressure, Coupling::full}) {
+    Scene scene = coated_scene(0.4, 2.0, 0.2);
+    scene.upper.coating = coated_scene(0.1, 0.5).lower.coating;
+    scene.coupling = coupling;
+    scene.tolerance = 1e-12;
+    const Solution reference = solved_scene(scene);
+    EXPECT_TRUE(0 < reference.stick_cells && reference.stick_cells < reference.contact_cells);
+    const auto expect_same_with = [&](auto member, auto value, double tolerance) {
+      Scene other = scene;
+      other.*member = value;
+      const Solution solution = solved_scene(other);
+      expect_same(solution, reference, tolerance);
+      EXPECT_LE(solution.certificate.gap, scene.tolerance);
+      EXPECT_GE(solution.predicted_bytes, solution.bytes);
+    };
+    expect_same_with(&Scene::model, ModelChoice::full, kSame);
+    expect_same_with(&Scene::op, OperatorKind::direct, kSame);
+    expect_same_with(&Scene::op, OperatorKind::dense, kSame);
+    expect_same_with(&Scene::threads, 3, 0.0);
+    expect_same_with(&Scene::method, Method::projected_gradient, 1e-5);
+    std::swap(scene.lower, scene.upper);  // reverses all loads, and here nothing else
+    scene.steps[0].torsion = MomentRatio{-0.6};
+    EXPECT_NEAR(solved_scene(scene).twist_angle / reference.twist_angle, -1.0, kSame);
+  }
+}
+
+/// The grid is made for the softer of layer and base; the contact lies between those of both.
+TEST(BondedLayer, NeedsNoExtent) {
+  for (const auto& [thickness, modulus, poisson_ratio] :
+       {std::array{0.02, 0.2, 0.5}, std::array{0.5, 0.1, 0.4}, std::array{0.3, 20.0, 0.0},
+        std::array{1.0, 3.0, -0.5}}) {
+    Scene scene = coated_scene(thickness, modulus, poisson_ratio);
+    scene.extent.reset();
+    scene.cells = {96, 96};
+    const auto radius = [](const Scene& solved) { return solved_scene(solved).contact_radius; };
+    EXPECT_GT(radius(scene), 0.99 * std::min(radius(all_base(scene)), radius(all_layer(scene))));
+    EXPECT_LT(radius(scene), 1.01 * std::max(radius(all_base(scene)), radius(all_layer(scene))));
+  }
+}
+
+TEST(BondedLayer, MayLieOnRigidBasesAndUnderALayerBetweenTheBodies) {
+  Scene scene = coated_scene(0.5, 1.0);
+  scene.lower.young_modulus = std::numeric_limits<double>::infinity();
+  scene.upper = scene.lower;
+  const Solution rigid = solved_scene(scene);
+  EXPECT_LT(rigid.contact_radius, paper::kContactRadius);
+  scene.layer = {&winkler(), {kLikeBodies, kLikeBodies}};
+  EXPECT_GT(solved_scene(scene).approach, rigid.approach);
 }
 
 }  // namespace

@@ -14,26 +14,6 @@ namespace {
 constexpr double kClosedFormOffset = 2.5;
 constexpr int kMaxPoints = 10;
 
-struct GaussRule {
-  std::vector<double> node;  // in (-1/2, 1/2)
-  std::vector<double> weight;
-};
-
-GaussRule make_gauss_rule(int points) {
-  const std::unique_ptr<gsl_integration_glfixed_table, decltype(&gsl_integration_glfixed_table_free)> table(
-      gsl_integration_glfixed_table_alloc(static_cast<std::size_t>(points)),
-      gsl_integration_glfixed_table_free);
-  GaussRule rule;
-  for (int i = 0; i < points; ++i) {
-    double node = 0.0;
-    double weight = 0.0;
-    gsl_integration_glfixed_point(-0.5, 0.5, static_cast<std::size_t>(i), &node, &weight, table.get());
-    rule.node.push_back(node);
-    rule.weight.push_back(weight);
-  }
-  return rule;
-}
-
 /// On a cell `offset` cells away the integrand is analytic inside a Bernstein ellipse whose half-axes sum to
 /// about 4 offset - 2, so n points leave (4 offset - 2)^(-2n). (Trefethen, SIAM Review 50, 2008,
 /// theorem 4.5.) The rule of fewest points that leaves 1e-16.
@@ -128,6 +108,21 @@ void add_cells(CellRow& row, Index first_block, double x, double y, double step,
 }
 
 }  // namespace
+
+GaussRule make_gauss_rule(int points) {
+  const std::unique_ptr<gsl_integration_glfixed_table, decltype(&gsl_integration_glfixed_table_free)> table(
+      gsl_integration_glfixed_table_alloc(static_cast<std::size_t>(points)),
+      gsl_integration_glfixed_table_free);
+  GaussRule rule;
+  for (int i = 0; i < points; ++i) {
+    double node = 0.0;
+    double weight = 0.0;
+    gsl_integration_glfixed_point(-0.5, 0.5, static_cast<std::size_t>(i), &node, &weight, table.get());
+    rule.node.push_back(node);
+    rule.weight.push_back(weight);
+  }
+  return rule;
+}
 
 void integrate_row(CellRow& row, Index first_block, double x, double y, double h1, double h2) {
   // An elongated cell is cut into nearly square parts, so that "near" means the same along both sides.

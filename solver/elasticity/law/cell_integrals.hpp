@@ -1,10 +1,18 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <vector>
 
 #include "solver/grid/grid.hpp"
 
 namespace slipstick::solver {
+
+/// Gauss-Legendre quadrature of so many points over (-1/2, 1/2).
+struct GaussRule {
+  std::vector<double> node;
+  std::vector<double> weight;
+};
+GaussRule make_gauss_rule(int points);
 
 /// Integrals over the cell h1 x h2 centred at offset (x, y), rho^2 = x^2 + y^2, from which every component is
 /// composed: of x^2/rho^3, y^2/rho^3, x y/rho^3, x/rho^2, y/rho^2.

@@ -43,8 +43,12 @@ void with_formula(Component component, const ElasticPair& pair, const Use& use) 
 /// A cell's mean of a field is the value at its centre and this part of the second differences.
 constexpr double kSecondDifference = 1.0 / 24.0;
 
-/// The table of smooth cell tractions, from one of constant ones that has one row and one column more.
-std::vector<double> corrected(const std::vector<double>& constant, Parity sign, Index m1, Index m2) {
+/// The same cell with the axes exchanged.
+CellIntegrals exchanged(const CellIntegrals& c) { return {c.yy, c.xx, c.xy, c.y, c.x}; }
+
+}  // namespace
+
+std::vector<double> smooth_table(const std::vector<double>& constant, Parity sign, Index m1, Index m2) {
   const auto at = [&](Index k1, Index k2) {
     const int factor = (k1 < 0 ? sign.x1 : 1) * (k2 < 0 ? sign.x2 : 1);
     return factor * constant[static_cast<std::size_t>(std::abs(k1) * (m2 + 1) + std::abs(k2))];
@@ -60,19 +64,12 @@ std::vector<double> corrected(const std::vector<double>& constant, Parity sign, 
   return smooth;
 }
 
-/// The factor of a symbol by second differences: 1 less the sum of theirs over 24. phase: xi h, of a wave
-/// from a cell to the next.
 double sharpening(CellTraction cell_traction, double phase1, double phase2) {
   if (cell_traction == CellTraction::constant) return 1.0;
   const double s1 = std::sin(0.5 * phase1);
   const double s2 = std::sin(0.5 * phase2);
   return 1.0 + (s1 * s1 + s2 * s2) / 6.0;
 }
-
-/// The same cell with the axes exchanged.
-CellIntegrals exchanged(const CellIntegrals& c) { return {c.yy, c.xx, c.xy, c.y, c.x}; }
-
-}  // namespace
 
 ElasticPair elastic_pair(const HalfSpace& lower, const HalfSpace& upper) {
   const double lower_compliance = 1.0 / lower.shear_modulus;
@@ -93,7 +90,7 @@ std::vector<std::vector<double>> HalfSpaces::influence_tables(std::span<const Co
   const Grid one_more{offsets.n1 + 1, offsets.n2 + 1, offsets.h1, offsets.h2};
   auto tables = tables_of_constant(components, one_more, threads);
   for (std::size_t c = 0; c < components.size(); ++c) {
-    tables[c] = corrected(tables[c], parity(components[c]), offsets.n1, offsets.n2);
+    tables[c] = smooth_table(tables[c], parity(components[c]), offsets.n1, offsets.n2);
   }
   return tables;
 }

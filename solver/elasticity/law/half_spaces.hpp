@@ -70,6 +70,14 @@ class HalfSpaces final : public ElasticLaw {
   CellTraction cell_traction_;
 };
 
+/// The table of smooth cell tractions, from one of constant ones that has one row and one column more.
+/// sign: the parity of its component.
+std::vector<double> smooth_table(const std::vector<double>& constant, Parity sign, Index m1, Index m2);
+
+/// The factor of a symbol by second differences: 1 less the sum of theirs over 24. phase: xi h, of a wave
+/// from a cell to the next.
+double sharpening(CellTraction cell_traction, double phase1, double phase2);
+
 /// A law to share.
 inline SharedLaw half_spaces(const HalfSpace& lower, const HalfSpace& upper) {
   return std::make_shared<HalfSpaces>(elastic_pair(lower, upper));

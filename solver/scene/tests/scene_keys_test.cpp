@@ -50,6 +50,7 @@ std::vector<std::string> friction_of(const std::string& key) {
   return {};
 }
 
+const std::string kCoating = "thickness = 1\nyoung_modulus = 1\npoisson_ratio = 0.3\n";
 const std::string kLayer = "[layer]\nkind = \"winkler\"\nnormal_compliance = 1\ntangential_compliance = 1\n";
 
 /// A value that the type has not, and the end of the message about it.
@@ -99,7 +100,10 @@ class SceneKeys : public SceneFile {
     std::string name = key.name;
     if (several && key.name != "upper.combine") name.replace(0, 12, "upper.shape[1].");
     if (name.starts_with("step.")) name.replace(0, 5, "step[0].");
-    const std::string text = scene_with(shape, several) + (key.name.starts_with("layer.") ? kLayer : "");
+    std::string text = scene_with(shape, several) + (key.name.starts_with("layer.") ? kLayer : "");
+    for (const std::string table : {"upper.layer", "lower.layer"}) {
+      if (key.name.starts_with(table + ".")) text += "[" + table + "]\n" + kCoating;
+    }
     std::vector<std::string> overrides = friction_of(key.name);
     overrides.push_back(name + "=" + wrong_for(key).value);
     return complaint([&] { read_scene(write("scene.toml", text), overrides); });

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <limits>
+#include <string>
 
 #include "solver/model.hpp"
 #include "solver/tests/scene_file.hpp"
@@ -41,6 +43,17 @@ TEST_F(SceneFile, NeedsNoMoreThanTheProblem) {
   EXPECT_FALSE(scene.extent);
   EXPECT_EQ(scene.steps[0].normal, 1000.0);  // written as a whole number
   EXPECT_EQ(read(std::string(kShortScene) + "[solver]\n").tolerance, scene.tolerance);
+}
+
+TEST_F(SceneFile, MayHaveALayerOnABody) {
+  const std::string layer = "[lower.layer]\nthickness = 1e-4\nyoung_modulus = 1e9\npoisson_ratio = 0.5\n";
+  Scene scene = read(std::string(kShortScene) + layer);
+  EXPECT_TRUE(!scene.upper.coating && scene.lower.coating && is_coated(scene) && !is_bare(scene));
+  EXPECT_EQ(scene.lower.coating->thickness, 1e-4);
+  EXPECT_EQ(scene.lower.coating->young_modulus, 1e9);
+  EXPECT_EQ(scene.lower.coating->poisson_ratio, 0.5);
+  scene.upper.young_modulus = scene.lower.young_modulus = std::numeric_limits<double>::infinity();
+  EXPECT_NO_THROW(validate(scene));
 }
 
 TEST_F(SceneFile, HasEachShapeWithItsKeys) {

@@ -30,8 +30,12 @@ Scene in_units(Scene scene, const Units& units) {
     }
     surface.coefficient *= std::pow(units.metre, 1.0 - surface.exponent);
   }
-  scene.upper.young_modulus *= pascal;
-  scene.lower.young_modulus *= pascal;
+  for (Material* const body : {&scene.upper, &scene.lower}) {
+    body->young_modulus *= pascal;
+    if (!body->coating) continue;
+    body->coating->young_modulus *= pascal;
+    body->coating->thickness *= units.metre;
+  }
   scene.steps[0].normal = *scene.steps[0].normal * units.newton;
   if (const auto moment = value_if<Moment>(scene.steps[0].torsion)) {
     scene.steps[0].torsion = Moment{*moment * units.newton * units.metre};
@@ -51,6 +55,13 @@ Scene by_moment() {
 Scene over_an_extent() {
   Scene scene = ellipsoid_scene(kCells, 0.03, 0.01, 0.5);
   scene.extent = {1.6e-3, 0.9e-3};
+  return scene;
+}
+
+Scene with_layers() {
+  Scene scene = by_ratio();
+  scene.lower.coating = {0.2e-3, 3.1 * paper::kYoungModulus, 0.21};
+  scene.upper.coating = {0.03e-3, 0.7 * paper::kYoungModulus, 0.4};
   return scene;
 }
 
@@ -119,7 +130,7 @@ TEST_P(OtherUnits, GiveTheSameDigits) {
   const Units& units = GetParam();
   const double moment = units.newton * units.metre;
   const double pascal = units.newton / (units.metre * units.metre);
-  for (const Scene& scene : {by_ratio(), by_moment(), over_an_extent()}) {
+  for (const Scene& scene : {by_ratio(), by_moment(), over_an_extent(), with_layers()}) {
     const ModelSolution si = solve_in_model_units(scene);
     const ModelSolution other = solve_in_model_units(in_units(scene, units));
     ASSERT_EQ(si.status, Status::converged) << si.message;

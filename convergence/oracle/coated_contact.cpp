@@ -1,0 +1,66 @@
+#include "convergence/oracle/coated_contact.hpp"
+
+#include <fmt/core.h>
+
+#include <algorithm>
+#include <array>
+#include <optional>
+
+#include "convergence/oracle/exact_shapes.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+analytic::layered::Elastic elastic(const solver::Material& material) {
+  return {.shear_modulus = 0.5 * material.young_modulus / (1.0 + material.poisson_ratio),
+          .poisson_ratio = material.poisson_ratio};
+}
+
+analytic::layered::Body body(const solver::Material& material) {
+  if (!material.coating) return {elastic(material)};
+  return {elastic(surface_material(material)),
+          analytic::layered::Coat{material.coating->thickness, elastic(material)}};
+}
+
+std::optional<analytic::layered::Indenter> indenter(const solver::Surface& surface) {
+  const auto shape = exact_shape(surface);
+  if (shape && shape->profile == "hertz") return analytic::layered::Indenter::sphere;
+  if (shape && shape->profile == "flat_punch") return analytic::layered::Indenter::flat_punch;
+  return std::nullopt;
+}
+
+/// Numbers of a body that must be equal for its pressure to move it as another.
+auto numbers(const solver::Material& material) {
+  const solver::Coating coating = material.coating.value_or(solver::Coating{});
+  return std::array{material.young_modulus, material.poisson_ratio, coating.thickness, coating.young_modulus,
+                    coating.poisson_ratio};
+}
+
+}  // namespace
+
+solver::Material surface_material(const solver::Material& body) {
+  if (!body.coating) return body;
+  return {body.coating->young_modulus, body.coating->poisson_ratio};
+}
+
+std::string coated_obstacle(const solver::Scene& scene) {
+  const solver::Surface& surface = scene.surfaces.front();
+  if (!indenter(surface))
+    return fmt::format("no exact solution is known here for shape = \"{}\" on a layer",
+                       to_string(surface.shape));
+  if (!scene.friction.is_coulomb())
+    return fmt::format("no exact solution is known here for friction_law = \"{}\" on a layer",
+                       to_string(scene.friction.kind));
+  if (scene.coupling != solver::Coupling::none && numbers(scene.upper) != numbers(scene.lower))
+    return "the pressure's tangential displacement of coated bodies enters (contact.coupling)";
+  const bool forces = std::any_of(scene.steps.begin(), scene.steps.end(), solver::brings_translation);
+  return forces ? "no exact solution is known here for a force on a layer" : "";
+}
+
+analytic::layered::LayeredContact press_coated(const solver::Scene& scene, double load) {
+  const analytic::layered::Pair pair(body(scene.lower), body(scene.upper));
+  const solver::Surface& surface = scene.surfaces.front();
+  return press(indenter(surface).value(), load, exact_shape(surface).value().numbers.front(), pair);
+}
+
+}  // namespace slipstick::convergence

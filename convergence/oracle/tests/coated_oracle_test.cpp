@@ -1,0 +1,99 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <vector>
+
+#include "convergence/laws/contact_law.hpp"
+#include "convergence/oracle/errors.hpp"
+#include "convergence/oracle/oracle.hpp"
+#include "convergence/oracle/tests/histories.hpp"
+#include "solver/input/input_error.hpp"
+#include "solver/solve.hpp"
+
+namespace slipstick::convergence {
+namespace {
+
+using ::testing::HasSubstr;
+
+solver::Scene coated(const std::vector<std::string>& overrides = {}) {
+  return solver::read_scene(SLIPSTICK_SCENES "/coated_sphere.toml", overrides);
+}
+
+TEST(CoatedOracle, IsThatOfHalfSpacesWhereTheLayerIsLikeItsBase) {
+  for (const char* shape : {"sphere", "flat_punch"}) {
+    solver::Scene scene = coated({std::string("upper.shape=") + shape, "load.moment_ratio=0.9"});
+    scene.surfaces.front().radius = 0.001;
+    scene.lower.young_modulus = scene.lower.coating->young_modulus;
+    scene.lower.poisson_ratio = scene.lower.coating->poisson_ratio;
+    const Oracle layered = *find_oracle(scene).oracle;
+    scene.lower.coating.reset();
+    const Oracle plain = *find_oracle(scene).oracle;
+    EXPECT_LE(layered.relative_uncertainty, 1e-11) << shape;
+    for (double Oracle::*const number :
+         {&Oracle::contact_radius, &Oracle::approach, &Oracle::moment_limit, &Oracle::moment,
+          &Oracle::twist_angle, &Oracle::stick_radius, &Oracle::dissipated})
+      EXPECT_NEAR(layered.*number / plain.*number, 1.0, 1e-11) << shape;
+    for (const double part : {0.2, 0.5, 0.9}) {
+      const double radius = part * plain.contact_radius;
+      EXPECT_NEAR(layered.pressure(radius) / plain.pressure(radius), 1.0, 1e-11) << shape;
+      EXPECT_NEAR(layered.traction(radius) / plain.traction(radius), 1.0, 1e-11) << shape;
+    }
+  }
+}
+
+TEST(CoatedOracle, CarriesItsLoads) {
+  const Oracle oracle = *find_oracle(coated()).oracle;
+  const CarriedLoads carried = loads_carried_by(oracle);
+  EXPECT_NEAR(carried.load / 1000.0, 1.0, 1e-6);
+  EXPECT_NEAR(carried.moment / (0.5 * oracle.moment_limit), 1.0, 1e-6);
+}
+
+/// The largest error of twists, over the largest twist, and of the limit moment in a history on so many
+/// cells.
+double largest_error(solver::Scene scene, int cells) {
+  scene.cells = {cells, cells};
+  const auto history = exact_history(scene);
+  double largest = 0.0;
+  double twist = 0.0;
+  const auto compare_step = [&](const solver::Solution& solution) {
+    const Oracle oracle = *history->advance(solution.loads).oracle;
+    const Errors errors = compare(solution, oracle);
+    twist = std::max(twist, std::abs(oracle.twist_angle));
+    largest = std::max(
+        {largest, std::abs(errors.twist * oracle.twist_angle / twist), std::abs(errors.moment_limit)});
+  };
+  solver::solve(scene, {.progress = {}, .on_step = compare_step});
+  return largest;
+}
+
+/// The solver knows nothing of these integral equations; either side is wrong where they part.
+TEST(CoatedOracle, IsWhatTheSolverTendsTo) {
+  for (const double modulus : {30e9, 500e9}) {
+    solver::Scene scene = twisted(coated(), {0.9, -0.4, 0.6});
+    scene.lower.coating->young_modulus = modulus;
+    const double fine = largest_error(scene, 192);
+    EXPECT_LE(fine, 1e-4) << modulus;
+    EXPECT_GE(largest_error(scene, 48) / fine, 4.0) << modulus;  // order 1
+  }
+}
+
+TEST(CoatedOracle, SaysWhyItHasNoAnswer) {
+  const auto reason = [](const auto& change) {
+    solver::Scene scene = coated();
+    change(scene);
+    return find_oracle(scene).reason;
+  };
+  EXPECT_THAT(reason([](auto& scene) { scene.coupling = solver::Coupling::automatic; }),
+              HasSubstr("contact.coupling"));
+  EXPECT_THAT(reason([](auto& scene) { scene.steps.front().force = {1.0, 0.0}; }), HasSubstr("force"));
+  EXPECT_THAT(reason([](auto& scene) { scene.surfaces.front().shape = solver::Shape::cone; }),
+              HasSubstr("cone"));
+  EXPECT_THAT(reason([](auto& scene) { scene.lower.coating->thickness = 1e-6; }), HasSubstr("thickness"));
+  EXPECT_THROW(law_contact(coated()), solver::InputError);
+}
+
+}  // namespace
+}  // namespace slipstick::convergence

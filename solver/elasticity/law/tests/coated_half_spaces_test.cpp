@@ -1,0 +1,283 @@
+#include "solver/elasticity/law/coated_half_spaces.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "solver/cache/solve_cache.hpp"
+#include "solver/elasticity/direct.hpp"
+#include "solver/elasticity/law/cell_integrals.hpp"
+
+namespace slipstick::solver {
+namespace {
+
+using Tables = std::vector<std::vector<double>>;
+
+constexpr double kRigidModulus = std::numeric_limits<double>::infinity();
+constexpr CoatedBody kRigidBody{{kRigidModulus, 0.0}};
+constexpr HalfSpace kSoft{1.0, 0.3};
+constexpr HalfSpace kHard{5.0, 0.2};
+
+/// Layers much softer and harder than the base, incompressible, of negative Poisson's ratio, on a rigid base.
+std::vector<CoatedBody> hostile(double thickness) {
+  const HalfSpace rigid = kRigidBody.surface;
+  std::vector<CoatedBody> bodies;
+  for (const auto& [layer, base] : {std::pair{HalfSpace{5.0, 0.3}, HalfSpace{2.0, 0.2}},
+                                    {{0.1, 0.5}, {2.0, 0.5}},
+                                    {kSoft, rigid},
+                                    {{1.0, 0.5}, rigid},
+                                    {{1e4, 0.0}, {1.0, 0.2}},
+                                    {{1.0, -0.9}, {1e4, -0.9}},
+                                    {{1.001, 0.1}, {1.0, 0.5}}})
+    bodies.push_back({layer, thickness, base});
+  return bodies;
+}
+
+// --- waves, by Navier's equations in extended precision ---
+
+using Real = long double;
+using Matrix = Eigen::Matrix<Real, Eigen::Dynamic, Eigen::Dynamic>;
+
+/// Of wave number 1: displacements along it over i and into the body, shear traction and pressure at depth z,
+/// of the gradient of psi = exp(s z - shift), or Papkovich's and Neuber's solution with psi along the depth.
+Eigen::Matrix<Real, 4, 1> wave(const HalfSpace& body, Real s, bool second, Real z, Real shift) {
+  const Real psi = std::exp(s * z - shift);
+  const Real c = 4.0L - 4.0L * static_cast<Real>(body.poisson_ratio);
+  const Real u = second ? z : 1.0L;
+  const Real w = second ? 1.0L + s * z - c : s;
+  const Real du = second ? 1.0L + s * z : s;
+  const Real dw = second ? 2.0L * s + z - c * s : 1.0L;
+  const Real volume = second ? (c - 4.0L) * s : 0.0L;  // the divergence's part of the pressure
+  const Real compliance = 1.0L / static_cast<Real>(body.shear_modulus);
+  return Eigen::Matrix<Real, 4, 1>(u * compliance, w * compliance, -(du + w), -(volume + 2.0L * dw)) * psi;
+}
+
+/// Amplitudes of four waves of the layer and two of the base follow from the surface and the interface. Shear
+/// waves: the base's compliance, carried through the layer as along a transmission line.
+WaveCompliance reference(const CoatedBody& body, Real wave_number) {
+  const Real x = wave_number * body.thickness;
+  Matrix conditions = Matrix::Zero(6, 6);
+  Matrix moved(2, 4);
+  for (int i = 0; i < 6; ++i) {
+    const Real sign = i == 2 || i == 3 ? 1.0L : -1.0L;
+    const Real shift = sign > 0.0L ? x : 0.0L;
+    conditions.col(i).tail(4) = -wave(body.base, sign, i == 5, 0.0L, 0.0L);
+    if (i >= 4) continue;
+    const auto top = wave(body.surface, sign, i % 2 == 1, 0.0L, shift);
+    conditions.col(i) << top.tail(2), wave(body.surface, sign, i % 2 == 1, x, shift);
+    moved.col(i) = top.head(2);
+  }
+  const Matrix loads = Matrix::Identity(6, 2);
+  const Matrix m = moved * conditions.fullPivLu().solve(loads).topRows(4);
+  const Real g = body.surface.shear_modulus;
+  const Real ratio = g / static_cast<Real>(body.base.shear_modulus);
+  const Real across = (ratio + std::tanh(x)) / (g * (1.0L + ratio * std::tanh(x)));
+  return {static_cast<double>(across), static_cast<double>(m(0, 0)), static_cast<double>(m(1, 1)),
+          static_cast<double>(m(0, 1))};
+}
+
+TEST(WaveCompliance, IsWhatNaviersEquationsSayAndPositiveDefinite) {
+  constexpr double kReference = 2e-13;  // the reference loses x^-3 of its 19 digits
+  for (const CoatedBody& body : hostile(0.7)) {
+    for (const double x : {0.02, 0.1, 0.4999, 0.5001, 1.0, 3.0, 12.0}) {
+      const WaveCompliance expected = reference(body, x / 0.7L);
+      const WaveCompliance c = wave_compliance(body, x / 0.7);
+      EXPECT_NEAR(c.across / expected.across, 1.0, kReference);
+      EXPECT_NEAR(c.along / expected.along, 1.0, kReference);
+      EXPECT_NEAR(c.normal / expected.normal, 1.0, kReference);
+      EXPECT_NEAR(c.coupling, expected.coupling, kReference * std::sqrt(expected.along * expected.normal));
+    }
+    for (double x = 1e-10; x < 1e3; x *= 1.7) {  // tractions do work, however thin the layer
+      const WaveCompliance c = wave_compliance(body, x);
+      EXPECT_TRUE(c.across > 0.0 && c.along * c.normal > c.coupling * c.coupling) << x;
+    }
+  }
+}
+
+// --- radial functions and tables ---
+
+/// exp(-2 x) by orders 0, 1, 2 and x exp(-2 x) by order 0 (Abramowitz and Stegun, Eq. 29.3.58).
+TEST(HankelTable, HasTheTransformsOfExponentials) {
+  const HankelTable table({0, 1, 2, 0}, [](double x) {
+    const double decay = std::exp(-2.0 * x);
+    return HankelTable::Values{decay, decay, decay, x * decay};
+  });
+  const auto expect_near = [&](double r, double tolerance) {
+    const double rho = std::hypot(r, 2.0);
+    const double slope = r / (rho + 2.0);
+    const HankelTable::Values expected{1.0 / rho, slope / rho, slope * slope / rho, 2.0 / rho / rho / rho};
+    for (std::size_t term = 0; term < expected.size(); ++term) {
+      EXPECT_NEAR(HankelTable::value(table.place(r), term), expected[term], tolerance / (1.0 + r)) << r;
+    }
+  };
+  for (double r = 1e-6; r < 1e7; r *= 1.37) expect_near(r, 5e-13);
+  for (const double r : {1e8, 1e12, 1e150}) expect_near(r, 2e-7);  // the tail 1/r
+}
+
+Tables tables_of(const ElasticLaw& law, const Grid& offsets, int threads = 1) {
+  return law.influence_tables(kAllComponents, offsets, threads);
+}
+
+/// The largest difference of any coefficient, over the largest of all.
+double difference(const Tables& a, const Tables& b) {
+  double worst = 0.0;
+  double scale = 0.0;
+  for (std::size_t c = 0; c < a.size(); ++c) {
+    for (std::size_t i = 0; i < a[c].size(); ++i) {
+      worst = std::max(worst, std::abs(a[c][i] - b[c][i]));
+      scale = std::max(scale, std::abs(b[c][i]));
+    }
+  }
+  return worst / scale;
+}
+
+/// What the base adds to the coefficients at offset (x, y): the Fourier integral in polar coordinates of the
+/// wave vector, up to where exp(-2 k h) is below rounding.
+std::array<double, 6> added_by_base(const CoatedBody& body, const Grid& cell, CellTraction traction, double x,
+                                    double y) {
+  const auto sinc = [](double a) { return a == 0.0 ? 1.0 : std::sin(a) / a; };
+  const GaussRule rule = make_gauss_rule(20);
+  const WaveCompliance layer = wave_compliance({body.surface}, 1.0);
+  std::array<double, 6> sum{};
+  for (double begin = 0.0, width = 0.125; begin < 20.0; begin += width, width = std::min(0.5, begin)) {
+    for (std::size_t i = 0; i < rule.node.size(); ++i) {
+      const double k = (begin + width * (0.5 + rule.node[i])) / body.thickness;
+      const WaveCompliance c = reference(body, k);
+      const int directions = 64 + 2 * static_cast<int>(k * (std::hypot(x, y) + cell.h1 + cell.h2));
+      for (int j = 0; j < directions; ++j) {
+        const double n1 = std::cos(2.0 * std::numbers::pi * j / directions);
+        const double n2 = std::sin(2.0 * std::numbers::pi * j / directions);
+        const double a = k * n1 * cell.h1;
+        const double b = k * n2 * cell.h2;
+        const double weight = cell.cell_area() * sinc(0.5 * a) * sinc(0.5 * b) * sharpening(traction, a, b) *
+                              width * rule.weight[i] / body.thickness / directions / 2.0 / std::numbers::pi;
+        const double even = weight * std::cos(k * (n1 * x + n2 * y));
+        const double odd = -weight * std::sin(k * (n1 * x + n2 * y));
+        const double across = even * (c.across - layer.across);
+        const double along = even * (c.along - layer.along);
+        const std::array wave{
+            across * n2 * n2 + along * n1 * n1,       (along - across) * n1 * n2,
+            across * n1 * n1 + along * n2 * n2,       odd * n1 * (c.coupling - layer.coupling),
+            odd * n2 * (c.coupling - layer.coupling), even * (c.normal - layer.normal)};
+        for (std::size_t part = 0; part < sum.size(); ++part) sum[part] += wave[part];
+      }
+    }
+  }
+  return sum;
+}
+
+TEST(CoatedHalfSpaces, HaveTheCoefficientsOfTheFourierIntegral) {
+  struct Case {
+    CoatedBody body;
+    Grid cell;
+    CellTraction traction;
+  };
+  for (const auto& [body, cell, traction] :
+       {Case{CoatedBody{kSoft, 1.3, kHard}, {4, 3, 1.0, 1.0}, CellTraction::constant},
+        Case{CoatedBody{{1.0, 0.5}, 0.4, {kRigidModulus, 0.0}}, {3, 3, 0.5, 1.7}, CellTraction::constant},
+        Case{CoatedBody{{20.0, 0.1}, 0.9, kSoft}, {3, 3, 1.0, 1.0}, CellTraction::smooth}}) {
+    const HalfSpace other{2.0, 0.1};
+    Tables expected = tables_of(HalfSpaces(elastic_pair(body.surface, other), traction), cell);
+    for (Index i = 0; i < cell.cells(); ++i) {
+      const auto added = added_by_base(body, cell, traction, static_cast<double>(i / cell.n2) * cell.h1,
+                                       static_cast<double>(i % cell.n2) * cell.h2);
+      for (std::size_t c = 0; c < added.size(); ++c) expected[c][static_cast<std::size_t>(i)] += added[c];
+    }
+    EXPECT_LE(difference(tables_of(CoatedHalfSpaces(body, {other}, traction), cell), expected), 2e-13);
+  }
+}
+
+TEST(CoatedHalfSpaces, AreHalfSpacesWhereLayerAndBaseAreAlike) {
+  const Grid cell{9, 7, 1.0, 0.8};
+  const Tables plain = tables_of(HalfSpaces(elastic_pair(kSoft, kHard)), cell);
+  for (const double thickness : {1e-3, 1.0, 1e4}) {
+    const CoatedHalfSpaces law(CoatedBody{kSoft, thickness, kSoft},
+                               CoatedBody{kHard, 2.0 * thickness, kHard});
+    EXPECT_LE(difference(tables_of(law, cell), plain), 1e-14);
+  }
+  EXPECT_EQ(tables_of(CoatedHalfSpaces({kSoft}, {kHard}), cell), plain);
+}
+
+/// A thin layer on a rigid base is Winkler's foundation: each cell stands alone, and a pressure shortens the
+/// layer as in uniaxial strain.
+TEST(CoatedHalfSpaces, AreWinklersFoundationOnARigidBase) {
+  constexpr double kThickness = 1e-3;
+  const CoatedHalfSpaces law(CoatedBody{kSoft, kThickness, kRigidBody.surface}, kRigidBody);
+  Tables expected = tables_of(law, {30, 20, 1.0, 1.0});
+  for (std::vector<double>& table : expected) std::ranges::fill(table, 0.0);
+  expected[0][0] = expected[2][0] = kThickness;
+  expected[5][0] = kThickness * (1.0 - 2.0 * 0.3) / (2.0 * (1.0 - 0.3));
+  EXPECT_LE(difference(tables_of(law, {30, 20, 1.0, 1.0}), expected), 1e-11);
+}
+
+TEST(CoatedHalfSpaces, ChangeNoBitWithThreadsAndMirrorAlongTheDiagonal) {
+  const CoatedHalfSpaces law(CoatedBody{kSoft, 0.3, kHard}, CoatedBody{kHard, 2.0, kSoft});
+  constexpr std::array<std::size_t, 6> kTurned{2, 1, 0, 4, 3, 5};
+  for (const Grid& cell : {Grid{9, 6, 1.0, 1.0}, Grid{6, 9, 1.0, 1.0}, Grid{7, 7, 1.0, 0.5}}) {
+    const Tables tables = tables_of(law, cell);
+    for (const int threads : {2, 5}) EXPECT_EQ(tables_of(law, cell, threads), tables);
+    const Tables turned = tables_of(law, {cell.n2, cell.n1, cell.h2, cell.h1});
+    for (std::size_t c = 0; c < tables.size(); ++c) {
+      const Eigen::Map<const Eigen::MatrixXd> columns(tables[c].data(), cell.n2, cell.n1);
+      const Eigen::Map<const Eigen::MatrixXd> rows(turned[kTurned[c]].data(), cell.n1, cell.n2);
+      EXPECT_LE((columns - rows.transpose()).cwiseAbs().maxCoeff(), 1e-14);
+    }
+    EXPECT_EQ(tables[3][1], 0.0);  // where x = 0
+  }
+}
+
+/// On any cells: the matrices are positive definite, but for the tables' error, and the bound holds.
+TEST(CoatedHalfSpaces, HaveEigenvaluesAboveTheBound) {
+  const auto least = [](const Grid& cell, const BlockKernel& kernel, const ElasticLaw& law) {
+    const DenseMatrix matrix(cell, kernel, law);
+    return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(matrix.matrix()).eigenvalues().minCoeff();
+  };
+  for (const double thickness : {1e-3, 0.1, 1.0, 1e4}) {
+    for (const CoatedBody& body : hostile(thickness)) {
+      for (const Grid& cell : {Grid{6, 6, 1.0, 1.0}, Grid{4, 8, 1.0, 0.2}}) {
+        const CoatedHalfSpaces law(body, kRigidBody);
+        const double bound = law.least_eigenvalue(cell.h1, cell.h2);
+        const double found = least(cell, tangential_kernel(), law);
+        EXPECT_GE(found, bound) << thickness << ", " << body.surface.shear_modulus;
+        EXPECT_LE(found, 6.0 * bound) << thickness << ", " << body.surface.shear_modulus;
+        EXPECT_GE(least(cell, normal_kernel(), law), -1e-13 / body.surface.shear_modulus);
+      }
+    }
+  }
+}
+
+TEST(CoatedHalfSpaces, CoupleUnlessTheBodiesAreAlikeOrDoNotContract) {
+  const CoatedBody body = CoatedBody{kSoft, 0.5, kHard};
+  EXPECT_FALSE(CoatedHalfSpaces(body, body).couples());
+  EXPECT_TRUE(CoatedHalfSpaces(body, {kHard}).couples());
+  EXPECT_TRUE(CoatedHalfSpaces(body, CoatedBody{kSoft, 0.6, kHard}).couples());
+  EXPECT_FALSE(CoatedHalfSpaces({{1.0, 0.5}}, {{2.0, 0.5}}).couples());
+  // An incompressible layer that is squeezed flows sideways.
+  EXPECT_TRUE(CoatedHalfSpaces(CoatedBody{{1.0, 0.5}, 1.0, kRigidBody.surface}, kRigidBody).couples());
+}
+
+TEST(CoatedHalfSpaces, HaveAKeyForEachNumber) {
+  const auto key = [](const CoatedBody& lower) {
+    CacheKey made("law");
+    CoatedHalfSpaces(lower, {kHard}).add_to(made);
+    return made;
+  };
+  EXPECT_EQ(key({kSoft, 1.0, kHard}), key({kSoft, 1.0, kHard}));
+  for (const CoatedBody& other : std::initializer_list<CoatedBody>{{{1.1, 0.3}, 1.0, kHard},
+                                                                   {{1.0, 0.2}, 1.0, kHard},
+                                                                   {kSoft, 1.1, kHard},
+                                                                   {kSoft, 1.0, {5.1, 0.2}},
+                                                                   {kSoft, 1.0, {5.0, 0.3}}})
+    EXPECT_NE(key({kSoft, 1.0, kHard}), key(other));
+}
+
+}  // namespace
+}  // namespace slipstick::solver
