@@ -21,12 +21,10 @@ double transformed(const std::function<double(double)>& excess, double thickness
   double high = kCut / thickness;
   for (int i = 0; i <= kHalvings; ++i) {
     const double low = i == kHalvings ? 0 : high / 2;
-    const double pieces = std::ceil(std::max(1.0, (high - low) * x / kPhase));
-    const double step = (high - low) / pieces;
-    for (double piece = 0; piece < pieces; ++piece) {
-      total += gsl::gauss_legendre([&](double k) { return excess(k) * std::cos(k * x); }, low + piece * step,
-                                   low + (piece + 1) * step);
-    }
+    const auto part = [&](double k) { return excess(k) * std::cos(k * x); };
+    const std::vector<double> ends = panel_ends(high - low, x > 0 ? kPhase / x : high);
+    for (std::size_t piece = 1; piece < ends.size(); ++piece)
+      total += gsl::gauss_legendre(part, low + ends[piece - 1], low + ends[piece]);
     high = low;
   }
   return total / pi;
@@ -42,9 +40,9 @@ std::vector<double> doubling_ends(double thickness, double reach) {
 }  // namespace
 
 std::vector<double> panel_ends(double length, double longest) {
-  const double panels = std::ceil(length / longest);
+  const auto panels = static_cast<int>(std::ceil(length / longest));
   std::vector<double> ends{0};
-  for (double i = 1; i <= panels; ++i) ends.push_back(length * (i / panels));
+  for (int i = 1; i <= panels; ++i) ends.push_back(length * i / panels);
   return ends;
 }
 

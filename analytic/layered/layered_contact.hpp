@@ -11,8 +11,7 @@
 /// lays the surfaces on each other where
 ///   psi(t) + integral_0^a K(t, s) psi(s) ds = (E*/pi) (approach - t^2/R),  W = 2 pi integral psi dt,
 /// a Fredholm equation of the second kind (Lebedev and Ufliand 1958 for a layer); psi(a) = 0 under a sphere,
-/// 1/R = 0 under a flat punch. Layers from a hundred times thicker to a hundred times thinner than the
-/// contact radius, and any thicker ones.
+/// 1/R = 0 under a flat punch. A layer has any thickness from a 150th of the contact radius.
 namespace slipstick::analytic::layered {
 
 struct LayeredContact {

@@ -15,23 +15,9 @@ namespace {
 
 constexpr double kInfinite = std::numeric_limits<double>::infinity();
 
-/// The radial functions, in the table's order, with the order of their Bessel function: of K33; the mean of
-/// K11 and K22; half their difference along x1, which turns with twice the angle; K13 and K23 along the
-/// offset.
-enum Radial : std::size_t { kNormal, kMean, kDifference, kCoupling };
+/// Orders of Bessel's function in the radial functions: of K33; the mean of K11 and K22; half their
+/// difference along x1, which turns with twice the angle; K13 and K23 along the offset.
 constexpr std::array kBesselOrders{0, 0, 2, 1};
-
-std::vector<Radial> radials_of(std::span<const Component> components) {
-  std::vector<Radial> radials;
-  for (const Component component : components) {
-    const bool couples = component == Component::k13 || component == Component::k23;
-    radials.push_back(component == Component::k33 ? kNormal : couples ? kCoupling : kMean);
-    if (radials.back() == kMean) radials.push_back(kDifference);
-  }
-  std::ranges::sort(radials);
-  radials.erase(std::ranges::unique(radials).begin(), radials.end());
-  return radials;
-}
 
 /// Cells are cut until they lie so many of their sides from the singularities, which are two thicknesses away
 /// from the plane of the surface. That many Gauss points then leave kRuleError.
@@ -58,14 +44,13 @@ const GaussRule& rule_for(double offset) {
 using CellSums = std::array<double, 6>;
 
 /// Adds integrals over the cell h1 x h2 centred at offset (x, y), lengths in units of the thinner layer.
-void add_cell(CellSums& sums, const HankelTable& table, std::span<const Radial> radials, double x, double y,
-              double h1, double h2) {
+void add_cell(CellSums& sums, const HankelTable& table, double x, double y, double h1, double h2) {
   const double reach = std::sqrt(x * x + y * y + 4.0);
   if (std::max(h1, h2) * kMinOffset > reach) {
     const double d1 = h1 >= h2 ? 0.25 * h1 : 0.0;
     const double d2 = h1 >= h2 ? 0.0 : 0.25 * h2;
     for (const double side : {-1.0, 1.0})
-      add_cell(sums, table, radials, x + side * d1, y + side * d2, h1 - 2.0 * d1, h2 - 2.0 * d2);
+      add_cell(sums, table, x + side * d1, y + side * d2, h1 - 2.0 * d1, h2 - 2.0 * d2);
     return;
   }
   const GaussRule& rule1 = rule_for(reach / h1);
@@ -78,14 +63,9 @@ void add_cell(CellSums& sums, const HankelTable& table, std::span<const Radial> 
       // At r = 0 what has a direction is zero.
       const double n1 = r > 0.0 ? u / r : 0.0;
       const double n2 = r > 0.0 ? v / r : 0.0;
-      const HankelTable::Place place = table.place(r);
-      HankelTable::Values f{};
-      for (const Radial radial : radials)
-        f[radial] = h1 * h2 * rule1.weight[i] * rule2.weight[j] * HankelTable::value(place, radial);
-      const double turned = f[kDifference] * (n1 * n1 - n2 * n2);
-      const CellSums point{f[kMean] + turned, 2.0 * f[kDifference] * n1 * n2,
-                           f[kMean] - turned, f[kCoupling] * n1,
-                           f[kCoupling] * n2, f[kNormal]};
+      const HankelTable::Values f = h1 * h2 * rule1.weight[i] * rule2.weight[j] * table.at(r);
+      const double turned = f[2] * (n1 * n1 - n2 * n2);
+      const CellSums point{f[1] + turned, 2.0 * f[2] * n1 * n2, f[1] - turned, f[3] * n1, f[3] * n2, f[0]};
       for (std::size_t c = 0; c < sums.size(); ++c) sums[c] += point[c];
     }
   }
@@ -95,7 +75,6 @@ void add_cell(CellSums& sums, const HankelTable& table, std::span<const Radial> 
 /// writes that too.
 void add_bases(std::vector<std::vector<double>>& tables, std::span<const Component> components,
                const Grid& offsets, double thickness, const HankelTable& table, int threads) {
-  const std::vector<Radial> radials = radials_of(components);
   const double h1 = offsets.h1 / thickness;
   const double h2 = offsets.h2 / thickness;
   const auto write = [&](Index k1, Index k2, const CellSums& sums) {
@@ -107,7 +86,7 @@ void add_bases(std::vector<std::vector<double>>& tables, std::span<const Compone
     const bool mirrored = h1 == h2 && k1 < offsets.n2;
     for (Index k2 = mirrored ? k1 : 0; k2 < offsets.n2; ++k2) {
       CellSums s{};
-      add_cell(s, table, radials, static_cast<double>(k1) * h1, static_cast<double>(k2) * h2, h1, h2);
+      add_cell(s, table, static_cast<double>(k1) * h1, static_cast<double>(k2) * h2, h1, h2);
       // Odd: exactly zero on the axes.
       if (k1 == 0) s[1] = s[3] = 0.0;
       if (k2 == 0) s[1] = s[4] = 0.0;
@@ -123,9 +102,8 @@ void add_bases(std::vector<std::vector<double>>& tables, std::span<const Compone
 
 /// Wave numbers between neighbours of which nothing happens: their ratio, and how many of them span all
 /// scales from far above the thinner layer's, 100 over its thickness, to far below.
-constexpr double kWaveRatio = 1.25;
+constexpr double kWaveRatio = 1.25, kLargestWave = 100.0;
 constexpr int kWaves = 150;
-constexpr double kLargestWave = 100.0;
 /// Bodies differ by more than this part of their compliance: data have twelve digits.
 constexpr double kAlike = 1e-12;
 

@@ -9,6 +9,7 @@
 #include <complex>
 #include <cstdint>
 #include <numbers>
+#include <utility>
 
 namespace slipstick::solver {
 namespace {
@@ -18,12 +19,12 @@ constexpr double kPi = std::numbers::pi;
 
 /// s(x) sqrt(x) is a function of ln x, sampled over one period. It falls to rounding at both ends: like
 /// exp(-2 x) above, like sqrt(x) below, with room for what the largest r asks for.
-constexpr std::size_t kSamples = 2048;
+constexpr Index kSamples = 2048;
 constexpr double kLargest = 25.0;
 constexpr double kPeriod = 112.0;
 constexpr double kStep = 2.0 * kPi / kPeriod;
 /// Frequencies up to 45. Those above are below rounding where s is analytic 45 degrees off the axis.
-constexpr std::size_t kFrequencies = 802;
+constexpr Index kFrequencies = 802;
 /// End of the first interval, and half octaves after it.
 constexpr double kFirst = 0.5;
 constexpr Index kHalfOctaves = 52;
@@ -40,27 +41,25 @@ Complex power_integral(Complex z, int order) {
   return std::exp(z * std::numbers::ln2 + log_gamma(0.5 * (1.0 + m + z)) - log_gamma(0.5 * (1.0 + m - z)));
 }
 
-/// The powers x^(-1/2 + i w) that make up each s have integrals in closed form: each term of the table is
-/// r^(-1/2) times the real part of the sum of these coefficients times exp(-i w ln r).
-std::array<std::vector<Complex>, HankelTable::kTerms> series_of(
-    const std::array<int, HankelTable::kTerms>& orders,
-    const std::function<HankelTable::Values(double)>& spectrum) {
+/// The powers x^(-1/2 + i w) that make up each s have integrals in closed form: each integral is r^(-1/2)
+/// times the real part of the sum of these coefficients, one a column, times exp(-i w ln r).
+Eigen::Array4Xcd series_of(const std::array<int, 4>& orders,
+                           const std::function<HankelTable::Values(double)>& spectrum) {
   const double first = std::log(kLargest) - kPeriod;
-  std::array<std::vector<double>, HankelTable::kTerms> samples;
-  for (std::size_t i = 0; i < kSamples; ++i) {
+  Eigen::ArrayX4d samples(kSamples, 4);
+  for (Index i = 0; i < kSamples; ++i) {
     const double x = std::exp(first + kPeriod / static_cast<double>(kSamples) * static_cast<double>(i));
-    const HankelTable::Values s = spectrum(x);
-    for (std::size_t term = 0; term < s.size(); ++term) samples[term].push_back(s[term] * std::sqrt(x));
+    samples.row(i) = std::sqrt(x) * spectrum(x).transpose();
   }
-  std::array<std::vector<Complex>, HankelTable::kTerms> series;
-  for (std::size_t term = 0; term < series.size(); ++term) {
-    const std::vector<double>& a = samples[term];
-    gsl_fft_real_radix2_transform(samples[term].data(), 1, kSamples);
-    for (std::size_t n = 0; n < kFrequencies; ++n) {
+  Eigen::Array4Xcd series(4, kFrequencies);
+  for (Index term = 0; term < 4; ++term) {
+    double* const a = samples.col(term).data();
+    gsl_fft_real_radix2_transform(a, 1, kSamples);
+    for (Index n = 0; n < kFrequencies; ++n) {
       const double w = kStep * static_cast<double>(n);
       const Complex sum = n == 0 ? 0.5 * a[0] : Complex(a[n], a[kSamples - n]);
-      series[term].push_back(2.0 / static_cast<double>(kSamples) * sum * std::polar(1.0, -w * first) *
-                             power_integral({-0.5, w}, orders[term]));
+      series(term, n) = 2.0 / static_cast<double>(kSamples) * sum * std::polar(1.0, -w * first) *
+                        power_integral({-0.5, w}, orders[static_cast<std::size_t>(term)]);
     }
   }
   return series;
@@ -68,52 +67,52 @@ std::array<std::vector<Complex>, HankelTable::kTerms> series_of(
 
 }  // namespace
 
-HankelTable::HankelTable(const std::array<int, kTerms>& orders,
-                         const std::function<Values(double x)>& spectrum) {
-  const auto series = series_of(orders, spectrum);
+HankelTable::HankelTable(const std::array<int, 4>& orders, const std::function<Values(double x)>& spectrum)
+    : coefficients_(Eigen::Array4Xd::Zero(4, (kHalfOctaves + 1) * kCoefficients)),
+      begin_(kHalfOctaves + 2),
+      over_half_width_(kHalfOctaves + 1) {
+  const Eigen::Array4Xcd series = series_of(orders, spectrum);
   constexpr auto n = static_cast<double>(kCoefficients);
+  begin_[0] = 0.0;
   for (Index interval = 0; interval <= kHalfOctaves; ++interval) {
-    const double end = kFirst * std::pow(2.0, 0.5 * static_cast<double>(interval));
-    const double begin = interval == 0 ? 0.0 : end / std::numbers::sqrt2;
-    middle_.push_back(0.5 * (begin + end));
-    half_width_.push_back(0.5 * (end - begin));
-    coefficients_.resize(coefficients_.size() + kTerms * kCoefficients);
-    double* const coefficients = coefficients_.data() + coefficients_.size() - kTerms * kCoefficients;
-    for (std::size_t j = 0; j < kCoefficients; ++j) {
+    begin_[interval + 1] = kFirst * std::pow(2.0, 0.5 * static_cast<double>(interval));
+    over_half_width_[interval] = 2.0 / (begin_[interval + 1] - begin_[interval]);
+    for (Index j = 0; j < kCoefficients; ++j) {
       const double angle = kPi * (static_cast<double>(j) + 0.5) / n;
-      const double r = middle_.back() + half_width_.back() * std::cos(angle);
+      const double r = begin_[interval] + (1.0 + std::cos(angle)) / over_half_width_[interval];
       const Complex turn = std::polar(1.0, -kStep * std::log(r));
       Complex wave = 1.0 / std::sqrt(r);
-      Values sum{};
-      for (std::size_t i = 0; i < kFrequencies; ++i, wave *= turn) {
-        for (std::size_t term = 0; term < kTerms; ++term) sum[term] += (series[term][i] * wave).real();
-      }
-      for (std::size_t k = 0; k < kCoefficients; ++k) {
+      Values sum = Values::Zero();
+      for (Index i = 0; i < kFrequencies; ++i, wave *= turn) sum += (series.col(i) * wave).real();
+      for (Index k = 0; k < kCoefficients; ++k) {
         const double weight = (k == 0 ? 1.0 : 2.0) / n * std::cos(static_cast<double>(k) * angle);
-        for (std::size_t term = 0; term < kTerms; ++term)
-          coefficients[term * kCoefficients + k] += weight * sum[term];
+        coefficients_.col(interval * kCoefficients + k) += weight * sum;
       }
     }
   }
 }
 
-HankelTable::Place HankelTable::place(double r) const {
-  std::size_t interval = 0;
-  double scale = 1.0;
-  if (r > kFirst) {
-    const double end = middle_.back() + half_width_.back();
-    if (r > end) {
-      scale = end / r;
-      r = end;
-    }
+HankelTable::Values HankelTable::at(double r) const {
+  const double within = std::min(r, begin_[kHalfOctaves + 1]);
+  Index interval = 0;
+  if (within > kFirst) {
     // Two intervals for each power of two, read off the number's bits.
-    const auto bits = std::bit_cast<std::uint64_t>(r / kFirst);
+    const auto bits = std::bit_cast<std::uint64_t>(within / kFirst);
     const double mantissa = std::bit_cast<double>((bits & 0xFFFFFFFFFFFFFU) | 0x3FF0000000000000U);
-    interval = 2 * ((bits >> 52U) - 1023) + (mantissa < std::numbers::sqrt2 ? 1 : 2);
-    interval = std::min(interval, middle_.size() - 1);
+    interval = 2 * (static_cast<Index>(bits >> 52U) - 1023) + (mantissa < std::numbers::sqrt2 ? 1 : 2);
+    interval = std::min(interval, kHalfOctaves);
   }
-  return {coefficients_.data() + interval * kTerms * kCoefficients,
-          (r - middle_[interval]) / half_width_[interval], scale};
+  // Two chains of Chebyshev polynomials, of even and odd degree: T(k + 2) = 2 T(2) T(k) - T(k - 2).
+  const double z = (within - begin_[interval]) * over_half_width_[interval] - 1.0;
+  const double step = 4.0 * z * z - 2.0;
+  double even = 1.0, before_even = 0.5 * step, odd = z, before_odd = z;
+  Values sum = Values::Zero();
+  for (Index i = interval * kCoefficients; i < (interval + 1) * kCoefficients; i += 2) {
+    sum += even * coefficients_.col(i) + odd * coefficients_.col(i + 1);
+    before_even = std::exchange(even, step * even - before_even);
+    before_odd = std::exchange(odd, step * odd - before_odd);
+  }
+  return within == r ? sum : Values(sum * (within / r));
 }
 
 }  // namespace slipstick::solver

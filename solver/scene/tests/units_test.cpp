@@ -61,7 +61,6 @@ Scene over_an_extent() {
 Scene with_layers() {
   Scene scene = by_ratio();
   scene.lower.coating = {0.2e-3, 3.1 * paper::kYoungModulus, 0.21};
-  scene.upper.coating = {0.03e-3, 0.7 * paper::kYoungModulus, 0.4};
   return scene;
 }
 
