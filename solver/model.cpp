@@ -52,15 +52,14 @@ constexpr double kExtentMarginCells = 2.0;
 /// Largest ratio of a cell's sides. Beyond it every method crawls.
 constexpr double kMaxSlender = 1000.0;
 
-HalfSpace half_space(double young_modulus, double poisson_ratio) {
-  return {0.5 * young_modulus / (1.0 + poisson_ratio), poisson_ratio};
+HalfSpace half_space(const auto& material) {
+  return {0.5 * material.young_modulus / (1.0 + material.poisson_ratio), material.poisson_ratio};
 }
 
 CoatedBody coated_body(const Material& material) {
-  const HalfSpace body = half_space(material.young_modulus, material.poisson_ratio);
-  const auto& coat = material.coating;
-  if (!coat) return {body};
-  return {half_space(coat->young_modulus, coat->poisson_ratio), coat->thickness, body};
+  const HalfSpace body = half_space(material);
+  if (!material.coating) return {body};
+  return {half_space(*material.coating), material.coating->thickness, body};
 }
 
 /// A pair that gives way at least as far as the scene's bodies: each all of its layer or all of its base.

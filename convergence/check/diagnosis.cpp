@@ -210,10 +210,8 @@ Diagnosis diagnose(const GivenContact& contact, const solver::Step& load, double
   std::vector<Hypothesis> tried = half_spaces ? try_kernels(trial) : std::vector<Hypothesis>{};
   const auto best = std::ranges::min_element(tried, {}, &Hypothesis::stick_gap);
   std::optional<Hypothesis> kernel;
-  if (best != tried.end() && right.stick_gap > kNoStickGap &&
-      best->stick_gap <= kExplains * right.stick_gap) {
-    kernel = *best;
-  }
+  const bool explains = best != tried.end() && best->stick_gap <= kExplains * right.stick_gap;
+  if (explains && right.stick_gap > kNoStickGap) kernel = *best;
   std::optional<Hypothesis> with_friction;
   if (friction) {
     with_friction = trial.of(*friction);

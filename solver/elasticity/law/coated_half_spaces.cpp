@@ -40,10 +40,10 @@ const GaussRule& rule_for(double offset) {
   return rules[points - 1];
 }
 
-/// What the bases add to a cell's K11, K12, K22, K13, K23, K33: the order of `Component`.
-using CellSums = std::array<double, 6>;
+using CellSums = std::array<double, 6>;  // of K11, K12, K22, K13, K23, K33, the order of Component
 
-/// Adds integrals over the cell h1 x h2 centred at offset (x, y), lengths in units of the thinner layer.
+/// Adds what the bases add to the cell h1 x h2 centred at offset (x, y), lengths in units of the thinner
+/// layer.
 void add_cell(CellSums& sums, const HankelTable& table, double x, double y, double h1, double h2) {
   const double reach = std::sqrt(x * x + y * y + 4.0);
   if (std::max(h1, h2) * kMinOffset > reach) {
@@ -148,8 +148,7 @@ HankelTable::Values CoatedHalfSpaces::beyond_layers(double x) const {
 std::vector<std::vector<double>> CoatedHalfSpaces::influence_tables(std::span<const Component> components,
                                                                     const Grid& offsets, int threads) const {
   const bool smooth = cell_traction_ == CellTraction::smooth;
-  const Index more = smooth ? 1 : 0;
-  const Grid constant{offsets.n1 + more, offsets.n2 + more, offsets.h1, offsets.h2};
+  const Grid constant{offsets.n1 + smooth, offsets.n2 + smooth, offsets.h1, offsets.h2};
   auto tables = layers_.influence_tables(components, constant, threads);
   if (radial_) add_bases(tables, components, constant, thickness_, *radial_, threads);
   for (std::size_t c = 0; smooth && c < components.size(); ++c)

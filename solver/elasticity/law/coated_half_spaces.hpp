@@ -11,11 +11,10 @@
 
 namespace slipstick::solver {
 
-/// Two half-spaces, each with or without a layer bonded to it. The influence tables are those of half-spaces
-/// that consist of the layers, and what the bases change: radial functions (Hankel transforms of the symbol),
-/// smooth since the bases lie below the surface, averaged over each cell by Gauss points. They are within
-/// 1e-13 of the largest coefficient of half-spaces that consist of the layers, or of the bases if that is
-/// larger.
+/// Two half-spaces, each with or without a layer bonded to it. The tables are those of half-spaces of the
+/// layers' constants, and what the bases change: radial functions (Hankel transforms of the symbol), smooth
+/// since the bases lie below the surface, averaged over each cell by Gauss points. They are within 1e-13 of
+/// the largest coefficient of half-spaces that are all layer, or all base if that is larger.
 class CoatedHalfSpaces final : public ElasticLaw {
  public:
   /// One of the surfaces is elastic; each layer has a positive, finite thickness.
@@ -29,11 +28,10 @@ class CoatedHalfSpaces final : public ElasticLaw {
   void inverse_symbols(bool tangential, double h1, double h2, std::span<const PlaneWave> waves,
                        std::span<Symbol> inverses) const override;
 
-  /// 0.9 times the least compliance of a wave that the cells can carry. What cells alias raises the
-  /// eigenvalue of tractions that change sign from cell to cell; where each cell stands alone, on a thin
-  /// layer, it changes nothing. Computed for ratios of moduli from 1e-4 to infinity, Poisson's ratios from
-  /// -0.9 to 0.5, layers from 1e-3 to 1e3 cells and sides up to 1 : 20: the least eigenvalue is 1.11 to 2.8
-  /// times this number.
+  /// 0.9 times the least compliance of a wave that the cells can carry. The waves that cells alias raise the
+  /// eigenvalue, or leave it where each cell stands alone, on a thin layer. Computed, it is 1.11 to 2.8 times
+  /// this number for ratios of moduli from 1e-4 to infinity, Poisson's ratios from -0.9 to 0.5, layers from
+  /// 1e-3 to 1e3 cells, sides up to 1 : 20.
   double least_eigenvalue(double h1, double h2) const override;
 
   bool couples() const override { return couples_; }

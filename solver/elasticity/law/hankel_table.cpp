@@ -22,7 +22,7 @@ constexpr double kPi = std::numbers::pi;
 constexpr Index kSamples = 2048;
 constexpr double kLargest = 25.0;
 constexpr double kPeriod = 112.0;
-constexpr double kStep = 2.0 * kPi / kPeriod;
+constexpr double kFrequencyStep = 2.0 * kPi / kPeriod;
 /// Frequencies up to 45. Those above are below rounding where s is analytic 45 degrees off the axis.
 constexpr Index kFrequencies = 802;
 /// End of the first interval, and half octaves after it.
@@ -56,7 +56,7 @@ Eigen::Array4Xcd series_of(const std::array<int, 4>& orders,
     double* const a = samples.col(term).data();
     gsl_fft_real_radix2_transform(a, 1, kSamples);
     for (Index n = 0; n < kFrequencies; ++n) {
-      const double w = kStep * static_cast<double>(n);
+      const double w = kFrequencyStep * static_cast<double>(n);
       const Complex sum = n == 0 ? 0.5 * a[0] : Complex(a[n], a[kSamples - n]);
       series(term, n) = 2.0 / static_cast<double>(kSamples) * sum * std::polar(1.0, -w * first) *
                         power_integral({-0.5, w}, orders[static_cast<std::size_t>(term)]);
@@ -80,7 +80,7 @@ HankelTable::HankelTable(const std::array<int, 4>& orders, const std::function<V
     for (Index j = 0; j < kCoefficients; ++j) {
       const double angle = kPi * (static_cast<double>(j) + 0.5) / n;
       const double r = begin_[interval] + (1.0 + std::cos(angle)) / over_half_width_[interval];
-      const Complex turn = std::polar(1.0, -kStep * std::log(r));
+      const Complex turn = std::polar(1.0, -kFrequencyStep * std::log(r));
       Complex wave = 1.0 / std::sqrt(r);
       Values sum = Values::Zero();
       for (Index i = 0; i < kFrequencies; ++i, wave *= turn) sum += (series.col(i) * wave).real();

@@ -37,6 +37,8 @@ Layer layer_of(Values... values) {
   return {&law_kinds()[0], {values...}};
 }
 
+Coating coat(double h, double modulus, double poisson_ratio) { return {h, modulus, poisson_ratio}; }
+
 void press_a_layer_by_hertz(Scene& s) {
   s.layer = layer_of(1e-12, 1e-12);
   s.pressure = PressureModel::hertz;
@@ -74,18 +76,9 @@ const std::vector<Mistake> kWrongBodies{
     {"layer.kind", [](Scene& s) { s.layer = layer_of(1e-12); }},
     {"layer.normal_compliance", [](Scene& s) { s.layer = layer_of(-1e-12, 1e-12); }},
     {"layer.tangential_compliance", [](Scene& s) { s.layer = layer_of(1e-12, kNaN); }},
-    {"lower.layer.thickness",
-     [](Scene& s) {
-       s.lower.coating = {kInfinite, 1e9, 0.3};
-     }},
-    {"upper.layer.young_modulus",
-     [](Scene& s) {
-       s.upper.coating = {1e-4, kInfinite, 0.3};
-     }},
-    {"upper.layer.poisson_ratio",
-     [](Scene& s) {
-       s.upper.coating = {1e-4, 1e9, kNaN};
-     }},
+    {"lower.layer.thickness", [](Scene& s) { s.lower.coating = coat(kInfinite, 1e9, 0.3); }},
+    {"upper.layer.young_modulus", [](Scene& s) { s.upper.coating = coat(1e-4, kInfinite, 0.3); }},
+    {"upper.layer.poisson_ratio", [](Scene& s) { s.upper.coating = coat(1e-4, 1e9, kNaN); }},
     {"contact.pressure", press_a_layer_by_hertz},
     {"contact.friction", [](Scene& s) { s.friction.coefficient = kNaN; }},
     {"contact.shear_strength", [](Scene& s) { s.friction.kind = FrictionKind::tresca; }},
