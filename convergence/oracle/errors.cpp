@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "convergence/oracle/sharpened.hpp"
 #include "solver/grid/sweep.hpp"
 #include "solver/grid/threads.hpp"
 
@@ -290,6 +291,13 @@ FieldError pressure_error(const ArrayXd& pressure, const ArrayXd& exact) {
   return field_error(difference, size);
 }
 
+FieldError sharpened_error(const solver::Solution& solution, const ExactFields& exact) {
+  const ArrayXd off = solver::norms(ArrayXd(sharpened(solution).traction - exact.traction));
+  const ArrayXd size = solver::norms(exact.traction);
+  return {off.sum() / size.sum(), std::sqrt(off.square().sum() / size.square().sum()),
+          off.maxCoeff<Eigen::PropagateNaN>() / size.maxCoeff()};
+}
+
 }  // namespace
 
 TractionError traction_error(const ArrayXd& traction, const Oracle& oracle, const solver::Grid& grid) {
@@ -318,6 +326,7 @@ Errors compare(const solver::Solution& solution, const Oracle& oracle) {
       .peak_pressure = relative_error(solution.peak_pressure, oracle.peak_pressure),
       .traction =
           fields ? traction_error(solution.traction, oracle, solution.grid, exact) : unknown_tractions(),
+      .sharpened = fields && oracle.shear ? sharpened_error(solution, exact) : kUnknownField,
       .pressure = fields ? pressure_error(solution.pressure, exact.pressure) : kUnknownField,
   };
 }

@@ -43,6 +43,7 @@ struct Errors {
   double contact_radius;
   double peak_pressure;
   TractionError traction;
+  FieldError sharpened;  ///< of sharpened() tractions at cell centres
   FieldError pressure;
 };
 

@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "convergence/oracle/errors.hpp"
+#include "convergence/oracle/sharpened.hpp"
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/result.hpp"
 #include "solver/input/field_file.hpp"
@@ -39,6 +40,10 @@ std::vector<solver::FieldColumn> solution_columns(const solver::Solution& soluti
     const double s2 = solution.slip[cell + cells];
     return solution.friction.bound(solution.pressure, cell) * std::sqrt(s1 * s1 + s2 * s2);
   });
+  const auto sharp = std::make_shared<const SharpenedFields>(sharpened(solution));
+  add("pressure_sharpened", [sharp](Index cell) { return sharp->pressure[cell]; });
+  add("q1_sharpened", [sharp](Index cell) { return sharp->traction[cell]; });
+  add("q2_sharpened", [sharp, cells](Index cell) { return sharp->traction[cells + cell]; });
   if (exact.oracle && exact.oracle->shear) {
     const auto fields = std::make_shared<const ExactFields>(exact_fields(*exact.oracle, grid));
     add("q1_exact", [fields](Index cell) { return fields->traction[cell]; });

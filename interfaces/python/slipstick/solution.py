@@ -48,8 +48,9 @@ class _Handle:
 
 class Fields(Mapping[str, npt.NDArray[np.float64]]):
     """The fields of a solution by name: x1, x2 (m), pressure, q1, q2 (Pa, on the lower body), slip1, slip2 (m, of the
-    last step), stick (1 or 0), dissipated (J/m^2), q1_exact, q2_exact (where known). Arrays of cells[0] x cells[1] that
-    lie where the library has them, not to be written to; each keeps the solution alive."""
+    last step), stick (1 or 0), dissipated (J/m^2), pressure_sharpened, q1_sharpened, q2_sharpened (Pa, with square-root
+    edges read off), q1_exact, q2_exact (where known). Arrays of cells[0] x cells[1] that lie where the library has them,
+    not to be written to; each keeps the solution alive."""
 
     def __init__(self, arrays: dict[str, npt.NDArray[np.float64]]) -> None:
         self._arrays = arrays

@@ -1,0 +1,114 @@
+#include "convergence/oracle/sharpened.hpp"
+
+#include <Eigen/Cholesky>
+#include <algorithm>
+#include <cmath>
+#include <optional>
+#include <vector>
+
+namespace slipstick::convergence {
+namespace {
+
+using Eigen::ArrayXd;
+using solver::Grid;
+using solver::Index;
+
+constexpr int kCut = 2;    ///< layers of cells along an edge whose means it spoils
+constexpr int kReach = 5;  ///< cells from a cut one within which whole ones are fitted
+constexpr int kDeepest = kCut + kReach + 1;
+/// Whole cells for the six coefficients of a quadratic.
+constexpr int kFewestFitted = 14;
+
+/// How many layers of cells each cell of a set lies deep in it, 1 at its outline, kDeepest at most; 0
+/// outside.
+template <class Inside>
+std::vector<int> depths(const Grid& grid, const Inside& inside) {
+  std::vector<int> depth(static_cast<std::size_t>(grid.cells()));
+  const auto at = [&](Index i, Index j) {
+    const bool on_grid = i >= 0 && j >= 0 && i < grid.n1 && j < grid.n2;
+    return on_grid ? depth[static_cast<std::size_t>(i * grid.n2 + j)] : 0;
+  };
+  for (Index cell = 0; cell < grid.cells(); ++cell)
+    depth[static_cast<std::size_t>(cell)] = inside(cell) ? kDeepest : 0;
+  for (const Index back : {1, -1}) {  // down the grid, then up again
+    for (Index step = 0; step < grid.cells(); ++step) {
+      const Index cell = back > 0 ? step : grid.cells() - 1 - step;
+      const Index i = cell / grid.n2;
+      const Index j = cell % grid.n2;
+      int& here = depth[static_cast<std::size_t>(cell)];
+      here = std::min(
+          {here, at(i, j - back) + 1, at(i - back, j - 1) + 1, at(i - back, j) + 1, at(i - back, j + 1) + 1});
+    }
+  }
+  return depth;
+}
+
+/// The square root, at a cell, of the quadratic that fits values() best in the whole cells around it: those
+/// more than kCut layers deep. None where they are few.
+template <class Values>
+std::optional<double> root_at(const Grid& grid, Index cell, const std::vector<int>& depth,
+                              const Values& values) {
+  Eigen::Matrix<double, 6, 6> squares = Eigen::Matrix<double, 6, 6>::Zero();
+  Eigen::Vector<double, 6> sums = Eigen::Vector<double, 6>::Zero();
+  int fitted = 0;
+  const Index i = cell / grid.n2;
+  const Index j = cell % grid.n2;
+  for (Index k = std::max<Index>(0, i - kReach); k <= std::min(grid.n1 - 1, i + kReach); ++k) {
+    for (Index l = std::max<Index>(0, j - kReach); l <= std::min(grid.n2 - 1, j + kReach); ++l) {
+      const Index other = k * grid.n2 + l;
+      const double x = static_cast<double>(k - i) / kReach;
+      const double y = static_cast<double>(l - j) / kReach;
+      if (x * x + y * y > 1.0 || depth[static_cast<std::size_t>(other)] <= kCut) continue;
+      const Eigen::Vector<double, 6> terms{1.0, x, y, x * x, x * y, y * y};
+      squares += terms * terms.transpose();
+      sums += terms * values(other);
+      ++fitted;
+    }
+  }
+  if (fitted < kFewestFitted) return std::nullopt;
+  return std::sqrt(std::max(0.0, squares.ldlt().solve(sums)[0]));
+}
+
+/// Whether a pressure falls towards the outline of its contact.
+bool falls(const ArrayXd& pressure, const std::vector<int>& depth) {
+  const Eigen::Map<const Eigen::ArrayXi> layer(depth.data(), pressure.size());
+  const auto mean = [&](int of) { return (layer == of).select(pressure, 0.0).sum() / (layer == of).count(); };
+  return mean(1) < mean(kCut + 1);
+}
+
+}  // namespace
+
+SharpenedFields sharpened(const solver::Solution& solution) {
+  const Grid& grid = solution.grid;
+  const ArrayXd& p = solution.pressure;
+  const ArrayXd bound = solution.friction.bound(p);
+  const ArrayXd size = solver::norms(solution.traction);
+  const std::vector<int> contact = depths(grid, [&](Index cell) { return p[cell] > 0.0; });
+  const std::vector<int> stick = depths(grid, [&](Index cell) { return solution.stick[cell] > 0.0; });
+  const std::vector<int> beyond = depths(grid, [&](Index cell) { return solution.stick[cell] == 0.0; });
+  SharpenedFields fields{p, solution.traction};
+  const bool has_root = falls(p, contact);
+  for (Index cell = 0; cell < grid.cells(); ++cell) {
+    const auto k = static_cast<std::size_t>(cell);
+    const bool at_edge = has_root && contact[k] > 0 && contact[k] <= kCut;
+    // Beside the edge the stick area is as narrow as the slip ring, and neither square is linear.
+    const bool at_front = contact[k] > kCut + 1 && std::max(stick[k], beyond[k]) <= kCut;
+    if (at_edge) {
+      if (const auto root = root_at(grid, cell, contact, [&](Index of) { return p[of] * p[of]; }))
+        fields.pressure[cell] = *root;
+    }
+    if (!(size[cell] > 0.0) || !(at_edge || at_front)) continue;
+    const double most = solution.friction.bound(fields.pressure, cell);
+    double sharp = solution.stick[cell] > 0.0 ? std::min(size[cell], most) : most;
+    if (at_front) {
+      const auto missing =
+          root_at(grid, cell, stick, [&](Index of) { return std::pow(bound[of] - size[of], 2); });
+      sharp = missing ? std::max(0.0, most - *missing) : size[cell];
+    }
+    fields.traction[cell] *= sharp / size[cell];
+    fields.traction[cell + grid.cells()] *= sharp / size[cell];
+  }
+  return fields;
+}
+
+}  // namespace slipstick::convergence
