@@ -3,13 +3,16 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
 #include <vector>
 
+#include "analytic/layered/layered_pair.hpp"
 #include "convergence/laws/contact_law.hpp"
 #include "convergence/oracle/errors.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/oracle/tests/histories.hpp"
+#include "solver/elasticity/law/layer_symbol.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/solve.hpp"
 
@@ -40,6 +43,29 @@ TEST(CoatedOracle, IsThatOfHalfSpacesWhereTheLayerIsLikeItsBase) {
       const double radius = part * plain.contact_radius;
       EXPECT_NEAR(layered.pressure(radius) / plain.pressure(radius), 1.0, 1e-11) << shape;
       EXPECT_NEAR(layered.traction(radius) / plain.traction(radius), 1.0, 1e-11) << shape;
+    }
+  }
+}
+
+/// The exact side's compliances under waves, against those of the solver, which are held to Navier's
+/// equations and derived apart.
+TEST(CoatedOracle, MovesUnderWavesAsTheSolverHasIt) {
+  using analytic::layered::Body;
+  const Body other{{4, 0.3}, analytic::layered::Coat{0.7, {1, 0.2}}};
+  for (const double base : {1e-3, 0.2, 1.0, 7.0, 1e3, std::numeric_limits<double>::infinity()}) {
+    for (const double nu : {0.0, 0.3, 0.5}) {
+      for (const double k : {0.02, 0.4, 1.5, 6.0}) {
+        const analytic::layered::Pair pair({{1, nu}, analytic::layered::Coat{1.0, {base, 0.5 - nu}}}, other);
+        const auto first = solver::wave_compliance({{1, nu}, 1.0, {base, 0.5 - nu}}, k);
+        const auto second = solver::wave_compliance({{4, 0.3}, 0.7, {1, 0.2}}, k);
+        EXPECT_NEAR(
+            (1 + pair.normal_excess(k)) * 2 / pair.effective_modulus() / (first.normal + second.normal), 1.0,
+            1e-12)
+            << base << ' ' << nu << ' ' << k;
+        EXPECT_NEAR((1 + pair.torsional_excess(k)) / pair.shear_modulus() / (first.across + second.across),
+                    1.0, 1e-13)
+            << base << ' ' << k;
+      }
     }
   }
 }
