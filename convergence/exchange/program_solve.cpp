@@ -1,7 +1,5 @@
 #include "convergence/exchange/program_solve.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <chrono>
 #include <limits>

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "convergence/orders/expected_order.hpp"
 #include "convergence/runs/failed_runs.hpp"

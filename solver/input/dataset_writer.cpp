@@ -9,7 +9,6 @@
 #include <cerrno>
 #include <memory>
 #include <sstream>
-#include <stdexcept>
 #include <system_error>
 
 #include "solver/grid/ranks.hpp"

@@ -1,6 +1,5 @@
 #include "solver/newton/admissible.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 

@@ -8,7 +8,6 @@
 #include <filesystem>
 #include <random>
 #include <string>
-#include <vector>
 
 #include "convergence/solve/accurate_solve.hpp"
 #include "solver/input/input_error.hpp"

@@ -1,9 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <random>
 #include <vector>
 
 #include "solver/contact/certificate.hpp"

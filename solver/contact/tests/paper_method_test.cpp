@@ -1,6 +1,5 @@
 #include "solver/contact/paper_method.hpp"
 
-#include <fmt/core.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
