@@ -41,8 +41,7 @@ TEST_F(ResultCacheTest, AnotherKeyIsComputed) {
 TEST_F(ResultCacheTest, ADamagedPointIsComputedAgain) {
   const fs::path point = folder_ / "point.json";
   ask("a");
-  std::ifstream stream(point);
-  const std::string good{std::istreambuf_iterator<char>(stream), {}};
+  const std::string good = file_text(point);
   const auto of_wrong_kind = [&](const char* key, const Json& value) {
     Json json = Json::parse(good);
     json[key] = value;
