@@ -1,7 +1,6 @@
 #include "analytic/cattaneo_mindlin.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>

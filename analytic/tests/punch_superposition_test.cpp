@@ -1,7 +1,6 @@
 #include "analytic/punch_superposition.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>

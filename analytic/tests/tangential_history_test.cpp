@@ -1,7 +1,6 @@
 #include "analytic/tangential_history.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>

@@ -1,12 +1,10 @@
 #include "convergence/check/check.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <vector>
 
 #include "convergence/check/examination.hpp"
 #include "convergence/check/verdict.hpp"

@@ -1,6 +1,5 @@
 #include "convergence/hard/hard_run.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <cmath>

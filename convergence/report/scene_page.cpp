@@ -1,6 +1,5 @@
 #include "convergence/report/scene_page.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -10,7 +9,6 @@
 #include <utility>
 
 #include "convergence/check/check.hpp"
-#include "convergence/hard/hard_run.hpp"
 #include "convergence/hard/rounding_digits.hpp"
 #include "convergence/orders/mesh_sequence.hpp"
 #include "convergence/report/scene_cost.hpp"

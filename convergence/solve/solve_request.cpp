@@ -10,9 +10,7 @@
 #include <iostream>
 #include <memory>
 #include <ostream>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/programs/output_options.hpp"

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -1,6 +1,5 @@
 #include "solver/input/dataset_writer.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 #include <sys/resource.h>
 #include <sys/stat.h>

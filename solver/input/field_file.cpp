@@ -1,6 +1,5 @@
 #include "solver/input/field_file.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>

@@ -1,8 +1,5 @@
 #include "solver/newton/admissible.hpp"
 
-#include <cmath>
-#include <limits>
-
 #include "solver/grid/packet.hpp"
 
 namespace slipstick::solver {

@@ -1,6 +1,5 @@
 #include "solver/scene/scene_keys.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <array>

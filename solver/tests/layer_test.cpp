@@ -2,7 +2,6 @@
 // part of the grid, and limits.
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <Eigen/Core>
 #include <algorithm>

@@ -1,7 +1,6 @@
 #include "solver/model.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <thread>

@@ -1,7 +1,6 @@
 #include "analytic/certified/certified.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <stdexcept>
 #include <string>

@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 #include <gsl/gsl_sf_bessel.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>

@@ -3,7 +3,6 @@
 #include "bench/compare/comparison.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <functional>
 #include <random>

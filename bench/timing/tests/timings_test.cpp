@@ -3,7 +3,6 @@
 #include "bench/timing/timings.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <string>
 

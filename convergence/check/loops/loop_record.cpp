@@ -1,6 +1,5 @@
 #include "convergence/check/loops/loop_record.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>

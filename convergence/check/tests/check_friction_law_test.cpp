@@ -1,7 +1,6 @@
 // Fields under laws of friction that do not follow the pressure, and fields under the wrong one of them.
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 #include <string>

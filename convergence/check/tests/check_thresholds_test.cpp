@@ -2,7 +2,6 @@
 // above the amount that docs/guides/verify-your-solver.md allows.
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>

@@ -3,7 +3,6 @@
 #include "convergence/gates/gate.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 

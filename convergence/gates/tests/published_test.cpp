@@ -3,7 +3,6 @@
 #include "convergence/gates/published.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 

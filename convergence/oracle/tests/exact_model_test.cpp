@@ -1,7 +1,6 @@
 // solver.model = "exact": a scene answered without a grid.
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>

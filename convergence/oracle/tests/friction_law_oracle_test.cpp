@@ -2,7 +2,6 @@
 // convergence to them, and for which scenes there are none.
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>

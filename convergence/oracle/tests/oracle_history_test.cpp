@@ -1,7 +1,6 @@
 // Exact answers along histories of loads, in the scene's units.
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <stdexcept>

@@ -3,8 +3,6 @@
 #include "convergence/report/scene_page.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
@@ -19,8 +17,8 @@
 #include "convergence/runs/run_spec.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/tests/complaint.hpp"
-#include "solver/scene/scene.hpp"
 #include "solver/input/tests/scratch_folder.hpp"
+#include "solver/scene/scene.hpp"
 
 namespace slipstick::convergence {
 namespace {

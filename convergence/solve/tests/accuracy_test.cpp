@@ -3,7 +3,6 @@
 #include "convergence/solve/accuracy.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>

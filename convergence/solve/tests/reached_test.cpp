@@ -4,7 +4,6 @@
 #include "convergence/solve/reached.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>

@@ -4,7 +4,6 @@
 #include "convergence/studies/study_judgement.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>

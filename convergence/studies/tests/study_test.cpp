@@ -1,7 +1,6 @@
 #include "convergence/studies/study.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 

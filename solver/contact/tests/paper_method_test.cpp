@@ -1,7 +1,6 @@
 #include "solver/contact/paper_method.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>

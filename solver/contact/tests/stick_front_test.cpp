@@ -1,7 +1,6 @@
 #include "solver/contact/stick_front.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>

@@ -1,7 +1,6 @@
 // Files that are none, have no end or are damaged: each is refused with its name, at once, whatever is in it.
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <hdf5.h>
 #include <hdf5_hl.h>
 

@@ -1,7 +1,6 @@
 #include "solver/input/field_file.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <fstream>
 #include <iterator>

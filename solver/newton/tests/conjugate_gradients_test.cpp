@@ -1,7 +1,6 @@
 #include "solver/newton/conjugate_gradients.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <Eigen/Core>
 #include <array>

@@ -1,7 +1,6 @@
 #include "solver/newton/natural_map_newton.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <limits>
 #include <random>

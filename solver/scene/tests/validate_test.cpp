@@ -1,7 +1,6 @@
 // Scenes that a program built: whatever a file may not say, they may not hold.
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <functional>
 #include <limits>
