@@ -129,11 +129,13 @@ Scene dissimilar(Coupling coupling, double moment_ratio, Index cells = 24) {
   return scene;
 }
 
+std::string coupling_name(const testing::TestParamInfo<Coupling>& tested) {
+  return tested.param == Coupling::full ? "full" : "pressure";
+}
+
 class Exchange : public testing::TestWithParam<Coupling> {};
 INSTANTIATE_TEST_SUITE_P(Coupling, Exchange, testing::Values(Coupling::pressure, Coupling::full),
-                         [](const auto& tested) {
-                           return tested.param == Coupling::full ? "full" : "pressure";
-                         });
+                         coupling_name);
 
 /// The mismatch changes its sign, and with it the shear by pressure; what shear of the other sign does to the
 /// gap is then the same.
@@ -266,9 +268,7 @@ double counted_stick_ratio(const ModelSolution& solution) {
 
 class Spence : public testing::TestWithParam<Coupling> {};
 INSTANTIATE_TEST_SUITE_P(Coupling, Spence, testing::Values(Coupling::pressure, Coupling::full),
-                         [](const auto& tested) {
-                           return tested.param == Coupling::full ? "full" : "pressure";
-                         });
+                         coupling_name);
 
 /// All that a punch carries grows in proportion to its load, slip included, so that one step from nothing is
 /// the whole history. The mesh knows the stick radius to a part of a cell.
