@@ -119,9 +119,10 @@ TEST_P(ScenePage, ShowsWhatItsSceneHas) {
 /// run.
 TEST(Scenes, HaveTheExactAnswersThatTheoryHas) {
   const std::set<std::string> exact{
-      "paper",          "paper-0.1",        "paper-0.5",    "paper-0.99",   "off_centre",   "cone",
-      "flat_punch",     "rounded_punch",    "mindlin",      "goodman",      "spence",       "spence_sphere",
-      "fretting_force", "fretting_torsion", "growing_load", "torsion_loop", "coated_sphere"};
+      "paper",        "paper-0.1",     "paper-0.5",      "paper-0.99",       "off_centre",
+      "cone",         "flat_punch",    "rounded_punch",  "mindlin",          "goodman",
+      "spence",       "spence_sphere", "fretting_force", "fretting_torsion", "growing_load",
+      "torsion_loop", "coated_sphere", "rubber_lens",    "capped_friction"};
   for (const std::string& name : scene_names()) {
     const auto oracle = find_oracle(solver::read_scene(fs::path(SLIPSTICK_SCENES) / (name + ".toml"))).oracle;
     EXPECT_EQ(oracle && oracle->only_normal.empty(), exact.contains(name)) << name;
