@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <numbers>
 #include <stdexcept>
 
 #include "analytic/paper_equations.hpp"

@@ -3,13 +3,10 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <vector>
 
 #include "analytic/elliptic.hpp"
-#include "analytic/gsl.hpp"
 #include "analytic/tests/values.hpp"
 
 namespace slipstick::analytic::tangential {

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 
-#include <cmath>
 #include <random>
 #include <stdexcept>
 #include <vector>

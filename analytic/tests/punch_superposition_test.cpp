@@ -2,10 +2,7 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
-#include <limits>
 #include <memory>
-#include <numbers>
 #include <stdexcept>
 #include <vector>
 

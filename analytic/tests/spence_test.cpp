@@ -2,8 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "analytic/tests/values.hpp"

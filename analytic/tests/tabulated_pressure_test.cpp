@@ -5,16 +5,12 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <functional>
 #include <memory>
-#include <numbers>
 #include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "analytic/gsl.hpp"
 #include "analytic/interpolation_errors.hpp"
 #include "analytic/punch_superposition.hpp"
 #include "analytic/tests/values.hpp"

@@ -2,11 +2,8 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
-#include <numbers>
 #include <stdexcept>
 
-#include "analytic/gsl.hpp"
 #include "analytic/references/replay.hpp"
 #include "analytic/tests/values.hpp"
 

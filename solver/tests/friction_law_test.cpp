@@ -2,11 +2,9 @@
 
 #include <gmock/gmock.h>
 
-#include <Eigen/Core>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <string>
 #include <vector>
 
 #include "solver/input/tests/complaint.hpp"

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <filesystem>
-#include <string>
 
 #include "solver/model.hpp"
 #include "solver/tests/scene_file.hpp"

@@ -4,12 +4,8 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <ostream>
 #include <sstream>
-#include <string>
-#include <vector>
 
-#include "solver/model_solution.hpp"
 #include "solver/tests/fields.hpp"
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/scene_file.hpp"

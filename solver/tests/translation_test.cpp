@@ -3,7 +3,6 @@
 #include <cmath>
 #include <numbers>
 
-#include "solver/contact/certificate.hpp"
 #include "solver/model_solution.hpp"
 #include "solver/tests/press.hpp"
 #include "solver/tests/scene_file.hpp"

@@ -1,11 +1,8 @@
-#include "analytic/certified/certified.hpp"
 
 #include <gmock/gmock.h>
 
 #include <stdexcept>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "analytic/certified/tests/known.hpp"
 

@@ -4,7 +4,6 @@
 
 #include <Eigen/Dense>
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 
 #include "analytic/tests/values.hpp"

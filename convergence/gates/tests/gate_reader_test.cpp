@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 
 #include "convergence/tests/scratch_folder.hpp"
-#include "solver/input/input_error.hpp"
 #include "solver/input/tests/complaint.hpp"
 
 namespace slipstick::convergence {

@@ -4,12 +4,8 @@
 
 #include <gmock/gmock.h>
 
-#include <nlohmann/json.hpp>
-
-#include "convergence/gates/gate.hpp"
 #include "convergence/gates/tests/made_gates.hpp"
 #include "convergence/tests/scratch_folder.hpp"
-#include "solver/input/input_error.hpp"
 #include "solver/input/tests/complaint.hpp"
 
 namespace slipstick::convergence {

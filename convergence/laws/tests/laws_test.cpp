@@ -1,12 +1,9 @@
 // Contact laws against the exact law, at points that no fit has seen.
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
-#include <vector>
 
 #include "analytic/elliptic.hpp"
 #include "analytic/named_profile.hpp"

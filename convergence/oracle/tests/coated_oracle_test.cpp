@@ -1,13 +1,9 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
-#include <cmath>
-#include <string>
-#include <vector>
 
 #include "convergence/laws/contact_law.hpp"
 #include "convergence/oracle/errors.hpp"
-#include "convergence/oracle/oracle.hpp"
 #include "convergence/oracle/tests/histories.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/solve.hpp"

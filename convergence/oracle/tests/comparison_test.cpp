@@ -1,7 +1,6 @@
 // Where the two sides meet: numerical answers against exact ones.
 
 #include <fmt/core.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>

@@ -5,8 +5,6 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "analytic/torsion.hpp"
 #include "convergence/results/exact_result.hpp"

@@ -3,12 +3,7 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
-#include <string>
-#include <vector>
-
 #include "convergence/oracle/errors.hpp"
-#include "convergence/oracle/oracle.hpp"
 #include "convergence/oracle/tests/histories.hpp"
 #include "solver/solve.hpp"
 

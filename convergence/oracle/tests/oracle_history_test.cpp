@@ -2,11 +2,9 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
 #include <stdexcept>
 
 #include "analytic/cycle.hpp"
-#include "convergence/oracle/oracle.hpp"
 #include "convergence/oracle/tests/histories.hpp"
 
 namespace slipstick::convergence {

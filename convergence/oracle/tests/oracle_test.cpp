@@ -1,10 +1,7 @@
-#include "convergence/oracle/oracle.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "convergence/oracle/tests/histories.hpp"
 #include "solver/scene/hertz_pressure.hpp"

@@ -6,16 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
-#include <string>
 #include <vector>
 
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/runs/run_spec.hpp"
-#include "solver/input/input_error.hpp"
 #include "solver/input/tests/complaint.hpp"
 #include "solver/input/tests/scratch_folder.hpp"
 #include "solver/scene/scene.hpp"

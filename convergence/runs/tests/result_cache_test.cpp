@@ -1,14 +1,11 @@
 #include "convergence/runs/result_cache.hpp"
 
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <fstream>
 #include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/tests/scratch_folder.hpp"

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/solve/accurate_solve.hpp"

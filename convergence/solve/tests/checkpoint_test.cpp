@@ -2,12 +2,7 @@
 
 #include "convergence/solve/checkpoint.hpp"
 
-#include <gtest/gtest.h>
-
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "solver/history_state.hpp"
 #include "solver/input/input_error.hpp"

@@ -1,19 +1,16 @@
 // Whether the uncertainty of a mean over shifted grids holds, on random scenes whose exact answers are known.
 
 #include <fmt/core.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <random>
-#include <string>
 
 #include "convergence/solve/accurate_solve.hpp"
 #include "convergence/tests/scratch_folder.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/model.hpp"
-#include "solver/scene/scene.hpp"
 
 namespace slipstick::convergence {
 namespace {

@@ -7,7 +7,6 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "convergence/solve/measured_accuracy.hpp"
 #include "convergence/tests/scratch_folder.hpp"

@@ -3,17 +3,13 @@
 #include "convergence/solve/shifted_grids.hpp"
 
 #include <fmt/core.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "convergence/solve/accurate_solve.hpp"
-#include "solver/scene/scene.hpp"
 #include "convergence/tests/scratch_folder.hpp"
 #include "solver/solve.hpp"
 

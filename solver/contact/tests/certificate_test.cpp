@@ -3,9 +3,7 @@
 #include <fmt/core.h>
 #include <gmock/gmock.h>
 
-#include <Eigen/Core>
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "solver/elasticity/direct.hpp"

@@ -4,12 +4,10 @@
 #include <numbers>
 #include <vector>
 
-#include "solver/contact/certificate.hpp"
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/contact/full_coupling.hpp"
 #include "solver/grid/mirror.hpp"
 #include "solver/model_solution.hpp"
-#include "solver/tests/fields.hpp"
 #include "solver/tests/limits.hpp"
 #include "solver/tests/torsion_bench.hpp"
 

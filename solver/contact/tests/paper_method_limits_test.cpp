@@ -8,7 +8,6 @@
 #include <limits>
 
 #include "solver/contact/projected_gradient.hpp"
-#include "solver/input/tests/complaint.hpp"
 #include "solver/model_solution.hpp"
 #include "solver/tests/scene_file.hpp"
 #include "solver/tests/torsion_bench.hpp"

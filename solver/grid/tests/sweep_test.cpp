@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
 #include <atomic>
 #include <cmath>
 #include <vector>

@@ -8,8 +8,6 @@
 #include <filesystem>
 #include <iostream>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "solver/input/dataset_reader.hpp"
 #include "solver/input/field_file.hpp"

@@ -1,17 +1,12 @@
-#include "solver/newton/conjugate_gradients.hpp"
 
 #include <gmock/gmock.h>
 
-#include <Eigen/Core>
-#include <array>
 #include <cmath>
 #include <memory>
 #include <string>
-#include <vector>
 
 #include "solver/allocations/allocations.hpp"
 #include "solver/elasticity/direct.hpp"
-#include "solver/newton/tangent_space.hpp"
 #include "solver/newton/tests/tangent_cg.hpp"
 #include "solver/tests/dense_algebra.hpp"
 #include "solver/tests/fields.hpp"

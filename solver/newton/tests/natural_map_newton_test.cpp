@@ -3,11 +3,9 @@
 #include <gmock/gmock.h>
 
 #include <limits>
-#include <random>
 
 #include "solver/allocations/allocations.hpp"
 #include "solver/elasticity/elasticity.hpp"
-#include "solver/tests/fields.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
 namespace slipstick::solver {

@@ -9,8 +9,6 @@
 #include <algorithm>
 #include <map>
 #include <set>
-#include <string>
-#include <vector>
 
 #include "solver/tests/scene_file.hpp"
 

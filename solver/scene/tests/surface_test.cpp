@@ -10,7 +10,6 @@
 #include <numbers>
 
 #include "solver/input/input_error.hpp"
-#include "solver/model_solution.hpp"
 #include "solver/scene/roughness.hpp"
 #include "solver/scene/surface_geometry.hpp"
 #include "solver/tests/limits.hpp"

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <string>
 
-#include "solver/model_solution.hpp"
 #include "solver/tests/paper_scene.hpp"
 
 namespace slipstick::solver {

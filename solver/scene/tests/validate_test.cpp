@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <functional>
-#include <limits>
 #include <vector>
 
 #include "solver/elasticity/law/law_kind.hpp"
