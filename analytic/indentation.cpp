@@ -61,9 +61,8 @@ double corner_reach(double flat) {
   return gsl::root(excess, 1 - kMargin, std::cbrt(2.0) + kMargin);
 }
 
-/// Short over long semi-axis of the contact of a gap with radii of curvature in the given ratio (>= 1).
-/// The displacement's two curvatures, R_D(0, b^2, a^2) along a and R_D(0, a^2, b^2) along b, must stand in
-/// it.
+/// Short over long semi-axis of the contact of a gap with radii of curvature in the given ratio (>= 1). The
+/// displacement's two curvatures, R_D(0, b^2, a^2) along a and R_D(0, a^2, b^2) along b, must stand in it.
 double axis_ratio(double radius_ratio) {
   const auto mismatch = [radius_ratio](double t) {
     const double b2 = std::exp(2 * t);

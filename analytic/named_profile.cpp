@@ -1,6 +1,5 @@
 #include "analytic/named_profile.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>

@@ -15,8 +15,7 @@ namespace slipstick::analytic {
 ///
 /// The ends. r -> 0: the peak is p0/(n - 1); for n <= 1 it is infinite, p grows like r^(n-1) (n = 1: ln 1/r),
 /// and so does a traction with c -> 0. c -> 0: 1 - M/M_lim goes like c^3 for n > 1, c^3 ln(1/c) for n = 1,
-/// c^(n+2) for n < 1. c -> 1: M/M_lim goes like 1 - c.
-/// Throws std::domain_error outside the range of n.
+/// c^(n+2) for n < 1. c -> 1: M/M_lim goes like 1 - c. Throws std::domain_error outside the range of n.
 std::unique_ptr<const Profile> power_profile(double exponent);
 
 /// Flat punch out to b = flat_ratio in [0, 1), with rounded corners: gap (r - b)^2/(2 R) beyond (Ciavarella

@@ -4,9 +4,8 @@
 
 /// Bodies of different materials pressed together with friction (Goodman 1962, Spence 1968, 1975): under the
 /// pressure one surface draws inwards more than the other, friction holds them together within c < a and acts
-/// with mu p against the slip in the ring beyond. As the contact grows the
-/// state enlarges itself, and c/a is the same under a flat punch and under every gap like r^n, so that it is
-/// worked out under the flat punch.
+/// with mu p against the slip in the ring beyond. As the contact grows the state enlarges itself, and c/a is
+/// the same under a flat punch and under every gap like r^n, so that it is worked out under the flat punch.
 ///
 /// The difference of the materials is Dundurs'
 ///   beta = ((1 - 2 nu_1)/G_1 - (1 - 2 nu_2)/G_2)/(2 ((1 - nu_1)/G_1 + (1 - nu_2)/G_2));

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstddef>
-#include <functional>
 #include <numbers>
 #include <stdexcept>
 #include <string_view>

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <fstream>
 #include <limits>
-#include <string>
 
 #ifdef __GLIBC__
 #include <malloc.h>

@@ -13,7 +13,6 @@
 
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/elasticity/law/coated_half_spaces.hpp"
-#include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/elasticity/law/law_kind.hpp"
 #include "solver/grid/own_rows.hpp"
 #include "solver/input/input_error.hpp"

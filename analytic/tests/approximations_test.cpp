@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "analytic/paper_equations.hpp"

@@ -1,16 +1,12 @@
 #include "analytic/cattaneo_mindlin.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <vector>
 
 #include "analytic/elliptic.hpp"
-#include "analytic/gsl.hpp"
 #include "analytic/tests/values.hpp"
 
 namespace slipstick::analytic::tangential {

@@ -2,9 +2,7 @@
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <random>
 #include <stdexcept>
 #include <vector>

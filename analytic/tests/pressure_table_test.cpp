@@ -1,7 +1,6 @@
 #include "analytic/tabulated_pressure.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cstdio>
 #include <fstream>

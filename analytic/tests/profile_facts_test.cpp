@@ -4,14 +4,9 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
 #include <memory>
-#include <numbers>
 #include <vector>
 
-#include "analytic/gsl.hpp"
 #include "analytic/punch_superposition.hpp"
 #include "analytic/shear_bounds.hpp"
 #include "analytic/tabulated_pressure.hpp"

@@ -1,12 +1,8 @@
 #include "analytic/punch_superposition.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <limits>
 #include <memory>
-#include <numbers>
 #include <stdexcept>
 #include <vector>
 

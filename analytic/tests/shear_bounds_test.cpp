@@ -4,13 +4,10 @@
 #include <fmt/core.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
 #include <stdexcept>
 #include <vector>
 
 #include "analytic/cycle.hpp"
-#include "analytic/gsl.hpp"
 #include "analytic/shear_bounds.hpp"
 #include "analytic/tests/values.hpp"
 #include "analytic/torsion.hpp"

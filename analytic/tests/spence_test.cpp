@@ -1,10 +1,7 @@
 #include "analytic/spence.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "analytic/tests/values.hpp"

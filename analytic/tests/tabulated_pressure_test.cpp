@@ -2,21 +2,15 @@
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <functional>
-#include <limits>
 #include <memory>
-#include <numbers>
 #include <random>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
-#include "analytic/gsl.hpp"
 #include "analytic/interpolation_errors.hpp"
 #include "analytic/punch_superposition.hpp"
 #include "analytic/tests/values.hpp"

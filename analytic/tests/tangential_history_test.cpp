@@ -1,10 +1,7 @@
 #include "analytic/tangential_history.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
 #include <random>
 #include <stdexcept>
 #include <vector>

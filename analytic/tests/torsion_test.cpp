@@ -1,13 +1,9 @@
 #include "analytic/torsion.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
 #include <stdexcept>
 
-#include "analytic/gsl.hpp"
 #include "analytic/references/replay.hpp"
 #include "analytic/tests/values.hpp"
 

@@ -1,8 +1,6 @@
 #include "bench/compare/benchmark_program.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
-#include <nlohmann/json.hpp>
 
 #include <algorithm>
 #include <cctype>

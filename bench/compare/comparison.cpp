@@ -8,7 +8,6 @@
 #include <cmath>
 #include <limits>
 #include <stdexcept>
-#include <utility>
 
 #include "bench/compare/obstacles.hpp"
 #include "bench/compare/rank_tests.hpp"

@@ -1,6 +1,5 @@
 #include "bench/compare/comparison_report.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>

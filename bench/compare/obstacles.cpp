@@ -1,6 +1,5 @@
 #include "bench/compare/obstacles.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 #include <gsl/gsl_statistics_double.h>
 

@@ -1,6 +1,5 @@
 #include "bench/plane/plane_design.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>

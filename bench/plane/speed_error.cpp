@@ -7,7 +7,6 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <utility>
-#include <vector>
 
 #include "bench/timing/checked_solve.hpp"
 #include "convergence/orders/growth.hpp"

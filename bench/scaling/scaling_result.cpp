@@ -8,7 +8,6 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -174,9 +173,7 @@ Json scaling_json(const Timings& timings) {
 }
 
 std::string crossovers_text(const Json& scaling) {
-  const auto number = [](const Json& value) {
-    return value.is_number() ? fmt::format("{:.3g}", value.get<double>()) : "-";
-  };
+  const auto number = [](const Json& value) { return convergence::number_text(value, "{:.3g}"); };
   std::string text;
   for (const Json& crossing : scaling["crossovers"]) {
     text += fmt::format("{} is quicker than {} from {} cells a side on [{}, {}]{}\n",

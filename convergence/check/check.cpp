@@ -1,12 +1,10 @@
 #include "convergence/check/check.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <vector>
 
 #include "convergence/check/examination.hpp"
 #include "convergence/check/verdict.hpp"
@@ -193,11 +191,6 @@ Json check_field(const solver::Scene& scene, const std::filesystem::path& file, 
 
 namespace {
 
-/// The size of an error, in two digits.
-std::string judged_text(const Json& value) {
-  return value.is_number() ? fmt::format("{:.1e}", value.get<double>()) : "-";
-}
-
 std::string field_text(const Json& r) {
   std::string text = text_line("field", r["field"].get<std::string>());
   text += text_line("grid", fmt::format("{} x {} cells of {} x {} m, {} in contact, {} stick",
@@ -264,7 +257,7 @@ std::string check_text(const Json& r) {
     text +=
         text_line(item["holds"].get<bool>() ? "holds" : "FAILS",
                   fmt::format("{:<20} {:>8}   allowed on this grid {}", item["quantity"].get<std::string>(),
-                              judged_text(item["value"]), judged_text(item["allowed"])));
+                              number_text(item["value"], "{:.1e}"), number_text(item["allowed"], "{:.1e}")));
   }
   return text;
 }

@@ -1,12 +1,10 @@
 #include "convergence/check/conventions.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "convergence/check/given_contact.hpp"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "solver/contact/certificate.hpp"
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/contact/fitted_motion.hpp"
 
@@ -136,9 +135,9 @@ std::optional<OtherFriction> other_law(const GivenContact& contact, const RightA
       kind == solver::FrictionKind::tresca
           ? fmt::format("Tresca's law, with a shear strength of {:.4g} Pa,", factor * contact.stress_unit)
           : fmt::format("Coulomb's law, with a coefficient of {:.4g},", factor);
-  return OtherFriction{fmt::format("{} in place of friction_law = \"{}\"", name,
-                                   solver::to_string(contact.friction.kind)),
-                       factor * unit};
+  return OtherFriction{
+      fmt::format("{} in place of friction_law = \"{}\"", name, solver::to_string(contact.friction.kind)),
+      factor * unit};
 }
 
 }  // namespace

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <utility>
 
-#include "convergence/check/deviation.hpp"
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/fitted_motion.hpp"
 #include "solver/elasticity/law/half_spaces.hpp"
@@ -130,9 +129,8 @@ class Trial {
         elastic_ + pair_.poisson_compliance *
                        ((assumption.poisson - 1.0) * u_.poisson + (assumption.cross - 1.0) * u_.cross +
                         assumption.mirrored * u_.mirrored + assumption.exchanged * u_.exchanged);
-    const solver::FittedMotion fitted =
-        solver::fit_motion(elastic + assumption.by_pressure * by_pressure_ - imposed_, traction_,
-                           at_least(bound), motions_);
+    const solver::FittedMotion fitted = solver::fit_motion(
+        elastic + assumption.by_pressure * by_pressure_ - imposed_, traction_, at_least(bound), motions_);
     const double energy = 0.5 * (traction_ * elastic).sum();
     return {assumption.name, fitted.gap.sum() / energy, (fitted.gap * stick_).sum() / energy,
             fitted.coefficients[fitted.coefficients.size() - 1]};

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <utility>
 
 #include "convergence/check/diagnosis.hpp"
 #include "solver/contact/limit_load.hpp"

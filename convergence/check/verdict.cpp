@@ -1,6 +1,5 @@
 #include "convergence/check/verdict.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>

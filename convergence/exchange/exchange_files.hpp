@@ -1,7 +1,5 @@
 #pragma once
 
-#include <filesystem>
-
 #include "convergence/exchange/given_fields.hpp"
 #include "convergence/exchange/solver_program.hpp"
 #include "convergence/results/result_parts.hpp"

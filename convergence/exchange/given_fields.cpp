@@ -1,6 +1,5 @@
 #include "convergence/exchange/given_fields.hpp"
 
-#include <array>
 #include <stdexcept>
 #include <string>
 #include <utility>

@@ -1,17 +1,13 @@
 #include "convergence/exchange/program_solve.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <chrono>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "convergence/exchange/exchange_files.hpp"
 #include "convergence/exchange/given_fields.hpp"
 #include "convergence/exchange/solver_program.hpp"
-#include "convergence/oracle/oracle.hpp"
 #include "convergence/programs/temporary_folder.hpp"
 #include "convergence/results/json_text.hpp"
 #include "solver/input/input_error.hpp"

@@ -1,6 +1,5 @@
 #include "convergence/gates/gate.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -196,79 +195,70 @@ void claim_ids(const std::vector<Gate>& gates, std::map<std::string, std::string
   places = std::move(claimed);
 }
 
-}  // namespace
-
-namespace {
-
 /// What a group may say for all its gates.
 solver::SettingKeys shared_keys() {
-  using solver::KeyType;
+  using namespace solver;
   constexpr const char* kOne = "one of scene, study, result is required";
   return {
-      {"status", KeyType::word, "", solver::word_of(kStatuses, Gate{}.status), solver::one_of(kStatuses),
+      {"status", KeyType::word, "", word_of(kStatuses, Gate{}.status), one_of(kStatuses),
        "Whether failing fails the run, passing does, or neither."},
-      {"scene", KeyType::file, "", kOne, solver::kAny,
-       "Scene file (TOML) that is solved, relative to this file."},
-      {"study", KeyType::file, "", kOne, solver::kAny, "Study file (TOML) that is run."},
-      {"result", KeyType::file, "", kOne, solver::kAny, "Result file (JSON) of any program, taken as it is."},
-      {"set", KeyType::table, "", "none", solver::kAny, "Keys of the scene that differ from its file."},
-      {"published_in", KeyType::text, "", "required beside published", solver::kAny,
+      {"scene", KeyType::file, "", kOne, kAny, "Scene file (TOML) that is solved, relative to this file."},
+      {"study", KeyType::file, "", kOne, kAny, "Study file (TOML) that is run."},
+      {"result", KeyType::file, "", kOne, kAny, "Result file (JSON) of any program, taken as it is."},
+      {"set", KeyType::table, "", "none", kAny, "Keys of the scene that differ from its file."},
+      {"published_in", KeyType::text, "", "required beside published", kAny,
        "Who published the number: author, year, title, table or equation, page."},
-      {"seen_in", KeyType::text, "", "the publication itself", solver::kAny,
+      {"seen_in", KeyType::text, "", "the publication itself", kAny,
        "The text in which it was looked up, where that is another one."},
-      {"own_error", KeyType::number, "", "what the result states", solver::kNotNegative,
+      {"own_error", KeyType::number, "", "what the result states", kNotNegative,
        "How far our number may be off, relative, where the result states no error of it; `basis` says why."},
-      {"times", KeyType::number, "", fmt::format("{:g}", Published{}.times), solver::kPositive,
+      {"times", KeyType::number, "", fmt::format("{:g}", Published{}.times), kPositive,
        "The published number is this many times the quantity."},
-      {"inverse", KeyType::flag, "", "false", solver::kAny,
-       "The published number is `times` over the quantity."},
-      {"differs", KeyType::text, "", "none", solver::kAny,
+      {"inverse", KeyType::flag, "", "false", kAny, "The published number is `times` over the quantity."},
+      {"differs", KeyType::text, "", "none", kAny,
        "Why the published number is another: then the gate must not hold."},
-      {"not_compared", KeyType::text, "", "none", solver::kAny,
-       "Why it cannot be compared: then nothing is solved."},
+      {"not_compared", KeyType::text, "", "none", kAny, "Why it cannot be compared: then nothing is solved."},
       {"platform_spread", KeyType::number, "the quantity's", fmt::format("{:g}", Gate{}.platform_spread),
-       solver::kNotNegative, "By how much machines and compilers differ."},
-      {"basis", KeyType::text, "", "required of an active gate", solver::kAny, "Where the bound comes from."},
-      {"reason", KeyType::text, "", "none", solver::kAny, "What the gate is for."}};
+       kNotNegative, "By how much machines and compilers differ."},
+      {"basis", KeyType::text, "", "required of an active gate", kAny, "Where the bound comes from."},
+      {"reason", KeyType::text, "", "none", kAny, "What the gate is for."}};
 }
 
 /// What each gate says for itself.
 solver::SettingKeys own_keys() {
-  using solver::KeyType;
+  using namespace solver;
   constexpr const char* kBound = "one of below, above, equals, of, published is required";
-  return {{"id", KeyType::text, "", solver::kRequired, solver::kAny,
-           "Names the gate; no other gate of the run has it."},
-          {"quantity", KeyType::text, "", solver::kRequired, solver::kAny,
+  return {{"id", KeyType::text, "", kRequired, kAny, "Names the gate; no other gate of the run has it."},
+          {"quantity", KeyType::text, "", kRequired, kAny,
            "Path of a number in the result, as --json writes it: steps[3].traction_error.averaged.l2."},
-          {"below", KeyType::number, "the quantity's", kBound, solver::kFinite,
+          {"below", KeyType::number, "the quantity's", kBound, kFinite,
            "Bound that the number stays below; alone, of its size; with above, of the signed value."},
-          {"above", KeyType::number, "the quantity's", kBound, solver::kFinite, "Bound that it stays above."},
-          {"equals", KeyType::number, "the quantity's", kBound, solver::kFinite,
+          {"above", KeyType::number, "the quantity's", kBound, kFinite, "Bound that it stays above."},
+          {"equals", KeyType::number, "the quantity's", kBound, kFinite,
            "The number, or in quotes the word, that it is to be; in place of the bounds."},
-          {"published", KeyType::text, "", kBound, solver::kAny,
+          {"published", KeyType::text, "", kBound, kAny,
            "Number of the literature as printed, in quotes: the quantity agrees within half a unit of the "
-           "last digit "
-           "and what the result states as its own error."},
-          {"argument_error", KeyType::number, "the published", "0", solver::kNotNegative,
+           "last digit and what the result states as its own error."},
+          {"argument_error", KeyType::number, "the published", "0", kNotNegative,
            "What the printed digits of its argument leave open."},
-          {"of", KeyType::file, "", kBound, solver::kAny,
+          {"of", KeyType::file, "", kBound, kAny,
            "Result file (JSON), or scene or study (TOML, with the same `set`), whose number this one is to "
            "be."},
-          {"within", KeyType::number, "", "required beside of", solver::kPositive,
+          {"within", KeyType::number, "", "required beside of", kPositive,
            "How far from that number, over its size."}};
 }
 
 solver::SettingKeys all_keys() {
-  using solver::KeyType;
-  solver::SettingKeys keys{
-      {"made_by", KeyType::text, "", "none", solver::kAny,
+  using namespace solver;
+  SettingKeys keys{
+      {"made_by", KeyType::text, "", "none", kAny,
        "Command that makes the results which gates of the file name; known beside such gates alone."},
-      {"gate", KeyType::tables, "", "none", solver::kAny, "Tables `[[gate]]`, one for each gate."},
-      {"group", KeyType::tables, "", "none", solver::kAny,
+      {"gate", KeyType::tables, "", "none", kAny, "Tables `[[gate]]`, one for each gate."},
+      {"group", KeyType::tables, "", "none", kAny,
        "Tables `[[group]]`: what several gates share, and these gates as `[[group.gate]]`. A key of the gate "
        "replaces that of its group; what it says in `set` is added to it."}};
-  const auto add = [&](const std::string& table, const solver::SettingKeys& rows) {
-    for (solver::SettingKey key : rows) {
+  const auto add = [&](const std::string& table, const SettingKeys& rows) {
+    for (SettingKey key : rows) {
       key.name = table + key.name;
       keys.push_back(std::move(key));
     }
@@ -276,7 +266,7 @@ solver::SettingKeys all_keys() {
   add("gate.", own_keys());
   add("gate.", shared_keys());
   add("group.", shared_keys());
-  keys.push_back({"group.gate", KeyType::tables, "", "none", solver::kAny, "Tables, one for each gate."});
+  keys.push_back({"group.gate", KeyType::tables, "", "none", kAny, "Tables, one for each gate."});
   add("group.gate.", own_keys());
   add("group.gate.", shared_keys());
   return keys;

@@ -5,7 +5,6 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <regex>
-#include <string>
 #include <utility>
 
 #include "convergence/gates/gate.hpp"

@@ -4,7 +4,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <ostream>
-#include <string>
 
 #include "convergence/hard/rounding_digits.hpp"
 #include "convergence/programs/output_options.hpp"

@@ -59,22 +59,17 @@ std::vector<HardCase> read_family(SceneReader& reader, const std::string& at) {
 }  // namespace
 
 const solver::SettingKeys& hard_keys() {
-  using solver::KeyType;
-  static const solver::SettingKeys keys{
-      {"family", KeyType::tables, "", solver::kRequired, solver::kAny,
-       "Tables `[[family]]`: a scene with keys that vary."},
-      {"family.name", KeyType::text, "", solver::kRequired, solver::kAny, "Names the family."},
-      {"family.why", KeyType::text, "", solver::kRequired, solver::kAny, "What makes it hard."},
-      {"family.scene", KeyType::file, "", solver::kRequired, solver::kAny,
-       "Scene file (TOML), relative to this file."},
-      {"family.set", KeyType::table, "", "none", solver::kAny,
-       "Keys of the scene that differ from its file."},
-      {"family.vary", KeyType::tables, "", "none", solver::kAny,
+  using namespace solver;
+  static const SettingKeys keys{
+      {"family", KeyType::tables, "", kRequired, kAny, "Tables `[[family]]`: a scene with keys that vary."},
+      {"family.name", KeyType::text, "", kRequired, kAny, "Names the family."},
+      {"family.why", KeyType::text, "", kRequired, kAny, "What makes it hard."},
+      {"family.scene", KeyType::file, "", kRequired, kAny, "Scene file (TOML), relative to this file."},
+      {"family.set", KeyType::table, "", "none", kAny, "Keys of the scene that differ from its file."},
+      {"family.vary", KeyType::tables, "", "none", kAny,
        "Tables `[[family.vary]]`: every combination of their values is a case."},
-      {"family.vary.key", KeyType::text, "", solver::kRequired, solver::kAny,
-       "The key of the scene that varies."},
-      {"family.vary.values", KeyType::values, "", solver::kRequired, solver::kAny,
-       "The values that it takes."}};
+      {"family.vary.key", KeyType::text, "", kRequired, kAny, "The key of the scene that varies."},
+      {"family.vary.values", KeyType::values, "", kRequired, kAny, "The values that it takes."}};
   return keys;
 }
 

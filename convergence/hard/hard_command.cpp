@@ -91,8 +91,7 @@ RunCommand add_hard_command(CLI::App& app) {
   command->footer(
       "Example:\n  slipstick hard convergence/hard/*.toml --json hard.json\nFinished solves are kept: "
       "repeating an interrupted command goes on from there.\nExit code 0: every answer is certified or "
-      "refused with a "
-      "reason; 1: some did not converge or are wrong, and are named; 2: bad input.");
+      "refused with a reason; 1: some did not converge or are wrong, and are named; 2: bad input.");
   return [command, request](std::ostream& text, Json& result) {
     return run_hard(*command, *request, text, result);
   };

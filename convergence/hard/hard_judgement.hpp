@@ -2,7 +2,6 @@
 
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "convergence/results/result_parts.hpp"
 #include "convergence/runs/variant.hpp"

@@ -1,9 +1,7 @@
 #include "convergence/hard/hard_run.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
-#include <vector>
 
 #include "analytic/elliptic.hpp"
 #include "analytic/gsl.hpp"

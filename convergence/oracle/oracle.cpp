@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -34,7 +33,8 @@ bool is_coupled(const solver::Scene& scene) {
 
 /// Why no theory holds under a law of friction; empty if one may.
 std::string obstacle(const solver::FrictionLaw& law, const solver::Surface& surface) {
-  const bool any_shape = law.kind == solver::FrictionKind::coulomb || law.kind == solver::FrictionKind::tresca;
+  const bool any_shape =
+      law.kind == solver::FrictionKind::coulomb || law.kind == solver::FrictionKind::tresca;
   if ((any_shape && exact_shape(surface)) || law.is_coulomb() || surface.shape == solver::Shape::sphere)
     return "";
   return fmt::format("no exact solution is known here for shape = \"{}\" under friction_law = \"{}\"",

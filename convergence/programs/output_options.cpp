@@ -6,10 +6,8 @@
 #include <algorithm>
 #include <array>
 #include <map>
-#include <string>
 #include <string_view>
 #include <system_error>
-#include <vector>
 
 #include "solver/input/input_error.hpp"
 #include "solver/input/misspelling.hpp"

@@ -2,11 +2,9 @@
 
 #include <fmt/core.h>
 
-#include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "convergence/runs/run_spec.hpp"
 #include "solver/elasticity/law/law_kind.hpp"

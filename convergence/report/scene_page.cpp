@@ -1,18 +1,14 @@
 #include "convergence/report/scene_page.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <utility>
 
 #include "convergence/check/check.hpp"
-#include "convergence/hard/hard_run.hpp"
 #include "convergence/hard/rounding_digits.hpp"
 #include "convergence/orders/mesh_sequence.hpp"
 #include "convergence/report/scene_cost.hpp"

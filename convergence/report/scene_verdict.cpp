@@ -1,6 +1,5 @@
 #include "convergence/report/scene_verdict.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <utility>
-#include <vector>
 
 #include "convergence/results/provenance.hpp"
 #include "solver/input/input_error.hpp"

@@ -6,7 +6,6 @@
 
 #include <Eigen/Core>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "commit.hpp"  // written by the build
 #include "convergence/system/machine.hpp"

@@ -7,7 +7,6 @@
 
 #include "convergence/oracle/errors.hpp"
 #include "convergence/results/provenance.hpp"
-#include "convergence/results/result_parts.hpp"
 #include "solver/grid/communicator.hpp"
 #include "solver/scene/roughness.hpp"
 
@@ -150,8 +149,7 @@ void add_state(Json& json, const solver::Scene& scene, const Solution& solution)
   set_number(json, "moment", solution.moment, "the solve broke down");
   json["moment_limit"] = solution.moment_limit;
   set_number(json, "moment_ratio", solution.moment / solution.moment_limit, "the limit moment is zero");
-  set_number(json, "twist",
-             solution.shear_modulus * a * a * solution.twist_angle / solution.friction_force,
+  set_number(json, "twist", solution.shear_modulus * a * a * solution.twist_angle / solution.friction_force,
              "without friction the normalised twist has no scale");
   json["force"] = solution.force;
   json["displacement"] = solution.displacement;

@@ -131,8 +131,8 @@ std::size_t peak_bytes() {
   return static_cast<std::size_t>(usage.ru_maxrss) * 1024;
 }
 
-std::string number_text(const Json& value) {
-  return value.is_number() ? fmt::format("{:.6g}", value.get<double>()) : "-";
+std::string number_text(const Json& value, std::string_view format) {
+  return value.is_number() ? fmt::format(fmt::runtime(format), value.get<double>()) : "-";
 }
 
 std::string percent_text(const Json& part) {
@@ -142,9 +142,7 @@ std::string percent_text(const Json& part) {
   return percent < 100.0 ? fmt::format("{:.2g} %", percent) : fmt::format("{:.0f} %", percent);
 }
 
-std::string short_text(const Json& value) {
-  return value.is_number() ? fmt::format("{:.4g}", value.get<double>()) : "-";
-}
+std::string short_text(const Json& value) { return number_text(value, "{:.4g}"); }
 
 std::string text_line(const std::string& label, const std::string& value) {
   return fmt::format("  {:<16} {}\n", label, value);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "convergence/oracle/errors.hpp"
@@ -38,8 +39,8 @@ Json model_json(const std::vector<solver::Omission>& left_out);
 /// The most memory that this process has held, in bytes.
 std::size_t peak_bytes();
 
-/// A number for a person, "-" where there is none.
-std::string number_text(const Json& value);
+/// A number for a person, as fmt::format() writes it; "-" where there is none.
+std::string number_text(const Json& value, std::string_view format = "{:.6g}");
 
 /// A part of a whole in percent, written out: "0.028 %", "130 %"; "-" where it is no number.
 std::string percent_text(const Json& part);

@@ -1,6 +1,5 @@
 #include "convergence/results/verdict_files.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>

@@ -10,7 +10,6 @@
 #include <list>
 #include <map>
 #include <numeric>
-#include <optional>
 #include <stdexcept>
 #include <string_view>
 #include <thread>

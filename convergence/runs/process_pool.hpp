@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
-#include <string>
 #include <vector>
 
 #include "convergence/exchange/allowed_programs.hpp"
@@ -40,9 +39,8 @@ class ProcessPool {
   /// failed has status = "failed"; both have a message and `run`, which says which it was. One that would
   /// take more memory than it may has out_of_memory = true beside it, and is not kept. Throws InputError,
   /// before anything is computed, for a scene that cannot be read, one that names a program which is not
-  /// allowed to run, and a folder that cannot be made;
-  /// std::runtime_error where it was interrupted, or a result or its fields could not be written: then the
-  /// rest would be in vain.
+  /// allowed to run, and a folder that cannot be made; std::runtime_error where it was interrupted, or a
+  /// result or its fields could not be written: then the rest would be in vain.
   std::vector<Json> run(const std::vector<RunSpec>& specs) const;
   std::vector<Json> run_prepared(const std::vector<PreparedRun>& runs) const;
 

@@ -34,8 +34,7 @@ struct RunOptions {
   std::string shard = {};                          ///< as read_shard() takes it; empty: all runs
   std::vector<std::string> merged = {};            ///< folders of other shards
   bool allow_programs = false;                     ///< --allow-programs
-  std::vector<std::string> overrides =
-      {};  ///< of scenes' keys, by the command line, which may name a program
+  std::vector<std::string> overrides = {};         ///< by the command line, which may name a program
 
   /// --output, --jobs, --memory-limit.
   void add_to(CLI::App& command);

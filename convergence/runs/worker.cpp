@@ -14,7 +14,6 @@
 #include "convergence/results/output.hpp"
 #include "convergence/results/result.hpp"
 #include "convergence/runs/failed_runs.hpp"
-#include "convergence/runs/result_cache.hpp"
 #include "convergence/runs/solve_scene.hpp"
 #include "convergence/system/machine.hpp"
 #include "solver/input/input_error.hpp"

@@ -11,7 +11,6 @@
 #include "convergence/solve/cost.hpp"
 #include "convergence/solve/reached.hpp"
 #include "solver/grid_edge.hpp"
-#include "solver/input/input_error.hpp"
 #include "solver/pressure.hpp"
 #include "solver/scene/surface_geometry.hpp"
 

@@ -1,6 +1,5 @@
 #include "convergence/solve/measured_accuracy.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
 

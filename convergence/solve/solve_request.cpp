@@ -9,11 +9,8 @@
 #include <functional>
 #include <iostream>
 #include <memory>
-#include <optional>
 #include <ostream>
-#include <string>
 #include <string_view>
-#include <vector>
 
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/programs/output_options.hpp"

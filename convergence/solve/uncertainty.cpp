@@ -1,6 +1,5 @@
 #include "convergence/solve/uncertainty.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 #include <gsl/gsl_cdf.h>
 #include <gsl/gsl_statistics_double.h>

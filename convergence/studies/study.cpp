@@ -3,7 +3,6 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 #include <utility>
-#include <vector>
 
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/failed_runs.hpp"

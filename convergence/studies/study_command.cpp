@@ -6,7 +6,6 @@
 #include <optional>
 #include <ostream>
 #include <string>
-#include <vector>
 
 #include "convergence/programs/output_options.hpp"
 #include "convergence/programs/python_script.hpp"

@@ -73,24 +73,23 @@ void require_finite(const std::filesystem::path& file, const Study& study) {
 }  // namespace
 
 const solver::SettingKeys& study_keys() {
-  using solver::KeyType;
-  static const solver::SettingKeys keys{
+  using namespace solver;
+  static const SettingKeys keys{
       {"name", KeyType::text, "", "the file's name", {}, "Heads what is printed."},
-      {"scene", KeyType::file, "", solver::kRequired, solver::kAny,
-       "Scene file (TOML), relative to the study's folder."},
-      {"set", KeyType::table, "", "none", solver::kAny, "Keys of the scene that differ from its file."},
-      {"cells", KeyType::numbers, "", "the scene's own grid", solver::whole(kMinStudyCells, kMaxStudyCells),
+      {"scene", KeyType::file, "", kRequired, kAny, "Scene file (TOML), relative to the study's folder."},
+      {"set", KeyType::table, "", "none", kAny, "Keys of the scene that differ from its file."},
+      {"cells", KeyType::numbers, "", "the scene's own grid", whole(kMinStudyCells, kMaxStudyCells),
        "Cells along the longer side, a mesh each."},
-      {"shifts", KeyType::number, "", fmt::format("{}", Study{}.shifts), solver::whole(1.0, kMaxShifts),
+      {"shifts", KeyType::number, "", fmt::format("{}", Study{}.shifts), whole(1.0, kMaxShifts),
        "Grids of each mesh, whose cells lie differently under the edges: mean and spread in place of noise."},
-      {"tolerances", KeyType::numbers, "", "the scene's own", solver::kPositive,
+      {"tolerances", KeyType::numbers, "", "the scene's own", kPositive,
        "Tolerances to which each mesh is solved."},
-      {"vary", KeyType::tables, "", "none", solver::kAny,
+      {"vary", KeyType::tables, "", "none", kAny,
        "Tables `[[vary]]`: every combination is a series of its own."},
-      {"vary.key", KeyType::text, "", solver::kRequired, solver::kAny,
+      {"vary.key", KeyType::text, "", kRequired, kAny,
        "The key of the scene that varies; not grid.cells, not solver.tolerance."},
-      {"vary.values", KeyType::values, "", solver::kRequired, solver::kAny, "The values that it takes."},
-      {"quantities", KeyType::texts, "", "all that have an expected order", solver::kAny,
+      {"vary.values", KeyType::values, "", kRequired, kAny, "The values that it takes."},
+      {"quantities", KeyType::texts, "", "all that have an expected order", kAny,
        "Paths into a result, as of a gate's quantity."}};
   return keys;
 }

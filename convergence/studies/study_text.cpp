@@ -4,7 +4,6 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <vector>
 
 #include "convergence/orders/expected_order.hpp"
 #include "convergence/runs/failed_runs.hpp"
@@ -19,9 +18,7 @@ std::string label(const std::string& path) {
   return found == error_quantities().end() ? path : found->label;
 }
 
-std::string error(const Json& value) {
-  return value.is_number() ? fmt::format("{:+.1e}", value.get<double>()) : "-";
-}
+std::string error(const Json& value) { return number_text(value, "{:+.1e}"); }
 
 std::string size(const Json& value) {
   return value.is_number() ? fmt::format("{:.1e}", std::abs(value.get<double>())) : "-";

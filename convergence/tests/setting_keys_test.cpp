@@ -1,7 +1,6 @@
 // Every key in the tables of studies, gates and hard cases is one that their readers ask for.
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <filesystem>
 #include <fstream>

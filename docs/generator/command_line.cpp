@@ -1,6 +1,5 @@
 #include "docs/generator/command_line.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <CLI/CLI.hpp>

@@ -1,6 +1,5 @@
 #include "docs/generator/key_page.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>

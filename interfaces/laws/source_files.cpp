@@ -1,6 +1,5 @@
 // The law as source text: a C header and a Python module, with the same functions.
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <string>

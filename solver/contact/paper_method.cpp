@@ -48,14 +48,16 @@ class PaperMethod {
     balance_moment();
     for (iteration_ = 1; iteration_ <= options_.max_iterations; ++iteration_) {
       /*  1 */ compute_displacements();
-      if (!can_hold()) return empty_stick_area();
+      if (!can_hold()) return failure("empty stick area", "every cell slips");
       /*  2 */ estimate_twist();
       /*  3 */ compute_slip();
-      if (!std::isfinite(S_)) return non_finite();
+      if (!std::isfinite(S_)) return failure("non-finite slip", fmt::format("S = {}", S_));
       /*  4 */ choose_direction();
       /*  5 */ S0_ = S_;
       /*  6 */ find_step_length();
-      if (S_ > 0.0 && !(curvature_ > 0.0)) return indefinite();
+      if (S_ > 0.0 && !(curvature_ > 0.0)) {
+        return failure("indefinite operator", fmt::format("d.Kd = {}, S = {}", curvature_, S_));
+      }
       /*  7 */ q0_ = q_;           // Eq. (20)
       /*  8 */ q_ -= alpha_ * d_;  // Eq. (21)
       /*  9 */ enforce_coulomb();
@@ -158,17 +160,8 @@ class PaperMethod {
     return (norms(q_) <= (1.0 + options_.tolerance) * problem_.friction_bound).all();
   }
 
-  TangentialSolution empty_stick_area() {
-    return finish(Status::not_converged,
-                  fmt::format("empty stick area in iteration {}: every cell slips", iteration_));
-  }
-  TangentialSolution non_finite() {
-    return finish(Status::not_converged,
-                  fmt::format("non-finite slip in iteration {}: S = {}", iteration_, S_));
-  }
-  TangentialSolution indefinite() {
-    return finish(Status::not_converged, fmt::format("indefinite operator in iteration {}: d.Kd = {}, S = {}",
-                                                     iteration_, curvature_, S_));
+  TangentialSolution failure(const char* what, const std::string& numbers) {
+    return finish(Status::not_converged, fmt::format("{} in iteration {}: {}", what, iteration_, numbers));
   }
 
   /// What is reported of a result is computed from its tractions afresh, not carried along.

@@ -3,7 +3,6 @@
 #include <fmt/core.h>
 
 #include <Eigen/Cholesky>
-#include <Eigen/Core>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -32,20 +31,18 @@ constexpr int kPasses = 4;  // each measures from the front that the last one ha
 constexpr double kBesideQuadrant =
     kWidestAngle + 0.1;  // of a quadrant's rays, cells that a fit or a check needs
 
-/// What part of the slip ring is fitted on a ray, from the front, and by which
-/// degree in the distance.
+/// What part of the slip ring is fitted on a ray, from the front, and by which degree in the distance.
 struct Window {
   double from;
   double to;
   int degree;
 };
 
-/// The mesh blurs the slip for some two cells beyond the front; in narrow rings
-/// these are dear. Towards the contact's edge the slip has another expansion.
-/// Chosen on the circular contact with 48 to 256 cells across and 0.1 to 0.97
-/// of the limit moment, where each keeps the front within 0.02 cells (0.05 if
-/// its radius is but 10 cells). A straight line does for rings that are narrow
-/// against the front's own radius; one below 3 cells holds too few of them.
+/// The mesh blurs the slip for some two cells beyond the front; in narrow rings these are dear. Towards the
+/// contact's edge the slip has another expansion. Chosen on the circular contact with 48 to 256 cells across
+/// and 0.1 to 0.97 of the limit moment, where each keeps the front within 0.02 cells (0.05 if its radius is
+/// but 10 cells). A straight line does for rings that are narrow against the front's own radius; one below 3
+/// cells holds too few of them.
 Window window(double ring_width, double front) {
   if (ring_width >= 24.0) return {2.5, std::min(20.0, 0.7 * ring_width), 4};
   if (ring_width >= 12.0) return {2.0, 0.7 * ring_width, 3};
@@ -62,10 +59,9 @@ struct Sample {
   double psi;
 };
 
-/// Distance where a polynomial of the window's degree, with terms in y, x y and
-/// y^2 for what changes across the ray, is zero on the ray; NaN where the
-/// samples do not determine it or it does not rise there. By the normal
-/// equations, which are well conditioned in lengths over those of the window.
+/// Distance where a polynomial of the window's degree, with terms in y, x y and y^2 for what changes across
+/// the ray, is zero on the ray; NaN where the samples do not determine it or it does not rise there. By the
+/// normal equations, which are well conditioned in lengths over those of the window.
 double fitted_root(const std::vector<Sample> &samples, const Window &depth) {
   constexpr int kMaxTerms = 8;
   using Terms = Eigen::Matrix<double, kMaxTerms, 1>;
@@ -180,8 +176,7 @@ class FrontCells {
   const ArrayXd &stick_;
 };
 
-/// Rays from the centroid of the stick area, and where stick and contact end on
-/// them.
+/// Rays from the centroid of the stick area, and where stick and contact end on them.
 class Rays {
  public:
   Rays(const FrontCells &cells, double stick_cells) : cells_(cells), mirrored_(cells.is_mirrored()) {
@@ -205,8 +200,7 @@ class Rays {
 
   Index count() const { return count_; }
   bool mirrored() const { return mirrored_; }
-  /// Lengths on each ray to where stick and contact end, by the cells that it
-  /// crosses.
+  /// Lengths on each ray to where stick and contact end, by the cells that it crosses.
   const ArrayXd &counted() const { return counted_; }
   const ArrayXd &edge() const { return edge_; }
 
@@ -332,8 +326,7 @@ class FrontFit {
     double reference;  ///< the reference front at this angle
   };
 
-  /// Those that some window may take, by angle. Cells far from the front need
-  /// no angle.
+  /// Those that some window may take, by angle. Cells far from the front need no angle.
   void collect_slipping_cells(const FrontCells &cells) {
     const double nearest_front = rays_.counted().minCoeff();
     const double farthest_front = rays_.counted().maxCoeff();

@@ -32,13 +32,12 @@ struct TangentialProblem {
 
 struct TangentialSolution {
   Status status = Status::not_converged;
-  std::string message;      ///< why it did not converge; empty if it did
-  Eigen::ArrayXd traction;  ///< q, 2*cells
-  Eigen::ArrayXd
-      elastic_displacement;  ///< K q, 2*cells; of a reduced model zero outside its part of the grid
-  Eigen::ArrayXd slip;       ///< s of Eq. (8), 2*cells, zero outside the contact
-  Eigen::ArrayXd stick;      ///< 1 in A_S, 0 elsewhere
-  double twist = 0.0;        ///< phi_3
+  std::string message;                   ///< why it did not converge; empty if it did
+  Eigen::ArrayXd traction;               ///< q, 2*cells
+  Eigen::ArrayXd elastic_displacement;   ///< K q, 2*cells; zero outside a reduced model's part of the grid
+  Eigen::ArrayXd slip;                   ///< s of Eq. (8), 2*cells, zero outside the contact
+  Eigen::ArrayXd stick;                  ///< 1 in A_S, 0 elsewhere
+  double twist = 0.0;                    ///< phi_3
   std::array<double, 2> displacement{};  ///< delta_1, delta_2
   double change = 0.0;                   ///< what the method's stopping test saw last
   int iterations = 0;

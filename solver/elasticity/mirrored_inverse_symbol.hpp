@@ -1,8 +1,6 @@
 #pragma once
 
 #include <array>
-#include <memory>
-#include <vector>
 
 #include "solver/elasticity/inverse_symbol.hpp"
 #include "solver/elasticity/symbol_table.hpp"

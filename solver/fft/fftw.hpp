@@ -10,8 +10,7 @@
 
 #include "solver/grid/grid.hpp"
 
-/// FFTW's C interface, owned. Plans are estimated: those that are measured give other bits
-/// from run to run.
+/// FFTW's C interface, owned. Plans are estimated: those that are measured give other bits from run to run.
 namespace slipstick::solver {
 
 /// As containers count.

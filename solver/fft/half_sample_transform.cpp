@@ -1,7 +1,6 @@
 #include "solver/fft/half_sample_transform.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <numbers>
 

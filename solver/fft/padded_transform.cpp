@@ -1,6 +1,5 @@
 #include "solver/fft/padded_transform.hpp"
 
-#include <algorithm>
 #include <numbers>
 
 namespace slipstick::solver {

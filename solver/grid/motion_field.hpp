@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <type_traits>
 
 #include "solver/grid/grid.hpp"
 

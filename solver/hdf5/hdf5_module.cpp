@@ -1,11 +1,9 @@
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 #include <hdf5.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <array>
-#include <cerrno>
 #include <csignal>
 #include <set>
 #include <stdexcept>

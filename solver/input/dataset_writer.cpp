@@ -1,6 +1,5 @@
 #include "solver/input/dataset_writer.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 #include <sys/resource.h>
 #include <sys/stat.h>
@@ -9,7 +8,6 @@
 #include <cerrno>
 #include <memory>
 #include <sstream>
-#include <stdexcept>
 #include <system_error>
 
 #include "solver/grid/ranks.hpp"

@@ -1,6 +1,5 @@
 #include "solver/input/table_text.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>

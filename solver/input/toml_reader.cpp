@@ -1,6 +1,5 @@
 #include "solver/input/toml_reader.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 #include <toml++/toml.h>
 

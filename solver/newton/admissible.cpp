@@ -1,9 +1,5 @@
 #include "solver/newton/admissible.hpp"
 
-#include <algorithm>
-#include <cmath>
-#include <limits>
-
 #include "solver/grid/packet.hpp"
 
 namespace slipstick::solver {

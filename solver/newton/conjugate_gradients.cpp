@@ -2,8 +2,6 @@
 
 #include <fmt/core.h>
 
-#include <cmath>
-
 namespace slipstick::solver {
 
 std::string CgSummary::message() const {

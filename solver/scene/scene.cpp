@@ -1,11 +1,9 @@
 #include "solver/scene/scene.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cmath>
-#include <cstdint>
 #include <limits>
 #include <utility>
 
@@ -95,7 +93,8 @@ Layer read_layer(SceneReader& reader) {
 FrictionLaw read_friction(SceneReader& reader) {
   FrictionLaw law;
   law.kind = reader.choice_or("contact.friction_law", law.kind, kFrictionLaws);
-  if (law.kind == FrictionKind::tresca) reader.prefer_overridden({"contact.shear_strength", "contact.friction"});
+  if (law.kind == FrictionKind::tresca)
+    reader.prefer_overridden({"contact.shear_strength", "contact.friction"});
   if (law.kind != FrictionKind::tresca) law.coefficient = reader.number("contact.friction");
   if (law.kind == FrictionKind::tresca || law.kind == FrictionKind::capped)
     law.shear_strength = reader.number("contact.shear_strength");

@@ -41,9 +41,8 @@ struct Layer {
 /// each cell; a file.
 enum class PressureModel { solved, hertz, hertz_averaged, file };
 
-/// How normal and tangential tractions of dissimilar materials couple: the pressure's tangential
-/// displacement where they are dissimilar, nothing, that displacement, and also the shear's normal
-/// displacement.
+/// How normal and tangential tractions of dissimilar materials couple: the pressure's tangential displacement
+/// where they are dissimilar, nothing, that displacement, and also the shear's normal displacement.
 enum class Coupling { automatic, none, pressure, full };
 
 /// Which method finds the tractions.

@@ -1,12 +1,9 @@
 #include "solver/scene/scene_keys.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
-#include <algorithm>
 #include <array>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "solver/elasticity/law/law_kind.hpp"

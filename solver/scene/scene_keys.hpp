@@ -1,8 +1,5 @@
 #pragma once
 
-#include <string>
-#include <vector>
-
 #include "solver/input/setting_key.hpp"
 #include "solver/scene/scene.hpp"
 #include "solver/scene/shape_kind.hpp"

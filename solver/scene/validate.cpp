@@ -5,10 +5,8 @@
 
 #include "solver/elasticity/law/law_kind.hpp"
 #include "solver/input/input_error.hpp"
-#include "solver/input/toml_reader.hpp"
 #include "solver/scene/hertz_pressure.hpp"
 #include "solver/scene/roughness.hpp"
-#include "solver/scene/scene.hpp"
 #include "solver/scene/scene_keys.hpp"
 #include "solver/scene/surface_geometry.hpp"
 #include "solver/scene/validate.hpp"

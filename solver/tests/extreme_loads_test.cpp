@@ -8,8 +8,6 @@
 
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/elasticity/direct.hpp"
-#include "solver/model_solution.hpp"
-#include "solver/tests/paper_scene.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
 namespace slipstick::solver {

@@ -1,13 +1,10 @@
 // Friction that is not mu p: each law by its limits and by Coulomb's, maps, and what is refused.
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <Eigen/Core>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <string>
 #include <vector>
 
 #include "solver/input/tests/complaint.hpp"
@@ -169,7 +166,9 @@ TEST_F(FrictionMap, LeavesCellsWithoutFrictionWithoutTraction) {
 }
 
 TEST_F(FrictionMap, TurnsWithTheScene) {
-  const auto factor = [](Index i, Index j) { return 1.0 + 0.02 * static_cast<double>(i) + 0.01 * static_cast<double>(j); };
+  const auto factor = [](Index i, Index j) {
+    return 1.0 + 0.02 * static_cast<double>(i) + 0.01 * static_cast<double>(j);
+  };
   const Solution solution = solved_under(with_map(factor));
   const Solution turned = solved_under(with_map([&](Index i, Index j) { return factor(23 - j, i); }));
   EXPECT_NEAR(turned.twist_angle / solution.twist_angle, 1.0, kSame);

@@ -5,9 +5,7 @@
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <numbers>
 #include <optional>
 #include <regex>

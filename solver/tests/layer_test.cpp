@@ -2,15 +2,12 @@
 // part of the grid, and limits.
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <Eigen/Core>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <limits>
 #include <optional>
-#include <string>
 #include <utility>
 #include <vector>
 

@@ -1,9 +1,6 @@
 #include "solver/load_path.hpp"
 
-#include <gtest/gtest.h>
-
 #include <cmath>
-#include <string>
 
 #include "solver/solve.hpp"
 #include "solver/tests/scene_file.hpp"

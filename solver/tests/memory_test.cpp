@@ -1,11 +1,9 @@
 #include "solver/memory.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
-#include <string>
 
 #include "solver/model.hpp"
 #include "solver/tests/scene_file.hpp"

@@ -1,10 +1,8 @@
 #include "solver/model.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <thread>
 
 #include "solver/pressure.hpp"

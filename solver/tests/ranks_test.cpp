@@ -1,14 +1,10 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
-#include <algorithm>
 #include <memory>
 #include <numeric>
-#include <span>
 #include <vector>
 
 #include "solver/elasticity/inverse_symbol.hpp"
-#include "solver/elasticity/linear_operator.hpp"
 #include "solver/grid/communicator.hpp"
 #include "solver/grid/own_rows.hpp"
 #include "solver/grid/sweep.hpp"

@@ -1,17 +1,12 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
-#include <ostream>
 #include <sstream>
-#include <string>
-#include <utility>
-#include <vector>
 
-#include "solver/model_solution.hpp"
+#include "solver/tests/fields.hpp"
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/scene_file.hpp"
 
@@ -30,10 +25,6 @@ constexpr const char* kShearCoupling = "K31, K32";
 constexpr const char* kTranslations = "translations";
 constexpr const char* kQuadrant = "three quarters of the contact";
 constexpr const char* kDiagonal = "one traction field";
-
-double relative_difference(const ArrayXd& a, const ArrayXd& b) {
-  return (a - b).abs().maxCoeff<Eigen::PropagateNaN>() / b.abs().maxCoeff();
-}
 
 std::vector<std::string> left_out(const ModelSolution& solution) {
   std::vector<std::string> names;

@@ -1,11 +1,8 @@
-#include <gtest/gtest.h>
 
 #include <bit>
 #include <cstdint>
 #include <memory>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "solver/history_state.hpp"
 #include "solver/solve.hpp"

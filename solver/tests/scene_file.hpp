@@ -3,12 +3,11 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <filesystem>
-#include <fstream>
 #include <string>
 #include <vector>
 
 #include "solver/input/tests/complaint.hpp"
+#include "solver/input/tests/scratch_folder.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace slipstick::solver {
@@ -37,21 +36,11 @@ inline std::string with_surface(const std::string& keys, const std::string& tabl
   return text.replace(text.find(sphere), sphere.size(), keys) + tables;
 }
 
-class SceneFile : public testing::Test {
+class SceneFile : public ScratchFolder {
  protected:
-  SceneFile() { std::filesystem::create_directories(folder_); }
-  ~SceneFile() override { std::filesystem::remove_all(folder_); }
-
-  std::filesystem::path write(const std::string& name, const std::string& text) const {
-    std::ofstream(folder_ / name, std::ios::binary) << text;
-    return folder_ / name;
-  }
   Scene read(const std::string& text, const std::vector<std::string>& overrides = {}) const {
     return read_scene(write("scene.toml", text), overrides);
   }
-
-  std::filesystem::path folder_ =
-      std::filesystem::path(testing::TempDir()) / ("scene_" + std::to_string(::getpid()));
 };
 
 }  // namespace slipstick::solver

@@ -1,8 +1,5 @@
-#include "analytic/certified/certified.hpp"
 
-#include <gtest/gtest.h>
 
-#include <string>
 #include <utility>
 
 #include "analytic/certified/tests/known.hpp"

@@ -1,12 +1,8 @@
-#include "analytic/certified/certified.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <stdexcept>
-#include <string>
 #include <utility>
-#include <vector>
 
 #include "analytic/certified/tests/known.hpp"
 

@@ -2,20 +2,15 @@
 
 #include <gmock/gmock.h>
 #include <gsl/gsl_sf_bessel.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>
-#include <cmath>
-#include <functional>
-#include <numbers>
 #include <stdexcept>
 #include <utility>
 #include <vector>
 
 #include "analytic/cycle.hpp"
 #include "analytic/elliptic.hpp"
-#include "analytic/gsl.hpp"
 #include "analytic/tests/values.hpp"
 #include "analytic/torsion.hpp"
 

@@ -1,13 +1,8 @@
 // Two runs compared: what counts as slower, and what cannot be judged.
 
-#include "bench/compare/comparison.hpp"
-
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <functional>
-#include <random>
 #include <stdexcept>
 
 #include "bench/compare/tests/made_timings.hpp"

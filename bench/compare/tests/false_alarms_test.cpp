@@ -3,13 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cstddef>
 #include <functional>
-#include <random>
-#include <string>
-#include <vector>
 
-#include "bench/compare/comparison.hpp"
 #include "bench/compare/tests/made_timings.hpp"
 
 namespace slipstick::bench {

@@ -4,7 +4,6 @@
 #include "bench/compare/rank_tests.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <array>

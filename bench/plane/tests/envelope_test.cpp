@@ -3,7 +3,6 @@
 #include "bench/plane/envelope.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 

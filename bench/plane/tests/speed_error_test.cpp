@@ -3,7 +3,6 @@
 #include "bench/plane/speed_error.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>

@@ -1,7 +1,6 @@
 #include "bench/scaling/scaling_result.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>

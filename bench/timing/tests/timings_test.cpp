@@ -1,14 +1,8 @@
 // Files of Google Benchmark, old and new, whole and broken.
 
-#include "bench/timing/timings.hpp"
-
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <string>
 
 #include "bench/compare/tests/made_timings.hpp"
-#include "solver/input/input_error.hpp"
 #include "solver/input/tests/complaint.hpp"
 
 namespace slipstick::bench {

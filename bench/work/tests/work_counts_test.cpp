@@ -3,7 +3,6 @@
 #include "bench/work/work_counts.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cstdlib>
 #include <fstream>

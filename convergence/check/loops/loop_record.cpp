@@ -1,11 +1,9 @@
 #include "convergence/check/loops/loop_record.hpp"
 
-#include <fmt/core.h>
 #include <fmt/ranges.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cmath>
 #include <nlohmann/json.hpp>
 #include <string>
 

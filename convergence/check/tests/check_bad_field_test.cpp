@@ -1,18 +1,10 @@
 // Fields with one thing wrong.
 
-#include "convergence/check/check.hpp"
-
-#include <fmt/ranges.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <ostream>
 
 #include "convergence/check/tests/checked_field.hpp"
-#include "solver/input/input_error.hpp"
 #include "solver/input/tests/complaint.hpp"
 
 namespace slipstick::convergence {

@@ -2,11 +2,6 @@
 
 #include "convergence/check/conventions.hpp"
 
-#include <fmt/ranges.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
 #include <utility>
 
 #include "convergence/check/tests/checked_field.hpp"

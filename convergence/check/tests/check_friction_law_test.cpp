@@ -1,12 +1,5 @@
 // Fields under laws of friction that do not follow the pressure, and fields under the wrong one of them.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
-
 #include "convergence/check/tests/checked_field.hpp"
 
 namespace slipstick::convergence {

@@ -1,22 +1,12 @@
 // Fields of other programs, judged.
 
-#include "convergence/check/check.hpp"
-
-#include <fmt/ranges.h>
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <cmath>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <numbers>
-#include <random>
 #include <tuple>
 
 #include "convergence/check/tests/checked_field.hpp"
 #include "convergence/oracle/errors.hpp"
-#include "solver/input/input_error.hpp"
 #include "solver/input/tests/complaint.hpp"
 
 namespace slipstick::convergence {

@@ -1,15 +1,9 @@
 // The verdict at its thresholds: a right field with one thing wrong by a known amount, just below and just
 // above the amount that docs/guides/verify-your-solver.md allows.
 
-#include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <algorithm>
 #include <cmath>
 #include <functional>
-#include <nlohmann/json.hpp>
 #include <numbers>
-#include <random>
 
 #include "convergence/check/examination.hpp"
 #include "convergence/check/tests/checked_field.hpp"

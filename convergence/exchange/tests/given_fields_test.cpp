@@ -2,8 +2,6 @@
 
 #include "convergence/exchange/given_fields.hpp"
 
-#include <gtest/gtest.h>
-
 #include "solver/input/input_error.hpp"
 #include "solver/solve.hpp"
 #include "solver/tests/scene_file.hpp"

@@ -1,11 +1,6 @@
 // What is written about gates.
 
-#include "convergence/gates/gate.hpp"
-
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <nlohmann/json.hpp>
 
 #include "convergence/gates/tests/made_gates.hpp"
 

@@ -1,12 +1,8 @@
 // Which numbers pass a gate.
 
-#include "convergence/gates/gate.hpp"
-
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
-#include <nlohmann/json.hpp>
 
 #include "convergence/gates/tests/made_gates.hpp"
 

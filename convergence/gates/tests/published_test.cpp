@@ -3,15 +3,9 @@
 #include "convergence/gates/published.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
-#include <nlohmann/json.hpp>
-
-#include "convergence/gates/gate.hpp"
 #include "convergence/gates/tests/made_gates.hpp"
 #include "convergence/tests/scratch_folder.hpp"
-#include "solver/input/input_error.hpp"
 #include "solver/input/tests/complaint.hpp"
 
 namespace slipstick::convergence {

@@ -1,18 +1,16 @@
 // Contact laws against the exact law, at points that no fit has seen.
 
-#include <gtest/gtest.h>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <stdexcept>
-#include <vector>
 
 #include "analytic/elliptic.hpp"
 #include "analytic/named_profile.hpp"
 #include "analytic/torsion.hpp"
 #include "convergence/laws/contact_law.hpp"
 #include "convergence/oracle/oracle.hpp"
+#include "convergence/tests/scratch_folder.hpp"
 
 namespace slipstick::convergence {
 namespace {
@@ -203,13 +201,10 @@ TEST(BestSpring, NoSpringWithACapIsBetter) {
   }
 }
 
-solver::Scene paper_scene(const std::vector<std::string>& overrides = {}) {
-  return solver::read_scene(SLIPSTICK_SCENES "/paper.toml", overrides);
-}
-
 TEST(LawContact, IsTheScenesInSi) {
-  const ContactLaw law = make_contact_law(law_contact(paper_scene({"load.normal=500"})), {.limit_loads = 3});
-  const OracleAnswer exact = find_oracle(paper_scene({"load.normal=500"}));
+  const ContactLaw law =
+      make_contact_law(law_contact(example("paper", {"load.normal=500"})), {.limit_loads = 3});
+  const OracleAnswer exact = find_oracle(example("paper", {"load.normal=500"}));
   EXPECT_NEAR(law.limit_moment() / exact.oracle->moment_limit, 1.0, 1e-13);
   EXPECT_NEAR(law.law.moment_ratio_at(exact.oracle->twist_angle / law.rotation_unit()), 0.9, 1e-6);
 }

@@ -1,16 +1,11 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
-#include <string>
-#include <vector>
 
 #include "analytic/layered/layered_pair.hpp"
 #include "convergence/laws/contact_law.hpp"
 #include "convergence/oracle/errors.hpp"
-#include "convergence/oracle/oracle.hpp"
 #include "convergence/oracle/tests/histories.hpp"
 #include "solver/elasticity/law/layer_symbol.hpp"
 #include "solver/input/input_error.hpp"

@@ -1,7 +1,6 @@
 // Where the two sides meet: numerical answers against exact ones.
 
 #include <fmt/core.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
@@ -10,15 +9,12 @@
 #include "convergence/oracle/errors.hpp"
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/results/result.hpp"
+#include "convergence/tests/scratch_folder.hpp"
 #include "solver/model.hpp"
 #include "solver/solve.hpp"
 
 namespace slipstick::convergence {
 namespace {
-
-solver::Scene scene(const char* name, const std::vector<std::string>& overrides) {
-  return solver::read_scene(std::string(SLIPSTICK_SCENES) + name, overrides);
-}
 
 struct Compared {
   solver::Solution solution;
@@ -39,7 +35,7 @@ constexpr double kTractionAt128 = 1e-2;
 /// Between a sphere and a flat punch. Twist about h^2, pressure about h^1.5 in L1 for its steep edge,
 /// over a factor 4 in h; half an order is left for the staircase of contact and stick area.
 TEST(Comparison, AFlatBodyFallsWithTheMesh) {
-  solver::Scene body = scene("/rounded_punch.toml", {});
+  solver::Scene body = example("rounded_punch");
   body.surfaces = {{.shape = solver::Shape::power, .exponent = 4.0, .coefficient = 1e8}};
   const Errors coarse = solve_scene(body, 32).errors;
   const Errors fine = solve_scene(body, 128).errors;
@@ -53,12 +49,12 @@ TEST(Comparison, AFlatBodyFallsWithTheMesh) {
 
 /// Exact fields stand where the body stands: cells about its axis are found as mirror images, others are not.
 TEST(Comparison, OfABodyOffTheOrigin) {
-  for (const char* const file : {"/paper.toml", "/mindlin.toml"}) {
+  for (const char* const file : {"paper", "mindlin"}) {
     for (const int n : {40, 41}) {
       const double extent = 5e-5 * n;  // cells of 0.05 mm: shifted by two and by four
       const solver::Scene shifted =
-          scene(file, {fmt::format("grid.cells=[{}, {}]", n, n),
-                       fmt::format("grid.extent=[{}, {}]", extent, extent), "upper.at=[1e-4, -2e-4]"});
+          example(file, {fmt::format("grid.cells=[{}, {}]", n, n),
+                         fmt::format("grid.extent=[{}, {}]", extent, extent), "upper.at=[1e-4, -2e-4]"});
       solver::Scene centred = shifted;
       centred.surfaces.front().at = {0.0, 0.0};
       const ExactFields there =
@@ -83,7 +79,7 @@ TEST(Comparison, OfABodyOffTheOrigin) {
 
 /// A solution that is the exact one but for a part of one number shows that part, along either axis.
 TEST(Comparison, SeesEachComponentOfADisplacement) {
-  const solver::Scene mindlin = scene("/mindlin.toml", {"grid.cells=[24,24]", "load.force=[30.0, 40.0]"});
+  const solver::Scene mindlin = example("mindlin", {"grid.cells=[24,24]", "load.force=[30.0, 40.0]"});
   const Oracle oracle = *find_oracle(mindlin).oracle;
   solver::Solution solution = solver::solve(mindlin);
   solution.displacement = oracle.displacement;
@@ -98,7 +94,7 @@ TEST(Comparison, SeesEachComponentOfADisplacement) {
 
 /// A cell that is no number is the worst of all, wherever it stands.
 TEST(Comparison, ANumberThatIsNoneIsNotSkipped) {
-  const solver::Scene paper = scene("/paper.toml", {"grid.cells=[16,16]"});
+  const solver::Scene paper = example("paper", {"grid.cells=[16,16]"});
   const Oracle oracle = *find_oracle(paper).oracle;
   const solver::Solution solution = solver::solve(paper);
   for (const Eigen::Index cell : {8 * 16 + 8, 4 * 16 + 8, 8 * 16 + 12}) {
@@ -122,7 +118,7 @@ TEST(Comparison, ANumberThatIsNoneIsNotSkipped) {
 // from 64 cells on.
 TEST(Comparison, ConeFallsWithTheMesh) {
   for (const char* ratio : {"0.5", "0.9"}) {
-    const solver::Scene body = scene("/cone.toml", {std::string("load.moment_ratio=") + ratio});
+    const solver::Scene body = example("cone", {std::string("load.moment_ratio=") + ratio});
     const Compared coarse = solve_scene(body, 32);
     const Compared middle = solve_scene(body, 64);
     const Compared fine = solve_scene(body, 128);
@@ -144,7 +140,7 @@ TEST(Comparison, ConeFallsWithTheMesh) {
 // fields are not finite.
 TEST(Comparison, FlatPunchFallsWithTheMesh) {
   for (const char* ratio : {"0.5", "0.9"}) {
-    const solver::Scene body = scene("/flat_punch.toml", {std::string("load.moment_ratio=") + ratio});
+    const solver::Scene body = example("flat_punch", {std::string("load.moment_ratio=") + ratio});
     const Compared coarse = solve_scene(body, 32);
     const Compared middle = solve_scene(body, 64);
     const Compared fine = solve_scene(body, 128);
@@ -161,8 +157,8 @@ TEST(Comparison, FlatPunchFallsWithTheMesh) {
 
 // The exact peak is infinite, and so is a cone's pressure in a cell at the axis.
 TEST(Comparison, LeavesOutWhatIsInfinite) {
-  for (const char* name : {"/cone.toml", "/flat_punch.toml"}) {
-    const Compared odd = solve_scene(scene(name, {"load.moment_ratio=0.5"}), 33);
+  for (const char* name : {"cone", "flat_punch"}) {
+    const Compared odd = solve_scene(example(name, {"load.moment_ratio=0.5"}), 33);
     EXPECT_TRUE(std::isnan(odd.errors.peak_pressure)) << name;
     for (const FieldError& field : {odd.errors.pressure, odd.errors.traction.at_centres}) {
       for (const double error : {field.l1, field.l2, field.max}) EXPECT_TRUE(std::isfinite(error)) << name;
@@ -194,8 +190,8 @@ Eigen::Array<double, 6, 1> mean_errors(solver::Scene body, solver::Index across)
 TEST(Comparison, EllipticPressureFallsWithTheMesh) {
   constexpr double expected[] = {1.5, 1.0, 2.0, 2.0, 2.0, 2.0};
   constexpr double staircase = 0.4;  // what it leaves of orders over a factor 3 in h
-  for (const char* name : {"/ellipse.toml", "/turned_ellipse.toml"}) {
-    const solver::Scene ellipse = scene(name, {});
+  for (const char* name : {"ellipse", "turned_ellipse"}) {
+    const solver::Scene ellipse = example(name);
     const auto coarse = mean_errors(ellipse, 64);
     const auto fine = mean_errors(ellipse, 192);
     for (int k = 0; k < 6; ++k) {
@@ -207,7 +203,7 @@ TEST(Comparison, EllipticPressureFallsWithTheMesh) {
 
 /// What is known of an ellipse is a number, the rest is null and says why.
 TEST(Comparison, ResultOfAnEllipseSaysWhatIsExact) {
-  const solver::Scene ellipse = scene("/ellipse.toml", {"grid.cells=[32,16]"});
+  const solver::Scene ellipse = example("ellipse", {"grid.cells=[32,16]"});
   const OracleAnswer exact = find_oracle(ellipse);
   const Json result = solve_result(ellipse, solver::solve(ellipse), exact);
   for (const char* key : {"contact_radius", "peak_pressure", "approach", "moment_limit", "moment"}) {

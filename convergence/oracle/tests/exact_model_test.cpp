@@ -1,13 +1,10 @@
 // solver.model = "exact": a scene answered without a grid.
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "analytic/torsion.hpp"
 #include "convergence/results/exact_result.hpp"

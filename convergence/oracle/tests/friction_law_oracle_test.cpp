@@ -2,14 +2,8 @@
 // convergence to them, and for which scenes there are none.
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <string>
-#include <vector>
 
 #include "convergence/oracle/errors.hpp"
-#include "convergence/oracle/oracle.hpp"
 #include "convergence/oracle/tests/histories.hpp"
 #include "solver/solve.hpp"
 

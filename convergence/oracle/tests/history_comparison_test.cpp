@@ -3,13 +3,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
 #include <stdexcept>
 #include <utility>
 
 #include "analytic/tangential_history.hpp"
 #include "convergence/oracle/errors.hpp"
-#include "convergence/oracle/oracle.hpp"
 #include "convergence/oracle/tests/histories.hpp"
 #include "solver/solve.hpp"
 

@@ -1,13 +1,10 @@
 // Exact answers along histories of loads, in the scene's units.
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <stdexcept>
 
 #include "analytic/cycle.hpp"
-#include "convergence/oracle/oracle.hpp"
 #include "convergence/oracle/tests/histories.hpp"
 
 namespace slipstick::convergence {

@@ -1,10 +1,7 @@
-#include "convergence/oracle/oracle.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 
 #include "convergence/oracle/tests/histories.hpp"
 #include "solver/scene/hertz_pressure.hpp"
@@ -29,13 +26,7 @@ constexpr Case kCases[] = {{"load.moment_ratio=0.1", 0.9693964204953627, 1.19724
 // The published digits, and a few roundings on the way from a scene's moduli to the number.
 constexpr double kOracleTolerance = 1e-14;
 
-solver::Scene paper(const std::vector<std::string>& overrides) {
-  return solver::read_scene(SLIPSTICK_SCENES "/paper.toml", overrides);
-}
-
-solver::Scene body(const std::string& file, const std::vector<std::string>& overrides) {
-  return solver::read_scene(SLIPSTICK_SCENES + file, overrides);
-}
+solver::Scene paper(const std::vector<std::string>& overrides) { return example("paper", overrides); }
 
 TEST(Oracle, PaperCase) {
   for (const Case& c : kCases) {
@@ -66,17 +57,17 @@ void expect_the_same_state_by_ratio_moment_and_twist(solver::Scene scene) {
 }
 
 TEST(Oracle, TheSameStateByRatioMomentAndTwist) {
-  for (const char* file : {"/paper.toml", "/cone.toml", "/flat_punch.toml", "/rounded_punch.toml"}) {
+  for (const char* file : {"paper", "cone", "flat_punch", "rounded_punch"}) {
     SCOPED_TRACE(file);
-    expect_the_same_state_by_ratio_moment_and_twist(body(file, {}));
+    expect_the_same_state_by_ratio_moment_and_twist(example(file));
   }
 }
 
 TEST(Oracle, LastDigitsCostNoAnswer) {
-  const Oracle plain = *find_oracle(body("/paper.toml", {})).oracle;
+  const Oracle plain = *find_oracle(example("paper")).oracle;
   for (const char* change :
        {"lower.poisson_ratio=0.30000000000000004", "upper.at=[1e-18, 0]", "load.force=[1e-300, 0]"}) {
-    const OracleAnswer answer = find_oracle(body("/paper.toml", {change}));
+    const OracleAnswer answer = find_oracle(example("paper", {change}));
     ASSERT_TRUE(answer.oracle) << change << ": " << answer.reason;
     EXPECT_NEAR(answer.oracle->twist_angle / plain.twist_angle, 1.0, kOracleTolerance) << change;
   }
@@ -85,7 +76,7 @@ TEST(Oracle, LastDigitsCostNoAnswer) {
 // Love's and Boussinesq's contacts, and what they carry in torsion, by their formulas.
 TEST(Oracle, ConeAndFlatPunch) {
   const double effective_modulus = 210e9 / (1.0 - 0.3 * 0.3) / 2.0;
-  const Oracle cone = *find_oracle(body("/cone.toml", {"load.moment_ratio=0.5"})).oracle;
+  const Oracle cone = *find_oracle(example("cone", {"load.moment_ratio=0.5"})).oracle;
   const double cone_radius = std::sqrt(2.0 * 200.0 / (std::numbers::pi * effective_modulus * 0.01));
   EXPECT_EQ(cone.profile.get(), &analytic::cone_profile());
   EXPECT_NEAR(cone.contact_radius / cone_radius, 1.0, kOracleTolerance);
@@ -96,7 +87,7 @@ TEST(Oracle, ConeAndFlatPunch) {
   EXPECT_EQ(cone.pressure(0.0), HUGE_VAL);
   EXPECT_EQ(cone.traction(0.0), 0.0);
 
-  const Oracle punch = *find_oracle(body("/flat_punch.toml", {"load.moment_ratio=0.9"})).oracle;
+  const Oracle punch = *find_oracle(example("flat_punch", {"load.moment_ratio=0.9"})).oracle;
   EXPECT_EQ(punch.profile.get(), &analytic::flat_punch_profile());
   EXPECT_EQ(punch.contact_radius, 5e-4);
   EXPECT_NEAR(punch.approach / (1000.0 / (2.0 * effective_modulus * 5e-4)), 1.0, kOracleTolerance);
@@ -112,7 +103,7 @@ TEST(Oracle, ConeAndFlatPunch) {
 TEST(Oracle, FlatPunchSticksEverywhereAtFirst) {
   const double shear_modulus = 210e9 / (2.0 * 1.3) / 2.0;
   for (const char* load : {"load.moment_ratio=0.5", "load.moment_ratio=0", "load.moment=0.033"}) {
-    const Oracle punch = *find_oracle(body("/flat_punch.toml", {load})).oracle;
+    const Oracle punch = *find_oracle(example("flat_punch", {load})).oracle;
     EXPECT_EQ(punch.stick_radius, punch.contact_radius) << load;
     EXPECT_NEAR(punch.twist_angle, 3.0 * punch.moment / (16.0 * shear_modulus * std::pow(5e-4, 3)),
                 kOracleTolerance * punch.twist_angle)
@@ -123,7 +114,7 @@ TEST(Oracle, FlatPunchSticksEverywhereAtFirst) {
 TEST(Oracle, EllipsoidOfEqualRadiiIsASphere) {
   const Oracle sphere = *find_oracle(paper({"load.moment_ratio=0.7"})).oracle;
   const OracleAnswer round = find_oracle(
-      body("/ellipse.toml", {"upper.radius_1=0.018", "upper.radius_2=0.018", "load.moment_ratio=0.7"}));
+      example("ellipse", {"upper.radius_1=0.018", "upper.radius_2=0.018", "load.moment_ratio=0.7"}));
   ASSERT_TRUE(round.oracle) << round.reason;
   EXPECT_EQ(round.oracle->profile.get(), &analytic::hertz_profile());
   EXPECT_EQ(round.oracle->contact_radius, sphere.contact_radius);
@@ -161,9 +152,9 @@ constexpr double kQuadrature = 1e-5;  // of 400 points on a smooth integrand: 40
 
 /// Both axes and the peak by the solver's own integral and root-finder.
 TEST(Oracle, EllipseIsHertzs) {
-  for (const char* file : {"/ellipse.toml", "/turned_ellipse.toml"}) {
+  for (const char* file : {"ellipse", "turned_ellipse"}) {
     SCOPED_TRACE(file);
-    const solver::Scene scene = body(file, {});
+    const solver::Scene scene = example(file);
     const OracleAnswer answer = find_oracle(scene);
     ASSERT_TRUE(answer.oracle) << answer.reason;
     const Oracle& oracle = *answer.oracle;
@@ -188,7 +179,7 @@ TEST(Oracle, EllipseIsHertzs) {
 
 /// What the scene imposes is known.
 TEST(Oracle, EllipseKnowsItsLoads) {
-  solver::Scene scene = body("/ellipse.toml", {});
+  solver::Scene scene = example("ellipse");
   solver::Step& step = scene.steps.front();
   step.torsion = solver::Moment{0.01};
   EXPECT_EQ(find_oracle(scene).oracle->moment, 0.01);
@@ -226,7 +217,7 @@ TEST(Oracle, FindsThePeakOffTheAxis) {
   scene.surfaces = {{.shape = solver::Shape::power, .exponent = 4.0, .coefficient = 1e8}};
   const Oracle power = *find_oracle(scene).oracle;
   EXPECT_NEAR(power.peak_pressure / power.pressure(0.0), std::sqrt(2.0), kOracleTolerance);
-  const Oracle rounded = *find_oracle(body("/rounded_punch.toml", {})).oracle;
+  const Oracle rounded = *find_oracle(example("rounded_punch")).oracle;
   double highest = 0.0;
   for (int i = 0; i <= 1000; ++i) {
     highest = std::max(highest, rounded.pressure(rounded.contact_radius * i / 1000.0));
@@ -239,25 +230,25 @@ TEST(Oracle, FindsThePeakOffTheAxis) {
 
 TEST(Oracle, SaysWhyThereIsNone) {
   const auto reason = [](const char* scene, const std::vector<std::string>& overrides) {
-    const OracleAnswer answer = find_oracle(body(scene, overrides));
+    const OracleAnswer answer = find_oracle(example(scene, overrides));
     return answer.oracle ? std::string() : answer.reason;
   };
-  EXPECT_NE(reason("/ellipse.toml", {"contact.friction=0"}).find("friction"), std::string::npos);
-  EXPECT_NE(reason("/ellipse.toml", {"lower.poisson_ratio=0.2"}).find("coupling"), std::string::npos);
-  EXPECT_NE(reason("/ellipse.toml", {"lower.poisson_ratio=0.2", "load.moment_ratio=0"}).find("coupling"),
+  EXPECT_NE(reason("ellipse", {"contact.friction=0"}).find("friction"), std::string::npos);
+  EXPECT_NE(reason("ellipse", {"lower.poisson_ratio=0.2"}).find("coupling"), std::string::npos);
+  EXPECT_NE(reason("ellipse", {"lower.poisson_ratio=0.2", "load.moment_ratio=0"}).find("coupling"),
             std::string::npos);
-  EXPECT_EQ(reason("/ellipse.toml", {"lower.poisson_ratio=0.2", "contact.coupling=none"}), "");
-  EXPECT_NE(reason("/dissimilar.toml", {}).find("coupling"), std::string::npos);
-  EXPECT_EQ(reason("/dissimilar.toml", {"contact.coupling=none"}), "");
-  EXPECT_NE(reason("/annulus.toml", {}).find("inner radius"), std::string::npos);
-  EXPECT_NE(reason("/patches.toml", {}).find("several shapes"), std::string::npos);
-  EXPECT_NE(reason("/rough_sphere.toml", {}).find("several shapes"), std::string::npos);
-  EXPECT_NE(reason("/paper.toml", {"load.moment=0.02882"}).find("gross slip"), std::string::npos);
-  EXPECT_NE(reason("/cone.toml", {"load.moment=0.0035"}).find("gross slip"), std::string::npos);
-  EXPECT_NE(reason("/paper.toml", {"load.twist=1e3"}).find("range"), std::string::npos);
-  EXPECT_NE(reason("/paper.toml", {"contact.friction=0"}).find("friction"), std::string::npos);
-  EXPECT_NE(reason("/paper.toml", {"grid.extent=[2e-3,2e-3]", "layer.kind=winkler",
-                                   "layer.normal_compliance=0", "layer.tangential_compliance=1e-15"})
+  EXPECT_EQ(reason("ellipse", {"lower.poisson_ratio=0.2", "contact.coupling=none"}), "");
+  EXPECT_NE(reason("dissimilar", {}).find("coupling"), std::string::npos);
+  EXPECT_EQ(reason("dissimilar", {"contact.coupling=none"}), "");
+  EXPECT_NE(reason("annulus", {}).find("inner radius"), std::string::npos);
+  EXPECT_NE(reason("patches", {}).find("several shapes"), std::string::npos);
+  EXPECT_NE(reason("rough_sphere", {}).find("several shapes"), std::string::npos);
+  EXPECT_NE(reason("paper", {"load.moment=0.02882"}).find("gross slip"), std::string::npos);
+  EXPECT_NE(reason("cone", {"load.moment=0.0035"}).find("gross slip"), std::string::npos);
+  EXPECT_NE(reason("paper", {"load.twist=1e3"}).find("range"), std::string::npos);
+  EXPECT_NE(reason("paper", {"contact.friction=0"}).find("friction"), std::string::npos);
+  EXPECT_NE(reason("paper", {"grid.extent=[2e-3,2e-3]", "layer.kind=winkler", "layer.normal_compliance=0",
+                             "layer.tangential_compliance=1e-15"})
                 .find("layer.kind"),
             std::string::npos);
 }

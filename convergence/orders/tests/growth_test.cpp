@@ -1,7 +1,6 @@
 #include "convergence/orders/growth.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <functional>

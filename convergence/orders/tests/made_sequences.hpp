@@ -3,7 +3,6 @@
 #include <cmath>
 #include <functional>
 #include <random>
-#include <utility>
 #include <vector>
 
 #include "convergence/orders/mesh_sequence.hpp"

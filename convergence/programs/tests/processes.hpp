@@ -4,22 +4,15 @@
 
 #include <chrono>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <string>
 #include <thread>
 #include <vector>
+
+#include "solver/input/tests/scratch_folder.hpp"
 
 namespace slipstick {
 
 /// In the environment of each process that is to be found again, with a value that no other test has.
 inline constexpr const char* kMarker = "SLIPSTICK_TEST_MARKER";
-
-inline std::string file_text(const std::filesystem::path& file) {
-  std::ifstream stream(file);
-  return {std::istreambuf_iterator<char>(stream), {}};
-}
 
 /// The processes that run with the marker at this value; none where the system does not show them.
 inline std::vector<pid_t> marked_processes(const std::string& value) {

@@ -3,22 +3,18 @@
 #include "convergence/report/scene_page.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
-#include <string>
 #include <vector>
 
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/runs/run_spec.hpp"
-#include "solver/input/input_error.hpp"
 #include "solver/input/tests/complaint.hpp"
+#include "solver/input/tests/scratch_folder.hpp"
 #include "solver/scene/scene.hpp"
 
 namespace slipstick::convergence {
@@ -61,17 +57,14 @@ std::vector<std::string> scene_names() {
   return names;
 }
 
-class ScenePage : public testing::TestWithParam<std::string> {
+class ScenePage : public ScratchFolder, public testing::WithParamInterface<std::string> {
  protected:
-  ~ScenePage() override { fs::remove_all(folder_); }
   Json page(const fs::path& scene, const std::vector<WantedError>& wanted = {},
             const std::vector<std::string>& uncertain = {}) const {
     const ProcessPool pool({.folder = folder_ / "points", .program = SLIPSTICK_PROGRAM});
     return scene_page({{.scene = scene}, tiny(), wanted, uncertain}, folder_, pool);
   }
   static fs::path file(const std::string& name) { return fs::path(SLIPSTICK_SCENES) / (name + ".toml"); }
-
-  fs::path folder_ = fs::path(testing::TempDir()) / ("slipstick-page-" + std::to_string(getpid()));
 };
 INSTANTIATE_TEST_SUITE_P(Scenes, ScenePage, testing::ValuesIn(scene_names()), [](const auto& info) {
   std::string name = info.param;

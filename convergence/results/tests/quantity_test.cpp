@@ -1,7 +1,6 @@
 #include "convergence/results/quantity.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <nlohmann/json.hpp>
 

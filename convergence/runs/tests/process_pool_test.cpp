@@ -1,7 +1,6 @@
 #include "convergence/runs/process_pool.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <chrono>
 #include <csignal>

@@ -1,14 +1,11 @@
 #include "convergence/runs/result_cache.hpp"
 
-#include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <fstream>
 #include <functional>
 #include <iterator>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/tests/scratch_folder.hpp"
@@ -41,8 +38,7 @@ TEST_F(ResultCacheTest, AnotherKeyIsComputed) {
 TEST_F(ResultCacheTest, ADamagedPointIsComputedAgain) {
   const fs::path point = folder_ / "point.json";
   ask("a");
-  std::ifstream stream(point);
-  const std::string good{std::istreambuf_iterator<char>(stream), {}};
+  const std::string good = file_text(point);
   const auto of_wrong_kind = [&](const char* key, const Json& value) {
     Json json = Json::parse(good);
     json[key] = value;

@@ -1,7 +1,6 @@
 #include "convergence/runs/shard.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <numeric>

@@ -3,36 +3,25 @@
 #include "convergence/solve/accuracy.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "convergence/runs/run_spec.hpp"
 #include "convergence/solve/accurate_solve.hpp"
 #include "convergence/solve/reached.hpp"
+#include "convergence/tests/scratch_folder.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
 #include "solver/model.hpp"
 
+namespace slipstick::convergence {
 namespace {
 
-using namespace slipstick;
-using convergence::AccuracyChoice;
-using convergence::AccuracyData;
-using convergence::AccuracyOf;
-using convergence::AccuracyTarget;
-using convergence::ContactOnGrid;
-using convergence::Json;
 using testing::HasSubstr;
 namespace fs = std::filesystem;
-
-solver::Scene scene(const std::string& name, const std::vector<std::string>& overrides = {}) {
-  return solver::read_scene(fs::path(SLIPSTICK_SCENES) / (name + ".toml"), overrides);
-}
 
 /// Errors 1/cells^order.
 AccuracyData made_data(double order) {
@@ -73,12 +62,12 @@ TEST(AccuracyData, TellTheWorkBetweenMeshesAndTolerances) {
 /// Those that come with the program, so that a mesh can be picked by them; and the file that holds them,
 /// which is what would be written of them.
 TEST(AccuracyData, OfTheProgramFallFromMeshToMesh) {
-  const AccuracyData data = convergence::accuracy_data();
+  const AccuracyData data = accuracy_data();
   ASSERT_GE(data.meshes.size(), 3U);
   for (std::size_t i = 1; i < data.meshes.size(); ++i) {
     const auto& [across, errors, tolerances, applications, work] = data.meshes[i];
     EXPECT_GT(across, data.meshes[i - 1].cells_across);
-    for (std::size_t q = 0; q < convergence::kAccuracies; ++q) {
+    for (std::size_t q = 0; q < kAccuracies; ++q) {
       EXPECT_LE(errors[q].error, data.meshes[i - 1].errors[q].error);
       EXPECT_LE(errors[q].tolerance, data.meshes[i - 1].errors[q].tolerance);
     }
@@ -86,8 +75,7 @@ TEST(AccuracyData, OfTheProgramFallFromMeshToMesh) {
     EXPECT_EQ(work.size(), tolerances.size());
     EXPECT_GT(std::ranges::min(work), 0.0);
   }
-  for (const auto& [word, of] : convergence::accuracy_words())
-    EXPECT_GT(falling_order(data, of), 0.0) << word;
+  for (const auto& [word, of] : accuracy_words()) EXPECT_GT(falling_order(data, of), 0.0) << word;
   const std::string file = solver::read_input_file(
       fs::path(SLIPSTICK_SCENES).parent_path() / "solve/accuracy.toml", 1 << 20, "accuracy data");
   const std::size_t origin = file.find("# ", 1);
@@ -98,16 +86,16 @@ TEST(AccuracyData, OfTheProgramFallFromMeshToMesh) {
 /// Those that come with the program, in every scene that may ask for them.
 TEST(AccuracyChoice, TakesNoFewerCellsForASmallerError) {
   for (const char* name : {"paper", "ellipse", "unequal_patches", "off_centre"}) {
-    const solver::Scene at = scene(name);
-    const ContactOnGrid contact = convergence::contact_on_grid(at);
+    const solver::Scene at = example(name);
+    const ContactOnGrid contact = contact_on_grid(at);
     for (const AccuracyOf of : {AccuracyOf::twist, AccuracyOf::traction, AccuracyOf::stick_radius}) {
       AccuracyChoice before;
       before.tolerance = 1.0;
       for (double error = 0.5; error > 0.006; error /= 1.3) {
-        const AccuracyChoice choice = convergence::choose_grid(at, contact, {error, of}, false);
+        const AccuracyChoice choice = choose_grid(at, contact, {error, of}, false);
         EXPECT_GE(choice.cells, before.cells);
         EXPECT_LE(choice.tolerance, before.tolerance);
-        EXPECT_GE(convergence::choose_grid(at, contact, {error, of}, true).cells, choice.cells);
+        EXPECT_GE(choose_grid(at, contact, {error, of}, true).cells, choice.cells);
         before = choice;
       }
     }
@@ -118,10 +106,10 @@ TEST(AccuracyChoice, TakesNoFewerCellsForASmallerError) {
 TEST(AccuracyChoice, CountsCellsAcrossTheContactNotTheGrid) {
   for (const std::vector<std::string>& overrides : std::vector<std::vector<std::string>>{
            {}, {"grid.extent=[3e-3,3e-3]"}, {"grid.extent=[1.2e-3,2e-3]"}}) {
-    const solver::Scene at = scene("paper", overrides);
-    const ContactOnGrid contact = convergence::contact_on_grid(at);
-    const solver::Index cells = convergence::cells_for(contact, 50.0);
-    const solver::Model model = solver::make_model(convergence::with_cells(at, cells));
+    const solver::Scene at = example("paper", overrides);
+    const ContactOnGrid contact = contact_on_grid(at);
+    const solver::Index cells = cells_for(contact, 50.0);
+    const solver::Model model = solver::make_model(with_cells(at, cells));
     const double across = 2.0 * 0.48909732465087485e-3 / (model.length_unit * std::sqrt(model.grid.h2));
     EXPECT_NEAR(across, cells_across(contact, cells), 1.5);
     EXPECT_GE(across, 49.0);
@@ -132,16 +120,16 @@ TEST(AccuracyChoice, CountsCellsAcrossTheContactNotTheGrid) {
 // An extent that is given stays, so that twice the cells are twice as many across. Without one a few stay
 // free whatever their number.
 TEST(AccuracyChoice, ScalesTheContactWithTheCellsOfAGivenExtent) {
-  const ContactOnGrid given = convergence::contact_on_grid(scene("paper", {"grid.extent=[1.2e-3,2e-3]"}));
+  const ContactOnGrid given = contact_on_grid(example("paper", {"grid.extent=[1.2e-3,2e-3]"}));
   EXPECT_NEAR(cells_across(given, 256) / cells_across(given, 64), 4.0, 1e-12);
-  const ContactOnGrid free = convergence::contact_on_grid(scene("paper"));
+  const ContactOnGrid free = contact_on_grid(example("paper"));
   EXPECT_GT(cells_across(free, 256) / cells_across(free, 64), 4.0 * (1.0 + 2.0 / 64.0));
 }
 
 // What the length of steps leaves is no part of what the mesh may leave.
 TEST(AccuracyChoice, LeavesTheLengthOfStepsItsPart) {
-  const solver::Scene at = scene("paper");
-  const ContactOnGrid contact = convergence::contact_on_grid(at);
+  const solver::Scene at = example("paper");
+  const ContactOnGrid contact = contact_on_grid(at);
   for (const double path : {1e-3, 4e-3}) {
     const AccuracyTarget both{.error = 1e-2, .path = path};
     const AccuracyTarget mesh{.error = 1e-2 - path};
@@ -152,28 +140,26 @@ TEST(AccuracyChoice, LeavesTheLengthOfStepsItsPart) {
 
 // The grid stands in a file.
 TEST(AccuracyChoice, KnowsTheCellsAcrossAGridThatIsGiven) {
-  solver::Scene at = scene("paper", {"grid.cells=[24,12]", "grid.extent=[2e-3,1e-3]"});
+  solver::Scene at = example("paper", {"grid.cells=[24,12]", "grid.extent=[2e-3,1e-3]"});
   at.pressure = solver::PressureModel::file;
   at.steps.front().normal.reset();
-  const ContactOnGrid contact = convergence::contact_on_grid(at);
+  const ContactOnGrid contact = contact_on_grid(at);
   EXPECT_DOUBLE_EQ(cells_across(contact, 24), contact.cells_across);
 }
 
 // As a solve refuses it: else a mesh would be chosen for a part of the contact.
 TEST(AccuracyChoice, IsRefusedWhereTheContactGoesOnBeyondTheExtent) {
-  const solver::Scene cut = scene("patches", {"grid.extent=[1.4e-3,0.7e-3]"});
-  EXPECT_THROW(convergence::contact_on_grid(cut), solver::InputError);
-  EXPECT_NO_THROW(convergence::contact_on_grid(scene("patches")));
+  const solver::Scene cut = example("patches", {"grid.extent=[1.4e-3,0.7e-3]"});
+  EXPECT_THROW(contact_on_grid(cut), solver::InputError);
+  EXPECT_NO_THROW(contact_on_grid(example("patches")));
 }
 
 /// The sphere as if it had no exact answer: the estimate is above the error, and not by orders.
 TEST(Accuracy, IsEstimatedFromTwoMeshesAboveTheErrorThatIsThere) {
-  const solver::Scene at = scene("paper", {"grid.cells=[64,64]"});
+  const solver::Scene at = example("paper", {"grid.cells=[64,64]"});
   const solver::Solution solution = solver::solve(at);
-  const convergence::Errors errors = compare(solution, *convergence::find_oracle(at).oracle);
-  const auto estimate = [&](AccuracyOf of) {
-    return convergence::reached_error(at, solution, Json::object(), of);
-  };
+  const Errors errors = compare(solution, *find_oracle(at).oracle);
+  const auto estimate = [&](AccuracyOf of) { return reached_error(at, solution, Json::object(), of); };
   EXPECT_EQ(estimate(AccuracyOf::twist).how, "estimated");
   EXPECT_GE(estimate(AccuracyOf::twist).error, std::abs(errors.twist));
   EXPECT_LE(estimate(AccuracyOf::twist).error, 30.0 * std::abs(errors.twist));
@@ -183,21 +169,20 @@ TEST(Accuracy, IsEstimatedFromTwoMeshesAboveTheErrorThatIsThere) {
 
 /// Under a flat punch tractions err more than smooth contacts do on any mesh, and the estimate says so.
 TEST(Accuracy, IsEstimatedFromTheDifferenceWhereContactsAreNotSmooth) {
-  const solver::Scene at = scene("flat_punch", {"grid.cells=[64,64]"});
+  const solver::Scene at = example("flat_punch", {"grid.cells=[64,64]"});
   const solver::Solution solution = solver::solve(at);
-  const convergence::Errors errors = compare(solution, *convergence::find_oracle(at).oracle);
-  const double estimate =
-      convergence::reached_error(at, solution, Json::object(), AccuracyOf::traction).error;
+  const Errors errors = compare(solution, *find_oracle(at).oracle);
+  const double estimate = reached_error(at, solution, Json::object(), AccuracyOf::traction).error;
   EXPECT_GE(estimate, errors.traction.averaged.l2);
   EXPECT_LE(estimate, 5.0 * errors.traction.averaged.l2);
 }
 
 /// A twist that one mesh and another estimate: its tractions are no roots at the edge.
-solver::Scene punch() { return scene("flat_punch"); }
+solver::Scene punch() { return example("flat_punch"); }
 
 /// Solves whose errors are made.
-convergence::SolvedScene made_answer(const solver::Scene& at, double constant, double order) {
-  convergence::SolvedScene answer;
+SolvedScene made_answer(const solver::Scene& at, double constant, double order) {
+  SolvedScene answer;
   answer.solution.status = solver::Status::converged;
   const auto cells = static_cast<double>(at.cells[0]);
   answer.result = {{"cells", at.cells}, {"twist_error", -constant * std::pow(cells, -order)}};
@@ -205,8 +190,8 @@ convergence::SolvedScene made_answer(const solver::Scene& at, double constant, d
 }
 
 /// What an accuracy of a punch comes to whose errors are made.
-convergence::AccurateAnswer made_accuracy(double wanted, double constant, double order) {
-  return convergence::solve_to_accuracy(punch(), {wanted}, [=](const solver::Scene& at, solver::Detail) {
+AccurateAnswer made_accuracy(double wanted, double constant, double order) {
+  return solve_to_accuracy(punch(), {wanted}, [=](const solver::Scene& at, solver::Detail) {
     return made_answer(at, constant, order);
   });
 }
@@ -234,7 +219,7 @@ TEST(Accuracy, IsGivenUpWhereNoMeshThatMayBeChosenGetsThere) {
   const auto found = made_accuracy(1e-2, 0.99, 0.0);
   EXPECT_FALSE(found.reached);
   EXPECT_LE(found.accuracy["attempts"].size(), 4U);
-  EXPECT_LE(found.accuracy["attempts"].back()["cells"][0].get<double>(), convergence::kMaxCellsAcross + 8.0);
+  EXPECT_LE(found.accuracy["attempts"].back()["cells"][0].get<double>(), kMaxCellsAcross + 8.0);
   const auto at_once = made_accuracy(1e-5, 0.99, 0.0);
   EXPECT_EQ(at_once.accuracy["attempts"].size(), 1U);
   EXPECT_THAT(at_once.accuracy["not_reached"].get<std::string>(), HasSubstr("finer than 2048"));
@@ -242,16 +227,16 @@ TEST(Accuracy, IsGivenUpWhereNoMeshThatMayBeChosenGetsThere) {
 
 TEST(Accuracy, ThatIsNoNumberIsNeverReached) {
   int solves = 0;
-  const auto found =
-      convergence::solve_to_accuracy(punch(), {1e-2}, [&](const solver::Scene& at, solver::Detail) {
-        ++solves;
-        convergence::SolvedScene answer = made_answer(at, 1.0, 1.0);
-        answer.solution.status = solver::Status::not_converged;
-        return answer;
-      });
+  const auto found = solve_to_accuracy(punch(), {1e-2}, [&](const solver::Scene& at, solver::Detail) {
+    ++solves;
+    SolvedScene answer = made_answer(at, 1.0, 1.0);
+    answer.solution.status = solver::Status::not_converged;
+    return answer;
+  });
   EXPECT_FALSE(found.reached);
   EXPECT_EQ(solves, 1);
   EXPECT_TRUE(found.accuracy["reached"].is_null());
 }
 
 }  // namespace
+}  // namespace slipstick::convergence

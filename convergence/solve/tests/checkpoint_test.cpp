@@ -2,22 +2,17 @@
 
 #include "convergence/solve/checkpoint.hpp"
 
-#include <gtest/gtest.h>
-#include <unistd.h>
-
-#include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "solver/history_state.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"
+#include "solver/input/tests/scratch_folder.hpp"
 
 namespace slipstick::convergence {
 namespace {
 
-class CheckpointFile : public testing::Test {
+class CheckpointFile : public ScratchFolder {
  protected:
   CheckpointFile() {
     state_.contact.pressure = Eigen::ArrayXd::LinSpaced(4, 1.0, 4.0);
@@ -26,10 +21,8 @@ class CheckpointFile : public testing::Test {
     state_.normal.safeguards = {1, 2, 3, 4, "the first"};
     checkpoint_.write(state_, Json::array());
   }
-  ~CheckpointFile() override { std::filesystem::remove(file_); }
 
-  const std::filesystem::path file_ = std::filesystem::path(testing::TempDir()) /
-                                      ("slipstick-checkpoint-" + std::to_string(getpid()) + ".h5");
+  const std::filesystem::path file_ = folder_ / "checkpoint.h5";
   const Checkpoint checkpoint_{file_, prepare_run({.scene = SLIPSTICK_SCENES "/paper.toml"})};
   solver::HistoryState state_;
 };

@@ -1,23 +1,19 @@
 // Whether the uncertainty of a mean over shifted grids holds, on random scenes whose exact answers are known.
 
 #include <fmt/core.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "convergence/solve/accurate_solve.hpp"
+#include "convergence/tests/scratch_folder.hpp"
 #include "solver/input/input_error.hpp"
 #include "solver/model.hpp"
-#include "solver/scene/scene.hpp"
 
+namespace slipstick::convergence {
 namespace {
-
-using namespace slipstick;
 
 /// Spheres, cones, punches with round corners and powers of the radius; half of them on extents that are
 /// given, so that edges lie anywhere in their cells.
@@ -27,10 +23,9 @@ class RandomScenes {
     const int shape = std::uniform_int_distribution(0, 3)(random_);
     const char* const file = shape == 1 ? "cone" : shape == 2 ? "rounded_punch" : "paper";
     const double poisson = uniform(0.0, 0.49);
-    solver::Scene scene = solver::read_scene(
-        std::filesystem::path(SLIPSTICK_SCENES) / fmt::format("{}.toml", file),
-        {set("load.moment_ratio", moment_ratio()), set("upper.poisson_ratio", poisson),
-         set("lower.poisson_ratio", poisson), set("contact.friction", uniform(0.05, 1.0))});
+    solver::Scene scene =
+        example(file, {set("load.moment_ratio", moment_ratio()), set("upper.poisson_ratio", poisson),
+                       set("lower.poisson_ratio", poisson), set("contact.friction", uniform(0.05, 1.0))});
     scene.steps.front().normal = *scene.steps.front().normal * uniform(0.5, 2.0);
     if (shape == 0) scene.surfaces.front().radius *= uniform(0.3, 3.0);
     if (shape == 3) {
@@ -74,10 +69,9 @@ TEST(AccuracyCoverage, UncertaintiesHoldInNineteenOfTwentyScenes) {
   for (int i = 0; i < scenes; ++i) {
     const solver::Scene scene = random.next();
     const double wanted = random.wanted();
-    const convergence::AccurateAnswer found =
-        convergence::solve_to_accuracy(scene, {wanted}, [](const solver::Scene& at, solver::Detail detail) {
-          return convergence::solve_scene(at, {.detail = detail});
-        });
+    const AccurateAnswer found = solve_to_accuracy(
+        scene, {wanted},
+        [](const solver::Scene& at, solver::Detail detail) { return solve_scene(at, {.detail = detail}); });
     ASSERT_TRUE(found.reached) << i << ": " << found.accuracy["not_reached"];
     const auto error = found.accuracy["reached"].get<double>();
     const auto uncertainty = found.accuracy["uncertainty"].get<double>();
@@ -95,3 +89,4 @@ TEST(AccuracyCoverage, UncertaintiesHoldInNineteenOfTwentyScenes) {
 }
 
 }  // namespace
+}  // namespace slipstick::convergence

@@ -4,21 +4,16 @@
 #include "convergence/solve/reached.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "convergence/solve/measured_accuracy.hpp"
+#include "convergence/tests/scratch_folder.hpp"
 #include "solver/grid/grid_transfer.hpp"
 
+namespace slipstick::convergence {
 namespace {
-
-using namespace slipstick;
-using convergence::AccuracyOf;
-using convergence::Json;
-using convergence::ReachedError;
 
 constexpr double kApart = 0.25;  ///< more than what is put down to any mesh as fine as these
 
@@ -29,9 +24,7 @@ struct TwoMeshes {
   solver::Solution fine;
 
   TwoMeshes(const std::string& name, const std::string& load, double factor)
-      : scene(solver::read_scene(std::string(SLIPSTICK_SCENES) + "/" + name + ".toml",
-                                 {"grid.cells=[48,48]", load})),
-        fine(solver::solve(scene)) {
+      : scene(example(name, {"grid.cells=[48,48]", load})), fine(solver::solve(scene)) {
     solver::Scene half = scene;
     half.cells = {24, 24};
     half.extent = {48.0 * fine.grid.h1, 48.0 * fine.grid.h2};
@@ -49,9 +42,7 @@ struct TwoMeshes {
     }
   }
 
-  ReachedError error(AccuracyOf of) const {
-    return convergence::reached_error(scene, fine, Json::object(), of);
-  }
+  ReachedError error(AccuracyOf of) const { return reached_error(scene, fine, Json::object(), of); }
 };
 
 const std::string kHalfTheLimit = "load.moment_ratio=0.5";
@@ -97,8 +88,9 @@ TEST(ReachedError, IsNeverLessThanThatOfSmoothContactsOnSuchAMesh) {
   const TwoMeshes made("paper", kHalfTheLimit, 1.0);
   const double across = 2.0 * made.fine.contact_radius / std::sqrt(made.fine.grid.cell_area());
   for (const AccuracyOf of : {AccuracyOf::twist, AccuracyOf::traction, AccuracyOf::stick_radius}) {
-    EXPECT_EQ(made.error(of).error, error_with(convergence::accuracy_data(), of, across));
+    EXPECT_EQ(made.error(of).error, error_with(accuracy_data(), of, across));
   }
 }
 
 }  // namespace
+}  // namespace slipstick::convergence

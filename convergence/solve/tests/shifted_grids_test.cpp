@@ -3,32 +3,20 @@
 #include "convergence/solve/shifted_grids.hpp"
 
 #include <fmt/core.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "convergence/solve/accurate_solve.hpp"
-#include "solver/scene/scene.hpp"
+#include "convergence/tests/scratch_folder.hpp"
 #include "solver/solve.hpp"
 
+namespace slipstick::convergence {
 namespace {
 
-using namespace slipstick;
-using convergence::AccuracyOf;
-using convergence::ContactForm;
-using convergence::Json;
-using convergence::kShiftedGrids;
-
-solver::Scene shifted_scene(const std::string& name, const std::vector<std::string>& overrides = {}) {
-  return solver::read_scene(std::filesystem::path(SLIPSTICK_SCENES) / (name + ".toml"), overrides);
-}
-
-const convergence::AccuracyQuantity kTwist{"twist", "twist_error", "twist_angle"};
+const AccuracyQuantity kTwist{"twist", "twist_error", "twist_angle"};
 
 /// A twist of 2 with an error that goes up and down with the place of a front in its cell.
 struct Staircase {
@@ -36,8 +24,8 @@ struct Staircase {
   double height;  ///< of the error
   std::vector<double> phases = {};
 
-  convergence::SolvedScene operator()(const solver::Scene& at, solver::Detail) {
-    convergence::SolvedScene answer;
+  SolvedScene operator()(const solver::Scene& at, solver::Detail) {
+    SolvedScene answer;
     answer.solution.status = solver::Status::converged;
     answer.solution.resolution.stick_width = 50.0;
     answer.solution.resolution.slip_width = 20.0;
@@ -50,8 +38,8 @@ struct Staircase {
 };
 
 TEST(ShiftedGrids, SpreadTheFrontEvenlyOverACell) {
-  const solver::Scene scene = shifted_scene("paper", {"grid.cells=[96,96]"});
-  const convergence::ContactOnGrid contact = convergence::contact_on_grid(scene);
+  const solver::Scene scene = example("paper", {"grid.cells=[96,96]"});
+  const ContactOnGrid contact = contact_on_grid(scene);
   for (const double ratio : {0.9, 0.5, 0.25}) {
     Staircase stairs{.front = ratio * 0.48909732465087485e-3, .height = 0.0};
     mean_over_shifted_grids(scene, kTwist, ContactForm{ratio, 1.0}, contact, std::ref(stairs));
@@ -65,9 +53,9 @@ TEST(ShiftedGrids, SpreadTheFrontEvenlyOverACell) {
 
 // The answer that is handed on has the mean in it, in both of its forms.
 TEST(ShiftedGrids, LeaveNothingOfAStaircaseOfOnePeriodInTheirMean) {
-  const solver::Scene scene = shifted_scene("paper", {"grid.cells=[96,96]"});
-  const convergence::ContactOnGrid contact = convergence::contact_on_grid(scene);
-  const convergence::ShiftedMean mean =
+  const solver::Scene scene = example("paper", {"grid.cells=[96,96]"});
+  const ContactOnGrid contact = contact_on_grid(scene);
+  const ShiftedMean mean =
       mean_over_shifted_grids(scene, kTwist, ContactForm{}, contact,
                               Staircase{.front = 0.5 * 0.48909732465087485e-3, .height = 1e-3});
   EXPECT_LE(std::abs(mean.error), 1e-4);
@@ -81,9 +69,9 @@ TEST(ShiftedGrids, LeaveNothingOfAStaircaseOfOnePeriodInTheirMean) {
 
 // Grids whose twists are off by -d, d and -d scatter by sqrt(4/3) d about -d/3.
 TEST(ShiftedGrids, ScatterByTheDeviationOfASample) {
-  const solver::Scene scene = shifted_scene("paper", {"grid.cells=[96,96]"});
+  const solver::Scene scene = example("paper", {"grid.cells=[96,96]"});
   double d = 1e-3;
-  const auto mean = mean_over_shifted_grids(scene, kTwist, ContactForm{}, convergence::contact_on_grid(scene),
+  const auto mean = mean_over_shifted_grids(scene, kTwist, ContactForm{}, contact_on_grid(scene),
                                             [&](const solver::Scene& at, solver::Detail detail) {
                                               auto answer =
                                                   Staircase{.front = 1e-4, .height = 0.0}(at, detail);
@@ -95,17 +83,17 @@ TEST(ShiftedGrids, ScatterByTheDeviationOfASample) {
 
 // A history's errors add up, and its twists may nearly cancel: its scatter counts in full.
 TEST(ShiftedGrids, OfHistoriesAreNoBetterThanTheirScatter) {
-  const solver::Scene scene = shifted_scene("fretting_torsion", {"grid.cells=[96,96]"});
-  const auto mean = mean_over_shifted_grids(scene, kTwist, ContactForm{}, convergence::contact_on_grid(scene),
+  const solver::Scene scene = example("fretting_torsion", {"grid.cells=[96,96]"});
+  const auto mean = mean_over_shifted_grids(scene, kTwist, ContactForm{}, contact_on_grid(scene),
                                             Staircase{.front = 0.5 * 0.48909732465087485e-3, .height = 1e-3});
   EXPECT_GE(mean.uncertainty, 1e-3 * std::sqrt(0.75) * 0.95);
 }
 
 // What is left out of a grid's answer changes no digit of the rest.
 TEST(ShiftedGrids, AreSolvedAlikeToAnyDetail) {
-  const solver::Scene scene = shifted_scene("paper", {"grid.cells=[64,64]", "load.moment_ratio=0.9"});
-  const Json all = convergence::solve_scene(scene).result;
-  const Json loads = convergence::solve_scene(scene, {.detail = solver::Detail::loads}).result;
+  const solver::Scene scene = example("paper", {"grid.cells=[64,64]", "load.moment_ratio=0.9"});
+  const Json all = solve_scene(scene).result;
+  const Json loads = solve_scene(scene, {.detail = solver::Detail::loads}).result;
   for (const char* const key : {"twist_angle", "twist_error", "moment", "certificate", "resolved"}) {
     EXPECT_EQ(all[key], loads[key]) << key;
   }
@@ -118,8 +106,8 @@ TEST(ShiftedGrids, AreSolvedAlikeToAnyDetail) {
 // Grids that agree by luck do not know more than grids of such cells do.
 TEST(ShiftedGrids, AreNoBetterThanSuchMeshesWhereTheyAgree) {
   const auto uncertainty = [](const char* cells) {
-    const solver::Scene scene = shifted_scene("paper", {cells});
-    return mean_over_shifted_grids(scene, kTwist, ContactForm{}, convergence::contact_on_grid(scene),
+    const solver::Scene scene = example("paper", {cells});
+    return mean_over_shifted_grids(scene, kTwist, ContactForm{}, contact_on_grid(scene),
                                    Staircase{.front = 1e-4, .height = 0.0})
         .uncertainty;
   };
@@ -128,11 +116,11 @@ TEST(ShiftedGrids, AreNoBetterThanSuchMeshesWhereTheyAgree) {
 }
 
 TEST(ShiftedGrids, ThatDoNotAllConvergeGiveNoMean) {
-  const solver::Scene scene = shifted_scene("paper");
+  const solver::Scene scene = example("paper");
   int solves = 0;
-  const auto mean = mean_over_shifted_grids(scene, kTwist, ContactForm{}, convergence::contact_on_grid(scene),
+  const auto mean = mean_over_shifted_grids(scene, kTwist, ContactForm{}, contact_on_grid(scene),
                                             [&](const solver::Scene& at, solver::Detail detail) {
-                                              convergence::SolvedScene answer =
+                                              SolvedScene answer =
                                                   Staircase{.front = 1e-4, .height = 0.0}(at, detail);
                                               if (++solves == 2)
                                                 answer.solution.status = solver::Status::not_converged;
@@ -145,7 +133,7 @@ TEST(ShiftedGrids, ThatDoNotAllConvergeGiveNoMean) {
 TEST(ShiftedGrids, AreForNumbersOfContactsThatEndSmoothlyOnGridsThatAreFree) {
   const auto take = [](const char* name, const std::vector<std::string>& overrides = {},
                        AccuracyOf of = AccuracyOf::twist) {
-    return takes_shifted_grids(shifted_scene(name, overrides), of);
+    return takes_shifted_grids(example(name, overrides), of);
   };
   for (const char* name : {"paper", "ellipse", "cone", "off_centre", "fretting_torsion"})
     EXPECT_TRUE(take(name));
@@ -154,14 +142,14 @@ TEST(ShiftedGrids, AreForNumbersOfContactsThatEndSmoothlyOnGridsThatAreFree) {
   EXPECT_FALSE(take("paper", {"upper.ends_at_grid_edge=true"}));
   EXPECT_FALSE(take("paper", {}, AccuracyOf::traction));
   EXPECT_FALSE(take("paper", {}, AccuracyOf::stick_radius));
-  EXPECT_TRUE(gains_by_smooth_cells(shifted_scene("paper"), AccuracyOf::stick_radius));
-  EXPECT_FALSE(gains_by_smooth_cells(shifted_scene("flat_punch"), AccuracyOf::stick_radius));
+  EXPECT_TRUE(gains_by_smooth_cells(example("paper"), AccuracyOf::stick_radius));
+  EXPECT_FALSE(gains_by_smooth_cells(example("flat_punch"), AccuracyOf::stick_radius));
 }
 
 // The grids of a slender contact err alike, since its stick area is no small copy of it.
 TEST(ShiftedGrids, CoverTheErrorOfSlenderContacts) {
   const auto solve = [](const solver::Scene& at, solver::Detail detail) {
-    return convergence::solve_scene(at, {.detail = detail});
+    return solve_scene(at, {.detail = detail});
   };
   constexpr double kWanted = 5e-3;
   int beyond = 0;
@@ -169,13 +157,13 @@ TEST(ShiftedGrids, CoverTheErrorOfSlenderContacts) {
   const bool all = std::getenv("SLIPSTICK_TEST_ALL") != nullptr;
   for (const double radius : all ? std::vector{0.002, 0.003, 0.005, 0.01} : std::vector{0.003, 0.01}) {
     for (const double ratio : {0.85, 0.93, 0.97}) {
-      solver::Scene scene = shifted_scene("ellipse", {fmt::format("load.moment_ratio={}", ratio)});
+      solver::Scene scene = example("ellipse", {fmt::format("load.moment_ratio={}", ratio)});
       scene.surfaces[0].radius_1 = 0.3;
       scene.surfaces[0].radius_2 = radius;
       scene.cells = {64, 64};
-      const convergence::AccurateAnswer found = convergence::solve_to_accuracy(scene, {kWanted}, solve);
+      const AccurateAnswer found = solve_to_accuracy(scene, {kWanted}, solve);
       ASSERT_TRUE(found.reached) << radius << ", " << ratio;
-      solver::Scene fine = convergence::with_cells(scene, 4 * found.answer.result["cells"][0].get<int>());
+      solver::Scene fine = with_cells(scene, 4 * found.answer.result["cells"][0].get<int>());
       fine.cell_traction = solver::CellTraction::smooth;
       fine.substeps = found.accuracy["substeps"];
       const double value = found.answer.result["twist_angle"];
@@ -188,3 +176,4 @@ TEST(ShiftedGrids, CoverTheErrorOfSlenderContacts) {
 }
 
 }  // namespace
+}  // namespace slipstick::convergence

@@ -1,7 +1,6 @@
 #include "convergence/studies/study.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <sys/wait.h>
 #include <unistd.h>
 
@@ -17,7 +16,6 @@
 #include "convergence/results/quantity.hpp"
 #include "convergence/studies/budget.hpp"
 #include "convergence/tests/scratch_folder.hpp"
-#include "solver/input/input_error.hpp"
 #include "solver/input/tests/complaint.hpp"
 #include "solver/model.hpp"
 

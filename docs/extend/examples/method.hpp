@@ -1,7 +1,6 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <algorithm>
 
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/tangential_problem.hpp"

@@ -2,11 +2,8 @@
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <Eigen/Core>
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include "solver/elasticity/direct.hpp"

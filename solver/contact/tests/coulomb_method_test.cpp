@@ -5,7 +5,6 @@
 
 #include <array>
 #include <cmath>
-#include <random>
 #include <string>
 
 #include "solver/contact/projected_gradient.hpp"

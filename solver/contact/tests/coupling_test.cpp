@@ -1,17 +1,13 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <limits>
 #include <numbers>
-#include <random>
 #include <vector>
 
-#include "solver/contact/certificate.hpp"
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/contact/full_coupling.hpp"
 #include "solver/grid/mirror.hpp"
 #include "solver/model_solution.hpp"
-#include "solver/tests/fields.hpp"
 #include "solver/tests/limits.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
@@ -131,11 +127,13 @@ Scene dissimilar(Coupling coupling, double moment_ratio, Index cells = 24) {
   return scene;
 }
 
+std::string coupling_name(const testing::TestParamInfo<Coupling>& tested) {
+  return tested.param == Coupling::full ? "full" : "pressure";
+}
+
 class Exchange : public testing::TestWithParam<Coupling> {};
 INSTANTIATE_TEST_SUITE_P(Coupling, Exchange, testing::Values(Coupling::pressure, Coupling::full),
-                         [](const auto& tested) {
-                           return tested.param == Coupling::full ? "full" : "pressure";
-                         });
+                         coupling_name);
 
 /// The mismatch changes its sign, and with it the shear by pressure; what shear of the other sign does to the
 /// gap is then the same.
@@ -268,9 +266,7 @@ double counted_stick_ratio(const ModelSolution& solution) {
 
 class Spence : public testing::TestWithParam<Coupling> {};
 INSTANTIATE_TEST_SUITE_P(Coupling, Spence, testing::Values(Coupling::pressure, Coupling::full),
-                         [](const auto& tested) {
-                           return tested.param == Coupling::full ? "full" : "pressure";
-                         });
+                         coupling_name);
 
 /// All that a punch carries grows in proportion to its load, slip included, so that one step from nothing is
 /// the whole history. The mesh knows the stick radius to a part of a cell.

@@ -4,11 +4,9 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <random>
 #include <stdexcept>
-#include <vector>
 
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/tangential_problem.hpp"

@@ -1,7 +1,6 @@
 #include "solver/contact/normal_contact.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <filesystem>

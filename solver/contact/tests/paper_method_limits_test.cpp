@@ -2,14 +2,12 @@
 
 #include <fmt/core.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "solver/contact/projected_gradient.hpp"
-#include "solver/input/tests/complaint.hpp"
 #include "solver/model_solution.hpp"
 #include "solver/tests/scene_file.hpp"
 #include "solver/tests/torsion_bench.hpp"

@@ -1,13 +1,9 @@
-#include "solver/contact/paper_method.hpp"
 
-#include <fmt/core.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <numbers>
 
-#include "solver/contact/certificate.hpp"
 #include "solver/model_solution.hpp"
 #include "solver/tests/torsion_bench.hpp"
 

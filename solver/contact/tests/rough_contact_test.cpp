@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Dense>
-#include <algorithm>
 
 #include "solver/contact/certificate.hpp"
 #include "solver/contact/coulomb_method.hpp"

@@ -1,12 +1,9 @@
 #include "solver/contact/stick_front.hpp"
 
-#include <fmt/core.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <numbers>
 #include <ostream>
 #include <string>

@@ -2,8 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
-#include <cmath>
 #include <ostream>
 #include <string>
 #include <vector>

@@ -1,6 +1,5 @@
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -11,7 +10,6 @@
 #include "solver/allocations/allocations.hpp"
 #include "solver/elasticity/convolution.hpp"
 #include "solver/elasticity/direct.hpp"
-#include "solver/elasticity/linear_operator.hpp"
 #include "solver/tests/fields.hpp"
 
 namespace slipstick::solver {

@@ -2,7 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Core>
 #include <atomic>
 #include <cmath>
 #include <vector>
@@ -54,9 +53,8 @@ double sum_of(const Sweep& sweep, const ArrayXd& field) {
   });
 }
 
-/// To the last bit, however the parts are shared out.
-/// A disc, a ring and two discs side by side are smooth; spots on every other cell, and scattered ones, are
-/// not.
+/// To the last bit, however the parts are shared out. A disc, a ring and two discs side by side are smooth;
+/// spots on every other cell, and scattered ones, are not.
 TEST(Sweep, IsRaggedWhereItsCellsLieInSpots) {
   const Grid grid{64, 48, 1.0, 1.0};
   const auto ragged = [&](const auto& contains) {

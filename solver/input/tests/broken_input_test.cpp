@@ -1,7 +1,6 @@
 // Files that are none, have no end or are damaged: each is refused with its name, at once, whatever is in it.
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <hdf5.h>
 #include <hdf5_hl.h>
 
@@ -9,8 +8,6 @@
 #include <filesystem>
 #include <iostream>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "solver/input/dataset_reader.hpp"
 #include "solver/input/field_file.hpp"

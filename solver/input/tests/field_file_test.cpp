@@ -1,7 +1,6 @@
 #include "solver/input/field_file.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <fstream>
 #include <iterator>
@@ -19,11 +18,6 @@ using testing::HasSubstr;
 
 class FieldFile : public SceneFile {
  protected:
-  static std::string text_of(const std::filesystem::path& file) {
-    std::ifstream stream(file);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
-
   Grid grid_{3, 2, 0.5, 0.25};
   /// Values that lose bits where fewer than 17 digits are written.
   std::vector<Column> columns_{
@@ -95,7 +89,7 @@ TEST_F(FieldFile, VtiHasTheGridsExtentsAndOrder) {
   const auto file = folder_ / "fields.vti";
   Column numbered{"number", ArrayXd::LinSpaced(6, 0.0, 5.0)};  // i*2 + j
   write_fields(file, grid_, {numbered, columns_[0]}, ArrayXd::Zero(6));
-  const std::string text = text_of(file);
+  const std::string text = file_text(file);
   EXPECT_THAT(text, HasSubstr("WholeExtent=\"0 3 0 2 0 0\""));
   EXPECT_THAT(text, HasSubstr("<Piece Extent=\"0 3 0 2 0 0\">"));
   EXPECT_THAT(text, HasSubstr("Origin=\"-0.75 -0.25 0\""));

@@ -3,7 +3,6 @@
 #include "solver/input/toml_reader.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 

@@ -2,27 +2,22 @@
 
 #include <fcntl.h>
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 #include <signal.h>
 #include <sys/resource.h>
 #include <sys/wait.h>
-#include <unistd.h>
 
 #include <array>
 #include <chrono>
 #include <csignal>
 #include <cstdlib>
-#include <filesystem>
-#include <fstream>
 #include <functional>
-#include <iterator>
 #include <stdexcept>
-#include <string>
 #include <thread>
 #include <vector>
 
 #include "solver/input/field_file.hpp"
 #include "solver/input/tests/complaint.hpp"
+#include "solver/input/tests/scratch_folder.hpp"
 
 namespace slipstick::solver {
 namespace {
@@ -52,15 +47,8 @@ class SmallDisk {
   rlimit before_{};
 };
 
-class WholeFile : public testing::Test {
+class WholeFile : public ScratchFolder {
  protected:
-  WholeFile() { fs::create_directories(folder_); }
-  ~WholeFile() override { fs::remove_all(folder_); }
-
-  static std::string text(const fs::path& file) {
-    std::ifstream stream(file);
-    return {std::istreambuf_iterator<char>(stream), {}};
-  }
   std::ptrdiff_t files() const { return std::distance(fs::directory_iterator(folder_), {}); }
 
   /// The exit code of a process of its own that does this, and leaves as programs do.
@@ -74,7 +62,6 @@ class WholeFile : public testing::Test {
     return WIFEXITED(status) ? WEXITSTATUS(status) : -1;
   }
 
-  fs::path folder_ = fs::path(testing::TempDir()) / ("slipstick-whole-file-" + std::to_string(getpid()));
   fs::path file_ = folder_ / "result.json";
 };
 
@@ -92,12 +79,12 @@ TEST_F(WholeFile, IsOldOrNewWheneverTheWriterIsKilled) {
       }
     }
     for (int look = 0; look <= trial; ++look) {
-      const std::string seen = text(file_);
+      const std::string seen = file_text(file_);
       EXPECT_TRUE(seen == old || seen == fresh);
     }
     kill(writer, SIGKILL);
     waitpid(writer, nullptr, 0);
-    const std::string left = text(file_);
+    const std::string left = file_text(file_);
     EXPECT_TRUE(left == old || left == fresh);
   }
   write_whole_file(file_, fresh);
@@ -112,20 +99,20 @@ TEST_F(WholeFile, ADraftGoesWithItsWriterOnly) {
   const pid_t writer = fork();
   if (writer == 0) {
     write_whole_file(file_, [&](std::FILE*) {
-      if (write(ends[1], "+", 1) == 1) pause();
+      if (::write(ends[1], "+", 1) == 1) pause();
     });
   }
   char begun = 0;
   EXPECT_EQ(read(ends[0], &begun, 1), 1);
   EXPECT_EQ(files(), 1);
   write_whole_file(file_, "beside");
-  EXPECT_EQ(text(file_), "beside");
+  EXPECT_EQ(file_text(file_), "beside");
   EXPECT_EQ(files(), 2);
   kill(writer, SIGKILL);
   siginfo_t end{};
   waitid(P_PID, static_cast<id_t>(writer), &end, WEXITED | WNOWAIT);
   write_whole_file(file_, "whole");
-  EXPECT_EQ(text(file_), "whole");
+  EXPECT_EQ(file_text(file_), "whole");
   EXPECT_EQ(files(), 1);
   waitpid(writer, nullptr, 0);
   for (const int each : ends) close(each);
@@ -144,7 +131,7 @@ TEST_F(WholeFile, WritesThroughLinksAndToDevices) {
   fs::create_symlink(fs::path("result.json"), link);
   write_whole_file(link, "text");
   EXPECT_TRUE(fs::is_symlink(link));
-  EXPECT_EQ(text(file_), "text");
+  EXPECT_EQ(file_text(file_), "text");
   write_whole_file("/dev/null", "text");
   EXPECT_TRUE(fs::is_character_file("/dev/null"));
 }
@@ -163,7 +150,7 @@ TEST_F(WholeFile, OfWhichOnlyAPartCanBeWrittenIsTheOldOne) {
     EXPECT_THAT(said, AllOf(HasSubstr(name.string()), HasSubstr("File too large"), HasSubstr("make room")));
     EXPECT_THROW(write_whole_file(name, [](std::FILE*) { throw std::runtime_error("none to write"); }),
                  std::runtime_error);
-    EXPECT_EQ(text(file_), "old");
+    EXPECT_EQ(file_text(file_), "old");
     EXPECT_EQ(files(), 2);
   }
 }
@@ -177,7 +164,7 @@ TEST_F(WholeFile, AFullDeviceIsSaid) {
 TEST_F(WholeFile, MayHaveTheLongestName) {
   const fs::path longest = folder_ / std::string(255, 'n');
   write_whole_file(longest, "text");
-  EXPECT_EQ(text(longest), "text");
+  EXPECT_EQ(file_text(longest), "text");
   EXPECT_EQ(files(), 1);
 }
 
@@ -227,14 +214,14 @@ TEST_F(WholeFile, FieldsAreWholeOrTheOldOnes) {
   for (const char* name : {"fields.csv", "fields.h5", "fields.hdf5", "fields.vti"}) {
     const fs::path file = folder_ / name;
     write_fields(file, grid, {columns[0]}, all);
-    const std::string old = text(file);
+    const std::string old = file_text(file);
     const int code = exit_code_of([&] {
       const SmallDisk disk(1 << 12);
       return complaint([&] { write_fields(file, grid, columns, all); }).find(name) != std::string::npos ? 0
                                                                                                         : 1;
     });
     EXPECT_EQ(code, 0) << name;
-    EXPECT_TRUE(text(file) == old) << name;
+    EXPECT_TRUE(file_text(file) == old) << name;
     fs::remove(file);
     EXPECT_EQ(files(), 0) << name;
   }
@@ -245,10 +232,10 @@ TEST_F(WholeFile, EqualFieldsAreEqualBytes) {
   const Grid grid{4, 2, 0.5, 0.25};
   const fs::path fields = folder_ / "fields.h5";
   write_fields(fields, grid, {{"x1", cell_x1(grid)}}, Eigen::ArrayXd::Ones(8));
-  const std::string before = text(fields);
+  const std::string before = file_text(fields);
   std::this_thread::sleep_for(std::chrono::milliseconds(1100));
   write_fields(fields, grid, {{"x1", cell_x1(grid)}}, Eigen::ArrayXd::Ones(8));
-  EXPECT_TRUE(text(fields) == before);
+  EXPECT_TRUE(file_text(fields) == before);
 }
 
 }  // namespace

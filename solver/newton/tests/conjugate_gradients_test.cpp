@@ -1,21 +1,12 @@
-#include "solver/newton/conjugate_gradients.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <Eigen/Core>
-#include <algorithm>
-#include <array>
 #include <cmath>
-#include <limits>
 #include <memory>
-#include <random>
 #include <string>
-#include <vector>
 
 #include "solver/allocations/allocations.hpp"
 #include "solver/elasticity/direct.hpp"
-#include "solver/newton/tangent_space.hpp"
 #include "solver/newton/tests/tangent_cg.hpp"
 #include "solver/tests/dense_algebra.hpp"
 #include "solver/tests/fields.hpp"

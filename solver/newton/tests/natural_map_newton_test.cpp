@@ -1,15 +1,11 @@
 #include "solver/newton/natural_map_newton.hpp"
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
-#include <cmath>
 #include <limits>
-#include <random>
 
 #include "solver/allocations/allocations.hpp"
 #include "solver/elasticity/elasticity.hpp"
-#include "solver/tests/fields.hpp"
 #include "solver/tests/torsion_bench.hpp"
 
 namespace slipstick::solver {

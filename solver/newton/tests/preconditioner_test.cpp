@@ -2,11 +2,9 @@
 
 #include <gtest/gtest.h>
 
-#include <array>
 #include <cmath>
 
 #include "solver/elasticity/inverse_symbol.hpp"
-#include "solver/elasticity/linear_operator.hpp"
 #include "solver/newton/tests/tangent_cg.hpp"
 #include "solver/tests/fields.hpp"
 

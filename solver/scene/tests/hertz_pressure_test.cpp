@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <numbers>
-
 #include "solver/tests/johnson.hpp"
 #include "solver/tests/paper_scene.hpp"
 #include "solver/tests/press.hpp"

@@ -1,10 +1,7 @@
-#include "solver/scene/scene.hpp"
 
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <limits>
-#include <string>
 
 #include "solver/model.hpp"
 #include "solver/tests/scene_file.hpp"

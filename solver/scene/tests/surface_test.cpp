@@ -7,11 +7,9 @@
 
 #include <cmath>
 #include <functional>
-#include <limits>
 #include <numbers>
 
 #include "solver/input/input_error.hpp"
-#include "solver/model_solution.hpp"
 #include "solver/scene/roughness.hpp"
 #include "solver/scene/surface_geometry.hpp"
 #include "solver/tests/limits.hpp"

@@ -1,10 +1,8 @@
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <cmath>
 #include <string>
 
-#include "solver/model_solution.hpp"
 #include "solver/tests/paper_scene.hpp"
 
 namespace slipstick::solver {

@@ -1,10 +1,8 @@
 // Scenes that a program built: whatever a file may not say, they may not hold.
 
 #include <gmock/gmock.h>
-#include <gtest/gtest.h>
 
 #include <functional>
-#include <limits>
 #include <vector>
 
 #include "solver/elasticity/law/law_kind.hpp"

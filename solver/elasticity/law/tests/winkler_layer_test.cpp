@@ -9,7 +9,6 @@
 #include <vector>
 
 #include "solver/elasticity/direct.hpp"
-#include "solver/elasticity/law/half_spaces.hpp"
 #include "solver/tests/fields.hpp"
 
 namespace slipstick::solver {

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <string>
+
+/// Files of tests.
+namespace slipstick {
+
+inline std::string file_text(const std::filesystem::path& file) {
+  std::ifstream stream(file, std::ios::binary);
+  return {std::istreambuf_iterator<char>(stream), {}};
+}
+
+/// A folder of its own for each test, which is removed after it.
+class ScratchFolder : public testing::Test {
+ protected:
+  ScratchFolder() { std::filesystem::create_directories(folder_); }
+  ~ScratchFolder() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path write(const std::string& name, const std::string& text) const {
+    std::ofstream(folder_ / name, std::ios::binary) << text;
+    return folder_ / name;
+  }
+
+  const std::filesystem::path folder_ = [] {
+    const auto* const test = testing::UnitTest::GetInstance()->current_test_info();
+    return std::filesystem::path(testing::TempDir()) /
+           ("slipstick-" + std::string(test->test_suite_name()) + test->name() + std::to_string(getpid()));
+  }();
+};
+
+}  // namespace slipstick
