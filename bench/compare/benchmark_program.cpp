@@ -22,10 +22,7 @@ namespace {
 
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
-using convergence::Captured;
-using convergence::ProgramEnd;
-using convergence::run_program;
-using convergence::TemporaryFolder;
+using namespace convergence;
 
 /// A path that is not looked up on PATH.
 std::string program_word(const fs::path& program) { return fs::absolute(program).string(); }

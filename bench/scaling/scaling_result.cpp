@@ -18,18 +18,7 @@
 namespace slipstick::bench {
 namespace {
 
-using convergence::Crossover;
-using convergence::Family;
-using convergence::grown;
-using convergence::Growth;
-using convergence::Json;
-using convergence::kNaN;
-using convergence::PowerLaw;
-using convergence::set_missing;
-using convergence::set_number;
-using convergence::SizedSeconds;
-using convergence::typical;
-using convergence::TypicalSeconds;
+using namespace convergence;
 
 /// "a/cells:8/b" is the family "a/b" at 8 cells.
 std::optional<std::pair<std::string, double>> family_and_cells(const std::string& name) {

@@ -23,11 +23,7 @@ namespace slipstick::bench {
 namespace {
 
 using Eigen::ArrayXd;
-using solver::Grid;
-using solver::Index;
-using solver::LinearOperator;
-using solver::OperatorKind;
-using solver::OperatorOptions;
+using namespace solver;
 
 /// Ten times what rounding does: of direct sums on 128 cells along a side 2e-14, of transforms on 1,024 less;
 constexpr double kAllowedError = 2e-13;

@@ -17,17 +17,7 @@ namespace slipstick::convergence {
 namespace {
 
 using Eigen::ArrayXd;
-using solver::Coefficients;
-using solver::FittedMotion;
-using solver::Grid;
-using solver::Index;
-using solver::InputError;
-using solver::Model;
-using solver::NormalSolution;
-using solver::Scene;
-using solver::Step;
-using solver::TangentialProblem;
-using solver::TangentialSolution;
+using namespace solver;
 
 ArrayXd applied(const Scene& scene, const Model& model, const solver::BlockKernel& kernel,
                 const ArrayXd& to) {

@@ -72,7 +72,10 @@ std::optional<double> root_at(const Grid& grid, Index cell, const std::vector<in
 /// Whether a pressure falls towards the outline of its contact.
 bool falls(const ArrayXd& pressure, const std::vector<int>& depth) {
   const Eigen::Map<const Eigen::ArrayXi> layer(depth.data(), pressure.size());
-  const auto mean = [&](int of) { return (layer == of).select(pressure, 0.0).sum() / (layer == of).count(); };
+  const auto mean = [&](int of) {
+    const ArrayXd there = (layer == of).cast<double>();
+    return (there * pressure).sum() / there.sum();
+  };
   return mean(1) < mean(kCut + 1);
 }
 

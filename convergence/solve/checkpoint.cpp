@@ -21,10 +21,7 @@
 namespace slipstick::convergence {
 namespace {
 
-using solver::ContactState;
-using solver::HistoryState;
-using solver::InputError;
-using solver::NormalSolution;
+using namespace solver;
 
 constexpr const char* kFormat = "slipstick history 2";
 /// The part of the time that may go into writing.

@@ -15,10 +15,7 @@ namespace slipstick::solver {
 namespace {
 
 using Eigen::ArrayXd;
-using testing::Contains;
-using testing::ElementsAre;
-using testing::Not;
-using testing::StartsWith;
+using namespace testing;
 
 constexpr const char* kCoupling = "K13, K23";
 constexpr const char* kShearCoupling = "K31, K32";

@@ -10,9 +10,7 @@
 namespace slipstick::bench {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
+using namespace testing;
 
 constexpr std::size_t kRepetitions = 10;
 

@@ -9,10 +9,7 @@ namespace slipstick::bench {
 namespace {
 
 using solver::InputError;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::Pair;
+using namespace testing;
 
 std::string file_with(const std::string& rows, const std::string& context = "") {
   return fmt::format(R"({{"context": {{"num_cpus": 4{}}}, "benchmarks": [{}]}})", context, rows);

@@ -10,9 +10,7 @@
 namespace slipstick::convergence {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
+using namespace testing;
 
 // Loads of 32 to 64 cells across, where a mesh accounts for more.
 struct Coarse {

@@ -10,10 +10,7 @@
 namespace slipstick::convergence {
 namespace {
 
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using namespace testing;
 
 class CheckConventions : public testing::Test {
  protected:

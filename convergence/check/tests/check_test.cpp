@@ -12,10 +12,7 @@
 namespace slipstick::convergence {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::IsEmpty;
-using testing::Not;
+using namespace testing;
 
 TEST(Check, FindsContactsOwnFieldGood) {
   const double twist = 2.361048651456917e-3;

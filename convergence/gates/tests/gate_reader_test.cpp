@@ -12,9 +12,7 @@
 namespace slipstick::convergence {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
+using namespace testing;
 
 class GateFile : public ScratchFolder {
  protected:

@@ -7,9 +7,7 @@
 namespace slipstick::convergence {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::Not;
+using namespace testing;
 
 // Every kind of gate, with all that Markdown takes for markup.
 std::vector<Judgement> one_of_each() {

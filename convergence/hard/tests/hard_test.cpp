@@ -20,10 +20,7 @@ namespace slipstick::convergence {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::ElementsAre;
-using testing::HasSubstr;
-using testing::ThrowsMessage;
+using namespace testing;
 
 class HardFile : public ScratchFolder {
  protected:

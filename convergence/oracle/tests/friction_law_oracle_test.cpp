@@ -10,10 +10,7 @@
 namespace slipstick::convergence {
 namespace {
 
-using solver::FrictionKind;
-using solver::FrictionLaw;
-using solver::Scene;
-using solver::Step;
+using namespace solver;
 using testing::HasSubstr;
 
 constexpr double kPeak = 2e9;  // Pa, about that of the paper's sphere

@@ -16,9 +16,7 @@ namespace slipstick::solver {
 namespace {
 
 using Eigen::ArrayXd;
-using testing::AllOf;
-using testing::HasSubstr;
-using testing::StartsWith;
+using namespace testing;
 
 TEST(Unloaded, HasNoTraction) {
   const Bench bench(16);
