@@ -15,7 +15,8 @@ namespace slipstick::solver {
 /// - where slip is narrower than four cells, up to 0.65 (h/r)^1.5, since tractions rise towards a staircase
 /// of
 ///   an edge as if nothing bounded them;
-/// - where the friction follows another law than Coulomb's, up to 0.45 h/r and 0.35 (h/r)^1.5, since no normal
+/// - where the friction follows another law than Coulomb's, up to 0.45 h/r and 0.35 (h/r)^1.5, since no
+/// normal
 ///   load fixes the sum of what friction carries;
 /// - where the pressure is Hertz's and not solved on the grid, more of both; averaged over cells it also
 ///   widens a contact that sticks by most of a cell;

@@ -82,9 +82,9 @@ struct Solution {
   SlipDirection slip_direction{};  ///< NaN where nothing slips
   Resolution resolution;
 
-  double normal_load = 0.0;    ///< W, N: what the pressure carries
+  double normal_load = 0.0;     ///< W, N: what the pressure carries
   double friction_force = 0.0;  ///< N, that slides the contact along a line: mu W under Coulomb's law
-  double peak_pressure = 0.0;  ///< Pa
+  double peak_pressure = 0.0;   ///< Pa
   /// m; of a Hertzian contact by the pressure's second moments, else of a circle with the contact cells'
   /// area.
   double contact_radius = 0.0;

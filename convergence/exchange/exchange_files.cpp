@@ -105,9 +105,9 @@ const char* coupling_word(const solver::Scene& scene, const PosedScene& posed) {
 void write_exchange(const SolverProgram& program, const ExchangeFiles& files, const solver::Scene& scene,
                     const PosedScene& posed) {
   if (!scene.friction.is_coulomb()) {
-    throw solver::InputError(scene.source.string(), "contact.friction_law",
-                             fmt::format("\"{}\"", to_string(scene.friction.kind)),
-                             "\"coulomb\" without a map, where another program solves: it is told a coefficient");
+    throw solver::InputError(
+        scene.source.string(), "contact.friction_law", fmt::format("\"{}\"", to_string(scene.friction.kind)),
+        "\"coulomb\" without a map, where another program solves: it is told a coefficient");
   }
   const Grid& grid = posed.grid;
   std::vector<double> x1;

@@ -77,8 +77,9 @@ LawContact law_contact(const solver::Scene& scene) {
   return {.name = scene.name,
           .profile = answer.oracle->bound,
           .units = LawUnits{
-              .friction = scene.friction.is_coulomb() ? scene.friction.coefficient
-                                                   : answer.oracle->friction_force / *unloaded.steps.front().normal,
+              .friction = scene.friction.is_coulomb()
+                              ? scene.friction.coefficient
+                              : answer.oracle->friction_force / *unloaded.steps.front().normal,
               .normal_load = *unloaded.steps.front().normal,
               .contact_radius = answer.oracle->contact_radius,
               .shear_modulus = combined_shear_modulus(scene),

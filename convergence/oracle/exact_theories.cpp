@@ -202,9 +202,8 @@ class TorsionHistory final : public ExactHistory {
                     .tangent_stiffness = state.tangent_stiffness};
     oracle.dissipated = (state.dissipated - dissipated_) * energy_unit();
     dissipated_ = state.dissipated;
-    oracle.shear = [scale = oracle.reference_bound, history = history_, a = oracle.contact_radius](double radius) {
-      return scale * history.traction(radius / a);
-    };
+    oracle.shear = [scale = oracle.reference_bound, history = history_, a = oracle.contact_radius](
+                       double radius) { return scale * history.traction(radius / a); };
     return in_units(oracle);
   }
 

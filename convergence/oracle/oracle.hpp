@@ -22,19 +22,19 @@ struct Oracle {
   std::shared_ptr<const analytic::Profile> profile;
   /// What friction carries, over reference_bound; the pressure's own profile under Coulomb's law.
   std::shared_ptr<const analytic::Profile> bound;
-  double reference_bound = 0.0;  ///< Pa: mu p0 under Coulomb's law
-  double friction_force = 0.0;   ///< N, that slides the contact along a line: mu W under Coulomb's law
-  std::array<double, 2> centre;          ///< m, of the axis
-  double axis_ratio = 1.0;               ///< of an elliptic contact: its semi-axis at `angle` over the other
-  double angle = 0.0;                    ///< rad, from x1
-  double contact_radius;                 ///< m; an ellipse's is that of the circle of equal area
-  double reference_pressure;             ///< Pa, the profile's p0
-  double peak_pressure;                  ///< Pa; infinite under a cone and a flat punch
-  double approach;                       ///< m
-  double moment_limit;                   ///< N m
-  double moment;                         ///< N m
-  double twist_angle;                    ///< rad
-  std::array<double, 2> force{};         ///< N
+  double reference_bound = 0.0;   ///< Pa: mu p0 under Coulomb's law
+  double friction_force = 0.0;    ///< N, that slides the contact along a line: mu W under Coulomb's law
+  std::array<double, 2> centre;   ///< m, of the axis
+  double axis_ratio = 1.0;        ///< of an elliptic contact: its semi-axis at `angle` over the other
+  double angle = 0.0;             ///< rad, from x1
+  double contact_radius;          ///< m; an ellipse's is that of the circle of equal area
+  double reference_pressure;      ///< Pa, the profile's p0
+  double peak_pressure;           ///< Pa; infinite under a cone and a flat punch
+  double approach;                ///< m
+  double moment_limit;            ///< N m
+  double moment;                  ///< N m
+  double twist_angle;             ///< rad
+  std::array<double, 2> force{};  ///< N
   std::array<double, 2> displacement{};  ///< m
   double stick_radius;                   ///< m; the contact radius where everything sticks
   double dissipated;                     ///< J, in this step

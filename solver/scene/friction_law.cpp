@@ -55,8 +55,9 @@ FrictionLaw with_factors(FrictionLaw law, const Grid& grid) {
   for (Index i = 0; i < grid.n1; ++i) {
     for (Index j = 0; j < grid.n2; ++j) {
       if (map(i, j) >= 0.0 && std::isfinite(map(i, j))) continue;
-      throw InputError(law.map.string(), fmt::format("row {}, column {}: {}; allowed: zero or positive, finite",
-                                                     i + 1, j + 1, map(i, j)));
+      throw InputError(
+          law.map.string(),
+          fmt::format("row {}, column {}: {}; allowed: zero or positive, finite", i + 1, j + 1, map(i, j)));
     }
   }
   law.factors = std::make_shared<const ArrayXd>(map.reshaped<Eigen::RowMajor>());
@@ -74,7 +75,8 @@ FrictionLaw resampled(FrictionLaw law, const Grid& from, const Grid& to,
   for (Index i = 0; i < to.n1; ++i) {
     const Index row = nearest(to.x1(i) + centre[0], from.n1, from.h1);
     for (Index j = 0; j < to.n2; ++j) {
-      factors[i * to.n2 + j] = (*law.factors)[row * from.n2 + nearest(to.x2(j) + centre[1], from.n2, from.h2)];
+      factors[i * to.n2 + j] =
+          (*law.factors)[row * from.n2 + nearest(to.x2(j) + centre[1], from.n2, from.h2)];
     }
   }
   law.factors = std::make_shared<const ArrayXd>(std::move(factors));

@@ -17,7 +17,8 @@ enum class FrictionKind { coulomb, tresca, capped, power };
 /// at the bound it opposes the slip. Stresses in Pa, or in any one unit.
 struct FrictionLaw {
   FrictionLaw() = default;
-  FrictionLaw(double mu) : coefficient(mu) {}  // NOLINT(google-explicit-constructor): Coulomb's law is a number
+  FrictionLaw(double mu)
+      : coefficient(mu) {}  // NOLINT(google-explicit-constructor): Coulomb's law is a number
 
   FrictionKind kind = FrictionKind::coulomb;
   double coefficient = 0.0;     ///< coulomb, capped: mu; power: k, stress^(1 - exponent)

@@ -39,10 +39,10 @@ double forces_over_torsion(const Scene& scene, double reach) {
   for (const Step& step : scene.steps) {
     force = std::max(force, std::hypot(step.force[0], step.force[1]));
     const auto ratio = value_if<MomentRatio>(step.torsion);
-    const double limit = scene.friction.is_coulomb() ? scene.friction.coefficient * step.normal.value_or(0.0) : 0.0;
+    const double limit =
+        scene.friction.is_coulomb() ? scene.friction.coefficient * step.normal.value_or(0.0) : 0.0;
     const double moment = value_if<Moment>(step.torsion).value_or(0.0) / reach;
-    torsion =
-        std::max(torsion, std::abs(ratio ? *ratio * limit : moment));
+    torsion = std::max(torsion, std::abs(ratio ? *ratio * limit : moment));
   }
   return force / torsion;
 }

@@ -23,7 +23,7 @@ def solve(scene, *settings, fields=None):
 
 
 def errors(scene, *settings):
-    """Of tractions at cell centres, root mean square: as they are solved, and sharpened."""
+    """Errors of tractions at cell centres, root mean square: as they are solved, and sharpened."""
     error = solve(scene, *settings)["traction_error"]
     return error["l2"], error["sharpened"]["l2"]
 
