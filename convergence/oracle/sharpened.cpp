@@ -44,10 +44,10 @@ std::vector<int> depths(const Grid& grid, const Inside& inside) {
 }
 
 /// The square root, at a cell, of the quadratic that fits values() best in the whole cells around it: those
-/// more than kCut layers deep. None where they are few.
-template <class Values>
+/// more than kCut layers deep. None where they are few, or not all are like() the cell.
+template <class Values, class Like>
 std::optional<double> root_at(const Grid& grid, Index cell, const std::vector<int>& depth,
-                              const Values& values) {
+                              const Values& values, const Like& like) {
   Eigen::Matrix<double, 6, 6> squares = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Vector<double, 6> sums = Eigen::Vector<double, 6>::Zero();
   int fitted = 0;
@@ -58,6 +58,7 @@ std::optional<double> root_at(const Grid& grid, Index cell, const std::vector<in
       const Index other = k * grid.n2 + l;
       const double x = static_cast<double>(k - i) / kReach;
       const double y = static_cast<double>(l - j) / kReach;
+      if (like(other) != like(cell)) return std::nullopt;
       if (x * x + y * y > 1.0 || depth[static_cast<std::size_t>(other)] <= kCut) continue;
       const Eigen::Vector<double, 6> terms{1.0, x, y, x * x, x * y, y * y};
       squares += terms * terms.transpose();
@@ -91,21 +92,28 @@ SharpenedFields sharpened(const solver::Solution& solution) {
   const std::vector<int> beyond = depths(grid, [&](Index cell) { return solution.stick[cell] == 0.0; });
   SharpenedFields fields{p, solution.traction};
   const bool has_root = falls(p, contact);
+  const solver::FrictionLaw& law = solution.friction;
+  // The bound has a kink where its cap begins.
+  const auto capped = [&](Index cell) {
+    return law.kind == solver::FrictionKind::capped && law.coefficient * p[cell] > law.shear_strength;
+  };
+  const auto any = [](Index) { return true; };
   for (Index cell = 0; cell < grid.cells(); ++cell) {
     const auto k = static_cast<std::size_t>(cell);
     const bool at_edge = has_root && contact[k] > 0 && contact[k] <= kCut;
     // Beside the edge the stick area is as narrow as the slip ring, and neither square is linear.
-    const bool at_front = contact[k] > kCut + 1 && std::max(stick[k], beyond[k]) <= kCut;
+    const bool at_front = contact[k] > kCut + 1 && std::max(stick[k], beyond[k]) <= kCut && !law.factors;
     if (at_edge) {
-      if (const auto root = root_at(grid, cell, contact, [&](Index of) { return p[of] * p[of]; }))
+      if (const auto root = root_at(
+              grid, cell, contact, [&](Index of) { return p[of] * p[of]; }, any))
         fields.pressure[cell] = *root;
     }
     if (!(size[cell] > 0.0) || !(at_edge || at_front)) continue;
     const double most = solution.friction.bound(fields.pressure, cell);
     double sharp = solution.stick[cell] > 0.0 ? std::min(size[cell], most) : most;
     if (at_front) {
-      const auto missing =
-          root_at(grid, cell, stick, [&](Index of) { return std::pow(bound[of] - size[of], 2); });
+      const auto missing = root_at(
+          grid, cell, stick, [&](Index of) { return std::pow(bound[of] - size[of], 2); }, capped);
       sharp = missing ? std::max(0.0, most - *missing) : size[cell];
     }
     fields.traction[cell] *= sharp / size[cell];
