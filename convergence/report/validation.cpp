@@ -155,15 +155,12 @@ Json profile(double moment_ratio, Json result) {
           {"fields", fields_file(moment_ratio)}, {"result", std::move(result)}};
 }
 
-/// The numbers of the ellipses that need no exact answer.
-Json without_errors(const std::vector<Json>& results) {
+/// Some keys of each result.
+Json rows_of(const std::vector<Json>& results, const std::vector<const char*>& keys) {
   Json rows = Json::array();
   for (const Json& result : results) {
     Json& row = rows.emplace_back();
-    for (const char* key : {"method", "moment_ratio", "cells", "certificate", "slip_direction",
-                            "operator_applications", "iterations", "seconds", "twist"}) {
-      row[key] = result[key];
-    }
+    for (const char* key : keys) row[key] = result[key];
   }
   return rows;
 }
@@ -178,19 +175,6 @@ Json cycle(const Json& result) {
                     {"dissipated", step["dissipated"]}});
   }
   return {{"cells", result["cells"]}, {"rows", std::move(rows)}};
-}
-
-/// One of beyond_the_paper(): errors by mesh, and the finest mesh's tractions along the radius.
-Json beyond(const char* name, const std::vector<Json>& results) {
-  Json rows = Json::array();
-  for (const Json& result : results) {
-    Json& row = rows.emplace_back();
-    for (const char* key : {"cells", "twist_error", "moment_limit_error", "stick_radius_error",
-                            "traction_error", "operator_applications", "certificate"}) {
-      row[key] = result[key];
-    }
-  }
-  return {{"name", name}, {"rows", std::move(rows)}, {"profile", results.back()["profile"]}};
 }
 
 /// The rows of one method.
@@ -309,12 +293,19 @@ Json validate(const Validation& asked, const fs::path& folder, const ProcessPool
     paper["profiles"].push_back(profile(kProfileRatios[i], results.at("profiles")[i]));
   }
   for (const char* section : {"loading", "mesh", "methods"}) paper[section] = results.at(section);
-  paper["ellipse"] = without_errors(results.at("ellipse"));
+  paper["ellipse"] = rows_of(  // that need no exact answer
+      results.at("ellipse"), {"method", "moment_ratio", "cells", "certificate", "slip_direction",
+                              "operator_applications", "iterations", "seconds", "twist"});
   paper["errata"] = errata(results.at("errata").front(), by_method(paper["ellipse"], "paper"));
   paper["hard"] = hard_results(inputs / "hard", size.hard_step, pool);
   paper["cycle"] = cycle(results.at("cycle").front());
   for (const auto& [name, overrides] : beyond_the_paper()) {
-    paper["beyond"].push_back(beyond(name, results.at(name)));
+    const std::vector<Json>& by_mesh = results.at(name);  // on the finest one tractions along the radius too
+    paper["beyond"].push_back(
+        {{"name", name},
+         {"rows", rows_of(by_mesh, {"cells", "twist_error", "moment_limit_error", "stick_radius_error",
+                                    "traction_error", "operator_applications", "certificate"})},
+         {"profile", by_mesh.back()["profile"]}});
   }
   paper["peers"] = judge_peers(inputs);
   paper["literature"] = literature(inputs / "literature", size.gates, pool);
