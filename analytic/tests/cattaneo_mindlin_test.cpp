@@ -13,8 +13,7 @@ namespace slipstick::analytic::tangential {
 namespace {
 
 using std::numbers::pi;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 const SelfSimilarIndenter kSphere;
 const SelfSimilarIndenter kFlat(kInfinity);

@@ -12,11 +12,7 @@
 namespace slipstick::analytic {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::ElementsAre;
-using ::testing::HasSubstr;
-using ::testing::IsEmpty;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 const std::vector<const Profile*> kProfiles{&hertz_profile(), &cone_profile(), &flat_punch_profile()};
 

@@ -16,8 +16,7 @@ namespace slipstick::analytic {
 namespace {
 
 using std::numbers::pi;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 constexpr double kLoad = 1000;        // N
 constexpr double kModulus = 115.4e9;  // Pa

@@ -12,9 +12,7 @@
 namespace slipstick::analytic {
 namespace {
 
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 class TableFile : public ::testing::Test {
  protected:

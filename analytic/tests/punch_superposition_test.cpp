@@ -14,9 +14,8 @@ namespace slipstick::analytic {
 namespace {
 
 using std::numbers::pi;
-using ::testing::HasSubstr;
+using namespace ::testing;
 using testing::relative_error;
-using ::testing::ThrowsMessage;
 
 constexpr double kFewRoundings = 1e-14;
 

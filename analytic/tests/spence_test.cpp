@@ -10,9 +10,7 @@ namespace slipstick::analytic {
 namespace {
 
 using std::numbers::pi;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 TEST(GoodmanContact, HoldsItsDigitsAtBothEnds) {
   // c -> 0: 1 = (mu/beta) (ln(4/c) + O(c^2)); c -> 1: (1/2) ln(2/(1 - c)) = (mu/beta) pi/2 + O(1 - c).

@@ -20,9 +20,7 @@ namespace slipstick::analytic {
 namespace {
 
 using std::numbers::pi;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 /// Sampled at equal steps, or (graded) closer and closer towards the edge.
 std::vector<PressurePoint> sample(const std::function<double(double)>& pressure, int intervals,

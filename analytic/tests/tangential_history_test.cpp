@@ -13,9 +13,7 @@ namespace slipstick::analytic::tangential {
 namespace {
 
 using std::numbers::pi;
-using ::testing::AllOf;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 constexpr double kRounding = 1e-14;  // some ten steps' errors of 1e-15 each
 

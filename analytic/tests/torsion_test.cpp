@@ -11,10 +11,9 @@ namespace slipstick::analytic {
 namespace {
 
 using std::numbers::pi;
-using ::testing::HasSubstr;
+using namespace ::testing;
 using testing::kFrom;
 using testing::relative_error;
-using ::testing::ThrowsMessage;
 
 TEST(Torsion, FollowsTheAsymptotesAtBothEnds) {
   for (const double w : {1e-300, 1e-100, 1e-16}) {

@@ -292,10 +292,19 @@ FieldError pressure_error(const ArrayXd& pressure, const ArrayXd& exact) {
 }
 
 FieldError sharpened_error(const solver::Solution& solution, const ExactFields& exact) {
-  const ArrayXd off = solver::norms(ArrayXd(sharpened(solution).traction - exact.traction));
-  const ArrayXd size = solver::norms(exact.traction);
-  return {off.sum() / size.sum(), std::sqrt(off.square().sum() / size.square().sum()),
-          off.maxCoeff<Eigen::PropagateNaN>() / size.maxCoeff()};
+  const std::vector<SharpenedCell> cells = sharpened(solution);
+  const Index count = solution.grid.cells();
+  auto next = cells.begin();
+  Norms off;
+  Norms size;
+  for (Index cell = 0; cell < count; ++cell) {
+    std::array<double, 2> q{solution.traction[cell], solution.traction[cell + count]};
+    if (next != cells.end() && next->cell == cell) q = (next++)->traction;
+    const std::array<double, 2> e{exact.traction[cell], exact.traction[cell + count]};
+    off.add(std::hypot(q[0] - e[0], q[1] - e[1]));
+    size.add(std::hypot(e[0], e[1]));
+  }
+  return field_error(off, size);
 }
 
 }  // namespace

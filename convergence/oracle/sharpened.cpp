@@ -3,6 +3,7 @@
 #include <Eigen/Cholesky>
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
 #include <optional>
 #include <vector>
 
@@ -16,28 +17,29 @@ using solver::Index;
 constexpr int kCut = 2;    ///< layers of cells along an edge whose means it spoils
 constexpr int kReach = 5;  ///< cells from a cut one within which whole ones are fitted
 constexpr int kDeepest = kCut + kReach + 1;
+using Depths = std::vector<std::int8_t>;
 /// Whole cells for the six coefficients of a quadratic.
 constexpr int kFewestFitted = 14;
 
 /// How many layers of cells each cell of a set lies deep in it, 1 at its outline, kDeepest at most; 0
 /// outside.
 template <class Inside>
-std::vector<int> depths(const Grid& grid, const Inside& inside) {
-  std::vector<int> depth(static_cast<std::size_t>(grid.cells()));
+Depths depths(const Grid& grid, const Inside& inside) {
+  Depths depth(static_cast<std::size_t>(grid.cells()));
   const auto at = [&](Index i, Index j) {
     const bool on_grid = i >= 0 && j >= 0 && i < grid.n1 && j < grid.n2;
     return on_grid ? depth[static_cast<std::size_t>(i * grid.n2 + j)] : 0;
   };
   for (Index cell = 0; cell < grid.cells(); ++cell)
-    depth[static_cast<std::size_t>(cell)] = inside(cell) ? kDeepest : 0;
+    depth[static_cast<std::size_t>(cell)] = inside(cell) ? std::int8_t{kDeepest} : std::int8_t{0};
   for (const Index back : {1, -1}) {  // down the grid, then up again
     for (Index step = 0; step < grid.cells(); ++step) {
       const Index cell = back > 0 ? step : grid.cells() - 1 - step;
       const Index i = cell / grid.n2;
       const Index j = cell % grid.n2;
-      int& here = depth[static_cast<std::size_t>(cell)];
-      here = std::min(
-          {here, at(i, j - back) + 1, at(i - back, j - 1) + 1, at(i - back, j) + 1, at(i - back, j + 1) + 1});
+      std::int8_t& here = depth[static_cast<std::size_t>(cell)];
+      const int next = std::min({at(i, j - back), at(i - back, j - 1), at(i - back, j), at(i - back, j + 1)});
+      here = static_cast<std::int8_t>(std::min<int>(here, next + 1));
     }
   }
   return depth;
@@ -46,8 +48,8 @@ std::vector<int> depths(const Grid& grid, const Inside& inside) {
 /// The square root, at a cell, of the quadratic that fits values() best in the whole cells around it: those
 /// more than kCut layers deep. None where they are few, or not all are like() the cell.
 template <class Values, class Like>
-std::optional<double> root_at(const Grid& grid, Index cell, const std::vector<int>& depth,
-                              const Values& values, const Like& like) {
+std::optional<double> root_at(const Grid& grid, Index cell, const Depths& depth, const Values& values,
+                              const Like& like) {
   Eigen::Matrix<double, 6, 6> squares = Eigen::Matrix<double, 6, 6>::Zero();
   Eigen::Vector<double, 6> sums = Eigen::Vector<double, 6>::Zero();
   int fitted = 0;
@@ -71,10 +73,10 @@ std::optional<double> root_at(const Grid& grid, Index cell, const std::vector<in
 }
 
 /// Whether a pressure falls towards the outline of its contact.
-bool falls(const ArrayXd& pressure, const std::vector<int>& depth) {
-  const Eigen::Map<const Eigen::ArrayXi> layer(depth.data(), pressure.size());
+bool falls(const ArrayXd& pressure, const Depths& depth) {
+  const Eigen::Map<const Eigen::Array<std::int8_t, Eigen::Dynamic, 1>> layer(depth.data(), pressure.size());
   const auto mean = [&](int of) {
-    const ArrayXd there = (layer == of).cast<double>();
+    const auto there = (layer == static_cast<std::int8_t>(of)).cast<double>();
     return (there * pressure).sum() / there.sum();
   };
   return mean(1) < mean(kCut + 1);
@@ -82,15 +84,16 @@ bool falls(const ArrayXd& pressure, const std::vector<int>& depth) {
 
 }  // namespace
 
-SharpenedFields sharpened(const solver::Solution& solution) {
+std::vector<SharpenedCell> sharpened(const solver::Solution& solution) {
   const Grid& grid = solution.grid;
   const ArrayXd& p = solution.pressure;
-  const ArrayXd bound = solution.friction.bound(p);
-  const ArrayXd size = solver::norms(solution.traction);
-  const std::vector<int> contact = depths(grid, [&](Index cell) { return p[cell] > 0.0; });
-  const std::vector<int> stick = depths(grid, [&](Index cell) { return solution.stick[cell] > 0.0; });
-  const std::vector<int> beyond = depths(grid, [&](Index cell) { return solution.stick[cell] == 0.0; });
-  SharpenedFields fields{p, solution.traction};
+  const auto size = [&](Index cell) {
+    return std::hypot(solution.traction[cell], solution.traction[cell + grid.cells()]);
+  };
+  const Depths contact = depths(grid, [&](Index cell) { return p[cell] > 0.0; });
+  const Depths stick = depths(grid, [&](Index cell) { return solution.stick[cell] > 0.0; });
+  const Depths beyond = depths(grid, [&](Index cell) { return solution.stick[cell] == 0.0; });
+  std::vector<SharpenedCell> cells;
   const bool has_root = falls(p, contact);
   const solver::FrictionLaw& law = solution.friction;
   // The bound has a kink where its cap begins.
@@ -103,23 +106,26 @@ SharpenedFields sharpened(const solver::Solution& solution) {
     const bool at_edge = has_root && contact[k] > 0 && contact[k] <= kCut;
     // Beside the edge the stick area is as narrow as the slip ring, and neither square is linear.
     const bool at_front = contact[k] > kCut + 1 && std::max(stick[k], beyond[k]) <= kCut && !law.factors;
-    if (at_edge) {
-      if (const auto root = root_at(
-              grid, cell, contact, [&](Index of) { return p[of] * p[of]; }, any))
-        fields.pressure[cell] = *root;
-    }
-    if (!(size[cell] > 0.0) || !(at_edge || at_front)) continue;
-    const double most = solution.friction.bound(fields.pressure, cell);
-    double sharp = solution.stick[cell] > 0.0 ? std::min(size[cell], most) : most;
+    if (!(at_edge || at_front)) continue;
+    std::optional<double> root;
+    if (at_edge)
+      root = root_at(
+          grid, cell, contact, [&](Index of) { return p[of] * p[of]; }, any);
+    const double pressure = root.value_or(p[cell]);
+    const double most = (law.factors ? (*law.factors)[cell] : 1.0) * law.bound(pressure);
+    const double solved = size(cell);
+    double sharp = solution.stick[cell] > 0.0 ? std::min(solved, most) : most;
     if (at_front) {
       const auto missing = root_at(
-          grid, cell, stick, [&](Index of) { return std::pow(bound[of] - size[of], 2); }, capped);
-      sharp = missing ? std::max(0.0, most - *missing) : size[cell];
+          grid, cell, stick, [&](Index of) { return std::pow(law.bound(p, of) - size(of), 2); }, capped);
+      sharp = missing ? std::max(0.0, most - *missing) : solved;
     }
-    fields.traction[cell] *= sharp / size[cell];
-    fields.traction[cell + grid.cells()] *= sharp / size[cell];
+    const double factor = solved > 0.0 ? sharp / solved : 0.0;
+    cells.push_back({cell,
+                     pressure,
+                     {factor * solution.traction[cell], factor * solution.traction[cell + grid.cells()]}});
   }
-  return fields;
+  return cells;
 }
 
 }  // namespace slipstick::convergence

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -40,10 +41,16 @@ std::vector<solver::FieldColumn> solution_columns(const solver::Solution& soluti
     const double s2 = solution.slip[cell + cells];
     return solution.friction.bound(solution.pressure, cell) * std::sqrt(s1 * s1 + s2 * s2);
   });
-  const auto sharp = std::make_shared<const SharpenedFields>(sharpened(solution));
-  add("pressure_sharpened", [sharp](Index cell) { return sharp->pressure[cell]; });
-  add("q1_sharpened", [sharp](Index cell) { return sharp->traction[cell]; });
-  add("q2_sharpened", [sharp, cells](Index cell) { return sharp->traction[cells + cell]; });
+  const auto sharp = std::make_shared<const std::vector<SharpenedCell>>(sharpened(solution));
+  const auto add_sharp = [&](const char* name, const Eigen::ArrayXd& solved, Index start, const auto& of) {
+    add(name, [sharp, &solved, start, of](Index cell) {
+      const auto found = std::ranges::lower_bound(*sharp, cell, {}, &SharpenedCell::cell);
+      return found != sharp->end() && found->cell == cell ? of(*found) : solved[start + cell];
+    });
+  };
+  add_sharp("pressure_sharpened", solution.pressure, 0, [](const SharpenedCell& c) { return c.pressure; });
+  add_sharp("q1_sharpened", solution.traction, 0, [](const SharpenedCell& c) { return c.traction[0]; });
+  add_sharp("q2_sharpened", solution.traction, cells, [](const SharpenedCell& c) { return c.traction[1]; });
   if (exact.oracle && exact.oracle->shear) {
     const auto fields = std::make_shared<const ExactFields>(exact_fields(*exact.oracle, grid));
     add("q1_exact", [fields](Index cell) { return fields->traction[cell]; });

@@ -18,8 +18,7 @@
 namespace slipstick::solver {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
+using namespace testing;
 
 Surface sphere(double radius, std::array<double, 2> at = {}) {
   return {.shape = Shape::sphere, .radius = radius, .at = at};

@@ -12,8 +12,7 @@ namespace slipstick::solver {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::HasSubstr;
+using namespace testing;
 
 /// Linux's files about memory, in a folder that stands for its root.
 class AvailableMemory : public SceneFile {

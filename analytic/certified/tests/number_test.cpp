@@ -10,8 +10,7 @@ namespace slipstick::analytic::certified {
 namespace {
 
 using namespace known;
-using ::testing::HasSubstr;
-using ::testing::ThrowsMessage;
+using namespace ::testing;
 
 TEST(CertifiedNumber, NarrowsInside) {
   const Precision precision(500);

@@ -18,9 +18,8 @@ namespace slipstick::analytic::layered {
 namespace {
 
 using std::numbers::pi;
-using ::testing::HasSubstr;
+using namespace ::testing;
 using testing::integral_between_roots;
-using ::testing::ThrowsMessage;
 
 /// A layer of modulus 1 on a base, against a rigid body.
 Pair on_base(double thickness, double base_modulus, double nu = 0.3) {

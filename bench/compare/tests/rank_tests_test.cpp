@@ -16,8 +16,7 @@
 namespace slipstick::bench {
 namespace {
 
-using ::testing::DoubleNear;
-using ::testing::ElementsAre;
+using namespace ::testing;
 
 struct Samples {
   std::vector<double> base;

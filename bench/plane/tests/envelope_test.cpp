@@ -11,8 +11,7 @@ namespace {
 using slipstick::bench::pareto_front;
 using slipstick::bench::quickest_to;
 using slipstick::bench::Way;
-using testing::ElementsAre;
-using testing::IsEmpty;
+using namespace testing;
 
 TEST(ParetoFront, HoldsTheWaysThatNoneBeats) {
   EXPECT_THAT(pareto_front({Way{3.0, 0.1}, Way{1.0, 0.5}, Way{2.0, 0.5}, Way{4.0, 0.2}}), ElementsAre(1, 0));

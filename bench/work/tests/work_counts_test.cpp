@@ -15,8 +15,7 @@
 namespace slipstick::bench {
 namespace {
 
-using testing::Contains;
-using testing::Pair;
+using namespace testing;
 
 WorkCase case_named(const std::string& name) {
   for (const WorkCase& known : work_cases()) {

@@ -19,8 +19,7 @@ namespace {
 using Eigen::ArrayXd;
 using solver::find_precision;
 using solver::Index;
-using testing::AllOf;
-using testing::HasSubstr;
+using namespace testing;
 
 ArrayXd written(const ArrayXd& values, const std::string& format) {
   return values.unaryExpr(

@@ -9,8 +9,7 @@
 namespace slipstick::convergence {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
+using namespace testing;
 
 Outcome outcome(const Gate& gate, const Json& value) {
   return judge(gate, solve_with(gate.quantity, value)).outcome;

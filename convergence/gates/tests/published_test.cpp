@@ -11,8 +11,7 @@
 namespace slipstick::convergence {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
+using namespace testing;
 
 /// A gate on an exact answer, which is good to `error`, relative.
 Gate published(const std::string& text) {

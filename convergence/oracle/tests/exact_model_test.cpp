@@ -14,8 +14,7 @@
 namespace slipstick::convergence {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
+using namespace testing;
 namespace fs = std::filesystem;
 
 // A few roundings on the way from a scene's moduli to the number.

@@ -21,8 +21,7 @@ namespace slipstick::convergence {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::HasSubstr;
+using namespace testing;
 
 TEST(WantedError, IsAQuantityAndANumberBelowOne) {
   EXPECT_EQ(read_wanted_error("twist=1e-3").quantity, "twist_angle");

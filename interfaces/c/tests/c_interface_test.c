@@ -173,7 +173,7 @@ static void test_solution(void) {
         "text");
   size_t names = 0;
   while (slipstick_solution_field_name(solution, names) != NULL) ++names;
-  check(names == 11 && strcmp(slipstick_solution_field_name(solution, 0), "x1") == 0, "fields have names");
+  check(names == 14 && strcmp(slipstick_solution_field_name(solution, 0), "x1") == 0, "fields have names");
   check(slipstick_solution_write(solution, "c_interface_test.csv") == SLIPSTICK_OK, "fields become a file");
   FILE* written = fopen("c_interface_test.csv", "r");
   char line[256] = "";

@@ -15,8 +15,7 @@ namespace slipstick::solver {
 namespace {
 
 using Eigen::ArrayXd;
-using testing::HasSubstr;
-using testing::StartsWith;
+using namespace testing;
 
 constexpr double kGradientGap = 1e-10;
 

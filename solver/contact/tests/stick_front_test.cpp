@@ -16,8 +16,7 @@ namespace slipstick::solver {
 namespace {
 
 using Eigen::ArrayXd;
-using testing::HasSubstr;
-using testing::IsEmpty;
+using namespace testing;
 
 /// An ellipse of stick, and of contact `ring` times as large about the same centre, where the slip is
 /// d^(3/2) (1 + d/2) in directions that turn, d = sqrt((x/a)^2 + (y/b)^2) - 1.

@@ -19,8 +19,7 @@ namespace slipstick::solver {
 namespace {
 
 namespace fs = std::filesystem;
-using testing::AllOf;
-using testing::HasSubstr;
+using namespace testing;
 
 class BrokenInput : public SceneFile {
  protected:

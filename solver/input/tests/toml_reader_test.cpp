@@ -11,8 +11,7 @@
 namespace slipstick::solver {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
+using namespace testing;
 
 const Range kFinite{"finite", [](double x) { return std::isfinite(x); }};
 

@@ -22,8 +22,7 @@
 namespace slipstick::solver {
 namespace {
 
-using testing::AllOf;
-using testing::HasSubstr;
+using namespace testing;
 namespace fs = std::filesystem;
 
 /// Limits the size of files while it lives, as a full disk would. Nothing may be printed meanwhile: standard

@@ -34,6 +34,9 @@ Scene in_units(Scene scene, const Units& units) {
     body->coating->young_modulus *= pascal;
     body->coating->thickness *= units.metre;
   }
+  scene.friction.shear_strength *= pascal;
+  if (scene.friction.kind == FrictionKind::power)
+    scene.friction.coefficient *= std::pow(pascal, 1.0 - scene.friction.exponent);
   scene.steps[0].normal = *scene.steps[0].normal * units.newton;
   if (const auto moment = value_if<Moment>(scene.steps[0].torsion)) {
     scene.steps[0].torsion = Moment{*moment * units.newton * units.metre};
@@ -59,6 +62,15 @@ Scene over_an_extent() {
 Scene with_layers() {
   Scene scene = by_ratio();
   scene.lower.coating = {0.2e-3, 3.1 * paper::kYoungModulus, 0.21};
+  return scene;
+}
+
+Scene under_law(FrictionKind kind) {
+  Scene scene = by_ratio();
+  scene.friction.kind = kind;
+  scene.friction.coefficient = kind == FrictionKind::power ? 500.0 : 0.1;
+  scene.friction.exponent = 0.6;
+  scene.friction.shear_strength = 0.7e8;
   return scene;
 }
 
@@ -127,7 +139,8 @@ TEST_P(OtherUnits, GiveTheSameDigits) {
   const Units& units = GetParam();
   const double moment = units.newton * units.metre;
   const double pascal = units.newton / (units.metre * units.metre);
-  for (const Scene& scene : {by_ratio(), by_moment(), over_an_extent(), with_layers()}) {
+  for (const Scene& scene : {by_ratio(), by_moment(), over_an_extent(), with_layers(),
+                             under_law(FrictionKind::capped), under_law(FrictionKind::power)}) {
     const ModelSolution si = solve_in_model_units(scene);
     const ModelSolution other = solve_in_model_units(in_units(scene, units));
     ASSERT_EQ(si.status, Status::converged) << si.message;
