@@ -283,8 +283,10 @@ Memory predicted_memory(const Scene& scene, const Model& model) {
   const Elasticity elastic = whole ? elasticity(scene, model, Reduction(model.grid)) : on_part;
   const double coupling = model.pressure_coupling ? elastic.operator_bytes(grid, coupling_kernel()) : 0.0;
   const bool newton = scene.method == Method::coulomb;
-  const double tangential = newton ? elastic.newton_bytes(grid, tangential_kernel())
-                                   : elastic.operator_bytes(grid, tangential_kernel());
+  const double tangential = !newton ? elastic.operator_bytes(grid, tangential_kernel())
+                            : scene.friction.is_frictionless()
+                                ? 0.0  // nothing is solved
+                                : elastic.newton_bytes(grid, tangential_kernel());
   const double solver = std::max({normal, tangential, coupling});
   const double of_part = newton ? field_bytes(kFieldsOfPart, own_rows(grid).count() * grid.n2)
                                 : field_bytes(kFieldsOfOthers, grid.cells());
