@@ -49,23 +49,20 @@ if(NOT FFTW_FOUND)
 endif()
 
 # Optional: one contact on several ranks.
-find_library(SLIPSTICK_FFTW_MPI fftw3_mpi)
-mark_as_advanced(SLIPSTICK_FFTW_MPI)
-# Without FFTW's library it is of no use; and where MPI's programs are installed without its headers, looking for it ends in an error.
-if(SLIPSTICK_FFTW_MPI)
+# Where MPI's programs are installed without its headers and libraries, find_package(MPI) ends in an error.
+find_library(SLIPSTICK_MPI_LIBRARY NAMES mpi mpich)
+mark_as_advanced(SLIPSTICK_MPI_LIBRARY)
+set(found_mpi OFF)
+if(SLIPSTICK_MPI_LIBRARY)
   find_package(MPI QUIET COMPONENTS C)
-endif()
-if(MPI_C_FOUND AND SLIPSTICK_FFTW_MPI)
-  set(found_mpi ON)
-else()
-  set(found_mpi OFF)
+  set(found_mpi ${MPI_C_FOUND})
 endif()
 option(SLIPSTICK_MPI "Solve one contact on several ranks: mpirun -n P slipstick solve" ${found_mpi})
 # Open MPI asks twice whether root means it, and once whether ranks may share a processor.
 set(SLIPSTICK_MPIRUN OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1
   OMPI_MCA_mpi_yield_when_idle=1)
 if(NOT found_mpi)
-  set(why "MPI or FFTW's library for it was not found: install libopenmpi-dev openmpi-bin libfftw3-mpi-dev (or run `make setup`)")
+  set(why "MPI was not found: install libopenmpi-dev openmpi-bin (or run `make setup`)")
   if(SLIPSTICK_MPI)
     message(FATAL_ERROR "SLIPSTICK_MPI: ${why}")
   endif()

@@ -80,16 +80,13 @@ MirroredConvolution::MirroredConvolution(const Grid& quadrant, BlockKernel kerne
       threads_(std::max(options.threads, 1)),
       along1_(quadrant.n1),
       along2_(quadrant.n2),
-      row_groups_(groups(quadrant.n1, kLines)),
       column_groups_(groups(along2_.frequencies(), kLines)),
       own_row_groups_(own_row_groups(quadrant)),
-      field_size_(field_size(quadrant, column_groups_)),
-      half_transformed_(count(fields() * field_size_)) {
-  if (quadrant.ranks.several()) {
-    if (diagonal_) throw std::invalid_argument("several ranks do not exchange rows and columns");
-    ranks_.emplace(shared_matrix(quadrant, column_groups_));
-  }
-  own_column_groups_ = ranks_ ? quadrant.ranks.own_share(column_groups_) : Share{0, column_groups_};
+      own_column_groups_(quadrant.ranks.own_share(column_groups_)),
+      shared_(shared_matrix(quadrant, column_groups_)),
+      half_transformed_(count(fields() * shared_.size())) {
+  if (diagonal_ && quadrant.ranks.several())
+    throw std::invalid_argument("several ranks do not exchange rows and columns");
   if (diagonal_) transformed_ = FftwBuffer(transformed_reals(along1_.frequencies()));
   std::vector<Component> components = this->kernel().distinct();
   if (diagonal_) components.pop_back();  // K22 is the mirror image of K11
@@ -130,8 +127,7 @@ FftwBuffer MirroredConvolution::kernel_spectrum(Component component, std::vector
   return spectrum;
 }
 
-/// A block of kLines rows by kLines columns is an entry.
-auto MirroredConvolution::shared_matrix(const Grid& quadrant, Index column_groups) -> Shape {
+RankTranspose MirroredConvolution::shared_matrix(const Grid& quadrant, Index column_groups) {
   static_assert(RowBands::kRows % kLines == 0);
   const RowBands bands(quadrant.n1, quadrant.ranks);
   return {quadrant.ranks, groups(quadrant.n1, kLines), bands.rows_of_rank() / kLines, column_groups,
@@ -143,19 +139,15 @@ Share MirroredConvolution::own_row_groups(const Grid& quadrant) {
   return {groups(own.first, kLines), groups(own.last, kLines)};
 }
 
-Index MirroredConvolution::field_size(const Grid& quadrant, Index column_groups) {
-  if (!quadrant.ranks.several()) return groups(quadrant.n1, kLines) * column_groups * kLines * kLines;
-  return shared_matrix(quadrant, column_groups).size();
-}
-
 Parity MirroredConvolution::parity_of(Index field) const {
   if (this->inputs() == 1) return {1, 1};
   return field == 0 ? Parity{1, -1} : Parity{-1, 1};
 }
 
 double MirroredConvolution::sent_bytes(const Grid& quadrant, const BlockKernel& kernel) {
-  const Shape matrix = shared_matrix(quadrant, groups(Transform::frequencies(quadrant.n2), kLines));
-  return static_cast<double>(kernel.inputs + kernel.outputs) * matrix.sent_bytes();
+  const Index column_groups = groups(Transform::frequencies(quadrant.n2), kLines);
+  return static_cast<double>(kernel.inputs + kernel.outputs) *
+         shared_matrix(quadrant, column_groups).sent_bytes();
 }
 
 void MirroredConvolution::do_apply(std::span<const double> traction, std::span<double> displacement) {
@@ -173,14 +165,14 @@ void MirroredConvolution::do_apply(std::span<const double> traction, std::span<d
   in_row_groups([&](int thread, Index field, Index group) {
     rows_forward(thread, field, group, traction.data() + field * this->grid().cells());
   });
-  for (Index field = 0; ranks_ && field < fields(); ++field) ranks_->to_columns(of_field(field));
+  for (Index field = 0; field < fields(); ++field) shared_.to_columns(of_field(field));
   if (diagonal_) {
     in_groups(column_groups_, [&](int thread, Index group) { columns_forward_diagonal(thread, group); });
     in_groups(column_groups_, [&](int thread, Index group) { columns_backward_diagonal(thread, group); });
   } else {
     in_groups(own_column_groups_.count(), [&](int thread, Index group) { convolve_columns(thread, group); });
   }
-  for (Index field = 0; ranks_ && field < fields(); ++field) ranks_->to_rows(of_field(field));
+  for (Index field = 0; field < fields(); ++field) shared_.to_rows(of_field(field));
   in_row_groups([&](int thread, Index field, Index group) {
     rows_backward(thread, field, group, displacement.data() + field * this->grid().cells());
     if (diagonal_) mirror_about_diagonal(group, displacement);
@@ -193,7 +185,7 @@ void MirroredConvolution::rows_forward(int thread, Index field, Index group, con
   const double* const first = values + group * kLines * n2;
   double* const block = half_transformed(field, group);
   if (std::all_of(first, first + rows * n2, [](double value) { return value == 0; })) {
-    std::fill_n(block, row_group_stride(), 0.0);
+    std::fill_n(block, shared_.row_step(), 0.0);
     return;
   }
   along2_.forward(row_workspaces_[count(thread)], {.data = first, .line_stride = n2, .count = rows},

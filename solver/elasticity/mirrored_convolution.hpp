@@ -53,38 +53,33 @@ class MirroredConvolution final : public LinearOperator {
   Workspace& column_workspace(int thread, Index field) {
     return column_workspaces_[static_cast<std::size_t>(thread * fields() + field)];
   }
-  using Shape = RankTranspose::Shape;
-  static Shape shared_matrix(const Grid& quadrant, Index column_groups);
+  static RankTranspose shared_matrix(const Grid& quadrant, Index column_groups);
   static Share own_row_groups(const Grid& quadrant);
-  /// Values of half_transformed_ from one field to the next.
-  static Index field_size(const Grid& quadrant, Index column_groups);
-  double* of_field(Index field) { return half_transformed_.data() + field * field_size_; }
-  /// Values from one group of rows of half_transformed_ to the next, while rows are carried.
-  Index row_group_stride() const { return column_groups_ * kLines * kLines; }
+  double* of_field(Index field) { return half_transformed_.data() + field * shared_.size(); }
   double* half_transformed(Index field, Index row_group) {
-    return of_field(field) + (row_group - own_row_groups_.first) * row_group_stride();
+    return of_field(field) + (row_group - own_row_groups_.first) * shared_.row_step();
   }
   /// One of this rank's groups of columns of half_transformed_.
   template <typename Value>
   typename Transform::template Lines<Value> columns(Index field, Index group) {
     constexpr Index block = kLines * kLines;
-    if (ranks_) return {of_field(field) + group * row_groups_ * block, kLines, block};
-    return {of_field(field) + group * block, kLines, row_group_stride()};
+    typename Transform::template Lines<Value> lines{of_field(field) + group * block, kLines,
+                                                    shared_.row_step()};
+    lines.run = shared_.rows_of_rank;
+    lines.run_stride = shared_.columns_of_rank() * block;
+    return lines;
   }
 
   bool diagonal_;
   int threads_;
   Transform along1_;
   Transform along2_;
-  Index row_groups_;                 ///< groups of kLines rows of cells
   Index column_groups_;              ///< groups of kLines frequencies along x2
   std::vector<FftwBuffer> spectra_;  ///< of the distinct components: h1 rows for each group of columns
   Share own_row_groups_;             ///< of this rank
   Share own_column_groups_{};
-  Index field_size_;
-  std::optional<RankTranspose> ranks_;        ///< where there are several
-  FftwBuffer half_transformed_;               ///< along x2 only: h2 rows for each field and group of rows; on
-                                              ///< several ranks by groups of columns while these are carried
+  RankTranspose shared_;                      ///< a block of kLines rows by kLines columns is an entry
+  FftwBuffer half_transformed_;               ///< along x2 only: h2 rows for each field and group of rows
   FftwBuffer transformed_;                    ///< diagonal only: h1 rows for each group of columns
   std::vector<Workspace> row_workspaces_;     ///< one for each thread
   std::vector<Workspace> column_workspaces_;  ///< one for each thread and field

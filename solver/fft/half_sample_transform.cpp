@@ -52,7 +52,7 @@ void HalfSampleTransform::load(Workspace& work, const Lines<const double>& lines
   static constexpr std::array<double, static_cast<std::size_t>(kLines)> kZeros{};
   const auto line = [&](Index l) -> Line<const double> {
     if (l >= lines.count) return {kZeros.data(), 0};
-    return {lines.data + l * lines.line_stride, lines.piece_stride};
+    return {lines.data + l * lines.line_stride, lines.piece_stride, lines.run, lines.run_stride};
   };
   for (Index pair = 0; pair < kPairs; ++pair) {
     load_pair(work.samples_.data() + 2 * pair * line_stride_, line(2 * pair), line(2 * pair + 1), parity);
@@ -97,8 +97,8 @@ void HalfSampleTransform::load_pair(double* plain, Line<const double> first, Lin
       std::copy(second.piece + whole, second.piece + length, y.begin());
       put_samples(x.data(), y.data());
     }
-    first.piece += first.stride;
-    second.piece += second.stride;
+    first.advance();
+    second.advance();
   }
   for (; front <= back; front += kNumbers) put(plain, front, Vector{});
 }
@@ -107,7 +107,7 @@ void HalfSampleTransform::store(Workspace& work, const Lines<double>& lines, int
   std::array<double, static_cast<std::size_t>(kLines)> unwanted;
   const auto line = [&](Index l) -> Line<double> {
     if (l >= lines.count) return {unwanted.data(), 0};
-    return {lines.data + l * lines.line_stride, lines.piece_stride};
+    return {lines.data + l * lines.line_stride, lines.piece_stride, lines.run, lines.run_stride};
   };
   for (Index pair = 0; 2 * pair < lines.count; ++pair) {
     store_pair(work.samples_.data() + 2 * pair * line_stride_, line(2 * pair), line(2 * pair + 1), parity);
@@ -137,8 +137,8 @@ void HalfSampleTransform::store_pair(double* plain, Line<double> first, Line<dou
       std::copy_n(x.data(), length - whole, first.piece + whole);
       std::copy_n(y.data(), length - whole, second.piece + whole);
     }
-    first.piece += first.stride;
-    second.piece += second.stride;
+    first.advance();
+    second.advance();
   }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <limits>
 #include <vector>
 
 #include "solver/fft/fftw.hpp"
@@ -25,13 +26,16 @@ class HalfSampleTransform {
   /// One cache line to a row of the spectrum.
   static constexpr Index kLines = 64 / static_cast<Index>(sizeof(double));
 
-  /// Where the lines lie: sample j of line l at data[(j / kLines) piece_stride + l line_stride + j % kLines].
+  /// Where the lines lie: sample j of line l at data[place(j / kLines) + l line_stride + j % kLines], where
+  /// place(i) is (i / run) run_stride + (i % run) piece_stride.
   template <typename Value>
   struct Lines {
     Value* data;
     Index line_stride;
     Index piece_stride = kLines;  ///< kLines: every line is contiguous
     Index count = kLines;         ///< lines that exist; the others are zero, and are not written
+    Index run = std::numeric_limits<Index>::max();
+    Index run_stride = 0;
   };
 
   /// Memory for one thread and one field.
@@ -84,11 +88,20 @@ class HalfSampleTransform {
   static constexpr Index kNumbers = P::kSize / 2;  ///< complex numbers in a packet
   using Samples = std::array<double, static_cast<std::size_t>(P::kSize)>;
 
-  /// One line: kLines samples at piece, the next ones a stride further.
+  /// One line, piece by piece of kLines samples: see Lines.
   template <typename Value>
   struct Line {
     Value* piece;
     Index stride;
+    Index run = std::numeric_limits<Index>::max();
+    Index run_stride = 0;
+    Index of_run = 0;
+    void advance() {
+      piece += stride;
+      if (++of_run < run) return;
+      piece += run_stride - run * stride;
+      of_run = 0;
+    }
   };
 
   static Index half_length(Index samples);

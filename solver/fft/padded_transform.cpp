@@ -42,18 +42,13 @@ PaddedTransform::PaddedTransform(const Grid& grid, std::size_t fields, int threa
       twiddle1_(twiddles(grid.n1, m1_)),
       twiddle2_(twiddles(grid.n2, m2_)),
       zero_row_(count(grid.n2)),
+      several_(grid.ranks.several()),
+      shared_(shared_matrix(grid)),
       own_groups_(own_groups(grid)),
       field_size_(field_size(grid, columns(), stride1_)),
-      column_stride_(stride1_),
-      column_step_(stride1_),
-      group_step_(kRows),
+      column_step_(several_ ? kRows : stride1_),
+      group_step_(several_ ? shared_.row_step() / 2 : kRows),
       columns_(2 * fields * field_size_) {
-  if (grid.ranks.several()) {
-    ranks_.emplace(shared_matrix(grid));
-    column_stride_ = groups() * kRows;
-    column_step_ = kRows;
-    group_step_ = columns() * kRows;
-  }
   const Index size = scratch_size(grid, fields, stride1_, stride2_);
   for (int thread = 0; thread < threads; ++thread) scratch_.emplace_back(2 * count(size));
   const auto plan = [&](Index length, Index out, int direction) {
@@ -72,7 +67,7 @@ void PaddedTransform::execute(const FftwPlan& plan, Complex* in, Complex* out) {
 }
 
 auto PaddedTransform::column(std::size_t field, Index column) -> Complex* {
-  return as_complex(columns_) + static_cast<Index>(field * field_size_) + column * column_stride_;
+  return as_complex(columns_) + static_cast<Index>(field * field_size_) + column * stride1_;
 }
 
 /// Inlined: the innermost loops of separate() and join() ask for it twice a column.
@@ -87,7 +82,7 @@ std::size_t PaddedTransform::field_size(const Grid& grid, Index columns, Index s
 }
 
 /// A group of rows in a column is an entry.
-auto PaddedTransform::shared_matrix(const Grid& grid) -> RankTranspose::Shape {
+RankTranspose PaddedTransform::shared_matrix(const Grid& grid) {
   static_assert(RowBands::kRows % kRows == 0);
   return {grid.ranks, (grid.n1 + kRows - 1) / kRows, RowBands(grid.n1, grid.ranks).rows_of_rank() / kRows,
           half_length(grid.n2) + 1, 2 * kRows};
@@ -99,18 +94,6 @@ Share PaddedTransform::own_groups(const Grid& grid) {
 }
 
 Share PaddedTransform::own_columns(const Grid& grid) { return shared_matrix(grid).own_columns(); }
-
-void PaddedTransform::to_columns(std::size_t fields) {
-  for (std::size_t field = 0; field < fields; ++field) {
-    ranks_->to_columns(columns_.data() + 2 * field * field_size_);
-  }
-}
-
-void PaddedTransform::to_rows(std::size_t fields) {
-  for (std::size_t field = 0; field < fields; ++field) {
-    ranks_->to_rows(columns_.data() + 2 * field * field_size_);
-  }
-}
 
 auto PaddedTransform::spectrum_of(int thread) -> Spectrum {
   Complex* const start = scratch(thread);
@@ -230,35 +213,44 @@ void PaddedTransform::backward_group(int thread, std::size_t field, Index first_
   }
 }
 
+/// Where a column is carried: on several ranks, whose groups of rows lie apart, in a thread's memory.
+auto PaddedTransform::gathered(int thread, std::size_t field, Index column_index) -> Complex* {
+  if (!several_) return column(field, column_index);
+  Complex* const values = padded(thread);
+  shared_.each_row(reals(field), column_index, [&](Index group, const double* from) {
+    __builtin_prefetch(from + kAhead * 2 * group_step_);
+    std::copy_n(reinterpret_cast<const Complex*>(from), kRows, values + group * kRows);
+  });
+  std::fill(values + groups() * kRows, values + std::max(m1_, groups() * kRows), Complex());
+  return values;
+}
+
 void PaddedTransform::forward_column(int thread, std::size_t field, Index column_index) {
   const Spectrum spectrum = spectrum_of(thread);
-  Complex* const values = column(field, column_index);
+  Complex* const values = gathered(thread, field, column_index);
   Complex* const odd = turned(thread);
   // A row without another to go with it leaves rounding where that would stand.
   std::fill(values + grid_.n1, values + groups() * kRows, Complex());
   for (Index i = 0; i < grid_.n1; ++i) odd[i] = times(values[i], twiddle1_[count(i)]);
   std::fill(odd + grid_.n1, odd + m1_, Complex());
-  Complex* even = values;
-  if (ranks_) {
-    even = padded(thread);
-    std::copy_n(values, grid_.n1, even);
-    std::fill(even + grid_.n1, even + m1_, Complex());
-  }
-  execute(column_forward_, even, spectrum.even[field]);
+  execute(column_forward_, values, spectrum.even[field]);
   execute(column_forward_, odd, spectrum.odd[field]);
 }
 
 void PaddedTransform::backward_column(int thread, std::size_t field, Index column_index) {
   const Spectrum spectrum = spectrum_of(thread);
-  Complex* const values = column(field, column_index);
+  Complex* const even = several_ ? padded(thread) : column(field, column_index);
   Complex* const odd = turned(thread);
-  Complex* const even = ranks_ ? padded(thread) : values;
   execute(column_backward_, spectrum.even[field], even);
   execute(column_backward_, spectrum.odd[field], odd);
   for (Index i = 0; i < grid_.n1; ++i) even[i] += times_conjugate(odd[i], twiddle1_[count(i)]);
-  if (ranks_) std::copy_n(even, grid_.n1, values);
-  const Index end = ranks_ ? column_stride_ : std::max(m1_, groups() * kRows);
-  std::fill(values + grid_.n1, values + end, Complex());  // what the next transform counts on
+  // What the rows' transforms and, on one rank, the next one count on.
+  std::fill(even + grid_.n1, even + std::max(m1_, groups() * kRows), Complex());
+  if (!several_) return;
+  shared_.each_row(reals(field), column_index, [&](Index group, double* to) {
+    __builtin_prefetch(to + kAhead * 2 * group_step_, 1);
+    std::copy_n(even + group * kRows, kRows, reinterpret_cast<Complex*>(to));
+  });
 }
 
 }  // namespace slipstick::solver

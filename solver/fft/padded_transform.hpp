@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <array>
 #include <complex>
-#include <optional>
 #include <span>
 #include <vector>
 
@@ -58,7 +57,7 @@ class PaddedTransform {
   /// columns of this rank, numbered from 0; on several threads at the same time.
   template <typename Work>
   void through_columns(std::size_t inputs, std::size_t outputs, const Work& work) {
-    if (ranks_) to_columns(inputs);
+    for (std::size_t field = 0; field < inputs; ++field) shared_.to_columns(reals(field));
     in_parts(threads_, own_columns(grid_).count(), [&](int thread, Index first, Index last) {
       const Spectrum spectrum = spectrum_of(thread);
       for (Index column = first; column < last; ++column) {
@@ -67,7 +66,7 @@ class PaddedTransform {
         for (std::size_t field = 0; field < outputs; ++field) backward_column(thread, field, column);
       }
     });
-    if (ranks_) to_rows(outputs);
+    for (std::size_t field = 0; field < outputs; ++field) shared_.to_rows(reals(field));
   }
 
  private:
@@ -88,15 +87,15 @@ class PaddedTransform {
   Spectrum spectrum_of(int thread);
   Index groups() const { return (grid_.n1 + kRows - 1) / kRows; }
   /// What goes from rank to rank, and of that the rows of this one.
-  static RankTranspose::Shape shared_matrix(const Grid& grid);
+  static RankTranspose shared_matrix(const Grid& grid);
   static Share own_groups(const Grid& grid);
   /// Complex numbers that a field takes.
   static std::size_t field_size(const Grid& grid, Index columns, Index stride1);
   Complex* column(std::size_t field, Index column);
+  Complex* gathered(int thread, std::size_t field, Index column);
   /// Where a group of rows stands in a column between the passes.
   Complex* rows_of(std::size_t field, Index column, Index group);
-  void to_columns(std::size_t fields);
-  void to_rows(std::size_t fields);
+  double* reals(std::size_t field) { return columns_.data() + 2 * field * field_size_; }
   Complex* scratch(int thread) { return as_complex(scratch_[static_cast<std::size_t>(thread)]); }
   Complex* turned(int thread) { return scratch(thread) + 2 * static_cast<Index>(fields_) * stride1_; }
   Complex* padded(int thread) { return turned(thread) + stride1_; }
@@ -120,11 +119,11 @@ class PaddedTransform {
   std::vector<Complex> twiddle1_;  ///< w^j along x1, j < n1
   std::vector<Complex> twiddle2_;
   std::vector<double> zero_row_;
-  std::optional<RankTranspose> ranks_;  ///< where there are several
-  Share own_groups_;                    ///< of kRows rows
+  bool several_;          ///< ranks
+  RankTranspose shared_;  ///< where there are
+  Share own_groups_;      ///< of kRows rows
   std::size_t field_size_;
-  Index column_stride_;              ///< from column to column while columns are carried
-  Index column_step_;                ///< and while rows are
+  Index column_step_;                ///< from column to column while rows are carried
   Index group_step_;                 ///< then from group to group of a column's rows
   FftwBuffer columns_;               ///< of all fields
   std::vector<FftwBuffer> scratch_;  ///< for each thread

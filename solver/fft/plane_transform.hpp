@@ -46,9 +46,9 @@ class PlaneTransform {
         row_stride_(row_stride(shape)),
         columns_(shape.n2 / 2 + 1),
         own_samples_(RowBands(shape.samples, shape.ranks).own_rows()),
+        shared_(shared_matrix(shape)),
         field_size_(field_size(shape)),
-        buffer_(count(shape.fields * field_size_)),
-        ranks_(shared_matrix(shape)) {
+        buffer_(count(shape.fields * field_size_)) {
     auto* const spectrum = buffer_.complex();
     const int length = static_cast<int>(shape.n2);
     for (int thread = 0; thread < threads; ++thread) {
@@ -106,14 +106,14 @@ class PlaneTransform {
   /// back; not of a whole plane.
   template <typename Work>
   void through_columns(Index fields, const Work& work) {
-    for (Index field = 0; field < fields; ++field) ranks_.to_columns(buffer_.data() + field * field_size_);
-    const Share own = shared_matrix(shape_).own_columns();
+    for (Index field = 0; field < fields; ++field) shared_.to_columns(row(field, 0));
+    const Share own = shared_.own_columns();
     in_parts(threads_, own.count(), [&](int thread, Index begin, Index end) {
       double* const scratch = scratch_[count(thread)].data();
       const Index size = 2 * kColumns * shape_.n1;
       for (Index batch = begin; batch < end; ++batch) {
         for (Index field = 0; field < fields; ++field) {
-          read_batch(this->batch(field, batch), scratch + field * size);
+          read_batch(field, batch, scratch + field * size);
           fftw_execute_dft(column_forward_.get(), numbers(scratch + field * size),
                            numbers(scratch + field * size));
         }
@@ -122,11 +122,11 @@ class PlaneTransform {
         for (Index field = 0; field < fields; ++field) {
           fftw_execute_dft(column_backward_.get(), numbers(scratch + field * size),
                            numbers(scratch + field * size));
-          write_batch(scratch + field * size, this->batch(field, batch));
+          write_batch(scratch + field * size, field, batch);
         }
       }
     });
-    for (Index field = 0; field < fields; ++field) ranks_.to_rows(buffer_.data() + field * field_size_);
+    for (Index field = 0; field < fields; ++field) shared_.to_rows(row(field, 0));
   }
   /// All columns of a field of a whole plane.
   void forward_columns(Index field) {
@@ -141,8 +141,8 @@ class PlaneTransform {
     });
   }
 
-  /// Reals from one row to the next: on one rank an odd number of cache lines, so that a column is spread
-  /// over the cache whatever its length.
+  /// Reals from one row to the next: an odd number of cache lines, so that a column is spread over the cache
+  /// whatever its length.
   Index row_stride() const { return row_stride_; }
 
  private:
@@ -151,46 +151,34 @@ class PlaneTransform {
   static constexpr Index kAhead = 12;
 
   static Index batches(const PlaneShape& shape) { return (shape.n2 / 2 + kColumns) / kColumns; }
-  static Index row_stride(const PlaneShape& shape) {
-    const Index lines = batches(shape);
-    return (shape.ranks.several() ? lines : lines | 1) * kLine;
-  }
+  static Index row_stride(const PlaneShape& shape) { return shared_matrix(shape).row_step(); }
   /// What goes from rank to rank: a cache line is an entry.
-  static RankTranspose::Shape shared_matrix(const PlaneShape& shape) {
-    return {shape.ranks, shape.samples, RowBands(shape.samples, shape.ranks).rows_of_rank(), batches(shape),
-            2 * kColumns};
+  static RankTranspose shared_matrix(const PlaneShape& shape) {
+    RankTranspose shared{shape.ranks, shape.samples, RowBands(shape.samples, shape.ranks).rows_of_rank(),
+                         batches(shape), kLine};
+    shared.pad = 1 - shape.ranks.number() * shared.columns_of_rank() % 2;
+    return shared;
   }
   static Index field_size(const PlaneShape& shape) {
-    if (!shape.ranks.several()) return (shape.whole ? shape.n1 : shape.samples) * row_stride(shape);
-    return shared_matrix(shape).size();
+    return shape.whole ? shape.n1 * row_stride(shape) : shared_matrix(shape).size();
   }
   static Index scratch_size(const PlaneShape& shape) { return shape.fields * 2 * kColumns * shape.n1; }
 
-  /// Where a batch of this rank's columns has the first of its samples, and how far it is to the next one: on
-  /// one rank where rows are, on several where they have been carried.
-  double* batch(Index field, Index batch) {
-    const bool carried = shape_.ranks.several();
-    return row(field, 0) + batch * (carried ? shape_.samples : 1) * kLine;
-  }
-  Index sample_step() const { return shape_.ranks.several() ? kLine : row_stride_; }
-
   /// Samples between there and where they are transformed.
-  void read_batch(const double* from, double* columns) const {
-    const Index step = sample_step();
-    for (Index i = 0; i < shape_.samples; ++i) {
-      __builtin_prefetch(from + (i + kAhead) * step);
-      std::copy_n(from + i * step, kLine, columns + shape_.place(i, shape_.n1) * kLine);
-    }
+  void read_batch(Index field, Index batch, double* columns) {
+    shared_.each_row(row(field, 0), batch, [&](Index i, const double* from) {
+      __builtin_prefetch(from + kAhead * row_stride_);
+      std::copy_n(from, kLine, columns + shape_.place(i, shape_.n1) * kLine);
+    });
     for (Index i = shape_.samples; i < shape_.n1; ++i) {
       std::fill_n(columns + shape_.place(i, shape_.n1) * kLine, kLine, 0.0);
     }
   }
-  void write_batch(const double* columns, double* to) const {
-    const Index step = sample_step();
-    for (Index i = 0; i < shape_.samples; ++i) {
-      __builtin_prefetch(to + (i + kAhead) * step, 1);
-      std::copy_n(columns + shape_.place(i, shape_.n1) * kLine, kLine, to + i * step);
-    }
+  void write_batch(const double* columns, Index field, Index batch) {
+    shared_.each_row(row(field, 0), batch, [&](Index i, double* to) {
+      __builtin_prefetch(to + kAhead * row_stride_, 1);
+      std::copy_n(columns + shape_.place(i, shape_.n1) * kLine, kLine, to);
+    });
   }
 
   static fftw_complex* numbers(double* row) { return reinterpret_cast<fftw_complex*>(row); }
@@ -208,9 +196,9 @@ class PlaneTransform {
   Index row_stride_;
   Index columns_;
   Share own_samples_;
+  RankTranspose shared_;
   Index field_size_;  ///< reals from one field to the next
   FftwBuffer buffer_;
-  RankTranspose ranks_;
   std::vector<FftwBuffer> own_rows_;  ///< for each thread
   std::vector<FftwBuffer> scratch_;   ///< for each thread: columns while they are transformed
   FftwPlan row_forward_;

@@ -1,6 +1,7 @@
 #pragma once
 
-#include <memory>
+#include <algorithm>
+#include <cstddef>
 
 #include "solver/grid/communicator.hpp"
 #include "solver/grid/own_rows.hpp"
@@ -9,53 +10,54 @@ namespace slipstick::solver {
 
 /// What a transform carries between ranks, between its pass over rows and that over columns; on one rank,
 /// which keeps all, it does nothing. Entries are some numbers that stay together.
-class RankTranspose {
- public:
-  struct Shape {
-    Ranks ranks;
-    Index rows;
-    Index rows_of_rank;
-    Index columns;
-    Index entry;
+struct RankTranspose {
+  Ranks ranks;
+  Index rows;
+  Index rows_of_rank;
+  Index columns;
+  Index entry;
+  Index pad = 0;  ///< entries that no rank has at the end of a row
 
-    Share own_columns() const { return ranks.own_share(columns); }
-    SharedMatrix matrix() const {
-      return {rows, rows_of_rank, columns, ranks.block_of(columns),
-              static_cast<std::size_t>(entry) * sizeof(double)};
-    }
-    /// What all ranks together send for one way.
-    double sent_bytes() const {
-      double entries = 0.0;
-      for (int rank = 0; rank < ranks.number(); ++rank) {
-        const Index first = std::min(rank * rows_of_rank, rows);
-        const Index own = std::min(first + rows_of_rank, rows) - first;
-        const Index others = columns - Ranks::share(columns, rank, ranks.number()).count();
-        entries += static_cast<double>(own) * static_cast<double>(others);
-      }
-      return entries * static_cast<double>(entry) * sizeof(double);
-    }
-    /// Numbers in this rank's part, rounded up to cache lines.
-    Index size() const {
-      if (!ranks.several()) return rows * columns * entry;
-      constexpr Index line = 64 / static_cast<Index>(sizeof(double));
-      const auto bytes = ranks.communicator().size(matrix());
-      return (static_cast<Index>(bytes / sizeof(double)) + line - 1) / line * line;
-    }
-  };
+  Share own_columns() const { return ranks.own_share(columns); }
+  Index columns_of_rank() const { return ranks.block_of(columns); }
+  /// Numbers from one row of this rank to the next, and in all of them.
+  Index row_step() const { return (ranks.number() * columns_of_rank() + pad) * entry; }
+  Index size() const { return std::min(rows_of_rank, rows) * row_step(); }
 
-  explicit RankTranspose(const Shape& shape) {
-    if (shape.ranks.several()) transposition_ = shape.ranks.communicator().transposition(shape.matrix());
+  /// work(i, values) for the entries of all rows in one of this rank's columns, once they are carried.
+  template <typename Work>
+  void each_row(double* buffer, Index own_column, const Work& work) const {
+    const Index step = row_step();
+    for (Index first = 0; first < rows; first += rows_of_rank) {
+      double* const part = buffer + (first / rows_of_rank * columns_of_rank() + own_column) * entry;
+      const Index last = std::min(first + rows_of_rank, rows);
+      for (Index i = first; i < last; ++i) work(i, part + (i - first) * step);
+    }
   }
 
-  void to_columns(double* buffer) const {
-    if (transposition_) transposition_->to_columns(buffer);
-  }
-  void to_rows(double* buffer) const {
-    if (transposition_) transposition_->to_rows(buffer);
+  void to_columns(double* buffer) const { carry(buffer, true); }
+  void to_rows(double* buffer) const { carry(buffer, false); }
+
+  /// What all ranks together send for one way.
+  double sent_bytes() const {
+    double entries = 0.0;
+    for (int rank = 0; rank < ranks.number(); ++rank) {
+      const Index first = std::min(rank * rows_of_rank, rows);
+      const Index own = std::min(first + rows_of_rank, rows) - first;
+      const Index others = columns - Ranks::share(columns, rank, ranks.number()).count();
+      entries += static_cast<double>(own) * static_cast<double>(others);
+    }
+    return entries * static_cast<double>(entry) * sizeof(double);
   }
 
  private:
-  std::unique_ptr<Transposition> transposition_;
+  void carry(double* buffer, bool to_columns) const {
+    if (!ranks.several()) return;
+    const auto bytes = [](Index numbers) { return static_cast<std::size_t>(numbers) * sizeof(double); };
+    ranks.communicator().carry(
+        buffer, {rows, rows_of_rank, columns, columns_of_rank(), bytes(entry), bytes(row_step())},
+        to_columns);
+  }
 };
 
 }  // namespace slipstick::solver

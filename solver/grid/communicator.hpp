@@ -2,7 +2,6 @@
 
 #include <Eigen/Core>
 #include <cstddef>
-#include <memory>
 
 namespace slipstick::solver {
 
@@ -15,21 +14,8 @@ struct SharedMatrix {
   Index rows_of_rank;
   Index columns;
   Index columns_of_rank;
-  std::size_t entry;  ///< bytes, a multiple of 8
-};
-
-/// Carries such a matrix between ranks, in place: from their rows, each with its columns one after the other,
-/// to their columns, each with its rows one after the other, and back. Moves numbers and changes none.
-class Transposition {
- public:
-  virtual ~Transposition() = default;
-  Transposition(const Transposition&) = delete;
-  Transposition& operator=(const Transposition&) = delete;
-  virtual void to_columns(void* buffer) = 0;
-  virtual void to_rows(void* buffer) = 0;
-
- protected:
-  Transposition() = default;
+  std::size_t entry;  ///< bytes
+  std::size_t row;    ///< bytes from one row to the next: columns_of_rank entries for each rank, at least
 };
 
 /// How ranks reach each other: what the library that knows MPI does for them. All ranks call each of these
@@ -49,10 +35,10 @@ class Communicator {
   /// Brings those of such things that are next to this rank's, `depth` of them on each side.
   virtual void gather_beside(void* things, std::size_t bytes, Index count, Index of_rank, Index depth) = 0;
 
-  /// Bytes in this rank's buffer.
-  virtual std::size_t size(const SharedMatrix& matrix) const = 0;
-  /// For buffers of that size that FFTW has allocated.
-  virtual std::unique_ptr<Transposition> transposition(const SharedMatrix& matrix) = 0;
+  /// Carries such a matrix between ranks, in place: from this rank's rows, of all columns, to its columns, of
+  /// all rows, and back. What other ranks have in this one's columns comes where this one has theirs: row i
+  /// of rank r stands in row i of the buffer, from column r * columns_of_rank on.
+  virtual void carry(void* buffer, const SharedMatrix& matrix, bool to_columns) = 0;
 
   /// Bytes and messages that this rank has sent to others so far.
   struct Sent {

@@ -35,15 +35,10 @@ class Planned final : public Communicator {
   explicit Planned(int number) : number_(number) {}
   int number() const override { return number_; }
   int rank() const override { return 0; }
-  std::size_t size(const SharedMatrix& matrix) const override {
-    const auto rows = std::min(matrix.rows_of_rank, matrix.rows);
-    const auto columns = std::min(matrix.columns_of_rank, matrix.columns);
-    return static_cast<std::size_t>(std::max(rows * matrix.columns, matrix.rows * columns)) * matrix.entry;
-  }
   Sent sent() const override { return {}; }
   void gather(void*, std::size_t, Index, Index) override { refuse(); }
   void gather_beside(void*, std::size_t, Index, Index, Index) override { refuse(); }
-  std::unique_ptr<Transposition> transposition(const SharedMatrix&) override { refuse(); }
+  void carry(void*, const SharedMatrix&, bool) override { refuse(); }
   bool have_all_ended() override { return true; }
   [[noreturn]] void abort(int exit_code) override { std::exit(exit_code); }
 

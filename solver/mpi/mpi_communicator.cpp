@@ -1,19 +1,16 @@
-#include <fftw3-mpi.h>
 #include <mpi.h>
 
 #include <algorithm>
 #include <array>
 #include <cstdlib>
+#include <cstring>
 #include <vector>
 
-#include "solver/fft/fftw.hpp"
 #include "solver/grid/communicator.hpp"
 
-/// libslipstick_ranks: MPI, and the transposes of FFTW's MPI library.
+/// libslipstick_ranks: MPI.
 namespace slipstick::solver {
 namespace {
-
-using Length = std::ptrdiff_t;
 
 /// The things of one rank: [first, last).
 struct Part {
@@ -57,7 +54,6 @@ class MpiCommunicator final : public Communicator {
     MPI_Comm_rank(MPI_COMM_WORLD, &rank_);
     MPI_Comm_size(MPI_COMM_WORLD, &number_);
     MPI_Comm_dup(MPI_COMM_WORLD, &ends_);
-    fftw_mpi_init();
   }
   ~MpiCommunicator() override {
     MPI_Comm_free(&ends_);
@@ -103,16 +99,25 @@ class MpiCommunicator final : public Communicator {
     MPI_Waitall(static_cast<int>(requests.size()), requests.data(), MPI_STATUSES_IGNORE);
   }
 
-  std::size_t size(const SharedMatrix& matrix) const override {
-    const std::array<Length, 2> sides{matrix.rows, matrix.columns};
-    std::array<Length, 4> own{};
-    const Length reals = fftw_mpi_local_size_many_transposed(
-        2, sides.data(), reals_of_entry(matrix), matrix.rows_of_rank, matrix.columns_of_rank, MPI_COMM_WORLD,
-        &own[0], &own[1], &own[2], &own[3]);
-    return sizeof(double) * static_cast<std::size_t>(std::max<Length>(reals, reals_of_entry(matrix)));
+  /// Two by two, so that what comes takes the place of what goes.
+  void carry(void* buffer, const SharedMatrix& matrix, bool to_columns) override {
+    for (int round = 0; round < number_; ++round) {
+      const int other = (round - rank_ + number_) % number_;
+      if (other == rank_) continue;
+      const auto block = [&](int rows_of, int columns_of) -> Block {
+        return {
+            part_of(rows_of, matrix.rows, matrix.rows_of_rank).count(),
+            static_cast<std::size_t>(part_of(columns_of, matrix.columns, matrix.columns_of_rank).count()) *
+                matrix.entry};
+      };
+      const Block rows = block(rank_, other);
+      const Block columns = block(other, rank_);
+      auto* const start = static_cast<std::byte*>(buffer) +
+                          static_cast<std::size_t>(other * matrix.columns_of_rank) * matrix.entry;
+      to_columns ? exchange(start, matrix.row, other, rows, columns)
+                 : exchange(start, matrix.row, other, columns, rows);
+    }
   }
-
-  std::unique_ptr<Transposition> transposition(const SharedMatrix& matrix) override;
 
   bool have_all_ended() override {
     if (ending_ == MPI_REQUEST_NULL) MPI_Ibarrier(ends_, &ending_);
@@ -126,11 +131,46 @@ class MpiCommunicator final : public Communicator {
   }
 
  private:
-  friend class FftwTransposition;
-  static Length reals_of_entry(const SharedMatrix& matrix) {
-    return static_cast<Length>(matrix.entry / sizeof(double));
+  /// Rows of so many bytes of a matrix.
+  struct Block {
+    Index rows;
+    std::size_t bytes;
+    bool empty() const { return rows == 0 || bytes == 0; }
+  };
+  /// What is sent at once, unless a row is more: it stays in cache while it is packed.
+  static constexpr std::size_t kPiece = std::size_t{1} << 20;
+
+  /// Sends one block of this rank's and puts another in its place, from the same rank.
+  void exchange(std::byte* start, std::size_t stride, int other, const Block& mine, const Block& theirs) {
+    const std::size_t widest = std::max(mine.bytes, theirs.bytes);
+    if (widest == 0) return;
+    const Index piece = std::max<Index>(static_cast<Index>(kPiece / widest), 1);
+    outgoing_.resize(static_cast<std::size_t>(piece) * widest);
+    incoming_.resize(outgoing_.size());
+    const auto row = [&](Index i) { return start + static_cast<std::size_t>(i) * stride; };
+    const auto rows_from = [&](const Block& block, Index first) {
+      return block.empty() ? 0 : std::clamp<Index>(block.rows - first, 0, piece);
+    };
+    const Thing sent(std::max<std::size_t>(mine.bytes, 1));
+    const Thing received(std::max<std::size_t>(theirs.bytes, 1));
+    for (Index first = 0;; first += piece) {
+      const Index out = rows_from(mine, first);
+      const Index in = rows_from(theirs, first);
+      if (out == 0 && in == 0) return;
+      for (Index i = 0; i < out; ++i) {
+        std::memcpy(outgoing_.data() + static_cast<std::size_t>(i) * mine.bytes, row(first + i), mine.bytes);
+      }
+      MPI_Sendrecv(outgoing_.data(), static_cast<int>(out), sent, out > 0 ? other : MPI_PROC_NULL, 1,
+                   incoming_.data(), static_cast<int>(in), received, in > 0 ? other : MPI_PROC_NULL, 1,
+                   MPI_COMM_WORLD, MPI_STATUS_IGNORE);
+      for (Index i = 0; i < in; ++i) {
+        std::memcpy(row(first + i), incoming_.data() + static_cast<std::size_t>(i) * theirs.bytes,
+                    theirs.bytes);
+      }
+      add_sent(mine.bytes, out);
+    }
   }
-  void add_sent(std::size_t bytes, Length things) {
+  void add_sent(std::size_t bytes, Index things) {
     sent_.bytes += static_cast<double>(bytes) * static_cast<double>(things);
     sent_.messages += things > 0 ? 1.0 : 0.0;
   }
@@ -138,56 +178,10 @@ class MpiCommunicator final : public Communicator {
   int number_ = 1;
   int rank_ = 0;
   Sent sent_;
+  std::vector<std::byte> outgoing_, incoming_;
   MPI_Comm ends_ = MPI_COMM_NULL;  ///< whatever ranks wait for elsewhere
   MPI_Request ending_ = MPI_REQUEST_NULL;
 };
-
-/// Entries are moved as numbers in double precision, whatever they are.
-class FftwTransposition final : public Transposition {
- public:
-  FftwTransposition(MpiCommunicator& ranks, const SharedMatrix& matrix) : ranks_(ranks), matrix_(matrix) {
-    FftwBuffer buffer(ranks.size(matrix) / sizeof(double));
-    const auto plan = [&](Length rows, Length of_rank, Length columns, Length columns_of_rank) {
-      return FftwPlan(fftw_mpi_plan_many_transpose(rows, columns, MpiCommunicator::reals_of_entry(matrix),
-                                                   of_rank, columns_of_rank, buffer.data(), buffer.data(),
-                                                   MPI_COMM_WORLD, FFTW_ESTIMATE));
-    };
-    to_columns_ = plan(matrix.rows, matrix.rows_of_rank, matrix.columns, matrix.columns_of_rank);
-    to_rows_ = plan(matrix.columns, matrix.columns_of_rank, matrix.rows, matrix.rows_of_rank);
-  }
-
-  void to_columns(void* buffer) override {
-    run(to_columns_, buffer);
-    const Part own = part_of(ranks_.rank(), matrix_.rows, matrix_.rows_of_rank);
-    add_sent(own, matrix_.columns, matrix_.columns_of_rank);
-  }
-  void to_rows(void* buffer) override {
-    run(to_rows_, buffer);
-    const Part own = part_of(ranks_.rank(), matrix_.columns, matrix_.columns_of_rank);
-    add_sent(own, matrix_.rows, matrix_.rows_of_rank);
-  }
-
- private:
-  static void run(const FftwPlan& plan, void* buffer) {
-    auto* const reals = static_cast<double*>(buffer);
-    fftw_mpi_execute_r2r(plan.get(), reals, reals);
-  }
-  void add_sent(const Part& own, Index across, Index across_of_rank) {
-    for (int other = 0; other < ranks_.number(); ++other) {
-      if (other == ranks_.rank()) continue;
-      ranks_.add_sent(matrix_.entry, Length(own.count()) * part_of(other, across, across_of_rank).count());
-    }
-  }
-
-  MpiCommunicator& ranks_;
-  SharedMatrix matrix_;
-  FftwPlan to_columns_;
-  FftwPlan to_rows_;
-};
-
-std::unique_ptr<Transposition> MpiCommunicator::transposition(const SharedMatrix& matrix) {
-  return std::make_unique<FftwTransposition>(*this, matrix);
-}
 
 }  // namespace
 
