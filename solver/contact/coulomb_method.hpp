@@ -10,7 +10,7 @@ namespace slipstick::solver {
 struct CoulombOptions {
   double tolerance = 1e-8;  ///< on gap / (q.Kq/2), the certificate
   long max_applications = 5000;
-  bool refine_motion = true;  ///< to second order, and its stiffness, at some applications more
+  bool refine_motion = true;  ///< to the tolerance, at some applications more where it needs be
   /// Called in each step on the finest grid with the applications there and gap over energy.
   std::function<void(int applications, double gap)> progress;
 };

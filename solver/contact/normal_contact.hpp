@@ -21,7 +21,7 @@ struct NormalProblem {
 
 struct NormalOptions {
   double tolerance = 1e-10;     ///< on the complementarity gap
-  bool refine_approach = true;  ///< to second order, at some applications more
+  bool refine_approach = true;  ///< to the tolerance, at some applications more where it needs be
   long max_applications = 2000;
   std::function<void(long applications, double gap)> progress = {};  ///< on the finest grid
 };

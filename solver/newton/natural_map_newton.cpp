@@ -17,6 +17,8 @@ constexpr double kRhoOfPressure = 0.1;
 /// Iterations of the linear problem that refines the multipliers at the end; each brings them nearer by a
 /// factor of about 5.
 constexpr int kRefiningIterations = 2;
+/// The error of multipliers falls about as the gap does; by how much less, at most.
+constexpr double kMultipliersLag = 10.0;
 /// Steps without a lower gap that end the run; fewer where the gap is good enough already.
 constexpr int kIdleSteps = 8;
 constexpr int kIdleStepsOfEnough = 2;
@@ -60,6 +62,8 @@ NewtonSummary NaturalMapNewton<Set>::run(ArrayXd& q, const Coefficients& multipl
   int idle_steps = 0;
   bool settled = false;  // the last step has not lowered the energy by more than its rounding
   for (;; ++summary.iterations) {
+    const Coefficients last = state_.multipliers();
+    const double last_gap = summary.gap;
     if (!state_.find_multipliers(q))
       return fail(summary, "no multiplier restores the load: it is not finite, or at its limit");
     summary.gap = state_.relative_gap(q, trial_.u);
@@ -70,7 +74,8 @@ NewtonSummary NaturalMapNewton<Set>::run(ArrayXd& q, const Coefficients& multipl
     if (summary.iterations == 0 && std::isfinite(summary.gap))
       wanted = std::max(wanted, options.part_of_first_gap * summary.gap);
     if (summary.gap <= wanted && summary.iterations >= options.least_iterations &&
-        (!options.refine_multipliers || refine(q, options.tolerance, summary))) {
+        (!options.refine_multipliers || multipliers_stand(last, summary.gap / last_gap, options.tolerance) ||
+         refine(q, options.tolerance, summary))) {
       summary.converged = true;
       return summary;
     }
@@ -182,6 +187,22 @@ bool NaturalMapNewton<Set>::take_gradient_step(ArrayXd& q) {
     return true;
   }
   return false;
+}
+
+/// Whether multipliers are as good as the tolerance: what the last step has changed them by was the error
+/// before, of which a part is left as of the gap. Those of no load are as good as the others, unless they are
+/// what is left of the states before.
+template <AdmissibleSet Set>
+bool NaturalMapNewton<Set>::multipliers_stand(const Coefficients& last, double part_of_gap,
+                                              double tolerance) const {
+  const Coefficients& now = state_.multipliers();
+  for (Index k = 0; k < now.size(); ++k) {
+    const bool loaded = state_.program().imposed[static_cast<std::size_t>(k)].load != 0.0;
+    if (!loaded && state_.program().energy_before == 0.0) continue;
+    if (!(kMultipliersLag * part_of_gap * std::abs(now[k] - last[k]) <= tolerance * std::abs(now[k])))
+      return false;
+  }
+  return true;
 }
 
 /// The multipliers to second order: those of a Newton step that keeps the loads. False if the gap at those

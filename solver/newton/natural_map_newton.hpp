@@ -14,7 +14,7 @@ struct NewtonOptions {
   double tolerance = 1e-8;       ///< on gap / (q.Kq/2); see is_certified()
   double part_of_first_gap = 0;  ///< of the field that it begins with: as good as the tolerance
   long max_applications = 1000;  ///< of the operator
-  /// Whether the multipliers are wanted to second order, at some applications more.
+  /// Whether the multipliers are wanted to the tolerance, at some applications more where they need be.
   bool refine_multipliers = true;
   /// At least: a step gives each cell its state, which a start that is good enough may not have.
   int least_iterations = 0;
@@ -73,6 +73,7 @@ class NaturalMapNewton {
   void write_trial(const ArrayXd& q, double length);
   Coefficients jump_loads(const ArrayXd& q);
   bool restore_along_conditions();
+  bool multipliers_stand(const Coefficients& last, double part_of_gap, double tolerance) const;
   bool refine(const ArrayXd& q, double tolerance, NewtonSummary& summary);
   NewtonSummary stop(const ArrayXd& q, const NewtonOptions& options, NewtonSummary& summary,
                      const std::string& why);
