@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <type_traits>
 
 namespace slipstick::solver {
 namespace {
@@ -84,25 +83,21 @@ Convolution::Convolution(const Grid& grid, BlockKernel kernel, const ElasticLaw&
     const auto found = std::find(components_.begin(), components_.end(), this->kernel().components[c]);
     slot_.at(c) = count(found - components_.begin());
   }
-  if constexpr (std::is_same_v<double, double>) {
-    set_spectra(law, transform_);
-  } else {
-    PaddedTransform transform(grid, 1, std::max(options.threads, 1));
-    set_spectra(law, transform);
-  }
+  set_spectra(law);
 }
 
 /// The kernel is the sum of a quadrant of offsets and its three mirror images. With Q the quadrant's
 /// spectrum, found as any field's, the sum's is 2 Re or 2 i Im of Q(k1, k2) +- Q(-k1, k2).
-void Convolution::set_spectra(const ElasticLaw& law, PaddedTransform& transform) {
-  const Grid& grid = this->grid();
-  auto quadrants = law.influence_tables(components_, grid, transform.threads());
+void Convolution::set_spectra(const ElasticLaw& law) {
+  const Grid& cells = grid();
+  auto quadrants = law.influence_tables(components_, cells, transform_.threads());
   for (std::size_t slot = 0; slot < components_.size(); ++slot) {
     std::vector<double>& quadrant = quadrants[slot];
-    for (Index i = 0; i < grid.n1; ++i) quadrant[count(i * grid.n2)] *= 0.5;  // on the axes, images coincide
-    for (Index j = 0; j < grid.n2; ++j) quadrant[count(j)] *= 0.5;
-    transform.forward_rows(quadrant);
-    transform.through_columns(1, 0, [&](Index column, const PaddedTransform::Spectrum& spectrum) {
+    for (Index i = 0; i < cells.n1; ++i)
+      quadrant[count(i * cells.n2)] *= 0.5;  // on the axes, images coincide
+    for (Index j = 0; j < cells.n2; ++j) quadrant[count(j)] *= 0.5;
+    transform_.forward_rows(quadrant);
+    transform_.through_columns(1, 0, [&](Index column, const PaddedTransform::Spectrum& spectrum) {
       set_factors(components_[slot], spectrum.even[0], spectrum.odd[0],
                   spectra_.data() + start(column, slot));
     });
@@ -131,9 +126,9 @@ std::size_t Convolution::start(Index column, std::size_t slot) const {
 
 auto Convolution::factors(Index column) const -> Factors {
   Factors result{};
-  for (std::size_t c = 0; c < this->kernel().components.size(); ++c) {
+  for (std::size_t c = 0; c < kernel().components.size(); ++c) {
     result.quadrant[c] = spectra_.data() + start(column, slot_[c]);
-    result.sign[c] = parity(this->kernel().components[c]).x1;
+    result.sign[c] = parity(kernel().components[c]).x1;
   }
   return result;
 }
@@ -144,7 +139,7 @@ double Convolution::sent_bytes(const Grid& grid, const BlockKernel& kernel) {
 
 void Convolution::do_apply(std::span<const double> traction, std::span<double> displacement) {
   transform_.forward_rows(traction);
-  transform_.through_columns(this->inputs(), this->outputs(), [&](Index column, const Spectrum& spectrum) {
+  transform_.through_columns(inputs(), outputs(), [&](Index column, const Spectrum& spectrum) {
     multiply_(spectrum, factors(column), padded1() / 2);
   });
   transform_.backward_rows(displacement);

@@ -34,7 +34,7 @@ class Convolution final : public LinearOperator {
   using Multiply = void (*)(const Spectrum&, const Factors&, Index);
 
   void do_apply(std::span<const double> traction, std::span<double> displacement) override;
-  void set_spectra(const ElasticLaw& law, PaddedTransform& transform);
+  void set_spectra(const ElasticLaw& law);
   void set_factors(Component component, const std::complex<double>* even, const std::complex<double>* odd,
                    double* factors) const;
   std::size_t start(Index column, std::size_t slot) const;  ///< of a component's factors at a column

@@ -140,7 +140,7 @@ Share MirroredConvolution::own_row_groups(const Grid& quadrant) {
 }
 
 Parity MirroredConvolution::parity_of(Index field) const {
-  if (this->inputs() == 1) return {1, 1};
+  if (inputs() == 1) return {1, 1};
   return field == 0 ? Parity{1, -1} : Parity{-1, 1};
 }
 
@@ -163,7 +163,7 @@ void MirroredConvolution::do_apply(std::span<const double> traction, std::span<d
     });
   };
   in_row_groups([&](int thread, Index field, Index group) {
-    rows_forward(thread, field, group, traction.data() + field * this->grid().cells());
+    rows_forward(thread, field, group, traction.data() + field * grid().cells());
   });
   for (Index field = 0; field < fields(); ++field) shared_.to_columns(of_field(field));
   if (diagonal_) {
@@ -174,14 +174,14 @@ void MirroredConvolution::do_apply(std::span<const double> traction, std::span<d
   }
   for (Index field = 0; field < fields(); ++field) shared_.to_rows(of_field(field));
   in_row_groups([&](int thread, Index field, Index group) {
-    rows_backward(thread, field, group, displacement.data() + field * this->grid().cells());
+    rows_backward(thread, field, group, displacement.data() + field * grid().cells());
     if (diagonal_) mirror_about_diagonal(group, displacement);
   });
 }
 
 void MirroredConvolution::rows_forward(int thread, Index field, Index group, const double* values) {
-  const Index n2 = this->grid().n2;
-  const Index rows = std::min(kLines, this->grid().n1 - group * kLines);
+  const Index n2 = grid().n2;
+  const Index rows = std::min(kLines, grid().n1 - group * kLines);
   const double* const first = values + group * kLines * n2;
   double* const block = half_transformed(field, group);
   if (std::all_of(first, first + rows * n2, [](double value) { return value == 0; })) {
@@ -193,8 +193,8 @@ void MirroredConvolution::rows_forward(int thread, Index field, Index group, con
 }
 
 void MirroredConvolution::rows_backward(int thread, Index field, Index group, double* values) {
-  const Index n2 = this->grid().n2;
-  const Index rows = std::min(kLines, this->grid().n1 - group * kLines);
+  const Index n2 = grid().n2;
+  const Index rows = std::min(kLines, grid().n1 - group * kLines);
   const double* const block = half_transformed(field, group);
   along2_.backward(row_workspaces_[count(thread)],
                    {.data = values + group * kLines * n2, .line_stride = n2, .count = rows},
@@ -268,7 +268,7 @@ void MirroredConvolution::columns_backward_diagonal(int thread, Index group) {
 
 /// Writes u2(x2, x1) = -u1(x1, x2) from a group of rows of u1, while these are in cache.
 void MirroredConvolution::mirror_about_diagonal(Index group, std::span<double> displacement) const {
-  const Index n = this->grid().n1;
+  const Index n = grid().n1;
   const Index first = group * kLines;
   const Index last = std::min(first + kLines, n);
   const double* const u1 = displacement.data();

@@ -48,7 +48,7 @@ class MirroredConvolution final : public LinearOperator {
   void columns_backward_diagonal(int thread, Index group);
   void mirror_about_diagonal(Index group, std::span<double> displacement) const;
 
-  Index fields() const { return diagonal_ ? 1 : static_cast<Index>(this->inputs()); }
+  Index fields() const { return diagonal_ ? 1 : static_cast<Index>(inputs()); }
   Parity parity_of(Index field) const;
   Workspace& column_workspace(int thread, Index field) {
     return column_workspaces_[static_cast<std::size_t>(thread * fields() + field)];
@@ -61,10 +61,9 @@ class MirroredConvolution final : public LinearOperator {
   }
   /// One of this rank's groups of columns of half_transformed_.
   template <typename Value>
-  typename Transform::template Lines<Value> columns(Index field, Index group) {
+  Transform::Lines<Value> columns(Index field, Index group) {
     constexpr Index block = kLines * kLines;
-    typename Transform::template Lines<Value> lines{of_field(field) + group * block, kLines,
-                                                    shared_.row_step()};
+    Transform::Lines<Value> lines{of_field(field) + group * block, kLines, shared_.row_step()};
     lines.run = shared_.rows_of_rank;
     lines.run_stride = shared_.columns_of_rank() * block;
     return lines;

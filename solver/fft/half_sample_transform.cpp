@@ -120,7 +120,7 @@ void HalfSampleTransform::store_pair(double* plain, Line<double> first, Line<dou
   Index front = 0;
   Index back = half_ - kNumbers;
   const auto get_samples = [&](double* x, double* y) {
-    const typename P::Halves samples{get(plain, front), sign * get(plain, back)};
+    const P::Halves samples{get(plain, front), sign * get(plain, back)};
     P::store(x, P::real_part(samples));
     P::store(y, P::imaginary_part(samples));
     front += kNumbers;

@@ -83,7 +83,7 @@ class HalfSampleTransform {
 
  private:
   using P = Packet;
-  using Vector = typename P::Vector;
+  using Vector = P::Vector;
   static constexpr Index kPairs = kLines / 2;
   static constexpr Index kNumbers = P::kSize / 2;  ///< complex numbers in a packet
   using Samples = std::array<double, static_cast<std::size_t>(P::kSize)>;

@@ -153,7 +153,7 @@ void PaddedTransform::forward_group(int thread, std::size_t field, Index first_r
 /// The spectra X and Y of two real rows from that of x + i y: 2 X(k) = Z(k) + conj Z(-k), 2 i Y(k) = Z(k) -
 /// conj Z(-k).
 void PaddedTransform::separate(std::size_t field, Index first_row, const Complex* spectra) {
-  constexpr double half(0.5);
+  constexpr double half = 0.5;
   const Index group = first_row / kRows;
   const auto separate_column = [&](Index to, Index k, Index mirrored, const Complex* pairs) {
     Complex* const out = rows_of(field, to, group);
