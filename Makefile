@@ -106,7 +106,7 @@ lint: setup ## check format and clang-tidy's rules, 14 or later (only what chang
 	@cmake --build build-dev --target slipstick_commit
 	@git $(if $(LINT_SINCE),diff --name-only --diff-filter=d $(LINT_SINCE),ls-files) -- '*.cpp' \
 	  | xargs --no-run-if-empty -n 4 -P $$(nproc) clang-tidy -p build-dev --quiet \
-	  --extra-arg=-Wno-unused-command-line-argument
+	  --extra-arg=-Wno-unused-command-line-argument --extra-arg=-Wno-unknown-warning-option
 
 bench: configure ## time everything, each time with its error, and draw it
 	$(call build,slipstick slipstick_benchmarks)

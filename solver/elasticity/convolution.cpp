@@ -89,13 +89,12 @@ Convolution::Convolution(const Grid& grid, BlockKernel kernel, const ElasticLaw&
 /// The kernel is the sum of a quadrant of offsets and its three mirror images. With Q the quadrant's
 /// spectrum, found as any field's, the sum's is 2 Re or 2 i Im of Q(k1, k2) +- Q(-k1, k2).
 void Convolution::set_spectra(const ElasticLaw& law) {
-  const Grid& cells = grid();
-  auto quadrants = law.influence_tables(components_, cells, transform_.threads());
+  const Grid& grid = this->grid();
+  auto quadrants = law.influence_tables(components_, grid, transform_.threads());
   for (std::size_t slot = 0; slot < components_.size(); ++slot) {
     std::vector<double>& quadrant = quadrants[slot];
-    for (Index i = 0; i < cells.n1; ++i)
-      quadrant[count(i * cells.n2)] *= 0.5;  // on the axes, images coincide
-    for (Index j = 0; j < cells.n2; ++j) quadrant[count(j)] *= 0.5;
+    for (Index i = 0; i < grid.n1; ++i) quadrant[count(i * grid.n2)] *= 0.5;  // on the axes, images coincide
+    for (Index j = 0; j < grid.n2; ++j) quadrant[count(j)] *= 0.5;
     transform_.forward_rows(quadrant);
     transform_.through_columns(1, 0, [&](Index column, const PaddedTransform::Spectrum& spectrum) {
       set_factors(components_[slot], spectrum.even[0], spectrum.odd[0],

@@ -217,7 +217,7 @@ TEST_F(HardFile, ProgramComparesWithFinerMeshes) {
   const solver::Grid grid = solver::make_model(scene).grid_in_m();
   scene.extent = {24.0 * grid.h1, 12.0 * grid.h2};
   for (const int finer : {1, 2, 4}) {
-    scene.cells = {24 * finer, 12 * finer};
+    scene.cells = {24L * finer, 12L * finer};
     scene.substeps = finer;
     twists.push_back(solver::solve(scene).twist_angle);
   }
