@@ -221,7 +221,6 @@ auto PaddedTransform::gathered(int thread, std::size_t field, Index column_index
     __builtin_prefetch(from + kAhead * 2 * group_step_);
     std::copy_n(reinterpret_cast<const Complex*>(from), kRows, values + group * kRows);
   });
-  std::fill(values + groups() * kRows, values + std::max(m1_, groups() * kRows), Complex());
   return values;
 }
 
@@ -230,7 +229,7 @@ void PaddedTransform::forward_column(int thread, std::size_t field, Index column
   Complex* const values = gathered(thread, field, column_index);
   Complex* const odd = turned(thread);
   // A row without another to go with it leaves rounding where that would stand.
-  std::fill(values + grid_.n1, values + groups() * kRows, Complex());
+  std::fill(values + grid_.n1, values + std::max(m1_, groups() * kRows), Complex());
   for (Index i = 0; i < grid_.n1; ++i) odd[i] = times(values[i], twiddle1_[count(i)]);
   std::fill(odd + grid_.n1, odd + m1_, Complex());
   execute(column_forward_, values, spectrum.even[field]);
@@ -244,8 +243,7 @@ void PaddedTransform::backward_column(int thread, std::size_t field, Index colum
   execute(column_backward_, spectrum.even[field], even);
   execute(column_backward_, spectrum.odd[field], odd);
   for (Index i = 0; i < grid_.n1; ++i) even[i] += times_conjugate(odd[i], twiddle1_[count(i)]);
-  // What the rows' transforms and, on one rank, the next one count on.
-  std::fill(even + grid_.n1, even + std::max(m1_, groups() * kRows), Complex());
+  std::fill(even + grid_.n1, even + groups() * kRows, Complex());  // a row without another to go with it
   if (!several_) return;
   shared_.each_row(reals(field), column_index, [&](Index group, double* to) {
     __builtin_prefetch(to + kAhead * 2 * group_step_, 1);

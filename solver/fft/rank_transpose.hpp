@@ -35,8 +35,8 @@ struct RankTranspose {
     }
   }
 
-  void to_columns(double* buffer) const { carry(buffer, true); }
-  void to_rows(double* buffer) const { carry(buffer, false); }
+  void to_columns(double* buffer) const { transpose(buffer, true); }
+  void to_rows(double* buffer) const { transpose(buffer, false); }
 
   /// What all ranks together send for one way.
   double sent_bytes() const {
@@ -51,10 +51,10 @@ struct RankTranspose {
   }
 
  private:
-  void carry(double* buffer, bool to_columns) const {
+  void transpose(double* buffer, bool to_columns) const {
     if (!ranks.several()) return;
     const auto bytes = [](Index numbers) { return static_cast<std::size_t>(numbers) * sizeof(double); };
-    ranks.communicator().carry(
+    ranks.communicator().transpose(
         buffer, {rows, rows_of_rank, columns, columns_of_rank(), bytes(entry), bytes(row_step())},
         to_columns);
   }

@@ -35,10 +35,10 @@ class Communicator {
   /// Brings those of such things that are next to this rank's, `depth` of them on each side.
   virtual void gather_beside(void* things, std::size_t bytes, Index count, Index of_rank, Index depth) = 0;
 
-  /// Carries such a matrix between ranks, in place: from this rank's rows, of all columns, to its columns, of
-  /// all rows, and back. What other ranks have in this one's columns comes where this one has theirs: row i
-  /// of rank r stands in row i of the buffer, from column r * columns_of_rank on.
-  virtual void carry(void* buffer, const SharedMatrix& matrix, bool to_columns) = 0;
+  /// Transposes such a matrix between ranks, in place: from this rank's rows, of all columns, to its columns,
+  /// of all rows, and back. What other ranks have in this one's columns comes where this one has theirs: row
+  /// i of rank r stands in row i of the buffer, from column r * columns_of_rank on.
+  virtual void transpose(void* buffer, const SharedMatrix& matrix, bool to_columns) = 0;
 
   /// Bytes and messages that this rank has sent to others so far.
   struct Sent {

@@ -38,7 +38,7 @@ class Planned final : public Communicator {
   Sent sent() const override { return {}; }
   void gather(void*, std::size_t, Index, Index) override { refuse(); }
   void gather_beside(void*, std::size_t, Index, Index, Index) override { refuse(); }
-  void carry(void*, const SharedMatrix&, bool) override { refuse(); }
+  void transpose(void*, const SharedMatrix&, bool) override { refuse(); }
   bool have_all_ended() override { return true; }
   [[noreturn]] void abort(int exit_code) override { std::exit(exit_code); }
 

@@ -100,7 +100,7 @@ class MpiCommunicator final : public Communicator {
   }
 
   /// Two by two, so that what comes takes the place of what goes.
-  void carry(void* buffer, const SharedMatrix& matrix, bool to_columns) override {
+  void transpose(void* buffer, const SharedMatrix& matrix, bool to_columns) override {
     for (int round = 0; round < number_; ++round) {
       const int other = (round - rank_ + number_) % number_;
       if (other == rank_) continue;

@@ -17,8 +17,8 @@ constexpr double kRhoOfPressure = 0.1;
 /// Iterations of the linear problem that refines the multipliers at the end; each brings them nearer by a
 /// factor of about 5.
 constexpr int kRefiningIterations = 2;
-/// The error of multipliers falls about as the gap does; by how much less, at most.
-constexpr double kMultipliersLag = 10.0;
+/// Safety factor: the error of multipliers falls about as the gap does.
+constexpr double kMultiplierSafety = 10.0;
 /// Steps without a lower gap that end the run; fewer where the gap is good enough already.
 constexpr int kIdleSteps = 8;
 constexpr int kIdleStepsOfEnough = 2;
@@ -74,7 +74,8 @@ NewtonSummary NaturalMapNewton<Set>::run(ArrayXd& q, const Coefficients& multipl
     if (summary.iterations == 0 && std::isfinite(summary.gap))
       wanted = std::max(wanted, options.part_of_first_gap * summary.gap);
     if (summary.gap <= wanted && summary.iterations >= options.least_iterations &&
-        (!options.refine_multipliers || multipliers_stand(last, summary.gap / last_gap, options.tolerance) ||
+        (!options.refine_multipliers ||
+         multipliers_are_accurate(last, summary.gap / last_gap, options.tolerance) ||
          refine(q, options.tolerance, summary))) {
       summary.converged = true;
       return summary;
@@ -193,13 +194,13 @@ bool NaturalMapNewton<Set>::take_gradient_step(ArrayXd& q) {
 /// before, of which a part is left as of the gap. Those of no load are as good as the others, unless they are
 /// what is left of the states before.
 template <AdmissibleSet Set>
-bool NaturalMapNewton<Set>::multipliers_stand(const Coefficients& last, double part_of_gap,
-                                              double tolerance) const {
+bool NaturalMapNewton<Set>::multipliers_are_accurate(const Coefficients& last, double part_of_gap,
+                                                     double tolerance) const {
   const Coefficients& now = state_.multipliers();
   for (Index k = 0; k < now.size(); ++k) {
     const bool loaded = state_.program().imposed[static_cast<std::size_t>(k)].load != 0.0;
     if (!loaded && state_.program().energy_before == 0.0) continue;
-    if (!(kMultipliersLag * part_of_gap * std::abs(now[k] - last[k]) <= tolerance * std::abs(now[k])))
+    if (!(kMultiplierSafety * part_of_gap * std::abs(now[k] - last[k]) <= tolerance * std::abs(now[k])))
       return false;
   }
   return true;

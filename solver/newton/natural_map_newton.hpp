@@ -73,7 +73,7 @@ class NaturalMapNewton {
   void write_trial(const ArrayXd& q, double length);
   Coefficients jump_loads(const ArrayXd& q);
   bool restore_along_conditions();
-  bool multipliers_stand(const Coefficients& last, double part_of_gap, double tolerance) const;
+  bool multipliers_are_accurate(const Coefficients& last, double part_of_gap, double tolerance) const;
   bool refine(const ArrayXd& q, double tolerance, NewtonSummary& summary);
   NewtonSummary stop(const ArrayXd& q, const NewtonOptions& options, NewtonSummary& summary,
                      const std::string& why);
