@@ -7,7 +7,7 @@
 
 #include "convergence/oracle/errors.hpp"
 #include "convergence/results/provenance.hpp"
-#include "solver/grid/communicator.hpp"
+#include "solver/mpi/communicator.hpp"
 #include "solver/scene/roughness.hpp"
 
 namespace slipstick::convergence {

@@ -37,9 +37,9 @@ mutant(k12_sign_in_a_quadrant
 
 # A shear in place of a rotation, Eqs. (8), (9) as printed.
 mutant(rotation_as_printed
-  FILE solver/contact/coulomb_method.cpp
-  FIND [[MotionField(grid, 0.0, 0.0, 1.0)]]
-  REPLACE [[MotionField(Grid{grid.n1, grid.n2, grid.h1, -grid.h2, grid.quadrant}, 0.0, 0.0, 1.0)]]
+  FILE solver/grid/motion_field.hpp
+  FIND [[Row{along1_, -turn_, x1 + cells_}]]
+  REPLACE [[Row{along1_, turn_, x1 + cells_}]]
   GATES full-64-twist full-64-traction-averaged-l2)
 
 # Slip in the direction that the traction had when a cell began to slip, Eqs. (22), (23).

@@ -69,7 +69,11 @@ class TangentialOnGrid {
 
   static BlockKernel kernel() { return tangential_kernel(); }
   static std::span<const Parity> parities() { return kTorsionParities; }
-  FrictionDiscs admissible() const { return FrictionDiscs(grid_, problem_.friction_bound); }
+  FrictionDiscs admissible() const { return {packing_.cells(), problem_.friction_bound}; }
+  Packing& packing() { return packing_; }
+  /// The contact is known.
+  static void look_ahead(const TangentialOnGrid&, const NestedSummary&) {}
+  static bool overlooks(LinearOperator&, const NestedSummary&, double) { return false; }
   ArrayXd start() const {
     return problem_.start.size() > 0 ? problem_.start : ArrayXd::Zero(2 * problem_.friction_bound.size());
   }
@@ -87,6 +91,9 @@ class TangentialOnGrid {
       op.apply(problem_.start, before);
       reference_ = reference_.size() > 0 ? ArrayXd(reference_ - before) : ArrayXd(-before);
     }
+    packing_ = Packing(grid_, Sweep(grid_, problem_.friction_bound), 2);
+    for (ArrayXd* const field : {&problem_.friction_bound, &reference_}) *field = packing_.packed(*field);
+    for (MotionField& motion : motions_) motion = motion.packed(packing_);
     ConvexProgram program;
     program.energy_before = problem_.energy_before;
     if (reference_.size() > 0) program.g = &reference_;
@@ -126,6 +133,7 @@ class TangentialOnGrid {
   TangentialProblem problem_;
   std::array<MotionField, 3> motions_;  ///< by Motion: (1, 0), (0, 1) and (-x2, x1)
   ArrayXd reference_;
+  Packing packing_;  ///< of the contact
 };
 
 /// The motions: those that the program found, and those that it was given.

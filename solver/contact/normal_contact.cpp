@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <utility>
 
@@ -17,48 +18,116 @@ using Eigen::ArrayXd;
 
 constexpr std::array<Parity, 1> kPressureParities{{{1, 1}}};
 
+/// Cells are looked at that may be in contact by what a coarse grid says: whose pressure is not zero there, or
+/// whose opening is no more than this many times what the mesh leaves of openings in contact.
+constexpr double kOpenings = 3.0;
+/// Beyond this part of those that can touch all are.
+constexpr double kNearlyAll = 0.7;
+
 /// The normal problem on one grid, as solve_nested() asks for it.
 class PressureOnGrid {
  public:
-  /// reachable: 1 where the bodies can touch; height: the undeformed gap there, 0 elsewhere.
-  PressureOnGrid(const Grid& grid, ArrayXd reachable, ArrayXd height, double total_pressure,
-                 ArrayXd guess = {})
+  /// gap: undeformed, infinite where the bodies cannot touch.
+  PressureOnGrid(const Grid& grid, ArrayXd gap, double total_pressure, ArrayXd guess = {})
       : grid_(grid),
         approach_(grid, 1.0),
-        reachable_(std::move(reachable)),
-        height_(std::move(height)),
+        gap_(std::move(gap)),
+        reachable_(cells_where([&](Index i) { return std::isfinite(gap_[i]); })),
+        cells_(reachable_),
         total_pressure_(total_pressure),
         guess_(std::move(guess)) {}
 
   static BlockKernel kernel() { return normal_kernel(); }
   static std::span<const Parity> parities() { return kPressureParities; }
-  PositivePressures admissible() const { return PositivePressures(grid_, reachable_); }
-  ArrayXd start() const { return ArrayXd::Zero(reachable_.size()); }
+  PositivePressures admissible() const { return PositivePressures(packing_.cells()); }
+  Packing& packing() { return packing_; }
+  ArrayXd start() const { return ArrayXd::Zero(grid_.cells()); }
   ArrayXd guess() const { return guess_; }
-  void keep_own_rows() {
-    reachable_ = in_own_rows(grid_, std::move(reachable_));
-    height_ = in_own_rows(grid_, std::move(height_));
-  }
-  ConvexProgram program(LinearOperator&) const {
-    return {.g = &height_, .imposed = {{&approach_, total_pressure_}}};
+  void keep_own_rows() { gap_ = in_own_rows(grid_, std::move(gap_)); }
+  ConvexProgram program(LinearOperator&) {
+    packing_ = Packing(grid_, cells_, 1);
+    heights_ = packing_.packed(gap_);
+    packed_approach_ = approach_.packed(packing_);
+    return {.g = &heights_, .imposed = {{&packed_approach_, total_pressure_}}};
   }
 
   /// A coarse cell can touch where half of it can, at the mean height of that part.
   PressureOnGrid coarsened(const Grid& coarse) const {
-    const ArrayXd part = restrict_to(coarse, grid_, reachable_);
-    const ArrayXd height = restrict_to(coarse, grid_, height_);
-    const ArrayXd reachable = (part >= std::min(0.5, part.maxCoeff())).cast<double>();
-    return {coarse, reachable, (reachable > 0.0).select(height / part.max(0.25 * part.maxCoeff()), 0.0),
+    const ArrayXd part = restrict_to(coarse, grid_, gap_.isFinite().cast<double>());
+    const ArrayXd height = restrict_to(coarse, grid_, gap_.isFinite().select(gap_, 0.0));
+    return {coarse,
+            (part >= std::min(0.5, part.maxCoeff()))
+                .select(height / part.max(0.25 * part.maxCoeff()), std::numeric_limits<double>::infinity()),
             total_pressure_ * grid_.cell_area() / coarse.cell_area()};
   }
 
+  /// By the opening that the coarse grid's displacement leaves.
+  void look_ahead(PressureOnGrid& coarse, const NestedSummary& below) {
+    if (!below.newton.converged) return;
+    share_rows(coarse.grid_, coarse.displacement_);
+    const ArrayXd pressure = prolong_to(grid_, coarse.grid_, below.field, kPressureParities);
+    ArrayXd opening = prolong_to(grid_, coarse.grid_, coarse.displacement_, kPressureParities);
+    opening += gap_ - below.newton.multipliers[0];
+    const Sweep pressed = cells_where([&](Index i) { return pressure[i] > 0.0 && std::isfinite(gap_[i]); });
+    const double square = pressed.sum<double>([&](Index first, Index last, double& sum) {
+      sum += opening.segment(first, last - first).square().sum();
+    });
+    const double margin = kOpenings * std::sqrt(square / static_cast<double>(pressed.count()));
+    look_at([&](Index i) { return std::isfinite(gap_[i]) && (pressure[i] > 0.0 || opening[i] < margin); });
+  }
+
+  /// Whether other cells open less than those that were looked at. The gap is that of all then.
+  bool overlooks(LinearOperator& op, NestedSummary& result, double tolerance) {
+    displacement_ = packing_.unpacked(result.displacement);
+    if (!result.newton.converged || cells_.count() == reachable_.count()) return false;
+    const double energy = 0.5 * packing_.cells().sum<double>([&](Index first, Index last, double& sum) {
+      const Index n = last - first;
+      sum += (result.field.segment(first, n) * result.displacement.segment(first, n)).sum();
+    });
+    displacement_ = packing_.unpacked(result.field);
+    op.apply_own(displacement_, displacement_);
+    const auto lowest_of = [&](const Sweep& cells) {
+      return cells
+          .sum<Lowest>([&](Index first, Index last, Lowest& lowest) {
+            for (Index i = first; i < last; ++i) lowest += {displacement_[i] + gap_[i]};
+          })
+          .value;
+    };
+    const double lowest = lowest_of(cells_);
+    const double overlooked = lowest - lowest_of(reachable_);
+    result.newton.gap += overlooked * total_pressure_ / energy;
+    if (result.newton.gap <= tolerance) return false;
+    result.field = packing_.unpacked(result.field);
+    look_at([&](Index i) {
+      return packing_.place(i) >= 0 || displacement_[i] + gap_[i] < lowest + overlooked;
+    });
+    return true;
+  }
+
  private:
+  template <typename Contains>
+  Sweep cells_where(const Contains& contains) const {
+    Sweep cells(grid_);
+    cells.assign(grid_.cells(), contains);
+    return cells;
+  }
+  template <typename Contains>
+  void look_at(const Contains& contains) {
+    cells_ = cells_where(contains);
+    if (static_cast<double>(cells_.count()) > kNearlyAll * static_cast<double>(reachable_.count()))
+      cells_ = reachable_;
+  }
+
   Grid grid_;
   MotionField approach_;
-  ArrayXd reachable_;
-  ArrayXd height_;
+  ArrayXd gap_;
+  Sweep reachable_, cells_;  ///< where the bodies can touch, and of these those that are looked at
   double total_pressure_;
   ArrayXd guess_;
+  Packing packing_;
+  MotionField packed_approach_ = approach_;
+  ArrayXd heights_;       ///< packed
+  ArrayXd displacement_;  ///< K p of all cells
 };
 
 void require_valid(const NormalProblem& problem, const Grid& grid) {
@@ -73,9 +142,7 @@ void require_valid(const NormalProblem& problem, const Grid& grid) {
 
 NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& grid,
                                    const NormalProblem& problem, const NormalOptions& options) {
-  PressureOnGrid contact(grid, problem.gap.isFinite().cast<double>(),
-                         problem.gap.isFinite().select(problem.gap, 0.0), problem.total_pressure,
-                         problem.guess);
+  PressureOnGrid contact(grid, problem.gap, problem.total_pressure, problem.guess);
   const NewtonOptions newton{.tolerance = options.tolerance,
                              .max_applications = options.max_applications,
                              .refine_multipliers = options.refine_approach,

@@ -34,7 +34,9 @@ std::vector<double> all_offsets(Component component, const ElasticLaw& law, cons
 
 DirectSum::DirectSum(const Grid& grid, BlockKernel kernel, const ElasticLaw& law,
                      const OperatorOptions& options)
-    : LinearOperator(grid, std::move(kernel)), threads_(std::max(options.threads, 1)) {
+    : LinearOperator(grid, std::move(kernel)),
+      source_(inputs() * static_cast<std::size_t>(grid.cells())),
+      threads_(std::max(options.threads, 1)) {
   for (const Component component : this->kernel().distinct()) {
     coefficients_.emplace(component, all_offsets(component, law, grid));
   }
@@ -44,6 +46,7 @@ void DirectSum::do_apply(std::span<const double> traction, std::span<double> dis
   const Index n1 = grid().n1;
   const Index n2 = grid().n2;
   const Index cells = grid().cells();
+  std::ranges::copy(traction, source_.begin());
   std::fill(displacement.begin(), displacement.end(), 0.0);
   const auto rows = [&](int, Index first, Index last) {
     for (Index i = first; i < last; ++i) {
@@ -51,7 +54,7 @@ void DirectSum::do_apply(std::span<const double> traction, std::span<double> dis
         double* const out = displacement.data() + static_cast<Index>(a) * cells + i * n2;
         for (std::size_t b = 0; b < inputs(); ++b) {
           const double* const coefficient = coefficients_.at(kernel().components[a * inputs() + b]).data();
-          const double* const in = traction.data() + static_cast<Index>(b) * cells;
+          const double* const in = source_.data() + static_cast<Index>(b) * cells;
           for (Index k = 0; k < n1; ++k) {
             const double* const row = coefficient + (i - k + n1 - 1) * (2 * n2 - 1);
             for (Index l = 0; l < n2; ++l) {
@@ -71,6 +74,7 @@ DenseMatrix::DenseMatrix(const Grid& grid, BlockKernel kernel, const ElasticLaw&
     : LinearOperator(grid, std::move(kernel)) {
   const Index cells = grid.cells();
   matrix_.resize(static_cast<Index>(outputs()) * cells, static_cast<Index>(inputs()) * cells);
+  source_.resize(matrix_.cols());
   for (std::size_t a = 0; a < outputs(); ++a) {
     for (std::size_t b = 0; b < inputs(); ++b) {
       const std::vector<double> all = all_offsets(this->kernel().components[a * inputs() + b], law, grid);
@@ -87,9 +91,9 @@ DenseMatrix::DenseMatrix(const Grid& grid, BlockKernel kernel, const ElasticLaw&
 }
 
 void DenseMatrix::do_apply(std::span<const double> traction, std::span<double> displacement) {
-  const Eigen::Map<const Eigen::VectorXd> in(traction.data(), static_cast<Index>(traction.size()));
+  std::ranges::copy(traction, source_.begin());
   Eigen::Map<Eigen::VectorXd> out(displacement.data(), static_cast<Index>(displacement.size()));
-  out.noalias() = matrix_ * in;
+  out.noalias() = matrix_ * source_;
 }
 
 }  // namespace slipstick::solver

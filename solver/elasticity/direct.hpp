@@ -17,6 +17,7 @@ class DirectSum final : public LinearOperator {
 
   /// Each component at all offsets -(n-1) .. n-1, (2 n1 - 1) x (2 n2 - 1) values.
   std::map<Component, std::vector<double>> coefficients_;
+  std::vector<double> source_;
   int threads_;
 };
 
@@ -30,6 +31,7 @@ class DenseMatrix final : public LinearOperator {
   void do_apply(std::span<const double> traction, std::span<double> displacement) override;
 
   Eigen::MatrixXd matrix_;
+  Eigen::VectorXd source_;
 };
 
 }  // namespace slipstick::solver

@@ -10,6 +10,7 @@
 #include "solver/elasticity/operator_kind.hpp"
 #include "solver/grid/grid.hpp"
 #include "solver/grid/own_rows.hpp"
+#include "solver/grid/packing.hpp"
 
 namespace slipstick::solver {
 
@@ -38,8 +39,8 @@ class LinearOperator {
   LinearOperator(const LinearOperator&) = delete;
   LinearOperator& operator=(const LinearOperator&) = delete;
 
-  /// displacement = K * traction: outputs()*cells and inputs()*cells values. They may not overlap. Allocates
-  /// nothing. Throws std::invalid_argument for other sizes.
+  /// displacement = K * traction: outputs()*cells and inputs()*cells values. They may be the same, and not
+  /// overlap otherwise. Allocates nothing. Throws std::invalid_argument for other sizes.
   void apply(std::span<const double> traction, std::span<double> displacement) {
     apply_own(traction, displacement);
     share_rows(grid_, displacement);
@@ -63,6 +64,11 @@ class LinearOperator {
   void apply_own(const Field& traction, Field& displacement) {
     apply_own(std::span(traction.data(), static_cast<std::size_t>(traction.size())),
               std::span(displacement.data(), static_cast<std::size_t>(displacement.size())));
+  }
+
+  /// Of packed fields.
+  void apply_own(const Field& traction, Field& displacement, Packing& packing) {
+    packing.on_grid(traction, displacement, [&](Field& field) { apply_own(field, field); });
   }
 
   const Grid& grid() const { return grid_; }

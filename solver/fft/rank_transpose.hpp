@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "solver/grid/communicator.hpp"
+#include "solver/mpi/communicator.hpp"
 #include "solver/grid/own_rows.hpp"
 
 namespace slipstick::solver {

@@ -1,32 +1,46 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <memory>
 
-#include "solver/grid/grid.hpp"
+#include "solver/grid/packing.hpp"
 
 namespace slipstick::solver {
 
 /// The displacements of a rigid motion over a grid, (along1 - turn x2, along2 + turn x1) as two components or
 /// the first alone, worked out where they are asked for: no field of them is kept. What is said of values
-/// next to each other holds for those of one row.
+/// next to each other holds for those of one row, or of one component where they are packed.
 class MotionField {
  public:
   MotionField(const Grid& grid, double along1, double along2 = 0.0, double turn = 0.0)
       : grid_(grid),
+        cells_(grid.cells()),
         along1_(along1),
         along2_(along2),
         turn_(turn),
         x2_(Eigen::ArrayXd::NullaryExpr(grid.n2, [&](Index j) { return grid.x2(j); })) {}
 
-  /// The k-th value from a first one on is constant + slope * x2[k].
+  /// The same motion over packed cells of its grid.
+  MotionField packed(const Packing& packing) const {
+    MotionField motion(*this);
+    motion.cells_ = packing.cells().size();
+    motion.coordinates_ = packing.coordinates();
+    return motion;
+  }
+
+  /// The k-th value from a first one on is constant + slope * x[k].
   struct Row {
     double constant;
     double slope;
-    const double* x2;
+    const double* x;
   };
   Row row(Index first) const {
-    const bool second = first >= grid_.cells();
-    const Index cell = second ? first - grid_.cells() : first;
+    const bool second = first >= cells_;
+    const Index cell = second ? first - cells_ : first;
+    if (coordinates_ != nullptr) {
+      const double* const x1 = coordinates_->data() + cell;
+      return second ? Row{along2_, turn_, x1} : Row{along1_, -turn_, x1 + cells_};
+    }
     const Index i = cell / grid_.n2;
     const double* const x2 = x2_.data() + (cell - i * grid_.n2);
     return second ? Row{along2_ + turn_ * grid_.x1(i), 0.0, x2} : Row{along1_, -turn_, x2};
@@ -35,7 +49,7 @@ class MotionField {
   /// The values [first, first + n), an expression of Eigen's.
   auto segment(Index first, Index n) const {
     const Row at = row(first);
-    return at.constant + at.slope * Eigen::Map<const Eigen::ArrayXd>(at.x2, n);
+    return at.constant + at.slope * x(at, n);
   }
 
   /// The sum of the products of as many values from `first` on with those of an array.
@@ -43,7 +57,7 @@ class MotionField {
   double dot(Index first, const Values& values) const {
     const Row at = row(first);
     double sum = at.constant == 0.0 ? 0.0 : at.constant * values.sum();
-    if (at.slope != 0.0) sum += at.slope * (x2(at, values.size()) * values).sum();
+    if (at.slope != 0.0) sum += at.slope * (x(at, values.size()) * values).sum();
     return sum;
   }
 
@@ -52,18 +66,20 @@ class MotionField {
   void add_to(Part&& part, Index first, double factor) const {
     const Row at = row(first);
     if (at.slope != 0.0) {
-      part += (factor * at.constant + (factor * at.slope) * x2(at, part.size()));
+      part += (factor * at.constant + (factor * at.slope) * x(at, part.size()));
     } else if (at.constant != 0.0) {
       part += factor * at.constant;
     }
   }
 
  private:
-  static Eigen::Map<const Eigen::ArrayXd> x2(const Row& row, Index n) { return {row.x2, n}; }
+  static Eigen::Map<const Eigen::ArrayXd> x(const Row& row, Index n) { return {row.x, n}; }
 
   Grid grid_;
+  Index cells_;  ///< of a component
   double along1_, along2_, turn_;
   Eigen::ArrayXd x2_;
+  std::shared_ptr<const Eigen::ArrayXd> coordinates_ = {};  ///< of packed cells
 };
 
 }  // namespace slipstick::solver

@@ -10,7 +10,7 @@
 #include <thread>
 
 #include "cmake/loaded_library.hpp"
-#include "solver/grid/communicator.hpp"
+#include "solver/mpi/communicator.hpp"
 
 namespace slipstick::solver {
 namespace {

@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
+#include <numeric>
 #include <vector>
 
 #include "solver/grid/own_rows.hpp"
@@ -17,6 +19,15 @@ std::array<double, N>& operator+=(std::array<double, N>& sums, const std::array<
   for (std::size_t k = 0; k < N; ++k) sums[k] += more[k];
   return sums;
 }
+
+/// The least of values, as a sum.
+struct Lowest {
+  double value = std::numeric_limits<double>::infinity();
+  Lowest& operator+=(const Lowest& other) {
+    if (!(other.value >= value)) value = other.value;
+    return *this;
+  }
+};
 
 /// Those cells that a loop visits, as intervals of neighbours: cells that carry no traction cost nothing.
 /// Sums are taken in bands of rows, see RowBands, and then in the order of the bands, whatever threads of the
@@ -60,20 +71,29 @@ class Sweep {
 
   /// Whether they lie in many small spots or have a ragged edge: intervals are many more than in a disc of as
   /// many cells, which has 1.13 times the root of their number, or in a few such discs and rings.
-  bool is_ragged() const {
-    constexpr double kIntervalsOfSmooth = 4.0;
-    const double intervals = sum<double>([](Index, Index, double& sum) { sum += 1.0; });
-    return intervals > kIntervalsOfSmooth * std::sqrt(static_cast<double>(count_));
-  }
+  bool is_ragged() const { return is_ragged_; }
+
+  /// All of the cells of fields that hold these cells alone, one behind the other: in the same bands, which
+  /// have no rows.
+  Sweep packed() const;
 
   /// work(first, last) for each interval [first, last) of cells; several threads at the same time. It must
   /// not throw.
   template <typename Work>
   void each(const Work& work) const {
+    each_with_place([&](Index first, Index last, Index) { work(first, last); });
+  }
+  /// work(first, last, place) likewise, with the place of its first cell among all that are visited.
+  template <typename Work>
+  void each_with_place(const Work& work) const {
     const Index parts = threads();
-    in_parts(threads(), parts, [&](int, Index first, Index last) {
-      for (Index i = begin_[cut(first, parts)]; i < begin_[cut(last, parts)]; ++i) {
-        work(intervals_[at(i)].first, intervals_[at(i)].last);
+    in_parts(threads(), parts, [&](int, Index first_part, Index last_part) {
+      const std::size_t begin = cut(first_part, parts);
+      Index place = place_ + before_[begin];
+      for (Index i = begin_[begin]; i < begin_[cut(last_part, parts)]; ++i) {
+        const auto [first, last] = intervals_[at(i)];
+        work(first, last, place);
+        place += last - first;
       }
     });
   }
@@ -127,9 +147,7 @@ class Sweep {
     assign(field.size(), [&](Index cell) { return field.coeff(cell) != 0; });
   }
   bool shared() const { return row_ > 0 && ranks_.several(); }
-  RowBands bands() const {
-    return row_ > 0 ? RowBands(size_ / row_, ranks_) : RowBands(size_, {}, kCellsOfBand);
-  }
+  void set_bands(Index cells);
   int threads() const { return visited_ < kCellsOfOneThread ? 1 : ThreadPool::available(); }
   /// The first band of a part, or past the last one: as many cells of a band are visited as its rows have of
   /// them, and each part gets about as many.
@@ -142,6 +160,7 @@ class Sweep {
   }
 
   std::vector<Interval> intervals_;
+  std::array<Index, RowBands::kMax + 1> limits_{};  ///< the first cell of each band
   std::array<Index, RowBands::kMax + 1> begin_{};   ///< the first interval of each band
   std::array<Index, RowBands::kMax + 1> before_{};  ///< cells of this process visited before each
   Index row_ = 0;                                   ///< cells of a row; 0: there are no rows
@@ -149,6 +168,9 @@ class Sweep {
   Index size_ = 0;
   Index count_ = 0;
   Index visited_ = 0;  ///< by this process
+  Index place_ = 0;    ///< of the first of these among those of all processes
+  bool is_ragged_ = false;
+  bool packed_ = false;  ///< cells of fields without rows, in the bands of others
   Index bands_ = 1;
   Share own_{0, 0};
   Share own_bands_{0, 1};
@@ -166,26 +188,24 @@ void clear(const Sweep& cells, Field& field) {
 
 template <typename Contains>
 void Sweep::assign(Index cells, const Contains& contains) {
-  size_ = cells;
-  const RowBands bands = this->bands();
-  const Index of_row = std::max<Index>(row_, 1);
-  bands_ = std::max<Index>(bands.count(), 1);
-  own_bands_ = shared() ? bands.own() : Share{0, bands_};
+  if (!packed_) set_bands(cells);
+  // Sums over long intervals would round by more.
+  const Index row = packed_ ? kCellsOfBand : row_ > 0 ? row_ : cells;
   intervals_.clear();
   visited_ = 0;
   begin_.fill(0);
   before_.fill(0);
-  own_ = {shared() ? bands.own_rows().first * of_row : 0, shared() ? bands.own_rows().last * of_row : cells};
   for (Index band = own_bands_.first; band < own_bands_.last; ++band) {
-    const Share rows = bands.rows(band);
     begin_[at(band)] = static_cast<Index>(intervals_.size());
     before_[at(band)] = visited_;
     bool inside = false;
-    Index row_end = rows.first * of_row + row_;
-    for (Index cell = rows.first * of_row; cell < rows.last * of_row; ++cell) {
+    const Index first = limits_[at(band)];
+    const Index end = limits_[at(band + 1)];
+    Index row_end = first + row;
+    for (Index cell = first; cell < end; ++cell) {
       if (cell == row_end) {
         inside = false;
-        row_end += row_;
+        row_end += row;
       }
       if (!contains(cell)) {
         inside = false;
@@ -202,10 +222,42 @@ void Sweep::assign(Index cells, const Contains& contains) {
     before_[at(band)] = visited_;
   }
   count_ = visited_;
-  if (!shared()) return;
-  count_ = 0;
-  for (const double visited : ranks_.of_each(static_cast<double>(visited_)))
-    count_ += static_cast<Index>(visited);
+  place_ = 0;
+  auto intervals = static_cast<double>(intervals_.size());
+  if (shared()) {
+    const std::vector<double> of_each = ranks_.of_each(static_cast<double>(visited_));
+    const auto sum_to = [&](int rank) {
+      return static_cast<Index>(std::accumulate(of_each.begin(), of_each.begin() + rank, 0.0));
+    };
+    count_ = sum_to(ranks_.number());
+    place_ = sum_to(ranks_.rank());
+    const std::vector<double> intervals_of_each = ranks_.of_each(intervals);
+    intervals = std::accumulate(intervals_of_each.begin(), intervals_of_each.end(), 0.0);
+  }
+  constexpr double kIntervalsOfSmooth = 4.0;
+  is_ragged_ = intervals > kIntervalsOfSmooth * std::sqrt(static_cast<double>(count_));
+}
+
+inline void Sweep::set_bands(Index cells) {
+  size_ = cells;
+  const RowBands bands = row_ > 0 ? RowBands(size_ / row_, ranks_) : RowBands(size_, {}, kCellsOfBand);
+  const Index of_row = std::max<Index>(row_, 1);
+  bands_ = std::max<Index>(bands.count(), 1);
+  own_bands_ = shared() ? bands.own() : Share{0, bands_};
+  for (Index band = 0; band <= bands_; ++band)
+    limits_[at(band)] = std::min(bands.rows(band).first * of_row, cells);
+  own_ = {limits_[at(own_bands_.first)], limits_[at(own_bands_.last)]};
+}
+
+inline Sweep Sweep::packed() const {
+  Sweep packed(*this);
+  packed.packed_ = true;
+  packed.size_ = count_;
+  packed.own_ = {place_, place_ + visited_};
+  for (std::size_t band = 0; band < limits_.size(); ++band) packed.limits_[band] = place_ + before_[band];
+  packed.assign(count_, [](Index) { return true; });
+  packed.is_ragged_ = is_ragged_;
+  return packed;
 }
 
 }  // namespace slipstick::solver

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <vector>
 
-#include "solver/grid/communicator.hpp"
+#include "solver/mpi/communicator.hpp"
 
 /// libslipstick_ranks: MPI.
 namespace slipstick::solver {

@@ -26,7 +26,7 @@ struct MotionRow {
   static constexpr std::array<double, 2> kOnes{1.0, 1.0};
   MotionField::Row row;
   Pair operator()(Index k, bool both_cells) const {
-    return pair(&kOnes[0], both_cells) * both(row.constant) + both(row.slope) * pair(row.x2 + k, both_cells);
+    return pair(&kOnes[0], both_cells) * both(row.constant) + both(row.slope) * pair(row.x + k, both_cells);
   }
 };
 static MotionRow row_of(const MotionField& motion, Index first) { return {motion.row(first)}; }
@@ -62,20 +62,13 @@ LoadsAlong<M> PositivePressures::loads_along(const ArrayXd& y, const std::array<
 }
 
 void PositivePressures::project(ArrayXd& p) const {
-  sweep_.each_own([&](Index first, Index last) {
+  sweep_.each([&](Index first, Index last) {
     auto part = p.segment(first, last - first);
-    part = reachable_.segment(first, last - first) * part.max(0.0);
+    part = part.max(0.0);
   });
 }
 
 double PositivePressures::gap(const ArrayXd& p, const ArrayXd& opening) const {
-  struct Lowest {
-    double value = std::numeric_limits<double>::infinity();
-    Lowest& operator+=(const Lowest& other) {
-      if (!(other.value >= value)) value = other.value;
-      return *this;
-    }
-  };
   const double lowest = sweep_
                             .sum<Lowest>([&](Index first, Index last, Lowest& least) {
                               for (Index i = first; i < last; ++i) least += {opening[i]};

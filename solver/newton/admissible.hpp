@@ -5,6 +5,7 @@
 #include <cmath>
 #include <concepts>
 #include <limits>
+#include <utility>
 
 #include "solver/newton/load_balance.hpp"
 #include "solver/newton/tangent_space.hpp"
@@ -38,17 +39,18 @@ concept AdmissibleSet = requires(const Set& set, const Eigen::ArrayXd& s, Eigen:
   {set.add_jump(s, s, q)};                                        // onto the face that the natural map says
 };
 
-/// Pressures that do not pull: p_i >= 0 where the bodies can touch, p_i = 0 elsewhere.
+/// Pressures that do not pull: p_i >= 0 in some cells, p_i = 0 elsewhere.
 class PositivePressures {
  public:
   static constexpr Index kComponents = 1;
 
-  /// reachable: 1 where the bodies can touch, 0 elsewhere; it is not owned.
+  explicit PositivePressures(Sweep cells) : sweep_(std::move(cells)) {}
+  /// In the cells where a field is not zero.
   PositivePressures(const Grid& grid, const Eigen::ArrayXd& reachable)
-      : reachable_(reachable), sweep_(grid, reachable) {}
-  explicit PositivePressures(const Eigen::ArrayXd& reachable) : reachable_(reachable), sweep_(reachable) {}
+      : PositivePressures(Sweep(grid, reachable)) {}
+  explicit PositivePressures(const Eigen::ArrayXd& reachable) : PositivePressures(Sweep(reachable)) {}
 
-  Index cells() const { return reachable_.size(); }
+  Index cells() const { return sweep_.size(); }
   const Sweep& sweep() const { return sweep_; }
 
   void project(Eigen::ArrayXd& p) const;
@@ -74,7 +76,6 @@ class PositivePressures {
   void add_jump(const Eigen::ArrayXd& z, const Eigen::ArrayXd& p, Eigen::ArrayXd& step) const;
 
  private:
-  const Eigen::ArrayXd& reachable_;
   Sweep sweep_;
 };
 
@@ -84,8 +85,10 @@ class FrictionDiscs {
   static constexpr Index kComponents = 2;
 
   /// bound: mu p of each cell; it is not owned.
-  FrictionDiscs(const Grid& grid, const Eigen::ArrayXd& bound) : bound_(bound), sweep_(grid, bound) {}
-  explicit FrictionDiscs(const Eigen::ArrayXd& bound) : bound_(bound), sweep_(bound) {}
+  FrictionDiscs(const Grid& grid, const Eigen::ArrayXd& bound) : FrictionDiscs(Sweep(grid, bound), bound) {}
+  explicit FrictionDiscs(const Eigen::ArrayXd& bound) : FrictionDiscs(Sweep(bound), bound) {}
+  /// cells: where the bound is not zero.
+  FrictionDiscs(Sweep cells, const Eigen::ArrayXd& bound) : bound_(bound), sweep_(std::move(cells)) {}
 
   Index cells() const { return bound_.size(); }
   const Sweep& sweep() const { return sweep_; }

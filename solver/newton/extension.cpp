@@ -199,33 +199,41 @@ void Extension::prepare_with(const FreePart& free_part, const Weights& weights) 
   });
 }
 
-void Extension::prepare(const Field& free) {
-  find_mixed([&](Index i) { return free[i] != 0.0; }, true);
+template <typename IsFree>
+void Extension::prepare_scalars(const IsFree& is_free) {
+  find_mixed(is_free, true);
   prepare_with(
       [&](Index i) {
-        return Matrix{free[i], 0.0, free[i]};
+        const double part = is_free(i) ? 1.0 : 0.0;
+        return Matrix{part, 0.0, part};
       },
       [&](Index i, const Matrix& near) {
-        const auto weight = [&](double sum) { return (1.0 - free[i]) / (sum + kFade); };
-        return Matrix{weight(near[0]), 0.0, weight(near[2])};
+        if (is_free(i)) return Matrix{};
+        return Matrix{1.0 / (near[0] + kFade), 0.0, 1.0 / (near[2] + kFade)};
       });
 }
 
-void Extension::prepare(const TangentSpace& space) {
-  if (space.components() == 1) return prepare(space.f1);
-  const auto is_free = [&](Index i) { return space.scale[i] > 0.0F; };  // in contact
-  if (!knows_contact_) find_mixed(is_free, false);
+void Extension::prepare(const Field& free) {
+  prepare_scalars([&](Index i) { return free[i] != 0.0; });
+}
+
+void Extension::prepare(const TangentSpace& space, const Packing& packing) {
+  if (space.components() == 1)
+    return prepare_scalars([&](Index cell) { return packing.holds(cell, space.f1); });
+  if (!knows_contact_) find_mixed([&](Index cell) { return packing.place(cell) >= 0; }, false);
   knows_contact_ = true;
   prepare_with(
-      [&](Index i) {
-        if (!is_free(i)) return Matrix{};
+      [&](Index cell) {
+        const Index i = packing.place(cell);
+        if (i < 0) return Matrix{};
         if (!space.on_line(i)) return Matrix{1.0, 0.0, 1.0};
         const double part = std::sqrt(static_cast<double>(space.scale[i]));
         return Matrix{part * space.f1[i] * space.f1[i], part * space.f1[i] * space.f2[i],
                       part * space.f2[i] * space.f2[i]};
       },
-      [&](Index i, const Matrix& near) {
-        if (!is_free(i)) {
+      [&](Index cell, const Matrix& near) {
+        const Index i = packing.place(cell);
+        if (i < 0) {
           const double determinant = (near[0] + kFade) * (near[2] + kFade) - near[1] * near[1];
           return Matrix{(near[2] + kFade) / determinant, -near[1] / determinant,
                         (near[0] + kFade) / determinant};
@@ -299,8 +307,8 @@ void Extension::extend(Field& y) {
 
 void Extension::collect(Field& y) { y.size() == grid_.cells() ? collect_all<1>(y) : collect_all<2>(y); }
 
-void Extension::hand_on(const Sweep& cells, const Field& free, Eigen::ArrayXd& p, Field& stays,
-                        Field& leaves) {
+void Extension::hand_on(Packing& packing, const Field& free, Eigen::ArrayXd& p, Field& stays, Field& leaves) {
+  const Sweep& cells = packing.cells();
   clear(cells, stays);
   clear(cells, leaves);
   const auto count = cells.sum<Index>([&](Index first, Index last, Index& sum) {
@@ -314,8 +322,8 @@ void Extension::hand_on(const Sweep& cells, const Field& free, Eigen::ArrayXd& p
     }
   });
   if (count == 0) return;
-  prepare(stays);
-  collect(leaves);
+  prepare_scalars([&](Index cell) { return packing.holds(cell, stays); });
+  packing.on_grid(leaves, leaves, [&](Field& field) { collect(field); });
   cells.each([&](Index first, Index last) {
     for (Index i = first; i < last; ++i) p[i] += static_cast<double>(stays[i] * leaves[i]);
   });

@@ -4,6 +4,7 @@
 #include <array>
 
 #include "solver/grid/own_rows.hpp"
+#include "solver/grid/packing.hpp"
 #include "solver/grid/sweep.hpp"
 
 namespace slipstick::solver {
@@ -28,8 +29,8 @@ class Extension {
   Extension(const Grid& grid, Index components);
 
   /// What is free, once its preconditioner is known. Fields that are given here need be known in the grid's
-  /// own rows alone; the rows beside them are filled in.
-  void prepare(const TangentSpace& space);
+  /// own rows alone; the rows beside them are filled in. packing: of the space.
+  void prepare(const TangentSpace& space, const Packing& packing);
   /// free: 1 in the cells that are, 0 elsewhere. Components are continued alike.
   void prepare(const Field& free);
   /// y, zero where no cell is free: its continuation is added there. Allocates nothing.
@@ -40,9 +41,8 @@ class Extension {
   /// Pressures below zero, and those of cells that are not free, go to the free cells beside them, by the
   /// adjoint: it is close to what these answer once the others carry nothing. Clipping negative pressures
   /// without handing them on would open the neighbourhood too far, and the next state would hold too few
-  /// cells. cells: those of p that may differ from zero. Overwrites the last two fields, and what prepare()
-  /// left.
-  void hand_on(const Sweep& cells, const Field& free, Eigen::ArrayXd& p, Field& stays, Field& leaves);
+  /// cells. packing: of all of these fields. Overwrites the last two, and what prepare() left.
+  void hand_on(Packing& packing, const Field& free, Eigen::ArrayXd& p, Field& stays, Field& leaves);
 
  private:
   static constexpr Index kReach = 2;
@@ -57,6 +57,8 @@ class Extension {
   /// A symmetric matrix of vectors; of scalars its first entry.
   using Matrix = std::array<double, 3>;
 
+  template <typename IsFree>
+  void prepare_scalars(const IsFree& is_free);
   template <typename IsFree>
   void find_mixed(const IsFree& is_free, bool free_is_whole);
   template <typename FreePart, typename Weights>

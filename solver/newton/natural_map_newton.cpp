@@ -43,8 +43,8 @@ NewtonSummary fail(NewtonSummary& summary, const std::string& why) {
 
 template <AdmissibleSet Set>
 NaturalMapNewton<Set>::NaturalMapNewton(const Set& set, const ConvexProgram& program, LinearOperator& op,
-                                        InverseSymbol& symbol)
-    : state_(set, program, op, rho_for(set) * mean_of(symbol.diagonal())),
+                                        InverseSymbol& symbol, Packing& packing)
+    : state_(set, program, op, packing, rho_for(set) * mean_of(symbol.diagonal())),
       linear_(state_, symbol),
       trial_{ArrayXd(state_.size()), ArrayXd(state_.size())} {
   clear(set.sweep(), trial_.q);

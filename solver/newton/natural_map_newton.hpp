@@ -49,7 +49,9 @@ class NaturalMapNewton {
  public:
   using ArrayXd = Eigen::ArrayXd;
 
-  NaturalMapNewton(const Set& set, const ConvexProgram& program, LinearOperator& op, InverseSymbol& symbol);
+  /// packing: of all fields, the cells whose set is not zero alone.
+  NaturalMapNewton(const Set& set, const ConvexProgram& program, LinearOperator& op, InverseSymbol& symbol,
+                   Packing& packing);
 
   /// Improves q, any field of the right size, until its certificate holds: the grid's own rows of it, and of
   /// the fields that the functions below return.

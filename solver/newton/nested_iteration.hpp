@@ -12,7 +12,7 @@
 
 namespace slipstick::solver {
 
-/// What a nested solve ends with on its finest grid.
+/// What a nested solve ends with on its finest grid. The displacement may be zero where the set is zero alone.
 struct NestedSummary {
   NewtonSummary newton;
   Eigen::ArrayXd field;         ///< q or p
@@ -35,21 +35,51 @@ constexpr double kPartOfFirstGap = 0.01;
 
 /// What solve_nested() asks of a problem on one grid.
 template <class Problem>
-concept NestedProblem = requires(Problem problem, const Grid& grid, LinearOperator& op) {
+concept NestedProblem = requires(Problem problem, const Grid& grid, LinearOperator& op,
+                                 NestedSummary& summary) {
   { problem.kernel() } -> std::same_as<BlockKernel>;                       // of its operator
   { problem.parities() } -> std::convertible_to<std::span<const Parity>>;  // of its field's components
   { problem.admissible() } -> AdmissibleSet;
   { problem.program(op) } -> std::same_as<ConvexProgram>;  // refers to the problem's own fields
+  { problem.packing() } -> std::same_as<Packing&>;         // of these, and of the set, from then on
   { problem.start() } -> std::same_as<Eigen::ArrayXd>;     // known in full
   { problem.guess() } -> std::same_as<Eigen::ArrayXd>;     // near the answer; empty: by coarser grids
   {problem.keep_own_rows()};                               // which are enough once it has been coarsened
   { problem.coarsened(grid) } -> std::same_as<Problem>;    // on the coarse grid
+  // Which cells it looks at follows from what was found on the coarse grid, and from what is found:
+  {problem.look_ahead(problem, summary)};
+  { problem.overlooks(op, summary, 0.0) } -> std::same_as<bool>;  // then it looks at more
 };
+
+/// Solves on one grid, from the result's field on. What it finds is packed as the problem then is.
+template <NestedProblem Problem>
+void solve_on_grid(const Elasticity& elasticity, const Grid& grid, Problem& problem,
+                   const Coefficients& multipliers, NewtonOptions options, bool guessed,
+                   NestedSummary& result) {
+  const auto operators = elasticity.make_all(grid, problem.kernel());
+  LinearOperator& op = *operators->op;
+  int iterations = 0;
+  options.least_iterations = guessed ? 1 : 0;
+  do {
+    const ConvexProgram program = problem.program(op);
+    Packing& packing = problem.packing();
+    const auto admissible = problem.admissible();
+    result.field = packing.packed(result.field);
+    NaturalMapNewton<std::remove_const_t<decltype(admissible)>> newton(admissible, program, op,
+                                                                       *operators->symbol, packing);
+    result.newton = newton.run(result.field, multipliers, options);
+    result.safeguards += result.newton.safeguards;
+    iterations += result.newton.iterations;
+    result.slip = newton.take_slip();
+    result.displacement = newton.take_displacement();
+  } while (problem.overlooks(op, result, options.tolerance));
+  result.grids.push_back({grid.n1, grid.n2, op.applications(), iterations, result.newton.gap});
+}
 
 /// Solves from the coarsest grid up, or from a guess. From coarse grids only the change from start() is
 /// taken: start() itself is known in full. The result's fields are known in the grid's own rows.
 template <NestedProblem Problem>
-NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Problem problem,
+NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Problem& problem,
                              const NewtonOptions& options) {
   NestedSummary result;
   Coefficients multipliers;
@@ -66,10 +96,11 @@ NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Pro
     coarse_options.progress = nullptr;
     Problem on_coarse = problem.coarsened(coarse);
     const Eigen::ArrayXd start = on_coarse.start();
-    NestedSummary below = solve_on_grids(elasticity, coarse, std::move(on_coarse), coarse_options);
+    NestedSummary below = solve_on_grids(elasticity, coarse, on_coarse, coarse_options);
     result.grids = std::move(below.grids);
     result.safeguards = below.safeguards;
     share_rows(coarse, below.field);
+    problem.look_ahead(on_coarse, below);
     if (below.field.isFinite().all()) {
       const Eigen::ArrayXd change = prolong_to(grid, coarse, below.field - start, problem.parities());
       in_own_rows(grid, change.size(), [&](Index first, Index count) {
@@ -80,19 +111,9 @@ NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Pro
   }
   problem.keep_own_rows();
 
-  const auto operators = elasticity.make_all(grid, problem.kernel());
-  const auto admissible = problem.admissible();
-  const ConvexProgram program = problem.program(*operators->op);
-  NaturalMapNewton<std::remove_const_t<decltype(admissible)>> newton(admissible, program, *operators->op,
-                                                                     *operators->symbol);
-  NewtonOptions on_grid = options;
-  on_grid.least_iterations = guessed ? 1 : 0;
-  result.newton = newton.run(result.field, multipliers, on_grid);
-  result.safeguards += result.newton.safeguards;
-  result.slip = newton.take_slip();
-  result.displacement = newton.take_displacement();
-  result.grids.push_back(
-      {grid.n1, grid.n2, newton.applications(), result.newton.iterations, result.newton.gap});
+  solve_on_grid(elasticity, grid, problem, multipliers, options, guessed, result);
+  for (Eigen::ArrayXd* const field : {&result.field, &result.slip, &result.displacement})
+    *field = problem.packing().unpacked(*field);
   return result;
 }
 
@@ -101,7 +122,7 @@ NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Pro
 template <NestedProblem Problem>
 NestedSummary solve_nested(const Elasticity& elasticity, const Grid& grid, Problem problem,
                            const NewtonOptions& options) {
-  NestedSummary result = solve_on_grids(elasticity, grid, std::move(problem), options);
+  NestedSummary result = solve_on_grids(elasticity, grid, problem, options);
   for (Eigen::ArrayXd* const field : {&result.field, &result.slip}) {
     share_rows(grid, *field);
   }

@@ -15,10 +15,12 @@ constexpr double kNearlyAll = 0.9;
 }  // namespace
 
 template <AdmissibleSet Set>
-NewtonState<Set>::NewtonState(const Set& set, const ConvexProgram& program, LinearOperator& op, double rho)
+NewtonState<Set>::NewtonState(const Set& set, const ConvexProgram& program, LinearOperator& op,
+                              Packing& packing, double rho)
     : set_(set),
       program_(program),
       op_(op),
+      packing_(packing),
       balance_(set, program.imposed),
       rho_(rho),
       u_(size()),
@@ -32,7 +34,7 @@ void NewtonState<Set>::enter(ArrayXd& q, const Coefficients& multipliers) {
   Coefficients x = Coefficients::Zero(balance_.count());
   if (balance_.solve(q, x)) balance_.add(x, q);
   set_.project(q);
-  op_.apply_own(q, u_);
+  op_.apply_own(q, u_, packing_);
   energy_ = energy_of(q, u_);
 }
 
@@ -127,7 +129,7 @@ void NewtonState<Set>::shorten(const ArrayXd& q, Trial& trial, double part) cons
 template <AdmissibleSet Set>
 bool NewtonState<Set>::accept(ArrayXd& q, Trial& trial, Safeguards& safeguards) {
   set_.project(trial.q);
-  op_.apply_own(trial.q, trial.u);
+  op_.apply_own(trial.q, trial.u, packing_);
   double after = energy_of(trial.q, trial.u);
   const double highest = energy_ + kEnergyRounding * std::abs(energy_);
   const bool lower = after <= highest;

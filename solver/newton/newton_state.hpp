@@ -26,13 +26,14 @@ class NewtonState {
   using ArrayXd = Eigen::ArrayXd;
   static constexpr bool kIsScalar = Set::kComponents == 1;
 
-  /// rho: length of the natural map's step. Nothing given here is owned.
-  NewtonState(const Set& set, const ConvexProgram& program, LinearOperator& op, double rho);
+  /// packing: of all fields. rho: length of the natural map's step. Nothing given here is owned.
+  NewtonState(const Set& set, const ConvexProgram& program, LinearOperator& op, Packing& packing, double rho);
 
   const Set& set() const { return set_; }
   const ConvexProgram& program() const { return program_; }
   const LoadBalance<Set>& balance() const { return balance_; }
   LinearOperator& op() const { return op_; }
+  Packing& packing() const { return packing_; }
   double rho() const { return rho_; }
   /// q - rho s, s the slip: what the natural map projects.
   const ArrayXd& y() const { return y_; }
@@ -91,6 +92,7 @@ class NewtonState {
   const Set& set_;
   const ConvexProgram& program_;
   LinearOperator& op_;
+  Packing& packing_;
   LoadBalance<Set> balance_;
   double rho_;
   ArrayXd u_, y_;

@@ -30,6 +30,7 @@ constexpr int kInnerIterations = 40;
 template <AdmissibleSet Set>
 TangentProblem<Set>::TangentProblem(const NewtonState<Set>& state, InverseSymbol& symbol)
     : symbol_(symbol),
+      packing_(state.packing()),
       tangents_(state.program().imposed.size()),
       constraints_(tangents_),
       r_(state.size()),
@@ -44,7 +45,7 @@ TangentProblem<Set>::TangentProblem(const NewtonState<Set>& state, InverseSymbol
 template <AdmissibleSet Set>
 void TangentProblem<Set>::linearise(const NewtonState<Set>& state, Trial& scratch) {
   changed_ = state.set().linearise(state.y(), state.rho(), symbol_.diagonal(), space_);
-  if (extends_) extension_.prepare(space_);
+  if (extends_) extension_.prepare(space_, packing_);
   TangentPreconditioner map = preconditioner();
   const CgWorkspace fields = work(scratch);
   if (has_tangents_ && tangents_are_near(state)) {
@@ -97,7 +98,7 @@ void TangentProblem<Set>::write_residual(const NewtonState<Set>& state, const Ar
 /// A start with these loads, and its residual.
 template <AdmissibleSet Set>
 void TangentProblem<Set>::begin_with(const NewtonState<Set>& state, const Coefficients& loads, ArrayXd& Ax) {
-  TangentOperator map{state.op(), space_};
+  TangentOperator map{state.op(), space_, packing_};
   constraints_.add_with_values(preconditioner(), loads, x_);
   map.transform(x_, Ax);
   space_.free.each([&](Index first, Index last) { map.store(first, last, x_, Ax); });
@@ -112,7 +113,7 @@ CgSummary TangentProblem<Set>::solve(const NewtonState<Set>& state, const ArrayX
   clear(state.set().sweep(), x_);
   if (loads.size() > 0) begin_with(state, loads, scratch.u);
   const CgConstraints<MotionField> none;
-  TangentOperator map{state.op(), space_};
+  TangentOperator map{state.op(), space_, packing_};
   TangentPreconditioner inverse = preconditioner();
   return projected_cg(map, inverse, has_tangents_ ? constraints_ : none, r_,
                       {target.reduction, target.max_iterations}, work(scratch), x_);

@@ -45,19 +45,22 @@ class TangentProblem {
   bool restore_loads(const NewtonState<Set>& state, ArrayXd& trial) const;
   /// See Extension; of scalars. Overwrites the residual.
   void hand_on(const NewtonState<Set>& state, ArrayXd& trial) {
-    extension_.hand_on(state.set().sweep(), space_.f1, trial, d_, r_);
+    extension_.hand_on(state.packing(), space_.f1, trial, d_, r_);
   }
 
  private:
   static constexpr bool kIsScalar = NewtonState<Set>::kIsScalar;
 
-  TangentPreconditioner preconditioner() { return {symbol_, space_, extends_ ? &extension_ : nullptr}; }
+  TangentPreconditioner preconditioner() {
+    return {symbol_, space_, packing_, extends_ ? &extension_ : nullptr};
+  }
   CgWorkspace work(Trial& scratch) { return {d_, scratch.u, scratch.q}; }
   bool tangents_are_near(const NewtonState<Set>& state) const;
   void write_residual(const NewtonState<Set>& state, const ArrayXd& q, ArrayXd& slip);
   void begin_with(const NewtonState<Set>& state, const Coefficients& loads, ArrayXd& Ax);
 
   InverseSymbol& symbol_;
+  Packing& packing_;
   std::vector<CgTangent> tangents_;
   CgConstraints<MotionField> constraints_;
   ArrayXd r_, x_, d_;  ///< residual, solution, direction

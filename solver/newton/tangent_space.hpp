@@ -10,6 +10,7 @@
 #include "solver/elasticity/inverse_symbol.hpp"
 #include "solver/elasticity/linear_operator.hpp"
 #include "solver/grid/packet.hpp"
+#include "solver/grid/packing.hpp"
 #include "solver/grid/sweep.hpp"
 #include "solver/newton/extension.hpp"
 
@@ -158,11 +159,12 @@ struct TangentOperator {
 
   LinearOperator& op;
   const TangentSpace& space;
+  Packing& packing;
 
   const Sweep& cells() const { return space.free; }
 
   /// The two parts of y = projector (K + stiffness) x in the cells that are free; x is zero in others.
-  void transform(const Field& x, Field& y) { op.apply_own(x, y); }
+  void transform(const Field& x, Field& y) { op.apply_own(x, y, packing); }
   void store(Index first, Index last, const Field& x, Field& y) const {
     if (space.components() == 1) return;
     const Index n = space.f1.size();
@@ -182,6 +184,7 @@ struct TangentPreconditioner {
 
   InverseSymbol& symbol;
   const TangentSpace& space;
+  Packing& packing;
   Extension* extension = nullptr;
 
   const Sweep& cells() const { return space.free; }
@@ -189,9 +192,11 @@ struct TangentPreconditioner {
   /// The three parts of y = M r, of which the first and the last go cell by cell.
   void load(Index first, Index last, const Field& r, Field& z) const { space.load(first, last, r, z); }
   void transform(Field& z) {
-    if (extension != nullptr) extension->extend(z);
-    symbol.apply(std::span(z.data(), static_cast<std::size_t>(z.size())));
-    if (extension != nullptr) extension->collect(z);
+    packing.on_grid(z, z, [&](Field& field) {
+      if (extension != nullptr) extension->extend(field);
+      symbol.apply(std::span(field.data(), static_cast<std::size_t>(field.size())));
+      if (extension != nullptr) extension->collect(field);
+    });
   }
   void store(Index first, Index last, const Field& r, const Field& z, Field& y) const {
     space.complete(first, last, z, r, y);

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "solver/elasticity/inverse_symbol.hpp"
-#include "solver/grid/communicator.hpp"
+#include "solver/mpi/communicator.hpp"
 #include "solver/grid/own_rows.hpp"
 #include "solver/grid/sweep.hpp"
 #include "solver/newton/tangent_space.hpp"
@@ -122,16 +122,19 @@ TEST(RanksExtension, HasTheBitsOfOneRank) {
     expect_same_bits(
         [&](const Grid& grid) {
           ArrayXd contact = (random_field(grid.cells(), 3) > 0.0).cast<double>();
-          TangentSpace space(2, Sweep(grid, contact));
-          ArrayXd field = contact.replicate(2, 1) * random_field(2 * grid.cells(), 4);
-          for (Index i = 0; i < grid.cells(); ++i) {
-            if (contact[i] == 0.0) continue;
-            space.set(i, true);
-            if (field[i] > 0.0) space.set_line(i, 0.6, 0.8, field[i], 1.0);
-          }
-          space.project(0, grid.cells(), field);
+          const Packing packing(grid, Sweep(grid, contact), 2);
+          TangentSpace space(2, packing.cells());
+          ArrayXd field = packing.packed(random_field(2 * grid.cells(), 4));
+          packing.cells().each([&](Index first, Index last) {
+            for (Index i = first; i < last; ++i) {
+              space.set(i, true);
+              if (field[i] > 0.0) space.set_line(i, 0.6, 0.8, field[i], 1.0);
+            }
+            space.project(first, last, field);
+          });
+          field = packing.unpacked(field);
           Extension extension(grid, 2);
-          extension.prepare(space);
+          extension.prepare(space, packing);
           extension.extend(field);
           extension.collect(field);
           share_rows(grid, field);

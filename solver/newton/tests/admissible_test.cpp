@@ -47,10 +47,16 @@ class Random {
   std::mt19937_64 generator_;
 };
 
+/// Zero in cells whose set is zero alone, which a projection need not look at.
 template <class Set>
-ArrayXd projected(const Set& set, ArrayXd field) {
-  set.project(field);
-  return field;
+ArrayXd projected(const Set& set, const ArrayXd& field) {
+  ArrayXd inside = ArrayXd::Zero(field.size());
+  set.sweep().each([&](Index first, Index last) {
+    for (Index start = first; start < field.size(); start += set.cells())
+      inside.segment(start, last - first) = field.segment(start, last - first);
+  });
+  set.project(inside);
+  return inside;
 }
 
 template <class Set>

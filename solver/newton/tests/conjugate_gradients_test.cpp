@@ -110,7 +110,8 @@ struct CgBench {
     return free * dense_solution(saddle, right).head(n);
   }
   ArrayXd preconditioned(const ArrayXd& r) {
-    TangentPreconditioner map{*symbol, space};
+    Packing all(op.grid(), Sweep::whole(op.grid()), space.components());
+    TangentPreconditioner map{*symbol, space, all};
     ArrayXd z = ArrayXd::Zero(size);
     ArrayXd y = z;
     ArrayXd in_range = r;

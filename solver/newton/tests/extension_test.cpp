@@ -59,21 +59,21 @@ TEST(Extension, ContinuesWhatSlipHoldsFast) {
   for (Index i = 0; i < n; ++i) {
     if (i % grid.n2 > 40) contact[i] = 1.0;  // much of it far from the contact's edge
   }
-  TangentSpace space(2, Sweep(grid, contact));
-  const ArrayXd slips = ArrayXd::Random(n);
-  for (Index i = 0; i < n; ++i) {
-    if (contact[i] == 0.0) continue;
+  const Packing packing(grid, Sweep(grid, contact), 2);
+  TangentSpace space(2, packing.cells());
+  const ArrayXd slips = ArrayXd::Random(packing.cells().size());
+  for (Index i = 0; i < slips.size(); ++i) {
     space.set(i, true);
     if (slips[i] > 0.0)
       space.set_line(i, std::cos(slips[i]), std::sin(slips[i]), slips[i] < 0.5 ? 0.0 : 1.0, 1.0);
   }
   const auto free_part = [&](const ArrayXd& field) {
-    ArrayXd part = contact.replicate(2, 1) * field;
-    space.project(0, n, part);
-    return part;
+    ArrayXd part = packing.packed(field);
+    space.project(0, slips.size(), part);
+    return packing.unpacked(part);
   };
   Extension extension(grid, 2);
-  extension.prepare(space);
+  extension.prepare(space, packing);
   const ArrayXd x = free_part(ArrayXd::Random(2 * n));
   const ArrayXd y = ArrayXd::Random(2 * n);
   ArrayXd extended = x;
@@ -82,11 +82,12 @@ TEST(Extension, ContinuesWhatSlipHoldsFast) {
   extension.collect(collected);
   EXPECT_NEAR((extended * y).sum(), (x * free_part(collected)).sum(), 1e-12);
   const ArrayXd added = extended - x;
-  for (Index i = 0; i < n; ++i) {
-    const double size = std::abs(added[i]) + std::abs(added[i + n]);
-    const double along = std::abs(added[i] * space.f1[i] + added[i + n] * space.f2[i]);
-    EXPECT_EQ(size == 0.0, contact[i] != 0.0 && !space.on_line(i)) << i;
-    if (!space.on_line(i)) continue;
+  for (Index cell = 0; cell < n; ++cell) {
+    const double size = std::abs(added[cell]) + std::abs(added[cell + n]);
+    const Index i = packing.place(cell);
+    EXPECT_EQ(size == 0.0, i >= 0 && !space.on_line(i)) << cell;
+    if (i < 0 || !space.on_line(i)) continue;
+    const double along = std::abs(added[cell] * space.f1[i] + added[cell + n] * space.f2[i]);
     constexpr double kRoundedToFloat = 2e-6;  // matrices, of sums of size ten
     if (space.scale[i] == 1.0F) {
       EXPECT_LE(along, kRoundedToFloat) << i;
@@ -149,7 +150,8 @@ TEST(Extension, HandsNegativePressuresOnToTheCellsThatStay) {
   ArrayXd mask(grid.cells());
   ArrayXd leaves(grid.cells());
   ArrayXd after = before;
-  extension.hand_on(Sweep(ArrayXd(ArrayXd::Ones(grid.cells()))), free, after, mask, leaves);
+  Packing all(grid, Sweep::whole(grid), 1);
+  extension.hand_on(all, free, after, mask, leaves);
   EXPECT_TRUE(((1.0 - stays) * after == 0.0).all());
   extension.prepare(mask = stays);
   const ArrayXd alone = x;
@@ -161,12 +163,13 @@ TEST(Extension, HandsNegativePressuresOnToTheCellsThatStay) {
 TEST(Extension, LeavesPositivePressuresOfFreeCellsAlone) {
   const Grid grid{9, 14, 1.0, 1.0};
   const ArrayXd free = (ArrayXd::Random(grid.cells()) > 0.0).cast<double>();
-  const ArrayXd before = free * (ArrayXd::Random(grid.cells()) + 1.5);
+  Packing packing(grid, Sweep(grid, free), 1);
+  const ArrayXd before = packing.packed(ArrayXd::Random(grid.cells()) + 1.5);
   ArrayXd after = before;
-  ArrayXd mask(grid.cells());
-  ArrayXd leaves(grid.cells());
+  ArrayXd mask(before.size());
+  ArrayXd leaves(before.size());
   Extension extension(grid, 1);
-  extension.hand_on(Sweep(free), free, after, mask, leaves);
+  extension.hand_on(packing, ArrayXd::Ones(before.size()), after, mask, leaves);
   EXPECT_TRUE((after == before).all());
 }
 

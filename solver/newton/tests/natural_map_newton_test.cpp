@@ -30,7 +30,7 @@ class Newton : public testing::Test {
 
   explicit Newton(Index cells = 24) : bench_(cells), q_(ArrayXd::Zero(2 * bench_.model.grid.cells())) {}
 
-  Method method(LinearOperator& op, InverseSymbol& symbol) const { return {discs_, program_, op, symbol}; }
+  Method method(LinearOperator& op, InverseSymbol& symbol) { return {discs_, program_, op, symbol, all_}; }
   NewtonSummary run(ArrayXd& q, const NewtonOptions& options = {}) {
     return method(*bench_.op, *symbol_).run(q, {}, options);
   }
@@ -46,6 +46,7 @@ class Newton : public testing::Test {
   ArrayXd rotation_ = (bench_.bound > 0.0).cast<double>().replicate(2, 1) * rotation_field(grid_);
   MotionField turn_{grid_, 0.0, 0.0, 1.0};
   FrictionDiscs discs_{grid_, bench_.bound};
+  Packing all_{grid_, Sweep::whole(grid_), 2};
   ConvexProgram program_{.g = nullptr, .imposed = {{&turn_, 0.8 * bench_.limit}}};
   ArrayXd q_;
 };

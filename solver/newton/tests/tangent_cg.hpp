@@ -34,6 +34,7 @@ class TangentCg {
   TangentCg(LinearOperator& op, InverseSymbol& symbol, Index size, std::size_t conditions)
       : op_(op),
         symbol_(symbol),
+        packing_(op.grid(), Sweep::whole(op.grid()), static_cast<Index>(op.inputs())),
         r_(size),
         x_(size),
         d_(size),
@@ -50,12 +51,12 @@ class TangentCg {
     conditions_ = std::move(conditions);
     std::array<const FieldCondition*, kMaxConditions> each{};
     std::ranges::transform(conditions_, each.begin(), [](const FieldCondition& c) { return &c; });
-    TangentPreconditioner inverse{symbol_, space};
+    TangentPreconditioner inverse{symbol_, space, packing_};
     return constraints_.prepare(inverse, std::span(each).first(conditions_.size()), d_, y_);
   }
   /// The tangents of the last precondition() on another tangent space.
   bool restrict_tangents(const TangentSpace& space) {
-    const TangentPreconditioner inverse{symbol_, space};
+    const TangentPreconditioner inverse{symbol_, space, packing_};
     return constraints_.restrict_tangents(inverse, Sweep(Eigen::ArrayXd::Ones(space.f1.size())), y_);
   }
   CgSummary solve(const TangentSpace& space, double reduction, int max_iterations) {
@@ -70,14 +71,15 @@ class TangentCg {
   using Constraints = CgConstraints<FieldCondition>;
   CgSummary run(const TangentSpace& space, const Constraints& constraints, double reduction,
                 int max_iterations) {
-    TangentOperator map{op_, space};
-    TangentPreconditioner inverse{symbol_, space};
+    TangentOperator map{op_, space, packing_};
+    TangentPreconditioner inverse{symbol_, space, packing_};
     x_.setZero();
     return projected_cg(map, inverse, constraints, r_, {reduction, max_iterations}, {d_, Ad_, y_}, x_);
   }
 
   LinearOperator& op_;
   InverseSymbol& symbol_;
+  Packing packing_;  ///< of all cells
   Field r_, x_;
   Field d_, Ad_, y_;
   std::vector<CgTangent> w_;

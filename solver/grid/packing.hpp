@@ -1,0 +1,64 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <memory>
+
+#include "solver/grid/grid.hpp"
+#include "solver/grid/sweep.hpp"
+
+namespace slipstick::solver {
+
+/// Fields of some cells of a grid alone, one behind the other, component by component: what is kept of a
+/// contact takes as much memory as its cells, not as its grid. Operators, and what reaches beyond the cells,
+/// have such fields on their grid in one field that all of them share. The grid's fields need be known in its
+/// own rows alone.
+class Packing {
+ public:
+  /// Of no grid yet.
+  Packing() = default;
+  /// For fields of so many components. Throws std::length_error for more cells than 32 bits count.
+  Packing(const Grid& grid, const Sweep& cells, Index components);
+
+  /// Over all cells of packed fields.
+  const Sweep& cells() const { return packed_; }
+  /// x1, then x2 of each cell.
+  const std::shared_ptr<const Eigen::ArrayXd>& coordinates() const { return coordinates_; }
+  /// Where a cell of the grid stands; negative: nowhere.
+  Index place(Index cell) const { return static_cast<Index>(place_[cell]) - 1; }
+  /// Whether a packed field has anything but zero in a cell of the grid.
+  bool holds(Index cell, const Eigen::ArrayXd& field) const {
+    const Index i = place(cell);
+    return i >= 0 && field[i] != 0.0;
+  }
+
+  /// A field of any number of components, or of none: of the grid, packed; and back, with zeros elsewhere.
+  Eigen::ArrayXd packed(const Eigen::ArrayXd& field) const;
+  Eigen::ArrayXd unpacked(const Eigen::ArrayXd& field) const;
+
+  /// work(field), which changes a field of the grid in place, on a packed x; what comes of it is packed into
+  /// y, which may be x. Allocates nothing.
+  template <typename Work>
+  void on_grid(const Eigen::ArrayXd& x, Eigen::ArrayXd& y, const Work& work) {
+    if (is_whole()) {
+      if (&x != &y) unpack(x, y);
+      work(y);
+      return;
+    }
+    unpack(x, on_grid_);
+    work(on_grid_);
+    pack(on_grid_, y);
+  }
+
+ private:
+  bool is_whole() const { return packed_.size() == grid_.size(); }
+  void pack(const Eigen::ArrayXd& from, Eigen::ArrayXd& to) const;
+  void unpack(const Eigen::ArrayXd& from, Eigen::ArrayXd& to) const;
+
+  Sweep grid_, cells_, packed_;  ///< all cells, those that are kept, and these packed
+  Eigen::Array<std::uint32_t, Eigen::Dynamic, 1> place_;  ///< and 1
+  std::shared_ptr<const Eigen::ArrayXd> coordinates_;
+  Eigen::ArrayXd on_grid_;  ///< empty where all cells are kept
+};
+
+}  // namespace slipstick::solver
