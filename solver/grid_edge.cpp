@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 #include <optional>
+#include <utility>
 
 #include "solver/contact/full_coupling.hpp"
 #include "solver/input/input_error.hpp"
@@ -66,12 +67,17 @@ Grid surroundings(const Scene& scene, const Model& model, double approach) {
           grid.ranks};
 }
 
+/// A grid's cells in a component of a larger one of the same cells.
+auto within(const Grid& grid, const Grid& larger, double* component) {
+  return Eigen::Map<Matrix>(component, larger.n1, larger.n2)
+      .block((larger.n1 - grid.n1) / 2, (larger.n2 - grid.n2) / 2, grid.n1, grid.n2);
+}
+
 /// A field of one or more components on a larger grid of the same cells, zero beyond its own.
 ArrayXd continued(const Grid& grid, const Grid& larger, const ArrayXd& field) {
   ArrayXd result = ArrayXd::Zero(field.size() / grid.cells() * larger.cells());
   for (Index c = 0; c < field.size() / grid.cells(); ++c) {
-    Eigen::Map<Matrix>(result.data() + c * larger.cells(), larger.n1, larger.n2)
-        .block((larger.n1 - grid.n1) / 2, (larger.n2 - grid.n2) / 2, grid.n1, grid.n2) =
+    within(grid, larger, result.data() + c * larger.cells()) =
         Eigen::Map<const Matrix>(field.data() + c * grid.cells(), grid.n1, grid.n2);
   }
   return result;
@@ -83,29 +89,29 @@ ArrayXd continued_gap(const Scene& scene, const Model& model, const Grid& larger
   std::vector<Surface> surfaces;
   for (const Surface& surface : scene.surfaces)
     surfaces.push_back(to_dimensionless(surface, model.length_unit));
-  const ArrayXd gap = gap_field(surfaces, scene.combine, larger);
+  ArrayXd gap = gap_field(surfaces, scene.combine, larger);
   Index lowest = 0;
-  model.gap.minCoeff(&lowest);
-  ArrayXd there = ArrayXd::Zero(model.gap.size());
-  there[lowest] = 1.0;
-  const ArrayXd same_cell = continued(model.grid, larger, there);
-  return gap + (model.gap[lowest] - (same_cell > 0.0).select(gap, 0.0).sum());
+  const double height = model.gap.minCoeff(&lowest);
+  gap += height - within(model.grid, larger, gap.data())(lowest / model.grid.n2, lowest % model.grid.n2);
+  return gap;
 }
 
 namespace {
 
-/// Displacement that opens the gap, by the pressure and, unless it is empty, a traction.
-ArrayXd opening(const Model& model, const Scene& scene, const Grid& grid, const ArrayXd& pressure,
+/// Displacement that opens the gap on a larger grid, by the pressure and, unless it is empty, a traction.
+ArrayXd opening(const Model& model, const Scene& scene, const Grid& larger, const ArrayXd& pressure,
                 const ArrayXd& traction) {
   const Elasticity elastic{.law = model.law, .threads = model.threads};
+  const auto there = [&](const ArrayXd& field) { return continued(model.grid, larger, field); };
   const bool pressed_only = traction.size() == 0;
   const Reduction part = pressed_only && scene.model != ModelChoice::full
-                             ? Reduction(grid, pressure, ArrayXd::Ones(grid.cells()))
-                             : Reduction(grid);
-  ArrayXd u(part.grid().cells());
-  elastic.make(part.grid(), normal_kernel())->apply(part.restricted(pressure), u);
-  u = part.expanded(u, normal_symmetry());
-  if (!pressed_only) u += ShearOpening(elastic, grid)(traction);
+                             ? Reduction(larger, there(pressure), ArrayXd::Ones(larger.cells()))
+                             : Reduction(larger);
+  const auto op = elastic.make(part.grid(), normal_kernel());
+  ArrayXd u = part.restricted(there(pressure));
+  op->apply(u, u);
+  u = part.expanded(std::move(u), normal_symmetry());
+  if (!pressed_only) u += ShearOpening(elastic, larger)(there(traction));
   return u;
 }
 
@@ -119,11 +125,11 @@ bool goes_on_beyond(const Scene& scene, const Model& model, const NormalSolution
   if (!at_edge && scene.surfaces.size() == 1 && !is_measured(scene.surfaces.front())) return false;
   const Grid larger = surroundings(scene, model, normal.approach);
   if (larger.cells() == model.grid.cells()) return false;
-  const ArrayXd u = opening(model, scene, larger, continued(model.grid, larger, normal.pressure),
-                            traction.size() > 0 ? continued(model.grid, larger, traction) : ArrayXd());
-  const ArrayXd beyond = 1.0 - continued(model.grid, larger, ArrayXd::Ones(model.grid.cells()));
-  const ArrayXd gap = continued_gap(scene, model, larger) + u - normal.approach;
-  return (beyond > 0.0 && !(gap >= -kOpen * u.maxCoeff())).any();
+  const ArrayXd u = opening(model, scene, larger, normal.pressure, traction);
+  ArrayXd gap = continued_gap(scene, model, larger);
+  gap += u - normal.approach;
+  within(model.grid, larger, gap.data()) = 0.0;
+  return !(gap >= -kOpen * u.maxCoeff()).all();
 }
 
 std::array<double, 2> extent_of(const Model& model) {

@@ -56,17 +56,19 @@ NormalSolution solved_pressure(const Scene& scene, const Model& model, double no
   // Shear opens the gap as it likes.
   const Reduction part = opening.size() > 0 ? Reduction(model.grid) : model.pressure_part;
   const double images = part.quadrant() ? 4.0 : 1.0;
-  Eigen::ArrayXd gap = opening.size() > 0 ? Eigen::ArrayXd(model.gap + opening) : model.gap;
+  Eigen::ArrayXd gap;  // where it is not the model's
+  if (opening.size() > 0) gap = model.gap + opening;
+  if (part.trimmed() || part.quadrant()) gap = part.restricted(model.gap);
   NormalSolution solution =
       solve_normal_contact(elasticity(scene, model, part), part.grid(),
-                           {.gap = part.restricted(std::move(gap)),
+                           {.gap = gap.size() > 0 ? gap : model.gap,
                             .total_pressure = normal_load / model.grid.cell_area() / images,
                             .guess = part.restricted(goal.guess)},
                            {.tolerance = std::max(std::min(kPressureTolerance, scene.tolerance), goal.gap),
                             .refine_approach = goal.gap == 0.0,
                             .progress = progress});
   if (part.diagonal()) solution.pressure = symmetrised(part.grid(), solution.pressure);
-  solution.pressure = part.expanded(solution.pressure, normal_symmetry());
+  solution.pressure = part.expanded(std::move(solution.pressure), normal_symmetry());
   if (scene.model != ModelChoice::full && !model.forces && is_half_turn_symmetric(model.grid, model.gap)) {
     solution.pressure = half_turn_symmetrised(solution.pressure);
   }

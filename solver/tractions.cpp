@@ -27,7 +27,7 @@ constexpr double kNextTo = 1e-5;
 /// Tangential displacement by the change of pressure, Eq. (12).
 ArrayXd pressure_displacement(const Scene& scene, const Model& model, const ArrayXd& pressure,
                               const ContactState& before) {
-  if (!model.pressure_coupling) return {};
+  if (!model.pressure_coupling || !model.law->couples() || scene.friction.is_frictionless()) return {};
   const auto op = elasticity(scene, model, Reduction(model.grid)).make(model.grid, coupling_kernel());
   ArrayXd u(2 * pressure.size());
   op->apply(before.pressure.size() > 0 ? ArrayXd(pressure - before.pressure) : pressure, u);
@@ -160,7 +160,7 @@ void expand(TangentialSolution& solution, const Reduction& part) {
   ArrayXd& u = solution.elastic_displacement;
   share_rows(part.grid(), u);
   for (ArrayXd* const field : {&solution.traction, &solution.elastic_displacement, &solution.slip}) {
-    *field = part.expanded(*field, torsion_symmetry());
+    *field = part.expanded(std::move(*field), torsion_symmetry());
   }
   solution.stick = part.expanded(solution.stick, normal_symmetry());
 }

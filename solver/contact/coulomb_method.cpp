@@ -72,7 +72,7 @@ class TangentialOnGrid {
   FrictionDiscs admissible() const { return {packing_.cells(), problem_.friction_bound}; }
   Packing& packing() { return packing_; }
   /// The contact is known.
-  static void look_ahead(const TangentialOnGrid&, const NestedSummary&) {}
+  static void look_ahead(const TangentialOnGrid&, const NewtonSummary&, const ArrayXd&) {}
   static bool overlooks(LinearOperator&, const NestedSummary&, double) { return false; }
   ArrayXd start() const {
     return problem_.start.size() > 0 ? problem_.start : ArrayXd::Zero(2 * problem_.friction_bound.size());

@@ -4,7 +4,7 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
+#include <memory>
 #include <stdexcept>
 #include <utility>
 
@@ -18,21 +18,21 @@ using Eigen::ArrayXd;
 
 constexpr std::array<Parity, 1> kPressureParities{{{1, 1}}};
 
-/// Cells are looked at that may be in contact by what a coarse grid says: whose pressure is not zero there, or
-/// whose opening is no more than this many times what the mesh leaves of openings in contact.
-constexpr double kOpenings = 3.0;
-/// Beyond this part of those that can touch all are.
-constexpr double kNearlyAll = 0.7;
+/// Cells are looked at that may be in contact by what a coarse grid says: it has a pressure there, or with its
+/// displacement they open by no more than bodies overlap elsewhere, in the root mean square. If these are more than this
+/// part of those that can touch, all are.
+constexpr double kMostOfAll = 0.7;
 
 /// The normal problem on one grid, as solve_nested() asks for it.
 class PressureOnGrid {
  public:
+  using Gap = std::shared_ptr<const ArrayXd>;
   /// gap: undeformed, infinite where the bodies cannot touch.
-  PressureOnGrid(const Grid& grid, ArrayXd gap, double total_pressure, ArrayXd guess = {})
+  PressureOnGrid(const Grid& grid, Gap gap, double total_pressure, ArrayXd guess = {})
       : grid_(grid),
         approach_(grid, 1.0),
         gap_(std::move(gap)),
-        reachable_(cells_where([&](Index i) { return std::isfinite(gap_[i]); })),
+        reachable_(cells_where([&](Index i) { return can_touch(i); })),
         cells_(reachable_),
         total_pressure_(total_pressure),
         guess_(std::move(guess)) {}
@@ -43,37 +43,39 @@ class PressureOnGrid {
   Packing& packing() { return packing_; }
   ArrayXd start() const { return ArrayXd::Zero(grid_.cells()); }
   ArrayXd guess() const { return guess_; }
-  void keep_own_rows() { gap_ = in_own_rows(grid_, std::move(gap_)); }
+  void keep_own_rows() {
+    if (grid_.ranks.several()) gap_ = std::make_shared<const ArrayXd>(in_own_rows(grid_, *gap_));
+  }
   ConvexProgram program(LinearOperator&) {
     packing_ = Packing(grid_, cells_, 1);
-    heights_ = packing_.packed(gap_);
+    heights_ = packing_.packed(*gap_);
     packed_approach_ = approach_.packed(packing_);
     return {.g = &heights_, .imposed = {{&packed_approach_, total_pressure_}}};
   }
 
   /// A coarse cell can touch where half of it can, at the mean height of that part.
   PressureOnGrid coarsened(const Grid& coarse) const {
-    const ArrayXd part = restrict_to(coarse, grid_, gap_.isFinite().cast<double>());
-    const ArrayXd height = restrict_to(coarse, grid_, gap_.isFinite().select(gap_, 0.0));
+    const ArrayXd part = restrict_to(coarse, grid_, gap_->isFinite().cast<double>());
+    const ArrayXd height = restrict_to(coarse, grid_, gap_->isFinite().select(*gap_, 0.0));
+    const double most = part.maxCoeff();
     return {coarse,
-            (part >= std::min(0.5, part.maxCoeff()))
-                .select(height / part.max(0.25 * part.maxCoeff()), std::numeric_limits<double>::infinity()),
+            std::make_shared<const ArrayXd>(
+                (part >= std::min(0.5, most)).select(height / part.max(0.25 * most), INFINITY)),
             total_pressure_ * grid_.cell_area() / coarse.cell_area()};
   }
 
-  /// By the opening that the coarse grid's displacement leaves.
-  void look_ahead(PressureOnGrid& coarse, const NestedSummary& below) {
-    if (!below.newton.converged) return;
+  /// By the opening that the coarse grid's displacement leaves. pressure: the coarse grid's.
+  void look_ahead(PressureOnGrid& coarse, const NewtonSummary& found, const ArrayXd& pressure) {
+    if (!found.converged) return;
     share_rows(coarse.grid_, coarse.displacement_);
-    const ArrayXd pressure = prolong_to(grid_, coarse.grid_, below.field, kPressureParities);
     ArrayXd opening = prolong_to(grid_, coarse.grid_, coarse.displacement_, kPressureParities);
-    opening += gap_ - below.newton.multipliers[0];
-    const Sweep pressed = cells_where([&](Index i) { return pressure[i] > 0.0 && std::isfinite(gap_[i]); });
-    const double square = pressed.sum<double>([&](Index first, Index last, double& sum) {
+    opening += *gap_ - found.multipliers[0];
+    const Sweep closed = cells_where([&](Index i) { return opening[i] < 0.0; });
+    const double square = closed.sum<double>([&](Index first, Index last, double& sum) {
       sum += opening.segment(first, last - first).square().sum();
     });
-    const double margin = kOpenings * std::sqrt(square / static_cast<double>(pressed.count()));
-    look_at([&](Index i) { return std::isfinite(gap_[i]) && (pressure[i] > 0.0 || opening[i] < margin); });
+    const double overlap = std::sqrt(square / static_cast<double>(std::max<Index>(closed.count(), 1)));
+    look_at([&](Index i) { return can_touch(i) && (pressure[i] > 0.0 || opening[i] < overlap); });
   }
 
   /// Whether other cells open less than those that were looked at. The gap is that of all then.
@@ -89,7 +91,7 @@ class PressureOnGrid {
     const auto lowest_of = [&](const Sweep& cells) {
       return cells
           .sum<Lowest>([&](Index first, Index last, Lowest& lowest) {
-            for (Index i = first; i < last; ++i) lowest += {displacement_[i] + gap_[i]};
+            for (Index i = first; i < last; ++i) lowest += {displacement_[i] + (*gap_)[i]};
           })
           .value;
     };
@@ -99,12 +101,13 @@ class PressureOnGrid {
     if (result.newton.gap <= tolerance) return false;
     result.field = packing_.unpacked(result.field);
     look_at([&](Index i) {
-      return packing_.place(i) >= 0 || displacement_[i] + gap_[i] < lowest + overlooked;
+      return packing_.place(i) >= 0 || displacement_[i] + (*gap_)[i] < lowest + overlooked;
     });
     return true;
   }
 
  private:
+  bool can_touch(Index cell) const { return std::isfinite((*gap_)[cell]); }
   template <typename Contains>
   Sweep cells_where(const Contains& contains) const {
     Sweep cells(grid_);
@@ -114,13 +117,13 @@ class PressureOnGrid {
   template <typename Contains>
   void look_at(const Contains& contains) {
     cells_ = cells_where(contains);
-    if (static_cast<double>(cells_.count()) > kNearlyAll * static_cast<double>(reachable_.count()))
+    if (static_cast<double>(cells_.count()) > kMostOfAll * static_cast<double>(reachable_.count()))
       cells_ = reachable_;
   }
 
   Grid grid_;
   MotionField approach_;
-  ArrayXd gap_;
+  Gap gap_;
   Sweep reachable_, cells_;  ///< where the bodies can touch, and of these those that are looked at
   double total_pressure_;
   ArrayXd guess_;
@@ -142,7 +145,8 @@ void require_valid(const NormalProblem& problem, const Grid& grid) {
 
 NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& grid,
                                    const NormalProblem& problem, const NormalOptions& options) {
-  PressureOnGrid contact(grid, problem.gap, problem.total_pressure, problem.guess);
+  const PressureOnGrid::Gap gap(PressureOnGrid::Gap(), &problem.gap);  // not owned
+  PressureOnGrid contact(grid, gap, problem.total_pressure, problem.guess);
   const NewtonOptions newton{.tolerance = options.tolerance,
                              .max_applications = options.max_applications,
                              .refine_multipliers = options.refine_approach,
@@ -170,7 +174,8 @@ NormalSolution solve_normal_contact(const Elasticity& elasticity, const Grid& gr
                                     const NormalProblem& problem, const NormalOptions& options) {
   require_valid(problem, grid);
   // From a guess no other solve starts again.
-  if (problem.guess.size() > 0) return find_normal_contact(elasticity, grid, problem, options);
+  if (problem.guess.size() > 0 || !elasticity.usable_cache())
+    return find_normal_contact(elasticity, grid, problem, options);
   CacheKey key = elasticity.key("pressure", grid);
   key.add({problem.gap.data(), static_cast<std::size_t>(problem.gap.size())}).add(problem.total_pressure);
   key.add(options.tolerance).add(options.max_applications).add(options.refine_approach);

@@ -14,7 +14,7 @@ namespace slipstick::solver {
 /// Frictionless contact under a given load: minimise p.Kp/2 + p.h over p >= 0 with sum of p given. All
 /// quantities in one consistent set of units; u3 = K33 p.
 struct NormalProblem {
-  Eigen::ArrayXd gap;         ///< undeformed gap h of each cell; infinite where the bodies cannot touch
+  const Eigen::ArrayXd& gap;  ///< undeformed gap h of each cell; infinite where the bodies cannot touch
   double total_pressure;      ///< load over cell area
   Eigen::ArrayXd guess = {};  ///< a pressure near the answer; empty: found from coarser grids
 };

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <complex>
+#include <span>
 #include <vector>
 
 #include "solver/elasticity/linear_operator.hpp"
@@ -23,6 +24,7 @@ class Convolution final : public LinearOperator {
   static double sent_bytes(const Grid& grid, const BlockKernel& kernel);
   Index padded1() const { return transform_.padded1(); }
   Index padded2() const { return transform_.padded2(); }
+  std::span<double> idle_memory() override { return transform_.memory(); }
 
  private:
   using Spectrum = PaddedTransform::Spectrum;

@@ -13,10 +13,12 @@ namespace slipstick::solver {
 namespace {
 
 /// The diagonal's mirror is of use to the tangential kernel alone.
-OperatorOptions options_of(const Elasticity& elasticity, const BlockKernel& kernel) {
+OperatorOptions options_of(const Elasticity& elasticity, const BlockKernel& kernel,
+                           std::span<double> memory = {}) {
   return {.threads = elasticity.threads,
           .diagonal = elasticity.diagonal && kernel.inputs == 2,
-          .at_edge = elasticity.at_edge};
+          .at_edge = elasticity.at_edge,
+          .memory = memory};
 }
 
 std::unique_ptr<LinearOperator> new_operator(const Elasticity& elasticity, const Grid& grid,
@@ -107,7 +109,8 @@ Cached<LinearOperator> Elasticity::make(const Grid& grid, const BlockKernel& ker
 
 GridOperators::GridOperators(const Elasticity& elasticity, const Grid& grid, const BlockKernel& kernel)
     : op(new_operator(elasticity, grid, kernel)),
-      symbol(make_inverse_symbol(grid, kernel, *elasticity.law, options_of(elasticity, kernel))) {}
+      symbol(make_inverse_symbol(grid, kernel, *elasticity.law,
+                                 options_of(elasticity, kernel, op->idle_memory()))) {}
 
 Cached<GridOperators> Elasticity::make_all(const Grid& grid, const BlockKernel& kernel) const {
   Cached<GridOperators> operators(

@@ -63,7 +63,7 @@ class PeriodicInverseSymbol final : public InverseSymbol {
         columns_(PlaneTransform::own_columns(shape(grid, periodic_, tangential))),
         table_(periodic_, law, tangential ? 3 : 1, frequencies(columns_),
                1.0 / (static_cast<double>(periodic_.n1) * static_cast<double>(periodic_.n2))),
-        transform_(shape(grid, periodic_, tangential), options.threads) {}
+        transform_(shape(grid, periodic_, tangential), options.threads, options.memory) {}
 
   void apply(std::span<double> field) override {
     if (static_cast<Index>(field.size()) != fields_ * grid_.cells()) {

@@ -68,7 +68,7 @@ class LinearOperator {
 
   /// Of packed fields.
   void apply_own(const Field& traction, Field& displacement, Packing& packing) {
-    packing.on_grid(traction, displacement, [&](Field& field) { apply_own(field, field); });
+    packing.on_grid(traction, displacement, [&](const Field& x, Field& y) { apply_own(x, y); });
   }
 
   const Grid& grid() const { return grid_; }
@@ -77,6 +77,8 @@ class LinearOperator {
   /// Applications so far.
   long applications() const { return applications_; }
   void restart_count() { applications_ = 0; }
+  /// Its memory that may be overwritten between applications.
+  virtual std::span<double> idle_memory() { return {}; }
 
  protected:
   LinearOperator(const Grid& grid, BlockKernel kernel) : grid_(grid), kernel_(std::move(kernel)) {}
@@ -105,6 +107,7 @@ struct OperatorOptions {
   int threads = 1;
   bool diagonal = false;  ///< see part_of()
   bool at_edge = false;   ///< whether fields reach the edge of a whole grid
+  std::span<double> memory = {};  ///< that a preconditioner may overwrite while it is applied; not owned
 };
 
 /// The operator of the fields that part_of() says. Throws what that throws, and std::invalid_argument for

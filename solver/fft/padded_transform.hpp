@@ -42,6 +42,8 @@ class PaddedTransform {
   static double sent_bytes(const Grid& grid) { return shared_matrix(grid).sent_bytes(); }
 
   int threads() const { return threads_; }
+  /// What it overwrites, and nobody reads between a way forward and back and the next.
+  std::span<double> memory() { return {columns_.data(), 2 * fields_ * field_size_}; }
   Index padded1() const { return 2 * m1_; }
   Index padded2() const { return 2 * m2_; }
   /// Frequencies along x2 that hold all of a real field, m2 + 1: first the even ones, then the odd ones.

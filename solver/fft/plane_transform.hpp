@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <span>
 #include <vector>
 
 #include "solver/fft/fftw.hpp"
@@ -40,7 +41,9 @@ class PlaneTransform {
   /// Columns that lie in a cache line.
   static constexpr Index kColumns = 64 / static_cast<Index>(2 * sizeof(double));
 
-  PlaneTransform(const PlaneShape& shape, int threads)
+  /// memory: where to keep the plane if that is large enough, aligned for FFTW and free whenever rows go
+  /// forward; not owned.
+  PlaneTransform(const PlaneShape& shape, int threads, std::span<double> memory = {})
       : shape_(shape),
         threads_(threads),
         row_stride_(row_stride(shape)),
@@ -48,8 +51,9 @@ class PlaneTransform {
         own_samples_(RowBands(shape.samples, shape.ranks).own_rows()),
         shared_(shared_matrix(shape)),
         field_size_(field_size(shape)),
-        buffer_(count(shape.fields * field_size_)) {
-    auto* const spectrum = buffer_.complex();
+        own_plane_(memory.size() < plane_size() ? FftwBuffer(plane_size()) : FftwBuffer()),
+        plane_(memory.size() < plane_size() ? own_plane_.data() : memory.data()) {
+    auto* const spectrum = numbers(plane_);
     const int length = static_cast<int>(shape.n2);
     for (int thread = 0; thread < threads; ++thread) {
       own_rows_.emplace_back(count(row_stride_));
@@ -98,9 +102,9 @@ class PlaneTransform {
   }
 
   /// A row of those that are kept.
-  double* row(Index field, Index k) { return buffer_.data() + field * field_size_ + k * row_stride_; }
+  double* row(Index field, Index k) { return plane_ + field * field_size_ + k * row_stride_; }
   /// All columns of a whole plane.
-  PlaneColumns all_columns() { return {buffer_.data(), row_stride_, field_size_, 0, columns_}; }
+  PlaneColumns all_columns() { return {plane_, row_stride_, field_size_, 0, columns_}; }
 
   /// This rank's columns of the fields forward, a cache line of them at a time, work(thread, these), and
   /// back; not of a whole plane.
@@ -162,6 +166,7 @@ class PlaneTransform {
   static Index field_size(const PlaneShape& shape) {
     return shape.whole ? shape.n1 * row_stride(shape) : shared_matrix(shape).size();
   }
+  std::size_t plane_size() const { return count(shape_.fields * field_size_); }
   static Index scratch_size(const PlaneShape& shape) { return shape.fields * 2 * kColumns * shape.n1; }
 
   /// Samples between there and where they are transformed.
@@ -198,7 +203,8 @@ class PlaneTransform {
   Share own_samples_;
   RankTranspose shared_;
   Index field_size_;  ///< reals from one field to the next
-  FftwBuffer buffer_;
+  FftwBuffer own_plane_;
+  double* plane_;
   std::vector<FftwBuffer> own_rows_;  ///< for each thread
   std::vector<FftwBuffer> scratch_;   ///< for each thread: columns while they are transformed
   FftwPlan row_forward_;

@@ -12,18 +12,22 @@ Packing::Packing(const Grid& grid, const Sweep& cells, Index components)
     : grid_(Sweep::whole(grid)),
       cells_(cells),
       packed_(cells.packed()),
-      place_(grid.cells()),
-      on_grid_(is_whole() ? 0 : components * grid.cells()) {
-  if (cells.count() >= std::numeric_limits<std::uint32_t>::max()) throw std::length_error("cells to pack");
-  clear(grid_, place_);
+      place_(is_whole() ? 0 : grid.cells()),
+      on_grid_(components * place_.size()) {
+  if (place_.size() > 0 && cells.count() >= std::numeric_limits<std::uint32_t>::max())
+    throw std::length_error("cells to pack");
+  if (!is_whole()) {
+    clear(grid_, place_);
+    cells_.each_with_place([&](Index first, Index last, Index place) {
+      for (Index cell = first; cell < last; ++cell) place_[cell] = static_cast<std::uint32_t>(++place);
+    });
+  }
+  const ArrayXd x2 = ArrayXd::NullaryExpr(grid.n2, [&](Index j) { return grid.x2(j); });
   ArrayXd coordinates(2 * cells.count());
   cells_.each_with_place([&](Index first, Index last, Index place) {
-    const Index i = first / grid.n2;
-    for (Index k = 0; k < last - first; ++k) {
-      place_[first + k] = static_cast<std::uint32_t>(place + k + 1);
-      coordinates[place + k] = grid.x1(i);
-      coordinates[cells_.count() + place + k] = grid.x2(first + k - i * grid.n2);
-    }
+    const Index n = last - first;
+    coordinates.segment(place, n).setConstant(grid.x1(first / grid.n2));
+    coordinates.segment(cells_.count() + place, n) = x2.segment(first % grid.n2, n);
   });
   coordinates_ = std::make_shared<const ArrayXd>(std::move(coordinates));
 }

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <cstdint>
 #include <memory>
+#include <utility>
 
 #include "solver/grid/grid.hpp"
 #include "solver/grid/sweep.hpp"
@@ -25,7 +26,7 @@ class Packing {
   /// x1, then x2 of each cell.
   const std::shared_ptr<const Eigen::ArrayXd>& coordinates() const { return coordinates_; }
   /// Where a cell of the grid stands; negative: nowhere.
-  Index place(Index cell) const { return static_cast<Index>(place_[cell]) - 1; }
+  Index place(Index cell) const { return is_whole() ? cell : static_cast<Index>(place_[cell]) - 1; }
   /// Whether a packed field has anything but zero in a cell of the grid.
   bool holds(Index cell, const Eigen::ArrayXd& field) const {
     const Index i = place(cell);
@@ -36,17 +37,16 @@ class Packing {
   Eigen::ArrayXd packed(const Eigen::ArrayXd& field) const;
   Eigen::ArrayXd unpacked(const Eigen::ArrayXd& field) const;
 
-  /// work(field), which changes a field of the grid in place, on a packed x; what comes of it is packed into
-  /// y, which may be x. Allocates nothing.
+  /// work(x, y) on fields of the grid, which may be the same, with packed ones, which may be. Allocates
+  /// nothing.
   template <typename Work>
   void on_grid(const Eigen::ArrayXd& x, Eigen::ArrayXd& y, const Work& work) {
     if (is_whole()) {
-      if (&x != &y) unpack(x, y);
-      work(y);
+      work(x, y);
       return;
     }
     unpack(x, on_grid_);
-    work(on_grid_);
+    work(std::as_const(on_grid_), on_grid_);
     pack(on_grid_, y);
   }
 
@@ -56,9 +56,10 @@ class Packing {
   void unpack(const Eigen::ArrayXd& from, Eigen::ArrayXd& to) const;
 
   Sweep grid_, cells_, packed_;  ///< all cells, those that are kept, and these packed
-  Eigen::Array<std::uint32_t, Eigen::Dynamic, 1> place_;  ///< and 1
   std::shared_ptr<const Eigen::ArrayXd> coordinates_;
-  Eigen::ArrayXd on_grid_;  ///< empty where all cells are kept
+  // Where not all cells are kept:
+  Eigen::Array<std::uint32_t, Eigen::Dynamic, 1> place_;  ///< and 1
+  Eigen::ArrayXd on_grid_;
 };
 
 }  // namespace slipstick::solver

@@ -96,9 +96,10 @@ ArrayXd Reduction::restricted(ArrayXd field) const {
   return quadrant() ? restrict_to_quadrant(trimmed_, field) : field;
 }
 
-ArrayXd Reduction::expanded(const ArrayXd& field, const Symmetry& symmetry) const {
-  const ArrayXd part = quadrant() ? unfold(grid_, field, symmetry) : field;
-  return trimmed() ? padded(whole_, trimmed_, part) : part;
+ArrayXd Reduction::expanded(ArrayXd field, const Symmetry& symmetry) const {
+  if (quadrant()) field = unfold(grid_, field, symmetry);
+  if (trimmed()) field = padded(whole_, trimmed_, field);
+  return field;
 }
 
 bool is_half_turn_symmetric(const Grid& grid, const ArrayXd& field) {

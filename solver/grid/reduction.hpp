@@ -33,7 +33,7 @@ class Reduction {
   Eigen::ArrayXd restricted(Eigen::ArrayXd field) const;
 
   /// And back: zero outside, mirrored by the parity of each component.
-  Eigen::ArrayXd expanded(const Eigen::ArrayXd& field, const Symmetry& symmetry) const;
+  Eigen::ArrayXd expanded(Eigen::ArrayXd field, const Symmetry& symmetry) const;
 
  private:
   Grid whole_{};

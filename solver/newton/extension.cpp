@@ -323,7 +323,7 @@ void Extension::hand_on(Packing& packing, const Field& free, Eigen::ArrayXd& p, 
   });
   if (count == 0) return;
   prepare_scalars([&](Index cell) { return packing.holds(cell, stays); });
-  packing.on_grid(leaves, leaves, [&](Field& field) { collect(field); });
+  packing.on_grid(leaves, leaves, [&](const Field&, Field& field) { collect(field); });
   cells.each([&](Index first, Index last) {
     for (Index i = first; i < last; ++i) p[i] += static_cast<double>(stays[i] * leaves[i]);
   });

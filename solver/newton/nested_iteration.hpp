@@ -47,7 +47,7 @@ concept NestedProblem = requires(Problem problem, const Grid& grid, LinearOperat
   {problem.keep_own_rows()};                               // which are enough once it has been coarsened
   { problem.coarsened(grid) } -> std::same_as<Problem>;    // on the coarse grid
   // Which cells it looks at follows from what was found on the coarse grid, and from what is found:
-  {problem.look_ahead(problem, summary)};
+  {problem.look_ahead(problem, summary.newton, summary.field)};
   { problem.overlooks(op, summary, 0.0) } -> std::same_as<bool>;  // then it looks at more
 };
 
@@ -77,7 +77,8 @@ void solve_on_grid(const Elasticity& elasticity, const Grid& grid, Problem& prob
 }
 
 /// Solves from the coarsest grid up, or from a guess. From coarse grids only the change from start() is
-/// taken: start() itself is known in full. The result's fields are known in the grid's own rows.
+/// taken: start() itself is known in full. The result's field is known in the grid's own rows; slip and
+/// displacement are packed.
 template <NestedProblem Problem>
 NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Problem& problem,
                              const NewtonOptions& options) {
@@ -100,20 +101,19 @@ NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Pro
     result.grids = std::move(below.grids);
     result.safeguards = below.safeguards;
     share_rows(coarse, below.field);
-    problem.look_ahead(on_coarse, below);
     if (below.field.isFinite().all()) {
       const Eigen::ArrayXd change = prolong_to(grid, coarse, below.field - start, problem.parities());
       in_own_rows(grid, change.size(), [&](Index first, Index count) {
         result.field.segment(first, count) += change.segment(first, count);
       });
+      problem.look_ahead(on_coarse, below.newton, result.field);
     }
     multipliers = below.newton.multipliers;
   }
   problem.keep_own_rows();
 
   solve_on_grid(elasticity, grid, problem, multipliers, options, guessed, result);
-  for (Eigen::ArrayXd* const field : {&result.field, &result.slip, &result.displacement})
-    *field = problem.packing().unpacked(*field);
+  result.field = problem.packing().unpacked(result.field);
   return result;
 }
 
@@ -123,9 +123,9 @@ template <NestedProblem Problem>
 NestedSummary solve_nested(const Elasticity& elasticity, const Grid& grid, Problem problem,
                            const NewtonOptions& options) {
   NestedSummary result = solve_on_grids(elasticity, grid, problem, options);
-  for (Eigen::ArrayXd* const field : {&result.field, &result.slip}) {
-    share_rows(grid, *field);
-  }
+  for (Eigen::ArrayXd* const field : {&result.slip, &result.displacement})
+    *field = problem.packing().unpacked(*field);
+  for (Eigen::ArrayXd* const field : {&result.field, &result.slip}) share_rows(grid, *field);
   return result;
 }
 

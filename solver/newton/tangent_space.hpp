@@ -192,7 +192,7 @@ struct TangentPreconditioner {
   /// The three parts of y = M r, of which the first and the last go cell by cell.
   void load(Index first, Index last, const Field& r, Field& z) const { space.load(first, last, r, z); }
   void transform(Field& z) {
-    packing.on_grid(z, z, [&](Field& field) {
+    packing.on_grid(z, z, [&](const Field&, Field& field) {
       if (extension != nullptr) extension->extend(field);
       symbol.apply(std::span(field.data(), static_cast<std::size_t>(field.size())));
       if (extension != nullptr) extension->collect(field);

@@ -114,8 +114,9 @@ ArrayXd roughness_heights(const Roughness& roughness, const Grid& grid) {
   const MatrixXcd along_1 = exponentials(x1, fundamental, 0, waves.rows()) * waves;
   const MatrixXcd along_2 = exponentials(x2, fundamental, -most, waves.cols());
   ArrayXd heights(grid.cells());
-  Eigen::Map<RowMajorMatrix>(heights.data(), grid.n1, grid.n2) =
-      along_1.real() * along_2.real().transpose() - along_1.imag() * along_2.imag().transpose();
+  Eigen::Map<RowMajorMatrix> matrix(heights.data(), grid.n1, grid.n2);
+  matrix.noalias() = along_1.real() * along_2.real().transpose();
+  matrix.noalias() -= along_1.imag() * along_2.imag().transpose();
   return heights;
 }
 

@@ -16,6 +16,7 @@ namespace slipstick::solver {
 namespace {
 
 using Eigen::ArrayXd;
+using Eigen::ArrayXXd;
 using std::numbers::pi;
 using testing::HasSubstr;
 
@@ -123,6 +124,32 @@ TEST(Operators, GiveTheSamePressure) {
   for (const OperatorKind kind : {OperatorKind::direct, OperatorKind::dense}) {
     scene.op = kind;
     EXPECT_LT((press(scene).solution.pressure - reference).abs().maxCoeff(), 1e-9 * reference.maxCoeff());
+  }
+}
+
+/// A punch of lines, which coarse grids take for a whole one: it sinks deeper than they say, until a body
+/// beside it bears whose cells they leave out.
+TEST(FineLines, LetCellsBearThatCoarseGridsLeaveOut) {
+  const Grid grid{96, 96, 1.0, 1.0};
+  const Elasticity elasticity{std::make_shared<HalfSpaces>(elastic_pair({1.0, 0.3}, {1.0, 0.3}))};
+  constexpr double kInfinite = std::numeric_limits<double>::infinity();
+  constexpr double kTolerance = 1e-10;
+  for (const double beside : {9.8, 10.0, 10.2}) {
+    ArrayXXd gap = ArrayXXd::Constant(96, 96, 1e3);  // a column for each row of the grid
+    gap.block(8, 24, 48, 48) = kInfinite;
+    for (Index line = 24; line < 72; line += 4) gap.block(8, line, 48, 1) = 0.0;
+    gap.block(76, 40, 16, 16) = beside;
+    const NormalSolution solution = solve_normal_contact(
+        elasticity, grid, {.gap = gap.reshaped(), .total_pressure = 1e3}, {.tolerance = kTolerance});
+    ASSERT_EQ(solution.status, Status::converged) << solution.message;
+    const ArrayXd& p = solution.pressure;
+    ArrayXd u(grid.cells());
+    elasticity.make(grid, normal_kernel())->apply(p, u);
+    const ArrayXd opening = (p > 0.0 || gap.reshaped().isFinite()).select(u + gap.reshaped(), kInfinite);
+    const double open = (p > 0.0).select(p * (opening - opening.minCoeff()), 0.0).sum();
+    EXPECT_LE(open / (0.5 * (p * u).sum()), kTolerance * (1.0 + 1e-3));
+    EXPECT_NEAR(open / (0.5 * (p * u).sum()), solution.complementarity, 1e-3 * kTolerance);
+    EXPECT_GT(Eigen::Map<const ArrayXXd>(p.data(), 96, 96).bottomRows(24).sum(), 0.1);
   }
 }
 
