@@ -30,11 +30,11 @@ using Eigen::ArrayXd;
 /// follow, by convergence/solve/tests/memory_test.py.
 constexpr double kFieldsHeld = 4.0;
 /// Doubles a cell of the part that is solved; each of several processes has its own rows of it.
-constexpr double kFieldsOfPart = 5.0;
+constexpr double kFieldsOfPart = 2.0;
 /// Doubles a cell of the whole grid before and after the solve, when operators and workspaces are gone.
-constexpr double kFieldsAround = 12.5;
+constexpr double kFieldsAround = 11.0;
 /// Doubles a cell of the part that the other methods than Coulomb's hold.
-constexpr double kFieldsOfOthers = 23.0;
+constexpr double kFieldsOfOthers = 21.0;
 /// Doubles a cell of the whole grid of the step before.
 constexpr double kFieldsBefore = 37.0;
 /// Doubles a cell of the whole grid where pressure and tractions are solved in turn: Anderson's combination
@@ -266,7 +266,7 @@ Elasticity elasticity(const Scene& scene, const Model& model, const Reduction& p
           .cache = model.cache};
 }
 
-Memory predicted_memory(const Scene& scene, const Model& model) {
+Memory predicted_memory(const Scene& scene, const Model& model, const LookedAt& parts) {
   const bool follows = scene.steps.size() > 1 || scene.cycles > 1;
   const double before = model.shear_coupling ? kFieldsBeforeTurns : kFieldsBefore;
   const double turns = model.shear_coupling ? kFieldsOfTurns : 0.0;
@@ -274,8 +274,9 @@ Memory predicted_memory(const Scene& scene, const Model& model) {
   const double around = field_bytes(kFieldsAround, model.grid.cells());
   const Grid& part = model.pressure_part.grid();
   const Elasticity on_part = elasticity(scene, model, model.pressure_part);
-  const double normal =
-      scene.pressure == PressureModel::solved ? on_part.newton_bytes(part, normal_kernel()) : 0.0;
+  const double normal = scene.pressure == PressureModel::solved
+                            ? on_part.newton_bytes(part, normal_kernel(), parts.pressure)
+                            : 0.0;
   // The pressure has the gap's mirrors, unless a file brings it; its tangential displacement has not those of
   // torsion.
   const bool whole = model.pressure_coupling || model.forces || scene.pressure == PressureModel::file;
@@ -286,11 +287,15 @@ Memory predicted_memory(const Scene& scene, const Model& model) {
   const double tangential = !newton ? elastic.operator_bytes(grid, tangential_kernel())
                             : scene.friction.is_frictionless()
                                 ? 0.0  // nothing is solved
-                                : elastic.newton_bytes(grid, tangential_kernel());
+                                : elastic.newton_bytes(grid, tangential_kernel(), parts.tractions);
   const double solver = std::max({normal, tangential, coupling});
   const double of_part = newton ? field_bytes(kFieldsOfPart, own_rows(grid).count() * grid.n2)
                                 : field_bytes(kFieldsOfOthers, grid.cells());
   return {solver, program_bytes(grid) + std::max(fields + of_part, around - solver)};
+}
+
+void require_memory(const Scene& scene, const Model& model, const LookedAt& parts) {
+  require_memory(scene, model.grid, predicted_memory(scene, model, parts).total());
 }
 
 namespace {
@@ -381,7 +386,7 @@ Model build_model(const Scene& scene, const Ranks& ranks) {
         hertz_contact(*model.normal_load, to_dimensionless((*radii)[0], model.length_unit),
                       to_dimensionless((*radii)[1], model.length_unit), model.pair.effective_modulus());
   }
-  require_memory(scene, grid, predicted_memory(scene, model).total());
+  require_memory(scene, model, {.pressure = 0.0, .tractions = 0.0});
   return model;
 }
 

@@ -76,6 +76,14 @@ struct Memory {
   double fields;  ///< the model's and the solution's, and the program itself
   double total() const { return solver + fields; }
 };
-Memory predicted_memory(const Scene& scene, const Model& model);
+/// Parts of the cells that Newton's method looks at for pressures and for tractions: known when coarser grids
+/// are solved.
+struct LookedAt {
+  double pressure = 1.0;
+  double tractions = 1.0;
+};
+Memory predicted_memory(const Scene& scene, const Model& model, const LookedAt& parts = {});
+/// Throws OutOfMemory where that does not fit.
+void require_memory(const Scene& scene, const Model& model, const LookedAt& parts);
 
 }  // namespace slipstick::solver

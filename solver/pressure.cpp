@@ -66,7 +66,10 @@ NormalSolution solved_pressure(const Scene& scene, const Model& model, double no
                             .guess = part.restricted(goal.guess)},
                            {.tolerance = std::max(std::min(kPressureTolerance, scene.tolerance), goal.gap),
                             .refine_approach = goal.gap == 0.0,
-                            .progress = progress});
+                            .progress = progress,
+                            .know_cells = [&](double of_cells) {
+                              require_memory(scene, model, {.pressure = of_cells, .tractions = 0.0});
+                            }});
   if (part.diagonal()) solution.pressure = symmetrised(part.grid(), solution.pressure);
   solution.pressure = part.expanded(std::move(solution.pressure), normal_symmetry());
   if (scene.model != ModelChoice::full && !model.forces && is_half_turn_symmetric(model.grid, model.gap)) {

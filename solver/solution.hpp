@@ -114,7 +114,7 @@ struct Solution {
   double operator_applications = 0.0;  ///< tangential, of all grids in those of the finest one
   double pressure_applications = 0.0;  ///< likewise of the normal operator
   double bytes = 0.0;                  ///< predicted, of operators and workspaces: Memory::solver
-  double predicted_bytes = 0.0;        ///< of all that the solve holds, said before it
+  double predicted_bytes = 0.0;        ///< of all that the solve holds, once its contact was known
   int threads = 1;
   Seconds seconds;
 

@@ -130,6 +130,9 @@ void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, c
                              ? solve_coupled(solution, scene, step, before, progress)
                              : solve_in_sequence(solution, scene, step, previous, before, progress);
   const TangentialSolution& tangential = solution.tangential;
+  const LookedAt parts{solution.normal.part, tangential.part};
+  solution.predicted_bytes =
+      std::max(solution.predicted_bytes, predicted_memory(scene, model, parts).total());
   const RigidMotion motion = moved(before.motion, tangential);
   solution.loads = step;
   solution.twist_angle = motion.twist;
@@ -223,7 +226,6 @@ void solve_steps(const Scene& scene, const SolveOptions& options, const AfterSte
   const ThreadPool threads(solution.model.threads);
   const Memory memory = predicted_memory(scene, solution.model);
   solution.bytes = memory.solver;
-  solution.predicted_bytes = memory.total();
   const bool repeats = scene.steps.size() > 1 || scene.cycles > 1 || solution.model.shear_coupling;
   if (!cache && repeats) cache = std::make_shared<SolveCache>();
   if (cache) {

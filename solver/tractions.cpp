@@ -175,7 +175,10 @@ TangentialSolution solve_on(const Scene& scene, const Model& model, const Reduct
                                    {.tolerance = std::max(scene.tolerance, gap),
                                     .max_applications = scene.max_iterations,
                                     .refine_motion = gap == 0.0,
-                                    .progress = progress});
+                                    .progress = progress,
+                                    .know_cells = [&](double of_cells) {
+                                      require_memory(scene, model, {.pressure = 0.0, .tractions = of_cells});
+                                    }});
   }
   const auto op = elastic.make(part.grid(), tangential_kernel());
   TangentialSolution solution =

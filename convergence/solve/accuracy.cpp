@@ -208,7 +208,7 @@ Json plan_json(const Scene& scene, int ranks) {
   if (scene.model == solver::ModelChoice::exact) {
     require_oracle(scene);
     set_missing(plan, "cells", "the exact solution needs no grid");
-    plan.update({{"unknowns", 0}, {"bytes", 0}});
+    plan.update({{"unknowns", 0}, {"bytes", 0}, {"least_bytes", 0}});
     set_missing(plan, "seconds", "the exact solution takes about a millisecond a step");
     return plan;
   }
@@ -223,6 +223,7 @@ Json plan_json(const Scene& scene, int ranks) {
   plan["tolerance"] = scene.tolerance;
   plan["unknowns"] = std::round(2.0 * M_PI * radius * radius / mirrored);
   plan["bytes"] = solver::predicted_memory(scene, model).total();
+  plan["least_bytes"] = solver::predicted_memory(scene, model, {.pressure = 0.0, .tractions = 0.0}).total();
   if (ranks > 1) {
     plan["ranks"] = ranks;
     plan["sent_bytes"] = solver::predicted_sent_bytes(part.grid(), solver::tangential_kernel());
@@ -245,10 +246,11 @@ std::string plan_text(const Json& result) {
       shared ? fmt::format(" on each of {} ranks, which send {} bytes for each application",
                            plan["ranks"].get<int>(), number_text(plan["sent_bytes"]))
              : "";
-  return text_line("plan", fmt::format("{}{} x {} cells, {} unknowns, {} bytes{}, about {} s{}", grids,
+  return text_line("plan", fmt::format("{}{} x {} cells, {} unknowns, {} to {} bytes{}, about {} s{}", grids,
                                        plan["cells"][0].get<int>(), plan["cells"][1].get<int>(),
-                                       number_text(plan["unknowns"]), number_text(plan["bytes"]), of_rank,
-                                       short_text(plan["seconds"]), shared ? " on one" : ""));
+                                       number_text(plan["unknowns"]), number_text(plan["least_bytes"]),
+                                       number_text(plan["bytes"]), of_rank, short_text(plan["seconds"]),
+                                       shared ? " on one" : ""));
 }
 
 }  // namespace slipstick::convergence

@@ -173,6 +173,7 @@ bool is_at_rest(const TangentialProblem& problem) {
 TangentialSolution at_rest(const Grid& grid, const ArrayXd& bound) {
   TangentialSolution solution;
   solution.status = Status::converged;
+  solution.part = 0.0;
   solution.traction.setZero(2 * grid.cells());
   solution.elastic_displacement = solution.slip = solution.traction;
   solution.stick = (bound > 0.0).cast<double>();
@@ -200,7 +201,8 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
                                 .twist = problem.twist,
                                 .force = problem.force,
                                 .displacement = problem.displacement};
-  NestedSummary nested = solve_nested(elasticity, grid, TangentialOnGrid(grid, std::move(problem)), newton);
+  NestedSummary nested =
+      solve_nested(elasticity, grid, TangentialOnGrid(grid, std::move(problem)), newton, options.know_cells);
   TangentialSolution solution;
   solution.status = nested.newton.converged ? Status::converged : Status::not_converged;
   if (!nested.newton.converged) {
@@ -214,6 +216,7 @@ TangentialSolution solve_by_coulomb_method(const Elasticity& elasticity, const G
   solution.iterations = nested.newton.iterations;
   solution.grids = std::move(nested.grids);
   solution.safeguards = nested.safeguards;
+  solution.part = nested.part;
   solution.slip = std::move(nested.slip);
   solution.stick = stick_area(solution.traction, loads.friction_bound);
   return solution;

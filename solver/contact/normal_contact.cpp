@@ -18,9 +18,9 @@ using Eigen::ArrayXd;
 
 constexpr std::array<Parity, 1> kPressureParities{{{1, 1}}};
 
-/// Cells are looked at that may be in contact by what a coarse grid says: it has a pressure there, or with its
-/// displacement they open by no more than bodies overlap elsewhere, in the root mean square. If these are more than this
-/// part of those that can touch, all are.
+/// Cells are looked at that may be in contact by what a coarse grid says: it has a pressure there, or with
+/// its displacement they open by no more than bodies overlap elsewhere, in the root mean square. If these are
+/// more than this part of those that can touch, all are.
 constexpr double kMostOfAll = 0.7;
 
 /// The normal problem on one grid, as solve_nested() asks for it.
@@ -151,7 +151,7 @@ NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& gri
                              .max_applications = options.max_applications,
                              .refine_multipliers = options.refine_approach,
                              .progress = options.progress};
-  NestedSummary nested = solve_nested(elasticity, grid, std::move(contact), newton);
+  NestedSummary nested = solve_nested(elasticity, grid, std::move(contact), newton, options.know_cells);
   NormalSolution solution;
   solution.status = nested.newton.converged ? Status::converged : Status::not_converged;
   if (!nested.newton.converged) {
@@ -165,6 +165,7 @@ NormalSolution find_normal_contact(const Elasticity& elasticity, const Grid& gri
   solution.iterations = nested.newton.iterations;
   solution.grids = std::move(nested.grids);
   solution.safeguards = nested.safeguards;
+  solution.part = nested.part;
   return solution;
 }
 

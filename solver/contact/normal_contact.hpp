@@ -24,6 +24,7 @@ struct NormalOptions {
   bool refine_approach = true;  ///< to the tolerance, at some applications more where it needs be
   long max_applications = 2000;
   std::function<void(long applications, double gap)> progress = {};  ///< on the finest grid
+  KnowCells know_cells = {};
 };
 
 struct NormalSolution {
@@ -38,6 +39,7 @@ struct NormalSolution {
   int iterations = 0;
   std::vector<GridWork> grids = {};  ///< work done, coarsest grid first
   Safeguards safeguards = {};        ///< on all grids
+  double part = 1.0;                 ///< of the cells that were looked at
 };
 
 /// Newton's method on the natural map p = max(0, p - rho (K p + h - approach)), from the coarsest grid up

@@ -43,6 +43,7 @@ struct TangentialSolution {
   int iterations = 0;
   std::vector<GridWork> grids = {};  ///< work done, coarsest grid first
   Safeguards safeguards = {};        ///< of Coulomb's method, on all grids
+  double part = 1.0;                 ///< of the cells that it looked at
 };
 
 /// The largest moment (over the cell area) that the friction bounds can carry about the origin: sum of mu p

@@ -30,18 +30,21 @@ std::unique_ptr<LinearOperator> new_operator(const Elasticity& elasticity, const
 
 /// Doubles a cell of the padded grid, for each Part.
 using Held = std::array<double, 3>;
-/// What an operator by FFT holds, and what Newton's method holds beside it, whatever the law.
-/// Counted on 256 x 256 cells, rounded up; convergence/solve/tests/memory_test.py measures them in processes.
+/// What an operator by FFT holds, and what Newton's method holds beside it of the grid, and of the cells that
+/// it looks at, whatever the law. Counted on 256 x 256 cells, rounded up;
+/// convergence/solve/tests/memory_test.py measures them in processes.
 struct HeldOf {
-  Held op, newton;
+  Held op, newton, of_cells;
 };
-constexpr HeldOf kNormal{{0.8, 1.6, 1.6}, {3.0, 3.2, 3.2}};
-constexpr HeldOf kTangential{{1.8, 4.15, 3.6}, {5.9, 5.95, 5.7}};
-constexpr HeldOf kCoupling{{1.55, 0.0, 0.0}, {}};
+constexpr HeldOf kNormal{{0.8, 1.6, 1.6}, {0.8, 1.0, 1.0}, {3.1, 3.1, 3.1}};
+constexpr HeldOf kTangential{{1.8, 4.15, 3.6}, {1.7, 1.4, 1.4}, {5.9, 5.9, 5.9}};
+constexpr HeldOf kCoupling{{1.55, 0.0, 0.0}, {}, {}};
 /// Cells. Shorter sides take as much memory as one of this many: lines are transformed in groups.
 constexpr Index kMinSide = 16;
-/// Bytes of freed blocks that stay with the process, see keep_freed_blocks(): those of the pressure's matrix.
+/// Bytes of freed blocks that stay with the process, see keep_freed_blocks(): those of the matrices of
+/// pressure and coupling, which are this part of the tractions'.
 constexpr double kKeptBlocks = 8.0 * 0x1p20;
+constexpr double kPartOfKept = 0.75;
 
 const HeldOf& held_of(const BlockKernel& kernel) {
   if (kernel.inputs != kernel.outputs) return kCoupling;
@@ -88,15 +91,16 @@ double Elasticity::operator_bytes(const Grid& grid, const BlockKernel& kernel) c
     case OperatorKind::dense: {
       const double matrix = sizeof(double) * static_cast<double>(kernel.inputs * kernel.outputs) *
                             std::pow(static_cast<double>(grid.cells()), 2);
-      return matrix + std::min(matrix, kKeptBlocks);
+      return matrix + std::min(kPartOfKept * matrix, kKeptBlocks);
     }
   }
   throw std::logic_error("unknown operator kind");
 }
 
-double Elasticity::newton_bytes(const Grid& grid, const BlockKernel& kernel) const {
+double Elasticity::newton_bytes(const Grid& grid, const BlockKernel& kernel, double part) const {
   const HeldOf& held = held_of(kernel);
-  return operator_bytes(grid, kernel) + padded_bytes(held.newton[place_of(*this, grid, kernel)], grid);
+  const std::size_t place = place_of(*this, grid, kernel);
+  return operator_bytes(grid, kernel) + padded_bytes(held.newton[place] + part * held.of_cells[place], grid);
 }
 
 Cached<LinearOperator> Elasticity::make(const Grid& grid, const BlockKernel& kernel) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <vector>
 
@@ -29,8 +30,9 @@ struct Elasticity {
   CacheKey key(const char* what, const Grid& grid) const;
 
   /// Memory on this rank, in bytes: of an operator, and of that, its preconditioner and Newton's workspaces.
+  /// part: of the grid's cells that Newton's method looks at.
   double operator_bytes(const Grid& grid, const BlockKernel& kernel) const;
-  double newton_bytes(const Grid& grid, const BlockKernel& kernel) const;
+  double newton_bytes(const Grid& grid, const BlockKernel& kernel, double part = 1.0) const;
 
   /// An operator that has not been applied yet.
   Cached<LinearOperator> make(const Grid& grid, const BlockKernel& kernel) const;
@@ -44,6 +46,9 @@ struct GridOperators {
   std::unique_ptr<LinearOperator> op;
   std::unique_ptr<InverseSymbol> symbol;
 };
+
+/// Told which part of the finest grid's cells Newton's method looks at, before it begins there; it may throw.
+using KnowCells = std::function<void(double part)>;
 
 /// Applications on all grids, in those of the last, finest one: each weighs by its cells.
 double finest_grid_applications(const std::vector<GridWork>& grids);

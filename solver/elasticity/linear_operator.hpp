@@ -66,7 +66,7 @@ class LinearOperator {
               std::span(displacement.data(), static_cast<std::size_t>(displacement.size())));
   }
 
-  /// Of packed fields.
+  /// The same with packed fields.
   void apply_own(const Field& traction, Field& displacement, Packing& packing) {
     packing.on_grid(traction, displacement, [&](const Field& x, Field& y) { apply_own(x, y); });
   }
@@ -105,8 +105,8 @@ Part part_of(const Grid& grid, const BlockKernel& kernel, bool diagonal);
 /// What an operator and its preconditioner are made with, beside grid, kernel and law.
 struct OperatorOptions {
   int threads = 1;
-  bool diagonal = false;  ///< see part_of()
-  bool at_edge = false;   ///< whether fields reach the edge of a whole grid
+  bool diagonal = false;          ///< see part_of()
+  bool at_edge = false;           ///< whether fields reach the edge of a whole grid
   std::span<double> memory = {};  ///< that a preconditioner may overwrite while it is applied; not owned
 };
 

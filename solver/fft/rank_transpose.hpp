@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <cstddef>
 
-#include "solver/mpi/communicator.hpp"
 #include "solver/grid/own_rows.hpp"
+#include "solver/mpi/communicator.hpp"
 
 namespace slipstick::solver {
 

@@ -16,7 +16,7 @@ namespace slipstick::solver {
 /// own rows alone.
 class Packing {
  public:
-  /// Of no grid yet.
+  /// No cell of a grid yet.
   Packing() = default;
   /// For fields of so many components. Throws std::length_error for more cells than 32 bits count.
   Packing(const Grid& grid, const Sweep& cells, Index components);

@@ -112,8 +112,7 @@ bool LoadBalance<Set>::solve_one(const Eigen::ArrayXd& y, const Direction& w, do
     const double excess = at.load[0] - load_[0];
     if (std::abs(excess) <= kLoadRounding * known_to(at, 0)) return true;
     // Where rounding allows no better: a bracket would be halved as often as its numbers have bits.
-    if (std::abs(excess) <= kPoorRounding * known_to(at, 0) &&
-        !(std::abs(excess) < kGoodReduction * last))
+    if (std::abs(excess) <= kPoorRounding * known_to(at, 0) && !(std::abs(excess) < kGoodReduction * last))
       return true;
     last = std::abs(excess);
     if (!std::isfinite(excess)) return false;

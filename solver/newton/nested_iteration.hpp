@@ -12,13 +12,15 @@
 
 namespace slipstick::solver {
 
-/// What a nested solve ends with on its finest grid. The displacement may be zero where the set is zero alone.
+/// What a nested solve ends with on its finest grid. The displacement may be zero where the set is zero
+/// alone.
 struct NestedSummary {
   NewtonSummary newton;
   Eigen::ArrayXd field;         ///< q or p
   Eigen::ArrayXd displacement;  ///< K q
   Eigen::ArrayXd slip;          ///< K q + g - multipliers c
   std::vector<GridWork> grids;  ///< coarsest first
+  double part = 1.0;            ///< of the finest grid's cells that Newton's method looked at
   Safeguards safeguards;        ///< of all grids
 };
 
@@ -55,7 +57,7 @@ concept NestedProblem = requires(Problem problem, const Grid& grid, LinearOperat
 template <NestedProblem Problem>
 void solve_on_grid(const Elasticity& elasticity, const Grid& grid, Problem& problem,
                    const Coefficients& multipliers, NewtonOptions options, bool guessed,
-                   NestedSummary& result) {
+                   const KnowCells& know_cells, NestedSummary& result) {
   const auto operators = elasticity.make_all(grid, problem.kernel());
   LinearOperator& op = *operators->op;
   int iterations = 0;
@@ -63,6 +65,8 @@ void solve_on_grid(const Elasticity& elasticity, const Grid& grid, Problem& prob
   do {
     const ConvexProgram program = problem.program(op);
     Packing& packing = problem.packing();
+    result.part = static_cast<double>(packing.cells().size()) / static_cast<double>(grid.cells());
+    if (know_cells) know_cells(result.part);
     const auto admissible = problem.admissible();
     result.field = packing.packed(result.field);
     NaturalMapNewton<std::remove_const_t<decltype(admissible)>> newton(admissible, program, op,
@@ -81,7 +85,7 @@ void solve_on_grid(const Elasticity& elasticity, const Grid& grid, Problem& prob
 /// displacement are packed.
 template <NestedProblem Problem>
 NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Problem& problem,
-                             const NewtonOptions& options) {
+                             const NewtonOptions& options, const KnowCells& know_cells = {}) {
   NestedSummary result;
   Coefficients multipliers;
   result.field = problem.guess();
@@ -112,7 +116,7 @@ NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Pro
   }
   problem.keep_own_rows();
 
-  solve_on_grid(elasticity, grid, problem, multipliers, options, guessed, result);
+  solve_on_grid(elasticity, grid, problem, multipliers, options, guessed, know_cells, result);
   result.field = problem.packing().unpacked(result.field);
   return result;
 }
@@ -121,8 +125,8 @@ NestedSummary solve_on_grids(const Elasticity& elasticity, const Grid& grid, Pro
 /// displacement is known in the grid's own rows.
 template <NestedProblem Problem>
 NestedSummary solve_nested(const Elasticity& elasticity, const Grid& grid, Problem problem,
-                           const NewtonOptions& options) {
-  NestedSummary result = solve_on_grids(elasticity, grid, problem, options);
+                           const NewtonOptions& options, const KnowCells& know_cells) {
+  NestedSummary result = solve_on_grids(elasticity, grid, problem, options, know_cells);
   for (Eigen::ArrayXd* const field : {&result.slip, &result.displacement})
     *field = problem.packing().unpacked(*field);
   for (Eigen::ArrayXd* const field : {&result.field, &result.slip}) share_rows(grid, *field);

@@ -55,7 +55,8 @@ TEST_F(AvailableMemory, IsWhatControlGroupsOfTheFirstVersionLeave) {
 
 TEST_F(SceneFile, MayTakeAllOfItsMemoryLimitAndNoMore) {
   Scene scene = read(kShortScene);
-  const double needed = predicted_memory(scene, make_model(scene)).total();
+  const double needed =
+      predicted_memory(scene, make_model(scene), {.pressure = 0.0, .tractions = 0.0}).total();
   scene.memory_limit = 1.001 * needed;
   EXPECT_EQ(make_model(scene).grid.n1, 32);
   scene.memory_limit = 0.999 * needed;

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "solver/elasticity/inverse_symbol.hpp"
-#include "solver/mpi/communicator.hpp"
 #include "solver/grid/own_rows.hpp"
 #include "solver/grid/sweep.hpp"
+#include "solver/mpi/communicator.hpp"
 #include "solver/newton/tangent_space.hpp"
 #include "solver/tests/fields.hpp"
 

@@ -21,11 +21,13 @@ CASES = [("paper", 288), ("paper", 288, FULL), ("paper", 288, "contact.pressure=
          ("paper", 160, FULL, "solver.method=paper"), ("paper", 288, "solver.method=projected_gradient"),
          ("paper", 160, FULL, "solver.method=projected_gradient"), ("paper", 288, FULL, "solver.threads=4"),
          ("paper", 288, FULL, "contact.friction=0", "load.moment_ratio=0"),
-         ("rough_sphere", 512, "contact.friction=0", "load.moment_ratio=0"),
          ("paper", 24, FULL, "solver.operator=dense"), ("paper", 36, FULL, "solver.operator=dense"),
          ("paper", 48, FULL, "solver.operator=direct"), ("ellipse", 288), ("turned_ellipse", 288),
          ("torsion_and_force", 160), ("torsion_and_force", 288), ("fretting_torsion", 288), ("dissimilar", 288),
          ("dissimilar", 128, "contact.coupling=full"), ("off_centre", 200), ("patches", 160)]
+# Contacts that fill a part of their grid that is not known before they are solved.
+SPARSE = [("rough_sphere", 512, FULL), ("rough_sphere", 512, FULL, "contact.friction=0", "load.moment_ratio=0"),
+          ("rough_sphere", 512, "contact.friction=0", "load.moment_ratio=0")]
 
 
 def words(scene, cells, *settings):
@@ -41,7 +43,7 @@ class Memory(ProgramTest):
 
     @unittest.skipIf(SANITIZED, "sanitizers take memory of their own")
     def test_predicted_is_an_upper_bound_and_not_much_more(self):
-        for case in CASES:
+        for case in CASES + SPARSE:
             predicted, taken = self.taken(*case)
             self.assertGreaterEqual(predicted, taken, case)
             self.assertLessEqual(predicted, MOST * taken, case)
@@ -57,12 +59,23 @@ class Memory(ProgramTest):
 
     def test_limit_is_what_a_plan_may_need(self):
         solve = ["solve", *words("paper", 16)]
-        needed = self.result(*solve, "--plan")["plan"]["bytes"]
-        for limit in (f"{needed + 2:.0f}", "1GiB"):
+        plan = self.result(*solve, "--plan")["plan"]
+        for limit in (f"{plan['bytes'] + 2:.0f}", "1GiB"):
             self.run_program(*solve, "--memory-limit", limit)
-        self.run_program(*solve, "--memory-limit", f"{needed - 2:.0f}", code=2,
+        self.run_program(*solve, "--memory-limit", f"{plan['least_bytes'] - 2:.0f}", code=2,
                          says=["paper.toml", "grid.cells = [16, 16]", "--memory-limit", "fewer cells"])
         self.run_program(*solve, "--memory-limit", "some", code=2)
+
+    def test_a_sparse_contact_is_refused_by_what_it_fills_once_that_is_known(self):
+        for case in SPARSE:
+            solve = ["solve", *words(*case)]
+            plan = self.result(*solve, "--plan")["plan"]
+            needed = self.result(*solve)["predicted_bytes"]
+            self.assertLess(plan["least_bytes"], needed, case)
+            self.assertLess(needed, 0.8 * plan["bytes"], case)
+            self.run_program(*solve, "--memory-limit", f"{needed + 2:.0f}")
+            self.run_program(*solve, "--memory-limit", f"{needed - 2:.0f}", code=2,
+                             says=["rough_sphere.toml", "grid.cells = [512, 512]", "this needs", "--memory-limit"])
 
     @unittest.skipIf(SANITIZED, "sanitizers take memory of their own")
     def test_what_is_refused_is_not_taken(self):
@@ -86,7 +99,7 @@ class Memory(ProgramTest):
 
 
 def measure():
-    for case in CASES:
+    for case in CASES + SPARSE:
         test = Memory()
         predicted, taken = test.taken(*case)
         _, least = test.taken(case[0], 16, *case[2:])

@@ -111,7 +111,9 @@ class Plan(Solve):
         found = self.solved("paper", f"{size} --plan")
         plan, result = found["plan"], self.solved("paper", size)
         self.assertNotIn("status", found)
-        self.assertEqual((plan["cells"], plan["bytes"]), (result["cells"], result["predicted_bytes"]))
+        self.assertEqual(plan["cells"], result["cells"])
+        self.assertLessEqual(plan["least_bytes"], result["predicted_bytes"])
+        self.assertGreaterEqual(plan["bytes"], result["predicted_bytes"])
         self.assertGreater(plan["seconds"], 0)
         # Two tractions in each contact cell, an eighth of them: two mirror axes and the diagonal.
         self.assertAlmostEqual(plan["unknowns"], result["contact_cells"] / 4, delta=10)
