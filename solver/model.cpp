@@ -209,6 +209,10 @@ ArrayXd carrying(const Model& model, const ArrayXd& pressure) {
 
 }  // namespace
 
+bool moves_by_pressure(const Scene& scene, const Model& model) {
+  return model.pressure_coupling && model.law->couples() && !scene.friction.is_frictionless();
+}
+
 bool has_translations(const Scene& scene, const Model& model, const ArrayXd& pressure) {
   if (scene.method != Method::coulomb) return false;
   return scene.model == ModelChoice::full || model.forces ||
@@ -282,7 +286,8 @@ Memory predicted_memory(const Scene& scene, const Model& model, const LookedAt& 
   const bool whole = model.pressure_coupling || model.forces || scene.pressure == PressureModel::file;
   const Grid& grid = whole ? model.grid : part;
   const Elasticity elastic = whole ? elasticity(scene, model, Reduction(model.grid)) : on_part;
-  const double coupling = model.pressure_coupling ? elastic.operator_bytes(grid, coupling_kernel()) : 0.0;
+  const double coupling =
+      moves_by_pressure(scene, model) ? elastic.operator_bytes(grid, coupling_kernel()) : 0.0;
   const bool newton = scene.method == Method::coulomb;
   const double tangential = !newton ? elastic.operator_bytes(grid, tangential_kernel())
                             : scene.friction.is_frictionless()

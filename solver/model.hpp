@@ -50,6 +50,9 @@ struct Model : Dimensionless {
   std::shared_ptr<SolveCache> cache = {};  ///< of its operators; empty: none
 };
 
+/// Whether the pressure moves the surfaces along each other where something would hold them.
+bool moves_by_pressure(const Scene& scene, const Model& model);
+
 /// Whether the contact's translations are unknowns: not where the contact is its own image under half a turn
 /// and carries no force.
 bool has_translations(const Scene& scene, const Model& model, const Eigen::ArrayXd& pressure);

@@ -68,8 +68,8 @@ struct Solution {
   Grid grid{};              ///< m
   Eigen::ArrayXd pressure;  ///< Pa
   Eigen::ArrayXd traction;  ///< Pa, (q1, q2) on the lower body
-  /// m, (u1, u2) by them, of the lower surface less that of the upper. Where several processes share the
-  /// grid, each may have its own rows alone.
+  /// m, (u1, u2) by them, of the lower surface less that of the upper, in contact; elsewhere it may be zero.
+  /// Where several processes share the grid, each may have its own rows alone.
   Eigen::ArrayXd elastic_displacement;
   Eigen::ArrayXd slip;         ///< m, (s1, s2) in this step
   Eigen::ArrayXd stick;        ///< 1 where the bodies stick, else 0
@@ -114,7 +114,7 @@ struct Solution {
   double operator_applications = 0.0;  ///< tangential, of all grids in those of the finest one
   double pressure_applications = 0.0;  ///< likewise of the normal operator
   double bytes = 0.0;                  ///< predicted, of operators and workspaces: Memory::solver
-  double predicted_bytes = 0.0;        ///< of all that the solve holds, once its contact was known
+  double predicted_bytes = 0.0;        ///< of all that the step holds, once its contact was known
   int threads = 1;
   Seconds seconds;
 

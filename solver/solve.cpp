@@ -130,9 +130,9 @@ void solve_step(ModelSolution& solution, const Scene& scene, const Step& step, c
                              ? solve_coupled(solution, scene, step, before, progress)
                              : solve_in_sequence(solution, scene, step, previous, before, progress);
   const TangentialSolution& tangential = solution.tangential;
-  const LookedAt parts{solution.normal.part, tangential.part};
-  solution.predicted_bytes =
-      std::max(solution.predicted_bytes, predicted_memory(scene, model, parts).total());
+  const bool pressed = solution.pressure_applications > 0.0;
+  const LookedAt parts{pressed ? solution.normal.part : 0.0, tangential.part};
+  solution.predicted_bytes = predicted_memory(scene, model, parts).total();
   const RigidMotion motion = moved(before.motion, tangential);
   solution.loads = step;
   solution.twist_angle = motion.twist;

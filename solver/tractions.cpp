@@ -27,7 +27,7 @@ constexpr double kNextTo = 1e-5;
 /// Tangential displacement by the change of pressure, Eq. (12).
 ArrayXd pressure_displacement(const Scene& scene, const Model& model, const ArrayXd& pressure,
                               const ContactState& before) {
-  if (!model.pressure_coupling || !model.law->couples() || scene.friction.is_frictionless()) return {};
+  if (!moves_by_pressure(scene, model)) return {};
   const auto op = elasticity(scene, model, Reduction(model.grid)).make(model.grid, coupling_kernel());
   ArrayXd u(2 * pressure.size());
   op->apply(before.pressure.size() > 0 ? ArrayXd(pressure - before.pressure) : pressure, u);

@@ -37,9 +37,9 @@ mutant(k12_sign_in_a_quadrant
 
 # A shear in place of a rotation, Eqs. (8), (9) as printed.
 mutant(rotation_as_printed
-  FILE solver/grid/motion_field.hpp
-  FIND [[Row{along1_, -turn_, x1 + cells_}]]
-  REPLACE [[Row{along1_, turn_, x1 + cells_}]]
+  FILE solver/grid/packing.cpp
+  FIND [[place, n) = x2.segment]]
+  REPLACE [[place, n) = -x2.segment]]
   GATES full-64-twist full-64-traction-averaged-l2)
 
 # Slip in the direction that the traction had when a cell began to slip, Eqs. (22), (23).

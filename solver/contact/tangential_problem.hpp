@@ -34,7 +34,7 @@ struct TangentialSolution {
   Status status = Status::not_converged;
   std::string message;                   ///< why it did not converge; empty if it did
   Eigen::ArrayXd traction;               ///< q, 2*cells
-  Eigen::ArrayXd elastic_displacement;   ///< K q, 2*cells; zero outside a reduced model's part of the grid
+  Eigen::ArrayXd elastic_displacement;   ///< K q, 2*cells; outside the contact it may be zero
   Eigen::ArrayXd slip;                   ///< s of Eq. (8), 2*cells, zero outside the contact
   Eigen::ArrayXd stick;                  ///< 1 in A_S, 0 elsewhere
   double twist = 0.0;                    ///< phi_3

@@ -2,8 +2,11 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -72,9 +75,9 @@ std::vector<SymbolCase> symbol_cases() {
 
 class InverseSymbolOf : public testing::TestWithParam<SymbolCase> {
  protected:
-  std::unique_ptr<InverseSymbol> make(double nu = 0.3) const {
+  std::unique_ptr<InverseSymbol> make(double nu = 0.3, std::span<double> memory = {}) const {
     return make_inverse_symbol(GetParam().grid, GetParam().kernel(), pair_of(nu),
-                               {.diagonal = GetParam().diagonal});
+                               {.diagonal = GetParam().diagonal, .memory = memory});
   }
   /// One of the fields that the operator is for.
   ArrayXd random(unsigned seed) const {
@@ -139,6 +142,17 @@ TEST_P(InverseSymbolOf, IsLinearAndRemembersNothing) {
   const ArrayXd separately = 2.5 * Px - 0.75 * applied(*symbol, y);
   EXPECT_LE(relative_difference(applied(*symbol, 2.5 * x - 0.75 * y), separately), kSymbolRounding);
   EXPECT_TRUE((applied(*symbol, x) == Px).all());
+}
+
+/// With what stands there before.
+TEST_P(InverseSymbolOf, HasTheSameBitsInMemoryThatItIsGiven) {
+  FftwBuffer memory(1 << 16);
+  const std::span<double> all(memory.data(), 1 << 16);
+  const auto symbol = make(0.3, all);
+  for (const ArrayXd& x : {random(5), random(6)}) {
+    std::ranges::fill(all, std::numeric_limits<double>::quiet_NaN());
+    EXPECT_TRUE((applied(*symbol, x) == applied(*make(), x)).all());
+  }
 }
 
 TEST_P(InverseSymbolOf, AllocatesNothingInAnApplication) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdlib>
@@ -183,6 +184,13 @@ TEST_P(Operator, GivesTheSameBitsAgainAndWithMoreThreads) {
     EXPECT_TRUE((applied(*one, traction) == first).all());
     EXPECT_EQ(applied(*one, ArrayXd(0.0 * traction)).abs().maxCoeff(), 0.0);
     EXPECT_EQ(one->applications(), 4);
+    std::ranges::fill(one->idle_memory(), std::numeric_limits<double>::quiet_NaN());  // others have written there
+    EXPECT_TRUE((applied(*one, traction) == first).all());
+    if (one->inputs() == one->outputs()) {
+      ArrayXd in_place = traction;
+      one->apply(in_place, in_place);
+      EXPECT_TRUE((in_place == first).all());
+    }
     for (const int threads : {2, 3}) {
       const auto several = make(kind, threads);
       EXPECT_TRUE((applied(*several, traction) == first).all());
