@@ -28,7 +28,7 @@ using Eigen::ArrayXd;
 
 /// Doubles a cell of the whole grid that a solve holds beside operators and workspaces. Measured, as all that
 /// follow, by convergence/solve/tests/memory_test.py.
-constexpr double kFieldsHeld = 4.0;
+constexpr double kFieldsHeld = 3.2;
 /// Doubles a cell of the part that is solved; each of several processes has its own rows of it.
 constexpr double kFieldsOfPart = 2.0;
 /// Doubles a cell of the whole grid before and after the solve, when operators and workspaces are gone.

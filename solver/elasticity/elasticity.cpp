@@ -36,7 +36,7 @@ using Held = std::array<double, 3>;
 struct HeldOf {
   Held op, newton, of_cells;
 };
-constexpr HeldOf kNormal{{0.8, 1.6, 1.6}, {0.8, 1.0, 1.0}, {3.1, 3.1, 3.1}};
+constexpr HeldOf kNormal{{0.8, 1.6, 1.6}, {0.75, 1.0, 1.0}, {3.0, 3.0, 3.0}};
 constexpr HeldOf kTangential{{1.8, 4.15, 3.6}, {1.7, 1.4, 1.4}, {5.9, 5.9, 5.9}};
 constexpr HeldOf kCoupling{{1.55, 0.0, 0.0}, {}, {}};
 /// Cells. Shorter sides take as much memory as one of this many: lines are transformed in groups.
@@ -44,7 +44,7 @@ constexpr Index kMinSide = 16;
 /// Bytes of freed blocks that stay with the process, see keep_freed_blocks(): those of the matrices of
 /// pressure and coupling, which are this part of the tractions'.
 constexpr double kKeptBlocks = 8.0 * 0x1p20;
-constexpr double kPartOfKept = 0.75;
+constexpr double kPartOfKept = 0.5;
 
 const HeldOf& held_of(const BlockKernel& kernel) {
   if (kernel.inputs != kernel.outputs) return kCoupling;
