@@ -79,7 +79,7 @@ def agrees_on_a_square_quadrant(folder):
 
 def holds_less(folder):
     """A rank of four takes less memory than one process, and about what was said of it before."""
-    scene = ["solve", f"{SCENES}/rough_sphere.toml", "--set", "grid.cells=[512,512]", *FULL]
+    scene = ["solve", f"{SCENES}/rough_sphere.toml", "--set", "grid.cells=[1024,1024]", *FULL]
     result = folder / "memory.json"
     assert run(0, [*scene, "--json", str(result)]).returncode == 0
     alone = json.loads(result.read_text())["peak_bytes"]
