@@ -33,6 +33,14 @@ class Precision {
   slong before_;
 };
 
+/// What one of Arb's functions puts into its first argument.
+template <class Result, class Function, class... Arguments>
+Result made_by(Function* f, const Arguments&... arguments) {
+  Result result;
+  f(result.get(), arguments...);
+  return result;
+}
+
 /// A real number between mid - radius and mid + radius.
 class Ball {
  public:
@@ -63,11 +71,7 @@ class Ball {
   friend Ball log(const Ball& a) { return apply(arb_log, a); }
   friend Ball atan(const Ball& a) { return apply(arb_atan, a); }
   friend Ball log1p(const Ball& a) { return apply(arb_log1p, a); }
-  friend Ball abs(const Ball& a) {
-    Ball result;
-    arb_abs(result.x_, a.x_);
-    return result;
-  }
+  friend Ball abs(const Ball& a) { return made_by<Ball>(arb_abs, a.x_); }
 
   /// Whether it holds for each pair of numbers in the balls: both may be false.
   friend bool operator<(const Ball& a, const Ball& b) { return arb_lt(a.x_, b.x_) != 0; }
@@ -86,11 +90,7 @@ class Ball {
     arb_get_ubound_arf(arb_midref(result.x_), a.x_, Precision::bits());
     return result;
   }
-  Ball middle() const {
-    Ball result;
-    arb_get_mid_arb(result.x_, x_);
-    return result;
-  }
+  Ball middle() const { return made_by<Ball>(arb_get_mid_arb, x_); }
   /// [-r, r] with r >= |x| for all x of the ball.
   Ball symmetric() const {
     Ball result;
@@ -98,32 +98,18 @@ class Ball {
     return result;
   }
   /// 2^n times the ball, exactly.
-  Ball shifted(slong n) const {
-    Ball result;
-    arb_mul_2exp_si(result.x_, x_, n);
-    return result;
-  }
+  Ball shifted(slong n) const { return made_by<Ball>(arb_mul_2exp_si, x_, n); }
 
  private:
-  static Ball apply(void (*f)(arb_t, const arb_t, slong), const Ball& a) {
-    Ball result;
-    f(result.x_, a.x_, Precision::bits());
-    return result;
-  }
-  static Ball apply(void (*f)(arb_t, const arb_t, const arb_t, slong), const Ball& a, const Ball& b) {
-    Ball result;
-    f(result.x_, a.x_, b.x_, Precision::bits());
-    return result;
+  template <class Function, class... Balls>
+  static Ball apply(Function* f, const Balls&... balls) {
+    return made_by<Ball>(f, balls.x_..., Precision::bits());
   }
 
   arb_t x_;
 };
 
-inline Ball pi() {
-  Ball result;
-  arb_const_pi(result.get(), Precision::bits());
-  return result;
-}
+inline Ball pi() { return made_by<Ball>(arb_const_pi, Precision::bits()); }
 
 /// A complex number in a rectangle of two balls.
 class ComplexBall {
@@ -146,11 +132,7 @@ class ComplexBall {
   acb_ptr get() { return z_; }
   acb_srcptr get() const { return z_; }
   /// Nowhere: the answer of a function that is asked to be analytic where it is not.
-  static ComplexBall indeterminate() {
-    ComplexBall result;
-    acb_indeterminate(result.z_);
-    return result;
-  }
+  static ComplexBall indeterminate() { return made_by<ComplexBall>(acb_indeterminate); }
 
   friend ComplexBall operator+(const ComplexBall& a, const ComplexBall& b) { return apply(acb_add, a, b); }
   friend ComplexBall operator-(const ComplexBall& a, const ComplexBall& b) { return apply(acb_sub, a, b); }
@@ -163,47 +145,26 @@ class ComplexBall {
   friend ComplexBall sqrt(const ComplexBall& a) { return apply(acb_sqrt, a); }
   friend ComplexBall log(const ComplexBall& a) { return apply(acb_log, a); }
   friend ComplexBall atan(const ComplexBall& a) { return apply(acb_atan, a); }
-  friend Ball abs(const ComplexBall& a) {
-    Ball result;
-    acb_abs(result.get(), a.z_, Precision::bits());
-    return result;
-  }
+  friend Ball abs(const ComplexBall& a) { return made_by<Ball>(acb_abs, a.z_, Precision::bits()); }
   /// agm(1, a), cut along the negative axis.
   friend ComplexBall agm1(const ComplexBall& a) { return apply(acb_agm1, a); }
   /// 2F1(a, b; c; z), cut along [1, infinity).
   friend ComplexBall hypergeometric(const ComplexBall& a, const ComplexBall& b, const ComplexBall& c,
                                     const ComplexBall& z) {
-    ComplexBall result;
-    acb_hypgeom_2f1(result.z_, a.z_, b.z_, c.z_, z.z_, 0, Precision::bits());
-    return result;
+    return made_by<ComplexBall>(acb_hypgeom_2f1, a.z_, b.z_, c.z_, z.z_, 0, Precision::bits());
   }
 
-  Ball real() const {
-    Ball result;
-    acb_get_real(result.get(), z_);
-    return result;
-  }
-  Ball imaginary() const {
-    Ball result;
-    acb_get_imag(result.get(), z_);
-    return result;
-  }
+  Ball real() const { return made_by<Ball>(acb_get_real, z_); }
+  Ball imaginary() const { return made_by<Ball>(acb_get_imag, z_); }
   /// Whether it may lie on (-infinity, 0], where sqrt and log are cut.
   bool touches_cut() const {
     return arb_contains_zero(acb_imagref(z_)) != 0 && arb_is_positive(acb_realref(z_)) == 0;
   }
 
  private:
-  static ComplexBall apply(void (*f)(acb_t, const acb_t, slong), const ComplexBall& a) {
-    ComplexBall result;
-    f(result.z_, a.z_, Precision::bits());
-    return result;
-  }
-  static ComplexBall apply(void (*f)(acb_t, const acb_t, const acb_t, slong), const ComplexBall& a,
-                           const ComplexBall& b) {
-    ComplexBall result;
-    f(result.z_, a.z_, b.z_, Precision::bits());
-    return result;
+  template <class Function, class... Balls>
+  static ComplexBall apply(Function* f, const Balls&... balls) {
+    return made_by<ComplexBall>(f, balls.z_..., Precision::bits());
   }
 
   acb_t z_;

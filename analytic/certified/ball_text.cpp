@@ -54,15 +54,11 @@ class Reader {
 
 /// base^exponent
 Rational power(slong base, slong exponent) {
-  Rational result(base);
-  fmpq_pow_si(result.get(), result.get(), exponent);
-  return result;
+  return made_by<Rational>(fmpq_pow_si, Rational(base).get(), exponent);
 }
 
 Rational scaled(const std::string& digits, int base, slong radix, slong exponent) {
-  Rational result = power(radix, exponent);
-  fmpq_mul_fmpz(result.get(), result.get(), Integer(digits, base).get());
-  return result;
+  return made_by<Rational>(fmpq_mul_fmpz, power(radix, exponent).get(), Integer(digits, base).get());
 }
 
 Ball ten_to(slong exponent) {
@@ -100,9 +96,7 @@ std::string written(std::string digits, slong exponent) {
 std::optional<slong> hundredths(const Ball& ball, slong most) {
   const Ball scaled = 100 * abs(ball);
   if (!(scaled < most + 1)) return {};
-  Ball upper;
-  arb_get_ubound_arf(arb_midref(upper.get()), scaled.get(), Precision::bits());
-  const slong result = arf_get_si(arb_midref(upper.get()), ARF_RND_CEIL);
+  const slong result = arf_get_si(arb_midref(upper_bound(scaled).get()), ARF_RND_CEIL);
   return result <= most ? std::optional(result) : std::nullopt;
 }
 
@@ -156,8 +150,7 @@ std::optional<certified::Number> print_proven(const Ball& ball, int digits) {
       exponent += length > count ? 1 : -1;
       continue;
     }
-    Ball error;
-    arb_sub_fmpz(error.get(), units.get(), rounded.get(), Precision::bits());
+    const auto error = made_by<Ball>(arb_sub_fmpz, units.get(), rounded.get(), Precision::bits());
     const auto radius = hundredths(error, 51);
     if (!radius) return {};
     const std::string radius_text = std::to_string(*radius);

@@ -28,17 +28,11 @@ class Rational {
   const fmpq* get() const { return q_; }
 
   friend Rational operator-(const Rational& a, const Rational& b) {
-    Rational result;
-    fmpq_sub(result.q_, a.q_, b.q_);
-    return result;
+    return made_by<Rational>(fmpq_sub, a.q_, b.q_);
   }
   friend auto operator<=>(const Rational& a, const Rational& b) { return fmpq_cmp(a.q_, b.q_) <=> 0; }
   friend bool operator==(const Rational& a, const Rational& b) { return fmpq_equal(a.q_, b.q_) != 0; }
-  Ball ball() const {
-    Ball result;
-    arb_set_fmpq(result.get(), q_, Precision::bits());
-    return result;
-  }
+  Ball ball() const { return made_by<Ball>(arb_set_fmpq, q_, Precision::bits()); }
 
  private:
   fmpq_t q_;

@@ -94,16 +94,11 @@ Question read(const Profile& profile, Quantity given, const std::string& value,
 
 /// The load over that at which slip begins; infinite if there is no such load and it is not zero.
 Ball load_over_onset(const Question& question, const Law& law) {
-  Ball infinite;
-  arb_pos_inf(infinite.get());
+  const auto infinite = made_by<Ball>(arb_pos_inf);
   const Rational& value = question.value;
-  switch (question.given) {
-    case Quantity::stick_ratio:
-      return value == Rational(1) ? Ball(law.punch() ? 1 : 0) : infinite;
-    case Quantity::stick_complement:
-      return value == Rational(0) ? Ball(law.punch() ? 1 : 0) : infinite;
-    default:
-      break;
+  if (question.given == Quantity::stick_ratio || question.given == Quantity::stick_complement) {
+    const bool full = value == Rational(question.given == Quantity::stick_ratio ? 1 : 0);
+    return full ? Ball(law.punch() ? 1 : 0) : infinite;
   }
   const Rational load = question.given == Quantity::moment_deficit ? Rational(1) - value : value;
   if (load == Rational(0)) return 0;

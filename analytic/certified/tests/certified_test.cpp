@@ -1,5 +1,3 @@
-
-
 #include <utility>
 
 #include "analytic/certified/tests/known.hpp"

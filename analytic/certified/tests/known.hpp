@@ -70,9 +70,7 @@ inline State at_stick_ratio(const Profile& profile, const std::string& c,
 inline ComplexBall elliptic(void (*f)(acb_t, const acb_t, slong), const ComplexBall& parameter,
                             bool analytic) {
   if (analytic && (1 - parameter).touches_cut()) return ComplexBall::indeterminate();
-  ComplexBall result;
-  f(result.get(), parameter.get(), Precision::bits());
-  return result;
+  return made_by<ComplexBall>(f, parameter.get(), Precision::bits());
 }
 
 /// K and E of modulus sqrt(1 - s^2).
