@@ -4,9 +4,9 @@
 
 #include <algorithm>
 #include <array>
-#include <stdexcept>
 #include <string_view>
 
+#include "analytic/out_of_range.hpp"
 #include "analytic/paper_equations.hpp"
 
 namespace slipstick::analytic {
@@ -25,7 +25,7 @@ constexpr std::array kApproximations{
 
 void require_up_to(double most, std::string_view range, double moment) {
   if (!(moment >= 0 && moment <= most))
-    throw std::domain_error(fmt::format("M/(mu W a) = {}; allowed: 0 <= M/(mu W a) <= {}", moment, range));
+    out_of_range("M/(mu W a)", moment, fmt::format("0 <= M/(mu W a) <= {}", range));
 }
 
 void require_carried(double moment) { require_up_to(paper::eq6_moment_limit(), "3 pi/16", moment); }
@@ -45,7 +45,7 @@ double small_moment_twist(double moment) {
 double dem_moment_limit() { return kCap; }
 
 double dem_moment(double twist) {
-  if (!(twist >= 0)) throw std::domain_error(fmt::format("G a^2 phi/(mu W) = {}; allowed: 0 or more", twist));
+  if (!(twist >= 0)) out_of_range("G a^2 phi/(mu W)", twist, "0 or more");
   return std::min(kNoSlipStiffness * twist, kCap);
 }
 

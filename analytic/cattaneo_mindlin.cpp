@@ -3,18 +3,13 @@
 #include <fmt/core.h>
 
 #include <cmath>
-#include <stdexcept>
-#include <string_view>
 
 #include "analytic/gsl.hpp"
+#include "analytic/out_of_range.hpp"
 
 namespace slipstick::analytic::tangential {
 
 namespace {
-
-[[noreturn]] void out_of_range(std::string_view name, double value, std::string_view allowed) {
-  throw std::domain_error(fmt::format("{} = {}; allowed: {}", name, value, allowed));
-}
 
 /// The state at ln(1 - F/(mu W)): each member is a power of 1 - F/(mu W).
 TangentialState state_at(double log_deficit, const SelfSimilarIndenter& indenter) {

@@ -1,15 +1,15 @@
 #include "analytic/indentation.hpp"
 
-#include <fmt/core.h>
-
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <numbers>
-#include <stdexcept>
 #include <string_view>
+#include <utility>
 
 #include "analytic/elliptic.hpp"
 #include "analytic/gsl.hpp"
+#include "analytic/out_of_range.hpp"
 
 namespace slipstick::analytic {
 
@@ -17,9 +17,8 @@ namespace {
 
 using std::numbers::pi;
 
-void require_positive(std::string_view name, double value) {
-  if (!(value > 0 && std::isfinite(value)))
-    throw std::domain_error(fmt::format("{} = {}; allowed: positive and finite", name, value));
+void require_all_positive(std::initializer_list<std::pair<std::string_view, double>> numbers) {
+  for (const auto& [name, value] : numbers) require_positive(name, value);
 }
 
 double mean_pressure(double load, double radius) { return load / radius / radius / pi; }
@@ -78,17 +77,13 @@ double axis_ratio(double radius_ratio) {
 }  // namespace
 
 Indentation indent_sphere(double load, double radius, double effective_modulus) {
-  require_positive("load", load);
-  require_positive("radius", radius);
-  require_positive("effective modulus", effective_modulus);
+  require_all_positive({{"load", load}, {"radius", radius}, {"effective modulus", effective_modulus}});
   const double a = std::cbrt(3 * load * radius / (4 * effective_modulus));
   return {.contact_radius = a, .approach = a * a / radius, .reference_pressure = 3 * load / (2 * pi * a * a)};
 }
 
 Indentation indent_cone(double load, double slope, double effective_modulus) {
-  require_positive("load", load);
-  require_positive("slope", slope);
-  require_positive("effective modulus", effective_modulus);
+  require_all_positive({{"load", load}, {"slope", slope}, {"effective modulus", effective_modulus}});
   const double a = std::sqrt(load / effective_modulus * (2 / pi) / slope);
   return {.contact_radius = a,
           .approach = pi / 2 * slope * a,
@@ -96,19 +91,17 @@ Indentation indent_cone(double load, double slope, double effective_modulus) {
 }
 
 Indentation indent_flat_punch(double load, double radius, double effective_modulus) {
-  require_positive("load", load);
-  require_positive("radius", radius);
-  require_positive("effective modulus", effective_modulus);
+  require_all_positive({{"load", load}, {"radius", radius}, {"effective modulus", effective_modulus}});
   return {.contact_radius = radius,
           .approach = load / effective_modulus / radius / 2,
           .reference_pressure = mean_pressure(load, radius) / 2};
 }
 
 Indentation indent_power(double load, double exponent, double coefficient, double effective_modulus) {
-  require_positive("load", load);
-  require_positive("exponent", exponent);
-  require_positive("coefficient", coefficient);
-  require_positive("effective modulus", effective_modulus);
+  require_all_positive({{"load", load},
+                        {"exponent", exponent},
+                        {"coefficient", coefficient},
+                        {"effective modulus", effective_modulus}});
   const double n = exponent;
   // Approach kappa B a^n, and W = 2 E* n/(n + 1) a times that.
   const double kappa = std::sqrt(pi) * gamma_ratio(n);
@@ -123,9 +116,8 @@ RoundedPunchIndentation indent_rounded_punch(double load, double flat_radius, do
                                              double effective_modulus) {
   require_positive("load", load);
   if (!(flat_radius >= 0 && std::isfinite(flat_radius)))
-    throw std::domain_error(fmt::format("flat radius = {}; allowed: >= 0 and finite", flat_radius));
-  require_positive("corner radius", corner_radius);
-  require_positive("effective modulus", effective_modulus);
+    out_of_range("flat radius", flat_radius, ">= 0 and finite");
+  require_all_positive({{"corner radius", corner_radius}, {"effective modulus", effective_modulus}});
   const double sphere = indent_sphere(load, corner_radius, effective_modulus).contact_radius;
   const double s = sphere * corner_reach(flat_radius / sphere);
   const double a = std::hypot(flat_radius, s);
@@ -137,10 +129,10 @@ RoundedPunchIndentation indent_rounded_punch(double load, double flat_radius, do
 }
 
 HertzEllipse hertz_ellipse(double load, double radius_1, double radius_2, double effective_modulus) {
-  require_positive("load", load);
-  require_positive("radius 1", radius_1);
-  require_positive("radius 2", radius_2);
-  require_positive("effective modulus", effective_modulus);
+  require_all_positive({{"load", load},
+                        {"radius 1", radius_1},
+                        {"radius 2", radius_2},
+                        {"effective modulus", effective_modulus}});
   // The semi-ellipsoidal pressure's displacement (Johnson 1985, Eqs. (3.63) and (4.26)), its integrals as
   // Carlson's: curvature 1/R = W/(pi E*) R_D(0, b^2, a^2) along a, approach 3 W/(2 pi E*) R_F(0, a^2, b^2).
   const auto [small_radius, large_radius] = std::minmax(radius_1, radius_2);

@@ -1,15 +1,14 @@
 #include "analytic/paper_equations.hpp"
 
-#include <fmt/core.h>
 #include <gsl/gsl_sf_ellint.h>
 
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 #include <string_view>
 
 #include "analytic/gsl.hpp"
+#include "analytic/out_of_range.hpp"
 
 namespace slipstick::analytic::paper {
 
@@ -24,7 +23,7 @@ double complete_k(double k) { return gsl::evaluate(gsl_sf_ellint_Kcomp_e, k); }
 double complete_e(double k) { return gsl::evaluate(gsl_sf_ellint_Ecomp_e, k); }
 
 void require(bool allowed, std::string_view name, double value, std::string_view range) {
-  if (!allowed) throw std::domain_error(fmt::format("{} = {}; allowed: {}", name, value, range));
+  if (!allowed) out_of_range(name, value, range);
 }
 
 void require_partial_slip(double stick_ratio) {

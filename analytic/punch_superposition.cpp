@@ -6,10 +6,10 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <stdexcept>
 #include <utility>
 
 #include "analytic/gsl.hpp"
+#include "analytic/out_of_range.hpp"
 
 namespace slipstick::analytic {
 
@@ -335,14 +335,12 @@ std::unique_ptr<const Profile> power_profile(double exponent) {
   constexpr double kMin = 0.01;
   constexpr double kMax = 1000;
   if (!(exponent >= kMin && exponent <= kMax))
-    throw std::domain_error(
-        fmt::format("exponent of the gap = {}; allowed: {} <= n <= {}", exponent, kMin, kMax));
+    out_of_range("exponent of the gap", exponent, fmt::format("{} <= n <= {}", kMin, kMax));
   return std::make_unique<const Power>(exponent);
 }
 
 std::unique_ptr<const Profile> rounded_punch_profile(double flat_ratio) {
-  if (!(flat_ratio >= 0 && flat_ratio < 1))
-    throw std::domain_error(fmt::format("b/a = {}; allowed: 0 <= b/a < 1", flat_ratio));
+  if (!(flat_ratio >= 0 && flat_ratio < 1)) out_of_range("b/a", flat_ratio, "0 <= b/a < 1");
   return std::make_unique<const RoundedPunch>(flat_ratio);
 }
 

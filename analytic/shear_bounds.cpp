@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <stdexcept>
 #include <utility>
 
 #include "analytic/gsl.hpp"
+#include "analytic/out_of_range.hpp"
 
 namespace slipstick::analytic {
 
@@ -190,7 +190,7 @@ const Profile& constant_bound_profile() {
 }
 
 std::unique_ptr<const Profile> capped_hertz_profile(double cap) {
-  if (!(cap > 0 && cap <= 1)) throw std::domain_error(fmt::format("cap = {}; allowed: 0 < cap <= 1", cap));
+  if (!(cap > 0 && cap <= 1)) out_of_range("cap", cap, "0 < cap <= 1");
   return std::make_unique<const BoundUnderHertz>(fmt::format("capped:{}", cap),
                                                  "peak of mu p without the cap", cap, 1);
 }
@@ -198,8 +198,7 @@ std::unique_ptr<const Profile> capped_hertz_profile(double cap) {
 std::unique_ptr<const Profile> power_of_hertz_profile(double exponent) {
   constexpr double kMax = 3;
   if (!(exponent > 0 && exponent <= kMax))
-    throw std::domain_error(
-        fmt::format("exponent of the pressure = {}; allowed: 0 < n <= {}", exponent, kMax));
+    out_of_range("exponent of the pressure", exponent, fmt::format("0 < n <= {}", kMax));
   return std::make_unique<const BoundUnderHertz>(fmt::format("pressure_power:{}", exponent),
                                                  "bound at the centre", 1, exponent);
 }

@@ -11,6 +11,7 @@
 
 #include "analytic/elliptic.hpp"
 #include "analytic/gsl.hpp"
+#include "analytic/out_of_range.hpp"
 
 namespace slipstick::analytic {
 
@@ -20,14 +21,12 @@ using std::numbers::pi;
 
 void require_dissimilar_bodies(double friction, double beta, double least, double most) {
   constexpr double kMaxBeta = 0.5;  // nu = 0 against a rigid body
-  if (!(friction > 0 && std::isfinite(friction)))
-    throw std::domain_error(fmt::format("friction = {}; allowed: positive and finite", friction));
+  require_positive("friction", friction);
   if (!(std::abs(beta) > 0 && std::abs(beta) <= kMaxBeta))
-    throw std::domain_error(fmt::format("beta = {}; allowed: 0 < |beta| <= {}", beta, kMaxBeta));
+    out_of_range("beta", beta, fmt::format("0 < |beta| <= {}", kMaxBeta));
   const double ratio = friction / std::abs(beta);
   if (!(ratio >= least && ratio <= most))
-    throw std::domain_error(
-        fmt::format("friction/|beta| = {}; allowed: {:.6g} to {:.6g}", ratio, least, most));
+    out_of_range("friction/|beta|", ratio, fmt::format("{:.6g} to {:.6g}", least, most));
 }
 
 /// By x = artanh(c), which holds the digits of both ends.

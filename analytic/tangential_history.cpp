@@ -7,14 +7,14 @@
 #include <stdexcept>
 
 #include "analytic/gsl.hpp"
+#include "analytic/out_of_range.hpp"
 
 namespace slipstick::analytic::tangential {
 
 namespace {
 
 void require_contact_without_gross_slip(double normal_load, double force) {
-  if (!(normal_load > 0 && std::isfinite(normal_load)))
-    throw std::domain_error(fmt::format("W/W_0 = {}; allowed: positive and finite", normal_load));
+  require_positive("W/W_0", normal_load);
   if (!(std::abs(force) < normal_load))
     throw std::domain_error(fmt::format("F/(mu W_0) = {}{}; allowed: |F| < mu W, W/W_0 = {}", force,
                                         std::isnan(force) ? "" : " is gross slip", normal_load));
@@ -142,13 +142,12 @@ HistoryState TangentialHistory::state() const {
 }
 
 double TangentialHistory::traction(double radius) const {
-  if (!(radius >= 0)) throw std::domain_error(fmt::format("r/a_0 = {}; allowed: 0 or more", radius));
+  if (!(radius >= 0)) out_of_range("r/a_0", radius, "0 or more");
   double sum = 0;
   for (std::size_t i = 0; i < layers_.size(); ++i)
     sum += layers_[i].share *
            (indenter_.pressure(layers_[i].load, radius) - indenter_.pressure(inner_load(i), radius));
-  if (!std::isfinite(sum))
-    throw std::domain_error(fmt::format("r/a_0 = {}; allowed: where the pressure is finite", radius));
+  if (!std::isfinite(sum)) out_of_range("r/a_0", radius, "where the pressure is finite");
   return sum;
 }
 

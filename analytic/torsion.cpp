@@ -6,9 +6,9 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
-#include <string_view>
 
 #include "analytic/gsl.hpp"
+#include "analytic/out_of_range.hpp"
 
 namespace slipstick::analytic {
 
@@ -20,10 +20,6 @@ using std::numbers::pi;
 constexpr double kMin = std::numeric_limits<double>::min();
 
 constexpr StickRadius kFull{.ratio = 1, .complement = 0};
-
-[[noreturn]] void out_of_range(std::string_view name, double value, std::string_view range) {
-  throw std::domain_error(fmt::format("{} = {}; allowed: {}", name, value, range));
-}
 
 /// G a^2 phi/(mu W) of H.
 double twist_at(double twist_integral, const Profile& profile) {

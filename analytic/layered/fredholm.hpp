@@ -1,7 +1,6 @@
 #pragma once
 
 #include <functional>
-#include <memory>
 #include <vector>
 
 /// Fredholm's equations of the second kind whose kernel is analytic up to twice a layer's thickness off the

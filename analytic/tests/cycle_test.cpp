@@ -5,7 +5,6 @@
 
 #include <random>
 #include <stdexcept>
-#include <vector>
 
 #include "analytic/tests/values.hpp"
 

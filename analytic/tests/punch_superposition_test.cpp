@@ -2,7 +2,6 @@
 
 #include <gmock/gmock.h>
 
-#include <memory>
 #include <stdexcept>
 #include <vector>
 
@@ -15,43 +14,16 @@ namespace {
 
 using std::numbers::pi;
 using namespace ::testing;
+using testing::expect_same;
 using testing::relative_error;
 
 constexpr double kFewRoundings = 1e-14;
-
-StickRadius before_edge(double complement) { return {.ratio = 1 - complement, .complement = complement}; }
-
-/// Everything from 1e-12 to 1 - 1e-12, where both c and 1 - c are exact enough.
-const std::vector<StickRadius> kSticks{at(1e-12), at(1e-6), at(0.01),          at(0.2),           at(0.5),
-                                       at(0.8),   at(0.99), before_edge(1e-6), before_edge(1e-12)};
 
 std::vector<std::unique_ptr<const Profile>> profiles() {
   std::vector<std::unique_ptr<const Profile>> all;
   for (const double n : {0.01, 0.5, 1.0, 1.5, 2.0, 4.0, 30.0, 1000.0}) all.push_back(power_profile(n));
   for (const double b : {0.0, 0.001, 0.5, 0.95, 1 - 1e-9}) all.push_back(rounded_punch_profile(b));
   return all;
-}
-
-/// Functions of H, M and q that agree between two profiles, one over a p0 `scale` times the other's.
-void expect_same(const Profile& profile, const Profile& expected, double scale, double tolerance) {
-  EXPECT_NEAR(profile.load() / expected.load() / scale, 1, tolerance);
-  EXPECT_NEAR(profile.moment_limit() / expected.moment_limit(), 1, tolerance);
-  EXPECT_EQ(profile.edge(), 0);
-  for (const auto& c : kSticks) {
-    const auto near = [&](double value, double reference, const char* name) {
-      EXPECT_NEAR(value / reference, 1, tolerance) << name << " at c = " << c.ratio;
-    };
-    near(profile.twist_integral(c), scale * expected.twist_integral(c), "H");
-    near(profile.twist_slope(c), scale * expected.twist_slope(c), "-c H'");
-    near(profile.moment_share(c).excess, expected.moment_share(c).excess, "M");
-    near(profile.moment_share(c).deficit, expected.moment_share(c).deficit, "M_lim - M");
-    near(profile.pressure(c.ratio), scale * expected.pressure(c.ratio), "p");
-    for (const double f : {1e-13, 1e-6, 0.1, 0.5, 0.99, 1 - 1e-12}) {
-      const double inward = c.ratio * f;
-      near(profile.stick_traction(c, c.ratio - inward, inward),
-           scale * expected.stick_traction(c, c.ratio - inward, inward), "q");
-    }
-  }
 }
 
 TEST(Superposition, IsTheClosedFormWhereThereIsOne) {

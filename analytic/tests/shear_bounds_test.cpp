@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "analytic/cycle.hpp"
+#include "analytic/references/references.hpp"
 #include "analytic/shear_bounds.hpp"
 #include "analytic/tests/values.hpp"
 #include "analytic/torsion.hpp"
@@ -16,27 +17,7 @@ namespace slipstick::analytic {
 namespace {
 
 using std::numbers::pi;
-
-const std::vector<double> kStickRatios{1e-9, 1e-3, 0.1, 0.4, 0.6, 0.9, 0.999};
-
-double relative(double found, double expected) { return std::abs(found / expected - 1); }
-
-void expect_same(const Profile& found, const Profile& expected, double tolerance) {
-  EXPECT_LE(relative(found.load(), expected.load()), tolerance);
-  EXPECT_LE(relative(found.moment_limit(), expected.moment_limit()), tolerance);
-  for (const double c : kStickRatios) {
-    SCOPED_TRACE(fmt::format("{} for {}, c = {}", found.name(), expected.name(), c));
-    EXPECT_LE(relative(found.twist_integral(at(c)), expected.twist_integral(at(c))), tolerance);
-    EXPECT_LE(relative(found.twist_slope(at(c)), expected.twist_slope(at(c))), tolerance);
-    EXPECT_LE(relative(found.moment_share(at(c)).excess, expected.moment_share(at(c)).excess), tolerance);
-    EXPECT_LE(relative(found.moment_share(at(c)).deficit, expected.moment_share(at(c)).deficit), tolerance);
-    for (const double part : {1e-6, 0.5, 0.999}) {
-      const double r = c * part;
-      const double q = found.stick_traction(at(c), r, c - r);
-      EXPECT_LE(relative(q, expected.stick_traction(at(c), r, c - r)), tolerance) << part;
-    }
-  }
-}
+using testing::relative_error;
 
 /// H(c) = integral_c^1 f(r)/sqrt(r^2 - c^2) dr, with r = sqrt(c^2 + x^2).
 double twist_by_definition(const Profile& profile, double c) {
@@ -54,20 +35,21 @@ TEST(ShearBounds, HaveTheTwistOfTheirDefinition) {
   for (const double c : {0.05, 0.5, 0.95}) {
     for (const double cap : {0.4, 0.8}) {
       const auto profile = capped_hertz_profile(cap);
-      EXPECT_LE(relative(profile->twist_integral(at(c)), twist_by_definition(*profile, c)), 1e-9) << cap;
+      EXPECT_LE(relative_error(profile->twist_integral(at(c)), twist_by_definition(*profile, c)), 1e-9)
+          << cap;
     }
     for (const double n : {0.5, 2.0 / 3, 2.0}) {
       const auto profile = power_of_hertz_profile(n);
-      EXPECT_LE(relative(profile->twist_integral(at(c)), twist_by_definition(*profile, c)), 1e-12) << n;
+      EXPECT_LE(relative_error(profile->twist_integral(at(c)), twist_by_definition(*profile, c)), 1e-12) << n;
     }
     const Profile& constant = constant_bound_profile();
-    EXPECT_LE(relative(constant.twist_integral(at(c)), twist_by_definition(constant, c)), 1e-13);
+    EXPECT_LE(relative_error(constant.twist_integral(at(c)), twist_by_definition(constant, c)), 1e-13);
   }
 }
 
 TEST(ShearBounds, AreHertzsWithoutACapAndWithTheFirstPower) {
-  expect_same(*capped_hertz_profile(1), hertz_profile(), 20 * kEps);
-  expect_same(*power_of_hertz_profile(1), hertz_profile(), 20 * kEps);
+  testing::expect_same(*capped_hertz_profile(1), hertz_profile(), 1, 20 * kEps);
+  testing::expect_same(*power_of_hertz_profile(1), hertz_profile(), 1, 20 * kEps);
 }
 
 /// A low cap leaves the contact's last part, sqrt(1 - r^2) < cap, alone: the tractions differ by O(cap^2).
@@ -76,13 +58,15 @@ TEST(ShearBounds, AreConstantInTheLimits) {
     const Profile& constant = constant_bound_profile();
     for (const double cap : {1e-2, 1e-3}) {
       const auto capped = capped_hertz_profile(cap);
-      EXPECT_LE(relative(capped->twist_integral(at(c)) / cap, constant.twist_integral(at(c))), 3 * cap * cap);
-      EXPECT_LE(relative(capped->load(), cap * pi * (1 - cap * cap / 3)), 20 * kEps);
+      EXPECT_LE(relative_error(capped->twist_integral(at(c)) / cap, constant.twist_integral(at(c))),
+                3 * cap * cap);
+      EXPECT_LE(relative_error(capped->load(), cap * pi * (1 - cap * cap / 3)), 20 * kEps);
     }
     for (const double n : {1e-3, 1e-5}) {
       const auto power = power_of_hertz_profile(n);
-      EXPECT_LE(relative(power->moment_share(at(c)).excess, constant.moment_share(at(c)).excess), 2 * n);
-      EXPECT_LE(relative(power->load(), 2 * pi / (n + 2)), 20 * kEps);
+      EXPECT_LE(relative_error(power->moment_share(at(c)).excess, constant.moment_share(at(c)).excess),
+                2 * n);
+      EXPECT_LE(relative_error(power->load(), 2 * pi / (n + 2)), 20 * kEps);
     }
   }
 }
@@ -91,21 +75,22 @@ TEST(ShearBounds, AreConstantInTheLimits) {
 /// arcosh(1/c).
 TEST(ShearBounds, HaveTheClosedFormsOfTheSquare) {
   const auto square = power_of_hertz_profile(2);
-  EXPECT_LE(relative(square->load(), pi / 2), 20 * kEps);
-  EXPECT_LE(relative(square->moment_limit(), 8.0 / 15), 20 * kEps);
+  EXPECT_LE(relative_error(square->load(), pi / 2), 20 * kEps);
+  EXPECT_LE(relative_error(square->moment_limit(), 8.0 / 15), 20 * kEps);
   for (const double c : {1e-9, 1e-3, 0.1, 0.4, 0.6}) {
     const double arcosh = std::acosh(1 / c);
     const double root = std::sqrt((1 - c) * (1 + c));
-    EXPECT_LE(relative(square->twist_integral(at(c)), (1 - c * c / 2) * arcosh - root / 2), 40 * kEps) << c;
-    EXPECT_LE(relative(square->twist_slope(at(c)), root + c * c * arcosh), 20 * kEps) << c;
+    EXPECT_LE(relative_error(square->twist_integral(at(c)), (1 - c * c / 2) * arcosh - root / 2), 40 * kEps)
+        << c;
+    EXPECT_LE(relative_error(square->twist_slope(at(c)), root + c * c * arcosh), 20 * kEps) << c;
   }
 }
 
 TEST(ConstantBound, HasTheElementaryValuesOfHalfTheRadius) {
   const TorsionState half = from_stick_ratio(0.5, constant_bound_profile());
-  EXPECT_LE(relative(half.moment_ratio, 2.0 / 3 + std::sqrt(3.0) / (2 * pi)), 4 * kEps);
-  EXPECT_LE(relative(half.twist, std::log(2 + std::sqrt(3.0)) / (2 * pi)), 4 * kEps);
-  EXPECT_LE(relative(traction(half, 0.25, constant_bound_profile()), 2 / pi * std::atan(0.25 / 0.5)),
+  EXPECT_LE(relative_error(half.moment_ratio, 2.0 / 3 + std::sqrt(3.0) / (2 * pi)), 4 * kEps);
+  EXPECT_LE(relative_error(half.twist, std::log(2 + std::sqrt(3.0)) / (2 * pi)), 4 * kEps);
+  EXPECT_LE(relative_error(traction(half, 0.25, constant_bound_profile()), 2 / pi * std::atan(0.25 / 0.5)),
             8 * kEps);
   EXPECT_EQ(traction(half, 0.75, constant_bound_profile()), 1);
 }
@@ -116,17 +101,17 @@ TEST(ConstantBound, FollowsItsAsymptotes) {
   const Profile& constant = constant_bound_profile();
   for (const double m : {1e-4, 1e-8, 1e-60, 1e-140}) {
     const TorsionState state = from_moment_ratio(m, constant);
-    EXPECT_LE(relative(state.stick_complement, pi * pi * m * m / 32), 2 * m + 8 * kEps) << m;
-    EXPECT_LE(relative(state.twist, 2.0 / 3 * m * 3 / 16), m * m + 8 * kEps) << m;
-    EXPECT_LE(relative(from_twist(state.twist, constant).moment_ratio, m), 16 * kEps) << m;
+    EXPECT_LE(relative_error(state.stick_complement, pi * pi * m * m / 32), 2 * m + 8 * kEps) << m;
+    EXPECT_LE(relative_error(state.twist, 2.0 / 3 * m * 3 / 16), m * m + 8 * kEps) << m;
+    EXPECT_LE(relative_error(from_twist(state.twist, constant).moment_ratio, m), 16 * kEps) << m;
   }
   const TorsionState tiny = from_moment_ratio(1e-300, constant);
   EXPECT_EQ(tiny.stick_ratio, 1);
-  EXPECT_LE(relative(tiny.twist, 1e-300 / 8), 8 * kEps);
-  EXPECT_LE(relative(from_twist(tiny.twist, constant).moment_ratio, 1e-300), 8 * kEps);
+  EXPECT_LE(relative_error(tiny.twist, 1e-300 / 8), 8 * kEps);
+  EXPECT_LE(relative_error(from_twist(tiny.twist, constant).moment_ratio, 1e-300), 8 * kEps);
   for (const double d : {1e-6, 1e-20, 1e-100}) {
     const TorsionState state = from_moment_deficit(d, constant);
-    EXPECT_LE(relative(state.stick_ratio, std::cbrt(3 * pi * d / 4)), std::cbrt(d * d) + 8 * kEps) << d;
+    EXPECT_LE(relative_error(state.stick_ratio, std::cbrt(3 * pi * d / 4)), std::cbrt(d * d) + 8 * kEps) << d;
   }
 }
 
@@ -138,10 +123,11 @@ TEST(ShearBounds, GoForthAndBackByLoadDeficitAndTwist) {
     for (const double m : {1e-6, 0.1, 0.5, 0.9, 0.999}) {
       const TorsionState state = from_moment_ratio(m, *profile);
       SCOPED_TRACE(fmt::format("{}, m = {}", profile->name(), m));
-      EXPECT_LE(relative(from_twist(state.twist, *profile).moment_ratio, m), 1e-13);
-      EXPECT_LE(relative(from_moment_deficit(state.moment_deficit, *profile).twist, state.twist),
+      EXPECT_LE(relative_error(from_twist(state.twist, *profile).moment_ratio, m), 1e-13);
+      EXPECT_LE(relative_error(from_moment_deficit(state.moment_deficit, *profile).twist, state.twist),
                 1e-13 + 4 * kEps / std::min(m, 1 - m));
-      EXPECT_LE(relative(from_stick_complement(state.stick_complement, *profile).moment_ratio, m), 1e-13);
+      EXPECT_LE(relative_error(from_stick_complement(state.stick_complement, *profile).moment_ratio, m),
+                1e-13);
     }
 }
 
@@ -155,10 +141,10 @@ TEST(ConstantBound, LosesTheEnergyOfMasingsRule) {
   history.load_to(-0.8);
   history.load_to(0.8);
   const CycleState again = history.state();
-  EXPECT_LE(relative(again.twist, top.twist), 1e-13);
+  EXPECT_LE(relative_error(again.twist, top.twist), 1e-13);
   const double area =
       gsl::integral([&](double twist) { return from_twist(twist, constant).moment; }, 0, top.twist, 1e-12);
-  EXPECT_LE(relative(again.dissipated - top.dissipated, 8 * area - 4 * top.moment * top.twist), 1e-10);
+  EXPECT_LE(relative_error(again.dissipated - top.dissipated, 8 * area - 4 * top.moment * top.twist), 1e-10);
 }
 
 TEST(ShearBounds, RefuseWhatIsOutOfRange) {

@@ -5,11 +5,8 @@
 
 #include <algorithm>
 #include <array>
-#include <memory>
 #include <random>
 #include <stdexcept>
-#include <string>
-#include <vector>
 
 #include "analytic/interpolation_errors.hpp"
 #include "analytic/punch_superposition.hpp"

@@ -4,7 +4,6 @@
 
 #include <random>
 #include <stdexcept>
-#include <vector>
 
 #include "analytic/cattaneo_mindlin.hpp"
 #include "analytic/tests/values.hpp"

@@ -1,9 +1,12 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <cmath>
 #include <functional>
 #include <limits>
 #include <numbers>
+#include <vector>
 
 #include "analytic/axisymmetric.hpp"
 #include "analytic/gsl.hpp"
@@ -16,6 +19,9 @@ inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 
 /// The front at a part c of the contact radius.
 inline StickRadius at(double c) { return {.ratio = c, .complement = 1 - c}; }
+inline StickRadius before_edge(double complement) {
+  return {.ratio = 1 - complement, .complement = complement};
+}
 
 namespace testing {
 
@@ -26,6 +32,33 @@ inline double integral_between_roots(const std::function<double(double)>& f, dou
         return f(low + (high - low) * std::pow(std::sin(t), 2)) * (high - low) * std::sin(2 * t);
       },
       0, std::numbers::pi / 2);
+}
+
+/// Everything from 1e-12 to 1 - 1e-12, where both c and 1 - c are exact enough.
+inline const std::vector<StickRadius> kSticks{
+    at(1e-12), at(1e-9), at(1e-6), at(1e-3), at(0.01), at(0.1),   at(0.2),           at(0.4),
+    at(0.5),   at(0.6),  at(0.8),  at(0.9),  at(0.99), at(0.999), before_edge(1e-6), before_edge(1e-12)};
+
+/// Functions of H, M and q that agree between two profiles, one over a p0 `scale` times the other's.
+inline void expect_same(const Profile& profile, const Profile& expected, double scale, double tolerance) {
+  EXPECT_NEAR(profile.load() / expected.load() / scale, 1, tolerance);
+  EXPECT_NEAR(profile.moment_limit() / expected.moment_limit(), 1, tolerance);
+  EXPECT_EQ(profile.edge(), 0);
+  for (const auto& c : kSticks) {
+    const auto near = [&](double value, double reference, const char* name) {
+      EXPECT_NEAR(value / reference, 1, tolerance) << profile.name() << ", " << name << " at c = " << c.ratio;
+    };
+    near(profile.twist_integral(c), scale * expected.twist_integral(c), "H");
+    near(profile.twist_slope(c), scale * expected.twist_slope(c), "-c H'");
+    near(profile.moment_share(c).excess, expected.moment_share(c).excess, "M");
+    near(profile.moment_share(c).deficit, expected.moment_share(c).deficit, "M_lim - M");
+    near(profile.pressure(c.ratio), scale * expected.pressure(c.ratio), "p");
+    for (const double f : {1e-13, 1e-6, 1e-3, 0.1, 0.5, 0.99, 1 - 1e-6, 1 - 1e-12}) {
+      const double inward = c.ratio * f;
+      near(profile.stick_traction(c, c.ratio - inward, inward),
+           scale * expected.stick_traction(c, c.ratio - inward, inward), "q");
+    }
+  }
 }
 
 }  // namespace testing

@@ -4,10 +4,7 @@
 #include <gmock/gmock.h>
 
 #include <chrono>
-#include <filesystem>
 #include <fstream>
-#include <string>
-#include <vector>
 
 #include "convergence/programs/temporary_folder.hpp"
 #include "solver/input/input_error.hpp"

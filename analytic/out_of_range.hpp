@@ -1,0 +1,20 @@
+#pragma once
+
+#include <fmt/core.h>
+
+#include <cmath>
+#include <stdexcept>
+#include <string_view>
+
+namespace slipstick::analytic {
+
+/// Refuses a number by its name, with what would be allowed.
+[[noreturn]] inline void out_of_range(std::string_view name, double value, std::string_view allowed) {
+  throw std::domain_error(fmt::format("{} = {}; allowed: {}", name, value, allowed));
+}
+
+inline void require_positive(std::string_view name, double value) {
+  if (!(value > 0 && std::isfinite(value))) out_of_range(name, value, "positive and finite");
+}
+
+}  // namespace slipstick::analytic
