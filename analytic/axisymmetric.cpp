@@ -48,10 +48,10 @@ constexpr LowerSeries lower_series(const series::Logarithmic& f, int m = 2) {
 /// The moment of a profile whose f has these series; scale: (8/3)/(M_lim/(mu p0 a^3)).
 struct MomentSeries {
   double scale;
-  double slip_share;
   double f_at_edge;
   Table upper;
   LowerSeries lower;
+  double slip_share = 1;
 
   MomentShare operator()(StickRadius c) const {
     const double y = squared_modulus(c);
@@ -96,7 +96,6 @@ class Hertz final : public Profile {
 
   MomentShare moment_share(StickRadius c) const override {
     static constexpr MomentSeries kMoment{.scale = 64 / (3 * pi * pi),
-                                          .slip_share = 1,
                                           .f_at_edge = pi / 2,
                                           .upper = upper_series(series::taylor_e()),
                                           .lower = lower_series(series::logarithmic_e())};
@@ -144,7 +143,6 @@ class Cone final : public Profile {
 
   MomentShare moment_share(StickRadius c) const override {
     static constexpr MomentSeries kMoment{.scale = 16 / (pi * pi),
-                                          .slip_share = 1,
                                           .f_at_edge = pi / 2,
                                           .upper = upper_series(series::taylor_k()),
                                           .lower = lower_series(series::logarithmic_k())};
@@ -204,10 +202,10 @@ class FlatPunch final : public Profile {
 
   MomentShare moment_share(StickRadius c) const override {
     static constexpr MomentSeries kMoment{.scale = 16 / (3 * pi * pi),
-                                          .slip_share = kSlipShare,
                                           .f_at_edge = pi / 4,
                                           .upper = upper_series(series::taylor_b()),
-                                          .lower = lower_series(series::logarithmic_b())};
+                                          .lower = lower_series(series::logarithmic_b()),
+                                          .slip_share = kSlipShare};
     return kMoment(c);
   }
 
@@ -222,25 +220,21 @@ class FlatPunch final : public Profile {
   }
 };
 
+/// One for the whole program.
+template <class Kind>
+const Profile& lasting() {
+  static const Kind profile;
+  return profile;
+}
+
 }  // namespace
 
 double Profile::bonded_traction(double radius) const {
   return edge() == 0 ? 0 : 2 / pi * edge() * radius / std::sqrt((1 - radius) * (1 + radius));
 }
 
-const Profile& hertz_profile() {
-  static const Hertz profile;
-  return profile;
-}
-
-const Profile& cone_profile() {
-  static const Cone profile;
-  return profile;
-}
-
-const Profile& flat_punch_profile() {
-  static const FlatPunch profile;
-  return profile;
-}
+const Profile& hertz_profile() { return lasting<Hertz>(); }
+const Profile& cone_profile() { return lasting<Cone>(); }
+const Profile& flat_punch_profile() { return lasting<FlatPunch>(); }
 
 }  // namespace slipstick::analytic

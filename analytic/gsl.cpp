@@ -19,13 +19,15 @@ namespace {
 /// left.
 class Callback {
  public:
-  explicit Callback(const std::function<double(double)>& f) : f_(f) {}
+  explicit Callback(const std::function<double(double)>& f) : f_(f) { turn_abort_handler_off(); }
   gsl_function handle() {
     return {.function = [](double x, void* self) { return static_cast<Callback*>(self)->call(x); },
             .params = this};
   }
-  void rethrow() const {
+  /// Throws what the function threw, or else what GSL's status says.
+  void check(int status) const {
     if (thrown_) std::rethrow_exception(thrown_);
+    gsl::check(status);
   }
 
  private:
@@ -64,20 +66,15 @@ double root(const std::function<double(double)>& f, double low, double high) {
   constexpr int kMaxIterations = 200;  // bisection alone would need about 60
   constexpr double kRelative = 4 * std::numeric_limits<double>::epsilon();
 
-  turn_abort_handler_off();
   Callback callback(f);
   gsl_function function = callback.handle();
   const auto solver = own(gsl_root_fsolver_alloc(gsl_root_fsolver_brent), gsl_root_fsolver_free);
-  int status = gsl_root_fsolver_set(solver.get(), &function, low, high);
-  callback.rethrow();
-  check(status);
-  for (int i = 0; i < kMaxIterations; ++i) {
-    status = gsl_root_fsolver_iterate(solver.get());
-    callback.rethrow();
-    check(status);
+  callback.check(gsl_root_fsolver_set(solver.get(), &function, low, high));
+  int status = GSL_CONTINUE;
+  for (int i = 0; i < kMaxIterations && status == GSL_CONTINUE; ++i) {
+    callback.check(gsl_root_fsolver_iterate(solver.get()));
     status = gsl_root_test_interval(gsl_root_fsolver_x_lower(solver.get()),
                                     gsl_root_fsolver_x_upper(solver.get()), 0, kRelative);
-    if (status != GSL_CONTINUE) break;
   }
   check(status);
   return gsl_root_fsolver_root(solver.get());
@@ -86,16 +83,13 @@ double root(const std::function<double(double)>& f, double low, double high) {
 double integral(const std::function<double(double)>& f, double low, double high, double relative) {
   constexpr std::size_t kIntervals = 200;
 
-  turn_abort_handler_off();
   Callback callback(f);
   gsl_function function = callback.handle();
   const auto workspace =
       own(gsl_integration_cquad_workspace_alloc(kIntervals), gsl_integration_cquad_workspace_free);
   double result = 0;
-  const int status =
-      gsl_integration_cquad(&function, low, high, 0, relative, workspace.get(), &result, nullptr, nullptr);
-  callback.rethrow();
-  check(status);
+  callback.check(
+      gsl_integration_cquad(&function, low, high, 0, relative, workspace.get(), &result, nullptr, nullptr));
   return result;
 }
 

@@ -163,8 +163,7 @@ class Tabulated final : public Profile {
 
  private:
   std::size_t piece_at(double radius) const {
-    const auto after = std::upper_bound(pieces_.begin(), pieces_.end() - 1, radius,
-                                        [](double r, const Piece& piece) { return r < piece.high(); });
+    const auto after = std::ranges::upper_bound(pieces_.begin(), pieces_.end() - 1, radius, {}, &Piece::high);
     return static_cast<std::size_t>(after - pieces_.begin());
   }
 
@@ -293,10 +292,7 @@ TabulatedProfile tabulated_profile(const std::string& name, std::vector<Pressure
                                    const PointPlace& where) {
   check_points(name, points, where);
   const double a = points.back().radius;
-  const double peak =
-      std::max_element(points.begin(), points.end(), [](const PressurePoint& p, const PressurePoint& q) {
-        return p.pressure < q.pressure;
-      })->pressure;
+  const double peak = std::ranges::max_element(points, {}, &PressurePoint::pressure)->pressure;
   for (auto& point : points) point = {.radius = point.radius / a, .pressure = point.pressure / peak};
 
   auto [profile, mean] = interpolate("file:" + name, points);

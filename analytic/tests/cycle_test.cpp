@@ -13,8 +13,6 @@ namespace {
 
 using namespace ::testing;
 
-const std::vector<const Profile*> kProfiles{&hertz_profile(), &cone_profile(), &flat_punch_profile()};
-
 LoadingHistory loaded(const std::vector<double>& moments, const Profile& profile = hertz_profile()) {
   LoadingHistory history(profile);
   for (const double moment : moments) history.load_to(moment);
@@ -32,19 +30,8 @@ void expect_same(const LoadingHistory& a, const LoadingHistory& b) {
   for (const double r : {0.0, 0.3, 0.7, 0.9, 0.99}) EXPECT_EQ(a.traction(r), b.traction(r)) << r;
 }
 
-/// Moments up and down at random, the same on every machine.
-class RandomMoments {
- public:
-  explicit RandomMoments(double most) : most_(most) {}
-  double operator()() { return most_ * (2 * static_cast<double>(twister_()) / std::mt19937::max() - 1); }
-
- private:
-  double most_;
-  std::mt19937 twister_{20240607};
-};
-
 TEST(LoadingHistory, BeginsOnTheCurveOfFirstLoading) {
-  for (const Profile* profile : kProfiles)
+  for (const Profile* profile : testing::kClosedForms)
     for (const double m : {1e-100, 1e-9, 1e-3, 0.1, 0.5, 0.88, 0.99, 1 - 1e-12})
       for (const double sign : {1.0, -1.0}) {
         const auto history = loaded({sign * m}, *profile);
@@ -73,7 +60,7 @@ TEST(LoadingHistory, RemembersOpenReversals) {
 }
 
 TEST(LoadingHistory, FollowsMasingsRuleOnABranch) {
-  for (const Profile* profile : kProfiles)
+  for (const Profile* profile : testing::kClosedForms)
     for (const double m : {0.5, 0.9, -0.4}) {
       const auto at = [&](double moment) { return from_moment_ratio(moment, *profile); };
       const auto history = loaded({0.95, m}, *profile);
@@ -104,7 +91,7 @@ TEST(LoadingHistory, IsAsItsShortestPathToTheLastBit) {
              {0.3, 0.9, 0.5, -0.1, -0.7, 0.0, 0.9, 0.92, 0.95},
              {0.9, -0.7, 0.95}},
         Case{"standing still changes nothing", {0.9, -0.5, 0.1, 0.1}, {0.9, -0.5, 0.1}}})
-    for (const Profile* profile : kProfiles) {
+    for (const Profile* profile : testing::kClosedForms) {
       SCOPED_TRACE(fmt::format("{}: {}, {} moments", fact, profile->name(), path.size()));
       expect_same(loaded(path, *profile), loaded(shortest, *profile));
     }
@@ -114,7 +101,7 @@ TEST(LoadingHistory, IsAsItsShortestPathToTheLastBit) {
 }
 
 TEST(LoadingHistory, MeetsTheFirstLoadingCurveOnTheOtherSide) {
-  for (const Profile* profile : kProfiles)
+  for (const Profile* profile : testing::kClosedForms)
     for (const double m : {1e-3, 0.5, 0.95}) {
       const auto mirrored = loaded({m, -m}, *profile);
       const auto start = loaded({m}, *profile);
@@ -141,12 +128,12 @@ TEST(LoadingHistory, LeavesATwistBehindWithAllItsDigits) {
 }
 
 TEST(LoadingHistory, StaysWithinCoulombsBoundAndReachesItInItsSlipRing) {
-  for (const Profile* profile : kProfiles) {
+  for (const Profile* profile : testing::kClosedForms) {
     LoadingHistory history(*profile);
-    RandomMoments next(0.99);
+    std::mt19937 twister{20240607};  // the same on every machine
     for (int i = 0; i < 100; ++i) {
       const double before = history.moment_ratio();
-      history.load_to(next());
+      history.load_to(0.99 * (2 * static_cast<double>(twister()) / std::mt19937::max() - 1));
       const double sign = history.moment_ratio() > before ? 1 : -1;
       const double front = history.state().stick_ratio;
       for (const double r : {0.01, 0.2, 0.4, 0.6, 0.8, 0.9, 0.99}) {

@@ -3,7 +3,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <vector>
 
 #include "analytic/cycle.hpp"
 #include "analytic/tests/values.hpp"
@@ -11,11 +10,9 @@
 namespace slipstick::analytic {
 namespace {
 
-const std::vector<const Profile*> kClosedForms{&hertz_profile(), &cone_profile(), &flat_punch_profile()};
-
 /// The loop by Masing's rule alone: 8 integral M dphi - 4 M phi over the first loading.
 TEST(EnergyLost, IsTheAreaOfTheLoop) {
-  for (const Profile* profile : kClosedForms)
+  for (const Profile* profile : testing::kClosedForms)
     for (const double m : {0.3, 0.6, 0.9, 0.99}) {
       const auto twist = [&](double ratio) { return from_moment_ratio(ratio, *profile).twist; };
       const double corner = std::min(m, profile->full_stick());
@@ -42,7 +39,7 @@ TEST(EnergyLost, GoesLikeTheCubeOfSmallMoments) {
 
 /// Then c is small, and the loop a parallelogram: M_lim up and down, phi to and fro.
 TEST(EnergyLost, GoesLikeTheTwistNearGrossSlip) {
-  for (const Profile* profile : kClosedForms) {
+  for (const Profile* profile : testing::kClosedForms) {
     const auto lost = [&](double c) {
       return energy_lost_per_cycle(from_stick_ratio(c, *profile), *profile);
     };

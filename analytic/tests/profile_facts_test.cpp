@@ -9,7 +9,6 @@
 
 #include "analytic/punch_superposition.hpp"
 #include "analytic/shear_bounds.hpp"
-#include "analytic/tabulated_pressure.hpp"
 #include "analytic/tests/values.hpp"
 
 namespace slipstick::analytic {
@@ -23,13 +22,8 @@ struct AnyProfile {
 };
 
 AnyProfile tabulated(const char* name, double (*pressure)(double), int intervals, bool graded) {
-  std::vector<PressurePoint> points;
-  for (int i = 0; i <= intervals; ++i) {
-    const double share = static_cast<double>(i) / intervals;
-    const double radius = graded && i < intervals ? std::sin(pi / 2 * share) : share;
-    points.push_back({.radius = radius, .pressure = pressure(radius)});
-  }
-  return {.profile = tabulated_profile(name, points).profile, .roughness = 100};
+  return {.profile = tabulated_profile(name, testing::sample(pressure, intervals, graded)).profile,
+          .roughness = 100};
 }
 
 const std::vector<AnyProfile>& every_profile() {
@@ -44,10 +38,8 @@ const std::vector<AnyProfile>& every_profile() {
     for (const double cap : {0.05, 0.3, 0.9, 1.0}) list.push_back({.profile = capped_hertz_profile(cap)});
     for (const double n : {0.1, 2.0 / 3, 1.0, 1.5, 3.0})
       list.push_back({.profile = power_of_hertz_profile(n)});
-    list.push_back(tabulated(
-        "linear", [](double r) { return 1 - r; }, 20, false));
-    list.push_back(tabulated(
-        "hertz", [](double r) { return std::sqrt((1 - r) * (1 + r)); }, 50, true));
+    list.push_back(tabulated("linear", testing::linear, 20, false));
+    list.push_back(tabulated("hertz", testing::hertz, 50, true));
     list.push_back(tabulated(
         "with an edge", [](double r) { return 2 - r * r; }, 17, false));
     return list;

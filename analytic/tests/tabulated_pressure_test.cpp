@@ -18,22 +18,9 @@ namespace {
 
 using std::numbers::pi;
 using namespace ::testing;
-
-/// Sampled at equal steps, or (graded) closer and closer towards the edge.
-std::vector<PressurePoint> sample(const std::function<double(double)>& pressure, int intervals,
-                                  bool graded = false) {
-  std::vector<PressurePoint> points;
-  for (int i = 0; i < intervals; ++i) {
-    const double share = static_cast<double>(i) / intervals;
-    const double radius = graded ? std::sin(pi / 2 * share) : share;
-    points.push_back({.radius = radius, .pressure = pressure(radius)});
-  }
-  points.push_back({.radius = 1, .pressure = pressure(1)});
-  return points;
-}
-
-double linear(double r) { return 1 - r; }
-double hertz(double r) { return std::sqrt((1 - r) * (1 + r)); }
+using testing::hertz;
+using testing::linear;
+using testing::sample;
 
 // p = 3 (1 - r) over its mean: reproduced exactly, with everything in closed form.
 

@@ -10,6 +10,7 @@
 
 #include "analytic/axisymmetric.hpp"
 #include "analytic/gsl.hpp"
+#include "analytic/tabulated_pressure.hpp"
 
 namespace slipstick::analytic {
 
@@ -33,6 +34,25 @@ inline double integral_between_roots(const std::function<double(double)>& f, dou
       },
       0, std::numbers::pi / 2);
 }
+
+inline const std::vector<const Profile*> kClosedForms{&hertz_profile(), &cone_profile(),
+                                                      &flat_punch_profile()};
+
+/// Sampled at equal steps, or (graded) closer and closer towards the edge.
+inline std::vector<PressurePoint> sample(const std::function<double(double)>& pressure, int intervals,
+                                         bool graded = false) {
+  std::vector<PressurePoint> points;
+  for (int i = 0; i < intervals; ++i) {
+    const double share = static_cast<double>(i) / intervals;
+    const double radius = graded ? std::sin(std::numbers::pi / 2 * share) : share;
+    points.push_back({.radius = radius, .pressure = pressure(radius)});
+  }
+  points.push_back({.radius = 1, .pressure = pressure(1)});
+  return points;
+}
+
+inline double linear(double r) { return 1 - r; }
+inline double hertz(double r) { return std::sqrt((1 - r) * (1 + r)); }
 
 /// Everything from 1e-12 to 1 - 1e-12, where both c and 1 - c are exact enough.
 inline const std::vector<StickRadius> kSticks{
