@@ -51,12 +51,10 @@ ComparisonRules rules_of(const CompareRequest& request) {
     throw InputError("command line", "--level", fmt::format("{}", request.level),
                      "a chance above 0, at most 0.5");
   }
-  ComparisonRules rules;
-  rules.effect = read_effect(request.effect);
-  rules.level = request.level;
-  rules.same_machine = request.same_machine;
-  rules.debug_library = request.debug_library;
-  return rules;
+  return {.effect = read_effect(request.effect),
+          .level = request.level,
+          .same_machine = request.same_machine,
+          .debug_library = request.debug_library};
 }
 
 int run_compare(const CompareRequest& request, std::ostream& text, nlohmann::ordered_json& result) {

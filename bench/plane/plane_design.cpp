@@ -3,7 +3,6 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
-#include <utility>
 
 namespace slipstick::bench {
 namespace {
@@ -18,33 +17,24 @@ constexpr double kMainRatio = 0.9;
 /// the twist, and the program's default.
 const Tolerances kOneAtATime{1e-4, 1e-8};
 
-class Design {
- public:
-  void add(const PlaneChoice& choice) {
-    if (std::find(choices_.begin(), choices_.end(), choice) == choices_.end()) choices_.push_back(choice);
-  }
+using Design = std::vector<PlaneChoice>;
 
-  void add(PlaneChoice choice, const Cells& meshes, const Tolerances& tolerances) {
-    for (const Index cells : meshes) {
-      for (const double tolerance : tolerances) {
-        choice.cells = cells;
-        choice.tolerance = tolerance;
-        add(choice);
-      }
+/// The choice on each mesh to each tolerance, unless it is there.
+void add(Design& design, PlaneChoice choice, const Cells& meshes, const Tolerances& tolerances) {
+  for (const Index cells : meshes) {
+    for (const double tolerance : tolerances) {
+      choice.cells = cells;
+      choice.tolerance = tolerance;
+      if (std::ranges::find(design, choice) == design.end()) design.push_back(choice);
     }
   }
-
-  std::vector<PlaneChoice> take() { return std::move(choices_); }
-
- private:
-  std::vector<PlaneChoice> choices_;
-};
+}
 
 /// Direct and dense summation cost the fourth power of the cells along a side: beyond these a solve takes
 /// seconds, or gigabytes.
 void add_operators(Design& design, bool quick) {
-  design.add({.op = "direct", .model = "full"}, quick ? Cells{16, 32} : Cells{16, 32, 64}, kOneAtATime);
-  design.add({.op = "dense", .model = "full"}, quick ? Cells{16} : Cells{16, 32}, kOneAtATime);
+  add(design, {.op = "direct", .model = "full"}, quick ? Cells{16, 32} : Cells{16, 32, 64}, kOneAtATime);
+  add(design, {.op = "dense", .model = "full"}, quick ? Cells{16} : Cells{16, 32}, kOneAtATime);
 }
 
 void add_one_at_a_time(Design& design, bool quick) {
@@ -52,8 +42,8 @@ void add_one_at_a_time(Design& design, bool quick) {
   const std::vector<PlaneChoice> choices{
       {.model = "full"}, {.pressure = "hertz"}, {.pressure = "hertz_averaged"}};
   for (const PlaneChoice& choice : choices) {
-    design.add(choice, meshes, kOneAtATime);
-    if (!quick) design.add(choice, {512}, {1e-6});
+    add(design, choice, meshes, kOneAtATime);
+    if (!quick) add(design, choice, {512}, {1e-6});
   }
   add_operators(design, quick);
 }
@@ -61,12 +51,12 @@ void add_one_at_a_time(Design& design, bool quick) {
 void add_methods(Design& design, bool quick) {
   for (const char* method : {"paper", "projected_gradient"}) {
     if (quick) {
-      design.add({.method = method}, {16, 32, 64, 128}, {1e-2, 1e-4, 1e-6});
+      add(design, {.method = method}, {16, 32, 64, 128}, {1e-2, 1e-4, 1e-6});
       continue;
     }
-    design.add({.method = method}, {16, 32, 64, 128}, {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8});
-    design.add({.method = method}, {256}, {1e-3, 1e-4, 1e-5, 1e-6});
-    design.add({.method = method}, {512}, {1e-4});
+    add(design, {.method = method}, {16, 32, 64, 128}, {1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 1e-8});
+    add(design, {.method = method}, {256}, {1e-3, 1e-4, 1e-5, 1e-6});
+    add(design, {.method = method}, {512}, {1e-4});
   }
 }
 
@@ -94,23 +84,23 @@ std::vector<PlaneChoice> plane_design(double moment_ratio, bool quick) {
   Design design;
   const bool all = moment_ratio == kMainRatio && !quick;
   if (quick) {
-    design.add({}, {16, 32, 64, 128, 256}, {1e-2, 1e-4, 1e-6, 1e-8});
+    add(design, {}, {16, 32, 64, 128, 256}, {1e-2, 1e-4, 1e-6, 1e-8});
   } else {
-    design.add({}, {16, 24, 32, 48, 64, 96, 128, 192}, {1e-2, 1e-3, 1e-4, 1e-6, 1e-8});
-    design.add({}, {256}, {1e-3, 1e-4, 1e-6, 1e-8});
-    design.add({}, {512}, {1e-4, 1e-6});
-    design.add({}, {1024}, {1e-6});
+    add(design, {}, {16, 24, 32, 48, 64, 96, 128, 192}, {1e-2, 1e-3, 1e-4, 1e-6, 1e-8});
+    add(design, {}, {256}, {1e-3, 1e-4, 1e-6, 1e-8});
+    add(design, {}, {512}, {1e-4, 1e-6});
+    add(design, {}, {1024}, {1e-6});
   }
-  if (all) design.add({}, {16, 24, 32, 48, 64, 96, 128}, {1e-5, 1e-10});
-  if (all) design.add({}, {512}, {1e-3, 1e-8});
+  if (all) add(design, {}, {16, 24, 32, 48, 64, 96, 128}, {1e-5, 1e-10});
+  if (all) add(design, {}, {512}, {1e-3, 1e-8});
   if (moment_ratio == kMainRatio) {
     add_methods(design, quick);
     add_one_at_a_time(design, quick);
   } else {
-    design.add({.method = "paper"}, {32, 64, 128}, {1e-3, 1e-4, 1e-5, 1e-6});
-    design.add({.method = "projected_gradient"}, {32, 64, 128}, {1e-2, 1e-4, 1e-6});
+    add(design, {.method = "paper"}, {32, 64, 128}, {1e-3, 1e-4, 1e-5, 1e-6});
+    add(design, {.method = "projected_gradient"}, {32, 64, 128}, {1e-2, 1e-4, 1e-6});
   }
-  return design.take();
+  return design;
 }
 
 }  // namespace slipstick::bench

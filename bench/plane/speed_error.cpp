@@ -110,9 +110,7 @@ std::string file_name(double moment_ratio, const PlaneChoice& choice) {
 
 /// The whole exact answer: stick radius and twist from the load, then tractions in the cells of a grid.
 Json measure_exact(const std::filesystem::path& file, double moment_ratio) {
-  PlaneChoice choice;
-  choice.cells = kExactCells;
-  const solver::Scene scene = solver::read_scene(file, all_overrides(moment_ratio, choice));
+  const solver::Scene scene = solver::read_scene(file, all_overrides(moment_ratio, {.cells = kExactCells}));
   const solver::Grid grid = solver::make_model(scene).grid_in_m();
   const Eigen::ArrayXd radius = (solver::cell_x1(grid).square() + solver::cell_x2(grid).square()).sqrt();
   Eigen::ArrayXd traction(radius.size());

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <string>
 #include <utility>
 #include <vector>
 
@@ -77,9 +76,7 @@ Prepared tangential(Index cells) {
 }  // namespace
 
 void add_influence_benchmarks(Suite& suite) {
-  for (const Index cells : {8, 16, 32, 64, 128, 256, 512, 1024}) {
-    suite.add("influence/tangential/cells:" + std::to_string(cells), [cells] { return tangential(cells); });
-  }
+  suite.add_sizes("influence/tangential", {8, 16, 32, 64, 128, 256, 512, 1024}, tangential);
 }
 
 }  // namespace slipstick::bench

@@ -1,7 +1,6 @@
 // The pressure of the paper's sphere, beside its errors against Hertz's.
 
 #include <memory>
-#include <string>
 
 #include "bench/suite/paper_scene.hpp"
 #include "bench/suite/suite.hpp"
@@ -45,9 +44,7 @@ Prepared solve(Index cells) {
 }  // namespace
 
 void add_normal_benchmarks(Suite& suite) {
-  for (const Index cells : {32, 64, 128, 256, 512, 1024}) {
-    suite.add("normal/solve/cells:" + std::to_string(cells), [cells] { return solve(cells); });
-  }
+  suite.add_sizes("normal/solve", {32, 64, 128, 256, 512, 1024}, solve);
 }
 
 }  // namespace slipstick::bench

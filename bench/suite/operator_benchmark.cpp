@@ -188,24 +188,6 @@ std::vector<Index> fine_sizes(Index largest) {
   return sizes;
 }
 
-std::string name(const std::string& family, Index cells) {
-  return family + "/cells:" + std::to_string(cells);
-}
-
-void add_applications(Suite& suite, const std::string& variant, const Form& form,
-                      const std::vector<Index>& sizes) {
-  for (const Index cells : sizes) {
-    suite.add(name("application/" + variant, cells), [=] { return application(form, cells); });
-  }
-}
-
-void add_set_ups(Suite& suite, const std::string& variant, const Form& form,
-                 const std::vector<Index>& sizes) {
-  for (const Index cells : sizes) {
-    suite.add(name("setup/" + variant, cells), [=] { return set_up(form, cells); });
-  }
-}
-
 }  // namespace
 
 void add_operator_benchmarks(Suite& suite) {
@@ -214,24 +196,31 @@ void add_operator_benchmarks(Suite& suite) {
   const std::vector<Index> dense = fine_sizes(64);    // half a gigabyte
   const OperatorOptions two_threads{.threads = 2};
   const Form quarter{.quarter = true};
+  const auto add_applications = [&](const std::string& variant, const Form& form,
+                                    const std::vector<Index>& sizes) {
+    suite.add_sizes("application/" + variant, sizes,
+                    [form](Index cells) { return application(form, cells); });
+  };
+  const auto add_set_ups = [&](const std::string& variant, const Form& form,
+                               const std::vector<Index>& sizes) {
+    suite.add_sizes("setup/" + variant, sizes, [form](Index cells) { return set_up(form, cells); });
+  };
 
-  add_applications(suite, "dense", {.kind = OperatorKind::dense}, dense);
-  add_applications(suite, "direct", {.kind = OperatorKind::direct}, direct);
-  add_applications(suite, "direct_2_threads", {.kind = OperatorKind::direct, .options = two_threads},
+  add_applications("dense", {.kind = OperatorKind::dense}, dense);
+  add_applications("direct", {.kind = OperatorKind::direct}, direct);
+  add_applications("direct_2_threads", {.kind = OperatorKind::direct, .options = two_threads},
                    doubling(4, 128));
-  add_applications(suite, "dcfft", {}, all);
-  add_applications(suite, "dcfft_2_threads", {.options = two_threads}, doubling(4, 1024));
-  add_applications(suite, "dcfft_quarter", quarter, doubling(16, 1024));
-  add_applications(suite, "dcfft_quarter_with_diagonal", {.options = {.diagonal = true}, .quarter = true},
+  add_applications("dcfft", {}, all);
+  add_applications("dcfft_2_threads", {.options = two_threads}, doubling(4, 1024));
+  add_applications("dcfft_quarter", quarter, doubling(16, 1024));
+  add_applications("dcfft_quarter_with_diagonal", {.options = {.diagonal = true}, .quarter = true},
                    doubling(16, 1024));
 
-  add_set_ups(suite, "dense", {.kind = OperatorKind::dense}, dense);
-  add_set_ups(suite, "direct", {.kind = OperatorKind::direct}, direct);
-  add_set_ups(suite, "dcfft", {}, all);
-  add_set_ups(suite, "dcfft_quarter", quarter, doubling(16, 1024));
-  for (const Index cells : all) {
-    suite.add(name("four_bare_transforms", cells), [cells] { return bare_transforms(cells); });
-  }
+  add_set_ups("dense", {.kind = OperatorKind::dense}, dense);
+  add_set_ups("direct", {.kind = OperatorKind::direct}, direct);
+  add_set_ups("dcfft", {}, all);
+  add_set_ups("dcfft_quarter", quarter, doubling(16, 1024));
+  suite.add_sizes("four_bare_transforms", all, bare_transforms);
 }
 
 }  // namespace slipstick::bench

@@ -6,6 +6,9 @@
 #include <functional>
 #include <map>
 #include <string>
+#include <vector>
+
+#include "solver/grid/grid.hpp"
 
 namespace slipstick::bench {
 
@@ -37,6 +40,9 @@ class Suite {
 
   /// An exception in `prepare` is a reason not to time.
   benchmark::internal::Benchmark* add(const std::string& name, Prepare prepare);
+  /// A benchmark for each number of cells along a side.
+  void add_sizes(const std::string& family, const std::vector<solver::Index>& sizes,
+                 const std::function<Prepared(solver::Index)>& prepare);
 
  private:
   struct Entry {

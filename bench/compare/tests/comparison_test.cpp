@@ -280,9 +280,9 @@ TEST(Obstacles, OneRunAgainstItself) {
 
 Comparison of_finding(Finding finding) {
   Comparison comparison;
-  comparison.benchmarks.emplace_back();
-  comparison.benchmarks.front().name = "it";
-  comparison.benchmarks.front().finding = finding;
+  ComparedBenchmark& benchmark = comparison.benchmarks.emplace_back();
+  benchmark.name = "it";
+  benchmark.finding = finding;
   return comparison;
 }
 

@@ -51,8 +51,7 @@ TEST(PlaneDesign, TriesEachChoiceSomewhere) {
 
 /// The error of a point is the root mean square of what single solves give.
 TEST(PlanePoint, HasTheErrorsOfItsGrids) {
-  PlaneChoice choice;
-  choice.cells = 24;
+  const PlaneChoice choice{.cells = 24};
   const Json point = bench::measure_point(kPaper, 0.9, choice);
   ASSERT_EQ(point["errors"]["twist"].size(), 4U);
   std::vector<std::string> overrides = bench::overrides(choice);
@@ -75,8 +74,7 @@ TEST(PlanePoint, IsNotTimedWhereItDoesNotConverge) {
   const convergence::TemporaryFolder folder;
   const fs::path scene = folder / "slow.toml";
   std::ofstream(scene) << convergence::read_text(kPaper) << "max_iterations = 1\n";
-  PlaneChoice choice;
-  choice.cells = 24;
+  const PlaneChoice choice{.cells = 24};
   const Json point = bench::measure_point(scene, 0.9, choice);
   EXPECT_TRUE(point["seconds"].is_null());
   EXPECT_FALSE(point["not_timed"].get<std::string>().empty());
@@ -105,8 +103,7 @@ TEST(InvalidReason, IsGivenForErrorsThatMeshAndToleranceDoNotExplain) {
 TEST(PlaneScene, GoesOnFromKeptPoints) {
   const convergence::TemporaryFolder folder;
   const bench::PlaneOptions options{.scene = kPaper, .output = folder / "kept"};
-  PlaneChoice choice;
-  choice.cells = 16;
+  const PlaneChoice choice{.cells = 16};
   const Json first = bench::measure_scene(options, 0.5, {choice});
   PlaneChoice next = choice;
   next.tolerance = 1e-4;
