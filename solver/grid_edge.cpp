@@ -3,9 +3,7 @@
 #include <fmt/core.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <optional>
 #include <utility>
 
 #include "solver/contact/full_coupling.hpp"
@@ -99,12 +97,11 @@ ArrayXd continued_gap(const Scene& scene, const Model& model, const Grid& larger
 namespace {
 
 /// Displacement that opens the gap on a larger grid, by the pressure and, unless it is empty, a traction.
-ArrayXd opening(const Model& model, const Scene& scene, const Grid& larger, const ArrayXd& pressure,
-                const ArrayXd& traction) {
+ArrayXd opening(const Model& model, const Grid& larger, const ArrayXd& pressure, const ArrayXd& traction) {
   const Elasticity elastic{.law = model.law, .threads = model.threads};
   const auto there = [&](const ArrayXd& field) { return continued(model.grid, larger, field); };
   const bool pressed_only = traction.size() == 0;
-  const Reduction part = pressed_only && scene.model != ModelChoice::full
+  const Reduction part = pressed_only && model.pressure_part.quadrant()
                              ? Reduction(larger, there(pressure), ArrayXd::Ones(larger.cells()))
                              : Reduction(larger);
   const auto op = elastic.make(part.grid(), normal_kernel());
@@ -125,7 +122,7 @@ bool goes_on_beyond(const Scene& scene, const Model& model, const NormalSolution
   if (!at_edge && scene.surfaces.size() == 1 && !is_measured(scene.surfaces.front())) return false;
   const Grid larger = surroundings(scene, model, normal.approach);
   if (larger.cells() == model.grid.cells()) return false;
-  const ArrayXd u = opening(model, scene, larger, normal.pressure, traction);
+  const ArrayXd u = opening(model, larger, normal.pressure, traction);
   ArrayXd gap = continued_gap(scene, model, larger);
   gap += u - normal.approach;
   within(model.grid, larger, gap.data()) = 0.0;

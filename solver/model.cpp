@@ -1,12 +1,7 @@
 #include "solver/model.hpp"
 
-#include <fmt/core.h>
-
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <filesystem>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -33,6 +28,9 @@ constexpr double kFieldsHeld = 3.2;
 constexpr double kFieldsOfPart = 2.0;
 /// Doubles a cell of the whole grid before and after the solve, when operators and workspaces are gone.
 constexpr double kFieldsAround = 11.0;
+constexpr double kFieldsAroundPressure = 9.3;  ///< alone, on the whole grid
+/// Doubles a cell of the whole grid that a pressure's solve holds beside operators and workspaces.
+constexpr double kFieldsOfPressure = 1.4;
 /// Doubles a cell of the part that the other methods than Coulomb's hold.
 constexpr double kFieldsOfOthers = 21.0;
 /// Doubles a cell of the whole grid of the step before.
@@ -45,6 +43,10 @@ constexpr double kFieldsBeforeTurns = 21.0;
 double program_bytes(const Grid& grid) { return (grid.ranks.several() ? 35.0 : 25.0) * 0x1p20; }
 double field_bytes(double fields, Index cells) {
   return fields * sizeof(double) * static_cast<double>(cells);
+}
+double bytes_around(const Scene& scene, const Grid& grid) {
+  const bool pressure = scene.friction.is_frictionless() && scene.model == ModelChoice::full;
+  return field_bytes(pressure ? kFieldsAroundPressure : kFieldsAround, grid.cells());
 }
 /// Cells left free on each side of the expected contact where the scene does not give an extent.
 constexpr double kExtentMarginCells = 2.0;
@@ -274,8 +276,7 @@ Memory predicted_memory(const Scene& scene, const Model& model, const LookedAt& 
   const bool follows = scene.steps.size() > 1 || scene.cycles > 1;
   const double before = model.shear_coupling ? kFieldsBeforeTurns : kFieldsBefore;
   const double turns = model.shear_coupling ? kFieldsOfTurns : 0.0;
-  const double fields = field_bytes(kFieldsHeld + (follows ? before : 0.0) + turns, model.grid.cells());
-  const double around = field_bytes(kFieldsAround, model.grid.cells());
+  const double kept = field_bytes((follows ? before : 0.0) + turns, model.grid.cells());
   const Grid& part = model.pressure_part.grid();
   const Elasticity on_part = elasticity(scene, model, model.pressure_part);
   const double normal = scene.pressure == PressureModel::solved
@@ -293,10 +294,13 @@ Memory predicted_memory(const Scene& scene, const Model& model, const LookedAt& 
                             : scene.friction.is_frictionless()
                                 ? 0.0  // nothing is solved
                                 : elastic.newton_bytes(grid, tangential_kernel(), parts.tractions);
-  const double solver = std::max({normal, tangential, coupling});
   const double of_part = newton ? field_bytes(kFieldsOfPart, own_rows(grid).count() * grid.n2)
                                 : field_bytes(kFieldsOfOthers, grid.cells());
-  return {solver, program_bytes(grid) + std::max(fields + of_part, around - solver)};
+  const double pressed = normal + kept + field_bytes(kFieldsOfPressure, model.grid.cells());
+  const double held =
+      std::max(tangential, coupling) + kept + of_part + field_bytes(kFieldsHeld, model.grid.cells());
+  const double solver = std::max({normal, tangential, coupling});
+  return {solver, program_bytes(grid) + std::max({pressed, held, bytes_around(scene, model.grid)}) - solver};
 }
 
 void require_memory(const Scene& scene, const Model& model, const LookedAt& parts) {
@@ -356,7 +360,7 @@ Model build_model(const Scene& scene, const Ranks& ranks) {
   const bool full = scene.model == ModelChoice::full;
   model.shear_coupling = scene.coupling == Coupling::full;
   model.forces = std::any_of(scene.steps.begin(), scene.steps.end(), brings_translation);
-  require_memory(scene, grid, field_bytes(kFieldsAround, grid.cells()));
+  require_memory(scene, grid, bytes_around(scene, grid));
   model.length_unit = grid.h1;
   model.stress_unit = pair.shear_modulus();
   const double compliance_unit = pair.shear_compliance;

@@ -3,7 +3,6 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <functional>
 #include <numbers>
 #include <stdexcept>
 

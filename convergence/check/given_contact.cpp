@@ -1,7 +1,6 @@
 #include "convergence/check/given_contact.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 #include <utility>
 

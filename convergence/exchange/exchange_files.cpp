@@ -4,10 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <nlohmann/json.hpp>
-#include <string>
-#include <vector>
 
 #include "convergence/results/json_text.hpp"
 #include "convergence/results/output.hpp"

@@ -4,8 +4,6 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <ostream>
-#include <string>
-#include <vector>
 
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/programs/output_options.hpp"

@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 
 #include "analytic/approximations.hpp"
 #include "analytic/torsion.hpp"

@@ -5,7 +5,6 @@
 #include <cmath>
 #include <cstdint>
 #include <optional>
-#include <vector>
 
 namespace slipstick::convergence {
 namespace {

@@ -4,7 +4,6 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "convergence/runs/run_spec.hpp"
 #include "solver/elasticity/law/law_kind.hpp"

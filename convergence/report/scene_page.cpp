@@ -4,9 +4,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <memory>
-#include <nlohmann/json.hpp>
-#include <utility>
 
 #include "convergence/check/check.hpp"
 #include "convergence/hard/rounding_digits.hpp"

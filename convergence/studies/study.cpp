@@ -1,8 +1,6 @@
 #include "convergence/studies/study.hpp"
 
-#include <nlohmann/json.hpp>
 #include <numeric>
-#include <utility>
 
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/failed_runs.hpp"

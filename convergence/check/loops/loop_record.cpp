@@ -5,7 +5,6 @@
 #include <algorithm>
 #include <cctype>
 #include <nlohmann/json.hpp>
-#include <string>
 
 #include "convergence/check/loops/loop_path.hpp"
 #include "convergence/results/json_text.hpp"

@@ -1,9 +1,7 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
-#include <filesystem>
 #include <limits>
-#include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
 

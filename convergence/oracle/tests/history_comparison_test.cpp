@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <stdexcept>
-#include <utility>
 
 #include "analytic/tangential_history.hpp"
 #include "convergence/oracle/errors.hpp"

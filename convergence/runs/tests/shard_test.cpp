@@ -4,8 +4,6 @@
 
 #include <algorithm>
 #include <numeric>
-#include <string>
-#include <vector>
 
 #include "solver/input/input_error.hpp"
 

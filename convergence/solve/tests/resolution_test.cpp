@@ -5,10 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <nlohmann/json.hpp>
 #include <random>
-#include <string>
-#include <vector>
 
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/results/result.hpp"

@@ -5,7 +5,6 @@
 #include <sys/wait.h>
 
 #include <csignal>
-#include <string>
 
 #include "convergence/programs/tests/processes.hpp"
 

@@ -1,7 +1,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdlib>
 #include <limits>
@@ -184,7 +183,7 @@ TEST_P(Operator, GivesTheSameBitsAgainAndWithMoreThreads) {
     EXPECT_TRUE((applied(*one, traction) == first).all());
     EXPECT_EQ(applied(*one, ArrayXd(0.0 * traction)).abs().maxCoeff(), 0.0);
     EXPECT_EQ(one->applications(), 4);
-    std::ranges::fill(one->idle_memory(), std::numeric_limits<double>::quiet_NaN());  // others have written there
+    std::ranges::fill(one->idle_memory(), std::numeric_limits<double>::quiet_NaN());
     EXPECT_TRUE((applied(*one, traction) == first).all());
     if (one->inputs() == one->outputs()) {
       ArrayXd in_place = traction;
