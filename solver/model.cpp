@@ -27,7 +27,7 @@ constexpr double kFieldsHeld = 3.2;
 /// Doubles a cell of the part that is solved; each of several processes has its own rows of it.
 constexpr double kFieldsOfPart = 2.0;
 /// Doubles a cell of the whole grid before and after the solve, when operators and workspaces are gone.
-constexpr double kFieldsAround = 11.0;
+constexpr double kFieldsAround = 12.0;
 constexpr double kFieldsAroundPressure = 9.3;  ///< alone, on the whole grid
 /// Doubles a cell of the whole grid that a pressure's solve holds beside operators and workspaces.
 constexpr double kFieldsOfPressure = 1.4;

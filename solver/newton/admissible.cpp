@@ -269,31 +269,26 @@ void FrictionDiscs::add_jump(const ArrayXd& z, const ArrayXd& q, ArrayXd& step) 
   });
 }
 
-template LoadsAlong<1> PositivePressures::loads_along<1, MotionField>(
-    const ArrayXd&, const std::array<const MotionField*, 1>&, const Eigen::Vector<double, 1>&,
-    const std::array<const MotionField*, 1>&) const;
-template LoadsAlong<1> PositivePressures::loads_along<1, ArrayXf>(
-    const ArrayXd&, const std::array<const ArrayXf*, 1>&, const Eigen::Vector<double, 1>&,
-    const std::array<const MotionField*, 1>&) const;
-template LoadsAlong<1> FrictionDiscs::loads_along<1, MotionField>(
-    const ArrayXd&, const std::array<const MotionField*, 1>&, const Eigen::Vector<double, 1>&,
-    const std::array<const MotionField*, 1>&) const;
-template LoadsAlong<1> FrictionDiscs::loads_along<1, ArrayXf>(const ArrayXd&,
-                                                              const std::array<const ArrayXf*, 1>&,
-                                                              const Eigen::Vector<double, 1>&,
-                                                              const std::array<const MotionField*, 1>&) const;
-template LoadsAlong<2> FrictionDiscs::loads_along<2, MotionField>(
-    const ArrayXd&, const std::array<const MotionField*, 2>&, const Eigen::Vector<double, 2>&,
-    const std::array<const MotionField*, 2>&) const;
-template LoadsAlong<2> FrictionDiscs::loads_along<2, ArrayXf>(const ArrayXd&,
-                                                              const std::array<const ArrayXf*, 2>&,
-                                                              const Eigen::Vector<double, 2>&,
-                                                              const std::array<const MotionField*, 2>&) const;
-template LoadsAlong<3> FrictionDiscs::loads_along<3, MotionField>(
-    const ArrayXd&, const std::array<const MotionField*, 3>&, const Eigen::Vector<double, 3>&,
-    const std::array<const MotionField*, 3>&) const;
-template LoadsAlong<3> FrictionDiscs::loads_along<3, ArrayXf>(const ArrayXd&,
-                                                              const std::array<const ArrayXf*, 3>&,
-                                                              const Eigen::Vector<double, 3>&,
-                                                              const std::array<const MotionField*, 3>&) const;
+template <int M>
+using Motions = const std::array<const MotionField*, M>&;
+template <int M>
+using Tangents = const std::array<const ArrayXf*, M>&;
+template <int M>
+using Parts = const Eigen::Vector<double, M>&;
+template LoadsAlong<1> PositivePressures::loads_along<1, MotionField>(const ArrayXd&, Motions<1>, Parts<1>,
+                                                                      Motions<1>) const;
+template LoadsAlong<1> PositivePressures::loads_along<1, ArrayXf>(const ArrayXd&, Tangents<1>, Parts<1>,
+                                                                  Motions<1>) const;
+template LoadsAlong<1> FrictionDiscs::loads_along<1, MotionField>(const ArrayXd&, Motions<1>, Parts<1>,
+                                                                  Motions<1>) const;
+template LoadsAlong<1> FrictionDiscs::loads_along<1, ArrayXf>(const ArrayXd&, Tangents<1>, Parts<1>,
+                                                              Motions<1>) const;
+template LoadsAlong<2> FrictionDiscs::loads_along<2, MotionField>(const ArrayXd&, Motions<2>, Parts<2>,
+                                                                  Motions<2>) const;
+template LoadsAlong<2> FrictionDiscs::loads_along<2, ArrayXf>(const ArrayXd&, Tangents<2>, Parts<2>,
+                                                              Motions<2>) const;
+template LoadsAlong<3> FrictionDiscs::loads_along<3, MotionField>(const ArrayXd&, Motions<3>, Parts<3>,
+                                                                  Motions<3>) const;
+template LoadsAlong<3> FrictionDiscs::loads_along<3, ArrayXf>(const ArrayXd&, Tangents<3>, Parts<3>,
+                                                              Motions<3>) const;
 }  // namespace slipstick::solver

@@ -21,13 +21,13 @@ CASES = [("paper", 288), ("paper", 288, FULL), ("paper", 288, "contact.pressure=
          ("paper", 160, FULL, "solver.method=paper"), ("paper", 288, "solver.method=projected_gradient"),
          ("paper", 160, FULL, "solver.method=projected_gradient"), ("paper", 288, FULL, "solver.threads=4"),
          ("paper", 288, FULL, "contact.friction=0", "load.moment_ratio=0"),
+         ("rough_sphere", 512, "contact.friction=0", "load.moment_ratio=0"),
          ("paper", 24, FULL, "solver.operator=dense"), ("paper", 36, FULL, "solver.operator=dense"),
          ("paper", 48, FULL, "solver.operator=direct"), ("ellipse", 288), ("turned_ellipse", 288),
          ("torsion_and_force", 160), ("torsion_and_force", 288), ("fretting_torsion", 288), ("dissimilar", 288),
          ("dissimilar", 128, "contact.coupling=full"), ("off_centre", 200), ("patches", 160)]
 # Contacts that fill a part of their grid that is not known before they are solved.
-SPARSE = [("rough_sphere", 512, FULL), ("rough_sphere", 512, FULL, "contact.friction=0", "load.moment_ratio=0"),
-          ("rough_sphere", 512, "contact.friction=0", "load.moment_ratio=0")]
+SPARSE = [("rough_sphere", 512, FULL), ("rough_sphere", 512, FULL, "contact.friction=0", "load.moment_ratio=0")]
 
 
 def words(scene, cells, *settings):
