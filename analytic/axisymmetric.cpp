@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numbers>
 
 #include "analytic/elliptic.hpp"
 #include "analytic/elliptic_series.hpp"

@@ -1,5 +1,9 @@
 #include "analytic/cattaneo_mindlin.hpp"
 
+#include <fmt/core.h>
+
+#include <cmath>
+
 #include "analytic/gsl.hpp"
 #include "analytic/out_of_range.hpp"
 

@@ -4,6 +4,7 @@
 #include <gsl/gsl_sf_ellint.h>
 
 #include <cmath>
+#include <numbers>
 #include <stdexcept>
 
 #include "analytic/elliptic_series.hpp"

@@ -1,8 +1,10 @@
 #include "analytic/indentation.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <initializer_list>
 #include <numbers>
+#include <string_view>
 #include <utility>
 
 #include "analytic/elliptic.hpp"

@@ -1,6 +1,9 @@
 #include "analytic/shear_bounds.hpp"
 
+#include <fmt/core.h>
+
 #include <algorithm>
+#include <cmath>
 #include <numbers>
 #include <utility>
 

@@ -1,8 +1,13 @@
 #include "analytic/spence.hpp"
 
+#include <fmt/core.h>
+
 #include <Eigen/Dense>
 #include <algorithm>
+#include <cmath>
 #include <numbers>
+#include <stdexcept>
+#include <vector>
 
 #include "analytic/elliptic.hpp"
 #include "analytic/gsl.hpp"

@@ -1,5 +1,8 @@
 #include "solver/model_solution.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
 #include <numbers>
 #include <utility>
 

@@ -1,5 +1,9 @@
 #include "solver/resolution.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "solver/grid/sweep.hpp"

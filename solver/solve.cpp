@@ -1,8 +1,10 @@
 #include "solver/solve.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <utility>
 
 #include "solver/contact/full_coupling.hpp"

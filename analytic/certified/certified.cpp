@@ -3,6 +3,7 @@
 #include <fmt/core.h>
 
 #include <map>
+#include <optional>
 #include <stdexcept>
 
 #include "analytic/certified/ball_contact.hpp"

@@ -1,5 +1,7 @@
 #include <fmt/core.h>
 
+#include <stdexcept>
+
 #include "analytic/certified/certified.hpp"
 #include "cmake/loaded_library.hpp"
 

@@ -3,8 +3,10 @@
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <map>
 #include <numbers>
 #include <set>
+#include <string>
 
 #include "analytic/references/replay.hpp"
 

@@ -1,5 +1,7 @@
 #include "analytic/approximations.hpp"
 
+#include <gtest/gtest.h>
+
 #include <stdexcept>
 
 #include "analytic/paper_equations.hpp"

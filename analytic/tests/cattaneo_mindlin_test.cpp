@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <vector>
 
 #include "analytic/elliptic.hpp"
 #include "analytic/tests/values.hpp"

@@ -2,6 +2,9 @@
 
 #include <gmock/gmock.h>
 
+#include <stdexcept>
+#include <vector>
+
 #include "analytic/references/references.hpp"
 #include "analytic/tests/values.hpp"
 #include "analytic/torsion.hpp"

@@ -4,6 +4,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <stdexcept>
+#include <string>
 
 #include "bench/commands.hpp"
 #include "bench/compare/comparison.hpp"

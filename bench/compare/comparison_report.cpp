@@ -6,6 +6,9 @@
 #include <array>
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string_view>
+#include <utility>
+#include <vector>
 
 #include "convergence/results/markup.hpp"
 #include "convergence/results/result_parts.hpp"

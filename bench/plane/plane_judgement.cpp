@@ -2,7 +2,9 @@
 
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <set>
+#include <vector>
 
 #include "bench/plane/envelope.hpp"
 #include "bench/plane/speed_error.hpp"

@@ -4,6 +4,8 @@
 
 #include <chrono>
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <utility>
 
 #include "bench/timing/checked_solve.hpp"

@@ -6,6 +6,7 @@
 
 #include <array>
 #include <cmath>
+#include <string>
 
 #include "analytic/references/replay.hpp"
 #include "bench/suite/suite.hpp"

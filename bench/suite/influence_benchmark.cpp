@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 #include <utility>
+#include <vector>
 
 #include "analytic/gsl.hpp"
 #include "bench/suite/suite.hpp"

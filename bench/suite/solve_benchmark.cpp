@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 #include "bench/suite/paper_scene.hpp"
 #include "bench/suite/suite.hpp"

@@ -7,6 +7,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <string>
+#include <vector>
 
 #include "convergence/check/check.hpp"
 #include "convergence/check/loops/check_loop.hpp"

@@ -1,6 +1,7 @@
 #include "convergence/check/given_contact.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <utility>
 

@@ -1,8 +1,13 @@
 #include "convergence/commands.hpp"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <memory>
+#include <nlohmann/json.hpp>
+#include <optional>
 #include <ostream>
+#include <string>
+#include <vector>
 
 #include "convergence/gates/gate.hpp"
 #include "convergence/programs/output_options.hpp"

@@ -4,6 +4,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <string>
+#include <vector>
 
 #include "convergence/hard/hard_run.hpp"
 #include "convergence/programs/output_options.hpp"

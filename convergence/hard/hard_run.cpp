@@ -3,8 +3,11 @@
 #include <fmt/ranges.h>
 
 #include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
+#include <utility>
 
 #include "convergence/exchange/solver_program.hpp"
 #include "convergence/hard/hard_judgement.hpp"

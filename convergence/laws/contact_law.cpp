@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include "analytic/approximations.hpp"
 #include "analytic/torsion.hpp"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include "analytic/cycle.hpp"
 #include "analytic/torsion.hpp"

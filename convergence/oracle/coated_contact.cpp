@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <optional>
 
 #include "convergence/oracle/exact_shapes.hpp"
 

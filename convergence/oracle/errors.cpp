@@ -1,6 +1,11 @@
 #include "convergence/oracle/errors.hpp"
 
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
 #include <utility>
+#include <vector>
 
 #include "convergence/oracle/sharpened.hpp"
 #include "solver/grid/sweep.hpp"

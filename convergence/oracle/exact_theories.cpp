@@ -7,6 +7,10 @@
 #include <limits>
 #include <numbers>
 #include <numeric>
+#include <optional>
+#include <stdexcept>
+#include <utility>
+#include <vector>
 
 #include "analytic/cattaneo_mindlin.hpp"
 #include "analytic/cycle.hpp"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 
 #include "convergence/programs/temporary_folder.hpp"
 #include "convergence/results/json_text.hpp"

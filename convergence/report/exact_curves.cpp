@@ -2,6 +2,7 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <vector>
 
 #include "analytic/approximations.hpp"
 #include "analytic/cycle.hpp"

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <nlohmann/json.hpp>
 
 #include "convergence/exchange/solver_program.hpp"
 #include "convergence/orders/growth.hpp"

@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "convergence/runs/run_spec.hpp"
 #include "solver/elasticity/law/law_kind.hpp"

@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <charconv>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <utility>
 
 #include "convergence/check/check.hpp"
 #include "convergence/hard/rounding_digits.hpp"

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <nlohmann/json.hpp>
+#include <vector>
 
 #include "convergence/orders/expected_order.hpp"
 #include "convergence/results/quantity.hpp"

@@ -4,6 +4,8 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <string>
+#include <vector>
 
 #include "convergence/runs/run_options.hpp"
 #include "convergence/solve/measured_accuracy.hpp"

@@ -1,6 +1,8 @@
 #include "convergence/studies/study.hpp"
 
+#include <nlohmann/json.hpp>
 #include <numeric>
+#include <utility>
 
 #include "convergence/results/provenance.hpp"
 #include "convergence/runs/failed_runs.hpp"

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
 
 #include "convergence/orders/expected_order.hpp"
 #include "convergence/runs/failed_runs.hpp"

@@ -3,10 +3,13 @@
 #include <fmt/core.h>
 
 #include <CLI/CLI.hpp>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <regex>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "analytic/named_profile.hpp"
 #include "convergence/laws/contact_law.hpp"

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "solver/grid/motion_field.hpp"

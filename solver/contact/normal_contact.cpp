@@ -6,6 +6,7 @@
 #include <cmath>
 #include <memory>
 #include <stdexcept>
+#include <utility>
 
 #include "solver/grid/own_rows.hpp"
 #include "solver/newton/nested_iteration.hpp"

@@ -2,6 +2,8 @@
 
 #include <fmt/core.h>
 
+#include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "solver/grid/sweep.hpp"

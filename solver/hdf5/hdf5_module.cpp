@@ -6,6 +6,7 @@
 #include <array>
 #include <csignal>
 #include <set>
+#include <stdexcept>
 #include <system_error>
 
 #include "solver/hdf5/hdf5_library.hpp"

@@ -10,6 +10,7 @@
 #include <limits>
 #include <optional>
 #include <ranges>
+#include <string_view>
 #include <tuple>
 #include <utility>
 

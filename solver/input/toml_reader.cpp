@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <map>
 #include <sstream>
+#include <stdexcept>
 
 #include "solver/input/input_error.hpp"
 #include "solver/input/input_file.hpp"

@@ -1,5 +1,9 @@
 #include "solver/newton/extension.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
 #include "solver/grid/threads.hpp"
 #include "solver/newton/conjugate_gradients.hpp"
 #include "solver/newton/tangent_space.hpp"

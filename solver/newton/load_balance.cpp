@@ -1,6 +1,8 @@
 #include "solver/newton/load_balance.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <limits>
 
 #include "solver/newton/admissible.hpp"
 

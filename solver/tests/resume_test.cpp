@@ -1,6 +1,7 @@
 
 #include <bit>
 #include <cstdint>
+#include <memory>
 #include <stdexcept>
 
 #include "solver/history_state.hpp"

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <stdexcept>
+#include <vector>
 
 #include "analytic/cycle.hpp"
 #include "analytic/elliptic.hpp"

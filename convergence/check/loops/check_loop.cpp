@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <numbers>
+#include <vector>
 
 #include "convergence/check/loops/loop_contact.hpp"
 #include "convergence/check/loops/loop_judgement.hpp"

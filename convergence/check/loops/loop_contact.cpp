@@ -2,6 +2,8 @@
 
 #include <cmath>
 #include <limits>
+#include <memory>
+#include <stdexcept>
 
 #include "analytic/cattaneo_mindlin.hpp"
 #include "analytic/named_profile.hpp"

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cctype>
 #include <nlohmann/json.hpp>
+#include <string>
 
 #include "convergence/check/loops/loop_path.hpp"
 #include "convergence/results/json_text.hpp"

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <stdexcept>
+#include <utility>
 
 #include "analytic/tangential_history.hpp"
 #include "convergence/oracle/errors.hpp"

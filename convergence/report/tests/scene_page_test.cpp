@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <numbers>
 #include <set>
+#include <vector>
 
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/runs/run_spec.hpp"

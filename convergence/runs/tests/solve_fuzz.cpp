@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <fstream>
 
 #include "convergence/results/exact_result.hpp"
 #include "convergence/results/result.hpp"

@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 #include <random>
+#include <string>
+#include <vector>
 
 #include "convergence/oracle/oracle.hpp"
 #include "convergence/results/result.hpp"

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <nlohmann/json.hpp>
 
 #include "convergence/solve/accurate_solve.hpp"
 #include "convergence/tests/scratch_folder.hpp"

@@ -6,6 +6,9 @@
 #include <gmock/gmock.h>
 
 #include <cmath>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "convergence/runs/failed_runs.hpp"
 #include "convergence/studies/budget.hpp"

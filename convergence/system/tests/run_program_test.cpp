@@ -5,6 +5,7 @@
 #include <sys/wait.h>
 
 #include <csignal>
+#include <string>
 
 #include "convergence/programs/tests/processes.hpp"
 

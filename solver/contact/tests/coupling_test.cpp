@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <vector>
 
 #include "solver/contact/coulomb_method.hpp"
 #include "solver/contact/full_coupling.hpp"

@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
+
 #include "solver/grid/grid.hpp"
 
 namespace slipstick::solver {

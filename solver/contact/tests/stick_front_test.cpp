@@ -6,6 +6,7 @@
 #include <cmath>
 #include <numbers>
 #include <ostream>
+#include <string>
 #include <utility>
 #include <vector>
 

@@ -4,6 +4,7 @@
 
 #include <ostream>
 #include <string>
+#include <vector>
 
 #include "solver/elasticity/direct.hpp"
 #include "solver/grid/mirror.hpp"

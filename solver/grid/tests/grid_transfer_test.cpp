@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <vector>
 
 #include "solver/grid/mirror.hpp"
 #include "solver/tests/fields.hpp"

@@ -5,6 +5,7 @@
 #include <hdf5_hl.h>
 
 #include <cstdlib>
+#include <filesystem>
 #include <iostream>
 #include <random>
 

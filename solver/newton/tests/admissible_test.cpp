@@ -2,7 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <random>
 
 namespace slipstick::solver {

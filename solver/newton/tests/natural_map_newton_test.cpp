@@ -2,6 +2,8 @@
 
 #include <gmock/gmock.h>
 
+#include <limits>
+
 #include "solver/allocations/allocations.hpp"
 #include "solver/elasticity/elasticity.hpp"
 #include "solver/tests/torsion_bench.hpp"

@@ -5,6 +5,8 @@
 #include <Eigen/Dense>
 #include <array>
 #include <cmath>
+#include <memory>
+#include <vector>
 
 #include "solver/elasticity/direct.hpp"
 #include "solver/tests/fields.hpp"
