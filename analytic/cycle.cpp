@@ -12,12 +12,6 @@ namespace slipstick::analytic {
 
 namespace {
 
-void require_partial_slip(double moment_ratio) {
-  if (!(std::abs(moment_ratio) < 1))
-    throw std::domain_error(fmt::format("M/M_lim = {}{}; allowed: -1 < M/M_lim < 1", moment_ratio,
-                                        std::isnan(moment_ratio) ? "" : " is gross slip"));
-}
-
 /// H(c) - H(s), c < s.
 double twist_gain(const Profile& profile, StickRadius c, StickRadius s) {
   // Up to this much above H(1) the difference would lose digits to it; the slope's integral does not.
@@ -60,7 +54,9 @@ double slip_twist(const TorsionState& state, const Profile& profile) {
 }  // namespace
 
 void LoadingHistory::load_to(double moment_ratio) {
-  require_partial_slip(moment_ratio);
+  if (!(std::abs(moment_ratio) < 1))
+    throw std::domain_error(fmt::format("M/M_lim = {}{}; allowed: -1 < M/M_lim < 1", moment_ratio,
+                                        std::isnan(moment_ratio) ? "" : " is gross slip"));
   if (turns_towards(moment_ratio)) turning_points_.push_back(moment_ratio_);
   while (closes_loop_at(moment_ratio)) close_loop();
   moment_ratio_ = moment_ratio;

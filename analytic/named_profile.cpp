@@ -53,20 +53,18 @@ PressedContact press_closed_form(const TypedName&, const NormalLoad& load) {
   return {lasting(profile()), indent(load.load, load.shape[0], load.effective_modulus)};
 }
 
-NamedProfile power(const TypedName& name) { return {.profile = power_profile(number(name))}; }
+template <std::unique_ptr<const Profile> (*profile)(double)>
+NamedProfile numbered(const TypedName& name) {
+  return {.profile = profile(number(name))};
+}
 PressedContact press_power(const TypedName& name, const NormalLoad& load) {
-  return {power(name), indent_power(load.load, number(name), load.shape[0], load.effective_modulus)};
+  return {numbered<power_profile>(name),
+          indent_power(load.load, number(name), load.shape[0], load.effective_modulus)};
 }
 
-NamedProfile rounded_punch(const TypedName& name) { return {.profile = rounded_punch_profile(number(name))}; }
 PressedContact press_rounded_punch(const TypedName&, const NormalLoad& load) {
   const auto pressed = indent_rounded_punch(load.load, load.shape[0], load.shape[1], load.effective_modulus);
   return {{.profile = rounded_punch_profile(pressed.flat_ratio)}, pressed.contact};
-}
-
-NamedProfile capped(const TypedName& name) { return {.profile = capped_hertz_profile(number(name))}; }
-NamedProfile power_of_pressure(const TypedName& name) {
-  return {.profile = power_of_hertz_profile(number(name))};
 }
 
 NamedProfile tabulated(const TypedName& name) {
@@ -93,13 +91,15 @@ constexpr std::array kProfiles{
                "slope", "", press_closed_form<cone_profile, indent_cone>},
     ProfileRow{"flat_punch", "", "", closed_form<flat_punch_profile>,  //
                "radius", "m", press_closed_form<flat_punch_profile, indent_flat_punch>},
-    ProfileRow{"power", "N", "gap ~ r^N", power,  //
+    ProfileRow{"power", "N", "gap ~ r^N", numbered<power_profile>,  //
                "coefficient of r^N", "m^(1-N)", press_power},
-    ProfileRow{"rounded_punch", "B", "flat out to B = b/a", rounded_punch,  //
+    ProfileRow{"rounded_punch", "B", "flat out to B = b/a", numbered<rounded_punch_profile>,  //
                "flat radius, corner radius", "m", press_rounded_punch, true},
     ProfileRow{"constant", "", "", closed_form<constant_bound_profile>, "", "", nullptr},
-    ProfileRow{"capped", "C", "mu p under a sphere, at most C times its peak", capped, "", "", nullptr},
-    ProfileRow{"pressure_power", "N", "k p^N under a sphere", power_of_pressure, "", "", nullptr},
+    ProfileRow{"capped", "C", "mu p under a sphere, at most C times its peak", numbered<capped_hertz_profile>,
+               "", "", nullptr},
+    ProfileRow{"pressure_power", "N", "k p^N under a sphere", numbered<power_of_hertz_profile>, "", "",
+               nullptr},
     ProfileRow{"file", "P.csv", "columns radius, pressure; 16 points or more", tabulated, "", "", nullptr},
 };
 

@@ -140,17 +140,13 @@ class Quadrature {
 };
 
 /// The stick radius as the punches see it, c/x.
-class Front {
- public:
-  /// beyond: the lowest x - c.
-  Front(StickRadius c, double beyond) : c_(c.ratio), beyond_(beyond) {}
-  StickRadius operator()(const Punch& punch) const {
-    return {.ratio = std::min(1.0, c_ / punch.radius), .complement = (punch.beyond + beyond_) / punch.radius};
-  }
+struct Front {
+  double c;
+  double beyond;  ///< the lowest x - c
 
- private:
-  double c_;
-  double beyond_;
+  StickRadius operator()(const Punch& punch) const {
+    return {.ratio = std::min(1.0, c / punch.radius), .complement = (punch.beyond + beyond) / punch.radius};
+  }
 };
 
 class Superposition : public Profile {
@@ -219,7 +215,7 @@ class Superposition : public Profile {
         .low = shape_.flat, .length = 1 - shape_.flat, .beyond_radius = inward - distance, .beyond_flat = 0};
   }
 
-  Front front(StickRadius c) const { return {c, std::max(0.0, -distance_to_flat(c))}; }
+  Front front(StickRadius c) const { return {c.ratio, std::max(0.0, -distance_to_flat(c))}; }
 
   /// integral of f w/sqrt(x^2 - r^2), where f follows another power of x.
   template <class Function>
@@ -262,8 +258,7 @@ class Power final : public Superposition {
       : Superposition({.name = fmt::format("power:{}", n),
                        .reference_pressure = fmt::format("mean pressure times {:g}", (n + 1) / 2),
                        .load = 2 * pi / (n + 1),
-                       .moment_limit = pi / 4 * (n + 1) / (n + 2),
-                       .edge = 0},
+                       .moment_limit = pi / 4 * (n + 1) / (n + 2)},
                       {.flat = 0,
                        .growth = n - 1,
                        .second_moment = 1 / (n + 2),
@@ -309,8 +304,7 @@ class RoundedPunch final : public Superposition {
       : Superposition({.name = fmt::format("rounded_punch:{}", flat),
                        .reference_pressure = "mean pressure",
                        .load = pi,
-                       .moment_limit = pi / 2 * second_moment,
-                       .edge = 0},
+                       .moment_limit = pi / 2 * second_moment},
                       {.flat = flat,
                        .growth = 1,
                        .second_moment = second_moment,

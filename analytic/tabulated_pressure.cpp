@@ -104,8 +104,7 @@ class Tabulated final : public Profile {
       : Profile({.name = std::move(name),
                  .reference_pressure = "mean pressure",
                  .load = 2 * pi * whole_moment(pieces, 1),
-                 .moment_limit = whole_moment(pieces, 2) / whole_moment(pieces, 1),
-                 .edge = 0}),
+                 .moment_limit = whole_moment(pieces, 2) / whole_moment(pieces, 1)}),
         pieces_(std::move(pieces)) {
     double sum = 0;
     for (const Piece& piece : pieces_) {

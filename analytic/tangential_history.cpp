@@ -11,19 +11,11 @@
 
 namespace slipstick::analytic::tangential {
 
-namespace {
-
-void require_contact_without_gross_slip(double normal_load, double force) {
+void TangentialHistory::load_to(double normal_load, double force) {
   require_positive("W/W_0", normal_load);
   if (!(std::abs(force) < normal_load))
     throw std::domain_error(fmt::format("F/(mu W_0) = {}{}; allowed: |F| < mu W, W/W_0 = {}", force,
                                         std::isnan(force) ? "" : " is gross slip", normal_load));
-}
-
-}  // namespace
-
-void TangentialHistory::load_to(double normal_load, double force) {
-  require_contact_without_gross_slip(normal_load, force);
   while (const auto ring = ring_that_ends_before(normal_load, force)) {
     const double share = (ring->front - this->normal_load()) / (normal_load - this->normal_load());
     dissipated_ += energy_lost(*ring, ring->front);

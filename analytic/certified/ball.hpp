@@ -80,16 +80,8 @@ class Ball {
   /// Whether it lies inside the other, both ends at a distance from the other's.
   bool inside(const Ball& other) const { return arb_contains_interior(other.x_, x_) != 0; }
 
-  friend Ball lower_bound(const Ball& a) {
-    Ball result;
-    arb_get_lbound_arf(arb_midref(result.x_), a.x_, Precision::bits());
-    return result;
-  }
-  friend Ball upper_bound(const Ball& a) {
-    Ball result;
-    arb_get_ubound_arf(arb_midref(result.x_), a.x_, Precision::bits());
-    return result;
-  }
+  friend Ball lower_bound(const Ball& a) { return bound(arb_get_lbound_arf, a); }
+  friend Ball upper_bound(const Ball& a) { return bound(arb_get_ubound_arf, a); }
   Ball middle() const { return made_by<Ball>(arb_get_mid_arb, x_); }
   /// [-r, r] with r >= |x| for all x of the ball.
   Ball symmetric() const {
@@ -104,6 +96,11 @@ class Ball {
   template <class Function, class... Balls>
   static Ball apply(Function* f, const Balls&... balls) {
     return made_by<Ball>(f, balls.x_..., Precision::bits());
+  }
+  static Ball bound(void (*f)(arf_t, const arb_t, slong), const Ball& a) {
+    Ball result;
+    f(arb_midref(result.x_), a.x_, Precision::bits());
+    return result;
   }
 
   arb_t x_;

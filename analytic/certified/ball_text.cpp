@@ -57,10 +57,6 @@ Rational power(slong base, slong exponent) {
   return made_by<Rational>(fmpq_pow_si, Rational(base).get(), exponent);
 }
 
-Rational scaled(const std::string& digits, int base, slong radix, slong exponent) {
-  return made_by<Rational>(fmpq_mul_fmpz, power(radix, exponent).get(), Integer(digits, base).get());
-}
-
 Ball ten_to(slong exponent) {
   Ball result = 10;
   arb_pow_ui(result.get(), result.get(), static_cast<ulong>(std::abs(exponent)), Precision::bits());
@@ -122,7 +118,8 @@ Rational read_exactly(const std::string& name, const std::string& text) {
   if (!fine || !in.done() || text.size() > kLongest)
     throw std::domain_error(fmt::format("{} = '{}' is not a number", name, text.substr(0, kLongest)));
   exponent -= static_cast<slong>(fraction.size()) * (hex ? 4 : 1);
-  const Rational result = scaled(whole + fraction, hex ? 16 : 10, hex ? 2 : 10, exponent);
+  const auto result = made_by<Rational>(fmpq_mul_fmpz, power(hex ? 2 : 10, exponent).get(),
+                                        Integer(whole + fraction, hex ? 16 : 10).get());
 
   static const Rational least = power(10, -1000);
   static const Rational most = power(10, 1000);

@@ -15,10 +15,6 @@ namespace slipstick::analytic {
 
 namespace {
 
-bool is_sphere(const ExactContact& contact) {
-  return contact.profile.profile->name() == hertz_profile().name();
-}
-
 /// A number, or null and a reason beside it: where there is none (an equation outside its range) or where it
 /// is infinite.
 template <class Function>
@@ -164,7 +160,7 @@ Json answer_state(const ExactContact& contact, const StateOf& state_of, const st
     answer["unloaded"]["traction"] = at_radii(radii, [&](double r) { return history.traction(r); });
   }
   if (contact.profile.table) put_error_estimate(answer, *contact.profile.table, state_of, radii);
-  if (is_sphere(contact)) {
+  if (profile.name() == hertz_profile().name()) {
     answer["printed"] = printed_json(state, radii);
     answer["approximations"] = approximations_json(state);
   }

@@ -137,19 +137,17 @@ void add_state_options(CLI::App& exact, Options& options) {
   CLI::Option_group* given = exact.add_option_group("state", "exactly one of these");
   for (std::size_t i = 0; i < kGiven.size(); ++i)
     options.given[i] = given->add_option(kGiven[i].option, options.value[i], kGiven[i].help);
-  CLI::Option* history = given
-                             ->add_option("--history", options.history,
-                                          "M/M_lim at each turning point: m1,m2,...; gives the curve")
-                             ->delimiter(',');
+  CLI::Option* history = given->add_option("--history", options.history,
+                                           "M/M_lim at each turning point: m1,m2,...; gives the curve");
+  history->delimiter(',');
   given->require_option(1);
   exact.add_option("--points", options.points, "points of the curve on each branch of the history")
       ->check(CLI::Range(1, 1000000))
       ->needs(history)
       ->capture_default_str();
-  CLI::Option* unload = exact
-                            .add_option("--unload-to", options.unload_to,
-                                        "M/M_lim to unload to from the state, normal load constant")
-                            ->excludes(history);
+  CLI::Option* unload = exact.add_option("--unload-to", options.unload_to,
+                                         "M/M_lim to unload to from the state, normal load constant");
+  unload->excludes(history);
   exact.add_option("--certified", options.certified, "give each number with so many proven digits, 15..100")
       ->check(CLI::Range(15, 100))
       ->excludes(history)
@@ -167,11 +165,9 @@ void add_units_options(CLI::App& exact, Options& options) {
   shape->needs(load);
   CLI::Option* friction = exact.add_option("--friction", options.friction, "mu: gives moments in N m");
   friction->needs(load)->check(CLI::PositiveNumber);
-  exact
-      .add_option("--shear-modulus", options.shear_modulus,
-                  "combined G, Pa, 1/G = 1/G_1 + 1/G_2: gives the twist in rad")
-      ->needs(friction)
-      ->check(CLI::PositiveNumber);
+  CLI::Option* shear = exact.add_option("--shear-modulus", options.shear_modulus,
+                                        "combined G, Pa, 1/G = 1/G_1 + 1/G_2: gives the twist in rad");
+  shear->needs(friction)->check(CLI::PositiveNumber);
 }
 
 }  // namespace
@@ -180,10 +176,9 @@ std::function<int(std::ostream&, Json&)> add_exact_command(CLI::App& app) {
   CLI::App* exact = app.add_subcommand("exact", "exact solution of an axisymmetric contact in torsion");
   const auto options = std::make_shared<Options>();
   add_state_options(*exact, *options);
-  exact
-      ->add_option("--radius", options->radii,
-                   "r/a, in [0, 1], where to give traction and pressure: r1,r2,...")
-      ->delimiter(',');
+  CLI::Option* radius = exact->add_option("--radius", options->radii,
+                                          "r/a, in [0, 1], where to give traction and pressure: r1,r2,...");
+  radius->delimiter(',');
   exact->add_option("--profile", options->profile, profile_words())->capture_default_str();
   add_units_options(*exact, *options);
   exact->footer(

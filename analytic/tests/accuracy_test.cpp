@@ -35,11 +35,10 @@ TEST(Accuracy, HoldsForMomentAndStiffness) {
         testing::kFrom.at(row.text("given"))(row.argument("value"), *find_profile(name).profile);
     const long double reference = row.number("reference");
     const bool moment = quantity == "moment_ratio";
-    const double error =
-        moment
-            ? testing::relative_error(state.moment,
-                                      limit_over_pi.at(name) * std::numbers::pi_v<long double> * reference)
-            : testing::relative_error(state.tangent_stiffness, 16.0L / 3 * reference * reference * reference);
+    const long double limit = limit_over_pi.at(name) * std::numbers::pi_v<long double>;
+    const long double stiffness = 16.0L / 3 * reference * reference * reference;
+    const double error = moment ? testing::relative_error(state.moment, limit * reference)
+                                : testing::relative_error(state.tangent_stiffness, stiffness);
     const double cost = row.argument("cost") * (moment ? 1 : 3);
     EXPECT_LE(error / testing::kEps, std::max(testing::kAllowed, testing::kOfTheCost * cost)) << row.line();
   }

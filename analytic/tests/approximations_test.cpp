@@ -11,8 +11,6 @@
 namespace slipstick::analytic {
 namespace {
 
-using std::numbers::pi;
-
 const double kLimit = hertz_profile().moment_limit();
 
 double error(double (*twist)(double), double moment_ratio) {

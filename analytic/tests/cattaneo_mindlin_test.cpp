@@ -12,19 +12,11 @@
 namespace slipstick::analytic::tangential {
 namespace {
 
-using std::numbers::pi;
 using namespace ::testing;
 
 const SelfSimilarIndenter kSphere;
 const SelfSimilarIndenter kFlat(kInfinity);
 const std::vector<SelfSimilarIndenter> kRound{SelfSimilarIndenter(1), kSphere, SelfSimilarIndenter(3.5)};
-
-/// integral over r from 0 to 1 of f, which has square-root ends at the stick radius and at 1.
-template <class Function>
-double over_contact(const TangentialState& state, const Function& f) {
-  return testing::integral_between_roots(f, 0, state.stick_ratio) +
-         testing::integral_between_roots(f, state.stick_ratio, 1);
-}
 
 TEST(CattaneoMindlin, IsTheTextbooksSphere) {
   // Johnson 1985, Eqs. (7.41) and (7.42), with G_t for both bodies.
@@ -63,8 +55,9 @@ TEST(CattaneoMindlin, HasTheForceOfItsTractionsAndCoulombsRing) {
   for (const auto& indenter : kRound)
     for (const double f : {0.1, 0.6, 0.99}) {
       const auto state = from_force_ratio(f, indenter);
-      const double force = over_contact(
-          state, [&](double r) { return r > 0 ? 2 * pi * r * traction(state, r, indenter) : 0; });
+      const auto ring = [&](double r) { return r > 0 ? 2 * pi * r * traction(state, r, indenter) : 0; };
+      const double force = testing::integral_between_roots(ring, 0, state.stick_ratio) +
+                           testing::integral_between_roots(ring, state.stick_ratio, 1);
       EXPECT_NEAR(force / indenter.profile().load(), f, 1e-13) << indenter.radius_power();
       for (const double share : {0.01, 0.5, 0.99}) {
         const double slipping = std::lerp(state.stick_ratio, 1, share);

@@ -72,9 +72,7 @@ TEST(EnergyLost, KeepsItsDigitsWhereAFlatPunchBeginsToSlip) {
 /// digits of the integrals (mpmath), of these very doubles.
 TEST(EnergyLost, KeepsTheDigitsOfAMomentJustBeyondFullStick) {
   struct Known {
-    double moment_ratio;
-    double stick_complement;
-    double energy;
+    double moment_ratio, stick_complement, energy;
   };
   const auto& punch = flat_punch_profile();
   for (const auto& known : {Known{0.85, 0.002772036329860887973, 1.9228249682955457334e-6},

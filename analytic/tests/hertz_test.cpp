@@ -3,20 +3,13 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <stdexcept>
 
 #include "analytic/elliptic.hpp"
+#include "analytic/tests/values.hpp"
 
 namespace slipstick::analytic {
 namespace {
-
-using std::numbers::pi;
-
-constexpr double kLoadOfEllipse = 1000;        // N
-constexpr double kModulusOfEllipse = 115.4e9;  // Pa
-constexpr double kRadiusOfEllipse = 0.018;     // m
 
 /// Johnson 1985, Eqs. (4.26), in D = (K - E)/e^2 and B = K - D, which do not cancel: 1/R_1 = 2 p0 b/(E* a^2)
 /// D, 1/R_2 = 2 p0/(E* b) B, approach p0 b K/E*; by means, where the contact itself is found by Carlson's
@@ -24,15 +17,15 @@ constexpr double kRadiusOfEllipse = 0.018;     // m
 TEST(HertzEllipse, HasTheCurvaturesOfTheGapAtAnyRatio) {
   for (const double ratio :
        {1.0, 1.0 + 1e-15, 1.0 + 1e-12, 1.0 + 1e-6, 1.01, 2.0, 10.0, 1e2, 1e3, 1e4, 1e5, 1e6}) {
-    const double load = kLoadOfEllipse * ratio;  // of any size
-    const auto contact = hertz_ellipse(load, kRadiusOfEllipse, kRadiusOfEllipse / ratio, kModulusOfEllipse);
+    const double load = kLoad * ratio;  // of any size
+    const auto contact = hertz_ellipse(load, kRadius, kRadius / ratio, kModulus);
     const double a = contact.semi_axis_1;
     const double b = contact.semi_axis_2;
     const auto [k, e, d] = complete_elliptic(std::min(b / a, 1.0));
-    const double unit = 2 * contact.peak_pressure / kModulusOfEllipse;
+    const double unit = 2 * contact.peak_pressure / kModulus;
     constexpr double kTolerance = 1e-14;
-    EXPECT_NEAR(unit * b / (a * a) * d * kRadiusOfEllipse, 1, kTolerance) << ratio;
-    EXPECT_NEAR(unit / b * (k - d) * kRadiusOfEllipse / ratio, 1, kTolerance) << ratio;
+    EXPECT_NEAR(unit * b / (a * a) * d * kRadius, 1, kTolerance) << ratio;
+    EXPECT_NEAR(unit / b * (k - d) * kRadius / ratio, 1, kTolerance) << ratio;
     EXPECT_NEAR(unit / 2 * b * k / contact.approach, 1, kTolerance) << ratio;
     EXPECT_NEAR(2.0 / 3 * contact.peak_pressure * pi * a * b / load, 1, kTolerance) << ratio;
   }
@@ -44,8 +37,7 @@ TEST(HertzEllipse, HasTheCurvaturesOfTheGapAtAnyRatio) {
 TEST(HertzEllipse, HasTheFrictionArmOfItsPressure) {
   constexpr int kDirections = 4000;
   for (const double ratio : {1.0, 1.0 + 1e-9, 3.0, 20.0, 1.0 / 20, 1e3}) {
-    const auto contact =
-        hertz_ellipse(kLoadOfEllipse, kRadiusOfEllipse, kRadiusOfEllipse / ratio, kModulusOfEllipse);
+    const auto contact = hertz_ellipse(kLoad, kRadius, kRadius / ratio, kModulus);
     double sum = 0;
     for (int i = 0; i < kDirections; ++i) {
       const double angle = 2 * pi * i / kDirections;
@@ -53,23 +45,20 @@ TEST(HertzEllipse, HasTheFrictionArmOfItsPressure) {
           1 / std::hypot(std::cos(angle) / contact.semi_axis_1, std::sin(angle) / contact.semi_axis_2);
       sum += pi / 16 * contact.peak_pressure * edge * edge * edge;
     }
-    EXPECT_NEAR(sum * 2 * pi / kDirections / kLoadOfEllipse / contact.friction_arm, 1, 1e-13) << ratio;
+    EXPECT_NEAR(sum * 2 * pi / kDirections / kLoad / contact.friction_arm, 1, 1e-13) << ratio;
   }
 }
 
 /// The mean distance from the middle of a line that carries 1 - x^2: 3/8 of half its length.
 TEST(HertzEllipse, TendsToALine) {
-  const auto contact =
-      hertz_ellipse(kLoadOfEllipse, kRadiusOfEllipse, kRadiusOfEllipse / 1e9, kModulusOfEllipse);
+  const auto contact = hertz_ellipse(kLoad, kRadius, kRadius / 1e9, kModulus);
   EXPECT_NEAR(contact.friction_arm / contact.semi_axis_1, 3.0 / 8, 1e-9);
 }
 
 TEST(HertzEllipse, TurnsWithItsAxes) {
   for (const double ratio : {1.5, 20.0, 1e3}) {
-    const auto one =
-        hertz_ellipse(kLoadOfEllipse, kRadiusOfEllipse, kRadiusOfEllipse * ratio, kModulusOfEllipse);
-    const auto other =
-        hertz_ellipse(kLoadOfEllipse, kRadiusOfEllipse * ratio, kRadiusOfEllipse, kModulusOfEllipse);
+    const auto one = hertz_ellipse(kLoad, kRadius, kRadius * ratio, kModulus);
+    const auto other = hertz_ellipse(kLoad, kRadius * ratio, kRadius, kModulus);
     EXPECT_LT(one.semi_axis_1, one.semi_axis_2) << "the longer axis lies where the curvature is smaller";
     EXPECT_EQ(one.semi_axis_1, other.semi_axis_2);
     EXPECT_EQ(one.semi_axis_2, other.semi_axis_1);

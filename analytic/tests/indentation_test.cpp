@@ -2,25 +2,17 @@
 
 #include <gmock/gmock.h>
 
-#include <cmath>
-#include <functional>
-#include <numbers>
 #include <stdexcept>
 
-#include "analytic/axisymmetric.hpp"
 #include "analytic/elliptic.hpp"
-#include "analytic/gsl.hpp"
 #include "analytic/punch_superposition.hpp"
+#include "analytic/tests/values.hpp"
 
 namespace slipstick::analytic {
 namespace {
 
-using std::numbers::pi;
 using namespace ::testing;
 
-constexpr double kLoad = 1000;        // N
-constexpr double kModulus = 115.4e9;  // Pa
-constexpr double kRadius = 0.018;     // m
 constexpr double kTolerance = 2e-15;
 
 /// Displacement of the surface at r (over a) by Boussinesq's point load round the axis (Johnson 1985, section
@@ -152,22 +144,20 @@ TEST(Indentation, LastsToExtremeMagnitudes) {
       std::pow(10, 50.0 / 1001), 1e-13);
 }
 
-/// Each indenter's numbers, all 1 but the one at `place`.
-void indent_all(const std::function<double(int)>& at, int place) {
-  if (place < 3) {
-    EXPECT_THROW(indent_sphere(at(0), at(1), at(2)), std::domain_error) << place;
-    EXPECT_THROW(indent_cone(at(0), at(1), at(2)), std::domain_error) << place;
-    EXPECT_THROW(indent_flat_punch(at(0), at(1), at(2)), std::domain_error) << place;
-  }
-  EXPECT_THROW(indent_power(at(0), at(1), at(2), at(3)), std::domain_error) << place;
-  if (place != 1 || at(1) != 0) {  // a rounded punch may have no flat
-    EXPECT_THROW(indent_rounded_punch(at(0), at(1), at(2), at(3)), std::domain_error) << place;
-  }
-}
-
 TEST(Indentation, RefusesWhatIsNotPositive) {
   for (const double bad : {0.0, -1.0, std::nan(""), HUGE_VAL})
-    for (const int place : {0, 1, 2, 3}) indent_all([&](int i) { return i == place ? bad : 1.0; }, place);
+    for (const int place : {0, 1, 2, 3}) {
+      const auto at = [&](int i) { return i == place ? bad : 1.0; };
+      if (place < 3) {
+        EXPECT_THROW(indent_sphere(at(0), at(1), at(2)), std::domain_error) << place;
+        EXPECT_THROW(indent_cone(at(0), at(1), at(2)), std::domain_error) << place;
+        EXPECT_THROW(indent_flat_punch(at(0), at(1), at(2)), std::domain_error) << place;
+      }
+      EXPECT_THROW(indent_power(at(0), at(1), at(2), at(3)), std::domain_error) << place;
+      if (place != 1 || at(1) != 0) {  // a rounded punch may have no flat
+        EXPECT_THROW(indent_rounded_punch(at(0), at(1), at(2), at(3)), std::domain_error) << place;
+      }
+    }
   EXPECT_THAT([] { indent_cone(1, -2, 1); },
               ThrowsMessage<std::domain_error>(HasSubstr("slope = -2; allowed: positive and finite")));
   EXPECT_THAT([] { indent_rounded_punch(1, -2, 1, 1); },

@@ -14,8 +14,6 @@
 namespace slipstick::analytic {
 namespace {
 
-using std::numbers::pi;
-
 struct AnyProfile {
   std::shared_ptr<const Profile> profile;
   double roughness = 1;  ///< factor of the tolerances: quadrature and differences meet a table's kinks
@@ -59,10 +57,10 @@ double moment_of_pressure(const Profile& profile, double power) {
 
 TEST(AnyProfile, HasTheLoadOfItsPressure) {
   for (const auto& [profile, roughness] : every_profile()) {
-    EXPECT_NEAR(moment_of_pressure(*profile, 1) / profile->load(), 1, 1e-9 * roughness) << profile->name();
+    SCOPED_TRACE(profile->name());
+    EXPECT_NEAR(moment_of_pressure(*profile, 1) / profile->load(), 1, 1e-9 * roughness);
     EXPECT_NEAR(moment_of_pressure(*profile, 2) / profile->load() / profile->moment_limit(), 1,
-                1e-9 * roughness)
-        << profile->name();
+                1e-9 * roughness);
   }
 }
 
@@ -92,6 +90,7 @@ TEST(AnyProfile, HasTheTangentStiffnessOfItsStickArea) {
   for (const auto& [each, roughness] : every_profile())
     for (const double c : {0.05, 0.3, 0.7, 0.93}) {
       const Profile& profile = *each;
+      SCOPED_TRACE(fmt::format("{}, c = {}", profile.name(), c));
       const double step = 1e-3 * c * (1 - c);
       const auto difference = [&](auto f) {  // of fourth order
         return (8 * (f(at(c + step)) - f(at(c - step))) - (f(at(c + 2 * step)) - f(at(c - 2 * step)))) /
@@ -101,27 +100,25 @@ TEST(AnyProfile, HasTheTangentStiffnessOfItsStickArea) {
       const double moment = difference([&](StickRadius s) {
         return profile.moment_share(s).excess * profile.moment_limit() * profile.load();
       });
-      EXPECT_NEAR(-c * slope / profile.twist_slope(at(c)), 1, 1e-7 * roughness)
-          << profile.name() << ", c = " << c;
-      EXPECT_NEAR(moment / slope / (8.0 / 3 * c * c * c), 1, 1e-6 * roughness)
-          << profile.name() << ", c = " << c;
+      EXPECT_NEAR(-c * slope / profile.twist_slope(at(c)), 1, 1e-7 * roughness);
+      EXPECT_NEAR(moment / slope / (8.0 / 3 * c * c * c), 1, 1e-6 * roughness);
     }
 }
 
 TEST(AnyProfile, KeepsTractionsBelowFrictionAndContinuous) {
   for (const auto& [profile, roughness] : every_profile())
     for (const double c : {1e-100, 1e-9, 0.01, 0.5, 0.9, 0.999}) {
-      EXPECT_EQ(profile->stick_traction(at(c), 0, c), 0) << profile->name();
+      SCOPED_TRACE(fmt::format("{}, c = {}", profile->name(), c));
+      EXPECT_EQ(profile->stick_traction(at(c), 0, c), 0);
       double before = 0;
       for (const double f : {0.999, 0.9, 0.6, 0.3, 0.1, 0.01, 1e-5, 1e-13}) {
         const double r = c - c * f;
         const double q = profile->stick_traction(at(c), r, c * f);
-        EXPECT_GT(q, 0) << profile->name() << ", c = " << c << ", r = " << r;
-        EXPECT_LE(q, profile->pressure(r) * (1 + 8 * kEps * roughness))
-            << profile->name() << ", c = " << c << ", r = " << r;
+        EXPECT_GT(q, 0) << r;
+        EXPECT_LE(q, profile->pressure(r) * (1 + 8 * kEps * roughness)) << r;
         before = q;
       }
-      EXPECT_NEAR(before / profile->pressure(c), 1, 2e-5 * roughness) << profile->name() << ", c = " << c;
+      EXPECT_NEAR(before / profile->pressure(c), 1, 2e-5 * roughness);
     }
 }
 

@@ -16,7 +16,6 @@
 namespace slipstick::analytic {
 namespace {
 
-using std::numbers::pi;
 using testing::relative_error;
 
 /// H(c) = integral_c^1 f(r)/sqrt(r^2 - c^2) dr, with r = sqrt(c^2 + x^2).

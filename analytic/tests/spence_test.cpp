@@ -9,7 +9,6 @@
 namespace slipstick::analytic {
 namespace {
 
-using std::numbers::pi;
 using namespace ::testing;
 
 TEST(GoodmanContact, HoldsItsDigitsAtBothEnds) {

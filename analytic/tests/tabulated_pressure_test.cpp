@@ -16,7 +16,6 @@
 namespace slipstick::analytic {
 namespace {
 
-using std::numbers::pi;
 using namespace ::testing;
 using testing::hertz;
 using testing::linear;

@@ -11,7 +11,6 @@
 namespace slipstick::analytic::tangential {
 namespace {
 
-using std::numbers::pi;
 using namespace ::testing;
 
 constexpr double kRounding = 1e-14;  // some ten steps' errors of 1e-15 each

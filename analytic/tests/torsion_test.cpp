@@ -10,7 +10,6 @@
 namespace slipstick::analytic {
 namespace {
 
-using std::numbers::pi;
 using namespace ::testing;
 using testing::kFrom;
 using testing::relative_error;

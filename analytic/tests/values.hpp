@@ -14,9 +14,15 @@
 
 namespace slipstick::analytic {
 
+using std::numbers::pi;
+
 inline constexpr double kEps = std::numeric_limits<double>::epsilon();
 inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 inline constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+inline constexpr double kLoad = 1000;        // N
+inline constexpr double kModulus = 115.4e9;  // Pa
+inline constexpr double kRadius = 0.018;     // m
 
 /// The front at a part c of the contact radius.
 inline StickRadius at(double c) { return {.ratio = c, .complement = 1 - c}; }
@@ -32,7 +38,7 @@ inline double integral_between_roots(const std::function<double(double)>& f, dou
       [&](double t) {
         return f(low + (high - low) * std::pow(std::sin(t), 2)) * (high - low) * std::sin(2 * t);
       },
-      0, std::numbers::pi / 2);
+      0, pi / 2);
 }
 
 inline const std::vector<const Profile*> kClosedForms{&hertz_profile(), &cone_profile(),
@@ -44,7 +50,7 @@ inline std::vector<PressurePoint> sample(const std::function<double(double)>& pr
   std::vector<PressurePoint> points;
   for (int i = 0; i < intervals; ++i) {
     const double share = static_cast<double>(i) / intervals;
-    const double radius = graded ? std::sin(std::numbers::pi / 2 * share) : share;
+    const double radius = graded ? std::sin(pi / 2 * share) : share;
     points.push_back({.radius = radius, .pressure = pressure(radius)});
   }
   points.push_back({.radius = 1, .pressure = pressure(1)});
