@@ -183,9 +183,7 @@ RunCommand add_bench_command(CLI::App& app) {
   against->excludes(pair);
   for (CLI::Option* const other : {against, pair}) other->excludes(scene);
   command->footer(kBenchFooter);
-  return [request](std::ostream& text, nlohmann::ordered_json& result) {
-    return run_bench(*request, text, result);
-  };
+  return [request](std::ostream& text, Json& result) { return run_bench(*request, text, result); };
 }
 
 }  // namespace slipstick::bench

@@ -16,6 +16,7 @@
 namespace slipstick::bench {
 namespace {
 
+using Json = nlohmann::ordered_json;
 using solver::InputError;
 
 struct CompareRequest {
@@ -57,7 +58,7 @@ ComparisonRules rules_of(const CompareRequest& request) {
           .debug_library = request.debug_library};
 }
 
-int run_compare(const CompareRequest& request, std::ostream& text, nlohmann::ordered_json& result) {
+int run_compare(const CompareRequest& request, std::ostream& text, Json& result) {
   const ComparisonRules rules = rules_of(request);
   convergence::require_output("--summary", request.summary);
   convergence::require_output("--junit", request.junit);
@@ -101,9 +102,7 @@ RunCommand add_compare_command(CLI::App& app) {
   command->add_option("--summary", request->summary, "write a Markdown table, the worst first, below 64 kB");
   command->add_option("--junit", request->junit, "write JUnit XML, as CI servers read it, to this file");
   command->footer(kCompareFooter);
-  return [request](std::ostream& text, nlohmann::ordered_json& result) {
-    return run_compare(*request, text, result);
-  };
+  return [request](std::ostream& text, Json& result) { return run_compare(*request, text, result); };
 }
 
 }  // namespace slipstick::bench

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <ranges>
 #include <stdexcept>
 #include <vector>
 
@@ -56,12 +57,10 @@ double iteration_error(const Json& loose, const Json& tight) {
 }
 
 double largest_error(const Loads& loads, const std::string& quantity) {
-  double largest = 0.0;
-  for (const ByTolerance& points : loads) {
-    const double error = points.begin()->second->at("error").at(quantity).get<double>();
-    largest = std::max(largest, error);
-  }
-  return largest;
+  const auto error = [&](const ByTolerance& points) {
+    return points.begin()->second->at("error").at(quantity).get<double>();
+  };
+  return std::ranges::max(loads | std::views::transform(error));
 }
 
 /// Tolerances, falling, at which all loads were solved.

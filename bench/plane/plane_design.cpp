@@ -30,13 +30,6 @@ void add(Design& design, PlaneChoice choice, const Cells& meshes, const Toleranc
   }
 }
 
-/// Direct and dense summation cost the fourth power of the cells along a side: beyond these a solve takes
-/// seconds, or gigabytes.
-void add_operators(Design& design, bool quick) {
-  add(design, {.op = "direct", .model = "full"}, quick ? Cells{16, 32} : Cells{16, 32, 64}, kOneAtATime);
-  add(design, {.op = "dense", .model = "full"}, quick ? Cells{16} : Cells{16, 32}, kOneAtATime);
-}
-
 void add_one_at_a_time(Design& design, bool quick) {
   const Cells meshes = quick ? Cells{32, 64, 128} : Cells{16, 32, 64, 128, 256};
   const std::vector<PlaneChoice> choices{
@@ -45,7 +38,10 @@ void add_one_at_a_time(Design& design, bool quick) {
     add(design, choice, meshes, kOneAtATime);
     if (!quick) add(design, choice, {512}, {1e-6});
   }
-  add_operators(design, quick);
+  // Direct and dense summation cost the fourth power of the cells along a side: beyond these a solve takes
+  // seconds, or gigabytes.
+  add(design, {.op = "direct", .model = "full"}, quick ? Cells{16, 32} : Cells{16, 32, 64}, kOneAtATime);
+  add(design, {.op = "dense", .model = "full"}, quick ? Cells{16} : Cells{16, 32}, kOneAtATime);
 }
 
 void add_methods(Design& design, bool quick) {

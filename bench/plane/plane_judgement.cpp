@@ -1,5 +1,6 @@
 #include <fmt/core.h>
 
+#include <algorithm>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <optional>
@@ -33,13 +34,11 @@ std::vector<Way> ways_to(const Json& points, const std::string& quantity, const 
 
 /// The best error among ways, as the reason why a smaller one was not reached.
 std::string best_text(const Json& points, const std::vector<Way>& ways) {
-  std::optional<std::size_t> best;
-  for (const std::size_t way : pareto_front(ways)) {
-    if (!best || ways[way].error < ways[*best].error) best = way;
-  }
-  if (!best) return "no timed point";
-  return fmt::format("the best is {0:.2g}, on {1} x {1} cells", ways[*best].error,
-                     points[*best]["cells"].get<double>());
+  const std::vector<std::size_t> front = pareto_front(ways);
+  if (front.empty()) return "no timed point";
+  const auto best = *std::ranges::min_element(front, {}, [&](std::size_t way) { return ways[way].error; });
+  return fmt::format("the best is {0:.2g}, on {1} x {1} cells", ways[best].error,
+                     points[best]["cells"].get<double>());
 }
 
 Json time_to(const Json& points, const std::string& quantity, const std::string& method, double error) {

@@ -64,13 +64,10 @@ Prepared tangential(Index cells) {
     return solver::HalfSpaces(bodies).influence_tables(kComponents, {cells, cells, 1.0, 1.0});
   };
   const double worst = error(tables(), pair(), cells);
-  Prepared prepared;
-  prepared.counters["error"] = worst;
-  prepared.counters["coefficients_per_second"] =
-      rate(static_cast<double>(kComponents.size()) * static_cast<double>(cells * cells));
-  if (!(worst <= kAllowedCoefficientError)) prepared.invalid_reason = "disagrees with quadrature";
-  prepared.timing = repeated([tables] { benchmark::DoNotOptimize(tables()); });
-  return prepared;
+  const double coefficients = static_cast<double>(kComponents.size()) * static_cast<double>(cells * cells);
+  return {.counters = {{"error", worst}, {"coefficients_per_second", rate(coefficients)}},
+          .invalid_reason = worst <= kAllowedCoefficientError ? "" : "disagrees with quadrature",
+          .timing = repeated([tables] { benchmark::DoNotOptimize(tables()); })};
 }
 
 }  // namespace

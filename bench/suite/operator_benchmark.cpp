@@ -159,18 +159,14 @@ Prepared application(const Form& form, Index cells) {
 /// Its result is checked where it is applied.
 Prepared set_up(const Form& form, Index cells) {
   const Grid grid = grid_of(form, cells);
-  Prepared prepared;
-  prepared.counters["bytes"] = bytes(form, grid);
-  prepared.timing = repeated([form, grid] { benchmark::DoNotOptimize(make(form, grid)); });
-  return prepared;
+  return {.counters = {{"bytes", bytes(form, grid)}},
+          .timing = repeated([form, grid] { benchmark::DoNotOptimize(make(form, grid)); })};
 }
 
 Prepared bare_transforms(Index cells) {
   const auto transforms = std::make_shared<FourTransforms>(cells);
-  Prepared prepared;
-  prepared.counters["GFLOP/s"] = rate(1e-9 * operations(OperatorKind::dcfft, cells));
-  prepared.timing = repeated([transforms] { (*transforms)(); });
-  return prepared;
+  return {.counters = {{"GFLOP/s", rate(1e-9 * operations(OperatorKind::dcfft, cells))}},
+          .timing = repeated([transforms] { (*transforms)(); })};
 }
 
 /// Cells along a side: 2^k, and 3 2^k where a law is fitted to times. Padded lengths are exactly twice as
@@ -196,30 +192,25 @@ void add_operator_benchmarks(Suite& suite) {
   const std::vector<Index> dense = fine_sizes(64);    // half a gigabyte
   const OperatorOptions two_threads{.threads = 2};
   const Form quarter{.quarter = true};
-  const auto add_applications = [&](const std::string& variant, const Form& form,
-                                    const std::vector<Index>& sizes) {
-    suite.add_sizes("application/" + variant, sizes,
-                    [form](Index cells) { return application(form, cells); });
-  };
-  const auto add_set_ups = [&](const std::string& variant, const Form& form,
-                               const std::vector<Index>& sizes) {
-    suite.add_sizes("setup/" + variant, sizes, [form](Index cells) { return set_up(form, cells); });
+  const auto add = [&](const std::string& family, Prepared (*prepare)(const Form&, Index), const Form& form,
+                       const std::vector<Index>& sizes) {
+    suite.add_sizes(family, sizes, [prepare, form](Index cells) { return prepare(form, cells); });
   };
 
-  add_applications("dense", {.kind = OperatorKind::dense}, dense);
-  add_applications("direct", {.kind = OperatorKind::direct}, direct);
-  add_applications("direct_2_threads", {.kind = OperatorKind::direct, .options = two_threads},
-                   doubling(4, 128));
-  add_applications("dcfft", {}, all);
-  add_applications("dcfft_2_threads", {.options = two_threads}, doubling(4, 1024));
-  add_applications("dcfft_quarter", quarter, doubling(16, 1024));
-  add_applications("dcfft_quarter_with_diagonal", {.options = {.diagonal = true}, .quarter = true},
-                   doubling(16, 1024));
+  add("application/dense", application, {.kind = OperatorKind::dense}, dense);
+  add("application/direct", application, {.kind = OperatorKind::direct}, direct);
+  add("application/direct_2_threads", application, {.kind = OperatorKind::direct, .options = two_threads},
+      doubling(4, 128));
+  add("application/dcfft", application, {}, all);
+  add("application/dcfft_2_threads", application, {.options = two_threads}, doubling(4, 1024));
+  add("application/dcfft_quarter", application, quarter, doubling(16, 1024));
+  add("application/dcfft_quarter_with_diagonal", application,
+      {.options = {.diagonal = true}, .quarter = true}, doubling(16, 1024));
 
-  add_set_ups("dense", {.kind = OperatorKind::dense}, dense);
-  add_set_ups("direct", {.kind = OperatorKind::direct}, direct);
-  add_set_ups("dcfft", {}, all);
-  add_set_ups("dcfft_quarter", quarter, doubling(16, 1024));
+  add("setup/dense", set_up, {.kind = OperatorKind::dense}, dense);
+  add("setup/direct", set_up, {.kind = OperatorKind::direct}, direct);
+  add("setup/dcfft", set_up, {}, all);
+  add("setup/dcfft_quarter", set_up, quarter, doubling(16, 1024));
   suite.add_sizes("four_bare_transforms", all, bare_transforms);
 }
 

@@ -38,20 +38,16 @@ std::vector<std::string> words_of(int argc, char** argv) {
   return words;
 }
 
-void add_all_benchmarks(slipstick::bench::Suite& suite) {
-  slipstick::bench::add_influence_benchmarks(suite);
-  slipstick::bench::add_operator_benchmarks(suite);
-  slipstick::bench::add_normal_benchmarks(suite);
-  slipstick::bench::add_solve_benchmarks(suite);
-  slipstick::bench::add_exact_benchmarks(suite);
-}
-
 int run(std::vector<std::string> words) {
   std::vector<char*> arguments(words.size() + 1, nullptr);
   std::ranges::transform(words, arguments.begin(), [](std::string& word) { return word.data(); });
   auto count = static_cast<int>(words.size());
   slipstick::bench::Suite suite;
-  add_all_benchmarks(suite);
+  slipstick::bench::add_influence_benchmarks(suite);
+  slipstick::bench::add_operator_benchmarks(suite);
+  slipstick::bench::add_normal_benchmarks(suite);
+  slipstick::bench::add_solve_benchmarks(suite);
+  slipstick::bench::add_exact_benchmarks(suite);
   benchmark::Initialize(&count, arguments.data());
   if (benchmark::ReportUnrecognizedArguments(count, arguments.data())) return 2;
   say_where_times_come_from();

@@ -81,11 +81,9 @@ std::vector<WorkCase> work_cases() {
 CaseCounts count_work(const WorkCase& work_case) {
   work_case.prepare()();
   const Work work = work_case.prepare();
-  CaseCounts found;
   const WorkCounts before = work_counts();
-  found.solve = work();
-  found.counts = work_counts() - before;
-  return found;
+  const SolveWork done = work();
+  return {done, work_counts() - before};
 }
 
 }  // namespace slipstick::bench

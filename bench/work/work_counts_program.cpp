@@ -66,11 +66,7 @@ Json instructions_json(const Instructions& instructions, const std::string& prog
   long total = 0;
   for (const auto& [object, count] : instructions) {
     total += count;
-    if (object == program) {
-      json["program"] = count;
-    } else {
-      json["libraries"][object] = count;
-    }
+    (object == program ? json["program"] : json["libraries"][object]) = count;
   }
   json["total"] = total;
   return json;

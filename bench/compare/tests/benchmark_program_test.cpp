@@ -17,8 +17,7 @@ using ::testing::ElementsAre;
 
 /// A program that behaves as Google Benchmark's do, with a list of benchmarks ("f\\ng\\n"); it notes each of
 /// its runs as "label filter" in the file "log" of the folder.
-std::filesystem::path made_program(const std::filesystem::path& folder, const std::string& label,
-                                   const std::string& list) {
+fs::path made_program(const fs::path& folder, const std::string& label, const std::string& list) {
   const fs::path program = folder / label;
   std::ofstream(program) << fmt::format(R"(#!/bin/sh
 for word in "$@"; do
@@ -40,7 +39,7 @@ END
   return program;
 }
 
-std::vector<std::string> lines_of(const std::filesystem::path& file) {
+std::vector<std::string> lines_of(const fs::path& file) {
   std::vector<std::string> lines;
   std::ifstream stream(file);
   for (std::string line; std::getline(stream, line);) lines.push_back(line);
@@ -68,8 +67,7 @@ TEST(Survey, RunsAnotherProgramAndAnotherLengthAnew) {
   const auto program = made_program(folder / "", "a", "f\\n");
   run_survey(program, {"f"}, {.seconds = 0.1}, folder / "kept");
   run_survey(program, {"f"}, {.seconds = 0.2}, folder / "kept");
-  std::filesystem::last_write_time(program,
-                                   std::filesystem::last_write_time(program) + std::chrono::seconds(1));
+  fs::last_write_time(program, fs::last_write_time(program) + std::chrono::seconds(1));
   run_survey(program, {"f"}, {.seconds = 0.2}, folder / "kept");
   EXPECT_EQ(lines_of(folder / "log").size(), 3U);
 }

@@ -133,20 +133,16 @@ std::vector<double> counted_signed_ranks(std::size_t n) {
 // Tails of the sums are thinner than normal ones: beyond counting, chances are up to a fifth too large, which
 // is the safe side.
 TEST(RankTests, TakeTheNormalDistributionBeyondCounting) {
-  struct Case {
-    double found;
-    double exact;
-  };
-  std::vector<Case> cases;
+  std::vector<std::pair<double, double>> cases;  // what is found, and what is exact
   const int n = 31;
   for (const int u : {481, 420, 360, 300, 262}) {
     const Shift shift = shift_with(static_cast<std::size_t>(u), 31, 31);
-    cases.push_back({shift.p_negative, chance_of_at_most(u, n, n)});
+    cases.emplace_back(shift.p_negative, chance_of_at_most(u, n, n));
     EXPECT_DOUBLE_EQ(shift_with(static_cast<std::size_t>(n * n - u), 31, 31).p_positive, shift.p_negative);
   }
   const std::vector<double> counted = counted_signed_ranks(61);
   for (const std::size_t t : {945U, 800U, 700U, 600U, 540U})
-    cases.push_back({signed_rank_shift(differences_with(t, 61)).p_negative, counted[t]});
+    cases.emplace_back(signed_rank_shift(differences_with(t, 61)).p_negative, counted[t]);
   for (const auto& [found, exact] : cases) {
     EXPECT_GT(found, 0.99 * exact) << exact;
     EXPECT_LT(found, (exact > 0.02 ? 1.01 : 1.2) * exact) << exact;
