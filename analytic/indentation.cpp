@@ -117,7 +117,8 @@ RoundedPunchIndentation indent_rounded_punch(double load, double flat_radius, do
   require_positive("load", load);
   if (!(flat_radius >= 0 && std::isfinite(flat_radius)))
     out_of_range("flat radius", flat_radius, ">= 0 and finite");
-  require_all_positive({{"corner radius", corner_radius}, {"effective modulus", effective_modulus}});
+  require_positive("corner radius", corner_radius);
+  require_positive("effective modulus", effective_modulus);
   const double sphere = indent_sphere(load, corner_radius, effective_modulus).contact_radius;
   const double s = sphere * corner_reach(flat_radius / sphere);
   const double a = std::hypot(flat_radius, s);
